@@ -1,0 +1,49 @@
+//! What can go wrong: a parameter outside its range, or numerical trouble in one particle.
+
+/// Every failure of the core.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum Error {
+    /// A parameter is outside the range that it is defined on.
+    #[error("{name} = {value}: must be {allowed}")]
+    Parameter {
+        /// Name of the parameter.
+        name: &'static str,
+        /// The value given.
+        value: f64,
+        /// What is allowed.
+        allowed: &'static str,
+    },
+    /// The contact search of one particle did not come to an end.
+    #[error(
+        "particle {particle} (seed {seed}): the contact search did not converge in flight {flight}; \
+         this state is a defect of the program, please report it"
+    )]
+    Numerical {
+        /// Index of the particle.
+        particle: u64,
+        /// Seed of the run.
+        seed: u64,
+        /// Number of impacts before the flight in question.
+        flight: u64,
+    },
+}
+
+impl Error {
+    /// `Ok` if `holds`, else the parameter error.
+    pub(crate) fn unless(
+        holds: bool,
+        name: &'static str,
+        value: f64,
+        allowed: &'static str,
+    ) -> Result<(), Self> {
+        if holds {
+            Ok(())
+        } else {
+            Err(Self::Parameter {
+                name,
+                value,
+                allowed,
+            })
+        }
+    }
+}

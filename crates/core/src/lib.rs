@@ -1,0 +1,38 @@
+//! Exact event-driven bouncing of aspherical bodies on a plane.
+//!
+//! Source of the model: A. Glielmo, N. Gunkelmann and T. Pöschel, *Coefficient of restitution of aspherical
+//! particles*, Phys. Rev. E **90**, 052204 (2014). Equation numbers in this crate are that paper's.
+//!
+//! # Units
+//! Inside the core lengths are measured in the sphere radius R, times in √(R/g) and masses in the body's mass m.
+//! Gravity is then 1 and a run depends on L/R, the release height over R, the law and nothing else; [`Scales`]
+//! converts. Only [`Dumbbell`] and [`Scales`] know SI units.
+//!
+//! # Notation
+//! | paper | here |
+//! |---|---|
+//! | n (plane normal), z | `z`, upward |
+//! | r_G, v_G | [`State::height`], [`State::velocity`] |
+//! | ω | [`State::spin`], derived from the precession vector **Λ**/J_xx, [`State::precession`] |
+//! | Â(t)·(0, 0, 1) | [`State::axis`], from sphere 2 to sphere 1 |
+//! | L/2, J_xx, J_zz | [`Body::half_separation`], [`Body::transverse`], [`Body::axial`] |
+//! | r_c, v_c | `arm`, `slip` in [`collision`] |
+//! | ε^n, ε^t | [`TangentialRestitution`] |
+//!
+//! # From the equation to the code
+//! | equation | file |
+//! |---|---|
+//! | (1), (12) | `trajectory.rs` |
+//! | (2) | `contact.rs` |
+//! | (3)–(5) | `flight.rs` |
+//! | (6)–(8), (11) | `collision/mod.rs` |
+//! | (9), (10) | `collision/tangential.rs` |
+//! | (18) | `release.rs` |
+//! | (A1)–(A8) | `body.rs` |
+#![forbid(unsafe_code)]
+
+mod body;
+mod error;
+
+pub use body::{Body, Dumbbell};
+pub use error::Error;
