@@ -31,11 +31,22 @@ impl Dumbbell {
             density,
             "finite and > 0 (kg/m^3)",
         )?;
-        Ok(Self {
+        let body = Self {
             radius,
             separation,
             density,
-        })
+        };
+        let representable = [body.mass(), body.transverse_inertia(), body.axial_inertia()]
+            .iter()
+            .all(|x| x.is_normal())
+            && body.scaled().transverse.is_normal();
+        Error::unless(
+            representable,
+            "radius",
+            radius,
+            "such that mass and inertia neither overflow nor underflow",
+        )?;
+        Ok(body)
     }
 
     /// Radius R of either sphere, in m.

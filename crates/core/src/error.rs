@@ -13,6 +13,9 @@ pub enum Error {
         /// What is allowed.
         allowed: &'static str,
     },
+    /// The operating system gave no threads.
+    #[error("threads: {0}")]
+    Threads(String),
     /// The contact search of one particle did not come to an end.
     #[error(
         "particle {particle} (seed {seed}): the contact search did not converge in flight {flight}; \

@@ -32,7 +32,29 @@
 #![forbid(unsafe_code)]
 
 mod body;
+pub mod collision;
+mod contact;
+mod ensemble;
 mod error;
+mod flight;
+mod random;
+mod records;
+mod release;
+mod scales;
+pub mod sincos;
+mod state;
+mod trajectory;
+mod vector;
 
 pub use body::{Body, Dumbbell};
+pub use collision::{Law, TangentialRestitution};
+pub use contact::{Departure, Landing, NoConvergence, first_contact};
+pub use ensemble::{Monitor, Run};
 pub use error::Error;
+pub use flight::{Flight, Phase};
+pub use records::Records;
+pub use release::Orientation;
+pub use scales::Scales;
+pub use state::{Sphere, State};
+pub use trajectory::{COLLAPSE_RUN, Impact, Limits, StopReason, bounce};
+pub use vector::Vector;

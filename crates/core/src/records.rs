@@ -1,0 +1,130 @@
+//! The table of all impacts of a run, filled row by row from many threads.
+
+use crate::body::Body;
+use crate::scales::Scales;
+use crate::state::Sphere;
+use crate::trajectory::{Impact, StopReason};
+use rayon::prelude::*;
+
+/// Every impact of a run, in SI units. Tables are row-major of shape (particle, impact), with NaN (0 in `contact`) where
+/// there was no impact; the rest has one entry a particle.
+#[derive(Debug, Clone)]
+pub struct Records {
+    columns: usize,
+    /// Time since release, in s.
+    pub time: Vec<f64>,
+    /// v_G^n before the impact, in m/s.
+    pub impact_velocity: Vec<f64>,
+    /// Normal velocity of the centre of mass after the impact, in m/s.
+    pub rebound_velocity: Vec<f64>,
+    /// ε (1).
+    pub restitution: Vec<f64>,
+    /// E_rot/E_tot before the impact (12).
+    pub rotational_fraction: Vec<f64>,
+    /// Kinetic energy after the impact over that before.
+    pub energy_ratio: Vec<f64>,
+    /// Angle between the axis and the plane normal, in rad.
+    pub angle: Vec<f64>,
+    /// 1 or 2: the sphere that touched; 0: no impact.
+    pub contact: Vec<i8>,
+    /// Number of impacts, per particle.
+    pub impacts: Vec<i64>,
+    /// [`StopReason`] as a number, per particle.
+    pub stop_reason: Vec<i8>,
+    /// θ at release in rad, per particle.
+    pub release_angle: Vec<f64>,
+}
+
+impl Records {
+    pub(crate) fn new(particles: usize, impacts: usize) -> Self {
+        let table = || vec![f64::NAN; particles * impacts];
+        Self {
+            columns: impacts,
+            time: table(),
+            impact_velocity: table(),
+            rebound_velocity: table(),
+            restitution: table(),
+            rotational_fraction: table(),
+            energy_ratio: table(),
+            angle: table(),
+            contact: vec![0; particles * impacts],
+            impacts: vec![0; particles],
+            stop_reason: vec![StopReason::Interrupted as i8; particles],
+            release_angle: vec![f64::NAN; particles],
+        }
+    }
+
+    /// The rows, one a particle, to be filled in parallel.
+    pub(crate) fn rows(&mut self) -> impl IndexedParallelIterator<Item = Row<'_>> {
+        let n = self.columns;
+        let motion = (
+            self.time.par_chunks_mut(n),
+            self.impact_velocity.par_chunks_mut(n),
+            self.rebound_velocity.par_chunks_mut(n),
+            self.restitution.par_chunks_mut(n),
+            self.rotational_fraction.par_chunks_mut(n),
+            self.energy_ratio.par_chunks_mut(n),
+            self.angle.par_chunks_mut(n),
+            self.contact.par_chunks_mut(n),
+        );
+        let outcome = (
+            self.impacts.par_iter_mut(),
+            self.stop_reason.par_iter_mut(),
+            self.release_angle.par_iter_mut(),
+        );
+        (motion.into_par_iter(), outcome.into_par_iter())
+            .into_par_iter()
+            .map(|(m, o)| Row {
+                time: m.0,
+                impact_velocity: m.1,
+                rebound_velocity: m.2,
+                restitution: m.3,
+                rotational_fraction: m.4,
+                energy_ratio: m.5,
+                angle: m.6,
+                contact: m.7,
+                impacts: o.0,
+                stop_reason: o.1,
+                release_angle: o.2,
+            })
+    }
+}
+
+/// The part of [`Records`] that belongs to one particle.
+pub(crate) struct Row<'a> {
+    time: &'a mut [f64],
+    impact_velocity: &'a mut [f64],
+    rebound_velocity: &'a mut [f64],
+    restitution: &'a mut [f64],
+    rotational_fraction: &'a mut [f64],
+    energy_ratio: &'a mut [f64],
+    angle: &'a mut [f64],
+    contact: &'a mut [i8],
+    impacts: &'a mut i64,
+    stop_reason: &'a mut i8,
+    release_angle: &'a mut f64,
+}
+
+impl Row<'_> {
+    /// Writes impact number `i`.
+    pub(crate) fn set(&mut self, i: usize, impact: &Impact, body: &Body, scales: &Scales) {
+        self.time[i] = impact.time * scales.time;
+        self.impact_velocity[i] = impact.impact_velocity() * scales.speed;
+        self.rebound_velocity[i] = impact.rebound_velocity() * scales.speed;
+        self.restitution[i] = impact.restitution();
+        self.rotational_fraction[i] = impact.rotational_fraction(body);
+        self.energy_ratio[i] = impact.energy_ratio(body);
+        self.angle[i] = impact.before.angle();
+        self.contact[i] = match impact.sphere {
+            Sphere::One => 1,
+            Sphere::Two => 2,
+        };
+    }
+
+    /// Writes how the particle ended.
+    pub(crate) fn finish(self, impacts: usize, reason: StopReason, release_angle: f64) {
+        *self.impacts = impacts as i64;
+        *self.stop_reason = reason as i8;
+        *self.release_angle = release_angle;
+    }
+}

@@ -1,0 +1,36 @@
+//! Between SI units and the core's: lengths in R, times in √(R/g).
+
+use crate::Error;
+
+/// The units of length, time and speed of a run, in SI.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Scales {
+    /// R, in m.
+    pub length: f64,
+    /// √(R/g), in s.
+    pub time: f64,
+    /// √(gR), in m/s.
+    pub speed: f64,
+}
+
+impl Scales {
+    /// The scales of a sphere radius (m) and an acceleration of gravity (m/s²).
+    pub fn new(radius: f64, gravity: f64) -> Result<Self, Error> {
+        let allowed = "finite and > 0 (m/s^2)";
+        let positive = gravity.is_finite() && gravity > 0.0;
+        Error::unless(positive, "gravity", gravity, allowed)?;
+        let scales = Self {
+            length: radius,
+            time: (radius / gravity).sqrt(),
+            speed: (radius * gravity).sqrt(),
+        };
+        let representable = scales.time.is_normal() && scales.speed.is_normal();
+        Error::unless(
+            representable,
+            "gravity",
+            gravity,
+            "such that R/g and gR neither overflow nor underflow",
+        )?;
+        Ok(scales)
+    }
+}

@@ -1,0 +1,85 @@
+//! Vectors in the frame whose z axis is the plane normal **n**.
+//!
+//! Products are summed with fused multiply-adds in a fixed order. A motion that starts in the x–z plane has y
+//! components that are exactly 0 and stays there exactly.
+
+use std::ops::{Add, Div, Mul, Sub};
+
+/// A vector (x, y, z); z is along the plane normal.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Vector {
+    /// Horizontal component.
+    pub x: f64,
+    /// The other horizontal component.
+    pub y: f64,
+    /// Component along the plane normal.
+    pub z: f64,
+}
+
+impl Vector {
+    /// The vector (x, y, z).
+    pub const fn new(x: f64, y: f64, z: f64) -> Self {
+        Self { x, y, z }
+    }
+
+    /// Scalar product.
+    pub fn dot(self, b: Self) -> f64 {
+        self.x.mul_add(b.x, self.y.mul_add(b.y, self.z * b.z))
+    }
+
+    /// Vector product.
+    pub fn cross(self, b: Self) -> Self {
+        Self {
+            x: self.y.mul_add(b.z, -(self.z * b.y)),
+            y: self.z.mul_add(b.x, -(self.x * b.z)),
+            z: self.x.mul_add(b.y, -(self.y * b.x)),
+        }
+    }
+
+    /// Length.
+    pub fn norm(self) -> f64 {
+        self.dot(self).sqrt()
+    }
+
+    /// Length of the horizontal part.
+    pub fn horizontal(self) -> f64 {
+        self.x.mul_add(self.x, self.y * self.y).sqrt()
+    }
+
+    /// `self * factor + addend`, each component rounded once.
+    pub fn mul_add(self, factor: f64, addend: Self) -> Self {
+        Self {
+            x: self.x.mul_add(factor, addend.x),
+            y: self.y.mul_add(factor, addend.y),
+            z: self.z.mul_add(factor, addend.z),
+        }
+    }
+}
+
+impl Add for Vector {
+    type Output = Self;
+    fn add(self, b: Self) -> Self {
+        Self::new(self.x + b.x, self.y + b.y, self.z + b.z)
+    }
+}
+
+impl Sub for Vector {
+    type Output = Self;
+    fn sub(self, b: Self) -> Self {
+        Self::new(self.x - b.x, self.y - b.y, self.z - b.z)
+    }
+}
+
+impl Mul<f64> for Vector {
+    type Output = Self;
+    fn mul(self, factor: f64) -> Self {
+        Self::new(self.x * factor, self.y * factor, self.z * factor)
+    }
+}
+
+impl Div<f64> for Vector {
+    type Output = Self;
+    fn div(self, divisor: f64) -> Self {
+        Self::new(self.x / divisor, self.y / divisor, self.z / divisor)
+    }
+}

@@ -1,0 +1,104 @@
+"""The xarray face of a run: names, units, flags, and files that are written whole or not at all."""
+
+import os
+import tempfile
+from collections.abc import Iterable
+from importlib.metadata import version
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from restitution._run import Run
+
+BYTES_PER_IMPACT = 57
+"""Seven doubles and a byte."""
+
+STOP_REASONS = ("impacts_reached", "speed_below_threshold", "collapse", "never_lands", "interrupted")
+
+
+def _flags(values: Iterable[int], meanings: Iterable[str]) -> dict[str, Any]:
+    """CF attributes of a variable whose numbers stand for words."""
+    return {"flag_values": np.array(list(values), dtype=np.int8), "flag_meanings": " ".join(meanings)}
+
+
+_PER_IMPACT: dict[str, dict[str, Any]] = {
+    "time": {"long_name": "time since release", "units": "s"},
+    "impact_velocity": {
+        "long_name": "normal velocity of the centre of mass towards the plane, before the impact",
+        "units": "m s-1",
+        "symbol": "v_G^n",
+    },
+    "rebound_velocity": {
+        "long_name": "normal velocity of the centre of mass away from the plane, after the impact",
+        "units": "m s-1",
+    },
+    "restitution": {
+        "long_name": "coefficient of restitution: rebound velocity over impact velocity (Eq. 1)",
+        "units": "1",
+        "symbol": "ε",
+    },
+    "rotational_fraction": {
+        "long_name": "rotational over total kinetic energy, before the impact (Eq. 12)",
+        "units": "1",
+        "symbol": "E_rot/E_tot",
+    },
+    "energy_ratio": {"long_name": "total kinetic energy after over before the impact", "units": "1"},
+    "angle": {
+        "long_name": "angle between symmetry axis and plane normal at the impact",
+        "units": "rad",
+        "symbol": "θ",
+    },
+    "contact": {
+        "long_name": "sphere that touched; sphere 1 is at +L/2 along the axis",
+        **_flags(range(3), ("none", "sphere_1", "sphere_2")),
+    },
+}
+
+_PER_PARTICLE: dict[str, dict[str, Any]] = {
+    "impacts": {"long_name": "number of impacts"},
+    "stop_reason": {"long_name": "why the trajectory ended", **_flags(range(5), STOP_REASONS)},
+    "release_angle": {"long_name": "angle between symmetry axis and plane normal at release", "units": "rad"},
+}
+
+
+def dataset(run: Run, table: dict[str, Any]) -> xr.Dataset:
+    """The records of the core as a Dataset of dimensions (particle, impact)."""
+    variables: dict[str, Any] = {}
+    for name, attrs in _PER_IMPACT.items():
+        variables[name] = (("particle", "impact"), table[name], attrs)
+    for name, attrs in _PER_PARTICLE.items():
+        variables[name] = (("particle",), table[name], attrs)
+    return xr.Dataset(variables, attrs=attributes(run, "Impacts of bouncing aspherical particles"))
+
+
+def attributes(run: Run, title: str) -> dict[str, Any]:
+    """What every result carries: title, conventions, version, all parameters and the seed."""
+    return {
+        "title": title,
+        "Conventions": "CF-1.11",
+        "source": f"restitution {version('restitution')}",
+        "version": version("restitution"),
+        "references": "A. Glielmo, N. Gunkelmann, T. Pöschel, Phys. Rev. E 90, 052204 (2014)",
+        **run.attributes(),
+    }
+
+
+def save(data: xr.Dataset, path: Path) -> None:
+    """Write a netCDF file whole or not at all: nobody ever sees a half-written one under `path`."""
+    handle, name = tempfile.mkstemp(prefix=f".{path.name}.", suffix=".part", dir=path.parent)
+    os.close(handle)
+    try:
+        data.to_netcdf(name, engine="netcdf4")
+        os.chmod(name, 0o666 & ~_umask())
+        os.replace(name, path)
+    except BaseException:
+        os.unlink(name)
+        raise
+
+
+def _umask() -> int:
+    mask = os.umask(0)
+    os.umask(mask)
+    return mask

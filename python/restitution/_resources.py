@@ -1,0 +1,45 @@
+"""Threads, memory and the progress bar."""
+
+import os
+import sys
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from operator import index
+
+_MOST_THREADS = 1024
+
+
+def checked_threads(threads: int | None) -> int:
+    """Number of threads for the core, where 0 means one for each core."""
+    if threads is None:
+        return 0
+    try:
+        number = index(threads)
+    except TypeError:
+        number = 0
+    if not 1 <= number <= _MOST_THREADS or isinstance(threads, bool):
+        raise ValueError(f"threads = {threads!r}: must be None or a whole number in [1, {_MOST_THREADS}]")
+    return number
+
+
+def check_memory(impacts: int, bytes_per_impact: int) -> None:
+    """Refuse tables that the machine cannot hold before anything is computed."""
+    needed = impacts * bytes_per_impact
+    available = os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE")
+    if needed > available:
+        raise ValueError(
+            f"particles × impacts = {impacts:.3g} impacts: their records take {needed / 1e9:.3g} GB and this machine "
+            f"has {available / 1e9:.3g} GB; ask for fewer, or for `statistics`"
+        )
+
+
+@contextmanager
+def progress_bar(what: str, total: int, unit: str, *, show: bool) -> Iterator[Callable[[int], None] | None]:
+    """A bar on standard error that is told how much is done, or None where it is not to be shown."""
+    if not show:
+        yield None
+        return
+    from tqdm import tqdm
+
+    with tqdm(total=total, desc=what, unit=f" {unit}", file=sys.stderr, smoothing=0) as bar:
+        yield lambda done: bar.update(done - bar.n) and None

@@ -1,0 +1,139 @@
+"""Every impact of every particle, as an xarray Dataset."""
+
+from typing import TYPE_CHECKING, Literal
+
+import numpy.typing as npt
+
+from restitution import _core
+from restitution._resources import check_memory, checked_threads, progress_bar
+from restitution._run import Run
+from restitution.bodies import Dumbbell
+from restitution.laws import TangentialRestitution
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+class SimulationInterrupted(KeyboardInterrupt):
+    """Ctrl-C during `simulate`; `data` holds what was finished.
+
+    Attributes
+    ----------
+    data : xarray.Dataset
+        As `simulate` returns it; particles that were cut short have the stop reason ``interrupted``.
+    """
+
+    def __init__(self, data: "xr.Dataset") -> None:
+        super().__init__("interrupted; the impacts so far are in the exception's `data`")
+        self.data = data
+
+
+def simulate(
+    body: Dumbbell,
+    law: TangentialRestitution,
+    *,
+    particles: int = 1000,
+    impacts: int = 400,
+    release_height: float = 0.06,
+    gravity: float = 9.81,
+    orientation: Literal["uniform-angle", "isotropic"] | npt.ArrayLike = "uniform-angle",
+    minimum_speed: float = 0.0,
+    seed: int = 1,
+    threads: int | None = None,
+    progress: bool = False,
+) -> "xr.Dataset":
+    """Drop particles from rest and record every impact with the plane (the paper's Sec. III, steps 1-7).
+
+    Parameters
+    ----------
+    body : Dumbbell
+        What falls.
+    law : TangentialRestitution
+        What an impact does.
+    particles, impacts : int
+        Number of particles, and the most impacts that each may have; both > 0.
+    release_height : float
+        Height of the centre of mass at release, in m; no sphere may be below the plane.
+    gravity : float
+        Acceleration of gravity in m/s², > 0.
+    orientation : {"uniform-angle", "isotropic"} or array of float, shape (particles,)
+        The angle θ between symmetry axis and plane normal at release: uniform in [0, π) (above Eq. 18), every direction
+        of the axis alike, or given in rad.
+    minimum_speed : float
+        A particle ends when √(2 E_kin/m) after an impact falls below this, in m/s. 0 never does.
+    seed : int
+        Seed of the random numbers, in [0, 2⁶⁴). The same seed gives the same bits with any number of threads.
+    threads : int, optional
+        Number of threads; one for each core if not given.
+    progress : bool
+        Show a progress bar on standard error.
+
+    Returns
+    -------
+    xarray.Dataset
+        Dimensions (particle, impact). Variables over both: ``time``, ``impact_velocity``, ``rebound_velocity``,
+        ``restitution``, ``rotational_fraction``, ``energy_ratio``, ``angle`` (float64, NaN where the impact never
+        happened) and ``contact`` (which sphere touched). Over particles: ``impacts``, ``stop_reason``,
+        ``release_angle``. Units are in the variables' attributes, all parameters in the Dataset's.
+
+    Raises
+    ------
+    ValueError
+        If a parameter is out of range; the message names it, its value and what is allowed.
+    NumericalError
+        If the engine cannot follow a particle; the message says how to reproduce it.
+    SimulationInterrupted
+        On Ctrl-C; a `KeyboardInterrupt` that carries the impacts so far.
+
+    Notes
+    -----
+    Two spheres that touch the plane at the same instant (axis exactly horizontal) are hit one after the other, sphere 1
+    first, as two impacts with no flight time between.
+
+    Examples
+    --------
+    >>> import restitution as rs
+    >>> body = rs.Dumbbell(radius=3e-3, separation=3e-4)
+    >>> law = rs.TangentialRestitution(normal=0.98)
+    >>> data = rs.simulate(body, law, particles=10, impacts=20)
+    >>> dict(data.sizes)
+    {'particle': 10, 'impact': 20}
+    >>> bool((data.restitution.isel(impact=0) <= 0.98).all())
+    True
+    """
+    run = Run(
+        body=body,
+        law=law,
+        particles=particles,
+        impacts=impacts,
+        release_height=release_height,
+        gravity=gravity,
+        orientation=orientation,
+        minimum_speed=minimum_speed,
+        seed=seed,
+    )
+    return simulate_run(run, threads=threads, progress=progress)
+
+
+def simulate_run(run: Run, *, threads: int | None = None, progress: bool = False) -> "xr.Dataset":
+    """`simulate` for parameters that are already checked."""
+    from restitution._dataset import BYTES_PER_IMPACT, dataset
+
+    check_memory(run.particles * run.impacts, BYTES_PER_IMPACT)
+    with progress_bar("simulate", run.particles, "particles", show=progress) as tell:
+        table, interrupted = _core.simulate(
+            **run.body.model_dump(),
+            **run.law.model_dump(),
+            particles=run.particles,
+            impacts=run.impacts,
+            release_height=run.release_height,
+            gravity=run.gravity,
+            orientation=run.orientation,
+            minimum_speed=run.minimum_speed,
+            seed=run.seed,
+            threads=checked_threads(threads),
+            progress=tell,
+        )
+    data = dataset(run, table)
+    if interrupted:
+        raise SimulationInterrupted(data)
+    return data
