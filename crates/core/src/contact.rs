@@ -1,13 +1,13 @@
 //! WHEN: the first contact of either sphere with the plane, (2), which nothing can make it miss.
 //!
-//! The gap f under either sphere obeys f″ ≥ −M throughout a flight, M = 1 + (L/2)AΩ². A step to the first zero of
-//! the lower bound f + f′τ − Mτ²/2 can therefore not pass a contact. Stepping both spheres by the smaller of their steps
-//! converges quadratically to the first contact. While the centre of mass is higher than the spheres can reach,
-//! the step goes to where it comes back down.
+//! The gap f under either sphere obeys f″ ≥ −M throughout a flight, M = 1 + (L/2)AΩ². A step to the first zero of the
+//! lower bound f + f′τ − Mτ²/2 can therefore not pass a contact; such steps converge quadratically to the first one.
+//! While the centre of mass is higher than the spheres can reach, the step goes to where it comes back down. When the
+//! step has become small, the contact is where the third-order expansion of f has its zero.
 
 use crate::body::Body;
+use crate::elementary::RANGE;
 use crate::flight::{Flight, Phase};
-use crate::sincos::RANGE;
 use crate::state::{Sphere, State};
 
 /// How a flight starts.
@@ -46,12 +46,16 @@ pub enum Landing {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct NoConvergence;
 
-/// A contact is accepted when the last step is this small a part of the flight time...
-const LAST_STEP: f64 = 1.0 / 134_217_728.0; // 2⁻²⁷
-/// ...and so small that neither what the gap bends in it, Mτ²/2, nor the phase to second order, (Ωτ)²/2, can be seen.
-const LAST_BEND: f64 = 1.0 / 4_503_599_627_370_496.0; // 2⁻⁵²
-/// Two or three dozen steps are the most that grazing contacts need; this is far beyond.
-const MOST_STEPS: u32 = 10_000;
+/// The last step is at most this part of the flight time, and turns the axis by at most this angle: 2⁻¹⁶.
+pub(crate) const LAST_STEP: f64 = 1.0 / 65_536.0;
+/// In the last step the gap bends away from its tangent by at most about this part: 2⁻¹¹...
+pub(crate) const LAST_BEND: f64 = 1.0 / 2048.0;
+/// ...or, at a grazing contact, by no more than this, which cannot be seen: 2⁻⁵² R.
+pub(crate) const INVISIBLE: f64 = 1.0 / 4_503_599_627_370_496.0;
+/// A sphere that is not approaching is left alone at least until its gap may have bent by that: 2⁻²⁶/M.
+pub(crate) const SHORTEST: f64 = 1.0 / 67_108_864.0;
+/// Two or three dozen steps are the most that grazing contacts need, and fast spins a few hundred; this is far beyond.
+pub(crate) const MOST_STEPS: u32 = 1_000_000;
 
 /// First contact of `flight` after its start.
 pub fn first_contact(
@@ -60,151 +64,181 @@ pub fn first_contact(
     departure: Departure,
 ) -> Result<Landing, NoConvergence> {
     let search = Search::new(flight, body, departure);
-    let start = flight.start();
-    // The lower sphere is on the plane at the latest when the centre of mass has come down to R.
-    let latest = time_to_fall_to(1.0, start.height, start.velocity.z);
-    let followed = flight.rate * latest <= RANGE; // false for NaN too
-    if !followed {
-        return Ok(Landing::Never);
-    }
-    let Some(mut time) = search.first_step(departure) else {
+    if search.rests() {
         return Ok(Landing::Resting);
-    };
+    }
+    let mut time = 0.0;
     for _ in 0..MOST_STEPS {
-        let phase = flight.phase(time);
-        let step = search.step(time, phase);
-        let next = time + step.length;
-        if step.approaching
-            && step.length <= LAST_STEP * next
-            && search.stiffness * step.length * step.length <= LAST_BEND
-        {
-            let phase = phase.advanced(flight.rate * step.length);
-            let state = flight.state(next, phase, |axis| {
-                1.0 - step.sphere.sign() * body.half_separation * axis.z // (2)
-            });
+        let angle = flight.rate * time;
+        let followed = angle <= RANGE; // false for NaN too
+        if !followed {
+            return Ok(Landing::Never);
+        }
+        let phase = flight.phase(angle);
+        let gap = search.nearer(time, phase);
+        let step = search.certified(&gap);
+        if search.is_last(&gap, step, time) {
+            let step = search.landed(&gap, step);
+            let time = time + step;
+            let side = gap.sphere.sign() * body.half_separation;
             return Ok(Landing::Impact {
-                time: next,
-                state,
-                sphere: step.sphere,
+                time,
+                state: flight.landing(time, phase.advanced(flight.rate * step), side),
+                sphere: gap.sphere,
             });
         }
-        time = next;
+        time = search.skip(time + step);
     }
     Err(NoConvergence)
 }
 
-struct Search<'a> {
-    flight: &'a Flight,
-    half_separation: f64,
-    /// Gaps at the start.
-    gaps: [f64; 2],
-    /// M, the bound on −f″.
-    bound: f64,
-    /// M + Ω².
-    stiffness: f64,
-    /// The longest step in which no gap bends visibly.
-    blink: f64,
-    /// Above this height of the centre of mass neither sphere can touch.
-    clear: f64,
+/// The gap under one sphere, at one time.
+#[derive(Clone, Copy)]
+struct Gap {
+    sphere: Sphere,
+    /// f ≥ 0; an overlap, which is rounding, counts as 0.
+    width: f64,
+    /// f′.
+    rate: f64,
+    /// e_z and its rate.
+    tilt: f64,
+    tilt_rate: f64,
+    /// √(f′² + 2Mf): the speed of approach at the zero of the lower bound.
+    root: f64,
 }
 
-/// A step that no contact can come before.
-#[derive(Clone, Copy)]
-struct Step {
-    length: f64,
-    /// The sphere that limits it.
-    sphere: Sphere,
-    /// Whether that sphere is on its way to the plane.
-    approaching: bool,
+/// What a flight's search for a contact needs to know of it.
+struct Search<'a> {
+    flight: &'a Flight,
+    departure: Departure,
+    /// L/2.
+    lever: f64,
+    /// (L/2)AΩ².
+    sway: f64,
+    /// M, the bound on −f″.
+    bound: f64,
+    /// From `up` to `down` the centre of mass is higher than the spheres can reach.
+    up: f64,
+    down: f64,
 }
 
 impl<'a> Search<'a> {
     fn new(flight: &'a Flight, body: &Body, departure: Departure) -> Self {
-        let half_separation = body.half_separation;
-        let bound = flight.bound(body);
-        let stiffness = flight.rate.mul_add(flight.rate, bound);
-        let mut gaps = flight.start().gaps(body);
-        if let Departure::Touching { sphere, .. } = departure {
-            gaps[sphere as usize] = 0.0; // exactly, whatever rounding says
-        }
+        let start = flight.start();
+        let climb = start.velocity.z;
+        let lever = body.half_separation;
+        let sway = flight.sway(body);
+        let square = climb.mul_add(climb, 2.0 * (start.lift - lever * flight.reach()));
+        let (up, down) = if square > 0.0 {
+            (climb - square.sqrt(), climb + square.sqrt())
+        } else {
+            (f64::INFINITY, f64::INFINITY)
+        };
         Self {
             flight,
-            half_separation,
-            gaps,
-            bound,
-            stiffness,
-            blink: (LAST_BEND / stiffness).sqrt(),
-            clear: half_separation.mul_add(flight.reach(), 1.0),
+            departure,
+            lever,
+            sway,
+            bound: 1.0 + sway,
+            up,
+            down,
         }
     }
 
-    /// Time of the first evaluation: 0, or before either sphere can be back. `None` if the sphere on the plane stays there.
-    fn first_step(&self, departure: Departure) -> Option<f64> {
-        let Departure::Touching { sphere, speed } = departure else {
-            return Some(0.0);
+    /// Whether the sphere on the plane stays there: no separation speed, as after a perfectly plastic impact, and no
+    /// rotation that lifts it, f″ ≤ 0.
+    fn rests(&self) -> bool {
+        let Departure::Touching { sphere, speed } = self.departure else {
+            return false;
         };
-        if speed > 0.0 {
-            let other = Sphere::BOTH[1 - sphere as usize];
-            let rate = self.rate_of_gap(0.0, self.flight.phase(0.0), other);
-            let other = self.certified(self.gaps[other as usize], rate);
-            return Some((2.0 * speed / self.bound).min(other));
-        }
-        // No separation speed, as after a perfectly plastic impact: only its own rotation can lift the sphere, f″ > 0.
-        let acceleration = (sphere.sign() * self.half_separation)
-            .mul_add(self.flight.initial_tilt_acceleration(), -1.0);
-        (acceleration > 0.0).then_some(self.blink)
+        let start = self.flight.start();
+        let bend = self.flight.tilt_acceleration(start.axis.z);
+        speed <= 0.0 && (sphere.sign() * self.lever).mul_add(bend, -1.0) <= 0.0
     }
 
-    /// The largest step that is safe for both spheres.
-    fn step(&self, time: f64, phase: Phase) -> Step {
-        let rise = self.flight.rise(time);
-        let tilt = self.half_separation * self.flight.tilt(phase);
-        let [one, two] = Sphere::BOTH.map(|sphere| {
-            let gap = self.gaps[sphere as usize] + sphere.sign().mul_add(tilt, rise);
-            let rate = self.rate_of_gap(time, phase, sphere);
-            Step {
-                length: self.certified(gap, rate),
-                sphere,
-                approaching: rate < 0.0,
-            }
-        });
-        let nearer = if one.length <= two.length { one } else { two };
-        let height = self.flight.height(time);
-        if height >= self.clear {
-            let down = time_to_fall_to(self.clear, height, self.flight.climb(time));
-            if down > nearer.length {
-                return Step {
-                    length: down,
-                    approaching: false,
-                    ..nearer
-                };
-            }
-        }
-        nearer
-    }
-
-    /// f′ under `sphere`.
-    fn rate_of_gap(&self, time: f64, phase: Phase, sphere: Sphere) -> f64 {
-        (sphere.sign() * self.half_separation)
-            .mul_add(self.flight.tilt_rate(phase), self.flight.climb(time))
-    }
-
-    /// First zero τ ≥ 0 of gap + rate τ − Mτ²/2: no contact can come earlier. An overlap, which is rounding, counts as a
-    /// gap of 0. A sphere that is not approaching is left alone for at least a blink, so that every step makes progress.
-    fn certified(&self, gap: f64, rate: f64) -> f64 {
-        let gap = gap.max(0.0);
-        let root = rate.mul_add(rate, 2.0 * self.bound * gap).sqrt();
-        // Of the two forms of the same root the one that does not subtract.
-        if rate < 0.0 {
-            2.0 * gap / (root - rate)
+    /// The gap that may close first. Both lower bounds have the same curvature, so that they cross only when the axis,
+    /// turning at its present rate, is level: up to then it is the lower sphere's that counts, afterwards the other's.
+    fn nearer(&self, time: f64, phase: Phase) -> Gap {
+        let lift = self.flight.lift(time);
+        let climb = self.flight.climb(time);
+        let tilt = self.flight.tilt(phase);
+        let tilt_rate = self.flight.tilt_rate(phase);
+        // lift + climb t − Mt²/2 at t = −tilt/tilt_rate, times tilt_rate²: both gaps there.
+        let level = tilt_rate.mul_add(
+            lift.mul_add(tilt_rate, -(climb * tilt)),
+            -(0.5 * self.bound * (tilt * tilt)),
+        );
+        let swings_over = tilt * tilt_rate < 0.0 && level > 0.0;
+        let one_is_lower = tilt < 0.0 || (tilt == 0.0 && tilt_rate < 0.0);
+        let sphere = if one_is_lower != swings_over {
+            Sphere::One
         } else {
-            ((rate + root) / self.bound).max(self.blink)
+            Sphere::Two
+        };
+        let side = sphere.sign() * self.lever;
+        let (width, rate) = match self.departure {
+            // At the start the sphere on the plane is known exactly.
+            Departure::Touching { sphere: on, speed } if time == 0.0 && on == sphere => {
+                (0.0, speed)
+            }
+            _ => (
+                side.mul_add(tilt, lift).max(0.0), // (2)
+                side.mul_add(tilt_rate, climb),
+            ),
+        };
+        let root = rate.mul_add(rate, 2.0 * self.bound * width).sqrt();
+        Gap {
+            sphere,
+            width,
+            rate,
+            tilt,
+            tilt_rate,
+            root,
         }
     }
-}
 
-/// Time until a point thrown up at `climb` from `height` comes down to the lower `level`.
-fn time_to_fall_to(level: f64, height: f64, climb: f64) -> f64 {
-    let drop = (height - level).max(0.0);
-    climb + climb.mul_add(climb, 2.0 * drop).sqrt()
+    /// First zero τ ≥ 0 of f + f′τ − Mτ²/2: no contact can come earlier.
+    fn certified(&self, gap: &Gap) -> f64 {
+        // Of the two forms of the same root the one that does not subtract.
+        if gap.rate < 0.0 {
+            2.0 * gap.width / (gap.root - gap.rate)
+        } else {
+            (gap.rate + gap.root).max(SHORTEST) / self.bound
+        }
+    }
+
+    /// Past the time that the centre of mass spends out of reach.
+    fn skip(&self, time: f64) -> f64 {
+        if time >= self.up {
+            time.max(self.down)
+        } else {
+            time
+        }
+    }
+
+    /// Whether `step` leads to a contact that the expansion in [`Search::landed`] locates to double precision.
+    fn is_last(&self, gap: &Gap, step: f64, time: f64) -> bool {
+        gap.rate < 0.0
+            && step <= LAST_STEP * (time + step)
+            && self.flight.rate * step <= LAST_STEP
+            && (self.is_nearly_straight(gap, step) || self.bound * (step * step) <= INVISIBLE)
+    }
+
+    fn is_nearly_straight(&self, gap: &Gap, step: f64) -> bool {
+        self.sway * step <= LAST_BEND * gap.root
+    }
+
+    /// The contact after the last certified step: the gap there, to third order, over the speed there.
+    fn landed(&self, gap: &Gap, step: f64) -> f64 {
+        if !self.is_nearly_straight(gap, step) {
+            return step; // a grazing contact: what is left of the gap cannot be seen
+        }
+        let side = gap.sphere.sign() * self.lever;
+        let square = self.flight.rate * self.flight.rate;
+        // M + f″ and f‴: what the lower bound leaves out.
+        let slack = side.mul_add(self.flight.tilt_acceleration(gap.tilt), self.sway);
+        let third = -(side * square) * gap.tilt_rate;
+        let left = (step * step) * (third * step).mul_add(1.0 / 6.0, 0.5 * slack);
+        step + left / slack.mul_add(-step, gap.root)
+    }
 }

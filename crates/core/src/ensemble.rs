@@ -2,21 +2,25 @@
 
 use crate::Error;
 use crate::body::{Body, Dumbbell};
-use crate::collision::Law;
-use crate::records::{Records, Row};
+use crate::collision::TangentialRestitution;
+use crate::lanes::{self, Pack, Sink};
+use crate::level::Level;
+use crate::records::{Records, Table};
 use crate::release::Orientation;
 use crate::scales::Scales;
-use crate::trajectory::{Limits, bounce};
+use crate::trajectory::Limits;
+use pulp::{Simd, WithSimd};
 use rayon::prelude::*;
+use std::ops::Range;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
 /// A run, in SI units.
 #[derive(Debug, Clone, Copy)]
-pub struct Run<'a, L> {
+pub struct Run<'a> {
     /// The body.
     pub body: Dumbbell,
     /// The collision law.
-    pub law: L,
+    pub law: TangentialRestitution,
     /// Number of particles.
     pub particles: usize,
     /// Most impacts of a particle.
@@ -31,6 +35,15 @@ pub struct Run<'a, L> {
     pub minimum_speed: f64,
     /// Seed of the random numbers.
     pub seed: u64,
+}
+
+/// How to compute a run; the result does not depend on it.
+#[derive(Debug, Clone, Copy)]
+pub struct Means {
+    /// Number of threads; 0 means one a core.
+    pub threads: usize,
+    /// The vector instructions.
+    pub level: Level,
 }
 
 /// Seen and touched from outside while a run is under way.
@@ -51,34 +64,55 @@ impl Monitor {
         self.finished.load(Ordering::Relaxed)
     }
 
-    fn is_cancelled(&self) -> bool {
+    pub(crate) fn is_cancelled(&self) -> bool {
         self.cancelled.load(Ordering::Relaxed)
     }
 }
 
-impl<L: Law> Run<'_, L> {
-    /// Runs every particle on `threads` threads (0: one a core).
-    pub fn simulate(&self, threads: usize, monitor: &Monitor) -> Result<Records, Error> {
-        let scales = Scales::new(self.body.radius(), self.gravity)?;
-        let body = self.body.scaled();
-        self.check(&body, &scales)?;
+/// Particles in a block: enough for the threads' bookkeeping not to be seen, few enough for all threads to stay busy.
+pub(crate) const BLOCK: usize = 64;
+
+impl Run<'_> {
+    /// Runs every particle and keeps every impact.
+    pub fn simulate(&self, means: Means, monitor: &Monitor) -> Result<Records, Error> {
+        let plan = Plan::new(self)?;
         let mut records = Records::new(self.particles, self.impacts);
-        let pool = rayon::ThreadPoolBuilder::new()
-            .num_threads(threads)
-            .build()
-            .map_err(|error| Error::Threads(error.to_string()))?;
-        pool.install(|| {
-            records.rows().enumerate().try_for_each(|(particle, row)| {
-                self.fill(&body, &scales, particle as u64, row, monitor)
+        means.pool()?.install(|| {
+            let rows = records.rows().chunks(BLOCK).enumerate();
+            rows.try_for_each(|(block, rows)| {
+                let first = block * BLOCK;
+                let particles = first..first + rows.len();
+                let mut table = Table::new(rows, &plan, first);
+                plan.bounce(particles, means.level, monitor, &mut table)
             })
         })?;
         Ok(records)
     }
+}
 
-    fn check(&self, body: &Body, scales: &Scales) -> Result<(), Error> {
-        Error::unless(self.particles > 0, "particles", 0.0, "> 0")?;
-        Error::unless(self.impacts > 0, "impacts", 0.0, "> 0")?;
-        let speed = self.minimum_speed;
+impl Means {
+    pub(crate) fn pool(&self) -> Result<rayon::ThreadPool, Error> {
+        rayon::ThreadPoolBuilder::new()
+            .num_threads(self.threads)
+            .build()
+            .map_err(|error| Error::Threads(error.to_string()))
+    }
+}
+
+/// A run that has been checked, in the core's units.
+pub(crate) struct Plan<'a> {
+    run: &'a Run<'a>,
+    pub body: Body,
+    pub scales: Scales,
+    /// Height of the centre of mass at release.
+    height: f64,
+}
+
+impl<'a> Plan<'a> {
+    pub fn new(run: &'a Run<'a>) -> Result<Self, Error> {
+        Error::unless(run.particles > 0, "particles", 0.0, "> 0")?;
+        Error::unless(run.impacts > 0, "impacts", 0.0, "> 0")?;
+        let speed = run.minimum_speed;
         let allowed = "finite and >= 0 (m/s)";
         Error::unless(
             speed.is_finite() && speed >= 0.0,
@@ -86,63 +120,109 @@ impl<L: Law> Run<'_, L> {
             speed,
             allowed,
         )?;
-        let height = self.release_height / scales.length;
-        let clear = |cosine: f64| height >= body.half_separation.mul_add(cosine.abs(), 1.0);
-        let all_clear = match self.orientation {
-            Orientation::Given(angles) => {
-                Error::unless(
-                    angles.len() == self.particles,
-                    "number of angles",
-                    angles.len() as f64,
-                    "the number of particles",
-                )?;
-                for &angle in angles {
-                    let reduced = angle.abs() <= crate::sincos::RANGE;
-                    Error::unless(reduced, "angle", angle, "finite, |angle| <= 2^20 (rad)")?;
-                }
-                (0..self.particles as u64)
-                    .all(|i| clear(self.orientation.release(height, self.seed, i).axis.z))
-            }
-            Orientation::UniformAngle | Orientation::Isotropic => clear(1.0),
+        run.orientation.check(run.particles)?;
+        let scales = Scales::new(run.body.radius(), run.gravity)?;
+        let plan = Self {
+            run,
+            body: run.body.scaled(),
+            scales,
+            height: run.release_height / scales.length,
+        };
+        let gap = |cosine: f64| plan.height - 1.0 - plan.body.half_separation * cosine.abs();
+        let clear = match run.orientation {
+            Orientation::Given(_) => (0..run.particles).all(|i| gap(plan.release(i).1) >= 0.0),
+            Orientation::UniformAngle | Orientation::Isotropic => gap(1.0) >= 0.0,
         };
         Error::unless(
-            height.is_finite() && all_clear,
+            clear && plan.height.is_finite(),
             "release_height",
-            self.release_height,
+            run.release_height,
             "finite and high enough that no sphere is below the plane at release (R + L/2 for random angles)",
-        )
+        )?;
+        Ok(plan)
     }
 
-    fn fill(
+    /// Sine and cosine of the angle at release.
+    pub fn release(&self, particle: usize) -> (f64, f64) {
+        self.run.orientation.draw(self.run.seed, particle as u64)
+    }
+
+    /// Bounces a range of particles and tells `sink`.
+    pub fn bounce(
         &self,
-        body: &Body,
-        scales: &Scales,
-        particle: u64,
-        mut row: Row<'_>,
+        particles: Range<usize>,
+        level: Level,
         monitor: &Monitor,
+        sink: &mut impl Sink,
     ) -> Result<(), Error> {
         if monitor.is_cancelled() {
             return Ok(());
         }
-        let height = self.release_height / scales.length;
-        let release = self.orientation.release(height, self.seed, particle);
-        let limits = Limits {
-            impacts: self.impacts,
-            minimum_speed: self.minimum_speed / scales.speed,
-        };
-        let mut count = 0;
-        let reason = bounce(body, &self.law, release, limits, |impact| {
-            row.set(count, impact, body, scales);
-            count += 1;
-            !monitor.is_cancelled()
-        })
-        .map_err(|_| Error::Numerical {
-            particle,
-            seed: self.seed,
-            flight: count as u64,
+        let count = particles.len() as u64;
+        level.run(Work {
+            plan: self,
+            particles,
+            monitor,
+            sink,
         })?;
-        row.finish(count, reason, release.angle());
-        monitor.finished.fetch_add(1, Ordering::Relaxed);
+        monitor.finished.fetch_add(count, Ordering::Relaxed);
+        Ok(())
+    }
+}
+
+/// The particles of a block, to be compiled for each SIMD level.
+struct Work<'a, T> {
+    plan: &'a Plan<'a>,
+    particles: Range<usize>,
+    monitor: &'a Monitor,
+    sink: &'a mut T,
+}
+
+/// Vectors side by side; two keep the arithmetic units busy.
+const VECTORS: usize = 2;
+
+impl<T: Sink> WithSimd for Work<'_, T> {
+    type Output = Result<(), Error>;
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) -> Self::Output {
+        let Self {
+            plan,
+            particles,
+            monitor,
+            sink,
+        } = self;
+        let run = plan.run;
+        let limits = Limits {
+            impacts: run.impacts,
+            minimum_speed: run.minimum_speed / plan.scales.speed,
+        };
+        let (mut sines, mut cosines) = ([0.0; BLOCK], [0.0; BLOCK]);
+        for first in particles.clone().step_by(Pack::<S, VECTORS>::WIDTH) {
+            let count = Pack::<S, VECTORS>::WIDTH.min(particles.end - first);
+            for lane in 0..count {
+                (sines[lane], cosines[lane]) = plan.release(first + lane);
+            }
+            sink.begin(first - particles.start);
+            lanes::bounce::<S, VECTORS>(
+                simd,
+                &plan.body,
+                &run.law,
+                lanes::Release {
+                    lift: plan.height - 1.0,
+                    sines: &sines[..count],
+                    cosines: &cosines[..count],
+                },
+                limits,
+                sink,
+                || !monitor.is_cancelled(),
+            )
+            .map_err(|stuck| Error::Numerical {
+                particle: (first + stuck.lane) as u64,
+                seed: run.seed,
+                flight: stuck.impacts as u64,
+            })?;
+        }
         Ok(())
     }
 }

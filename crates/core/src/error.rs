@@ -13,6 +13,16 @@ pub enum Error {
         /// What is allowed.
         allowed: &'static str,
     },
+    /// A SIMD level that does not exist, or not here.
+    #[error("RESTITUTION_SIMD = {name}: {problem}; must be one of {allowed}")]
+    Level {
+        /// The name given.
+        name: String,
+        /// What is allowed.
+        allowed: String,
+        /// What is wrong with it.
+        problem: &'static str,
+    },
     /// The operating system gave no threads.
     #[error("threads: {0}")]
     Threads(String),

@@ -5,7 +5,7 @@
 //! axis; in general **ω** itself precesses, but the axis moves as in (3) with **Λ**/J_xx in the place of **ω**.
 
 use crate::body::Body;
-use crate::sincos::sincos;
+use crate::elementary::sincos;
 use crate::state::State;
 use crate::vector::Vector;
 
@@ -16,14 +16,14 @@ const SLOWEST: f64 = 1e-150;
 #[derive(Debug, Clone, Copy)]
 pub struct Flight {
     start: State,
-    /// Rate of rotation of the axis, |**Λ**|/J_xx.
+    /// Rate of rotation of the axis, Ω = |**Λ**|/J_xx.
     pub rate: f64,
-    /// The axis is `constant + cosine cos φ + sine sin φ`, φ = rate · t (3).
+    /// The axis is `constant + cosine cos φ + sine sin φ`, φ = Ωt (3).
     constant: Vector,
     cosine: Vector,
     sine: Vector,
     /// Bound A on the amplitude of e_z(t), exactly 1 in planar motion.
-    pub amplitude: f64,
+    amplitude: f64,
 }
 
 /// Sine and cosine of the phase φ.
@@ -34,11 +34,14 @@ pub struct Phase {
 }
 
 impl Phase {
-    /// The phase `angle` later, to first order in it: exact in double precision below an angle of 2⁻²⁶.
+    /// The phase a small `angle` later: exact in double precision for angles up to 2⁻¹³.
     pub fn advanced(self, angle: f64) -> Self {
+        let square = angle * angle;
+        let sin = angle * square.mul_add(-1.0 / 6.0, 1.0);
+        let cos = square.mul_add(-0.5, 1.0);
         Self {
-            sin: self.cos.mul_add(angle, self.sin),
-            cos: self.sin.mul_add(-angle, self.cos),
+            sin: self.sin.mul_add(cos, self.cos * sin),
+            cos: self.cos.mul_add(cos, -(self.sin * sin)),
         }
     }
 }
@@ -47,7 +50,7 @@ impl Flight {
     /// The flight that follows from `start`.
     pub fn new(start: State) -> Self {
         let rate = start.precession.norm();
-        // Slower than this nothing turns in any time; every direction then serves, and this one is in planar motion's plane.
+        // Slower than this nothing turns in any time; every direction then serves, and this one suits planar motion.
         let about = if rate > SLOWEST {
             start.precession / rate
         } else {
@@ -70,20 +73,15 @@ impl Flight {
         &self.start
     }
 
-    /// Sine and cosine of the phase at `time`.
-    pub fn phase(&self, time: f64) -> Phase {
-        let (sin, cos) = sincos(self.rate * time);
+    /// Sine and cosine of the phase `angle` = Ωt.
+    pub fn phase(&self, angle: f64) -> Phase {
+        let (sin, cos) = sincos(angle);
         Phase { sin, cos }
     }
 
-    /// Height of the centre of mass at `time` above where it started (5).
-    pub fn rise(&self, time: f64) -> f64 {
-        time * time.mul_add(-0.5, self.start.velocity.z)
-    }
-
-    /// Height of the centre of mass at `time` (5).
-    pub fn height(&self, time: f64) -> f64 {
-        self.start.height + self.rise(time)
+    /// Height of the centre of mass above R at `time` (5).
+    pub fn lift(&self, time: f64) -> f64 {
+        time.mul_add(time.mul_add(-0.5, self.start.velocity.z), self.start.lift) // (5)
     }
 
     /// Vertical velocity of the centre of mass at `time`.
@@ -91,24 +89,26 @@ impl Flight {
         self.start.velocity.z - time
     }
 
-    /// e_z(t) − e_z(0), (3).
+    /// e_z, the vertical component of the axis (3).
     pub fn tilt(&self, phase: Phase) -> f64 {
-        self.cosine.z.mul_add(phase.cos, phase.sin * self.sine.z) - self.cosine.z
+        let turning = self.sine.z.mul_add(phase.sin, self.constant.z);
+        self.cosine.z.mul_add(phase.cos, turning) // (3)
     }
 
     /// de_z/dt.
     pub fn tilt_rate(&self, phase: Phase) -> f64 {
-        self.rate * self.sine.z.mul_add(phase.cos, -(phase.sin * self.cosine.z))
+        let turning = self.cosine.z * phase.sin;
+        self.rate * self.sine.z.mul_add(phase.cos, -turning)
     }
 
-    /// d²e_z/dt² at the start.
-    pub fn initial_tilt_acceleration(&self) -> f64 {
-        -self.rate * self.rate * self.cosine.z
+    /// d²e_z/dt² where the tilt is `tilt`.
+    pub fn tilt_acceleration(&self, tilt: f64) -> f64 {
+        -(self.rate * self.rate) * (tilt - self.constant.z)
     }
 
-    /// M: no gap under a sphere of `body` has f″ < −M at any time of the flight.
-    pub fn bound(&self, body: &Body) -> f64 {
-        (body.half_separation * self.amplitude).mul_add(self.rate * self.rate, 1.0)
+    /// (L/2)AΩ²: what the rotation can contribute to the vertical acceleration of a sphere of `body`.
+    pub fn sway(&self, body: &Body) -> f64 {
+        (body.half_separation * self.amplitude) * (self.rate * self.rate)
     }
 
     /// Largest |e_z| that the axis can reach in any flight time.
@@ -116,15 +116,14 @@ impl Flight {
         self.constant.z.abs() + self.amplitude
     }
 
-    /// The state at `time`, with the vertical position given by the caller (who knows that a sphere touches the plane).
-    pub fn state(&self, time: f64, phase: Phase, height: impl Fn(Vector) -> f64) -> State {
-        let axis = self
-            .cosine
-            .mul_add(phase.cos, self.sine.mul_add(phase.sin, self.constant));
+    /// The state at `time`, when the sphere on the side `side` = ±L/2 of the centre of mass touches the plane.
+    pub fn landing(&self, time: f64, phase: Phase, side: f64) -> State {
+        let turning = self.sine.mul_add(phase.sin, self.constant);
+        let axis = self.cosine.mul_add(phase.cos, turning); // (3)
         // One Newton step to unit length; rounding would otherwise accumulate over the impacts.
         let axis = axis * axis.dot(axis).mul_add(-0.5, 1.5);
         State {
-            height: height(axis),
+            lift: -(side * axis.z), // (2)
             velocity: Vector {
                 z: self.climb(time),
                 ..self.start.velocity

@@ -1,9 +1,10 @@
 //! The table of all impacts of a run, filled row by row from many threads.
 
-use crate::body::Body;
-use crate::scales::Scales;
-use crate::state::Sphere;
-use crate::trajectory::{Impact, StopReason};
+use crate::elementary::{angle, angle_in_lanes};
+use crate::ensemble::Plan;
+use crate::lanes::{Impact, Pack, Sink};
+use crate::trajectory::StopReason;
+use pulp::Simd;
 use rayon::prelude::*;
 
 /// Every impact of a run, in SI units. Tables are row-major of shape (particle, impact), with NaN (0 in `contact`) where
@@ -105,26 +106,68 @@ pub(crate) struct Row<'a> {
     release_angle: &'a mut f64,
 }
 
-impl Row<'_> {
-    /// Writes impact number `i`.
-    pub(crate) fn set(&mut self, i: usize, impact: &Impact, body: &Body, scales: &Scales) {
-        self.time[i] = impact.time * scales.time;
-        self.impact_velocity[i] = impact.impact_velocity() * scales.speed;
-        self.rebound_velocity[i] = impact.rebound_velocity() * scales.speed;
-        self.restitution[i] = impact.restitution();
-        self.rotational_fraction[i] = impact.rotational_fraction(body);
-        self.energy_ratio[i] = impact.energy_ratio(body);
-        self.angle[i] = impact.before.angle();
-        self.contact[i] = match impact.sphere {
-            Sphere::One => 1,
-            Sphere::Two => 2,
-        };
+/// Takes the impacts of a block of particles into its rows.
+pub(crate) struct Table<'a> {
+    rows: Vec<Row<'a>>,
+    plan: &'a Plan<'a>,
+    /// The row of the particle in lane 0.
+    first: usize,
+}
+
+impl<'a> Table<'a> {
+    /// The rows of the particles from `particle` on.
+    pub fn new(mut rows: Vec<Row<'a>>, plan: &'a Plan<'a>, particle: usize) -> Self {
+        for (i, row) in rows.iter_mut().enumerate() {
+            let (sine, cosine) = plan.release(particle + i);
+            *row.release_angle = angle(sine, cosine);
+        }
+        Self {
+            rows,
+            plan,
+            first: 0,
+        }
+    }
+}
+
+impl Sink for Table<'_> {
+    fn begin(&mut self, first: usize) {
+        self.first = first;
     }
 
-    /// Writes how the particle ended.
-    pub(crate) fn finish(self, impacts: usize, reason: StopReason, release_angle: f64) {
-        *self.impacts = impacts as i64;
-        *self.stop_reason = reason as i8;
-        *self.release_angle = release_angle;
+    #[inline(always)]
+    fn impact<S: Simd, const K: usize>(&mut self, number: usize, impact: &Impact<S, K>) {
+        let scales = &self.plan.scales;
+        let time = impact.time * scales.time;
+        let impact_velocity = impact.impact_velocity() * scales.speed;
+        let rebound_velocity = impact.rebound_velocity() * scales.speed;
+        let restitution = impact.restitution();
+        let fraction = impact.rotational_fraction(&self.plan.body);
+        let energy_ratio = impact.energy_ratio();
+        let angle = angle_in_lanes(impact.before.sine, impact.before.cosine);
+        let sphere = impact.sphere.lt(0.0).select(2.0, 1.0_f64);
+        let active = impact.active.select(1.0, 0.0_f64);
+        for (lane, row) in self.rows[self.first..]
+            .iter_mut()
+            .enumerate()
+            .take(Pack::<S, K>::WIDTH)
+        {
+            if active.as_slice()[lane] == 0.0 {
+                continue;
+            }
+            row.time[number] = time.as_slice()[lane];
+            row.impact_velocity[number] = impact_velocity.as_slice()[lane];
+            row.rebound_velocity[number] = rebound_velocity.as_slice()[lane];
+            row.restitution[number] = restitution.as_slice()[lane];
+            row.rotational_fraction[number] = fraction.as_slice()[lane];
+            row.energy_ratio[number] = energy_ratio.as_slice()[lane];
+            row.angle[number] = angle.as_slice()[lane];
+            row.contact[number] = sphere.as_slice()[lane] as i8;
+        }
+    }
+
+    fn end(&mut self, lane: usize, impacts: usize, reason: StopReason) {
+        let row = &mut self.rows[self.first + lane];
+        *row.impacts = impacts as i64;
+        *row.stop_reason = reason as i8;
     }
 }

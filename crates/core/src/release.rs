@@ -1,7 +1,8 @@
 //! Initial conditions: how a particle is let go.
 
+use crate::Error;
+use crate::elementary::{RANGE, sincos};
 use crate::random::uniform;
-use crate::sincos::sincos;
 use crate::state::State;
 use crate::vector::Vector;
 use std::f64::consts::PI;
@@ -18,22 +19,46 @@ pub enum Orientation<'a> {
 }
 
 impl Orientation<'_> {
-    /// The particle at rest with its centre of mass at `height` (in R). With no spin the direction of the tilt is of no
-    /// consequence, and the axis is put into the x–z plane.
-    pub fn release(&self, height: f64, seed: u64, particle: u64) -> State {
-        let (sine, cosine) = match self {
+    /// (sin θ, cos θ) of a particle.
+    pub fn draw(&self, seed: u64, particle: u64) -> (f64, f64) {
+        match self {
             Self::UniformAngle => sincos(PI * uniform(seed, particle, 0)),
             Self::Isotropic => {
                 let cosine = 2.0_f64.mul_add(uniform(seed, particle, 0), -1.0);
                 (cosine.mul_add(-cosine, 1.0).sqrt(), cosine)
             }
             Self::Given(angles) => sincos(angles[particle as usize]),
-        };
+        }
+    }
+
+    /// The particle at rest with its centre of mass at `height` (in R). With no spin the direction of the tilt is of no
+    /// consequence, and the axis is put into the x–z plane.
+    pub fn release(&self, height: f64, seed: u64, particle: u64) -> State {
+        let (sine, cosine) = self.draw(seed, particle);
         State {
-            height,
+            lift: height - 1.0,
             velocity: Vector::default(),
             axis: Vector::new(sine, 0.0, cosine),
             precession: Vector::default(),
         }
+    }
+
+    /// Whether given angles are one a particle and in the range of sine and cosine.
+    pub(crate) fn check(&self, particles: usize) -> Result<(), Error> {
+        let Self::Given(angles) = self else {
+            return Ok(());
+        };
+        let count = angles.len();
+        let allowed = "the number of particles";
+        Error::unless(
+            count == particles,
+            "number of angles",
+            count as f64,
+            allowed,
+        )?;
+        angles.iter().try_for_each(|&angle| {
+            let reduced = angle.abs() <= RANGE;
+            Error::unless(reduced, "angle", angle, "finite, at most 2^20 rad")
+        })
     }
 }

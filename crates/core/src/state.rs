@@ -1,13 +1,15 @@
 //! The state of a particle in the core's units, just before or just after an impact.
 
 use crate::body::Body;
+use crate::elementary;
 use crate::vector::Vector;
 
 /// Position and motion of one particle. Horizontal position is left out: the plane looks the same everywhere.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct State {
-    /// Height of the centre of mass above the plane.
-    pub height: f64,
+    /// Height of the centre of mass above R, the height at which both spheres of a level body lie on the plane. Kept in
+    /// this form because at a contact it is ∓(L/2)e_z, and the gap of the touching sphere then vanishes to the last bit.
+    pub lift: f64,
     /// Velocity of the centre of mass, v_G.
     pub velocity: Vector,
     /// Unit vector of the symmetry axis, from sphere 2 to sphere 1.
@@ -18,7 +20,7 @@ pub struct State {
 }
 
 impl State {
-    /// A state from the angular velocity **ω**.
+    /// A state from the height of the centre of mass above the plane and the angular velocity **ω**.
     pub fn with_spin(
         body: &Body,
         height: f64,
@@ -28,7 +30,7 @@ impl State {
     ) -> Self {
         let axial = body.axial / body.transverse - 1.0;
         Self {
-            height,
+            lift: height - 1.0,
             velocity,
             axis,
             precession: axis.mul_add(axial * spin.dot(axis), spin), // Λ/J_xx = Ĵω/J_xx
@@ -59,14 +61,13 @@ impl State {
 
     /// Angle between the symmetry axis and the plane normal, in [0, π].
     pub fn angle(&self) -> f64 {
-        libm::atan2(self.axis.horizontal(), self.axis.z)
+        elementary::angle(self.axis.horizontal(), self.axis.z)
     }
 
     /// Gaps between the plane and spheres 1 and 2.
     pub fn gaps(&self, body: &Body) -> [f64; 2] {
         Sphere::BOTH.map(|sphere| {
-            let lift = sphere.sign() * body.half_separation * self.axis.z;
-            self.height + lift - 1.0
+            (sphere.sign() * body.half_separation).mul_add(self.axis.z, self.lift) // (2)
         })
     }
 }

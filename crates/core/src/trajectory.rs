@@ -55,7 +55,7 @@ pub enum StopReason {
     SpeedBelowThreshold,
     /// Impacts accumulate: [`COLLAPSE_RUN`] flights in a row too low to be resolved, or a contact that is never left.
     Collapse,
-    /// The next landing is beyond what can be followed: the axis would turn by more than [`crate::sincos::RANGE`] rad.
+    /// The next landing is beyond what can be followed: the axis would turn by more than [`crate::elementary::RANGE`] rad.
     NeverLands,
     /// The run was cancelled.
     Interrupted,
@@ -71,7 +71,7 @@ pub struct Limits {
 }
 
 /// A flight counts as unresolved when no gap can have exceeded 2⁻⁴³ R in it: M T²/8 < 2⁻⁴³, M ≥ |f″|.
-const UNRESOLVED: f64 = 8.0 / 8_796_093_022_208.0;
+pub(crate) const UNRESOLVED: f64 = 8.0 / 8_796_093_022_208.0;
 /// This many unresolved flights in a row are a collapse.
 pub const COLLAPSE_RUN: u32 = 16;
 
@@ -112,7 +112,7 @@ pub fn bounce(
         if 2.0 * after.kinetic_energy(body) < limits.minimum_speed * limits.minimum_speed {
             return Ok(StopReason::SpeedBelowThreshold);
         }
-        let low = flight.bound(body) * time * time < UNRESOLVED;
+        let low = (1.0 + flight.sway(body)) * (time * time) < UNRESOLVED;
         unresolved = if low { unresolved + 1 } else { 0 };
         if unresolved == COLLAPSE_RUN {
             return Ok(StopReason::Collapse);

@@ -8,7 +8,7 @@ use pyo3::create_exception;
 use pyo3::exceptions::{PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
-use restitution_core::{Dumbbell, Error, Orientation, Run, TangentialRestitution};
+use restitution_core::{Dumbbell, Error, Level, Means, Orientation, Run, TangentialRestitution};
 
 create_exception!(
     restitution,
@@ -19,9 +19,17 @@ create_exception!(
 
 fn python_error(error: Error) -> PyErr {
     match error {
-        Error::Parameter { .. } => PyValueError::new_err(error.to_string()),
+        Error::Parameter { .. } | Error::Level { .. } => PyValueError::new_err(error.to_string()),
         Error::Numerical { .. } => NumericalError::new_err(error.to_string()),
         Error::Threads(_) => PyRuntimeError::new_err(error.to_string()),
+    }
+}
+
+/// The SIMD level that the environment variable RESTITUTION_SIMD names, or the best of this machine.
+fn level() -> PyResult<Level> {
+    match std::env::var("RESTITUTION_SIMD") {
+        Ok(name) if !name.is_empty() => Level::named(&name).map_err(python_error),
+        _ => Ok(Level::best()),
     }
 }
 
@@ -80,8 +88,11 @@ fn simulate<'py>(
         minimum_speed,
         seed,
     };
-    let (records, interrupted) =
-        watch::run(py, progress, |monitor| run.simulate(threads, monitor))?;
+    let means = Means {
+        threads,
+        level: level()?,
+    };
+    let (records, interrupted) = watch::run(py, progress, |monitor| run.simulate(means, monitor))?;
 
     let table = PyDict::new(py);
     let shape = (particles, impacts);
@@ -132,7 +143,7 @@ fn set<T: Element>(
 /// Sine and cosine as the engine computes them.
 #[pyfunction]
 fn sincos(x: f64) -> (f64, f64) {
-    restitution_core::sincos::sincos(x)
+    restitution_core::elementary::sincos(x)
 }
 
 #[pymodule]

@@ -28,21 +28,25 @@ pub struct Components {
 pub struct Contact {
     /// Velocity **v**_c of the point of contact (7), (8); `normal` ≤ 0.
     pub slip: Components,
-    normal_normal: f64,
-    normal_along: f64,
-    along_along: f64,
-    across_across: f64,
+    /// J_xx.
+    inertia: f64,
+    /// **r**_c along **n** and **u**.
+    arm_normal: f64,
+    arm_along: f64,
+    /// The entry of K for **w**.
+    across: f64,
 }
 
 impl Contact {
-    /// The impulse that changes the contact velocity by `change`: K P = Δ**v**_c (10), solved.
+    /// The impulse that changes the contact velocity by `change`: K P = Δ**v**_c (10), solved as in (14).
     pub fn impulse(&self, change: Components) -> Components {
-        let (nn, nu, uu) = (self.normal_normal, self.normal_along, self.along_along);
-        let determinant = nn.mul_add(uu, -(nu * nu));
+        let (n, u, j) = (self.arm_normal, self.arm_along, self.inertia);
+        let inverse = 1.0 / u.mul_add(u, n.mul_add(n, j)); // 1/(J_xx/m + r_c²)
+        let cross = n * u;
         Components {
-            normal: uu.mul_add(change.normal, -(nu * change.along)) / determinant,
-            along: nn.mul_add(change.along, -(nu * change.normal)) / determinant,
-            across: change.across / self.across_across,
+            normal: n.mul_add(n, j).mul_add(change.normal, cross * change.along) * inverse, // (14)
+            along: u.mul_add(u, j).mul_add(change.along, cross * change.normal) * inverse,  // (14)
+            across: change.across / self.across,
         }
     }
 }
@@ -78,20 +82,17 @@ pub fn collide(body: &Body, law: &impl Law, before: &State, sphere: Sphere) -> (
     let across = Vector::new(-along.y, along.x, 0.0);
 
     let inverse = 1.0 / body.transverse;
-    let reach = side * sine; // r_c · u
-    let drop = arm.z; // r_c · n
-    let twist = axis.z - side; // (r_c × w) across the axis
+    let twist = axis.z - side; // what of r_c × w lies across the axis; its sine lies along it
     let contact = Contact {
         slip: Components {
             normal: velocity.z.min(0.0), // a grazing contact may have turned around within the last step
             along: velocity.dot(along),
             across: velocity.dot(across),
         },
-        normal_normal: (reach * reach).mul_add(inverse, 1.0),
-        normal_along: -(reach * drop * inverse),
-        along_along: (drop * drop).mul_add(inverse, 1.0),
-        across_across: (twist * twist)
-            .mul_add(inverse, (sine * sine).mul_add(1.0 / body.axial, 1.0)),
+        inertia: body.transverse,
+        arm_normal: arm.z,
+        arm_along: side * sine,
+        across: (twist * twist).mul_add(inverse, (sine * sine).mul_add(1.0 / body.axial, 1.0)),
     };
     let Response {
         impulse,

@@ -25,6 +25,16 @@ impl TangentialRestitution {
         )?;
         Ok(Self { normal, tangential })
     }
+
+    /// ε^n.
+    pub fn normal(&self) -> f64 {
+        self.normal
+    }
+
+    /// ε^t.
+    pub fn tangential(&self) -> f64 {
+        self.tangential
+    }
 }
 
 impl Law for TangentialRestitution {

@@ -1,0 +1,131 @@
+//! The SIMD engine against the oracle, the three-dimensional scalar engine: the same bits, at every level.
+
+use restitution_core::{
+    Dumbbell, Impact, Level, Limits, Means, Monitor, Orientation, Records, Run, Scales, StopReason,
+    TangentialRestitution, bounce,
+};
+
+fn run(
+    elongation: f64,
+    law: TangentialRestitution,
+    particles: usize,
+    impacts: usize,
+) -> Run<'static> {
+    let radius = 3e-3;
+    Run {
+        body: Dumbbell::new(radius, elongation * radius, 2500.0).unwrap(),
+        law,
+        particles,
+        impacts,
+        release_height: 0.06,
+        gravity: 9.81,
+        orientation: Orientation::UniformAngle,
+        minimum_speed: 0.0,
+        seed: 11,
+    }
+}
+
+fn at(run: &Run<'_>, level: Level, threads: usize) -> Records {
+    run.simulate(Means { threads, level }, &Monitor::default())
+        .unwrap()
+}
+
+fn same(a: &[f64], b: &[f64]) -> bool {
+    a.len() == b.len()
+        && a.iter()
+            .zip(b)
+            .all(|(a, b)| a.to_bits() == b.to_bits() || (a.is_nan() && b.is_nan()))
+}
+
+/// Bounces particle after particle with the oracle and compares every number of every impact.
+fn agrees_with_the_oracle(run: &Run<'_>) {
+    let scales = Scales::new(run.body.radius(), run.gravity).unwrap();
+    let body = run.body.scaled();
+    let lanes = at(run, Level::best(), 0);
+    for particle in 0..run.particles {
+        let release = run.orientation.release(
+            run.release_height / scales.length,
+            run.seed,
+            particle as u64,
+        );
+        let limits = Limits {
+            impacts: run.impacts,
+            minimum_speed: run.minimum_speed / scales.speed,
+        };
+        let mut i = particle * run.impacts;
+        let reason = bounce(&body, &run.law, release, limits, |impact: &Impact| {
+            let expected = [
+                impact.time * scales.time,
+                impact.impact_velocity() * scales.speed,
+                impact.rebound_velocity() * scales.speed,
+                impact.restitution(),
+                impact.rotational_fraction(&body),
+                impact.energy_ratio(&body),
+                impact.before.angle(),
+            ];
+            let found = [
+                lanes.time[i],
+                lanes.impact_velocity[i],
+                lanes.rebound_velocity[i],
+                lanes.restitution[i],
+                lanes.rotational_fraction[i],
+                lanes.energy_ratio[i],
+                lanes.angle[i],
+            ];
+            assert!(
+                same(&expected, &found),
+                "particle {particle}, impact {}: {expected:?} {found:?}",
+                i - particle * run.impacts
+            );
+            assert_eq!(lanes.contact[i], impact.sphere as i8 + 1);
+            i += 1;
+            true
+        })
+        .unwrap();
+        assert_eq!(lanes.impacts[particle] as usize, i - particle * run.impacts);
+        assert_eq!(lanes.stop_reason[particle], reason as i8);
+    }
+}
+
+/// Every kind of motion: nearly round to separate spheres, elastic to plastic, all tangential laws.
+#[test]
+fn the_lanes_are_the_oracle_to_the_bit() {
+    for elongation in [0.0, 1e-3, 0.02, 0.1, 0.5, 1.0, 2.0, 3.5] {
+        for normal in [0.0, 0.4, 0.9, 0.98, 1.0] {
+            for tangential in [-1.0, -0.3, 0.0, 0.7, 1.0] {
+                let law = TangentialRestitution::new(normal, tangential).unwrap();
+                agrees_with_the_oracle(&run(elongation, law, 70, 120));
+            }
+        }
+    }
+}
+
+/// The bits must not depend on the vector width, the number of threads or on what else is in the run.
+#[test]
+fn every_level_and_thread_count_gives_the_same_bits() {
+    let law = TangentialRestitution::new(0.9, 0.5).unwrap();
+    let run = Run {
+        minimum_speed: 0.05,
+        ..run(0.5, law, 333, 200)
+    };
+    let reference = at(&run, Level::Scalar, 1);
+    assert!(
+        reference
+            .stop_reason
+            .contains(&(StopReason::SpeedBelowThreshold as i8))
+    );
+    for level in Level::ALL.into_iter().filter(|level| level.is_available()) {
+        for threads in [1, 2, 7] {
+            let other = at(&run, level, threads);
+            assert!(
+                same(&reference.time, &other.time),
+                "{level:?}, {threads} threads"
+            );
+            assert!(same(&reference.restitution, &other.restitution));
+            assert!(same(&reference.angle, &other.angle));
+            assert_eq!(reference.contact, other.contact);
+            assert_eq!(reference.impacts, other.impacts);
+            assert_eq!(reference.stop_reason, other.stop_reason);
+        }
+    }
+}
