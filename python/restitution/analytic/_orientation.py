@@ -1,0 +1,78 @@
+"""How the symmetry axis points at the first impact: the law of c = |cos θ|, θ between axis and plane normal.
+
+The contact is with the lower sphere, so only |cos θ| matters, and it lies in [0, 1] (Eqs. 18 and 19 put it in
+[-1, 1]). A law takes and gives c together with sin θ, because 1 - c² loses all digits where c is near 1, and
+a probability together with its complement for the same reason.
+"""
+
+import math
+from typing import Literal, Protocol, TypeAlias
+
+import numpy as np
+from numpy.typing import NDArray
+
+Floats: TypeAlias = NDArray[np.float64]
+OrientationName: TypeAlias = Literal["uniform-angle", "isotropic"]
+
+QUARTER_TURN = 0.5 * np.pi
+
+
+class Orientation(Protocol):
+    """The law of c = |cos θ|."""
+
+    @property
+    def entropy(self) -> float:
+        """Differential entropy of c."""
+
+    def density(self, cosine: Floats, sine: Floats) -> Floats:
+        """Probability density of c."""
+
+    def below(self, cosine: Floats, sine: Floats) -> Floats:
+        """Probability that |cos θ| <= c."""
+
+    def above(self, cosine: Floats, sine: Floats) -> Floats:
+        """Probability that |cos θ| > c."""
+
+    def quantile(self, below: Floats, above: Floats) -> tuple[Floats, Floats]:
+        """Return (c, sin θ) where |cos θ| <= c has probability ``below``; ``above = 1 - below``."""
+
+
+class UniformAngle:
+    """θ uniform in [0, π), the paper's choice: an axis at random in one vertical plane."""
+
+    entropy = math.log(math.pi / 4.0)
+
+    def density(self, cosine: Floats, sine: Floats) -> Floats:  # Eq. 19 with its factor 2 put right
+        with np.errstate(divide="ignore"):
+            return 1.0 / (QUARTER_TURN * sine)
+
+    def below(self, cosine: Floats, sine: Floats) -> Floats:  # Eq. 18: 1 - (2/π) arccos c
+        return np.arctan2(cosine, sine) / QUARTER_TURN
+
+    def above(self, cosine: Floats, sine: Floats) -> Floats:
+        return np.arctan2(sine, cosine) / QUARTER_TURN
+
+    def quantile(self, below: Floats, above: Floats) -> tuple[Floats, Floats]:
+        # sin of the complement, not cos: exactly 0 at the end of the support
+        return np.sin(QUARTER_TURN * below), np.sin(QUARTER_TURN * above)
+
+
+class Isotropic:
+    """The axis uniform on the sphere: c uniform on [0, 1]."""
+
+    entropy = 0.0
+
+    def density(self, cosine: Floats, sine: Floats) -> Floats:
+        return np.ones_like(cosine)
+
+    def below(self, cosine: Floats, sine: Floats) -> Floats:
+        return cosine
+
+    def above(self, cosine: Floats, sine: Floats) -> Floats:
+        return sine * sine / (1.0 + cosine)
+
+    def quantile(self, below: Floats, above: Floats) -> tuple[Floats, Floats]:
+        return below, np.sqrt(above * (1.0 + below))
+
+
+ORIENTATIONS: dict[str, Orientation] = {"uniform-angle": UniformAngle(), "isotropic": Isotropic()}
