@@ -1,0 +1,42 @@
+"""What the figures were measured on."""
+
+import os
+import platform
+from importlib.metadata import PackageNotFoundError, version
+from pathlib import Path
+
+SIMD = ("sse4_2", "avx", "fma", "avx2", "avx512f", "avx512dq", "neon", "asimd", "sve")
+PACKAGES = ("restitution", "numpy", "numba", "llvmlite", "scipy", "xarray")
+
+
+def _cpuinfo(*keys: str) -> str:
+    """The first value under any of `keys` in /proc/cpuinfo; empty where there is no such file or key."""
+    path = Path("/proc/cpuinfo")
+    for line in path.read_text().splitlines() if path.exists() else ():
+        key, _, value = line.partition(":")
+        if key.strip() in keys:
+            return value.strip()
+    return ""
+
+
+def _version(package: str) -> str:
+    try:
+        return version(package)
+    except PackageNotFoundError:
+        return "absent"
+
+
+def describe() -> str:
+    """CPU, cores, SIMD extensions, load, system and versions, one a line."""
+    flags = set(_cpuinfo("flags", "Features").split())
+    cores = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count()
+    load = f"{os.getloadavg()[0]:.2f}" if hasattr(os, "getloadavg") else "unknown"
+    return "\n".join(
+        (
+            f"CPU      {_cpuinfo('model name', 'Model') or platform.processor() or platform.machine()}",
+            f"cores    {cores} usable; load at the start {load}",
+            f"SIMD     {' '.join(flag for flag in SIMD if flag in flags) or 'unknown'}",
+            f"system   {platform.system()} {platform.machine()}, Python {platform.python_version()}",
+            f"versions {', '.join(f'{package} {_version(package)}' for package in PACKAGES)}",
+        )
+    )
