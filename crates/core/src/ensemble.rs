@@ -8,11 +8,12 @@ use crate::level::Level;
 use crate::records::{Records, Table};
 use crate::release::Orientation;
 use crate::scales::Scales;
+use crate::statistics::{Bins, Counter, Tally};
 use crate::trajectory::Limits;
 use pulp::{Simd, WithSimd};
 use rayon::prelude::*;
 use std::ops::Range;
-use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicU64, AtomicUsize, Ordering};
 
 /// A run, in SI units.
 #[derive(Debug, Clone, Copy)]
@@ -87,6 +88,31 @@ impl Run<'_> {
             })
         })?;
         Ok(records)
+    }
+}
+
+impl Run<'_> {
+    /// Runs every particle and keeps the statistics of the impacts only, in memory that does not grow with the run.
+    pub fn statistics(&self, bins: &Bins, means: Means, monitor: &Monitor) -> Result<Tally, Error> {
+        let plan = Plan::new(self)?;
+        let next = AtomicUsize::new(0);
+        // Blocks go to whichever thread is free; the sums are whole numbers and do not mind.
+        let tallies = means.pool()?.broadcast(|_| {
+            let mut counter = Counter::new(bins, &plan, self.law.normal());
+            loop {
+                let first = next.fetch_add(BLOCK, Ordering::Relaxed);
+                if first >= self.particles {
+                    return Ok(counter.finish());
+                }
+                let particles = first..self.particles.min(first + BLOCK);
+                plan.bounce(particles, means.level, monitor, &mut counter)?;
+            }
+        });
+        let mut total = Tally::new(bins);
+        for tally in tallies {
+            total.merge(&tally?);
+        }
+        Ok(total)
     }
 }
 
@@ -179,7 +205,7 @@ struct Work<'a, T> {
 }
 
 /// Vectors side by side; two keep the arithmetic units busy.
-const VECTORS: usize = 2;
+const VECTORS: usize = 4;
 
 impl<T: Sink> WithSimd for Work<'_, T> {
     type Output = Result<(), Error>;

@@ -4,7 +4,8 @@
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum Error {
     /// A parameter is outside the range that it is defined on.
-    #[error("{name} = {value}: must be {allowed}")]
+    #[error("{name} = {value:?}: must be {allowed}")]
+    // Debug writes 1e-300 as such, not as 300 zeros
     Parameter {
         /// Name of the parameter.
         name: &'static str,

@@ -45,6 +45,7 @@ mod records;
 mod release;
 mod scales;
 mod state;
+pub mod statistics;
 mod trajectory;
 mod vector;
 

@@ -2,6 +2,8 @@
 //!
 //! Every operation is the IEEE 754 one in every lane, so that a formula gives the same bits whatever the width. More
 //! than one vector at a time keeps the processor busy while it waits for the results of the first.
+//!
+//! The loops over the vectors are plain ones because closures are not compiled for the SIMD level of their caller.
 
 use pulp::Simd;
 use std::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
@@ -40,6 +42,17 @@ impl<S: Simd, const K: usize> Operand<S, K> for f64 {
     }
 }
 
+/// A function of packs, vector by vector: `$result` starts as `$start`, and vector k of it becomes `$value`.
+macro_rules! each_vector {
+    ($result:ident = $start:expr, $k:ident => $value:expr) => {{
+        let mut $result = $start;
+        for $k in 0..K {
+            $result[$k] = $value;
+        }
+        $result
+    }};
+}
+
 impl<S: Simd, const K: usize> Pack<S, K> {
     /// Number of lanes.
     pub const WIDTH: usize = K * size_of::<S::f64s>() / size_of::<f64>();
@@ -72,74 +85,65 @@ impl<S: Simd, const K: usize> Pack<S, K> {
     }
 
     #[inline(always)]
-    fn map(self, f: impl Fn(S::f64s) -> S::f64s) -> Self {
-        Self {
-            simd: self.simd,
-            vectors: self.vectors.map(f),
-        }
+    fn with(self, vectors: [S::f64s; K]) -> Self {
+        Self { vectors, ..self }
     }
 
     #[inline(always)]
-    fn zip(self, other: Self, f: impl Fn(S::f64s, S::f64s) -> S::f64s) -> Self {
-        Self {
-            simd: self.simd,
-            vectors: std::array::from_fn(|k| f(self.vectors[k], other.vectors[k])),
-        }
-    }
-
-    #[inline(always)]
-    fn compare(self, other: Self, f: impl Fn(S::f64s, S::f64s) -> S::m64s) -> Mask<S, K> {
+    fn mask(self, masks: [S::m64s; K]) -> Mask<S, K> {
         Mask {
             simd: self.simd,
-            masks: std::array::from_fn(|k| f(self.vectors[k], other.vectors[k])),
+            masks,
         }
+    }
+
+    #[inline(always)]
+    fn no_masks(self) -> [S::m64s; K] {
+        let zero = self.simd.splat_f64s(0.0);
+        [self.simd.less_than_f64s(zero, zero); K]
     }
 
     /// self · factor + addend, rounded once.
     #[inline(always)]
     pub fn mul_add(self, factor: impl Operand<S, K>, addend: impl Operand<S, K>) -> Self {
-        let (b, c) = (factor.in_lanes(self.simd), addend.in_lanes(self.simd));
-        Self {
-            simd: self.simd,
-            vectors: std::array::from_fn(|k| {
-                self.simd
-                    .mul_add_f64s(self.vectors[k], b.vectors[k], c.vectors[k])
-            }),
-        }
+        let (a, simd) = (self.vectors, self.simd);
+        let (b, c) = (factor.in_lanes(simd).vectors, addend.in_lanes(simd).vectors);
+        self.with(each_vector!(r = a, k => simd.mul_add_f64s(a[k], b[k], c[k])))
     }
 
     /// Square root.
     #[inline(always)]
     pub fn sqrt(self) -> Self {
-        self.map(|a| self.simd.sqrt_f64s(a))
+        let (a, simd) = (self.vectors, self.simd);
+        self.with(each_vector!(r = a, k => simd.sqrt_f64s(a[k])))
     }
 
     /// Absolute value.
     #[inline(always)]
     pub fn abs(self) -> Self {
-        self.map(|a| self.simd.abs_f64s(a))
+        let (a, simd) = (self.vectors, self.simd);
+        self.with(each_vector!(r = a, k => simd.abs_f64s(a[k])))
     }
 
     /// self < other; false where either is NaN.
     #[inline(always)]
     pub fn lt(self, other: impl Operand<S, K>) -> Mask<S, K> {
-        self.compare(other.in_lanes(self.simd), |a, b| {
-            self.simd.less_than_f64s(a, b)
-        })
+        let (a, b, simd) = (self.vectors, other.in_lanes(self.simd).vectors, self.simd);
+        self.mask(each_vector!(r = self.no_masks(), k => simd.less_than_f64s(a[k], b[k])))
     }
 
     /// self ≤ other; false where either is NaN.
     #[inline(always)]
     pub fn le(self, other: impl Operand<S, K>) -> Mask<S, K> {
-        self.compare(other.in_lanes(self.simd), |a, b| {
-            self.simd.less_than_or_equal_f64s(a, b)
-        })
+        let (a, b, simd) = (self.vectors, other.in_lanes(self.simd).vectors, self.simd);
+        self.mask(each_vector!(r = self.no_masks(), k => simd.less_than_or_equal_f64s(a[k], b[k])))
     }
 
     /// self = other; false where either is NaN.
     #[inline(always)]
     pub fn eq(self, other: impl Operand<S, K>) -> Mask<S, K> {
-        self.compare(other.in_lanes(self.simd), |a, b| self.simd.equal_f64s(a, b))
+        let (a, b, simd) = (self.vectors, other.in_lanes(self.simd).vectors, self.simd);
+        self.mask(each_vector!(r = self.no_masks(), k => simd.equal_f64s(a[k], b[k])))
     }
 
     /// The larger of the two; `self` where that is not larger, and where either is NaN.
@@ -159,15 +163,11 @@ impl<S: Simd, const K: usize> Pack<S, K> {
     /// Bit `bit` of the binary representation, counted from the low end.
     #[inline(always)]
     pub fn bit(self, bit: u64) -> Mask<S, K> {
-        let wanted = self.simd.splat_u64s(1 << bit);
-        Mask {
-            simd: self.simd,
-            masks: self.vectors.map(|a| {
-                let bits = self.simd.transmute_u64s_f64s(a);
-                self.simd
-                    .equal_u64s(self.simd.and_u64s(bits, wanted), wanted)
-            }),
-        }
+        let (a, simd) = (self.vectors, self.simd);
+        let wanted = simd.splat_u64s(1 << bit);
+        self.mask(each_vector!(r = self.no_masks(), k => {
+            simd.equal_u64s(simd.and_u64s(simd.transmute_u64s_f64s(a[k]), wanted), wanted)
+        }))
     }
 }
 
@@ -179,46 +179,39 @@ impl<S: Simd, const K: usize> Mask<S, K> {
         zero.eq(if value { 0.0 } else { 1.0 })
     }
 
+    #[inline(always)]
+    fn with(self, masks: [S::m64s; K]) -> Self {
+        Self { masks, ..self }
+    }
+
     /// Lane by lane one or the other.
     #[inline(always)]
     pub fn select(self, if_true: impl Operand<S, K>, if_false: impl Operand<S, K>) -> Pack<S, K> {
-        let (a, b) = (if_true.in_lanes(self.simd), if_false.in_lanes(self.simd));
-        Pack {
-            simd: self.simd,
-            vectors: std::array::from_fn(|k| {
-                self.simd
-                    .select_f64s(self.masks[k], a.vectors[k], b.vectors[k])
-            }),
-        }
+        let (m, simd) = (self.masks, self.simd);
+        let a = if_true.in_lanes(simd);
+        let b = if_false.in_lanes(simd).vectors;
+        a.with(each_vector!(r = b, k => simd.select_f64s(m[k], a.vectors[k], b[k])))
     }
 
     /// Whether any lane is true.
     #[inline(always)]
     pub fn any(self) -> bool {
-        let lanes = size_of::<S::f64s>() / size_of::<f64>();
-        let all = self
-            .masks
-            .into_iter()
-            .reduce(|a, b| self.simd.or_m64s(a, b))
-            .expect("a mask has at least one vector");
-        self.simd.first_true_m64s(all) < lanes
+        let simd = self.simd;
+        let mut all = self.masks[0];
+        for k in 1..K {
+            all = simd.or_m64s(all, self.masks[k]);
+        }
+        simd.first_true_m64s(all) < size_of::<S::f64s>() / size_of::<f64>()
     }
 
     /// Calls `f` with every lane that is true, in order.
     #[inline(always)]
     pub fn each(self, mut f: impl FnMut(usize)) {
-        for (lane, &here) in self.select(1.0, 0.0).as_slice().iter().enumerate() {
-            if here == 1.0 {
+        let lanes = self.select(1.0, 0.0);
+        for lane in 0..Pack::<S, K>::WIDTH {
+            if lanes.as_slice()[lane] == 1.0 {
                 f(lane);
             }
-        }
-    }
-
-    #[inline(always)]
-    fn zip(self, other: Self, f: impl Fn(S::m64s, S::m64s) -> S::m64s) -> Self {
-        Self {
-            simd: self.simd,
-            masks: std::array::from_fn(|k| f(self.masks[k], other.masks[k])),
         }
     }
 }
@@ -227,7 +220,8 @@ impl<S: Simd, const K: usize> BitAnd for Mask<S, K> {
     type Output = Self;
     #[inline(always)]
     fn bitand(self, other: Self) -> Self {
-        self.zip(other, |a, b| self.simd.and_m64s(a, b))
+        let (a, b, simd) = (self.masks, other.masks, self.simd);
+        self.with(each_vector!(r = a, k => simd.and_m64s(a[k], b[k])))
     }
 }
 
@@ -235,7 +229,8 @@ impl<S: Simd, const K: usize> BitOr for Mask<S, K> {
     type Output = Self;
     #[inline(always)]
     fn bitor(self, other: Self) -> Self {
-        self.zip(other, |a, b| self.simd.or_m64s(a, b))
+        let (a, b, simd) = (self.masks, other.masks, self.simd);
+        self.with(each_vector!(r = a, k => simd.or_m64s(a[k], b[k])))
     }
 }
 
@@ -243,10 +238,8 @@ impl<S: Simd, const K: usize> Not for Mask<S, K> {
     type Output = Self;
     #[inline(always)]
     fn not(self) -> Self {
-        Self {
-            simd: self.simd,
-            masks: self.masks.map(|a| self.simd.not_m64s(a)),
-        }
+        let (a, simd) = (self.masks, self.simd);
+        self.with(each_vector!(r = a, k => simd.not_m64s(a[k])))
     }
 }
 
@@ -254,19 +247,20 @@ impl<S: Simd, const K: usize> Neg for Pack<S, K> {
     type Output = Self;
     #[inline(always)]
     fn neg(self) -> Self {
-        self.map(|a| self.simd.neg_f64s(a))
+        let (a, simd) = (self.vectors, self.simd);
+        self.with(each_vector!(r = a, k => simd.neg_f64s(a[k])))
     }
 }
 
-/// The arithmetic operators between packs, and between a pack and a number.
+/// An arithmetic operator between packs, between a pack and a number, and between a number and a pack.
 macro_rules! operator {
     ($trait:ident, $method:ident, $simd:ident) => {
         impl<S: Simd, const K: usize, B: Operand<S, K>> $trait<B> for Pack<S, K> {
             type Output = Self;
             #[inline(always)]
             fn $method(self, other: B) -> Self {
-                let other = other.in_lanes(self.simd);
-                self.zip(other, |a, b| self.simd.$simd(a, b))
+                let (a, b) = (self.vectors, other.in_lanes(self.simd).vectors);
+                self.with(each_vector!(r = a, k => self.simd.$simd(a[k], b[k])))
             }
         }
 

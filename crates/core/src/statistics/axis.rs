@@ -1,0 +1,86 @@
+//! A uniform axis of half-open bins, lo ≤ x < hi, compared with the very edges that were given.
+
+use crate::Error;
+use crate::lanes::Pack;
+use pulp::Simd;
+
+/// Largest departure of an edge from uniform spacing, in bin widths.
+const UNIFORM: f64 = 1e-7;
+/// Within this distance of an edge, in bin widths, the edge itself decides; it must exceed [`UNIFORM`] and rounding.
+const NEAR: f64 = 1e-6;
+/// 1.5 · 2⁵²: adding and subtracting it rounds to the nearest integer.
+const ROUND: f64 = 6_755_399_441_055_744.0;
+
+/// Bins between uniform edges, with one for what is below and one for what is above.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Axis {
+    edges: Vec<f64>,
+    /// Bins per unit.
+    density: f64,
+}
+
+impl Axis {
+    /// Checks that there are at least two edges, finite, increasing and uniform; `name` is for the error.
+    pub fn new(name: &'static str, edges: &[f64]) -> Result<Self, Error> {
+        let bins = edges.len().saturating_sub(1);
+        Error::unless(bins > 0, name, edges.len() as f64, "at least two edges")?;
+        Error::unless(
+            bins <= 1 << 24,
+            name,
+            edges.len() as f64,
+            "at most 2^24 bins",
+        )?;
+        let (low, high) = (edges[0], edges[bins]);
+        let width = (high - low) / bins as f64;
+        let density = 1.0 / width;
+        Error::unless(
+            width > 0.0 && width.is_finite() && density.is_finite(),
+            name,
+            width,
+            "increasing edges",
+        )?;
+        for (i, &edge) in edges.iter().enumerate() {
+            let off = (edge - (low + i as f64 * width)).abs() * density;
+            Error::unless(off <= UNIFORM, name, edge, "finite, uniform edges")?;
+        }
+        Ok(Self {
+            edges: edges.to_vec(),
+            density,
+        })
+    }
+
+    /// Number of bins, those below and above included.
+    pub fn len(&self) -> usize {
+        self.edges.len() + 1
+    }
+
+    /// Number of the bin of each lane: 0 below, 1 to n inside, n + 1 above. NaN may be anywhere.
+    #[inline(always)]
+    pub(super) fn locate<S: Simd, const K: usize>(&self, x: Pack<S, K>) -> Pack<S, K> {
+        let last = self.edges.len() as f64;
+        let place = ((x - self.edges[0]) * self.density + 1.0)
+            .max(0.0)
+            .min(last);
+        let nearest = (place + ROUND) - ROUND;
+        let mut bin = place.lt(nearest).select(nearest - 1.0, nearest);
+        let near = (place - nearest).abs().le(NEAR);
+        if near.any() {
+            near.each(|lane| {
+                bin.as_mut_slice()[lane] =
+                    self.decide(x.as_slice()[lane], nearest.as_slice()[lane]);
+            });
+        }
+        bin
+    }
+
+    /// The bin on one or the other side of edge number `nearest` − 1.
+    #[cold]
+    fn decide(&self, x: f64, nearest: f64) -> f64 {
+        let edge = (nearest as usize).clamp(1, self.edges.len()) - 1;
+        if x < self.edges[edge] {
+            edge as f64
+        } else {
+            edge as f64 + 1.0
+        }
+    }
+}

@@ -1,0 +1,210 @@
+//! Moments as exact integer sums of a rounded quantity.
+//!
+//! Each value is rounded to a multiple of 2⁻²⁶ ≈ 1.5·10⁻⁸ once; its powers are then summed without any further rounding,
+//! in integers wide enough for 2⁶⁴ values. Sums of sums are sums: merging is associative and commutative to the last bit.
+
+/// Quanta in a unit.
+pub(super) const QUANTA: f64 = 67_108_864.0; // 2²⁶
+/// Largest offset, in quanta, whose powers [`Recent`] can take: 2.
+pub(super) const NARROW: u64 = 1 << 27;
+/// So many values fit into the words of [`Recent`]: their fourth powers are at most 2¹⁰⁸ each.
+pub(super) const MOST_RECENT: u32 = 1 << 19;
+
+/// Σq, Σq², Σq³, Σq⁴ of a limited number of values of limited size, q the value's offset in quanta: what the hot loop adds to.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub(super) struct Recent {
+    first: i64,
+    second: u128,
+    third: i128,
+    fourth: u128,
+}
+
+impl Recent {
+    /// Adds an offset of at most [`NARROW`] quanta.
+    #[inline(always)]
+    pub fn add(&mut self, q: i64) {
+        let square = (q * q) as u64;
+        self.first += q;
+        self.second += u128::from(square);
+        self.third += i128::from(square as i64) * i128::from(q);
+        self.fourth += u128::from(square) * u128::from(square);
+    }
+}
+
+/// A two's-complement integer of N 64-bit words, low word first.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+struct Wide<const N: usize>([u64; N]);
+
+impl<const N: usize> Wide<N> {
+    const ZERO: Self = Self([0; N]);
+
+    /// Adds `value`, whose missing high words are those of its sign (`fill` = 0 or !0).
+    #[inline(always)]
+    fn add<const M: usize>(&mut self, value: [u64; M], fill: u64) {
+        let mut carry = false;
+        for (i, word) in self.0.iter_mut().enumerate() {
+            let addend = if i < M { value[i] } else { fill };
+            let (sum, first) = word.overflowing_add(addend);
+            let (sum, second) = sum.overflowing_add(u64::from(carry));
+            *word = sum;
+            carry = first | second;
+        }
+    }
+
+    /// The nearest double, up to a few units in the last place.
+    fn to_f64(self) -> f64 {
+        let negative = self.0[N - 1] >> 63 == 1;
+        let mut magnitude = self;
+        if negative {
+            magnitude.0 = magnitude.0.map(|word| !word);
+            magnitude.add([1], 0);
+        }
+        let size = magnitude.0.iter().rev().fold(0.0, |sum, &word| {
+            f64::mul_add(sum, 18_446_744_073_709_551_616.0, word as f64)
+        });
+        if negative { -size } else { size }
+    }
+}
+
+/// Σq, Σq², Σq³, Σq⁴ and the extremes of values in one bin, q the offset of the value from an origin, in quanta.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Sums {
+    first: Wide<2>,
+    second: Wide<3>,
+    third: Wide<4>,
+    fourth: Wide<5>,
+    minimum: f64,
+    maximum: f64,
+}
+
+/// Moments of the values in a bin.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Moments {
+    /// Mean.
+    pub mean: f64,
+    /// Second central moment.
+    pub variance: f64,
+    /// Third central moment over the variance to the power 3/2; NaN where the variance is 0.
+    pub skewness: f64,
+    /// Fourth central moment over the variance squared (3 for a Gaussian); NaN where the variance is 0.
+    pub kurtosis: f64,
+    /// Smallest value.
+    pub minimum: f64,
+    /// Largest value.
+    pub maximum: f64,
+}
+
+impl Sums {
+    /// Of no values.
+    pub const EMPTY: Self = Self {
+        first: Wide::ZERO,
+        second: Wide::ZERO,
+        third: Wide::ZERO,
+        fourth: Wide::ZERO,
+        minimum: f64::INFINITY,
+        maximum: f64::NEG_INFINITY,
+    };
+
+    /// Largest magnitude that can be added.
+    pub const LARGEST: f64 = 8_589_934_592.0; // 2³³
+
+    /// Adds an offset of any size below [`Sums::LARGEST`], in quanta.
+    #[cold]
+    pub(super) fn add(&mut self, q: i64) {
+        let sign = (q >> 63) as u64;
+        let size = q.unsigned_abs();
+        let square = u128::from(size) * u128::from(size);
+        let (low, high) = (square as u64, (square >> 64) as u64);
+        self.first.add([q as u64], sign);
+        self.second.add([low, high], 0);
+        let product = |a: u64, b: u64| u128::from(a) * u128::from(b);
+        let mut cube = Wide([0_u64; 4]);
+        cube.add(words(product(low, size)), 0);
+        cube.add(shifted(product(high, size), 1), 0);
+        if sign != 0 {
+            cube.0 = cube.0.map(|word| !word);
+            cube.add([1], 0);
+        }
+        self.third.add(cube.0, sign);
+        self.fourth.add(words(product(low, low)), 0);
+        self.fourth.add(shifted(product(low, high), 1), 0);
+        self.fourth.add(shifted(product(low, high), 1), 0);
+        self.fourth.add(shifted(product(high, high), 2), 0);
+    }
+
+    /// Counts a value for the extremes.
+    #[inline(always)]
+    pub(super) fn extremes(&mut self, value: f64) {
+        self.minimum = if value < self.minimum {
+            value
+        } else {
+            self.minimum
+        };
+        self.maximum = if value > self.maximum {
+            value
+        } else {
+            self.maximum
+        };
+    }
+
+    /// Takes over the recent sums and leaves nothing there.
+    pub(super) fn absorb(&mut self, recent: &mut Recent) {
+        let Recent {
+            first,
+            second,
+            third,
+            fourth,
+        } = std::mem::take(recent);
+        let sign = |negative: bool| if negative { u64::MAX } else { 0 };
+        self.first.add([first as u64], sign(first < 0));
+        self.second.add(words(second), 0);
+        self.third.add(words(third as u128), sign(third < 0));
+        self.fourth.add(words(fourth), 0);
+    }
+
+    /// Adds the values of another bin.
+    pub fn merge(&mut self, other: &Self) {
+        self.first.add(other.first.0, 0);
+        self.second.add(other.second.0, 0);
+        self.third.add(other.third.0, 0);
+        self.fourth.add(other.fourth.0, 0);
+        self.minimum = self.minimum.min(other.minimum);
+        self.maximum = self.maximum.max(other.maximum);
+    }
+
+    /// Moments of `number` values whose offsets were taken from `origin`; NaN where there are none.
+    pub fn moments(&self, number: u64, origin: f64) -> Moments {
+        let n = number as f64;
+        const UNIT: f64 = 1.0 / QUANTA;
+        let a = UNIT * (self.first.to_f64() / n);
+        let b = UNIT.powi(2) * (self.second.to_f64() / n);
+        let c = UNIT.powi(3) * (self.third.to_f64() / n);
+        let d = UNIT.powi(4) * (self.fourth.to_f64() / n);
+        // Central moments from those about the origin.
+        let variance = (b - a * a).max(0.0);
+        let third = c - a * (3.0 * b - 2.0 * a * a);
+        let fourth = d - a * (4.0 * c - a * (6.0 * b - 3.0 * a * a));
+        let or_nan = |x: f64| if number > 0 { x } else { f64::NAN };
+        let spread = |x: f64| if variance > 0.0 { x } else { f64::NAN };
+        Moments {
+            mean: origin + a,
+            variance: or_nan(variance),
+            skewness: spread(third / variance.powf(1.5)),
+            kurtosis: spread(fourth / (variance * variance)),
+            minimum: or_nan(self.minimum),
+            maximum: or_nan(self.maximum),
+        }
+    }
+}
+
+fn words(x: u128) -> [u64; 2] {
+    [x as u64, (x >> 64) as u64]
+}
+
+/// The words of x · 2^(64 · places).
+fn shifted(x: u128, places: usize) -> [u64; 4] {
+    let mut out = [0; 4];
+    out[places] = x as u64;
+    out[places + 1] = (x >> 64) as u64;
+    out
+}

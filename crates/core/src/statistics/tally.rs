@@ -1,0 +1,296 @@
+//! What `statistics` keeps of a run: grids of counts and sums, of a size that the bins alone decide.
+
+use super::axis::Axis;
+use super::moments::{MOST_RECENT, Moments, NARROW, QUANTA, Recent, Sums};
+use crate::ensemble::Plan;
+use crate::lanes::{Impact, Mask, Pack, Sink};
+use crate::trajectory::StopReason;
+use pulp::Simd;
+
+/// 1.5 · 2⁵²: adding it to |x| < 2⁵¹ rounds to the nearest integer, which then stands in the low bits.
+const ROUND: f64 = 6_755_399_441_055_744.0;
+/// Quanta of E_rot/E_tot.
+const FRACTION_QUANTA: f64 = 4_398_046_511_104.0; // 2⁴²
+
+/// What the rows of the grids stand for.
+#[derive(Debug, Clone, PartialEq)]
+pub enum By {
+    /// Bins of the impact velocity, in m/s.
+    Velocity(Axis),
+    /// The number of the impact, from the first to this many.
+    Number(usize),
+}
+
+/// The bins.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Bins {
+    /// Rows.
+    pub by: By,
+    /// Columns of the grid of ε.
+    pub restitution: Axis,
+    /// Columns of the grid of E_rot/E_tot.
+    pub fraction: Axis,
+}
+
+impl Bins {
+    fn rows(&self) -> usize {
+        match &self.by {
+            By::Velocity(axis) => axis.len(),
+            By::Number(impacts) => *impacts,
+        }
+    }
+}
+
+/// Counts and sums of the impacts of any number of particles. Tallies with the same bins merge exactly.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Tally {
+    /// Impacts by row and bin of ε; the last column counts those whose ε is not finite or at least 2³³.
+    pub restitution: Grid,
+    /// Impacts by row and bin of E_rot/E_tot; the last column as above.
+    pub fraction: Grid,
+    /// Sums of ε by row.
+    sums: Vec<Sums>,
+    /// Σ E_rot/E_tot by row, in units of 2⁻⁴².
+    fractions: Vec<u128>,
+    /// Number of particles by [`StopReason`].
+    pub stops: [u64; 5],
+}
+
+/// Counts in rows and columns.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Grid {
+    columns: usize,
+    counts: Vec<u64>,
+}
+
+impl Grid {
+    fn new(rows: usize, columns: usize) -> Self {
+        Self {
+            columns,
+            counts: vec![0; rows * columns],
+        }
+    }
+
+    /// Number of columns: one below the bins, the bins, one above, one for what has no place.
+    pub fn columns(&self) -> usize {
+        self.columns
+    }
+
+    /// The counts, row by row.
+    pub fn counts(&self) -> &[u64] {
+        &self.counts
+    }
+
+    fn absorb(&mut self, recent: &mut [u32]) {
+        for (count, recent) in self.counts.iter_mut().zip(recent) {
+            *count += u64::from(std::mem::take(recent));
+        }
+    }
+
+    fn merge(&mut self, other: &Self) {
+        for (count, other) in self.counts.iter_mut().zip(&other.counts) {
+            *count += other;
+        }
+    }
+}
+
+impl Tally {
+    /// Of nothing.
+    pub fn new(bins: &Bins) -> Self {
+        let rows = bins.rows();
+        Self {
+            restitution: Grid::new(rows, bins.restitution.len() + 1),
+            fraction: Grid::new(rows, bins.fraction.len() + 1),
+            sums: vec![Sums::EMPTY; rows],
+            fractions: vec![0; rows],
+            stops: [0; 5],
+        }
+    }
+
+    /// Adds what another tally with the same bins has.
+    pub fn merge(&mut self, other: &Self) {
+        self.restitution.merge(&other.restitution);
+        self.fraction.merge(&other.fraction);
+        for (sums, other) in self.sums.iter_mut().zip(&other.sums) {
+            sums.merge(other);
+        }
+        for (sum, other) in self.fractions.iter_mut().zip(&other.fractions) {
+            *sum += other;
+        }
+        for (count, other) in self.stops.iter_mut().zip(&other.stops) {
+            *count += other;
+        }
+    }
+
+    /// Number of impacts of a row whose ε is defined.
+    pub fn number(&self, row: usize) -> u64 {
+        let columns = self.restitution.columns;
+        self.restitution.counts[row * columns..][..columns - 1]
+            .iter()
+            .sum()
+    }
+
+    /// Moments of ε in a row; `origin` as for the [`Counter`] that made the tally.
+    pub fn moments(&self, row: usize, origin: f64) -> Moments {
+        self.sums[row].moments(self.number(row), origin)
+    }
+
+    /// Mean of E_rot/E_tot in a row; NaN where there are none.
+    pub fn mean_fraction(&self, row: usize) -> f64 {
+        self.fractions[row] as f64 / FRACTION_QUANTA / self.number(row) as f64
+    }
+}
+
+/// Takes impacts into a [`Tally`], by way of narrow integers that are emptied before they can overflow.
+pub(crate) struct Counter<'a> {
+    tally: Tally,
+    bins: &'a Bins,
+    plan: &'a Plan<'a>,
+    /// What ε is measured from in the sums: ε^n, so that nearly round bodies lose no digits.
+    origin: f64,
+    restitution: Vec<u32>,
+    fraction: Vec<u32>,
+    rows: Vec<Row>,
+    /// Impacts since the last emptying.
+    recent: u32,
+}
+
+/// What is recent in a row.
+#[derive(Clone, Copy, Default)]
+struct Row {
+    sums: Recent,
+    fractions: u64,
+}
+
+impl<'a> Counter<'a> {
+    pub fn new(bins: &'a Bins, plan: &'a Plan<'a>, origin: f64) -> Self {
+        let tally = Tally::new(bins);
+        Self {
+            bins,
+            plan,
+            origin,
+            restitution: vec![0; tally.restitution.counts.len()],
+            fraction: vec![0; tally.fraction.counts.len()],
+            rows: vec![Row::default(); tally.sums.len()],
+            recent: 0,
+            tally,
+        }
+    }
+
+    fn empty(&mut self) {
+        self.recent = 0;
+        self.tally.restitution.absorb(&mut self.restitution);
+        self.tally.fraction.absorb(&mut self.fraction);
+        for (i, row) in self.rows.iter_mut().enumerate() {
+            self.tally.sums[i].absorb(&mut row.sums);
+            self.tally.fractions[i] += u128::from(std::mem::take(&mut row.fractions));
+        }
+    }
+
+    pub fn finish(mut self) -> Tally {
+        self.empty();
+        self.tally
+    }
+}
+
+/// Index into a [`Grid`].
+#[inline(always)]
+fn site_of<S: Simd, const K: usize>(
+    axis: &Axis,
+    row: Pack<S, K>,
+    x: Pack<S, K>,
+    defined: Mask<S, K>,
+) -> Pack<S, K> {
+    let column = defined.select(axis.locate(x), axis.len() as f64);
+    row.mul_add((axis.len() + 1) as f64, column)
+}
+
+/// What the lanes add, as whole numbers in the low bits.
+struct Prepared<S: Simd, const K: usize> {
+    row: Pack<S, K>,
+    site: Pack<S, K>,
+    fraction_site: Pack<S, K>,
+    quanta: Pack<S, K>,
+    fraction: Pack<S, K>,
+    restitution: Pack<S, K>,
+}
+
+/// The whole number in the low bits of a lane to which [`ROUND`] was added.
+#[inline(always)]
+fn whole<S: Simd, const K: usize>(pack: &Pack<S, K>, lane: usize) -> i64 {
+    pack.as_slice()[lane].to_bits() as i64 - ROUND.to_bits() as i64
+}
+
+impl Counter<'_> {
+    #[inline(always)]
+    fn count<S: Simd, const K: usize>(&mut self, lanes: &Prepared<S, K>, lane: usize) {
+        self.restitution[whole(&lanes.site, lane) as usize] += 1;
+        self.fraction[whole(&lanes.fraction_site, lane) as usize] += 1;
+    }
+
+    #[inline(always)]
+    fn sum<S: Simd, const K: usize>(&mut self, lanes: &Prepared<S, K>, lane: usize) {
+        let row = whole(&lanes.row, lane) as usize;
+        self.rows[row].sums.add(whole(&lanes.quanta, lane));
+        self.rows[row].fractions += whole(&lanes.fraction, lane) as u64;
+        self.tally.sums[row].extremes(lanes.restitution.as_slice()[lane]);
+    }
+}
+
+impl Sink for Counter<'_> {
+    fn begin(&mut self, _: usize) {}
+
+    #[inline(always)]
+    fn impact<S: Simd, const K: usize>(&mut self, number: usize, impact: &Impact<S, K>) {
+        let width = Pack::<S, K>::WIDTH;
+        if self.recent + width as u32 > MOST_RECENT {
+            self.empty();
+        }
+        self.recent += width as u32;
+
+        let simd = impact.time.simd();
+        let restitution = impact.restitution();
+        let fraction = impact.rotational_fraction(&self.plan.body);
+        let row = match &self.bins.by {
+            By::Velocity(axis) => axis.locate(impact.impact_velocity() * self.plan.scales.speed),
+            By::Number(_) => Pack::splat(simd, number as f64),
+        };
+        let defined = restitution.abs().lt(Sums::LARGEST) & fraction.le(1.0);
+        let site = site_of(&self.bins.restitution, row, restitution, defined);
+        let fraction_site = site_of(&self.bins.fraction, row, fraction, defined);
+
+        let quanta = (restitution - self.origin) * QUANTA;
+
+        let small = quanta.abs().le(NARROW as f64);
+        let plain = impact.active & defined & small;
+        let lanes = Prepared {
+            row: row + ROUND,
+            site: site + ROUND,
+            fraction_site: fraction_site + ROUND,
+            quanta: small.select(quanta, 0.0) + ROUND,
+            fraction: defined.select(fraction * FRACTION_QUANTA, 0.0) + ROUND,
+            restitution,
+        };
+        if (!plain).any() {
+            let (active, defined, small) = (impact.active, defined, small);
+            active.each(|lane| self.count(&lanes, lane));
+            (active & defined & small).each(|lane| self.sum(&lanes, lane));
+            (active & defined & !small).each(|lane| {
+                let row = whole(&lanes.row, lane) as usize;
+                let quanta = quanta.as_slice()[lane].round_ties_even() as i64;
+                self.tally.sums[row].add(quanta);
+                self.rows[row].fractions += whole(&lanes.fraction, lane) as u64;
+                self.tally.sums[row].extremes(restitution.as_slice()[lane]);
+            });
+        } else {
+            for lane in 0..width {
+                self.count(&lanes, lane);
+                self.sum(&lanes, lane);
+            }
+        }
+    }
+
+    fn end(&mut self, _: usize, _: usize, reason: StopReason) {
+        self.tally.stops[reason as usize] += 1;
+    }
+}

@@ -1,0 +1,163 @@
+//! A parameter outside its range is an error that names it, and says what is allowed.
+
+mod common;
+
+use common::*;
+use restitution_core::{Dumbbell, Error, Orientation, Run, TangentialRestitution};
+
+/// The name of the parameter that is wrong; its value must be in the message, too.
+fn culprit(error: &Error) -> &'static str {
+    let Error::Parameter {
+        name,
+        value,
+        allowed,
+    } = error
+    else {
+        panic!("{error}");
+    };
+    let message = error.to_string();
+    assert!(message.contains(name) && message.contains(allowed));
+    assert!(message.contains(&value.to_string()));
+    name
+}
+
+const NOT_POSITIVE: [f64; 6] = [0.0, -0.0, -1.0, f64::NAN, f64::INFINITY, f64::NEG_INFINITY];
+const NOT_FINITE: [f64; 4] = [-1e-300, f64::NAN, f64::INFINITY, f64::NEG_INFINITY];
+
+#[test]
+fn bodies() {
+    for x in NOT_POSITIVE {
+        assert_eq!(culprit(&Dumbbell::new(x, 0.1, 1.0).unwrap_err()), "radius");
+        assert_eq!(culprit(&Dumbbell::new(1.0, 0.1, x).unwrap_err()), "density");
+    }
+    for x in NOT_FINITE {
+        assert_eq!(
+            culprit(&Dumbbell::new(1.0, x, 1.0).unwrap_err()),
+            "separation"
+        );
+    }
+    assert!(Dumbbell::new(1.0, 0.0, 1.0).is_ok());
+    // Inertia is ~ R⁵: beyond the range of doubles, and the error says so instead of giving infinities.
+    for radius in [1e-70, 1e70] {
+        assert_eq!(
+            culprit(&Dumbbell::new(radius, 0.0, 1.0).unwrap_err()),
+            "radius"
+        );
+    }
+}
+
+#[test]
+fn laws() {
+    for x in [-1e-300, 1.0_f64.next_up(), f64::NAN, f64::INFINITY] {
+        assert_eq!(
+            culprit(&TangentialRestitution::new(x, 1.0).unwrap_err()),
+            "normal"
+        );
+    }
+    for x in [
+        (-1.0_f64).next_down(),
+        1.0_f64.next_up(),
+        f64::NAN,
+        f64::NEG_INFINITY,
+    ] {
+        assert_eq!(
+            culprit(&TangentialRestitution::new(0.5, x).unwrap_err()),
+            "tangential"
+        );
+    }
+    for (normal, tangential) in [(0.0, -1.0), (1.0, 1.0), (-0.0, -0.0)] {
+        assert!(TangentialRestitution::new(normal, tangential).is_ok());
+    }
+}
+
+#[test]
+fn runs() {
+    let run = || paper(0.1, law(0.9, 1.0));
+    let name = |run: Run<'_>| culprit(&error_of(&run));
+    for gravity in NOT_POSITIVE {
+        assert_eq!(name(Run { gravity, ..run() }), "gravity");
+    }
+    for gravity in [f64::MIN_POSITIVE * f64::EPSILON, f64::MAX] {
+        assert_eq!(
+            name(Run {
+                gravity,
+                body: Dumbbell::new(1e20, 0.0, 1.0).unwrap(),
+                release_height: 1e21,
+                ..run()
+            }),
+            "gravity"
+        );
+    }
+    assert_eq!(
+        name(Run {
+            particles: 0,
+            ..run()
+        }),
+        "particles"
+    );
+    assert_eq!(
+        name(Run {
+            impacts: 0,
+            ..run()
+        }),
+        "impacts"
+    );
+    for minimum_speed in NOT_FINITE {
+        assert_eq!(
+            name(Run {
+                minimum_speed,
+                ..run()
+            }),
+            "minimum_speed"
+        );
+    }
+    // The lower sphere of a body on end must be clear of the plane.
+    let lowest = 3e-3 + 1.5e-4;
+    for release_height in [
+        f64::NAN,
+        f64::INFINITY,
+        -1.0,
+        0.0,
+        3e-3,
+        lowest * (1.0 - 1e-12),
+    ] {
+        assert_eq!(
+            name(Run {
+                release_height,
+                ..run()
+            }),
+            "release_height"
+        );
+    }
+}
+
+#[test]
+fn angles() {
+    fn run(angles: &[f64]) -> Run<'_> {
+        Run {
+            particles: 3,
+            orientation: Orientation::Given(angles),
+            ..paper(0.1, law(0.9, 1.0))
+        }
+    }
+    for wrong in [f64::NAN, f64::INFINITY, 1_048_576.0_f64.next_up(), -1e300] {
+        let angles = [0.0, wrong, 0.0];
+        assert!(culprit(&error_of(&run(&angles))).contains("angle"));
+    }
+    assert!(culprit(&error_of(&run(&[0.0, 1.0]))).contains("angles"));
+    // A tilted body may be let go from lower than one on end.
+    let lying = [1.5, 1.6, 1.7];
+    let release_height = 3e-3 + 2e-5;
+    simulate(&Run {
+        release_height,
+        ..run(&lying)
+    });
+    let one_on_end = [1.5, 0.0, 1.7];
+    assert_eq!(
+        culprit(&error_of(&Run {
+            release_height,
+            ..run(&one_on_end)
+        })),
+        "release_height"
+    );
+}
