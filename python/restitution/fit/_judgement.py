@@ -1,0 +1,141 @@
+"""Whether a fit is good, and whether it is better than another one."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from math import erfc, inf, sqrt
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from restitution.fit._result import Array, Fit, finite_samples
+
+
+@dataclass(frozen=True)
+class Goodness:
+    """Goodness of a fit, with p-values by parametric bootstrap.
+
+    Attributes
+    ----------
+    fit : Fit
+    kolmogorov_smirnov, anderson_darling : float
+        The statistics D = sup|F_n − F| and A².
+    kolmogorov_smirnov_p, anderson_darling_p : float
+        Share of refitted draws from the fit (the samples themselves counted in) whose statistic is as large.
+        Never below 1/(resamples + 1).
+    resamples : int
+    """
+
+    fit: Fit
+    kolmogorov_smirnov: float
+    kolmogorov_smirnov_p: float
+    anderson_darling: float
+    anderson_darling_p: float
+    resamples: int
+
+
+def goodness(
+    family: Callable[[Array], Fit], samples: ArrayLike, *, resamples: int = 199, seed: int = 1
+) -> Goodness:
+    """Fit `samples` and test the fit against draws from itself, each fitted again.
+
+    Fitting again is what makes the p-values right: a fitted density lies closer to its samples than the true
+    one does.
+
+    Parameters
+    ----------
+    family : callable
+        A fit of this package, such as `asymmetric_laplace`, or any function from samples to a `Fit`.
+    samples : array_like
+        Statistically INDEPENDENT values: of the impacts of one particle take one.
+    resamples : int, default 199
+        Draws for the bootstrap, ≥ 1; the p-value has the resolution 1/(resamples + 1).
+    seed : int, default 1
+
+    Raises
+    ------
+    ValueError
+        As the fit does, or if `resamples` < 1.
+    """
+    if resamples < 1:
+        raise ValueError(f"resamples = {resamples!r}: at least one is needed")
+    x = finite_samples(samples)
+    random = np.random.default_rng(seed)
+    fit = family(x)
+    observed = _distances(fit, x)
+    reached = np.ones(2)
+    for _ in range(resamples):
+        draw = fit.rvs(x.size, random)
+        reached += _distances(family(draw), draw) >= observed
+    ks_p, ad_p = reached / (resamples + 1)
+    return Goodness(fit, float(observed[0]), float(ks_p), float(observed[1]), float(ad_p), resamples)
+
+
+def _distances(fit: Fit, samples: Array) -> Array:
+    """Kolmogorov–Smirnov D and Anderson–Darling A² between samples and fit."""
+    x = np.sort(samples)
+    n, rank = x.size, np.arange(1, x.size + 1)
+    below, above = fit.cdf(x), np.asarray(fit.distribution.sf(x))
+    ks = max(float(np.max(rank / n - below)), float(np.max(below - (rank - 1) / n)))
+    # A sample that the fit holds impossible would make A² infinite: the floor makes it merely very large.
+    logs = np.log(np.maximum(below, 1e-300)) + np.log(np.maximum(above[::-1], 1e-300))
+    return np.array([ks, -n - float(np.sum((2 * rank - 1) * logs)) / n])
+
+
+@dataclass(frozen=True)
+class Comparison:
+    """Two fits of the same samples compared by Vuong's test (Econometrica 57, 307 (1989)).
+
+    Attributes
+    ----------
+    difference : float
+        Mean of ln p_first − ln p_second per sample; positive where the first is better.
+    standard_error : float
+        Of `difference`.
+    """
+
+    difference: float
+    standard_error: float
+
+    @property
+    def z(self) -> float:
+        """Difference in standard errors; standard normal where two non-nested fits are equally far off."""
+        if self.standard_error == 0:
+            return 0.0 if self.difference == 0 else inf if self.difference > 0 else -inf
+        return self.difference / self.standard_error
+
+    @property
+    def p(self) -> float:
+        """Two-sided p-value of `z`."""
+        return erfc(abs(self.z) / sqrt(2))
+
+
+def compare(first: Fit, second: Fit, samples: ArrayLike, clusters: ArrayLike | None = None) -> Comparison:
+    """Compare two fits by their log-likelihood per sample.
+
+    Parameters
+    ----------
+    first, second : Fit
+        Fits of `samples`.
+    samples : array_like, shape (n,)
+    clusters : array_like of int ≥ 0, shape (n,), optional
+        Number of the particle that each sample is from. Samples of one particle may be correlated in any way,
+        those of two are taken as independent; without it, all are.
+
+    Raises
+    ------
+    ValueError
+        If the samples are empty or not finite, `clusters` has another length, or there are fewer than two of
+        them.
+    """
+    x = finite_samples(samples)
+    labels = np.arange(x.size) if clusters is None else np.asarray(clusters).ravel()
+    if labels.shape != x.shape:
+        raise ValueError(f"clusters: {labels.size} values; one for each of the {x.size} samples is needed")
+    _, member = np.unique(labels, return_inverse=True)
+    groups = int(member.max()) + 1
+    if groups < 2:
+        raise ValueError("clusters: all samples are in one; a standard error needs at least two")
+    difference = first.logpdf(x) - second.logpdf(x)
+    mean = float(np.mean(difference))
+    sums = np.bincount(member, weights=difference - mean)
+    return Comparison(mean, float(np.sqrt(np.sum(sums**2) * groups / (groups - 1))) / x.size)

@@ -1,0 +1,101 @@
+"""What every fit returns, and the check of what every fit is given."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from math import log
+from types import MappingProxyType
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Fit:
+    """A distribution fitted to samples by maximum likelihood.
+
+    Attributes
+    ----------
+    family : str
+        Name of the family, in words.
+    parameters : Mapping[str, float]
+        The fitted parameters in the family's own notation, fixed ones included; unit of the samples.
+    free_parameters : int
+        How many of them were fitted.
+    samples : int
+        Number n of samples.
+    loglikelihood : float
+        Natural logarithm of the likelihood at its maximum.
+    distribution : frozen scipy.stats distribution
+        The fitted distribution with all that SciPy offers on it.
+    """
+
+    family: str
+    parameters: Mapping[str, float]
+    free_parameters: int
+    samples: int
+    loglikelihood: float
+    distribution: Any = field(repr=False, compare=False)
+
+    @property
+    def aic(self) -> float:
+        """Akaike's criterion, 2 k − 2 ln L; lower is better."""
+        return 2 * self.free_parameters - 2 * self.loglikelihood
+
+    @property
+    def bic(self) -> float:
+        """Schwarz's criterion, k ln n − 2 ln L; lower is better. It takes the samples as independent."""
+        return self.free_parameters * log(self.samples) - 2 * self.loglikelihood
+
+    def pdf(self, x: ArrayLike) -> Array:
+        """Probability density at `x`, in 1/unit of the samples; shape of `x`."""
+        return np.asarray(self.distribution.pdf(x))
+
+    def logpdf(self, x: ArrayLike) -> Array:
+        """Natural logarithm of the density at `x`; shape of `x`."""
+        return np.asarray(self.distribution.logpdf(x))
+
+    def cdf(self, x: ArrayLike) -> Array:
+        """Probability of a value up to `x`; shape of `x`."""
+        return np.asarray(self.distribution.cdf(x))
+
+    def rvs(self, size: int, seed: int | np.random.Generator = 1) -> Array:
+        """`size` independent draws, shape (size,)."""
+        return np.asarray(self.distribution.rvs(size=size, random_state=np.random.default_rng(seed)))
+
+
+def finite_samples(samples: ArrayLike, location: float | None = None) -> Array:
+    """Return `samples` as a flat float array.
+
+    Raises
+    ------
+    ValueError
+        If `samples` is empty, holds NaN or inf, or does not spread at all (about `location`, where that is
+        given): the likelihood then has no maximum. If `location` is not finite.
+    """
+    x = np.asarray(samples, dtype=np.float64).ravel()
+    if x.size == 0:
+        raise ValueError("samples: empty; at least one value is needed")
+    bad = x.size - np.count_nonzero(np.isfinite(x))
+    if bad:
+        raise ValueError(f"samples: {bad} of {x.size} values are NaN or infinite; all must be finite")
+    if location is not None and not np.isfinite(location):
+        raise ValueError(f"location = {location!r}: a finite number is needed")
+    centre = float(x[0]) if location is None else location
+    if np.all(x == centre):
+        raise ValueError(f"samples: all {x.size} equal {centre!r}; the likelihood of a scale has no maximum")
+    return x
+
+
+def fitted(family: str, x: Array, distribution: Any, *, free: int | None = None, **parameters: float) -> Fit:
+    """Make the result for a density fitted to `x`; give `free` where some parameters were fixed."""
+    return Fit(
+        family=family,
+        parameters=MappingProxyType({name: float(value) for name, value in parameters.items()}),
+        free_parameters=len(parameters) if free is None else free,
+        samples=x.size,
+        loglikelihood=float(np.sum(distribution.logpdf(x))),
+        distribution=distribution,
+    )
