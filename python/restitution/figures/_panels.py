@@ -1,0 +1,113 @@
+"""What a panel shows: populations of a lattice, histograms, lines with their standard error."""
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+from matplotlib.axes import Axes
+from matplotlib.collections import QuadMesh
+from matplotlib.colors import LogNorm
+from matplotlib.figure import Figure
+from matplotlib.ticker import FixedLocator, NullFormatter, StrMethodFormatter
+
+from restitution.figures._style import COLORMAP, styled
+
+FloatArray = npt.NDArray[np.float64]
+
+
+@styled
+def population(
+    axes: Axes,
+    x_edges: FloatArray,
+    y_edges: FloatArray,
+    count: npt.NDArray[np.int64],
+    *,
+    largest: int | None = None,
+) -> QuadMesh:
+    """Colour each lattice site by its population over the largest, logarithmically; empty sites are blank.
+
+    Parameters
+    ----------
+    axes : Axes
+        Panel to draw in.
+    x_edges, y_edges : ndarray, shapes (nx + 1,), (ny + 1,)
+        Edges of the sites.
+    count : ndarray of int, shape (nx, ny)
+        Population of the sites.
+    largest : int, optional
+        Population that gets the colour of 1; the largest in `count` unless given.
+
+    Returns
+    -------
+    QuadMesh
+        For `population_bar`.
+
+    Raises
+    ------
+    ValueError
+        If every site is empty.
+    """
+    top = int(count.max()) if largest is None else largest
+    if not count.any():
+        raise ValueError(f"count: all {count.size} sites are empty, there is nothing to draw")
+    share = np.ma.masked_equal(count.T, 0) / top
+    # A scale needs two ends even if no site holds more than one.
+    norm = LogNorm(1 / max(top, 10), 1)
+    mesh = axes.pcolormesh(x_edges, y_edges, share, norm=norm, cmap=COLORMAP, rasterized=True)
+    axes.set_xlim(x_edges[0], x_edges[-1])
+    axes.set_ylim(y_edges[0], y_edges[-1])
+    return mesh
+
+
+@styled
+def population_bar(figure: Figure, mesh: QuadMesh, axes: Axes) -> None:
+    """Add the colour bar of a `population`."""
+    bar = figure.colorbar(mesh, ax=axes, pad=0.02, aspect=30)
+    bar.set_label("population / largest population")
+
+
+@styled
+def histogram(axes: Axes, edges: FloatArray, density: FloatArray, error: FloatArray, **style: Any) -> None:
+    """Draw a probability density as points at the bin centres, with bars of ± one standard error.
+
+    Empty bins are left out, as on a logarithmic axis they must be.
+
+    Parameters
+    ----------
+    axes : Axes
+        Panel to draw in.
+    edges : ndarray, shape (n + 1,)
+        Edges of the bins.
+    density, error : ndarray, shape (n,)
+        Density in the bins and its standard error.
+    **style
+        As in `matplotlib.axes.Axes.errorbar`.
+    """
+    filled = density > 0
+    centres = 0.5 * (edges[:-1] + edges[1:])
+    # A bar down to zero, as that of a single count, would run off a logarithmic axis.
+    below = np.where(error < density, error, 0.0)
+    points: dict[str, Any] = {"linestyle": "none", "capsize": 0.0, "elinewidth": 0.5} | style
+    axes.errorbar(
+        centres[filled],
+        density[filled],
+        yerr=np.stack([below, error])[:, filled],
+        **points,
+    )
+
+
+@styled
+def line(axes: Axes, x: FloatArray, y: FloatArray, error: FloatArray | None = None, **style: Any) -> None:
+    """Draw y(x), with a band of ± one standard error where `error` is given; NaN leaves a gap."""
+    (drawn,) = axes.plot(x, y, **style)
+    if error is not None:
+        axes.fill_between(x, y - error, y + error, color=drawn.get_color(), alpha=0.3, linewidth=0)
+
+
+def plain_log(axes: Axes, ticks: Sequence[float]) -> None:
+    """Make the x axis logarithmic with plain numbers at these ticks."""
+    axes.set_xscale("log")
+    axes.xaxis.set_major_locator(FixedLocator(ticks))
+    axes.xaxis.set_major_formatter(StrMethodFormatter("{x:g}"))
+    axes.xaxis.set_minor_formatter(NullFormatter())
