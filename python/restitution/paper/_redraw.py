@@ -1,0 +1,65 @@
+"""From nothing to the report: simulate, draw, judge, write, and only then put the files in place."""
+
+import os
+from pathlib import Path
+
+from tqdm import tqdm
+
+from restitution.paper._claims import judge
+from restitution.paper._figures import draw_all
+from restitution.paper._folder import unfinished
+from restitution.paper._report import write_report
+from restitution.paper._runs import check_impacts, simulate_all
+from restitution.paper._settings import Settings
+
+
+def redraw(
+    out: str | os.PathLike[str],
+    impacts: int = 4_000_000,
+    seed: int = 1,
+    threads: int | None = None,
+    progress: bool = True,
+) -> Path:
+    """Redraw Figs. 2-7 and 9, with two figures of what the paper leaves open, and judge the paper's claims.
+
+    Parameters
+    ----------
+    out : path
+        Folder for the report, and for each figure its PNG, PDF, caption and data; made if it does not
+        exist. Files of an earlier call are replaced, others are left alone. Nothing appears there before
+        all is done.
+    impacts : int
+        Impacts in the main run, at least 400 000, the number in the paper's Fig. 2.
+    seed : int
+        Seed that those of all runs derive from, in [0, 2⁶⁴).
+    threads : int, optional
+        As in `restitution.simulate`. The same seed gives the same figures with any number.
+    progress : bool
+        Whether to show progress bars.
+
+    Returns
+    -------
+    Path
+        The report, an HTML file.
+
+    Raises
+    ------
+    ValueError
+        If `impacts` or `seed` is out of range.
+    OSError
+        If `out` cannot be written to; found out before anything is computed.
+    """
+    settings = Settings()
+    check_impacts(settings, impacts)
+    folder = Path(out)
+    stages = tqdm(total=4, desc="paper", unit="stage", disable=not progress)
+    with stages, unfinished(folder) as draft:
+        runs = simulate_all(settings, impacts, seed, threads, progress)
+        stages.update()
+        figures = draw_all(runs, settings, draft, progress)
+        stages.update()
+        claims = judge(runs, settings)
+        stages.update()
+        write_report(draft / "report.html", figures, claims, runs, settings)
+        stages.update()
+    return folder / "report.html"

@@ -1,0 +1,108 @@
+"""The report: one HTML file that needs nothing else."""
+
+from collections.abc import Sequence
+from importlib.resources import files
+from pathlib import Path
+from typing import Protocol
+
+from restitution.paper._claims import Claim
+from restitution.paper._report import _sections as sections
+from restitution.paper._report._html import section, text
+from restitution.paper._runs import Runs
+from restitution.paper._settings import Settings
+
+__all__ = ["Figure", "write_report"]
+
+
+class Figure(Protocol):
+    """What the report needs of a figure."""
+
+    @property
+    def name(self) -> str:
+        """Short name, the anchor."""
+
+    @property
+    def title(self) -> str:
+        """Heading."""
+
+    @property
+    def png(self) -> Path:
+        """The picture."""
+
+    @property
+    def caption(self) -> str:
+        """What it shows, with all parameters."""
+
+
+def write_report(
+    path: str | Path, figures: Sequence[Figure], claims: Sequence[Claim], runs: Runs, settings: Settings
+) -> None:
+    """Write the redrawn and judged paper as one self-contained HTML file.
+
+    Parameters
+    ----------
+    path : path
+        Where to; an existing file is replaced.
+    figures : sequence of Figure
+        Figures on disk, embedded in this order.
+    claims : sequence of Claim
+        From `restitution.paper._claims.judge`.
+    runs : Runs
+        The simulations.
+    settings : Settings
+        What was simulated.
+
+    Raises
+    ------
+    ValueError
+        If a figure is not a PNG file.
+    OSError
+        If a file cannot be read or written.
+    """
+    parts = {
+        "claims": ("The claims, judged", sections.summary(claims)),
+        "figures": ("The figures, redrawn", sections.figures(figures)),
+        "numbers": ("The numbers behind each verdict", sections.details(claims)),
+        "misprints": ("Misprints", sections.misprints()),
+        "sensitivity": ("What radius and release height change", sections.sensitivity(runs, settings)),
+        "energy": ("What the paper does not say: energy is created", sections.energy(runs)),
+        "parameters": ("Parameters", sections.parameters(settings)),
+        "runs": ("Simulations", sections.simulations(runs)),
+        "reproduce": ("How to reproduce this report", sections.reproduce(runs, settings)),
+        "cite": ("How to cite", sections.citation(runs)),
+    }
+    contents = "\n".join(
+        f'<li><a href="#{anchor}">{text(title)}</a></li>' for anchor, (title, _) in parts.items()
+    )
+    body = "\n".join(section(anchor, title, content) for anchor, (title, content) in parts.items())
+    style = files("restitution.paper._report").joinpath("style.css").read_text(encoding="utf-8")
+    Path(path).write_text(
+        f"""<!DOCTYPE html>
+<html lang="en">
+<head>
+<meta charset="utf-8">
+<meta name="viewport" content="width=device-width, initial-scale=1">
+<title>{text(sections.TITLE)}</title>
+<style>
+{style}</style>
+</head>
+<body>
+<header>
+{sections.heading(claims, runs)}
+</header>
+<nav aria-label="Contents">
+<ol>
+{contents}
+</ol>
+</nav>
+<main>
+{body}
+</main>
+<footer>
+<p>{text(sections.source(runs))}</p>
+</footer>
+</body>
+</html>
+""",
+        encoding="utf-8",
+    )

@@ -1,0 +1,167 @@
+"""The simulations behind the paper's figures."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from math import ceil
+
+import numpy as np
+import xarray as xr
+from tqdm import tqdm
+
+import restitution as rs
+from restitution.laws import TangentialRestitution
+from restitution.paper._settings import Settings
+
+# Sensitivity runs keep what is drawn and why each trajectory ended, a third of the memory.
+_KEPT = ("impact_velocity", "restitution", "rotational_fraction", "impacts", "stop_reason")
+
+
+@dataclass(frozen=True)
+class Runs:
+    """All data, as from `restitution.simulate`; each Dataset's attrs hold its own seed.
+
+    Attributes
+    ----------
+    main
+        L/R = 0.1, release angle uniform: Figs. 2, 3, 4, 5, 7.
+    beads
+        By L/R (0.01 and 0.02): Fig. 6.
+    first
+        L = 2R, ε_n = 0.4, one impact: Fig. 9.
+    isotropic
+        As `main` with isotropic release orientation.
+    energy
+        By L/R: as `main` for other elongations.
+    by_radius, by_height
+        ``[radius][L/R]`` and ``[height][L/R]`` (m) for the L/R of Fig. 2 and the first of Fig. 6; only
+        some of the variables.
+    seed
+        The seed that those of all runs derive from.
+    """
+
+    main: xr.Dataset
+    beads: Mapping[float, xr.Dataset]
+    first: xr.Dataset
+    isotropic: xr.Dataset
+    energy: Mapping[float, xr.Dataset]
+    by_radius: Mapping[float, Mapping[float, xr.Dataset]]
+    by_height: Mapping[float, Mapping[float, xr.Dataset]]
+    seed: int
+
+    def seeds(self) -> dict[str, int]:
+        """Seed of every run by the run's name."""
+        return {str(data.attrs["run"]): int(data.attrs["seed"]) for data in self._all()}
+
+    def _all(self) -> list[xr.Dataset]:
+        varied = [
+            data for by in (self.by_radius, self.by_height) for pair in by.values() for data in pair.values()
+        ]
+        return [self.main, *self.beads.values(), self.first, self.isotropic, *self.energy.values(), *varied]
+
+
+def derived_seed(seed: int, name: str) -> int:
+    """Seed in [0, 2⁶³) of the run called `name`, which no other run's name or presence changes.
+
+    Raises
+    ------
+    ValueError
+        If `seed` is not in [0, 2⁶⁴).
+    """
+    if not 0 <= seed < 2**64:
+        raise ValueError(f"seed = {seed}: must be in [0, 2**64)")
+    sequence = np.random.SeedSequence(seed, spawn_key=tuple(name.encode()))
+    return int(sequence.generate_state(1, np.uint64)[0] >> np.uint64(1))
+
+
+def check_impacts(settings: Settings, impacts: int) -> None:
+    """Raise `ValueError` if the main run has fewer impacts than the paper."""
+    least = settings.least_impacts
+    if impacts < least:
+        raise ValueError(f"impacts = {impacts}: must be at least {least}, the number of impacts in Fig. 2")
+
+
+def simulate_all(
+    settings: Settings, impacts: int, seed: int, threads: int | None = None, progress: bool = True
+) -> Runs:
+    """Run every simulation that the figures and the claims need.
+
+    Parameters
+    ----------
+    settings : Settings
+        What to simulate.
+    impacts : int
+        Impacts in the main run, at least ``settings.least_impacts`` (400 000, the paper's number). A few
+        more are made, because nobody knows beforehand when a trajectory ends. Secondary runs have their own
+        fixed sizes (see `Settings`).
+    seed : int
+        Seed of everything; each run derives its own from it and its name.
+    threads : int, optional
+        As in `restitution.simulate`.
+    progress : bool
+        Whether to show a progress bar.
+
+    Returns
+    -------
+    Runs
+
+    Raises
+    ------
+    ValueError
+        If `impacts` is below ``settings.least_impacts``.
+    """
+    check_impacts(settings, impacts)
+    s = settings
+    number = 3 + len(s.bead_elongations) + len(s.energy_elongations) + 2 * (len(s.radii) + len(s.heights))
+    with tqdm(total=number, desc="simulations", unit="run", leave=False, disable=not progress) as bar:
+
+        def drop(
+            name: str,
+            elongation: float,
+            *,
+            each: int,
+            particles: int = s.secondary_particles,
+            law: TangentialRestitution = s.law,
+            orientation: str = s.orientation,
+            radius: float = s.radius,
+            height: float = s.release_height,
+        ) -> xr.Dataset:
+            data = rs.simulate(
+                s.body(elongation, radius),
+                law,
+                particles=particles,
+                impacts=each,
+                release_height=height,
+                gravity=s.gravity,
+                orientation=orientation,
+                seed=derived_seed(seed, name),
+                threads=threads,
+            )
+            bar.update()
+            return data.assign_attrs(run=name)
+
+        def pair(
+            name: str, radius: float = s.radius, height: float = s.release_height
+        ) -> dict[float, xr.Dataset]:
+            each = s.sensitivity_impacts_per_particle
+            # A deep copy, lest the part keep the whole alive.
+            return {
+                x: drop(f"{name}, L/R {x:g}", x, each=each, radius=radius, height=height)[list(_KEPT)].copy(
+                    deep=True
+                )
+                for x in (s.elongation, s.bead_elongations[0])
+            }
+
+        each = s.impacts_per_particle
+        first = drop("first", s.first_elongation, each=1, particles=s.first_particles, law=s.first_law)
+        return Runs(
+            main=drop("main", s.elongation, each=each, particles=ceil(impacts / s.mean_impacts)),
+            beads={
+                x: drop(f"beads, L/R {x:g}", x, each=s.bead_impacts_per_particle) for x in s.bead_elongations
+            },
+            first=first,
+            isotropic=drop("isotropic", s.elongation, each=each, orientation="isotropic"),
+            energy={x: drop(f"energy, L/R {x:g}", x, each=each) for x in s.energy_elongations},
+            by_radius={r: pair(f"radius {r:g} m", radius=r) for r in s.radii},
+            by_height={h: pair(f"height {h:g} m", height=h) for h in s.heights},
+            seed=seed,
+        )

@@ -1,0 +1,405 @@
+"""Verdicts on the paper's claims: each comes out both ways on runs made up so that the answer is known.
+
+The made-up particles lose speed from impact to impact; all else about them is chosen by the test. What a test
+makes differ does so by far more than the four standard errors that verdicts ask for, and the seeds are fixed.
+"""
+
+from collections.abc import Callable
+from types import ModuleType
+from typing import Any
+
+import numpy as np
+import pytest
+import xarray as xr
+from numpy.typing import NDArray
+
+from restitution._dataset import STOP_REASONS
+from restitution.analytic import first_impact
+from restitution.paper import _claims as claims
+from restitution.paper._claims import (
+    _dependence,
+    _energy,
+    _first,
+    _negative,
+    _reservoir,
+    _scatter,
+    _shape,
+    _unsaid,
+)
+from restitution.paper._runs import Runs
+from restitution.paper._settings import Settings
+
+Array = NDArray[np.float64]
+Noise = Callable[[np.random.Generator, tuple[int, ...]], Array]
+Function = Callable[[Array], Array]
+
+SETTINGS = Settings()
+PARTICLES, IMPACTS = 500, 120
+SHAPE = (PARTICLES, IMPACTS)
+
+
+def skew(random: np.random.Generator, shape: tuple[int, ...]) -> Array:
+    """Asymmetric Laplace with decay lengths 0.9 above and 0.5 below."""
+    above = random.random(shape) < 0.9 / 1.4
+    return np.where(above, random.exponential(0.9, shape), -random.exponential(0.5, shape))
+
+
+def even(random: np.random.Generator, shape: tuple[int, ...]) -> Array:
+    """Symmetric Laplace."""
+    return random.laplace(0, 0.7, shape)
+
+
+def normal(random: np.random.Generator, shape: tuple[int, ...]) -> Array:
+    """Gaussian."""
+    return random.normal(size=shape)
+
+
+def run(
+    *,
+    sigma: Function = lambda v: 0.01 / v,
+    noise: Noise = skew,
+    slow_noise: Noise | None = None,
+    fraction: Function = lambda v: 0.25 * (1.1 - v),
+    change: Function = lambda v: np.full_like(v, 0.5),
+    first: float = 1e-3,
+    ratio: float = 0.97,
+    seed: int = 1,
+) -> xr.Dataset:
+    """Make up a run of particles that slow down from 1.05 m/s to 4 mm/s.
+
+    `sigma` and `fraction` give the scale of ε − ε_n and the mean of E_rot/E_tot (exponential) by velocity,
+    `change` the probability that the next impact is on the other sphere. Below 0.15 m/s `slow_noise` replaces
+    `noise`. ε_n − ε at the first impact is uniform up to `first`; `ratio` is energy after over before.
+    """
+    random = np.random.default_rng(seed)
+    v = 1.05 * np.geomspace(1, 0.004, IMPACTS) * (1 - 0.03 * random.random(SHAPE))
+    z = noise(random, SHAPE)
+    if slow_noise is not None:
+        z = np.where(v < 0.15, slow_noise(random, SHAPE), z)
+    e = SETTINGS.normal + sigma(v) * z
+    e[:, 0] = SETTINGS.normal - first * random.random(PARTICLES)
+    share = np.minimum(fraction(v) * random.exponential(size=SHAPE), 0.99)
+    share[:, 0] = 0
+    turned = np.cumsum(random.random(SHAPE) < change(v), axis=1)
+    return dataset(
+        impact_velocity=v,
+        restitution=e,
+        rotational_fraction=share,
+        energy_ratio=np.full(SHAPE, ratio),
+        angle=np.pi * random.random(SHAPE),
+        contact=(1 + turned % 2).astype(np.int8),
+    )
+
+
+def dataset(**values: NDArray[Any]) -> xr.Dataset:
+    """Complete a run: the flights bring the centre of mass back to its height."""
+    rebound = values["impact_velocity"] * values["restitution"]
+    flight = 2 * np.maximum(rebound, 0) / SETTINGS.gravity
+    values |= {"rebound_velocity": rebound, "time": np.cumsum(flight, axis=1) - flight}
+    particles, impacts = rebound.shape
+    per_impact = {name: (("particle", "impact"), value) for name, value in values.items()}
+    return xr.Dataset(
+        per_impact
+        | {
+            "impacts": ("particle", np.full(particles, impacts)),
+            "stop_reason": ("particle", np.zeros(particles, np.int8)),
+        }
+    )
+
+
+def changed(data: xr.Dataset, **values: NDArray[Any]) -> xr.Dataset:
+    """Another run with some of its (particle, impact) variables replaced."""
+    return data.assign({name: (("particle", "impact"), value) for name, value in values.items()})
+
+
+def from_rest(number: int = 20_000) -> xr.Dataset:
+    """First impacts of Fig. 9, drawn from the closed form."""
+    exact = first_impact(SETTINGS.body(SETTINGS.first_elongation), SETTINGS.first_law)
+    e = exact.rvs(size=number, random_state=np.random.default_rng(3))[:, np.newaxis]
+    return dataset(impact_velocity=np.ones_like(e), restitution=e, rotational_fraction=np.zeros_like(e))
+
+
+MAIN, REST = run(), from_rest()
+
+
+def runs(**chosen: Any) -> Runs:
+    """Runs that are all alike, but for those given."""
+    pair = dict.fromkeys((SETTINGS.elongation, SETTINGS.bead_elongations[0]), MAIN)
+    everything: dict[str, Any] = {
+        "main": MAIN,
+        "beads": {0.01: run(sigma=lambda v: 1e-3 / v), 0.02: run(sigma=lambda v: 2e-3 / v)},
+        "first": REST,
+        "isotropic": run(seed=2),
+        "energy": dict.fromkeys(SETTINGS.energy_elongations, MAIN),
+        "by_radius": dict.fromkeys(SETTINGS.radii, pair),
+        "by_height": dict.fromkeys(SETTINGS.heights, pair),
+        "seed": 1,
+    }
+    return Runs(**(everything | chosen))
+
+
+def judged(group: ModuleType, key: str, **chosen: Any) -> claims.Claim:
+    """The claim called `key` of a group, judged on these runs."""
+    found: list[claims.Claim] = group.judge(runs(**chosen), SETTINGS)
+    return next(claim for claim in found if claim.key == key)
+
+
+def dip(v: Array) -> Array:
+    """A factor that is 1 but for one octave of the speed."""
+    return np.where((v > 0.05) & (v < 0.1), 0.3, 1.0)
+
+
+def where_slow(low: float, high: float) -> Function:
+    """`low` at and below 0.15 m/s, `high` above."""
+    return lambda v: np.where(v < 0.15, low, high)
+
+
+ALL_LOW = {"restitution": np.minimum(MAIN["restitution"].to_numpy(), 0.99)}
+TOO_HIGH = {"restitution": np.where(np.arange(IMPACTS) == 0, 0.985, MAIN["restitution"].to_numpy())}
+STEADY = {"rotational_fraction": 0.2 + 1e-4 * np.random.default_rng(4).random(SHAPE)}
+LOUD = {"restitution": 0.98 + 0.05 * skew(np.random.default_rng(5), SHAPE)}
+
+
+@pytest.mark.parametrize(
+    ("key", "main", "verdict"),
+    [
+        ("above-one", MAIN, "holds"),
+        ("above-one", changed(MAIN, **ALL_LOW), "fails"),
+        ("expense-of-rotation", changed(MAIN, **STEADY), "holds"),  # E_rot falls with all energy
+        ("expense-of-rotation", changed(run(ratio=1.01), **STEADY), "fails"),
+        ("first-impact", MAIN, "holds"),
+        ("first-impact", changed(MAIN, **TOO_HIGH), "fails"),
+        ("scatter-grows", MAIN, "holds"),
+        ("scatter-grows", run(sigma=lambda v: 0.01 / v * dip(v)), "holds in part"),
+        ("scatter-grows", run(sigma=lambda v: np.full_like(v, 0.05)), "fails"),
+        ("scatter-and-rotation", run(fraction=lambda v: 0.001 / v), "holds"),
+        ("scatter-and-rotation", changed(MAIN, **LOUD), "fails"),
+    ],
+)
+def test_scatter(key: str, main: xr.Dataset, verdict: str) -> None:
+    assert judged(_scatter, key, main=main).verdict == verdict
+
+
+@pytest.mark.parametrize(
+    ("small", "large", "verdict"),
+    [
+        (lambda v: 1e-3 / v, lambda v: 2e-3 / v, "holds"),
+        (lambda v: 2e-3 / v, lambda v: 1e-3 / v, "holds in part"),  # not with L/R
+        (lambda v: 1e-5 * np.sqrt(v), lambda v: 2e-5 * np.sqrt(v), "holds in part"),  # not as v falls
+        (lambda v: 2e-5 * v, lambda v: 1e-5 * v, "fails"),
+    ],
+)
+def test_beads(small: Function, large: Function, verdict: str) -> None:
+    beads = {0.01: run(sigma=small, seed=4), 0.02: run(sigma=large, seed=5)}
+    assert judged(_scatter, "beads", beads=beads).verdict == verdict
+
+
+def collapsed(data: xr.Dataset) -> xr.Dataset:
+    reason = np.full(PARTICLES, STOP_REASONS.index("collapse"), np.int8)
+    return data.assign(stop_reason=("particle", reason))
+
+
+BUMP = {
+    "rotational_fraction": np.where(
+        (MAIN["impact_velocity"].to_numpy() < 0.3) & (np.random.default_rng(6).random(SHAPE) < 0.5),
+        0.4 + 0.01 * np.random.default_rng(7).random(SHAPE),
+        MAIN["rotational_fraction"].to_numpy(),
+    )
+}
+
+
+@pytest.mark.parametrize(
+    ("key", "main", "verdict"),
+    [
+        ("rotation-monotone", MAIN, "holds"),
+        ("rotation-monotone", run(fraction=lambda v: 0.25 * (1.1 - v) * dip(v)), "holds in part"),
+        ("rotation-monotone", run(fraction=lambda v: 0.2 * v), "fails"),
+        ("rotation-grows", run(ratio=1.0), "holds"),
+        ("rotation-grows", run(ratio=0.95), "holds in part"),  # its share does, the energy does not
+        ("rotation-grows", run(ratio=0.95, fraction=lambda v: 0.2 * v), "fails"),
+        ("energy-ceases", collapsed(run(ratio=0.8)), "holds"),
+        ("energy-ceases", collapsed(run(ratio=0.97)), "holds in part"),
+        ("energy-ceases", collapsed(run(ratio=1.0)), "fails"),
+        ("rotation-decays", MAIN, "holds"),
+        ("rotation-decays", changed(MAIN, **BUMP), "holds in part"),
+        ("rotation-decays", run(fraction=lambda v: 0.1 + 0 * v), "fails"),
+    ],
+)
+def test_reservoir(key: str, main: xr.Dataset, verdict: str) -> None:
+    assert judged(_reservoir, key, main=main).verdict == verdict
+
+
+@pytest.mark.parametrize(
+    ("fast", "slow", "verdict"),
+    [(skew, normal, "holds"), (normal, even, "fails")],
+    ids=["Gaussian when slow", "Gaussian when fast"],
+)
+def test_shape(fast: Noise, slow: Noise, verdict: str) -> None:
+    """The 1000 impacts or so at each speed tell Laplace from Gaussian, and a/b = 1.8 from 1.
+
+    The six p-values that must not reject do so with probability 0.002 each.
+    """
+    found = _shape.judge(runs(main=run(noise=fast, slow_noise=slow)), SETTINGS)
+    keys = ("laplace", "asymmetric", "not-laplace-when-slow")
+    assert {claim.key: claim.verdict for claim in found} == dict.fromkeys(keys, verdict)
+
+
+@pytest.mark.parametrize(
+    ("key", "change", "verdict"),
+    [
+        ("independence", where_slow(0.9, 0.5), "holds"),
+        ("independence", where_slow(0.9, 0.8), "holds in part"),
+        ("independence", where_slow(0.5, 0.5), "fails"),
+        ("sphere-to-sphere", where_slow(0.9, 0.5), "holds"),
+        ("sphere-to-sphere", lambda v: np.where(v < 0.03, 0.1, 0.9), "holds in part"),
+        ("sphere-to-sphere", where_slow(0.1, 0.5), "fails"),
+    ],
+)
+def test_dependence(key: str, change: Function, verdict: str) -> None:
+    assert judged(_dependence, key, main=run(change=change)).verdict == verdict
+
+
+def negative(right: Array, left: Array) -> xr.Dataset:
+    """Impacts with ε < 0: falling with probability `right`, rising with probability `left`."""
+    random = np.random.default_rng(8)
+    fall, rise = random.random(SHAPE) < right, random.random(SHAPE) < left
+    v = np.where(rise, -1e-3, MAIN["impact_velocity"].to_numpy())
+    e = np.where(rise, -3.0, np.where(fall, -0.5, 0.98))
+    return changed(MAIN, impact_velocity=v, restitution=e, rebound_velocity=v * e)
+
+
+LATE = np.broadcast_to(np.linspace(-0.3, 0.9, IMPACTS), SHAPE)
+NEVER = np.zeros(SHAPE)
+
+
+@pytest.mark.parametrize(
+    ("key", "main", "verdict"),
+    [
+        ("two-branches", negative(LATE, LATE), "holds"),
+        ("two-branches", negative(LATE, NEVER), "holds in part"),
+        ("two-branches", negative(NEVER, NEVER), "fails"),
+        ("negative-with-impacts", negative(LATE, NEVER), "holds"),
+        ("negative-with-impacts", negative(NEVER + 0.3, NEVER), "fails"),
+        ("negative-with-rotation", negative(2 * MAIN["rotational_fraction"].to_numpy(), NEVER), "holds"),
+        ("negative-with-rotation", negative(NEVER + 0.3, NEVER), "fails"),
+    ],
+)
+def test_negative(key: str, main: xr.Dataset, verdict: str) -> None:
+    assert judged(_negative, key, main=main).verdict == verdict
+
+
+def test_an_impact_that_fits_neither_branch_is_not_lost() -> None:
+    """ε < 0 recorded with a rebound velocity that contradicts it is counted, and spoils the verdict."""
+    main = negative(LATE, LATE)
+    rebound = main["rebound_velocity"].to_numpy().copy()
+    particle, impact = np.argwhere(main["restitution"].to_numpy() < 0)[0]
+    rebound[particle, impact] *= -1
+    claim = judged(_negative, "two-branches", main=changed(main, rebound_velocity=rebound))
+    assert claim.verdict == "holds in part"
+    assert next(m.value for m in claim.measured if m.name == "… neither") == 1
+
+
+@pytest.mark.parametrize(
+    ("shift", "from_rest", "agreement"),
+    [(0.0, "holds", "holds"), (-0.05, "holds in part", "fails"), (0.05, "fails", "fails")],
+)
+def test_first_impact(shift: float, from_rest: str, agreement: str) -> None:
+    """Draws from the closed form agree with it; shifted ones do not, and shifted up none is negative."""
+    first = changed(REST, restitution=REST["restitution"].to_numpy() + shift)
+    assert judged(_negative, "negative-from-rest", first=first).verdict == from_rest
+    assert judged(_first, "fig-9", first=first).verdict == agreement
+
+
+def test_printed_density_fails_and_the_right_one_would_hold(monkeypatch: pytest.MonkeyPatch) -> None:
+    """As printed, Eq. 21 integrates to 0.580 for Fig. 9; put in its place, the right density passes."""
+    printed = judged(_first, "eq-21")
+    assert printed.verdict == "fails"
+    assert printed.measured[0].value == pytest.approx(0.580, abs=5e-4)
+    monkeypatch.setattr(_first, "printed_density", lambda s, body, law: first_impact(body, law).pdf(s))
+    assert judged(_first, "eq-21").verdict == "holds"
+
+
+def gaining(share: float) -> xr.Dataset:
+    ratio = np.where(np.random.default_rng(9).random(SHAPE) < share, 1.2, 0.97)
+    return changed(MAIN, energy_ratio=ratio)
+
+
+@pytest.mark.parametrize(
+    ("drawn", "others", "verdict"),
+    [(0.0, 0.0, "holds"), (0.0, 0.2, "holds in part"), (0.2, 0.2, "fails"), (0.0, 0.7, "fails")],
+)
+def test_energy(drawn: float, others: float, verdict: str) -> None:
+    energy = dict.fromkeys(SETTINGS.energy_elongations, gaining(others))
+    claim = judged(_energy, "no-dissipation", main=gaining(drawn), energy=energy)
+    assert claim.verdict == verdict
+    share = next(m for m in claim.measured if m.at == "L/R = 2, all speeds")
+    assert abs(share.value - others) <= 4 * (share.error or 0)
+
+
+def test_round_off_is_no_gain() -> None:
+    """Energy that grows by 1e−12 of itself in every impact is not counted."""
+    energy = {0.1: changed(MAIN, energy_ratio=np.full(SHAPE, 1 + 1e-12))}
+    assert judged(_energy, "no-dissipation", energy=energy).verdict == "holds"
+
+
+@pytest.mark.parametrize(
+    ("isotropic", "verdict"),
+    [
+        (run(seed=2), "holds"),
+        (run(seed=2, first=3e-3), "holds in part"),
+        (run(seed=2, sigma=lambda v: 0.02 / v), "fails"),
+    ],
+)
+def test_orientation(isotropic: xr.Dataset, verdict: str) -> None:
+    assert judged(_unsaid, "orientation-law", isotropic=isotropic).verdict == verdict
+
+
+@pytest.mark.parametrize(
+    ("radius", "height", "verdict"), [(1, 1, "holds"), (1, 2, "holds in part"), (2, 2, "fails")]
+)
+def test_size_and_height(radius: float, height: float, verdict: str) -> None:
+    """Scatter at given speed that is so many times larger in runs of another radius, or another height."""
+
+    def varied(values: tuple[float, ...], ours: float, factor: float) -> dict[float, dict[float, xr.Dataset]]:
+        other = run(sigma=lambda v: 0.01 * factor / v, seed=11)
+        return {x: dict.fromkeys((SETTINGS.elongation, 0.01), MAIN if x == ours else other) for x in values}
+
+    by_radius = varied(SETTINGS.radii, SETTINGS.radius, radius)
+    by_height = varied(SETTINGS.heights, SETTINGS.release_height, height)
+    assert judged(_unsaid, "size-and-height", by_radius=by_radius, by_height=by_height).verdict == verdict
+
+
+def test_impacts_that_never_happened_change_nothing() -> None:
+    """Columns of NaN behind the impacts, and an impact at v = 0 with ε = NaN, leave every number as it is."""
+    longer = {
+        str(name): np.pad(
+            values.to_numpy(), ((0, 0), (0, 30)), constant_values=0 if name == "contact" else np.nan
+        )
+        for name, values in MAIN.items()
+        if values.ndim == 2
+    }
+    longer["impact_velocity"][0, IMPACTS] = 0.0
+    padded = changed(MAIN[["impacts", "stop_reason"]], **longer)
+    for group in (_scatter, _dependence, _unsaid):
+        before, after = (group.judge(runs(main=main), SETTINGS) for main in (MAIN, padded))
+        for one, other in zip(before, after, strict=True):
+            assert [m.value for m in other.measured] == pytest.approx(
+                [m.value for m in one.measured], nan_ok=True
+            )
+            assert other.verdict == one.verdict
+
+
+def test_all_claims_are_judged_once_with_their_rule(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Also that p-values take their draws from the seed of the runs alone: asked twice, told twice."""
+    monkeypatch.setattr(_shape, "RESAMPLES", 20)
+    found = claims.judge(runs(), SETTINGS)
+    assert all(claim in found for claim in _shape.judge(runs(), SETTINGS))
+    keys = [claim.key for claim in found]
+    assert len(set(keys)) == len(keys) >= 20
+    for claim in found:
+        assert claim.verdict in ("holds", "holds in part", "fails")
+        assert claim.quote
+        assert claim.where
+        assert claim.why
+        assert claim.measured
+        assert "olds if" in claim.rule
