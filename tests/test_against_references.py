@@ -13,8 +13,9 @@ from itertools import islice, product
 
 import numpy as np
 import pytest
-import restitution as rs
 from numpy.typing import NDArray
+
+import restitution as rs
 from reference import initial_value
 from reference.arithmetic import Real, Vector, dot, mp, rotated, scaled
 from reference.flight import Flight

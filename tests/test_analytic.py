@@ -9,15 +9,16 @@ from typing import Any
 
 import numpy as np
 import pytest
-import restitution as rs
 import sympy as sp
 from hypothesis import given
 from hypothesis import strategies as st
 from numpy.typing import NDArray
+from scipy import stats
+
+import restitution as rs
 from reference.arithmetic import Real, mp
 from reference.top import Body
 from restitution.analytic import FirstImpact, first_impact
-from scipy import stats
 
 Floats = NDArray[np.float64]
 

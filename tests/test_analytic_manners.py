@@ -5,11 +5,12 @@ from typing import Any
 
 import numpy as np
 import pytest
-import restitution as rs
 from hypothesis import given
 from hypothesis import strategies as st
-from restitution.analytic import FirstImpact, first_impact
 from scipy import stats
+
+import restitution as rs
+from restitution.analytic import FirstImpact, first_impact
 
 LAWS = ("uniform-angle", "isotropic")
 ULP = float(np.finfo(float).eps)

@@ -3,7 +3,6 @@
 from functools import partial
 
 import restitution as rs
-
 from benchmarks.work import Array, Peer, Records, Work
 
 

@@ -2,14 +2,13 @@
 
 from typing import TYPE_CHECKING, Any
 
-from restitution._core import NumericalError
-from restitution._simulate import SimulationInterrupted, simulate
-from restitution.bodies import Dumbbell
-from restitution.laws import TangentialRestitution
-
 if TYPE_CHECKING:
     from restitution import analytic, figures, fit
+    from restitution._core import NumericalError
+    from restitution._simulate import SimulationInterrupted, simulate
     from restitution._statistics import statistics
+    from restitution.bodies import Dumbbell
+    from restitution.laws import TangentialRestitution
 
 __all__ = [
     "Dumbbell",
@@ -23,24 +22,33 @@ __all__ = [
     "statistics",
 ]
 
-_LAZY_MODULES = ("analytic", "figures", "fit")
+_HOMES = {
+    "Dumbbell": "bodies",
+    "NumericalError": "_core",
+    "SimulationInterrupted": "_simulate",
+    "TangentialRestitution": "laws",
+    "simulate": "_simulate",
+    "statistics": "_statistics",
+}
+"""The module that each public name comes from; the others are modules themselves."""
 
 
 def __getattr__(name: str) -> Any:
-    """Import SciPy, xarray and matplotlib only when what needs them is used."""
+    """Import what a name needs when it is first used, so that the command line answers at once."""
     from importlib import import_module
 
-    if name in _LAZY_MODULES:
-        return import_module(f"restitution.{name}")
-    if name == "statistics":
-        from restitution._statistics import statistics
-
-        return statistics
     if name == "__version__":
         from importlib.metadata import version
 
         return version("restitution")
-    raise AttributeError(f"module 'restitution' has no attribute {name!r}")
+    if name in _HOMES:
+        value = getattr(import_module(f"restitution.{_HOMES[name]}"), name)
+    elif name in __all__:
+        value = import_module(f"restitution.{name}")
+    else:
+        raise AttributeError(f"module 'restitution' has no attribute {name!r}")
+    globals()[name] = value
+    return value
 
 
 def __dir__() -> list[str]:

@@ -4,6 +4,8 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+__all__ = ["NumericalError", "dumbbell_inertia", "simulate", "sincos"]
+
 class NumericalError(RuntimeError): ...
 
 def dumbbell_inertia(radius: float, separation: float, density: float) -> tuple[float, float, float]: ...

@@ -1,5 +1,6 @@
 """The xarray face of a run: names, units, flags, and files that are written whole or not at all."""
 
+import errno
 import os
 import tempfile
 from collections.abc import Iterable
@@ -64,17 +65,21 @@ _PER_PARTICLE: dict[str, dict[str, Any]] = {
 
 
 def dataset(run: Run, table: dict[str, Any]) -> xr.Dataset:
-    """The records of the core as a Dataset of dimensions (particle, impact)."""
+    """Turn the records of the core into a Dataset of dimensions (particle, impact)."""
     variables: dict[str, Any] = {}
     for name, attrs in _PER_IMPACT.items():
         variables[name] = (("particle", "impact"), table[name], attrs)
     for name, attrs in _PER_PARTICLE.items():
         variables[name] = (("particle",), table[name], attrs)
-    return xr.Dataset(variables, attrs=attributes(run, "Impacts of bouncing aspherical particles"))
+    attrs = attributes(run, "Impacts of bouncing aspherical particles")
+    cut_short = np.count_nonzero(table["stop_reason"] == STOP_REASONS.index("interrupted"))
+    if cut_short:
+        attrs["incomplete"] = f"interrupted: {cut_short} of {run.particles} particles were cut short"
+    return xr.Dataset(variables, attrs=attrs)
 
 
 def attributes(run: Run, title: str) -> dict[str, Any]:
-    """What every result carries: title, conventions, version, all parameters and the seed."""
+    """Give what every result carries: title, conventions, version, all parameters and the seed."""
     return {
         "title": title,
         "Conventions": "CF-1.11",
@@ -85,17 +90,39 @@ def attributes(run: Run, title: str) -> dict[str, Any]:
     }
 
 
+def check_writable(path: Path, *, replace: bool) -> None:
+    """Find out before the work begins whether `save` can write there; raises the OSError if it cannot."""
+    target = path.resolve()
+    if target.exists() and not target.is_file():
+        raise OSError(errno.EINVAL, "not a file that can be written", str(path))
+    if target.exists() and not replace:
+        raise FileExistsError(errno.EEXIST, "exists already", str(path))
+    try:
+        os.unlink(_part(target))
+    except OSError as error:
+        raise OSError(error.errno, error.strerror, str(path.parent)) from None
+
+
 def save(data: xr.Dataset, path: Path) -> None:
     """Write a netCDF file whole or not at all: nobody ever sees a half-written one under `path`."""
-    handle, name = tempfile.mkstemp(prefix=f".{path.name}.", suffix=".part", dir=path.parent)
-    os.close(handle)
+    target = path.resolve()
+    name = _part(target)
     try:
         data.to_netcdf(name, engine="netcdf4")
         os.chmod(name, 0o666 & ~_umask())
-        os.replace(name, path)
-    except BaseException:
+        os.replace(name, target)
+    except BaseException as error:
         os.unlink(name)
+        if isinstance(error, RuntimeError):  # of netCDF, which does not say where
+            raise OSError(errno.EIO, f"cannot be written: {error}", str(path)) from error
         raise
+
+
+def _part(target: Path) -> str:
+    """Make an empty file beside `target`, so that it can take its place in one step."""
+    handle, name = tempfile.mkstemp(prefix=f".{target.name}.", suffix=".part", dir=target.parent)
+    os.close(handle)
+    return name
 
 
 def _umask() -> int:

@@ -1,19 +1,67 @@
 """One validation for the Python call and the TOML file: frozen parameter sets with readable errors."""
 
-from collections.abc import Iterator
-from typing import Annotated, Any, ClassVar
+from collections.abc import Iterable, Iterator
+from difflib import get_close_matches
+from reprlib import Repr
+from typing import Annotated, Any, ClassVar, NamedTuple
 
 import numpy as np
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, ValidationError
 
 
+class Problem(NamedTuple):
+    """What is wrong with one parameter; the name and the text after it make a sentence."""
+
+    name: str
+    text: str
+
+    def __str__(self) -> str:
+        return self.name + self.text
+
+
+class ParameterError(ValueError):
+    """Everything that is wrong with a set of parameters, a line for each `Problem`."""
+
+    def __init__(self, *problems: Problem) -> None:
+        super().__init__(*problems)
+        self.problems = problems
+
+    def __str__(self) -> str:
+        return "\n".join(map(str, self.problems))
+
+
+def wrong(name: str, value: Any, allowed: str) -> Problem:
+    """Say that a value is not one of those that are allowed."""
+    return Problem(name, f" = {shown(value)}: must be {allowed}")
+
+
+def unknown(name: str, taker: str, allowed: Iterable[str], prefix: str = "") -> Problem:
+    """Say that `taker` knows no such name, which it does know, and which was meant."""
+    names = list(allowed)
+    meant = "".join(f"did you mean {prefix}{close}? " for close in get_close_matches(name, names, n=1))
+    return Problem(prefix + name, f": unknown; {meant}{taker} takes {', '.join(names)}")
+
+
+_SHORT = Repr()
+_SHORT.maxstring = _SHORT.maxother = 72
+_MOST_BITS = 256
+_MOST_ELEMENTS = 6
+
+
+def shown(value: Any) -> str:
+    """Write a value in at most a line, however large it is."""
+    value = _plain_number(value)
+    if isinstance(value, int) and value.bit_length() > _MOST_BITS:
+        return f"an integer of {value.bit_length()} bits"
+    if isinstance(value, np.ndarray) and value.size > _MOST_ELEMENTS:
+        return f"an array of shape {value.shape}"
+    return " ".join(_SHORT.repr(value).split())
+
+
 def _plain_number(value: Any) -> Any:
-    """NumPy scalars and 0-d arrays become Python numbers; a bool is not a number here."""
-    if isinstance(value, np.generic) or (isinstance(value, np.ndarray) and value.ndim == 0):
-        value = value.item()
-    if isinstance(value, bool):
-        raise ValueError("a number is needed, not a truth value")
-    return value
+    """Make a Python number of a NumPy scalar or 0-d array."""
+    scalar = isinstance(value, np.generic) or (isinstance(value, np.ndarray) and value.ndim == 0)
+    return value.item() if scalar else value
 
 
 Number = Annotated[float, BeforeValidator(_plain_number), Field(strict=True, allow_inf_nan=False)]
@@ -35,29 +83,53 @@ class Parameters(BaseModel):
         try:
             super().__init__(**values)
         except ValidationError as error:
-            raise ValueError("\n".join(_readable(type(self), error))) from None
+            raise ParameterError(*_problems(type(self), error)) from None
 
 
-def _readable(model: type[BaseModel], error: ValidationError) -> Iterator[str]:
+def _problems(model: type[BaseModel], error: ValidationError) -> Iterator[Problem]:
     for problem in error.errors(include_url=False):
-        name = ".".join(str(part) for part in problem["loc"]) or model.__name__
-        given = problem["input"]
+        name = ".".join(str(part) for part in problem["loc"])
         match problem["type"]:
             case "missing":
-                yield f"{name}: missing; {model.__name__} needs it"
-            case "extra_forbidden" | "unexpected_keyword_argument":
-                yield f"{name}: unknown; {model.__name__} takes {', '.join(model.model_fields)}"
+                yield Problem(name, f": missing; must be {_allowed(model, name)}")
+            case "extra_forbidden":
+                yield unknown(name, model.__name__, model.model_fields)
             case "value_error":
-                text = str(problem["ctx"]["error"])
-                yield text if name == model.__name__ else f"{name} = {given!r}: {text}"
+                cause = problem["ctx"]["error"]
+                if isinstance(cause, ParameterError):
+                    yield from cause.problems
+                else:  # the core's messages start with the name, too
+                    name, space, text = str(cause).partition(" ")
+                    yield Problem(name, space + text)
             case _:
-                yield f"{name} = {given!r}: {_lower_first(problem['msg'])}{_unit(model, problem['loc'])}"
+                yield wrong(name, problem["input"], _allowed(model, name))
 
 
-def _lower_first(text: str) -> str:
-    return text[:1].lower() + text[1:].replace("Input should", "input should")
+def _allowed(model: type[BaseModel], name: str) -> str:
+    """Say in words what the field of a model may hold."""
+    field = model.model_fields[name]
+    about = f" ({field.description})" if field.description else ""
+    if field.annotation not in (int, float):
+        return f"a {getattr(field.annotation, '__name__', field.annotation)}{about}"
+    bounds = {key: getattr(rule, key) for rule in field.metadata for key in _BOUNDS if hasattr(rule, key)}
+    below = "le" in bounds or "lt" in bounds
+    kind = "whole" if field.annotation is int else "real" if below else "finite"
+    return f"a {kind} number {_interval(bounds)}{about}"
 
 
-def _unit(model: type[BaseModel], loc: tuple[int | str, ...]) -> str:
-    field = model.model_fields.get(str(loc[0])) if loc else None
-    return f" ({field.description})" if field is not None and field.description else ""
+_BOUNDS = ("gt", "ge", "lt", "le")
+
+
+def _interval(bounds: dict[str, float]) -> str:
+    """Write bounds as an interval; every number here is bounded from below."""
+    low = _bound(bounds.get("ge", bounds.get("gt", 0)))
+    high = _bound(bounds.get("le", bounds.get("lt", 0)))
+    if "le" in bounds or "lt" in bounds:
+        return f"in {'[' if 'ge' in bounds else '('}{low}, {high}{']' if 'le' in bounds else ')'}"
+    return f"{'>=' if 'ge' in bounds else '>'} {low}"
+
+
+def _bound(value: float) -> str:
+    """Write large powers of two as such."""
+    power = int(value).bit_length() - 1
+    return f"2**{power}" if power >= 20 and value == 2**power else f"{value}"

@@ -6,11 +6,13 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from operator import index
 
+from restitution._parameters import shown
+
 _MOST_THREADS = 1024
 
 
 def checked_threads(threads: int | None) -> int:
-    """Number of threads for the core, where 0 means one for each core."""
+    """Give the number of threads to the core, where 0 means one for each core."""
     if threads is None:
         return 0
     try:
@@ -18,7 +20,9 @@ def checked_threads(threads: int | None) -> int:
     except TypeError:
         number = 0
     if not 1 <= number <= _MOST_THREADS or isinstance(threads, bool):
-        raise ValueError(f"threads = {threads!r}: must be None or a whole number in [1, {_MOST_THREADS}]")
+        raise ValueError(
+            f"threads = {shown(threads)}: must be a whole number in [1, {_MOST_THREADS}] or None"
+        )
     return number
 
 
@@ -28,14 +32,14 @@ def check_memory(impacts: int, bytes_per_impact: int) -> None:
     available = os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE")
     if needed > available:
         raise ValueError(
-            f"particles × impacts = {impacts:.3g} impacts: their records take {needed / 1e9:.3g} GB and this machine "
-            f"has {available / 1e9:.3g} GB; ask for fewer, or for `statistics`"
+            f"particles * impacts = {impacts:.4g}: must be at most {available // bytes_per_impact:.4g} here; "
+            f"the records take {needed / 1e9:.3g} GB and this machine has {available / 1e9:.3g} GB"
         )
 
 
 @contextmanager
 def progress_bar(what: str, total: int, unit: str, *, show: bool) -> Iterator[Callable[[int], None] | None]:
-    """A bar on standard error that is told how much is done, or None where it is not to be shown."""
+    """Show a bar on standard error that is told how much is done; yields None where it is not to be shown."""
     if not show:
         yield None
         return

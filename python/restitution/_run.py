@@ -1,35 +1,38 @@
 """The parameters of a run: one validation for `simulate`, `statistics` and the TOML file."""
 
-from typing import Annotated, Any, ClassVar, Literal
+from typing import Annotated, Any, ClassVar, Literal, get_args
 
 import numpy as np
 import numpy.typing as npt
-from pydantic import BeforeValidator, Field, model_validator
+from pydantic import BeforeValidator, Field, InstanceOf, model_validator
 
-from restitution._parameters import Number, Parameters, Whole
+from restitution._parameters import Number, ParameterError, Parameters, Problem, Whole, wrong
 from restitution.bodies import Dumbbell
 from restitution.laws import TangentialRestitution
 
 Orientation = Literal["uniform-angle", "isotropic"]
+
+_ORIENTATIONS = "'uniform-angle', 'isotropic' or a 1-D array of angles in rad, one per particle"
 
 _MOST_RADIANS = 2.0**20
 """Range of the engine's sine and cosine."""
 
 
 def _orientation(value: Any) -> Any:
-    if isinstance(value, str):
-        if value not in ("uniform-angle", "isotropic"):
-            raise ValueError("must be 'uniform-angle', 'isotropic' or an array of angles in radians")
+    if isinstance(value, str) and value in get_args(Orientation):
         return value
     try:
-        angles = np.array(value, dtype=np.float64)
-    except (TypeError, ValueError):
-        raise ValueError("must be 'uniform-angle', 'isotropic' or an array of angles in radians") from None
-    if angles.ndim != 1:
-        raise ValueError(f"angles must form a 1-D array, one a particle; the shape is {angles.shape}")
-    wrong = np.flatnonzero(~(np.abs(angles) <= _MOST_RADIANS))
-    if wrong.size:
-        raise ValueError(f"angle {wrong[0]} is {angles[wrong[0]]}: must be finite, at most 2**20 rad")
+        angles = np.asarray(value)
+    except ValueError:  # lists of different lengths
+        angles = np.empty(())
+    if angles.ndim != 1 or angles.dtype.kind not in "iuf":
+        raise ParameterError(wrong("orientation", value, _ORIENTATIONS))
+    angles = angles.astype(np.float64)
+    beyond = np.flatnonzero(~(np.abs(angles) <= _MOST_RADIANS))
+    if beyond.size:
+        first = int(beyond[0])
+        allowed = "a finite angle in rad, at most 2**20 either way"
+        raise ParameterError(wrong(f"orientation[{first}]", float(angles[first]), allowed))
     angles.flags.writeable = False
     return angles
 
@@ -48,22 +51,23 @@ class Run(Parameters):
     gravity : float
         Acceleration of gravity in m/s², > 0.
     orientation : {"uniform-angle", "isotropic"} or array of float, shape (particles,)
-        Angle θ between symmetry axis and plane normal at release: uniform in [0, π), every direction alike, or given in rad.
+        Angle θ between symmetry axis and plane normal at release: uniform in [0, π), every direction alike,
+        or given in rad.
     minimum_speed : float
         A particle ends when √(2 E_kin/m) after an impact falls below this, in m/s; 0 never does.
     seed : int
         Seed of the random numbers, in [0, 2⁶⁴).
     """
 
-    body: Dumbbell
-    law: TangentialRestitution
-    particles: Annotated[Whole, Field(gt=0, lt=2**40, description="number of particles")] = 1000
-    impacts: Annotated[Whole, Field(gt=0, lt=2**40, description="most impacts of a particle")] = 400
-    release_height: Annotated[Number, Field(gt=0, description="height of the centre of mass in m")] = 0.06
-    gravity: Annotated[Number, Field(gt=0, description="acceleration in m/s²")] = 9.81
+    body: InstanceOf[Dumbbell]
+    law: InstanceOf[TangentialRestitution]
+    particles: Annotated[Whole, Field(ge=1, lt=2**40, description="number of particles")] = 1000
+    impacts: Annotated[Whole, Field(ge=1, lt=2**40, description="most impacts of a particle")] = 400
+    release_height: Annotated[Number, Field(gt=0, description="height of the centre of mass, m")] = 0.06
+    gravity: Annotated[Number, Field(gt=0, description="m/s²")] = 9.81
     orientation: Annotated[Any, BeforeValidator(_orientation)] = "uniform-angle"
-    minimum_speed: Annotated[Number, Field(ge=0, description="speed in m/s")] = 0.0
-    seed: Annotated[Whole, Field(ge=0, lt=2**64, description="an integer in [0, 2**64)")] = 1
+    minimum_speed: Annotated[Number, Field(ge=0, description="m/s; 0 never stops a particle")] = 0.0
+    seed: Annotated[Whole, Field(ge=0, lt=2**64)] = 1
 
     NUMBERS: ClassVar = ("particles", "impacts", "release_height", "gravity", "minimum_speed")
 
@@ -71,16 +75,14 @@ class Run(Parameters):
     def _nothing_below_the_plane(self) -> "Run":
         angles = self.angles
         if angles is not None and angles.size != self.particles:
-            raise ValueError(
-                f"orientation has {angles.size} angles for particles = {self.particles}: must be one angle a particle"
-            )
+            given = f"an array of {angles.size} angles"
+            allowed = f"one angle per particle, and particles = {self.particles}"
+            raise ParameterError(Problem("orientation", f" = {given}: must be {allowed}"))
         tilt = 1.0 if angles is None else float(np.max(np.abs(np.cos(angles))))
         lowest = self.body.radius + tilt * self.body.separation / 2
         if self.release_height < lowest:
-            raise ValueError(
-                f"release_height = {self.release_height}: the body would reach into the plane; "
-                f"the centre of mass must be at least {lowest:.9g} m high (R + L/2 |cos θ|)"
-            )
+            allowed = f"at least {lowest!r} m, R + L/2 max |cos θ|, or a sphere would reach below the plane"
+            raise ParameterError(wrong("release_height", self.release_height, allowed))
         return self
 
     @property

@@ -13,6 +13,7 @@ from restitution.laws import TangentialRestitution
 if TYPE_CHECKING:
     import xarray as xr
 
+
 class SimulationInterrupted(KeyboardInterrupt):
     """Ctrl-C during `simulate`; `data` holds what was finished.
 
@@ -56,8 +57,8 @@ def simulate(
     gravity : float
         Acceleration of gravity in m/s², > 0.
     orientation : {"uniform-angle", "isotropic"} or array of float, shape (particles,)
-        The angle θ between symmetry axis and plane normal at release: uniform in [0, π) (above Eq. 18), every direction
-        of the axis alike, or given in rad.
+        The angle θ between symmetry axis and plane normal at release: uniform in [0, π) (above Eq. 18), every
+        direction of the axis alike, or given in rad.
     minimum_speed : float
         A particle ends when √(2 E_kin/m) after an impact falls below this, in m/s. 0 never does.
     seed : int
@@ -70,10 +71,11 @@ def simulate(
     Returns
     -------
     xarray.Dataset
-        Dimensions (particle, impact). Variables over both: ``time``, ``impact_velocity``, ``rebound_velocity``,
-        ``restitution``, ``rotational_fraction``, ``energy_ratio``, ``angle`` (float64, NaN where the impact never
-        happened) and ``contact`` (which sphere touched). Over particles: ``impacts``, ``stop_reason``,
-        ``release_angle``. Units are in the variables' attributes, all parameters in the Dataset's.
+        Dimensions (particle, impact). Variables over both: ``time``, ``impact_velocity``,
+        ``rebound_velocity``, ``restitution``, ``rotational_fraction``, ``energy_ratio``, ``angle`` (float64,
+        NaN where the impact never happened) and ``contact`` (which sphere touched). Over particles:
+        ``impacts``, ``stop_reason``, ``release_angle``. Units are in the variables' attributes, all
+        parameters in the Dataset's.
 
     Raises
     ------
@@ -86,8 +88,8 @@ def simulate(
 
     Notes
     -----
-    Two spheres that touch the plane at the same instant (axis exactly horizontal) are hit one after the other, sphere 1
-    first, as two impacts with no flight time between.
+    Two spheres that touch the plane at the same instant (axis exactly horizontal) are hit one after the
+    other, as two impacts with no flight time between.
 
     Examples
     --------

@@ -6,14 +6,14 @@ from typing import Annotated
 from pydantic import Field, model_validator
 
 from restitution import _core
-from restitution._parameters import Number, Parameters
+from restitution._parameters import Number, ParameterError, Parameters, Problem
 
 
 class Dumbbell(Parameters):
-    """Two equal spheres whose centres are ``separation`` apart, homogeneous (the paper's Sec. II and Appendix).
+    """Two equal spheres whose centres are ``separation`` apart, homogeneous (the paper, Sec. II).
 
-    For ``separation < 2 * radius`` the body is the union of the overlapping spheres; beyond that, where the paper
-    stops, it is two full spheres on a massless rod. ``separation = 0`` is a sphere.
+    For ``separation < 2 * radius`` the body is the union of the overlapping spheres; beyond that, where the
+    paper stops, it is two full spheres on a massless rod. ``separation = 0`` is a sphere.
 
     Parameters
     ----------
@@ -22,7 +22,7 @@ class Dumbbell(Parameters):
     separation : float
         Distance L between the two centres, in m; finite and >= 0.
     density : float, default 2500
-        Density in kg/m³; finite and > 0. Nothing but `mass`, `transverse_inertia` and `axial_inertia` depends on it.
+        Density in kg/m³; finite and > 0. Only `mass`, `transverse_inertia` and `axial_inertia` depend on it.
 
     Examples
     --------
@@ -32,13 +32,18 @@ class Dumbbell(Parameters):
     0.1
     """
 
-    radius: Annotated[Number, Field(gt=0, description="radius in m, finite")]
-    separation: Annotated[Number, Field(ge=0, description="distance of the centres in m, finite")]
-    density: Annotated[Number, Field(gt=0, description="density in kg/m³, finite")] = 2500.0
+    radius: Annotated[Number, Field(gt=0, description="m")]
+    separation: Annotated[Number, Field(ge=0, description="m")]
+    density: Annotated[Number, Field(gt=0, description="kg/m³")] = 2500.0
 
     @model_validator(mode="after")
     def _representable(self) -> "Dumbbell":
-        _core.dumbbell_inertia(self.radius, self.separation, self.density)
+        try:
+            _core.dumbbell_inertia(self.radius, self.separation, self.density)
+        except ValueError:
+            given = f" = {self.radius}, separation = {self.separation}, density = {self.density}"
+            allowed = "such that mass and inertia neither overflow nor underflow"
+            raise ParameterError(Problem("radius", f"{given}: must be {allowed}")) from None
         return self
 
     @property
@@ -58,7 +63,7 @@ class Dumbbell(Parameters):
 
     @property
     def axial_inertia(self) -> float:
-        """Moment of inertia J_zz about the symmetry axis, in kg m² (Eq. A5 with L⁵/160; L⁵/180 is a misprint)."""
+        """Moment of inertia J_zz about the symmetry axis, in kg m² (Eq. A5 with L⁵/160 for L⁵/180)."""
         return self._inertia[2]
 
     @cached_property

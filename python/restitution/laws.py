@@ -12,8 +12,8 @@ class TangentialRestitution(Parameters):
 
     ``v_n' = -normal * v_n`` and ``v_t' = tangential * v_t`` for the velocity of the contact point.
 
-    ``tangential = 1`` is not frictionless for a body that is not a sphere: keeping the tangential contact velocity
-    takes a tangential impulse, which can do positive work. Watch ``energy_ratio`` in the results.
+    ``tangential = 1`` is not frictionless for a body that is not a sphere: keeping the tangential contact
+    velocity takes a tangential impulse, which can do positive work. Watch ``energy_ratio`` in the results.
 
     Parameters
     ----------
@@ -29,5 +29,5 @@ class TangentialRestitution(Parameters):
     >>> law = rs.TangentialRestitution(normal=0.98, tangential=1.0)
     """
 
-    normal: Annotated[Number, Field(ge=0, le=1, description="normal coefficient, in [0, 1]")]
-    tangential: Annotated[Number, Field(ge=-1, le=1, description="tangential coefficient, in [-1, 1]")] = 1.0
+    normal: Annotated[Number, Field(ge=0, le=1)]
+    tangential: Annotated[Number, Field(ge=-1, le=1)] = 1.0

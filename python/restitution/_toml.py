@@ -1,0 +1,87 @@
+"""Runs written down as TOML files: the tables ``[body]``, ``[law]`` and ``[run]``."""
+
+import tomllib
+from pathlib import Path
+from typing import Any, TypeVar
+
+from restitution._parameters import ParameterError, Parameters, Problem, unknown, wrong
+from restitution._run import Run
+from restitution.bodies import Dumbbell
+from restitution.laws import TangentialRestitution
+
+# Table: the key that chooses a kind of body or law, and the kinds there are.
+_KINDS: dict[str, tuple[str, dict[str, type[Parameters]]]] = {
+    "body": ("shape", {"dumbbell": Dumbbell}),
+    "law": ("type", {"tangential-restitution": TangentialRestitution}),
+}
+_TABLES = (*_KINDS, "run")
+
+P = TypeVar("P", bound=Parameters)
+
+
+def read(path: Path) -> Run:
+    """Read the parameters of a run from a TOML file.
+
+    Raises
+    ------
+    ValueError
+        If the file is not TOML, or if keys are unknown, missing or out of range: a line for each, with the
+        name of the file, the key, its value and what is allowed.
+    OSError
+        If the file cannot be read.
+    """
+    with path.open("rb") as file:
+        try:
+            tables = tomllib.load(file)
+        except ValueError as error:  # wrong syntax, or not UTF-8
+            raise ValueError(f"{path}: not a TOML file: {error}") from None
+    reader = _Reader(tables)
+    parts = {name: reader.chosen(name) for name in _KINDS}
+    run = reader.made("run", Run, **{name: part for name, part in parts.items() if part is not None})
+    if reader.problems or run is None:
+        raise ValueError("\n".join(f"{path}: {problem}" for problem in reader.problems))
+    return run
+
+
+class _Reader:
+    """The tables of a file and everything that is wrong with them."""
+
+    def __init__(self, tables: dict[str, Any]) -> None:
+        self.tables = tables
+        self.problems = [unknown(name, "the file", _TABLES) for name in tables if name not in _TABLES]
+
+    def chosen(self, name: str) -> Parameters | None:
+        """Make the body or the law, of the kind that its table asks for."""
+        selector, kinds = _KINDS[name]
+        allowed = " or ".join(f'"{kind}"' for kind in kinds)
+        table = self._table(name)
+        if selector not in table:
+            self.problems.append(Problem(f"{name}.{selector}", f": missing; must be {allowed}"))
+            return None
+        kind = table[selector]
+        if not isinstance(kind, str) or kind not in kinds:
+            self.problems.append(wrong(f"{name}.{selector}", kind, allowed))
+            return None
+        return self.made(name, kinds[kind], selector)
+
+    def made(self, name: str, kind: type[P], *selector: str, **parts: Parameters) -> P | None:
+        """Make one set of parameters from the table `name` and the parts that have tables of their own."""
+        table = self._table(name)
+        fields = [field for field in kind.model_fields if field not in _KINDS]
+        keys = [*selector, *fields]
+        strangers = (key for key in table if key not in keys)
+        self.problems.extend(unknown(key, f"[{name}]", keys, prefix=f"{name}.") for key in strangers)
+        try:
+            return kind(**{field: table[field] for field in fields if field in table}, **parts)
+        except ParameterError as error:
+            # A body or law that is missing from a run has been reported already.
+            found = (Problem(f"{name}.{key}", text) for key, text in error.problems if key not in _KINDS)
+            self.problems.extend(found)
+            return None
+
+    def _table(self, name: str) -> dict[str, Any]:
+        table = self.tables.get(name, {})
+        if isinstance(table, dict):
+            return table
+        self.problems.append(wrong(name, table, f"a table [{name}]"))
+        return {}
