@@ -4,7 +4,8 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from restitution import analytic, figures, fit
-    from restitution._core import NumericalError
+    from restitution._core import NumericalError, build_info
+    from restitution._reduce import reduce
     from restitution._simulate import SimulationInterrupted, simulate
     from restitution._statistics import statistics
     from restitution.bodies import Dumbbell
@@ -16,8 +17,10 @@ __all__ = [
     "SimulationInterrupted",
     "TangentialRestitution",
     "analytic",
+    "build_info",
     "figures",
     "fit",
+    "reduce",
     "simulate",
     "statistics",
 ]
@@ -25,6 +28,8 @@ __all__ = [
 _HOMES = {
     "Dumbbell": "bodies",
     "NumericalError": "_core",
+    "build_info": "_core",
+    "reduce": "_reduce",
     "SimulationInterrupted": "_simulate",
     "TangentialRestitution": "laws",
     "simulate": "_simulate",

@@ -1,29 +1,26 @@
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
-__all__ = ["NumericalError", "dumbbell_inertia", "simulate", "sincos"]
+__all__ = ["NumericalError", "build_info", "dumbbell_inertia", "simulate", "sincos", "statistics"]
 
 class NumericalError(RuntimeError): ...
 
 def dumbbell_inertia(radius: float, separation: float, density: float) -> tuple[float, float, float]: ...
 def sincos(x: float) -> tuple[float, float]: ...
 def simulate(
-    *,
-    radius: float,
-    separation: float,
-    density: float,
-    normal: float,
-    tangential: float,
-    particles: int,
-    impacts: int,
-    release_height: float,
-    gravity: float,
-    orientation: str | npt.NDArray[np.float64],
-    minimum_speed: float,
-    seed: int,
+    run: Mapping[str, Any],
     threads: int,
     progress: Callable[[int], None] | None,
 ) -> tuple[dict[str, npt.NDArray[Any]], bool]: ...
+def statistics(
+    run: Mapping[str, Any],
+    velocity_bins: npt.NDArray[np.float64] | None,
+    restitution_bins: npt.NDArray[np.float64],
+    fraction_bins: npt.NDArray[np.float64],
+    threads: int,
+    progress: Callable[[int], None] | None,
+) -> tuple[dict[str, npt.NDArray[Any]], bool]: ...
+def build_info() -> dict[str, Any]: ...

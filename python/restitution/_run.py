@@ -90,6 +90,14 @@ class Run(Parameters):
         """The angles at release where they were given, in rad, shape (particles,)."""
         return None if isinstance(self.orientation, str) else self.orientation
 
+    def parameters(self) -> dict[str, Any]:
+        """Name every parameter as the core does."""
+        return {
+            **self.body.model_dump(),
+            **self.law.model_dump(),
+            **{name: getattr(self, name) for name in (*self.NUMBERS, "orientation", "seed")},
+        }
+
     def attributes(self) -> dict[str, Any]:
         """Every parameter under its own name, as plain values that a netCDF file can hold."""
         return {

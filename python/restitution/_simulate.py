@@ -120,21 +120,10 @@ def simulate_run(run: Run, *, threads: int | None = None, progress: bool = False
     """`simulate` for parameters that are already checked."""
     from restitution._dataset import BYTES_PER_IMPACT, dataset
 
+    number = checked_threads(threads)
     check_memory(run.particles * run.impacts, BYTES_PER_IMPACT)
     with progress_bar("simulate", run.particles, "particles", show=progress) as tell:
-        table, interrupted = _core.simulate(
-            **run.body.model_dump(),
-            **run.law.model_dump(),
-            particles=run.particles,
-            impacts=run.impacts,
-            release_height=run.release_height,
-            gravity=run.gravity,
-            orientation=run.orientation,
-            minimum_speed=run.minimum_speed,
-            seed=run.seed,
-            threads=checked_threads(threads),
-            progress=tell,
-        )
+        table, interrupted = _core.simulate(run.parameters(), number, tell)
     data = dataset(run, table)
     if interrupted:
         raise SimulationInterrupted(data)

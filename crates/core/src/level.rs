@@ -22,11 +22,9 @@ impl Level {
 
     /// The fastest level of this machine.
     pub fn best() -> Self {
-        let available = Self::ALL
-            .into_iter()
-            .rev()
-            .find(|level| level.is_available());
-        available.expect("the scalar level is always there")
+        Self::available()
+            .next_back()
+            .expect("the scalar level is always there")
     }
 
     /// `scalar`, `neon`, `avx2` or `avx512`.
@@ -41,11 +39,9 @@ impl Level {
 
     /// The level of that name, if this machine has it.
     pub fn named(name: &str) -> Result<Self, Error> {
-        let names = |only_here: bool| {
-            let there = |level: &Self| !only_here || level.is_available();
-            Self::ALL
+        let list = |levels: Vec<Self>| {
+            levels
                 .into_iter()
-                .filter(there)
                 .map(Self::name)
                 .collect::<Vec<_>>()
                 .join(", ")
@@ -53,7 +49,7 @@ impl Level {
         let Some(level) = Self::ALL.into_iter().find(|level| level.name() == name) else {
             return Err(Error::Level {
                 name: name.to_owned(),
-                allowed: names(false),
+                allowed: list(Self::ALL.to_vec()),
                 problem: "no such SIMD level",
             });
         };
@@ -62,10 +58,15 @@ impl Level {
         } else {
             Err(Error::Level {
                 name: name.to_owned(),
-                allowed: names(true),
+                allowed: list(Self::available().collect()),
                 problem: "this machine lacks it",
             })
         }
+    }
+
+    /// The levels of this machine, slowest first.
+    pub fn available() -> impl DoubleEndedIterator<Item = Self> {
+        Self::ALL.into_iter().filter(|level| level.is_available())
     }
 
     /// Whether this machine has the level.

@@ -52,7 +52,7 @@ mod vector;
 pub use body::{Body, Dumbbell};
 pub use collision::{Law, TangentialRestitution};
 pub use contact::{Departure, Landing, NoConvergence, first_contact};
-pub use ensemble::{Means, Monitor, Run};
+pub use ensemble::{Means, Monitor, Run, default_threads};
 pub use error::Error;
 pub use flight::{Flight, Phase};
 pub use level::Level;

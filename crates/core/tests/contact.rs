@@ -77,7 +77,7 @@ proptest! {
     /// event in that dip. Slightly lower: the event is there, as early as the depth says.
     #[test]
     fn grazing_contacts_are_told_apart(
-        elongation in 0.5..4.0_f64, rate in 3.0..100.0_f64, phase in 0.0..6.28_f64, depth in magnitude(-13.0, -3.0),
+        elongation in 0.5..4.0_f64, rate in 3.0..100.0_f64, phase in 0.0..std::f64::consts::TAU, depth in magnitude(-13.0, -3.0),
     ) {
         let body = dumbbell(elongation);
         let axis = Vector::new(phase.sin(), 0.0, phase.cos());
@@ -123,7 +123,7 @@ proptest! {
     /// the first impact has made it leave. A plastic impact leaves the first one where it is, and still the other hits.
     #[test]
     fn simultaneous_contacts_are_both_seen(
-        elongation in 0.01..4.0_f64, (normal, tangential) in coefficients(), speed in 0.1..20.0_f64, phi in 0.0..6.28_f64,
+        elongation in 0.01..4.0_f64, (normal, tangential) in coefficients(), speed in 0.1..20.0_f64, phi in 0.0..std::f64::consts::TAU,
     ) {
         let body = dumbbell(elongation);
         let axis = Vector::new(phi.cos(), phi.sin(), 0.0);

@@ -17,7 +17,7 @@ fn culprit(error: &Error) -> &'static str {
     };
     let message = error.to_string();
     assert!(message.contains(name) && message.contains(allowed));
-    assert!(message.contains(&value.to_string()));
+    assert!(message.contains(&format!("{value:?}")));
     name
 }
 

@@ -8,6 +8,7 @@ use pyo3::create_exception;
 use pyo3::exceptions::{PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
+use restitution_core::statistics::{Axis, Bins, By, Moments};
 use restitution_core::{Dumbbell, Error, Level, Means, Orientation, Run, TangentialRestitution};
 
 create_exception!(
@@ -47,16 +48,10 @@ enum Release<'py> {
     Angles(PyReadonlyArray1<'py, f64>),
 }
 
-/// Runs the ensemble; returns the records by name and whether the run was cut short by Ctrl-C.
-#[pyfunction]
-#[pyo3(signature = (*, radius, separation, density, normal, tangential, particles, impacts, release_height,
-    gravity, orientation, minimum_speed, seed, threads, progress))]
-#[expect(
-    clippy::too_many_arguments,
-    reason = "they are the keywords of the call"
-)]
-fn simulate<'py>(
-    py: Python<'py>,
+/// The parameters of a run, as the items of a dictionary.
+#[derive(FromPyObject)]
+#[pyo3(from_item_all)]
+struct Parameters<'py> {
     radius: f64,
     separation: f64,
     density: f64,
@@ -69,33 +64,51 @@ fn simulate<'py>(
     orientation: Release<'py>,
     minimum_speed: f64,
     seed: u64,
+}
+
+impl Parameters<'_> {
+    fn run(&self) -> PyResult<Run<'_>> {
+        Ok(Run {
+            body: Dumbbell::new(self.radius, self.separation, self.density)
+                .map_err(python_error)?,
+            law: TangentialRestitution::new(self.normal, self.tangential).map_err(python_error)?,
+            particles: self.particles,
+            impacts: self.impacts,
+            release_height: self.release_height,
+            gravity: self.gravity,
+            orientation: match &self.orientation {
+                Release::Angles(angles) => Orientation::Given(angles.as_slice()?),
+                Release::Name(name) if name == "isotropic" => Orientation::Isotropic,
+                Release::Name(_) => Orientation::UniformAngle,
+            },
+            minimum_speed: self.minimum_speed,
+            seed: self.seed,
+        })
+    }
+}
+
+fn means(threads: usize) -> PyResult<Means> {
+    Ok(Means {
+        threads,
+        level: level()?,
+    })
+}
+
+/// Runs the ensemble; returns the records by name and whether the run was cut short by Ctrl-C.
+#[pyfunction]
+#[pyo3(signature = (run, threads, progress))]
+fn simulate<'py>(
+    py: Python<'py>,
+    run: Parameters<'py>,
     threads: usize,
     progress: Option<Bound<'py, PyAny>>,
 ) -> PyResult<(Bound<'py, PyDict>, bool)> {
-    let orientation = match &orientation {
-        Release::Angles(angles) => Orientation::Given(angles.as_slice()?),
-        Release::Name(name) if name == "isotropic" => Orientation::Isotropic,
-        Release::Name(_) => Orientation::UniformAngle,
-    };
-    let run = Run {
-        body: Dumbbell::new(radius, separation, density).map_err(python_error)?,
-        law: TangentialRestitution::new(normal, tangential).map_err(python_error)?,
-        particles,
-        impacts,
-        release_height,
-        gravity,
-        orientation,
-        minimum_speed,
-        seed,
-    };
-    let means = Means {
-        threads,
-        level: level()?,
-    };
+    let run = run.run()?;
+    let means = means(threads)?;
     let (records, interrupted) = watch::run(py, progress, |monitor| run.simulate(means, monitor))?;
 
     let table = PyDict::new(py);
-    let shape = (particles, impacts);
+    let shape = (run.particles, run.impacts);
     set(py, &table, "time", shape, records.time)?;
     set(
         py,
@@ -128,6 +141,73 @@ fn simulate<'py>(
     Ok((table, interrupted))
 }
 
+/// Runs the ensemble and counts its impacts in bins between the given edges; rows are bins of the impact velocity, or, without
+/// edges, the numbers of the impacts. Returns the counts and moments by name and whether the run was cut short by Ctrl-C.
+#[pyfunction]
+#[pyo3(signature = (run, velocity_bins, restitution_bins, fraction_bins, threads, progress))]
+fn statistics<'py>(
+    py: Python<'py>,
+    run: Parameters<'py>,
+    velocity_bins: Option<PyReadonlyArray1<'py, f64>>,
+    restitution_bins: PyReadonlyArray1<'py, f64>,
+    fraction_bins: PyReadonlyArray1<'py, f64>,
+    threads: usize,
+    progress: Option<Bound<'py, PyAny>>,
+) -> PyResult<(Bound<'py, PyDict>, bool)> {
+    let run = run.run()?;
+    let means = means(threads)?;
+    let axis = |name, edges: &PyReadonlyArray1<'py, f64>| {
+        Axis::new(name, edges.as_slice()?).map_err(python_error)
+    };
+    let bins = Bins {
+        by: match &velocity_bins {
+            Some(edges) => By::Velocity(axis("velocity_bins", edges)?),
+            None => By::Number(run.impacts),
+        },
+        restitution: axis("restitution_bins", &restitution_bins)?,
+        fraction: axis("fraction_bins", &fraction_bins)?,
+    };
+    let (tally, interrupted) = watch::run(py, progress, |monitor| {
+        run.statistics(&bins, means, monitor)
+    })?;
+
+    let rows = bins.rows();
+    let moments: Vec<_> = (0..rows).map(|row| tally.moments(row)).collect();
+    let column =
+        |f: fn(&Moments) -> f64| moments.iter().map(f).collect::<Vec<_>>().into_pyarray(py);
+    let table = PyDict::new(py);
+    for (name, grid) in [
+        ("count", &tally.restitution),
+        ("fraction_count", &tally.fraction),
+    ] {
+        let counts = grid.counts().iter().map(|&count| count as i64).collect();
+        set(py, &table, name, (rows, grid.columns()), counts)?;
+    }
+    table.set_item("mean", column(|m| m.mean))?;
+    table.set_item("variance", column(|m| m.variance))?;
+    table.set_item("skewness", column(|m| m.skewness))?;
+    table.set_item("kurtosis", column(|m| m.kurtosis))?;
+    table.set_item("minimum", column(|m| m.minimum))?;
+    table.set_item("maximum", column(|m| m.maximum))?;
+    let fractions: Vec<_> = (0..rows).map(|row| tally.mean_fraction(row)).collect();
+    table.set_item("mean_fraction", fractions.into_pyarray(py))?;
+    let stops = tally.stops.map(|count| count as i64).to_vec();
+    table.set_item("stops", stops.into_pyarray(py))?;
+    Ok((table, interrupted))
+}
+
+/// The version, the SIMD level in use, the levels of this machine, and the number of threads used where none is given.
+#[pyfunction]
+fn build_info(py: Python<'_>) -> PyResult<Bound<'_, PyDict>> {
+    let info = PyDict::new(py);
+    info.set_item("version", env!("CARGO_PKG_VERSION"))?;
+    info.set_item("simd", level()?.name())?;
+    let here: Vec<_> = Level::available().map(Level::name).collect();
+    info.set_item("simd_available", here)?;
+    info.set_item("threads", restitution_core::default_threads())?;
+    Ok(info)
+}
+
 /// Hands a row-major table over to NumPy without copying it.
 fn set<T: Element>(
     py: Python<'_>,
@@ -151,6 +231,8 @@ fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add("NumericalError", module.py().get_type::<NumericalError>())?;
     module.add_function(wrap_pyfunction!(dumbbell_inertia, module)?)?;
     module.add_function(wrap_pyfunction!(simulate, module)?)?;
+    module.add_function(wrap_pyfunction!(statistics, module)?)?;
+    module.add_function(wrap_pyfunction!(build_info, module)?)?;
     module.add_function(wrap_pyfunction!(sincos, module)?)?;
     Ok(())
 }

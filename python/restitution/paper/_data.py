@@ -8,7 +8,7 @@ import numpy.typing as npt
 import xarray as xr
 
 from restitution import analytic, fit
-from restitution._statistics import reduce, standard_errors
+from restitution._reduce import reduce, standard_errors
 from restitution.paper._misprints import printed_density
 from restitution.paper._runs import Runs
 from restitution.paper._settings import Settings

@@ -50,7 +50,7 @@ impl Axis {
     }
 
     /// Number of bins, those below and above included.
-    pub fn len(&self) -> usize {
+    pub(super) fn bins(&self) -> usize {
         self.edges.len() + 1
     }
 

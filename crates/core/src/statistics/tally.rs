@@ -33,9 +33,10 @@ pub struct Bins {
 }
 
 impl Bins {
-    fn rows(&self) -> usize {
+    /// Number of rows.
+    pub fn rows(&self) -> usize {
         match &self.by {
-            By::Velocity(axis) => axis.len(),
+            By::Velocity(axis) => axis.bins(),
             By::Number(impacts) => *impacts,
         }
     }
@@ -48,7 +49,9 @@ pub struct Tally {
     pub restitution: Grid,
     /// Impacts by row and bin of E_rot/E_tot; the last column as above.
     pub fraction: Grid,
-    /// Sums of ε by row.
+    /// What ε is measured from in the sums: ε^n, so that nearly round bodies lose no digits.
+    origin: f64,
+    /// Sums of ε − origin by row.
     sums: Vec<Sums>,
     /// Σ E_rot/E_tot by row, in units of 2⁻⁴².
     fractions: Vec<u128>,
@@ -95,19 +98,20 @@ impl Grid {
 }
 
 impl Tally {
-    /// Of nothing.
-    pub fn new(bins: &Bins) -> Self {
+    /// Of nothing; moments will be taken about `origin` first.
+    pub fn new(bins: &Bins, origin: f64) -> Self {
         let rows = bins.rows();
         Self {
-            restitution: Grid::new(rows, bins.restitution.len() + 1),
-            fraction: Grid::new(rows, bins.fraction.len() + 1),
+            restitution: Grid::new(rows, bins.restitution.bins() + 1),
+            fraction: Grid::new(rows, bins.fraction.bins() + 1),
+            origin,
             sums: vec![Sums::EMPTY; rows],
             fractions: vec![0; rows],
             stops: [0; 5],
         }
     }
 
-    /// Adds what another tally with the same bins has.
+    /// Adds what another tally with the same bins and origin has.
     pub fn merge(&mut self, other: &Self) {
         self.restitution.merge(&other.restitution);
         self.fraction.merge(&other.fraction);
@@ -130,9 +134,9 @@ impl Tally {
             .sum()
     }
 
-    /// Moments of ε in a row; `origin` as for the [`Counter`] that made the tally.
-    pub fn moments(&self, row: usize, origin: f64) -> Moments {
-        self.sums[row].moments(self.number(row), origin)
+    /// Moments of ε in a row.
+    pub fn moments(&self, row: usize) -> Moments {
+        self.sums[row].moments(self.number(row), self.origin)
     }
 
     /// Mean of E_rot/E_tot in a row; NaN where there are none.
@@ -146,8 +150,6 @@ pub(crate) struct Counter<'a> {
     tally: Tally,
     bins: &'a Bins,
     plan: &'a Plan<'a>,
-    /// What ε is measured from in the sums: ε^n, so that nearly round bodies lose no digits.
-    origin: f64,
     restitution: Vec<u32>,
     fraction: Vec<u32>,
     rows: Vec<Row>,
@@ -164,11 +166,10 @@ struct Row {
 
 impl<'a> Counter<'a> {
     pub fn new(bins: &'a Bins, plan: &'a Plan<'a>, origin: f64) -> Self {
-        let tally = Tally::new(bins);
+        let tally = Tally::new(bins, origin);
         Self {
             bins,
             plan,
-            origin,
             restitution: vec![0; tally.restitution.counts.len()],
             fraction: vec![0; tally.fraction.counts.len()],
             rows: vec![Row::default(); tally.sums.len()],
@@ -201,8 +202,8 @@ fn site_of<S: Simd, const K: usize>(
     x: Pack<S, K>,
     defined: Mask<S, K>,
 ) -> Pack<S, K> {
-    let column = defined.select(axis.locate(x), axis.len() as f64);
-    row.mul_add((axis.len() + 1) as f64, column)
+    let column = defined.select(axis.locate(x), axis.bins() as f64);
+    row.mul_add((axis.bins() + 1) as f64, column)
 }
 
 /// What the lanes add, as whole numbers in the low bits.
@@ -259,7 +260,7 @@ impl Sink for Counter<'_> {
         let site = site_of(&self.bins.restitution, row, restitution, defined);
         let fraction_site = site_of(&self.bins.fraction, row, fraction, defined);
 
-        let quanta = (restitution - self.origin) * QUANTA;
+        let quanta = (restitution - self.tally.origin) * QUANTA;
 
         let small = quanta.abs().le(NARROW as f64);
         let plain = impact.active & defined & small;

@@ -1,0 +1,119 @@
+"""Uniform half-open bins, and the Dataset in which statistics are handed over."""
+
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+import xarray as xr
+
+FloatArray = npt.NDArray[np.float64]
+IntArray = npt.NDArray[np.int64]
+
+FRACTION_BINS: FloatArray = np.linspace(0.0, 1.0, 51)
+FRACTION_BINS.flags.writeable = False
+
+LARGEST = 2.0**33
+"""A restitution of this magnitude or more counts as undefined: its fourth power leaves the exact sums."""
+
+_MOMENTS = {
+    "mean": "mean of restitution",
+    "variance": "variance of restitution, sum of squares over the number",
+    "skewness": "skewness of restitution",
+    "kurtosis": "kurtosis of restitution, Pearson's: 3 for a Gaussian",
+    "minimum": "smallest restitution",
+    "maximum": "largest restitution",
+    "mean_fraction": "mean of E_rot/E_tot before the impact",
+}
+
+
+def checked_edges(bins: npt.ArrayLike, name: str) -> FloatArray:
+    edges = np.array(bins, dtype=np.float64)
+    if edges.ndim != 1 or edges.size < 2:
+        raise ValueError(f"{name} has shape {edges.shape}: needs one dimension and at least two edges")
+    if not np.all(np.isfinite(edges)):
+        raise ValueError(f"{name} holds {edges[~np.isfinite(edges)][0]}: edges must be finite")
+    widths = np.diff(edges)
+    if not np.all(widths > 0):
+        at = int(np.argmin(widths > 0))
+        raise ValueError(f"{name} goes from {edges[at]} to {edges[at + 1]}: edges must increase strictly")
+    # Room for edges that were rounded once each, as by linspace or arange, and no more.
+    allowed = 1e-9 * widths.mean() + 8 * np.spacing(np.abs(edges).max())
+    if np.ptp(widths) > allowed:
+        raise ValueError(f"{name} has widths from {widths.min()} to {widths.max()}: bins must be uniform")
+    return edges
+
+
+def centres(edges: FloatArray) -> FloatArray:
+    return 0.5 * (edges[:-1] + edges[1:])
+
+
+def assemble(
+    counts: dict[str, IntArray],
+    moments: dict[str, FloatArray],
+    rows: xr.DataArray,
+    columns: dict[str, FloatArray],
+) -> xr.Dataset:
+    """Lay statistics out by row and bin.
+
+    Parameters
+    ----------
+    counts : dict of int64 arrays, shape (rows, bins + 3)
+        ``count`` and ``fraction_count``; the columns are what is below the bins, the bins, what is above, and
+        the undefined.
+    moments : dict of float arrays, shape (rows,)
+        ``mean``, ``variance``, ``skewness``, ``kurtosis``, ``minimum``, ``maximum``, ``mean_fraction``.
+    rows : xarray.DataArray, shape (rows,)
+        The coordinate of the rows.
+    columns : dict of float arrays, shape (bins + 1,)
+        Edges of ``restitution`` and ``fraction``.
+    """
+    row = str(rows.name)
+    grid, fractions = counts["count"], counts["fraction_count"]
+    per_row = {
+        "number": (grid[:, :-1].sum(axis=1), "impacts whose restitution is defined"),
+        "undefined": (grid[:, -1], "impacts whose restitution is not finite or at least 2**33 in magnitude"),
+        "restitution_underflow": (grid[:, 0], "impacts below the restitution bins"),
+        "restitution_overflow": (grid[:, -2], "impacts above the restitution bins"),
+        "fraction_underflow": (fractions[:, 0], "impacts below the fraction bins"),
+        "fraction_overflow": (fractions[:, -2], "impacts above the fraction bins"),
+        **{name: (moments[name], text) for name, text in _MOMENTS.items()},
+    }
+    site = {"long_name": "impacts in the site"}
+    about = {"restitution": "restitution (Eq. 1)", "fraction": "E_rot/E_tot before the impact (Eq. 12)"}
+    variables: dict[str, Any] = {
+        "count": ((row, "restitution"), grid[:, 1:-2], site),
+        "fraction_count": ((row, "fraction"), fractions[:, 1:-2], site),
+    }
+    variables |= {name: ((row,), values, {"long_name": text}) for name, (values, text) in per_row.items()}
+    coordinates: dict[str, Any] = {row: rows}
+    for name, edges in columns.items():
+        variables[f"{name}_edges"] = ((f"{name}_edge",), edges, {"units": "1"})
+        coordinates[name] = ((name,), centres(edges), {"units": "1", "long_name": about[name]})
+    return xr.Dataset(variables, coordinates)
+
+
+def by_velocity(
+    counts: dict[str, IntArray],
+    moments: dict[str, FloatArray],
+    velocity_edges: FloatArray,
+    columns: dict[str, FloatArray],
+) -> xr.Dataset:
+    """`assemble` for rows that are bins of impact velocity, with one row more below them and one above."""
+    rows = xr.DataArray(
+        centres(velocity_edges),
+        dims="velocity",
+        name="velocity",
+        attrs={"units": "m s-1", "long_name": "impact velocity"},
+    )
+    inner = slice(1, -1)
+    found = assemble(
+        {name: grid[inner] for name, grid in counts.items()},
+        {name: values[inner] for name, values in moments.items()},
+        rows,
+        columns,
+    )
+    for name, outer, where in (("velocity_underflow", 0, "below"), ("velocity_overflow", -1, "above")):
+        text = {"long_name": f"impacts {where} the velocity bins"}
+        found[name] = xr.DataArray(np.int64(counts["count"][outer].sum()), attrs=text)
+    found["velocity_edges"] = xr.DataArray(velocity_edges, dims="velocity_edge", attrs={"units": "m s-1"})
+    return found

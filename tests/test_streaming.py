@@ -1,0 +1,144 @@
+"""Statistics that the core counts on the fly: the same impacts, exactly counted, in any order."""
+
+import subprocess
+import sys
+from typing import Any
+
+import numpy as np
+import pytest
+import xarray as xr
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+import restitution as rs
+
+COUNTS = (
+    "count",
+    "fraction_count",
+    "number",
+    "undefined",
+    "restitution_underflow",
+    "restitution_overflow",
+    "fraction_underflow",
+    "fraction_overflow",
+    "velocity_underflow",
+    "velocity_overflow",
+)
+QUANTUM = 2.0**-26
+"""The core rounds ε − ε^n to multiples of this before it sums."""
+
+LAW = rs.TangentialRestitution(normal=0.9, tangential=0.4)
+
+
+def call(**given: Any) -> dict[str, Any]:
+    """Arguments of a small run with bins that leave something on every side."""
+    return {
+        "particles": 70,
+        "impacts": 60,
+        "velocity_bins": np.linspace(0.0, 0.8, 9),
+        "restitution_bins": np.linspace(-0.5, 1.5, 41),
+        "fraction_bins": np.linspace(0.1, 0.6, 11),
+    } | given
+
+
+@settings(max_examples=25)
+@given(
+    elongation=st.sampled_from([0.0, 0.02, 0.1, 1.0, 2.0, 3.0]),
+    normal=st.sampled_from([0.0, 0.5, 0.98, 1.0]),
+    tangential=st.sampled_from([-1.0, 0.0, 1.0]),
+    seed=st.integers(0, 2**64 - 1),
+)
+def test_it_counts_what_simulate_records(
+    elongation: float, normal: float, tangential: float, seed: int
+) -> None:
+    """Counts are those of the recorded impacts; moments differ by no more than the rounding to quanta."""
+    body = rs.Dumbbell(radius=3e-3, separation=3e-3 * elongation)
+    law = rs.TangentialRestitution(normal=normal, tangential=tangential)
+    arguments = call(seed=seed)
+    found = rs.statistics(body, law, **arguments)
+    bins = {name: arguments.pop(name) for name in list(arguments) if name.endswith("_bins")}
+    data = rs.simulate(body, law, **arguments)
+    expected = rs.reduce(data, **bins)
+    for name in COUNTS:
+        np.testing.assert_array_equal(found[name], expected[name], err_msg=name)
+    np.testing.assert_array_equal(found.minimum, expected.minimum)
+    np.testing.assert_array_equal(found.maximum, expected.maximum)
+    # A mean moves by half a quantum at most, a variance by that times twice the largest deviation.
+    spread = np.maximum(expected.maximum - expected.minimum, QUANTUM)
+    rounding = 1e-13 * np.maximum(abs(expected.maximum), 1.0)
+    np.testing.assert_array_less(abs(found["mean"] - expected["mean"]).fillna(0), 0.5 * QUANTUM + rounding)
+    allowed = (2 * QUANTUM * spread + rounding * spread).fillna(1)
+    np.testing.assert_array_less(abs(found.variance - expected.variance).fillna(0), allowed)
+    np.testing.assert_allclose(found.mean_fraction, expected.mean_fraction, atol=2.0**-42)
+    np.testing.assert_array_equal(
+        found.particles_ended, np.bincount(data.stop_reason.to_numpy().astype(int), minlength=5)
+    )
+
+
+def test_nothing_is_dropped() -> None:
+    """Every impact that happened is in a bin, beside the bins, or among the undefined."""
+    body = rs.Dumbbell(radius=3e-3, separation=6e-3)
+    found = rs.statistics(body, LAW, **call(particles=500, impacts=300))
+    data = rs.simulate(body, LAW, particles=500, impacts=300)
+    total = found.number.sum() + found.undefined.sum() + found.velocity_underflow + found.velocity_overflow
+    assert int(total) == int(data.impacts.sum())
+    inside = found["count"].sum("restitution") + found.restitution_underflow + found.restitution_overflow
+    np.testing.assert_array_equal(inside, found.number)
+    inside = found.fraction_count.sum("fraction") + found.fraction_underflow + found.fraction_overflow
+    np.testing.assert_array_equal(inside, found.number)
+
+
+def test_rows_may_be_the_numbers_of_the_impacts() -> None:
+    """Without velocity bins the rows are impacts 0, 1, ...: the first has the moments of Eq. 17."""
+    body, law = rs.Dumbbell(radius=3e-3, separation=6e-3), rs.TangentialRestitution(normal=0.4)
+    found = rs.statistics(body, law, **call(particles=40_000, impacts=5, velocity_bins=None))
+    assert found["count"].dims == ("impact", "restitution")
+    assert int(found.number[0]) == 40_000
+    exact = rs.analytic.first_impact(body, law)
+    assert abs(float(found["mean"][0]) - exact.mean()) < 5 * exact.std() / 200  # five standard errors
+    data = rs.simulate(body, law, particles=40_000, impacts=5)
+    np.testing.assert_allclose(found["mean"], data.restitution.mean("particle"), atol=QUANTUM)
+
+
+def test_the_threads_do_not_show() -> None:
+    """Whole numbers add up to the same whatever the order; so do the moments made of them, to the bit."""
+    body = rs.Dumbbell(radius=3e-3, separation=3e-4)
+    one = rs.statistics(body, LAW, **call(particles=3000, threads=1))
+    for threads in (2, 3, 7):
+        xr.testing.assert_identical(one, rs.statistics(body, LAW, **call(particles=3000, threads=threads)))
+
+
+@pytest.mark.parametrize("level", rs.build_info()["simd_available"])
+def test_the_vectors_do_not_show(level: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Every SIMD level of the machine gives the bits of the best one."""
+    body = rs.Dumbbell(radius=3e-3, separation=1.5e-3)
+    best = rs.statistics(body, LAW, **call(particles=500))
+    monkeypatch.setenv("RESTITUTION_SIMD", level)
+    assert rs.build_info()["simd"] == level
+    xr.testing.assert_identical(best, rs.statistics(body, LAW, **call(particles=500)))
+
+
+def test_a_level_that_is_not_there_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
+    """An unknown or missing level is an error that lists the ones there are, never a silent substitute."""
+    body = rs.Dumbbell(radius=3e-3, separation=3e-4)
+    for name, reason in (("sse9", "no such SIMD level"), ("neon", "this machine lacks it")):
+        if name in rs.build_info()["simd_available"]:
+            continue
+        monkeypatch.setenv("RESTITUTION_SIMD", name)
+        with pytest.raises(ValueError, match=f"RESTITUTION_SIMD = {name}: {reason}.*scalar"):
+            rs.simulate(body, LAW, particles=1, impacts=1)
+        monkeypatch.delenv("RESTITUTION_SIMD")
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="reads /proc")
+def test_memory_does_not_grow_with_the_particles() -> None:
+    """Ten million impacts on the lattice of Fig. 2 (records: 570 MB) stay below 200 MB, imports included."""
+    program = (
+        "import numpy as np, restitution as rs\n"
+        "rs.statistics(rs.Dumbbell(radius=3e-3, separation=3e-4), rs.TangentialRestitution(normal=0.98),"
+        " particles=50_000, impacts=200, velocity_bins=0.002 * np.arange(551),"
+        " restitution_bins=0.01 * np.arange(-100, 301))\n"
+        "print(next(line.split()[1] for line in open('/proc/self/status') if line.startswith('VmHWM')))"
+    )
+    printed = subprocess.run([sys.executable, "-c", program], capture_output=True, check=True, text=True)
+    assert int(printed.stdout) < 200_000
