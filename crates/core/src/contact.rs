@@ -24,6 +24,24 @@ pub enum Departure {
     },
 }
 
+impl Departure {
+    /// Of a release: a sphere may be on the plane, at rest or on its way up.
+    pub fn of_release(body: &Body, state: State) -> Self {
+        let flight = Flight::new(state);
+        let tilt_rate = flight.tilt_rate(flight.phase(0.0));
+        let gaps = state.gaps(body);
+        let on_the_plane = Sphere::BOTH.into_iter().find_map(|sphere| {
+            let side = sphere.sign() * body.half_separation;
+            let speed = side.mul_add(tilt_rate, state.velocity.z);
+            (gaps[sphere as usize] <= 0.0 && speed >= 0.0).then_some((sphere, speed))
+        });
+        on_the_plane.map_or(Self::Free, |(sphere, speed)| Self::Touching {
+            sphere,
+            speed,
+        })
+    }
+}
+
 /// How a flight ends.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Landing {
@@ -54,6 +72,8 @@ pub(crate) const LAST_BEND: f64 = 1.0 / 2048.0;
 pub(crate) const INVISIBLE: f64 = 1.0 / 4_503_599_627_370_496.0;
 /// A sphere that is not approaching is left alone at least until its gap may have bent by that: 2⁻²⁶/M.
 pub(crate) const SHORTEST: f64 = 1.0 / 67_108_864.0;
+/// Gaps up to this may be rounding: 2⁻⁴⁸ R.
+pub(crate) const TOUCHING: f64 = 1.0 / 281_474_976_710_656.0;
 /// Two or three dozen steps are the most that grazing contacts need, and fast spins a few hundred; this is far beyond.
 pub(crate) const MOST_STEPS: u32 = 1_000_000;
 
@@ -75,10 +95,11 @@ pub fn first_contact(
             return Ok(Landing::Never);
         }
         let phase = flight.phase(angle);
-        let gap = search.nearer(time, phase);
+        let moment = Moment::of(flight, time, phase);
+        let gap = search.nearer(&moment);
         let step = search.certified(&gap);
         if search.is_last(&gap, step, time) {
-            let step = search.landed(&gap, step);
+            let step = search.landed(&moment, &gap, step);
             let time = time + step;
             let side = gap.sphere.sign() * body.half_separation;
             return Ok(Landing::Impact {
@@ -100,11 +121,31 @@ struct Gap {
     width: f64,
     /// f′.
     rate: f64,
+    /// √(f′² + 2Mf): the speed of approach at the zero of the lower bound.
+    root: f64,
+}
+
+/// Where a flight is at one time.
+#[derive(Clone, Copy)]
+struct Moment {
+    time: f64,
+    lift: f64,
+    climb: f64,
     /// e_z and its rate.
     tilt: f64,
     tilt_rate: f64,
-    /// √(f′² + 2Mf): the speed of approach at the zero of the lower bound.
-    root: f64,
+}
+
+impl Moment {
+    fn of(flight: &Flight, time: f64, phase: Phase) -> Self {
+        Self {
+            time,
+            lift: flight.lift(time),
+            climb: flight.climb(time),
+            tilt: flight.tilt(phase),
+            tilt_rate: flight.tilt_rate(phase),
+        }
+    }
 }
 
 /// What a flight's search for a contact needs to know of it.
@@ -146,44 +187,63 @@ impl<'a> Search<'a> {
     }
 
     /// Whether the sphere on the plane stays there: no separation speed, as after a perfectly plastic impact, and no
-    /// rotation that lifts it, f″ ≤ 0.
+    /// rotation that lifts it, f″ ≤ 0. If the other sphere touches too and is coming down, its impact comes first.
     fn rests(&self) -> bool {
         let Departure::Touching { sphere, speed } = self.departure else {
             return false;
         };
-        let start = self.flight.start();
-        let bend = self.flight.tilt_acceleration(start.axis.z);
-        speed <= 0.0 && (sphere.sign() * self.lever).mul_add(bend, -1.0) <= 0.0
+        let moment = Moment::of(self.flight, 0.0, self.flight.phase(0.0));
+        let other = self.gap(&moment, sphere.other());
+        let bend = self.flight.tilt_acceleration(moment.tilt);
+        speed <= 0.0
+            && (sphere.sign() * self.lever).mul_add(bend, -1.0) <= 0.0
+            && !(other.rate < 0.0 && other.width <= TOUCHING)
     }
 
     /// The gap that may close first. Both lower bounds have the same curvature, so that they cross only when the axis,
     /// turning at its present rate, is level: up to then it is the lower sphere's that counts, afterwards the other's.
-    fn nearer(&self, time: f64, phase: Phase) -> Gap {
-        let lift = self.flight.lift(time);
-        let climb = self.flight.climb(time);
-        let tilt = self.flight.tilt(phase);
-        let tilt_rate = self.flight.tilt_rate(phase);
+    fn nearer(&self, moment: &Moment) -> Gap {
+        let Moment {
+            lift,
+            climb,
+            tilt,
+            tilt_rate,
+            ..
+        } = *moment;
         // lift + climb t − Mt²/2 at t = −tilt/tilt_rate, times tilt_rate²: both gaps there.
         let level = tilt_rate.mul_add(
             lift.mul_add(tilt_rate, -(climb * tilt)),
             -(0.5 * self.bound * (tilt * tilt)),
         );
-        let swings_over = tilt * tilt_rate < 0.0 && level > 0.0;
-        let one_is_lower = tilt < 0.0 || (tilt == 0.0 && tilt_rate < 0.0);
-        let sphere = if one_is_lower != swings_over {
+        // Is the axis level with both spheres in the air, the one that is going down is or will be the lower one.
+        let decides = if level >= 0.0 { tilt_rate } else { tilt };
+        let sphere = if decides < 0.0 {
             Sphere::One
         } else {
             Sphere::Two
         };
+        let gap = self.gap(moment, sphere);
+        // A sphere that touches and leaves has its zero behind it, and may come back later than the other comes down.
+        if gap.rate >= 0.0 && gap.width <= TOUCHING {
+            let other = self.gap(moment, sphere.other());
+            if self.certified(&other) < self.certified(&gap) {
+                return other;
+            }
+        }
+        gap
+    }
+
+    /// The gap under `sphere`.
+    fn gap(&self, moment: &Moment, sphere: Sphere) -> Gap {
         let side = sphere.sign() * self.lever;
         let (width, rate) = match self.departure {
             // At the start the sphere on the plane is known exactly.
-            Departure::Touching { sphere: on, speed } if time == 0.0 && on == sphere => {
+            Departure::Touching { sphere: on, speed } if moment.time == 0.0 && on == sphere => {
                 (0.0, speed)
             }
             _ => (
-                side.mul_add(tilt, lift).max(0.0), // (2)
-                side.mul_add(tilt_rate, climb),
+                side.mul_add(moment.tilt, moment.lift).max(0.0), // (2)
+                side.mul_add(moment.tilt_rate, moment.climb),
             ),
         };
         let root = rate.mul_add(rate, 2.0 * self.bound * width).sqrt();
@@ -191,8 +251,6 @@ impl<'a> Search<'a> {
             sphere,
             width,
             rate,
-            tilt,
-            tilt_rate,
             root,
         }
     }
@@ -229,16 +287,19 @@ impl<'a> Search<'a> {
     }
 
     /// The contact after the last certified step: the gap there, to third order, over the speed there.
-    fn landed(&self, gap: &Gap, step: f64) -> f64 {
+    fn landed(&self, moment: &Moment, gap: &Gap, step: f64) -> f64 {
         if !self.is_nearly_straight(gap, step) {
             return step; // a grazing contact: what is left of the gap cannot be seen
         }
         let side = gap.sphere.sign() * self.lever;
         let square = self.flight.rate * self.flight.rate;
         // M + f″ and f‴: what the lower bound leaves out.
-        let slack = side.mul_add(self.flight.tilt_acceleration(gap.tilt), self.sway);
-        let third = -(side * square) * gap.tilt_rate;
+        let slack = side.mul_add(self.flight.tilt_acceleration(moment.tilt), self.sway);
+        let third = -(side * square) * moment.tilt_rate;
         let left = (step * step) * (third * step).mul_add(1.0 / 6.0, 0.5 * slack);
+        if left == 0.0 {
+            return step;
+        }
         step + left / slack.mul_add(-step, gap.root)
     }
 }

@@ -71,7 +71,7 @@ impl Monitor {
 }
 
 /// Particles in a block: enough for the threads' bookkeeping not to be seen, few enough for all threads to stay busy.
-pub(crate) const BLOCK: usize = 64;
+pub(crate) const BLOCK: usize = 96;
 
 impl Run<'_> {
     /// Runs every particle and keeps every impact.
@@ -159,10 +159,14 @@ impl<'a> Plan<'a> {
             scales,
             height: run.release_height / scales.length,
         };
-        let gap = |cosine: f64| plan.height - 1.0 - plan.body.half_separation * cosine.abs();
+        // A body put down on the plane may be off by the rounding of its height.
+        let clear = |cosine: f64| {
+            let lowest = plan.body.half_separation.mul_add(cosine.abs(), 1.0);
+            plan.height >= lowest * (1.0 - 4.0 * f64::EPSILON)
+        };
         let clear = match run.orientation {
-            Orientation::Given(_) => (0..run.particles).all(|i| gap(plan.release(i).1) >= 0.0),
-            Orientation::UniformAngle | Orientation::Isotropic => gap(1.0) >= 0.0,
+            Orientation::Given(_) => (0..run.particles).all(|i| clear(plan.release(i).1)),
+            Orientation::UniformAngle | Orientation::Isotropic => clear(1.0),
         };
         Error::unless(
             clear && plan.height.is_finite(),
@@ -210,7 +214,7 @@ struct Work<'a, T> {
 }
 
 /// Vectors side by side; two keep the arithmetic units busy.
-const VECTORS: usize = 4;
+const VECTORS: usize = 3;
 
 impl<T: Sink> WithSimd for Work<'_, T> {
     type Output = Result<(), Error>;

@@ -57,14 +57,15 @@ impl Flight {
             Vector::new(0.0, 1.0, 0.0)
         };
         let constant = about * about.dot(start.axis);
+        let cosine = start.axis - constant;
         Self {
             start,
             rate,
             constant,
-            cosine: start.axis - constant,
+            cosine,
             sine: about.cross(start.axis),
-            // The axis circles about `about` on a circle of radius ≤ 1, seen from the side at this angle.
-            amplitude: about.horizontal(),
+            // The axis circles about `about` on a circle of this radius (≤ 1, with room for rounding), seen from the side.
+            amplitude: about.horizontal() * (cosine.norm() * (1.0 + 4.0 * f64::EPSILON)).min(1.0),
         }
     }
 

@@ -85,6 +85,14 @@ impl Sphere {
     /// Both, in order.
     pub const BOTH: [Self; 2] = [Self::One, Self::Two];
 
+    /// The other one.
+    pub fn other(self) -> Self {
+        match self {
+            Self::One => Self::Two,
+            Self::Two => Self::One,
+        }
+    }
+
     /// +1 or −1: the side of the centre of mass on which the sphere sits.
     pub fn sign(self) -> f64 {
         match self {

@@ -53,7 +53,8 @@ pub enum StopReason {
     ImpactsReached,
     /// √(2 E_kin/m) after an impact fell below the threshold asked for.
     SpeedBelowThreshold,
-    /// Impacts accumulate: [`COLLAPSE_RUN`] flights in a row too low to be resolved, or a contact that is never left.
+    /// Impacts accumulate: [`COLLAPSE_RUN`] flights in a row too low to be resolved, or a contact that is never left. The
+    /// body may still rock or roll; what it does in lasting contact the model of instantaneous impacts cannot say.
     Collapse,
     /// The next landing is beyond what can be followed: the axis would turn by more than [`crate::elementary::RANGE`] rad.
     NeverLands,
@@ -84,7 +85,7 @@ pub fn bounce(
     mut record: impl FnMut(&Impact) -> bool,
 ) -> Result<StopReason, NoConvergence> {
     let mut state = release;
-    let mut departure = Departure::Free;
+    let mut departure = Departure::of_release(body, release);
     let mut clock = 0.0;
     let mut unresolved = 0;
     for _ in 0..limits.impacts {

@@ -108,8 +108,11 @@ pub(crate) fn bounce<S: Simd, const K: usize>(
     state.sine.as_mut_slice()[..particles].copy_from_slice(release.sines);
     state.cosine.as_mut_slice()[..particles].copy_from_slice(release.cosines);
     let mut lanes = Lanes::new(simd, particles);
+    let gap = |side: f64| state.cosine.mul_add(side, state.lift);
+    let one = gap(body.half_separation).le(0.0);
+    let two = gap(-body.half_separation).le(0.0);
     let mut departure = Departure {
-        sphere: zero,
+        sphere: one.select(1.0, two.select(-1.0, zero)),
         speed: zero,
     };
     let mut clock = zero;
@@ -119,14 +122,16 @@ pub(crate) fn bounce<S: Simd, const K: usize>(
             lanes.end(lanes.active, number, StopReason::Interrupted, sink);
             return Ok(());
         }
-        let search = Search::new(&state, body.half_separation);
-        lanes.end(search.rests(&departure), number, StopReason::Collapse, sink);
-        let landing = search
-            .landing(&departure, lanes.active)
-            .map_err(|lane| Stuck {
-                lane,
-                impacts: number,
-            })?;
+        let search = Search::new(&state, &departure, body.half_separation);
+        let still = departure.speed.le(0.0);
+        if still.any() {
+            let rests = still & search.rests();
+            lanes.end(rests, number, StopReason::Collapse, sink);
+        }
+        let landing = search.landing(lanes.active).map_err(|lane| Stuck {
+            lane,
+            impacts: number,
+        })?;
         lanes.end(landing.never, number, StopReason::NeverLands, sink);
         if !lanes.active.any() {
             return Ok(());
@@ -147,12 +152,18 @@ pub(crate) fn bounce<S: Simd, const K: usize>(
                 active: lanes.active,
             },
         );
-        let slow = (2.0 * energy_after).lt(limits.minimum_speed * limits.minimum_speed);
-        lanes.end(slow, number + 1, StopReason::SpeedBelowThreshold, sink);
+        if limits.minimum_speed > 0.0 {
+            let slow = (2.0 * energy_after).lt(limits.minimum_speed * limits.minimum_speed);
+            lanes.end(slow, number + 1, StopReason::SpeedBelowThreshold, sink);
+        }
         let low = (search.bound * (landing.time * landing.time)).lt(UNRESOLVED);
-        unresolved = low.select(unresolved + 1.0, 0.0);
-        let collapsed = unresolved.eq(f64::from(COLLAPSE_RUN));
-        lanes.end(collapsed, number + 1, StopReason::Collapse, sink);
+        if low.any() {
+            unresolved = low.select(unresolved + 1.0, 0.0);
+            let collapsed = unresolved.eq(f64::from(COLLAPSE_RUN));
+            lanes.end(collapsed, number + 1, StopReason::Collapse, sink);
+        } else {
+            unresolved = zero;
+        }
         departure = Departure {
             sphere: landing.sphere,
             speed,

@@ -2,7 +2,7 @@
 
 use super::flight::{Phase, State};
 use super::{Mask, Pack};
-use crate::contact::{INVISIBLE, LAST_BEND, LAST_STEP, MOST_STEPS, SHORTEST};
+use crate::contact::{INVISIBLE, LAST_BEND, LAST_STEP, MOST_STEPS, SHORTEST, TOUCHING};
 use crate::elementary::RANGE;
 use pulp::Simd;
 
@@ -28,20 +28,30 @@ pub(super) struct Landing<S: Simd, const K: usize> {
     pub never: Mask<S, K>,
 }
 
-/// The gap under the sphere that may close first.
+/// Where the flights are.
+#[derive(Clone, Copy)]
+struct Moment<S: Simd, const K: usize> {
+    time: Pack<S, K>,
+    lift: Pack<S, K>,
+    climb: Pack<S, K>,
+    tilt: Pack<S, K>,
+    tilt_rate: Pack<S, K>,
+}
+
+/// The gap under a sphere.
 #[derive(Clone, Copy)]
 struct Gap<S: Simd, const K: usize> {
+    /// ±1.
     sphere: Pack<S, K>,
     width: Pack<S, K>,
     rate: Pack<S, K>,
-    tilt: Pack<S, K>,
-    tilt_rate: Pack<S, K>,
     root: Pack<S, K>,
 }
 
 /// What the search needs to know of a flight.
 pub(super) struct Search<'a, S: Simd, const K: usize> {
     start: &'a State<S, K>,
+    departure: &'a Departure<S, K>,
     /// L/2.
     lever: f64,
     /// ω².
@@ -56,14 +66,15 @@ pub(super) struct Search<'a, S: Simd, const K: usize> {
 
 impl<'a, S: Simd, const K: usize> Search<'a, S, K> {
     #[inline(always)]
-    pub fn new(start: &'a State<S, K>, lever: f64) -> Self {
+    pub fn new(start: &'a State<S, K>, departure: &'a Departure<S, K>, lever: f64) -> Self {
         let square = start.spin * start.spin;
         let sway = lever * square;
         let above = start.climb.mul_add(start.climb, 2.0 * (start.lift - lever));
         let root = above.sqrt();
-        let reaches = Pack::splat(start.lift.simd(), 0.0).lt(above);
+        let reaches = !above.le(0.0);
         Self {
             start,
+            departure,
             lever,
             square,
             sway,
@@ -73,84 +84,116 @@ impl<'a, S: Simd, const K: usize> Search<'a, S, K> {
         }
     }
 
-    /// Lanes whose sphere on the plane stays there: no separation speed and f″ ≤ 0.
+    /// Lanes whose sphere on the plane, left with no speed, stays there: f″ ≤ 0, and the other is not coming down on it too.
     #[inline(always)]
-    pub fn rests(&self, departure: &Departure<S, K>) -> Mask<S, K> {
-        let bend = -self.square * self.start.cosine;
-        let held = (departure.sphere * self.lever).mul_add(bend, -1.0).le(0.0);
-        let touching = !departure.sphere.eq(0.0);
-        touching & departure.speed.le(0.0) & held
+    pub fn rests(&self) -> Mask<S, K> {
+        let moment = self.beginning();
+        let on = self.departure.sphere;
+        let bend = -self.square * moment.tilt;
+        let held = (on * self.lever).mul_add(bend, -1.0).le(0.0);
+        let other = self.gap(&moment, -on);
+        let both = other.rate.lt(0.0) & other.width.le(TOUCHING);
+        !on.eq(0.0) & held & !both
     }
 
     /// The landings of the lanes in `wanted`; what the other lanes hold means nothing. The first
     /// lane whose search does not end is the error.
     #[inline(always)]
-    pub fn landing(
-        &self,
-        departure: &Departure<S, K>,
-        wanted: Mask<S, K>,
-    ) -> Result<Landing<S, K>, usize> {
-        let simd = self.start.lift.simd();
-        let mut time = Pack::splat(simd, 0.0);
-        let mut phase = Phase::zero(simd);
-        let mut gap = self.leaving(self.nearer(time, phase), departure);
-        let mut step = self.certified(&gap);
-        let mut never = Mask::splat(simd, false);
-        let mut last = self.is_last(&gap, step, time);
+    pub fn landing(&self, wanted: Mask<S, K>) -> Result<Landing<S, K>, usize> {
+        let moment = self.beginning();
+        let gap = self.careful(&moment, self.nearer(&moment));
+        let step = self.certified(&gap);
+        // A contact at the start itself is seen again in the first pass.
+        let mut time = step.eq(0.0).select(0.0, self.skip(step));
+        let mut waiting = wanted;
         for _ in 0..MOST_STEPS {
-            if !((!(last | never)) & wanted).any() {
-                let step = self.landed(&gap, step);
+            let angle = self.start.spin * time;
+            let never = !angle.abs().le(RANGE);
+            let phase = Phase::of(angle);
+            let moment = Moment {
+                time,
+                lift: self.start.lift_at(time),
+                climb: self.start.climb - time,
+                tilt: self.start.tilt(phase),
+                tilt_rate: self.start.tilt_rate(phase),
+            };
+            let mut gap = self.nearer(&moment);
+            let leaving = gap.width.le(TOUCHING) & !gap.rate.lt(0.0);
+            if (leaving | time.eq(0.0)).any() {
+                gap = self.careful(&moment, gap);
+            }
+            let step = self.certified(&gap);
+            let done = never | self.is_last(&gap, step, time);
+            waiting = !done & wanted;
+            if !waiting.any() {
+                let step = self.landed(&moment, &gap, step);
                 let time = time + step;
-                let side = gap.sphere * self.lever;
                 let phase = phase.advanced(self.start.spin * step);
                 return Ok(Landing {
                     time,
-                    state: self.start.landing(time, phase, side),
+                    state: self.start.landing(time, phase, gap.sphere * self.lever),
                     sphere: gap.sphere,
                     never,
                 });
             }
             // Lanes that are done stay where they are and find the same step again.
-            time = last.select(time, self.skip(time + step));
-            let angle = self.start.spin * time;
-            never = never | !angle.abs().le(RANGE);
-            phase = Phase::of(angle);
-            gap = self.nearer(time, phase);
-            step = self.certified(&gap);
-            last = last | self.is_last(&gap, step, time);
+            time = done.select(time, self.skip(time + step));
         }
         let mut stuck = None;
-        ((!(last | never)) & wanted).each(|lane| {
+        waiting.each(|lane| {
             stuck.get_or_insert(lane);
         });
         Err(stuck.unwrap_or(0))
     }
 
+    #[inline(always)]
+    fn beginning(&self) -> Moment<S, K> {
+        let State {
+            lift,
+            climb,
+            sine,
+            cosine,
+            spin,
+            ..
+        } = *self.start;
+        Moment {
+            time: Pack::splat(lift.simd(), 0.0),
+            lift,
+            climb,
+            tilt: cosine,
+            tilt_rate: -(spin * sine),
+        }
+    }
+
     /// The gap that may close first: of the sphere that is lower, unless the axis swings through the level before.
     #[inline(always)]
-    fn nearer(&self, time: Pack<S, K>, phase: Phase<S, K>) -> Gap<S, K> {
-        let lift = self.start.lift_at(time);
-        let climb = self.start.climb - time;
-        let tilt = self.start.tilt(phase);
-        let tilt_rate = self.start.tilt_rate(phase);
+    fn nearer(&self, moment: &Moment<S, K>) -> Gap<S, K> {
+        let Moment {
+            lift,
+            climb,
+            tilt,
+            tilt_rate,
+            ..
+        } = *moment;
         let level = tilt_rate.mul_add(
             lift.mul_add(tilt_rate, -(climb * tilt)),
             -(0.5 * self.bound * (tilt * tilt)),
         );
-        let zero = Pack::splat(lift.simd(), 0.0);
-        let swings_over = (tilt * tilt_rate).lt(0.0) & zero.lt(level);
-        let one_is_lower = tilt.lt(0.0) | (tilt.eq(0.0) & tilt_rate.lt(0.0));
-        let lower = one_is_lower.select(1.0, Pack::splat(lift.simd(), -1.0));
-        let sphere = swings_over.select(-lower, lower);
+        let swings = Pack::splat(lift.simd(), 0.0).le(level);
+        let one = swings.select(tilt_rate, tilt).lt(0.0);
+        self.gap(moment, one.select(1.0, -1.0))
+    }
+
+    /// The gap under a sphere.
+    #[inline(always)]
+    fn gap(&self, moment: &Moment<S, K>, sphere: Pack<S, K>) -> Gap<S, K> {
         let side = sphere * self.lever;
-        let width = side.mul_add(tilt, lift).max(0.0); // (2)
-        let rate = side.mul_add(tilt_rate, climb);
+        let width = side.mul_add(moment.tilt, moment.lift).max(0.0); // (2)
+        let rate = side.mul_add(moment.tilt_rate, moment.climb);
         Gap {
             sphere,
             width,
             rate,
-            tilt,
-            tilt_rate,
             root: self.root(width, rate),
         }
     }
@@ -160,12 +203,27 @@ impl<'a, S: Simd, const K: usize> Search<'a, S, K> {
         rate.mul_add(rate, 2.0 * self.bound * width).sqrt()
     }
 
-    /// At the start the sphere on the plane is known exactly.
+    /// The gap that may close first where `nearer` is not enough: at the start the sphere on the plane is known exactly, and a
+    /// sphere that touches and leaves may come back later than the other comes down.
     #[inline(always)]
-    fn leaving(&self, gap: Gap<S, K>, departure: &Departure<S, K>) -> Gap<S, K> {
-        let on = gap.sphere.eq(departure.sphere);
-        let width = on.select(0.0, gap.width);
-        let rate = on.select(departure.speed, gap.rate);
+    fn careful(&self, moment: &Moment<S, K>, nearer: Gap<S, K>) -> Gap<S, K> {
+        let gap = self.exact(moment, nearer);
+        let other = self.exact(moment, self.gap(moment, -nearer.sphere));
+        let leaving = gap.width.le(TOUCHING) & !gap.rate.lt(0.0);
+        let swap = leaving & self.certified(&other).lt(self.certified(&gap));
+        Gap {
+            sphere: swap.select(other.sphere, gap.sphere),
+            width: swap.select(other.width, gap.width),
+            rate: swap.select(other.rate, gap.rate),
+            root: swap.select(other.root, gap.root),
+        }
+    }
+
+    #[inline(always)]
+    fn exact(&self, moment: &Moment<S, K>, gap: Gap<S, K>) -> Gap<S, K> {
+        let touching = gap.sphere.eq(self.departure.sphere) & moment.time.eq(0.0);
+        let width = touching.select(0.0, gap.width);
+        let rate = touching.select(self.departure.speed, gap.rate);
         Gap {
             width,
             rate,
@@ -178,8 +236,9 @@ impl<'a, S: Simd, const K: usize> Search<'a, S, K> {
     #[inline(always)]
     fn certified(&self, gap: &Gap<S, K>) -> Pack<S, K> {
         let approaching = gap.rate.lt(0.0);
-        let numerator = approaching.select(2.0 * gap.width, (gap.rate + gap.root).max(SHORTEST));
-        let denominator = approaching.select(gap.root - gap.rate, self.bound);
+        let speed = gap.rate.abs() + gap.root;
+        let numerator = approaching.select(2.0 * gap.width, speed.max(SHORTEST));
+        let denominator = approaching.select(speed, self.bound);
         numerator / denominator
     }
 
@@ -204,13 +263,13 @@ impl<'a, S: Simd, const K: usize> Search<'a, S, K> {
 
     /// The contact after the last certified step: the gap there, to third order, over the speed there.
     #[inline(always)]
-    fn landed(&self, gap: &Gap<S, K>, step: Pack<S, K>) -> Pack<S, K> {
+    fn landed(&self, moment: &Moment<S, K>, gap: &Gap<S, K>, step: Pack<S, K>) -> Pack<S, K> {
         let side = gap.sphere * self.lever;
-        let slack = side.mul_add(-self.square * gap.tilt, self.sway);
-        let third = -(side * self.square) * gap.tilt_rate;
+        let slack = side.mul_add(-self.square * moment.tilt, self.sway);
+        let third = -(side * self.square) * moment.tilt_rate;
         let left = (step * step) * (third * step).mul_add(1.0 / 6.0, 0.5 * slack);
         let correction = left / slack.mul_add(-step, gap.root);
-        self.is_nearly_straight(gap, step)
-            .select(step + correction, step)
+        let curved = self.is_nearly_straight(gap, step) & !left.eq(0.0);
+        curved.select(step + correction, step)
     }
 }

@@ -28,14 +28,6 @@ pub(super) struct Phase<S: Simd, const K: usize> {
 
 impl<S: Simd, const K: usize> Phase<S, K> {
     #[inline(always)]
-    pub fn zero(simd: S) -> Self {
-        Self {
-            sin: Pack::splat(simd, 0.0),
-            cos: Pack::splat(simd, 1.0),
-        }
-    }
-
-    #[inline(always)]
     pub fn of(angle: Pack<S, K>) -> Self {
         let (sin, cos) = sincos_in_lanes(angle);
         Self { sin, cos }

@@ -146,18 +146,18 @@ impl<S: Simd, const K: usize> Pack<S, K> {
         self.mask(each_vector!(r = self.no_masks(), k => simd.equal_f64s(a[k], b[k])))
     }
 
-    /// The larger of the two; `self` where that is not larger, and where either is NaN.
+    /// The larger of the two; either where they are equal or one is NaN.
     #[inline(always)]
     pub fn max(self, other: impl Operand<S, K>) -> Self {
-        let other = other.in_lanes(self.simd);
-        self.lt(other).select(other, self)
+        let (a, b, simd) = (self.vectors, other.in_lanes(self.simd).vectors, self.simd);
+        self.with(each_vector!(r = a, k => simd.max_f64s(a[k], b[k])))
     }
 
-    /// The smaller of the two; `self` where that is not smaller, and where either is NaN.
+    /// The smaller of the two; either where they are equal or one is NaN.
     #[inline(always)]
     pub fn min(self, other: impl Operand<S, K>) -> Self {
-        let other = other.in_lanes(self.simd);
-        other.lt(self).select(other, self)
+        let (a, b, simd) = (self.vectors, other.in_lanes(self.simd).vectors, self.simd);
+        self.with(each_vector!(r = a, k => simd.min_f64s(a[k], b[k])))
     }
 
     /// Bit `bit` of the binary representation, counted from the low end.

@@ -8,8 +8,8 @@ use pulp::Simd;
 const UNIFORM: f64 = 1e-7;
 /// Within this distance of an edge, in bin widths, the edge itself decides; it must exceed [`UNIFORM`] and rounding.
 const NEAR: f64 = 1e-6;
-/// 1.5 · 2⁵²: adding and subtracting it rounds to the nearest integer.
-const ROUND: f64 = 6_755_399_441_055_744.0;
+/// 1.5 · 2⁵²: adding it to |x| < 2⁵¹ rounds to the nearest integer, which then stands in the low bits.
+pub(super) const ROUND: f64 = 6_755_399_441_055_744.0;
 
 /// Bins between uniform edges, with one for what is below and one for what is above.
 #[derive(Debug, Clone, PartialEq)]
@@ -54,29 +54,31 @@ impl Axis {
         self.edges.len() + 1
     }
 
-    /// Number of the bin of each lane: 0 below, 1 to n inside, n + 1 above. NaN may be anywhere.
+    /// Number of the bin of each lane, plus [`ROUND`]: 0 below, 1 to n inside, n + 1 above. NaN may be anywhere.
     #[inline(always)]
     pub(super) fn locate<S: Simd, const K: usize>(&self, x: Pack<S, K>) -> Pack<S, K> {
         let last = self.edges.len() as f64;
-        let place = ((x - self.edges[0]) * self.density + 1.0)
+        // Whole numbers are in the middle of the bins.
+        let place = (x - self.edges[0])
+            .mul_add(self.density, 0.5)
             .max(0.0)
             .min(last);
-        let nearest = (place + ROUND) - ROUND;
-        let mut bin = place.lt(nearest).select(nearest - 1.0, nearest);
-        let near = (place - nearest).abs().le(NEAR);
+        let mut bin = place + ROUND;
+        let off = (place - (bin - ROUND)).abs();
+        let near = !off.lt(0.5 - NEAR);
         if near.any() {
             near.each(|lane| {
                 bin.as_mut_slice()[lane] =
-                    self.decide(x.as_slice()[lane], nearest.as_slice()[lane]);
+                    ROUND + self.decide(x.as_slice()[lane], place.as_slice()[lane]);
             });
         }
         bin
     }
 
-    /// The bin on one or the other side of edge number `nearest` − 1.
+    /// The bin on one or the other side of the edge nearest to `place`.
     #[cold]
-    fn decide(&self, x: f64, nearest: f64) -> f64 {
-        let edge = (nearest as usize).clamp(1, self.edges.len()) - 1;
+    fn decide(&self, x: f64, place: f64) -> f64 {
+        let edge = (place as usize).min(self.edges.len() - 1);
         if x < self.edges[edge] {
             edge as f64
         } else {

@@ -135,16 +135,12 @@ impl Sums {
     /// Counts a value for the extremes.
     #[inline(always)]
     pub(super) fn extremes(&mut self, value: f64) {
-        self.minimum = if value < self.minimum {
-            value
-        } else {
-            self.minimum
-        };
-        self.maximum = if value > self.maximum {
-            value
-        } else {
-            self.maximum
-        };
+        if value < self.minimum {
+            self.minimum = value;
+        }
+        if value > self.maximum {
+            self.maximum = value;
+        }
     }
 
     /// Takes over the recent sums and leaves nothing there.

@@ -1,14 +1,12 @@
 //! What `statistics` keeps of a run: grids of counts and sums, of a size that the bins alone decide.
 
-use super::axis::Axis;
+use super::axis::{Axis, ROUND};
 use super::moments::{MOST_RECENT, Moments, NARROW, QUANTA, Recent, Sums};
 use crate::ensemble::Plan;
 use crate::lanes::{Impact, Mask, Pack, Sink};
 use crate::trajectory::StopReason;
 use pulp::Simd;
 
-/// 1.5 · 2⁵²: adding it to |x| < 2⁵¹ rounds to the nearest integer, which then stands in the low bits.
-const ROUND: f64 = 6_755_399_441_055_744.0;
 /// Quanta of E_rot/E_tot.
 const FRACTION_QUANTA: f64 = 4_398_046_511_104.0; // 2⁴²
 
@@ -194,7 +192,7 @@ impl<'a> Counter<'a> {
     }
 }
 
-/// Index into a [`Grid`].
+/// Index into a [`Grid`], plus [`ROUND`].
 #[inline(always)]
 fn site_of<S: Simd, const K: usize>(
     axis: &Axis,
@@ -202,7 +200,7 @@ fn site_of<S: Simd, const K: usize>(
     x: Pack<S, K>,
     defined: Mask<S, K>,
 ) -> Pack<S, K> {
-    let column = defined.select(axis.locate(x), axis.bins() as f64);
+    let column = defined.select(axis.locate(x), axis.bins() as f64 + ROUND);
     row.mul_add((axis.bins() + 1) as f64, column)
 }
 
@@ -254,22 +252,22 @@ impl Sink for Counter<'_> {
         let fraction = impact.rotational_fraction(&self.plan.body);
         let row = match &self.bins.by {
             By::Velocity(axis) => axis.locate(impact.impact_velocity() * self.plan.scales.speed),
-            By::Number(_) => Pack::splat(simd, number as f64),
+            By::Number(_) => Pack::splat(simd, number as f64 + ROUND),
         };
         let defined = restitution.abs().lt(Sums::LARGEST) & fraction.le(1.0);
-        let site = site_of(&self.bins.restitution, row, restitution, defined);
-        let fraction_site = site_of(&self.bins.fraction, row, fraction, defined);
+        let start = row - ROUND;
+        let site = site_of(&self.bins.restitution, start, restitution, defined);
+        let fraction_site = site_of(&self.bins.fraction, start, fraction, defined);
 
-        let quanta = (restitution - self.tally.origin) * QUANTA;
-
-        let small = quanta.abs().le(NARROW as f64);
+        let offset = restitution - self.tally.origin;
+        let small = offset.abs().le(NARROW as f64 / QUANTA);
         let plain = impact.active & defined & small;
         let lanes = Prepared {
-            row: row + ROUND,
-            site: site + ROUND,
-            fraction_site: fraction_site + ROUND,
-            quanta: small.select(quanta, 0.0) + ROUND,
-            fraction: defined.select(fraction * FRACTION_QUANTA, 0.0) + ROUND,
+            row,
+            site,
+            fraction_site,
+            quanta: offset.mul_add(QUANTA, ROUND),
+            fraction: fraction.mul_add(FRACTION_QUANTA, ROUND),
             restitution,
         };
         if (!plain).any() {
@@ -278,8 +276,8 @@ impl Sink for Counter<'_> {
             (active & defined & small).each(|lane| self.sum(&lanes, lane));
             (active & defined & !small).each(|lane| {
                 let row = whole(&lanes.row, lane) as usize;
-                let quanta = quanta.as_slice()[lane].round_ties_even() as i64;
-                self.tally.sums[row].add(quanta);
+                let quanta = offset.as_slice()[lane] * QUANTA;
+                self.tally.sums[row].add(quanta.round_ties_even() as i64);
                 self.rows[row].fractions += whole(&lanes.fraction, lane) as u64;
                 self.tally.sums[row].extremes(restitution.as_slice()[lane]);
             });
