@@ -77,10 +77,20 @@ impl Run<'_> {
     /// Runs every particle and keeps every impact.
     pub fn simulate(&self, means: Means, monitor: &Monitor) -> Result<Records, Error> {
         let plan = Plan::new(self)?;
+        Error::unless(
+            self.particles.checked_mul(self.impacts).is_some(),
+            "particles",
+            self.particles as f64,
+            "such that particles × impacts can be counted",
+        )?;
         let mut records = Records::new(self.particles, self.impacts);
         means.pool()?.install(|| {
             let rows = records.rows().chunks(BLOCK).enumerate();
-            rows.try_for_each(|(block, rows)| {
+            rows.try_for_each(|(block, mut rows)| {
+                if monitor.is_cancelled() {
+                    rows.iter_mut().for_each(|row| row.blank(0));
+                    return Ok(());
+                }
                 let first = block * BLOCK;
                 let particles = first..first + rows.len();
                 let mut table = Table::new(rows, &plan, first);
@@ -101,7 +111,7 @@ impl Run<'_> {
             let mut counter = Counter::new(bins, &plan, self.law.normal());
             loop {
                 let first = next.fetch_add(BLOCK, Ordering::Relaxed);
-                if first >= self.particles {
+                if first >= self.particles || monitor.is_cancelled() {
                     return Ok(counter.finish());
                 }
                 let particles = first..self.particles.min(first + BLOCK);
@@ -190,9 +200,6 @@ impl<'a> Plan<'a> {
         monitor: &Monitor,
         sink: &mut impl Sink,
     ) -> Result<(), Error> {
-        if monitor.is_cancelled() {
-            return Ok(());
-        }
         let count = particles.len() as u64;
         level.run(Work {
             plan: self,

@@ -37,8 +37,9 @@ pub struct Records {
 }
 
 impl Records {
+    /// Zeros, which cost nothing yet: the rows are written, and blanked where no impact happened, by those who fill them.
     pub(crate) fn new(particles: usize, impacts: usize) -> Self {
-        let table = || vec![f64::NAN; particles * impacts];
+        let table = || vec![0.0; particles * impacts];
         Self {
             columns: impacts,
             time: table(),
@@ -106,6 +107,24 @@ pub(crate) struct Row<'a> {
     release_angle: &'a mut f64,
 }
 
+impl Row<'_> {
+    /// Marks the impacts from number `first` on as never happened.
+    pub(crate) fn blank(&mut self, first: usize) {
+        let numbers = [
+            &mut self.time,
+            &mut self.impact_velocity,
+            &mut self.rebound_velocity,
+            &mut self.restitution,
+            &mut self.rotational_fraction,
+            &mut self.energy_ratio,
+            &mut self.angle,
+        ];
+        for column in numbers {
+            column[first..].fill(f64::NAN);
+        }
+    }
+}
+
 /// Takes the impacts of a block of particles into its rows.
 pub(crate) struct Table<'a> {
     rows: Vec<Row<'a>>,
@@ -167,6 +186,7 @@ impl Sink for Table<'_> {
 
     fn end(&mut self, lane: usize, impacts: usize, reason: StopReason) {
         let row = &mut self.rows[self.first + lane];
+        row.blank(impacts);
         *row.impacts = impacts as i64;
         *row.stop_reason = reason as i8;
     }
