@@ -65,7 +65,7 @@ def test_it_counts_what_simulate_records(
     np.testing.assert_array_equal(found.maximum, expected.maximum)
     # A mean moves by half a quantum at most, a variance by that times twice the largest deviation.
     spread = np.maximum(expected.maximum - expected.minimum, QUANTUM)
-    rounding = 1e-13 * np.maximum(abs(expected.maximum), 1.0)
+    rounding = (1e-13 * np.maximum(abs(expected.maximum), 1.0)).fillna(1)
     np.testing.assert_array_less(abs(found["mean"] - expected["mean"]).fillna(0), 0.5 * QUANTUM + rounding)
     allowed = (2 * QUANTUM * spread + rounding * spread).fillna(1)
     np.testing.assert_array_less(abs(found.variance - expected.variance).fillna(0), allowed)

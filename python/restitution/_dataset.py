@@ -73,8 +73,11 @@ def dataset(run: Run, table: dict[str, Any]) -> xr.Dataset:
         variables[name] = (("particle",), table[name], attrs)
     attrs = attributes(run, "Impacts of bouncing aspherical particles")
     cut_short = np.count_nonzero(table["stop_reason"] == STOP_REASONS.index("interrupted"))
-    if cut_short:
-        attrs["incomplete"] = f"interrupted: {cut_short} of {run.particles} particles were cut short"
+    done = len(table["stop_reason"]) - cut_short
+    if done < run.particles:
+        attrs["incomplete"] = (
+            f"interrupted: {done} of {run.particles} particles are finished, {cut_short} cut short"
+        )
     return xr.Dataset(variables, attrs=attrs)
 
 

@@ -20,7 +20,8 @@ class SimulationInterrupted(KeyboardInterrupt):
     Attributes
     ----------
     data : xarray.Dataset
-        As `simulate` returns it; particles that were cut short have the stop reason ``interrupted``.
+        As `simulate` returns it, with the particles that were begun; those that were cut short have the stop
+        reason ``interrupted``.
     """
 
     def __init__(self, data: "xr.Dataset") -> None:

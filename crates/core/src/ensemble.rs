@@ -11,8 +11,8 @@ use crate::scales::Scales;
 use crate::statistics::{Bins, Counter, Tally};
 use crate::trajectory::Limits;
 use pulp::{Simd, WithSimd};
-use rayon::prelude::*;
 use std::ops::Range;
+use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, AtomicU64, AtomicUsize, Ordering};
 
 /// A run, in SI units.
@@ -74,7 +74,7 @@ impl Monitor {
 pub(crate) const BLOCK: usize = 96;
 
 impl Run<'_> {
-    /// Runs every particle and keeps every impact.
+    /// Runs every particle and keeps every impact. A run that is cancelled returns the particles that were begun.
     pub fn simulate(&self, means: Means, monitor: &Monitor) -> Result<Records, Error> {
         let plan = Plan::new(self)?;
         Error::unless(
@@ -84,24 +84,30 @@ impl Run<'_> {
             "such that particles × impacts can be counted",
         )?;
         let mut records = Records::new(self.particles, self.impacts);
-        means.pool()?.install(|| {
-            let rows = records.rows().chunks(BLOCK).enumerate();
-            rows.try_for_each(|(block, mut rows)| {
-                if monitor.is_cancelled() {
-                    rows.iter_mut().for_each(|row| row.blank(0));
-                    return Ok(());
+        let started = AtomicUsize::new(0);
+        let rows = Mutex::new(records.rows());
+        // Blocks go in order to whichever thread is free, so that a run that is cancelled leaves a table of those begun.
+        let ended = means.pool()?.broadcast(|_| {
+            while !monitor.is_cancelled() {
+                let mut rows = rows.lock().expect("no thread panics while it takes rows");
+                let block: Vec<_> = rows.by_ref().take(BLOCK).collect();
+                let first = started.fetch_add(block.len(), Ordering::Relaxed);
+                drop(rows);
+                if block.is_empty() {
+                    break;
                 }
-                let first = block * BLOCK;
-                let particles = first..first + rows.len();
-                let mut table = Table::new(rows, &plan, first);
-                plan.bounce(particles, means.level, monitor, &mut table)
-            })
-        })?;
+                let particles = first..first + block.len();
+                let mut table = Table::new(block, &plan, first);
+                plan.bounce(particles, means.level, monitor, &mut table)?;
+            }
+            Ok(())
+        });
+        drop(rows);
+        ended.into_iter().collect::<Result<(), Error>>()?;
+        records.truncate(started.into_inner());
         Ok(records)
     }
-}
 
-impl Run<'_> {
     /// Runs every particle and keeps the statistics of the impacts only, in memory that does not grow with the run.
     pub fn statistics(&self, bins: &Bins, means: Means, monitor: &Monitor) -> Result<Tally, Error> {
         let plan = Plan::new(self)?;

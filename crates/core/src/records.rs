@@ -5,7 +5,6 @@ use crate::ensemble::Plan;
 use crate::lanes::{Impact, Pack, Sink};
 use crate::trajectory::StopReason;
 use pulp::Simd;
-use rayon::prelude::*;
 
 /// Every impact of a run, in SI units. Tables are row-major of shape (particle, impact), with NaN (0 in `contact`) where
 /// there was no impact; the rest has one entry a particle.
@@ -56,39 +55,68 @@ impl Records {
         }
     }
 
-    /// The rows, one a particle, to be filled in parallel.
-    pub(crate) fn rows(&mut self) -> impl IndexedParallelIterator<Item = Row<'_>> {
+    /// Number of particles.
+    pub fn particles(&self) -> usize {
+        self.impacts.len()
+    }
+
+    /// Keeps the first particles only. Memory that nobody wrote to is never touched.
+    pub(crate) fn truncate(&mut self, particles: usize) {
+        let tables = [
+            &mut self.time,
+            &mut self.impact_velocity,
+            &mut self.rebound_velocity,
+            &mut self.restitution,
+            &mut self.rotational_fraction,
+            &mut self.energy_ratio,
+            &mut self.angle,
+        ];
+        for table in tables {
+            table.truncate(particles * self.columns);
+        }
+        self.contact.truncate(particles * self.columns);
+        self.impacts.truncate(particles);
+        self.stop_reason.truncate(particles);
+        self.release_angle.truncate(particles);
+    }
+
+    /// The rows, one a particle.
+    pub(crate) fn rows(&mut self) -> impl Iterator<Item = Row<'_>> {
         let n = self.columns;
-        let motion = (
-            self.time.par_chunks_mut(n),
-            self.impact_velocity.par_chunks_mut(n),
-            self.rebound_velocity.par_chunks_mut(n),
-            self.restitution.par_chunks_mut(n),
-            self.rotational_fraction.par_chunks_mut(n),
-            self.energy_ratio.par_chunks_mut(n),
-            self.angle.par_chunks_mut(n),
-            self.contact.par_chunks_mut(n),
-        );
-        let outcome = (
-            self.impacts.par_iter_mut(),
-            self.stop_reason.par_iter_mut(),
-            self.release_angle.par_iter_mut(),
-        );
-        (motion.into_par_iter(), outcome.into_par_iter())
-            .into_par_iter()
-            .map(|(m, o)| Row {
-                time: m.0,
-                impact_velocity: m.1,
-                rebound_velocity: m.2,
-                restitution: m.3,
-                rotational_fraction: m.4,
-                energy_ratio: m.5,
-                angle: m.6,
-                contact: m.7,
-                impacts: o.0,
-                stop_reason: o.1,
-                release_angle: o.2,
-            })
+        let velocities = self
+            .impact_velocity
+            .chunks_mut(n)
+            .zip(self.rebound_velocity.chunks_mut(n));
+        let ratios = self
+            .restitution
+            .chunks_mut(n)
+            .zip(self.energy_ratio.chunks_mut(n));
+        let fractions = self.rotational_fraction.chunks_mut(n);
+        let geometry = self.angle.chunks_mut(n).zip(self.contact.chunks_mut(n));
+        let ends = self.impacts.iter_mut().zip(&mut self.stop_reason);
+        self.time
+            .chunks_mut(n)
+            .zip(velocities)
+            .zip(ratios.zip(fractions))
+            .zip(geometry)
+            .zip(ends.zip(&mut self.release_angle))
+            .map(
+                |((((time, velocities), (ratios, fraction)), geometry), (end, release_angle))| {
+                    Row {
+                        time,
+                        impact_velocity: velocities.0,
+                        rebound_velocity: velocities.1,
+                        restitution: ratios.0,
+                        energy_ratio: ratios.1,
+                        rotational_fraction: fraction,
+                        angle: geometry.0,
+                        contact: geometry.1,
+                        impacts: end.0,
+                        stop_reason: end.1,
+                        release_angle,
+                    }
+                },
+            )
     }
 }
 

@@ -108,7 +108,7 @@ fn simulate<'py>(
     let (records, interrupted) = watch::run(py, progress, |monitor| run.simulate(means, monitor))?;
 
     let table = PyDict::new(py);
-    let shape = (run.particles, run.impacts);
+    let shape = (records.particles(), run.impacts);
     set(py, &table, "time", shape, records.time)?;
     set(
         py,
