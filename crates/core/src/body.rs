@@ -3,6 +3,9 @@
 use crate::Error;
 use std::f64::consts::PI;
 
+/// L/R below which a dumbbell is a sphere: far below the last digit of anything that is computed.
+const NEGLIGIBLE: f64 = 1e-75;
+
 /// Two equal spheres whose centres are `separation` apart, of homogeneous density, in SI units.
 ///
 /// For `separation < 2 radius` the spheres overlap and the body is their union; beyond that it is two full
@@ -72,8 +75,14 @@ impl Dumbbell {
     /// The body in the core's units: lengths in R, masses in m.
     pub fn scaled(&self) -> Body {
         let mass = self.mass_factor();
+        let elongation = self.elongation();
         Body {
-            half_separation: 0.5 * self.separation / self.radius,
+            // What no digit of the motion can show is left out, lest its powers underflow.
+            half_separation: if elongation < NEGLIGIBLE {
+                0.0
+            } else {
+                0.5 * elongation
+            },
             transverse: self.transverse_factor() / mass,
             axial: self.axial_factor() / mass,
         }

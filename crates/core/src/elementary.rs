@@ -77,8 +77,9 @@ pub(crate) fn sincos_in_lanes<S: Simd, const K: usize>(x: Pack<S, K>) -> (Pack<S
 
     // Quarter turn 1: (c, −s), 2: (−s, −c), 3: (−c, s).
     let (odd, half) = (shifted.bit(0), shifted.bit(1));
-    let (sine, cosine) = (odd.select(cosine, sine), odd.select(-sine, cosine));
-    (half.select(-sine, sine), half.select(-cosine, cosine))
+    let (sine, cosine) = (odd.select(cosine, sine), odd.select(sine, cosine));
+    let other = odd ^ half;
+    (half.select(-sine, sine), other.select(-cosine, cosine))
 }
 
 /// Angle in [0, π] between the z axis and a unit vector with these horizontal and vertical components.

@@ -226,14 +226,26 @@ struct Work<'a, T> {
     sink: &'a mut T,
 }
 
-/// Vectors side by side; two keep the arithmetic units busy.
-const VECTORS: usize = 3;
+/// Vectors side by side: enough to keep the arithmetic units busy, and fewer where there is no vector.
+const VECTORS: usize = 6;
+const SCALARS: usize = 4;
 
 impl<T: Sink> WithSimd for Work<'_, T> {
     type Output = Result<(), Error>;
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) -> Self::Output {
+        if size_of::<S::f64s>() == size_of::<f64>() {
+            self.side_by_side::<S, SCALARS>(simd)
+        } else {
+            self.side_by_side::<S, VECTORS>(simd)
+        }
+    }
+}
+
+impl<T: Sink> Work<'_, T> {
+    #[inline(always)]
+    fn side_by_side<S: Simd, const K: usize>(self, simd: S) -> Result<(), Error> {
         let Self {
             plan,
             particles,
@@ -246,13 +258,13 @@ impl<T: Sink> WithSimd for Work<'_, T> {
             minimum_speed: run.minimum_speed / plan.scales.speed,
         };
         let (mut sines, mut cosines) = ([0.0; BLOCK], [0.0; BLOCK]);
-        for first in particles.clone().step_by(Pack::<S, VECTORS>::WIDTH) {
-            let count = Pack::<S, VECTORS>::WIDTH.min(particles.end - first);
+        for first in particles.clone().step_by(Pack::<S, K>::WIDTH) {
+            let count = Pack::<S, K>::WIDTH.min(particles.end - first);
             for lane in 0..count {
                 (sines[lane], cosines[lane]) = plan.release(first + lane);
             }
             sink.begin(first - particles.start);
-            lanes::bounce::<S, VECTORS>(
+            lanes::bounce::<S, K>(
                 simd,
                 &plan.body,
                 &run.law,

@@ -62,7 +62,7 @@ impl<S: Simd, const K: usize> State<S, K> {
     /// de_z/dt.
     #[inline(always)]
     pub(super) fn tilt_rate(&self, phase: Phase<S, K>) -> Pack<S, K> {
-        -(self.spin * self.sine.mul_add(phase.cos, self.cosine * phase.sin))
+        -self.spin * self.sine.mul_add(phase.cos, self.cosine * phase.sin)
     }
 
     /// The state after `time`, when the sphere on the side `side` = ±L/2 of the centre of mass touches the plane.

@@ -6,7 +6,7 @@
 //! The loops over the vectors are plain ones because closures are not compiled for the SIMD level of their caller.
 
 use pulp::Simd;
-use std::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
+use std::ops::{Add, BitAnd, BitOr, BitXor, Div, Mul, Neg, Not, Sub};
 
 /// K vectors of doubles.
 #[derive(Clone, Copy)]
@@ -231,6 +231,15 @@ impl<S: Simd, const K: usize> BitOr for Mask<S, K> {
     fn bitor(self, other: Self) -> Self {
         let (a, b, simd) = (self.masks, other.masks, self.simd);
         self.with(each_vector!(r = a, k => simd.or_m64s(a[k], b[k])))
+    }
+}
+
+impl<S: Simd, const K: usize> BitXor for Mask<S, K> {
+    type Output = Self;
+    #[inline(always)]
+    fn bitxor(self, other: Self) -> Self {
+        let (a, b, simd) = (self.masks, other.masks, self.simd);
+        self.with(each_vector!(r = a, k => simd.xor_m64s(a[k], b[k])))
     }
 }
 

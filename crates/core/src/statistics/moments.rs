@@ -11,7 +11,7 @@ pub(super) const NARROW: u64 = 1 << 27;
 pub(super) const MOST_RECENT: u32 = 1 << 19;
 
 /// Σq, Σq², Σq³, Σq⁴ of a limited number of values of limited size, q the value's offset in quanta: what the hot loop adds to.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Clone, Copy)]
 pub(super) struct Recent {
     first: i64,
     second: u128,
@@ -20,6 +20,13 @@ pub(super) struct Recent {
 }
 
 impl Recent {
+    pub const EMPTY: Self = Self {
+        first: 0,
+        second: 0,
+        third: 0,
+        fourth: 0,
+    };
+
     /// Adds an offset of at most [`NARROW`] quanta.
     #[inline(always)]
     pub fn add(&mut self, q: i64) {
@@ -28,6 +35,31 @@ impl Recent {
         self.second += u128::from(square);
         self.third += i128::from(square as i64) * i128::from(q);
         self.fourth += u128::from(square) * u128::from(square);
+    }
+}
+
+/// The smallest and the largest of the recent values.
+#[derive(Clone, Copy)]
+pub(super) struct Extremes {
+    minimum: f64,
+    maximum: f64,
+}
+
+impl Extremes {
+    pub const EMPTY: Self = Self {
+        minimum: f64::INFINITY,
+        maximum: f64::NEG_INFINITY,
+    };
+
+    /// Stores only what is new, which is rare.
+    #[inline(always)]
+    pub fn add(&mut self, value: f64) {
+        if value < self.minimum {
+            self.minimum = value;
+        }
+        if value > self.maximum {
+            self.maximum = value;
+        }
     }
 }
 
@@ -132,30 +164,21 @@ impl Sums {
         self.fourth.add(shifted(product(high, high), 2), 0);
     }
 
-    /// Counts a value for the extremes.
-    #[inline(always)]
-    pub(super) fn extremes(&mut self, value: f64) {
-        if value < self.minimum {
-            self.minimum = value;
-        }
-        if value > self.maximum {
-            self.maximum = value;
-        }
-    }
-
-    /// Takes over the recent sums and leaves nothing there.
-    pub(super) fn absorb(&mut self, recent: &mut Recent) {
+    /// Adds what is recent.
+    pub(super) fn absorb(&mut self, recent: &Recent, extremes: &Extremes) {
         let Recent {
             first,
             second,
             third,
             fourth,
-        } = std::mem::take(recent);
+        } = *recent;
         let sign = |negative: bool| if negative { u64::MAX } else { 0 };
         self.first.add([first as u64], sign(first < 0));
         self.second.add(words(second), 0);
         self.third.add(words(third as u128), sign(third < 0));
         self.fourth.add(words(fourth), 0);
+        self.minimum = self.minimum.min(extremes.minimum);
+        self.maximum = self.maximum.max(extremes.maximum);
     }
 
     /// Adds the values of another bin.

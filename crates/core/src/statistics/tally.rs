@@ -1,7 +1,7 @@
 //! What `statistics` keeps of a run: grids of counts and sums, of a size that the bins alone decide.
 
 use super::axis::{Axis, ROUND};
-use super::moments::{MOST_RECENT, Moments, NARROW, QUANTA, Recent, Sums};
+use super::moments::{Extremes, MOST_RECENT, Moments, NARROW, QUANTA, Recent, Sums};
 use crate::ensemble::Plan;
 use crate::lanes::{Impact, Mask, Pack, Sink};
 use crate::trajectory::StopReason;
@@ -156,10 +156,19 @@ pub(crate) struct Counter<'a> {
 }
 
 /// What is recent in a row.
-#[derive(Clone, Copy, Default)]
+#[derive(Clone, Copy)]
 struct Row {
     sums: Recent,
     fractions: u64,
+    extremes: Extremes,
+}
+
+impl Row {
+    const EMPTY: Self = Self {
+        sums: Recent::EMPTY,
+        fractions: 0,
+        extremes: Extremes::EMPTY,
+    };
 }
 
 impl<'a> Counter<'a> {
@@ -170,7 +179,7 @@ impl<'a> Counter<'a> {
             plan,
             restitution: vec![0; tally.restitution.counts.len()],
             fraction: vec![0; tally.fraction.counts.len()],
-            rows: vec![Row::default(); tally.sums.len()],
+            rows: vec![Row::EMPTY; tally.sums.len()],
             recent: 0,
             tally,
         }
@@ -181,8 +190,9 @@ impl<'a> Counter<'a> {
         self.tally.restitution.absorb(&mut self.restitution);
         self.tally.fraction.absorb(&mut self.fraction);
         for (i, row) in self.rows.iter_mut().enumerate() {
-            self.tally.sums[i].absorb(&mut row.sums);
-            self.tally.fractions[i] += u128::from(std::mem::take(&mut row.fractions));
+            let row = std::mem::replace(row, Row::EMPTY);
+            self.tally.sums[i].absorb(&row.sums, &row.extremes);
+            self.tally.fractions[i] += u128::from(row.fractions);
         }
     }
 
@@ -229,10 +239,10 @@ impl Counter<'_> {
 
     #[inline(always)]
     fn sum<S: Simd, const K: usize>(&mut self, lanes: &Prepared<S, K>, lane: usize) {
-        let row = whole(&lanes.row, lane) as usize;
-        self.rows[row].sums.add(whole(&lanes.quanta, lane));
-        self.rows[row].fractions += whole(&lanes.fraction, lane) as u64;
-        self.tally.sums[row].extremes(lanes.restitution.as_slice()[lane]);
+        let row = &mut self.rows[whole(&lanes.row, lane) as usize];
+        row.sums.add(whole(&lanes.quanta, lane));
+        row.fractions += whole(&lanes.fraction, lane) as u64;
+        row.extremes.add(lanes.restitution.as_slice()[lane]);
     }
 }
 
@@ -279,7 +289,7 @@ impl Sink for Counter<'_> {
                 let quanta = offset.as_slice()[lane] * QUANTA;
                 self.tally.sums[row].add(quanta.round_ties_even() as i64);
                 self.rows[row].fractions += whole(&lanes.fraction, lane) as u64;
-                self.tally.sums[row].extremes(restitution.as_slice()[lane]);
+                self.rows[row].extremes.add(restitution.as_slice()[lane]);
             });
         } else {
             for lane in 0..width {
