@@ -133,6 +133,7 @@ def runs(**chosen: Any) -> Runs:
         "energy": dict.fromkeys(SETTINGS.energy_elongations, MAIN),
         "by_radius": dict.fromkeys(SETTINGS.radii, pair),
         "by_height": dict.fromkeys(SETTINGS.heights, pair),
+        "counted": None,  # verdicts rest on what is recorded
         "seed": 1,
     }
     return Runs(**(everything | chosen))

@@ -161,7 +161,7 @@ def test_help(words: list[str]) -> None:
     prose = re.sub("[─│╭╮╰╯]", "", result.stdout)  # the frames, which are ASCII where the terminal is
     assert prose.isascii()
     expected = {"": ["simulate", "paper", "--version"], "simulate": ["--out", "--threads", "--force"]}
-    for option in expected.get(" ".join(words), ["--out", "--impacts", "--seed", "--threads", "4000000"]):
+    for option in expected.get(" ".join(words), ["--out", "--impacts", "--seed", "--threads", "100000000"]):
         assert option in prose
 
 

@@ -25,7 +25,13 @@ from restitution.paper._folder import unfinished
 from restitution.paper._runs import Runs, derived_seed, simulate_all
 from restitution.paper._settings import Settings
 
-SMALL = replace(Settings(), least_impacts=100_000, secondary_particles=60, first_particles=20_000)
+SMALL = replace(
+    Settings(),
+    least_impacts=100_000,
+    recorded_impacts=60_000,
+    secondary_particles=60,
+    first_particles=20_000,
+)
 NAMES = [figure.name for figure in FIGURES]
 
 
@@ -98,20 +104,40 @@ def test_every_axis_says_what_it_shows(name: str, runs: Runs) -> None:
 
 COMMON = ["ε_n = ", "ε_t = 1", "θ uniform in [0, π)", "9.81 m/s²", "particles", "seed", "restitution 0."]
 OURS = ["R = 3 mm", "released at 60 mm"]
+COUNTED = ["103 particles", "1 200 impacts"]
+RECORDED = ["standard errors, the first 62 particles"]
 PARAMETERS = {
-    "figure-2": [*OURS, "L/R = 0.1", "ε_n = 0.98", "0.002 m/s × 0.01", "1 200 impacts"],
-    "figure-3": [*OURS, "L/R = 0.1", "ε_n = 0.98", "0.002 m/s × 0.005", "1 200 impacts"],
+    "figure-2": [*OURS, *COUNTED, "L/R = 0.1", "ε_n = 0.98", "0.002 m/s × 0.01"],
+    "figure-3": [*OURS, *COUNTED, "L/R = 0.1", "ε_n = 0.98", "0.002 m/s × 0.005"],
     "figure-4": [
         *OURS,
+        *COUNTED,
+        *RECORDED,
         "L/R = 0.1",
         "0.1 m/s",
         "0.2, 0.4 and 0.8 m/s",
         "± 5%",
         "0.024, 0.012, 0.006 and 0.002",
     ],
-    "figure-5": [*OURS, "L/R = 0.1", "0.1 m/s", "0.2, 0.4 and 0.8 m/s", "± 5%", "bin width 0.005"],
-    "figure-6": [*OURS, "L/R = 0.01 and 0.02", "bins of 0.02 m/s", "400 impacts"],
-    "figure-7": [*OURS, "L/R = 0.1", "ε_n = 0.98", "0.002 m/s × 0.01", "1 200 impacts"],
+    "figure-5": [
+        *OURS,
+        *COUNTED,
+        *RECORDED,
+        "L/R = 0.1",
+        "0.1 m/s",
+        "0.2, 0.4 and 0.8 m/s",
+        "± 5%",
+        "bin width 0.005",
+    ],
+    "figure-6": [
+        *OURS,
+        "L/R = 0.01 and 0.02",
+        "bins of 0.02 m/s",
+        "250 particles for each L/R, each followed for at most 400 impacts",
+        "200 000 in all",
+        "the first 60 particles for each L/R, 48 000 impacts in all",
+    ],
+    "figure-7": [*OURS, *COUNTED, "L/R = 0.1", "ε_n = 0.98", "0.002 m/s × 0.01"],
     "figure-9": [*OURS, "L/R = 2", "ε_n = 0.4", "bin width 0.005", "20 000 particles"],
     "figure-2-sensitivity": ["R = 1, 3 and 10 mm", "h = 30, 60 and 200 mm", "L/R = 0.1", "1 600 impacts"],
     "figure-6-sensitivity": ["R = 1, 3 and 10 mm", "h = 30, 60 and 200 mm", "L/R = 0.01", "1 600 impacts"],
@@ -129,19 +155,6 @@ def test_caption_states_every_parameter_and_whose_it_is(name: str, saved: dict[s
     assert "L/R" in about_paper
     assert "9.81" in ours
     assert "mm" in ours
-
-
-def test_map_is_the_histogram_of_the_run(runs: Runs) -> None:
-    """Fig. 2's lattice holds the counts that NumPy's own histogram finds; each site the paper's mesh wide."""
-    drawn = data.restitution_map(runs, SMALL)
-    v, e = (runs.main[name].to_numpy().ravel() for name in ("impact_velocity", "restitution"))
-    edges = drawn["velocity_edges"].to_numpy(), drawn["restitution_edges"].to_numpy()
-    # NumPy closes its last bin; nothing lies on it here.
-    expected, _, _ = np.histogram2d(v[np.isfinite(v)], e[np.isfinite(v)], bins=list(edges))
-    np.testing.assert_array_equal(drawn["count"], expected)
-    np.testing.assert_allclose(np.diff(edges[0]), 0.002, rtol=1e-9)
-    np.testing.assert_allclose(np.diff(edges[1]), 0.01, rtol=1e-9)
-    np.testing.assert_allclose(edges[0] / 0.002, np.round(edges[0] / 0.002), rtol=1e-12)
 
 
 def test_population_is_normalised_by_its_largest_and_blank_where_empty() -> None:
@@ -201,17 +214,12 @@ def test_trajectories_are_followed_far_enough() -> None:
 
 
 def test_runs_have_their_own_seeds(runs: Runs) -> None:
-    """Runs share no random numbers, and each says its seed; the name decides, not the order."""
+    """Recorded runs share no random numbers, and each says its seed; the name decides, not the order."""
     seeds = runs.seeds()
     assert len(seeds) == len(set(seeds.values())) == 3 + 2 + 3 + 12
     assert seeds["main"] == derived_seed(5, "main") != derived_seed(6, "main")
     again = simulate_all(SMALL, 100_000, seed=5, threads=1, progress=False)
     xr.testing.assert_identical(again.main, runs.main)
-
-
-def test_main_run_holds_the_impacts_asked_for(runs: Runs) -> None:
-    """Trajectories end by themselves, on average late enough for the number of particles."""
-    assert int(runs.main["impacts"].sum()) >= 100_000
 
 
 def test_fewer_impacts_than_the_paper_are_refused() -> None:

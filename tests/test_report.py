@@ -11,6 +11,7 @@ from pathlib import Path
 import pytest
 
 from restitution.paper._claims import Claim, Measurement, deviations, with_error
+from restitution.paper._counted import impacts_counted
 from restitution.paper._misprints import MISPRINTS
 from restitution.paper._report import write_report
 from restitution.paper._report._html import prose
@@ -186,6 +187,9 @@ def test_numbers_come_from_the_runs(source: str, runs: Runs) -> None:
     for row in SMALL.rows():
         assert row.unit in text
     assert "restitution paper --out paper --impacts 1000 --seed 5" in text
+    counted = f"{impacts_counted(runs.counted.lattice):,}".replace(",", " ")
+    assert f"with {counted} impacts behind Fig. 2" in text
+    assert "main, counted" in text
     assert str(runs.main.attrs["version"]) in text
 
 

@@ -128,8 +128,8 @@ def simulate(
 def paper(
     out: Annotated[Path, typer.Option(metavar="DIR", help="The directory to write to, all or nothing.")],
     impacts: Annotated[
-        int, typer.Option(metavar="N", help="Impacts in Figs. 2-5 and 7; at least 400000, as in the paper.")
-    ] = 4_000_000,
+        int, typer.Option(metavar="N", help="Impacts in each of Figs. 2-7; at least 400000, as in the paper.")
+    ] = 100_000_000,
     seed: Annotated[int, typer.Option(metavar="S", help="Seed of the random numbers, in [0, 2**64).")] = 1,
     threads: Threads = None,
 ) -> None:

@@ -41,19 +41,20 @@ def fraction_map(drawn: xr.Dataset, s: Settings) -> str:
 def restitution_histograms(drawn: xr.Dataset, s: Settings) -> str:
     """Caption of Fig. 4."""
     fits = "; ".join(
-        f"{float(part['speed']):g} m/s: m = {float(part['fit_location']):.4f},"
-        f" a = {float(part['fit_above']):.4f}, b = {float(part['fit_below']):.4f}"
-        f" from {_number(part['number'])} impacts ({_number(part['outside'])} outside the bins)"
+        f"{float(part['speed']):g} m/s: {_number(part['number'])} impacts ({_number(part['outside'])} outside"
+        f" the bins), m = {float(part['fit_location']):.4f}, a = {float(part['fit_above']):.4f},"
+        f" b = {float(part['fit_below']):.4f} from {_number(part['fit_number'])} recorded ones"
         for part in _parts(drawn)
     )
     return _join(
         "Fig. 4 redrawn. Probability density of the coefficient of restitution ε (Eq. 1) at four impact",
         "velocities. Points: simulation, ± one standard error, each particle counting as one draw.",
         "Lines: asymmetric Laplace density, exp[−(ε−m)/a]/(a+b) above m and exp[−(m−ε)/b]/(a+b) below,",
-        f"by maximum likelihood. {fits}.",
+        f"by maximum likelihood from the recorded impacts. {fits}.",
         paper=[f"L/R = {s.elongation:g}", _named_speed(s), *_law(drawn), _angle(drawn)],
         ours=[*_windows(s), f"bin widths {_list(s.histogram_widths)} in (a)-(d)", *_drop(drawn)],
         drawn=drawn,
+        recorded="the fits and the standard errors",
     )
 
 
@@ -145,13 +146,25 @@ def deviation_sensitivity(drawn: xr.Dataset, s: Settings) -> str:
     )
 
 
-def _join(*text: str, paper: list[str], ours: list[str], drawn: xr.Dataset, each: str = "") -> str:
+def _join(
+    *text: str,
+    paper: list[str],
+    ours: list[str],
+    drawn: xr.Dataset,
+    each: str = "",
+    recorded: str = "the standard errors",
+) -> str:
     about = drawn.attrs
-    run = (
-        f"Run: {_number(about['particles'])} particles{f' {each}' if each else ''}, each followed for at most"
-        f" {_number(about['impacts'])} impacts (ours), {_number(about['impacts_recorded'])} in all;"
-        f" {_seeds(about['seeds'])}; restitution {about['version']}."
-    )
+    sizes = [
+        f"{_number(about['particles'])} particles{f' {each}' if each else ''}, each followed for at most"
+        f" {_number(about['impacts'])} impacts (ours), {_number(_impacts(drawn))} in all"
+    ]
+    if "impacts_counted" in about and "impacts_recorded" in about:
+        sizes.append(
+            f"recorded, for {recorded}, the first {_number(about['particles_recorded'])} particles"
+            f"{f' {each}' if each else ''}, {_number(about['impacts_recorded'])} impacts in all"
+        )
+    run = f"Run: {'; '.join(sizes)}; {_seeds(about['seeds'])}; restitution {about['version']}."
     sources = [f"Stated in the paper: {'; '.join(paper)}.", f"Our choice: {'; '.join(ours)}."]
     return " ".join([*text, *sources, run])
 
@@ -161,13 +174,19 @@ def _seeds(seeds: list[int]) -> str:
     return f"seed {text}" if len(seeds) == 1 else f"seeds {text} in the order of the legend"
 
 
+def _impacts(drawn: xr.Dataset) -> int:
+    """Give the number of impacts behind a figure."""
+    about = drawn.attrs
+    return int(about["impacts_counted"] if "impacts_counted" in about else about["impacts_recorded"])
+
+
 def _colour(count: xr.DataArray) -> str:
     most = _number(count.max())
     return f"Colour: impacts on a lattice site over those on the most populated one ({most}); none: blank."
 
 
 def _share(count: xr.DataArray, drawn: xr.Dataset) -> str:
-    share = float(count.sum()) / drawn.attrs["impacts_recorded"]
+    share = float(count.sum()) / _impacts(drawn)
     return f"{share:.1%} of all impacts lie in the range drawn."
 
 

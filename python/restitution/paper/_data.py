@@ -9,11 +9,11 @@ import xarray as xr
 
 from restitution import analytic, fit
 from restitution._reduce import reduce, standard_errors
+from restitution.paper._counted import impacts_counted
 from restitution.paper._misprints import printed_density
 from restitution.paper._runs import Runs
 from restitution.paper._settings import Settings
-
-FloatArray = npt.NDArray[np.float64]
+from restitution.paper._windows import FloatArray, IntArray, at_speeds, coarse, histogram_edges, mesh
 
 QUANTILES = (0.01, 0.5, 0.99)
 """Quantiles of restitution in the sensitivity figure of Fig. 2."""
@@ -21,64 +21,59 @@ QUANTILES = (0.01, 0.5, 0.99)
 _FEWEST_FOR_QUANTILES = 200
 
 
-def mesh(low: float, high: float, step: float) -> FloatArray:
-    """Edges of the lattice with origin 0 and this step, from `low` to `high`, shape (n + 1,)."""
-    return step * np.arange(round(low / step), round(high / step) + 1, dtype=np.float64)
-
-
 def restitution_map(runs: Runs, s: Settings) -> xr.Dataset:
     """Fig. 2: ``count`` on the lattice of impact velocity and restitution."""
-    velocity = mesh(*s.velocity_range, s.velocity_mesh)
-    restitution = mesh(*s.restitution_range, s.restitution_mesh)
-    return reduce(runs.main, velocity, restitution).assign_attrs(_about(runs.main))
+    return runs.counted.lattice.assign_attrs(_about_counted(runs.counted.lattice))
 
 
 def fraction_map(runs: Runs, s: Settings) -> xr.Dataset:
     """Fig. 3: ``fraction_count`` on the lattice of impact velocity and E_rot/E_tot."""
-    velocity = mesh(*s.velocity_range, s.velocity_mesh)
-    restitution = mesh(*s.restitution_range, s.restitution_mesh)
-    fraction = mesh(*s.fraction_range, s.fraction_mesh)
-    return reduce(runs.main, velocity, restitution, fraction).assign_attrs(_about(runs.main))
+    return runs.counted.lattice.assign_attrs(_about_counted(runs.counted.lattice))
 
 
 def low_velocity_map(runs: Runs, s: Settings) -> xr.Dataset:
     """Fig. 7: as Fig. 2 at low and negative impact velocity."""
-    velocity = mesh(*s.low_velocity_range, s.velocity_mesh)
-    restitution = mesh(*s.low_restitution_range, s.restitution_mesh)
-    return reduce(runs.main, velocity, restitution).assign_attrs(_about(runs.main))
+    return runs.counted.slow.assign_attrs(_about_counted(runs.counted.slow))
 
 
 def restitution_histograms(runs: Runs, s: Settings) -> xr.Dataset:
-    """Fig. 4: density of restitution at each speed with its asymmetric Laplace fit."""
+    """Fig. 4: density of restitution at each speed with its asymmetric Laplace fit to recorded impacts."""
     parts = []
-    for window, width in zip(s.speed_windows, s.histogram_widths, strict=True):
+    for counted, window, width in zip(
+        at_speeds(runs.counted.windows, s), s.speed_windows, s.histogram_widths, strict=True
+    ):
         particle, values = _window(runs.main, "restitution", window)
-        half = s.histogram_bins // 2
-        edges = s.normal + width * np.arange(-half, half + 1, dtype=np.float64)
+        edges = histogram_edges(s, width)
         fitted = fit.asymmetric_laplace(values)
         # The cusp itself is among the points, lest the curve cut it off.
         points = np.sort(np.append(np.linspace(edges[0], edges[-1], 400), fitted.parameters["location"]))
-        part = _histogram(particle, values, edges)
+        count = coarse(counted["count"].to_numpy(), s, width)
+        part = _histogram(count, int(counted["number"]), edges, _together(particle, values, edges))
         part["fit_point"] = ("point", points)
         part["fit_density"] = ("point", fitted.pdf(points))
+        part["fit_number"] = values.size
         for name, value in fitted.parameters.items():
             part[f"fit_{name}"] = value
         parts.append(part)
-    return _by_speed(parts, s).assign_attrs(_about(runs.main))
+    return _by_speed(parts, s).assign_attrs(_about(runs.main), **_about_counted(runs.counted.windows))
 
 
 def fraction_histograms(runs: Runs, s: Settings) -> xr.Dataset:
     """Fig. 5: density of E_rot/E_tot at each speed."""
     edges = mesh(*s.fraction_range, s.fraction_mesh)
-    parts = [
-        _histogram(*_window(runs.main, "rotational_fraction", window), edges) for window in s.speed_windows
-    ]
-    return _by_speed(parts, s).assign_attrs(_about(runs.main))
+    parts = []
+    for counted, window in zip(at_speeds(runs.counted.windows, s), s.speed_windows, strict=True):
+        together = _together(*_window(runs.main, "rotational_fraction", window), edges)
+        count = counted["fraction_count"].to_numpy()
+        parts.append(_histogram(count, int(counted["number"]), edges, together))
+    return _by_speed(parts, s).assign_attrs(_about(runs.main), **_about_counted(runs.counted.windows))
 
 
 def bead_deviation(runs: Runs, s: Settings) -> xr.Dataset:
     """Fig. 6: standard deviation of restitution against impact velocity, by elongation."""
-    return _deviations(runs.beads, "elongation", mesh(*s.deviation_range, s.deviation_mesh))
+    counted = runs.counted.beads
+    drawn = _deviations(runs.beads, "elongation", mesh(*s.deviation_range, s.deviation_mesh), counted)
+    return drawn.assign_attrs(_about_counted(*counted.values()))
 
 
 def first_impact(runs: Runs, s: Settings) -> xr.Dataset:
@@ -91,7 +86,9 @@ def first_impact(runs: Runs, s: Settings) -> xr.Dataset:
     edges = high - step * np.arange(np.ceil((high - low) / step), -0.5, -1)
     edges[0], edges[-1] = low - 1e-12, high + 1e-12
     values = runs.first["restitution"].to_numpy().ravel()
-    drawn = _histogram(np.arange(values.size), values, edges)
+    bins, inside = _bins(values, edges)
+    # One impact a particle: all are independent.
+    drawn = _histogram(np.bincount(bins[inside], minlength=edges.size - 1), values.size, edges, 1.0)
     # Even steps of the angle crowd where the density diverges, at the upper end.
     points = exact.ppf(np.linspace(0.0, 1.0, 1002)[1:-1])
     drawn["point"] = ("point", points)
@@ -129,7 +126,7 @@ def deviation_sensitivity(runs: Runs, s: Settings) -> xr.Dataset:
 
 
 def _about(*runs: xr.Dataset) -> dict[str, Any]:
-    """Attributes for a caption: what all runs have in common, their seeds, and how many impacts they hold."""
+    """Attributes for a caption: what all runs have in common, their seeds, and what was recorded."""
     common = {
         name: value
         for name, value in runs[0].attrs.items()
@@ -138,8 +135,17 @@ def _about(*runs: xr.Dataset) -> dict[str, Any]:
     return {
         **common,
         "seeds": [int(run.attrs["seed"]) for run in runs],
-        "particles": runs[0].sizes["particle"],
+        "particles_recorded": runs[0].sizes["particle"],
         "impacts_recorded": int(sum(run["impacts"].sum() for run in runs)),
+    }
+
+
+def _about_counted(*ensembles: xr.Dataset) -> dict[str, Any]:
+    """Attributes for a caption: seeds, and how many particles (of each) and impacts (of all) were counted."""
+    return {
+        "seeds": [int(found.attrs["seed"]) for found in ensembles],
+        "particles": ensembles[0].attrs["particles"],
+        "impacts_counted": sum(map(impacts_counted, ensembles)),
     }
 
 
@@ -147,32 +153,50 @@ def _varied(runs: Runs, elongation: float) -> list[xr.Dataset]:
     return [pair[elongation] for by in (runs.by_radius, runs.by_height) for pair in by.values()]
 
 
-def _window(
-    data: xr.Dataset, name: str, window: tuple[float, float]
-) -> tuple[npt.NDArray[np.int64], FloatArray]:
+def _window(data: xr.Dataset, name: str, window: tuple[float, float]) -> tuple[IntArray, FloatArray]:
     """Particle and value of `name` for each impact with impact velocity in [lo, hi), both of shape (n,)."""
     velocity = data["impact_velocity"].to_numpy()
     particle, impact = np.nonzero((velocity >= window[0]) & (velocity < window[1]))
     return particle, data[name].to_numpy()[particle, impact]
 
 
-def _histogram(particle: npt.NDArray[np.int64], values: FloatArray, edges: FloatArray) -> xr.Dataset:
-    """Density in half-open bins, with its standard error when the impacts of one particle are correlated."""
-    bins = np.searchsorted(edges, values, side="right") - 1
+def _together(particle: IntArray, values: FloatArray, edges: FloatArray) -> FloatArray:
+    """Design effect in each bin: the variance of its density over that if all impacts were independent.
+
+    A share p = Σc/Σn, with c of the n impacts of a particle in the bin, has the variance Σ(c − np)²/(Σn)²,
+    each particle being one draw. Given is Σ(c − np)²/Σc, which is 1 for rare impacts of different particles,
+    and 1 where there are none.
+    """
     size = edges.size - 1
-    inside = (bins >= 0) & (bins < size)
+    bins, inside = _bins(values, edges)
     cell, each = np.unique(particle[inside] * size + bins[inside], return_counts=True)
-    count = np.bincount(cell % size, weights=each, minlength=size)
-    error = np.sqrt(np.bincount(cell % size, weights=each.astype(np.float64) ** 2, minlength=size))
-    scale = 1 / (values.size * np.diff(edges))
+    drawn = np.bincount(particle)
+    weights = (each, each**2, each * drawn[cell // size])
+    single, squares, mixed = (np.bincount(cell % size, weights=w, minlength=size) for w in weights)
+    share = single / values.size
+    scatter = squares - 2 * share * mixed + share**2 * np.sum(drawn**2)
+    # Rounding may carry it below zero where every impact is in the bin.
+    return np.divide(np.maximum(scatter, 0.0), single, out=np.ones(size), where=single > 0)
+
+
+def _bins(values: FloatArray, edges: FloatArray) -> tuple[IntArray, npt.NDArray[np.bool_]]:
+    """Half-open bin of each value, and whether there is one."""
+    bins = np.searchsorted(edges, values, side="right").astype(np.int64) - 1
+    return bins, (bins >= 0) & (bins < edges.size - 1)
+
+
+def _histogram(count: IntArray, number: int, edges: FloatArray, together: FloatArray | float) -> xr.Dataset:
+    """Density of `number` impacts, and its standard error where `together` impacts make one draw."""
+    scale = 1 / (number * np.diff(edges))
+    error = np.sqrt(count * together)
     return xr.Dataset(
         {
             "edges": ("edge", edges),
-            "count": ("bin", count.astype(np.int64)),
+            "count": ("bin", count),
             "density": ("bin", count * scale, {"long_name": "probability density"}),
             "density_error": ("bin", error * scale, {"long_name": "standard error, a particle is a cluster"}),
-            "number": values.size,
-            "outside": np.count_nonzero(~inside),
+            "number": number,
+            "outside": number - int(count.sum()),
         }
     )
 
@@ -184,18 +208,28 @@ def _by_speed(parts: list[xr.Dataset], s: Settings) -> xr.Dataset:
     return drawn
 
 
-def _deviations(by: Mapping[float, xr.Dataset], axis: str, edges: FloatArray) -> xr.Dataset:
-    """Give, in each velocity bin and for each run, the standard deviation of restitution and its error."""
+def _deviations(
+    by: Mapping[float, xr.Dataset],
+    axis: str,
+    edges: FloatArray,
+    counted: Mapping[float, xr.Dataset] | None = None,
+) -> xr.Dataset:
+    """Give, in each velocity bin and for each run, the standard deviation of restitution and its error.
+
+    Where more particles were counted than recorded, the deviation is that of all of them. Its error follows
+    from the recorded ones: it falls as one over the root of the number of particles.
+    """
     parts = []
-    for data in by.values():
-        variance = reduce(data, edges, [0.0, 1.0])["variance"]
-        error = standard_errors(data, edges)
+    for value, data in by.items():
+        found = reduce(data, edges, [0.0, 1.0]) if counted is None else counted[value]
+        deviation, error = found["variance"] ** 0.5, standard_errors(data, edges)
+        ratio = found.attrs["particles"] / data.attrs["particles"]
         parts.append(
             xr.Dataset(
                 {
-                    "deviation": (variance**0.5).assign_attrs(long_name="standard deviation of restitution"),
-                    "deviation_error": error["deviation_standard_error"],
-                    "particles": error["particles"],
+                    "deviation": deviation.assign_attrs(long_name="standard deviation of restitution"),
+                    "deviation_error": error["deviation_standard_error"] / ratio**0.5,
+                    "particles_recorded": error["particles"],
                 }
             )
         )

@@ -4,6 +4,7 @@ import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.ticker import MultipleLocator
 
 from restitution import figures as fg
 
@@ -38,6 +39,7 @@ def low_velocity_map(drawn: xr.Dataset) -> Figure:
     figure, [[axes]] = fg.panels(fg.COLUMN, 2.7)
     _map(figure, axes, drawn, "restitution", "count")
     axes.set_ylabel(_RESTITUTION)
+    axes.xaxis.set_major_locator(MultipleLocator(0.02))
     for line in (axes.axhline, axes.axvline):
         line(0.0, color="black", linewidth=0.4)
     return figure

@@ -15,7 +15,7 @@ from restitution.paper._settings import Settings
 
 def redraw(
     out: str | os.PathLike[str],
-    impacts: int = 4_000_000,
+    impacts: int = 100_000_000,
     seed: int = 1,
     threads: int | None = None,
     progress: bool = True,
@@ -29,7 +29,8 @@ def redraw(
         exist. Files of an earlier call are replaced, others are left alone. Nothing appears there before
         all is done.
     impacts : int
-        Impacts in the main run, at least 400 000, the number in the paper's Fig. 2.
+        Impacts to count for each of Figs. 2-5 and 7 and each curve of Fig. 6, at least 400 000, the number
+        in the paper's Fig. 2. At most 4 000 000 of them are recorded, for the claims and the standard errors.
     seed : int
         Seed that those of all runs derive from, in [0, 2⁶⁴).
     threads : int, optional

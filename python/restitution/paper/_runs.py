@@ -10,6 +10,7 @@ from tqdm import tqdm
 
 import restitution as rs
 from restitution.laws import TangentialRestitution
+from restitution.paper._counted import Counted, count_all
 from restitution.paper._settings import Settings
 
 # Sensitivity runs keep what is drawn and why each trajectory ended, a third of the memory.
@@ -18,14 +19,14 @@ _KEPT = ("impact_velocity", "restitution", "rotational_fraction", "impacts", "st
 
 @dataclass(frozen=True)
 class Runs:
-    """All data, as from `restitution.simulate`; each Dataset's attrs hold its own seed.
+    """All data: recorded as from `restitution.simulate`, or counted. A Dataset's attrs hold its own seed.
 
     Attributes
     ----------
     main
-        L/R = 0.1, release angle uniform: Figs. 2, 3, 4, 5, 7.
+        L/R = 0.1, release angle uniform: fits and standard errors of Figs. 4 and 5.
     beads
-        By L/R (0.01 and 0.02): Fig. 6.
+        By L/R (0.01 and 0.02): standard errors of Fig. 6.
     first
         L = 2R, ε_n = 0.4, one impact: Fig. 9.
     isotropic
@@ -35,6 +36,8 @@ class Runs:
     by_radius, by_height
         ``[radius][L/R]`` and ``[height][L/R]`` (m) for the L/R of Fig. 2 and the first of Fig. 6; only
         some of the variables.
+    counted
+        Figs. 2, 3, 4, 5, 6, 7: the ensembles that `main` and `beads` are the first particles of.
     seed
         The seed that those of all runs derive from.
     """
@@ -46,10 +49,11 @@ class Runs:
     energy: Mapping[float, xr.Dataset]
     by_radius: Mapping[float, Mapping[float, xr.Dataset]]
     by_height: Mapping[float, Mapping[float, xr.Dataset]]
+    counted: Counted
     seed: int
 
     def seeds(self) -> dict[str, int]:
-        """Seed of every run by the run's name."""
+        """Seed of every recorded run by the run's name; what is counted has the seed of its recorded part."""
         return {str(data.attrs["run"]): int(data.attrs["seed"]) for data in self._all()}
 
     def _all(self) -> list[xr.Dataset]:
@@ -74,7 +78,7 @@ def derived_seed(seed: int, name: str) -> int:
 
 
 def check_impacts(settings: Settings, impacts: int) -> None:
-    """Raise `ValueError` if the main run has fewer impacts than the paper."""
+    """Raise `ValueError` if these are fewer impacts than in the paper."""
     least = settings.least_impacts
     if impacts < least:
         raise ValueError(f"impacts = {impacts}: must be at least {least}, the number of impacts in Fig. 2")
@@ -90,9 +94,10 @@ def simulate_all(
     settings : Settings
         What to simulate.
     impacts : int
-        Impacts in the main run, at least ``settings.least_impacts`` (400 000, the paper's number). A few
-        more are made, because nobody knows beforehand when a trajectory ends. Secondary runs have their own
-        fixed sizes (see `Settings`).
+        Impacts to count for each of Figs. 2-5 and 7 and each curve of Fig. 6, at least
+        ``settings.least_impacts`` (400 000, the paper's number). At most ``settings.recorded_impacts`` of
+        them are recorded in the main run. A few more are made of both, because nobody knows beforehand when
+        a trajectory ends. Secondary runs have their own fixed sizes (see `Settings`).
     seed : int
         Seed of everything; each run derives its own from it and its name.
     threads : int, optional
@@ -111,7 +116,8 @@ def simulate_all(
     """
     check_impacts(settings, impacts)
     s = settings
-    number = 3 + len(s.bead_elongations) + len(s.energy_elongations) + 2 * (len(s.radii) + len(s.heights))
+    number = 6 + 2 * len(s.bead_elongations) + len(s.energy_elongations)
+    number += 2 * (len(s.radii) + len(s.heights))
     with tqdm(total=number, desc="simulations", unit="run", leave=False, disable=not progress) as bar:
 
         def drop(
@@ -153,15 +159,19 @@ def simulate_all(
 
         each = s.impacts_per_particle
         first = drop("first", s.first_elongation, each=1, particles=s.first_particles, law=s.first_law)
+        recorded = min(impacts, s.recorded_impacts)
+        main = drop("main", s.elongation, each=each, particles=ceil(recorded / s.mean_impacts))
+        beads = {
+            x: drop(f"beads, L/R {x:g}", x, each=s.bead_impacts_per_particle) for x in s.bead_elongations
+        }
         return Runs(
-            main=drop("main", s.elongation, each=each, particles=ceil(impacts / s.mean_impacts)),
-            beads={
-                x: drop(f"beads, L/R {x:g}", x, each=s.bead_impacts_per_particle) for x in s.bead_elongations
-            },
+            main=main,
+            beads=beads,
             first=first,
             isotropic=drop("isotropic", s.elongation, each=each, orientation="isotropic"),
             energy={x: drop(f"energy, L/R {x:g}", x, each=each) for x in s.energy_elongations},
             by_radius={r: pair(f"radius {r:g} m", radius=r) for r in s.radii},
             by_height={h: pair(f"height {h:g} m", height=h) for h in s.heights},
+            counted=count_all(s, impacts, main, beads, threads, bar.update),
             seed=seed,
         )

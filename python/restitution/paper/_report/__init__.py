@@ -68,7 +68,7 @@ def write_report(
         "energy": ("What the paper does not say: energy is created", sections.energy(runs)),
         "parameters": ("Parameters", sections.parameters(settings)),
         "runs": ("Simulations", sections.simulations(runs)),
-        "reproduce": ("How to reproduce this report", sections.reproduce(runs, settings)),
+        "reproduce": ("How to reproduce this report", sections.reproduce(runs)),
         "cite": ("How to cite", sections.citation(runs)),
     }
     contents = "\n".join(

@@ -17,6 +17,7 @@ from restitution.paper._claims import (
     gains_by_elongation,
     with_error,
 )
+from restitution.paper._counted import impacts_counted
 from restitution.paper._misprints import MISPRINTS, Misprint
 from restitution.paper._report import _html as html
 from restitution.paper._report._measured import measured
@@ -42,16 +43,17 @@ def heading(claims: Sequence[Claim], runs: Runs) -> str:
     """Give title, what this is, and how many claims hold."""
     numbers = Counter(claim.verdict for claim in claims)
     counts = "\n".join(html.count(verdict, numbers[verdict]) for verdict in get_args(Verdict))
+    counted = impacts_counted(runs.counted.lattice)
     recorded = int(runs.main["impacts"].sum())
     return "\n".join(
         (
             f"<h1>{html.text(TITLE)}</h1>",
             html.paragraph(PAPER + ".", "lead"),
             html.paragraph(
-                f"Figures 2 to 7 and 9 simulated anew, with {_grouped(recorded)} impacts behind Fig. 2, and "
+                f"Figures 2 to 7 and 9 simulated anew, with {_grouped(counted)} impacts behind Fig. 2, and "
                 f"each of {len(claims)} quantitative claims of the paper beside the number measured here, "
-                f"with its standard error and a verdict by a stated rule. Made by {source(runs)}, seed "
-                f"{runs.seed}."
+                f"on the first {_grouped(recorded)} of these impacts if nothing else is said, with its "
+                f"standard error and a verdict by a stated rule. Made by {source(runs)}, seed {runs.seed}."
             ),
             f'<ul class="counts">\n{counts}\n</ul>',
         )
@@ -210,10 +212,19 @@ def parameters(settings: Settings) -> str:
 
 def simulations(runs: Runs) -> str:
     """Tabulate every run: size, seed, and why trajectories ended."""
+    sizes = [
+        (
+            data.attrs,
+            int(data["impacts"].sum()),
+            np.bincount(data["stop_reason"].to_numpy(), minlength=len(STOP_REASONS)),
+        )
+        for data in _datasets(runs)
+    ] + [
+        (found.attrs, impacts_counted(found), found["particles_ended"].to_numpy())
+        for found in runs.counted.ensembles()
+    ]
     rows = []
-    for data in _datasets(runs):
-        about = data.attrs
-        reasons = np.bincount(data["stop_reason"].to_numpy(), minlength=len(STOP_REASONS))
+    for about, impacts, reasons in sizes:
         ended = ", ".join(
             f"{_grouped(int(n))} {reason.replace('_', ' ')}"
             for reason, n in zip(STOP_REASONS, reasons, strict=True)
@@ -228,8 +239,8 @@ def simulations(runs: Runs) -> str:
                     f"{1e3 * about['radius']:g}",
                     f"{1e3 * about['release_height']:g}",
                     about["orientation"],
-                    _grouped(data.sizes["particle"]),
-                    _grouped(int(data["impacts"].sum())),
+                    _grouped(about["particles"]),
+                    _grouped(impacts),
                     ended,
                     about["seed"],
                 )
@@ -248,23 +259,19 @@ def simulations(runs: Runs) -> str:
     )
     note = html.paragraph(
         "A trajectory that collapses has infinitely many impacts in finite time; it ends there and nothing "
-        "is regularised."
+        "is regularised. What is counted is not recorded; the recorded run of the same seed is its first "
+        "particles."
     )
     return f"{note}\n{html.table(headers, rows, numbers=(1, 2, 3, 5, 6))}"
 
 
-def reproduce(runs: Runs, settings: Settings) -> str:
+def reproduce(runs: Runs) -> str:
     """Give the command that makes this report."""
-    command = f"restitution paper --out paper --impacts {_requested(runs, settings)} --seed {runs.seed}"
+    command = f"restitution paper --out paper --impacts {runs.counted.asked} --seed {runs.seed}"
     return f"<pre><code>{html.text(command)}</code></pre>\n" + html.paragraph(
         f"with {source(runs)}. The same version and seed give the same numbers on any number of threads. "
         "Beside this file are each figure as PNG and PDF, its caption, and the data drawn as netCDF."
     )
-
-
-def _requested(runs: Runs, settings: Settings) -> int:
-    """Give a number of impacts for which `simulate_all` takes as many particles as there are."""
-    return int(runs.main.sizes["particle"] * settings.mean_impacts)
 
 
 def citation(runs: Runs) -> str:
