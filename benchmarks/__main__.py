@@ -1,35 +1,83 @@
 """`python -m benchmarks`: check the physics, time the peers in turns, print one table."""
 
 import argparse
+from time import perf_counter
+from typing import Any
 
-from benchmarks import agreement, machine, timing
-from benchmarks.peers import available
-from benchmarks.work import Work
+from benchmarks import agreement, footprint, machine, timing
+from benchmarks.peers import Peers, available
+from benchmarks.work import Peer, Work
+
+CHECKED = 5000  # particles of the fast peers
+WINDOW = 8  # of the impact velocity: 0.40 to 0.45 m/s
+LONG = 500_000  # particles
+
+
+def check(peers: Peers, work: Work, particles: int) -> None:
+    """Print how well the peers agree.
+
+    Raises
+    ------
+    agreement.Disagreement
+        Naming the peer that does not.
+    """
+    worst = agreement.same_impacts(peers.recording, work)
+    print(f"\nthe same first impacts: largest difference {worst:.2g} of what rounding allows")
+    impacts = agreement.same_counts(peers.engine, work)
+    print(f"the same grid of {impacts} impacts, count by count, from every level and number of threads")
+    rows: list[Peer[Any]] = [*peers.engine, *peers.counting, *peers.recording]
+    spreads, distance = agreement.same_spread(rows, work, min(particles, CHECKED))
+    print(f"the same σ(ε) at all impact velocities: largest difference {distance:.2g} standard errors")
+    for row, spread in zip(rows, spreads, strict=True):
+        print(f"  {spread.value[WINDOW]:.4f} ± {spread.error[WINDOW]:.4f} at 0.40 to 0.45 m/s  {row.name}")
+
+
+def speed(peers: Peers, work: Work, particles: int, rounds: int) -> None:
+    """Time the peers and print the table."""
+    start = perf_counter()
+    times = timing.rounds(peers.rows, work, particles, rounds)
+    yardstick = (peers.counting or peers.engine)[0].name
+    print(f"\n{timing.table(times, yardstick)}")
+    print(f"\n{rounds} rounds in {perf_counter() - start:.0f} s. Ratios of times, taken within a round:")
+    one, two = (row.name for row in peers.engine[:2])
+    print(timing.comparison(times, "statistics: one thread over two", one, two))
+    one, two = (row.name for row in peers.recording[:2])
+    print(timing.comparison(times, "simulate: one thread over two", one, two))
+    for row in peers.writing:
+        print(timing.comparison(times, f"simulate, one thread, over {row.name}", one, row.name))
+
+
+def rest(particles: int) -> None:
+    """Print what starting takes, and the memory that statistics need."""
+    seconds = footprint.start_up()
+    print("\nstart   ", ", ".join(f"{name} {value:.3f} s" for name, value in seconds.items()))
+    for number in (particles // 100, particles):
+        found = footprint.memory(number)
+        print(
+            f"memory   at most {found['peak']:.0f} MB, of which {found['before']:.0f} MB before the run: "
+            f"statistics of {found['impacts']:.3g} impacts, all threads, {found['seconds']:.2f} s"
+        )
 
 
 def main() -> None:
     parser = argparse.ArgumentParser(prog="python -m benchmarks", description=__doc__)
-    parser.add_argument("--rounds", type=int, default=7, help="how often each peer is timed (default 7)")
-    parser.add_argument("--particles", type=int, default=5000, help="particles a round (default 5000)")
+    parser.add_argument("--rounds", type=int, default=9, help="how often each peer is timed (default 9)")
+    parser.add_argument("--particles", type=int, default=25_000, help="particles a round (default 25000)")
     parser.add_argument("--impacts", type=int, default=200, help="impacts a particle (default 200)")
+    parser.add_argument("--long", action="store_true", help="measure memory over 10⁹ impacts, not 10⁸")
     options = parser.parse_args()
     if min(options.rounds, options.particles, options.impacts) < 1:
         parser.error("--rounds, --particles and --impacts must be at least 1")
 
     work = Work(impacts=options.impacts)
-    peers, missing = available()
+    peers = available()
     print(machine.describe())
     print(f"work     {options.particles} particles, {work}")
-    for line in missing:
+    for line in peers.missing:
         print(line)
-
-    worst = agreement.same_impacts(peers, work)
-    print(f"\nthe same first impacts: largest difference {worst:.2g} of what rounding allows")
-    for name, value, error in agreement.same_spread(peers, work, options.particles):
-        print(f"  sigma(ε) at {agreement.SPEED} m/s: {value:.4f} ± {error:.4f}  {name}")
-
-    times = timing.rounds(peers, work, options.particles, options.rounds)
-    print(f"\n{timing.table([peer.name for peer in peers], times)}")
+    check(peers, work, options.particles)
+    speed(peers, work, options.particles, options.rounds)
+    rest(10 * LONG if options.long else LONG)
 
 
 main()

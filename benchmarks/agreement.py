@@ -1,25 +1,28 @@
 """Do all peers compute the same physics? Asked before anything is timed."""
 
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 
-from benchmarks.work import Array, Peer, Records, Work
+from benchmarks.work import Array, Counts, Grid, Lattice, Peer, Records, Work
 
 ULP = 2.0**-52
 ROUNDINGS = 100.0  # of one impact in any peer, each counted in full
 NUDGE = 1e-9  # rad
-SPEED, HALF_WIDTH = 0.4, 0.01  # m/s
+GROUPS = 20
+LEAST = 5 * GROUPS  # particles
+ROWS = 25  # of the lattice in a window of σ(v): 0.05 m/s
+FEWEST = 200  # impacts in a window, for its standard error to be one
 STANDARD_ERRORS = 5.0  # a false alarm in 2 million comparisons, were the errors normal
-GROUPS = 10
 
 
 class Disagreement(RuntimeError):
     """Two peers do not compute the same physics, so that their times cannot be compared."""
 
 
-def same_impacts(peers: Sequence[Peer], work: Work, particles: int = 50, impacts: int = 20) -> float:
+def same_impacts(peers: Sequence[Peer[Records]], work: Work, particles: int = 50, impacts: int = 20) -> float:
     """Compare the first impacts of the same particles with the first peer's; largest error over allowance.
 
     Errors grow along a trajectory. How fast is measured for each particle: the first peer runs again with
@@ -51,21 +54,73 @@ def same_impacts(peers: Sequence[Peer], work: Work, particles: int = 50, impacts
     return worst
 
 
-def spread(records: Records) -> tuple[float, float]:
-    """Standard deviation of ε at `SPEED` ± `HALF_WIDTH`, and its standard error.
+def same_counts(peers: Sequence[Peer[Grid]], work: Work, particles: int = 1000) -> int:
+    """Hold the engine's rows to one another: the same grid to the last impact. Returns the impacts.
+
+    Raises
+    ------
+    Disagreement
+        Naming the row, if it disagrees.
+    """
+    angles = work.angles(particles)
+    first, *others = (peer.run(work, angles) for peer in peers)
+    for peer, grid in zip(peers[1:], others, strict=True):
+        if grid.impacts != first.impacts or not np.array_equal(grid.count, first.count):
+            raise Disagreement(f"{peer.name}: not the grid of {peers[0].name}")
+    return first.impacts
+
+
+@dataclass(frozen=True)
+class Spread:
+    """σ(ε) and its standard error in windows of the impact velocity; NaN where impacts are few."""
+
+    value: Array
+    error: Array
+
+
+def counts(result: Grid | Records, lattice: Lattice) -> Counts:
+    """The impacts on the lattice."""
+    if isinstance(result, Grid):
+        return result.count
+    columns = result["impact_velocity"].ravel(), result["restitution"].ravel()
+    grid, _, _ = np.histogram2d(*columns, bins=(lattice.velocity, lattice.restitution))
+    return grid.astype(np.int64)
+
+
+def deviation(grid: Counts, lattice: Lattice) -> Array:
+    """Standard deviation of ε in the rows of a grid."""
+    with np.errstate(invalid="ignore"):
+        number = grid.sum(axis=-1)
+        epsilon = 0.5 * (lattice.restitution[1:] + lattice.restitution[:-1])
+        mean = grid @ epsilon / number
+        variance: Array = grid @ epsilon**2 / number - mean**2
+        return np.sqrt(np.maximum(variance, 0.0))
+
+
+def spread(peer: Peer[Any], work: Work, angles: Array) -> Spread:
+    """Measure σ(ε).
 
     The impacts of one particle are correlated, so the error is a jackknife over groups of particles.
     """
-    speed, restitution = records["impact_velocity"].astype(float), records["restitution"].astype(float)
-    inside = np.abs(speed - SPEED) < HALF_WIDTH
-    group = np.broadcast_to(np.arange(len(speed))[:, None] * GROUPS // len(speed), speed.shape)
-    left_out: Array = np.array([restitution[inside & (group != g)].std() for g in range(GROUPS)])
-    error = np.sqrt((GROUPS - 1) / GROUPS * np.sum((left_out - left_out.mean()) ** 2))
-    return float(restitution[inside].std()), float(error)
+    lattice = work.lattice
+    windows = (-1, ROWS, lattice.restitution_bins)
+    groups = np.array(
+        [
+            counts(peer.run(work, group), lattice).reshape(windows).sum(axis=1)
+            for group in np.array_split(angles, GROUPS)
+        ]
+    )
+    total = groups.sum(axis=0)
+    left_out = deviation(total - groups, lattice)
+    error = np.sqrt((GROUPS - 1) / GROUPS * np.sum((left_out - left_out.mean(axis=0)) ** 2, axis=0))
+    few = total.sum(axis=1) < FEWEST
+    value = deviation(total, lattice)
+    value[few] = error[few] = np.nan
+    return Spread(value, error)
 
 
-def same_spread(peers: Sequence[Peer], work: Work, particles: int) -> list[tuple[str, float, float]]:
-    """The spread of each peer, held to the first one's within their joint standard error.
+def same_spread(peers: Sequence[Peer[Any]], work: Work, particles: int) -> tuple[list[Spread], float]:
+    """The spread of each peer, held to the first one's; the largest difference in joint standard errors.
 
     Raises
     ------
@@ -75,12 +130,19 @@ def same_spread(peers: Sequence[Peer], work: Work, particles: int) -> list[tuple
     found = []
     for number, peer in enumerate(peers):
         # its own particles, so that the samples are independent and the errors add in squares
-        angles = work.angles(max(GROUPS, round(particles * peer.share)), seed=100 + number)
-        found.append((peer.name, *spread(peer.run(work, angles))))
-    _, right, its_error = found[0]
-    for name, value, error in found:
-        if abs(value - right) > STANDARD_ERRORS * np.hypot(error, its_error):
+        angles = work.angles(max(LEAST, peer.particles(particles)), seed=100 + number)
+        found.append(spread(peer, work, angles))
+    right, worst = found[0], 0.0
+    for peer, mine in zip(peers[1:], found[1:], strict=True):
+        distance = np.abs(mine.value - right.value) / np.hypot(mine.error, right.error)
+        if np.isnan(distance).all():
+            raise Disagreement(f"{peer.name}: too few impacts to compare σ(ε)")
+        window = int(np.nanargmax(distance))
+        if distance[window] > STANDARD_ERRORS:
             raise Disagreement(
-                f"{name}: sigma(ε) = {value:.4f} ± {error:.4f}, not {right:.4f} ± {its_error:.4f}"
+                f"{peer.name}: σ(ε) at {work.lattice.velocity[window * ROWS]:.2f} m/s and up is "
+                f"{mine.value[window]:.4f} ± {mine.error[window]:.4f}, not "
+                f"{right.value[window]:.4f} ± {right.error[window]:.4f}"
             )
-    return found
+        worst = max(worst, float(distance[window]))
+    return found, worst

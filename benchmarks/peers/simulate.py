@@ -20,5 +20,5 @@ def run(work: Work, angles: Array, threads: int) -> Records:
     return {str(name): data[name].values for name in data if data[name].dims == ("particle", "impact")}
 
 
-def rows() -> list[Peer]:
+def rows() -> list[Peer[Records]]:
     return [Peer(f"simulate, {n} thread{'s' * (n > 1)}", partial(run, threads=n)) for n in (1, 2)]

@@ -1,7 +1,7 @@
 //! Random runs, ordinary and outlandish, through every SIMD level against the oracle: the same bits or none.
 //!
 //! Short by default; `RESTITUTION_FUZZ_SECONDS=600 cargo test --release -p restitution-core --test fuzz -- --nocapture` goes on
-//! for ten minutes with other cases. A failure prints the smallest case of its kind that was found, with every parameter.
+//! for ten minutes with more cases. A failure prints the smallest case of its kind that was found, with every parameter.
 
 mod common;
 

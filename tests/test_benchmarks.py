@@ -1,0 +1,48 @@
+"""The benchmarks compare only what computes the same physics, and compare it in the right direction."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from benchmarks import agreement, timing
+from benchmarks.peers import brentq_grid, simulate, statistics
+from benchmarks.timing import Times
+from benchmarks.work import Array, Grid, Peer, Work
+
+WORK = Work(impacts=40)
+ENGINE = statistics.rows()[0]
+
+
+def rounder(work: Work, angles: Array) -> Grid:
+    """The engine with a body that is 10 % closer to a sphere, which leaves the mean of ε nearly alone."""
+    return ENGINE.run(replace(work, separation=0.9 * work.separation), angles)
+
+
+def test_the_peers_agree_with_the_engine() -> None:
+    """Impact by impact to rounding, and in σ(ε); the levels of the engine count by count."""
+    recording = [simulate.rows()[0], *brentq_grid.rows()]
+    assert agreement.same_impacts(recording, WORK, particles=4, impacts=8) <= 1.0
+    assert agreement.same_counts(statistics.rows(), WORK, particles=50) == 50 * 40
+    found, distance = agreement.same_spread([ENGINE, simulate.rows()[1]], WORK, particles=200)
+    assert len(found) == 2
+    assert 0.0 < distance < agreement.STANDARD_ERRORS
+
+
+def test_another_physics_is_found_out() -> None:
+    """A peer with another body is not compared."""
+    wrong = Peer("wrong", rounder)
+    with pytest.raises(agreement.Disagreement, match=r"wrong: not the grid of statistics"):
+        agreement.same_counts([ENGINE, wrong], WORK, particles=10)
+    with pytest.raises(agreement.Disagreement, match=r"wrong: σ\(ε\) at"):
+        agreement.same_spread([ENGINE, wrong], WORK, particles=1000)
+
+
+def test_ratios_are_taken_within_a_round() -> None:
+    """A round in which the whole machine was slow does not touch them."""
+    times = Times(["fast", "yardstick"], *np.array([[[10.0, 100.0], [30.0, 300.0]], [[9.0, 90.0]] * 2]))
+    assert times.ratios("yardstick", "fast").tolist() == [10.0, 10.0]
+    fast = timing.table(times, "yardstick").splitlines()[2]
+    assert fast.split() == ["fast", "50", "20", "9", "10", "10", "10", "10"]
+    line = timing.comparison(times, "one over the other", "yardstick", "fast")
+    assert line.split()[-4:] == ["10", "(10", "to", "10)"]
