@@ -26,10 +26,15 @@ def checked_threads(threads: int | None) -> int:
     return number
 
 
+def available_memory() -> int:
+    """Tell the bytes of memory of this machine."""
+    return os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE")
+
+
 def check_memory(impacts: int, bytes_per_impact: int) -> None:
     """Refuse tables that the machine cannot hold before anything is computed."""
     needed = impacts * bytes_per_impact
-    available = os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE")
+    available = available_memory()
     if needed > available:
         raise ValueError(
             f"particles * impacts = {impacts:.4g}: must be at most {available // bytes_per_impact:.4g} here; "

@@ -9,7 +9,7 @@ import xarray as xr
 from restitution import _core
 from restitution._bins import FRACTION_BINS, assemble, by_velocity, checked_edges
 from restitution._dataset import STOP_REASONS, attributes
-from restitution._resources import checked_threads, progress_bar
+from restitution._resources import available_memory, checked_threads, progress_bar
 from restitution._run import Run
 from restitution._simulate import SimulationInterrupted
 from restitution.bodies import Dumbbell
@@ -96,6 +96,8 @@ def statistics(
     }
     velocity = None if velocity_bins is None else checked_edges(velocity_bins, "velocity_bins")
     number = checked_threads(threads)
+    height = run.impacts if velocity is None else velocity.size + 1
+    _check_memory(height, sum(edges.size + 2 for edges in columns.values()), number)
     with progress_bar("statistics", run.particles, "particles", show=progress) as tell:
         table, interrupted = _core.statistics(
             run.parameters(), velocity, columns["restitution"], columns["fraction"], number, tell
@@ -122,3 +124,15 @@ def statistics(
     if interrupted:
         raise SimulationInterrupted(found.assign_attrs(incomplete="interrupted by the user"))
     return found
+
+
+def _check_memory(rows: int, columns: int, threads: int) -> None:
+    """Refuse grids that the machine cannot hold: 12 bytes a site and 400 a row a thread, and the total."""
+    copies = (threads or _core.build_info()["threads"]) + 1
+    needed = copies * rows * (12 * columns + 400)
+    if needed > available_memory():
+        raise ValueError(
+            f"velocity_bins, restitution_bins, fraction_bins: {rows:,} rows of {columns:,} sites in "
+            f"{copies} copies take {needed / 1e9:.3g} GB: must be at most {available_memory() / 1e9:.3g} GB, "
+            "what this machine has"
+        )

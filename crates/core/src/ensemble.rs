@@ -8,7 +8,7 @@ use crate::level::Level;
 use crate::records::{Records, Table};
 use crate::release::Orientation;
 use crate::scales::Scales;
-use crate::statistics::{Bins, Counter, Tally};
+use crate::statistics::{Bins, By, Counter, Tally};
 use crate::trajectory::Limits;
 use pulp::{Simd, WithSimd};
 use std::ops::Range;
@@ -111,6 +111,15 @@ impl Run<'_> {
     /// Runs every particle and keeps the statistics of the impacts only, in memory that does not grow with the run.
     pub fn statistics(&self, bins: &Bins, means: Means, monitor: &Monitor) -> Result<Tally, Error> {
         let plan = Plan::new(self)?;
+        if let By::Number(rows) = bins.by {
+            let allowed = "at most the number of rows";
+            Error::unless(
+                self.impacts <= rows,
+                "impacts",
+                self.impacts as f64,
+                allowed,
+            )?;
+        }
         let next = AtomicUsize::new(0);
         // Blocks go to whichever thread is free; the sums are whole numbers and do not mind.
         let tallies = means.pool()?.broadcast(|_| {

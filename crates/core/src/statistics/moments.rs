@@ -83,14 +83,45 @@ impl<const N: usize> Wide<N> {
         }
     }
 
+    /// The same number in six words.
+    fn widened(self) -> Wide<6> {
+        let mut wide = Wide::ZERO;
+        let negative = self.0[N - 1] >> 63 == 1;
+        wide.add(self.0, if negative { u64::MAX } else { 0 });
+        wide
+    }
+
+    fn negated(self) -> Self {
+        let mut negated = Self(self.0.map(|word| !word));
+        negated.add([1], 0);
+        negated
+    }
+
+    fn plus(mut self, other: Self) -> Self {
+        self.add(other.0, 0);
+        self
+    }
+
+    /// The product with a factor that leaves it within N words.
+    fn times(self, factor: i64) -> Self {
+        let mut carry = 0_u64;
+        // Modulo 2^(64 N) the product of two's complements is that of the numbers.
+        let product = Self(self.0.map(|word| {
+            let sum = u128::from(word) * u128::from(factor.unsigned_abs()) + u128::from(carry);
+            carry = (sum >> 64) as u64;
+            sum as u64
+        }));
+        if factor < 0 {
+            product.negated()
+        } else {
+            product
+        }
+    }
+
     /// The nearest double, up to a few units in the last place.
     fn to_f64(self) -> f64 {
         let negative = self.0[N - 1] >> 63 == 1;
-        let mut magnitude = self;
-        if negative {
-            magnitude.0 = magnitude.0.map(|word| !word);
-            magnitude.add([1], 0);
-        }
+        let magnitude = if negative { self.negated() } else { self };
         let size = magnitude.0.iter().rev().fold(0.0, |sum, &word| {
             f64::mul_add(sum, 18_446_744_073_709_551_616.0, word as f64)
         });
@@ -154,8 +185,7 @@ impl Sums {
         cube.add(words(product(low, size)), 0);
         cube.add(shifted(product(high, size), 1), 0);
         if sign != 0 {
-            cube.0 = cube.0.map(|word| !word);
-            cube.add([1], 0);
+            cube = cube.negated();
         }
         self.third.add(cube.0, sign);
         self.fourth.add(words(product(low, low)), 0);
@@ -193,22 +223,45 @@ impl Sums {
 
     /// Moments of `number` values whose offsets were taken from `origin`; NaN where there are none.
     pub fn moments(&self, number: u64, origin: f64) -> Moments {
-        let n = number as f64;
         const UNIT: f64 = 1.0 / QUANTA;
-        let a = UNIT * (self.first.to_f64() / n);
-        let b = UNIT.powi(2) * (self.second.to_f64() / n);
-        let c = UNIT.powi(3) * (self.third.to_f64() / n);
-        let d = UNIT.powi(4) * (self.fourth.to_f64() / n);
-        // Central moments from those about the origin.
+        let n = number as f64;
+        // Exact sums of powers about the whole number of quanta next to the mean, so that nothing cancels afterwards.
+        let centre = (self.first.to_f64() / n).round_ties_even() as i64;
+        let count = Wide([number, 0]).widened();
+        let sums = [
+            self.first.widened(),
+            self.second.widened(),
+            self.third.widened(),
+            self.fourth.widened(),
+        ];
+        let term = |sum: Wide<6>, binomial: i64, power: u32| {
+            (0..power).fold(sum.times(binomial), |product, _| product.times(-centre))
+        };
+        let first = sums[0].plus(term(count, 1, 1));
+        let second = sums[1].plus(term(sums[0], 2, 1)).plus(term(count, 1, 2));
+        let third = sums[2]
+            .plus(term(sums[1], 3, 1))
+            .plus(term(sums[0], 3, 2))
+            .plus(term(count, 1, 3));
+        let fourth = sums[3]
+            .plus(term(sums[2], 4, 1))
+            .plus(term(sums[1], 6, 2))
+            .plus(term(sums[0], 4, 3))
+            .plus(term(count, 1, 4));
+        let a = UNIT * (first.to_f64() / n);
+        let b = UNIT.powi(2) * (second.to_f64() / n);
+        let c = UNIT.powi(3) * (third.to_f64() / n);
+        let d = UNIT.powi(4) * (fourth.to_f64() / n);
+        // Central moments; the mean is less than a quantum away.
         let variance = (b - a * a).max(0.0);
         let third = c - a * (3.0 * b - 2.0 * a * a);
         let fourth = d - a * (4.0 * c - a * (6.0 * b - 3.0 * a * a));
         let or_nan = |x: f64| if number > 0 { x } else { f64::NAN };
         let spread = |x: f64| if variance > 0.0 { x } else { f64::NAN };
         Moments {
-            mean: origin + a,
+            mean: origin + (UNIT * centre as f64 + a),
             variance: or_nan(variance),
-            skewness: spread(third / variance.powf(1.5)),
+            skewness: spread(third / (variance * variance.sqrt())),
             kurtosis: spread(fourth / (variance * variance)),
             minimum: or_nan(self.minimum),
             maximum: or_nan(self.maximum),
