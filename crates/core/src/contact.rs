@@ -64,10 +64,9 @@ pub enum Landing {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct NoConvergence;
 
-/// The last step is at most this part of the flight time, and turns the axis by at most this angle: 2⁻¹⁶.
-pub(crate) const LAST_STEP: f64 = 1.0 / 65_536.0;
-/// In the last step the gap bends away from its tangent by at most about this part: 2⁻¹¹...
-pub(crate) const LAST_BEND: f64 = 1.0 / 2048.0;
+/// The last step is at most this part of the flight time, turns the axis by at most this angle, and the gap bends away from
+/// its tangent by at most about this part of it: 2⁻¹¹...
+pub(crate) const LAST: f64 = 1.0 / 2048.0;
 /// ...or, at a grazing contact, by no more than this, which cannot be seen: 2⁻⁵² R.
 pub(crate) const INVISIBLE: f64 = 1.0 / 4_503_599_627_370_496.0;
 /// A sphere that is not approaching is left alone at least until its gap may have bent by that: 2⁻²⁶/M.
@@ -87,7 +86,7 @@ pub fn first_contact(
     if search.rests() {
         return Ok(Landing::Resting);
     }
-    let mut time = 0.0;
+    let mut time = search.departed();
     for _ in 0..MOST_STEPS {
         let angle = flight.rate * time;
         let followed = angle <= RANGE; // false for NaN too
@@ -200,6 +199,18 @@ impl<'a> Search<'a> {
             && !(other.rate < 0.0 && other.width <= TOUCHING)
     }
 
+    /// The first step. Both spheres are looked at: the one on the plane is just leaving it.
+    fn departed(&self) -> f64 {
+        let moment = Moment::of(self.flight, 0.0, self.flight.phase(0.0));
+        let [one, two] = Sphere::BOTH.map(|sphere| self.certified(&self.gap(&moment, sphere)));
+        let step = one.min(two);
+        if step == 0.0 {
+            0.0 // a contact at the start itself, which the first pass will see
+        } else {
+            self.skip(step)
+        }
+    }
+
     /// The gap that may close first. Both lower bounds have the same curvature, so that they cross only when the axis,
     /// turning at its present rate, is level: up to then it is the lower sphere's that counts, afterwards the other's.
     fn nearer(&self, moment: &Moment) -> Gap {
@@ -277,29 +288,36 @@ impl<'a> Search<'a> {
     /// Whether `step` leads to a contact that the expansion in [`Search::landed`] locates to double precision.
     fn is_last(&self, gap: &Gap, step: f64, time: f64) -> bool {
         gap.rate < 0.0
-            && step <= LAST_STEP * (time + step)
-            && self.flight.rate * step <= LAST_STEP
+            && step <= LAST * (time + step)
+            && self.flight.rate * step <= LAST
             && (self.is_nearly_straight(gap, step) || self.bound * (step * step) <= INVISIBLE)
     }
 
     fn is_nearly_straight(&self, gap: &Gap, step: f64) -> bool {
-        self.sway * step <= LAST_BEND * gap.root
+        self.sway * step <= LAST * gap.root
     }
 
-    /// The contact after the last certified step: the gap there, to third order, over the speed there.
+    /// The contact after the last certified step: the zero of the gap's fourth-order expansion, by a step of third order.
     fn landed(&self, moment: &Moment, gap: &Gap, step: f64) -> f64 {
         if !self.is_nearly_straight(gap, step) {
             return step; // a grazing contact: what is left of the gap cannot be seen
         }
         let side = gap.sphere.sign() * self.lever;
         let square = self.flight.rate * self.flight.rate;
-        // M + f″ and f‴: what the lower bound leaves out.
-        let slack = side.mul_add(self.flight.tilt_acceleration(moment.tilt), self.sway);
-        let third = -(side * square) * moment.tilt_rate;
-        let left = (step * step) * (third * step).mul_add(1.0 / 6.0, 0.5 * slack);
+        let second = side * self.flight.tilt_acceleration(moment.tilt); // f″ without gravity
+        let third = -(side * square) * moment.tilt_rate; // f‴
+        let fourth = -square * second; // f⁗
+        let slack = second + self.sway; // f″ + M, what the lower bound leaves out
+        // What is left of the gap after the step, and how fast it closes there.
+        let bend = (step * fourth).mul_add(1.0 / 12.0, third * (1.0 / 3.0));
+        let left = 0.5 * (step * step) * step.mul_add(bend, slack);
         if left == 0.0 {
             return step;
         }
-        step + left / slack.mul_add(-step, gap.root)
+        let speed = step.mul_add(-step.mul_add(0.5 * third, slack), gap.root);
+        let inverse = 1.0 / speed;
+        let newton = left * inverse;
+        let curvature = step.mul_add(third, second - 1.0); // f″
+        step + newton.mul_add(0.5 * curvature * newton * inverse, newton)
     }
 }

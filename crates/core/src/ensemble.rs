@@ -235,9 +235,12 @@ struct Work<'a, T> {
     sink: &'a mut T,
 }
 
-/// Vectors side by side: enough to keep the arithmetic units busy, and fewer where there is no vector.
-const VECTORS: usize = 6;
+/// Vectors that are computed with side by side: enough to keep the arithmetic units busy, few enough for the registers.
+const VECTORS: usize = 3;
+/// Where there are no vectors.
 const SCALARS: usize = 4;
+/// Groups of them that take turns.
+const GROUPS: usize = 4;
 
 impl<T: Sink> WithSimd for Work<'_, T> {
     type Output = Result<(), Error>;
@@ -266,14 +269,15 @@ impl<T: Sink> Work<'_, T> {
             impacts: run.impacts,
             minimum_speed: run.minimum_speed / plan.scales.speed,
         };
+        let width = GROUPS * Pack::<S, K>::WIDTH;
         let (mut sines, mut cosines) = ([0.0; BLOCK], [0.0; BLOCK]);
-        for first in particles.clone().step_by(Pack::<S, K>::WIDTH) {
-            let count = Pack::<S, K>::WIDTH.min(particles.end - first);
+        for first in particles.clone().step_by(width) {
+            let count = width.min(particles.end - first);
             for lane in 0..count {
                 (sines[lane], cosines[lane]) = plan.release(first + lane);
             }
             sink.begin(first - particles.start);
-            lanes::bounce::<S, K>(
+            lanes::bounce::<S, K, GROUPS>(
                 simd,
                 &plan.body,
                 &run.law,

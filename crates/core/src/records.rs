@@ -182,7 +182,12 @@ impl Sink for Table<'_> {
     }
 
     #[inline(always)]
-    fn impact<S: Simd, const K: usize>(&mut self, number: usize, impact: &Impact<S, K>) {
+    fn impact<S: Simd, const K: usize>(
+        &mut self,
+        number: usize,
+        first: usize,
+        impact: &Impact<S, K>,
+    ) {
         let scales = &self.plan.scales;
         let time = impact.time * scales.time;
         let impact_velocity = impact.impact_velocity() * scales.speed;
@@ -193,7 +198,7 @@ impl Sink for Table<'_> {
         let angle = angle_in_lanes(impact.before.sine, impact.before.cosine);
         let sphere = impact.sphere.lt(0.0).select(2.0, 1.0_f64);
         let active = impact.active.select(1.0, 0.0_f64);
-        for (lane, row) in self.rows[self.first..]
+        for (lane, row) in self.rows[self.first + first..]
             .iter_mut()
             .enumerate()
             .take(Pack::<S, K>::WIDTH)

@@ -87,7 +87,8 @@ fn energy_never_grows_where_it_cannot() {
 }
 
 /// With ε^n = 1 and ε^t = −1 the contact velocity is reversed and no energy lost: the whole energy is the same after
-/// ten thousand impacts, up to a random walk of roundings.
+/// ten thousand impacts, up to roundings. They do not quite average out: about a sixth of an ulp an impact is gained at
+/// L/R = 3, however closely the contact is located (the last step at most 2⁻¹¹ or 2⁻¹⁶ of the flight time).
 #[test]
 fn reversal_conserves_energy() {
     for elongation in [0.1, 1.0, 3.0] {
@@ -104,9 +105,9 @@ fn reversal_conserves_energy() {
             true
         })
         .unwrap();
-        // Five standard deviations of 10⁴ errors of 4 ulp.
+        // Half an ulp an impact.
         assert!(
-            (end - start).abs() <= 5.0 * 100.0 * 4.0 * f64::EPSILON * start,
+            (end - start).abs() <= 0.5 * 10_000.0 * f64::EPSILON * start,
             "{:e}",
             end / start - 1.0
         );
