@@ -293,7 +293,7 @@ fn portions_have_the_digests_of_the_whole() {
     let bins = bins(By::Velocity(edges(0.0, 0.01, 120)));
     let digests = |portion: usize, means: Means| {
         let (mut table, mut statistics) = (Digest::new(), Digest::new());
-        let mut total = Tally::new(&bins, whole.law.normal());
+        let mut total = Tally::new(&bins, whole.origin());
         for angles in angles.chunks(portion) {
             let run = Run {
                 particles: angles.len(),

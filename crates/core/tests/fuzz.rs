@@ -164,19 +164,25 @@ fn compare(case: &Case) -> Result<u64, TestCaseError> {
             )
         };
         let mut numbers = Vec::new();
-        let reason = bounce(&body, &run.law, release, limits, |impact: &Impact| {
-            let expected = [
-                impact.time * scales.time,
-                impact.impact_velocity() * scales.speed,
-                impact.rebound_velocity() * scales.speed,
-                impact.restitution(),
-                impact.rotational_fraction(&body),
-                impact.energy_ratio(&body),
-                impact.before.angle(),
-            ];
-            numbers.push((bits(expected), impact.sphere as i8 + 1));
-            true
-        });
+        let reason = bounce(
+            &body,
+            &run.law.scaled(&scales),
+            release,
+            limits,
+            |impact: &Impact| {
+                let expected = [
+                    impact.time * scales.time,
+                    impact.impact_velocity() * scales.speed,
+                    impact.rebound_velocity() * scales.speed,
+                    impact.restitution(),
+                    impact.rotational_fraction(&body),
+                    impact.energy_ratio(&body),
+                    impact.before.angle(),
+                ];
+                numbers.push((bits(expected), impact.sphere as i8 + 1));
+                true
+            },
+        );
         prop_assert!(
             reason.is_ok(),
             "particle {particle}: the oracle did not converge"

@@ -5,8 +5,9 @@ use proptest::prelude::*;
 use proptest::test_runner::{Config, RngSeed};
 use restitution_core::collision::collide;
 use restitution_core::{
-    Body, Departure, Dumbbell, Flight, Impact, Landing, Level, Limits, Means, Monitor, Orientation,
-    Records, Run, Sphere, State, StopReason, TangentialRestitution, Vector, bounce, first_contact,
+    Body, Departure, Dumbbell, Flight, Impact, Landing, Law, Level, Limits, Means, Monitor,
+    Orientation, Records, Run, Sphere, State, StopReason, TangentialRestitution, Vector, bounce,
+    first_contact,
 };
 use std::f64::consts::PI;
 
@@ -25,8 +26,10 @@ pub fn dumbbell(elongation: f64) -> Body {
     Dumbbell::new(1.0, elongation, 1.0).unwrap().scaled()
 }
 
-pub fn law(normal: f64, tangential: f64) -> TangentialRestitution {
-    TangentialRestitution::new(normal, tangential).unwrap()
+pub fn law(normal: f64, tangential: f64) -> Law<'static> {
+    TangentialRestitution::new(normal, tangential)
+        .unwrap()
+        .into()
 }
 
 /// A state at rest, as the paper lets go of its particles.
@@ -61,7 +64,7 @@ pub fn landing(state: State, body: &Body, departure: Departure) -> Landing {
 /// The whole trajectory, and why it ended.
 pub fn trajectory(
     body: &Body,
-    law: &TangentialRestitution,
+    law: &Law<'_>,
     release: State,
     impacts: usize,
 ) -> (Vec<Impact>, StopReason) {
@@ -87,7 +90,7 @@ pub struct Leg {
 }
 
 /// The first flights of a trajectory.
-pub fn legs(body: &Body, law: &TangentialRestitution, release: State, most: usize) -> Vec<Leg> {
+pub fn legs(body: &Body, law: &Law<'_>, release: State, most: usize) -> Vec<Leg> {
     let mut start = release;
     let mut departure = Departure::Free;
     let mut legs = Vec::new();
@@ -119,7 +122,7 @@ pub fn legs(body: &Body, law: &TangentialRestitution, release: State, most: usiz
 }
 
 /// An ensemble like the paper's: radius 3 mm, dropped from 60 mm.
-pub fn paper(elongation: f64, law: TangentialRestitution) -> Run<'static> {
+pub fn paper(elongation: f64, law: Law<'static>) -> Run<'static> {
     let radius = 3e-3;
     Run {
         body: Dumbbell::new(radius, elongation * radius, 2500.0).unwrap(),
@@ -243,7 +246,7 @@ pub fn coefficients() -> impl Strategy<Value = (f64, f64)> {
 }
 
 /// A body, a law and a free state above the plane: every spin, also about the symmetry axis, up to a rate of 10³ √(g/R).
-pub fn motion() -> impl Strategy<Value = (Body, TangentialRestitution, State)> {
+pub fn motion() -> impl Strategy<Value = (Body, Law<'static>, State)> {
     let velocity = (
         direction(),
         prop_oneof![1 => Just(0.0), 4 => magnitude(-6.0, 1.3)],
@@ -274,7 +277,7 @@ pub fn motion() -> impl Strategy<Value = (Body, TangentialRestitution, State)> {
 }
 
 /// A contact that is about to be hit: sphere, and the state with its point of contact approaching the plane.
-pub fn approach() -> impl Strategy<Value = (Body, TangentialRestitution, State, Sphere)> {
+pub fn approach() -> impl Strategy<Value = (Body, Law<'static>, State, Sphere)> {
     (motion(), any::<bool>()).prop_filter_map("not approaching", |((body, law, state), one)| {
         let sphere = if one { Sphere::One } else { Sphere::Two };
         let side = sphere.sign() * body.half_separation;

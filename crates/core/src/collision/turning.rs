@@ -1,0 +1,354 @@
+//! Coulomb friction where the slip turns: the contact slips across the plane of the axis, too.
+//!
+//! In the normal impulse p the slip **s** obeys d**s**/dp = K_nu **u** − μ K_t **s**/|**s**|, which is singular where it vanishes. In τ with
+//! dp = |**s**| dτ it is smooth and homogeneous,
+//!
+//! d**s**/dτ = |**s**| K_nu **u** − μ K_t **s**,
+//!
+//! so that one step size serves slips of every magnitude. It is integrated by its Taylor series of order [`ORDER`] in steps that leave
+//! a remainder below [`REMAINDER`] of |**s**|; each piece is a polynomial, on which the events (end of the compression, of the restitution)
+//! are found by bisection. Slip in a direction that does not turn is a straight line in p, also where it vanishes, and needs no steps;
+//! every other direction turns towards such a one. General integrators would need a power function to choose their steps,
+//! interpolate the events, and stop short of the singularity.
+
+use super::chatterjee_ruina::length;
+use super::{Components, Contact, Coulomb, Hypothesis, Response};
+
+/// Order of the Taylor series.
+const ORDER: usize = 24;
+/// Largest size of its last two terms, relative to the slip at the start of the step.
+const REMAINDER: f64 = 1.0 / 18_014_398_509_481_984.0; // 2⁻⁵⁴
+/// Slip at which it counts as vanished, relative to the contact velocity.
+const VANISHED: f64 = 1.0 / 1_152_921_504_606_846_976.0; // 2⁻⁶⁰
+/// Rate of turning that counts as none, relative to the largest that there may be.
+const STRAIGHT: f64 = f64::EPSILON;
+/// Pieces after which the slip is taken to have vanished. Random contacts need less than a tenth of it.
+const MOST_PIECES: usize = 10_000;
+/// Halvings of an interval when an event is searched.
+const HALVINGS: usize = 80;
+
+type Series = [f64; ORDER + 1];
+
+impl Coulomb<'_> {
+    /// The response to a contact that slips in any direction.
+    pub(super) fn in_space(&self, contact: &Contact) -> Response {
+        let mut impact = Impact::new(self, contact);
+        for number in 0..=MOST_PIECES {
+            let piece = impact.next_piece(number == MOST_PIECES);
+            if let Some(end) = impact.end_within(&piece) {
+                impact.state = piece.at(end);
+                break;
+            }
+            impact.state = piece.at(piece.length);
+            if piece.stops {
+                impact.state.slip = [0.0; 2];
+            }
+        }
+        let state = impact.state;
+        Response {
+            impulse: Components {
+                normal: state.impulse,
+                along: state.friction[0],
+                across: state.friction[1],
+            },
+            separation_speed: state.normal.max(0.0),
+        }
+    }
+}
+
+/// Where the impact has come to.
+#[derive(Clone, Copy)]
+struct State {
+    /// Contact velocity along **n**, and along **u** and **w**.
+    normal: f64,
+    slip: [f64; 2],
+    /// Normal and tangential impulse so far.
+    impulse: f64,
+    friction: [f64; 2],
+    /// Work of the normal force so far.
+    work: f64,
+}
+
+/// An impact under way.
+struct Impact {
+    friction: f64,
+    hypothesis: Hypothesis,
+    restitution: f64,
+    /// −v_c^n before the impact.
+    speed: f64,
+    /// K_nn, K_nu and {K_uu, K_ww}.
+    normal: f64,
+    coupling: f64,
+    tangential: [f64; 2],
+    /// Slip that counts as none.
+    vanished: f64,
+    state: State,
+    /// Before the end of the compression, which in a jam may come more than once.
+    compressing: bool,
+    /// Impulse at that end, and the least work so far.
+    compression: f64,
+    least: f64,
+}
+
+/// A part of the way on which every quantity is a polynomial.
+struct Piece {
+    length: f64,
+    normal: Series,
+    slip: [Series; 2],
+    impulse: Series,
+    friction: [Series; 2],
+    work: Series,
+    /// Of the sign of dv_c^n/dp.
+    slope: Series,
+    /// Whether the slip vanishes at its end.
+    stops: bool,
+}
+
+impl Piece {
+    fn at(&self, t: f64) -> State {
+        State {
+            normal: value(&self.normal, t),
+            slip: [value(&self.slip[0], t), value(&self.slip[1], t)],
+            impulse: value(&self.impulse, t),
+            friction: [value(&self.friction[0], t), value(&self.friction[1], t)],
+            work: value(&self.work, t),
+        }
+    }
+}
+
+impl Impact {
+    fn new(law: &Coulomb<'_>, contact: &Contact) -> Self {
+        let plane = contact.plane();
+        let speed = contact.slip.normal.abs();
+        let slip = [contact.slip.along, contact.slip.across];
+        Self {
+            friction: law.friction,
+            hypothesis: law.hypothesis,
+            restitution: law.normal.at(speed),
+            speed,
+            normal: plane.normal_response().as_slice()[0],
+            coupling: plane.coupling().as_slice()[0],
+            tangential: [plane.along_response().as_slice()[0], contact.across],
+            vanished: (speed + length(slip[0], slip[1])) * VANISHED,
+            state: State {
+                normal: -speed,
+                slip,
+                impulse: 0.0,
+                friction: [0.0; 2],
+                work: 0.0,
+            },
+            compressing: true,
+            compression: 0.0,
+            least: 0.0,
+        }
+    }
+
+    /// The piece that begins at the present state; the `last` one takes the slip as vanished.
+    fn next_piece(&self, last: bool) -> Piece {
+        let [u, w] = self.state.slip;
+        let size = length(u, w);
+        let (mu, nu, [uu, ww]) = (self.friction, self.coupling, self.tangential);
+        if last || size <= self.vanished {
+            let along = (-nu / uu).clamp(-mu, mu);
+            let sticks = nu.abs() <= mu * uu;
+            let slip = if sticks { 0.0 } else { along.mul_add(uu, nu) };
+            return self.line([along, 0.0], [slip, 0.0]);
+        }
+        let (c, s) = (u / size, w / size);
+        let drive = [(-mu * uu).mul_add(c, nu), -mu * ww * s]; // d**s**/dp
+        let turning = c.mul_add(drive[1], -(s * drive[0]));
+        let fastest = mu.mul_add(uu.max(ww), nu.abs());
+        if turning.abs() <= STRAIGHT * fastest {
+            let growth = c.mul_add(drive[0], s * drive[1]);
+            self.line([-mu * c, -mu * s], [growth * c, growth * s])
+        } else {
+            self.curve(size, [c, s], fastest)
+        }
+    }
+
+    /// A piece with constant friction and constant rate of the slip, in p: up to where the slip vanishes or beyond the end.
+    fn line(&self, friction: [f64; 2], rate: [f64; 2]) -> Piece {
+        let state = &self.state;
+        let slope = self.coupling.mul_add(friction[0], self.normal);
+        let size = length(state.slip[0], state.slip[1]);
+        let braking = -(state.slip[0] * rate[0] + state.slip[1] * rate[1]);
+        let stops = size > self.vanished && braking > 0.0;
+        let length = if stops {
+            size * size / braking
+        } else {
+            // What is missing of the compression, and the most that any hypothesis wants for the restitution.
+            let missing = -state.normal.min(0.0) / slope;
+            let work = missing.mul_add(-state.normal.min(0.0), -2.0 * state.work.min(self.least));
+            let newton = self.speed / slope;
+            let poisson = self.compression.max(state.impulse + missing);
+            2.0 * (missing + newton + poisson + (work / slope).sqrt())
+        };
+        Piece {
+            length,
+            normal: line(state.normal, slope),
+            slip: [line(state.slip[0], rate[0]), line(state.slip[1], rate[1])],
+            impulse: line(state.impulse, 1.0),
+            friction: [
+                line(state.friction[0], friction[0]),
+                line(state.friction[1], friction[1]),
+            ],
+            work: integral(state.work, &line(state.normal, slope), 1.0),
+            slope: line(slope, 0.0),
+            stops,
+        }
+    }
+
+    /// A piece on which the slip of this size and direction turns, in τ times `fastest`.
+    fn curve(&self, size: f64, direction: [f64; 2], fastest: f64) -> Piece {
+        let scaled = |rate: f64| rate / fastest;
+        let (mu, nu) = (self.friction, scaled(self.coupling));
+        let [uu, ww] = self.tangential.map(|rate| scaled(mu * rate));
+        let (mut u, mut w, mut magnitude) = (
+            line(direction[0], 0.0),
+            line(direction[1], 0.0),
+            line(1.0, 0.0),
+        );
+        for n in 0..ORDER {
+            let order = (n + 1) as f64;
+            u[n + 1] = nu.mul_add(magnitude[n], -uu * u[n]) / order;
+            w[n + 1] = -ww * w[n] / order;
+            // |s|² = s·s, order by order.
+            let mut sum = 0.0;
+            for i in 0..=n + 1 {
+                sum += u[i].mul_add(u[n + 1 - i], w[i] * w[n + 1 - i]);
+            }
+            for i in 1..=n {
+                sum -= magnitude[i] * magnitude[n + 1 - i];
+            }
+            magnitude[n + 1] = 0.5 * sum;
+        }
+        let mut step = 1.0;
+        while !is_small(&magnitude, step) {
+            step *= 0.5;
+        }
+
+        let state = &self.state;
+        let pace = size / fastest; // dp/dτ over |s|
+        let mut slope = magnitude;
+        for n in 0..=ORDER {
+            slope[n] = self
+                .normal
+                .mul_add(magnitude[n], -(mu * self.coupling) * u[n]);
+        }
+        let normal = integral(state.normal, &slope, pace);
+        let mut power = [0.0; ORDER + 1];
+        for n in 0..=ORDER {
+            for i in 0..=n {
+                power[n] = magnitude[i].mul_add(normal[n - i], power[n]);
+            }
+        }
+        Piece {
+            length: step,
+            normal,
+            slip: [u.map(|x| size * x), w.map(|x| size * x)],
+            impulse: integral(state.impulse, &magnitude, pace),
+            friction: [
+                integral(state.friction[0], &u, -mu * pace),
+                integral(state.friction[1], &w, -mu * pace),
+            ],
+            work: integral(state.work, &power, pace),
+            slope,
+            stops: false,
+        }
+    }
+
+    /// Where on the piece the impact ends, if it does.
+    fn end_within(&mut self, piece: &Piece) -> Option<f64> {
+        // While the slip turns, dv_c^n/dp changes monotonically: on either side of its zero v_c^n is monotonic.
+        let (before, after) = (piece.slope[0], value(&piece.slope, piece.length));
+        let crest = (before > 0.0 && after < 0.0) || (before < 0.0 && after > 0.0);
+        if crest {
+            let sign = -before.signum();
+            let top = first(piece.length, 0.0, |t| sign * value(&piece.slope, t) >= 0.0);
+            self.end_between(piece, 0.0, top)
+                .or_else(|| self.end_between(piece, top, piece.length))
+        } else {
+            self.end_between(piece, 0.0, piece.length)
+        }
+    }
+
+    /// The same between two points, between which v_c^n is monotonic.
+    fn end_between(&mut self, piece: &Piece, mut low: f64, mut high: f64) -> Option<f64> {
+        let normal = |t| value(&piece.normal, t);
+        if self.compressing {
+            if normal(high) < 0.0 {
+                return None;
+            }
+            low = first(high, low, |t| normal(t) >= 0.0);
+            self.compressing = false;
+            self.compression = value(&piece.impulse, low);
+            self.least = self.least.min(value(&piece.work, low));
+        }
+        let falls = normal(high) < 0.0;
+        if falls {
+            high = first(high, low, |t| normal(t) < 0.0);
+        }
+        if self.is_over(piece, high) {
+            return Some(first(high, low, |t| self.is_over(piece, t)));
+        }
+        self.compressing = falls;
+        None
+    }
+
+    fn is_over(&self, piece: &Piece, t: f64) -> bool {
+        match self.hypothesis {
+            Hypothesis::Newton => value(&piece.normal, t) >= self.restitution * self.speed,
+            Hypothesis::Poisson => {
+                value(&piece.impulse, t)
+                    >= self.restitution.mul_add(self.compression, self.compression)
+            }
+            Hypothesis::Stronge => {
+                let kept = (1.0 - self.restitution) * (1.0 + self.restitution);
+                value(&piece.work, t) >= kept * self.least
+            }
+        }
+    }
+}
+
+/// The first point of [low, high] at which `holds`, which does from there on and at `high`.
+fn first(mut high: f64, mut low: f64, holds: impl Fn(f64) -> bool) -> f64 {
+    if holds(low) {
+        return low;
+    }
+    for _ in 0..HALVINGS {
+        let middle = 0.5 * (low + high);
+        if holds(middle) {
+            high = middle;
+        } else {
+            low = middle;
+        }
+    }
+    high
+}
+
+/// a + bt.
+fn line(a: f64, b: f64) -> Series {
+    let mut series = [0.0; ORDER + 1];
+    (series[0], series[1]) = (a, b);
+    series
+}
+
+/// start + factor ∫ series.
+fn integral(start: f64, series: &Series, factor: f64) -> Series {
+    let mut sum = line(start, 0.0);
+    for n in 0..ORDER {
+        sum[n + 1] = factor * series[n] / (n + 1) as f64;
+    }
+    sum
+}
+
+fn value(series: &Series, t: f64) -> f64 {
+    series.iter().rev().fold(0.0, |sum, &c| sum.mul_add(t, c))
+}
+
+/// Whether the last two terms are below the remainder.
+fn is_small(series: &Series, step: f64) -> bool {
+    let power = (1..ORDER).fold(1.0, |power, _| power * step);
+    let (last, other) = (series[ORDER].abs() * step, series[ORDER - 1].abs());
+    !(last.max(other) * power > REMAINDER)
+}
