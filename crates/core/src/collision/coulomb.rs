@@ -10,13 +10,15 @@ use crate::Error;
 use crate::lanes::Pack;
 use pulp::Simd;
 
-/// When the restitution that follows the compression is over. The three agree as long as the slip does not come to rest.
+/// When the restitution that follows the compression is over. The three agree as long as the slip neither stops nor turns.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Hypothesis {
-    /// W. J. Stronge, Proc. R. Soc. Lond. A **431**, 169 (1990): the normal force gives back ε_n² of the work that it took. Energy cannot
-    /// grow, whatever the slip does.
+    /// W. J. Stronge, Proc. R. Soc. Lond. A **431**, 169 (1990): the normal force gives back ε_n² of the work that it took. Energy
+    /// cannot grow, for friction takes, too.
     Stronge,
-    /// S. D. Poisson: the normal impulse of restitution is ε_n times that of compression. Energy can grow where the slip reverses.
+    /// S. D. Poisson: the normal impulse of restitution is ε_n times that of compression. The normal force may give back more than it
+    /// took, but not more than friction takes: with T the kinetic energy, dT/dp = v_c^n − μ|**s**| ≤ 0 at the end of the compression,
+    /// and its slope, the K-square of the direction of the impulse, never grows, so that the sum of both sides of that end is negative.
     Poisson,
     /// I. Newton: v_c^n′ = −ε_n v_c^n. Energy can grow where the slip stops or reverses.
     Newton,

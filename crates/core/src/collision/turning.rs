@@ -13,6 +13,7 @@
 
 use super::chatterjee_ruina::length;
 use super::{Components, Contact, Coulomb, Hypothesis, Response};
+use std::array::from_fn;
 
 /// Order of the Taylor series.
 const ORDER: usize = 24;
@@ -35,13 +36,13 @@ impl Coulomb<'_> {
         let mut impact = Impact::new(self, contact);
         for number in 0..=MOST_PIECES {
             let piece = impact.next_piece(number == MOST_PIECES);
-            if let Some(end) = impact.end_within(&piece) {
-                impact.state = piece.at(end);
-                break;
-            }
-            impact.state = piece.at(piece.length);
-            if piece.stops {
-                impact.state.slip = [0.0; 2];
+            let event = impact.event(&piece);
+            impact.state = piece.at(event.map_or(piece.length, |(t, _)| t));
+            match event {
+                Some((_, Event::Over)) => break,
+                Some((_, event)) => impact.pass(event),
+                None if piece.stops => impact.state.slip = [0.0; 2],
+                None => {}
             }
         }
         let state = impact.state;
@@ -65,7 +66,7 @@ struct State {
     /// Normal and tangential impulse so far.
     impulse: f64,
     friction: [f64; 2],
-    /// Work of the normal force so far.
+    /// Work of the normal force since the beginning or the last end of a compression.
     work: f64,
 }
 
@@ -85,9 +86,12 @@ struct Impact {
     state: State,
     /// Before the end of the compression, which in a jam may come more than once.
     compressing: bool,
-    /// Impulse at that end, and the least work so far.
+    /// Impulse at its last end, and work of the normal force until then.
     compression: f64,
-    least: f64,
+    balance: f64,
+    /// The most work that was taken so far, and what of it had been returned by then.
+    taken: f64,
+    returned: f64,
 }
 
 /// A part of the way on which every quantity is a polynomial.
@@ -139,7 +143,9 @@ impl Impact {
             },
             compressing: true,
             compression: 0.0,
-            least: 0.0,
+            balance: 0.0,
+            taken: 0.0,
+            returned: 0.0,
         }
     }
 
@@ -178,7 +184,10 @@ impl Impact {
         } else {
             // What is missing of the compression, and the most that any hypothesis wants for the restitution.
             let missing = -state.normal.min(0.0) / slope;
-            let work = missing.mul_add(-state.normal.min(0.0), -2.0 * state.work.min(self.least));
+            let work = missing.mul_add(
+                -state.normal.min(0.0),
+                2.0 * (self.taken - state.work.min(0.0)),
+            );
             let newton = self.speed / slope;
             let poisson = self.compression.max(state.impulse + missing);
             2.0 * (missing + newton + poisson + (work / slope).sqrt())
@@ -229,19 +238,10 @@ impl Impact {
 
         let state = &self.state;
         let pace = size / fastest; // dp/dτ over |s|
-        let mut slope = magnitude;
-        for n in 0..=ORDER {
-            slope[n] = self
-                .normal
-                .mul_add(magnitude[n], -(mu * self.coupling) * u[n]);
-        }
+        let jam = -(mu * self.coupling);
+        let slope: Series = from_fn(|n| self.normal.mul_add(magnitude[n], jam * u[n]));
         let normal = integral(state.normal, &slope, pace);
-        let mut power = [0.0; ORDER + 1];
-        for n in 0..=ORDER {
-            for i in 0..=n {
-                power[n] = magnitude[i].mul_add(normal[n - i], power[n]);
-            }
-        }
+        let power: Series = from_fn(|n| (0..=n).map(|i| magnitude[i] * normal[n - i]).sum());
         Piece {
             length: step,
             normal,
@@ -257,61 +257,82 @@ impl Impact {
         }
     }
 
-    /// Where on the piece the impact ends, if it does.
-    fn end_within(&mut self, piece: &Piece) -> Option<f64> {
+    /// The first event on the piece, and where it is.
+    fn event(&self, piece: &Piece) -> Option<(f64, Event)> {
         // While the slip turns, dv_c^n/dp changes monotonically: on either side of its zero v_c^n is monotonic.
         let (before, after) = (piece.slope[0], value(&piece.slope, piece.length));
-        let crest = (before > 0.0 && after < 0.0) || (before < 0.0 && after > 0.0);
-        if crest {
-            let sign = -before.signum();
-            let top = first(piece.length, 0.0, |t| sign * value(&piece.slope, t) >= 0.0);
-            self.end_between(piece, 0.0, top)
-                .or_else(|| self.end_between(piece, top, piece.length))
+        let crest = if before * after < 0.0 {
+            first(0.0, piece.length, |t| {
+                before * value(&piece.slope, t) <= 0.0
+            })
         } else {
-            self.end_between(piece, 0.0, piece.length)
-        }
+            piece.length
+        };
+        self.event_between(piece, 0.0, crest)
+            .or_else(|| self.event_between(piece, crest, piece.length))
     }
 
     /// The same between two points, between which v_c^n is monotonic.
-    fn end_between(&mut self, piece: &Piece, mut low: f64, mut high: f64) -> Option<f64> {
+    fn event_between(&self, piece: &Piece, low: f64, high: f64) -> Option<(f64, Event)> {
         let normal = |t| value(&piece.normal, t);
         if self.compressing {
-            if normal(high) < 0.0 {
-                return None;
-            }
-            low = first(high, low, |t| normal(t) >= 0.0);
-            self.compressing = false;
-            self.compression = value(&piece.impulse, low);
-            self.least = self.least.min(value(&piece.work, low));
+            let rises = normal(high) >= 0.0;
+            return rises.then(|| (first(low, high, |t| normal(t) >= 0.0), Event::Compressed));
         }
         let falls = normal(high) < 0.0;
-        if falls {
-            high = first(high, low, |t| normal(t) < 0.0);
-        }
+        let high = if falls {
+            first(low, high, |t| normal(t) < 0.0)
+        } else {
+            high
+        };
         if self.is_over(piece, high) {
-            return Some(first(high, low, |t| self.is_over(piece, t)));
+            let end = first(low, high, |t| self.is_over(piece, t));
+            return Some((end, Event::Over));
         }
-        self.compressing = falls;
-        None
+        falls.then_some((high, Event::CompressedAgain))
     }
 
     fn is_over(&self, piece: &Piece, t: f64) -> bool {
+        let e = self.restitution;
         match self.hypothesis {
-            Hypothesis::Newton => value(&piece.normal, t) >= self.restitution * self.speed,
+            Hypothesis::Newton => value(&piece.normal, t) >= e * self.speed,
             Hypothesis::Poisson => {
-                value(&piece.impulse, t)
-                    >= self.restitution.mul_add(self.compression, self.compression)
+                value(&piece.impulse, t) >= e.mul_add(self.compression, self.compression)
             }
             Hypothesis::Stronge => {
-                let kept = (1.0 - self.restitution) * (1.0 + self.restitution);
-                value(&piece.work, t) >= kept * self.least
+                value(&piece.work, t) >= (e * e).mul_add(self.taken, -self.returned)
             }
+        }
+    }
+
+    /// Goes on from an event.
+    fn pass(&mut self, event: Event) {
+        self.state.normal = 0.0;
+        self.compressing = event == Event::CompressedAgain;
+        if event == Event::Compressed {
+            // The balance begins anew, so that a little restitution is not lost in a large compression.
+            self.balance += self.state.work;
+            self.state.work = 0.0;
+            self.taken = self.taken.max(-self.balance);
+            self.returned = self.taken + self.balance;
+            self.compression = self.state.impulse;
         }
     }
 }
 
+/// What can happen on a piece.
+#[derive(Clone, Copy, PartialEq)]
+enum Event {
+    /// The compression ends.
+    Compressed,
+    /// In a jam the normal velocity turns before the restitution is over.
+    CompressedAgain,
+    /// The impact is over.
+    Over,
+}
+
 /// The first point of [low, high] at which `holds`, which does from there on and at `high`.
-fn first(mut high: f64, mut low: f64, holds: impl Fn(f64) -> bool) -> f64 {
+fn first(mut low: f64, mut high: f64, holds: impl Fn(f64) -> bool) -> f64 {
     if holds(low) {
         return low;
     }
