@@ -1,8 +1,9 @@
 //! The SIMD engine against the oracle, the three-dimensional scalar engine: the same bits, at every level.
 
 use restitution_core::{
-    Dumbbell, Impact, Law, Level, Limits, Means, Monitor, Orientation, Records, Run, Scales,
-    StopReason, TangentialRestitution, bounce,
+    ChatterjeeRuina, Coulomb, Dumbbell, Frictionless, Hypothesis, Impact, Law, Level, Limits,
+    Means, Monitor, Normal, Orientation, Plastic, Records, Run, Scales, StopReason, Tabulated,
+    TangentialRestitution, Viscoelastic, bounce,
 };
 
 fn run(elongation: f64, law: Law<'_>, particles: usize, impacts: usize) -> Run<'_> {
@@ -97,6 +98,35 @@ fn the_lanes_are_the_oracle_to_the_bit() {
                 let law = TangentialRestitution::new(normal, tangential)
                     .unwrap()
                     .into();
+                agrees_with_the_oracle(&run(elongation, law, 70, 120));
+            }
+        }
+    }
+}
+
+/// The other laws, and coefficients that depend on the speed.
+#[test]
+fn every_law_is_the_same_in_lanes() {
+    let glass = Viscoelastic::new(6e10, 0.2, 1e-6, 2500.0, 3e-3).unwrap();
+    let (speeds, values) = ([0.01, 0.1, 0.3, 1.0], [1.0, 0.95, 0.97, 0.8]);
+    let normals = [
+        Normal::from(0.9),
+        glass.into(),
+        Plastic::new(0.05).unwrap().into(),
+        Tabulated::new(&speeds, &values).unwrap().into(),
+    ];
+    for normal in normals {
+        let mut laws: Vec<Law<'_>> = vec![
+            TangentialRestitution::new(normal, 0.5).unwrap().into(),
+            Frictionless::new(normal).unwrap().into(),
+            ChatterjeeRuina::new(normal, 0.2, 0.3).unwrap().into(),
+        ];
+        for hypothesis in [Hypothesis::Stronge, Hypothesis::Poisson, Hypothesis::Newton] {
+            laws.push(Coulomb::new(normal, 0.3, hypothesis).unwrap().into());
+            laws.push(Coulomb::new(normal, 1.5, hypothesis).unwrap().into());
+        }
+        for law in laws {
+            for elongation in [0.0, 0.1, 1.0, 3.5] {
                 agrees_with_the_oracle(&run(elongation, law, 70, 120));
             }
         }
