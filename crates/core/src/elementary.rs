@@ -173,8 +173,28 @@ mod tests {
         }
     }
 
+    proptest! {
+        /// Beside the platform's power function, which is good to 1 ulp, at every magnitude; the larger result sets the ulp.
+        #[test]
+        fn the_fifth_root_agrees_with_the_platform(exponent in -300.0..300.0_f64) {
+            let x = 10.0_f64.powf(exponent);
+            let (y, y0) = (fifth_root(x), x.powf(0.2));
+            // 0.2 is not a fifth: its rounding counts ln x times.
+            let power = 1.0 + 0.06 * x.ln().abs();
+            prop_assert!((y - y0).abs() <= (1.0 + power) * f64::EPSILON * y0, "{x:e} {y:e} {y0:e}");
+        }
+
+        /// Fifth powers that are doubles have their root exactly.
+        #[test]
+        fn the_fifth_root_of_a_fifth_power_is_exact(root in 1..1552_u32, scale in -60..60_i32) {
+            let root = f64::from(root) * 2.0_f64.powi(scale);
+            prop_assert_eq!(fifth_root(root.powi(5)), root);
+        }
+    }
+
     #[test]
     fn is_exact_at_zero() {
+        assert_eq!(fifth_root(0.0), 0.0);
         assert_eq!(sincos(0.0), (0.0, 1.0));
     }
 }

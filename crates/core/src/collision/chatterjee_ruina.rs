@@ -1,7 +1,7 @@
 //! The law of A. Chatterjee and A. Ruina, *A new algebraic rigid-body collision law based on impulse space considerations*,
 //! J. Appl. Mech. **65**, 939 (1998).
 
-use super::{Components, Contact, Normal, Plane, Rebound, Response};
+use super::{Components, Contact, Normal, Plane, Rebound, Response, length};
 use crate::Error;
 use crate::lanes::Pack;
 use pulp::Simd;
@@ -92,15 +92,4 @@ impl<'a> ChatterjeeRuina<'a> {
             separation_speed: restitution * speed,
         }
     }
-}
-
-/// √(a² + b²), also where the squares would underflow.
-pub(super) fn length(a: f64, b: f64) -> f64 {
-    let (a, b) = (a.abs(), b.abs());
-    let (most, least) = (a.max(b), a.min(b));
-    if least == 0.0 {
-        return most;
-    }
-    let ratio = least / most;
-    most * ratio.mul_add(ratio, 1.0).sqrt()
 }

@@ -11,6 +11,7 @@ mod frictionless;
 mod law;
 mod normal;
 mod plane;
+mod series;
 mod tangential;
 mod turning;
 
@@ -99,6 +100,17 @@ pub struct Response {
     pub impulse: Components,
     /// Normal velocity of the point of contact after the impact, ≥ 0.
     pub separation_speed: f64,
+}
+
+/// √(a² + b²), also where the squares would underflow.
+fn length(a: f64, b: f64) -> f64 {
+    let (a, b) = (a.abs(), b.abs());
+    let (most, least) = (a.max(b), a.min(b));
+    if least == 0.0 {
+        return most;
+    }
+    let ratio = least / most;
+    most * ratio.mul_add(ratio, 1.0).sqrt()
 }
 
 /// The state after the impact of `sphere`, and the speed at which the point of contact leaves the plane.
