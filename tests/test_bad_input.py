@@ -22,6 +22,7 @@ COUNT = "must be a whole number in [1, 2**40)"
 SEED = "must be a whole number in [0, 2**64)"
 THREADS = "must be a whole number in [1, 1024] or None"
 ORIENTATION = "must be 'uniform-angle', 'isotropic' or a 1-D array of angles in rad, one per particle"
+LAW_TYPES = '"tangential-restitution" or "frictionless" or "coulomb" or "chatterjee-ruina"'
 ANGLE = "must be a finite angle in rad, at most 2**20 either way"
 
 NOT_FINITE = (math.nan, math.inf, -math.inf)
@@ -169,7 +170,7 @@ def test_body_and_law(body: rs.Dumbbell, law: rs.TangentialRestitution) -> None:
     for wrong in no_laws:
         text = message(partial(rs.simulate, body, wrong))
         assert text.startswith("law = ")
-        assert text.endswith(": must be a TangentialRestitution")
+        assert text.endswith(": must be a TangentialRestitution, Frictionless, Coulomb or ChatterjeeRuina")
 
 
 def test_missing_and_unknown_names() -> None:
@@ -291,7 +292,7 @@ def test_a_file_with_much_wrong(tmp_path: Path) -> None:
     tables = {
         "boddy": {"a": "1"},
         "body": {"shape": '"dumbbell"', "raduis": "3e-3", "separation": "-1"},
-        "law": {"type": '"frictionless"', "normal": "0.98"},
+        "law": {"type": '"friction"', "normal": "0.98"},
         "run": {"particle": "3", "body": "1", "seed": "-1"},
     }
     takes = "[run] takes particles, impacts, release_height, gravity, orientation, minimum_speed, seed"
@@ -301,7 +302,7 @@ def test_a_file_with_much_wrong(tmp_path: Path) -> None:
         "body.raduis: unknown; did you mean body.radius? [body] takes shape, radius, separation, density",
         "body.radius: missing; must be a finite number > 0",
         "body.separation = -1: must be a finite number >= 0",
-        "law.type = 'frictionless': must be \"tangential-restitution\"",
+        f"law.type = 'friction': must be {LAW_TYPES}",
         f"run.particle: unknown; did you mean run.particles? {takes}",
         f"run.body: unknown; {takes}",
         f"run.seed = -1: {SEED}",
@@ -315,7 +316,7 @@ def test_a_file_with_much_wrong(tmp_path: Path) -> None:
             "",
             [
                 'body.shape: missing; must be "dumbbell"',
-                'law.type: missing; must be "tangential-restitution"',
+                f"law.type: missing; must be {LAW_TYPES}",
             ],
         ),
         (
@@ -323,7 +324,7 @@ def test_a_file_with_much_wrong(tmp_path: Path) -> None:
             [
                 "body = 3: must be a table [body]",
                 'body.shape: missing; must be "dumbbell"',
-                'law.type = 5: must be "tangential-restitution"',
+                f"law.type = 5: must be {LAW_TYPES}",
             ],
         ),
     ],

@@ -9,13 +9,27 @@ if TYPE_CHECKING:
     from restitution._simulate import SimulationInterrupted, simulate
     from restitution._statistics import statistics
     from restitution.bodies import Dumbbell
-    from restitution.laws import TangentialRestitution
+    from restitution.laws import (
+        ChatterjeeRuina,
+        Coulomb,
+        Frictionless,
+        Plastic,
+        Tabulated,
+        TangentialRestitution,
+        Viscoelastic,
+    )
 
 __all__ = [
+    "ChatterjeeRuina",
+    "Coulomb",
     "Dumbbell",
+    "Frictionless",
     "NumericalError",
+    "Plastic",
     "SimulationInterrupted",
+    "Tabulated",
     "TangentialRestitution",
+    "Viscoelastic",
     "analytic",
     "build_info",
     "figures",
@@ -31,7 +45,13 @@ _HOMES = {
     "build_info": "_core",
     "reduce": "_reduce",
     "SimulationInterrupted": "_simulate",
+    "ChatterjeeRuina": "laws",
+    "Coulomb": "laws",
+    "Frictionless": "laws",
+    "Plastic": "laws",
+    "Tabulated": "laws",
     "TangentialRestitution": "laws",
+    "Viscoelastic": "laws",
     "simulate": "_simulate",
     "statistics": "_statistics",
 }

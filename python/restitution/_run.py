@@ -6,9 +6,9 @@ import numpy as np
 import numpy.typing as npt
 from pydantic import BeforeValidator, Field, InstanceOf, model_validator
 
-from restitution._parameters import Number, ParameterError, Parameters, Problem, Whole, wrong
+from restitution._parameters import Allowed, Number, ParameterError, Parameters, Problem, Whole, wrong
 from restitution.bodies import Dumbbell
-from restitution.laws import TangentialRestitution
+from restitution.laws import LAWS, Law
 
 Orientation = Literal["uniform-angle", "isotropic"]
 
@@ -60,7 +60,7 @@ class Run(Parameters):
     """
 
     body: InstanceOf[Dumbbell]
-    law: InstanceOf[TangentialRestitution]
+    law: Annotated[InstanceOf[Law], Allowed(LAWS)]
     particles: Annotated[Whole, Field(ge=1, lt=2**40, description="number of particles")] = 1000
     impacts: Annotated[Whole, Field(ge=1, lt=2**40, description="most impacts of a particle")] = 400
     release_height: Annotated[Number, Field(gt=0, description="height of the centre of mass, m")] = 0.06
@@ -94,7 +94,7 @@ class Run(Parameters):
         """Name every parameter as the core does."""
         return {
             **self.body.model_dump(),
-            **self.law.model_dump(),
+            "law": self.law.parameters(),
             **{name: getattr(self, name) for name in (*self.NUMBERS, "orientation", "seed")},
         }
 
@@ -104,7 +104,7 @@ class Run(Parameters):
             "body": type(self.body).__name__,
             **self.body.model_dump(),
             "law": type(self.law).__name__,
-            **self.law.model_dump(),
+            **self.law.attributes(),
             **{name: getattr(self, name) for name in self.NUMBERS},
             "orientation": self.orientation if self.angles is None else "given",
             "seed": np.uint64(self.seed),

@@ -8,7 +8,7 @@ from restitution import _core
 from restitution._resources import check_memory, checked_threads, progress_bar
 from restitution._run import Run
 from restitution.bodies import Dumbbell
-from restitution.laws import TangentialRestitution
+from restitution.laws import Law
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -31,7 +31,7 @@ class SimulationInterrupted(KeyboardInterrupt):
 
 def simulate(
     body: Dumbbell,
-    law: TangentialRestitution,
+    law: Law,
     *,
     particles: int = 1000,
     impacts: int = 400,
@@ -49,7 +49,7 @@ def simulate(
     ----------
     body : Dumbbell
         What falls.
-    law : TangentialRestitution
+    law : Law
         What an impact does.
     particles, impacts : int
         Number of particles, and the most impacts that each may have; both > 0.

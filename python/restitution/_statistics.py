@@ -13,14 +13,14 @@ from restitution._resources import available_memory, checked_threads, progress_b
 from restitution._run import Run
 from restitution._simulate import SimulationInterrupted
 from restitution.bodies import Dumbbell
-from restitution.laws import TangentialRestitution
+from restitution.laws import Law
 
 _MOMENTS = ("mean", "variance", "skewness", "kurtosis", "minimum", "maximum", "mean_fraction")
 
 
 def statistics(
     body: Dumbbell,
-    law: TangentialRestitution,
+    law: Law,
     *,
     particles: int = 1000,
     impacts: int = 400,

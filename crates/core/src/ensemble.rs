@@ -2,7 +2,7 @@
 
 use crate::Error;
 use crate::body::{Body, Dumbbell};
-use crate::collision::TangentialRestitution;
+use crate::collision::Law;
 use crate::lanes::{self, Pack, Sink};
 use crate::level::Level;
 use crate::records::{Records, Table};
@@ -21,7 +21,7 @@ pub struct Run<'a> {
     /// The body.
     pub body: Dumbbell,
     /// The collision law.
-    pub law: TangentialRestitution,
+    pub law: Law<'a>,
     /// Number of particles.
     pub particles: usize,
     /// Most impacts of a particle.
@@ -74,6 +74,14 @@ impl Monitor {
 pub(crate) const BLOCK: usize = 96;
 
 impl Run<'_> {
+    /// What the sums of ε are taken about: ε^n at the speed that a drop from the release height has on the plane.
+    pub fn origin(&self) -> f64 {
+        let drop = self.release_height - self.body.radius();
+        self.law
+            .normal()
+            .at((2.0 * self.gravity * drop.max(0.0)).sqrt())
+    }
+
     /// Runs every particle and keeps every impact. A run that is cancelled returns the particles that were begun.
     pub fn simulate(&self, means: Means, monitor: &Monitor) -> Result<Records, Error> {
         let plan = Plan::new(self)?;
@@ -123,7 +131,7 @@ impl Run<'_> {
         let next = AtomicUsize::new(0);
         // Blocks go to whichever thread is free; the sums are whole numbers and do not mind.
         let tallies = means.pool()?.broadcast(|_| {
-            let mut counter = Counter::new(bins, &plan, self.law.normal());
+            let mut counter = Counter::new(bins, &plan, self.origin());
             loop {
                 let first = next.fetch_add(BLOCK, Ordering::Relaxed);
                 if first >= self.particles || monitor.is_cancelled() {
@@ -133,7 +141,7 @@ impl Run<'_> {
                 plan.bounce(particles, means.level, monitor, &mut counter)?;
             }
         });
-        let mut total = Tally::new(bins, self.law.normal());
+        let mut total = Tally::new(bins, self.origin());
         for tally in tallies {
             total.merge(&tally?);
         }
@@ -159,6 +167,7 @@ impl Means {
 pub(crate) struct Plan<'a> {
     run: &'a Run<'a>,
     pub body: Body,
+    law: Law<'a>,
     pub scales: Scales,
     /// Height of the centre of mass at release.
     height: f64,
@@ -181,6 +190,7 @@ impl<'a> Plan<'a> {
         let plan = Self {
             run,
             body: run.body.scaled(),
+            law: run.law.scaled(&scales),
             scales,
             height: run.release_height / scales.length,
         };
@@ -280,7 +290,7 @@ impl<T: Sink> Work<'_, T> {
             lanes::bounce::<S, K, GROUPS>(
                 simd,
                 &plan.body,
-                &run.law,
+                &plan.law,
                 lanes::Release {
                     lift: plan.height - 1.0,
                     sines: &sines[..count],

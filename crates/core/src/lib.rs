@@ -17,7 +17,7 @@
 //! | Â(t)·(0, 0, 1) | [`State::axis`], from sphere 2 to sphere 1 |
 //! | L/2, J_xx, J_zz | [`Body::half_separation`], [`Body::transverse`], [`Body::axial`] |
 //! | r_c, v_c | `arm`, `slip` in [`collision`] |
-//! | ε^n, ε^t | [`TangentialRestitution`] |
+//! | ε^n, ε^t | [`Normal`], [`TangentialRestitution`] |
 //!
 //! # From the equation to the code
 //! | equation | file |
@@ -50,7 +50,10 @@ mod trajectory;
 mod vector;
 
 pub use body::{Body, Dumbbell};
-pub use collision::{Law, TangentialRestitution};
+pub use collision::{
+    ChatterjeeRuina, Coulomb, Frictionless, Hypothesis, Law, Normal, Plastic, Tabulated,
+    TangentialRestitution, Viscoelastic,
+};
 pub use contact::{Departure, Landing, NoConvergence, first_contact};
 pub use ensemble::{Means, Monitor, Run, default_threads};
 pub use error::Error;

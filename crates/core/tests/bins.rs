@@ -56,7 +56,7 @@ impl Expected {
                         bin(&edges.restitution, value),
                         bin(&edges.fraction, fraction),
                     ];
-                    let offset = (value - run.law.normal()) * 2.0_f64.powi(26);
+                    let offset = (value - run.origin()) * 2.0_f64.powi(26);
                     expected.quanta[row].push(offset.round_ties_even() as i128);
                     expected.values[row].push(value);
                     expected.fractions[row] +=
@@ -220,7 +220,7 @@ proptest! {
             fraction: around(2, records.rotational_fraction[i]),
         };
         let tally = statistics(&run, &edges.by_velocity(), level, 1);
-        Expected::by_velocity(&records, &run, &edges).agrees(&tally, run.law.normal())?;
+        Expected::by_velocity(&records, &run, &edges).agrees(&tally, run.origin())?;
     }
 }
 
@@ -229,7 +229,7 @@ fn counts_and_sums_what_simulate_records(run: &Run<'_>, level: Level) -> Result<
         .simulate(Means { threads: 1, level }, &Monitor::default())
         .unwrap();
     let edges = Edges::coarse();
-    let origin = run.law.normal();
+    let origin = run.origin();
     let by_velocity = statistics(run, &edges.by_velocity(), level, 2);
     Expected::by_velocity(&records, run, &edges).agrees(&by_velocity, origin)?;
     let by_number = statistics(run, &edges.bins(By::Number(run.impacts)), level, 2);
@@ -287,7 +287,7 @@ fn many_bins_are_as_exact_as_few() {
     };
     let tally = statistics(&run, &edges.bins(By::Number(3)), Level::best(), 1);
     Expected::by_number(&records, &run, &edges)
-        .agrees(&tally, run.law.normal())
+        .agrees(&tally, run.origin())
         .unwrap();
 }
 

@@ -13,7 +13,7 @@ use std::f64::consts::PI;
 fn are_images(
     (body, law, release): (
         restitution_core::Body,
-        restitution_core::TangentialRestitution,
+        restitution_core::Law<'static>,
         State,
     ),
     image: impl Fn(&State) -> State,

@@ -1,5 +1,6 @@
 //! The thin binding: parameters in, NumPy arrays out. No physics here.
 
+mod laws;
 mod watch;
 
 use numpy::ndarray::Array2;
@@ -9,7 +10,7 @@ use pyo3::exceptions::{PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use restitution_core::statistics::{Axis, Bins, By, Moments};
-use restitution_core::{Dumbbell, Error, Level, Means, Orientation, Run, TangentialRestitution};
+use restitution_core::{Dumbbell, Error, Level, Means, Orientation, Run};
 
 create_exception!(
     restitution,
@@ -55,8 +56,7 @@ struct Parameters<'py> {
     radius: f64,
     separation: f64,
     density: f64,
-    normal: f64,
-    tangential: f64,
+    law: laws::LawParameters,
     particles: usize,
     impacts: usize,
     release_height: f64,
@@ -71,7 +71,7 @@ impl Parameters<'_> {
         Ok(Run {
             body: Dumbbell::new(self.radius, self.separation, self.density)
                 .map_err(python_error)?,
-            law: TangentialRestitution::new(self.normal, self.tangential).map_err(python_error)?,
+            law: self.law.law()?,
             particles: self.particles,
             impacts: self.impacts,
             release_height: self.release_height,
@@ -234,5 +234,7 @@ fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(statistics, module)?)?;
     module.add_function(wrap_pyfunction!(build_info, module)?)?;
     module.add_function(wrap_pyfunction!(sincos, module)?)?;
+    module.add_function(wrap_pyfunction!(laws::normal_coefficient, module)?)?;
+    module.add_function(wrap_pyfunction!(laws::respond, module)?)?;
     Ok(())
 }

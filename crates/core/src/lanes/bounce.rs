@@ -5,7 +5,7 @@ use super::contact::{Departure, Pass, Search};
 use super::flight::State;
 use super::{Mask, Pack};
 use crate::body::Body;
-use crate::collision::TangentialRestitution;
+use crate::collision::Law;
 use crate::contact::MOST_STEPS;
 use crate::trajectory::{COLLAPSE_RUN, Limits, StopReason, UNRESOLVED};
 use pulp::Simd;
@@ -116,7 +116,7 @@ struct Group<S: Simd, const K: usize> {
 pub(crate) fn bounce<S: Simd, const K: usize, const N: usize>(
     simd: S,
     body: &Body,
-    law: &TangentialRestitution,
+    law: &Law<'_>,
     release: Release<'_>,
     limits: Limits,
     sink: &mut impl Sink,
@@ -247,7 +247,7 @@ impl<S: Simd, const K: usize> Group<S, K> {
     fn land(
         &mut self,
         body: &Body,
-        law: &TangentialRestitution,
+        law: &Law<'_>,
         limits: Limits,
         number: usize,
         sink: &mut impl Sink,
