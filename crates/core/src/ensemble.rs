@@ -1,13 +1,14 @@
 //! Many particles, on all cores, each alone: the result cannot depend on the schedule.
 
 use crate::Error;
-use crate::body::{Body, Dumbbell};
+use crate::body::{Body, Solid};
 use crate::collision::TangentialRestitution;
 use crate::lanes::{self, Pack, Sink};
 use crate::level::Level;
 use crate::records::{Records, Table};
 use crate::release::Orientation;
 use crate::scales::Scales;
+use crate::spatial;
 use crate::statistics::{Bins, By, Counter, Tally};
 use crate::trajectory::Limits;
 use pulp::{Simd, WithSimd};
@@ -19,7 +20,7 @@ use std::sync::atomic::{AtomicBool, AtomicU64, AtomicUsize, Ordering};
 #[derive(Debug, Clone, Copy)]
 pub struct Run<'a> {
     /// The body.
-    pub body: Dumbbell,
+    pub body: Solid,
     /// The collision law.
     pub law: TangentialRestitution,
     /// Number of particles.
@@ -177,27 +178,28 @@ impl<'a> Plan<'a> {
             allowed,
         )?;
         run.orientation.check(run.particles)?;
-        let scales = Scales::new(run.body.radius(), run.gravity)?;
+        let scales = Scales::new(run.body.unit, run.gravity)?;
         let plan = Self {
             run,
-            body: run.body.scaled(),
+            body: run.body.scaled,
             scales,
             height: run.release_height / scales.length,
         };
         // A body put down on the plane may be off by the rounding of its height.
         let clear = |cosine: f64| {
-            let lowest = plan.body.half_separation.mul_add(cosine.abs(), 1.0);
-            plan.height >= lowest * (1.0 - 4.0 * f64::EPSILON)
+            plan.height >= plan.body.hull.support(cosine) * (1.0 - 4.0 * f64::EPSILON)
         };
         let clear = match run.orientation {
             Orientation::Given(_) => (0..run.particles).all(|i| clear(plan.release(i).1)),
-            Orientation::UniformAngle | Orientation::Isotropic => clear(1.0),
+            Orientation::UniformAngle | Orientation::Isotropic => {
+                run.release_height >= run.body.farthest() * (1.0 - 4.0 * f64::EPSILON)
+            }
         };
         Error::unless(
             clear && plan.height.is_finite(),
             "release_height",
             run.release_height,
-            "finite and high enough that no sphere is below the plane at release (R + L/2 for random angles)",
+            "finite and high enough that no part is below the plane at release",
         )?;
         Ok(plan)
     }
@@ -216,13 +218,56 @@ impl<'a> Plan<'a> {
         sink: &mut impl Sink,
     ) -> Result<(), Error> {
         let count = particles.len() as u64;
-        level.run(Work {
-            plan: self,
-            particles,
-            monitor,
-            sink,
-        })?;
+        if self.body.hull.is_equal_pair() {
+            level.run(Work {
+                plan: self,
+                particles,
+                monitor,
+                sink,
+            })?;
+        } else {
+            self.bounce_in_space(particles, monitor, sink)?;
+        }
         monitor.finished.fetch_add(count, Ordering::Relaxed);
+        Ok(())
+    }
+}
+
+impl Plan<'_> {
+    fn limits(&self) -> Limits {
+        Limits {
+            impacts: self.run.impacts,
+            minimum_speed: self.run.minimum_speed / self.scales.speed,
+        }
+    }
+
+    /// As [`Plan::bounce`], for what the lanes cannot follow.
+    fn bounce_in_space(
+        &self,
+        particles: Range<usize>,
+        monitor: &Monitor,
+        sink: &mut impl Sink,
+    ) -> Result<(), Error> {
+        let Run {
+            orientation, seed, ..
+        } = *self.run;
+        for (place, particle) in particles.enumerate() {
+            let release = orientation.release(&self.body, self.height, seed, particle as u64);
+            sink.begin(place);
+            spatial::bounce(
+                &self.body,
+                &self.run.law,
+                release,
+                self.limits(),
+                sink,
+                || !monitor.is_cancelled(),
+            )
+            .map_err(|stuck| Error::Numerical {
+                particle: particle as u64,
+                seed,
+                flight: stuck.impacts as u64,
+            })?;
+        }
         Ok(())
     }
 }
@@ -262,10 +307,7 @@ impl<T: Sink> Work<'_, T> {
             sink,
         } = self;
         let run = plan.run;
-        let limits = Limits {
-            impacts: run.impacts,
-            minimum_speed: run.minimum_speed / plan.scales.speed,
-        };
+        let limits = plan.limits();
         let (mut sines, mut cosines) = ([0.0; BLOCK], [0.0; BLOCK]);
         for first in particles.clone().step_by(Pack::<S, K>::WIDTH) {
             let count = Pack::<S, K>::WIDTH.min(particles.end - first);

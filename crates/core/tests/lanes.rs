@@ -13,7 +13,9 @@ fn run(
 ) -> Run<'static> {
     let radius = 3e-3;
     Run {
-        body: Dumbbell::new(radius, elongation * radius, 2500.0).unwrap(),
+        body: Dumbbell::new(radius, elongation * radius, 2500.0)
+            .unwrap()
+            .into(),
         law,
         particles,
         impacts,
@@ -39,11 +41,12 @@ fn same(a: &[f64], b: &[f64]) -> bool {
 
 /// Bounces particle after particle with the oracle and compares every number of every impact.
 fn agrees_with_the_oracle(run: &Run<'_>) {
-    let scales = Scales::new(run.body.radius(), run.gravity).unwrap();
-    let body = run.body.scaled();
+    let scales = Scales::new(run.body.unit, run.gravity).unwrap();
+    let body = run.body.scaled;
     let lanes = at(run, Level::best(), 0);
     for particle in 0..run.particles {
         let release = run.orientation.release(
+            &body,
             run.release_height / scales.length,
             run.seed,
             particle as u64,

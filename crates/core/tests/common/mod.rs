@@ -6,7 +6,8 @@ use proptest::test_runner::{Config, RngSeed};
 use restitution_core::collision::collide;
 use restitution_core::{
     Body, Departure, Dumbbell, Flight, Impact, Landing, Level, Limits, Means, Monitor, Orientation,
-    Records, Run, Sphere, State, StopReason, TangentialRestitution, Vector, bounce, first_contact,
+    Records, Run, Shape, Sphere, State, StopReason, TangentialRestitution, Vector, bounce,
+    first_contact,
 };
 use std::f64::consts::PI;
 
@@ -122,7 +123,9 @@ pub fn legs(body: &Body, law: &TangentialRestitution, release: State, most: usiz
 pub fn paper(elongation: f64, law: TangentialRestitution) -> Run<'static> {
     let radius = 3e-3;
     Run {
-        body: Dumbbell::new(radius, elongation * radius, 2500.0).unwrap(),
+        body: Dumbbell::new(radius, elongation * radius, 2500.0)
+            .unwrap()
+            .into(),
         law,
         particles: 100,
         impacts: 100,
