@@ -8,13 +8,16 @@ if TYPE_CHECKING:
     from restitution._reduce import reduce
     from restitution._simulate import SimulationInterrupted, simulate
     from restitution._statistics import statistics
-    from restitution.bodies import Dumbbell
+    from restitution.bodies import Dumbbell, LoadedSphere, Spherocylinder, Spheroid
     from restitution.laws import TangentialRestitution
 
 __all__ = [
     "Dumbbell",
+    "LoadedSphere",
     "NumericalError",
     "SimulationInterrupted",
+    "Spherocylinder",
+    "Spheroid",
     "TangentialRestitution",
     "analytic",
     "build_info",
@@ -27,6 +30,9 @@ __all__ = [
 
 _HOMES = {
     "Dumbbell": "bodies",
+    "LoadedSphere": "bodies",
+    "Spherocylinder": "bodies",
+    "Spheroid": "bodies",
     "NumericalError": "_core",
     "build_info": "_core",
     "reduce": "_reduce",

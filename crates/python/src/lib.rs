@@ -1,7 +1,9 @@
 //! The thin binding: parameters in, NumPy arrays out. No physics here.
 
+mod bodies;
 mod watch;
 
+use bodies::Solid;
 use numpy::ndarray::Array2;
 use numpy::{Element, IntoPyArray, PyReadonlyArray1};
 use pyo3::create_exception;
@@ -9,7 +11,7 @@ use pyo3::exceptions::{PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use restitution_core::statistics::{Axis, Bins, By, Moments};
-use restitution_core::{Dumbbell, Error, Level, Means, Orientation, Run, TangentialRestitution};
+use restitution_core::{Error, Level, Means, Orientation, Run, TangentialRestitution};
 
 create_exception!(
     restitution,
@@ -34,13 +36,6 @@ fn level() -> PyResult<Level> {
     }
 }
 
-/// Mass (kg), transverse and axial moment of inertia (kg m²) of a dumbbell.
-#[pyfunction]
-fn dumbbell_inertia(radius: f64, separation: f64, density: f64) -> PyResult<(f64, f64, f64)> {
-    let body = Dumbbell::new(radius, separation, density).map_err(python_error)?;
-    Ok((body.mass(), body.transverse_inertia(), body.axial_inertia()))
-}
-
 /// How to let particles go: the name of a law or an array of angles.
 #[derive(FromPyObject)]
 enum Release<'py> {
@@ -52,9 +47,7 @@ enum Release<'py> {
 #[derive(FromPyObject)]
 #[pyo3(from_item_all)]
 struct Parameters<'py> {
-    radius: f64,
-    separation: f64,
-    density: f64,
+    body: PyRef<'py, Solid>,
     normal: f64,
     tangential: f64,
     particles: usize,
@@ -69,8 +62,7 @@ struct Parameters<'py> {
 impl Parameters<'_> {
     fn run(&self) -> PyResult<Run<'_>> {
         Ok(Run {
-            body: Dumbbell::new(self.radius, self.separation, self.density)
-                .map_err(python_error)?,
+            body: self.body.0,
             law: TangentialRestitution::new(self.normal, self.tangential).map_err(python_error)?,
             particles: self.particles,
             impacts: self.impacts,
@@ -229,7 +221,7 @@ fn sincos(x: f64) -> (f64, f64) {
 #[pymodule]
 fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add("NumericalError", module.py().get_type::<NumericalError>())?;
-    module.add_function(wrap_pyfunction!(dumbbell_inertia, module)?)?;
+    bodies::add_to(module)?;
     module.add_function(wrap_pyfunction!(simulate, module)?)?;
     module.add_function(wrap_pyfunction!(statistics, module)?)?;
     module.add_function(wrap_pyfunction!(build_info, module)?)?;

@@ -142,6 +142,14 @@ impl Shape for Dumbbell {
         }
     }
 
+    fn centre_of_mass(&self) -> f64 {
+        if self.is_equal() {
+            0.0
+        } else {
+            self.radius[0] * (self.whole().centre + 0.5 * self.elongation())
+        }
+    }
+
     fn scaled(&self) -> Body {
         let elongation = seen(self.elongation());
         if self.is_equal() {

@@ -55,6 +55,10 @@ impl Shape for LoadedSphere {
         self.whole().axial
     }
 
+    fn centre_of_mass(&self) -> f64 {
+        self.whole().centre
+    }
+
     fn scaled(&self) -> Body {
         let part = self.whole();
         let square = self.radius * self.radius;

@@ -43,6 +43,10 @@ pub trait Shape {
     fn transverse_inertia(&self) -> f64;
     /// Moment of inertia J_zz about the symmetry axis, in kg m².
     fn axial_inertia(&self) -> f64;
+    /// Place of the centre of mass on the axis, in m, from the middle of the shape: of its two centres, or of its one.
+    fn centre_of_mass(&self) -> f64 {
+        0.0
+    }
     /// The body in the core's units.
     fn scaled(&self) -> Body;
 }
@@ -58,6 +62,8 @@ pub struct Solid {
     pub transverse_inertia: f64,
     /// Moment of inertia J_zz about the symmetry axis, in kg m².
     pub axial_inertia: f64,
+    /// Place of the centre of mass on the axis, in m, from the middle of the shape.
+    pub centre_of_mass: f64,
     /// The body in the core's units.
     pub scaled: Body,
 }
@@ -69,6 +75,7 @@ impl<S: Shape> From<S> for Solid {
             mass: shape.mass(),
             transverse_inertia: shape.transverse_inertia(),
             axial_inertia: shape.axial_inertia(),
+            centre_of_mass: shape.centre_of_mass(),
             scaled: shape.scaled(),
         }
     }
