@@ -316,7 +316,7 @@ def test_a_file_with_much_wrong(tmp_path: Path) -> None:
         (
             "",
             [
-                "body.shape: missing; must be " + SHAPES,
+                f"body.shape: missing; must be {SHAPES}",
                 'law.type: missing; must be "tangential-restitution"',
             ],
         ),
@@ -324,7 +324,7 @@ def test_a_file_with_much_wrong(tmp_path: Path) -> None:
             "body = 3\n[law]\ntype = 5",
             [
                 "body = 3: must be a table [body]",
-                "body.shape: missing; must be " + SHAPES,
+                f"body.shape: missing; must be {SHAPES}",
                 'law.type = 5: must be "tangential-restitution"',
             ],
         ),
