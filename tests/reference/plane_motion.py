@@ -51,51 +51,59 @@ class Impact(NamedTuple):
     part: int
 
 
+class Motion(NamedTuple):
+    """Height and climb of the centre of mass, angle of the axis and its rate, all of them just after an impact."""
+
+    z: float
+    v: float
+    theta: float
+    w: float
+
+
+def first_contact(parts: Sequence[Part], start: Motion, gravity: float, hit: int) -> tuple[float, int]:
+    """When which part comes down; part `hit`, if there is such a one, is on the plane and leaves it."""
+    z, v, theta, w = start
+    longest = (v + np.sqrt(v**2 + 2.0 * gravity * z)) / gravity  # to z = 0, deeper than any contact
+    times = np.linspace(0.0, longest, SAMPLES + 1)
+    found = []
+    for number, part in enumerate(parts):
+
+        def gap(t: Array, part: Part = part) -> Array:
+            return z + v * t - 0.5 * gravity * t**2 - part.height(theta + w * t)
+
+        below = gap(times) < 0.0
+        below[0] = False
+        first = int(np.argmax(below))
+        if below[first]:
+            assert first > 1 or number != hit, "the grid is too coarse to see how the part leaves"
+            between = times[first - 1], times[first]
+            found.append((brentq(gap, *between, xtol=1e-18, rtol=1e-15), number))
+    assert found, "the body fell through the plane"
+    return min(found)
+
+
 def bounce(
     parts: Sequence[Part],
     inertia: float,
-    normal: float,
-    tangential: float,
+    law: tuple[float, float],
     release: tuple[float, float],
     gravity: float = 9.81,
 ) -> Iterator[Impact]:
-    """All impacts after a release from rest at (angle, height); `inertia` is J_xx/m."""
-    theta, z = release
-    v, w, x = 0.0, 0.0, 0.0  # climb, dθ/dt, glide
+    """All impacts after a release from rest at (angle, height); `inertia` is J_xx/m, `law` (ε_n, ε_t)."""
+    (theta, z), v, w, x = release, 0.0, 0.0, 0.0  # x: glide
     clock, hit = 0.0, -1
     while True:
-
-        def gap(t: Array | float, part: Part) -> Array:
-            return z + v * t - 0.5 * gravity * t**2 - part.height(np.asarray(theta + w * t))  # noqa: B023
-
-        longest = (v + np.sqrt(v**2 + 2.0 * gravity * z)) / gravity  # to z = 0, deeper than any contact
-        times = np.linspace(0.0, longest, SAMPLES + 1)
-        found = []
-        for number, part in enumerate(parts):
-            below = gap(times, part) < 0.0
-            below[0] = False  # the part that was hit is on the plane
-            first = int(np.argmax(below))
-            if not below[first]:
-                continue
-            assert first > 1 or number != hit, "the grid is too coarse to see the part that was hit leave"
-            low = times[first - 1] if number != hit or first > 1 else times[1]
-            found.append((brentq(gap, low, times[first], args=(part,), xtol=1e-18, rtol=1e-15), number))
-        assert found, "the body fell through the plane"
-        time, hit = min(found)
+        time, hit = first_contact(parts, Motion(z, v, theta, w), gravity, hit)
         clock += time
         z, v, theta = z + v * time - 0.5 * gravity * time**2, v - gravity * time, theta + w * time
-        # The point of contact, seen from the centre of mass: h below it and dh/dθ ahead.
-        height, ahead = (
-            float(parts[hit].height(np.asarray(theta))),
-            float(parts[hit].slope(np.asarray(theta))),
-        )
-        # Turning by dθ moves it by (−h, −h′) dθ, forwards and upwards.
-        slip = np.array([x - w * height, v - w * ahead])
-        change = np.array([tangential - 1.0, -normal - 1.0]) * slip  # (9)
-        lever = np.array([-height, -ahead])
+        # Turning by dθ moves the point of contact, h below the centre of mass and h′ ahead, by (−h, −h′)dθ.
+        here = np.asarray(theta)
+        lever = -np.array([float(parts[hit].height(here)), float(parts[hit].slope(here))])
+        slip = np.array([x, v]) + w * lever
+        change = (np.array([law[1], -law[0]]) - 1.0) * slip  # (9)
         impulse = np.linalg.solve(np.eye(2) + np.outer(lever, lever) / inertia, change)  # (10)
-        before = v**2 + x**2 + inertia * w**2
-        fraction, fall = inertia * w**2 / before, -v
+        before, rotation, fall = v**2 + x**2 + inertia * w**2, inertia * w**2, -v
         x, v, w = x + impulse[0], v + impulse[1], w + float(lever @ impulse) / inertia  # (11)
         after = v**2 + x**2 + inertia * w**2
-        yield Impact(clock, fall, v, fraction, after / before, float(np.arccos(np.cos(theta))), hit)
+        angle = float(np.arccos(np.cos(theta)))
+        yield Impact(clock, fall, v, rotation / before, after / before, angle, hit)
