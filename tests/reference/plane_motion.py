@@ -5,7 +5,7 @@ its axis at the angle θ, of each part that can touch. The lowest point is h′(
 """
 
 from collections.abc import Callable, Iterator, Sequence
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -52,7 +52,7 @@ class Impact(NamedTuple):
 
 
 class Motion(NamedTuple):
-    """Height and climb of the centre of mass, angle of the axis and its rate, all of them just after an impact."""
+    """Height and climb of the centre of mass, angle of the axis and its rate, at the start of a flight."""
 
     z: float
     v: float
@@ -68,7 +68,7 @@ def first_contact(parts: Sequence[Part], start: Motion, gravity: float, hit: int
     found = []
     for number, part in enumerate(parts):
 
-        def gap(t: Array, part: Part = part) -> Array:
+        def gap(t: Any, part: Part = part) -> Any:
             return z + v * t - 0.5 * gravity * t**2 - part.height(theta + w * t)
 
         below = gap(times) < 0.0
