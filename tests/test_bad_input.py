@@ -20,6 +20,8 @@ POSITIVE = "must be a finite number > 0"
 NOT_NEGATIVE = "must be a finite number >= 0"
 COUNT = "must be a whole number in [1, 2**40)"
 SEED = "must be a whole number in [0, 2**64)"
+BODIES = "a Dumbbell, LoadedSphere, Spherocylinder or Spheroid"
+SHAPES = '"dumbbell" or "loaded-sphere" or "spherocylinder" or "spheroid"'
 THREADS = "must be a whole number in [1, 1024] or None"
 ORIENTATION = "must be 'uniform-angle', 'isotropic' or a 1-D array of angles in rad, one per particle"
 LAW_TYPES = '"tangential-restitution" or "frictionless" or "coulomb" or "chatterjee-ruina"'
@@ -56,7 +58,7 @@ RUN = [
     *real("release_height", (0, -0.06), POSITIVE),
     *real("gravity", (0, -9.81), POSITIVE),
     *real("minimum_speed", (-1e-9,), NOT_NEGATIVE),
-    ("release_height", 3.1e-3, "must be at least 0.00315 m, R + L/2"),
+    ("release_height", 3.1e-3, "must be at least 0.00315 m, or a part of the body"),
     ("orientation", "upright", ORIENTATION),
     ("orientation", None, ORIENTATION),
     ("orientation", 0.3, ORIENTATION),
@@ -155,17 +157,17 @@ def test_a_tilted_body_may_start_lower(body: rs.Dumbbell, law: rs.TangentialRest
     assert data.impacts == 1
     upright = np.array([0.0])
     text = message(lambda: rs.simulate(body, law, particles=1, release_height=height, orientation=upright))
-    check(text, "release_height", height, "must be at least 0.00315 m, R + L/2 max |cos θ|")
+    check(text, "release_height", height, "must be at least 0.00315 m, or a part of the body")
 
 
 def test_body_and_law(body: rs.Dumbbell, law: rs.TangentialRestitution) -> None:
     """What is no body or no law is refused, be it as much as the other of the two or their parameters."""
     no_bodies: list[Any] = [law, None, 3, "dumbbell", {"radius": 1.0, "separation": 0.1}, rs.Dumbbell]
     for wrong in no_bodies:
-        for call in (rs.simulate, rs.analytic.first_impact):
+        for call, allowed in ((rs.simulate, BODIES), (rs.analytic.first_impact, "a Dumbbell")):
             text = message(partial(call, wrong, law))
             assert text.startswith("body = ")
-            assert text.endswith(": must be a Dumbbell")
+            assert text.endswith(f": must be {allowed}")
     no_laws: list[Any] = [body, None, 0.98, {"normal": 0.98}]
     for wrong in no_laws:
         text = message(partial(rs.simulate, body, wrong))
@@ -315,7 +317,7 @@ def test_a_file_with_much_wrong(tmp_path: Path) -> None:
         (
             "",
             [
-                'body.shape: missing; must be "dumbbell"',
+                f"body.shape: missing; must be {SHAPES}",
                 f"law.type: missing; must be {LAW_TYPES}",
             ],
         ),
@@ -323,7 +325,7 @@ def test_a_file_with_much_wrong(tmp_path: Path) -> None:
             "body = 3\n[law]\ntype = 5",
             [
                 "body = 3: must be a table [body]",
-                'body.shape: missing; must be "dumbbell"',
+                f"body.shape: missing; must be {SHAPES}",
                 f"law.type = 5: must be {LAW_TYPES}",
             ],
         ),

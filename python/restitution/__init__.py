@@ -8,7 +8,7 @@ if TYPE_CHECKING:
     from restitution._reduce import reduce
     from restitution._simulate import SimulationInterrupted, simulate
     from restitution._statistics import statistics
-    from restitution.bodies import Dumbbell
+    from restitution.bodies import Dumbbell, LoadedSphere, Spherocylinder, Spheroid
     from restitution.laws import (
         ChatterjeeRuina,
         Coulomb,
@@ -24,9 +24,12 @@ __all__ = [
     "Coulomb",
     "Dumbbell",
     "Frictionless",
+    "LoadedSphere",
     "NumericalError",
     "Plastic",
     "SimulationInterrupted",
+    "Spherocylinder",
+    "Spheroid",
     "Tabulated",
     "TangentialRestitution",
     "Viscoelastic",
@@ -41,6 +44,9 @@ __all__ = [
 
 _HOMES = {
     "Dumbbell": "bodies",
+    "LoadedSphere": "bodies",
+    "Spherocylinder": "bodies",
+    "Spheroid": "bodies",
     "NumericalError": "_core",
     "build_info": "_core",
     "reduce": "_reduce",

@@ -52,7 +52,7 @@ _PER_IMPACT: dict[str, dict[str, Any]] = {
         "symbol": "θ",
     },
     "contact": {
-        "long_name": "sphere that touched; sphere 1 is at +L/2 along the axis",
+        "long_name": "sphere or half that touched; the axis points to 1",
         **_flags(range(3), ("none", "sphere_1", "sphere_2")),
     },
 }

@@ -7,7 +7,7 @@ import numpy.typing as npt
 from restitution import _core
 from restitution._resources import check_memory, checked_threads, progress_bar
 from restitution._run import Run
-from restitution.bodies import Dumbbell
+from restitution.bodies import Body
 from restitution.laws import Law
 
 if TYPE_CHECKING:
@@ -30,7 +30,7 @@ class SimulationInterrupted(KeyboardInterrupt):
 
 
 def simulate(
-    body: Dumbbell,
+    body: Body,
     law: Law,
     *,
     particles: int = 1000,
@@ -47,14 +47,14 @@ def simulate(
 
     Parameters
     ----------
-    body : Dumbbell
+    body : Dumbbell, LoadedSphere, Spherocylinder or Spheroid
         What falls.
     law : Law
         What an impact does.
     particles, impacts : int
         Number of particles, and the most impacts that each may have; both > 0.
     release_height : float
-        Height of the centre of mass at release, in m; no sphere may be below the plane.
+        Height of the centre of mass at release, in m; no part may be below the plane.
     gravity : float
         Acceleration of gravity in m/s², > 0.
     orientation : {"uniform-angle", "isotropic"} or array of float, shape (particles,)
@@ -74,9 +74,9 @@ def simulate(
     xarray.Dataset
         Dimensions (particle, impact). Variables over both: ``time``, ``impact_velocity``,
         ``rebound_velocity``, ``restitution``, ``rotational_fraction``, ``energy_ratio``, ``angle`` (float64,
-        NaN where the impact never happened) and ``contact`` (which sphere touched). Over particles:
-        ``impacts``, ``stop_reason``, ``release_angle``. Units are in the variables' attributes, all
-        parameters in the Dataset's.
+        NaN where the impact never happened) and ``contact`` (which sphere touched, or which half of a
+        spheroid). Over particles: ``impacts``, ``stop_reason``, ``release_angle``. Units are in the
+        variables' attributes, all parameters in the Dataset's.
 
     Raises
     ------

@@ -12,14 +12,14 @@ from restitution._dataset import STOP_REASONS, attributes
 from restitution._resources import available_memory, checked_threads, progress_bar
 from restitution._run import Run
 from restitution._simulate import SimulationInterrupted
-from restitution.bodies import Dumbbell
+from restitution.bodies import Body
 from restitution.laws import Law
 
 _MOMENTS = ("mean", "variance", "skewness", "kurtosis", "minimum", "maximum", "mean_fraction")
 
 
 def statistics(
-    body: Dumbbell,
+    body: Body,
     law: Law,
     *,
     particles: int = 1000,

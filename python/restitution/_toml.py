@@ -6,7 +6,7 @@ from typing import Any, TypeVar
 
 from restitution._parameters import ParameterError, Parameters, Problem, unknown, wrong
 from restitution._run import Run
-from restitution.bodies import Dumbbell
+from restitution.bodies import Dumbbell, LoadedSphere, Spherocylinder, Spheroid
 from restitution.laws import (
     ChatterjeeRuina,
     Coulomb,
@@ -19,7 +19,15 @@ from restitution.laws import (
 
 # Table: the key that chooses a kind of body, law or material, and the kinds there are.
 _KINDS: dict[str, tuple[str, dict[str, type[Parameters]]]] = {
-    "body": ("shape", {"dumbbell": Dumbbell}),
+    "body": (
+        "shape",
+        {
+            "dumbbell": Dumbbell,
+            "loaded-sphere": LoadedSphere,
+            "spherocylinder": Spherocylinder,
+            "spheroid": Spheroid,
+        },
+    ),
     "law": (
         "type",
         {

@@ -1,13 +1,14 @@
 //! Many particles, on all cores, each alone: the result cannot depend on the schedule.
 
 use crate::Error;
-use crate::body::{Body, Dumbbell};
+use crate::body::{Body, Solid};
 use crate::collision::Law;
 use crate::lanes::{self, Pack, Sink};
 use crate::level::Level;
 use crate::records::{Records, Table};
 use crate::release::Orientation;
 use crate::scales::Scales;
+use crate::spatial;
 use crate::statistics::{Bins, By, Counter, Tally};
 use crate::trajectory::Limits;
 use pulp::{Simd, WithSimd};
@@ -19,7 +20,7 @@ use std::sync::atomic::{AtomicBool, AtomicU64, AtomicUsize, Ordering};
 #[derive(Debug, Clone, Copy)]
 pub struct Run<'a> {
     /// The body.
-    pub body: Dumbbell,
+    pub body: Solid,
     /// The collision law.
     pub law: Law<'a>,
     /// Number of particles.
@@ -76,7 +77,7 @@ pub(crate) const BLOCK: usize = 96;
 impl Run<'_> {
     /// What the sums of ε are taken about: ε^n at the speed that a drop from the release height has on the plane.
     pub fn origin(&self) -> f64 {
-        let drop = self.release_height - self.body.radius();
+        let drop = self.release_height - self.body.unit;
         self.law
             .normal()
             .at((2.0 * self.gravity * drop.max(0.0)).sqrt())
@@ -186,28 +187,29 @@ impl<'a> Plan<'a> {
             allowed,
         )?;
         run.orientation.check(run.particles)?;
-        let scales = Scales::new(run.body.radius(), run.gravity)?;
+        let scales = Scales::new(run.body.unit, run.gravity)?;
         let plan = Self {
             run,
-            body: run.body.scaled(),
+            body: run.body.scaled,
             law: run.law.scaled(&scales),
             scales,
             height: run.release_height / scales.length,
         };
         // A body put down on the plane may be off by the rounding of its height.
         let clear = |cosine: f64| {
-            let lowest = plan.body.half_separation.mul_add(cosine.abs(), 1.0);
-            plan.height >= lowest * (1.0 - 4.0 * f64::EPSILON)
+            plan.height >= plan.body.hull.support(cosine) * (1.0 - 4.0 * f64::EPSILON)
         };
         let clear = match run.orientation {
             Orientation::Given(_) => (0..run.particles).all(|i| clear(plan.release(i).1)),
-            Orientation::UniformAngle | Orientation::Isotropic => clear(1.0),
+            Orientation::UniformAngle | Orientation::Isotropic => {
+                run.release_height >= run.body.farthest() * (1.0 - 4.0 * f64::EPSILON)
+            }
         };
         Error::unless(
             clear && plan.height.is_finite(),
             "release_height",
             run.release_height,
-            "finite and high enough that no sphere is below the plane at release (R + L/2 for random angles)",
+            "finite and high enough that no part is below the plane at release",
         )?;
         Ok(plan)
     }
@@ -226,13 +228,56 @@ impl<'a> Plan<'a> {
         sink: &mut impl Sink,
     ) -> Result<(), Error> {
         let count = particles.len() as u64;
-        level.run(Work {
-            plan: self,
-            particles,
-            monitor,
-            sink,
-        })?;
+        if self.body.hull.is_equal_pair() {
+            level.run(Work {
+                plan: self,
+                particles,
+                monitor,
+                sink,
+            })?;
+        } else {
+            self.bounce_in_space(particles, monitor, sink)?;
+        }
         monitor.finished.fetch_add(count, Ordering::Relaxed);
+        Ok(())
+    }
+}
+
+impl Plan<'_> {
+    fn limits(&self) -> Limits {
+        Limits {
+            impacts: self.run.impacts,
+            minimum_speed: self.run.minimum_speed / self.scales.speed,
+        }
+    }
+
+    /// As [`Plan::bounce`], for what the lanes cannot follow.
+    fn bounce_in_space(
+        &self,
+        particles: Range<usize>,
+        monitor: &Monitor,
+        sink: &mut impl Sink,
+    ) -> Result<(), Error> {
+        let Run {
+            orientation, seed, ..
+        } = *self.run;
+        for (place, particle) in particles.enumerate() {
+            let release = orientation.release(&self.body, self.height, seed, particle as u64);
+            sink.begin(place);
+            spatial::bounce(
+                &self.body,
+                &self.run.law,
+                release,
+                self.limits(),
+                sink,
+                || !monitor.is_cancelled(),
+            )
+            .map_err(|stuck| Error::Numerical {
+                particle: particle as u64,
+                seed,
+                flight: stuck.impacts as u64,
+            })?;
+        }
         Ok(())
     }
 }
@@ -275,10 +320,7 @@ impl<T: Sink> Work<'_, T> {
             sink,
         } = self;
         let run = plan.run;
-        let limits = Limits {
-            impacts: run.impacts,
-            minimum_speed: run.minimum_speed / plan.scales.speed,
-        };
+        let limits = plan.limits();
         let width = GROUPS * Pack::<S, K>::WIDTH;
         let (mut sines, mut cosines) = ([0.0; BLOCK], [0.0; BLOCK]);
         for first in particles.clone().step_by(width) {

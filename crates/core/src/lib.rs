@@ -4,9 +4,9 @@
 //! particles*, Phys. Rev. E **90**, 052204 (2014). Equation numbers in this crate are that paper's.
 //!
 //! # Units
-//! Inside the core lengths are measured in the sphere radius R, times in √(R/g) and masses in the body's mass m.
+//! Inside the core lengths are measured in the sphere radius R (of sphere 1; the equatorial semi-axis of a spheroid), times in √(R/g) and masses in the body's mass m.
 //! Gravity is then 1 and a run depends on L/R, the release height over R, the law and nothing else; [`Scales`]
-//! converts. Only [`Dumbbell`] and [`Scales`] know SI units.
+//! converts. Only [`Shape`]s, [`Solid`] and [`Scales`] know SI units.
 //!
 //! # Notation
 //! | paper | here |
@@ -28,7 +28,7 @@
 //! | (6)–(8), (11) | `collision/mod.rs` |
 //! | (9), (10) | `collision/tangential.rs` |
 //! | (18) | `release.rs` |
-//! | (A1)–(A8) | `body.rs` |
+//! | (A1)–(A8) | `body/dumbbell.rs` |
 #![forbid(unsafe_code)]
 
 mod body;
@@ -44,12 +44,16 @@ mod random;
 mod records;
 mod release;
 mod scales;
+mod spatial;
 mod state;
 pub mod statistics;
 mod trajectory;
 mod vector;
 
-pub use body::{Body, Dumbbell};
+pub use body::{
+    Ball, Body, Dumbbell, Ellipsoid, Hull, LoadedSphere, Pair, Shape, Solid, Spherocylinder,
+    Spheroid,
+};
 pub use collision::{
     ChatterjeeRuina, Coulomb, Frictionless, Hypothesis, Law, Normal, Plastic, Tabulated,
     TangentialRestitution, Viscoelastic,

@@ -82,7 +82,7 @@ impl Digest {
 fn figure_2() -> Run<'static> {
     let radius = 10e-3;
     Run {
-        body: Dumbbell::new(radius, 0.1 * radius, 2500.0).unwrap(),
+        body: Dumbbell::new(radius, 0.1 * radius, 2500.0).unwrap().into(),
         release_height: radius + 1.0 / (2.0 * 9.81),
         particles: 700,
         impacts: 500,

@@ -81,7 +81,7 @@ fn runs() {
         assert_eq!(
             name(Run {
                 gravity,
-                body: Dumbbell::new(1e20, 0.0, 1.0).unwrap(),
+                body: Dumbbell::new(1e20, 0.0, 1.0).unwrap().into(),
                 release_height: 1e21,
                 ..run()
             }),

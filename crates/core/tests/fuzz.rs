@@ -9,7 +9,8 @@ use common::*;
 use proptest::prelude::*;
 use proptest::test_runner::{Config, RngSeed, TestError, TestRunner};
 use restitution_core::{
-    Dumbbell, Impact, Law, Level, Limits, Means, Monitor, Orientation, Records, Run, Scales, bounce,
+    Dumbbell, Impact, Law, Level, Limits, Means, Monitor, Orientation, Records, Run, Scales, Shape,
+    bounce,
 };
 use std::f64::consts::{FRAC_PI_2, PI};
 use std::time::{Duration, Instant};
@@ -53,7 +54,7 @@ impl Case {
             Angles::Given(angles) => (angles.len(), Orientation::Given(angles)),
         };
         Run {
-            body,
+            body: body.into(),
             law: self.law,
             particles,
             impacts: self.impacts,
@@ -137,8 +138,8 @@ fn bits(numbers: [f64; 7]) -> [u64; 7] {
 /// Runs `case` at every level and each of its particles with the oracle; returns the number of impacts compared.
 fn compare(case: &Case) -> Result<u64, TestCaseError> {
     let run = case.run();
-    let body = run.body.scaled();
-    let scales = Scales::new(run.body.radius(), run.gravity).unwrap();
+    let body = run.body.scaled;
+    let scales = Scales::new(run.body.unit, run.gravity).unwrap();
     let limits = Limits {
         impacts: run.impacts,
         minimum_speed: run.minimum_speed / scales.speed,
@@ -159,7 +160,9 @@ fn compare(case: &Case) -> Result<u64, TestCaseError> {
     let mut compared = 0;
     for particle in 0..run.particles {
         let height = run.release_height / scales.length;
-        let release = run.orientation.release(height, run.seed, particle as u64);
+        let release = run
+            .orientation
+            .release(&body, height, run.seed, particle as u64);
         let row = |records: &Records, i: usize| {
             let k = particle * run.impacts + i;
             (

@@ -9,7 +9,9 @@ use restitution_core::{
 fn run(elongation: f64, law: Law<'_>, particles: usize, impacts: usize) -> Run<'_> {
     let radius = 3e-3;
     Run {
-        body: Dumbbell::new(radius, elongation * radius, 2500.0).unwrap(),
+        body: Dumbbell::new(radius, elongation * radius, 2500.0)
+            .unwrap()
+            .into(),
         law,
         particles,
         impacts,
@@ -35,11 +37,12 @@ fn same(a: &[f64], b: &[f64]) -> bool {
 
 /// Bounces particle after particle with the oracle and compares every number of every impact.
 fn agrees_with_the_oracle(run: &Run<'_>) {
-    let scales = Scales::new(run.body.radius(), run.gravity).unwrap();
-    let body = run.body.scaled();
+    let scales = Scales::new(run.body.unit, run.gravity).unwrap();
+    let body = run.body.scaled;
     let lanes = at(run, Level::best(), 0);
     for particle in 0..run.particles {
         let release = run.orientation.release(
+            &body,
             run.release_height / scales.length,
             run.seed,
             particle as u64,

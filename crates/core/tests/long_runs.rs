@@ -23,7 +23,7 @@ fn a_million_impacts_are_in_order_and_above_the_plane() {
             ] {
                 let body = dumbbell(elongation);
                 particle += 1;
-                let release = Orientation::Isotropic.release(20.0, 5, particle);
+                let release = Orientation::Isotropic.release(&body, 20.0, 5, particle);
                 let mut last = 0.0;
                 let limits = Limits {
                     impacts: 2000,
@@ -67,7 +67,7 @@ fn energy_never_grows_where_it_cannot() {
     ] {
         let body = dumbbell(elongation);
         for particle in 0..10 {
-            let release = Orientation::UniformAngle.release(20.0, 3, particle);
+            let release = Orientation::UniformAngle.release(&body, 20.0, 3, particle);
             let mut held = energy(&release, &body);
             let limits = Limits {
                 impacts: 2000,
@@ -93,7 +93,7 @@ fn energy_never_grows_where_it_cannot() {
 fn reversal_conserves_energy() {
     for elongation in [0.1, 1.0, 3.0] {
         let body = dumbbell(elongation);
-        let release = Orientation::UniformAngle.release(20.0, 3, 1);
+        let release = Orientation::UniformAngle.release(&body, 20.0, 3, 1);
         let start = energy(&release, &body);
         let limits = Limits {
             impacts: 10_000,

@@ -1,8 +1,10 @@
 //! The thin binding: parameters in, NumPy arrays out. No physics here.
 
+mod bodies;
 mod laws;
 mod watch;
 
+use bodies::Solid;
 use numpy::ndarray::Array2;
 use numpy::{Element, IntoPyArray, PyReadonlyArray1};
 use pyo3::create_exception;
@@ -10,7 +12,7 @@ use pyo3::exceptions::{PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use restitution_core::statistics::{Axis, Bins, By, Moments};
-use restitution_core::{Dumbbell, Error, Level, Means, Orientation, Run};
+use restitution_core::{Error, Level, Means, Orientation, Run};
 
 create_exception!(
     restitution,
@@ -35,13 +37,6 @@ fn level() -> PyResult<Level> {
     }
 }
 
-/// Mass (kg), transverse and axial moment of inertia (kg m²) of a dumbbell.
-#[pyfunction]
-fn dumbbell_inertia(radius: f64, separation: f64, density: f64) -> PyResult<(f64, f64, f64)> {
-    let body = Dumbbell::new(radius, separation, density).map_err(python_error)?;
-    Ok((body.mass(), body.transverse_inertia(), body.axial_inertia()))
-}
-
 /// How to let particles go: the name of a law or an array of angles.
 #[derive(FromPyObject)]
 enum Release<'py> {
@@ -53,9 +48,7 @@ enum Release<'py> {
 #[derive(FromPyObject)]
 #[pyo3(from_item_all)]
 struct Parameters<'py> {
-    radius: f64,
-    separation: f64,
-    density: f64,
+    body: PyRef<'py, Solid>,
     law: laws::LawParameters,
     particles: usize,
     impacts: usize,
@@ -69,8 +62,7 @@ struct Parameters<'py> {
 impl Parameters<'_> {
     fn run(&self) -> PyResult<Run<'_>> {
         Ok(Run {
-            body: Dumbbell::new(self.radius, self.separation, self.density)
-                .map_err(python_error)?,
+            body: self.body.0,
             law: self.law.law()?,
             particles: self.particles,
             impacts: self.impacts,
@@ -229,7 +221,7 @@ fn sincos(x: f64) -> (f64, f64) {
 #[pymodule]
 fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add("NumericalError", module.py().get_type::<NumericalError>())?;
-    module.add_function(wrap_pyfunction!(dumbbell_inertia, module)?)?;
+    bodies::add_to(module)?;
     module.add_function(wrap_pyfunction!(simulate, module)?)?;
     module.add_function(wrap_pyfunction!(statistics, module)?)?;
     module.add_function(wrap_pyfunction!(build_info, module)?)?;

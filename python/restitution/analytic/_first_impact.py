@@ -90,6 +90,8 @@ class FirstImpact:
     def __post_init__(self) -> None:
         if not isinstance(self.body, Dumbbell):
             raise ParameterError(wrong("body", self.body, "a Dumbbell"))
+        if not self.body.is_equal:
+            raise ParameterError(wrong("body", self.body, "a Dumbbell of equal spheres"))
         if not isinstance(self.law, TangentialRestitution):
             raise ParameterError(wrong("law", self.law, "a TangentialRestitution"))
         if not isinstance(self.law.normal, float):

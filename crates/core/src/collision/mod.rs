@@ -116,8 +116,8 @@ fn length(a: f64, b: f64) -> f64 {
 /// The state after the impact of `sphere`, and the speed at which the point of contact leaves the plane.
 pub fn collide(body: &Body, law: &Law<'_>, before: &State, sphere: Sphere) -> (State, f64) {
     let axis = before.axis;
-    let side = sphere.sign() * body.half_separation;
-    let arm = axis.mul_add(side, Vector::new(0.0, 0.0, -1.0)); // r_c (6)
+    let ball = body.hull.ball(sphere, axis.z);
+    let arm = axis.mul_add(ball.offset, Vector::new(0.0, 0.0, -ball.radius)); // r_c (6)
     let velocity = before.velocity + before.spin(body).cross(arm); // v_c (7)
 
     let sine = axis.horizontal();
@@ -129,7 +129,8 @@ pub fn collide(body: &Body, law: &Law<'_>, before: &State, sphere: Sphere) -> (S
     let across = Vector::new(-along.y, along.x, 0.0);
 
     let inverse = 1.0 / body.transverse;
-    let twist = axis.z - side; // what of r_c × w lies across the axis; its sine lies along it
+    // What of r_c × w lies across the axis, and along it.
+    let (twist, roll) = (ball.radius * axis.z - ball.offset, ball.radius * sine);
     let contact = Contact {
         slip: Components {
             normal: velocity.z.min(0.0), // a grazing contact may have turned around within the last step
@@ -138,8 +139,8 @@ pub fn collide(body: &Body, law: &Law<'_>, before: &State, sphere: Sphere) -> (S
         },
         inertia: body.transverse,
         arm_normal: arm.z,
-        arm_along: side * sine,
-        across: (twist * twist).mul_add(inverse, (sine * sine).mul_add(1.0 / body.axial, 1.0)),
+        arm_along: ball.offset * sine,
+        across: (twist * twist).mul_add(inverse, (roll * roll).mul_add(1.0 / body.axial, 1.0)),
     };
     let Response {
         impulse,

@@ -14,42 +14,34 @@ use pulp::Simd;
 pub(crate) struct Impact<S: Simd, const K: usize> {
     /// Time since release.
     pub time: Pack<S, K>,
-    /// The state just before.
-    pub before: State<S, K>,
-    /// The state just after.
-    pub after: State<S, K>,
-    /// ±1: the sphere that touched.
-    pub sphere: Pack<S, K>,
+    /// v_G^n before, positive when falling, and the normal velocity of the centre of mass after, positive when rising.
+    pub fall: Pack<S, K>,
+    pub rise: Pack<S, K>,
+    /// Kinetic energy of the rotation before.
+    pub rotation: Pack<S, K>,
     /// Kinetic energies before and after.
     pub energy_before: Pack<S, K>,
     pub energy_after: Pack<S, K>,
+    /// Of the angle between the axis and the plane normal, up to the sign of the sine.
+    pub sine: Pack<S, K>,
+    pub cosine: Pack<S, K>,
+    /// ±1: the sphere that touched.
+    pub sphere: Pack<S, K>,
     /// The lanes in which there is an impact.
     pub active: Mask<S, K>,
 }
 
 impl<S: Simd, const K: usize> Impact<S, K> {
-    /// v_G^n before the impact.
-    #[inline(always)]
-    pub fn impact_velocity(&self) -> Pack<S, K> {
-        -self.before.climb
-    }
-
-    /// Normal velocity of the centre of mass after the impact.
-    #[inline(always)]
-    pub fn rebound_velocity(&self) -> Pack<S, K> {
-        self.after.climb
-    }
-
     /// The coefficient of restitution (1).
     #[inline(always)]
     pub fn restitution(&self) -> Pack<S, K> {
-        self.rebound_velocity() / self.impact_velocity() // (1)
+        self.rise / self.fall // (1)
     }
 
     /// E_rot/E_tot before the impact (12).
     #[inline(always)]
-    pub fn rotational_fraction(&self, body: &Body) -> Pack<S, K> {
-        self.before.rotational_energy(body.transverse) / self.energy_before // (12)
+    pub fn rotational_fraction(&self) -> Pack<S, K> {
+        self.rotation / self.energy_before // (12)
     }
 
     /// Kinetic energy after the impact over that before.
@@ -260,11 +252,14 @@ impl<S: Simd, const K: usize> Group<S, K> {
         let energy_after = after.kinetic_energy(body.transverse);
         let impact = Impact {
             time: self.clock,
-            before,
-            after,
-            sphere: landing.sphere,
+            fall: -before.climb,
+            rise: after.climb,
+            rotation: before.rotational_energy(body.transverse),
             energy_before: before.kinetic_energy(body.transverse),
             energy_after,
+            sine: before.sine,
+            cosine: before.cosine,
+            sphere: landing.sphere,
             active: self.active,
         };
         sink.impact(number, self.first, &impact);

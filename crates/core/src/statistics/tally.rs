@@ -247,9 +247,9 @@ impl Sink for Counter<'_> {
 
         let simd = impact.time.simd();
         let restitution = impact.restitution();
-        let fraction = impact.rotational_fraction(&self.plan.body);
+        let fraction = impact.rotational_fraction();
         let row = match &self.bins.by {
-            By::Velocity(axis) => axis.locate(impact.impact_velocity() * self.plan.scales.speed),
+            By::Velocity(axis) => axis.locate(impact.fall * self.plan.scales.speed),
             By::Number(_) => Pack::splat(simd, number as f64 + ROUND),
         };
         let defined = restitution.abs().lt(Sums::LARGEST) & fraction.le(1.0);

@@ -6,7 +6,7 @@ use proptest::test_runner::{Config, RngSeed};
 use restitution_core::collision::collide;
 use restitution_core::{
     Body, ChatterjeeRuina, Coulomb, Departure, Dumbbell, Flight, Frictionless, Hypothesis, Impact,
-    Landing, Law, Level, Limits, Means, Monitor, Normal, Orientation, Plastic, Records, Run,
+    Landing, Law, Level, Limits, Means, Monitor, Normal, Orientation, Plastic, Records, Run, Shape,
     Sphere, State, StopReason, Tabulated, TangentialRestitution, Vector, Viscoelastic, bounce,
     first_contact,
 };
@@ -126,7 +126,9 @@ pub fn legs(body: &Body, law: &Law<'_>, release: State, most: usize) -> Vec<Leg>
 pub fn paper(elongation: f64, law: Law<'_>) -> Run<'_> {
     let radius = 3e-3;
     Run {
-        body: Dumbbell::new(radius, elongation * radius, 2500.0).unwrap(),
+        body: Dumbbell::new(radius, elongation * radius, 2500.0)
+            .unwrap()
+            .into(),
         law,
         particles: 100,
         impacts: 100,
