@@ -266,8 +266,8 @@ MAKERS: list[tuple[str, Callable[[], Body], str]] = [
     ),
     (
         "unlike",
-        lambda: rs.Dumbbell(radius=(1e-60, 1e60), separation=1.0),
-        "radius = (1e-60, 1e+60), separati",
+        lambda: rs.Dumbbell(radius=(1e-60, 1e65), separation=1.0),
+        "radius = (1e-60, 1e+65), separati",
     ),
     ("missing", lambda: rs.Spheroid(equatorial=1.0), "polar: missing; must be a finite number > 0 (m)"),  # type: ignore[call-arg]
 ]
