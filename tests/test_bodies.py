@@ -128,6 +128,18 @@ def test_nothing_jumps_where_the_cases_of_a_dumbbell_meet(two: float, density: f
         np.testing.assert_allclose(numbers(length * (1 - 1e-12)), numbers(length * (1 + 1e-12)), atol=1e-10)
 
 
+def test_equal_spheres_in_one_place_are_two_halves() -> None:
+    """Of different densities: the limit of short distances, with the centre of mass off the centre."""
+    body = rs.Dumbbell(radius=2.0, separation=0.0, density=(1.0, 3.0))
+    check(body, integrated([(0.0, 2.0, sphere(0.0, 2.0), 1.0), (-2.0, 0.0, sphere(0.0, 2.0), 3.0)]))
+    # Both hulls are round: the flights end alike.
+    law = rs.TangentialRestitution(normal=0.8)
+    near = rs.Dumbbell(radius=2.0, separation=1e-12, density=(1.0, 3.0))
+    runs = [rs.simulate(b, law, particles=50, impacts=2, release_height=9.0) for b in (body, near)]
+    np.testing.assert_allclose(runs[0].time, runs[1].time, rtol=1e-10)
+    assert set(runs[0].contact.to_numpy().ravel()) == {1}
+
+
 @given(load=st.floats(0.0, 1e3), offset=st.floats(0.0, 1.0))
 def test_loaded_sphere(load: float, offset: float) -> None:
     """The load in units of the sphere's mass."""

@@ -4,7 +4,7 @@
 //! particles*, Phys. Rev. E **90**, 052204 (2014). Equation numbers in this crate are that paper's.
 //!
 //! # Units
-//! Inside the core lengths are measured in the sphere radius R (of sphere 1; the equatorial semi-axis of a spheroid), times in √(R/g) and masses in the body's mass m.
+//! Inside the core lengths are measured in the sphere radius R (of the larger sphere; the longer semi-axis of a spheroid), times in √(R/g) and masses in the body's mass m.
 //! Gravity is then 1 and a run depends on L/R, the release height over R, the law and nothing else; [`Scales`]
 //! converts. Only [`Shape`]s, [`Solid`] and [`Scales`] know SI units.
 //!

@@ -3,7 +3,10 @@
 mod common;
 
 use common::*;
-use restitution_core::{Dumbbell, Error, Orientation, Run, TangentialRestitution};
+use restitution_core::{
+    Dumbbell, Error, LoadedSphere, Orientation, Run, Spherocylinder, Spheroid,
+    TangentialRestitution,
+};
 
 /// The name of the parameter that is wrong; its value must be in the message, too.
 fn culprit(error: &Error) -> &'static str {
@@ -44,6 +47,43 @@ fn bodies() {
             "radius"
         );
     }
+}
+
+#[test]
+fn other_shapes() {
+    let dumbbell = |radius, density| culprit(&Dumbbell::unequal(radius, 1.0, density).unwrap_err());
+    let loaded = |[r, d, m, x]: [f64; 4]| culprit(&LoadedSphere::new(r, d, m, x).unwrap_err());
+    let cylinder = |[r, l, d]: [f64; 3]| culprit(&Spherocylinder::new(r, l, d).unwrap_err());
+    let spheroid = |[a, c, d]: [f64; 3]| culprit(&Spheroid::new(a, c, d).unwrap_err());
+    for x in NOT_POSITIVE {
+        assert_eq!(dumbbell([1.0, x], [1.0, 1.0]), "radius");
+        assert_eq!(dumbbell([1.0, 2.0], [x, 1.0]), "density");
+        assert_eq!(loaded([x, 1.0, 1.0, 0.0]), "radius");
+        assert_eq!(loaded([1.0, x, 1.0, 0.0]), "density");
+        assert_eq!(cylinder([x, 1.0, 1.0]), "radius");
+        assert_eq!(cylinder([1.0, 1.0, x]), "density");
+        assert_eq!(spheroid([x, 1.0, 1.0]), "equatorial");
+        assert_eq!(spheroid([1.0, x, 1.0]), "polar");
+        assert_eq!(spheroid([1.0, 1.0, x]), "density");
+    }
+    for x in NOT_FINITE {
+        assert_eq!(loaded([1.0, 1.0, x, 0.0]), "load");
+        assert_eq!(loaded([1.0, 1.0, 1.0, x]), "offset");
+        assert_eq!(cylinder([1.0, x, 1.0]), "separation");
+    }
+    // A load outside its sphere; needles and discs beyond what the contact can be located on.
+    assert_eq!(loaded([1.0, 1.0, 1.0, 1.0_f64.next_up()]), "offset");
+    assert_eq!(spheroid([1.0, 1000.001, 1.0]), "polar");
+    assert_eq!(spheroid([1.0, 0.000_999_999, 1.0]), "polar");
+    assert!(Spheroid::new(3e-3, 3.0, 1.0).is_ok() && Spheroid::new(3.0, 3e-3, 1.0).is_ok());
+    for size in [1e-70, 1e70] {
+        assert_eq!(dumbbell([size; 2], [1.0, 2.0]), "radius");
+        assert_eq!(loaded([size, 1.0, 0.0, 0.0]), "radius");
+        assert_eq!(cylinder([size, 1.0, 1.0]), "radius");
+        assert_eq!(spheroid([size, size, 1.0]), "equatorial");
+    }
+    // A load that outweighs the sphere beyond what doubles can tell leaves nothing to turn.
+    assert_eq!(loaded([1.0, 1e-300, 1e300, 0.5]), "radius");
 }
 
 #[test]

@@ -11,7 +11,7 @@ use std::f64::consts::PI;
 ///
 /// Where the spheres overlap the body is their union, cut at the plane of their intersection; each side has its sphere's
 /// density. Where they do not, it is two full spheres on a massless rod, and where one contains the other it is that one alone.
-/// Mass and inertia are continuous where these cases meet.
+/// Mass and inertia are continuous where these cases meet. Equal spheres of different density with no distance are two halves.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Dumbbell {
     radius: [f64; 2],
@@ -47,15 +47,20 @@ impl Dumbbell {
         self.radius[0] == self.radius[1] && self.density[0] == self.density[1]
     }
 
+    /// Both radii in units of R.
+    fn radii(&self) -> [f64; 2] {
+        self.radius.map(|radius| radius / self.unit())
+    }
+
     /// Both sides of unequal spheres, in units of R and of the density of sphere 1; the origin is the centre of sphere 1.
     fn whole(&self) -> Part {
         let l = self.elongation();
-        let two = self.radius[1] / self.radius[0];
+        let [one, two] = self.radii();
         let density = self.density[1] / self.density[0];
-        if 1.0 - two >= l {
-            return Part::sphere(1.0, 1.0);
+        if one > two && one - two >= l {
+            return Part::sphere(one, 1.0);
         }
-        if two - 1.0 >= l {
+        if two > one && two - one >= l {
             return Part::sphere(two, density).upside_down(-l);
         }
         // Height of a side above the plane of intersection.
@@ -68,14 +73,14 @@ impl Dumbbell {
             };
             (0.5 * (1.0 + lean) * (own + other + l)).min(2.0 * own)
         };
-        let upper = Part::segment(1.0, height(1.0, two), 1.0);
-        let lower = Part::segment(two, height(two, 1.0), density);
+        let upper = Part::segment(one, height(one, two), 1.0);
+        let lower = Part::segment(two, height(two, one), density);
         upper.and(lower.upside_down(-l))
     }
 
     /// L/R.
     fn elongation(&self) -> f64 {
-        self.separation / self.radius[0]
+        self.separation / self.unit()
     }
 
     /// m/(πρR³).
@@ -111,12 +116,13 @@ impl Dumbbell {
 }
 
 impl Shape for Dumbbell {
+    /// The radius of the larger sphere: roundings are small beside it.
     fn unit(&self) -> f64 {
-        self.radius[0]
+        self.radius[0].max(self.radius[1])
     }
 
     fn mass(&self) -> f64 {
-        let unit = self.density[0] * self.radius[0].powi(3);
+        let unit = self.density[0] * self.unit().powi(3);
         if self.is_equal() {
             unit * PI * self.mass_factor() // (A3)
         } else {
@@ -125,7 +131,7 @@ impl Shape for Dumbbell {
     }
 
     fn transverse_inertia(&self) -> f64 {
-        let unit = self.density[0] * self.radius[0].powi(5);
+        let unit = self.density[0] * self.unit().powi(5);
         if self.is_equal() {
             unit * PI * self.transverse_factor() // (A8)
         } else {
@@ -134,7 +140,7 @@ impl Shape for Dumbbell {
     }
 
     fn axial_inertia(&self) -> f64 {
-        let unit = self.density[0] * self.radius[0].powi(5);
+        let unit = self.density[0] * self.unit().powi(5);
         if self.is_equal() {
             unit * PI * self.axial_factor() // (A5)
         } else {
@@ -146,7 +152,7 @@ impl Shape for Dumbbell {
         if self.is_equal() {
             0.0
         } else {
-            self.radius[0] * (self.whole().centre + 0.5 * self.elongation())
+            self.unit() * (self.whole().centre + 0.5 * self.elongation())
         }
     }
 
@@ -167,8 +173,8 @@ impl Shape for Dumbbell {
             offset: place - part.centre,
             radius,
         };
-        let two = self.radius[1] / self.radius[0];
-        let hull = Hull::of_balls([ball(0.0, 1.0), ball(-elongation, two)], elongation);
+        let [one, two] = self.radii();
+        let hull = Hull::of_balls([ball(0.0, one), ball(-elongation, two)], elongation);
         Body {
             hull,
             half_separation: if let Hull::Pair(_) = hull {

@@ -89,7 +89,7 @@ impl Hull {
         match self {
             Self::Pair(pair) => pair.level,
             Self::Single(ball, _) => ball.radius,
-            Self::Ellipsoid(_) => 1.0,
+            Self::Ellipsoid(ellipsoid) => ellipsoid.level(),
         }
     }
 

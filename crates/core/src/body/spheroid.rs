@@ -7,7 +7,7 @@ use std::f64::consts::PI;
 /// Needles longer and discs flatter than this lose more than 10⁻¹² of the contact to rounding.
 const MOST_ASPHERICAL: f64 = 1000.0;
 
-/// A homogeneous ellipsoid of revolution, in SI units. The core's unit of length is the equatorial semi-axis.
+/// A homogeneous ellipsoid of revolution, in SI units. The core's unit of length is the longer semi-axis.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Spheroid {
     equatorial: f64,
@@ -26,8 +26,9 @@ impl Spheroid {
             polar,
             density,
         };
+        let ratio = (polar / equatorial).max(equatorial / polar);
         Error::unless(
-            (1.0 / MOST_ASPHERICAL..=MOST_ASPHERICAL).contains(&body.aspect()),
+            ratio <= MOST_ASPHERICAL * (1.0 + 4.0 * f64::EPSILON),
             "polar",
             polar,
             "between 1/1000 and 1000 times the equatorial semi-axis",
@@ -35,36 +36,37 @@ impl Spheroid {
         representable(body, "equatorial")
     }
 
-    /// c/a.
-    fn aspect(&self) -> f64 {
-        self.polar / self.equatorial
+    /// Semi-axes a and c in the core's unit.
+    fn axes(&self) -> (f64, f64) {
+        (self.equatorial / self.unit(), self.polar / self.unit())
     }
 }
 
 impl Shape for Spheroid {
     fn unit(&self) -> f64 {
-        self.equatorial
+        self.equatorial.max(self.polar)
     }
 
     fn mass(&self) -> f64 {
-        self.density * self.equatorial.powi(3) * (4.0 / 3.0 * PI) * self.aspect()
+        let (a, c) = self.axes();
+        self.density * self.unit().powi(3) * (4.0 / 3.0 * PI) * (a * a * c)
     }
 
     fn transverse_inertia(&self) -> f64 {
-        self.mass() * self.equatorial.powi(2) * self.scaled().transverse
+        self.mass() * self.unit().powi(2) * self.scaled().transverse
     }
 
     fn axial_inertia(&self) -> f64 {
-        self.mass() * self.equatorial.powi(2) * self.scaled().axial
+        self.mass() * self.unit().powi(2) * self.scaled().axial
     }
 
     fn scaled(&self) -> Body {
-        let aspect = self.aspect();
+        let (a, c) = self.axes();
         Body {
-            hull: Hull::Ellipsoid(Ellipsoid::new(aspect)),
+            hull: Hull::Ellipsoid(Ellipsoid::new(a, c)),
             half_separation: 0.0,
-            transverse: (1.0 + aspect * aspect) / 5.0,
-            axial: 2.0 / 5.0,
+            transverse: (a * a + c * c) / 5.0,
+            axial: 2.0 / 5.0 * (a * a),
         }
     }
 }
