@@ -5,7 +5,7 @@ use super::contact::{Departure, Search};
 use super::flight::State;
 use super::{Mask, Pack};
 use crate::body::Body;
-use crate::collision::Law;
+use crate::collision::InPlane;
 use crate::trajectory::{COLLAPSE_RUN, Limits, StopReason, UNRESOLVED};
 use pulp::Simd;
 
@@ -89,7 +89,7 @@ pub(crate) struct Stuck {
 pub(crate) fn bounce<S: Simd, const K: usize>(
     simd: S,
     body: &Body,
-    law: &Law<'_>,
+    law: &impl InPlane,
     release: Release<'_>,
     limits: Limits,
     sink: &mut impl Sink,
