@@ -265,8 +265,8 @@ struct Work<'a, L, T> {
 const VECTORS: usize = 6;
 const SCALARS: usize = 4;
 
-/// Begins with a cache line, and with it the frame of the function that holds it: else it is luck whether the vectors that are put
-/// aside on the stack straddle two lines, and that costs a tenth of the speed.
+/// Begins with a cache line, and with it the frame of the function that holds it: else it is luck whether the vectors that
+/// are put aside on the stack straddle two lines, and that costs a tenth of the speed.
 #[repr(align(64))]
 struct Aligned([f64; BLOCK]);
 
