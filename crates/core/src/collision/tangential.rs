@@ -7,9 +7,9 @@ use pulp::Simd;
 
 /// Normal and tangential restitution of the contact velocity, (9).
 ///
-/// It conserves what the plane cannot touch: nothing of the motion but the tangential contact velocity, for ε^t = 1. For a
-/// body that is not a sphere this takes a tangential impulse, which can do positive work, so that kinetic energy can grow,
-/// and which may lie outside every friction cone. The law is not a frictionless one.
+/// With ε^t = 1 it conserves the tangential contact velocity. For a body that is not a sphere this takes a tangential impulse,
+/// which can do positive work, so that kinetic energy can grow, and which may lie outside every friction cone. The law is not a
+/// frictionless one.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct TangentialRestitution<'a> {
     pub(super) normal: Normal<'a>,
