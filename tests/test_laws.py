@@ -206,3 +206,20 @@ def test_what_is_wrong_with_a_law_in_a_file(tmp_path: Path, text: str, expected:
 def test_the_closed_form_of_the_first_impact_wants_a_number(body: rs.Dumbbell) -> None:
     with pytest.raises(ValueError, match=r"law\.normal = Plastic.*: must be a number"):
         rs.analytic.first_impact(body, rs.TangentialRestitution(normal=rs.Plastic(yield_speed=0.1)))
+
+
+@pytest.mark.parametrize("material", [rs.Plastic(yield_speed=0.1), rs.Tabulated(v=[0.0, 1.0], e=[0.9, 0.5])])
+def test_speeds_are_in_metres_per_second_for_every_shape(material: rs.Plastic | rs.Tabulated) -> None:
+    """A sphere has at every impact the coefficient of its speed in m/s, whichever engine follows it.
+
+    Dumbbells of equal spheres go through the lanes, other hulls do not."""
+    law = rs.Frictionless(normal=material)
+    round_bodies = (
+        rs.Dumbbell(radius=3e-3, separation=0.0),
+        rs.LoadedSphere(radius=3e-3, density=2500.0, load=1e-3, offset=0.0),
+        rs.Spheroid(equatorial=3e-3, polar=3e-3, density=2500.0),
+    )
+    for body in round_bodies:
+        data = rs.simulate(body, law, particles=2, impacts=5)
+        expected = material(data.impact_velocity.values)
+        np.testing.assert_allclose(data.restitution, expected, rtol=1e-12)

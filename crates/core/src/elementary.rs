@@ -1,5 +1,5 @@
-//! Sine, cosine, the angle of a unit vector and the fifth root without the platform's mathematics library, so that every machine
-//! computes the same bits.
+//! Sine, cosine, the angle of a unit vector and the fifth root without the platform's mathematics library, so that every
+//! machine computes the same bits.
 //!
 //! The argument of sine and cosine is reduced to |r| ≤ π/4 by subtracting a multiple of π/2 held in two constants; then
 //! two minimax polynomials (relative error 2⁻⁵⁸ for the sine, absolute error 2⁻⁶⁴ for the cosine) are summed with fused
@@ -121,8 +121,8 @@ pub(crate) fn polynomial<S: Simd, const K: usize, const N: usize>(
 
 /// The fifth root of a positive number that is not subnormal, or of 0. The error stays below 1 ulp.
 ///
-/// A fifth of the exponent, taken in the binary representation, is right to 3.4 %; each of Halley's steps cubes twice that error
-/// and Newton's last one, whose residual is rounded once, leaves the rounding of the result.
+/// A fifth of the exponent, taken in the binary representation, is right to 3.4 %; each of Halley's steps cubes twice that
+/// error and Newton's last one, whose residual is rounded once, leaves the rounding of the result.
 #[inline(always)]
 pub fn fifth_root(x: f64) -> f64 {
     if x == 0.0 {

@@ -2,7 +2,7 @@
 
 use crate::Error;
 use crate::body::{Body, Solid};
-use crate::collision::Law;
+use crate::collision::{InPlane, Law};
 use crate::lanes::{self, Pack, Sink};
 use crate::level::Level;
 use crate::records::{Records, Table};
@@ -228,22 +228,35 @@ impl<'a> Plan<'a> {
         sink: &mut impl Sink,
     ) -> Result<(), Error> {
         let count = particles.len() as u64;
-        if self.body.hull.is_equal_pair() {
-            level.run(Work {
-                plan: self,
-                particles,
-                monitor,
-                sink,
-            })?;
-        } else {
+        if !self.body.hull.is_equal_pair() {
             self.bounce_in_space(particles, monitor, sink)?;
+        } else if let Some(law) = self.law.steady() {
+            self.bounce_under(&law, particles, level, monitor, sink)?;
+        } else {
+            self.bounce_under(&self.law, particles, level, monitor, sink)?;
         }
         monitor.finished.fetch_add(count, Ordering::Relaxed);
         Ok(())
     }
-}
 
-impl Plan<'_> {
+    /// In lanes.
+    fn bounce_under(
+        &self,
+        law: &impl InPlane,
+        particles: Range<usize>,
+        level: Level,
+        monitor: &Monitor,
+        sink: &mut impl Sink,
+    ) -> Result<(), Error> {
+        level.run(Work {
+            plan: self,
+            law,
+            particles,
+            monitor,
+            sink,
+        })
+    }
+
     fn limits(&self) -> Limits {
         Limits {
             impacts: self.run.impacts,
@@ -264,14 +277,9 @@ impl Plan<'_> {
         for (place, particle) in particles.enumerate() {
             let release = orientation.release(&self.body, self.height, seed, particle as u64);
             sink.begin(place);
-            spatial::bounce(
-                &self.body,
-                &self.run.law,
-                release,
-                self.limits(),
-                sink,
-                || !monitor.is_cancelled(),
-            )
+            spatial::bounce(&self.body, &self.law, release, self.limits(), sink, || {
+                !monitor.is_cancelled()
+            })
             .map_err(|stuck| Error::Numerical {
                 particle: particle as u64,
                 seed,
@@ -283,8 +291,9 @@ impl Plan<'_> {
 }
 
 /// The particles of a block, to be compiled for each SIMD level.
-struct Work<'a, T> {
+struct Work<'a, L, T> {
     plan: &'a Plan<'a>,
+    law: &'a L,
     particles: Range<usize>,
     monitor: &'a Monitor,
     sink: &'a mut T,
@@ -297,7 +306,7 @@ const SCALARS: usize = 4;
 /// Groups of them that take turns.
 const GROUPS: usize = 4;
 
-impl<T: Sink> WithSimd for Work<'_, T> {
+impl<L: InPlane, T: Sink> WithSimd for Work<'_, L, T> {
     type Output = Result<(), Error>;
 
     #[inline(always)]
@@ -310,11 +319,12 @@ impl<T: Sink> WithSimd for Work<'_, T> {
     }
 }
 
-impl<T: Sink> Work<'_, T> {
+impl<L: InPlane, T: Sink> Work<'_, L, T> {
     #[inline(always)]
     fn side_by_side<S: Simd, const K: usize>(self, simd: S) -> Result<(), Error> {
         let Self {
             plan,
+            law,
             particles,
             monitor,
             sink,
@@ -332,7 +342,7 @@ impl<T: Sink> Work<'_, T> {
             lanes::bounce::<S, K, GROUPS>(
                 simd,
                 &plan.body,
-                &plan.law,
+                law,
                 lanes::Release {
                     lift: plan.height - 1.0,
                     sines: &sines[..count],

@@ -4,8 +4,8 @@ mod common;
 
 use common::*;
 use restitution_core::{
-    Dumbbell, Error, LoadedSphere, Orientation, Run, Spherocylinder, Spheroid,
-    TangentialRestitution,
+    ChatterjeeRuina, Coulomb, Dumbbell, Error, Frictionless, Hypothesis, LoadedSphere, Orientation,
+    Plastic, Run, Spherocylinder, Spheroid, Tabulated, TangentialRestitution, Viscoelastic,
 };
 
 /// The name of the parameter that is wrong; its value must be in the message, too.
@@ -107,6 +107,58 @@ fn laws() {
     }
     for (normal, tangential) in [(0.0, -1.0), (1.0, 1.0), (-0.0, -0.0)] {
         assert!(TangentialRestitution::new(normal, tangential).is_ok());
+    }
+    for x in [-1e-300, 1e101, f64::NAN, f64::INFINITY] {
+        let coulomb = Coulomb::new(0.5, x, Hypothesis::Stronge);
+        assert_eq!(culprit(&coulomb.unwrap_err()), "friction");
+        let bilinear = ChatterjeeRuina::new(0.5, 0.0, x);
+        assert_eq!(culprit(&bilinear.unwrap_err()), "friction");
+    }
+    for x in [-0.1, 1.1, f64::NAN] {
+        assert_eq!(culprit(&Frictionless::new(x).unwrap_err()), "normal");
+        let bilinear = ChatterjeeRuina::new(x, 0.0, 0.1);
+        assert_eq!(culprit(&bilinear.unwrap_err()), "normal");
+        let coulomb = Coulomb::new(x, 0.1, Hypothesis::Newton);
+        assert_eq!(culprit(&coulomb.unwrap_err()), "normal");
+    }
+    assert_eq!(
+        culprit(&ChatterjeeRuina::new(0.5, 1.1, 0.0).unwrap_err()),
+        "tangential"
+    );
+}
+
+/// Parameters of materials, and those that are finite but make none that is.
+#[test]
+fn materials() {
+    let good = [6e10, 0.2, 1e-6, 2500.0, 3e-3];
+    let names = [
+        "young_modulus",
+        "poisson_ratio",
+        "dissipation",
+        "density",
+        "radius",
+    ];
+    let viscoelastic = |[y, nu, a, rho, r]: [f64; 5]| Viscoelastic::new(y, nu, a, rho, r);
+    assert!(viscoelastic(good).is_ok());
+    for (i, name) in names.into_iter().enumerate() {
+        for wrong in [-1.0, f64::NAN, f64::INFINITY] {
+            let mut parameters = good;
+            parameters[i] = wrong;
+            assert_eq!(culprit(&viscoelastic(parameters).unwrap_err()), name);
+        }
+    }
+    let stiff = viscoelastic([1e300, 0.2, 1e-6, 1e-300, 1e-3]);
+    assert_eq!(culprit(&stiff.unwrap_err()), "young_modulus");
+    for wrong in [0.0, -1.0, f64::NAN, f64::INFINITY] {
+        assert_eq!(culprit(&Plastic::new(wrong).unwrap_err()), "yield_speed");
+    }
+    for speeds in [&[][..], &[0.1, 0.1], &[-0.1, 0.1], &[0.1, f64::NAN]] {
+        let values = vec![0.5; speeds.len()];
+        assert_eq!(culprit(&Tabulated::new(speeds, &values).unwrap_err()), "v");
+    }
+    for values in [&[0.5][..], &[0.5, 1.1], &[0.5, f64::NAN]] {
+        let table = Tabulated::new(&[0.1, 0.2], values);
+        assert_eq!(culprit(&table.unwrap_err()), "e");
     }
 }
 

@@ -8,8 +8,8 @@ use restitution_core::{Hypothesis, Law, TangentialRestitution};
 
 const IMPACTS: u64 = 10_000_000;
 
-/// Impacts in which energy grows beyond rounding, of those in the plane and of a hundredth as many in space; and the greatest
-/// growth, as a share of what the impulse moves.
+/// Impacts in which energy grows beyond rounding, of those in the plane and of a hundredth as many in space; and the
+/// greatest growth, as a share of what the impulse moves.
 fn growing(seed: u64, mut law: impl FnMut(&mut Random) -> Law<'static>) -> (u64, f64) {
     let mut random = Random::new(seed);
     let mut count = 0;
@@ -54,8 +54,9 @@ fn with_chatterjee_and_ruina_energy_never_grows() {
     assert_eq!(growing(3, law).0, 0);
 }
 
-/// Poisson's hypothesis has been suspected, but the slope q of dT/dp, T the kinetic energy and p the normal impulse, never grows along
-/// the path, and dT/dp ≤ 0 at the end of the compression: what restitution adds is less than what compression took.
+/// Poisson's hypothesis has been suspected, but the slope q of dT/dp, T the kinetic energy and p the normal impulse, never
+/// grows along the path, and dT/dp ≤ 0 at the end of the compression: what restitution adds is less than what compression
+/// took.
 #[test]
 fn with_poissons_hypothesis_energy_never_grows() {
     let law =

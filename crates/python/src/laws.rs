@@ -114,9 +114,9 @@ pub fn normal_coefficient<'py>(
 
 type Triple = (f64, f64, f64);
 
-/// The impulse that a law answers a contact with, over m, and the normal velocity of the contact afterwards. Vectors are along n, u
-/// and w; `slip` is the contact velocity in m/s, `arm` leads from the centre of mass to the contact along n and u, `inertia` is J_xx/m in
-/// the square of its unit, and `across` is the entry of m K for w.
+/// The impulse that a law answers a contact with, over m, and the normal velocity of the contact afterwards. Vectors are
+/// along n, u and w; `slip` is the contact velocity in m/s, `arm` leads from the centre of mass to the contact along n and
+/// u, `inertia` is J_xx/m in the square of its unit, and `across` is the entry of m K for w.
 #[pyfunction]
 pub fn respond(
     law: LawParameters,

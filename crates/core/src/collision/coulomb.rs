@@ -1,9 +1,9 @@
 //! Dry friction: C. A. Coulomb's law during the impact, and three hypotheses on its end.
 //!
-//! The impact is followed in the normal impulse p (E. J. Routh, 1860; Y. Wang and M. T. Mason, J. Appl. Mech. **59**, 635 (1992)). While
-//! the contact slips, friction is μ against the slip; where the slip has come to rest the contact sticks if |K_nu| ≤ μ K_uu, and
-//! otherwise slips on the way that K_nu drives it. Both are dP_u/dp = −K_nu/K_uu, limited to ±μ. In the plane the contact velocity is
-//! then linear in p on either side of the one impulse p_s at which the slip vanishes.
+//! The impact is followed in the normal impulse p (E. J. Routh, 1860; Y. Wang and M. T. Mason, J. Appl. Mech. **59**, 635
+//! (1992)). While the contact slips, friction is μ against the slip; where the slip has come to rest the contact sticks if
+//! |K_nu| ≤ μ K_uu, and otherwise slips on the way that K_nu drives it. Both are dP_u/dp = −K_nu/K_uu, limited to ±μ. In the
+//! plane the contact velocity is then linear in p on either side of the one impulse p_s at which the slip vanishes.
 
 use super::{Normal, Plane, Rebound};
 use crate::Error;
@@ -13,12 +13,13 @@ use pulp::Simd;
 /// When the restitution that follows the compression is over. The three agree as long as the slip neither stops nor turns.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Hypothesis {
-    /// W. J. Stronge, Proc. R. Soc. Lond. A **431**, 169 (1990): the normal force gives back ε_n² of the work that it took. Energy
-    /// cannot grow, for friction takes, too.
+    /// W. J. Stronge, Proc. R. Soc. Lond. A **431**, 169 (1990): the normal force gives back ε_n² of the work that it took.
+    /// Energy cannot grow, for friction takes, too.
     Stronge,
-    /// S. D. Poisson: the normal impulse of restitution is ε_n times that of compression. The normal force may give back more than it
-    /// took, but not more than friction takes: with T the kinetic energy, dT/dp = v_c^n − μ|**s**| ≤ 0 at the end of the compression,
-    /// and its slope, the K-square of the direction of the impulse, never grows, so that the sum of both sides of that end is negative.
+    /// S. D. Poisson: the normal impulse of restitution is ε_n times that of compression. The normal force may give back
+    /// more than it took, but not more than friction takes: with T the kinetic energy, dT/dp = v_c^n − μ|**s**| ≤ 0 at the
+    /// end of the compression, and its slope, the K-square of the direction of the impulse, never grows, so that the sum of
+    /// both sides of that end is negative.
     Poisson,
     /// I. Newton: v_c^n′ = −ε_n v_c^n. Energy can grow where the slip stops or reverses.
     Newton,

@@ -2,9 +2,8 @@
 
 use super::{
     ChatterjeeRuina, Components, Contact, Coulomb, Frictionless, Normal, Plane, Rebound, Response,
-    TangentialRestitution,
+    TangentialRestitution, tangential::Steady,
 };
-use crate::lanes::Pack;
 use crate::scales::Scales;
 use pulp::{Scalar, Simd, WithSimd};
 
@@ -62,19 +61,27 @@ impl<'a> Law<'a> {
         }
     }
 
-    /// The response where nothing slips across the plane of the axis.
-    #[inline(always)]
-    pub(crate) fn in_plane<S: Simd, const K: usize>(&self, contact: &Plane<S, K>) -> Rebound<S, K> {
-        if let Self::TangentialRestitution(law) = self
-            && let Normal::Constant(normal) = law.normal
-        {
-            return law.with(Pack::splat(contact.slip_normal.simd(), normal), contact);
+    /// The paper's law with a constant ε^n, if it is that.
+    pub(crate) fn steady(&self) -> Option<Steady<'a>> {
+        match self {
+            Self::TangentialRestitution(law) => law.steady(),
+            _ => None,
         }
-        // The other laws are calls: written out in the bounce loop they would slow the paper's down.
-        contact
-            .slip_normal
-            .simd()
-            .vectorize(InPlane { law: self, contact })
+    }
+}
+
+/// A law as the bounce loop of the lanes takes it.
+pub(crate) trait InPlane {
+    /// The response where nothing slips across the plane of the axis.
+    fn in_plane<S: Simd, const K: usize>(&self, contact: &Plane<S, K>) -> Rebound<S, K>;
+}
+
+impl InPlane for Law<'_> {
+    /// A call that chooses the law: written out in the bounce loop, all of them would crowd it.
+    #[inline(always)]
+    fn in_plane<S: Simd, const K: usize>(&self, contact: &Plane<S, K>) -> Rebound<S, K> {
+        let simd = contact.slip_normal.simd();
+        simd.vectorize(Choice { law: self, contact })
     }
 }
 
@@ -91,12 +98,12 @@ fn planar(rebound: Rebound<Scalar, 1>) -> Response {
 }
 
 /// A law and the contacts that it is to answer, to be compiled for each SIMD level.
-struct InPlane<'a, 'b, S: Simd, const K: usize> {
+struct Choice<'a, 'b, S: Simd, const K: usize> {
     law: &'a Law<'b>,
     contact: &'a Plane<S, K>,
 }
 
-impl<S: Simd, const K: usize> WithSimd for InPlane<'_, '_, S, K> {
+impl<S: Simd, const K: usize> WithSimd for Choice<'_, '_, S, K> {
     type Output = Rebound<S, K>;
 
     #[inline(always)]

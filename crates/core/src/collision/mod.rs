@@ -18,6 +18,7 @@ mod turning;
 pub use chatterjee_ruina::ChatterjeeRuina;
 pub use coulomb::{Coulomb, Hypothesis};
 pub use frictionless::Frictionless;
+pub(crate) use law::InPlane;
 pub use law::Law;
 pub use normal::{Normal, Plastic, Tabulated, Viscoelastic};
 pub(crate) use plane::{Plane, Rebound};

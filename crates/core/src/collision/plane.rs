@@ -33,7 +33,8 @@ impl<S: Simd, const K: usize> Plane<S, K> {
         self.slip_normal.abs()
     }
 
-    /// The impulse along **n** and **u** that changes the contact velocity by this much: K P = Δ**v**_c (10), solved as in (14).
+    /// The impulse along **n** and **u** that changes the contact velocity by this much: K P = Δ**v**_c (10), solved as in
+    /// (14).
     #[inline(always)]
     pub fn impulse(&self, normal: Pack<S, K>, along: Pack<S, K>) -> (Pack<S, K>, Pack<S, K>) {
         let (n, u, j) = (self.arm_normal, self.arm_along, self.inertia);

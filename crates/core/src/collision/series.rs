@@ -45,8 +45,8 @@ pub(super) fn step_of(series: &Series, longest: f64) -> f64 {
     steps.find(|&step| small(step)).unwrap_or(0.0)
 }
 
-/// Where a function that is monotonic between two points becomes ≥ 0, which it is at `high`: the rule of false position, in the
-/// Illinois variant.
+/// Where a function that is monotonic between two points becomes ≥ 0, which it is at `high`: the rule of false position, in
+/// the Illinois variant.
 pub(super) fn crossing(mut low: f64, mut high: f64, f: impl Fn(f64) -> f64) -> f64 {
     let (mut below, mut above) = (f(low), f(high));
     if below >= 0.0 {

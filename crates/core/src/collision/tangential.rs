@@ -1,15 +1,15 @@
 //! The paper's law, (9): both components of the contact velocity change by a fixed factor.
 
-use super::{Contact, Normal, Plane, Rebound};
+use super::{Contact, InPlane, Normal, Plane, Rebound};
 use crate::Error;
-use crate::lanes::Pack;
+use crate::lanes::Operand;
 use pulp::Simd;
 
 /// Normal and tangential restitution of the contact velocity, (9).
 ///
-/// It conserves what the plane cannot touch: nothing of the motion but the tangential contact velocity, for ε^t = 1. For a body
-/// that is not a sphere this takes a tangential impulse, which can do positive work, so that kinetic energy can grow, and which
-/// may lie outside every friction cone. The law is not a frictionless one.
+/// With ε^t = 1 it conserves the tangential contact velocity. For a body that is not a sphere this takes a tangential impulse,
+/// which can do positive work, so that kinetic energy can grow, and which may lie outside every friction cone. The law is not a
+/// frictionless one.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct TangentialRestitution<'a> {
     pub(super) normal: Normal<'a>,
@@ -34,31 +34,54 @@ impl<'a> TangentialRestitution<'a> {
         self.tangential
     }
 
-    #[inline(always)]
-    pub(super) fn in_plane<S: Simd, const K: usize>(&self, contact: &Plane<S, K>) -> Rebound<S, K> {
-        self.with(self.normal.in_lanes(contact.approach_speed()), contact)
+    /// The law with its ε^n, if that is constant.
+    pub(super) fn steady(&self) -> Option<Steady<'a>> {
+        let Normal::Constant(normal) = self.normal else {
+            return None;
+        };
+        Some(Steady { law: *self, normal })
     }
 
-    /// The response with this ε^n.
     #[inline(always)]
-    pub(super) fn with<S: Simd, const K: usize>(
+    pub(super) fn in_plane<S: Simd, const K: usize>(&self, contact: &Plane<S, K>) -> Rebound<S, K> {
+        let restitution = self.normal.in_lanes(contact.approach_speed());
+        self.with(-restitution, -(restitution + 1.0), contact)
+    }
+
+    /// The response with this −ε^n and −(1 + ε^n).
+    #[inline(always)]
+    fn with<S: Simd, const K: usize>(
         &self,
-        restitution: Pack<S, K>,
+        rebound: impl Operand<S, K>,
+        change: impl Operand<S, K>,
         contact: &Plane<S, K>,
     ) -> Rebound<S, K> {
         let (normal, along) = contact.impulse(
-            -(restitution + 1.0) * contact.slip_normal,   // (9), (10)
+            contact.slip_normal * change,                 // (9), (10)
             (self.tangential - 1.0) * contact.slip_along, // (9), (10)
         );
         Rebound {
             normal,
             along,
-            separation_speed: -restitution * contact.slip_normal, // (9)
+            separation_speed: contact.slip_normal * rebound, // (9)
         }
     }
 
     /// Impulse along **w**.
     pub(super) fn across(&self, contact: &Contact) -> f64 {
         (self.tangential - 1.0) * contact.slip.across / contact.across // (9), (10)
+    }
+}
+
+/// The law with a constant ε^n, to be written out in the bounce loop of the lanes: the paper's runs are of this kind.
+pub(crate) struct Steady<'a> {
+    law: TangentialRestitution<'a>,
+    normal: f64,
+}
+
+impl InPlane for Steady<'_> {
+    #[inline(always)]
+    fn in_plane<S: Simd, const K: usize>(&self, contact: &Plane<S, K>) -> Rebound<S, K> {
+        self.law.with(-self.normal, -(1.0 + self.normal), contact)
     }
 }

@@ -1,15 +1,15 @@
 //! Coulomb friction where the slip turns: the contact slips across the plane of the axis, too.
 //!
-//! In the normal impulse p the slip **s** obeys d**s**/dp = K_nu **u** − μ K_t **s**/|**s**|, which is singular where it vanishes. In τ with
-//! dp = |**s**| dτ it is smooth and homogeneous,
+//! In the normal impulse p the slip **s** obeys d**s**/dp = K_nu **u** − μ K_t **s**/|**s**|, which is singular where it
+//! vanishes. In τ with dp = |**s**| dτ it is smooth and homogeneous,
 //!
 //! d**s**/dτ = |**s**| K_nu **u** − μ K_t **s**,
 //!
-//! so that one step size serves slips of every magnitude. It is integrated by its Taylor series of order 24 in steps whose last two
-//! terms are below 2⁻⁵⁴ of |**s**|. Each piece is a polynomial, on which the events (end of the compression, of the restitution) are
-//! found by the rule of false position. Slip in a direction that does not turn is a straight line in p, also where it vanishes, and
-//! needs no steps; every other direction turns towards such a one. General integrators would need a power function to choose their
-//! steps, interpolate the events, and stop short of the singularity.
+//! so that one step size serves slips of every magnitude. It is integrated by its Taylor series of order 24 in steps whose
+//! last two terms are below 2⁻⁵⁴ of |**s**|. Each piece is a polynomial, on which the events (end of the compression, of the
+//! restitution) are found by the rule of false position. Slip in a direction that does not turn is a straight line in p,
+//! also where it vanishes, and needs no steps; every other direction turns towards such a one. General integrators would
+//! need a power function to choose their steps, interpolate the events, and stop short of the singularity.
 
 use super::series::{ORDER, Series, crossing, integral, line, step_of, value};
 use super::{Components, Contact, Coulomb, Hypothesis, Response, length};

@@ -5,7 +5,7 @@ use super::contact::{Departure, Pass, Search};
 use super::flight::State;
 use super::{Mask, Pack};
 use crate::body::Body;
-use crate::collision::Law;
+use crate::collision::InPlane;
 use crate::contact::MOST_STEPS;
 use crate::trajectory::{COLLAPSE_RUN, Limits, StopReason, UNRESOLVED};
 use pulp::Simd;
@@ -82,7 +82,8 @@ pub(crate) struct Stuck {
     pub impacts: usize,
 }
 
-/// As many particles as a [`Pack`] has lanes. Aligned to a line of the cache, which a vector must not straddle.
+/// As many particles as a [`Pack`] has lanes. Aligned, and with it the stack, to a line of the cache, which a vector must not
+/// straddle.
 #[derive(Clone, Copy)]
 #[repr(align(64))]
 struct Group<S: Simd, const K: usize> {
@@ -108,7 +109,7 @@ struct Group<S: Simd, const K: usize> {
 pub(crate) fn bounce<S: Simd, const K: usize, const N: usize>(
     simd: S,
     body: &Body,
-    law: &Law<'_>,
+    law: &impl InPlane,
     release: Release<'_>,
     limits: Limits,
     sink: &mut impl Sink,
@@ -239,7 +240,7 @@ impl<S: Simd, const K: usize> Group<S, K> {
     fn land(
         &mut self,
         body: &Body,
-        law: &Law<'_>,
+        law: &impl InPlane,
         limits: Limits,
         number: usize,
         sink: &mut impl Sink,

@@ -3,14 +3,14 @@
 use super::Pack;
 use super::flight::State;
 use crate::body::Body;
-use crate::collision::{Law, Plane};
+use crate::collision::{InPlane, Plane};
 use pulp::Simd;
 
 /// The state after the impact of `sphere` (±1), and the speed at which the point of contact leaves the plane.
 #[inline(always)]
 pub(super) fn collide<S: Simd, const K: usize>(
     body: &Body,
-    law: &Law<'_>,
+    law: &impl InPlane,
     before: &State<S, K>,
     sphere: Pack<S, K>,
 ) -> (State<S, K>, Pack<S, K>) {

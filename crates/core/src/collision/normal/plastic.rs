@@ -1,5 +1,5 @@
-//! C. Thornton, *Coefficient of restitution for collinear collisions of elastic-perfectly plastic spheres*, J. Appl. Mech. **64**,
-//! 383 (1997).
+//! C. Thornton, *Coefficient of restitution for collinear collisions of elastic-perfectly plastic spheres*, J. Appl. Mech.
+//! **64**, 383 (1997).
 
 use crate::Error;
 use crate::lanes::Pack;

@@ -1,5 +1,5 @@
-//! P. Müller and T. Pöschel, *Collision of viscoelastic spheres: Compact expressions for the coefficient of normal restitution*, Phys.
-//! Rev. E **84**, 021302 (2011).
+//! P. Müller and T. Pöschel, *Collision of viscoelastic spheres: Compact expressions for the coefficient of normal
+//! restitution*, Phys. Rev. E **84**, 021302 (2011).
 
 use crate::Error;
 use crate::elementary::{fifth_root, polynomial};
@@ -9,8 +9,8 @@ use std::f64::consts::PI;
 
 /// A viscoelastic sphere on a rigid plane, ε^n(v) as the Padé approximant [3/6] in v* = β^{1/2}v^{1/10}.
 ///
-/// The force at a compression ξ is ρ(ξ^{3/2} + (3/2) A ξ^{1/2} dξ/dt), with Hertz's ρ = (4/3) √R Y/(1 − ν²) for a sphere on a rigid
-/// plane, and the contact ends where it would turn to attraction. With k = ρ/m, β = (3/2) A k^{2/5}.
+/// The force at a compression ξ is ρ(ξ^{3/2} + (3/2) A ξ^{1/2} dξ/dt), with Hertz's ρ = (4/3) √R Y/(1 − ν²) for a sphere on
+/// a rigid plane, and the contact ends where it would turn to attraction. With k = ρ/m, β = (3/2) A k^{2/5}.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Viscoelastic {
     /// β^{1/2}, in (s/m)^{1/10} or, once scaled, in the core's unit.
@@ -24,8 +24,8 @@ const DENOMINATOR: [f64; 7] = [
 ];
 
 impl Viscoelastic {
-    /// Young's modulus Y in Pa, Poisson's ratio ν in (−1, ½], the dissipative constant A in s, density in kg/m³ and radius R in
-    /// m of the sphere.
+    /// Young's modulus Y in Pa, Poisson's ratio ν in (−1, ½], the dissipative constant A in s, density in kg/m³ and radius R
+    /// in m of the sphere.
     pub fn new(
         young_modulus: f64,
         poisson_ratio: f64,
