@@ -151,8 +151,8 @@ def paper(
 def laws(
     out: Annotated[Path, typer.Option(metavar="DIR", help="The directory to write to, all or nothing.")],
     impacts: Annotated[
-        int, typer.Option(metavar="N", help="Impacts for each body and law, on average; at least 10720.")
-    ] = 5_000_000,
+        int, typer.Option(metavar="N", help="Impacts for each body and law, on average; at least 19680.")
+    ] = 10_000_000,
     seed: Annotated[int, typer.Option(metavar="S", help="Seed of the random numbers, in [0, 2**63).")] = 1,
     threads: Threads = None,
 ) -> None:

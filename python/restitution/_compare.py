@@ -147,7 +147,11 @@ def _side_by_side(runs: list[xr.Dataset], bodies: Mapping[str, Body], laws: Mapp
     for name, text in _PER_RUN.items():
         values = np.array([_total(run, name) for run in runs]).reshape(len(bodies), len(laws))
         variables[name] = (("body", "law"), values, {"long_name": text})
-    coordinates: dict[str, Any] = {"body": list(bodies), "law": list(laws), **first.coords}
+    coordinates: dict[str, Any] = {
+        "body": list(bodies),
+        "law": list(laws),
+        **{str(k): v for k, v in first.coords.items()},
+    }
     coordinates["body_parameters"] = (("body",), [repr(body) for body in bodies.values()])
     coordinates["law_parameters"] = (("law",), [repr(law) for law in laws.values()])
     shared = {

@@ -1,17 +1,23 @@
 """The figure: a column for each L/R, a row for each quantity, a line for each law."""
 
+from typing import Literal
+
 import numpy as np
+import numpy.typing as npt
 import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
-from matplotlib.ticker import LogLocator, NullFormatter
+from matplotlib.ticker import LogLocator, MaxNLocator, NullFormatter
 
 from restitution import figures as fg
 
-_LINES = ("-", "-", "-", "--", ":", "-")
+FloatArray = npt.NDArray[np.float64]
+
+_LINES: tuple[Literal["-", "--", ":"], ...] = ("-", "-", "-", "--", ":", "-")
 _COLORS = ("#D55E00", "#000000", "#0072B2", "#56B4E9", "#009E73", "#CC79A7")
-_VELOCITY_TICKS = (0.05, 0.1, 0.2, 0.5, 1.0)
+_VELOCITY_TICKS = (0.01, 0.03, 0.1, 0.3, 1.0)
+_RANGE = (0.01, 1.1)
 _LETTERS = "abcdefghijklmnopqrst"
 _VELOCITY = r"impact velocity $v_G^n$ (m/s)"
 
@@ -25,12 +31,12 @@ def draw(data: xr.Dataset) -> Figure:
         body = data.isel(elongation=k)
         panels[0][k].set_title(rf"$L/R = {float(body['elongation']):g}$", fontsize=9.0)
         _density(panels[0][k], body)
-        _by_velocity(panels[1][k], body, "deviation")
+        _by_velocity(panels[1][k], body, "deviation", logarithmic=True)
         _by_velocity(panels[2][k], body, "mean_fraction")
         _by_velocity(panels[3][k], body, "created_share", only_created=True)
         _gain(panels[4][k], body)
         for row in panels[1:]:
-            row[k].set_xlim(float(data.attrs["slowest"]), 1.1)
+            row[k].set_xlim(*_RANGE)
             fg.plain_log(row[k], _VELOCITY_TICKS)
             row[k].sharex(panels[1][k])
         for row in panels[1:-1]:
@@ -46,7 +52,7 @@ def draw(data: xr.Dataset) -> Figure:
     for number, (row, label) in enumerate(zip(panels, labels, strict=True)):
         row[0].set_ylabel(label)
         for k, axes in enumerate(row):
-            fg.letter(axes, f"({_LETTERS[number * columns + k]})")
+            fg.letter(axes, f"({_LETTERS[number * columns + k]})", left=number == 0)
     _legend(figure, data)
     figure.align_ylabels([row[0] for row in panels])
     return figure
@@ -58,7 +64,9 @@ def _legend(figure: Figure, data: xr.Dataset) -> None:
         Line2D([], [], color=color, linestyle=style, label=name)
         for name, color, style in zip(names, _COLORS, _LINES, strict=True)
     ]
-    lines.append(Line2D([], [], color="0.55", linewidth=0.8, linestyle="-.", label=r"bound, $\varepsilon_t$ = 1"))
+    lines.append(
+        Line2D([], [], color="0.55", linewidth=0.8, linestyle="-.", label=r"bound, $\varepsilon_t$ = 1")
+    )
     figure.legend(handles=lines, loc="outside upper center", ncols=4)
 
 
@@ -81,39 +89,51 @@ def _density(axes: Axes, body: xr.Dataset) -> None:
     axes.set_xlabel(r"coefficient of restitution $\varepsilon$")
 
 
-def _by_velocity(axes: Axes, body: xr.Dataset, name: str, *, only_created: bool = False) -> None:
+def _by_velocity(
+    axes: Axes, body: xr.Dataset, name: str, *, only_created: bool = False, logarithmic: bool = False
+) -> None:
     top = 0.0
     for law in range(body.sizes["law"]):
         values, error = _shown(body[name].isel(law=law)), body[f"{name}_error"].isel(law=law).to_numpy()
-        if only_created and not values.max() > 0:
+        if only_created and not np.nanmax(values) > 0:
             continue
         top = max(top, float(np.nanmax(values[_drawn(body)])))
         fg.line(axes, body["velocity"].to_numpy(), values, error, color=_COLORS[law], linestyle=_LINES[law])
-    axes.set_ylim(0, 1.3 * top)
+    if logarithmic:
+        axes.set_yscale("log")
+        return
+    axes.set_ylim(0, 1.25 * top if top else 1)
+    axes.yaxis.set_major_locator(MaxNLocator(5))
+    if not top:
+        _say_none(axes)
 
 
 def _gain(axes: Axes, body: xr.Dataset) -> None:
     """Draw what the largest factor is above 1; laws without any gain are not there."""
+    bound = float(body["bound"]) - 1
+    lowest = 1e-4 * bound
+    axes.axhline(bound, color="0.55", linewidth=0.8, linestyle="-.")
     for law in range(body.sizes["law"]):
         gain = _shown(body["largest_factor"].isel(law=law)) - 1
-        if np.any(gain > 0):
-            axes.plot(body["velocity"], gain, color=_COLORS[law], linestyle=_LINES[law])
-    bound = float(body["bound"]) - 1
-    axes.axhline(bound, color="0.55", linewidth=0.8, linestyle="-.")
+        axes.plot(body["velocity"], gain, color=_COLORS[law], linestyle=_LINES[law])
     axes.set_yscale("log")
-    low, high = axes.get_ylim()
-    axes.set_ylim(min(low, bound / 100), 30 * bound)
-    axes.yaxis.set_major_locator(LogLocator(numticks=5))
+    axes.set_ylim(lowest, 30 * bound)
+    axes.yaxis.set_major_locator(LogLocator(numticks=6))
     axes.yaxis.set_minor_formatter(NullFormatter())
+    if not np.any((_shown(body["largest_factor"]) - 1 > lowest)[:, _drawn(body)]):
+        _say_none(axes)
 
 
-def _drawn(body: xr.Dataset) -> np.ndarray[tuple[int], np.dtype[np.bool_]]:
+def _say_none(axes: Axes) -> None:
+    axes.text(0.5, 0.4, "none", transform=axes.transAxes, ha="center", color="0.4")
+
+
+def _drawn(body: xr.Dataset) -> npt.NDArray[np.bool_]:
     velocity = body["velocity"].to_numpy()
-    chosen: np.ndarray[tuple[int], np.dtype[np.bool_]] = (velocity >= 0.05) & (velocity <= 1.1)
+    chosen: npt.NDArray[np.bool_] = (velocity >= _RANGE[0]) & (velocity <= _RANGE[1])
     return chosen
 
 
-def _shown(values: xr.DataArray) -> np.ndarray[tuple[int], np.dtype[np.float64]]:
-    """Leave out bins with too few impacts for a value."""
-    found: np.ndarray[tuple[int], np.dtype[np.float64]] = values.to_numpy()
+def _shown(values: xr.DataArray) -> FloatArray:
+    found: FloatArray = values.to_numpy()
     return found

@@ -3,27 +3,25 @@
 import numpy as np
 import xarray as xr
 
-from restitution._energy import percent
-
 
 def table(data: xr.Dataset) -> str:
     """Write a row for each body and law: created energy, and σ(ε) and E_rot/E_tot at one speed."""
+    speed, slowest = data.attrs["speed"], data.attrs["slowest"]
     lines = [
-        "| L/R | law | impacts | share creating energy | largest factor | "
-        f"σ(ε) at {data.attrs['speed']:g} m/s | E_rot/E_tot there |",
-        "|---|---|---|---|---|---|---|",
+        f"| L/R | law | impacts | create energy | largest factor | create energy, v ≥ {slowest:g} m/s | "
+        f"largest factor there | σ(ε) at {speed:g} m/s | E_rot/E_tot at {speed:g} m/s |",
+        "|---|---|---|---|---|---|---|---|---|",
     ]
-    at = data.sel(velocity=data.attrs["speed"], method="nearest")
+    at = data.sel(velocity=speed, method="nearest")
     for elongation in data["elongation"].values:
         for law in data["law"].values:
             body, here = (one.sel(elongation=elongation, law=law) for one in (data, at))
-            created = float(body["total_share"]) > 0
             cells = [
                 f"{elongation:g}",
                 str(law),
-                f"{int(body['total_impacts']):,}".replace(",", " "),
-                _share(body) if created else "0",
-                f"1 + {float(body['total_factor']) - 1:.3g}" if created else "—",
+                f"{int(body['all_impacts']):,}".replace(",", " "),
+                *_created(body, "all"),
+                *_created(body, "total"),
                 _with_error(here["deviation"], here["deviation_error"]),
                 _with_error(here["mean_fraction"], here["mean_fraction_error"]),
             ]
@@ -31,10 +29,16 @@ def table(data: xr.Dataset) -> str:
     return "\n".join(lines) + "\n"
 
 
-def _share(body: xr.Dataset) -> str:
-    share, error = 100 * float(body["total_share"]), 100 * float(body["total_share_error"])
+def _created(body: xr.Dataset, which: str) -> tuple[str, str]:
+    """Write the share of energy-creating impacts and their largest factor."""
+    share, error = (100 * float(body[f"{which}_share{suffix}"]) for suffix in ("", "_error"))
+    if not share > 0:
+        return "none", "—"
     digits = _digits(error)
-    return f"{share:.{digits}f} ± {error:.{digits}f} %" if digits <= 6 else percent(share / 100)
+    gain = f"{float(body[f'{which}_factor']) - 1:.3g}"
+    mantissa, _, power = gain.partition("e")
+    gain = f"{mantissa}·10^{int(power)}" if power else gain
+    return f"{share:.{digits}f} ± {error:.{digits}f} %", f"1 + {gain}"
 
 
 def _with_error(value: xr.DataArray, error: xr.DataArray) -> str:
