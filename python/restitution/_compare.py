@@ -93,7 +93,7 @@ def compare(
     return found
 
 
-def _named(what: str, given: Mapping[str, T] | Iterable[T], kind: type[T]) -> dict[str, T]:
+def _named(what: str, given: Mapping[str, T] | Iterable[T], kind: type[Any]) -> dict[str, T]:
     """Give every body or law its name."""
     if isinstance(given, Mapping):
         named = dict(given)
