@@ -8,7 +8,7 @@ import pytest
 import sympy as sp
 
 import restitution as rs
-from restitution._energy import percent
+from restitution._energy import factor, percent
 from restitution.laws import Law
 from restitution.laws_figure import bound, coupling, growth
 
@@ -47,7 +47,12 @@ def test_a_run_that_creates_energy_warns_once_and_says_how_much(
     assert data.attrs["energy_created_share"] == created / impacts
     assert data.attrs["largest_energy_ratio"] == np.nanmax(ratio)
     message = str(caught[0].message)
-    for part in ("TangentialRestitution", f"({created:,})", f"{np.nanmax(ratio):.6g}", "Frictionless"):
+    for part in (
+        "TangentialRestitution",
+        f"({created:,} of {impacts:,})",
+        f"{np.nanmax(ratio):.6g}",
+        "Frictionless",
+    ):
         assert part in message
 
 
@@ -163,3 +168,9 @@ def test_no_impact_exceeds_the_bound_at_its_angle(tangential: float) -> None:
 def test_shares_read_well(share: float, text: str) -> None:
     """No exponent in a sentence."""
     assert percent(share) == text
+
+
+def test_a_factor_never_reads_as_one() -> None:
+    """Gains of nearly round bodies are small, and are what the warning is about."""
+    assert factor(2.7015346) == "2.70153"
+    assert factor(1 + 5.6e-9) == "1 + 5.6e-09"

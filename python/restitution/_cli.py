@@ -218,6 +218,7 @@ def _tell(line: str) -> None:
 def _summary(data: "xr.Dataset") -> Iterator[str]:
     """Say what a run holds: impacts, why the particles stopped, and whether energy was created."""
     from restitution._dataset import STOP_REASONS
+    from restitution._energy import factor
 
     impacts = int(data.impacts.sum())
     yield f"{data.sizes['particle']} particles, {impacts} impacts"
@@ -226,4 +227,4 @@ def _summary(data: "xr.Dataset") -> Iterator[str]:
     gains = data.attrs["energy_created_impacts"]
     if gains:
         largest = data.attrs["largest_energy_ratio"]
-        yield f"{gains} impacts created kinetic energy, at most by a factor of {largest:.6g}"
+        yield f"{gains} impacts created kinetic energy, at most by a factor of {factor(largest)}"

@@ -8,7 +8,7 @@ from typing import Any, TypeVar
 import numpy as np
 import xarray as xr
 
-from restitution._energy import CANNOT, LEDGER, EnergyWarning, percent, reported_elsewhere
+from restitution._energy import LEDGER, WHY, EnergyWarning, factor, percent, reported_elsewhere
 from restitution._parameters import Parameters, shown
 from restitution._resources import progress_bar
 from restitution._statistics import statistics
@@ -174,11 +174,10 @@ def _warn(found: xr.Dataset) -> None:
     created = found["energy_created_impacts"].sum("body")
     laws = [str(law) for law in found["law"].values[created > 0]]
     if laws:
-        share, factor = float(found["energy_created_share"].max()), float(found["largest_factor"].max())
+        share, largest = float(found["energy_created_share"].max()), float(found["largest_factor"].max())
         warnings.warn(
             f"Impacts created kinetic energy under {', '.join(laws)}: in up to {percent(share)} of the "
-            f"impacts of a run, at most by a factor of {factor:.6g}. The law does this, not "
-            f"rounding. {CANNOT}",
+            f"impacts of a run, at most by a factor of {factor(largest)}. {WHY}",
             EnergyWarning,
             stacklevel=3,
         )

@@ -18,8 +18,9 @@ class EnergyWarning(UserWarning):
     """
 
 
-CANNOT = (
-    "Laws that cannot: Frictionless, Coulomb with hypothesis 'stronge' or 'poisson', and ChatterjeeRuina."
+WHY = (
+    "The law does this, not rounding: gains below 1e-12 are not counted. Laws that cannot: "
+    "Frictionless, Coulomb with hypothesis 'stronge' or 'poisson', and ChatterjeeRuina."
 )
 LEDGER = ("all_impacts", "energy_created_impacts", "energy_created_share", "largest_energy_ratio")
 """The attributes of a result that say how much energy its impacts created."""
@@ -58,8 +59,8 @@ def warn(data: xr.Dataset, *, stacklevel: int = 2) -> None:
         return
     warnings.warn(
         f"{about['law']} created kinetic energy in {percent(about['energy_created_share'])} of the impacts "
-        f"({created:,}), at most by a factor of {about['largest_energy_ratio']:.6g}. The law does this, not "
-        f"rounding. {CANNOT}",
+        f"({created:,} of {about['all_impacts']:,}), at most by a factor of "
+        f"{factor(about['largest_energy_ratio'])}. {WHY}",
         EnergyWarning,
         stacklevel=stacklevel + 1,
     )
@@ -69,6 +70,11 @@ def percent(share: float) -> str:
     """Write a share in percent with three digits, however small."""
     text = f"{100 * share:.3g}"
     return f"{float(text):f}".rstrip("0").rstrip(".") + " %" if "e" in text and share > 1e-8 else f"{text} %"
+
+
+def factor(largest: float) -> str:
+    """Write a factor above 1 so that it does not read as 1."""
+    return f"{largest:.6g}" if largest >= 1.001 else f"1 + {largest - 1:.2g}"
 
 
 @contextmanager

@@ -5,7 +5,9 @@ mod tallies;
 
 use common::*;
 use proptest::prelude::*;
-use restitution_core::statistics::{Axis, Bins, By, CREATES_ENERGY, Gains, Grid, Moments, Sums, Tally};
+use restitution_core::statistics::{
+    Axis, Bins, By, CREATES_ENERGY, Gains, Grid, Moments, Sums, Tally,
+};
 use restitution_core::{Level, Means, Monitor, Records, Run};
 use tallies::*;
 
