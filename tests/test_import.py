@@ -72,8 +72,9 @@ def test_the_stub_describes_the_core() -> None:
     stub = ast.parse((ROOT / "python/restitution/_core.pyi").read_text(encoding="utf-8"))
     functions = {node.name: node.args for node in stub.body if isinstance(node, ast.FunctionDef)}
     classes = {node.name: node.bases for node in stub.body if isinstance(node, ast.ClassDef)}
+    constants = {ast.unparse(node.target) for node in stub.body if isinstance(node, ast.AnnAssign)}
     public = {name for name in vars(_core) if not name.startswith("_")}
-    assert public == {*functions, *classes}
+    assert public == {*functions, *classes, *constants}
     for name, arguments in functions.items():
         parameters = inspect.signature(getattr(_core, name)).parameters.values()
         keywords = [p.name for p in parameters if p.kind is p.KEYWORD_ONLY]

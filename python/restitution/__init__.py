@@ -4,7 +4,9 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from restitution import analytic, figures, fit
+    from restitution._compare import compare
     from restitution._core import NumericalError, build_info
+    from restitution._energy import EnergyWarning
     from restitution._reduce import reduce
     from restitution._simulate import SimulationInterrupted, simulate
     from restitution._statistics import statistics
@@ -23,6 +25,7 @@ __all__ = [
     "ChatterjeeRuina",
     "Coulomb",
     "Dumbbell",
+    "EnergyWarning",
     "Frictionless",
     "LoadedSphere",
     "NumericalError",
@@ -35,6 +38,7 @@ __all__ = [
     "Viscoelastic",
     "analytic",
     "build_info",
+    "compare",
     "figures",
     "fit",
     "reduce",
@@ -49,6 +53,8 @@ _HOMES = {
     "Spheroid": "bodies",
     "NumericalError": "_core",
     "build_info": "_core",
+    "compare": "_compare",
+    "EnergyWarning": "_energy",
     "reduce": "_reduce",
     "SimulationInterrupted": "_simulate",
     "ChatterjeeRuina": "laws",

@@ -5,6 +5,7 @@ import numpy as np
 import numpy.typing as npt
 
 __all__ = [
+    "CREATES_ENERGY",
     "NumericalError",
     "Solid",
     "build_info",
@@ -18,6 +19,8 @@ __all__ = [
     "spheroid",
     "statistics",
 ]
+
+CREATES_ENERGY: float
 
 class NumericalError(RuntimeError): ...
 

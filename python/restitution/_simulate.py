@@ -76,7 +76,9 @@ def simulate(
         ``rebound_velocity``, ``restitution``, ``rotational_fraction``, ``energy_ratio``, ``angle`` (float64,
         NaN where the impact never happened) and ``contact`` (which sphere touched, or which half of a
         spheroid). Over particles: ``impacts``, ``stop_reason``, ``release_angle``. Units are in the
-        variables' attributes, all parameters in the Dataset's.
+        variables' attributes, all parameters in the Dataset's, as are ``energy_created_impacts``, the
+        number of impacts that multiplied the kinetic energy by more than 1 + 1e-12, their share of all
+        impacts, ``energy_created_share``, and if there are any ``largest_energy_ratio``.
 
     Raises
     ------
@@ -86,6 +88,11 @@ def simulate(
         If the engine cannot follow a particle; the message says how to reproduce it.
     SimulationInterrupted
         On Ctrl-C; a `KeyboardInterrupt` that carries the impacts so far.
+
+    Warns
+    -----
+    EnergyWarning
+        Once, if impacts created kinetic energy; see docs/energy.md.
 
     Notes
     -----
@@ -103,6 +110,8 @@ def simulate(
     >>> bool((data.restitution.isel(impact=0) <= 0.98).all())
     True
     """
+    from restitution._energy import warn
+
     run = Run(
         body=body,
         law=law,
@@ -114,7 +123,9 @@ def simulate(
         minimum_speed=minimum_speed,
         seed=seed,
     )
-    return simulate_run(run, threads=threads, progress=progress)
+    data = simulate_run(run, threads=threads, progress=progress)
+    warn(data)
+    return data
 
 
 def simulate_run(run: Run, *, threads: int | None = None, progress: bool = False) -> "xr.Dataset":

@@ -5,7 +5,9 @@ mod tallies;
 
 use common::*;
 use proptest::prelude::*;
-use restitution_core::statistics::{Axis, Bins, By, Grid, Moments, Sums, Tally};
+use restitution_core::statistics::{
+    Axis, Bins, By, CREATES_ENERGY, Gains, Grid, Moments, Sums, Tally,
+};
 use restitution_core::{Level, Means, Monitor, Records, Run};
 use tallies::*;
 
@@ -18,6 +20,7 @@ struct Expected {
     values: Vec<Vec<f64>>,
     /// Σ E_rot/E_tot in whole quanta.
     fractions: Vec<u128>,
+    gains: Vec<Gains>,
     stops: [u64; 5],
 }
 
@@ -42,6 +45,7 @@ impl Expected {
             quanta: vec![Vec::new(); rows],
             values: vec![Vec::new(); rows],
             fractions: vec![0; rows],
+            gains: vec![Gains::default(); rows],
             stops: [0; 5],
         };
         for particle in 0..run.particles {
@@ -50,6 +54,11 @@ impl Expected {
                 let k = particle * run.impacts + i;
                 let (value, fraction) = (records.restitution[k], records.rotational_fraction[k]);
                 let row = row(records.impact_velocity[k], i);
+                let ratio = records.energy_ratio[k];
+                if ratio > CREATES_ENERGY {
+                    expected.gains[row].count += 1;
+                    expected.gains[row].largest = expected.gains[row].largest.max(ratio);
+                }
                 let mut sites = columns.map(|columns| columns - 1);
                 if value.abs() < Sums::LARGEST && fraction <= 1.0 {
                     sites = [
@@ -83,6 +92,7 @@ impl Expected {
     fn agrees(&self, tally: &Tally, origin: f64) -> Result<(), TestCaseError> {
         prop_assert_eq!(tally.restitution.counts(), &self.restitution[..]);
         prop_assert_eq!(tally.fraction.counts(), &self.fraction[..]);
+        prop_assert_eq!(&tally.gains, &self.gains);
         prop_assert_eq!(tally.stops, self.stops);
         for (row, values) in self.values.iter().enumerate() {
             let number = values.len();

@@ -11,7 +11,7 @@ use pyo3::create_exception;
 use pyo3::exceptions::{PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
-use restitution_core::statistics::{Axis, Bins, By, Moments};
+use restitution_core::statistics::{Axis, Bins, By, CREATES_ENERGY, Moments};
 use restitution_core::{Error, Level, Means, Orientation, Run};
 
 create_exception!(
@@ -183,6 +183,10 @@ fn statistics<'py>(
     table.set_item("maximum", column(|m| m.maximum))?;
     let fractions: Vec<_> = (0..rows).map(|row| tally.mean_fraction(row)).collect();
     table.set_item("mean_fraction", fractions.into_pyarray(py))?;
+    let created: Vec<_> = tally.gains.iter().map(|row| row.count as i64).collect();
+    table.set_item("energy_created", created.into_pyarray(py))?;
+    let largest: Vec<_> = tally.gains.iter().map(|row| row.largest).collect();
+    table.set_item("largest_energy_ratio", largest.into_pyarray(py))?;
     let stops = tally.stops.map(|count| count as i64).to_vec();
     table.set_item("stops", stops.into_pyarray(py))?;
     Ok((table, interrupted))
@@ -220,6 +224,7 @@ fn sincos(x: f64) -> (f64, f64) {
 
 #[pymodule]
 fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
+    module.add("CREATES_ENERGY", CREATES_ENERGY)?;
     module.add("NumericalError", module.py().get_type::<NumericalError>())?;
     bodies::add_to(module)?;
     module.add_function(wrap_pyfunction!(simulate, module)?)?;

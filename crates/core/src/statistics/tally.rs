@@ -10,6 +10,9 @@ use pulp::Simd;
 /// Quanta of E_rot/E_tot.
 const FRACTION_QUANTA: f64 = 4_398_046_511_104.0; // 2⁴²
 
+/// An impact creates energy where it multiplies the kinetic energy by more than this. Rounding makes a few 10⁻¹⁵ of it.
+pub const CREATES_ENERGY: f64 = 1.0 + 1e-12;
+
 /// What the rows of the grids stand for.
 #[derive(Debug, Clone, PartialEq)]
 pub enum By {
@@ -53,8 +56,26 @@ pub struct Tally {
     sums: Vec<Sums>,
     /// Σ E_rot/E_tot by row, in units of 2⁻⁴².
     fractions: Vec<u128>,
+    /// Impacts that create energy, by row.
+    pub gains: Vec<Gains>,
     /// Number of particles by [`StopReason`].
     pub stops: [u64; 5],
+}
+
+/// The impacts by which kinetic energy grew by more than [`CREATES_ENERGY`].
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Gains {
+    /// Their number.
+    pub count: u64,
+    /// Their largest factor; 0 without any.
+    pub largest: f64,
+}
+
+impl Gains {
+    fn merge(&mut self, other: Self) {
+        self.count += other.count;
+        self.largest = self.largest.max(other.largest);
+    }
 }
 
 /// Counts in rows and columns.
@@ -105,6 +126,7 @@ impl Tally {
             origin,
             sums: vec![Sums::EMPTY; rows],
             fractions: vec![0; rows],
+            gains: vec![Gains::default(); rows],
             stops: [0; 5],
         }
     }
@@ -118,6 +140,9 @@ impl Tally {
         }
         for (sum, other) in self.fractions.iter_mut().zip(&other.fractions) {
             *sum += other;
+        }
+        for (gains, other) in self.gains.iter_mut().zip(&other.gains) {
+            gains.merge(*other);
         }
         for (count, other) in self.stops.iter_mut().zip(&other.stops) {
             *count += other;
@@ -279,6 +304,15 @@ impl Sink for Counter<'_> {
                 .fractions
                 .wrapping_add(whole(&fraction_quanta, lane) as u64);
             row.extremes.add(restitution.as_slice()[lane]);
+        }
+        let (before, after) = (impact.energy_before, impact.energy_after);
+        let gaining = impact.active & (before * CREATES_ENERGY).lt(after);
+        if gaining.any() {
+            gaining.each(|lane| {
+                let largest = after.as_slice()[lane] / before.as_slice()[lane];
+                let row = whole(&row, lane) as usize;
+                self.tally.gains[row].merge(Gains { count: 1, largest });
+            });
         }
         let large = summed & !plain;
         if large.any() {
