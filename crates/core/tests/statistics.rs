@@ -57,6 +57,9 @@ fn the_pieces_are_as_different_as_they_should_be() {
         last.sum::<u64>()
     };
     assert!(undefined(extreme) > 0);
+    let gains = |tally: &Tally| tally.gains.iter().map(|row| row.count).sum::<u64>();
+    let creating = PIECES.iter().filter(|piece| gains(piece) > 0).count();
+    assert!(0 < creating && creating < PIECES.len());
 }
 
 proptest! {
