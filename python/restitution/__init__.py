@@ -9,10 +9,12 @@ if TYPE_CHECKING:
     from restitution._simulate import SimulationInterrupted, simulate
     from restitution._statistics import statistics
     from restitution.bodies import Dumbbell
+    from restitution.distribution import FluctuatingRestitution
     from restitution.laws import TangentialRestitution
 
 __all__ = [
     "Dumbbell",
+    "FluctuatingRestitution",
     "NumericalError",
     "SimulationInterrupted",
     "TangentialRestitution",
@@ -27,6 +29,7 @@ __all__ = [
 
 _HOMES = {
     "Dumbbell": "bodies",
+    "FluctuatingRestitution": "distribution",
     "NumericalError": "_core",
     "build_info": "_core",
     "reduce": "_reduce",

@@ -1,5 +1,6 @@
 //! The thin binding: parameters in, NumPy arrays out. No physics here.
 
+mod distribution;
 mod watch;
 
 use numpy::ndarray::Array2;
@@ -234,5 +235,7 @@ fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(statistics, module)?)?;
     module.add_function(wrap_pyfunction!(build_info, module)?)?;
     module.add_function(wrap_pyfunction!(sincos, module)?)?;
+    module.add_function(wrap_pyfunction!(distribution::mixture_value, module)?)?;
+    module.add_function(wrap_pyfunction!(distribution::mixture_draw, module)?)?;
     Ok(())
 }
