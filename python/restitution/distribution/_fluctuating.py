@@ -10,12 +10,15 @@ from restitution._dataset import check_writable, save
 from restitution._parameters import ParameterError, wrong
 from restitution._run import Run
 from restitution.bodies import Dumbbell
+from restitution.distribution._c import header
 from restitution.distribution._check import Check
 from restitution.distribution._ensemble import Ensemble, Impacts
+from restitution.distribution._fortran import module
 from restitution.distribution._from_statistics import from_statistics
 from restitution.distribution._learn import Given, condition, learn
 from restitution.distribution._memory import correlations
 from restitution.distribution._tabulated import TabulatedDistribution
+from restitution.distribution._text import write
 from restitution.laws import TangentialRestitution
 
 
@@ -151,6 +154,29 @@ class FluctuatingRestitution(TabulatedDistribution):
     def clamped(self) -> "FluctuatingRestitution":
         """Give the same distribution, with speeds beyond the learned ones taken as the nearest of them."""
         return FluctuatingRestitution(self.data.assign_attrs(beyond="clamp"))
+
+    def to_c(self, path: str | Path, *, name: str = "restitution", replace: bool = False) -> None:
+        """Write a C99 and C++ header with the table and ``double restitution_sample(v, u1, u2)``.
+
+        It needs nothing but the standard library. u1 and u2 are uniform random numbers of the caller's own.
+        Speeds beyond the learned ones give NaN; what `clamped` returns takes them as the nearest. With a
+        condition there is ``restitution_sample_given(v, z, u1, u2)``, too.
+
+        Parameters
+        ----------
+        path : str or Path
+            Written whole or not at all; an existing file only with `replace`.
+        name : str
+            What all names in the header start with.
+        """
+        write(Path(path), header(self.data, name), replace=replace)
+
+    def to_fortran(self, path: str | Path, *, name: str = "restitution", replace: bool = False) -> None:
+        """Write a Fortran 2008 module with the table and the elemental ``restitution_sample(v, u1, u2)``.
+
+        As `to_c`; `name` is also that of the module.
+        """
+        write(Path(path), module(self.data, name), replace=replace)
 
     def distance(self, data: xr.Dataset) -> xr.Dataset:
         """Measure how far impacts are from this distribution.
