@@ -1,6 +1,8 @@
 """`FluctuatingRestitution`: p(ε | v), used like a distribution of scipy.stats with the argument v."""
 
+from collections.abc import Iterator
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 import numpy.typing as npt
@@ -18,8 +20,11 @@ from restitution.distribution._from_statistics import from_statistics
 from restitution.distribution._learn import Given, condition, learn
 from restitution.distribution._memory import correlations
 from restitution.distribution._tabulated import TabulatedDistribution
-from restitution.distribution._text import write
+from restitution.distribution._text import image_format, write
 from restitution.laws import TangentialRestitution
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 
 class FluctuatingRestitution(TabulatedDistribution):
@@ -178,6 +183,18 @@ class FluctuatingRestitution(TabulatedDistribution):
         """
         write(Path(path), module(self.data, name), replace=replace)
 
+    def figure(self) -> "Figure":
+        """Draw quantiles over v, densities with confidence bands, σ(ε) and the distance to fresh impacts."""
+        from restitution.distribution._figure import draw
+
+        return draw(self)
+
+    def draw(self, path: str | Path, *, replace: bool = False) -> None:
+        """Write `figure` as .png, .pdf or .svg, whole or not at all."""
+        from restitution.distribution._figure import image
+
+        write(Path(path), image(self, image_format(Path(path))), replace=replace)
+
     def distance(self, data: xr.Dataset) -> xr.Dataset:
         """Measure how far impacts are from this distribution.
 
@@ -239,9 +256,36 @@ class FluctuatingRestitution(TabulatedDistribution):
             levels["p(ε | v, z)"] = self._conditional.value("cdf", restitution, speed, z)
         return correlations(levels, lags)
 
+    def summary(self) -> Iterator[str]:
+        """Say in a few lines what was learned and how well."""
+        low, high = self.velocities
+        yield f"{float(self.data['impacts'].sum()):.0f} impacts at {low:.4g} to {high:.4g} m/s"
+        yield f"{self.data.sizes['node']} histograms, {self.data.sizes['edge']} edges"
+        if "ks_distance" in self.data:
+            worst = int(np.argmax(self.data["ks_distance"].to_numpy()))
+            speed, impacts = self.data["velocity"][worst], self.data["fresh_impacts"][worst]
+            yield (
+                "Kolmogorov-Smirnov distance to fresh impacts: "
+                f"{float(self.data['ks_distance'][worst]):.4f} at most, at {float(speed):.4g} m/s; "
+                f"{0.87 / float(impacts) ** 0.5:.4f} would be their own scatter if they were independent"
+            )
+
     def __repr__(self) -> str:
         low, high = self.velocities
         about = f"{low:.4g}–{high:.4g} m/s, {self._table.speeds.size} nodes"
         if "ks_distance" in self.data:
             about += f", ks_distance up to {float(self.data['ks_distance'].max()):.4f}"
         return f"<FluctuatingRestitution: {about}>"
+
+
+def learn_run(
+    run: Run,
+    *,
+    velocities: npt.ArrayLike | None = None,
+    given: Given | None = None,
+    threads: int | None = None,
+    progress: bool = False,
+) -> FluctuatingRestitution:
+    """`FluctuatingRestitution.learn` for parameters that are already checked."""
+    ensemble = Ensemble(run, (run.release_height,), threads)
+    return FluctuatingRestitution(learn(ensemble, velocities, given, progress))

@@ -12,6 +12,7 @@ from restitution._parameters import ParameterError, wrong
 from restitution.distribution._table import Floats, Ints
 
 _LEFT_OUT = ("title", "Conventions", "source", "beyond", "version", "references")
+_IMAGES = (".png", ".pdf", ".svg")
 
 
 def checked_name(name: str) -> str:
@@ -42,13 +43,20 @@ def about(data: xr.Dataset) -> Iterator[str]:
         yield f"Kolmogorov-Smirnov distance to impacts that were not learned from: at most {worst:.4f}."
 
 
-def write(path: Path, text: str, *, replace: bool) -> None:
-    """Write a text whole or not at all."""
+def image_format(path: Path) -> str:
+    """Give the format of a figure by the end of its name."""
+    if path.suffix.lower() not in _IMAGES:
+        raise ParameterError(wrong("figure", path.name, f"a name that ends in {', '.join(_IMAGES)}"))
+    return path.suffix[1:].lower()
+
+
+def write(path: Path, content: str | bytes, *, replace: bool) -> None:
+    """Write a file whole or not at all."""
     check_writable(path, replace=replace)
     target = path.resolve()
     name = part(target)
     try:
-        Path(name).write_text(text, encoding="ascii")
+        Path(name).write_bytes(content.encode("ascii") if isinstance(content, str) else content)
         os.chmod(name, 0o666 & ~umask())
         os.replace(name, target)
     except BaseException:
