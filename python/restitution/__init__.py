@@ -11,6 +11,7 @@ if TYPE_CHECKING:
     from restitution._simulate import SimulationInterrupted, simulate
     from restitution._statistics import statistics
     from restitution.bodies import Dumbbell, LoadedSphere, Spherocylinder, Spheroid
+    from restitution.distribution import FluctuatingRestitution
     from restitution.laws import (
         ChatterjeeRuina,
         Coulomb,
@@ -26,6 +27,7 @@ __all__ = [
     "Coulomb",
     "Dumbbell",
     "EnergyWarning",
+    "FluctuatingRestitution",
     "Frictionless",
     "LoadedSphere",
     "NumericalError",
@@ -51,6 +53,7 @@ _HOMES = {
     "LoadedSphere": "bodies",
     "Spherocylinder": "bodies",
     "Spheroid": "bodies",
+    "FluctuatingRestitution": "distribution",
     "NumericalError": "_core",
     "build_info": "_core",
     "compare": "_compare",

@@ -1,4 +1,4 @@
-"""The command line: `restitution simulate`, `restitution paper` and `restitution laws`.
+"""The command line: `restitution simulate`, `distribution`, `paper` and `laws`.
 
 Nothing heavy is imported before a command needs it, so that help comes at once.
 """
@@ -120,6 +120,76 @@ def simulate(
             typer.echo(line)
     if interrupted or late:
         raise typer.Exit(INTERRUPTED)
+
+
+@app.command(
+    epilog="Example: [bold]restitution distribution run.toml --out dist.nc --header dist.h[/bold]; in Python "
+    "then [bold]restitution.FluctuatingRestitution.load('dist.nc')[/bold]."
+)
+def distribution(
+    run: Annotated[
+        Path, typer.Argument(metavar="RUN.toml", help="The parameters, as for [bold]simulate[/bold].")
+    ],
+    out: Annotated[Path, typer.Option(metavar="FILE", help="The netCDF file to write, whole or not at all.")],
+    header: Annotated[
+        Path | None, typer.Option(metavar="FILE", help="A C99 and C++ header with a sampler.")
+    ] = None,
+    fortran: Annotated[
+        Path | None, typer.Option(metavar="FILE", help="A Fortran module with a sampler.")
+    ] = None,
+    figure: Annotated[Path | None, typer.Option(metavar="FILE", help="A figure: .png, .pdf or .svg.")] = None,
+    velocities: Annotated[
+        tuple[float, float] | None,
+        typer.Option(
+            metavar="LOW HIGH",
+            help="Speeds to learn, m/s; 0.04 to 0.4 of the release velocity if not given.",
+        ),
+    ] = None,
+    given: Annotated[
+        str | None,
+        typer.Option(
+            metavar="CONDITION", help='Also learn it given "rotational_fraction" or "previous" restitution.'
+        ),
+    ] = None,
+    threads: Threads = None,
+    force: Annotated[bool, typer.Option("--force", help="Replace files that exist.")] = False,
+) -> None:
+    """Learn the distribution of the coefficient of restitution at given impact velocity.
+
+    The file holds what restitution.FluctuatingRestitution.learn returns for the
+    same parameters. How far the distribution is from impacts that it was not
+    learned from is measured and told. Ctrl-C ends the work; nothing is written.
+    """
+    with _errors_in_a_line():
+        from restitution._resources import checked_threads
+        from restitution._toml import read
+
+        parameters = read(run)
+        checked_threads(threads)
+        from restitution._dataset import check_writable
+        from restitution.distribution import image_format, learn_run
+
+        if figure is not None:
+            image_format(figure)
+        for path in (out, header, fortran, figure):
+            if path is not None:
+                check_writable(path, replace=force)
+        found = learn_run(
+            parameters,
+            velocities=velocities,
+            given=given,  # type: ignore[arg-type]  # checked there
+            threads=threads,
+            progress=sys.stderr.isatty(),
+        )
+        found.save(out, replace=force)
+        if header is not None:
+            found.to_c(header, replace=force)
+        if fortran is not None:
+            found.to_fortran(fortran, replace=force)
+        if figure is not None:
+            found.draw(figure, replace=force)
+        for line in found.summary():
+            typer.echo(line)
 
 
 @app.command(

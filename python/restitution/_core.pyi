@@ -11,6 +11,8 @@ __all__ = [
     "build_info",
     "dumbbell",
     "loaded_sphere",
+    "mixture_draw",
+    "mixture_value",
     "normal_coefficient",
     "respond",
     "simulate",
@@ -65,3 +67,19 @@ def statistics(
     progress: Callable[[int], None] | None,
 ) -> tuple[dict[str, npt.NDArray[Any]], bool]: ...
 def build_info() -> dict[str, Any]: ...
+def mixture_value(
+    table: Mapping[str, Any],
+    what: str,
+    x: npt.NDArray[np.float64],
+    v: npt.NDArray[np.float64],
+    z: npt.NDArray[np.float64],
+    threads: int,
+) -> tuple[npt.NDArray[np.float64], bool]: ...
+def mixture_draw(
+    table: Mapping[str, Any],
+    v: npt.NDArray[np.float64],
+    z: npt.NDArray[np.float64],
+    size: int,
+    seed: int,
+    threads: int,
+) -> tuple[npt.NDArray[np.float64], bool]: ...

@@ -103,7 +103,7 @@ def check_writable(path: Path, *, replace: bool) -> None:
     if target.exists() and not replace:
         raise FileExistsError(errno.EEXIST, "exists already", str(path))
     try:
-        os.unlink(_part(target))
+        os.unlink(part(target))
     except OSError as error:
         raise OSError(error.errno, error.strerror, str(path.parent)) from None
 
@@ -111,10 +111,10 @@ def check_writable(path: Path, *, replace: bool) -> None:
 def save(data: xr.Dataset, path: Path) -> None:
     """Write a netCDF file whole or not at all: nobody ever sees a half-written one under `path`."""
     target = path.resolve()
-    name = _part(target)
+    name = part(target)
     try:
         data.to_netcdf(name, engine="netcdf4")
-        os.chmod(name, 0o666 & ~_umask())
+        os.chmod(name, 0o666 & ~umask())
         os.replace(name, target)
     except BaseException as error:
         os.unlink(name)
@@ -123,14 +123,14 @@ def save(data: xr.Dataset, path: Path) -> None:
         raise
 
 
-def _part(target: Path) -> str:
+def part(target: Path) -> str:
     """Make an empty file beside `target`, so that it can take its place in one step."""
     handle, name = tempfile.mkstemp(prefix=f".{target.name}.", suffix=".part", dir=target.parent)
     os.close(handle)
     return name
 
 
-def _umask() -> int:
+def umask() -> int:
     mask = os.umask(0)
     os.umask(mask)
     return mask

@@ -34,6 +34,7 @@
 mod body;
 pub mod collision;
 mod contact;
+pub mod distribution;
 pub mod elementary;
 mod ensemble;
 mod error;

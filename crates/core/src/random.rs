@@ -7,7 +7,20 @@ pub fn uniform(seed: u64, particle: u64, draw: u32) -> f64 {
     let (low, high) = halves(particle);
     let key = halves(seed);
     let [a, b, ..] = philox4x32_10([low, high, draw, 0], [key.0, key.1]);
-    let bits = u64::from(a) | u64::from(b) << 32;
+    unit(a, b)
+}
+
+/// Two uniform numbers in [0, 1) with 53 random bits each, for draw `index` of a sampler: counter = (index, 0, 1), which no
+/// particle has.
+pub fn pair(seed: u64, index: u64) -> (f64, f64) {
+    let (low, high) = halves(index);
+    let key = halves(seed);
+    let [a, b, c, d] = philox4x32_10([low, high, 0, 1], [key.0, key.1]);
+    (unit(a, b), unit(c, d))
+}
+
+fn unit(low: u32, high: u32) -> f64 {
+    let bits = u64::from(low) | u64::from(high) << 32;
     (bits >> 11) as f64 * 2.0_f64.powi(-53)
 }
 
@@ -43,5 +56,14 @@ mod tests {
         stream(&|i| uniform(i, 3, 0));
         stream(&|i| uniform(7, 3, i as u32));
         stream(&|i| uniform(7, i << 32, 0));
+        stream(&|i| pair(7, i).0);
+        stream(&|i| pair(7, i).1);
+        stream(&|i| {
+            if i % 2 == 0 {
+                pair(7, i / 2).0
+            } else {
+                pair(7, i / 2).1
+            }
+        });
     }
 }

@@ -1,6 +1,7 @@
 //! The thin binding: parameters in, NumPy arrays out. No physics here.
 
 mod bodies;
+mod distribution;
 mod laws;
 mod watch;
 
@@ -233,5 +234,7 @@ fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(sincos, module)?)?;
     module.add_function(wrap_pyfunction!(laws::normal_coefficient, module)?)?;
     module.add_function(wrap_pyfunction!(laws::respond, module)?)?;
+    module.add_function(wrap_pyfunction!(distribution::mixture_value, module)?)?;
+    module.add_function(wrap_pyfunction!(distribution::mixture_draw, module)?)?;
     Ok(())
 }

@@ -1,0 +1,50 @@
+//! A learned distribution p(ε | v): evaluated, inverted and drawn from, on all cores.
+
+mod draw;
+mod mixture;
+
+pub use mixture::{At, Layout, Mixture};
+
+use crate::{Error, Means, Monitor};
+use rayon::iter::{IndexedParallelIterator, ParallelIterator};
+use rayon::slice::ParallelSliceMut;
+
+/// Values that a thread takes at a time.
+const BLOCK: usize = 1 << 14;
+
+/// One value for all, or a value for each.
+#[derive(Debug, Clone, Copy)]
+pub struct Values<'a>(&'a [f64]);
+
+impl<'a> Values<'a> {
+    /// A slice of one value, or of `length` values.
+    pub fn new(values: &'a [f64], name: &'static str, length: usize) -> Result<Self, Error> {
+        let allowed = "one value, or as many as are asked for";
+        let size = values.len();
+        Error::unless(size == 1 || size == length, name, size as f64, allowed)?;
+        Ok(Self(values))
+    }
+
+    fn at(&self, index: usize) -> f64 {
+        self.0[if self.0.len() == 1 { 0 } else { index }]
+    }
+}
+
+/// Fills `out` block by block, with `fill(first, block)`; whatever the threads, the same.
+fn in_blocks(
+    out: &mut [f64],
+    means: Means,
+    monitor: &Monitor,
+    fill: impl Fn(usize, &mut [f64]) + Sync,
+) -> Result<(), Error> {
+    means.pool()?.install(|| {
+        out.par_chunks_mut(BLOCK)
+            .enumerate()
+            .for_each(|(number, block)| {
+                if !monitor.is_cancelled() {
+                    fill(number * BLOCK, block);
+                }
+            });
+    });
+    Ok(())
+}

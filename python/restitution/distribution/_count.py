@@ -1,0 +1,134 @@
+"""Impacts counted at the nodes: each is shared among its neighbours as the mixture will weight them."""
+
+from collections.abc import Iterator, Sequence
+from typing import TypeAlias
+
+import numpy as np
+import numpy.typing as npt
+
+from restitution.distribution._table import Floats, Histogram
+
+Chosen: TypeAlias = "slice | npt.NDArray[np.bool_]"
+
+
+def intervals(nodes: Floats, velocity: Floats, *columns: Floats) -> Iterator[tuple[int, tuple[Floats, ...]]]:
+    """Yield the impacts between each two neighbouring nodes that have any: the interval, weights, columns.
+
+    The weight is that of the upper node; impacts outside the nodes, and those with NaN in any column, are
+    left out.
+    """
+    number = np.searchsorted(nodes, velocity, side="right") - 1
+    inside = (number >= 0) & (number < nodes.size - 1)
+    for column in columns:
+        inside &= np.isfinite(column)
+    number = number[inside].astype(np.int32)
+    order = np.argsort(number, kind="stable")
+    sorted_columns = [column[inside][order] for column in (velocity, *columns)]
+    ends = np.cumsum(np.bincount(number, minlength=nodes.size - 1))
+    for i, end in enumerate(ends):
+        start = 0 if i == 0 else int(ends[i - 1])
+        if end > start:
+            speed, *rest = (column[start:end] for column in sorted_columns)
+            yield i, ((speed - nodes[i]) / (nodes[i + 1] - nodes[i]), *rest)
+
+
+def shares(z: Floats, conditions: Floats) -> Iterator[tuple[int, Chosen, Floats]]:
+    """Yield for each condition the impacts that count there, and their weights."""
+    if conditions.size == 1:
+        yield 0, slice(None), np.ones(1)
+        return
+    below = np.clip(np.searchsorted(conditions, z, side="right") - 1, 0, conditions.size - 2)
+    part = np.clip((z - conditions[below]) / (conditions[below + 1] - conditions[below]), 0.0, 1.0)
+    for k in range(conditions.size):
+        lower, upper = below == k, below + 1 == k
+        chosen = lower | upper
+        yield k, chosen, np.where(lower, 1.0 - part, part)[chosen]
+
+
+class Counter:
+    """Counts of the impacts at nodes and conditions, and how they scatter from block to block.
+
+    Parameters
+    ----------
+    nodes : ndarray, shape (nodes,)
+        Speeds in m/s.
+    conditions : sequence of ndarray, one for each node
+        One component each.
+    edges : sequence of ndarray, one for each component
+        Inner edges of the bins of ε.
+    """
+
+    def __init__(self, nodes: Floats, conditions: Sequence[Floats], edges: Sequence[Floats]) -> None:
+        self.nodes, self.conditions, self.edges = nodes, conditions, edges
+        self.first = np.concatenate([[0], np.cumsum([group.size for group in conditions])])
+        self.start = np.concatenate([[0], np.cumsum([inner.size + 1 for inner in edges])])
+        size = int(self.start[-1])
+        self.count, self.blocks = np.zeros(size), 0
+        self.lowest, self.highest = np.full(len(edges), np.inf), np.full(len(edges), -np.inf)
+        # Sums over the blocks of c², c n and n², with c what a bin holds, or what lies below its upper edge.
+        self._squares = {name: np.zeros((3, size)) for name in ("bin", "below")}
+
+    def add(self, velocity: Floats, restitution: Floats, z: Floats) -> None:
+        """Count a block of impacts, which shares no particle with any other."""
+        count = np.zeros(self.count.size)
+        for i, (weight, epsilon, condition) in intervals(self.nodes, velocity, restitution, z):
+            for node, share in ((i, 1.0 - weight), (i + 1, weight)):
+                for k, chosen, part in shares(condition, self.conditions[node]):
+                    component = int(self.first[node]) + k
+                    self._add_to(count, component, epsilon[chosen], share[chosen] * part)
+        self.count += count
+        self.blocks += 1
+        for component in range(len(self.edges)):
+            bins = slice(self.start[component], self.start[component + 1])
+            number = count[bins].sum()
+            for name, c in (("bin", count[bins]), ("below", np.cumsum(count[bins]))):
+                self._squares[name][:, bins] += (c * c, c * number, np.full_like(c, number * number))
+
+    def _add_to(self, count: Floats, component: int, epsilon: Floats, weight: Floats) -> None:
+        counted = weight > 0.0
+        if not counted.any():
+            return
+        epsilon, weight = epsilon[counted], weight[counted]
+        inner = self.edges[component]
+        place = np.searchsorted(inner, epsilon, side="right")
+        bins = slice(self.start[component], self.start[component + 1])
+        count[bins] += np.bincount(place, weights=weight, minlength=inner.size + 1)
+        self.lowest[component] = min(self.lowest[component], epsilon.min())
+        self.highest[component] = max(self.highest[component], epsilon.max())
+
+    def impacts(self) -> Floats:
+        """Weights added up at each component."""
+        return np.add.reduceat(self.count, self.start[:-1])
+
+    def histograms(self) -> Iterator[tuple[Histogram, Floats, Floats]]:
+        """Yield each histogram with the standard errors of the bins' shares and of `cumulative`.
+
+        The outermost bins end at the least and the greatest ε that were seen. A block of particles is one
+        draw; for a share p = Σc/Σn the standard error is √(B/(B - 1) Σ(c - pn)²)/Σn over B blocks.
+        """
+        for component, inner in enumerate(self.edges):
+            bins = slice(self.start[component], self.start[component + 1])
+            count = self.count[bins]
+            total = count.sum()
+            errors = []
+            for name, c in (("bin", count), ("below", np.cumsum(count))):
+                cc, cn, nn = self._squares[name][:, bins]
+                share = c / total
+                scatter = np.maximum(cc - share * (2.0 * cn - share * nn), 0.0)
+                correction = self.blocks / (self.blocks - 1.0) if self.blocks > 1 else np.nan
+                errors.append(np.sqrt(correction * scatter) / total)
+            filled = np.flatnonzero(count)
+            low, high = int(filled[0]), int(filled[-1]) + 1
+            # The greatest may be the very edge that its bin starts at.
+            lower = inner[low : high - 1]
+            top = (
+                max(self.highest[component], np.nextafter(lower[-1], np.inf))
+                if lower.size
+                else self.highest[component]
+            )
+            edges = np.concatenate([[self.lowest[component]], lower, [top]])
+            cumulative = np.concatenate([[0.0], np.minimum(np.cumsum(count)[low:high] / total, 1.0)])
+            cumulative[-1] = 1.0
+            below = np.concatenate([[0.0], errors[1][low:high]])
+            below[-1] = 0.0
+            yield Histogram(edges, cumulative), errors[0][low:high], below

@@ -1,0 +1,86 @@
+"""A learned distribution at a glance: quantiles over impact velocity, densities, confidence bands."""
+
+import io
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from restitution import figures as fg
+from restitution.distribution._tabulated import TabulatedDistribution
+
+_LEVELS = (0.05, 0.25, 0.5, 0.75, 0.95)
+_CONFIDENCE = 1.96
+"""Standard errors to either side of a band that holds the truth with probability 0.95."""
+_VELOCITY = r"impact velocity $v_G^n$ (m/s)"
+_RESTITUTION = r"coefficient of restitution $\varepsilon$"
+
+
+_TICKS = [scale * 10.0**power for power in range(-6, 4) for scale in (1, 2, 5)]
+
+
+def image(dist: TabulatedDistribution, suffix: str) -> bytes:
+    """Draw and encode; without a date, so that the same distribution gives the same bytes."""
+    dated = {"pdf": {"CreationDate": None}, "svg": {"Date": None}}
+    content = io.BytesIO()
+    draw(dist).savefig(content, format=suffix, dpi=300, metadata=dated.get(suffix))
+    return content.getvalue()
+
+
+@fg.styled
+def draw(dist: TabulatedDistribution) -> Figure:
+    """Draw quantiles, densities at four speeds, standard deviation and distance to fresh impacts.
+
+    Shaded are pointwise 95 % confidence bands: 1.96 standard errors, over blocks of particles, either way.
+    """
+    figure, [[quantiles, densities], [deviation, distance]] = fg.panels(fg.PAGE, 5.0, 2, 2)
+    speeds = dist.data["velocity"].to_numpy()
+    _quantiles(quantiles, dist)
+    for k, v in enumerate(np.geomspace(speeds[0], speeds[-1], 6)[1:-1]):
+        _density(densities, dist, float(v), fg.COLORS[k])
+    densities.set_yscale("log")
+    densities.set_xlabel(_RESTITUTION)
+    densities.set_ylabel(r"$p(\varepsilon\,|\,v)$")
+    densities.legend(title="m/s")
+    deviation.plot(speeds, dist.std(speeds))
+    deviation.set_yscale("log")
+    deviation.set_ylabel(r"standard deviation $\sigma(\varepsilon)$")
+    if "ks_distance" in dist.data:
+        distance.stairs(dist.data["ks_distance"].to_numpy(), speeds, baseline=None, label="fresh impacts")
+        noise = 0.87 / np.sqrt(dist.data["fresh_impacts"].to_numpy())
+        distance.stairs(noise, speeds, baseline=None, linestyle="--", label="their own scatter")
+        distance.set_ylim(bottom=0.0)
+        distance.legend(loc="lower left")
+    distance.set_ylabel("Kolmogorov–Smirnov distance")
+    for axes, name in ((quantiles, "a"), (densities, "b"), (deviation, "c"), (distance, "d")):
+        fg.letter(axes, f"({name})", left=axes in (quantiles, densities))
+        if axes is not densities:
+            axes.set_xlabel(_VELOCITY)
+            fg.plain_log(axes, _TICKS)
+            axes.set_xlim(speeds[0], speeds[-1])
+    return figure
+
+
+def _quantiles(axes: Axes, dist: TabulatedDistribution) -> None:
+    speeds = dist.data["velocity"].to_numpy()
+    for q in _LEVELS:
+        x = dist.ppf(q, speeds)
+        # The error of F over the density is that of the quantile.
+        error = dist.cdf_error(x, speeds) / np.maximum(dist.pdf(x, speeds), 1e-300)
+        (drawn,) = axes.plot(speeds, x, label=f"{100 * q:g} %")
+        band = _CONFIDENCE * np.nan_to_num(error)
+        axes.fill_between(speeds, x - band, x + band, color=drawn.get_color(), alpha=0.3, linewidth=0)
+    axes.set_ylabel(_RESTITUTION)
+    low, high = axes.get_ylim()
+    axes.set_ylim(low, high + 0.1 * (high - low))  # room for the panel's letter
+    axes.legend(reverse=True, loc="upper right")
+
+
+def _density(axes: Axes, dist: TabulatedDistribution, v: float, color: str) -> None:
+    low, high = dist.ppf([1e-4, 1.0 - 1e-4], v)
+    x = np.linspace(low, high, 400)
+    density = np.where(dist.pdf(x, v) > 0, dist.pdf(x, v), np.nan)
+    band = _CONFIDENCE * np.nan_to_num(dist.pdf_error(x, v))
+    axes.plot(x, density, color=color, label=f"{v:.3g}", linewidth=0.7)
+    below = np.where(band < density, density - band, density)  # a logarithmic axis has no room for zero
+    axes.fill_between(x, below, density + band, color=color, alpha=0.3, linewidth=0, step="mid")

@@ -1,0 +1,63 @@
+"""A learned distribution from counts on a lattice of impact velocity and restitution."""
+
+import numpy as np
+import xarray as xr
+
+from restitution.distribution._nodes import LEAST_IMPACTS
+from restitution.distribution._store import of_histograms
+from restitution.distribution._table import Floats, Histogram
+
+
+def from_statistics(statistics: xr.Dataset) -> xr.Dataset:
+    """Make the Dataset of a distribution; see `FluctuatingRestitution.from_statistics`."""
+    needed = ("count", "restitution_edges", "minimum", "maximum", "velocity")
+    lacking = [name for name in needed if name not in statistics]
+    if lacking:
+        raise ValueError(
+            f"statistics lacks {', '.join(lacking)}: give a result of restitution.statistics or "
+            "restitution.reduce with velocity bins"
+        )
+    names = ("restitution_underflow", "count", "restitution_overflow")
+    below, inside, above = (statistics[name].to_numpy() for name in names)
+    counts = np.concatenate([below[:, None], inside, above[:, None]], axis=1).astype(np.float64)
+    number = counts.sum(axis=1)
+    velocity = statistics["velocity"].to_numpy()
+    kept = np.flatnonzero((number >= LEAST_IMPACTS) & (velocity > 0))
+    if kept.size < 2:
+        raise ValueError(
+            f"statistics: {kept.size} velocity bins have {LEAST_IMPACTS} impacts; at least two are needed"
+        )
+    rows = np.arange(kept[0], kept[-1] + 1)
+    poor = rows[number[rows] < LEAST_IMPACTS]
+    if poor.size:
+        raise ValueError(
+            f"statistics: {number[poor[0]]:.0f} impacts in the velocity bin at {velocity[poor[0]]:.4g} m/s; "
+            f"bins between others must have at least {LEAST_IMPACTS}"
+        )
+    edges = statistics["restitution_edges"].to_numpy()
+    extremes = [statistics[name].to_numpy() for name in ("minimum", "maximum")]
+    histograms = [_histogram(counts[row], edges, *(float(e[row]) for e in extremes)) for row in rows]
+    attrs = {key: value for key, value in statistics.attrs.items() if key != "content"}
+    title = "Distribution of the coefficient of restitution at given impact velocity"
+    return of_histograms(velocity[rows], histograms, number[rows], {**attrs, "title": title})
+
+
+def _histogram(count: Floats, edges: Floats, minimum: float, maximum: float) -> Histogram:
+    """Thin the bins of a row to equal probability, halving towards the tails; no edge moves."""
+    if minimum == maximum:
+        raise ValueError(
+            f"statistics: restitution does not spread, it is {minimum} throughout a velocity bin"
+        )
+    filled = np.flatnonzero(count)
+    low, high = int(filled[0]), int(filled[-1]) + 1
+    inner = edges[low : high - 1]
+    cumulative = np.concatenate([[0.0], np.cumsum(count[low:high]) / count.sum()])
+    cumulative[-1] = 1.0
+    # The outermost bins that hold anything end at the extremes.
+    top = max(maximum, np.nextafter(inner[-1], np.inf)) if inner.size else maximum
+    all_edges = np.concatenate([[minimum], inner, [top]])
+    bins = max(8, int(2.0 * count.sum() ** (1 / 3)))  # Rice's rule
+    tails = 0.5 ** np.arange(1, 64) / bins
+    levels = np.concatenate([tails[::-1], np.arange(1, bins) / bins, 1.0 - tails[tails > 1e-15]])
+    chosen = np.unique(np.concatenate([[0], np.searchsorted(cumulative, levels), [cumulative.size - 1]]))
+    return Histogram(all_edges[chosen], cumulative[chosen])

@@ -1,0 +1,172 @@
+"""From an ensemble to the Dataset of a learned distribution."""
+
+import math
+from collections.abc import Callable, Iterator
+from typing import Literal, TypeAlias, get_args
+
+import numpy as np
+import numpy.typing as npt
+import xarray as xr
+
+from restitution._dataset import attributes
+from restitution._parameters import ParameterError, Problem, wrong
+from restitution._resources import progress_bar
+from restitution.distribution import _nodes
+from restitution.distribution._check import Check
+from restitution.distribution._count import Counter, shares
+from restitution.distribution._ensemble import FRESH, LEARNING, Ensemble, Impacts
+from restitution.distribution._store import assemble
+from restitution.distribution._table import Floats, Table
+
+Given: TypeAlias = Literal["rotational_fraction", "previous"]
+Part: TypeAlias = tuple[Floats, Floats, Floats]
+"""Impact velocity, restitution and condition of single impacts."""
+
+_PILOT = 2_000_000
+_RANGE = (0.04, 0.4)
+"""Learned speeds where none are asked for, over the largest possible one at the first impact."""
+
+
+def learn(
+    ensemble: Ensemble, velocities: npt.ArrayLike | None, given: Given | None, progress: bool
+) -> xr.Dataset:
+    """Simulate the ensemble, count its impacts, and measure the result against a fresh ensemble."""
+    if given is not None and given not in get_args(Given):
+        raise ParameterError(wrong("given", given, " or ".join(map(repr, get_args(Given))) + " or None"))
+    nodes = _checked(velocities, ensemble)
+    total = (2 if given is None else 3) * ensemble.run.particles
+    done = 0
+
+    with progress_bar("learn", total, "particles", show=progress) as tell:
+
+        def advance(particles: int) -> None:
+            nonlocal done
+            done += particles
+            if tell is not None:
+                tell(done)
+
+        pilot, scale = _pilot(ensemble, nodes)
+        if nodes.size == 2:
+            nodes = _nodes.speeds([block.velocity for block in pilot], nodes[0], nodes[1], scale)
+        _enough(pilot, nodes, scale)
+        everywhere = [np.zeros(1)] * nodes.size
+        counter = _count(ensemble, pilot, scale, nodes, everywhere, _unconditional, advance)
+        table = Table.of(nodes, [histogram for histogram, _, _ in counter.histograms()])
+        conditional = None
+        if given is not None:
+
+            def look(block: Impacts) -> Part:
+                z = condition(given, block, table)
+                return block.velocity.ravel(), block.restitution.ravel(), z.ravel()
+
+            groups = _condition_nodes([look(block) for block in pilot], nodes)
+            conditional = _count(ensemble, pilot, scale, nodes, groups, look, advance)
+        del pilot
+        check = Check(table)
+        for block in ensemble.blocks(FRESH, advance):
+            check.add(*_unconditional(block))
+    attrs = attributes(
+        ensemble.run, "Distribution of the coefficient of restitution at given impact velocity"
+    )
+    if len(ensemble.heights) > 1:
+        attrs["release_height"] = np.array(ensemble.heights)
+    return assemble(counter, conditional, given, check, attrs)
+
+
+def _checked(velocities: npt.ArrayLike | None, ensemble: Ensemble) -> Floats:
+    run = ensemble.run
+    if velocities is None:
+        # Upright either way or level: in one of these the centre of mass comes lowest.
+        lowest = min(run.body.solid.lowest(np.array([cosine])) for cosine in (-1.0, 0.0, 1.0))
+        fastest = math.sqrt(2.0 * run.gravity * (min(ensemble.heights) - lowest))
+        return np.array(_RANGE) * fastest
+    nodes = np.array(velocities, dtype=np.float64)
+    if not (nodes.ndim == 1 and nodes.size >= 2 and np.all(np.isfinite(nodes))):
+        allowed = "the least and the greatest speed, or all nodes, finite, in m/s"
+        raise ParameterError(wrong("velocities", velocities, allowed))
+    if nodes[0] <= 0 or not np.all(np.diff(nodes) > 0):
+        raise ParameterError(wrong("velocities", velocities, "> 0 and strictly increasing"))
+    return nodes
+
+
+def _pilot(ensemble: Ensemble, nodes: Floats) -> tuple[list[Impacts], float]:
+    """Simulate the first blocks, enough to place nodes and bins; also return how much larger the whole is."""
+    pilot, particles, impacts = [], 0, 0
+    for block in ensemble.blocks(LEARNING):
+        pilot.append(block)
+        particles += block.velocity.shape[0]
+        impacts += int(np.count_nonzero((block.velocity >= nodes[0]) & (block.velocity < nodes[-1])))
+        if impacts >= _PILOT:
+            break
+    return pilot, ensemble.run.particles / particles
+
+
+def _count(
+    ensemble: Ensemble,
+    pilot: list[Impacts],
+    scale: float,
+    nodes: Floats,
+    conditions: list[Floats],
+    look: Callable[[Impacts], Part],
+    advance: Callable[[int], None],
+) -> Counter:
+    edges = [
+        _nodes.bins(restitution, scale, where)
+        for restitution, where in _at_nodes([look(block) for block in pilot], nodes, conditions)
+    ]
+    counter = Counter(nodes, conditions, edges)
+    for block in ensemble.blocks(LEARNING, advance):
+        counter.add(*look(block))
+    return counter
+
+
+def _at_nodes(parts: list[Part], nodes: Floats, conditions: list[Floats]) -> Iterator[tuple[Floats, str]]:
+    """Yield the restitutions that count at each component, and how an error names the component."""
+    velocity, restitution, z = (np.concatenate(column) for column in zip(*parts, strict=True))
+    defined = np.isfinite(velocity) & np.isfinite(restitution) & np.isfinite(z)
+    velocity, restitution, z = velocity[defined], restitution[defined], z[defined]
+    order = np.argsort(velocity)
+    velocity, restitution, z = velocity[order], restitution[order], z[order]
+    start = np.searchsorted(velocity, np.concatenate([nodes[:1], nodes[:-1]]), side="left")
+    stop = np.searchsorted(velocity, np.concatenate([nodes[1:], nodes[-1:]]), side="left")
+    for i, group in enumerate(conditions):
+        near = slice(start[i], stop[i])
+        for k, chosen, weight in shares(z[near], group):
+            where = f"{nodes[i]:.4g} m/s"
+            if group.size > 1:
+                where += f" and condition {group[k]:.4g}"
+            yield restitution[near][chosen][np.broadcast_to(weight > 0, z[near][chosen].shape)], where
+
+
+def _condition_nodes(parts: list[Part], nodes: Floats) -> list[Floats]:
+    columns = [(velocity, z, np.zeros_like(z)) for velocity, _, z in parts]
+    near = _at_nodes(columns, nodes, [np.zeros(1)] * nodes.size)
+    return [_nodes.conditions(values) for values, _ in near]
+
+
+def _unconditional(block: Impacts) -> Part:
+    return block.velocity.ravel(), block.restitution.ravel(), np.zeros(block.velocity.size)
+
+
+def condition(given: Given, block: Impacts, table: Table) -> Floats:
+    """Give z for each impact, in the shape of the block.
+
+    The quantile level of the impact before is NaN for the first impact. Where that one was slower or faster
+    than all nodes, its level is that at the nearest.
+    """
+    if given == "rotational_fraction":
+        return block.fraction
+    z = np.full(block.velocity.shape, np.nan)
+    z[:, 1:] = table.value("cdf", block.restitution[:, :-1], block.velocity[:, :-1])
+    return z
+
+
+def _enough(pilot: list[Impacts], nodes: Floats, scale: float) -> None:
+    """Refuse ranges with speeds that are hardly ever met."""
+    velocity = np.concatenate([block.velocity.ravel() for block in pilot])
+    impacts = scale * np.histogram(velocity[np.isfinite(velocity)], nodes)[0]
+    if impacts.min() < _nodes.LEAST_IMPACTS:
+        at = int(np.argmin(impacts))
+        found = f": {impacts[at]:.0f} impacts between {nodes[at]:.4g} and {nodes[at + 1]:.4g} m/s; "
+        allowed = f"must be speeds with at least {_nodes.LEAST_IMPACTS} impacts between any two nodes"
+        raise ParameterError(Problem("velocities", found + allowed + ": more particles, or another range"))

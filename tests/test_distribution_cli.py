@@ -1,0 +1,124 @@
+"""`restitution distribution`: the results of the call, files whole or not at all, the accuracy told."""
+
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+import xarray as xr
+from typer.testing import CliRunner, Result
+
+import restitution as rs
+from restitution._cli import BAD_INPUT, FAILED, INTERRUPTED, app
+
+RUN = """
+[body]
+shape = "dumbbell"
+radius = 3e-3
+separation = 3e-3
+
+[law]
+type = "tangential-restitution"
+normal = 0.9
+
+[run]
+particles = 3000
+impacts = 50
+seed = 3
+"""
+
+
+def invoke(*words: object) -> Result:
+    """Run a command in this process."""
+    return CliRunner().invoke(app, [str(word) for word in words])
+
+
+@pytest.fixture
+def run(tmp_path: Path) -> Path:
+    path = tmp_path / "run.toml"
+    path.write_text(RUN, encoding="utf-8")
+    return path
+
+
+def learned() -> rs.FluctuatingRestitution:
+    """The same as a call."""
+    body, law = rs.Dumbbell(radius=3e-3, separation=3e-3), rs.TangentialRestitution(normal=0.9)
+    how: dict[str, Any] = {"particles": 3000, "impacts": 50, "seed": 3}
+    return rs.FluctuatingRestitution.learn(body, law, **how, velocities=(0.1, 0.5), given="previous")
+
+
+def test_files_give_what_the_call_gives(run: Path) -> None:
+    """The distribution to the bit; the sources and the figure that the methods write, to the byte."""
+    names = {"out": "dist.nc", "header": "dist.h", "fortran": "dist.f90", "figure": "dist.png"}
+    paths = {option: run.with_name(name) for option, name in names.items()}
+    options = [word for option, path in paths.items() for word in (f"--{option}", path)]
+    chosen = ["--velocities", 0.1, 0.5, "--given", "previous"]
+    result = invoke("distribution", run, *options, *chosen)
+    assert (result.exit_code, result.stderr) == (0, "")
+    expected = learned()
+    xr.testing.assert_identical(rs.FluctuatingRestitution.load(paths["out"]).data, expected.data)
+    again = run.with_name("again")
+    for write, option in ((expected.to_c, "header"), (expected.to_fortran, "fortran")):
+        write(again, replace=True)
+        assert again.read_bytes() == paths[option].read_bytes()
+    again = run.with_name("again.png")
+    expected.draw(again)
+    assert again.read_bytes() == paths["figure"].read_bytes()
+    assert paths["figure"].read_bytes().startswith(b"\x89PNG")
+    assert result.stdout.splitlines() == list(expected.summary())
+    worst = float(expected.data.ks_distance.max())
+    assert f"distance to fresh impacts: {worst:.4f} at most" in result.stdout
+
+
+def test_nothing_is_replaced_unasked_and_nothing_begun_in_vain(run: Path, tmp_path: Path) -> None:
+    out, header = run.with_name("dist.nc"), run.with_name("dist.h")
+    header.write_text("mine", encoding="utf-8")
+    result = invoke("distribution", run, "--out", out, "--header", header)
+    assert result.exit_code == FAILED
+    assert result.stderr == f"error: {header}: exists already\n"
+    result = invoke("distribution", run, "--out", out, "--given", "spin")
+    assert result.exit_code == BAD_INPUT
+    assert "given = 'spin': must be 'rotational_fraction' or 'previous'" in result.stderr
+    result = invoke("distribution", run, "--out", out, "--velocities", 3.0, 4.0)
+    assert result.exit_code == BAD_INPUT
+    assert result.stderr.startswith("error: velocities: 0 impacts between 3 and")
+    result = invoke("distribution", run, "--out", out, "--figure", tmp_path / "dist.tiff")
+    assert result.exit_code == BAD_INPUT
+    assert "figure = 'dist.tiff': must be a name that ends in .png, .pdf, .svg" in result.stderr
+    assert header.read_text(encoding="utf-8") == "mine"
+    assert not out.exists()
+    result = invoke("distribution", run, "--out", out, "--header", header, "--force")
+    assert result.exit_code == 0
+    assert header.read_text(encoding="utf-8") != "mine"
+
+
+def test_ctrl_c_writes_nothing(run: Path) -> None:
+    run.write_text(RUN.replace("3000", "100_000_000"), encoding="utf-8")
+    out = run.with_name("dist.nc")
+    program = "from restitution._cli import main; main()"
+    command = [sys.executable, "-c", program, "distribution", str(run), "--out", str(out)]
+    with subprocess.Popen(command, stderr=subprocess.PIPE, text=True) as process:
+        time.sleep(6.0)
+        os.kill(process.pid, signal.SIGINT)
+        assert process.communicate(timeout=10.0)[1] == "interrupted\n"
+    assert process.returncode == INTERRUPTED
+    assert list(out.parent.iterdir()) == [run]
+
+
+def test_the_figure_is_for_counts_too(tmp_path: Path) -> None:
+    """Without particles there are no bands and no fresh impacts, but a figure there is, in every format."""
+    counts = rs.statistics(
+        rs.Dumbbell(radius=3e-3, separation=3e-3),
+        rs.TangentialRestitution(normal=0.9),
+        velocity_bins=np.linspace(0.1, 0.5, 9),
+        restitution_bins=np.linspace(-1.0, 3.0, 401),
+    )
+    dist = rs.FluctuatingRestitution.from_statistics(counts)
+    for suffix, start in ((".pdf", b"%PDF"), (".svg", b"<?xml"), (".png", b"\x89PNG")):
+        dist.draw(tmp_path / f"dist{suffix}")
+        assert (tmp_path / f"dist{suffix}").read_bytes().startswith(start)
