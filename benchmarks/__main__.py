@@ -1,9 +1,11 @@
 """`python -m benchmarks`: check the physics, time the peers in turns, print one table."""
 
 import argparse
+import warnings
 from time import perf_counter
 from typing import Any
 
+import restitution as rs
 from benchmarks import agreement, footprint, machine, timing
 from benchmarks.peers import Peers, available
 from benchmarks.work import Peer, Work
@@ -69,6 +71,7 @@ def main() -> None:
     if min(options.rounds, options.particles, options.impacts) < 1:
         parser.error("--rounds, --particles and --impacts must be at least 1")
 
+    warnings.simplefilter("ignore", rs.EnergyWarning)
     work = Work(impacts=options.impacts)
     peers = available()
     print(machine.describe())

@@ -24,6 +24,7 @@ def impacts(velocity: Any, restitution: Any, fraction: Any = None) -> xr.Dataset
     """Data with one row a particle, as `simulate` gives them."""
     columns = {"impact_velocity": velocity, "restitution": restitution}
     columns["rotational_fraction"] = np.full(np.shape(velocity), 0.1) if fraction is None else fraction
+    columns["energy_ratio"] = np.square(restitution)
     return xr.Dataset(
         {name: (("particle", "impact"), np.atleast_2d(values)) for name, values in columns.items()},
         attrs={"seed": 7},
@@ -142,6 +143,14 @@ def test_huge_restitution_near_zero_velocity_is_kept() -> None:
     assert int(found["undefined"][0]) == 1
     assert float(found["maximum"][0]) == 8e9
     assert float(found["variance"][0]) == 6.4e19
+
+
+def test_created_energy_is_counted_where_it_happened() -> None:
+    """A ratio above 1 + 1e-12 counts in its velocity bin; rounding does not, nor what is beyond the bins."""
+    ratios = np.sqrt([0.9, 1.0 + 5e-13, 1.5, 1.2, 9.0])
+    found = reduce(impacts([0.1, 0.2, 0.3, 0.9, 2.0], ratios), [0.0, 0.5, 1.0, 1.5], E_EDGES)
+    np.testing.assert_array_equal(found["energy_created"], [1, 1, 0])
+    np.testing.assert_allclose(found["largest_energy_ratio"], [1.5, 1.2, np.nan], rtol=1e-15)
 
 
 @pytest.mark.parametrize(

@@ -61,6 +61,8 @@ def test_it_counts_what_simulate_records(
     expected = rs.reduce(data, **bins)
     for name in COUNTS:
         np.testing.assert_array_equal(found[name], expected[name], err_msg=name)
+    np.testing.assert_array_equal(found.energy_created, expected.energy_created)
+    np.testing.assert_array_equal(found.largest_energy_ratio, expected.largest_energy_ratio)
     np.testing.assert_array_equal(found.minimum, expected.minimum)
     np.testing.assert_array_equal(found.maximum, expected.maximum)
     # A mean moves by half a quantum at most, a variance by that times twice the largest deviation.

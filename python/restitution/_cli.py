@@ -19,7 +19,8 @@ FAILED, BAD_INPUT, INTERRUPTED = 1, 2, 130
 """Exit codes: files or numbers in trouble; input that is refused; Ctrl-C."""
 
 app = typer.Typer(
-    help="The coefficient of restitution as a distribution, not a number: dumbbells bouncing on a plane.",
+    help="The coefficient of restitution as a distribution, not a number: "
+    "bodies that are no spheres bouncing on a plane.",
     epilog="Examples: [bold]restitution paper --out paper[/bold], "
     "[bold]restitution simulate run.toml --out run.nc[/bold].\n\n"
     "Exit code: 0 done, 1 a file or the numerics failed, 2 the input is refused, 130 interrupted.",

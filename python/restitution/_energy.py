@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from restitution._bins import FloatArray, IntArray
 from restitution._core import CREATES_ENERGY
 
 
@@ -44,11 +45,31 @@ def ledger(impacts: int, created: int, largest: float) -> dict[str, Any]:
     return found | ({"largest_energy_ratio": largest} if created else {})
 
 
-def ledger_of(energy_ratio: np.ndarray[Any, np.dtype[np.float64]]) -> dict[str, Any]:
+def ledger_of(energy_ratio: FloatArray) -> dict[str, Any]:
     """`ledger` of recorded energy ratios, NaN where there was no impact."""
     impacts = energy_ratio.size - int(np.count_nonzero(np.isnan(energy_ratio)))
     created = int(np.count_nonzero(energy_ratio > CREATES_ENERGY))
     return ledger(impacts, created, float(np.fmax.reduce(energy_ratio, axis=None)))
+
+
+def add_by_row(found: xr.Dataset, created: IntArray, largest: FloatArray) -> None:
+    """Add to statistics what each of their rows says of the energy.
+
+    Parameters
+    ----------
+    found : xarray.Dataset
+        Its variable ``number`` has the dimension of the rows.
+    created : array of int, shape (rows,)
+        Impacts that created energy.
+    largest : array of float, shape (rows,)
+        Largest energy ratio of these; of no meaning where there are none.
+    """
+    row = found["number"].dims
+    text = "impacts that multiplied the kinetic energy by more than 1 + 1e-12"
+    found["energy_created"] = (row, created, {"long_name": text})
+    text = "largest factor by which an impact multiplied the kinetic energy, where any created energy"
+    factors = np.where(created > 0, largest, np.nan)
+    found["largest_energy_ratio"] = (row, factors, {"long_name": text, "units": "1"})
 
 
 def warn(data: xr.Dataset, *, stacklevel: int = 2) -> None:

@@ -21,6 +21,8 @@ from restitution._bins import (
     centres,
     checked_edges,
 )
+from restitution._core import CREATES_ENERGY
+from restitution._energy import add_by_row
 
 
 def reduce(
@@ -55,6 +57,10 @@ def reduce(
         distribution), ``minimum``, ``maximum``, and ``mean_fraction``. Where a bin is empty they are NaN;
         skewness and kurtosis also where all values are equal.
 
+        Over all impacts of the bin: ``energy_created``, the number of those that multiplied the kinetic
+        energy by more than 1 + 1e-12, and ``largest_energy_ratio``, the largest factor of these, NaN where
+        there are none.
+
         Left out of the grids, and counted: ``velocity_underflow``, ``velocity_overflow``; for each
         velocity bin ``restitution_underflow``, ``restitution_overflow``, ``fraction_underflow``,
         ``fraction_overflow``, and ``undefined``, the impacts whose restitution is not finite
@@ -70,9 +76,8 @@ def reduce(
         "restitution": checked_edges(restitution_bins, "restitution_bins"),
         "fraction": checked_edges(fraction_bins, "fraction_bins"),
     }
-    velocity, restitution, fraction = _impacts(data, "impact_velocity", "restitution", "rotational_fraction")
-    happened = ~np.isnan(velocity)
-    velocity, restitution, fraction = velocity[happened], restitution[happened], fraction[happened]
+    names = ("impact_velocity", "restitution", "rotational_fraction", "energy_ratio")
+    velocity, restitution, fraction, energy = _impacts(data, *names)
     # Rows as in the core: below, the bins, above.
     rows = velocity_edges.size + 1
     row = _bin(velocity, velocity_edges) + 1
@@ -81,9 +86,14 @@ def reduce(
         "count": _grid(row, restitution, defined, rows, columns["restitution"]),
         "fraction_count": _grid(row, fraction, defined, rows, columns["fraction"]),
     }
+    created = energy > CREATES_ENERGY
+    largest = np.zeros(rows)
+    np.maximum.at(largest, row[created], energy[created])
+    gains = _tally(row[created], rows)
     row, restitution, fraction = row[defined], restitution[defined], fraction[defined]
     moments = {**_moments(restitution, row, rows), "mean_fraction": _mean(fraction, row, rows)}
     found = by_velocity(counts, moments, velocity_edges, columns)
+    add_by_row(found, gains[1:-1], largest[1:-1])
     content = "statistics of restitution in bins of impact velocity, bins lo <= x < hi"
     return found.assign_attrs(data.attrs, content=content)
 
@@ -156,11 +166,14 @@ def standard_errors(data: xr.Dataset, velocity_bins: npt.ArrayLike, *, block: in
     )
 
 
-def _impacts(data: xr.Dataset, *names: str) -> tuple[FloatArray, ...]:
+def _impacts(data: xr.Dataset, *names: str) -> list[FloatArray]:
+    """Give these variables of the impacts that happened: where the first is not NaN."""
     missing = [name for name in names if name not in data]
     if missing:
         raise ValueError(f"data lacks {', '.join(missing)}: give a Dataset as from restitution.simulate")
-    return tuple(data[name].to_numpy().ravel() for name in names)
+    columns = [data[name].to_numpy().ravel() for name in names]
+    happened = ~np.isnan(columns[0])
+    return [column[happened] for column in columns]
 
 
 def _bin(values: FloatArray, edges: FloatArray) -> IntArray:

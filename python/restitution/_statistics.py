@@ -7,9 +7,9 @@ import numpy.typing as npt
 import xarray as xr
 
 from restitution import _core
-from restitution._bins import FRACTION_BINS, FloatArray, IntArray, assemble, by_velocity, checked_edges
+from restitution._bins import FRACTION_BINS, assemble, by_velocity, checked_edges
 from restitution._dataset import STOP_REASONS, attributes
-from restitution._energy import ledger, warn
+from restitution._energy import add_by_row, ledger, warn
 from restitution._resources import available_memory, checked_threads, progress_bar
 from restitution._run import Run
 from restitution._simulate import SimulationInterrupted
@@ -60,9 +60,7 @@ def statistics(
     -------
     xarray.Dataset
         As from `restitution.reduce`, and ``particles_ended`` (stop_reason), the number of particles by stop
-        reason. In each row ``energy_created``, the number of impacts that multiplied the kinetic energy by
-        more than 1 + 1e-12, and ``largest_energy_ratio``, the largest factor of these, NaN where there are
-        none; over all impacts, in the bins or not, the attributes ``energy_created_impacts``,
+        reason. Over all impacts, in the bins or not, the attributes ``energy_created_impacts``,
         ``energy_created_share`` and ``largest_energy_ratio``, as from `simulate`. The moments rest on exact
         sums of ε - ε^n rounded to 2⁻²⁶ ≈ 1.5e-8.
 
@@ -130,9 +128,8 @@ def statistics(
         coords={"stop_reason": list(STOP_REASONS)},
         attrs={"long_name": "particles by the reason why they ended"},
     )
-    _add_energy(
-        found, table["energy_created"], table["largest_energy_ratio"], by_velocity=velocity is not None
-    )
+    inner = slice(None) if velocity is None else slice(1, -1)  # the outer rows are beyond the bins
+    add_by_row(found, table["energy_created"][inner], table["largest_energy_ratio"][inner])
     found.attrs = attributes(run, "Statistics of the impacts of bouncing aspherical particles")
     found.attrs |= ledger(
         int(table["count"].sum()),
@@ -143,16 +140,6 @@ def statistics(
         raise SimulationInterrupted(found.assign_attrs(incomplete="interrupted by the user"))
     warn(found)
     return found
-
-
-def _add_energy(found: xr.Dataset, created: IntArray, largest: FloatArray, *, by_velocity: bool) -> None:
-    """Add what each row says of the energy; the first and last row by velocity are beyond the bins."""
-    row, inner = ("velocity", slice(1, -1)) if by_velocity else ("impact", slice(None))
-    text = "impacts that multiplied the kinetic energy by more than 1 + 1e-12"
-    found["energy_created"] = ((row,), created[inner], {"long_name": text})
-    factor = np.where(created > 0, largest, np.nan)[inner]
-    text = "largest factor by which an impact multiplied the kinetic energy, where any created energy"
-    found["largest_energy_ratio"] = ((row,), factor, {"long_name": text, "units": "1"})
 
 
 def _check_memory(rows: int, columns: int, threads: int) -> None:

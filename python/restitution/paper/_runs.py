@@ -14,8 +14,8 @@ from restitution.laws import TangentialRestitution
 from restitution.paper._counted import Counted, count_all
 from restitution.paper._settings import Settings
 
-# Sensitivity runs keep what is drawn and why each trajectory ended, a third of the memory.
-_KEPT = ("impact_velocity", "restitution", "rotational_fraction", "impacts", "stop_reason")
+# Sensitivity runs keep what is drawn and why each trajectory ended, half the memory.
+_KEPT = ("impact_velocity", "restitution", "rotational_fraction", "energy_ratio", "impacts", "stop_reason")
 
 
 @dataclass(frozen=True)
