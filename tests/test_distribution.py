@@ -152,6 +152,10 @@ def test_every_speed_is_as_simulated() -> None:
     )
     assert 0.8e7 < float(dist.data.impacts.sum()) < 1e7
     assert np.diff(np.log(dist.data.velocity)).max() < 0.015
+    # Of what is stated the fresh particles' own scatter makes the most: its like is in what was learned.
+    scatter = dist.data.ks_scatter
+    assert 0.8 < float((scatter / (0.87 / np.sqrt(dist.data.fresh_impacts))).median()) < 1.3
+    assert float((dist.data.ks_distance / scatter).median()) < 2.0
     check = Check(dist._table)
     fresh = Ensemble(Run(body=BODY, law=LAW, particles=160_000, impacts=150, seed=1000), released)
     for block in fresh.blocks(FRESH):
@@ -209,6 +213,10 @@ def test_the_errors_are_those_of_repetition() -> None:
     assert np.all(np.abs(stated / scatter - 1) < 4 / np.sqrt(58))
     naive = np.sqrt(q * (1 - q) / float(dists[0].data.impacts[2]))
     assert np.all(stated > 1.2 * naive)
+    for moment in ("mean", "std"):
+        scatter = np.std([getattr(dist, moment)(node) for dist in dists], ddof=1)
+        stated = np.sqrt(np.mean([getattr(dist, f"{moment}_error")(node) ** 2 for dist in dists]))
+        assert abs(stated / scatter - 1) < 4 / np.sqrt(58)
     density = np.array([dist.pdf(x, node) for dist in dists])
     stated = np.sqrt(np.mean([dist.pdf_error(x, node) ** 2 for dist in dists], axis=0))
     assert np.all(np.abs(stated / density.std(axis=0, ddof=1) - 1) < 0.6)  # bins differ from run to run

@@ -67,10 +67,13 @@ class Counter:
         self.lowest, self.highest = np.full(len(edges), np.inf), np.full(len(edges), -np.inf)
         # Sums over the blocks of c², c n and n², with c what a bin holds, or what lies below its upper edge.
         self._squares = {name: np.zeros((3, size)) for name in ("bin", "below")}
+        # Of each block and component: Σw, Σwx and Σwx², x being ε above one of the edges in the middle.
+        self._powers: list[Floats] = []
 
     def add(self, velocity: Floats, restitution: Floats, z: Floats) -> None:
         """Count a block of impacts, which shares no particle with any other."""
         count = np.zeros(self.count.size)
+        self._powers.append(np.zeros((3, len(self.edges))))
         for i, (weight, epsilon, condition) in intervals(self.nodes, velocity, restitution, z):
             for node, share in ((i, 1.0 - weight), (i + 1, weight)):
                 for k, chosen, part in shares(condition, self.conditions[node]):
@@ -93,12 +96,28 @@ class Counter:
         place = np.searchsorted(inner, epsilon, side="right")
         bins = slice(self.start[component], self.start[component + 1])
         count[bins] += np.bincount(place, weights=weight, minlength=inner.size + 1)
+        above = epsilon - inner[inner.size // 2]
+        self._powers[-1][:, component] += [np.sum(weight * above**power) for power in range(3)]
         self.lowest[component] = min(self.lowest[component], epsilon.min())
         self.highest[component] = max(self.highest[component], epsilon.max())
 
     def impacts(self) -> Floats:
         """Weights added up at each component."""
         return np.add.reduceat(self.count, self.start[:-1])
+
+    def moment_errors(self) -> tuple[Floats, Floats]:
+        """Give standard errors of mean and standard deviation at each component, as in `histograms`."""
+        n, first, second = np.moveaxis(np.array(self._powers), 1, 0)
+        total, correction = n.sum(axis=0), self._correction()
+        mean = first.sum(axis=0) / total
+        variance = second.sum(axis=0) / total - mean**2
+        # To first order a block moves the mean by Σw(x - <x>), the variance by Σw((x - <x>)² - σ²).
+        moved = (first - mean * n, second - 2.0 * mean * first + (mean**2 - variance) * n)
+        errors = [np.sqrt(correction * np.sum(part**2, axis=0)) / total for part in moved]
+        return errors[0], errors[1] / (2.0 * np.sqrt(variance))
+
+    def _correction(self) -> float:
+        return self.blocks / (self.blocks - 1.0) if self.blocks > 1 else np.nan
 
     def histograms(self) -> Iterator[tuple[Histogram, Floats, Floats]]:
         """Yield each histogram with the standard errors of the bins' shares and of `cumulative`.
@@ -115,8 +134,7 @@ class Counter:
                 cc, cn, nn = self._squares[name][:, bins]
                 share = c / total
                 scatter = np.maximum(cc - share * (2.0 * cn - share * nn), 0.0)
-                correction = self.blocks / (self.blocks - 1.0) if self.blocks > 1 else np.nan
-                errors.append(np.sqrt(correction * scatter) / total)
+                errors.append(np.sqrt(self._correction() * scatter) / total)
             filled = np.flatnonzero(count)
             low, high = int(filled[0]), int(filled[-1]) + 1
             # The greatest may be the very edge that its bin starts at.

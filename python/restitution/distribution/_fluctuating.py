@@ -11,7 +11,7 @@ import xarray as xr
 from restitution._dataset import check_writable, save
 from restitution._parameters import ParameterError, wrong
 from restitution._run import Run
-from restitution.bodies import Dumbbell
+from restitution.bodies import Body
 from restitution.distribution._c import header
 from restitution.distribution._check import Check
 from restitution.distribution._ensemble import Ensemble, Impacts
@@ -21,7 +21,7 @@ from restitution.distribution._learn import Given, condition, learn
 from restitution.distribution._memory import correlations
 from restitution.distribution._tabulated import TabulatedDistribution
 from restitution.distribution._text import image_format, write
-from restitution.laws import TangentialRestitution
+from restitution.laws import Law
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -54,8 +54,8 @@ class FluctuatingRestitution(TabulatedDistribution):
     @classmethod
     def learn(
         cls,
-        body: Dumbbell,
-        law: TangentialRestitution,
+        body: Body,
+        law: Law,
         *,
         particles: int = 20_000,
         impacts: int = 1000,
@@ -263,11 +263,11 @@ class FluctuatingRestitution(TabulatedDistribution):
         yield f"{self.data.sizes['node']} histograms, {self.data.sizes['edge']} edges"
         if "ks_distance" in self.data:
             worst = int(np.argmax(self.data["ks_distance"].to_numpy()))
-            speed, impacts = self.data["velocity"][worst], self.data["fresh_impacts"][worst]
+            speed, scatter = (float(self.data[name][worst]) for name in ("velocity", "ks_scatter"))
             yield (
                 "Kolmogorov-Smirnov distance to fresh impacts: "
-                f"{float(self.data['ks_distance'][worst]):.4f} at most, at {float(speed):.4g} m/s; "
-                f"{0.87 / float(impacts) ** 0.5:.4f} would be their own scatter if they were independent"
+                f"{float(self.data['ks_distance'][worst]):.4f} at most, at {speed:.4g} m/s, "
+                f"where their own scatter makes {scatter:.4f}"
             )
 
     def __repr__(self) -> str:

@@ -23,10 +23,11 @@ def assemble(
     Components follow each other in ragged arrays, as the CF conventions have them: ``edges`` tells how many
     each has. ``velocity`` (node) are the speeds of the histograms, ``restitution_edge`` and
     ``probability_below`` (edge) the histograms themselves. ``probability_error`` (edge) is the standard
-    error of the probability of the bin that starts there, ``probability_below_error`` that of the one below.
-    With a condition the same again with the prefix ``given_``, for each of the ``given_components`` of a
-    node at its ``given``. ``ks_distance`` and ``fresh_impacts`` (interval) are how far a fresh ensemble is
-    from this distribution between two nodes.
+    error of the probability of the bin that starts there, ``probability_below_error`` that of the one below,
+    ``mean_error`` and ``std_error`` (node) those of the moments. With a condition
+    the tables again with the prefix ``given_``, for each of the ``given_components`` of a node at its
+    ``given``. ``ks_distance``, ``ks_scatter`` and ``fresh_impacts`` (interval) are how far a fresh ensemble
+    is from this distribution between two nodes, and how far its own scatter alone takes it.
     """
     parts = list(counter.histograms())
     data = of_histograms(counter.nodes, [part for part, _, _ in parts], counter.impacts(), attrs)
@@ -40,6 +41,11 @@ def assemble(
     ):
         about = {"long_name": f"standard error of {text}; a block of particles is a draw", "units": "1"}
         data[name] = ("edge", np.concatenate(errors), about)
+    for name, moment, moment_errors in zip(
+        ("mean_error", "std_error"), ("mean", "standard deviation"), counter.moment_errors(), strict=True
+    ):
+        about = {"long_name": f"standard error of the {moment}; a block of particles is a draw", "units": "1"}
+        data[name] = ("node", moment_errors, about)
     if conditional is not None and given is not None:
         histograms = [part for part, _, _ in conditional.histograms()]
         sizes = [group.size for group in conditional.conditions]
@@ -53,6 +59,11 @@ def assemble(
         "interval",
         check.distances(),
         {"long_name": "Kolmogorov–Smirnov distance of fresh impacts between two nodes, upper bound"},
+    )
+    data["ks_scatter"] = (
+        "interval",
+        check.scatter(),
+        {"long_name": "part of ks_distance that the scatter of the fresh particles makes, by bootstrap"},
     )
     data["fresh_impacts"] = ("interval", check.impacts(), {"long_name": "impacts behind ks_distance"})
     return data

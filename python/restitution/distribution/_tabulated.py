@@ -125,6 +125,20 @@ class TabulatedDistribution:
         """Give the standard error of `cdf`, at most, as `pdf_error`."""
         return self._error(x, v, "probability_below_error")
 
+    def mean_error(self, v: npt.ArrayLike) -> Values:
+        """Give the standard error of `mean`, at most, as `pdf_error`."""
+        return self._moment_error(v, "mean_error")
+
+    def std_error(self, v: npt.ArrayLike) -> Values:
+        """Give the standard error of `std`, at most, as `pdf_error`."""
+        return self._moment_error(v, "std_error")
+
+    def _moment_error(self, v: npt.ArrayLike, name: str) -> Values:
+        speed = self._speeds(v)
+        if name not in self.data:
+            return np.full(speed.shape, np.nan)[()]
+        return np.interp(speed, self._table.speeds, self.data[name].to_numpy())[()]
+
     def _error(self, x: npt.ArrayLike, v: npt.ArrayLike, name: str) -> Values:
         value, speed = np.broadcast_arrays(np.asarray(x, dtype=np.float64), self._speeds(v))
         error = np.full(value.shape, np.nan)
