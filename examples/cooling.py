@@ -125,7 +125,7 @@ def main(path: str) -> None:
     for k, (name, rule) in enumerate(rules.items()):
         cooled, a2 = repeat(rule, theta, times, replicas=8)
         slope = -np.gradient(np.log(cooled[0, 1:]), np.log(times[1:]))
-        print(name, *(f"{x:.4f}±{error:.4f}" for x, error in cooled[:, [17, 33, 49]].T), f"{slope[-2]:.2f}")
+        print(name, *(f"{x:.5f}±{error:.5f}" for x, error in cooled[:, [17, 33, 49]].T), f"{slope[-2]:.2f}")
         style = {"color": fg.COLORS[k], "marker": fg.MARKERS[k], "linestyle": "none", "label": name}
         cooling.errorbar(times[1::3], *cooled[:, 1::3], **style, fillstyle="none")
         if k != 1:
@@ -146,7 +146,7 @@ def main(path: str) -> None:
     shape.axhline(sonine(law.normal), color=fg.COLORS[0], zorder=0)
     shape.set(xscale="log", xlabel=r"$\nu_0 t$", ylabel="$a_2$")
     for axes, name in ((cooling, "a"), (loss, "b"), (shape, "c")):
-        fg.letter(axes, f"({name})", left=False)
+        fg.letter(axes, f"({name})", left=axes is shape)
     figure.legend(*cooling.get_legend_handles_labels(), loc="outside upper center", ncols=4)
     figure.savefig(path, dpi=200)
 

@@ -98,8 +98,8 @@ def test_only_the_mean_square_cools(example: ModuleType) -> None:
 def test_from_both_sides_to_the_same_temperature(example: ModuleType, learned: Any) -> None:
     """Where <v³ε²> = <v³> nothing cools: hotter and colder gases get there, as the Gaussian closure says.
 
-    Three gases of 4000 particles scatter by up to 2 % of θ, seen between the gases; what the closure lacks, a2
-    of 0.04, moves the loss by less than 1 %. Allowed are 5 %.
+    Three gases of 4000 particles scatter by up to 2 % of θ, seen between the gases; what the closure lacks,
+    a2 of 0.04, moves the loss by less than 1 %. Allowed are 5 %.
     """
     rest = optimize.brentq(lambda theta: example.mean_square(learned, theta) - 1.0, 1e-3, 0.05)
     for start, end in ((4.0 * rest, 80.0), (0.7 * rest, 40.0)):

@@ -31,7 +31,7 @@ def image(dist: TabulatedDistribution, suffix: str) -> bytes:
 def draw(dist: TabulatedDistribution) -> Figure:
     """Draw quantiles, densities at four speeds, standard deviation and distance to fresh impacts.
 
-    Shaded are pointwise 95 % confidence bands: 1.96 standard errors, over blocks of particles, either way.
+    Shaded are pointwise 95 % confidence bands: 1.96 standard errors, over batches of particles, either way.
     """
     figure, [[quantiles, densities], [deviation, distance]] = fg.panels(fg.PAGE, 5.0, 2, 2)
     speeds = dist.data["velocity"].to_numpy()

@@ -14,11 +14,12 @@ from restitution._run import Run
 from restitution.bodies import Body
 from restitution.distribution._c import header
 from restitution.distribution._check import Check
-from restitution.distribution._ensemble import Ensemble, Impacts
+from restitution.distribution._ensemble import BATCHES, Ensemble, Impacts
 from restitution.distribution._fortran import module
 from restitution.distribution._from_statistics import from_statistics
 from restitution.distribution._learn import Given, condition, learn
 from restitution.distribution._memory import correlations
+from restitution.distribution._store import require
 from restitution.distribution._tabulated import TabulatedDistribution
 from restitution.distribution._text import image_format, write
 from restitution.laws import Law
@@ -71,7 +72,7 @@ class FluctuatingRestitution(TabulatedDistribution):
     ) -> "FluctuatingRestitution":
         """Learn p(ε | v) from an ensemble of bouncing particles.
 
-        The ensemble is simulated in blocks, and again with other random numbers to measure how far the result
+        The ensemble is simulated in rounds, and again with other random numbers to measure how far the result
         is from impacts that it has not seen. Memory does not grow with the number of particles.
 
         Parameters
@@ -206,17 +207,22 @@ class FluctuatingRestitution(TabulatedDistribution):
         Returns
         -------
         xarray.Dataset
-            ``ks_distance`` and ``impacts`` over the intervals between the nodes: an upper bound, by at most
-            1/4096, of the Kolmogorov–Smirnov distance of u = F(ε | v) from uniform. Where the distribution is
-            right it is about 0.87/√impacts for independent impacts.
+            Over the intervals between the nodes: ``ks_distance``, an upper bound, by at most 1/4096, of the
+            Kolmogorov–Smirnov distance of u = F(ε | v) from uniform; ``ks_scatter``, what the impacts' own
+            scatter makes of it, by bootstrap over particles; and ``impacts``.
         """
+        names = ("impact_velocity", "restitution")
+        require(data, "data", names, "a result of restitution.simulate")
         check = Check(self._table)
-        velocity, restitution = (data[name].to_numpy().ravel() for name in ("impact_velocity", "restitution"))
-        check.add(velocity, restitution, np.zeros(velocity.size))
+        columns = [data[name].transpose("particle", ...).to_numpy() for name in names]
+        for batch in range(BATCHES):
+            velocity, restitution = (column[batch::BATCHES].ravel() for column in columns)
+            check.add(batch, velocity, restitution, np.zeros(velocity.size))
         low, high = self._table.speeds[:-1], self._table.speeds[1:]
         return xr.Dataset(
             {
                 "ks_distance": ("velocity", check.distances()),
+                "ks_scatter": ("velocity", check.scatter()),
                 "impacts": ("velocity", check.impacts()),
             },
             coords={"velocity": ("velocity", 0.5 * (low + high), {"units": "m s-1"})},
@@ -242,9 +248,12 @@ class FluctuatingRestitution(TabulatedDistribution):
             the autocorrelation ``level`` of u, and ``spread`` of |u - 1/2|, which tells whether wide follows
             wide; each with its standard error over particles.
         """
+        names = ("impact_velocity", "restitution", "rotational_fraction")
+        require(data, "data", names, "a result of restitution.simulate")
+        if isinstance(lags, bool) or not isinstance(lags, int) or lags < 1:
+            raise ParameterError(wrong("lags", lags, "a whole number > 0"))
         velocity, restitution, fraction = (
-            data[name].transpose("particle", "impact").to_numpy()
-            for name in ("impact_velocity", "restitution", "rotational_fraction")
+            data[name].transpose("particle", "impact").to_numpy() for name in names
         )
         low, high = self.velocities
         inside = (velocity >= low) & (velocity <= high)
