@@ -6,6 +6,7 @@ is the scatter of the fresh particles, by bootstrap over batches of them.
 """
 
 import argparse
+import math
 import warnings
 from dataclasses import dataclass
 from typing import Any
@@ -32,7 +33,7 @@ class Case:
     law: Law
     particles: int
     impacts: int
-    heights: int = 100
+    spread: bool = True
     orientation: str = "uniform-angle"
 
 
@@ -41,7 +42,7 @@ CASES = {
         rs.Dumbbell(radius=R, separation=0.1 * R), rs.TangentialRestitution(normal=0.98), 80_000, 200
     ),
     "the same from one height": Case(
-        rs.Dumbbell(radius=R, separation=0.1 * R), rs.TangentialRestitution(normal=0.98), 80_000, 200, 1
+        rs.Dumbbell(radius=R, separation=0.1 * R), rs.TangentialRestitution(normal=0.98), 80_000, 200, False
     ),
     "dumbbell 0.5, ε^n = 0.98": Case(
         rs.Dumbbell(radius=R, separation=0.5 * R), rs.TangentialRestitution(normal=0.98), 80_000, 200
@@ -72,7 +73,8 @@ def measured(case: Case, scale: float) -> str:
     particles = round(scale * case.particles)
     lowest = max(case.body.solid.lowest(np.array([cosine])) for cosine in (-1.0, 0.0, 1.0))
     assert isinstance(case.law.normal, float)
-    heights = tuple(lowest + 0.06 * np.geomspace(case.law.normal**2, 1.0, case.heights + 1)[1:])
+    number = math.ceil(-1000.0 * math.log(case.law.normal)) if case.spread else 1  # steps of 0.1 % in v
+    heights = tuple(lowest + 0.06 * np.geomspace(case.law.normal**2, 1.0, number + 1)[1:])
     how: dict[str, Any] = {"impacts": case.impacts, "orientation": case.orientation}
     dist = rs.FluctuatingRestitution.learn(
         case.body, case.law, particles=particles, release_height=heights, seed=1, **how

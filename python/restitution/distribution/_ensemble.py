@@ -15,7 +15,7 @@ LEARNING, FRESH = 0, 1
 """Streams of random numbers: what is learned from, and what the learned distribution is held against."""
 
 BATCHES = 32
-"""Parts of the ensemble, with equal shares of every height, whose scatter gives the standard errors."""
+"""Parts of the ensemble, which share every height alike, whose scatter gives the standard errors."""
 _IMPACTS_PER_ROUND = 4_000_000
 
 
@@ -64,39 +64,41 @@ class Ensemble:
             allowed = f"at least {2 * len(self.heights)}, two for each release height"
             raise ParameterError(wrong("particles", self.run.particles, allowed))
 
-    def rounds(self) -> Iterator[list[int]]:
-        """Yield the number of particles from each height, round by round, as few as memory allows."""
-        share, rest = divmod(self.run.particles, len(self.heights))
-        each = [share + (number < rest) for number in range(len(self.heights))]
-        rounds = -(-self.run.particles * self.run.impacts // _IMPACTS_PER_ROUND)
-        for i in range(rounds):
-            yield [particles // rounds + (i < particles % rounds) for particles in each]
+    def rounds(self) -> list[list[tuple[int, int]]]:
+        """Give number of the height and particles of each run, round by round; a round spans the heights."""
+        number, heights = self.run.particles * self.run.impacts // _IMPACTS_PER_ROUND + 1, len(self.heights)
+        pieces = -(-number // heights)
+        share, rest = divmod(self.run.particles, heights)
+        runs = []
+        for piece in range(pieces):
+            for k in range(heights):
+                whole, left = divmod(share + (k < rest), pieces)
+                runs.append((k, whole + (piece < left)))
+        return [[run for run in runs[i::number] if run[1] > 0] for i in range(number)]
 
     def blocks(self, stream: int, tell: Callable[[int], None] | None = None) -> Iterator[Impacts]:
         """Simulate and yield what each batch has of a round.
 
-        The seed of height k in a round is hashed from seed, stream, round and k. Particles are dealt out to
-        the batches one by one, from height to height going on where the last one stopped.
+        The seed of run k of a round is hashed from seed, stream, round and k. Particles are dealt out to the
+        batches one by one, from run to run going on where the last one stopped.
         """
         names = ("impact_velocity", "restitution", "rotational_fraction")
-        for number, particles in enumerate(self.rounds()):
+        for number, runs in enumerate(self.rounds()):
             dealt: list[list[list[Floats]]] = [[] for _ in range(BATCHES)]
             first = 0
-            for k, height in enumerate(self.heights):
-                if particles[k] == 0:
-                    continue
+            for k, (height, particles) in enumerate(runs):
                 hashed = np.random.SeedSequence(self.run.seed, spawn_key=(stream, number, k))
                 seed = int(hashed.generate_state(1, np.uint64)[0])
-                changed = {"particles": particles[k], "release_height": height, "seed": seed}
+                changed = {"particles": particles, "release_height": self.heights[height], "seed": seed}
                 data = simulate_run(self.run.model_copy(update=changed), threads=self.threads)
                 columns = [data[name].to_numpy() for name in names]
-                for row in range(min(BATCHES, particles[k])):
+                for row in range(min(BATCHES, particles)):
                     batch = dealt[(first + row) % BATCHES]
                     batch.append([column[row::BATCHES] for column in columns])
-                first += particles[k]
+                first += particles
             for i, batch in enumerate(dealt):
                 if batch:
                     velocity, restitution, fraction = map(np.concatenate, zip(*batch, strict=True))
                     yield Impacts(velocity, restitution, fraction, i)
             if tell is not None:
-                tell(sum(particles))
+                tell(sum(particles for _, particles in runs))
