@@ -152,10 +152,16 @@ def test_every_speed_is_as_simulated() -> None:
     )
     assert 0.8e7 < float(dist.data.impacts.sum()) < 1e7
     assert np.diff(np.log(dist.data.velocity)).max() < 0.015
+    # Of what is stated the fresh particles' own scatter makes the most: its like is in what was learned.
+    scatter = dist.data.ks_scatter
+    assert 0.8 < float((scatter / (0.87 / np.sqrt(dist.data.fresh_impacts))).median()) < 1.3
+    assert float((dist.data.ks_distance / scatter).median()) < 2.0
     check = Check(dist._table)
     fresh = Ensemble(Run(body=BODY, law=LAW, particles=160_000, impacts=150, seed=1000), released)
     for block in fresh.blocks(FRESH):
-        check.add(block.velocity.ravel(), block.restitution.ravel(), np.zeros(block.velocity.size))
+        check.add(
+            block.batch, block.velocity.ravel(), block.restitution.ravel(), np.zeros(block.velocity.size)
+        )
     assert check.impacts().min() > 80_000
     assert check.distances().max() < 0.01
     # What the distribution states rests on as many impacts as it was learned from.
@@ -209,6 +215,10 @@ def test_the_errors_are_those_of_repetition() -> None:
     assert np.all(np.abs(stated / scatter - 1) < 4 / np.sqrt(58))
     naive = np.sqrt(q * (1 - q) / float(dists[0].data.impacts[2]))
     assert np.all(stated > 1.2 * naive)
+    for moment in ("mean", "std"):
+        scatter = np.std([getattr(dist, moment)(node) for dist in dists], ddof=1)
+        stated = np.sqrt(np.mean([getattr(dist, f"{moment}_error")(node) ** 2 for dist in dists]))
+        assert abs(stated / scatter - 1) < 4 / np.sqrt(58)
     density = np.array([dist.pdf(x, node) for dist in dists])
     stated = np.sqrt(np.mean([dist.pdf_error(x, node) ** 2 for dist in dists], axis=0))
     assert np.all(np.abs(stated / density.std(axis=0, ddof=1) - 1) < 0.6)  # bins differ from run to run
@@ -226,8 +236,8 @@ def test_a_known_distribution_is_learned() -> None:
     nodes = np.geomspace(0.1, 0.2, 18)
     edges = [0.9 + 0.02 / node * stats.norm.ppf(np.arange(1, 100) / 100) for node in nodes]
     counter = Counter(nodes, [np.zeros(1)] * nodes.size, edges)
-    for part in np.array_split(np.arange(v.size), 20):
-        counter.add(v[part], e[part], np.zeros(part.size))
+    for batch, part in enumerate(np.array_split(np.arange(v.size), 20)):
+        counter.add(batch, v[part], e[part], np.zeros(part.size))
     assert counter.impacts().sum() == pytest.approx(v.size)
     for node, (histogram, _, error) in zip(nodes, counter.histograms(), strict=True):
         exact = stats.norm.cdf(histogram.edges, 0.9, 0.02 / node)
@@ -345,6 +355,7 @@ def test_counts_without_a_distribution_are_refused() -> None:
     [
         ({"velocities": (0.0, 1.0)}, r"velocities = \(0.0, 1.0\): must be > 0 and strictly increasing"),
         ({"velocities": 0.3}, "velocities = 0.3: must be the least and the greatest speed"),
+        ({"velocities": "ab"}, "velocities = 'ab': must be the least and the greatest speed"),
         ({"velocities": (2.0, 3.0)}, r"velocities: 0 impacts between 2 and .* m/s; must be .* 500"),
         ({"given": "spin"}, "given = 'spin': must be 'rotational_fraction' or 'previous' or None"),
         ({"orientation": [0.1, 0.2]}, r"orientation = .*: must be 'uniform-angle' or 'isotropic'"),
@@ -389,3 +400,84 @@ def test_conditions_outside_are_named(conditional: FluctuatingRestitution) -> No
     with pytest.raises(ValueError, match=r"given = 1.5: must be in \[0, 1\], rotational_fraction"):
         conditional.pdf(1.0, 0.4, given=[0.1, 1.5])
     assert "nodes, ks_distance up to 0.0" in repr(conditional)
+
+
+def test_odd_arguments_are_named(learned: FluctuatingRestitution) -> None:
+    """Of every kind that a caller may send; those that no machine can hold, too."""
+    clamped = learned.clamped()
+    odd: Any
+    for odd in ("0.3", None, 1j, [0.1, "a"], [[0.2, 0.3], [0.3]]):
+        for method in (learned.mean, learned.rvs, clamped.std_error):
+            with pytest.raises(ValueError, match=r"v = .*: must be a number or an array of numbers"):
+                method(odd)
+        with pytest.raises(ValueError, match=r"x = .*: must be a number"):
+            learned.cdf(odd, 0.3)
+    # v12·n has a sign; the speed has none.
+    with pytest.raises(ValueError, match=r"v = -0.3: must be a speed, >= 0 m/s"):
+        clamped.rvs([0.3, -0.3])
+    for odd in (-1, (2, -3), 2.5, "a", (2.5,), True):
+        with pytest.raises(ValueError, match=r"size = .*: must be a whole number >= 0 or a tuple of them"):
+            learned.rvs(0.3, size=odd)
+    for many in (10**13, (10**7, 10**7)):
+        with pytest.raises(ValueError, match=r"size = .*: must be at most .* draws, which this machine can"):
+            learned.rvs(0.3, size=many)
+    for odd in (0, -1, 1.5, True):
+        with pytest.raises(ValueError, match=f"lags = {odd}: must be a whole number > 0"):
+            learned.memory(rs.simulate(BODY, LAW, particles=2, impacts=3), lags=odd)
+    for take in (learned.distance, learned.memory, FluctuatingRestitution.from_statistics):
+        with pytest.raises(ValueError, match=r"= None: must be a result of restitution\."):
+            take(None)  # type: ignore[arg-type]
+        with pytest.raises(ValueError, match="lacks"):
+            take(learned.data)
+
+
+def test_extreme_arguments_are_answered(learned: FluctuatingRestitution) -> None:
+    """What has an answer gets it, without a warning: infinite, huge, masked, empty and missing values."""
+    clamped = learned.clamped()
+    for v in (1e308, np.inf):
+        assert clamped.mean(v) == learned.mean(0.8)
+        assert clamped.rvs(v, random_state=1) == learned.rvs(0.8, random_state=1)
+    assert clamped.var(0.0) == learned.var(0.05)
+    assert (learned.cdf(-np.inf, 0.3), learned.cdf(np.inf, 0.3), learned.pdf(1e308, 0.3)) == (0.0, 1.0, 0.0)
+    for error in (learned.pdf_error, learned.cdf_error):
+        assert np.isnan(error([np.nan, 1.0], [0.3, np.nan])).all()
+    masked = np.ma.masked_array([0.2, 0.3], [False, True])
+    np.testing.assert_array_equal(np.isnan(learned.mean(masked)), [False, True])
+    for empty in (learned.mean([]), learned.rvs([]), learned.std_error([]), learned.rvs(0.3, size=(0, 3))):
+        assert empty.size == 0
+    first = rs.simulate(BODY, LAW, particles=5, impacts=1)  # all too fast for it
+    assert np.isnan(learned.distance(first).ks_distance).all()
+    assert np.isnan(learned.distance(first).ks_scatter).all()
+
+
+def test_what_came_to_harm_is_refused(conditional: FluctuatingRestitution, tmp_path: Path) -> None:
+    """Files and Datasets that are no distribution, at once and not at the first draw."""
+    whole = conditional.data
+    for harmed in (
+        whole.assign(restitution_edge=whole.restitution_edge * np.nan),
+        whole.assign(velocity=-whole.velocity),
+        whole.assign(edges=whole.edges + 1),
+        whole.assign(edges=-whole.edges),
+        whole.assign(probability_below=2 * whole.probability_below),
+        whole.assign(probability_below=whole.velocity),
+        whole.assign(given_edges=whole.given_edges + 1),
+        whole.astype("float32"),
+    ):
+        with pytest.raises(ValueError, match=r"data: the speeds, .* are not those of a distribution"):
+            FluctuatingRestitution(harmed)
+    with pytest.raises(ValueError, match="data lacks given_edges"):
+        FluctuatingRestitution(whole.drop_vars("given_edges"))
+    with pytest.raises(ValueError, match="data lacks the attributes source, beyond"):
+        FluctuatingRestitution(whole.drop_attrs())
+    with pytest.raises(ValueError, match="data = None: must be the Dataset of a FluctuatingRestitution"):
+        FluctuatingRestitution(None)  # type: ignore[arg-type]
+    path = tmp_path / "dist.nc"
+    conditional.save(path)
+    content = path.read_bytes()
+    for broken in (b"", b"hello", content[: len(content) // 2]):
+        path.write_bytes(broken)
+        with pytest.raises(OSError, match="NetCDF"):
+            FluctuatingRestitution.load(path)
+    rs.simulate(BODY, LAW, particles=2, impacts=2).to_netcdf(path)
+    with pytest.raises(ValueError, match="data lacks velocity, edges"):
+        FluctuatingRestitution.load(path)

@@ -6,6 +6,7 @@ from typing import TypeAlias
 import numpy as np
 import numpy.typing as npt
 
+from restitution.distribution._ensemble import BATCHES
 from restitution.distribution._table import Floats, Histogram
 
 Chosen: TypeAlias = "slice | npt.NDArray[np.bool_]"
@@ -46,7 +47,7 @@ def shares(z: Floats, conditions: Floats) -> Iterator[tuple[int, Chosen, Floats]
 
 
 class Counter:
-    """Counts of the impacts at nodes and conditions, and how they scatter from block to block.
+    """Counts of the impacts at nodes and conditions, and how they scatter from batch to batch.
 
     Parameters
     ----------
@@ -63,28 +64,20 @@ class Counter:
         self.first = np.concatenate([[0], np.cumsum([group.size for group in conditions])])
         self.start = np.concatenate([[0], np.cumsum([inner.size + 1 for inner in edges])])
         size = int(self.start[-1])
-        self.count, self.blocks = np.zeros(size), 0
+        self.count = np.zeros((BATCHES, size))
         self.lowest, self.highest = np.full(len(edges), np.inf), np.full(len(edges), -np.inf)
-        # Sums over the blocks of c², c n and n², with c what a bin holds, or what lies below its upper edge.
-        self._squares = {name: np.zeros((3, size)) for name in ("bin", "below")}
+        # Σw, Σwx and Σwx², x being ε above one of the edges in the middle.
+        self._powers = np.zeros((3, BATCHES, len(edges)))
 
-    def add(self, velocity: Floats, restitution: Floats, z: Floats) -> None:
-        """Count a block of impacts, which shares no particle with any other."""
-        count = np.zeros(self.count.size)
+    def add(self, batch: int, velocity: Floats, restitution: Floats, z: Floats) -> None:
+        """Count impacts of a batch, which shares no particle with any other."""
         for i, (weight, epsilon, condition) in intervals(self.nodes, velocity, restitution, z):
             for node, share in ((i, 1.0 - weight), (i + 1, weight)):
                 for k, chosen, part in shares(condition, self.conditions[node]):
                     component = int(self.first[node]) + k
-                    self._add_to(count, component, epsilon[chosen], share[chosen] * part)
-        self.count += count
-        self.blocks += 1
-        for component in range(len(self.edges)):
-            bins = slice(self.start[component], self.start[component + 1])
-            number = count[bins].sum()
-            for name, c in (("bin", count[bins]), ("below", np.cumsum(count[bins]))):
-                self._squares[name][:, bins] += (c * c, c * number, np.full_like(c, number * number))
+                    self._add_to(batch, component, epsilon[chosen], share[chosen] * part)
 
-    def _add_to(self, count: Floats, component: int, epsilon: Floats, weight: Floats) -> None:
+    def _add_to(self, batch: int, component: int, epsilon: Floats, weight: Floats) -> None:
         counted = weight > 0.0
         if not counted.any():
             return
@@ -92,31 +85,47 @@ class Counter:
         inner = self.edges[component]
         place = np.searchsorted(inner, epsilon, side="right")
         bins = slice(self.start[component], self.start[component + 1])
-        count[bins] += np.bincount(place, weights=weight, minlength=inner.size + 1)
+        self.count[batch, bins] += np.bincount(place, weights=weight, minlength=inner.size + 1)
+        above = epsilon - inner[inner.size // 2]
+        self._powers[:, batch, component] += [np.sum(weight * above**power) for power in range(3)]
         self.lowest[component] = min(self.lowest[component], epsilon.min())
         self.highest[component] = max(self.highest[component], epsilon.max())
 
     def impacts(self) -> Floats:
         """Weights added up at each component."""
-        return np.add.reduceat(self.count, self.start[:-1])
+        return np.add.reduceat(self.count.sum(axis=0), self.start[:-1])
+
+    def moment_errors(self) -> tuple[Floats, Floats]:
+        """Give standard errors of mean and standard deviation at each component, as in `histograms`."""
+        n, first, second = self._powers
+        total, correction = n.sum(axis=0), self._correction()
+        mean = first.sum(axis=0) / total
+        variance = second.sum(axis=0) / total - mean**2
+        # To first order a batch moves the mean by Σw(x - <x>), the variance by Σw((x - <x>)² - σ²).
+        moved = (first - mean * n, second - 2.0 * mean * first + (mean**2 - variance) * n)
+        errors = [np.sqrt(correction * np.sum(part**2, axis=0)) / total for part in moved]
+        return errors[0], errors[1] / (2.0 * np.sqrt(variance))
+
+    def _correction(self) -> float:
+        batches = np.count_nonzero(self.count.any(axis=1))
+        return batches / (batches - 1.0) if batches > 1 else np.nan
 
     def histograms(self) -> Iterator[tuple[Histogram, Floats, Floats]]:
         """Yield each histogram with the standard errors of the bins' shares and of `cumulative`.
 
-        The outermost bins end at the least and the greatest ε that were seen. A block of particles is one
-        draw; for a share p = Σc/Σn the standard error is √(B/(B - 1) Σ(c - pn)²)/Σn over B blocks.
+        The outermost bins end at the least and the greatest ε that were seen. A batch of particles is one
+        draw; for a share p = Σc/Σn the standard error is √(B/(B - 1) Σ(c - pn)²)/Σn over B batches.
         """
+        correction = self._correction()
         for component, inner in enumerate(self.edges):
             bins = slice(self.start[component], self.start[component + 1])
-            count = self.count[bins]
+            batches = self.count[:, bins]
+            count, numbers = batches.sum(axis=0), batches.sum(axis=1, keepdims=True)
             total = count.sum()
             errors = []
-            for name, c in (("bin", count), ("below", np.cumsum(count))):
-                cc, cn, nn = self._squares[name][:, bins]
-                share = c / total
-                scatter = np.maximum(cc - share * (2.0 * cn - share * nn), 0.0)
-                correction = self.blocks / (self.blocks - 1.0) if self.blocks > 1 else np.nan
-                errors.append(np.sqrt(correction * scatter) / total)
+            for c in (batches, np.cumsum(batches, axis=1)):
+                moved = c - c.sum(axis=0) / total * numbers
+                errors.append(np.sqrt(correction * np.sum(moved**2, axis=0)) / total)
             filled = np.flatnonzero(count)
             low, high = int(filled[0]), int(filled[-1]) + 1
             # The greatest may be the very edge that its bin starts at.

@@ -14,13 +14,13 @@ from restitution.distribution._table import Floats
 LEARNING, FRESH = 0, 1
 """Streams of random numbers: what is learned from, and what the learned distribution is held against."""
 
-_IMPACTS_PER_BLOCK = 2_000_000
-_LEAST_BLOCKS = 20
-"""Blocks of particles, if there are as many particles, so that standard errors can be taken from them."""
+BATCHES = 32
+"""Parts of the ensemble, which share every height alike, whose scatter gives the standard errors."""
+_IMPACTS_PER_ROUND = 4_000_000
 
 
 class Impacts(NamedTuple):
-    """What is looked at of the impacts of a block; shape (particles, impacts), NaN where there was none.
+    """What is looked at of some impacts of a batch; shape (particles, impacts), NaN where there was none.
 
     Parameters
     ----------
@@ -28,11 +28,14 @@ class Impacts(NamedTuple):
         Impact velocity in m/s.
     restitution, fraction : ndarray
         ε and E_rot/E_tot before the impact.
+    batch : int
+        Which one.
     """
 
     velocity: Floats
     restitution: Floats
     fraction: Floats
+    batch: int = 0
 
 
 @dataclass(frozen=True)
@@ -61,32 +64,41 @@ class Ensemble:
             allowed = f"at least {2 * len(self.heights)}, two for each release height"
             raise ParameterError(wrong("particles", self.run.particles, allowed))
 
-    def parts(self) -> list[list[tuple[float, int]]]:
-        """Height and number of particles of each run of each block; every block spans the heights."""
-        share, rest = divmod(self.run.particles, len(self.heights))
-        least = -(-_LEAST_BLOCKS // len(self.heights))
-        rounds: list[list[tuple[float, int]]] = []
-        for number, height in enumerate(self.heights):
-            left = share + (number < rest)
-            largest = max(1, min(-(-left // least), _IMPACTS_PER_BLOCK // self.run.impacts))
-            pieces = -(-left // largest)
-            rounds.append([(height, left // pieces + (i < left % pieces)) for i in range(pieces)])
-        runs = [pieces[i] for i in range(max(map(len, rounds))) for pieces in rounds if i < len(pieces)]
-        most = -(-self.run.particles * self.run.impacts // _IMPACTS_PER_BLOCK)
-        blocks = min(len(runs), max(_LEAST_BLOCKS, most))
-        return [runs[i::blocks] for i in range(blocks)]
+    def rounds(self) -> list[list[tuple[int, int]]]:
+        """Give number of the height and particles of each run, round by round; a round spans the heights."""
+        number, heights = self.run.particles * self.run.impacts // _IMPACTS_PER_ROUND + 1, len(self.heights)
+        pieces = -(-number // heights)
+        share, rest = divmod(self.run.particles, heights)
+        runs = []
+        for piece in range(pieces):
+            for k in range(heights):
+                whole, left = divmod(share + (k < rest), pieces)
+                runs.append((k, whole + (piece < left)))
+        return [[run for run in runs[i::number] if run[1] > 0] for i in range(number)]
 
     def blocks(self, stream: int, tell: Callable[[int], None] | None = None) -> Iterator[Impacts]:
-        """Simulate block after block; run k of a block has a seed hashed from seed, stream, block and k."""
+        """Simulate and yield what each batch has of a round.
+
+        The seed of run k of a round is hashed from seed, stream, round and k. Particles are dealt out to the
+        batches one by one, from run to run going on where the last one stopped.
+        """
         names = ("impact_velocity", "restitution", "rotational_fraction")
-        for block, runs in enumerate(self.parts()):
-            found = []
+        for number, runs in enumerate(self.rounds()):
+            dealt: list[list[list[Floats]]] = [[] for _ in range(BATCHES)]
+            first = 0
             for k, (height, particles) in enumerate(runs):
-                hashed = np.random.SeedSequence(self.run.seed, spawn_key=(stream, block, k))
+                hashed = np.random.SeedSequence(self.run.seed, spawn_key=(stream, number, k))
                 seed = int(hashed.generate_state(1, np.uint64)[0])
-                changed = {"particles": particles, "release_height": height, "seed": seed}
+                changed = {"particles": particles, "release_height": self.heights[height], "seed": seed}
                 data = simulate_run(self.run.model_copy(update=changed), threads=self.threads)
-                found.append([data[name].to_numpy() for name in names])
-            yield Impacts(*(np.concatenate(column) for column in zip(*found, strict=True)))
+                columns = [data[name].to_numpy() for name in names]
+                for row in range(min(BATCHES, particles)):
+                    batch = dealt[(first + row) % BATCHES]
+                    batch.append([column[row::BATCHES] for column in columns])
+                first += particles
+            for i, batch in enumerate(dealt):
+                if batch:
+                    velocity, restitution, fraction = map(np.concatenate, zip(*batch, strict=True))
+                    yield Impacts(velocity, restitution, fraction, i)
             if tell is not None:
                 tell(sum(particles for _, particles in runs))

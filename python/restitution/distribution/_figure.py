@@ -31,7 +31,7 @@ def image(dist: TabulatedDistribution, suffix: str) -> bytes:
 def draw(dist: TabulatedDistribution) -> Figure:
     """Draw quantiles, densities at four speeds, standard deviation and distance to fresh impacts.
 
-    Shaded are pointwise 95 % confidence bands: 1.96 standard errors, over blocks of particles, either way.
+    Shaded are pointwise 95 % confidence bands: 1.96 standard errors, over batches of particles, either way.
     """
     figure, [[quantiles, densities], [deviation, distance]] = fg.panels(fg.PAGE, 5.0, 2, 2)
     speeds = dist.data["velocity"].to_numpy()
@@ -41,16 +41,24 @@ def draw(dist: TabulatedDistribution) -> Figure:
     densities.set_yscale("log")
     densities.set_xlabel(_RESTITUTION)
     densities.set_ylabel(r"$p(\varepsilon\,|\,v)$")
-    densities.legend(title="m/s")
-    deviation.plot(speeds, dist.std(speeds))
+    # What all but touches ε = -1, where chattering bodies are, may leave the panel at the top.
+    middle = max(0.5 / np.ptp(dist.ppf([0.25, 0.75], v)) for v in speeds)
+    densities.set_ylim(top=min(densities.get_ylim()[1], 100.0 * middle))
+    low, high = densities.get_xlim()
+    densities.set_xlim(low - 0.1 * (high - low), high + 0.25 * (high - low))  # for the letter, the legend
+    densities.legend(title="m/s", loc="upper right")
+    sigma, band = dist.std(speeds), _CONFIDENCE * np.nan_to_num(dist.std_error(speeds))
+    (drawn,) = deviation.plot(speeds, sigma)
+    below = np.where(band < sigma, sigma - band, sigma)
+    deviation.fill_between(speeds, below, sigma + band, color=drawn.get_color(), alpha=0.3, linewidth=0)
     deviation.set_yscale("log")
     deviation.set_ylabel(r"standard deviation $\sigma(\varepsilon)$")
     if "ks_distance" in dist.data:
         distance.stairs(dist.data["ks_distance"].to_numpy(), speeds, baseline=None, label="fresh impacts")
-        noise = 0.87 / np.sqrt(dist.data["fresh_impacts"].to_numpy())
-        distance.stairs(noise, speeds, baseline=None, linestyle="--", label="their own scatter")
-        distance.set_ylim(bottom=0.0)
-        distance.legend(loc="lower left")
+        scatter = dist.data["ks_scatter"].to_numpy()
+        distance.stairs(scatter, speeds, baseline=None, linestyle="--", label="their own scatter")
+        distance.set_ylim(0.0, 1.3 * distance.get_ylim()[1])
+        distance.legend(loc="upper left")
     distance.set_ylabel("Kolmogorov–Smirnov distance")
     for axes, name in ((quantiles, "a"), (densities, "b"), (deviation, "c"), (distance, "d")):
         fg.letter(axes, f"({name})", left=axes in (quantiles, densities))
@@ -72,8 +80,8 @@ def _quantiles(axes: Axes, dist: TabulatedDistribution) -> None:
         axes.fill_between(speeds, x - band, x + band, color=drawn.get_color(), alpha=0.3, linewidth=0)
     axes.set_ylabel(_RESTITUTION)
     low, high = axes.get_ylim()
-    axes.set_ylim(low, high + 0.1 * (high - low))  # room for the panel's letter
-    axes.legend(reverse=True, loc="upper right")
+    axes.set_ylim(low, high + 0.3 * (high - low))  # room for the panel's letter and the legend
+    axes.legend(loc="upper right", ncols=3)
 
 
 def _density(axes: Axes, dist: TabulatedDistribution, v: float, color: str) -> None:

@@ -11,17 +11,18 @@ import xarray as xr
 from restitution._dataset import check_writable, save
 from restitution._parameters import ParameterError, wrong
 from restitution._run import Run
-from restitution.bodies import Dumbbell
+from restitution.bodies import Body
 from restitution.distribution._c import header
 from restitution.distribution._check import Check
-from restitution.distribution._ensemble import Ensemble, Impacts
+from restitution.distribution._ensemble import BATCHES, Ensemble, Impacts
 from restitution.distribution._fortran import module
 from restitution.distribution._from_statistics import from_statistics
 from restitution.distribution._learn import Given, condition, learn
 from restitution.distribution._memory import correlations
+from restitution.distribution._store import require
 from restitution.distribution._tabulated import TabulatedDistribution
 from restitution.distribution._text import image_format, write
-from restitution.laws import TangentialRestitution
+from restitution.laws import Law
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -54,8 +55,8 @@ class FluctuatingRestitution(TabulatedDistribution):
     @classmethod
     def learn(
         cls,
-        body: Dumbbell,
-        law: TangentialRestitution,
+        body: Body,
+        law: Law,
         *,
         particles: int = 20_000,
         impacts: int = 1000,
@@ -71,7 +72,7 @@ class FluctuatingRestitution(TabulatedDistribution):
     ) -> "FluctuatingRestitution":
         """Learn p(ε | v) from an ensemble of bouncing particles.
 
-        The ensemble is simulated in blocks, and again with other random numbers to measure how far the result
+        The ensemble is simulated in rounds, and again with other random numbers to measure how far the result
         is from impacts that it has not seen. Memory does not grow with the number of particles.
 
         Parameters
@@ -83,7 +84,8 @@ class FluctuatingRestitution(TabulatedDistribution):
             Height of the centre of mass at release, in m; several heights share the particles equally.
             Particles from one height have few separate speeds at first, and p(ε | v) has as fine a structure:
             near the release velocity √(2gh), and for nearly round bodies everywhere. Heights that span the
-            loss of one impact, ``R + (h - R) * np.geomspace(normal**2, 1, 100)``, average over it.
+            loss of one impact and lie so close that they differ by 0.1 % in v average over it:
+            ``R + (h - R) * np.geomspace(normal**2, 1, int(1000 * np.log(1 / normal)) + 2)``.
         velocities : array_like, optional
             The least and the greatest speed to learn, in m/s, or all nodes. From 0.04 to 0.4 of the release
             velocity unless told, in nodes that lie as close as the number of impacts allows.
@@ -206,17 +208,22 @@ class FluctuatingRestitution(TabulatedDistribution):
         Returns
         -------
         xarray.Dataset
-            ``ks_distance`` and ``impacts`` over the intervals between the nodes: an upper bound, by at most
-            1/4096, of the Kolmogorov–Smirnov distance of u = F(ε | v) from uniform. Where the distribution is
-            right it is about 0.87/√impacts for independent impacts.
+            Over the intervals between the nodes: ``ks_distance``, an upper bound, by at most 1/4096, of the
+            Kolmogorov–Smirnov distance of u = F(ε | v) from uniform; ``ks_scatter``, what the impacts' own
+            scatter makes of it, by bootstrap over particles; and ``impacts``.
         """
+        names = ("impact_velocity", "restitution")
+        require(data, "data", names, "a result of restitution.simulate")
         check = Check(self._table)
-        velocity, restitution = (data[name].to_numpy().ravel() for name in ("impact_velocity", "restitution"))
-        check.add(velocity, restitution, np.zeros(velocity.size))
+        columns = [data[name].transpose("particle", ...).to_numpy() for name in names]
+        for batch in range(BATCHES):
+            velocity, restitution = (column[batch::BATCHES].ravel() for column in columns)
+            check.add(batch, velocity, restitution, np.zeros(velocity.size))
         low, high = self._table.speeds[:-1], self._table.speeds[1:]
         return xr.Dataset(
             {
                 "ks_distance": ("velocity", check.distances()),
+                "ks_scatter": ("velocity", check.scatter()),
                 "impacts": ("velocity", check.impacts()),
             },
             coords={"velocity": ("velocity", 0.5 * (low + high), {"units": "m s-1"})},
@@ -242,9 +249,12 @@ class FluctuatingRestitution(TabulatedDistribution):
             the autocorrelation ``level`` of u, and ``spread`` of |u - 1/2|, which tells whether wide follows
             wide; each with its standard error over particles.
         """
+        names = ("impact_velocity", "restitution", "rotational_fraction")
+        require(data, "data", names, "a result of restitution.simulate")
+        if isinstance(lags, bool) or not isinstance(lags, int) or lags < 1:
+            raise ParameterError(wrong("lags", lags, "a whole number > 0"))
         velocity, restitution, fraction = (
-            data[name].transpose("particle", "impact").to_numpy()
-            for name in ("impact_velocity", "restitution", "rotational_fraction")
+            data[name].transpose("particle", "impact").to_numpy() for name in names
         )
         low, high = self.velocities
         inside = (velocity >= low) & (velocity <= high)
@@ -263,11 +273,11 @@ class FluctuatingRestitution(TabulatedDistribution):
         yield f"{self.data.sizes['node']} histograms, {self.data.sizes['edge']} edges"
         if "ks_distance" in self.data:
             worst = int(np.argmax(self.data["ks_distance"].to_numpy()))
-            speed, impacts = self.data["velocity"][worst], self.data["fresh_impacts"][worst]
+            speed, scatter = (float(self.data[name][worst]) for name in ("velocity", "ks_scatter"))
             yield (
                 "Kolmogorov-Smirnov distance to fresh impacts: "
-                f"{float(self.data['ks_distance'][worst]):.4f} at most, at {float(speed):.4g} m/s; "
-                f"{0.87 / float(impacts) ** 0.5:.4f} would be their own scatter if they were independent"
+                f"{float(self.data['ks_distance'][worst]):.4f} at most, at {speed:.4g} m/s, "
+                f"where their own scatter makes {scatter:.4f}"
             )
 
     def __repr__(self) -> str:

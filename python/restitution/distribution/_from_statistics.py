@@ -4,19 +4,15 @@ import numpy as np
 import xarray as xr
 
 from restitution.distribution._nodes import LEAST_IMPACTS
-from restitution.distribution._store import of_histograms
+from restitution.distribution._store import of_histograms, require
 from restitution.distribution._table import Floats, Histogram
 
 
 def from_statistics(statistics: xr.Dataset) -> xr.Dataset:
     """Make the Dataset of a distribution; see `FluctuatingRestitution.from_statistics`."""
     needed = ("count", "restitution_edges", "minimum", "maximum", "velocity")
-    lacking = [name for name in needed if name not in statistics]
-    if lacking:
-        raise ValueError(
-            f"statistics lacks {', '.join(lacking)}: give a result of restitution.statistics or "
-            "restitution.reduce with velocity bins"
-        )
+    instead = "a result of restitution.statistics or restitution.reduce with velocity bins"
+    require(statistics, "statistics", needed, instead)
     names = ("restitution_underflow", "count", "restitution_overflow")
     below, inside, above = (statistics[name].to_numpy() for name in names)
     counts = np.concatenate([below[:, None], inside, above[:, None]], axis=1).astype(np.float64)

@@ -64,7 +64,7 @@ def learn(
         del pilot
         check = Check(table)
         for block in ensemble.blocks(FRESH, advance):
-            check.add(*_unconditional(block))
+            check.add(block.batch, *_unconditional(block))
     attrs = attributes(
         ensemble.run, "Distribution of the coefficient of restitution at given impact velocity"
     )
@@ -80,7 +80,10 @@ def _checked(velocities: npt.ArrayLike | None, ensemble: Ensemble) -> Floats:
         lowest = min(run.body.solid.lowest(np.array([cosine])) for cosine in (-1.0, 0.0, 1.0))
         fastest = math.sqrt(2.0 * run.gravity * (min(ensemble.heights) - lowest))
         return np.array(_RANGE) * fastest
-    nodes = np.array(velocities, dtype=np.float64)
+    try:
+        nodes = np.array(velocities, dtype=np.float64)
+    except (TypeError, ValueError):
+        nodes = np.empty(0)
     if not (nodes.ndim == 1 and nodes.size >= 2 and np.all(np.isfinite(nodes))):
         allowed = "the least and the greatest speed, or all nodes, finite, in m/s"
         raise ParameterError(wrong("velocities", velocities, allowed))
@@ -116,7 +119,7 @@ def _count(
     ]
     counter = Counter(nodes, conditions, edges)
     for block in ensemble.blocks(LEARNING, advance):
-        counter.add(*look(block))
+        counter.add(block.batch, *look(block))
     return counter
 
 
@@ -167,6 +170,10 @@ def _enough(pilot: list[Impacts], nodes: Floats, scale: float) -> None:
     impacts = scale * np.histogram(velocity[np.isfinite(velocity)], nodes)[0]
     if impacts.min() < _nodes.LEAST_IMPACTS:
         at = int(np.argmin(impacts))
-        found = f": {impacts[at]:.0f} impacts between {nodes[at]:.4g} and {nodes[at + 1]:.4g} m/s; "
+        found = f": {impacts[at]:.0f} impacts between {nodes[at]:.6g} and {nodes[at + 1]:.6g} m/s; "
         allowed = f"must be speeds with at least {_nodes.LEAST_IMPACTS} impacts between any two nodes"
-        raise ParameterError(Problem("velocities", found + allowed + ": more particles, or another range"))
+        raise ParameterError(
+            Problem(
+                "velocities", found + allowed + ": more particles, more impacts of each, or another range"
+            )
+        )

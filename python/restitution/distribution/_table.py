@@ -110,7 +110,7 @@ class Table:
         """Give the node below each v and the weight of the one above; beyond the nodes the nearest alone."""
         left = np.clip(np.searchsorted(self.speeds, v, side="right") - 1, 0, self.speeds.size - 2)
         low, high = self.speeds[left], self.speeds[left + 1]
-        return left, np.clip((v - low) / (high - low), 0.0, 1.0)
+        return left, (np.clip(v, low, high) - low) / (high - low)
 
     def moments(self, v: Floats, z: Floats) -> tuple[Floats, Floats]:
         """Mean and variance at v and z."""

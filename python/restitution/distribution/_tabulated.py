@@ -1,6 +1,9 @@
 """A table of p(ε | v) with the methods of a scipy.stats distribution."""
 
+import math
+from collections.abc import Iterable
 from functools import cached_property
+from operator import index
 from typing import Any, TypeAlias
 
 import numpy as np
@@ -8,6 +11,7 @@ import numpy.typing as npt
 import xarray as xr
 
 from restitution._parameters import ParameterError, wrong
+from restitution._resources import available_memory
 from restitution.distribution import _store
 from restitution.distribution._learn import Given
 from restitution.distribution._table import Floats, Table
@@ -20,13 +24,7 @@ class TabulatedDistribution:
     """What `FluctuatingRestitution` evaluates and draws."""
 
     def __init__(self, data: xr.Dataset) -> None:
-        lacking = [
-            name
-            for name in ("velocity", "edges", "restitution_edge", "probability_below")
-            if name not in data
-        ]
-        if lacking:
-            raise ValueError(f"data lacks {', '.join(lacking)}: give the Dataset of a FluctuatingRestitution")
+        _store.check(data)
         self.data = data
 
     @property
@@ -43,12 +41,12 @@ class TabulatedDistribution:
     def pdf(self, x: npt.ArrayLike, v: npt.ArrayLike, given: npt.ArrayLike | None = None) -> Values:
         """Probability density at ε = x, at impact velocity v."""
         table, z = self._at(given)
-        return table.value("pdf", x, self._speeds(v), z)[()]
+        return table.value("pdf", _numbers("x", x), self._speeds(v), z)[()]
 
     def cdf(self, x: npt.ArrayLike, v: npt.ArrayLike, given: npt.ArrayLike | None = None) -> Values:
         """Probability that ε <= x."""
         table, z = self._at(given)
-        return table.value("cdf", x, self._speeds(v), z)[()]
+        return table.value("cdf", _numbers("x", x), self._speeds(v), z)[()]
 
     def sf(self, x: npt.ArrayLike, v: npt.ArrayLike, given: npt.ArrayLike | None = None) -> Values:
         """Probability that ε > x."""
@@ -57,7 +55,7 @@ class TabulatedDistribution:
     def ppf(self, q: npt.ArrayLike, v: npt.ArrayLike, given: npt.ArrayLike | None = None) -> Values:
         """Quantile: the ε with ``cdf(ε, v) = q``; nan unless ``0 <= q <= 1``."""
         table, z = self._at(given)
-        return table.value("ppf", q, self._speeds(v), z)[()]
+        return table.value("ppf", _numbers("q", q), self._speeds(v), z)[()]
 
     def median(self, v: npt.ArrayLike, given: npt.ArrayLike | None = None) -> Values:
         """Median of ε."""
@@ -108,15 +106,20 @@ class TabulatedDistribution:
         table, z = self._at(given)
         speeds = self._speeds(v)
         own = np.broadcast_shapes(speeds.shape, z.shape)
-        shape = own if size is None else (size,) if isinstance(size, int | np.integer) else tuple(size)
+        shape = own if size is None else _shape(size)
         if shape != own and not _reaches(own, shape):
             raise ParameterError(wrong("size", size, f"a shape that {own} broadcasts to"))
+        if 8 * math.prod(shape) > available_memory():
+            most = available_memory() // 8
+            raise ParameterError(
+                wrong("size", size, f"at most {most:.4g} draws, which this machine can hold")
+            )
         return table.draw(speeds, z, shape, _seed(random_state), threads)[()]
 
     def pdf_error(self, x: npt.ArrayLike, v: npt.ArrayLike) -> Values:
         """Give the standard error of `pdf`, at most; nan where the distribution was made from counts alone.
 
-        Blocks of particles are the draws, not impacts. Neighbouring nodes share impacts; their errors are
+        Batches of particles are the draws, not impacts. Neighbouring nodes share impacts; their errors are
         added as if they were one.
         """
         return self._error(x, v, "probability_error")
@@ -125,8 +128,22 @@ class TabulatedDistribution:
         """Give the standard error of `cdf`, at most, as `pdf_error`."""
         return self._error(x, v, "probability_below_error")
 
+    def mean_error(self, v: npt.ArrayLike) -> Values:
+        """Give the standard error of `mean`, at most, as `pdf_error`."""
+        return self._moment_error(v, "mean_error")
+
+    def std_error(self, v: npt.ArrayLike) -> Values:
+        """Give the standard error of `std`, at most, as `pdf_error`."""
+        return self._moment_error(v, "std_error")
+
+    def _moment_error(self, v: npt.ArrayLike, name: str) -> Values:
+        speed = self._speeds(v)
+        if name not in self.data:
+            return np.full(speed.shape, np.nan)[()]
+        return np.interp(speed, self._table.speeds, self.data[name].to_numpy())[()]
+
     def _error(self, x: npt.ArrayLike, v: npt.ArrayLike, name: str) -> Values:
-        value, speed = np.broadcast_arrays(np.asarray(x, dtype=np.float64), self._speeds(v))
+        value, speed = np.broadcast_arrays(_numbers("x", x), self._speeds(v))
         error = np.full(value.shape, np.nan)
         if name not in self.data:
             return error[()]
@@ -144,6 +161,7 @@ class TabulatedDistribution:
                     density = np.concatenate([[0.0], own[:-1] / np.diff(edges), [0.0]])
                     found = density[np.searchsorted(edges, value[here], side="right")]
                 error[here] += weight[here] * found
+        error[np.isnan(value) | np.isnan(speed)] = np.nan
         return error[()]
 
     @cached_property
@@ -161,21 +179,44 @@ class TabulatedDistribution:
             raise ParameterError(
                 wrong("given", given, "None: the distribution was learned without a condition")
             )
-        z = np.asarray(given, dtype=np.float64)
+        z = _numbers("given", given)
         beyond = (z < 0.0) | (z > 1.0)
         if np.any(beyond):
             raise ParameterError(wrong("given", float(z[beyond].flat[0]), f"in [0, 1], {self.given}"))
         return self._conditional, z
 
     def _speeds(self, v: npt.ArrayLike) -> Floats:
-        speeds = np.asarray(v, dtype=np.float64)
+        speeds = _numbers("v", v)
         low, high = self.velocities
-        if self.data.attrs.get("beyond") != "clamp" and speeds.size:
-            for extreme in (np.fmin.reduce(speeds, axis=None), np.fmax.reduce(speeds, axis=None)):
-                if extreme < low or extreme > high:
-                    allowed = f"in [{low!r}, {high!r}] m/s, the speeds that were learned; clamped() takes any"
-                    raise ParameterError(wrong("v", float(extreme), allowed))
+        allowed = f"in [{low!r}, {high!r}] m/s, the speeds that were learned; clamped() takes any"
+        if self.data.attrs.get("beyond") == "clamp":
+            low, high, allowed = 0.0, np.inf, "a speed, >= 0 m/s"
+        beyond = (speeds < low) | (speeds > high)
+        if np.any(beyond):
+            raise ParameterError(wrong("v", float(speeds[beyond].flat[0]), allowed))
         return speeds
+
+
+def _numbers(name: str, values: npt.ArrayLike) -> Floats:
+    """Give real numbers as an array; what is masked is nan."""
+    allowed = "a number or an array of numbers"
+    try:
+        found = np.ma.asarray(values) if isinstance(values, np.ma.MaskedArray) else np.asarray(values)
+    except ValueError as error:
+        raise ParameterError(wrong(name, values, allowed)) from error
+    if found.dtype.kind not in "buif" and found.size:
+        raise ParameterError(wrong(name, values, allowed))
+    return np.asarray(np.ma.filled(found.astype(np.float64), np.nan))
+
+
+def _shape(size: Any) -> tuple[int, ...]:
+    try:
+        shape = tuple(index(length) for length in (size if isinstance(size, Iterable) else (size,)))
+    except TypeError:
+        shape = (-1,)
+    if isinstance(size, bool) or min(shape, default=0) < 0:
+        raise ParameterError(wrong("size", size, "a whole number >= 0 or a tuple of them"))
+    return shape
 
 
 def _reaches(shape: tuple[int, ...], larger: tuple[int, ...]) -> bool:

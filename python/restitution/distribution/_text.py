@@ -17,7 +17,7 @@ _IMAGES = (".png", ".pdf", ".svg")
 
 def checked_name(name: str) -> str:
     """Refuse what is no identifier in C, C++ and Fortran."""
-    if not re.fullmatch(r"[A-Za-z][A-Za-z0-9_]{0,23}", name):
+    if not isinstance(name, str) or not re.fullmatch(r"[A-Za-z][A-Za-z0-9_]{0,23}", name):
         allowed = "a letter and then at most 23 letters, digits and underscores"
         raise ParameterError(wrong("name", name, allowed))
     return name

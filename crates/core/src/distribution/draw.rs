@@ -9,13 +9,17 @@ use crate::{Error, Means, Monitor};
 struct Inverse<'a> {
     edges: &'a [f64],
     cumulative: &'a [f64],
-    /// For each of equal steps of probability, the last bin that starts at or below it.
+    /// For each of equal steps of probability, the last bin that starts at or below it; none for few draws.
     guide: Vec<u32>,
 }
 
 impl<'a> Inverse<'a> {
-    fn new((edges, cumulative): (&'a [f64], &'a [f64])) -> Self {
-        let steps = edges.len().next_power_of_two();
+    fn new((edges, cumulative): (&'a [f64], &'a [f64]), many: bool) -> Self {
+        let steps = if many {
+            edges.len().next_power_of_two()
+        } else {
+            0
+        };
         let bin = |step| {
             let q = step as f64 / steps as f64;
             cumulative.partition_point(|&below| below <= q) as u32 - 1
@@ -30,10 +34,15 @@ impl<'a> Inverse<'a> {
     /// The quantile of u in [0, 1).
     #[inline]
     fn quantile(&self, u: f64) -> f64 {
-        let mut bin = self.guide[(u * self.guide.len() as f64) as usize] as usize;
-        while self.cumulative[bin + 1] <= u {
-            bin += 1;
-        }
+        let bin = if self.guide.is_empty() {
+            self.cumulative.partition_point(|&below| below <= u) - 1
+        } else {
+            let mut bin = self.guide[(u * self.guide.len() as f64) as usize] as usize;
+            while self.cumulative[bin + 1] <= u {
+                bin += 1;
+            }
+            bin
+        };
         let slope = (self.edges[bin + 1] - self.edges[bin])
             / (self.cumulative[bin + 1] - self.cumulative[bin]);
         self.edges[bin] + (u - self.cumulative[bin]) * slope
@@ -62,8 +71,10 @@ impl Mixture<'_> {
         monitor: &Monitor,
     ) -> Result<(), Error> {
         let layout = &self.layout;
+        // The short cuts cost a search for every edge: draws of a time step do without.
+        let many = out.len() > layout.edges.len();
         let inverses: Vec<_> = (0..layout.conditions.len())
-            .map(|component| Inverse::new(self.histogram(component)))
+            .map(|component| Inverse::new(self.histogram(component), many))
             .collect();
         in_blocks(out, means, monitor, |first, block| {
             let (mut speed, mut site) = (f64::NAN, (0, 0.0));

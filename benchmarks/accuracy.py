@@ -1,0 +1,119 @@
+"""`python -m benchmarks.accuracy`: how far learned distributions are from fresh simulations, as a table.
+
+For each body and law p(ε | v) is learned from some 10⁷ impacts, and held against twice as many of other
+particles in every interval between two nodes, about one per cent of v. What a perfect distribution would show
+is the scatter of the fresh particles, by bootstrap over batches of them.
+"""
+
+import argparse
+import math
+import warnings
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+import restitution as rs
+from restitution._energy import EnergyWarning
+from restitution._run import Run
+from restitution.bodies import Body
+from restitution.distribution._check import Check
+from restitution.distribution._ensemble import FRESH, Ensemble
+from restitution.laws import Law
+
+R = 3e-3
+FRESH_SEED = 1_000_003
+
+
+@dataclass(frozen=True)
+class Case:
+    """A body, a law, and how many impacts of how many particles have 10⁷ at the default speeds."""
+
+    body: Body
+    law: Law
+    particles: int
+    impacts: int
+    spread: bool = True
+    orientation: str = "uniform-angle"
+
+
+CASES = {
+    "dumbbell 0.1, ε^n = 0.98": Case(
+        rs.Dumbbell(radius=R, separation=0.1 * R), rs.TangentialRestitution(normal=0.98), 80_000, 200
+    ),
+    "the same from one height": Case(
+        rs.Dumbbell(radius=R, separation=0.1 * R), rs.TangentialRestitution(normal=0.98), 80_000, 200, False
+    ),
+    "dumbbell 0.5, ε^n = 0.98": Case(
+        rs.Dumbbell(radius=R, separation=0.5 * R), rs.TangentialRestitution(normal=0.98), 80_000, 200
+    ),
+    "dumbbell 2, ε^n = 0.98": Case(
+        rs.Dumbbell(radius=R, separation=2.0 * R), rs.TangentialRestitution(normal=0.98), 80_000, 200
+    ),
+    "dumbbell 0.1, ε^n = 0.4": Case(
+        rs.Dumbbell(radius=R, separation=0.1 * R), rs.TangentialRestitution(normal=0.4), 2_500_000, 20
+    ),
+    "dumbbell 2, ε^n = 0.4": Case(
+        rs.Dumbbell(radius=R, separation=2.0 * R), rs.TangentialRestitution(normal=0.4), 2_500_000, 20
+    ),
+    "dumbbell 0.5, frictionless, ε^n = 0.9": Case(
+        rs.Dumbbell(radius=R, separation=0.5 * R), rs.Frictionless(normal=0.9), 300_000, 60
+    ),
+    "dumbbell 1, Coulomb μ = 0.3, ε^n = 0.8": Case(
+        rs.Dumbbell(radius=R, separation=R), rs.Coulomb(normal=0.8, friction=0.3), 500_000, 60
+    ),
+    "oblate 1:0.8, Coulomb μ = 0.3, ε^n = 0.9": Case(
+        rs.Spheroid(equatorial=R, polar=0.8 * R), rs.Coulomb(normal=0.9, friction=0.3), 200_000, 100
+    ),
+}
+
+
+def measured(case: Case, scale: float) -> str:
+    """Learn, hold against fresh particles, and give the cells of a row."""
+    particles = round(scale * case.particles)
+    lowest = max(case.body.solid.lowest(np.array([cosine])) for cosine in (-1.0, 0.0, 1.0))
+    assert isinstance(case.law.normal, float)
+    number = math.ceil(-1000.0 * math.log(case.law.normal)) if case.spread else 1  # steps of 0.1 % in v
+    heights = tuple(lowest + 0.06 * np.geomspace(case.law.normal**2, 1.0, number + 1)[1:])
+    how: dict[str, Any] = {"impacts": case.impacts, "orientation": case.orientation}
+    dist = rs.FluctuatingRestitution.learn(
+        case.body, case.law, particles=particles, release_height=heights, seed=1, **how
+    )
+    run = Run(body=case.body, law=case.law, particles=2 * particles, seed=FRESH_SEED, **how)
+    check = Check(dist._table)
+    for block in Ensemble(run, heights).blocks(FRESH):
+        check.add(
+            block.batch, block.velocity.ravel(), block.restitution.ravel(), np.zeros(block.velocity.size)
+        )
+    found, scatter = check.distances(), check.scatter()
+    worst = int(np.argmax(found))
+    low, high = dist.velocities
+    return " | ".join(
+        [
+            f"{float(dist.data.impacts.sum()):.2g}",
+            f"{low:.3f} to {high:.3f}",
+            f"{dist.data.sizes['node']}",
+            f"{np.median(found):.4f} ({np.median(scatter):.4f})",
+            f"{found[worst]:.4f} ({scatter[worst]:.4f}) at {float(dist.data.velocity[worst]):.3f}",
+            f"{np.mean(found > 0.01):.1%}",
+            f"{float(dist.data.ks_distance.max()):.4f}",
+        ]
+    )
+
+
+def main() -> None:
+    """Print the table."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--scale", type=float, default=1.0, help="times the particles")
+    parser.add_argument("--only", default="", help="rows whose name contains this")
+    options = parser.parse_args()
+    warnings.simplefilter("ignore", EnergyWarning)
+    head = "| body, law | impacts | v, m/s | nodes | median | worst, at v | above 0.01 | stated |"
+    print(head, "|---" * 8 + "|", sep="\n")
+    for name, case in CASES.items():
+        if options.only in name:
+            print(f"| {name} | {measured(case, options.scale)} |", flush=True)
+
+
+if __name__ == "__main__":
+    main()
