@@ -1,18 +1,21 @@
 """Whether a fit is good, and whether it is better than another one."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from math import erfc, inf, sqrt
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
+from restitution.fit._clusters import Clustered, Tallied, clustered, empirical
+from restitution.fit._counts import Counts
 from restitution.fit._result import Array, Fit, finite_samples
 
 
 @dataclass(frozen=True)
 class Goodness:
-    """Goodness of a fit, with p-values by parametric bootstrap.
+    """Goodness of a fit, with p-values by bootstrap.
 
     Attributes
     ----------
@@ -20,8 +23,8 @@ class Goodness:
     kolmogorov_smirnov, anderson_darling : float
         The statistics D = sup|F_n − F| and A².
     kolmogorov_smirnov_p, anderson_darling_p : float
-        Share of refitted draws from the fit (the samples themselves counted in) whose statistic is as large.
-        Never below 1/(resamples + 1).
+        Share of refitted draws (the samples themselves counted in) whose statistic is as large. Never below
+        1/(resamples + 1).
     resamples : int
     """
 
@@ -34,19 +37,31 @@ class Goodness:
 
 
 def goodness(
-    family: Callable[[Array], Fit], samples: ArrayLike, *, resamples: int = 199, seed: int = 1
+    family: Callable[[Any], Fit],
+    samples: ArrayLike | Sequence[Counts],
+    *,
+    clusters: ArrayLike | None = None,
+    resamples: int = 199,
+    seed: int = 1,
 ) -> Goodness:
-    """Fit `samples` and test the fit against draws from itself, each fitted again.
+    """Fit `samples` and test the fit.
 
-    Fitting again is what makes the p-values right: a fitted density lies closer to its samples than the true
-    one does.
+    Independent samples are compared with draws from the fit, each fitted again, which makes the p-values
+    right: a fitted density lies closer to its samples than the true one does.
+
+    With `clusters` the samples of a particle may be correlated in any way. Then particles are drawn again
+    with replacement and fitted again, and F*_n - F_θ* - (F_n - F_θ) is compared with F_n - F_θ (G. J. Babu
+    and C. R. Rao, Sankhyā 66, 63 (2004)); both statistics are taken at 1000 quantiles of the samples, or at
+    the edges of counts.
 
     Parameters
     ----------
     family : callable
         A fit of this package, such as `asymmetric_laplace`, or any function from samples to a `Fit`.
-    samples : array_like
-        Statistically INDEPENDENT values: of the impacts of one particle take one.
+    samples : array_like, shape (n,), or sequence of Counts
+        Statistically INDEPENDENT values, unless there are `clusters`; or the counts of independent runs.
+    clusters : array_like of int, shape (n,), optional
+        Number of the particle that each sample is from.
     resamples : int, default 199
         Draws for the bootstrap, ≥ 1; the p-value has the resolution 1/(resamples + 1).
     seed : int, default 1
@@ -54,18 +69,42 @@ def goodness(
     Raises
     ------
     ValueError
-        As the fit does, or if `resamples` < 1.
+        As the fit does, if `resamples` < 1, or labels do not match.
     """
     if resamples < 1:
         raise ValueError(f"resamples = {resamples!r}: at least one is needed")
-    x = finite_samples(samples)
     random = np.random.default_rng(seed)
+    if clusters is not None or (isinstance(samples, list | tuple) and isinstance(samples[0], Counts)):
+        return _clustered_goodness(family, clustered(samples, clusters), resamples, random)
+    x = finite_samples(samples)  # type: ignore[arg-type]
     fit = family(x)
     observed = _distances(fit, x)
     reached = np.ones(2)
     for _ in range(resamples):
         draw = fit.rvs(x.size, random)
         reached += _distances(family(draw), draw) >= observed
+    ks_p, ad_p = reached / (resamples + 1)
+    return Goodness(fit, float(observed[0]), float(ks_p), float(observed[1]), float(ad_p), resamples)
+
+
+def _clustered_goodness(
+    family: Callable[[Any], Fit], source: Clustered | Tallied, resamples: int, random: np.random.Generator
+) -> Goodness:
+    grid, pool = source.grid(), source.pool()
+    fit = family(pool)
+    fitted = fit.cdf(grid)
+    gap = empirical(pool, grid) - fitted
+    size = fit.samples
+    # A² = n ∫ (F_n - F)²/(F(1 - F)) dF over the grid.
+    weight = np.diff(fitted, prepend=0.0) / np.maximum(fitted * (1.0 - fitted), 1e-12)
+
+    def statistics(difference: Array) -> Array:
+        return np.array([np.max(np.abs(difference)), size * np.sum(difference**2 * weight)])
+
+    observed, reached = statistics(gap), np.ones(2)
+    for _ in range(resamples):
+        again = source.redrawn(random)
+        reached += statistics(empirical(again, grid) - family(again).cdf(grid) - gap) >= observed
     ks_p, ad_p = reached / (resamples + 1)
     return Goodness(fit, float(observed[0]), float(ks_p), float(observed[1]), float(ad_p), resamples)
 
