@@ -78,7 +78,7 @@ def test_the_first_impact_is_equation_17(
     """Nothing slips at the first impact from rest, so that (17) holds for every ε^t."""
     body = dumbbell(elongation)
     data = bounce(elongation, normal, tangential, orientation=orientation, impacts=1)
-    r, length, j = body.radius, body.separation, body.transverse_inertia / body.mass
+    r, length, j = body.radii[0], body.separation, body.transverse_inertia / body.mass
     c = np.abs(np.cos(data.release_angle))  # the lower sphere touches
     top = 4 * j + length**2 * c**2 + 4 * length * r * c + 4 * r**2
     expected = -1 + (1 + normal) * top / (4 * j + 4 * length * r * c + 4 * r**2 + length**2)  # (17)

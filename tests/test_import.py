@@ -72,8 +72,9 @@ def test_the_stub_describes_the_core() -> None:
     stub = ast.parse((ROOT / "python/restitution/_core.pyi").read_text(encoding="utf-8"))
     functions = {node.name: node.args for node in stub.body if isinstance(node, ast.FunctionDef)}
     classes = {node.name: node.bases for node in stub.body if isinstance(node, ast.ClassDef)}
+    constants = {ast.unparse(node.target) for node in stub.body if isinstance(node, ast.AnnAssign)}
     public = {name for name in vars(_core) if not name.startswith("_")}
-    assert public == {*functions, *classes}
+    assert public == {*functions, *classes, *constants}
     for name, arguments in functions.items():
         parameters = inspect.signature(getattr(_core, name)).parameters.values()
         keywords = [p.name for p in parameters if p.kind is p.KEYWORD_ONLY]
@@ -81,9 +82,8 @@ def test_the_stub_describes_the_core() -> None:
         others = [p.name for p in parameters if p.kind is not p.KEYWORD_ONLY]
         assert others == [argument.arg for argument in arguments.args]
     for name, bases in classes.items():
-        assert [base.__name__ for base in getattr(_core, name).__bases__] == [
-            ast.unparse(base) for base in bases
-        ]
+        expected = [ast.unparse(base) for base in bases] or ["object"]
+        assert [base.__name__ for base in getattr(_core, name).__bases__] == expected
 
 
 @pytest.mark.parametrize("name", MODULES)

@@ -4,22 +4,43 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from restitution import analytic, figures, fit
+    from restitution._compare import compare
     from restitution._core import NumericalError, build_info
+    from restitution._energy import EnergyWarning
     from restitution._reduce import reduce
     from restitution._simulate import SimulationInterrupted, simulate
     from restitution._statistics import statistics
-    from restitution.bodies import Dumbbell
+    from restitution.bodies import Dumbbell, LoadedSphere, Spherocylinder, Spheroid
     from restitution.distribution import FluctuatingRestitution
-    from restitution.laws import TangentialRestitution
+    from restitution.laws import (
+        ChatterjeeRuina,
+        Coulomb,
+        Frictionless,
+        Plastic,
+        Tabulated,
+        TangentialRestitution,
+        Viscoelastic,
+    )
 
 __all__ = [
+    "ChatterjeeRuina",
+    "Coulomb",
     "Dumbbell",
+    "EnergyWarning",
     "FluctuatingRestitution",
+    "Frictionless",
+    "LoadedSphere",
     "NumericalError",
+    "Plastic",
     "SimulationInterrupted",
+    "Spherocylinder",
+    "Spheroid",
+    "Tabulated",
     "TangentialRestitution",
+    "Viscoelastic",
     "analytic",
     "build_info",
+    "compare",
     "figures",
     "fit",
     "reduce",
@@ -29,12 +50,23 @@ __all__ = [
 
 _HOMES = {
     "Dumbbell": "bodies",
+    "LoadedSphere": "bodies",
+    "Spherocylinder": "bodies",
+    "Spheroid": "bodies",
     "FluctuatingRestitution": "distribution",
     "NumericalError": "_core",
     "build_info": "_core",
+    "compare": "_compare",
+    "EnergyWarning": "_energy",
     "reduce": "_reduce",
     "SimulationInterrupted": "_simulate",
+    "ChatterjeeRuina": "laws",
+    "Coulomb": "laws",
+    "Frictionless": "laws",
+    "Plastic": "laws",
+    "Tabulated": "laws",
     "TangentialRestitution": "laws",
+    "Viscoelastic": "laws",
     "simulate": "_simulate",
     "statistics": "_statistics",
 }

@@ -5,20 +5,54 @@ import numpy as np
 import numpy.typing as npt
 
 __all__ = [
+    "CREATES_ENERGY",
     "NumericalError",
+    "Solid",
     "build_info",
-    "dumbbell_inertia",
+    "dumbbell",
+    "loaded_sphere",
     "mixture_draw",
     "mixture_value",
+    "normal_coefficient",
+    "respond",
     "simulate",
     "sincos",
+    "spherocylinder",
+    "spheroid",
     "statistics",
 ]
 
+CREATES_ENERGY: float
+
 class NumericalError(RuntimeError): ...
 
-def dumbbell_inertia(radius: float, separation: float, density: float) -> tuple[float, float, float]: ...
+class Solid:
+    @property
+    def mass(self) -> float: ...
+    @property
+    def transverse_inertia(self) -> float: ...
+    @property
+    def axial_inertia(self) -> float: ...
+    @property
+    def centre_of_mass(self) -> float: ...
+    def lowest(self, cosines: npt.NDArray[np.float64]) -> float: ...
+    def farthest(self) -> float: ...
+
+def dumbbell(radius: tuple[float, float], separation: float, density: tuple[float, float]) -> Solid: ...
+def loaded_sphere(radius: float, density: float, load: float, offset: float) -> Solid: ...
+def spherocylinder(radius: float, separation: float, density: float) -> Solid: ...
+def spheroid(equatorial: float, polar: float, density: float) -> Solid: ...
 def sincos(x: float) -> tuple[float, float]: ...
+def normal_coefficient(
+    normal: float | Mapping[str, Any], speeds: npt.NDArray[np.float64]
+) -> npt.NDArray[np.float64]: ...
+def respond(
+    law: Mapping[str, Any],
+    slip: tuple[float, float, float],
+    arm: tuple[float, float],
+    inertia: float,
+    across: float,
+) -> tuple[tuple[float, float, float], float]: ...
 def simulate(
     run: Mapping[str, Any],
     threads: int,

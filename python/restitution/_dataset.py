@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from restitution._energy import ledger_of
 from restitution._run import Run
 
 BYTES_PER_IMPACT = 57
@@ -52,7 +53,7 @@ _PER_IMPACT: dict[str, dict[str, Any]] = {
         "symbol": "θ",
     },
     "contact": {
-        "long_name": "sphere that touched; sphere 1 is at +L/2 along the axis",
+        "long_name": "sphere or half that touched; the axis points to 1",
         **_flags(range(3), ("none", "sphere_1", "sphere_2")),
     },
 }
@@ -72,6 +73,7 @@ def dataset(run: Run, table: dict[str, Any]) -> xr.Dataset:
     for name, attrs in _PER_PARTICLE.items():
         variables[name] = (("particle",), table[name], attrs)
     attrs = attributes(run, "Impacts of bouncing aspherical particles")
+    attrs |= ledger_of(table["energy_ratio"])
     cut_short = np.count_nonzero(table["stop_reason"] == STOP_REASONS.index("interrupted"))
     done = len(table["stop_reason"]) - cut_short
     if done < run.particles:

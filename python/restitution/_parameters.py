@@ -1,6 +1,7 @@
 """One validation for the Python call and the TOML file: frozen parameter sets with readable errors."""
 
 from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
 from difflib import get_close_matches
 from reprlib import Repr
 from typing import Annotated, Any, ClassVar, NamedTuple
@@ -68,6 +69,13 @@ Number = Annotated[float, BeforeValidator(_plain_number), Field(strict=True, all
 Whole = Annotated[int, BeforeValidator(_plain_number), Field(strict=True)]
 
 
+@dataclass(frozen=True)
+class Allowed:
+    """In an annotation: says in words what a field may hold."""
+
+    text: str
+
+
 class Parameters(BaseModel):
     """A frozen set of named parameters.
 
@@ -108,6 +116,9 @@ def _problems(model: type[BaseModel], error: ValidationError) -> Iterator[Proble
 def _allowed(model: type[BaseModel], name: str) -> str:
     """Say in words what the field of a model may hold."""
     field = model.model_fields[name]
+    for rule in field.metadata:
+        if isinstance(rule, Allowed):
+            return rule.text
     about = f" ({field.description})" if field.description else ""
     if field.annotation not in (int, float):
         return f"a {getattr(field.annotation, '__name__', field.annotation)}{about}"

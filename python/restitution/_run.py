@@ -6,9 +6,9 @@ import numpy as np
 import numpy.typing as npt
 from pydantic import BeforeValidator, Field, InstanceOf, model_validator
 
-from restitution._parameters import Number, ParameterError, Parameters, Problem, Whole, wrong
-from restitution.bodies import Dumbbell
-from restitution.laws import TangentialRestitution
+from restitution._parameters import Allowed, Number, ParameterError, Parameters, Problem, Whole, wrong
+from restitution.bodies import Body
+from restitution.laws import LAWS, Law
 
 Orientation = Literal["uniform-angle", "isotropic"]
 
@@ -47,7 +47,7 @@ class Run(Parameters):
     particles, impacts : int
         Number of particles and most impacts of each; > 0.
     release_height : float
-        Height of the centre of mass at release, in m. No sphere may be below the plane.
+        Height of the centre of mass at release, in m. No part of it may be below the plane.
     gravity : float
         Acceleration of gravity in m/s², > 0.
     orientation : {"uniform-angle", "isotropic"} or array of float, shape (particles,)
@@ -59,8 +59,8 @@ class Run(Parameters):
         Seed of the random numbers, in [0, 2⁶⁴).
     """
 
-    body: InstanceOf[Dumbbell]
-    law: InstanceOf[TangentialRestitution]
+    body: Annotated[InstanceOf[Body], Allowed("a Dumbbell, LoadedSphere, Spherocylinder or Spheroid")]
+    law: Annotated[InstanceOf[Law], Allowed(LAWS)]
     particles: Annotated[Whole, Field(ge=1, lt=2**40, description="number of particles")] = 1000
     impacts: Annotated[Whole, Field(ge=1, lt=2**40, description="most impacts of a particle")] = 400
     release_height: Annotated[Number, Field(gt=0, description="height of the centre of mass, m")] = 0.06
@@ -78,10 +78,11 @@ class Run(Parameters):
             given = f"an array of {angles.size} angles"
             allowed = f"one angle per particle, and particles = {self.particles}"
             raise ParameterError(Problem("orientation", f" = {given}: must be {allowed}"))
-        tilt = 1.0 if angles is None else float(np.max(np.abs(np.cos(angles))))
-        lowest = self.body.radius + tilt * self.body.separation / 2
-        if self.release_height < lowest:
-            allowed = f"at least {lowest!r} m, R + L/2 max |cos θ|, or a sphere would reach below the plane"
+        solid = self.body.solid
+        lowest = solid.farthest() if angles is None else solid.lowest(np.cos(angles))
+        # A body put down on the plane may be off by the rounding of its height.
+        if self.release_height < lowest * (1.0 - 4.0 * np.finfo(np.float64).eps):
+            allowed = f"at least {lowest!r} m, or a part of the body would reach below the plane"
             raise ParameterError(wrong("release_height", self.release_height, allowed))
         return self
 
@@ -93,8 +94,8 @@ class Run(Parameters):
     def parameters(self) -> dict[str, Any]:
         """Name every parameter as the core does."""
         return {
-            **self.body.model_dump(),
-            **self.law.model_dump(),
+            "body": self.body.solid,
+            "law": self.law.parameters(),
             **{name: getattr(self, name) for name in (*self.NUMBERS, "orientation", "seed")},
         }
 
@@ -104,7 +105,7 @@ class Run(Parameters):
             "body": type(self.body).__name__,
             **self.body.model_dump(),
             "law": type(self.law).__name__,
-            **self.law.model_dump(),
+            **self.law.attributes(),
             **{name: getattr(self, name) for name in self.NUMBERS},
             "orientation": self.orientation if self.angles is None else "given",
             "seed": np.uint64(self.seed),

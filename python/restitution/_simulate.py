@@ -7,8 +7,8 @@ import numpy.typing as npt
 from restitution import _core
 from restitution._resources import check_memory, checked_threads, progress_bar
 from restitution._run import Run
-from restitution.bodies import Dumbbell
-from restitution.laws import TangentialRestitution
+from restitution.bodies import Body
+from restitution.laws import Law
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -30,8 +30,8 @@ class SimulationInterrupted(KeyboardInterrupt):
 
 
 def simulate(
-    body: Dumbbell,
-    law: TangentialRestitution,
+    body: Body,
+    law: Law,
     *,
     particles: int = 1000,
     impacts: int = 400,
@@ -47,14 +47,14 @@ def simulate(
 
     Parameters
     ----------
-    body : Dumbbell
+    body : Dumbbell, LoadedSphere, Spherocylinder or Spheroid
         What falls.
-    law : TangentialRestitution
+    law : Law
         What an impact does.
     particles, impacts : int
         Number of particles, and the most impacts that each may have; both > 0.
     release_height : float
-        Height of the centre of mass at release, in m; no sphere may be below the plane.
+        Height of the centre of mass at release, in m; no part may be below the plane.
     gravity : float
         Acceleration of gravity in m/s², > 0.
     orientation : {"uniform-angle", "isotropic"} or array of float, shape (particles,)
@@ -74,9 +74,11 @@ def simulate(
     xarray.Dataset
         Dimensions (particle, impact). Variables over both: ``time``, ``impact_velocity``,
         ``rebound_velocity``, ``restitution``, ``rotational_fraction``, ``energy_ratio``, ``angle`` (float64,
-        NaN where the impact never happened) and ``contact`` (which sphere touched). Over particles:
-        ``impacts``, ``stop_reason``, ``release_angle``. Units are in the variables' attributes, all
-        parameters in the Dataset's.
+        NaN where the impact never happened) and ``contact`` (which sphere touched, or which half of a
+        spheroid). Over particles: ``impacts``, ``stop_reason``, ``release_angle``. Units are in the
+        variables' attributes, all parameters in the Dataset's, as are ``energy_created_impacts``, the
+        number of impacts that multiplied the kinetic energy by more than 1 + 1e-12, their share of all
+        impacts, ``energy_created_share``, and if there are any ``largest_energy_ratio``.
 
     Raises
     ------
@@ -86,6 +88,11 @@ def simulate(
         If the engine cannot follow a particle; the message says how to reproduce it.
     SimulationInterrupted
         On Ctrl-C; a `KeyboardInterrupt` that carries the impacts so far.
+
+    Warns
+    -----
+    EnergyWarning
+        Once, if impacts created kinetic energy; see docs/energy.md.
 
     Notes
     -----
@@ -103,6 +110,8 @@ def simulate(
     >>> bool((data.restitution.isel(impact=0) <= 0.98).all())
     True
     """
+    from restitution._energy import warn
+
     run = Run(
         body=body,
         law=law,
@@ -114,7 +123,9 @@ def simulate(
         minimum_speed=minimum_speed,
         seed=seed,
     )
-    return simulate_run(run, threads=threads, progress=progress)
+    data = simulate_run(run, threads=threads, progress=progress)
+    warn(data)
+    return data
 
 
 def simulate_run(run: Run, *, threads: int | None = None, progress: bool = False) -> "xr.Dataset":

@@ -7,20 +7,21 @@ import numpy.typing as npt
 import xarray as xr
 
 from restitution import _core
-from restitution._bins import FRACTION_BINS, assemble, by_velocity, checked_edges
+from restitution._bins import FRACTION_BINS, FloatArray, IntArray, assemble, by_velocity, checked_edges
 from restitution._dataset import STOP_REASONS, attributes
+from restitution._energy import ledger, warn
 from restitution._resources import available_memory, checked_threads, progress_bar
 from restitution._run import Run
 from restitution._simulate import SimulationInterrupted
-from restitution.bodies import Dumbbell
-from restitution.laws import TangentialRestitution
+from restitution.bodies import Body
+from restitution.laws import Law
 
 _MOMENTS = ("mean", "variance", "skewness", "kurtosis", "minimum", "maximum", "mean_fraction")
 
 
 def statistics(
-    body: Dumbbell,
-    law: TangentialRestitution,
+    body: Body,
+    law: Law,
     *,
     particles: int = 1000,
     impacts: int = 400,
@@ -59,7 +60,11 @@ def statistics(
     -------
     xarray.Dataset
         As from `restitution.reduce`, and ``particles_ended`` (stop_reason), the number of particles by stop
-        reason. The moments rest on exact sums of ε - ε^n rounded to 2⁻²⁶ ≈ 1.5e-8.
+        reason. In each row ``energy_created``, the number of impacts that multiplied the kinetic energy by
+        more than 1 + 1e-12, and ``largest_energy_ratio``, the largest factor of these, NaN where there are
+        none; over all impacts, in the bins or not, the attributes ``energy_created_impacts``,
+        ``energy_created_share`` and ``largest_energy_ratio``, as from `simulate`. The moments rest on exact
+        sums of ε - ε^n rounded to 2⁻²⁶ ≈ 1.5e-8.
 
     Raises
     ------
@@ -67,6 +72,11 @@ def statistics(
         Naming the argument that is wrong.
     SimulationInterrupted
         On Ctrl-C; its ``data`` holds the statistics of the impacts so far.
+
+    Warns
+    -----
+    EnergyWarning
+        Once, if impacts created kinetic energy; see docs/energy.md.
 
     Examples
     --------
@@ -120,10 +130,29 @@ def statistics(
         coords={"stop_reason": list(STOP_REASONS)},
         attrs={"long_name": "particles by the reason why they ended"},
     )
+    _add_energy(
+        found, table["energy_created"], table["largest_energy_ratio"], by_velocity=velocity is not None
+    )
     found.attrs = attributes(run, "Statistics of the impacts of bouncing aspherical particles")
+    found.attrs |= ledger(
+        int(table["count"].sum()),
+        int(table["energy_created"].sum()),
+        float(table["largest_energy_ratio"].max()),
+    )
     if interrupted:
         raise SimulationInterrupted(found.assign_attrs(incomplete="interrupted by the user"))
+    warn(found)
     return found
+
+
+def _add_energy(found: xr.Dataset, created: IntArray, largest: FloatArray, *, by_velocity: bool) -> None:
+    """Add what each row says of the energy; the first and last row by velocity are beyond the bins."""
+    row, inner = ("velocity", slice(1, -1)) if by_velocity else ("impact", slice(None))
+    text = "impacts that multiplied the kinetic energy by more than 1 + 1e-12"
+    found["energy_created"] = ((row,), created[inner], {"long_name": text})
+    factor = np.where(created > 0, largest, np.nan)[inner]
+    text = "largest factor by which an impact multiplied the kinetic energy, where any created energy"
+    found["largest_energy_ratio"] = ((row,), factor, {"long_name": text, "units": "1"})
 
 
 def _check_memory(rows: int, columns: int, threads: int) -> None:

@@ -6,15 +6,42 @@ from typing import Any, TypeVar
 
 from restitution._parameters import ParameterError, Parameters, Problem, unknown, wrong
 from restitution._run import Run
-from restitution.bodies import Dumbbell
-from restitution.laws import TangentialRestitution
+from restitution.bodies import Dumbbell, LoadedSphere, Spherocylinder, Spheroid
+from restitution.laws import (
+    ChatterjeeRuina,
+    Coulomb,
+    Frictionless,
+    Plastic,
+    Tabulated,
+    TangentialRestitution,
+    Viscoelastic,
+)
 
-# Table: the key that chooses a kind of body or law, and the kinds there are.
+# Table: the key that chooses a kind of body, law or material, and the kinds there are.
 _KINDS: dict[str, tuple[str, dict[str, type[Parameters]]]] = {
-    "body": ("shape", {"dumbbell": Dumbbell}),
-    "law": ("type", {"tangential-restitution": TangentialRestitution}),
+    "body": (
+        "shape",
+        {
+            "dumbbell": Dumbbell,
+            "loaded-sphere": LoadedSphere,
+            "spherocylinder": Spherocylinder,
+            "spheroid": Spheroid,
+        },
+    ),
+    "law": (
+        "type",
+        {
+            "tangential-restitution": TangentialRestitution,
+            "frictionless": Frictionless,
+            "coulomb": Coulomb,
+            "chatterjee-ruina": ChatterjeeRuina,
+        },
+    ),
+    # A table [law.normal]; a number stands for itself.
+    "normal": ("type", {"viscoelastic": Viscoelastic, "plastic": Plastic, "tabulated": Tabulated}),
 }
-_TABLES = (*_KINDS, "run")
+_PARTS = ("body", "law")
+_TABLES = (*_PARTS, "run")
 
 P = TypeVar("P", bound=Parameters)
 
@@ -36,8 +63,8 @@ def read(path: Path) -> Run:
         except ValueError as error:  # wrong syntax, or not UTF-8
             raise ValueError(f"{path}: not a TOML file: {error}") from None
     reader = _Reader(tables)
-    parts = {name: reader.chosen(name) for name in _KINDS}
-    run = reader.made("run", Run, **{name: part for name, part in parts.items() if part is not None})
+    parts = {name: reader.chosen(name, reader.table(name)) for name in _PARTS}
+    run = reader.made("run", Run, reader.table("run"), parts)
     if reader.problems or run is None:
         raise ValueError("\n".join(f"{path}: {problem}" for problem in reader.problems))
     return run
@@ -50,11 +77,10 @@ class _Reader:
         self.tables = tables
         self.problems = [unknown(name, "the file", _TABLES) for name in tables if name not in _TABLES]
 
-    def chosen(self, name: str) -> Parameters | None:
-        """Make the body or the law, of the kind that its table asks for."""
-        selector, kinds = _KINDS[name]
+    def chosen(self, name: str, table: dict[str, Any]) -> Parameters | None:
+        """Make the body, the law or the material, of the kind that its table asks for."""
+        selector, kinds = _KINDS[name.rpartition(".")[2]]
         allowed = " or ".join(f'"{kind}"' for kind in kinds)
-        table = self._table(name)
         if selector not in table:
             self.problems.append(Problem(f"{name}.{selector}", f": missing; must be {allowed}"))
             return None
@@ -62,24 +88,38 @@ class _Reader:
         if not isinstance(kind, str) or kind not in kinds:
             self.problems.append(wrong(f"{name}.{selector}", kind, allowed))
             return None
-        return self.made(name, kinds[kind], selector)
+        tables = {key: value for key, value in table.items() if key in _KINDS and isinstance(value, dict)}
+        parts = {key: self.chosen(f"{name}.{key}", value) for key, value in tables.items()}
+        return self.made(name, kinds[kind], table, parts, selector)
 
-    def made(self, name: str, kind: type[P], *selector: str, **parts: Parameters) -> P | None:
-        """Make one set of parameters from the table `name` and the parts that have tables of their own."""
-        table = self._table(name)
-        fields = [field for field in kind.model_fields if field not in _KINDS]
+    def made(
+        self,
+        name: str,
+        kind: type[P],
+        table: dict[str, Any],
+        parts: dict[str, Parameters | None],
+        *selector: str,
+    ) -> P | None:
+        """Make one set of parameters from a table and the parts that have tables of their own."""
+        fields = [field for field in kind.model_fields if field not in _PARTS]
         keys = [*selector, *fields]
         strangers = (key for key in table if key not in keys)
         self.problems.extend(unknown(key, f"[{name}]", keys, prefix=f"{name}.") for key in strangers)
+        values = {field: table[field] for field in fields if field in table}
+        good = {
+            field: part for field, part in parts.items() if part is not None and field in kind.model_fields
+        }
+        bad = parts.keys() - good.keys()
         try:
-            return kind(**{field: table[field] for field in fields if field in table}, **parts)
+            return kind(**{key: value for key, value in (values | good).items() if key not in bad})
         except ParameterError as error:
-            # A body or law that is missing from a run has been reported already.
-            found = (Problem(f"{name}.{key}", text) for key, text in error.problems if key not in _KINDS)
+            # A part that is missing has been reported already.
+            found = (Problem(f"{name}.{key}", text) for key, text in error.problems if key not in bad)
             self.problems.extend(found)
             return None
 
-    def _table(self, name: str) -> dict[str, Any]:
+    def table(self, name: str) -> dict[str, Any]:
+        """Return a table of the file, empty if there is none."""
         table = self.tables.get(name, {})
         if isinstance(table, dict):
             return table

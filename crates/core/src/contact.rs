@@ -1,11 +1,12 @@
 //! WHEN: the first contact of either sphere with the plane, (2), which nothing can make it miss.
 //!
-//! The gap f under either sphere obeys f″ ≥ −M throughout a flight, M = 1 + (L/2)AΩ². A step to the first zero of the
+//! The gap f under either sphere obeys f″ ≥ −M throughout a flight, M = 1 + (L/2)AΩ², or another bound for another hull. A step to the first zero of the
 //! lower bound f + f′τ − Mτ²/2 can therefore not pass a contact; such steps converge quadratically to the first one.
 //! While the centre of mass is higher than the spheres can reach, the step goes to where it comes back down. When the
-//! step has become small, the contact is where the third-order expansion of f has its zero.
+//! step has become small, the contact is where the third-order expansion of f has its zero; smooth hulls go on with certified
+//! steps until nothing of the gap can be left.
 
-use crate::body::Body;
+use crate::body::{Body, Hull};
 use crate::elementary::RANGE;
 use crate::flight::{Flight, Phase};
 use crate::state::{Sphere, State};
@@ -31,7 +32,7 @@ impl Departure {
         let tilt_rate = flight.tilt_rate(flight.phase(0.0));
         let gaps = state.gaps(body);
         let on_the_plane = Sphere::BOTH.into_iter().find_map(|sphere| {
-            let side = sphere.sign() * body.half_separation;
+            let side = body.hull.ball(sphere, state.axis.z).offset;
             let speed = side.mul_add(tilt_rate, state.velocity.z);
             (gaps[sphere as usize] <= 0.0 && speed >= 0.0).then_some((sphere, speed))
         });
@@ -64,11 +65,10 @@ pub enum Landing {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct NoConvergence;
 
-/// The last step is at most this part of the flight time, and turns the axis by at most this angle: 2⁻¹⁶.
-pub(crate) const LAST_STEP: f64 = 1.0 / 65_536.0;
-/// In the last step the gap bends away from its tangent by at most about this part: 2⁻¹¹...
-pub(crate) const LAST_BEND: f64 = 1.0 / 2048.0;
-/// ...or, at a grazing contact, by no more than this, which cannot be seen: 2⁻⁵² R.
+/// The last step is at most this part of the flight time, turns the axis by at most this angle, and the gap bends away from
+/// its tangent by at most about this part of it: 2⁻¹¹...
+pub(crate) const LAST: f64 = 1.0 / 2048.0;
+/// ...or, at a grazing contact and for a smooth hull, by no more than this, which cannot be seen: 2⁻⁵² R.
 pub(crate) const INVISIBLE: f64 = 1.0 / 4_503_599_627_370_496.0;
 /// A sphere that is not approaching is left alone at least until its gap may have bent by that: 2⁻²⁶/M.
 pub(crate) const SHORTEST: f64 = 1.0 / 67_108_864.0;
@@ -87,7 +87,7 @@ pub fn first_contact(
     if search.rests() {
         return Ok(Landing::Resting);
     }
-    let mut time = 0.0;
+    let mut time = search.departed();
     for _ in 0..MOST_STEPS {
         let angle = flight.rate * time;
         let followed = angle <= RANGE; // false for NaN too
@@ -101,11 +101,12 @@ pub fn first_contact(
         if search.is_last(&gap, step, time) {
             let step = search.landed(&moment, &gap, step);
             let time = time + step;
-            let side = gap.sphere.sign() * body.half_separation;
+            let phase = phase.advanced(flight.rate * step);
+            let state = flight.landing(time, phase, body, gap.sphere);
             return Ok(Landing::Impact {
                 time,
-                state: flight.landing(time, phase.advanced(flight.rate * step), side),
-                sphere: gap.sphere,
+                state,
+                sphere: body.hull.name(gap.sphere, state.axis.z),
             });
         }
         time = search.skip(time + step);
@@ -151,10 +152,9 @@ impl Moment {
 /// What a flight's search for a contact needs to know of it.
 struct Search<'a> {
     flight: &'a Flight,
+    hull: &'a Hull,
     departure: Departure,
-    /// L/2.
-    lever: f64,
-    /// (L/2)AΩ².
+    /// What the rotation can contribute to f″: (L/2)AΩ² for a dumbbell.
     sway: f64,
     /// M, the bound on −f″.
     bound: f64,
@@ -164,12 +164,12 @@ struct Search<'a> {
 }
 
 impl<'a> Search<'a> {
-    fn new(flight: &'a Flight, body: &Body, departure: Departure) -> Self {
+    fn new(flight: &'a Flight, body: &'a Body, departure: Departure) -> Self {
         let start = flight.start();
         let climb = start.velocity.z;
-        let lever = body.half_separation;
         let sway = flight.sway(body);
-        let square = climb.mul_add(climb, 2.0 * (start.lift - lever * flight.reach()));
+        let ceiling = body.hull.ceiling(flight.reach());
+        let square = climb.mul_add(climb, 2.0 * (start.lift - ceiling));
         let (up, down) = if square > 0.0 {
             (climb - square.sqrt(), climb + square.sqrt())
         } else {
@@ -177,8 +177,8 @@ impl<'a> Search<'a> {
         };
         Self {
             flight,
+            hull: &body.hull,
             departure,
-            lever,
             sway,
             bound: 1.0 + sway,
             up,
@@ -194,15 +194,29 @@ impl<'a> Search<'a> {
         };
         let moment = Moment::of(self.flight, 0.0, self.flight.phase(0.0));
         let other = self.gap(&moment, sphere.other());
-        let bend = self.flight.tilt_acceleration(moment.tilt);
         speed <= 0.0
-            && (sphere.sign() * self.lever).mul_add(bend, -1.0) <= 0.0
+            && self.bend(&moment, sphere, -1.0) <= 0.0
             && !(other.rate < 0.0 && other.width <= TOUCHING)
+    }
+
+    /// The first step. Both spheres are looked at: the one on the plane is just leaving it.
+    fn departed(&self) -> f64 {
+        let moment = Moment::of(self.flight, 0.0, self.flight.phase(0.0));
+        let [one, two] = Sphere::BOTH.map(|sphere| self.certified(&self.gap(&moment, sphere)));
+        let step = one.min(two);
+        if step == 0.0 {
+            0.0 // a contact at the start itself, which the first pass will see
+        } else {
+            self.skip(step)
+        }
     }
 
     /// The gap that may close first. Both lower bounds have the same curvature, so that they cross only when the axis,
     /// turning at its present rate, is level: up to then it is the lower sphere's that counts, afterwards the other's.
     fn nearer(&self, moment: &Moment) -> Gap {
+        let Hull::Pair(pair) = self.hull else {
+            return self.gap(moment, Sphere::One); // there is no other
+        };
         let Moment {
             lift,
             climb,
@@ -210,6 +224,7 @@ impl<'a> Search<'a> {
             tilt_rate,
             ..
         } = *moment;
+        let tilt = pair.lean(tilt);
         // lift + climb t − Mt²/2 at t = −tilt/tilt_rate, times tilt_rate²: both gaps there.
         let level = tilt_rate.mul_add(
             lift.mul_add(tilt_rate, -(climb * tilt)),
@@ -235,15 +250,17 @@ impl<'a> Search<'a> {
 
     /// The gap under `sphere`.
     fn gap(&self, moment: &Moment, sphere: Sphere) -> Gap {
-        let side = sphere.sign() * self.lever;
         let (width, rate) = match self.departure {
             // At the start the sphere on the plane is known exactly.
-            Departure::Touching { sphere: on, speed } if moment.time == 0.0 && on == sphere => {
+            Departure::Touching { sphere: on, speed }
+                if moment.time == 0.0 && self.hull.is_one(on, sphere) =>
+            {
                 (0.0, speed)
             }
             _ => (
-                side.mul_add(moment.tilt, moment.lift).max(0.0), // (2)
-                side.mul_add(moment.tilt_rate, moment.climb),
+                self.hull.gap(sphere, moment.tilt, moment.lift).max(0.0), // (2)
+                self.lever(moment, sphere)
+                    .mul_add(moment.tilt_rate, moment.climb),
             ),
         };
         let root = rate.mul_add(rate, 2.0 * self.bound * width).sqrt();
@@ -253,6 +270,18 @@ impl<'a> Search<'a> {
             rate,
             root,
         }
+    }
+
+    /// The lever s of the contact.
+    fn lever(&self, moment: &Moment, sphere: Sphere) -> f64 {
+        self.hull.ball(sphere, moment.tilt).offset
+    }
+
+    /// f″ without gravity, plus `addend`.
+    fn bend(&self, moment: &Moment, sphere: Sphere, addend: f64) -> f64 {
+        let acceleration = self.flight.tilt_acceleration(moment.tilt);
+        let curved = self.hull.curvature(moment.tilt) * (moment.tilt_rate * moment.tilt_rate);
+        self.lever(moment, sphere).mul_add(acceleration, addend) - curved
     }
 
     /// First zero τ ≥ 0 of f + f′τ − Mτ²/2: no contact can come earlier.
@@ -277,29 +306,36 @@ impl<'a> Search<'a> {
     /// Whether `step` leads to a contact that the expansion in [`Search::landed`] locates to double precision.
     fn is_last(&self, gap: &Gap, step: f64, time: f64) -> bool {
         gap.rate < 0.0
-            && step <= LAST_STEP * (time + step)
-            && self.flight.rate * step <= LAST_STEP
+            && step <= LAST * (time + step)
+            && self.flight.rate * step <= LAST
             && (self.is_nearly_straight(gap, step) || self.bound * (step * step) <= INVISIBLE)
     }
 
     fn is_nearly_straight(&self, gap: &Gap, step: f64) -> bool {
-        self.sway * step <= LAST_BEND * gap.root
+        self.hull.is_of_balls() && self.sway * step <= LAST * gap.root
     }
 
-    /// The contact after the last certified step: the gap there, to third order, over the speed there.
+    /// The contact after the last certified step: the zero of the gap's fourth-order expansion, by a step of third order.
     fn landed(&self, moment: &Moment, gap: &Gap, step: f64) -> f64 {
         if !self.is_nearly_straight(gap, step) {
-            return step; // a grazing contact: what is left of the gap cannot be seen
+            return step; // what is left of the gap cannot be seen
         }
-        let side = gap.sphere.sign() * self.lever;
+        let side = self.lever(moment, gap.sphere);
         let square = self.flight.rate * self.flight.rate;
-        // M + f″ and f‴: what the lower bound leaves out.
-        let slack = side.mul_add(self.flight.tilt_acceleration(moment.tilt), self.sway);
-        let third = -(side * square) * moment.tilt_rate;
-        let left = (step * step) * (third * step).mul_add(1.0 / 6.0, 0.5 * slack);
+        let second = self.bend(moment, gap.sphere, 0.0); // f″ without gravity
+        let third = -(side * square) * moment.tilt_rate; // f‴
+        let fourth = -square * second; // f⁗
+        let slack = second + self.sway; // f″ + M, what the lower bound leaves out
+        // What is left of the gap after the step, and how fast it closes there.
+        let bend = (step * fourth).mul_add(1.0 / 12.0, third * (1.0 / 3.0));
+        let left = 0.5 * (step * step) * step.mul_add(bend, slack);
         if left == 0.0 {
             return step;
         }
-        step + left / slack.mul_add(-step, gap.root)
+        let speed = step.mul_add(-step.mul_add(0.5 * third, slack), gap.root);
+        let inverse = 1.0 / speed;
+        let newton = left * inverse;
+        let curvature = step.mul_add(third, second - 1.0); // f″
+        step + newton.mul_add(0.5 * curvature * newton * inverse, newton)
     }
 }

@@ -1,13 +1,14 @@
 //! Many particles, on all cores, each alone: the result cannot depend on the schedule.
 
 use crate::Error;
-use crate::body::{Body, Dumbbell};
-use crate::collision::TangentialRestitution;
+use crate::body::{Body, Solid};
+use crate::collision::{InPlane, Law};
 use crate::lanes::{self, Pack, Sink};
 use crate::level::Level;
 use crate::records::{Records, Table};
 use crate::release::Orientation;
 use crate::scales::Scales;
+use crate::spatial;
 use crate::statistics::{Bins, By, Counter, Tally};
 use crate::trajectory::Limits;
 use pulp::{Simd, WithSimd};
@@ -19,9 +20,9 @@ use std::sync::atomic::{AtomicBool, AtomicU64, AtomicUsize, Ordering};
 #[derive(Debug, Clone, Copy)]
 pub struct Run<'a> {
     /// The body.
-    pub body: Dumbbell,
+    pub body: Solid,
     /// The collision law.
-    pub law: TangentialRestitution,
+    pub law: Law<'a>,
     /// Number of particles.
     pub particles: usize,
     /// Most impacts of a particle.
@@ -74,6 +75,14 @@ impl Monitor {
 pub(crate) const BLOCK: usize = 96;
 
 impl Run<'_> {
+    /// What the sums of ε are taken about: ε^n at the speed that a drop from the release height has on the plane.
+    pub fn origin(&self) -> f64 {
+        let drop = self.release_height - self.body.unit;
+        self.law
+            .normal()
+            .at((2.0 * self.gravity * drop.max(0.0)).sqrt())
+    }
+
     /// Runs every particle and keeps every impact. A run that is cancelled returns the particles that were begun.
     pub fn simulate(&self, means: Means, monitor: &Monitor) -> Result<Records, Error> {
         let plan = Plan::new(self)?;
@@ -123,7 +132,7 @@ impl Run<'_> {
         let next = AtomicUsize::new(0);
         // Blocks go to whichever thread is free; the sums are whole numbers and do not mind.
         let tallies = means.pool()?.broadcast(|_| {
-            let mut counter = Counter::new(bins, &plan, self.law.normal());
+            let mut counter = Counter::new(bins, &plan, self.origin());
             loop {
                 let first = next.fetch_add(BLOCK, Ordering::Relaxed);
                 if first >= self.particles || monitor.is_cancelled() {
@@ -133,7 +142,7 @@ impl Run<'_> {
                 plan.bounce(particles, means.level, monitor, &mut counter)?;
             }
         });
-        let mut total = Tally::new(bins, self.law.normal());
+        let mut total = Tally::new(bins, self.origin());
         for tally in tallies {
             total.merge(&tally?);
         }
@@ -159,6 +168,7 @@ impl Means {
 pub(crate) struct Plan<'a> {
     run: &'a Run<'a>,
     pub body: Body,
+    law: Law<'a>,
     pub scales: Scales,
     /// Height of the centre of mass at release.
     height: f64,
@@ -177,27 +187,29 @@ impl<'a> Plan<'a> {
             allowed,
         )?;
         run.orientation.check(run.particles)?;
-        let scales = Scales::new(run.body.radius(), run.gravity)?;
+        let scales = Scales::new(run.body.unit, run.gravity)?;
         let plan = Self {
             run,
-            body: run.body.scaled(),
+            body: run.body.scaled,
+            law: run.law.scaled(&scales),
             scales,
             height: run.release_height / scales.length,
         };
         // A body put down on the plane may be off by the rounding of its height.
         let clear = |cosine: f64| {
-            let lowest = plan.body.half_separation.mul_add(cosine.abs(), 1.0);
-            plan.height >= lowest * (1.0 - 4.0 * f64::EPSILON)
+            plan.height >= plan.body.hull.support(cosine) * (1.0 - 4.0 * f64::EPSILON)
         };
         let clear = match run.orientation {
             Orientation::Given(_) => (0..run.particles).all(|i| clear(plan.release(i).1)),
-            Orientation::UniformAngle | Orientation::Isotropic => clear(1.0),
+            Orientation::UniformAngle | Orientation::Isotropic => {
+                run.release_height >= run.body.farthest() * (1.0 - 4.0 * f64::EPSILON)
+            }
         };
         Error::unless(
             clear && plan.height.is_finite(),
             "release_height",
             run.release_height,
-            "finite and high enough that no sphere is below the plane at release (R + L/2 for random angles)",
+            "finite and high enough that no part is below the plane at release",
         )?;
         Ok(plan)
     }
@@ -216,30 +228,85 @@ impl<'a> Plan<'a> {
         sink: &mut impl Sink,
     ) -> Result<(), Error> {
         let count = particles.len() as u64;
+        if !self.body.hull.is_equal_pair() {
+            self.bounce_in_space(particles, monitor, sink)?;
+        } else if let Some(law) = self.law.steady() {
+            self.bounce_under(&law, particles, level, monitor, sink)?;
+        } else {
+            self.bounce_under(&self.law, particles, level, monitor, sink)?;
+        }
+        monitor.finished.fetch_add(count, Ordering::Relaxed);
+        Ok(())
+    }
+
+    /// In lanes.
+    fn bounce_under(
+        &self,
+        law: &impl InPlane,
+        particles: Range<usize>,
+        level: Level,
+        monitor: &Monitor,
+        sink: &mut impl Sink,
+    ) -> Result<(), Error> {
         level.run(Work {
             plan: self,
+            law,
             particles,
             monitor,
             sink,
-        })?;
-        monitor.finished.fetch_add(count, Ordering::Relaxed);
+        })
+    }
+
+    fn limits(&self) -> Limits {
+        Limits {
+            impacts: self.run.impacts,
+            minimum_speed: self.run.minimum_speed / self.scales.speed,
+        }
+    }
+
+    /// As [`Plan::bounce`], for what the lanes cannot follow.
+    fn bounce_in_space(
+        &self,
+        particles: Range<usize>,
+        monitor: &Monitor,
+        sink: &mut impl Sink,
+    ) -> Result<(), Error> {
+        let Run {
+            orientation, seed, ..
+        } = *self.run;
+        for (place, particle) in particles.enumerate() {
+            let release = orientation.release(&self.body, self.height, seed, particle as u64);
+            sink.begin(place);
+            spatial::bounce(&self.body, &self.law, release, self.limits(), sink, || {
+                !monitor.is_cancelled()
+            })
+            .map_err(|stuck| Error::Numerical {
+                particle: particle as u64,
+                seed,
+                flight: stuck.impacts as u64,
+            })?;
+        }
         Ok(())
     }
 }
 
 /// The particles of a block, to be compiled for each SIMD level.
-struct Work<'a, T> {
+struct Work<'a, L, T> {
     plan: &'a Plan<'a>,
+    law: &'a L,
     particles: Range<usize>,
     monitor: &'a Monitor,
     sink: &'a mut T,
 }
 
-/// Vectors side by side: enough to keep the arithmetic units busy, and fewer where there is no vector.
-const VECTORS: usize = 6;
+/// Vectors that are computed with side by side: enough to keep the arithmetic units busy, few enough for the registers.
+const VECTORS: usize = 3;
+/// Where there are no vectors.
 const SCALARS: usize = 4;
+/// Groups of them that take turns.
+const GROUPS: usize = 4;
 
-impl<T: Sink> WithSimd for Work<'_, T> {
+impl<L: InPlane, T: Sink> WithSimd for Work<'_, L, T> {
     type Output = Result<(), Error>;
 
     #[inline(always)]
@@ -252,31 +319,30 @@ impl<T: Sink> WithSimd for Work<'_, T> {
     }
 }
 
-impl<T: Sink> Work<'_, T> {
+impl<L: InPlane, T: Sink> Work<'_, L, T> {
     #[inline(always)]
     fn side_by_side<S: Simd, const K: usize>(self, simd: S) -> Result<(), Error> {
         let Self {
             plan,
+            law,
             particles,
             monitor,
             sink,
         } = self;
         let run = plan.run;
-        let limits = Limits {
-            impacts: run.impacts,
-            minimum_speed: run.minimum_speed / plan.scales.speed,
-        };
+        let limits = plan.limits();
+        let width = GROUPS * Pack::<S, K>::WIDTH;
         let (mut sines, mut cosines) = ([0.0; BLOCK], [0.0; BLOCK]);
-        for first in particles.clone().step_by(Pack::<S, K>::WIDTH) {
-            let count = Pack::<S, K>::WIDTH.min(particles.end - first);
+        for first in particles.clone().step_by(width) {
+            let count = width.min(particles.end - first);
             for lane in 0..count {
                 (sines[lane], cosines[lane]) = plan.release(first + lane);
             }
             sink.begin(first - particles.start);
-            lanes::bounce::<S, K>(
+            lanes::bounce::<S, K, GROUPS>(
                 simd,
                 &plan.body,
-                &run.law,
+                law,
                 lanes::Release {
                     lift: plan.height - 1.0,
                     sines: &sines[..count],

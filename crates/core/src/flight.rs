@@ -6,7 +6,7 @@
 
 use crate::body::Body;
 use crate::elementary::sincos;
-use crate::state::State;
+use crate::state::{Sphere, State};
 use crate::vector::Vector;
 
 /// Rates whose square underflows count as no rotation.
@@ -34,11 +34,11 @@ pub struct Phase {
 }
 
 impl Phase {
-    /// The phase a small `angle` later: exact in double precision for angles up to 2⁻¹³.
+    /// The phase a small `angle` later: exact in double precision for angles up to 2⁻¹¹.
     pub fn advanced(self, angle: f64) -> Self {
         let square = angle * angle;
         let sin = angle * square.mul_add(-1.0 / 6.0, 1.0);
-        let cos = square.mul_add(-0.5, 1.0);
+        let cos = square.mul_add(square.mul_add(1.0 / 24.0, -0.5), 1.0);
         Self {
             sin: self.sin.mul_add(cos, self.cos * sin),
             cos: self.cos.mul_add(cos, -(self.sin * sin)),
@@ -80,7 +80,7 @@ impl Flight {
         Phase { sin, cos }
     }
 
-    /// Height of the centre of mass above R at `time` (5).
+    /// Height of the centre of mass above the hull's level at `time` (5).
     pub fn lift(&self, time: f64) -> f64 {
         time.mul_add(time.mul_add(-0.5, self.start.velocity.z), self.start.lift) // (5)
     }
@@ -107,9 +107,9 @@ impl Flight {
         -(self.rate * self.rate) * (tilt - self.constant.z)
     }
 
-    /// (L/2)AΩ²: what the rotation can contribute to the vertical acceleration of a sphere of `body`.
+    /// A bound on what the rotation can contribute to the acceleration of a gap: (L/2)AΩ² for a dumbbell.
     pub fn sway(&self, body: &Body) -> f64 {
-        (body.half_separation * self.amplitude) * (self.rate * self.rate)
+        body.hull.sway(self.amplitude, self.reach()) * (self.rate * self.rate)
     }
 
     /// Largest |e_z| that the axis can reach in any flight time.
@@ -117,14 +117,14 @@ impl Flight {
         self.constant.z.abs() + self.amplitude
     }
 
-    /// The state at `time`, when the sphere on the side `side` = ±L/2 of the centre of mass touches the plane.
-    pub fn landing(&self, time: f64, phase: Phase, side: f64) -> State {
+    /// The state at `time`, when `sphere` touches the plane.
+    pub fn landing(&self, time: f64, phase: Phase, body: &Body, sphere: Sphere) -> State {
         let turning = self.sine.mul_add(phase.sin, self.constant);
         let axis = self.cosine.mul_add(phase.cos, turning); // (3)
         // One Newton step to unit length; rounding would otherwise accumulate over the impacts.
         let axis = axis * axis.dot(axis).mul_add(-0.5, 1.5);
         State {
-            lift: -(side * axis.z), // (2)
+            lift: body.hull.lift(sphere, axis.z), // (2)
             velocity: Vector {
                 z: self.climb(time),
                 ..self.start.velocity

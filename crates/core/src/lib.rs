@@ -4,9 +4,9 @@
 //! particles*, Phys. Rev. E **90**, 052204 (2014). Equation numbers in this crate are that paper's.
 //!
 //! # Units
-//! Inside the core lengths are measured in the sphere radius R, times in √(R/g) and masses in the body's mass m.
+//! Inside the core lengths are measured in the sphere radius R (of the larger sphere; the longer semi-axis of a spheroid), times in √(R/g) and masses in the body's mass m.
 //! Gravity is then 1 and a run depends on L/R, the release height over R, the law and nothing else; [`Scales`]
-//! converts. Only [`Dumbbell`] and [`Scales`] know SI units.
+//! converts. Only [`Shape`]s, [`Solid`] and [`Scales`] know SI units.
 //!
 //! # Notation
 //! | paper | here |
@@ -17,7 +17,7 @@
 //! | Â(t)·(0, 0, 1) | [`State::axis`], from sphere 2 to sphere 1 |
 //! | L/2, J_xx, J_zz | [`Body::half_separation`], [`Body::transverse`], [`Body::axial`] |
 //! | r_c, v_c | `arm`, `slip` in [`collision`] |
-//! | ε^n, ε^t | [`TangentialRestitution`] |
+//! | ε^n, ε^t | [`Normal`], [`TangentialRestitution`] |
 //!
 //! # From the equation to the code
 //! | equation | file |
@@ -28,7 +28,7 @@
 //! | (6)–(8), (11) | `collision/mod.rs` |
 //! | (9), (10) | `collision/tangential.rs` |
 //! | (18) | `release.rs` |
-//! | (A1)–(A8) | `body.rs` |
+//! | (A1)–(A8) | `body/dumbbell.rs` |
 #![forbid(unsafe_code)]
 
 mod body;
@@ -45,13 +45,20 @@ mod random;
 mod records;
 mod release;
 mod scales;
+mod spatial;
 mod state;
 pub mod statistics;
 mod trajectory;
 mod vector;
 
-pub use body::{Body, Dumbbell};
-pub use collision::{Law, TangentialRestitution};
+pub use body::{
+    Ball, Body, Dumbbell, Ellipsoid, Hull, LoadedSphere, Pair, Shape, Solid, Spherocylinder,
+    Spheroid,
+};
+pub use collision::{
+    ChatterjeeRuina, Coulomb, Frictionless, Hypothesis, Law, Normal, Plastic, Tabulated,
+    TangentialRestitution, Viscoelastic,
+};
 pub use contact::{Departure, Landing, NoConvergence, first_contact};
 pub use ensemble::{Means, Monitor, Run, default_threads};
 pub use error::Error;

@@ -25,7 +25,7 @@ pub struct Records {
     pub energy_ratio: Vec<f64>,
     /// Angle between the axis and the plane normal, in rad.
     pub angle: Vec<f64>,
-    /// 1 or 2: the sphere that touched; 0: no impact.
+    /// 1 or 2: the sphere, or the half of a spheroid, that touched; 0: no impact.
     pub contact: Vec<i8>,
     /// Number of impacts, per particle.
     pub impacts: Vec<i64>,
@@ -182,18 +182,23 @@ impl Sink for Table<'_> {
     }
 
     #[inline(always)]
-    fn impact<S: Simd, const K: usize>(&mut self, number: usize, impact: &Impact<S, K>) {
+    fn impact<S: Simd, const K: usize>(
+        &mut self,
+        number: usize,
+        first: usize,
+        impact: &Impact<S, K>,
+    ) {
         let scales = &self.plan.scales;
         let time = impact.time * scales.time;
-        let impact_velocity = impact.impact_velocity() * scales.speed;
-        let rebound_velocity = impact.rebound_velocity() * scales.speed;
+        let impact_velocity = impact.fall * scales.speed;
+        let rebound_velocity = impact.rise * scales.speed;
         let restitution = impact.restitution();
-        let fraction = impact.rotational_fraction(&self.plan.body);
+        let fraction = impact.rotational_fraction();
         let energy_ratio = impact.energy_ratio();
-        let angle = angle_in_lanes(impact.before.sine, impact.before.cosine);
+        let angle = angle_in_lanes(impact.sine, impact.cosine);
         let sphere = impact.sphere.lt(0.0).select(2.0, 1.0_f64);
         let active = impact.active.select(1.0, 0.0_f64);
-        for (lane, row) in self.rows[self.first..]
+        for (lane, row) in self.rows[self.first + first..]
             .iter_mut()
             .enumerate()
             .take(Pack::<S, K>::WIDTH)

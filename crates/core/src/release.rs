@@ -1,6 +1,7 @@
 //! Initial conditions: how a particle is let go.
 
 use crate::Error;
+use crate::body::Body;
 use crate::elementary::{RANGE, sincos};
 use crate::random::uniform;
 use crate::state::State;
@@ -31,12 +32,12 @@ impl Orientation<'_> {
         }
     }
 
-    /// The particle at rest with its centre of mass at `height` (in R). With no spin the direction of the tilt is of no
+    /// The body at rest with its centre of mass at `height` (in R). With no spin the direction of the tilt is of no
     /// consequence, and the axis is put into the x–z plane.
-    pub fn release(&self, height: f64, seed: u64, particle: u64) -> State {
+    pub fn release(&self, body: &Body, height: f64, seed: u64, particle: u64) -> State {
         let (sine, cosine) = self.draw(seed, particle);
         State {
-            lift: height - 1.0,
+            lift: height - body.hull.level(),
             velocity: Vector::default(),
             axis: Vector::new(sine, 0.0, cosine),
             precession: Vector::default(),

@@ -7,8 +7,9 @@ use crate::vector::Vector;
 /// Position and motion of one particle. Horizontal position is left out: the plane looks the same everywhere.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct State {
-    /// Height of the centre of mass above R, the height at which both spheres of a level body lie on the plane. Kept in
-    /// this form because at a contact it is ∓(L/2)e_z, and the gap of the touching sphere then vanishes to the last bit.
+    /// Height of the centre of mass above the hull's level, at which both spheres of a dumbbell lie on the plane: above R for
+    /// equal ones. Kept in this form because at a contact it is then ∓(L/2)e_z, and the gap of the touching sphere vanishes to
+    /// the last bit.
     pub lift: f64,
     /// Velocity of the centre of mass, v_G.
     pub velocity: Vector,
@@ -30,7 +31,7 @@ impl State {
     ) -> Self {
         let axial = body.axial / body.transverse - 1.0;
         Self {
-            lift: height - 1.0,
+            lift: height - body.hull.level(),
             velocity,
             axis,
             precession: axis.mul_add(axial * spin.dot(axis), spin), // Λ/J_xx = Ĵω/J_xx
@@ -64,20 +65,18 @@ impl State {
         elementary::angle(self.axis.horizontal(), self.axis.z)
     }
 
-    /// Gaps between the plane and spheres 1 and 2.
+    /// Gaps between the plane and spheres 1 and 2; twice that of the body if only one part of it can touch.
     pub fn gaps(&self, body: &Body) -> [f64; 2] {
-        Sphere::BOTH.map(|sphere| {
-            (sphere.sign() * body.half_separation).mul_add(self.axis.z, self.lift) // (2)
-        })
+        Sphere::BOTH.map(|sphere| body.hull.gap(sphere, self.axis.z, self.lift)) // (2)
     }
 }
 
-/// One of the two spheres of the dumbbell.
+/// One of the two spheres of the dumbbell; one of the two halves of an ellipsoid.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Sphere {
-    /// At +L/2 along the axis.
+    /// The one to which the axis points: at +L/2 along it.
     One,
-    /// At −L/2 along the axis.
+    /// The other one: at −L/2 along the axis.
     Two,
 }
 

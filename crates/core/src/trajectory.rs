@@ -79,7 +79,7 @@ pub const COLLAPSE_RUN: u32 = 16;
 /// Bounces a particle until a limit is reached; `record` sees every impact and says whether to go on.
 pub fn bounce(
     body: &Body,
-    law: &impl Law,
+    law: &Law<'_>,
     release: State,
     limits: Limits,
     mut record: impl FnMut(&Impact) -> bool,

@@ -5,7 +5,9 @@ mod tallies;
 
 use common::*;
 use proptest::prelude::*;
-use restitution_core::statistics::{Axis, Bins, By, Grid, Moments, Sums, Tally};
+use restitution_core::statistics::{
+    Axis, Bins, By, CREATES_ENERGY, Gains, Grid, Moments, Sums, Tally,
+};
 use restitution_core::{Level, Means, Monitor, Records, Run};
 use tallies::*;
 
@@ -18,6 +20,7 @@ struct Expected {
     values: Vec<Vec<f64>>,
     /// Σ E_rot/E_tot in whole quanta.
     fractions: Vec<u128>,
+    gains: Vec<Gains>,
     stops: [u64; 5],
 }
 
@@ -42,6 +45,7 @@ impl Expected {
             quanta: vec![Vec::new(); rows],
             values: vec![Vec::new(); rows],
             fractions: vec![0; rows],
+            gains: vec![Gains::default(); rows],
             stops: [0; 5],
         };
         for particle in 0..run.particles {
@@ -50,13 +54,18 @@ impl Expected {
                 let k = particle * run.impacts + i;
                 let (value, fraction) = (records.restitution[k], records.rotational_fraction[k]);
                 let row = row(records.impact_velocity[k], i);
+                let ratio = records.energy_ratio[k];
+                if ratio > CREATES_ENERGY {
+                    expected.gains[row].count += 1;
+                    expected.gains[row].largest = expected.gains[row].largest.max(ratio);
+                }
                 let mut sites = columns.map(|columns| columns - 1);
                 if value.abs() < Sums::LARGEST && fraction <= 1.0 {
                     sites = [
                         bin(&edges.restitution, value),
                         bin(&edges.fraction, fraction),
                     ];
-                    let offset = (value - run.law.normal()) * 2.0_f64.powi(26);
+                    let offset = (value - run.origin()) * 2.0_f64.powi(26);
                     expected.quanta[row].push(offset.round_ties_even() as i128);
                     expected.values[row].push(value);
                     expected.fractions[row] +=
@@ -83,6 +92,7 @@ impl Expected {
     fn agrees(&self, tally: &Tally, origin: f64) -> Result<(), TestCaseError> {
         prop_assert_eq!(tally.restitution.counts(), &self.restitution[..]);
         prop_assert_eq!(tally.fraction.counts(), &self.fraction[..]);
+        prop_assert_eq!(&tally.gains, &self.gains);
         prop_assert_eq!(tally.stops, self.stops);
         for (row, values) in self.values.iter().enumerate() {
             let number = values.len();
@@ -220,7 +230,7 @@ proptest! {
             fraction: around(2, records.rotational_fraction[i]),
         };
         let tally = statistics(&run, &edges.by_velocity(), level, 1);
-        Expected::by_velocity(&records, &run, &edges).agrees(&tally, run.law.normal())?;
+        Expected::by_velocity(&records, &run, &edges).agrees(&tally, run.origin())?;
     }
 }
 
@@ -229,7 +239,7 @@ fn counts_and_sums_what_simulate_records(run: &Run<'_>, level: Level) -> Result<
         .simulate(Means { threads: 1, level }, &Monitor::default())
         .unwrap();
     let edges = Edges::coarse();
-    let origin = run.law.normal();
+    let origin = run.origin();
     let by_velocity = statistics(run, &edges.by_velocity(), level, 2);
     Expected::by_velocity(&records, run, &edges).agrees(&by_velocity, origin)?;
     let by_number = statistics(run, &edges.bins(By::Number(run.impacts)), level, 2);
@@ -287,7 +297,7 @@ fn many_bins_are_as_exact_as_few() {
     };
     let tally = statistics(&run, &edges.bins(By::Number(3)), Level::best(), 1);
     Expected::by_number(&records, &run, &edges)
-        .agrees(&tally, run.law.normal())
+        .agrees(&tally, run.origin())
         .unwrap();
 }
 

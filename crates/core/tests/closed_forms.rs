@@ -4,7 +4,7 @@ mod common;
 
 use common::*;
 use proptest::prelude::*;
-use restitution_core::{Dumbbell, Orientation, Run};
+use restitution_core::{Orientation, Run, Solid};
 use std::f64::consts::{FRAC_PI_2, PI};
 
 /// Half an ulp of 1.
@@ -12,9 +12,9 @@ const ROUNDING: f64 = 0.5 * f64::EPSILON;
 
 /// ε of the first impact from rest (17), with J_xx and m from the body in SI units. The contact is with the lower sphere,
 /// so that the cosine counts by its magnitude.
-fn first_restitution(body: &Dumbbell, separation: f64, normal: f64, angle: f64) -> f64 {
-    let (r, l, c) = (body.radius(), separation, angle.cos().abs());
-    let j = body.transverse_inertia() / body.mass();
+fn first_restitution(body: &Solid, separation: f64, normal: f64, angle: f64) -> f64 {
+    let (r, l, c) = (body.unit, separation, angle.cos().abs());
+    let j = body.transverse_inertia / body.mass;
     let common = 4.0 * j + 4.0 * l * r * c + 4.0 * r * r;
     -1.0 + (1.0 + normal) * (common + l * l * c * c) / (common + l * l) // (17)
 }

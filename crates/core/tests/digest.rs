@@ -9,7 +9,10 @@ mod common;
 
 use common::*;
 use restitution_core::statistics::{Axis, Bins, By, Grid, Tally};
-use restitution_core::{Dumbbell, Level, Means, Monitor, Orientation, Records, Run};
+use restitution_core::{
+    ChatterjeeRuina, Coulomb, Dumbbell, Frictionless, Hypothesis, Level, Means, Monitor, Normal,
+    Orientation, Plastic, Records, Run, Tabulated, TangentialRestitution, Viscoelastic,
+};
 use std::collections::BTreeMap;
 
 const FILE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/digests.txt");
@@ -79,12 +82,36 @@ impl Digest {
 fn figure_2() -> Run<'static> {
     let radius = 10e-3;
     Run {
-        body: Dumbbell::new(radius, 0.1 * radius, 2500.0).unwrap(),
+        body: Dumbbell::new(radius, 0.1 * radius, 2500.0).unwrap().into(),
         release_height: radius + 1.0 / (2.0 * 9.81),
         particles: 700,
         impacts: 500,
         seed: 1,
         ..paper(0.1, law(0.98, 1.0))
+    }
+}
+
+fn glass() -> Normal<'static> {
+    Viscoelastic::new(6e10, 0.22, 1e-6, 2500.0, 3e-3)
+        .unwrap()
+        .into()
+}
+
+fn measured() -> Normal<'static> {
+    const SPEEDS: [f64; 4] = [0.05, 0.2, 0.5, 1.0];
+    const VALUES: [f64; 4] = [0.98, 0.95, 0.93, 0.88];
+    Tabulated::new(&SPEEDS, &VALUES).unwrap().into()
+}
+
+/// Friction in which slip goes on, stops and turns.
+fn coulomb(elongation: f64, normal: Normal<'static>, hypothesis: Hypothesis) -> Run<'static> {
+    Run {
+        particles: 300,
+        impacts: 200,
+        ..paper(
+            elongation,
+            Coulomb::new(normal, 0.25, hypothesis).unwrap().into(),
+        )
     }
 }
 
@@ -146,6 +173,45 @@ fn jobs(angles: &[f64]) -> Vec<(&'static str, Run<'_>)> {
                 particles: 500,
                 impacts: 100,
                 ..paper(0.1, law(0.0, 0.5))
+            },
+        ),
+        (
+            "frictionless",
+            Run {
+                particles: 400,
+                impacts: 200,
+                ..paper(0.1, Frictionless::new(0.98).unwrap().into())
+            },
+        ),
+        (
+            "stronge-viscoelastic",
+            coulomb(0.5, glass(), Hypothesis::Stronge),
+        ),
+        (
+            "poisson-plastic",
+            coulomb(2.0, Plastic::new(0.02).unwrap().into(), Hypothesis::Poisson),
+        ),
+        (
+            "newton-tabulated",
+            coulomb(1.0, measured(), Hypothesis::Newton),
+        ),
+        (
+            "chatterjee-ruina",
+            Run {
+                particles: 300,
+                impacts: 200,
+                ..paper(0.3, ChatterjeeRuina::new(0.9, -0.3, 0.2).unwrap().into())
+            },
+        ),
+        (
+            "viscoelastic",
+            Run {
+                particles: 300,
+                impacts: 200,
+                ..paper(
+                    0.1,
+                    TangentialRestitution::new(glass(), 1.0).unwrap().into(),
+                )
             },
         ),
         (
@@ -293,7 +359,7 @@ fn portions_have_the_digests_of_the_whole() {
     let bins = bins(By::Velocity(edges(0.0, 0.01, 120)));
     let digests = |portion: usize, means: Means| {
         let (mut table, mut statistics) = (Digest::new(), Digest::new());
-        let mut total = Tally::new(&bins, whole.law.normal());
+        let mut total = Tally::new(&bins, whole.origin());
         for angles in angles.chunks(portion) {
             let run = Run {
                 particles: angles.len(),

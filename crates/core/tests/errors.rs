@@ -3,7 +3,10 @@
 mod common;
 
 use common::*;
-use restitution_core::{Dumbbell, Error, Orientation, Run, TangentialRestitution};
+use restitution_core::{
+    ChatterjeeRuina, Coulomb, Dumbbell, Error, Frictionless, Hypothesis, LoadedSphere, Orientation,
+    Plastic, Run, Spherocylinder, Spheroid, Tabulated, TangentialRestitution, Viscoelastic,
+};
 
 /// The name of the parameter that is wrong; its value must be in the message, too.
 fn culprit(error: &Error) -> &'static str {
@@ -47,6 +50,43 @@ fn bodies() {
 }
 
 #[test]
+fn other_shapes() {
+    let dumbbell = |radius, density| culprit(&Dumbbell::unequal(radius, 1.0, density).unwrap_err());
+    let loaded = |[r, d, m, x]: [f64; 4]| culprit(&LoadedSphere::new(r, d, m, x).unwrap_err());
+    let cylinder = |[r, l, d]: [f64; 3]| culprit(&Spherocylinder::new(r, l, d).unwrap_err());
+    let spheroid = |[a, c, d]: [f64; 3]| culprit(&Spheroid::new(a, c, d).unwrap_err());
+    for x in NOT_POSITIVE {
+        assert_eq!(dumbbell([1.0, x], [1.0, 1.0]), "radius");
+        assert_eq!(dumbbell([1.0, 2.0], [x, 1.0]), "density");
+        assert_eq!(loaded([x, 1.0, 1.0, 0.0]), "radius");
+        assert_eq!(loaded([1.0, x, 1.0, 0.0]), "density");
+        assert_eq!(cylinder([x, 1.0, 1.0]), "radius");
+        assert_eq!(cylinder([1.0, 1.0, x]), "density");
+        assert_eq!(spheroid([x, 1.0, 1.0]), "equatorial");
+        assert_eq!(spheroid([1.0, x, 1.0]), "polar");
+        assert_eq!(spheroid([1.0, 1.0, x]), "density");
+    }
+    for x in NOT_FINITE {
+        assert_eq!(loaded([1.0, 1.0, x, 0.0]), "load");
+        assert_eq!(loaded([1.0, 1.0, 1.0, x]), "offset");
+        assert_eq!(cylinder([1.0, x, 1.0]), "separation");
+    }
+    // A load outside its sphere; needles and discs beyond what the contact can be located on.
+    assert_eq!(loaded([1.0, 1.0, 1.0, 1.0_f64.next_up()]), "offset");
+    assert_eq!(spheroid([1.0, 1000.001, 1.0]), "polar");
+    assert_eq!(spheroid([1.0, 0.000_999_999, 1.0]), "polar");
+    assert!(Spheroid::new(3e-3, 3.0, 1.0).is_ok() && Spheroid::new(3.0, 3e-3, 1.0).is_ok());
+    for size in [1e-70, 1e70] {
+        assert_eq!(dumbbell([size; 2], [1.0, 2.0]), "radius");
+        assert_eq!(loaded([size, 1.0, 0.0, 0.0]), "radius");
+        assert_eq!(cylinder([size, 1.0, 1.0]), "radius");
+        assert_eq!(spheroid([size, size, 1.0]), "equatorial");
+    }
+    // A load that outweighs the sphere beyond what doubles can tell leaves nothing to turn.
+    assert_eq!(loaded([1.0, 1e-300, 1e300, 0.5]), "radius");
+}
+
+#[test]
 fn laws() {
     for x in [-1e-300, 1.0_f64.next_up(), f64::NAN, f64::INFINITY] {
         assert_eq!(
@@ -68,6 +108,58 @@ fn laws() {
     for (normal, tangential) in [(0.0, -1.0), (1.0, 1.0), (-0.0, -0.0)] {
         assert!(TangentialRestitution::new(normal, tangential).is_ok());
     }
+    for x in [-1e-300, 1e101, f64::NAN, f64::INFINITY] {
+        let coulomb = Coulomb::new(0.5, x, Hypothesis::Stronge);
+        assert_eq!(culprit(&coulomb.unwrap_err()), "friction");
+        let bilinear = ChatterjeeRuina::new(0.5, 0.0, x);
+        assert_eq!(culprit(&bilinear.unwrap_err()), "friction");
+    }
+    for x in [-0.1, 1.1, f64::NAN] {
+        assert_eq!(culprit(&Frictionless::new(x).unwrap_err()), "normal");
+        let bilinear = ChatterjeeRuina::new(x, 0.0, 0.1);
+        assert_eq!(culprit(&bilinear.unwrap_err()), "normal");
+        let coulomb = Coulomb::new(x, 0.1, Hypothesis::Newton);
+        assert_eq!(culprit(&coulomb.unwrap_err()), "normal");
+    }
+    assert_eq!(
+        culprit(&ChatterjeeRuina::new(0.5, 1.1, 0.0).unwrap_err()),
+        "tangential"
+    );
+}
+
+/// Parameters of materials, and those that are finite but make none that is.
+#[test]
+fn materials() {
+    let good = [6e10, 0.2, 1e-6, 2500.0, 3e-3];
+    let names = [
+        "young_modulus",
+        "poisson_ratio",
+        "dissipation",
+        "density",
+        "radius",
+    ];
+    let viscoelastic = |[y, nu, a, rho, r]: [f64; 5]| Viscoelastic::new(y, nu, a, rho, r);
+    assert!(viscoelastic(good).is_ok());
+    for (i, name) in names.into_iter().enumerate() {
+        for wrong in [-1.0, f64::NAN, f64::INFINITY] {
+            let mut parameters = good;
+            parameters[i] = wrong;
+            assert_eq!(culprit(&viscoelastic(parameters).unwrap_err()), name);
+        }
+    }
+    let stiff = viscoelastic([1e300, 0.2, 1e-6, 1e-300, 1e-3]);
+    assert_eq!(culprit(&stiff.unwrap_err()), "young_modulus");
+    for wrong in [0.0, -1.0, f64::NAN, f64::INFINITY] {
+        assert_eq!(culprit(&Plastic::new(wrong).unwrap_err()), "yield_speed");
+    }
+    for speeds in [&[][..], &[0.1, 0.1], &[-0.1, 0.1], &[0.1, f64::NAN]] {
+        let values = vec![0.5; speeds.len()];
+        assert_eq!(culprit(&Tabulated::new(speeds, &values).unwrap_err()), "v");
+    }
+    for values in [&[0.5][..], &[0.5, 1.1], &[0.5, f64::NAN]] {
+        let table = Tabulated::new(&[0.1, 0.2], values);
+        assert_eq!(culprit(&table.unwrap_err()), "e");
+    }
 }
 
 #[test]
@@ -81,7 +173,7 @@ fn runs() {
         assert_eq!(
             name(Run {
                 gravity,
-                body: Dumbbell::new(1e20, 0.0, 1.0).unwrap(),
+                body: Dumbbell::new(1e20, 0.0, 1.0).unwrap().into(),
                 release_height: 1e21,
                 ..run()
             }),

@@ -9,7 +9,8 @@ use common::*;
 use proptest::prelude::*;
 use proptest::test_runner::{Config, RngSeed, TestError, TestRunner};
 use restitution_core::{
-    Dumbbell, Impact, Level, Limits, Means, Monitor, Orientation, Records, Run, Scales, bounce,
+    Dumbbell, Impact, Law, Level, Limits, Means, Monitor, Orientation, Records, Run, Scales, Shape,
+    bounce,
 };
 use std::f64::consts::{FRAC_PI_2, PI};
 use std::time::{Duration, Instant};
@@ -33,8 +34,7 @@ struct Case {
     radius: f64,
     /// L/R.
     elongation: f64,
-    normal: f64,
-    tangential: f64,
+    law: Law<'static>,
     gravity: f64,
     /// Height above that of an upright body on the plane, in R.
     above: f64,
@@ -54,8 +54,8 @@ impl Case {
             Angles::Given(angles) => (angles.len(), Orientation::Given(angles)),
         };
         Run {
-            body,
-            law: law(self.normal, self.tangential),
+            body: body.into(),
+            law: self.law,
             particles,
             impacts: self.impacts,
             release_height: self.radius * (1.0 + body.scaled().half_separation + self.above),
@@ -92,6 +92,12 @@ fn case() -> impl Strategy<Value = Case> {
         1 => (magnitude(-18.0, 0.0), prop_oneof![Just(1.0), -1.0..1.0_f64]),
         1 => (Just(1.0 - f64::EPSILON), -1.0..1.0_f64),
     ];
+    let law = coefficients.prop_flat_map(|(normal, tangential)| {
+        prop_oneof![
+            Just(law(normal, tangential)),
+            every_law((normal, tangential))
+        ]
+    });
     let above = prop_oneof![
         1 => Just(0.0), 2 => magnitude(-17.0, 0.0), 5 => magnitude(0.0, 2.0), 1 => magnitude(2.0, 9.0)
     ];
@@ -103,18 +109,17 @@ fn case() -> impl Strategy<Value = Case> {
     let minimum_speed = prop_oneof![3 => Just(0.0), 1 => magnitude(-6.0, 1.0)];
     let gravity = prop_oneof![1 => Just(9.81), 1 => magnitude(-3.0, 3.0)];
     (
-        (radius, elongation, coefficients, gravity, above),
+        (radius, elongation, law, gravity, above),
         (angles, minimum_speed, 1..200_usize, any::<u64>()),
     )
         .prop_map(
             |(
-                (radius, elongation, (normal, tangential), gravity, above),
+                (radius, elongation, law, gravity, above),
                 (angles, minimum_speed, impacts, seed),
             )| Case {
                 radius,
                 elongation,
-                normal,
-                tangential,
+                law,
                 gravity,
                 above,
                 angles,
@@ -133,8 +138,8 @@ fn bits(numbers: [f64; 7]) -> [u64; 7] {
 /// Runs `case` at every level and each of its particles with the oracle; returns the number of impacts compared.
 fn compare(case: &Case) -> Result<u64, TestCaseError> {
     let run = case.run();
-    let body = run.body.scaled();
-    let scales = Scales::new(run.body.radius(), run.gravity).unwrap();
+    let body = run.body.scaled;
+    let scales = Scales::new(run.body.unit, run.gravity).unwrap();
     let limits = Limits {
         impacts: run.impacts,
         minimum_speed: run.minimum_speed / scales.speed,
@@ -155,7 +160,9 @@ fn compare(case: &Case) -> Result<u64, TestCaseError> {
     let mut compared = 0;
     for particle in 0..run.particles {
         let height = run.release_height / scales.length;
-        let release = run.orientation.release(height, run.seed, particle as u64);
+        let release = run
+            .orientation
+            .release(&body, height, run.seed, particle as u64);
         let row = |records: &Records, i: usize| {
             let k = particle * run.impacts + i;
             (
@@ -164,19 +171,25 @@ fn compare(case: &Case) -> Result<u64, TestCaseError> {
             )
         };
         let mut numbers = Vec::new();
-        let reason = bounce(&body, &run.law, release, limits, |impact: &Impact| {
-            let expected = [
-                impact.time * scales.time,
-                impact.impact_velocity() * scales.speed,
-                impact.rebound_velocity() * scales.speed,
-                impact.restitution(),
-                impact.rotational_fraction(&body),
-                impact.energy_ratio(&body),
-                impact.before.angle(),
-            ];
-            numbers.push((bits(expected), impact.sphere as i8 + 1));
-            true
-        });
+        let reason = bounce(
+            &body,
+            &run.law.scaled(&scales),
+            release,
+            limits,
+            |impact: &Impact| {
+                let expected = [
+                    impact.time * scales.time,
+                    impact.impact_velocity() * scales.speed,
+                    impact.rebound_velocity() * scales.speed,
+                    impact.restitution(),
+                    impact.rotational_fraction(&body),
+                    impact.energy_ratio(&body),
+                    impact.before.angle(),
+                ];
+                numbers.push((bits(expected), impact.sphere as i8 + 1));
+                true
+            },
+        );
         prop_assert!(
             reason.is_ok(),
             "particle {particle}: the oracle did not converge"

@@ -1,19 +1,17 @@
 //! The SIMD engine against the oracle, the three-dimensional scalar engine: the same bits, at every level.
 
 use restitution_core::{
-    Dumbbell, Impact, Level, Limits, Means, Monitor, Orientation, Records, Run, Scales, StopReason,
-    TangentialRestitution, bounce,
+    ChatterjeeRuina, Coulomb, Dumbbell, Frictionless, Hypothesis, Impact, Law, Level, Limits,
+    Means, Monitor, Normal, Orientation, Plastic, Records, Run, Scales, StopReason, Tabulated,
+    TangentialRestitution, Viscoelastic, bounce,
 };
 
-fn run(
-    elongation: f64,
-    law: TangentialRestitution,
-    particles: usize,
-    impacts: usize,
-) -> Run<'static> {
+fn run(elongation: f64, law: Law<'_>, particles: usize, impacts: usize) -> Run<'_> {
     let radius = 3e-3;
     Run {
-        body: Dumbbell::new(radius, elongation * radius, 2500.0).unwrap(),
+        body: Dumbbell::new(radius, elongation * radius, 2500.0)
+            .unwrap()
+            .into(),
         law,
         particles,
         impacts,
@@ -39,11 +37,12 @@ fn same(a: &[f64], b: &[f64]) -> bool {
 
 /// Bounces particle after particle with the oracle and compares every number of every impact.
 fn agrees_with_the_oracle(run: &Run<'_>) {
-    let scales = Scales::new(run.body.radius(), run.gravity).unwrap();
-    let body = run.body.scaled();
+    let scales = Scales::new(run.body.unit, run.gravity).unwrap();
+    let body = run.body.scaled;
     let lanes = at(run, Level::best(), 0);
     for particle in 0..run.particles {
         let release = run.orientation.release(
+            &body,
             run.release_height / scales.length,
             run.seed,
             particle as u64,
@@ -53,34 +52,40 @@ fn agrees_with_the_oracle(run: &Run<'_>) {
             minimum_speed: run.minimum_speed / scales.speed,
         };
         let mut i = particle * run.impacts;
-        let reason = bounce(&body, &run.law, release, limits, |impact: &Impact| {
-            let expected = [
-                impact.time * scales.time,
-                impact.impact_velocity() * scales.speed,
-                impact.rebound_velocity() * scales.speed,
-                impact.restitution(),
-                impact.rotational_fraction(&body),
-                impact.energy_ratio(&body),
-                impact.before.angle(),
-            ];
-            let found = [
-                lanes.time[i],
-                lanes.impact_velocity[i],
-                lanes.rebound_velocity[i],
-                lanes.restitution[i],
-                lanes.rotational_fraction[i],
-                lanes.energy_ratio[i],
-                lanes.angle[i],
-            ];
-            assert!(
-                same(&expected, &found),
-                "particle {particle}, impact {}: {expected:?} {found:?}",
-                i - particle * run.impacts
-            );
-            assert_eq!(lanes.contact[i], impact.sphere as i8 + 1);
-            i += 1;
-            true
-        })
+        let reason = bounce(
+            &body,
+            &run.law.scaled(&scales),
+            release,
+            limits,
+            |impact: &Impact| {
+                let expected = [
+                    impact.time * scales.time,
+                    impact.impact_velocity() * scales.speed,
+                    impact.rebound_velocity() * scales.speed,
+                    impact.restitution(),
+                    impact.rotational_fraction(&body),
+                    impact.energy_ratio(&body),
+                    impact.before.angle(),
+                ];
+                let found = [
+                    lanes.time[i],
+                    lanes.impact_velocity[i],
+                    lanes.rebound_velocity[i],
+                    lanes.restitution[i],
+                    lanes.rotational_fraction[i],
+                    lanes.energy_ratio[i],
+                    lanes.angle[i],
+                ];
+                assert!(
+                    same(&expected, &found),
+                    "particle {particle}, impact {}: {expected:?} {found:?}",
+                    i - particle * run.impacts
+                );
+                assert_eq!(lanes.contact[i], impact.sphere as i8 + 1);
+                i += 1;
+                true
+            },
+        )
         .unwrap();
         assert_eq!(lanes.impacts[particle] as usize, i - particle * run.impacts);
         assert_eq!(lanes.stop_reason[particle], reason as i8);
@@ -93,7 +98,38 @@ fn the_lanes_are_the_oracle_to_the_bit() {
     for elongation in [0.0, 1e-3, 0.02, 0.1, 0.5, 1.0, 2.0, 3.5] {
         for normal in [0.0, 0.4, 0.9, 0.98, 1.0] {
             for tangential in [-1.0, -0.3, 0.0, 0.7, 1.0] {
-                let law = TangentialRestitution::new(normal, tangential).unwrap();
+                let law = TangentialRestitution::new(normal, tangential)
+                    .unwrap()
+                    .into();
+                agrees_with_the_oracle(&run(elongation, law, 70, 120));
+            }
+        }
+    }
+}
+
+/// The other laws, and coefficients that depend on the speed.
+#[test]
+fn every_law_is_the_same_in_lanes() {
+    let glass = Viscoelastic::new(6e10, 0.2, 1e-6, 2500.0, 3e-3).unwrap();
+    let (speeds, values) = ([0.01, 0.1, 0.3, 1.0], [1.0, 0.95, 0.97, 0.8]);
+    let normals = [
+        Normal::from(0.9),
+        glass.into(),
+        Plastic::new(0.05).unwrap().into(),
+        Tabulated::new(&speeds, &values).unwrap().into(),
+    ];
+    for normal in normals {
+        let mut laws: Vec<Law<'_>> = vec![
+            TangentialRestitution::new(normal, 0.5).unwrap().into(),
+            Frictionless::new(normal).unwrap().into(),
+            ChatterjeeRuina::new(normal, 0.2, 0.3).unwrap().into(),
+        ];
+        for hypothesis in [Hypothesis::Stronge, Hypothesis::Poisson, Hypothesis::Newton] {
+            laws.push(Coulomb::new(normal, 0.3, hypothesis).unwrap().into());
+            laws.push(Coulomb::new(normal, 1.5, hypothesis).unwrap().into());
+        }
+        for law in laws {
+            for elongation in [0.0, 0.1, 1.0, 3.5] {
                 agrees_with_the_oracle(&run(elongation, law, 70, 120));
             }
         }
@@ -103,7 +139,7 @@ fn the_lanes_are_the_oracle_to_the_bit() {
 /// The bits must not depend on the vector width, the number of threads or on what else is in the run.
 #[test]
 fn every_level_and_thread_count_gives_the_same_bits() {
-    let law = TangentialRestitution::new(0.9, 0.5).unwrap();
+    let law = TangentialRestitution::new(0.9, 0.5).unwrap().into();
     let run = Run {
         minimum_speed: 0.05,
         ..run(0.5, law, 333, 200)

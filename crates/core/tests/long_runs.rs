@@ -23,7 +23,7 @@ fn a_million_impacts_are_in_order_and_above_the_plane() {
             ] {
                 let body = dumbbell(elongation);
                 particle += 1;
-                let release = Orientation::Isotropic.release(20.0, 5, particle);
+                let release = Orientation::Isotropic.release(&body, 20.0, 5, particle);
                 let mut last = 0.0;
                 let limits = Limits {
                     impacts: 2000,
@@ -67,7 +67,7 @@ fn energy_never_grows_where_it_cannot() {
     ] {
         let body = dumbbell(elongation);
         for particle in 0..10 {
-            let release = Orientation::UniformAngle.release(20.0, 3, particle);
+            let release = Orientation::UniformAngle.release(&body, 20.0, 3, particle);
             let mut held = energy(&release, &body);
             let limits = Limits {
                 impacts: 2000,
@@ -87,12 +87,13 @@ fn energy_never_grows_where_it_cannot() {
 }
 
 /// With ε^n = 1 and ε^t = −1 the contact velocity is reversed and no energy lost: the whole energy is the same after
-/// ten thousand impacts, up to a random walk of roundings.
+/// ten thousand impacts, up to roundings. They do not quite average out: about a sixth of an ulp an impact is gained at
+/// L/R = 3, however closely the contact is located (the last step at most 2⁻¹¹ or 2⁻¹⁶ of the flight time).
 #[test]
 fn reversal_conserves_energy() {
     for elongation in [0.1, 1.0, 3.0] {
         let body = dumbbell(elongation);
-        let release = Orientation::UniformAngle.release(20.0, 3, 1);
+        let release = Orientation::UniformAngle.release(&body, 20.0, 3, 1);
         let start = energy(&release, &body);
         let limits = Limits {
             impacts: 10_000,
@@ -104,9 +105,9 @@ fn reversal_conserves_energy() {
             true
         })
         .unwrap();
-        // Five standard deviations of 10⁴ errors of 4 ulp.
+        // Half an ulp an impact.
         assert!(
-            (end - start).abs() <= 5.0 * 100.0 * 4.0 * f64::EPSILON * start,
+            (end - start).abs() <= 0.5 * 10_000.0 * f64::EPSILON * start,
             "{:e}",
             end / start - 1.0
         );

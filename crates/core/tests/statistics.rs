@@ -6,7 +6,7 @@ mod tallies;
 use common::*;
 use proptest::prelude::*;
 use restitution_core::statistics::{By, Tally};
-use restitution_core::{Level, Orientation, Run, TangentialRestitution};
+use restitution_core::{Law, Level, Orientation, Run};
 use std::sync::LazyLock;
 use tallies::*;
 
@@ -30,8 +30,11 @@ static PIECES: LazyLock<Vec<Tally>> = LazyLock::new(|| {
 });
 
 /// An empty tally that goes with [`PIECES`].
-fn nothing(law: &TangentialRestitution) -> Tally {
-    Tally::new(&Edges::coarse().bins(By::Number(ROWS)), law.normal())
+fn nothing(law: &Law<'_>) -> Tally {
+    Tally::new(
+        &Edges::coarse().bins(By::Number(ROWS)),
+        law.normal().at(1.0),
+    )
 }
 
 /// The pieces cover what merging has to cope with: sums beyond 128 bits, and impacts without a place.
@@ -54,6 +57,9 @@ fn the_pieces_are_as_different_as_they_should_be() {
         last.sum::<u64>()
     };
     assert!(undefined(extreme) > 0);
+    let gains = |tally: &Tally| tally.gains.iter().map(|row| row.count).sum::<u64>();
+    let creating = PIECES.iter().filter(|piece| gains(piece) > 0).count();
+    assert!(0 < creating && creating < PIECES.len());
 }
 
 proptest! {

@@ -13,7 +13,7 @@ use std::f64::consts::PI;
 fn are_images(
     (body, law, release): (
         restitution_core::Body,
-        restitution_core::TangentialRestitution,
+        restitution_core::Law<'static>,
         State,
     ),
     image: impl Fn(&State) -> State,
@@ -154,7 +154,7 @@ proptest! {
 /// The records of one particle a row of angles, for bodies and heights that are multiples of the radius.
 fn ensemble(radius: f64, density: f64, gravity: f64, angles: &[f64]) -> Run<'_> {
     Run {
-        body: Dumbbell::new(radius, 0.5 * radius, density).unwrap(),
+        body: Dumbbell::new(radius, 0.5 * radius, density).unwrap().into(),
         particles: angles.len(),
         impacts: 200,
         release_height: 20.0 * radius,

@@ -1,16 +1,19 @@
 //! The thin binding: parameters in, NumPy arrays out. No physics here.
 
+mod bodies;
 mod distribution;
+mod laws;
 mod watch;
 
+use bodies::Solid;
 use numpy::ndarray::Array2;
 use numpy::{Element, IntoPyArray, PyReadonlyArray1};
 use pyo3::create_exception;
 use pyo3::exceptions::{PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
-use restitution_core::statistics::{Axis, Bins, By, Moments};
-use restitution_core::{Dumbbell, Error, Level, Means, Orientation, Run, TangentialRestitution};
+use restitution_core::statistics::{Axis, Bins, By, CREATES_ENERGY, Moments};
+use restitution_core::{Error, Level, Means, Orientation, Run};
 
 create_exception!(
     restitution,
@@ -35,13 +38,6 @@ fn level() -> PyResult<Level> {
     }
 }
 
-/// Mass (kg), transverse and axial moment of inertia (kg m²) of a dumbbell.
-#[pyfunction]
-fn dumbbell_inertia(radius: f64, separation: f64, density: f64) -> PyResult<(f64, f64, f64)> {
-    let body = Dumbbell::new(radius, separation, density).map_err(python_error)?;
-    Ok((body.mass(), body.transverse_inertia(), body.axial_inertia()))
-}
-
 /// How to let particles go: the name of a law or an array of angles.
 #[derive(FromPyObject)]
 enum Release<'py> {
@@ -53,11 +49,8 @@ enum Release<'py> {
 #[derive(FromPyObject)]
 #[pyo3(from_item_all)]
 struct Parameters<'py> {
-    radius: f64,
-    separation: f64,
-    density: f64,
-    normal: f64,
-    tangential: f64,
+    body: PyRef<'py, Solid>,
+    law: laws::LawParameters,
     particles: usize,
     impacts: usize,
     release_height: f64,
@@ -70,9 +63,8 @@ struct Parameters<'py> {
 impl Parameters<'_> {
     fn run(&self) -> PyResult<Run<'_>> {
         Ok(Run {
-            body: Dumbbell::new(self.radius, self.separation, self.density)
-                .map_err(python_error)?,
-            law: TangentialRestitution::new(self.normal, self.tangential).map_err(python_error)?,
+            body: self.body.0,
+            law: self.law.law()?,
             particles: self.particles,
             impacts: self.impacts,
             release_height: self.release_height,
@@ -192,6 +184,10 @@ fn statistics<'py>(
     table.set_item("maximum", column(|m| m.maximum))?;
     let fractions: Vec<_> = (0..rows).map(|row| tally.mean_fraction(row)).collect();
     table.set_item("mean_fraction", fractions.into_pyarray(py))?;
+    let created: Vec<_> = tally.gains.iter().map(|row| row.count as i64).collect();
+    table.set_item("energy_created", created.into_pyarray(py))?;
+    let largest: Vec<_> = tally.gains.iter().map(|row| row.largest).collect();
+    table.set_item("largest_energy_ratio", largest.into_pyarray(py))?;
     let stops = tally.stops.map(|count| count as i64).to_vec();
     table.set_item("stops", stops.into_pyarray(py))?;
     Ok((table, interrupted))
@@ -229,12 +225,15 @@ fn sincos(x: f64) -> (f64, f64) {
 
 #[pymodule]
 fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
+    module.add("CREATES_ENERGY", CREATES_ENERGY)?;
     module.add("NumericalError", module.py().get_type::<NumericalError>())?;
-    module.add_function(wrap_pyfunction!(dumbbell_inertia, module)?)?;
+    bodies::add_to(module)?;
     module.add_function(wrap_pyfunction!(simulate, module)?)?;
     module.add_function(wrap_pyfunction!(statistics, module)?)?;
     module.add_function(wrap_pyfunction!(build_info, module)?)?;
     module.add_function(wrap_pyfunction!(sincos, module)?)?;
+    module.add_function(wrap_pyfunction!(laws::normal_coefficient, module)?)?;
+    module.add_function(wrap_pyfunction!(laws::respond, module)?)?;
     module.add_function(wrap_pyfunction!(distribution::mixture_value, module)?)?;
     module.add_function(wrap_pyfunction!(distribution::mixture_draw, module)?)?;
     Ok(())

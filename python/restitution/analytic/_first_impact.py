@@ -90,8 +90,12 @@ class FirstImpact:
     def __post_init__(self) -> None:
         if not isinstance(self.body, Dumbbell):
             raise ParameterError(wrong("body", self.body, "a Dumbbell"))
+        if not self.body.is_equal:
+            raise ParameterError(wrong("body", self.body, "a Dumbbell of equal spheres"))
         if not isinstance(self.law, TangentialRestitution):
             raise ParameterError(wrong("law", self.law, "a TangentialRestitution"))
+        if not isinstance(self.law.normal, float):
+            raise ParameterError(wrong("law.normal", self.law.normal, "a number for this closed form"))
         if not (isinstance(self.orientation, str) and self.orientation in ORIENTATIONS):
             raise ParameterError(wrong("orientation", self.orientation, " or ".join(map(repr, ORIENTATIONS))))
         separation = self.body.separation
@@ -112,7 +116,7 @@ class FirstImpact:
 
     def support(self) -> tuple[float, float]:
         """Least and greatest ε: axis horizontal and axis vertical (ε^n)."""
-        return self.law.normal - self._impact.greatest_loss, self.law.normal
+        return self._impact.normal - self._impact.greatest_loss, self._impact.normal
 
     def restitution(self, cos_theta: ArrayLike) -> Values:
         """ε at the angle θ between symmetry axis and plane normal (Eq. 17); nan unless -1 <= cos θ <= 1.
@@ -175,7 +179,7 @@ class FirstImpact:
 
     def mean(self) -> float:
         """Mean of ε."""
-        return self.law.normal - self._impact.greatest_loss * self._mean_loss
+        return self._impact.normal - self._impact.greatest_loss * self._mean_loss
 
     def var(self) -> float:
         """Variance of ε."""

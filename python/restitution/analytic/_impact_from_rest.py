@@ -49,8 +49,8 @@ class ImpactFromRest:
         shape = Dumbbell(radius=1.0, separation=length, density=1.0)
         denominator = 4.0 * (1.0 + shape.transverse_inertia / shape.mass) + length * length
         return cls(
-            normal=law.normal,
-            greatest_loss=(1.0 + law.normal) * (length / denominator * length),
+            normal=law.constant,
+            greatest_loss=(1.0 + law.constant) * (length / denominator * length),
             asymmetry=4.0 * length / denominator,
         )
 

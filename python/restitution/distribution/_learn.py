@@ -76,7 +76,9 @@ def learn(
 def _checked(velocities: npt.ArrayLike | None, ensemble: Ensemble) -> Floats:
     run = ensemble.run
     if velocities is None:
-        fastest = math.sqrt(2.0 * run.gravity * (min(ensemble.heights) - run.body.radius))
+        # Upright either way or level: in one of these the centre of mass comes lowest.
+        lowest = min(run.body.solid.lowest(np.array([cosine])) for cosine in (-1.0, 0.0, 1.0))
+        fastest = math.sqrt(2.0 * run.gravity * (min(ensemble.heights) - lowest))
         return np.array(_RANGE) * fastest
     nodes = np.array(velocities, dtype=np.float64)
     if not (nodes.ndim == 1 and nodes.size >= 2 and np.all(np.isfinite(nodes))):

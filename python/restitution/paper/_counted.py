@@ -7,6 +7,7 @@ from math import ceil
 import xarray as xr
 
 import restitution as rs
+from restitution._energy import reported_elsewhere
 from restitution.paper import _windows as windows
 from restitution.paper._settings import Settings
 from restitution.paper._windows import FloatArray, mesh
@@ -47,6 +48,7 @@ def impacts_counted(counted: xr.Dataset) -> int:
     return int(inside + counted["velocity_underflow"] + counted["velocity_overflow"])
 
 
+@reported_elsewhere()  # by the claim on dissipation
 def count_all(
     settings: Settings,
     impacts: int,

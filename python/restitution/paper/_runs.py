@@ -9,6 +9,7 @@ import xarray as xr
 from tqdm import tqdm
 
 import restitution as rs
+from restitution._energy import reported_elsewhere
 from restitution.laws import TangentialRestitution
 from restitution.paper._counted import Counted, count_all
 from restitution.paper._settings import Settings
@@ -84,6 +85,7 @@ def check_impacts(settings: Settings, impacts: int) -> None:
         raise ValueError(f"impacts = {impacts}: must be at least {least}, the number of impacts in Fig. 2")
 
 
+@reported_elsewhere()  # by the claim on dissipation
 def simulate_all(
     settings: Settings, impacts: int, seed: int, threads: int | None = None, progress: bool = True
 ) -> Runs:

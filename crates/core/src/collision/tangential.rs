@@ -1,22 +1,25 @@
 //! The paper's law, (9): both components of the contact velocity change by a fixed factor.
 
-use super::{Components, Contact, Law, Response};
+use super::{Contact, InPlane, Normal, Plane, Rebound};
 use crate::Error;
+use crate::lanes::Operand;
+use pulp::Simd;
 
 /// Normal and tangential restitution of the contact velocity, (9).
 ///
-/// With ε^t = 1 the tangential contact velocity is kept. For a body that is not a sphere this takes a tangential impulse,
-/// which can do positive work: kinetic energy can grow. The law is not a frictionless one.
+/// With ε^t = 1 it conserves the tangential contact velocity. For a body that is not a sphere this takes a tangential impulse,
+/// which can do positive work, so that kinetic energy can grow, and which may lie outside every friction cone. The law is not a
+/// frictionless one.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct TangentialRestitution {
-    normal: f64,
+pub struct TangentialRestitution<'a> {
+    pub(super) normal: Normal<'a>,
     tangential: f64,
 }
 
-impl TangentialRestitution {
-    /// ε^n in [0, 1], ε^t in [−1, 1].
-    pub fn new(normal: f64, tangential: f64) -> Result<Self, Error> {
-        Error::unless((0.0..=1.0).contains(&normal), "normal", normal, "in [0, 1]")?;
+impl<'a> TangentialRestitution<'a> {
+    /// ε^n in [0, 1] or a function of the normal contact speed, ε^t in [−1, 1].
+    pub fn new(normal: impl Into<Normal<'a>>, tangential: f64) -> Result<Self, Error> {
+        let normal = normal.into().checked()?;
         Error::unless(
             (-1.0..=1.0).contains(&tangential),
             "tangential",
@@ -26,28 +29,59 @@ impl TangentialRestitution {
         Ok(Self { normal, tangential })
     }
 
-    /// ε^n.
-    pub fn normal(&self) -> f64 {
-        self.normal
-    }
-
     /// ε^t.
     pub fn tangential(&self) -> f64 {
         self.tangential
     }
+
+    /// The law with its ε^n, if that is constant.
+    pub(super) fn steady(&self) -> Option<Steady<'a>> {
+        let Normal::Constant(normal) = self.normal else {
+            return None;
+        };
+        Some(Steady { law: *self, normal })
+    }
+
+    #[inline(always)]
+    pub(super) fn in_plane<S: Simd, const K: usize>(&self, contact: &Plane<S, K>) -> Rebound<S, K> {
+        let restitution = self.normal.in_lanes(contact.approach_speed());
+        self.with(-restitution, -(restitution + 1.0), contact)
+    }
+
+    /// The response with this −ε^n and −(1 + ε^n).
+    #[inline(always)]
+    fn with<S: Simd, const K: usize>(
+        &self,
+        rebound: impl Operand<S, K>,
+        change: impl Operand<S, K>,
+        contact: &Plane<S, K>,
+    ) -> Rebound<S, K> {
+        let (normal, along) = contact.impulse(
+            contact.slip_normal * change,                 // (9), (10)
+            (self.tangential - 1.0) * contact.slip_along, // (9), (10)
+        );
+        Rebound {
+            normal,
+            along,
+            separation_speed: contact.slip_normal * rebound, // (9)
+        }
+    }
+
+    /// Impulse along **w**.
+    pub(super) fn across(&self, contact: &Contact) -> f64 {
+        (self.tangential - 1.0) * contact.slip.across / contact.across // (9), (10)
+    }
 }
 
-impl Law for TangentialRestitution {
-    fn respond(&self, contact: &Contact) -> Response {
-        let slip = contact.slip;
-        let impulse = contact.impulse(Components {
-            normal: -(1.0 + self.normal) * slip.normal,    // (9), (10)
-            along: (self.tangential - 1.0) * slip.along,   // (9), (10)
-            across: (self.tangential - 1.0) * slip.across, // (9), (10)
-        });
-        Response {
-            impulse,
-            separation_speed: -self.normal * slip.normal, // (9)
-        }
+/// The law with a constant ε^n, to be written out in the bounce loop of the lanes: the paper's runs are of this kind.
+pub(crate) struct Steady<'a> {
+    law: TangentialRestitution<'a>,
+    normal: f64,
+}
+
+impl InPlane for Steady<'_> {
+    #[inline(always)]
+    fn in_plane<S: Simd, const K: usize>(&self, contact: &Plane<S, K>) -> Rebound<S, K> {
+        self.law.with(-self.normal, -(1.0 + self.normal), contact)
     }
 }

@@ -1,11 +1,12 @@
 //! The bounce loop, the paper's steps 1–7, for as many particles at once as there are lanes.
 
 use super::collision::collide;
-use super::contact::{Departure, Search};
+use super::contact::{Departure, Pass, Search};
 use super::flight::State;
 use super::{Mask, Pack};
 use crate::body::Body;
-use crate::collision::TangentialRestitution;
+use crate::collision::InPlane;
+use crate::contact::MOST_STEPS;
 use crate::trajectory::{COLLAPSE_RUN, Limits, StopReason, UNRESOLVED};
 use pulp::Simd;
 
@@ -13,42 +14,34 @@ use pulp::Simd;
 pub(crate) struct Impact<S: Simd, const K: usize> {
     /// Time since release.
     pub time: Pack<S, K>,
-    /// The state just before.
-    pub before: State<S, K>,
-    /// The state just after.
-    pub after: State<S, K>,
-    /// ±1: the sphere that touched.
-    pub sphere: Pack<S, K>,
+    /// v_G^n before, positive when falling, and the normal velocity of the centre of mass after, positive when rising.
+    pub fall: Pack<S, K>,
+    pub rise: Pack<S, K>,
+    /// Kinetic energy of the rotation before.
+    pub rotation: Pack<S, K>,
     /// Kinetic energies before and after.
     pub energy_before: Pack<S, K>,
     pub energy_after: Pack<S, K>,
+    /// Of the angle between the axis and the plane normal, up to the sign of the sine.
+    pub sine: Pack<S, K>,
+    pub cosine: Pack<S, K>,
+    /// ±1: the sphere that touched.
+    pub sphere: Pack<S, K>,
     /// The lanes in which there is an impact.
     pub active: Mask<S, K>,
 }
 
 impl<S: Simd, const K: usize> Impact<S, K> {
-    /// v_G^n before the impact.
-    #[inline(always)]
-    pub fn impact_velocity(&self) -> Pack<S, K> {
-        -self.before.climb
-    }
-
-    /// Normal velocity of the centre of mass after the impact.
-    #[inline(always)]
-    pub fn rebound_velocity(&self) -> Pack<S, K> {
-        self.after.climb
-    }
-
     /// The coefficient of restitution (1).
     #[inline(always)]
     pub fn restitution(&self) -> Pack<S, K> {
-        self.rebound_velocity() / self.impact_velocity() // (1)
+        self.rise / self.fall // (1)
     }
 
     /// E_rot/E_tot before the impact (12).
     #[inline(always)]
-    pub fn rotational_fraction(&self, body: &Body) -> Pack<S, K> {
-        self.before.rotational_energy(body.transverse) / self.energy_before // (12)
+    pub fn rotational_fraction(&self) -> Pack<S, K> {
+        self.rotation / self.energy_before // (12)
     }
 
     /// Kinetic energy after the impact over that before.
@@ -58,13 +51,18 @@ impl<S: Simd, const K: usize> Impact<S, K> {
     }
 }
 
-/// Takes what happens to the particles in the lanes.
+/// Takes what happens to the particles of a release.
 pub(crate) trait Sink {
-    /// From now on lane 0 holds particle `first` of the block.
+    /// From now on number 0 of the release is particle `first` of the block.
     fn begin(&mut self, first: usize);
-    /// Impact number `number`, counted from 0 and common to all lanes, has happened.
-    fn impact<S: Simd, const K: usize>(&mut self, number: usize, impact: &Impact<S, K>);
-    /// The particle in `lane` has ended after `impacts` impacts.
+    /// Impact `number`, counted from 0, has happened to the particles of the release from `first` on, one in each lane.
+    fn impact<S: Simd, const K: usize>(
+        &mut self,
+        number: usize,
+        first: usize,
+        impact: &Impact<S, K>,
+    );
+    /// Particle `lane` of the release has ended after `impacts` impacts.
     fn end(&mut self, lane: usize, impacts: usize, reason: StopReason);
 }
 
@@ -72,7 +70,7 @@ pub(crate) trait Sink {
 pub(crate) struct Release<'a> {
     /// Height of the centres of mass above R.
     pub lift: f64,
-    /// The axes (s, 0, c), at most as many as there are lanes.
+    /// The axes (s, 0, c).
     pub sines: &'a [f64],
     pub cosines: &'a [f64],
 }
@@ -84,114 +82,205 @@ pub(crate) struct Stuck {
     pub impacts: usize,
 }
 
-/// Bounces as many particles as there are lanes. Calls `go_on` before every impact.
+/// As many particles as a [`Pack`] has lanes. Aligned, and with it the stack, to a line of the cache, which a vector must not
+/// straddle.
+#[derive(Clone, Copy)]
+#[repr(align(64))]
+struct Group<S: Simd, const K: usize> {
+    state: State<S, K>,
+    departure: Departure<S, K>,
+    search: Search<S, K>,
+    pass: Pass<S, K>,
+    /// Time since release.
+    clock: Pack<S, K>,
+    /// Unresolved flights in a row.
+    unresolved: Pack<S, K>,
+    /// Which lanes hold a particle still.
+    active: Mask<S, K>,
+    /// Number of lane 0.
+    first: usize,
+}
+
+/// Bounces the particles of a release, at most as many as N groups hold. Calls `go_on` before every impact.
+///
+/// Each phase of an impact goes through all groups before the next begins. What a group waits for, such as the branch on whether
+/// it has landed, is then known when its turn comes.
 #[inline(always)]
-pub(crate) fn bounce<S: Simd, const K: usize>(
+pub(crate) fn bounce<S: Simd, const K: usize, const N: usize>(
     simd: S,
     body: &Body,
-    law: &TangentialRestitution,
+    law: &impl InPlane,
     release: Release<'_>,
     limits: Limits,
     sink: &mut impl Sink,
     go_on: impl Fn() -> bool,
 ) -> Result<(), Stuck> {
-    let particles = release.sines.len();
-    let zero: Pack<S, K> = Pack::splat(simd, 0.0);
-    let mut state = State {
-        lift: Pack::splat(simd, release.lift),
-        glide: zero,
-        climb: zero,
-        sine: zero,
-        cosine: Pack::splat(simd, 1.0),
-        spin: zero,
-    };
-    state.sine.as_mut_slice()[..particles].copy_from_slice(release.sines);
-    state.cosine.as_mut_slice()[..particles].copy_from_slice(release.cosines);
-    let mut lanes = Lanes::new(simd, particles);
-    let gap = |side: f64| state.cosine.mul_add(side, state.lift);
-    let one = gap(body.half_separation).le(0.0);
-    let two = gap(-body.half_separation).le(0.0);
-    let mut departure = Departure {
-        sphere: one.select(1.0, two.select(-1.0, zero)),
-        speed: zero,
-    };
-    let mut clock = zero;
-    let mut unresolved = zero;
+    let mut groups = [Group::<S, K>::empty(simd, body, release.lift); N];
+    let occupied = release.sines.len().div_ceil(Pack::<S, K>::WIDTH);
+    let groups = &mut groups[..occupied];
+    for (i, group) in groups.iter_mut().enumerate() {
+        group.occupy(body, &release, i * Pack::<S, K>::WIDTH);
+    }
     for number in 0..limits.impacts {
         if !go_on() {
-            lanes.end(lanes.active, number, StopReason::Interrupted, sink);
+            for group in groups {
+                group.end(group.active, number, StopReason::Interrupted, sink);
+            }
             return Ok(());
         }
-        let search = Search::new(&state, &departure, body.half_separation);
-        let still = departure.speed.le(0.0);
-        if still.any() {
-            let rests = still & search.rests();
-            lanes.end(rests, number, StopReason::Collapse, sink);
+        for group in groups.iter_mut() {
+            group.depart(body, number, sink);
         }
-        let landing = search.landing(lanes.active).map_err(|lane| Stuck {
-            lane,
-            impacts: number,
-        })?;
-        lanes.end(landing.never, number, StopReason::NeverLands, sink);
-        if !lanes.active.any() {
+        for group in groups.iter_mut() {
+            group.pass = group.search.pass(group.search.departed());
+        }
+        // Hardly any group is done after the first pass.
+        for group in groups.iter_mut() {
+            group.pass = group.search.pass(group.pass.next);
+        }
+        let mut passes = 2;
+        loop {
+            let mut searching = false;
+            for group in groups.iter_mut() {
+                let waiting = group.active & !group.pass.done;
+                if waiting.any() {
+                    if passes == MOST_STEPS {
+                        return Err(group.stuck(waiting, number));
+                    }
+                    searching = true;
+                    group.pass = group.search.pass(group.pass.next);
+                }
+            }
+            passes += 1;
+            if !searching {
+                break;
+            }
+        }
+        let mut active = false;
+        for group in groups.iter_mut() {
+            group.land(body, law, limits, number, sink);
+            active |= group.active.any();
+        }
+        if !active {
             return Ok(());
         }
-        let before = landing.state;
-        let (after, speed) = collide(body, law, &before, landing.sphere);
-        clock = clock + landing.time;
-        let energy_after = after.kinetic_energy(body.transverse);
-        sink.impact(
-            number,
-            &Impact {
-                time: clock,
-                before,
-                after,
-                sphere: landing.sphere,
-                energy_before: before.kinetic_energy(body.transverse),
-                energy_after,
-                active: lanes.active,
-            },
-        );
-        if limits.minimum_speed > 0.0 {
-            let slow = (2.0 * energy_after).lt(limits.minimum_speed * limits.minimum_speed);
-            lanes.end(slow, number + 1, StopReason::SpeedBelowThreshold, sink);
-        }
-        let low = (search.bound * (landing.time * landing.time)).lt(UNRESOLVED);
-        if low.any() {
-            unresolved = low.select(unresolved + 1.0, 0.0);
-            let collapsed = unresolved.eq(f64::from(COLLAPSE_RUN));
-            lanes.end(collapsed, number + 1, StopReason::Collapse, sink);
-        } else {
-            unresolved = zero;
-        }
-        departure = Departure {
-            sphere: landing.sphere,
-            speed,
-        };
-        state = after;
     }
-    lanes.end(
-        lanes.active,
-        limits.impacts,
-        StopReason::ImpactsReached,
-        sink,
-    );
+    for group in groups {
+        group.end(
+            group.active,
+            limits.impacts,
+            StopReason::ImpactsReached,
+            sink,
+        );
+    }
     Ok(())
 }
 
-/// Which lanes still hold a particle.
-struct Lanes<S: Simd, const K: usize> {
-    active: Mask<S, K>,
-}
-
-impl<S: Simd, const K: usize> Lanes<S, K> {
+impl<S: Simd, const K: usize> Group<S, K> {
     #[inline(always)]
-    fn new(simd: S, particles: usize) -> Self {
-        let mut occupied = Pack::<S, K>::splat(simd, 0.0);
-        occupied.as_mut_slice()[..particles].fill(1.0);
+    fn empty(simd: S, body: &Body, lift: f64) -> Self {
+        let zero = Pack::splat(simd, 0.0);
+        let state = State {
+            lift: Pack::splat(simd, lift),
+            glide: zero,
+            climb: zero,
+            sine: zero,
+            cosine: Pack::splat(simd, 1.0),
+            spin: zero,
+        };
+        let departure = Departure {
+            sphere: zero,
+            speed: zero,
+        };
+        let search = Search::new(state, departure, body.half_separation);
         Self {
-            active: occupied.eq(1.0),
+            state,
+            departure,
+            search,
+            pass: search.pass(zero),
+            clock: zero,
+            unresolved: zero,
+            active: Mask::splat(simd, false),
+            first: 0,
         }
+    }
+
+    /// Takes the particles of a release from number `first` on.
+    #[inline(always)]
+    fn occupy(&mut self, body: &Body, release: &Release<'_>, first: usize) {
+        let particles = Pack::<S, K>::WIDTH.min(release.sines.len() - first);
+        let (from, to) = (first, first + particles);
+        let State {
+            sine, cosine, lift, ..
+        } = &mut self.state;
+        sine.as_mut_slice()[..particles].copy_from_slice(&release.sines[from..to]);
+        cosine.as_mut_slice()[..particles].copy_from_slice(&release.cosines[from..to]);
+        let one = cosine.mul_add(body.half_separation, *lift).le(0.0);
+        let two = cosine.mul_add(-body.half_separation, *lift).le(0.0);
+        self.departure.sphere = one.select(1.0, two.select(-1.0, 0.0 * *cosine));
+        let mut occupied = 0.0 * *cosine;
+        occupied.as_mut_slice()[..particles].fill(1.0);
+        self.active = occupied.eq(1.0);
+        self.first = first;
+    }
+
+    /// Starts a flight.
+    #[inline(always)]
+    fn depart(&mut self, body: &Body, number: usize, sink: &mut impl Sink) {
+        self.search = Search::new(self.state, self.departure, body.half_separation);
+        let still = self.departure.speed.le(0.0);
+        if still.any() {
+            let rests = still & self.search.rests();
+            self.end(rests, number, StopReason::Collapse, sink);
+        }
+    }
+
+    /// Ends a flight, and has the impact.
+    #[inline(always)]
+    fn land(
+        &mut self,
+        body: &Body,
+        law: &impl InPlane,
+        limits: Limits,
+        number: usize,
+        sink: &mut impl Sink,
+    ) {
+        let landing = self.search.landing(&self.pass);
+        self.end(landing.never, number, StopReason::NeverLands, sink);
+        let before = landing.state;
+        let (after, speed) = collide(body, law, &before, landing.sphere);
+        self.clock = self.clock + landing.time;
+        let energy_after = after.kinetic_energy(body.transverse);
+        let impact = Impact {
+            time: self.clock,
+            fall: -before.climb,
+            rise: after.climb,
+            rotation: before.rotational_energy(body.transverse),
+            energy_before: before.kinetic_energy(body.transverse),
+            energy_after,
+            sine: before.sine,
+            cosine: before.cosine,
+            sphere: landing.sphere,
+            active: self.active,
+        };
+        sink.impact(number, self.first, &impact);
+        if limits.minimum_speed > 0.0 {
+            let slow = (2.0 * energy_after).lt(limits.minimum_speed * limits.minimum_speed);
+            self.end(slow, number + 1, StopReason::SpeedBelowThreshold, sink);
+        }
+        let low = (self.search.bound * (landing.time * landing.time)).lt(UNRESOLVED);
+        if low.any() {
+            self.unresolved = low.select(self.unresolved + 1.0, 0.0);
+            let collapsed = self.unresolved.eq(f64::from(COLLAPSE_RUN));
+            self.end(collapsed, number + 1, StopReason::Collapse, sink);
+        } else {
+            self.unresolved = Pack::splat(self.clock.simd(), 0.0);
+        }
+        self.departure = Departure {
+            sphere: landing.sphere,
+            speed,
+        };
+        self.state = after;
     }
 
     /// Ends the active lanes in `which`. Rare.
@@ -199,8 +288,20 @@ impl<S: Simd, const K: usize> Lanes<S, K> {
     fn end(&mut self, which: Mask<S, K>, impacts: usize, reason: StopReason, sink: &mut impl Sink) {
         let ending = which & self.active;
         if ending.any() {
-            ending.each(|lane| sink.end(lane, impacts, reason));
+            ending.each(|lane| sink.end(self.first + lane, impacts, reason));
             self.active = self.active & !ending;
+        }
+    }
+
+    #[cold]
+    fn stuck(&self, waiting: Mask<S, K>, impacts: usize) -> Stuck {
+        let mut first = None;
+        waiting.each(|lane| {
+            first.get_or_insert(self.first + lane);
+        });
+        Stuck {
+            lane: first.unwrap_or(self.first),
+            impacts,
         }
     }
 }

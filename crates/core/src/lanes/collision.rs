@@ -3,14 +3,14 @@
 use super::Pack;
 use super::flight::State;
 use crate::body::Body;
-use crate::collision::TangentialRestitution;
+use crate::collision::{InPlane, Plane};
 use pulp::Simd;
 
 /// The state after the impact of `sphere` (±1), and the speed at which the point of contact leaves the plane.
 #[inline(always)]
 pub(super) fn collide<S: Simd, const K: usize>(
     body: &Body,
-    law: &TangentialRestitution,
+    law: &impl InPlane,
     before: &State<S, K>,
     sphere: Pack<S, K>,
 ) -> (State<S, K>, Pack<S, K>) {
@@ -18,23 +18,19 @@ pub(super) fn collide<S: Simd, const K: usize>(
     let side = sphere * body.half_separation;
     let arm_x = before.sine * side; // r_c (6)
     let arm_z = before.cosine.mul_add(side, -1.0); // r_c (6)
-    let slip_x = before.glide + before.spin * arm_z; // v_c (7)
-    let slip_z = (before.climb - before.spin * arm_x).min(0.0); // v_c (7)
-
-    let change_z = -(1.0 + law.normal()) * slip_z; // (9), (10)
-    let change_x = (law.tangential() - 1.0) * slip_x; // (9), (10)
-    let zz = arm_z.mul_add(arm_z, j);
-    let inverse = 1.0 / arm_x.mul_add(arm_x, zz);
-    let cross = arm_z * arm_x;
-    let impulse_z = zz.mul_add(change_z, cross * change_x) * inverse; // (14)
-    let impulse_x = arm_x.mul_add(arm_x, j).mul_add(change_x, cross * change_z) * inverse; // (14)
-
-    let torque = arm_z.mul_add(impulse_x, -(arm_x * impulse_z));
+    let rebound = law.in_plane(&Plane {
+        slip_normal: (before.climb - before.spin * arm_x).min(0.0), // v_c (7)
+        slip_along: before.glide + before.spin * arm_z,             // v_c (7)
+        inertia: j,
+        arm_normal: arm_z,
+        arm_along: arm_x,
+    });
+    let torque = arm_z.mul_add(rebound.along, -(arm_x * rebound.normal));
     let after = State {
-        glide: before.glide + impulse_x,            // (11)
-        climb: before.climb + impulse_z,            // (11)
+        glide: before.glide + rebound.along,        // (11)
+        climb: before.climb + rebound.normal,       // (11)
         spin: torque.mul_add(1.0 / j, before.spin), // (11)
         ..*before
     };
-    (after, -law.normal() * slip_z) // (9)
+    (after, rebound.separation_speed)
 }

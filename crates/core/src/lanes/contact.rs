@@ -2,7 +2,7 @@
 
 use super::flight::{Phase, State};
 use super::{Mask, Pack};
-use crate::contact::{INVISIBLE, LAST_BEND, LAST_STEP, MOST_STEPS, SHORTEST, TOUCHING};
+use crate::contact::{INVISIBLE, LAST, SHORTEST, TOUCHING};
 use crate::elementary::RANGE;
 use pulp::Simd;
 
@@ -41,17 +41,40 @@ struct Moment<S: Simd, const K: usize> {
 /// The gap under a sphere.
 #[derive(Clone, Copy)]
 struct Gap<S: Simd, const K: usize> {
-    /// ±1.
-    sphere: Pack<S, K>,
+    /// Whether it is sphere 1.
+    one: Mask<S, K>,
+    /// ±L/2.
+    side: Pack<S, K>,
     width: Pack<S, K>,
     rate: Pack<S, K>,
     root: Pack<S, K>,
 }
 
+/// One pass of the search: where it was at a time, and the certified step from there.
+#[derive(Clone, Copy)]
+#[repr(align(64))]
+pub(super) struct Pass<S: Simd, const K: usize> {
+    time: Pack<S, K>,
+    phase: Phase<S, K>,
+    tilt: Pack<S, K>,
+    tilt_rate: Pack<S, K>,
+    side: Pack<S, K>,
+    root: Pack<S, K>,
+    step: Pack<S, K>,
+    /// Where the next pass looks; lanes that are done stay and find the same again.
+    pub next: Pack<S, K>,
+    one: Mask<S, K>,
+    /// The lanes whose step is the last, or that never land.
+    pub done: Mask<S, K>,
+    /// The lanes that never land.
+    never: Mask<S, K>,
+}
+
 /// What the search needs to know of a flight.
-pub(super) struct Search<'a, S: Simd, const K: usize> {
-    start: &'a State<S, K>,
-    departure: &'a Departure<S, K>,
+#[derive(Clone, Copy)]
+pub(super) struct Search<S: Simd, const K: usize> {
+    start: State<S, K>,
+    departure: Departure<S, K>,
     /// L/2.
     lever: f64,
     /// ω².
@@ -64,9 +87,9 @@ pub(super) struct Search<'a, S: Simd, const K: usize> {
     down: Pack<S, K>,
 }
 
-impl<'a, S: Simd, const K: usize> Search<'a, S, K> {
+impl<S: Simd, const K: usize> Search<S, K> {
     #[inline(always)]
-    pub fn new(start: &'a State<S, K>, departure: &'a Departure<S, K>, lever: f64) -> Self {
+    pub fn new(start: State<S, K>, departure: Departure<S, K>, lever: f64) -> Self {
         let square = start.spin * start.spin;
         let sway = lever * square;
         let above = start.climb.mul_add(start.climb, 2.0 * (start.lift - lever));
@@ -91,59 +114,78 @@ impl<'a, S: Simd, const K: usize> Search<'a, S, K> {
         let on = self.departure.sphere;
         let bend = -self.square * moment.tilt;
         let held = (on * self.lever).mul_add(bend, -1.0).le(0.0);
-        let other = self.gap(&moment, -on);
+        let other = self.gap(&moment, on.lt(0.0));
         let both = other.rate.lt(0.0) & other.width.le(TOUCHING);
         !on.eq(0.0) & held & !both
     }
 
-    /// The landings of the lanes in `wanted`; what the other lanes hold means nothing. The first
-    /// lane whose search does not end is the error.
+    /// Where the first pass looks. Both spheres count: the one on the plane is just leaving it.
     #[inline(always)]
-    pub fn landing(&self, wanted: Mask<S, K>) -> Result<Landing<S, K>, usize> {
+    pub fn departed(&self) -> Pack<S, K> {
         let moment = self.beginning();
-        let gap = self.careful(&moment, self.nearer(&moment));
-        let step = self.certified(&gap);
+        let on = self.departure.sphere;
+        let step = if on.eq(0.0).any() {
+            let all = Mask::splat(on.simd(), true);
+            let one = self.exact(&moment, self.gap(&moment, all));
+            let two = self.exact(&moment, self.gap(&moment, !all));
+            self.certified(&one).min(self.certified(&two))
+        } else {
+            // The root of a gap that is zero is its rate.
+            let leaves = (2.0 * self.departure.speed).max(SHORTEST) / self.bound;
+            let other = self.gap(&moment, on.lt(0.0));
+            self.certified(&other).min(leaves)
+        };
         // A contact at the start itself is seen again in the first pass.
-        let mut time = step.eq(0.0).select(0.0, self.skip(step));
-        let mut waiting = wanted;
-        for _ in 0..MOST_STEPS {
-            let angle = self.start.spin * time;
-            let never = !angle.abs().le(RANGE);
-            let phase = Phase::of(angle);
-            let moment = Moment {
-                time,
-                lift: self.start.lift_at(time),
-                climb: self.start.climb - time,
-                tilt: self.start.tilt(phase),
-                tilt_rate: self.start.tilt_rate(phase),
-            };
-            let mut gap = self.nearer(&moment);
-            let leaving = gap.width.le(TOUCHING) & !gap.rate.lt(0.0);
-            if (leaving | time.eq(0.0)).any() {
-                gap = self.careful(&moment, gap);
-            }
-            let step = self.certified(&gap);
-            let done = never | self.is_last(&gap, step, time);
-            waiting = !done & wanted;
-            if !waiting.any() {
-                let step = self.landed(&moment, &gap, step);
-                let time = time + step;
-                let phase = phase.advanced(self.start.spin * step);
-                return Ok(Landing {
-                    time,
-                    state: self.start.landing(time, phase, gap.sphere * self.lever),
-                    sphere: gap.sphere,
-                    never,
-                });
-            }
-            // Lanes that are done stay where they are and find the same step again.
-            time = done.select(time, self.skip(time + step));
+        step.eq(0.0).select(0.0, self.skip(step))
+    }
+
+    /// A pass at `time`.
+    #[inline(always)]
+    pub fn pass(&self, time: Pack<S, K>) -> Pass<S, K> {
+        let angle = self.start.spin * time;
+        let never = !angle.abs().le(RANGE);
+        let phase = Phase::of(angle);
+        let moment = Moment {
+            time,
+            lift: self.start.lift_at(time),
+            climb: self.start.climb - time,
+            tilt: self.start.tilt(phase),
+            tilt_rate: self.start.tilt_rate(phase),
+        };
+        let mut gap = self.nearer(&moment);
+        let leaving = gap.width.le(TOUCHING) & !gap.rate.lt(0.0);
+        if (leaving | time.eq(0.0)).any() {
+            gap = self.careful(&moment, gap);
         }
-        let mut stuck = None;
-        waiting.each(|lane| {
-            stuck.get_or_insert(lane);
-        });
-        Err(stuck.unwrap_or(0))
+        let step = self.certified(&gap);
+        let done = never | self.is_last(&gap, step, time);
+        Pass {
+            time,
+            phase,
+            tilt: moment.tilt,
+            tilt_rate: moment.tilt_rate,
+            side: gap.side,
+            root: gap.root,
+            step,
+            next: done.select(time, self.skip(time + step)),
+            one: gap.one,
+            done,
+            never,
+        }
+    }
+
+    /// The landing to which the last pass leads.
+    #[inline(always)]
+    pub fn landing(&self, last: &Pass<S, K>) -> Landing<S, K> {
+        let step = self.landed(last);
+        let time = last.time + step;
+        let phase = last.phase.advanced(self.start.spin * step);
+        Landing {
+            time,
+            state: self.start.landing(time, phase, last.side),
+            sphere: last.one.select(1.0, -1.0_f64),
+            never: last.never,
+        }
     }
 
     #[inline(always)]
@@ -155,7 +197,7 @@ impl<'a, S: Simd, const K: usize> Search<'a, S, K> {
             cosine,
             spin,
             ..
-        } = *self.start;
+        } = self.start;
         Moment {
             time: Pack::splat(lift.simd(), 0.0),
             lift,
@@ -180,18 +222,18 @@ impl<'a, S: Simd, const K: usize> Search<'a, S, K> {
             -(0.5 * self.bound * (tilt * tilt)),
         );
         let swings = Pack::splat(lift.simd(), 0.0).le(level);
-        let one = swings.select(tilt_rate, tilt).lt(0.0);
-        self.gap(moment, one.select(1.0, -1.0))
+        self.gap(moment, swings.select(tilt_rate, tilt).lt(0.0))
     }
 
     /// The gap under a sphere.
     #[inline(always)]
-    fn gap(&self, moment: &Moment<S, K>, sphere: Pack<S, K>) -> Gap<S, K> {
-        let side = sphere * self.lever;
+    fn gap(&self, moment: &Moment<S, K>, one: Mask<S, K>) -> Gap<S, K> {
+        let side = one.select(self.lever, -self.lever);
         let width = side.mul_add(moment.tilt, moment.lift).max(0.0); // (2)
         let rate = side.mul_add(moment.tilt_rate, moment.climb);
         Gap {
-            sphere,
+            one,
+            side,
             width,
             rate,
             root: self.root(width, rate),
@@ -208,11 +250,12 @@ impl<'a, S: Simd, const K: usize> Search<'a, S, K> {
     #[inline(always)]
     fn careful(&self, moment: &Moment<S, K>, nearer: Gap<S, K>) -> Gap<S, K> {
         let gap = self.exact(moment, nearer);
-        let other = self.exact(moment, self.gap(moment, -nearer.sphere));
+        let other = self.exact(moment, self.gap(moment, !nearer.one));
         let leaving = gap.width.le(TOUCHING) & !gap.rate.lt(0.0);
         let swap = leaving & self.certified(&other).lt(self.certified(&gap));
         Gap {
-            sphere: swap.select(other.sphere, gap.sphere),
+            one: gap.one ^ swap,
+            side: swap.select(other.side, gap.side),
             width: swap.select(other.width, gap.width),
             rate: swap.select(other.rate, gap.rate),
             root: swap.select(other.root, gap.root),
@@ -221,7 +264,8 @@ impl<'a, S: Simd, const K: usize> Search<'a, S, K> {
 
     #[inline(always)]
     fn exact(&self, moment: &Moment<S, K>, gap: Gap<S, K>) -> Gap<S, K> {
-        let touching = gap.sphere.eq(self.departure.sphere) & moment.time.eq(0.0);
+        let sphere = gap.one.select(1.0, -1.0_f64);
+        let touching = sphere.eq(self.departure.sphere) & moment.time.eq(0.0);
         let width = touching.select(0.0, gap.width);
         let rate = touching.select(self.departure.speed, gap.rate);
         Gap {
@@ -251,25 +295,34 @@ impl<'a, S: Simd, const K: usize> Search<'a, S, K> {
     #[inline(always)]
     fn is_last(&self, gap: &Gap<S, K>, step: Pack<S, K>, time: Pack<S, K>) -> Mask<S, K> {
         gap.rate.lt(0.0)
-            & step.le(LAST_STEP * (time + step))
-            & (self.start.spin.abs() * step).le(LAST_STEP)
-            & (self.is_nearly_straight(gap, step) | (self.bound * (step * step)).le(INVISIBLE))
+            & step.le(LAST * (time + step))
+            & (self.start.spin.abs() * step).le(LAST)
+            & (self.is_nearly_straight(gap.root, step) | (self.bound * (step * step)).le(INVISIBLE))
     }
 
     #[inline(always)]
-    fn is_nearly_straight(&self, gap: &Gap<S, K>, step: Pack<S, K>) -> Mask<S, K> {
-        (self.sway * step).le(LAST_BEND * gap.root)
+    fn is_nearly_straight(&self, root: Pack<S, K>, step: Pack<S, K>) -> Mask<S, K> {
+        (self.sway * step).le(LAST * root)
     }
 
-    /// The contact after the last certified step: the gap there, to third order, over the speed there.
+    /// The contact after the last certified step: the zero of the gap's fourth-order expansion, by a step of third order.
     #[inline(always)]
-    fn landed(&self, moment: &Moment<S, K>, gap: &Gap<S, K>, step: Pack<S, K>) -> Pack<S, K> {
-        let side = gap.sphere * self.lever;
-        let slack = side.mul_add(-self.square * moment.tilt, self.sway);
-        let third = -(side * self.square) * moment.tilt_rate;
-        let left = (step * step) * (third * step).mul_add(1.0 / 6.0, 0.5 * slack);
-        let correction = left / slack.mul_add(-step, gap.root);
-        let curved = self.is_nearly_straight(gap, step) & !left.eq(0.0);
+    fn landed(&self, last: &Pass<S, K>) -> Pack<S, K> {
+        let Pass {
+            side, step, root, ..
+        } = *last;
+        let second = side * (-self.square * last.tilt);
+        let third = -(side * self.square) * last.tilt_rate;
+        let fourth = -self.square * second;
+        let slack = second + self.sway;
+        let bend = (step * fourth).mul_add(1.0 / 12.0, third * (1.0 / 3.0));
+        let left = 0.5 * (step * step) * step.mul_add(bend, slack);
+        let speed = step.mul_add(-step.mul_add(0.5 * third, slack), root);
+        let inverse = 1.0 / speed;
+        let newton = left * inverse;
+        let curvature = step.mul_add(third, second - 1.0);
+        let correction = newton.mul_add(0.5 * curvature * newton * inverse, newton);
+        let curved = self.is_nearly_straight(root, step) & !left.eq(0.0);
         curved.select(step + correction, step)
     }
 }

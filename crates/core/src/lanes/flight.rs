@@ -33,12 +33,12 @@ impl<S: Simd, const K: usize> Phase<S, K> {
         Self { sin, cos }
     }
 
-    /// The phase a small `angle` later: exact in double precision for angles up to 2⁻¹³.
+    /// The phase a small `angle` later: exact in double precision for angles up to 2⁻¹¹.
     #[inline(always)]
     pub fn advanced(self, angle: Pack<S, K>) -> Self {
         let square = angle * angle;
         let sin = angle * square.mul_add(-1.0 / 6.0, 1.0);
-        let cos = square.mul_add(-0.5, 1.0);
+        let cos = square.mul_add(square.mul_add(1.0 / 24.0, -0.5), 1.0);
         Self {
             sin: self.sin.mul_add(cos, self.cos * sin),
             cos: self.cos.mul_add(cos, -(self.sin * sin)),

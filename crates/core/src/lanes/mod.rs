@@ -14,4 +14,4 @@ mod flight;
 mod pack;
 
 pub(crate) use bounce::{Impact, Release, Sink, bounce};
-pub(crate) use pack::{Mask, Pack};
+pub(crate) use pack::{Mask, Operand, Pack};

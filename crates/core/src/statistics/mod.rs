@@ -7,4 +7,4 @@ mod tally;
 pub use axis::Axis;
 pub use moments::{Moments, Sums};
 pub(crate) use tally::Counter;
-pub use tally::{Bins, By, Grid, Tally};
+pub use tally::{Bins, By, CREATES_ENERGY, Gains, Grid, Tally};

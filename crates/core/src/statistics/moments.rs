@@ -27,14 +27,16 @@ impl Recent {
         fourth: 0,
     };
 
-    /// Adds an offset of at most [`NARROW`] quanta.
+    /// Adds an offset of at most [`NARROW`] quanta; of any other the sums mean nothing, but nothing panics.
     #[inline(always)]
     pub fn add(&mut self, q: i64) {
-        let square = (q * q) as u64;
-        self.first += q;
-        self.second += u128::from(square);
-        self.third += i128::from(square as i64) * i128::from(q);
-        self.fourth += u128::from(square) * u128::from(square);
+        let square = q.wrapping_mul(q) as u64;
+        self.first = self.first.wrapping_add(q);
+        self.second = self.second.wrapping_add(u128::from(square));
+        let cube = i128::from(square as i64) * i128::from(q);
+        self.third = self.third.wrapping_add(cube);
+        let fourth = u128::from(square) * u128::from(square);
+        self.fourth = self.fourth.wrapping_add(fourth);
     }
 }
 

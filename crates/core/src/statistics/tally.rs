@@ -10,6 +10,9 @@ use pulp::Simd;
 /// Quanta of E_rot/E_tot.
 const FRACTION_QUANTA: f64 = 4_398_046_511_104.0; // 2⁴²
 
+/// An impact creates energy where it multiplies the kinetic energy by more than this. Rounding makes a few 10⁻¹⁵ of it.
+pub const CREATES_ENERGY: f64 = 1.0 + 1e-12;
+
 /// What the rows of the grids stand for.
 #[derive(Debug, Clone, PartialEq)]
 pub enum By {
@@ -53,8 +56,26 @@ pub struct Tally {
     sums: Vec<Sums>,
     /// Σ E_rot/E_tot by row, in units of 2⁻⁴².
     fractions: Vec<u128>,
+    /// Impacts that create energy, by row.
+    pub gains: Vec<Gains>,
     /// Number of particles by [`StopReason`].
     pub stops: [u64; 5],
+}
+
+/// The impacts by which kinetic energy grew by more than [`CREATES_ENERGY`].
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Gains {
+    /// Their number.
+    pub count: u64,
+    /// Their largest factor; 0 without any.
+    pub largest: f64,
+}
+
+impl Gains {
+    fn merge(&mut self, other: Self) {
+        self.count += other.count;
+        self.largest = self.largest.max(other.largest);
+    }
 }
 
 /// Counts in rows and columns.
@@ -105,6 +126,7 @@ impl Tally {
             origin,
             sums: vec![Sums::EMPTY; rows],
             fractions: vec![0; rows],
+            gains: vec![Gains::default(); rows],
             stops: [0; 5],
         }
     }
@@ -118,6 +140,9 @@ impl Tally {
         }
         for (sum, other) in self.fractions.iter_mut().zip(&other.fractions) {
             *sum += other;
+        }
+        for (gains, other) in self.gains.iter_mut().zip(&other.gains) {
+            gains.merge(*other);
         }
         for (count, other) in self.stops.iter_mut().zip(&other.stops) {
             *count += other;
@@ -143,7 +168,8 @@ impl Tally {
     }
 }
 
-/// Takes impacts into a [`Tally`], by way of narrow integers that are emptied before they can overflow.
+/// Takes impacts into a [`Tally`], by way of narrow integers that are emptied before they can overflow. Lanes that hold no impact,
+/// or none that can be summed there, go to a site or a row of their own that nobody reads, so that all lanes do the same.
 pub(crate) struct Counter<'a> {
     tally: Tally,
     bins: &'a Bins,
@@ -177,9 +203,9 @@ impl<'a> Counter<'a> {
         Self {
             bins,
             plan,
-            restitution: vec![0; tally.restitution.counts.len()],
-            fraction: vec![0; tally.fraction.counts.len()],
-            rows: vec![Row::EMPTY; tally.sums.len()],
+            restitution: vec![0; tally.restitution.counts.len() + 1],
+            fraction: vec![0; tally.fraction.counts.len() + 1],
+            rows: vec![Row::EMPTY; tally.sums.len() + 1],
             recent: 0,
             tally,
         }
@@ -189,11 +215,12 @@ impl<'a> Counter<'a> {
         self.recent = 0;
         self.tally.restitution.absorb(&mut self.restitution);
         self.tally.fraction.absorb(&mut self.fraction);
-        for (i, row) in self.rows.iter_mut().enumerate() {
-            let row = std::mem::replace(row, Row::EMPTY);
-            self.tally.sums[i].absorb(&row.sums, &row.extremes);
+        for (i, sums) in self.tally.sums.iter_mut().enumerate() {
+            let row = self.rows[i];
+            sums.absorb(&row.sums, &row.extremes);
             self.tally.fractions[i] += u128::from(row.fractions);
         }
+        self.rows.fill(Row::EMPTY);
     }
 
     pub fn finish(mut self) -> Tally {
@@ -214,35 +241,21 @@ fn site_of<S: Simd, const K: usize>(
     row.mul_add((axis.bins() + 1) as f64, column)
 }
 
-/// What the lanes add, as whole numbers in the low bits.
-struct Prepared<S: Simd, const K: usize> {
-    row: Pack<S, K>,
-    site: Pack<S, K>,
-    fraction_site: Pack<S, K>,
-    quanta: Pack<S, K>,
-    fraction: Pack<S, K>,
-    restitution: Pack<S, K>,
-}
-
 /// The whole number in the low bits of a lane to which [`ROUND`] was added.
 #[inline(always)]
 fn whole<S: Simd, const K: usize>(pack: &Pack<S, K>, lane: usize) -> i64 {
-    pack.as_slice()[lane].to_bits() as i64 - ROUND.to_bits() as i64
+    (pack.as_slice()[lane].to_bits() as i64).wrapping_sub(ROUND.to_bits() as i64)
 }
 
 impl Counter<'_> {
-    #[inline(always)]
-    fn count<S: Simd, const K: usize>(&mut self, lanes: &Prepared<S, K>, lane: usize) {
-        self.restitution[whole(&lanes.site, lane) as usize] += 1;
-        self.fraction[whole(&lanes.fraction_site, lane) as usize] += 1;
-    }
-
-    #[inline(always)]
-    fn sum<S: Simd, const K: usize>(&mut self, lanes: &Prepared<S, K>, lane: usize) {
-        let row = &mut self.rows[whole(&lanes.row, lane) as usize];
-        row.sums.add(whole(&lanes.quanta, lane));
-        row.fractions += whole(&lanes.fraction, lane) as u64;
-        row.extremes.add(lanes.restitution.as_slice()[lane]);
+    /// Sums a value that is too far off for [`Recent`].
+    #[cold]
+    #[inline(never)]
+    fn sum_large(&mut self, row: usize, restitution: f64, fraction: f64) {
+        let quanta = (restitution - self.tally.origin) * QUANTA;
+        self.tally.sums[row].add(quanta.round_ties_even() as i64);
+        self.tally.fractions[row] += (fraction * FRACTION_QUANTA).round_ties_even() as u128;
+        self.rows[row].extremes.add(restitution);
     }
 }
 
@@ -250,7 +263,7 @@ impl Sink for Counter<'_> {
     fn begin(&mut self, _: usize) {}
 
     #[inline(always)]
-    fn impact<S: Simd, const K: usize>(&mut self, number: usize, impact: &Impact<S, K>) {
+    fn impact<S: Simd, const K: usize>(&mut self, number: usize, _: usize, impact: &Impact<S, K>) {
         let width = Pack::<S, K>::WIDTH;
         if self.recent + width as u32 > MOST_RECENT {
             self.empty();
@@ -259,43 +272,55 @@ impl Sink for Counter<'_> {
 
         let simd = impact.time.simd();
         let restitution = impact.restitution();
-        let fraction = impact.rotational_fraction(&self.plan.body);
+        let fraction = impact.rotational_fraction();
         let row = match &self.bins.by {
-            By::Velocity(axis) => axis.locate(impact.impact_velocity() * self.plan.scales.speed),
+            By::Velocity(axis) => axis.locate(impact.fall * self.plan.scales.speed),
             By::Number(_) => Pack::splat(simd, number as f64 + ROUND),
         };
         let defined = restitution.abs().lt(Sums::LARGEST) & fraction.le(1.0);
+        let offset = restitution - self.tally.origin;
+        let summed = impact.active & defined;
+        let plain = summed & offset.abs().le(NARROW as f64 / QUANTA);
+
+        let (sites, fraction_sites) = (&mut self.restitution[..], &mut self.fraction[..]);
+        let rows = &mut self.rows[..];
+        let nowhere = |len: usize| (len - 1) as f64 + ROUND;
         let start = row - ROUND;
         let site = site_of(&self.bins.restitution, start, restitution, defined);
+        let site = impact.active.select(site, nowhere(sites.len()));
         let fraction_site = site_of(&self.bins.fraction, start, fraction, defined);
-
-        let offset = restitution - self.tally.origin;
-        let small = offset.abs().le(NARROW as f64 / QUANTA);
-        let plain = impact.active & defined & small;
-        let lanes = Prepared {
-            row,
-            site,
-            fraction_site,
-            quanta: offset.mul_add(QUANTA, ROUND),
-            fraction: fraction.mul_add(FRACTION_QUANTA, ROUND),
-            restitution,
-        };
-        if (!plain).any() {
-            let (active, defined, small) = (impact.active, defined, small);
-            active.each(|lane| self.count(&lanes, lane));
-            (active & defined & small).each(|lane| self.sum(&lanes, lane));
-            (active & defined & !small).each(|lane| {
-                let row = whole(&lanes.row, lane) as usize;
-                let quanta = offset.as_slice()[lane] * QUANTA;
-                self.tally.sums[row].add(quanta.round_ties_even() as i64);
-                self.rows[row].fractions += whole(&lanes.fraction, lane) as u64;
-                self.rows[row].extremes.add(restitution.as_slice()[lane]);
+        let fraction_site = impact
+            .active
+            .select(fraction_site, nowhere(fraction_sites.len()));
+        let plain_row = plain.select(row, nowhere(rows.len()));
+        let quanta = offset.mul_add(QUANTA, ROUND);
+        let fraction_quanta = fraction.mul_add(FRACTION_QUANTA, ROUND);
+        for lane in 0..width {
+            sites[whole(&site, lane) as usize] += 1;
+            fraction_sites[whole(&fraction_site, lane) as usize] += 1;
+            let row = &mut rows[whole(&plain_row, lane) as usize];
+            row.sums.add(whole(&quanta, lane));
+            row.fractions = row
+                .fractions
+                .wrapping_add(whole(&fraction_quanta, lane) as u64);
+            row.extremes.add(restitution.as_slice()[lane]);
+        }
+        let (before, after) = (impact.energy_before, impact.energy_after);
+        let gaining = impact.active & (before * CREATES_ENERGY).lt(after);
+        if gaining.any() {
+            gaining.each(|lane| {
+                let largest = after.as_slice()[lane] / before.as_slice()[lane];
+                let row = whole(&row, lane) as usize;
+                self.tally.gains[row].merge(Gains { count: 1, largest });
             });
-        } else {
-            for lane in 0..width {
-                self.count(&lanes, lane);
-                self.sum(&lanes, lane);
-            }
+        }
+        let large = summed & !plain;
+        if large.any() {
+            large.each(|lane| {
+                let (restitution, fraction) =
+                    (restitution.as_slice()[lane], fraction.as_slice()[lane]);
+                self.sum_large(whole(&row, lane) as usize, restitution, fraction);
+            });
         }
     }
 

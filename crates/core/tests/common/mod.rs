@@ -5,8 +5,10 @@ use proptest::prelude::*;
 use proptest::test_runner::{Config, RngSeed};
 use restitution_core::collision::collide;
 use restitution_core::{
-    Body, Departure, Dumbbell, Flight, Impact, Landing, Level, Limits, Means, Monitor, Orientation,
-    Records, Run, Sphere, State, StopReason, TangentialRestitution, Vector, bounce, first_contact,
+    Body, ChatterjeeRuina, Coulomb, Departure, Dumbbell, Flight, Frictionless, Hypothesis, Impact,
+    Landing, Law, Level, Limits, Means, Monitor, Normal, Orientation, Plastic, Records, Run, Shape,
+    Sphere, State, StopReason, Tabulated, TangentialRestitution, Vector, Viscoelastic, bounce,
+    first_contact,
 };
 use std::f64::consts::PI;
 
@@ -25,8 +27,10 @@ pub fn dumbbell(elongation: f64) -> Body {
     Dumbbell::new(1.0, elongation, 1.0).unwrap().scaled()
 }
 
-pub fn law(normal: f64, tangential: f64) -> TangentialRestitution {
-    TangentialRestitution::new(normal, tangential).unwrap()
+pub fn law(normal: f64, tangential: f64) -> Law<'static> {
+    TangentialRestitution::new(normal, tangential)
+        .unwrap()
+        .into()
 }
 
 /// A state at rest, as the paper lets go of its particles.
@@ -61,7 +65,7 @@ pub fn landing(state: State, body: &Body, departure: Departure) -> Landing {
 /// The whole trajectory, and why it ended.
 pub fn trajectory(
     body: &Body,
-    law: &TangentialRestitution,
+    law: &Law<'_>,
     release: State,
     impacts: usize,
 ) -> (Vec<Impact>, StopReason) {
@@ -87,7 +91,7 @@ pub struct Leg {
 }
 
 /// The first flights of a trajectory.
-pub fn legs(body: &Body, law: &TangentialRestitution, release: State, most: usize) -> Vec<Leg> {
+pub fn legs(body: &Body, law: &Law<'_>, release: State, most: usize) -> Vec<Leg> {
     let mut start = release;
     let mut departure = Departure::Free;
     let mut legs = Vec::new();
@@ -119,10 +123,12 @@ pub fn legs(body: &Body, law: &TangentialRestitution, release: State, most: usiz
 }
 
 /// An ensemble like the paper's: radius 3 mm, dropped from 60 mm.
-pub fn paper(elongation: f64, law: TangentialRestitution) -> Run<'static> {
+pub fn paper(elongation: f64, law: Law<'_>) -> Run<'_> {
     let radius = 3e-3;
     Run {
-        body: Dumbbell::new(radius, elongation * radius, 2500.0).unwrap(),
+        body: Dumbbell::new(radius, elongation * radius, 2500.0)
+            .unwrap()
+            .into(),
         law,
         particles: 100,
         impacts: 100,
@@ -242,8 +248,45 @@ pub fn coefficients() -> impl Strategy<Value = (f64, f64)> {
     (normal, tangential)
 }
 
+/// Every kind of normal coefficient, the constant one given. Speeds are in m/s and in √(gR) alike.
+pub fn normal(constant: f64) -> impl Strategy<Value = Normal<'static>> {
+    const SPEEDS: [f64; 5] = [0.0, 1e-3, 0.1, 1.0, 30.0];
+    const VALUES: [f64; 5] = [1.0, 0.9, 0.97, 0.6, 0.0];
+    let table = Tabulated::new(&SPEEDS, &VALUES).unwrap();
+    prop_oneof![
+        4 => Just(Normal::from(constant)),
+        1 => magnitude(-8.0, -2.0).prop_map(|dissipation| {
+            Viscoelastic::new(6e10, 0.2, dissipation, 2500.0, 3e-3).unwrap().into()
+        }),
+        1 => magnitude(-4.0, 1.0).prop_map(|speed| Plastic::new(speed).unwrap().into()),
+        1 => Just(table.into()),
+    ]
+}
+
+/// Every law with every kind of normal coefficient, the constant one and the tangential one given.
+pub fn every_law((normal, tangential): (f64, f64)) -> impl Strategy<Value = Law<'static>> {
+    let friction = prop_oneof![1 => Just(0.0), 6 => 0.0..1.5_f64, 2 => magnitude(-6.0, 6.0)];
+    let hypothesis = prop::sample::select(vec![
+        Hypothesis::Stronge,
+        Hypothesis::Poisson,
+        Hypothesis::Newton,
+    ]);
+    (self::normal(normal), friction, hypothesis, 0..7).prop_map(
+        move |(normal, friction, hypothesis, kind)| match kind {
+            0 | 1 => TangentialRestitution::new(normal, tangential)
+                .unwrap()
+                .into(),
+            2 => Frictionless::new(normal).unwrap().into(),
+            3 => ChatterjeeRuina::new(normal, tangential, friction)
+                .unwrap()
+                .into(),
+            _ => Coulomb::new(normal, friction, hypothesis).unwrap().into(),
+        },
+    )
+}
+
 /// A body, a law and a free state above the plane: every spin, also about the symmetry axis, up to a rate of 10³ √(g/R).
-pub fn motion() -> impl Strategy<Value = (Body, TangentialRestitution, State)> {
+pub fn motion() -> impl Strategy<Value = (Body, Law<'static>, State)> {
     let velocity = (
         direction(),
         prop_oneof![1 => Just(0.0), 4 => magnitude(-6.0, 1.3)],
@@ -255,7 +298,7 @@ pub fn motion() -> impl Strategy<Value = (Body, TangentialRestitution, State)> {
     let space = prop_oneof![1 => Just(0.0), 2 => magnitude(-14.0, 0.0), 3 => 0.0..40.0_f64];
     (
         elongation(),
-        coefficients(),
+        coefficients().prop_flat_map(every_law),
         direction(),
         velocity,
         spin,
@@ -263,18 +306,18 @@ pub fn motion() -> impl Strategy<Value = (Body, TangentialRestitution, State)> {
         any::<bool>(),
     )
         .prop_map(
-            |(elongation, (normal, tangential), axis, (v, speed), (w, rate), space, axial)| {
+            |(elongation, law, axis, (v, speed), (w, rate), space, axial)| {
                 let body = dumbbell(elongation);
                 let height = 1.0 + body.half_separation * axis.z.abs() + space;
                 let w = if axial { axis } else { w };
                 let state = State::with_spin(&body, height, v * speed, axis, w * rate);
-                (body, law(normal, tangential), state)
+                (body, law, state)
             },
         )
 }
 
 /// A contact that is about to be hit: sphere, and the state with its point of contact approaching the plane.
-pub fn approach() -> impl Strategy<Value = (Body, TangentialRestitution, State, Sphere)> {
+pub fn approach() -> impl Strategy<Value = (Body, Law<'static>, State, Sphere)> {
     (motion(), any::<bool>()).prop_filter_map("not approaching", |((body, law, state), one)| {
         let sphere = if one { Sphere::One } else { Sphere::Two };
         let side = sphere.sign() * body.half_separation;

@@ -60,7 +60,7 @@ def _share_monotone(runs: Runs, settings: Settings) -> Claim:
 def _rolling(settings: Settings) -> float:
     """E_rot/E_tot of rolling end over end, the centre of mass at height R."""
     body = settings.body(settings.elongation)
-    return body.transverse_inertia / (body.transverse_inertia + body.mass * body.radius**2)
+    return body.transverse_inertia / (body.transverse_inertia + body.mass * body.radii[0] ** 2)
 
 
 def _grows_with_bounces(runs: Runs, settings: Settings) -> Claim:

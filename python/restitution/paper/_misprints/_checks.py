@@ -38,7 +38,7 @@ def fall(theta: float) -> Floats:
     columns = [
         unit + np.cross(np.linalg.solve(inertia, np.cross(contact, unit)), contact) for unit in np.eye(3)
     ]
-    return np.asarray(np.linalg.solve(np.transpose(columns), (1.0 + LAW.normal) * up), dtype=np.float64)
+    return np.asarray(np.linalg.solve(np.transpose(columns), (1.0 + LAW.constant) * up), dtype=np.float64)
 
 
 def axial_inertia() -> Check:
@@ -67,7 +67,7 @@ def normal_impulse() -> Check:
     """P·n/(m|v_G|) at θ = 60° (Eq. 14)."""
     inertia = BODY.transverse_inertia / BODY.mass
     x, z = BODY.separation / 2 * np.sin(TILT), -BODY.separation / 2 * np.cos(TILT) - BODY.radius  # (16)
-    factor = (1 + LAW.normal) * (inertia + z**2) / (x**2 + z**2 + inertia)
+    factor = (1 + LAW.constant) * (inertia + z**2) / (x**2 + z**2 + inertia)
     approach = -1.0  # v_G·n
     return Check(float(factor * approach), float(-factor * approach), float(fall(TILT)[2]))
 

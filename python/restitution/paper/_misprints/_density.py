@@ -30,7 +30,7 @@ def printed_density(
     value = np.asarray(restitution, dtype=np.float64)
     low, high = first_impact(body, law).support()
     s = np.clip(value, low, high)
-    radius, length, normal = body.radius, body.separation, law.normal
+    radius, length, normal = body.radii[0], body.separation, law.constant
     inertia = body.transverse_inertia / body.mass
     k = 1.0 + normal
     f = np.sqrt(

@@ -1,0 +1,80 @@
+//! A cylinder with hemispherical caps: it touches like a dumbbell, and is heavier in the middle.
+
+use super::{
+    Body, Hull, Pair, Shape, check_density, check_distance, check_length, representable, seen,
+};
+use crate::Error;
+use std::f64::consts::PI;
+
+/// A homogeneous cylinder with hemispherical caps whose centres are `separation` apart, in SI units.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Spherocylinder {
+    radius: f64,
+    separation: f64,
+    density: f64,
+}
+
+impl Spherocylinder {
+    /// Checks that all three are finite, `radius` and `density` positive, `separation` not negative.
+    pub fn new(radius: f64, separation: f64, density: f64) -> Result<Self, Error> {
+        check_length("radius", radius)?;
+        check_distance("separation", separation)?;
+        check_density(density)?;
+        let body = Self {
+            radius,
+            separation,
+            density,
+        };
+        representable(body, "radius")
+    }
+
+    /// L/R.
+    fn elongation(&self) -> f64 {
+        self.separation / self.radius
+    }
+
+    /// m/(πρR³).
+    fn mass_factor(&self) -> f64 {
+        4.0 / 3.0 + self.elongation()
+    }
+
+    /// J_xx/(πρR⁵): the cylinder L(1/4 + L²/12), and hemispheres whose own centres are L/2 + 3/8 away.
+    fn transverse_factor(&self) -> f64 {
+        let l = self.elongation();
+        8.0 / 15.0 + l * (3.0 / 4.0 + l * (1.0 / 3.0 + l / 12.0))
+    }
+
+    /// J_zz/(πρR⁵).
+    fn axial_factor(&self) -> f64 {
+        8.0 / 15.0 + self.elongation() / 2.0
+    }
+}
+
+impl Shape for Spherocylinder {
+    fn unit(&self) -> f64 {
+        self.radius
+    }
+
+    fn mass(&self) -> f64 {
+        self.density * self.radius.powi(3) * PI * self.mass_factor()
+    }
+
+    fn transverse_inertia(&self) -> f64 {
+        self.density * self.radius.powi(5) * PI * self.transverse_factor()
+    }
+
+    fn axial_inertia(&self) -> f64 {
+        self.density * self.radius.powi(5) * PI * self.axial_factor()
+    }
+
+    fn scaled(&self) -> Body {
+        let mass = self.mass_factor();
+        let half_separation = 0.5 * seen(self.elongation());
+        Body {
+            hull: Hull::Pair(Pair::equal(half_separation)),
+            half_separation,
+            transverse: self.transverse_factor() / mass,
+            axial: self.axial_factor() / mass,
+        }
+    }
+}

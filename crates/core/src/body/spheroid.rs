@@ -1,0 +1,72 @@
+//! An ellipsoid of revolution: prolate, oblate, or a sphere.
+
+use super::{Body, Ellipsoid, Hull, Shape, check_density, check_length, representable};
+use crate::Error;
+use std::f64::consts::PI;
+
+/// Needles longer and discs flatter than this lose more than 10⁻¹² of the contact to rounding.
+const MOST_ASPHERICAL: f64 = 1000.0;
+
+/// A homogeneous ellipsoid of revolution, in SI units. The core's unit of length is the longer semi-axis.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Spheroid {
+    equatorial: f64,
+    polar: f64,
+    density: f64,
+}
+
+impl Spheroid {
+    /// From the semi-axes across and along the axis of revolution, both positive, their ratio between 1/1000 and 1000.
+    pub fn new(equatorial: f64, polar: f64, density: f64) -> Result<Self, Error> {
+        check_length("equatorial", equatorial)?;
+        check_length("polar", polar)?;
+        check_density(density)?;
+        let body = Self {
+            equatorial,
+            polar,
+            density,
+        };
+        let ratio = (polar / equatorial).max(equatorial / polar);
+        Error::unless(
+            ratio <= MOST_ASPHERICAL * (1.0 + 4.0 * f64::EPSILON),
+            "polar",
+            polar,
+            "between 1/1000 and 1000 times the equatorial semi-axis",
+        )?;
+        representable(body, "equatorial")
+    }
+
+    /// Semi-axes a and c in the core's unit.
+    fn axes(&self) -> (f64, f64) {
+        (self.equatorial / self.unit(), self.polar / self.unit())
+    }
+}
+
+impl Shape for Spheroid {
+    fn unit(&self) -> f64 {
+        self.equatorial.max(self.polar)
+    }
+
+    fn mass(&self) -> f64 {
+        let (a, c) = self.axes();
+        self.density * self.unit().powi(3) * (4.0 / 3.0 * PI) * (a * a * c)
+    }
+
+    fn transverse_inertia(&self) -> f64 {
+        self.mass() * self.unit().powi(2) * self.scaled().transverse
+    }
+
+    fn axial_inertia(&self) -> f64 {
+        self.mass() * self.unit().powi(2) * self.scaled().axial
+    }
+
+    fn scaled(&self) -> Body {
+        let (a, c) = self.axes();
+        Body {
+            hull: Hull::Ellipsoid(Ellipsoid::new(a, c)),
+            half_separation: 0.0,
+            transverse: (a * a + c * c) / 5.0,
+            axial: 2.0 / 5.0 * (a * a),
+        }
+    }
+}

@@ -1,0 +1,182 @@
+//! Dry friction: C. A. Coulomb's law during the impact, and three hypotheses on its end.
+//!
+//! The impact is followed in the normal impulse p (E. J. Routh, 1860; Y. Wang and M. T. Mason, J. Appl. Mech. **59**, 635
+//! (1992)). While the contact slips, friction is μ against the slip; where the slip has come to rest the contact sticks if
+//! |K_nu| ≤ μ K_uu, and otherwise slips on the way that K_nu drives it. Both are dP_u/dp = −K_nu/K_uu, limited to ±μ. In the
+//! plane the contact velocity is then linear in p on either side of the one impulse p_s at which the slip vanishes.
+
+use super::{Normal, Plane, Rebound};
+use crate::Error;
+use crate::lanes::Pack;
+use pulp::Simd;
+
+/// When the restitution that follows the compression is over. The three agree as long as the slip neither stops nor turns.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Hypothesis {
+    /// W. J. Stronge, Proc. R. Soc. Lond. A **431**, 169 (1990): the normal force gives back ε_n² of the work that it took.
+    /// Energy cannot grow, for friction takes, too.
+    Stronge,
+    /// S. D. Poisson: the normal impulse of restitution is ε_n times that of compression. The normal force may give back
+    /// more than it took, but not more than friction takes: with T the kinetic energy, dT/dp = v_c^n − μ|**s**| ≤ 0 at the
+    /// end of the compression, and its slope, the K-square of the direction of the impulse, never grows, so that the sum of
+    /// both sides of that end is negative.
+    Poisson,
+    /// I. Newton: v_c^n′ = −ε_n v_c^n. Energy can grow where the slip stops or reverses.
+    Newton,
+}
+
+/// Coulomb friction with coefficient μ.
+///
+/// It respects the friction cone |P_t| ≤ μ P_n; friction itself always dissipates. Without friction (μ = 0) it is
+/// [`super::Frictionless`] under each hypothesis.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Coulomb<'a> {
+    pub(super) normal: Normal<'a>,
+    pub(super) friction: f64,
+    pub(super) hypothesis: Hypothesis,
+}
+
+impl<'a> Coulomb<'a> {
+    /// ε^n in [0, 1] or a function of the normal contact speed, μ ≥ 0.
+    pub fn new(
+        normal: impl Into<Normal<'a>>,
+        friction: f64,
+        hypothesis: Hypothesis,
+    ) -> Result<Self, Error> {
+        let normal = normal.into().checked()?;
+        check_friction(friction)?;
+        Ok(Self {
+            normal,
+            friction,
+            hypothesis,
+        })
+    }
+
+    #[inline(always)]
+    pub(super) fn in_plane<S: Simd, const K: usize>(&self, contact: &Plane<S, K>) -> Rebound<S, K> {
+        let speed = contact.approach_speed();
+        let restitution = self.normal.in_lanes(speed);
+        let path = Path::new(contact, self.friction);
+        let (normal, separation_speed) = path.end(speed, restitution, self.hypothesis);
+        Rebound {
+            normal,
+            along: path.friction(normal),
+            separation_speed,
+        }
+    }
+}
+
+/// Beyond this the products below could overflow; nothing that is finite slips any longer anyway.
+const MOST_FRICTION: f64 = 1e100;
+
+pub(super) fn check_friction(friction: f64) -> Result<(), Error> {
+    Error::unless(
+        (0.0..=MOST_FRICTION).contains(&friction),
+        "friction",
+        friction,
+        "in [0, 1e100]",
+    )
+}
+
+/// The contact velocity as a function of the normal impulse p: two straight lines that meet at `stop`.
+struct Path<S: Simd, const K: usize> {
+    /// Impulse p_s at which the slip vanishes; infinite if it never does.
+    stop: Pack<S, K>,
+    /// dv_c^n/dp before and after. The first may be negative: the contact jams, and sticks before it can separate.
+    first: Pack<S, K>,
+    second: Pack<S, K>,
+    /// dP_u/dp before and after.
+    first_friction: Pack<S, K>,
+    second_friction: Pack<S, K>,
+}
+
+impl<S: Simd, const K: usize> Path<S, K> {
+    #[inline(always)]
+    fn new(contact: &Plane<S, K>, friction: f64) -> Self {
+        let slip = contact.slip_along.abs();
+        let zero = Pack::splat(slip.simd(), 0.0);
+        let (nn, uu) = (contact.normal_response(), contact.along_response());
+        let coupling = contact.coupling();
+
+        let backward = contact.slip_along.lt(0.0);
+        let ahead = backward.select(-coupling, coupling); // K_nu, u taken along the slip
+        let braking = uu.mul_add(friction, -ahead); // −d|slip|/dp
+        let stop = zero.lt(braking).select(slip / braking, f64::INFINITY);
+        let sticks = coupling.abs().le(uu * friction);
+        Self {
+            stop: slip.eq(0.0).select(0.0, stop),
+            first: ahead.mul_add(-friction, nn),
+            second: sticks.select(
+                contact.sticking_response(),
+                coupling.abs().mul_add(-friction, nn),
+            ),
+            first_friction: backward.select(friction, -friction),
+            second_friction: (-coupling / uu).max(-friction).min(friction),
+        }
+    }
+
+    /// Normal impulse and normal velocity at the end of the impact.
+    #[inline(always)]
+    fn end(
+        &self,
+        speed: Pack<S, K>,
+        restitution: Pack<S, K>,
+        hypothesis: Hypothesis,
+    ) -> (Pack<S, K>, Pack<S, K>) {
+        let rebound = restitution * speed;
+        let turn = self.stop.mul_add(self.first, -speed); // normal velocity at p_s
+        let early = turn.le(0.0); // the slip vanishes during the compression
+        let depth = -turn;
+        let further = depth / self.second;
+        let compression = early.select(self.stop + further, speed / self.first);
+
+        // Where the slip outlasts the restitution all three hypotheses end it at v_c^n′ = −ε_n v_c^n.
+        let plain = !early & rebound.le(turn);
+        let steady = restitution.mul_add(compression, compression);
+        let (impulse, separation) = match hypothesis {
+            Hypothesis::Newton => (
+                early.select(
+                    compression + rebound / self.second,
+                    self.stop + (rebound - turn) / self.second,
+                ),
+                rebound,
+            ),
+            Hypothesis::Poisson => (
+                steady,
+                early.select(
+                    self.second * (restitution * compression),
+                    (steady - self.stop).mul_add(self.second, turn),
+                ),
+            ),
+            Hypothesis::Stronge => {
+                // Twice the work that the normal force takes in the compression, trapezium by trapezium.
+                let work = self.stop.mul_add(speed + depth, depth * further);
+                let from_stick = restitution * (self.second * work).sqrt();
+                // Twice the work that is left to be given back after p_s, times dv_c^n/dp before it.
+                let left = (rebound - turn) * (rebound + turn);
+                let from_slip = turn.mul_add(turn, self.second / self.first * left).sqrt();
+                (
+                    early.select(
+                        compression + from_stick / self.second,
+                        self.stop + left / (self.first * (from_slip + turn)),
+                    ),
+                    early.select(from_stick, from_slip),
+                )
+            }
+        };
+        (
+            plain.select(steady, impulse),
+            plain.select(rebound, separation),
+        )
+    }
+
+    /// Tangential impulse that comes with a normal impulse.
+    #[inline(always)]
+    fn friction(&self, normal: Pack<S, K>) -> Pack<S, K> {
+        let slipping = normal.min(self.stop);
+        slipping.mul_add(
+            self.first_friction,
+            (normal - slipping) * self.second_friction,
+        )
+    }
+}

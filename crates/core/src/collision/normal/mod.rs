@@ -1,0 +1,87 @@
+//! The normal coefficient of restitution: a constant, or a function of the speed at which the contact approaches the plane.
+
+mod plastic;
+mod tabulated;
+mod viscoelastic;
+
+pub use plastic::Plastic;
+pub use tabulated::Tabulated;
+pub use viscoelastic::Viscoelastic;
+
+use crate::Error;
+use crate::lanes::Pack;
+use crate::scales::Scales;
+use pulp::{Scalar, Simd};
+
+/// ε^n, in [0, 1].
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Normal<'a> {
+    /// The same at every speed.
+    Constant(f64),
+    /// Of viscoelastic spheres.
+    Viscoelastic(Viscoelastic),
+    /// Of elastic-plastic spheres.
+    Plastic(Plastic),
+    /// As measured.
+    Tabulated(Tabulated<'a>),
+}
+
+impl Normal<'_> {
+    /// The coefficient at a speed ≥ 0, in m/s or, once scaled, in the core's unit.
+    pub fn at(&self, speed: f64) -> f64 {
+        self.in_lanes(Pack::<_, 1>::splat(Scalar::new(), speed))
+            .as_slice()[0]
+    }
+
+    /// [`Self::at`] in every lane.
+    #[inline(always)]
+    pub(crate) fn in_lanes<S: Simd, const K: usize>(&self, speed: Pack<S, K>) -> Pack<S, K> {
+        match self {
+            Self::Constant(value) => Pack::splat(speed.simd(), *value),
+            Self::Viscoelastic(material) => material.in_lanes(speed),
+            Self::Plastic(material) => material.in_lanes(speed),
+            Self::Tabulated(table) => table.in_lanes(speed),
+        }
+    }
+
+    /// The coefficient for speeds in the unit of `scales` instead of m/s.
+    pub(super) fn scaled(&self, scales: &Scales) -> Self {
+        match self {
+            Self::Constant(_) => *self,
+            Self::Viscoelastic(material) => Self::Viscoelastic(material.scaled(scales.speed)),
+            Self::Plastic(material) => Self::Plastic(material.scaled(scales.speed)),
+            Self::Tabulated(table) => Self::Tabulated(table.scaled(scales.speed)),
+        }
+    }
+
+    pub(super) fn checked(self) -> Result<Self, Error> {
+        if let Self::Constant(value) = self {
+            Error::unless((0.0..=1.0).contains(&value), "normal", value, "in [0, 1]")?;
+        }
+        Ok(self)
+    }
+}
+
+impl From<f64> for Normal<'_> {
+    fn from(value: f64) -> Self {
+        Self::Constant(value)
+    }
+}
+
+impl From<Viscoelastic> for Normal<'_> {
+    fn from(material: Viscoelastic) -> Self {
+        Self::Viscoelastic(material)
+    }
+}
+
+impl From<Plastic> for Normal<'_> {
+    fn from(material: Plastic) -> Self {
+        Self::Plastic(material)
+    }
+}
+
+impl<'a> From<Tabulated<'a>> for Normal<'a> {
+    fn from(table: Tabulated<'a>) -> Self {
+        Self::Tabulated(table)
+    }
+}

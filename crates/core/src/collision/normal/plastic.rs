@@ -1,0 +1,46 @@
+//! C. Thornton, *Coefficient of restitution for collinear collisions of elastic-perfectly plastic spheres*, J. Appl. Mech.
+//! **64**, 383 (1997).
+
+use crate::Error;
+use crate::lanes::Pack;
+use pulp::Simd;
+
+/// ε^n(v) = √(6√3/5) √(1 − x²/6) (x/(x + 2√(6/5 − x²/5)))^{1/4}, x = v_y/v; 1 up to the yield speed v_y, and ∝ v^{−1/4} far
+/// beyond it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Plastic {
+    yield_speed: f64,
+}
+
+impl Plastic {
+    /// The speed v_y in m/s, finite and > 0, below which the spheres stay elastic.
+    pub fn new(yield_speed: f64) -> Result<Self, Error> {
+        Error::unless(
+            yield_speed.is_finite() && yield_speed > 0.0,
+            "yield_speed",
+            yield_speed,
+            "finite and > 0 (m/s)",
+        )?;
+        Ok(Self { yield_speed })
+    }
+
+    pub(super) fn scaled(&self, unit: f64) -> Self {
+        Self {
+            yield_speed: self.yield_speed / unit,
+        }
+    }
+
+    #[inline(always)]
+    pub(super) fn in_lanes<S: Simd, const K: usize>(&self, speed: Pack<S, K>) -> Pack<S, K> {
+        let yielding = Pack::splat(speed.simd(), self.yield_speed);
+        let x = yielding / speed.max(yielding);
+        let square = x * x;
+        let root = square.mul_add(-0.2, 1.2).sqrt();
+        let ratio = x / root.mul_add(2.0, x);
+        let value = square.mul_add(-1.0 / 6.0, 1.0).sqrt() * ratio.sqrt().sqrt() * FACTOR;
+        yielding.lt(speed).select(value.min(1.0), 1.0)
+    }
+}
+
+/// √(6√3/5).
+const FACTOR: f64 = 1.441_686_848_480_852_7;

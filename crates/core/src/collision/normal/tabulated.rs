@@ -1,0 +1,65 @@
+//! A coefficient as it was measured.
+
+use crate::Error;
+use crate::lanes::Pack;
+use pulp::Simd;
+
+/// ε^n(v) by linear interpolation between points, and constant beyond the first and the last.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Tabulated<'a> {
+    speeds: &'a [f64],
+    values: &'a [f64],
+    /// What the speeds asked for are measured in, in m/s.
+    unit: f64,
+}
+
+impl<'a> Tabulated<'a> {
+    /// At least one point: speeds in m/s, finite, ≥ 0 and increasing, and as many coefficients in [0, 1].
+    pub fn new(speeds: &'a [f64], values: &'a [f64]) -> Result<Self, Error> {
+        Error::unless(!speeds.is_empty(), "v", 0.0, "at least one speed (m/s)")?;
+        let mut last = None;
+        for &speed in speeds {
+            let increasing = speed.is_finite() && speed >= 0.0 && last.is_none_or(|v| v < speed);
+            Error::unless(increasing, "v", speed, "finite, >= 0 and increasing (m/s)")?;
+            last = Some(speed);
+        }
+        let same = values.len() == speeds.len();
+        let count = values.len() as f64;
+        Error::unless(same, "e", count, "as many coefficients as there are speeds")?;
+        for &value in values {
+            Error::unless((0.0..=1.0).contains(&value), "e", value, "in [0, 1]")?;
+        }
+        Ok(Self {
+            speeds,
+            values,
+            unit: 1.0,
+        })
+    }
+
+    pub(super) fn scaled(&self, unit: f64) -> Self {
+        Self {
+            unit: self.unit * unit,
+            ..*self
+        }
+    }
+
+    #[inline(always)]
+    pub(super) fn in_lanes<S: Simd, const K: usize>(&self, speed: Pack<S, K>) -> Pack<S, K> {
+        let mut lanes = speed * self.unit;
+        for x in lanes.as_mut_slice() {
+            *x = self.interpolated(*x);
+        }
+        lanes
+    }
+
+    /// Also for NaN, which a lane that has ended may hold.
+    fn interpolated(&self, speed: f64) -> f64 {
+        let (v, e) = (self.speeds, self.values);
+        let next = v.partition_point(|&x| x <= speed);
+        if next == 0 || next == v.len() {
+            return e[next.saturating_sub(1)];
+        }
+        let share = (speed - v[next - 1]) / (v[next] - v[next - 1]);
+        share.mul_add(e[next] - e[next - 1], e[next - 1]).min(1.0)
+    }
+}

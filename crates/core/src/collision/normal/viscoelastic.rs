@@ -1,0 +1,97 @@
+//! P. Müller and T. Pöschel, *Collision of viscoelastic spheres: Compact expressions for the coefficient of normal
+//! restitution*, Phys. Rev. E **84**, 021302 (2011).
+
+use crate::Error;
+use crate::elementary::{fifth_root, polynomial};
+use crate::lanes::Pack;
+use pulp::Simd;
+use std::f64::consts::PI;
+
+/// A viscoelastic sphere on a rigid plane, ε^n(v) as the Padé approximant [3/6] in v* = β^{1/2}v^{1/10}.
+///
+/// The force at a compression ξ is ρ(ξ^{3/2} + (3/2) A ξ^{1/2} dξ/dt), with Hertz's ρ = (4/3) √R Y/(1 − ν²) for a sphere on
+/// a rigid plane, and the contact ends where it would turn to attraction. With k = ρ/m, β = (3/2) A k^{2/5}.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Viscoelastic {
+    /// β^{1/2}, in (s/m)^{1/10} or, once scaled, in the core's unit.
+    scale: f64,
+}
+
+/// Coefficients of v*⁰, v*¹, ... .
+const NUMERATOR: [f64; 4] = [1.0, 1.072_32, 0.574_198, 0.141_552];
+const DENOMINATOR: [f64; 7] = [
+    1.0, 1.072_32, 1.727_65, 1.378_42, 1.194_49, 0.467_273, 0.235_585,
+];
+
+impl Viscoelastic {
+    /// Young's modulus Y in Pa, Poisson's ratio ν in (−1, ½], the dissipative constant A in s, density in kg/m³ and radius R
+    /// in m of the sphere.
+    pub fn new(
+        young_modulus: f64,
+        poisson_ratio: f64,
+        dissipation: f64,
+        density: f64,
+        radius: f64,
+    ) -> Result<Self, Error> {
+        let positive = |x: f64| x.is_finite() && x > 0.0;
+        Error::unless(
+            positive(young_modulus),
+            "young_modulus",
+            young_modulus,
+            "finite and > 0 (Pa)",
+        )?;
+        Error::unless(
+            poisson_ratio > -1.0 && poisson_ratio <= 0.5,
+            "poisson_ratio",
+            poisson_ratio,
+            "in (-1, 0.5]",
+        )?;
+        Error::unless(
+            dissipation.is_finite() && dissipation >= 0.0,
+            "dissipation",
+            dissipation,
+            "finite and >= 0 (s)",
+        )?;
+        Error::unless(
+            positive(density),
+            "density",
+            density,
+            "finite and > 0 (kg/m^3)",
+        )?;
+        Error::unless(positive(radius), "radius", radius, "finite and > 0 (m)")?;
+        let stiffness = young_modulus
+            / (PI
+                * (1.0 - poisson_ratio * poisson_ratio)
+                * density
+                * radius
+                * radius
+                * radius.sqrt()); // ρ/m
+        let scale = (1.5 * dissipation).sqrt() * fifth_root(stiffness);
+        Error::unless(
+            stiffness.is_normal() && scale < LARGEST,
+            "young_modulus",
+            young_modulus,
+            "such that the ratio of stiffness and mass neither overflows nor underflows",
+        )?;
+        Ok(Self { scale })
+    }
+
+    pub(super) fn scaled(&self, unit: f64) -> Self {
+        Self {
+            scale: self.scale * fifth_root(unit.sqrt()),
+        }
+    }
+
+    #[inline(always)]
+    pub(super) fn in_lanes<S: Simd, const K: usize>(&self, speed: Pack<S, K>) -> Pack<S, K> {
+        let mut root = speed.sqrt();
+        for x in root.as_mut_slice() {
+            *x = fifth_root(*x); // v^{1/10}
+        }
+        let x = root * self.scale; // v*
+        polynomial(NUMERATOR, x) / polynomial(DENOMINATOR, x)
+    }
+}
+
+/// The sixth power of this times 10³⁰·⁸, the tenth root of the largest speed, is still finite.
+const LARGEST: f64 = 1e20;

@@ -1,0 +1,155 @@
+//! What the tests of the laws share: random contacts, with the corners of the laws among them, and the energy of an impulse.
+#![allow(dead_code, reason = "each test file uses its own part")]
+
+use restitution_core::collision::{Components, Contact, Response};
+use restitution_core::{ChatterjeeRuina, Coulomb, Frictionless, Hypothesis, Law};
+
+pub const HYPOTHESES: [Hypothesis; 3] =
+    [Hypothesis::Stronge, Hypothesis::Poisson, Hypothesis::Newton];
+
+/// Numbers in [0, 1) from a counter (SplitMix64), fast enough for ten million contacts.
+pub struct Random(u64);
+
+impl Random {
+    pub fn new(seed: u64) -> Self {
+        Self(seed)
+    }
+
+    pub fn uniform(&mut self) -> f64 {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let mut z = self.0;
+        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        ((z ^ (z >> 31)) >> 11) as f64 / 9_007_199_254_740_992.0
+    }
+
+    pub fn between(&mut self, low: f64, high: f64) -> f64 {
+        low + (high - low) * self.uniform()
+    }
+
+    /// Either sign, and every magnitude between two powers of ten.
+    pub fn magnitude(&mut self, low: f64, high: f64) -> f64 {
+        let sign = if self.uniform() < 0.5 { -1.0 } else { 1.0 };
+        sign * 10.0_f64.powf(self.between(low, high))
+    }
+
+    /// A coefficient in [0, 1], with its ends.
+    pub fn coefficient(&mut self) -> f64 {
+        match self.uniform() {
+            x if x < 0.1 => 0.0,
+            x if x < 0.2 => 1.0,
+            _ => self.uniform(),
+        }
+    }
+
+    /// μ from none to what never slips.
+    pub fn friction(&mut self) -> f64 {
+        match self.uniform() {
+            x if x < 0.05 => 0.0,
+            x if x < 0.8 => self.between(0.0, 2.0),
+            _ => self.magnitude(-6.0, 6.0).abs(),
+        }
+    }
+
+    /// A contact in the plane of the axis: from spheres to slender rods, hit from every side, fast and slow.
+    pub fn planar(&mut self) -> Contact {
+        let inertia = self.magnitude(-1.0, 1.5).abs();
+        let slip = match self.uniform() {
+            x if x < 0.05 => 0.0,
+            x if x < 0.8 => self.between(-2.0, 2.0),
+            _ => self.magnitude(-8.0, 2.0),
+        };
+        let normal = match self.uniform() {
+            x if x < 0.05 => 0.0,
+            x if x < 0.9 => self.between(0.0, 2.0),
+            _ => self.magnitude(-8.0, 2.0).abs(),
+        };
+        // The farther away the mass is, the larger is J_xx: |r_c|² ≲ 4 J_xx/m in every body of revolution that we know.
+        let reach = 2.0 * inertia.sqrt();
+        Contact {
+            slip: Components {
+                normal: -normal,
+                along: slip,
+                across: 0.0,
+            },
+            inertia,
+            arm_normal: -self.between(0.0, 1.0) * reach,
+            arm_along: if self.uniform() < 0.05 {
+                0.0
+            } else {
+                self.between(-reach, reach)
+            },
+            across: 1.0 + self.between(0.0, 4.0),
+        }
+    }
+
+    /// One that slips across it, too.
+    pub fn spatial(&mut self) -> Contact {
+        let mut contact = self.planar();
+        contact.slip.across = if self.uniform() < 0.8 {
+            self.between(-2.0, 2.0)
+        } else {
+            self.magnitude(-8.0, 2.0)
+        };
+        contact
+    }
+}
+
+pub fn coulomb(normal: f64, friction: f64, hypothesis: Hypothesis) -> Law<'static> {
+    Coulomb::new(normal, friction, hypothesis).unwrap().into()
+}
+
+pub fn frictionless(normal: f64) -> Law<'static> {
+    Frictionless::new(normal).unwrap().into()
+}
+
+pub fn chatterjee_ruina(normal: f64, tangential: f64, friction: f64) -> Law<'static> {
+    ChatterjeeRuina::new(normal, tangential, friction)
+        .unwrap()
+        .into()
+}
+
+/// Contact velocity after the impact.
+pub fn after(contact: &Contact, response: &Response) -> Components {
+    let change = contact.change(response.impulse);
+    Components {
+        normal: contact.slip.normal + change.normal,
+        along: contact.slip.along + change.along,
+        across: contact.slip.across + change.across,
+    }
+}
+
+pub fn size(v: Components) -> f64 {
+    (v.normal * v.normal + v.along * v.along + v.across * v.across).sqrt()
+}
+
+pub fn tangential(v: Components) -> f64 {
+    v.along.hypot(v.across)
+}
+
+/// What an impulse and the velocities it makes are rounded to, over its own size: K enlarges both.
+pub fn rounding(contact: &Contact, response: &Response) -> f64 {
+    let impulse = size(response.impulse);
+    let square = contact.arm_normal.powi(2) + contact.arm_along.powi(2);
+    let largest = 1.0 + square / contact.inertia + contact.across;
+    f64::EPSILON * (size(contact.slip) + largest * impulse)
+}
+
+/// The work of the impulse, P·(v_c + v_c′)/2.
+pub fn gain(contact: &Contact, response: &Response) -> f64 {
+    let (p, v, w) = (response.impulse, contact.slip, after(contact, response));
+    0.5 * (p.normal * (v.normal + w.normal)
+        + p.along * (v.along + w.along)
+        + p.across * (v.across + w.across))
+}
+
+/// Both responses, to within their roundings times `factor`.
+pub fn agree(contact: &Contact, a: &Response, b: &Response, factor: f64) -> bool {
+    let difference = Components {
+        normal: a.impulse.normal - b.impulse.normal,
+        along: a.impulse.along - b.impulse.along,
+        across: a.impulse.across - b.impulse.across,
+    };
+    let allowed = factor * rounding(contact, a).max(rounding(contact, b));
+    size(difference) <= allowed && (a.separation_speed - b.separation_speed).abs() <= allowed
+}

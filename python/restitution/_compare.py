@@ -1,0 +1,183 @@
+"""The statistics of several bodies under several laws, side by side."""
+
+import warnings
+from collections.abc import Iterable, Mapping
+from itertools import product
+from typing import Any, TypeVar
+
+import numpy as np
+import xarray as xr
+
+from restitution._energy import LEDGER, WHY, EnergyWarning, factor, percent, reported_elsewhere
+from restitution._parameters import Parameters, shown
+from restitution._resources import progress_bar
+from restitution._statistics import statistics
+from restitution.bodies import Body
+from restitution.laws import Law
+
+T = TypeVar("T", bound=Parameters)
+
+_PER_RUN = {
+    "all_impacts": "impacts of the run, in the bins or not",
+    "energy_created_impacts": "of these, impacts that multiplied the kinetic energy by more than 1 + 1e-12",
+    "energy_created_share": "their share",
+    "largest_factor": "their largest factor, 1 where there are none",
+}
+
+
+def compare(
+    bodies: Mapping[str, Body] | Iterable[Body],
+    laws: Mapping[str, Law] | Iterable[Law],
+    *,
+    progress: bool = False,
+    **run: Any,
+) -> xr.Dataset:
+    """Drop every body under every law and put the statistics side by side.
+
+    Parameters
+    ----------
+    bodies, laws : mapping of str to Body or Law, or iterable of them
+        What falls, and what an impact does. Without names they are called by their class and those
+        parameters in which they differ from others of their class.
+    progress : bool
+        Show a progress bar on standard error, over the combinations.
+    **run
+        As in `restitution.statistics`: ``velocity_bins`` and ``restitution_bins`` must be given. All
+        combinations have the same bins and the same seed.
+
+    Returns
+    -------
+    xarray.Dataset
+        As from `restitution.statistics`, with dimensions (body, law) first. Over (body, law) also
+        ``all_impacts``, ``energy_created_impacts``, ``energy_created_share`` and ``largest_factor``; over
+        body and over law ``body_parameters`` and ``law_parameters``. The attributes are what all runs share.
+
+    Raises
+    ------
+    ValueError
+        Naming the argument that is wrong.
+    SimulationInterrupted
+        On Ctrl-C.
+
+    Warns
+    -----
+    EnergyWarning
+        Once, naming the laws under which impacts created kinetic energy.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import restitution as rs
+    >>> found = rs.compare(
+    ...     {"short": rs.Dumbbell(radius=3e-3, separation=3e-4)},
+    ...     [rs.Frictionless(normal=0.98), rs.Coulomb(normal=0.98, friction=0.3)],
+    ...     particles=50, velocity_bins=np.linspace(0.0, 1.2, 13),
+    ...     restitution_bins=np.linspace(-1.0, 3.0, 401))
+    >>> found["mean"].dims, found["law"].values.tolist()
+    (('body', 'law', 'velocity'), ['Frictionless', 'Coulomb'])
+    """
+    solids = _named("bodies", bodies, Body)
+    rules = _named("laws", laws, Law)
+    pairs = list(product(solids, rules))
+    with (
+        reported_elsewhere(),  # below, once
+        progress_bar("compare", len(pairs), "combinations", show=progress) as tell,
+    ):
+        runs = []
+        for done, (body, law) in enumerate(pairs, start=1):
+            runs.append(statistics(solids[body], rules[law], **run))
+            if tell is not None:
+                tell(done)
+    found = _side_by_side(runs, solids, rules)
+    _warn(found)
+    return found
+
+
+def _named(what: str, given: Mapping[str, T] | Iterable[T], kind: type[Any]) -> dict[str, T]:
+    """Give every body or law its name."""
+    if isinstance(given, Mapping):
+        named = dict(given)
+    elif isinstance(given, Iterable) and not isinstance(given, Parameters | str):
+        values = list(given)
+        for value in values:
+            _check(what, value, kind)
+        names = [_name(value, values) for value in values]
+        named = dict(zip(names, values, strict=True))
+        if len(named) < len(values):
+            twice = next(name for name in names if names.count(name) > 1)
+            raise ValueError(f"{what}: {twice} is there twice; all must differ, or have names: a dict")
+    else:
+        raise ValueError(f"{what} = {shown(given)}: must be a dict or list of {kind.__name__}")
+    if not named:
+        raise ValueError(f"{what}: must not be empty")
+    for name, value in named.items():
+        if not isinstance(name, str):
+            raise ValueError(f"{what}: {shown(name)} is not a name; must be a str")
+        _check(what, value, kind)
+    return named
+
+
+def _check(what: str, value: object, kind: type) -> None:
+    if not isinstance(value, kind):
+        raise ValueError(f"{what} holds {shown(value)}: must be objects of a {kind.__name__}")
+
+
+def _name(one: Parameters, others: list[T]) -> str:
+    """Name an object by its class and the parameters in which it differs from others of the class."""
+    alike = [other for other in others if type(other) is type(one)]
+    telling = [
+        f"{field} = {getattr(one, field)!r}"
+        for field in type(one).model_fields
+        if any(getattr(other, field) != getattr(one, field) for other in alike)
+    ]
+    return type(one).__name__ + (f"({', '.join(telling)})" if telling else "")
+
+
+def _side_by_side(runs: list[xr.Dataset], bodies: Mapping[str, Body], laws: Mapping[str, Law]) -> xr.Dataset:
+    """Stack statistics, all in the same bins, in the order body, law."""
+    first = runs[0]
+    variables: dict[str, Any] = {}
+    for name, variable in first.data_vars.items():
+        if str(name).endswith("_edges"):
+            variables[str(name)] = variable
+            continue
+        stacked = np.stack([run[name].to_numpy() for run in runs])
+        shape = (len(bodies), len(laws), *stacked.shape[1:])
+        variables[str(name)] = (("body", "law", *variable.dims), stacked.reshape(shape), variable.attrs)
+    for name, text in _PER_RUN.items():
+        values = np.array([_total(run, name) for run in runs]).reshape(len(bodies), len(laws))
+        variables[name] = (("body", "law"), values, {"long_name": text})
+    coordinates: dict[str, Any] = {
+        "body": list(bodies),
+        "law": list(laws),
+        **{str(k): v for k, v in first.coords.items()},
+    }
+    coordinates["body_parameters"] = (("body",), [repr(body) for body in bodies.values()])
+    coordinates["law_parameters"] = (("law",), [repr(law) for law in laws.values()])
+    shared = {
+        name: value
+        for name, value in first.attrs.items()
+        if all(name in run.attrs and run.attrs[name] == value for run in runs) and name not in LEDGER
+    }
+    shared["title"] = "Statistics of the impacts of bodies under collision laws"
+    return xr.Dataset(variables, coordinates, shared)
+
+
+def _total(run: xr.Dataset, name: str) -> int | float:
+    if name == "largest_factor":
+        return float(run.attrs.get("largest_energy_ratio", 1.0))
+    value: int | float = run.attrs[name]
+    return value
+
+
+def _warn(found: xr.Dataset) -> None:
+    created = found["energy_created_impacts"].sum("body")
+    laws = [str(law) for law in found["law"].values[created > 0]]
+    if laws:
+        share, largest = float(found["energy_created_share"].max()), float(found["largest_factor"].max())
+        warnings.warn(
+            f"Impacts created kinetic energy under {', '.join(laws)}: in up to {percent(share)} of the "
+            f"impacts of a run, at most by a factor of {factor(largest)}. {WHY}",
+            EnergyWarning,
+            stacklevel=3,
+        )

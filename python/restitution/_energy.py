@@ -1,0 +1,85 @@
+"""The energy ledger of every run: which impacts created kinetic energy, and a warning where any did."""
+
+import warnings
+from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from restitution._core import CREATES_ENERGY
+
+
+class EnergyWarning(UserWarning):
+    """Impacts of a run left with more kinetic energy than they had, which is the collision law's doing.
+
+    An impact counts where it multiplies the kinetic energy by more than 1 + 1e-12: rounding makes some 1e-15.
+    """
+
+
+WHY = (
+    "The law does this, not rounding: gains below 1e-12 are not counted. Laws that cannot: "
+    "Frictionless, Coulomb with hypothesis 'stronge' or 'poisson', and ChatterjeeRuina."
+)
+LEDGER = ("all_impacts", "energy_created_impacts", "energy_created_share", "largest_energy_ratio")
+"""The attributes of a result that say how much energy its impacts created."""
+
+
+def ledger(impacts: int, created: int, largest: float) -> dict[str, Any]:
+    """Give the attributes that say how many impacts created energy, their share, and the largest factor.
+
+    Parameters
+    ----------
+    impacts, created : int
+        Number of all impacts and of those that created energy.
+    largest : float
+        Largest energy ratio of the latter; of no meaning, and left out, where there are none.
+    """
+    found: dict[str, Any] = {
+        "all_impacts": impacts,
+        "energy_created_impacts": created,
+        "energy_created_share": created / max(impacts, 1),
+    }
+    return found | ({"largest_energy_ratio": largest} if created else {})
+
+
+def ledger_of(energy_ratio: np.ndarray[Any, np.dtype[np.float64]]) -> dict[str, Any]:
+    """`ledger` of recorded energy ratios, NaN where there was no impact."""
+    impacts = energy_ratio.size - int(np.count_nonzero(np.isnan(energy_ratio)))
+    created = int(np.count_nonzero(energy_ratio > CREATES_ENERGY))
+    return ledger(impacts, created, float(np.fmax.reduce(energy_ratio, axis=None)))
+
+
+def warn(data: xr.Dataset, *, stacklevel: int = 2) -> None:
+    """Warn once if the run behind `data` created energy; `stacklevel` is that of `warnings.warn`."""
+    about = data.attrs
+    created = about["energy_created_impacts"]
+    if not created:
+        return
+    warnings.warn(
+        f"{about['law']} created kinetic energy in {percent(about['energy_created_share'])} of the impacts "
+        f"({created:,} of {about['all_impacts']:,}), at most by a factor of "
+        f"{factor(about['largest_energy_ratio'])}. {WHY}",
+        EnergyWarning,
+        stacklevel=stacklevel + 1,
+    )
+
+
+def percent(share: float) -> str:
+    """Write a share in percent with three digits, however small."""
+    text = f"{100 * share:.3g}"
+    return f"{float(text):f}".rstrip("0").rstrip(".") + " %" if "e" in text and share > 1e-8 else f"{text} %"
+
+
+def factor(largest: float) -> str:
+    """Write a factor above 1 so that it does not read as 1."""
+    return f"{largest:.6g}" if largest >= 1.001 else f"1 + {largest - 1:.2g}"
+
+
+@contextmanager
+def reported_elsewhere() -> Iterator[None]:
+    """Let no `EnergyWarning` through, for what reports the created energy itself; also a decorator."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", EnergyWarning)
+        yield

@@ -1,0 +1,74 @@
+"""Two spheres, equal or not."""
+
+from typing import Annotated
+
+from pydantic import Field
+
+from restitution import _core
+from restitution._parameters import Number
+from restitution.bodies._body import Body
+from restitution.bodies._pair import PositivePair, both
+
+
+class Dumbbell(Body):
+    """Two spheres whose centres are ``separation`` apart; equal ones are the paper's body (Sec. II).
+
+    Where the spheres overlap the body is their union, cut at the plane of their intersection, each side with
+    its sphere's density. Where they do not, beyond the paper, it is two full spheres on a massless rod; where
+    one contains the other it is that one. ``separation = 0`` is a sphere. The axis points from sphere 2 to
+    sphere 1.
+
+    Parameters
+    ----------
+    radius : float or (float, float)
+        Radius R of either sphere, or of sphere 1 and of sphere 2, in m; finite and > 0.
+    separation : float
+        Distance L between the two centres, in m; finite and >= 0.
+    density : float or (float, float), default 2500
+        Density of both spheres, or of sphere 1 and of sphere 2, in kg/m³; finite and > 0. If it is the same,
+        the motion does not depend on it.
+
+    Examples
+    --------
+    >>> import restitution as rs
+    >>> body = rs.Dumbbell(radius=3e-3, separation=3e-4, density=2500.0)
+    >>> round(body.elongation, 12)
+    0.1
+    >>> club = rs.Dumbbell(radius=(3e-3, 2e-3), separation=4e-3, density=(2500, 7800))
+    >>> round(club.centre_of_mass, 6)  # towards sphere 1, which is heavier
+    0.0001
+    """
+
+    radius: PositivePair
+    separation: Annotated[Number, Field(ge=0, description="m")]
+    density: PositivePair = 2500.0
+
+    @property
+    def solid(self) -> _core.Solid:
+        """The body as the core knows it; mass and inertia by (A3), (A5) with L⁵/160 for L⁵/180, and (A8)."""
+        return _core.dumbbell(self.radii, self.separation, self.densities)
+
+    @property
+    def radii(self) -> tuple[float, float]:
+        """Radii of sphere 1 and sphere 2, in m."""
+        return both(self.radius)
+
+    @property
+    def densities(self) -> tuple[float, float]:
+        """Densities of sphere 1 and sphere 2, in kg/m³."""
+        return both(self.density)
+
+    @property
+    def is_equal(self) -> bool:
+        """Whether both spheres are the same, as in the paper."""
+        return self.radii[0] == self.radii[1] and self.densities[0] == self.densities[1]
+
+    @property
+    def elongation(self) -> float:
+        """L/R, R the radius of sphere 1; of equal spheres the only number that the motion depends on."""
+        return self.separation / self.radii[0]
+
+    @property
+    def centre_of_mass(self) -> float:
+        """Place of the centre of mass on the axis, from the middle of both centres towards sphere 1, in m."""
+        return self.solid.centre_of_mass

@@ -1,0 +1,50 @@
+"""A parameter that the two spheres of a body share, or that each has its own of."""
+
+import math
+from typing import Annotated, Any
+
+from pydantic import BeforeValidator, ValidationInfo
+
+from restitution._parameters import Allowed, ParameterError, _plain_number, wrong
+
+_POSITIVE = "a finite number > 0"
+_ALLOWED = f"{_POSITIVE} (or one for each sphere)"
+
+
+def _positive(value: Any) -> float | None:
+    value = _plain_number(value)
+    if isinstance(value, bool) or not isinstance(value, int | float):
+        return None
+    try:
+        number = float(value)
+    except OverflowError:
+        return None
+    return number if 0.0 < number < math.inf else None
+
+
+def _checked(value: Any, info: ValidationInfo) -> float | tuple[float, float]:
+    name = str(info.field_name)
+    if not (isinstance(value, list | tuple) and len(value) == 2):
+        number = _positive(value)
+        if number is None:
+            raise ParameterError(wrong(name, value, _ALLOWED))
+        return number
+    numbers = [_positive(part) for part in value]
+    problems = [
+        wrong(f"{name}[{index}]", part, _POSITIVE)
+        for index, (part, number) in enumerate(zip(value, numbers, strict=True))
+        if number is None
+    ]
+    if problems:
+        raise ParameterError(*problems)
+    one, two = (number for number in numbers if number is not None)
+    return one, two
+
+
+PositivePair = Annotated[float | tuple[float, float], Allowed(_ALLOWED), BeforeValidator(_checked)]
+"""One positive number for both spheres, or a pair: that of sphere 1 and that of sphere 2."""
+
+
+def both(value: float | tuple[float, float]) -> tuple[float, float]:
+    """Give each sphere its number."""
+    return value if isinstance(value, tuple) else (value, value)

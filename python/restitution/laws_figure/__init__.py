@@ -1,0 +1,48 @@
+"""`restitution laws`: one figure of what the collision law does to the result."""
+
+from pathlib import Path
+
+from restitution import figures as fg
+from restitution.laws_figure._caption import caption
+from restitution.laws_figure._draw import draw
+from restitution.laws_figure._measure import ELONGATIONS, LAWS, bound, coupling, growth, measure
+from restitution.laws_figure._table import table
+
+__all__ = ["ELONGATIONS", "LAWS", "bound", "coupling", "growth", "measure", "table", "write"]
+
+TITLE = "What the collision law does to the coefficient of restitution"
+
+
+def write(
+    out: Path, *, impacts: int, seed: int, threads: int | None = None, progress: bool = False
+) -> tuple[Path, str]:
+    """Measure, and write ``laws.png``, ``.pdf``, ``.nc``, ``.txt`` (the caption) and ``.md`` (the table).
+
+    Parameters
+    ----------
+    out : Path
+        The folder to write to, all or nothing.
+    impacts, seed, threads, progress
+        As in `measure`.
+
+    Returns
+    -------
+    tuple of Path and str
+        The PNG, and the table.
+
+    Raises
+    ------
+    OSError
+        If `out` cannot be written to; before the work begins.
+    """
+    from restitution._dataset import save
+    from restitution.paper._folder import unfinished
+
+    with unfinished(out) as folder:
+        data = measure(impacts, seed, threads=threads, progress=progress)
+        text, rows = caption(data), table(data)
+        fg.save(draw(data), folder / "laws", TITLE, text)
+        save(data.assign_attrs(title=TITLE, caption=text), folder / "laws.nc")
+        (folder / "laws.txt").write_text(text + "\n", encoding="utf-8")
+        (folder / "laws.md").write_text(rows, encoding="utf-8")
+    return out / "laws.png", rows

@@ -1,0 +1,179 @@
+"""The materials: their formulas against the physics they stand for, and the engine against both."""
+
+import math
+from typing import Any
+
+import mpmath
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+from scipy.special import beta
+
+import restitution as rs
+from restitution import _core
+
+STEEL: dict[str, float] = {
+    "young_modulus": 2.1e11,
+    "poisson_ratio": 0.3,
+    "dissipation": 1e-6,
+    "density": 7850.0,
+    "radius": 5e-3,
+}
+SPEEDS = np.concatenate([[0.0, 5e-324, 1e-300, 1e-30], np.geomspace(1e-12, 1e6, 4001), [1e300]])
+
+
+def by_newtons_equation(speed: float) -> float:
+    """ε^n of the sphere of `STEEL` from its equation of motion in SI units, until the force would attract."""
+    r, nu = STEEL["radius"], STEEL["poisson_ratio"]
+    mass = 4 / 3 * math.pi * r**3 * STEEL["density"]
+    stiffness = 4 / 3 * math.sqrt(r) * STEEL["young_modulus"] / (1 - nu**2) / mass
+    length = (speed**2 / stiffness) ** 0.4
+    time = length / speed
+
+    def motion(_: float, y: Any) -> list[float]:
+        root = math.sqrt(max(y[0], 0.0) * length)
+        force = stiffness * root * (y[0] * length + 1.5 * STEEL["dissipation"] * y[1] * speed)
+        return [y[1], -force * time / speed]
+
+    def attracts(_: float, y: Any) -> float:
+        return float(y[0] * length + 1.5 * STEEL["dissipation"] * y[1] * speed)
+
+    attracts.terminal, attracts.direction = True, -1  # type: ignore[attr-defined]
+    path = solve_ivp(motion, (0, 50), [0.0, 1.0], "DOP853", rtol=1e-11, atol=1e-13, events=attracts)
+    assert path.y_events
+    return float(-path.y_events[0][0][1])
+
+
+def test_viscoelastic_is_the_motion_of_the_compressed_sphere() -> None:
+    """The approximant is the integrated motion to 10⁻⁶ while ε^n > 3/4, and to 7·10⁻⁴ everywhere.
+
+    Both bounds are of the approximant itself: it has six digits, and is made from the ends v* → 0 and v* → ∞.
+    """
+    steel = rs.Viscoelastic(**STEEL)
+    for star in (0.03, 0.1, 0.3, 0.5, 0.7, 1.0, 1.5, 2.0, 3.0, 5.0):
+        speed = (star**2 / steel.beta) ** 5
+        exact = by_newtons_equation(speed)
+        assert abs(float(steel(speed)) - exact) < (1e-6 if exact > 0.75 else 7e-4)
+
+
+def test_viscoelastic_at_low_speed() -> None:
+    """ε = 1 - C₁ v*² + ..., with C₁ from the work of the viscous force along the elastic motion.
+
+    In the units of β, (dx/dt)² = 1 - (4/5)x^{5/2}, and 1 - ε = 2β ∫ √x dx/dt dx, which is
+    β (4/5)(5/4)^{3/5} B(3/5, 3/2).
+    The approximant's coefficients have six digits.
+    """
+    c1 = 0.8 * 1.25**0.6 * float(beta(0.6, 1.5))
+    assert pytest.approx(1.72765 - 0.574198, abs=6e-6) == c1
+    steel = rs.Viscoelastic(**STEEL)
+    speed = (1e-4 / steel.beta) ** 5
+    assert 1.0 - float(steel(speed)) == pytest.approx(1e-4 * c1, rel=2e-3)
+    assert float(rs.Viscoelastic(**STEEL | {"dissipation": 0.0})(1.0)) == 1.0
+
+
+def test_plastic_is_elastic_up_to_yield() -> None:
+    """1 up to v_y and continuous there; far beyond √(6√3/5) (x/(2√(6/5)))^{1/4} = 1.185 x^{1/4}."""
+    material = rs.Plastic(yield_speed=0.2)
+    limit = math.sqrt(6 * math.sqrt(3) / 5) * (2 * math.sqrt(1.2)) ** -0.25
+    assert material([0.0, 0.1, 0.2]).tolist() == [1.0] * 3
+    assert float(material(np.nextafter(0.2, 1.0))) == pytest.approx(1.0, abs=1e-15)
+    assert float(material(2e19)) == pytest.approx(limit * 1e-20**0.25, rel=1e-9)
+    v = np.geomspace(0.2, 200.0, 500)
+    assert np.all(np.diff(material(v)) < 0)
+
+
+def test_tabulated_joins_the_points() -> None:
+    """Through the points, straight between them, constant beyond; one point is a constant."""
+    table = rs.Tabulated(v=np.array([0.2, 0.4, 1.0]), e=[0.9, 0.8, 0.7])
+    np.testing.assert_allclose(
+        table([0.0, 0.2, 0.3, 0.4, 0.7, 1.0, 9.0]), [0.9, 0.9, 0.85, 0.8, 0.75, 0.7, 0.7]
+    )
+    assert rs.Tabulated(v=[3.0], e=[0.5])([0.0, 3.0, 7.0]).tolist() == [0.5] * 3
+
+
+MATERIALS = [
+    rs.Viscoelastic(**STEEL),
+    rs.Viscoelastic(**STEEL | {"dissipation": 1e-2}),
+    rs.Plastic(yield_speed=0.03),
+    rs.Tabulated(v=[0.0, 0.1, 0.11, 5.0], e=[1.0, 0.2, 0.9, 0.0]),
+]
+
+
+@pytest.mark.parametrize("material", MATERIALS, ids=str)
+def test_the_engine_evaluates_the_same_formula(material: Any) -> None:
+    """To a few units in the last place of 1, at every magnitude of the speed."""
+    found = _core.normal_coefficient(material.model_dump(), SPEEDS)
+    assert np.all((found >= 0.0) & (found <= 1.0))
+    np.testing.assert_allclose(found, material(SPEEDS), rtol=2e-15, atol=2e-15)
+
+
+def test_the_engine_needs_no_power_function() -> None:
+    """v^{1/10} is a square root and a fifth root: ε^n is the approximant with fifty digits to 8 ulp."""
+    mpmath.mp.dps = 50
+    steel = rs.Viscoelastic(**STEEL)
+    r, nu = mpmath.mpf(STEEL["radius"]), mpmath.mpf(STEEL["poisson_ratio"])
+    ratio = mpmath.mpf(STEEL["young_modulus"]) / (mpmath.pi * (1 - nu**2) * mpmath.mpf(STEEL["density"]))
+    stiffness = ratio / (r**2 * mpmath.sqrt(r))
+    scale = mpmath.sqrt(mpmath.mpf(1.5) * mpmath.mpf(STEEL["dissipation"])) * stiffness ** (mpmath.mpf(1) / 5)
+    above = [1.0, 1.07232, 0.574198, 0.141552]
+    below = [1.0, 1.07232, 1.72765, 1.37842, 1.19449, 0.467273, 0.235585]
+    speeds = np.geomspace(1e-300, 1e250, 1500)
+    for speed, found in zip(speeds, _core.normal_coefficient(steel.model_dump(), speeds), strict=True):
+        x = scale * mpmath.mpf(float(speed)) ** (mpmath.mpf(1) / 10)
+        exact = mpmath.polyval(above[::-1], x) / mpmath.polyval(below[::-1], x)
+        assert abs(found / exact - 1) < 8 * 2.0**-52
+
+
+@pytest.mark.parametrize(
+    ("kind", "values", "expected"),
+    [
+        (
+            rs.Viscoelastic,
+            STEEL | {"poisson_ratio": 0.6},
+            "poisson_ratio = 0.6: must be a real number in (-1, 0.5]",
+        ),
+        (
+            rs.Viscoelastic,
+            STEEL | {"dissipation": -1.0},
+            "dissipation = -1.0: must be a finite number >= 0 (s)",
+        ),
+        (rs.Viscoelastic, STEEL | {"radius": 1e-300}, "young_modulus = 210000000000.0: must be such that"),
+        (rs.Plastic, {"yield_speed": 0}, "yield_speed = 0: must be a finite number > 0 (m/s)"),
+        (rs.Tabulated, {"v": [], "e": []}, "v = []: must be a 1-D array of at least one number"),
+        (rs.Tabulated, {"v": [[0.1]], "e": [1]}, "v = [[0.1]]: must be a 1-D array"),
+        (rs.Tabulated, {"v": [0.1, math.nan], "e": [1, 1]}, "v[1] = nan: must be a finite number >= 0 (m/s)"),
+        (rs.Tabulated, {"v": [0.1, 0.1], "e": [1, 1]}, "v[1] = 0.1: must be greater than v[0] = 0.1"),
+        (rs.Tabulated, {"v": [0.1, 0.2], "e": [1]}, "e = an array of 1 numbers: must be one for each of"),
+        (rs.Tabulated, {"v": [0.1], "e": [1.1]}, "e[0] = 1.1: must be a real number in [0, 1]"),
+        (
+            rs.Frictionless,
+            {"normal": -0.5},
+            "normal = -0.5: must be a real number in [0, 1] or a Viscoelastic",
+        ),
+        (
+            rs.Frictionless,
+            {"normal": True},
+            "normal = True: must be a real number in [0, 1] or a Viscoelastic",
+        ),
+        (rs.Coulomb, {"normal": 0.5, "friction": -1}, "friction = -1: must be a real number in [0, 1e+100]"),
+        (
+            rs.Coulomb,
+            {"normal": 0.5, "friction": 1, "hypothesis": "routh"},
+            "hypothesis = 'routh': must be 'stronge', 'poisson' or 'newton'",
+        ),
+        (
+            rs.ChatterjeeRuina,
+            {"normal": 1, "tangential": 2, "friction": 0},
+            "tangential = 2: must be a real number in [-1, 1]",
+        ),
+    ],
+)
+def test_bad_parameters_are_named(kind: Any, values: dict[str, Any], expected: str) -> None:
+    with pytest.raises(ValueError) as caught:  # noqa: PT011 - looked at below
+        kind(**values)
+    assert str(caught.value).startswith(expected)
+
+
+def test_a_speed_is_not_negative() -> None:
+    with pytest.raises(ValueError, match=r"speed = \[0\.1, -0\.1\]: must be >= 0 \(m/s\)"):
+        rs.Plastic(yield_speed=1.0)([0.1, -0.1])
