@@ -72,6 +72,15 @@ pub struct Gains {
 }
 
 impl Gains {
+    /// Adds one impact, or none with a factor of 0. Stores a new largest factor only, which is rare.
+    #[inline(always)]
+    fn add(&mut self, count: i64, factor: f64) {
+        self.count += count as u64;
+        if factor > self.largest {
+            self.largest = factor;
+        }
+    }
+
     fn merge(&mut self, other: Self) {
         self.count += other.count;
         self.largest = self.largest.max(other.largest);
@@ -187,6 +196,7 @@ struct Row {
     sums: Recent,
     fractions: u64,
     extremes: Extremes,
+    gains: Gains,
 }
 
 impl Row {
@@ -194,6 +204,10 @@ impl Row {
         sums: Recent::EMPTY,
         fractions: 0,
         extremes: Extremes::EMPTY,
+        gains: Gains {
+            count: 0,
+            largest: 0.0,
+        },
     };
 }
 
@@ -219,6 +233,7 @@ impl<'a> Counter<'a> {
             let row = self.rows[i];
             sums.absorb(&row.sums, &row.extremes);
             self.tally.fractions[i] += u128::from(row.fractions);
+            self.tally.gains[i].merge(row.gains);
         }
         self.rows.fill(Row::EMPTY);
     }
@@ -295,6 +310,10 @@ impl Sink for Counter<'_> {
         let plain_row = plain.select(row, nowhere(rows.len()));
         let quanta = offset.mul_add(QUANTA, ROUND);
         let fraction_quanta = fraction.mul_add(FRACTION_QUANTA, ROUND);
+        let (before, after) = (impact.energy_before, impact.energy_after);
+        let gaining = impact.active & (before * CREATES_ENERGY).lt(after);
+        let factor = gaining.select(after / before, 0.0);
+        let gain = gaining.select(ROUND + 1.0, ROUND);
         for lane in 0..width {
             sites[whole(&site, lane) as usize] += 1;
             fraction_sites[whole(&fraction_site, lane) as usize] += 1;
@@ -304,14 +323,16 @@ impl Sink for Counter<'_> {
                 .fractions
                 .wrapping_add(whole(&fraction_quanta, lane) as u64);
             row.extremes.add(restitution.as_slice()[lane]);
+            row.gains.add(whole(&gain, lane), factor.as_slice()[lane]);
         }
-        let (before, after) = (impact.energy_before, impact.energy_after);
-        let gaining = impact.active & (before * CREATES_ENERGY).lt(after);
-        if gaining.any() {
-            gaining.each(|lane| {
-                let largest = after.as_slice()[lane] / before.as_slice()[lane];
-                let row = whole(&row, lane) as usize;
-                self.tally.gains[row].merge(Gains { count: 1, largest });
+        let odd = gaining & !plain;
+        if odd.any() {
+            odd.each(|lane| {
+                let gains = Gains {
+                    count: 1,
+                    largest: factor.as_slice()[lane],
+                };
+                self.tally.gains[whole(&row, lane) as usize].merge(gains);
             });
         }
         let large = summed & !plain;
