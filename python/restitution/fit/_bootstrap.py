@@ -1,6 +1,6 @@
 """Standard errors, confidence bands and honest information criteria, by drawing particles again."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass
 from math import log
 from typing import Any
@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike
 from restitution.fit._clusters import clustered
 from restitution.fit._counts import Counts
 from restitution.fit._result import Array, Fit
+from restitution.fit._source import Parts, Window
 
 
 @dataclass(frozen=True)
@@ -56,24 +57,39 @@ class Bootstrap:
         return low, high
 
     @property
+    def effective_samples(self) -> float:
+        """Number of independent samples that would know the parameters as well: n k/tr(J H⁻¹).
+
+        n samples and k free parameters; tr(J H⁻¹)/k is the design effect, the mean factor by which the
+        correlation inside particles multiplies the variance of an estimate.
+        """
+        return self.fit.samples * self.fit.free_parameters / self.effective_parameters
+
+    @property
     def aic(self) -> float:
-        """Takeuchi's criterion, 2 tr(J H⁻¹) - 2 ln L: Akaike's for samples correlated inside particles."""
+        """2 tr(J H⁻¹) - 2 ln L, Akaike's criterion for samples correlated inside particles.
+
+        C. Varin and P. Vidoni, Biometrika 92, 519 (2005): ln L, which takes the samples for independent, is a
+        composite likelihood, and its optimism is that trace.
+        """
         return 2 * self.effective_parameters - 2 * self.fit.loglikelihood
 
     @property
     def bic(self) -> float:
-        """tr(J H⁻¹) ln(particles) - 2 ln L, of Gao and Song, J. Am. Stat. Assoc. 105, 1531 (2010).
+        """tr(J H⁻¹) ln(particles) - 2 ln L; X. Gao and P. X.-K. Song, J. Am. Stat. Assoc. 105, 1531 (2010).
 
-        `Fit.bic` counts impacts as if each were a particle of its own.
+        Its n is the number of particles, the draws that are independent; the impacts in each, and how much
+        they repeat each other, enter through the trace. `Fit.bic` takes every impact for a particle.
         """
         return self.effective_parameters * log(self.clusters) - 2 * self.fit.loglikelihood
 
 
 def bootstrap(
     family: Callable[[Any], Fit],
-    samples: ArrayLike | Counts | Sequence[Counts],
+    samples: Parts,
     clusters: ArrayLike | None = None,
     *,
+    velocity: Window | None = None,
     resamples: int = 199,
     seed: int = 1,
 ) -> Bootstrap:
@@ -83,10 +99,13 @@ def bootstrap(
     ----------
     family : callable
         A fit of this package, such as `asymmetric_laplace`, or any function from samples to a `Fit`.
-    samples : array_like, shape (n,), or sequence of Counts
-        Samples; or the counts of independent runs, which take the place of particles.
+    samples : array_like, xarray.Dataset or sequence of Counts or xarray.Dataset
+        Values; impacts as from `restitution.simulate`, whose particles are known; or the counts, or
+        statistics, of independent runs, which take the place of particles.
     clusters : array_like of int, shape (n,), optional
-        Number of the particle that each sample is from; without it every sample is a particle of its own.
+        Number of the particle that each value is from; without it every value is a particle of its own.
+    velocity : float or tuple of two floats, optional
+        For a Dataset, as in `asymmetric_laplace`.
     resamples : int, default 199
     seed : int, default 1
 
@@ -107,7 +126,7 @@ def bootstrap(
     """
     if resamples < 2:
         raise ValueError(f"resamples = {resamples!r}: at least two are needed")
-    source = clustered(samples, clusters)
+    source = clustered(samples, clusters, velocity)
     pool = source.pool()
     fit = family(pool)
     random = np.random.default_rng(seed)

@@ -4,10 +4,12 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+import xarray as xr
 from numpy.typing import ArrayLike, NDArray
 
 from restitution.fit._counts import Counts, pooled
 from restitution.fit._result import Array, finite_samples
+from restitution.fit._source import Parts, Window, counted, recorded
 
 _GRID = 1000
 
@@ -79,27 +81,47 @@ class Tallied:
         return self.parts[0].edges
 
 
-def clustered(
-    samples: ArrayLike | Counts | Sequence[Counts], clusters: ArrayLike | None
-) -> Clustered | Tallied:
+def clustered(samples: Parts, clusters: ArrayLike | None, velocity: Window | None) -> Clustered | Tallied:
     """Sort samples by particle, or take counts of several runs.
+
+    Parameters
+    ----------
+    samples : array_like, xarray.Dataset or sequence of Counts or xarray.Dataset
+        Values; impacts as from `restitution.simulate`, whose particles are known; or the counts, or
+        statistics, of independent runs, which take the place of particles.
+    clusters : array_like of int, shape (n,), optional
+        Number of the particle that each value is from; without it every value is a particle of its own.
+    velocity : float or tuple of two floats, optional
+        For a Dataset, as in `asymmetric_laplace`.
 
     Raises
     ------
     ValueError
         If labels do not match the samples, or there are fewer than two particles or runs.
     """
-    if isinstance(samples, Counts):
-        raise ValueError("samples: one set of counts; give a list of them, from independent runs")
-    if isinstance(samples, list | tuple) and samples and isinstance(samples[0], Counts):
-        parts = list(samples)
+    several = isinstance(samples, list | tuple) and len(samples) > 0
+    if several and isinstance(samples[0], Counts | xr.Dataset):  # type: ignore[index]
+        parts = [one if isinstance(one, Counts) else counted(one, velocity) for one in samples]  # type: ignore
         if clusters is not None:
             raise ValueError("clusters: counts are drawn again run by run, and take none")
         _several(len(parts), "counts")
         pooled(parts)
         return Tallied(parts)
-    x = finite_samples(samples)  # type: ignore[arg-type]
-    labels = np.arange(x.size) if clusters is None else np.asarray(clusters).ravel()
+    if isinstance(samples, Counts) or (isinstance(samples, xr.Dataset) and "count" in samples):
+        raise ValueError(
+            "samples: one set of counts, in which particles are not told apart; give those of several "
+            "independent runs in a list"
+        )
+    if isinstance(samples, xr.Dataset):
+        if clusters is not None:
+            raise ValueError("clusters: a Dataset knows its particles, leave them out")
+        values, labels = recorded(samples, velocity)
+    elif velocity is not None:
+        raise ValueError(f"velocity = {velocity!r}: is for a Dataset; other samples have no impact velocity")
+    else:
+        values = np.asarray(samples, dtype=np.float64).ravel()
+        labels = np.arange(values.size) if clusters is None else np.asarray(clusters).ravel()
+    x = finite_samples(values)
     if labels.shape != x.shape:
         raise ValueError(f"clusters: {labels.size} values; one for each of the {x.size} samples is needed")
     order = np.argsort(labels, kind="stable")

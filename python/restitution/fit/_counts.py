@@ -54,7 +54,7 @@ class Counts:
             raise ValueError(f"count: holds {numbers[~(numbers >= 0)][:1]}; counts are finite and >= 0")
         if np.count_nonzero(numbers) < 2:
             raise ValueError(
-                "count: fewer than two bins are filled; the likelihood of a scale has no maximum"
+                f"count: {np.count_nonzero(numbers)} bin(s) filled; the likelihood of a scale has no maximum"
             )
         object.__setattr__(self, "edges", edges)
         object.__setattr__(self, "count", count)
@@ -75,7 +75,7 @@ class Counts:
         one = statistics.isel(velocity=row)
         return cls(
             edges=one["restitution_edges"].to_numpy(),
-            count=one["count"].to_numpy().astype(np.float64),
+            count=one["count"].to_numpy(),
             below=int(one["restitution_underflow"]),
             above=int(one["restitution_overflow"]),
         )
@@ -94,18 +94,21 @@ class Counts:
         """Share of the samples below each edge, shape (bins + 1,)."""
         return np.asarray(np.cumsum(self.all)[:-1] / self.total)
 
-    def loglikelihood(self, distribution: Any) -> float:
-        """Logarithm of the probability of the counts, less what does not depend on the distribution."""
+    def logshare(self, distribution: Any) -> Array:
+        """Logarithm of the probability of each bin, the open ones first and last, shape (bins + 2,)."""
         below, above = distribution.cdf(self.edges), distribution.sf(self.edges)
         # Differences of the smaller of both, where nothing cancels.
         inner = np.where(below[1:] < 0.5, np.diff(below), -np.diff(above))
         share = np.concatenate([[below[0]], inner, [above[-1]]])
-        filled = self.all > 0
-        return float(self.all[filled] @ np.log(np.maximum(share[filled], _IMPOSSIBLE)))
+        return np.asarray(np.log(np.maximum(share, _IMPOSSIBLE)))
 
-    def quantile(self, q: float) -> float:
-        """Quantile, linear inside the bins."""
-        return float(np.interp(q, self.cumulative(), self.edges))
+    def loglikelihood(self, distribution: Any) -> float:
+        """Logarithm of the probability of the counts, less what does not depend on the distribution."""
+        return float(self.all @ self.logshare(distribution))
+
+    def quantile(self, q: Array | list[float]) -> Array:
+        """Quantiles, linear inside the bins, at the outermost edges for the open ones; shape of `q`."""
+        return np.asarray(np.interp(q, self.cumulative(), self.edges))
 
 
 def pooled(parts: Sequence[Counts]) -> Counts:
@@ -135,24 +138,38 @@ def fit_counts(family: str, counts: Counts, make: Maker, start: ArrayLike, *, fi
         Where the search starts.
     fixed : int
         Parameters that were not fitted.
+
+    Raises
+    ------
+    ValueError
+        If no more bins are filled than there are parameters to fit: many densities then share a maximum.
     """
-    median = counts.quantile(0.5)
-    spread = (counts.quantile(0.84) - counts.quantile(0.16)) / 2.0
-    spread = max(spread, float(np.diff(counts.edges).min()))
+    point = np.asarray(start, dtype=np.float64)
+    filled = np.count_nonzero(counts.all)
+    if filled <= point.size:
+        raise ValueError(
+            f"count: {filled} bins are filled; {point.size} parameters need at least {point.size + 1}, "
+            "give narrower bins"
+        )
+    low, median, high = (float(x) for x in counts.quantile([0.16, 0.5, 0.84]))
+    spread = max((high - low) / 2.0, float(np.diff(counts.edges).min()))
 
     def cost(point: Array) -> float:
         return -counts.loglikelihood(make(point, median, spread)[0]) / counts.total
 
-    point = np.asarray(start, dtype=np.float64)
-    for step in (0.5, 0.05):  # the second search starts afresh where the first may have stalled
-        simplex = np.vstack([point, point + step * np.eye(point.size)])
-        found = optimize.minimize(
-            cost,
-            point,
-            method="Nelder-Mead",
-            options={"initial_simplex": simplex, "xatol": 1e-7, "fatol": 1e-13, "maxiter": 4000},
-        )
-        point = found.x
+    # A simplex comes near the maximum from afar, a quasi-Newton method finds it to the last digits.
+    near = optimize.minimize(
+        cost,
+        point,
+        method="Nelder-Mead",
+        options={
+            "initial_simplex": np.vstack([point, point + 0.5 * np.eye(point.size)]),
+            "xatol": 1e-3,
+            "fatol": 1e-8,
+            "maxiter": 4000,
+        },
+    ).x
+    point = optimize.minimize(cost, near, method="BFGS", options={"gtol": 1e-8}).x
     distribution, parameters = make(point, median, spread)
     return Fit(
         family=family,

@@ -47,7 +47,7 @@ def dependence(data: xr.Dataset, velocity_bins: ArrayLike, *, lags: int = 5) -> 
     )
     rows = edges.size - 1
     row = np.searchsorted(edges, velocity, side="right") - 1
-    row[~((velocity >= edges[0]) & (velocity < edges[-1]))] = -1
+    row[~((velocity >= edges[0]) & (velocity < edges[-1]) & np.isfinite(restitution))] = -1
     u = _ranks(restitution, row, rows)
     scaled = (u - 0.5) * np.sqrt(12.0)  # of variance 1
 

@@ -4,49 +4,49 @@ from math import exp
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike
 from scipy import stats
 
 from restitution.fit._counts import Counts, fit_counts
-from restitution.fit._result import Array, Fit, finite_samples, fitted
+from restitution.fit._result import Array, Fit, fitted
+from restitution.fit._source import Samples, Window, taken
 
 
-def gaussian(samples: ArrayLike | Counts) -> Fit:
-    """Fit the normal distribution: ``mean``, ``deviation``. Raises as `asymmetric_laplace` does."""
-    if isinstance(samples, Counts):
-        return _located("Gaussian", samples, stats.norm, ("mean", "deviation"))
-    x = finite_samples(samples)
+def gaussian(samples: Samples, *, velocity: Window | None = None) -> Fit:
+    """Fit the normal distribution: ``mean``, ``deviation``. Samples and errors as `asymmetric_laplace`."""
+    x = taken(samples, velocity)
+    if isinstance(x, Counts):
+        return _located("Gaussian", x, stats.norm, ("mean", "deviation"))
     mean, deviation = stats.norm.fit(x)
     return fitted("Gaussian", x, stats.norm(mean, deviation), mean=mean, deviation=deviation)
 
 
-def laplace(samples: ArrayLike | Counts) -> Fit:
-    """Fit the symmetric Laplace density: ``location``, ``scale``. Raises as `asymmetric_laplace` does."""
-    if isinstance(samples, Counts):
-        return _located("symmetric Laplace", samples, stats.laplace, ("location", "scale"))
-    x = finite_samples(samples)
+def laplace(samples: Samples, *, velocity: Window | None = None) -> Fit:
+    """Fit the symmetric Laplace density: ``location``, ``scale``; samples, errors: `asymmetric_laplace`."""
+    x = taken(samples, velocity)
+    if isinstance(x, Counts):
+        return _located("symmetric Laplace", x, stats.laplace, ("location", "scale"))
     location, scale = stats.laplace.fit(x)
     return fitted("symmetric Laplace", x, stats.laplace(location, scale), location=location, scale=scale)
 
 
-def logistic(samples: ArrayLike | Counts) -> Fit:
-    """Fit the logistic distribution: ``location``, ``scale``. Raises as `asymmetric_laplace` does."""
-    if isinstance(samples, Counts):
-        return _located("logistic", samples, stats.logistic, ("location", "scale"))
-    x = finite_samples(samples)
+def logistic(samples: Samples, *, velocity: Window | None = None) -> Fit:
+    """Fit the logistic distribution: ``location``, ``scale``. Samples and errors as `asymmetric_laplace`."""
+    x = taken(samples, velocity)
+    if isinstance(x, Counts):
+        return _located("logistic", x, stats.logistic, ("location", "scale"))
     location, scale = stats.logistic.fit(x)
     return fitted("logistic", x, stats.logistic(location, scale), location=location, scale=scale)
 
 
-def student_t(samples: ArrayLike | Counts) -> Fit:
-    """Fit Student's t: ``degrees``, ``location``, ``scale``. Raises as `asymmetric_laplace` does.
+def student_t(samples: Samples, *, velocity: Window | None = None) -> Fit:
+    """Fit Student's t: ``degrees``, ``location``, ``scale``. Samples and errors as `asymmetric_laplace`.
 
     SciPy's search would start at one degree of freedom, from where it can end early; here it starts at five,
     the median and the spread of the middle half.
     """
-    if isinstance(samples, Counts):
-        return _student(samples)
-    x = finite_samples(samples)
+    x = taken(samples, velocity)
+    if isinstance(x, Counts):
+        return _student(x)
     low, median, high = np.quantile(x, [0.25, 0.5, 0.75])
     width = (high - low) / 1.349 or float(np.std(x))  # a Gaussian's quartiles are 1.349 deviations apart
     degrees, location, scale = stats.t.fit(x, 5.0, loc=median, scale=width)

@@ -10,10 +10,13 @@ from scipy import optimize, special, stats
 
 from restitution.fit._asymmetric import asymmetric_laplace, frozen
 from restitution.fit._counts import Counts, fit_counts
-from restitution.fit._result import Array, Fit, finite_samples, fitted
+from restitution.fit._result import Array, Fit, fitted
+from restitution.fit._source import Samples, Window, taken
 
 _NARROWEST = 1e-3
 """Least width of a part, over the spread of the samples: a narrower Gaussian would sit on one sample."""
+_SPREAD_OUT = 2000
+"""Samples that stand for counts where the search begins."""
 
 
 @dataclass(frozen=True)
@@ -72,7 +75,7 @@ class Mixture:
         return np.asarray(np.where(chosen, first, second))
 
 
-def cusp_mixture(samples: ArrayLike | Counts, location: float) -> Fit:
+def cusp_mixture(samples: Samples, location: float, *, velocity: Window | None = None) -> Fit:
     """Fit p = s p_cusp + (1 - s) p_Gauss: an asymmetric Laplace density with a fixed cusp, and a Gaussian.
 
     Where impacts of particles that hardly rotate, all near ε^n, are mixed with others, either form alone
@@ -80,7 +83,8 @@ def cusp_mixture(samples: ArrayLike | Counts, location: float) -> Fit:
 
     Parameters
     ----------
-    samples : array_like or Counts
+    samples : array_like, Counts or xarray.Dataset
+    velocity : float or tuple of two floats, optional
         As in `asymmetric_laplace`.
     location : float
         The cusp, e.g. the law's ε^n.
@@ -96,10 +100,20 @@ def cusp_mixture(samples: ArrayLike | Counts, location: float) -> Fit:
     ValueError
         As `asymmetric_laplace`.
     """
-    if isinstance(samples, Counts):
-        return _from_counts(samples, float(location))
-    x = finite_samples(samples, location)
-    spread = float(np.std(x)) or abs(float(x[0]) - location)
+    x = taken(samples, velocity, location)
+    if isinstance(x, Counts):
+        return _from_counts(x, float(location))
+    spread = _spread(x, location)
+    distribution, parameters = _made(_search(x, spread, location), spread, location)
+    return fitted("cusp mixture", x, distribution, free=5, **parameters)
+
+
+def _spread(x: Array, location: float) -> float:
+    return float(np.std(x)) or abs(float(x[0]) - location)
+
+
+def _search(x: Array, spread: float, location: float) -> Array:
+    """Point of the largest likelihood: logit of the share, ln of the widths, the Gaussian's mean."""
     start = asymmetric_laplace(x, location).parameters
     widths = [log(max(start[side] / spread, 10 * _NARROWEST)) for side in ("above", "below")]
     centre = (float(np.mean(x)) - location) / spread
@@ -110,9 +124,7 @@ def cusp_mixture(samples: ArrayLike | Counts, location: float) -> Fit:
         optimize.minimize(_cost, point, args=(y,), jac=True, method="L-BFGS-B", bounds=bounds)
         for point in starts
     ]
-    best = min(found, key=lambda one: float(one.fun)).x
-    distribution, parameters = _made(best, location, spread, location)
-    return fitted("cusp mixture", x, distribution, free=5, **parameters)
+    return np.asarray(min(found, key=lambda one: float(one.fun)).x)
 
 
 def _cost(point: Array, y: Array) -> tuple[float, Array]:
@@ -136,19 +148,24 @@ def _cost(point: Array, y: Array) -> tuple[float, Array]:
     return -float(loglikelihood), -np.mean(slopes, axis=1)
 
 
-def _made(point: Array, origin: float, spread: float, location: float) -> tuple[Any, dict[str, float]]:
-    """Make the distribution of a point: logit of the share, ln of the widths, the Gaussian's mean."""
+def _made(point: Array, spread: float, location: float) -> tuple[Any, dict[str, float]]:
+    """Make the distribution of a point of `_search`."""
     share = float(special.expit(point[0]))
     a, b, deviation = (float(x) for x in spread * np.exp(point[[1, 2, 4]]))
-    mean = origin + spread * float(point[3])
+    mean = location + spread * float(point[3])
     density = Mixture(share, frozen(1.0, location, a, b), stats.norm(mean, deviation))
     named = {"above": a, "below": b, "mean": mean, "deviation": deviation}
     return density, {"share": share, "location": location, **named}
 
 
 def _from_counts(counts: Counts, location: float) -> Fit:
-    def make(point: Array, median: float, spread: float) -> tuple[Any, dict[str, float]]:
-        bounded = np.concatenate([np.clip(point[:1], -12.0, 12.0), np.clip(point[1:], log(_NARROWEST), 10.0)])
-        return _made(bounded, median, spread, location)
+    """Start where samples spread evenly inside the bins have their maximum: there are others, lower ones."""
+    x = counts.quantile((np.arange(_SPREAD_OUT) + 0.5) / _SPREAD_OUT)
+    spread = _spread(x, location)
 
-    return fit_counts("cusp mixture", counts, make, [0.0, -0.7, -0.7, 0.0, 0.3], fixed=1)
+    def make(point: Array, _median: float, _spread: float) -> tuple[Any, dict[str, float]]:
+        low = [-12.0, log(_NARROWEST), log(_NARROWEST), -10.0, log(_NARROWEST)]
+        bounded = np.clip(point, low, [12.0, 7.0, 7.0, 10.0, 7.0])
+        return _made(bounded, spread, location)
+
+    return fit_counts("cusp mixture", counts, make, _search(x, spread, location), fixed=1)
