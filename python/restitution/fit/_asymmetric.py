@@ -106,19 +106,21 @@ def asymmetric_power(
     x = taken(samples, velocity, location)
     if isinstance(x, Counts):
         return _counted("asymmetric power", x, location, None)
-    start, spread = asymmetric_laplace(x, location).parameters["location"], float(np.std(x))
+    start = asymmetric_laplace(x, location).parameters["location"]
+    spread = float(np.mean(np.abs(x - start)))
     free = 4 if location is None else 3
+    y = (x - start) / spread
 
     def widths(m: float, k: float) -> tuple[float, float]:
-        power = np.abs(x - m) ** k
-        above = float(np.sum(power, where=x > m)) ** (1 / (k + 1))
-        below = float(np.sum(power, where=x < m)) ** (1 / (k + 1))
-        factor = (k * (above + below) / x.size) ** (1 / k)
+        power = np.abs(y - m) ** k
+        above = float(np.sum(power, where=y > m)) ** (1 / (k + 1))
+        below = float(np.sum(power, where=y < m)) ** (1 / (k + 1))
+        factor = (k * (above + below) / y.size) ** (1 / k)
         return above * factor, below * factor
 
     def cost(point: Array) -> float:
         k = exp(point[1])
-        return log(sum(widths(start + spread * point[0], k))) + float(special.gammaln(1 / k)) - log(k) + 1 / k
+        return log(sum(widths(point[0], k))) + float(special.gammaln(1 / k)) - log(k) + 1 / k
 
     # Below k = 1/2 the cusp is so sharp that the likelihood has a spike at every sample.
     reach = 3.0 if location is None else 0.0
@@ -130,7 +132,7 @@ def asymmetric_power(
         options={"initial_simplex": [[0, 0], [reach / 15, 0], [0, 0.3]], "xatol": 1e-5, "fatol": 1e-10},
     )
     m, k = start + spread * float(found.x[0]), exp(found.x[1])
-    a, b = widths(m, k)
+    a, b = (spread * width for width in widths(float(found.x[0]), k))
     density = frozen(k, m, a, b)
     return fitted("asymmetric power", x, density, free=free, location=m, above=a, below=b, exponent=k)
 

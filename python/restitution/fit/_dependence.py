@@ -4,7 +4,7 @@ import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike, NDArray
 
-from restitution._bins import centres, checked_edges
+from restitution._bins import centres, increasing_edges
 from restitution.fit._result import Array
 
 
@@ -20,7 +20,8 @@ def dependence(data: xr.Dataset, velocity_bins: ArrayLike, *, lags: int = 5) -> 
     data : xarray.Dataset
         Impacts as from `restitution.simulate`.
     velocity_bins : array_like, shape (bins + 1,)
-        Edges in m/s, uniform. A pair of impacts belongs to the bin of its first; the second may be in any.
+        Edges in m/s, strictly increasing. A pair of impacts belongs to the bin of its first; the second may
+        be in any.
     lags : int, default 5
         Largest number of impacts from one to the other.
 
@@ -40,7 +41,7 @@ def dependence(data: xr.Dataset, velocity_bins: ArrayLike, *, lags: int = 5) -> 
     """
     if lags < 1:
         raise ValueError(f"lags = {lags!r}: must be at least 1")
-    edges = checked_edges(velocity_bins, "velocity_bins")
+    edges = increasing_edges(velocity_bins, "velocity_bins")
     velocity, restitution, contact = (
         data[name].transpose("particle", "impact").to_numpy()
         for name in ("impact_velocity", "restitution", "contact")

@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 from scipy import stats
 
+from restitution.fit._asymmetric import frozen
 from restitution.fit._counts import Counts, fit_counts
 from restitution.fit._result import Array, Fit, fitted
 from restitution.fit._source import Samples, Window, taken
@@ -24,9 +25,14 @@ def laplace(samples: Samples, *, velocity: Window | None = None) -> Fit:
     """Fit the symmetric Laplace density: ``location``, ``scale``; samples, errors: `asymmetric_laplace`."""
     x = taken(samples, velocity)
     if isinstance(x, Counts):
-        return _located("symmetric Laplace", x, stats.laplace, ("location", "scale"))
+        return _located("symmetric Laplace", x, _laplace, ("location", "scale"))
     location, scale = stats.laplace.fit(x)
-    return fitted("symmetric Laplace", x, stats.laplace(location, scale), location=location, scale=scale)
+    return fitted("symmetric Laplace", x, _laplace(location, scale), location=location, scale=scale)
+
+
+def _laplace(location: float, scale: float) -> Any:
+    """Freeze the density; SciPy's own has a logarithm that is -inf where the density underflows."""
+    return frozen(1.0, location, scale, scale)
 
 
 def logistic(samples: Samples, *, velocity: Window | None = None) -> Fit:

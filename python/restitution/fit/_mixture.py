@@ -98,11 +98,13 @@ def cusp_mixture(samples: Samples, location: float, *, velocity: Window | None =
     Raises
     ------
     ValueError
-        As `asymmetric_laplace`.
+        As `asymmetric_laplace`, or if there are fewer than six samples.
     """
     x = taken(samples, velocity, location)
     if isinstance(x, Counts):
         return _from_counts(x, float(location))
+    if x.size < 6:
+        raise ValueError(f"samples: {x.size} value(s); five parameters need at least six")
     spread = _spread(x, location)
     distribution, parameters = _made(_search(x, spread, location), spread, location)
     return fitted("cusp mixture", x, distribution, free=5, **parameters)

@@ -6,7 +6,7 @@ import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike, NDArray
 
-from restitution._bins import LARGEST, centres, checked_edges
+from restitution._bins import LARGEST, centres, increasing_edges
 from restitution.fit._asymmetric import asymmetric_laplace
 from restitution.fit._counts import Counts
 from restitution.fit._judgement import distances
@@ -122,8 +122,8 @@ class Slopes:
 
         It is the lower edge of a velocity bin, the last one for which this holds; nan if even the fastest bin
         is farther away. Any form fails a test of significance if the samples are many enough; a distance is
-        how much it fails by. A thousand independent samples of the fitted form itself lie farther off than 0.03
-        in one case of twenty.
+        how much it fails by. Of sets of a thousand independent samples of the form itself one in twenty lies
+        farther than 0.03 from its own fit.
 
         Parameters
         ----------
@@ -155,7 +155,8 @@ def slopes(
         Impacts as from `restitution.simulate`; or counts as from `restitution.statistics`, whose velocity
         bins are then used, and which have no particles to draw again: standard errors are nan.
     velocity_bins : array_like, shape (bins + 1,)
-        Edges in m/s, uniform; not for counts.
+        Edges in m/s, strictly increasing; not for counts. Bins of a constant ratio, `numpy.geomspace`, hold
+        about as many impacts each, for the speed falls by a share at every impact.
     location : float, optional
         The cusp, e.g. the law's ε^n; fitted in each bin unless given.
     resamples : int, default 99
@@ -177,7 +178,7 @@ def slopes(
         return _from_counts(data, location)
     if velocity_bins is None:
         raise ValueError("velocity_bins: missing; recorded impacts need edges in m/s")
-    edges = checked_edges(velocity_bins, "velocity_bins")
+    edges = increasing_edges(velocity_bins, "velocity_bins")
     velocity, restitution = (
         data[name].transpose("particle", "impact").to_numpy() for name in ("impact_velocity", "restitution")
     )
