@@ -26,6 +26,27 @@ def test_growth_laws_come_back() -> None:
     assert np.abs(free.table.location - CUSP).max() < 0.02
 
 
+def test_independent_kicks_give_the_growth_law_of_the_reservoir() -> None:
+    """A spin that impacts kick at random by δω ∝ v, felt as ε = ε_n + cωs/v: exponent 1 in √(v₀²/v² − 1).
+
+    Exactly so, for ⟨ω²⟩ ∝ Σ v_k² = (v₀² − v²)/(1 − ε_n²). Within four stated errors.
+    """
+    rng = np.random.default_rng(1)
+    v = np.broadcast_to(CUSP ** np.arange(80), (3000, 80))
+    kick = v * rng.normal(size=v.shape)
+    spin = np.cumsum(kick, axis=1) - kick  # before the impact
+    e = CUSP + 0.002 * spin * rng.uniform(-1, 1, v.shape) / v
+    data = xr.Dataset(
+        {"impact_velocity": (("particle", "impact"), v), "restitution": (("particle", "impact"), e)}
+    )
+    found = fit.slopes(data, CUSP ** np.arange(79.5, 0, -2), location=CUSP, resamples=40)
+    for side in ("above", "below"):
+        law = found.power_law(side, release_speed=1.0)
+        assert law.exponent_error < 0.02
+        assert abs(law.exponent - 1.0) < 4 * law.exponent_error
+        assert law.scatter < 0.5 * found.power_law(side).scatter
+
+
 def test_slopes_of_counts_are_those_of_the_impacts() -> None:
     data = scaled_flanks(500, 2)
     edges = np.linspace(0.1, 0.5, 9)

@@ -6,6 +6,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from restitution._bins import centres, increasing_edges
 from restitution.fit._result import Array
+from restitution.fit._source import columns
 
 
 def dependence(data: xr.Dataset, velocity_bins: ArrayLike, *, lags: int = 5) -> xr.Dataset:
@@ -37,15 +38,12 @@ def dependence(data: xr.Dataset, velocity_bins: ArrayLike, *, lags: int = 5) -> 
     Raises
     ------
     ValueError
-        If `velocity_bins` are not as they must be, or ``lags < 1``.
+        If `velocity_bins` are not as they must be, ``lags < 1``, or data lack a variable.
     """
     if lags < 1:
         raise ValueError(f"lags = {lags!r}: must be at least 1")
     edges = increasing_edges(velocity_bins, "velocity_bins")
-    velocity, restitution, contact = (
-        data[name].transpose("particle", "impact").to_numpy()
-        for name in ("impact_velocity", "restitution", "contact")
-    )
+    velocity, restitution, contact = columns(data, "impact_velocity", "restitution", "contact")
     rows = edges.size - 1
     row = np.searchsorted(edges, velocity, side="right") - 1
     row[~((velocity >= edges[0]) & (velocity < edges[-1]) & np.isfinite(restitution))] = -1

@@ -11,6 +11,7 @@ from restitution.fit._asymmetric import asymmetric_laplace
 from restitution.fit._counts import Counts
 from restitution.fit._judgement import distances
 from restitution.fit._result import Array, Fit
+from restitution.fit._source import columns
 
 _SIDES = ("above", "below")
 _NAMES = ("location", *_SIDES)
@@ -54,7 +55,8 @@ class Slopes:
     table : xarray.Dataset
         Over ``velocity``: ``location`` of the cusp, decay lengths ``above`` and ``below``, each with its
         standard error over redrawn particles (``above_error``, …); ``ks_distance`` of the fit; ``samples``,
-        ``particles``. NaN where a bin has fewer than 30 samples or 10 particles.
+        ``particles``. NaN where a bin has fewer than 30 samples or 10 particles, or
+        no more filled bins of counts than parameters.
     resampled : xarray.Dataset
         ``above`` and ``below`` over (``resample``, ``velocity``).
     """
@@ -179,9 +181,7 @@ def slopes(
     if velocity_bins is None:
         raise ValueError("velocity_bins: missing; recorded impacts need edges in m/s")
     edges = increasing_edges(velocity_bins, "velocity_bins")
-    velocity, restitution = (
-        data[name].transpose("particle", "impact").to_numpy() for name in ("impact_velocity", "restitution")
-    )
+    velocity, restitution = columns(data, "impact_velocity", "restitution")
     particles = velocity.shape[0]
     random = np.random.default_rng(seed)
     times = random.multinomial(particles, np.full(particles, 1.0 / particles), size=resamples)
@@ -226,10 +226,12 @@ def _from_counts(statistics: xr.Dataset, location: float | None) -> Slopes:
     rows = edges.size - 1
     fits: list[Fit | None] = [None] * rows
     near = np.full(rows, np.nan)
-    for i, v in enumerate(centres(edges)):
-        if int(statistics["number"][i]) < _LEAST:
-            continue
-        counts = Counts.at(statistics, float(v))
+    free = len(_NAMES) - (location is not None)
+    outside = ("restitution_underflow", "restitution_overflow")
+    filled = sum(statistics[name].to_numpy() > 0 for name in outside)
+    filled += np.count_nonzero(statistics["count"].transpose("velocity", "restitution"), axis=1)
+    for i in np.flatnonzero((statistics["number"].to_numpy() >= _LEAST) & (filled > free)):
+        counts = Counts.at(statistics, float(edges[i]))
         one = asymmetric_laplace(counts, location)
         fits[i], near[i] = one, float(np.max(np.abs(counts.cumulative() - one.cdf(counts.edges))))
     unknown = np.full((rows, len(_NAMES)), np.nan)

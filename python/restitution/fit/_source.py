@@ -76,19 +76,22 @@ def recorded(data: xr.Dataset, velocity: Window | None) -> tuple[Array, NDArray[
 
     Those that are not finite or at least 2³³ in magnitude are left out, as in `restitution.reduce`.
     """
-    missing = [name for name in ("impact_velocity", "restitution") if name not in data]
-    if missing:
-        raise ValueError(f"samples: lack {', '.join(missing)}; give a Dataset as from restitution.simulate")
+    speed, restitution = columns(data, "impact_velocity", "restitution")
     if velocity is None or not isinstance(velocity, tuple | list | np.ndarray):
         raise ValueError(f"velocity = {velocity!r}: recorded impacts need a window (low, high) in m/s")
     low, high = window(velocity)
-    speed, restitution = (
-        data[name].transpose("particle", "impact").to_numpy() for name in ("impact_velocity", "restitution")
-    )
     particle, impact = np.nonzero((speed >= low) & (speed < high) & (np.abs(restitution) < LARGEST))
     if particle.size == 0:
         raise ValueError(f"velocity = {velocity!r}: no impact has an impact velocity there")
     return restitution[particle, impact], particle
+
+
+def columns(data: xr.Dataset, *names: str) -> tuple[Array, ...]:
+    """Take variables of recorded impacts, each of shape (particles, impacts)."""
+    missing = [name for name in names if name not in data]
+    if missing:
+        raise ValueError(f"data: lacks {', '.join(missing)}; give a Dataset as from restitution.simulate")
+    return tuple(data[name].transpose("particle", "impact").to_numpy() for name in names)
 
 
 def window(velocity: Window) -> tuple[float, float]:
