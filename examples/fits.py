@@ -35,8 +35,6 @@ HIGHEST = 0.9
 """Speed in m/s up to which the distance of the fit is judged: the first impacts have their own density."""
 SHOWN = (0.04, 0.06, 0.08, 0.1, 0.12, 0.15, 0.18, 0.21, 0.24, 0.26, 0.28, 0.4, 0.6, 0.8)
 """Speeds of the rows of the table in m/s: of each the velocity bin nearest to it."""
-JUDGED = 1000
-"""Particles behind the table of families and its p-values."""
 FAMILIES: dict[str, Callable[..., fit.Fit]] = {
     "asymmetric Laplace": partial(fit.asymmetric_laplace, location=NORMAL),
     "asymmetric power": partial(fit.asymmetric_power, location=NORMAL),
@@ -51,6 +49,7 @@ class Measured:
     """What the figure and the tables show."""
 
     particles: int
+    judged: int  # of them, behind the table of families and its p-values
     impacts: int
     slopes: fit.Slopes
     dependence: xr.Dataset
@@ -68,7 +67,7 @@ class Measured:
         return self.slopes.power_law(side, *GROWTH, release_speed=RELEASE_SPEED if reservoir else None)
 
 
-def measure(particles: int = 4000, *, resamples: int = 99, seed: int = 1) -> Measured:
+def measure(particles: int = 4000, *, judged: int = 1000, resamples: int = 99, seed: int = 1) -> Measured:
     """Drop the particles of the paper's Fig. 2 and fit."""
     data = rs.simulate(
         rs.Dumbbell(radius=RADIUS, separation=ELONGATION * RADIUS),
@@ -79,11 +78,12 @@ def measure(particles: int = 4000, *, resamples: int = 99, seed: int = 1) -> Mea
         gravity=GRAVITY,
         seed=seed,
     )
-    some = data.isel(particle=slice(JUDGED))
+    some = data.isel(particle=slice(judged))
     slow: dict[str, Any] = {"resamples": resamples // 2, "seed": seed}
     velocity, restitution = data.impact_velocity.to_numpy(), data.restitution.to_numpy()
     return Measured(
         particles=particles,
+        judged=judged,
         impacts=int(data.impacts.sum()),
         slopes=fit.slopes(data, EDGES, location=NORMAL, resamples=resamples, seed=seed),
         dependence=fit.dependence(data, EDGES, lags=3),
@@ -244,7 +244,7 @@ def caption(found: Measured) -> str:
             "bands: ± one standard error over particles; dotted: independent impacts. The paper's law with",
             f"ε_n = {NORMAL:g}; L/R = {ELONGATION:g}, R = {1e3 * RADIUS:g} mm, centre of mass released at",
             f"{1e3 * HEIGHT:g} mm, θ uniform in [0, π), g = {GRAVITY:g} m/s²; {found.particles} particles,",
-            f"{found.impacts / 1e6:.2f} million impacts; in (c) and (f) fits to {JUDGED} particles;",
+            f"{found.impacts / 1e6:.2f} million impacts; in (c) and (f) fits to {found.judged} particles;",
             f"restitution {rs.__version__}.",
         ]
     )
