@@ -183,6 +183,7 @@ def test_bad_input_is_named() -> None:
         (lambda: fit.asymmetric_laplace(four), "count: 3 bins are filled; 3 parameters need at least 4"),
         (lambda: fit.asymmetric_laplace(four, np.nan), "location = nan: a finite"),
         (lambda: fit.cusp_mixture(x, 1.0), "samples: 3 value"),
+        (lambda: fit.bootstrap(fit.laplace, [1.0, 1.0, 2.0, 2.0], [0, 0, 1, 1]), "clusters: 2 are too few"),
         (lambda: fit.gaussian([1.0, 1e101]), r"samples: magnitudes up to 1e\+101"),
     ]
     for call, message in cases:

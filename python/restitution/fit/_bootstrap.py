@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from restitution.fit._clusters import clustered
+from restitution.fit._clusters import clustered, refitted
 from restitution.fit._counts import Counts
 from restitution.fit._result import Array, Fit
 from restitution.fit._source import Parts, Window
@@ -112,7 +112,8 @@ def bootstrap(
     Raises
     ------
     ValueError
-        As the fit does, if labels do not match, there are fewer than two particles, or ``resamples < 2``.
+        As the fit does, if labels do not match, there are fewer than two particles or too few to fit when
+        drawn again, or ``resamples < 2``.
 
     Examples
     --------
@@ -130,7 +131,7 @@ def bootstrap(
     pool = source.pool()
     fit = family(pool)
     random = np.random.default_rng(seed)
-    again = tuple(family(source.redrawn(random)) for _ in range(resamples))
+    again = tuple(refitted(family, source, random)[1] for _ in range(resamples))
     losses = [fit.loglikelihood - _loglikelihood(one, pool) for one in again]
     return Bootstrap(fit, again, source.number, float(2.0 * np.mean(losses)))
 

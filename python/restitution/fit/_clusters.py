@@ -1,14 +1,15 @@
 """Samples that belong to particles: what a bootstrap draws again are particles, never single impacts."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike, NDArray
 
 from restitution.fit._counts import Counts, pooled
-from restitution.fit._result import Array, finite_samples
+from restitution.fit._result import Array, Fit, finite_samples
 from restitution.fit._source import Parts, Window, counted, recorded
 
 _GRID = 1000
@@ -128,6 +129,24 @@ def clustered(samples: Parts, clusters: ArrayLike | None, velocity: Window | Non
     _, start = np.unique(labels[order], return_index=True)
     _several(start.size, "clusters")
     return Clustered(x[order], np.append(start, x.size))
+
+
+def refitted(
+    family: Callable[[Any], Fit], source: Clustered | Tallied, random: np.random.Generator
+) -> tuple[Array | Counts, Fit]:
+    """Draw particles again and fit what they have.
+
+    Raises
+    ------
+    ValueError
+        If that cannot be fitted, as when few particles with equal samples are drawn.
+    """
+    again = source.redrawn(random)
+    try:
+        return again, family(again)
+    except ValueError as error:
+        text = f"clusters: {source.number} are too few, some drawn again cannot be fitted ({error})"
+        raise ValueError(text) from error
 
 
 def empirical(samples: Array | Counts, grid: Array) -> Array:

@@ -9,7 +9,7 @@ import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike
 
-from restitution.fit._clusters import Clustered, Tallied, clustered, empirical
+from restitution.fit._clusters import Clustered, Tallied, clustered, empirical, refitted
 from restitution.fit._counts import Counts
 from restitution.fit._result import Array, Fit, finite_samples
 from restitution.fit._source import Parts, Window
@@ -117,8 +117,8 @@ def _clustered_goodness(
 
     observed, reached = statistics(gap), np.ones(2)
     for _ in range(resamples):
-        again = source.redrawn(random)
-        reached += statistics(empirical(again, grid) - family(again).cdf(grid) - gap) >= observed
+        again, refit = refitted(family, source, random)
+        reached += statistics(empirical(again, grid) - refit.cdf(grid) - gap) >= observed
     ks_p, ad_p = reached / (resamples + 1)
     return Goodness(fit, float(observed[0]), float(ks_p), float(observed[1]), float(ad_p), resamples)
 
