@@ -26,7 +26,7 @@ _MOMENTS = {
 }
 
 
-def checked_edges(bins: npt.ArrayLike, name: str) -> FloatArray:
+def increasing_edges(bins: npt.ArrayLike, name: str) -> FloatArray:
     edges = np.array(bins, dtype=np.float64)
     if edges.ndim != 1 or edges.size < 2:
         raise ValueError(f"{name} has shape {edges.shape}: needs one dimension and at least two edges")
@@ -36,6 +36,12 @@ def checked_edges(bins: npt.ArrayLike, name: str) -> FloatArray:
     if not np.all(widths > 0):
         at = int(np.argmin(widths > 0))
         raise ValueError(f"{name} goes from {edges[at]} to {edges[at + 1]}: edges must increase strictly")
+    return edges
+
+
+def checked_edges(bins: npt.ArrayLike, name: str) -> FloatArray:
+    edges = increasing_edges(bins, name)
+    widths = np.diff(edges)
     # Room for edges that were rounded once each, as by linspace or arange, and no more.
     allowed = 1e-9 * widths.mean() + 8 * np.spacing(np.abs(edges).max())
     if np.ptp(widths) > allowed:

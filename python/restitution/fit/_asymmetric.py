@@ -4,13 +4,16 @@ from math import exp, log, sqrt
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike
 from scipy import optimize, special, stats
 
-from restitution.fit._result import Array, Fit, finite_samples, fitted
+from restitution.fit._counts import Counts, fit_counts
+from restitution.fit._result import Array, Fit, fitted
+from restitution.fit._source import Samples, Window, taken
 
 
-def asymmetric_laplace(samples: ArrayLike, location: float | None = None) -> Fit:
+def asymmetric_laplace(
+    samples: Samples, location: float | None = None, *, velocity: Window | None = None
+) -> Fit:
     """Fit p(x) = exp(−(x−m)/a)/(a+b) for x ≥ m, exp(−(m−x)/b)/(a+b) for x < m; exact maximum likelihood.
 
     The paper's "two exponential functions" (Sec. III, Fig. 4). With S⁺ = Σ(x−m)⁺ and S⁻ = Σ(m−x)⁺ the
@@ -20,10 +23,16 @@ def asymmetric_laplace(samples: ArrayLike, location: float | None = None) -> Fit
 
     Parameters
     ----------
-    samples : array_like
-        Values, any shape, n ≥ 1, finite, not all equal (to `location`, if that is given).
+    samples : array_like, Counts or xarray.Dataset
+        Values, any shape, n ≥ 1, finite, not all equal (to `location`, if that is given); impacts as from
+        `restitution.simulate`, of which those in the window `velocity` are taken; or binned counts, as
+        `Counts` or as from `restitution.statistics`, for which the likelihood of the bins, Σ c_j ln ∫_j p dx
+        with an open bin at either end, is maximised numerically.
     location : float, optional
         The cusp m, e.g. the law's ε^n; fitted if left out.
+    velocity : float or tuple of two floats, optional
+        For a Dataset, in m/s: the window (low, high) of the impact velocity, low ≤ v < high; for statistics a
+        number too, which means the velocity bin that holds it. A window of statistics must end at edges.
 
     Returns
     -------
@@ -34,9 +43,21 @@ def asymmetric_laplace(samples: ArrayLike, location: float | None = None) -> Fit
     Raises
     ------
     ValueError
-        If the samples are empty, not finite or without spread, or the location is not finite.
+        If the samples are empty, not finite or without spread, no more bins are filled than there are
+        parameters, the location is not finite, or the velocity is missing, superfluous or not in the data.
+
+    Examples
+    --------
+    >>> import restitution as rs
+    >>> data = rs.simulate(rs.Dumbbell(radius=3e-3, separation=3e-4), rs.TangentialRestitution(normal=0.98),
+    ...                    particles=200, impacts=150)
+    >>> found = rs.fit.asymmetric_laplace(data, location=0.98, velocity=(0.38, 0.42))
+    >>> 0.02 < found.parameters["above"] < 0.03
+    True
     """
-    x = finite_samples(samples, location)
+    x = taken(samples, velocity, location)
+    if isinstance(x, Counts):
+        return _counted("asymmetric Laplace", x, location, 1.0)
     if location is None:
         m, above, below = _best_cusp(np.sort(x))
     else:
@@ -45,7 +66,7 @@ def asymmetric_laplace(samples: ArrayLike, location: float | None = None) -> Fit
     total = sqrt(above) + sqrt(below)
     a, b = sqrt(above) * total / x.size, sqrt(below) * total / x.size
     free = 3 if location is None else 2
-    density = _frozen(1.0, m, a, b)
+    density = frozen(1.0, m, a, b)
     return fitted("asymmetric Laplace", x, density, free=free, location=m, above=a, below=b)
 
 
@@ -61,14 +82,16 @@ def _best_cusp(x: Array) -> tuple[float, float, float]:
     return float(x[best]), float(above[best]), float(below[best])
 
 
-def asymmetric_power(samples: ArrayLike) -> Fit:
+def asymmetric_power(
+    samples: Samples, location: float | None = None, *, velocity: Window | None = None
+) -> Fit:
     """Fit p(x) = k/((a+b) Γ(1/k)) exp(−|x−m|^k/w^k) with w = a above and w = b below the cusp m.
 
     It holds the asymmetric Laplace (``exponent`` k = 1), the generalised normal (a = b) and the Gaussian
     (a = b, k = 2), so k says how far the flanks are from exponential. For given m and k, with T± = Σ|x−m|^k
     on either side and s = (T⁺)^(1/(k+1)) + (T⁻)^(1/(k+1)), the likelihood is largest where a : b are as the
-    terms of s and a + b = s (ks/n)^(1/k); it is then n ln k − n ln Γ(1/k) − n ln(a+b) − n/k, and m and
-    0.5 ≤ k ≤ 20 are searched for.
+    terms of s and a + b = s (ks/n)^(1/k); it is then n ln k − n ln Γ(1/k) − n ln(a+b) − n/k, and m, unless it
+    is given, and 0.5 ≤ k ≤ 20 are searched for.
 
     Returns
     -------
@@ -80,31 +103,53 @@ def asymmetric_power(samples: ArrayLike) -> Fit:
     ValueError
         As `asymmetric_laplace`.
     """
-    x = finite_samples(samples)
-    start, spread = asymmetric_laplace(x).parameters["location"], float(np.std(x))
+    x = taken(samples, velocity, location)
+    if isinstance(x, Counts):
+        return _counted("asymmetric power", x, location, None)
+    start = asymmetric_laplace(x, location).parameters["location"]
+    spread = float(np.mean(np.abs(x - start)))
+    free = 4 if location is None else 3
+    y = (x - start) / spread
 
     def widths(m: float, k: float) -> tuple[float, float]:
-        power = np.abs(x - m) ** k
-        above = float(np.sum(power, where=x > m)) ** (1 / (k + 1))
-        below = float(np.sum(power, where=x < m)) ** (1 / (k + 1))
-        factor = (k * (above + below) / x.size) ** (1 / k)
+        power = np.abs(y - m) ** k
+        above = float(np.sum(power, where=y > m)) ** (1 / (k + 1))
+        below = float(np.sum(power, where=y < m)) ** (1 / (k + 1))
+        factor = (k * (above + below) / y.size) ** (1 / k)
         return above * factor, below * factor
 
     def cost(point: Array) -> float:
         k = exp(point[1])
-        return log(sum(widths(start + spread * point[0], k))) + float(special.gammaln(1 / k)) - log(k) + 1 / k
+        return log(sum(widths(point[0], k))) + float(special.gammaln(1 / k)) - log(k) + 1 / k
 
     # Below k = 1/2 the cusp is so sharp that the likelihood has a spike at every sample.
+    reach = 3.0 if location is None else 0.0
     found = optimize.minimize(
         cost,
         [0.0, 0.0],
         method="Nelder-Mead",
-        bounds=[(-3.0, 3.0), (log(0.5), log(20.0))],
-        options={"initial_simplex": [[0, 0], [0.2, 0], [0, 0.3]], "xatol": 1e-5, "fatol": 1e-10},
+        bounds=[(-reach, reach), (log(0.5), log(20.0))],
+        options={"initial_simplex": [[0, 0], [reach / 15, 0], [0, 0.3]], "xatol": 1e-5, "fatol": 1e-10},
     )
     m, k = start + spread * float(found.x[0]), exp(found.x[1])
-    a, b = widths(m, k)
-    return fitted("asymmetric power", x, _frozen(k, m, a, b), location=m, above=a, below=b, exponent=k)
+    a, b = (spread * width for width in widths(float(found.x[0]), k))
+    density = frozen(k, m, a, b)
+    return fitted("asymmetric power", x, density, free=free, location=m, above=a, below=b, exponent=k)
+
+
+def _counted(family: str, counts: Counts, location: float | None, exponent: float | None) -> Fit:
+    """Fit binned counts; what is not None is fixed."""
+
+    def make(point: Array, median: float, spread: float) -> tuple[Any, dict[str, float]]:
+        a, b = (float(width) for width in spread * np.exp(np.clip(point[:2], -20.0, 20.0)))
+        rest = list(point[2:])
+        m = median + spread * float(rest.pop(0)) if location is None else float(location)
+        k = float(np.clip(exp(min(rest.pop(0), 3.0)), 0.5, 20.0)) if exponent is None else exponent
+        named = {"location": m, "above": a, "below": b, **({"exponent": k} if exponent is None else {})}
+        return frozen(k, m, a, b), named
+
+    start = np.zeros(2 + (location is None) + (exponent is None))
+    return fit_counts(family, counts, make, start, fixed=0 if location is None else 1)
 
 
 class _AsymmetricPower(stats.rv_continuous):
@@ -139,7 +184,7 @@ class _AsymmetricPower(stats.rv_continuous):
 _POWER = _AsymmetricPower(name="asymmetric_power", shapes="k, kappa")
 
 
-def _frozen(k: float, m: float, a: float, b: float) -> Any:
+def frozen(k: float, m: float, a: float, b: float) -> Any:
     """Freeze the density; an empty side gets a width far too small to matter in floating point."""
     a, b = max(a, 1e-100 * b), max(b, 1e-100 * a)
     return _POWER(k, sqrt(b / a), loc=m, scale=sqrt(a) * sqrt(b))

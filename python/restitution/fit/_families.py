@@ -1,43 +1,81 @@
-"""The usual candidates for the density of ε, by maximum likelihood with SciPy's routines."""
+"""The usual candidates for the density of ε, by maximum likelihood; SciPy's routines for samples."""
+
+from math import exp
+from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike
 from scipy import stats
 
-from restitution.fit._result import Fit, finite_samples, fitted
+from restitution.fit._asymmetric import frozen
+from restitution.fit._counts import Counts, fit_counts
+from restitution.fit._result import Array, Fit, fitted
+from restitution.fit._source import Samples, Window, taken
 
 
-def gaussian(samples: ArrayLike) -> Fit:
-    """Fit the normal distribution: ``mean``, ``deviation``. Raises as `asymmetric_laplace` does."""
-    x = finite_samples(samples)
+def gaussian(samples: Samples, *, velocity: Window | None = None) -> Fit:
+    """Fit the normal distribution: ``mean``, ``deviation``. Samples and errors as `asymmetric_laplace`."""
+    x = taken(samples, velocity)
+    if isinstance(x, Counts):
+        return _located("Gaussian", x, stats.norm, ("mean", "deviation"))
     mean, deviation = stats.norm.fit(x)
     return fitted("Gaussian", x, stats.norm(mean, deviation), mean=mean, deviation=deviation)
 
 
-def laplace(samples: ArrayLike) -> Fit:
-    """Fit the symmetric Laplace density: ``location``, ``scale``. Raises as `asymmetric_laplace` does."""
-    x = finite_samples(samples)
+def laplace(samples: Samples, *, velocity: Window | None = None) -> Fit:
+    """Fit the symmetric Laplace density: ``location``, ``scale``; samples, errors: `asymmetric_laplace`."""
+    x = taken(samples, velocity)
+    if isinstance(x, Counts):
+        return _located("symmetric Laplace", x, _laplace, ("location", "scale"))
     location, scale = stats.laplace.fit(x)
-    return fitted("symmetric Laplace", x, stats.laplace(location, scale), location=location, scale=scale)
+    return fitted("symmetric Laplace", x, _laplace(location, scale), location=location, scale=scale)
 
 
-def logistic(samples: ArrayLike) -> Fit:
-    """Fit the logistic distribution: ``location``, ``scale``. Raises as `asymmetric_laplace` does."""
-    x = finite_samples(samples)
+def _laplace(location: float, scale: float) -> Any:
+    """Freeze the density; SciPy's own has a logarithm that is -inf where the density underflows."""
+    return frozen(1.0, location, scale, scale)
+
+
+def logistic(samples: Samples, *, velocity: Window | None = None) -> Fit:
+    """Fit the logistic distribution: ``location``, ``scale``. Samples and errors as `asymmetric_laplace`."""
+    x = taken(samples, velocity)
+    if isinstance(x, Counts):
+        return _located("logistic", x, stats.logistic, ("location", "scale"))
     location, scale = stats.logistic.fit(x)
     return fitted("logistic", x, stats.logistic(location, scale), location=location, scale=scale)
 
 
-def student_t(samples: ArrayLike) -> Fit:
-    """Fit Student's t: ``degrees``, ``location``, ``scale``. Raises as `asymmetric_laplace` does.
+def student_t(samples: Samples, *, velocity: Window | None = None) -> Fit:
+    """Fit Student's t: ``degrees``, ``location``, ``scale``. Samples and errors as `asymmetric_laplace`.
 
     SciPy's search would start at one degree of freedom, from where it can end early; here it starts at five,
     the median and the spread of the middle half.
     """
-    x = finite_samples(samples)
+    x = taken(samples, velocity)
+    if isinstance(x, Counts):
+        return _student(x)
     low, median, high = np.quantile(x, [0.25, 0.5, 0.75])
     width = (high - low) / 1.349 or float(np.std(x))  # a Gaussian's quartiles are 1.349 deviations apart
     degrees, location, scale = stats.t.fit(x, 5.0, loc=median, scale=width)
     return fitted(
         "Student t", x, stats.t(degrees, location, scale), degrees=degrees, location=location, scale=scale
     )
+
+
+def _located(family: str, counts: Counts, kind: Any, names: tuple[str, str]) -> Fit:
+    """Fit location and scale to binned counts."""
+
+    def make(point: Array, median: float, spread: float) -> tuple[Any, dict[str, float]]:
+        location, scale = median + spread * float(point[0]), spread * exp(np.clip(point[1], -20.0, 20.0))
+        return kind(location, scale), dict(zip(names, (location, scale), strict=True))
+
+    return fit_counts(family, counts, make, [0.0, 0.0])
+
+
+def _student(counts: Counts) -> Fit:
+    def make(point: Array, median: float, spread: float) -> tuple[Any, dict[str, float]]:
+        location, scale = median + spread * float(point[0]), spread * exp(np.clip(point[1], -20.0, 20.0))
+        degrees = exp(np.clip(point[2], -3.0, 15.0))
+        named = {"degrees": degrees, "location": location, "scale": scale}
+        return stats.t(degrees, location, scale), named
+
+    return fit_counts("Student t", counts, make, [0.0, 0.0, 1.6])

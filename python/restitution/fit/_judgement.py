@@ -3,16 +3,21 @@
 from collections.abc import Callable
 from dataclasses import dataclass
 from math import erfc, inf, sqrt
+from typing import Any
 
 import numpy as np
+import xarray as xr
 from numpy.typing import ArrayLike
 
+from restitution.fit._clusters import Clustered, Tallied, clustered, empirical, refitted
+from restitution.fit._counts import Counts
 from restitution.fit._result import Array, Fit, finite_samples
+from restitution.fit._source import Parts, Window
 
 
 @dataclass(frozen=True)
 class Goodness:
-    """Goodness of a fit, with p-values by parametric bootstrap.
+    """Goodness of a fit, with p-values by bootstrap.
 
     Attributes
     ----------
@@ -20,8 +25,8 @@ class Goodness:
     kolmogorov_smirnov, anderson_darling : float
         The statistics D = sup|F_n − F| and A².
     kolmogorov_smirnov_p, anderson_darling_p : float
-        Share of refitted draws from the fit (the samples themselves counted in) whose statistic is as large.
-        Never below 1/(resamples + 1).
+        Share of refitted draws (the samples themselves counted in) whose statistic is as large. Never below
+        1/(resamples + 1).
     resamples : int
     """
 
@@ -34,19 +39,35 @@ class Goodness:
 
 
 def goodness(
-    family: Callable[[Array], Fit], samples: ArrayLike, *, resamples: int = 199, seed: int = 1
+    family: Callable[[Any], Fit],
+    samples: Parts,
+    *,
+    clusters: ArrayLike | None = None,
+    velocity: Window | None = None,
+    resamples: int = 199,
+    seed: int = 1,
 ) -> Goodness:
-    """Fit `samples` and test the fit against draws from itself, each fitted again.
+    """Fit `samples` and test the fit.
 
-    Fitting again is what makes the p-values right: a fitted density lies closer to its samples than the true
-    one does.
+    Independent samples are compared with draws from the fit, each fitted again, which makes the p-values
+    right: a fitted density lies closer to its samples than the true one does.
+
+    With `clusters` the samples of a particle may be correlated in any way. Then particles are drawn again
+    with replacement and fitted again, and F*_n - F_θ* - (F_n - F_θ) is compared with F_n - F_θ (G. J. Babu
+    and C. R. Rao, Sankhyā 66, 63 (2004)); both statistics are taken at 1000 quantiles of the samples, or at
+    the edges of counts.
 
     Parameters
     ----------
     family : callable
         A fit of this package, such as `asymmetric_laplace`, or any function from samples to a `Fit`.
-    samples : array_like
-        Statistically INDEPENDENT values: of the impacts of one particle take one.
+    samples : array_like, xarray.Dataset or sequence of Counts or xarray.Dataset
+        Statistically INDEPENDENT values, unless there are `clusters`; impacts as from `restitution.simulate`,
+        whose particles are known; or the counts, or statistics, of independent runs.
+    clusters : array_like of int, shape (n,), optional
+        Number of the particle that each value is from.
+    velocity : float or tuple of two floats, optional
+        For a Dataset, as in `asymmetric_laplace`.
     resamples : int, default 199
         Draws for the bootstrap, ≥ 1; the p-value has the resolution 1/(resamples + 1).
     seed : int, default 1
@@ -54,24 +75,56 @@ def goodness(
     Raises
     ------
     ValueError
-        As the fit does, or if `resamples` < 1.
+        As the fit does, if `resamples` < 1, or labels do not match.
     """
     if resamples < 1:
         raise ValueError(f"resamples = {resamples!r}: at least one is needed")
-    x = finite_samples(samples)
     random = np.random.default_rng(seed)
+    if clusters is not None or not _is_plain(samples):
+        return _clustered_goodness(family, clustered(samples, clusters, velocity), resamples, random)
+    if velocity is not None:
+        raise ValueError(f"velocity = {velocity!r}: is for a Dataset; other samples have no impact velocity")
+    x = finite_samples(samples)  # type: ignore[arg-type]
     fit = family(x)
-    observed = _distances(fit, x)
+    observed = distances(fit, x)
     reached = np.ones(2)
     for _ in range(resamples):
         draw = fit.rvs(x.size, random)
-        reached += _distances(family(draw), draw) >= observed
+        reached += distances(family(draw), draw) >= observed
     ks_p, ad_p = reached / (resamples + 1)
     return Goodness(fit, float(observed[0]), float(ks_p), float(observed[1]), float(ad_p), resamples)
 
 
-def _distances(fit: Fit, samples: Array) -> Array:
-    """Kolmogorov–Smirnov D and Anderson–Darling A² between samples and fit."""
+def _is_plain(samples: Parts) -> bool:
+    """Whether these are values, and not counts or a Dataset, or several of them."""
+    first = samples[0] if isinstance(samples, list | tuple) and samples else samples
+    return not isinstance(first, Counts | xr.Dataset)
+
+
+def _clustered_goodness(
+    family: Callable[[Any], Fit], source: Clustered | Tallied, resamples: int, random: np.random.Generator
+) -> Goodness:
+    grid, pool = source.grid(), source.pool()
+    fit = family(pool)
+    fitted = fit.cdf(grid)
+    gap = empirical(pool, grid) - fitted
+    size = fit.samples
+    # A² = n ∫ (F_n - F)²/(F(1 - F)) dF over the grid.
+    weight = np.diff(fitted, prepend=0.0) / np.maximum(fitted * (1.0 - fitted), 1e-12)
+
+    def statistics(difference: Array) -> Array:
+        return np.array([np.max(np.abs(difference)), size * np.sum(difference**2 * weight)])
+
+    observed, reached = statistics(gap), np.ones(2)
+    for _ in range(resamples):
+        again, refit = refitted(family, source, random)
+        reached += statistics(empirical(again, grid) - refit.cdf(grid) - gap) >= observed
+    ks_p, ad_p = reached / (resamples + 1)
+    return Goodness(fit, float(observed[0]), float(ks_p), float(observed[1]), float(ad_p), resamples)
+
+
+def distances(fit: Fit, samples: Array) -> Array:
+    """Kolmogorov–Smirnov D and Anderson–Darling A² between samples and fit, shape (2,)."""
     x = np.sort(samples)
     n, rank = x.size, np.arange(1, x.size + 1)
     below, above = fit.cdf(x), np.asarray(fit.distribution.sf(x))
@@ -109,33 +162,38 @@ class Comparison:
         return erfc(abs(self.z) / sqrt(2))
 
 
-def compare(first: Fit, second: Fit, samples: ArrayLike, clusters: ArrayLike | None = None) -> Comparison:
+def compare(
+    first: Fit,
+    second: Fit,
+    samples: Parts,
+    clusters: ArrayLike | None = None,
+    *,
+    velocity: Window | None = None,
+) -> Comparison:
     """Compare two fits by their log-likelihood per sample.
 
     Parameters
     ----------
     first, second : Fit
         Fits of `samples`.
-    samples : array_like, shape (n,)
-    clusters : array_like of int ≥ 0, shape (n,), optional
-        Number of the particle that each sample is from. Samples of one particle may be correlated in any way,
-        those of two are taken as independent; without it, all are.
+    samples, clusters, velocity
+        As in `bootstrap`. Samples of one particle may be correlated in any way, those of two are taken as
+        independent; values without `clusters` all are.
 
     Raises
     ------
     ValueError
-        If the samples are empty or not finite, `clusters` has another length, or there are fewer than two of
-        them.
+        As `bootstrap`.
     """
-    x = finite_samples(samples)
-    labels = np.arange(x.size) if clusters is None else np.asarray(clusters).ravel()
-    if labels.shape != x.shape:
-        raise ValueError(f"clusters: {labels.size} values; one for each of the {x.size} samples is needed")
-    _, member = np.unique(labels, return_inverse=True)
-    groups = int(member.max()) + 1
-    if groups < 2:
-        raise ValueError("clusters: all samples are in one; a standard error needs at least two")
-    difference = first.logpdf(x) - second.logpdf(x)
-    mean = float(np.mean(difference))
-    sums = np.bincount(member, weights=difference - mean)
-    return Comparison(mean, float(np.sqrt(np.sum(sums**2) * groups / (groups - 1))) / x.size)
+    source = clustered(samples, clusters, velocity)
+    if isinstance(source, Clustered):
+        difference = first.logpdf(source.samples) - second.logpdf(source.samples)
+        mean = float(np.mean(difference))
+        sums, size = np.add.reduceat(difference - mean, source.start[:-1]), difference.size
+    else:
+        pool = source.pool()
+        gain = pool.logshare(first.distribution) - pool.logshare(second.distribution)
+        mean = float(pool.all @ gain) / pool.total
+        sums, size = np.array([one.all @ (gain - mean) for one in source.parts]), pool.total
+    groups = source.number
+    return Comparison(mean, float(np.sqrt(np.sum(sums**2) * groups / (groups - 1))) / size)

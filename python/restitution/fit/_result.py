@@ -11,6 +11,8 @@ from numpy.typing import ArrayLike, NDArray
 
 Array = NDArray[np.float64]
 
+_LARGEST = 1e100
+
 
 @dataclass(frozen=True)
 class Fit:
@@ -29,7 +31,8 @@ class Fit:
     loglikelihood : float
         Natural logarithm of the likelihood at its maximum.
     distribution : frozen scipy.stats distribution
-        The fitted distribution with all that SciPy offers on it.
+        The fitted distribution with all that SciPy offers on it; that of `cusp_mixture` has pdf, logpdf, cdf,
+        sf, ppf and rvs.
     """
 
     family: str
@@ -72,8 +75,8 @@ def finite_samples(samples: ArrayLike, location: float | None = None) -> Array:
     Raises
     ------
     ValueError
-        If `samples` is empty, holds NaN or inf, or does not spread at all (about `location`, where that is
-        given): the likelihood then has no maximum. If `location` is not finite.
+        If `samples` is empty, holds NaN, inf or magnitudes above 1e100, or does not spread at all (about
+        `location`, where that is given): the likelihood then has no maximum.
     """
     x = np.asarray(samples, dtype=np.float64).ravel()
     if x.size == 0:
@@ -81,8 +84,11 @@ def finite_samples(samples: ArrayLike, location: float | None = None) -> Array:
     bad = x.size - np.count_nonzero(np.isfinite(x))
     if bad:
         raise ValueError(f"samples: {bad} of {x.size} values are NaN or infinite; all must be finite")
-    if location is not None and not np.isfinite(location):
-        raise ValueError(f"location = {location!r}: a finite number is needed")
+    largest = float(np.abs(x).max())
+    if largest > _LARGEST:
+        raise ValueError(
+            f"samples: magnitudes up to {largest:g}; at most {_LARGEST:g} can be squared and summed"
+        )
     centre = float(x[0]) if location is None else location
     if np.all(x == centre):
         raise ValueError(f"samples: all {x.size} equal {centre!r}; the likelihood of a scale has no maximum")

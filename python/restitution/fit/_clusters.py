@@ -1,0 +1,161 @@
+"""Samples that belong to particles: what a bootstrap draws again are particles, never single impacts."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import xarray as xr
+from numpy.typing import ArrayLike, NDArray
+
+from restitution.fit._counts import Counts, pooled
+from restitution.fit._result import Array, Fit, finite_samples
+from restitution.fit._source import Parts, Window, counted, recorded
+
+_GRID = 1000
+
+
+@dataclass(frozen=True)
+class Clustered:
+    """Samples of each particle, ready to be drawn again.
+
+    Parameters
+    ----------
+    samples : ndarray, shape (n,)
+        Sorted by particle.
+    start : ndarray of int, shape (particles + 1,)
+        Where the samples of each particle start.
+    """
+
+    samples: Array
+    start: NDArray[np.int64]
+
+    @property
+    def number(self) -> int:
+        """Particles that have samples."""
+        return int(self.start.size - 1)
+
+    def pool(self) -> Array:
+        """All samples."""
+        return self.samples
+
+    def redrawn(self, random: np.random.Generator) -> Array:
+        """Draw as many particles with replacement and give their samples."""
+        chosen = random.integers(self.number, size=self.number)
+        sizes = self.start[chosen + 1] - self.start[chosen]
+        offset = np.repeat(self.start[chosen] - np.concatenate([[0], np.cumsum(sizes)[:-1]]), sizes)
+        return np.asarray(self.samples[offset + np.arange(offset.size)])
+
+    def grid(self) -> Array:
+        """Points at which distribution functions are compared."""
+        levels = (np.arange(_GRID) + 0.5) / _GRID
+        return np.unique(np.quantile(self.samples, levels, method="inverted_cdf"))
+
+
+@dataclass(frozen=True)
+class Tallied:
+    """Counts of independent runs or blocks of particles, each of which is drawn again as a whole.
+
+    Parameters
+    ----------
+    parts : sequence of Counts
+        With the same edges.
+    """
+
+    parts: Sequence[Counts]
+
+    @property
+    def number(self) -> int:
+        """Runs."""
+        return len(self.parts)
+
+    def pool(self) -> Counts:
+        """All counts together."""
+        return pooled(self.parts)
+
+    def redrawn(self, random: np.random.Generator) -> Counts:
+        """Draw as many runs with replacement and give their counts."""
+        return pooled([self.parts[i] for i in random.integers(self.number, size=self.number)])
+
+    def grid(self) -> Array:
+        """Points at which distribution functions are compared."""
+        return self.parts[0].edges
+
+
+def clustered(samples: Parts, clusters: ArrayLike | None, velocity: Window | None) -> Clustered | Tallied:
+    """Sort samples by particle, or take counts of several runs.
+
+    Parameters
+    ----------
+    samples : array_like, xarray.Dataset or sequence of Counts or xarray.Dataset
+        Values; impacts as from `restitution.simulate`, whose particles are known; or the counts, or
+        statistics, of independent runs, which take the place of particles.
+    clusters : array_like of int, shape (n,), optional
+        Number of the particle that each value is from; without it every value is a particle of its own.
+    velocity : float or tuple of two floats, optional
+        For a Dataset, as in `asymmetric_laplace`.
+
+    Raises
+    ------
+    ValueError
+        If labels do not match the samples, or there are fewer than two particles or runs.
+    """
+    several = isinstance(samples, list | tuple) and len(samples) > 0
+    if several and isinstance(samples[0], Counts | xr.Dataset):  # type: ignore[index]
+        parts = [one if isinstance(one, Counts) else counted(one, velocity) for one in samples]  # type: ignore
+        if clusters is not None:
+            raise ValueError("clusters: counts are drawn again run by run, and take none")
+        _several(len(parts), "counts")
+        pooled(parts)
+        return Tallied(parts)
+    if isinstance(samples, Counts) or (isinstance(samples, xr.Dataset) and "count" in samples):
+        raise ValueError(
+            "samples: one set of counts, in which particles are not told apart; give those of several "
+            "independent runs in a list"
+        )
+    if isinstance(samples, xr.Dataset):
+        if clusters is not None:
+            raise ValueError("clusters: a Dataset knows its particles, leave them out")
+        values, labels = recorded(samples, velocity)
+    elif velocity is not None:
+        raise ValueError(f"velocity = {velocity!r}: is for a Dataset; other samples have no impact velocity")
+    else:
+        values = np.asarray(samples, dtype=np.float64).ravel()
+        labels = np.arange(values.size) if clusters is None else np.asarray(clusters).ravel()
+    x = finite_samples(values)
+    if labels.shape != x.shape:
+        raise ValueError(f"clusters: {labels.size} values; one for each of the {x.size} samples is needed")
+    order = np.argsort(labels, kind="stable")
+    _, start = np.unique(labels[order], return_index=True)
+    _several(start.size, "clusters")
+    return Clustered(x[order], np.append(start, x.size))
+
+
+def refitted(
+    family: Callable[[Any], Fit], source: Clustered | Tallied, random: np.random.Generator
+) -> tuple[Array | Counts, Fit]:
+    """Draw particles again and fit what they have.
+
+    Raises
+    ------
+    ValueError
+        If that cannot be fitted, as when few particles with equal samples are drawn.
+    """
+    again = source.redrawn(random)
+    try:
+        return again, family(again)
+    except ValueError as error:
+        text = f"clusters: {source.number} are too few, some drawn again cannot be fitted ({error})"
+        raise ValueError(text) from error
+
+
+def empirical(samples: Array | Counts, grid: Array) -> Array:
+    """Share of the samples up to each point of the grid."""
+    if isinstance(samples, Counts):
+        return samples.cumulative()
+    return np.asarray(np.searchsorted(np.sort(samples), grid, side="right") / samples.size)
+
+
+def _several(number: int, name: str) -> None:
+    if number < 2:
+        raise ValueError(f"{name}: all samples are in one; a standard error needs at least two")

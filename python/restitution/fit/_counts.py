@@ -1,0 +1,181 @@
+"""Binned counts in the place of samples, and the fit that maximises their likelihood."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from types import MappingProxyType
+from typing import Any, TypeAlias
+
+import numpy as np
+import xarray as xr
+from numpy.typing import ArrayLike
+from scipy import optimize
+
+from restitution.fit._result import Array, Fit
+
+Maker: TypeAlias = Callable[[Array, float, float], tuple[Any, dict[str, float]]]
+"""From an unbounded point, the median and the spread to a distribution and its parameters."""
+
+_IMPOSSIBLE = 1e-300
+"""Probability of a bin where the distribution says 0: the likelihood must stay a number to be maximised."""
+
+
+@dataclass(frozen=True)
+class Counts:
+    """How many samples are in each bin; taken by every fit in the place of the samples.
+
+    Parameters
+    ----------
+    edges : ndarray, shape (bins + 1,)
+        Strictly increasing, finite; the bins may have any width.
+    count : ndarray, shape (bins,)
+        Samples in each bin, >= 0.
+    below, above : int, default 0
+        Samples below the first and above the last edge.
+
+    Raises
+    ------
+    ValueError
+        If shapes, edges or counts are not as they must be, or fewer than two bins are filled.
+    """
+
+    edges: Array
+    count: Array
+    below: int = 0
+    above: int = 0
+
+    def __post_init__(self) -> None:
+        edges, count = np.asarray(self.edges, dtype=np.float64), np.asarray(self.count, dtype=np.float64)
+        if edges.ndim != 1 or count.shape != (edges.size - 1,):
+            raise ValueError(f"count: shape {count.shape}; {edges.shape} edges need one count between two")
+        if not (np.all(np.isfinite(edges)) and np.all(np.diff(edges) > 0)):
+            raise ValueError("edges: must be finite and strictly increasing")
+        numbers = np.concatenate([[self.below], count, [self.above]])
+        if not np.all(numbers >= 0) or not np.all(np.isfinite(numbers)):
+            raise ValueError(f"count: holds {numbers[~(numbers >= 0)][:1]}; counts are finite and >= 0")
+        if np.count_nonzero(numbers) < 2:
+            raise ValueError(
+                f"count: {np.count_nonzero(numbers)} bin(s) filled; the likelihood of a scale has no maximum"
+            )
+        object.__setattr__(self, "edges", edges)
+        object.__setattr__(self, "count", count)
+
+    @classmethod
+    def at(cls, statistics: xr.Dataset, velocity: float) -> "Counts":
+        """Take the counts of the velocity bin that holds `velocity`, in m/s, from `restitution.statistics`.
+
+        Raises
+        ------
+        ValueError
+            If no velocity bin holds it.
+        """
+        edges = statistics["velocity_edges"].to_numpy()
+        row = int(np.searchsorted(edges, velocity, side="right")) - 1
+        if not 0 <= row < edges.size - 1:
+            raise ValueError(f"velocity = {velocity!r}: must be in [{edges[0]}, {edges[-1]}) m/s, the bins")
+        one = statistics.isel(velocity=row)
+        return cls(
+            edges=one["restitution_edges"].to_numpy(),
+            count=one["count"].to_numpy(),
+            below=int(one["restitution_underflow"]),
+            above=int(one["restitution_overflow"]),
+        )
+
+    @property
+    def total(self) -> int:
+        """Number of samples."""
+        return int(self.count.sum() + self.below + self.above)
+
+    @property
+    def all(self) -> Array:
+        """Counts with those below first and those above last, shape (bins + 2,)."""
+        return np.concatenate([[self.below], self.count, [self.above]])
+
+    def cumulative(self) -> Array:
+        """Share of the samples below each edge, shape (bins + 1,)."""
+        return np.asarray(np.cumsum(self.all)[:-1] / self.total)
+
+    def logshare(self, distribution: Any) -> Array:
+        """Logarithm of the probability of each bin, the open ones first and last, shape (bins + 2,)."""
+        below, above = distribution.cdf(self.edges), distribution.sf(self.edges)
+        # Differences of the smaller of both, where nothing cancels.
+        inner = np.where(below[1:] < 0.5, np.diff(below), -np.diff(above))
+        share = np.concatenate([[below[0]], inner, [above[-1]]])
+        return np.asarray(np.log(np.maximum(share, _IMPOSSIBLE)))
+
+    def loglikelihood(self, distribution: Any) -> float:
+        """Logarithm of the probability of the counts, less what does not depend on the distribution."""
+        return float(self.all @ self.logshare(distribution))
+
+    def quantile(self, q: Array | list[float]) -> Array:
+        """Quantiles, linear inside the bins, at the outermost edges for the open ones; shape of `q`."""
+        return np.asarray(np.interp(q, self.cumulative(), self.edges))
+
+
+def pooled(parts: Sequence[Counts]) -> Counts:
+    """Add counts that have the same edges."""
+    first = parts[0]
+    if any(not np.array_equal(part.edges, first.edges) for part in parts):
+        raise ValueError("counts: must all have the same edges")
+    return Counts(
+        first.edges,
+        np.sum([part.count for part in parts], axis=0),
+        sum(part.below for part in parts),
+        sum(part.above for part in parts),
+    )
+
+
+def fit_counts(family: str, counts: Counts, make: Maker, start: ArrayLike, *, fixed: int = 0) -> Fit:
+    """Maximise the likelihood of binned counts, Σ c_j ln(F(e_(j+1)) - F(e_j)), both open bins included.
+
+    Parameters
+    ----------
+    family : str
+        Name in words.
+    counts : Counts
+    make : Maker
+        Makes the distribution of an unbounded point.
+    start : array_like
+        Where the search starts.
+    fixed : int
+        Parameters that were not fitted.
+
+    Raises
+    ------
+    ValueError
+        If no more bins are filled than there are parameters to fit: many densities then share a maximum.
+    """
+    point = np.asarray(start, dtype=np.float64)
+    filled = np.count_nonzero(counts.all)
+    if filled <= point.size:
+        raise ValueError(
+            f"count: {filled} bins are filled; {point.size} parameters need at least {point.size + 1}, "
+            "give narrower bins"
+        )
+    low, median, high = (float(x) for x in counts.quantile([0.16, 0.5, 0.84]))
+    spread = max((high - low) / 2.0, float(np.diff(counts.edges).min()))
+
+    def cost(point: Array) -> float:
+        return -counts.loglikelihood(make(point, median, spread)[0]) / counts.total
+
+    # A simplex comes near the maximum from afar, a quasi-Newton method finds it to the last digits.
+    near = optimize.minimize(
+        cost,
+        point,
+        method="Nelder-Mead",
+        options={
+            "initial_simplex": np.vstack([point, point + 0.5 * np.eye(point.size)]),
+            "xatol": 1e-3,
+            "fatol": 1e-8,
+            "maxiter": 4000,
+        },
+    ).x
+    point = optimize.minimize(cost, near, method="BFGS", options={"gtol": 1e-8}).x
+    distribution, parameters = make(point, median, spread)
+    return Fit(
+        family=family,
+        parameters=MappingProxyType({name: float(value) for name, value in parameters.items()}),
+        free_parameters=len(parameters) - fixed,
+        samples=counts.total,
+        loglikelihood=counts.loglikelihood(distribution),
+        distribution=distribution,
+    )

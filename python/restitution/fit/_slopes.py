@@ -1,0 +1,254 @@
+"""The flanks of p(ε | v) as functions of v: their slopes, how they grow, and where the form ends."""
+
+from dataclasses import dataclass
+
+import numpy as np
+import xarray as xr
+from numpy.typing import ArrayLike, NDArray
+
+from restitution._bins import LARGEST, centres, increasing_edges
+from restitution.fit._asymmetric import asymmetric_laplace
+from restitution.fit._counts import Counts
+from restitution.fit._judgement import distances
+from restitution.fit._result import Array, Fit
+from restitution.fit._source import columns
+
+_SIDES = ("above", "below")
+_NAMES = ("location", *_SIDES)
+_LEAST = 30
+"""A velocity bin with fewer samples is not fitted."""
+_FEWEST = 10
+"""Nor is one with fewer particles, whose redrawn samples say nothing about the error."""
+
+
+@dataclass(frozen=True)
+class PowerLaw:
+    """y = amplitude · x^exponent, fitted to ln y by weighted least squares.
+
+    Attributes
+    ----------
+    exponent, amplitude : float
+        The amplitude is y at x = 1.
+    exponent_error, amplitude_error : float
+        Standard errors over redrawn particles; nan for counts.
+    scatter : float
+        Root mean square distance of ln y from the line: the relative error that the law makes.
+    misfit : float
+        The same in standard errors of ln y, nan for counts: about 1 where a power law holds, larger where
+        the double logarithmic plot is bent.
+    """
+
+    exponent: float
+    exponent_error: float
+    amplitude: float
+    amplitude_error: float
+    scatter: float
+    misfit: float
+
+
+@dataclass(frozen=True)
+class Slopes:
+    """Asymmetric Laplace fits in bins of the impact velocity.
+
+    Attributes
+    ----------
+    table : xarray.Dataset
+        Over ``velocity``: ``location`` of the cusp, decay lengths ``above`` and ``below``, each with its
+        standard error over redrawn particles (``above_error``, …); ``ks_distance`` of the fit; ``samples``,
+        ``particles``. NaN where a bin has fewer than 30 samples or 10 particles, or
+        no more filled bins of counts than parameters.
+    resampled : xarray.Dataset
+        ``above`` and ``below`` over (``resample``, ``velocity``).
+    """
+
+    table: xr.Dataset
+    resampled: xr.Dataset
+
+    def power_law(
+        self, side: str, low: float = 0.0, high: float = np.inf, *, release_speed: float | None = None
+    ) -> PowerLaw:
+        """Fit the growth of a flank, "above" or "below", over the velocity bins with centres in [low, high].
+
+        Parameters
+        ----------
+        side : str
+        low, high : float
+            In m/s.
+        release_speed : float, optional
+            Speed v₀ of the first impact, in m/s. The law is then one in x = √(v₀²/v² − 1) and not in x = v.
+            Impacts that are independent kick the spin ω at random by δω ∝ v, so that ⟨ω²⟩ grows by ∝ v² an
+            impact while v falls by (1 − ε_n)v: ⟨ω²⟩ ∝ v₀² − v². The flanks, ∝ ω/v, then have exponent 1 in x.
+
+        Raises
+        ------
+        ValueError
+            If there is no such side, fewer than three bins have a fit there, or ``release_speed`` is not
+            above them.
+        """
+        if side not in _SIDES:
+            raise ValueError(f"side = {side!r}: must be 'above' or 'below'")
+        v, y = self.table["velocity"].to_numpy(), self.table[side].to_numpy()
+        chosen = (v >= low) & (v <= high) & (y > 0)
+        if np.count_nonzero(chosen) < 3:
+            raise ValueError(f"low = {low!r}, high = {high!r}: fewer than three bins have a fit there")
+        v, y = v[chosen], y[chosen]
+        if release_speed is not None and not release_speed > v.max():
+            raise ValueError(
+                f"release_speed = {release_speed!r}: must be above {v.max():g} m/s, the fastest bin"
+            )
+        x = np.log(v) if release_speed is None else 0.5 * np.log((release_speed / v) ** 2 - 1.0)
+        error = self.table[f"{side}_error"].to_numpy()[chosen] / y
+        known = bool(np.all(np.isfinite(error) & (error > 0)))
+        weight = 1.0 / error if known else np.ones_like(error)
+
+        def line(values: Array) -> Array:
+            return np.polyfit(x, np.log(values), 1, w=weight)
+
+        exponent, intercept = line(y)
+        residual = np.log(y) - exponent * x - intercept
+        again = self.resampled[side].to_numpy()[:, chosen]
+        drawn = np.array([line(one) for one in again if np.all(one > 0)])
+        spread = np.std(drawn, axis=0, ddof=1) if len(drawn) > 1 else np.full(2, np.nan)
+        amplitude = float(np.exp(intercept))
+        return PowerLaw(
+            exponent=float(exponent),
+            exponent_error=float(spread[0]),
+            amplitude=amplitude,
+            amplitude_error=amplitude * float(spread[1]),
+            scatter=float(np.sqrt(np.sum(residual**2) / (x.size - 2))),
+            misfit=float(np.sqrt(np.sum((residual * weight) ** 2) / (x.size - 2))) if known else np.nan,
+        )
+
+    def fails_below(self, distance: float = 0.03, high: float = np.inf) -> float:
+        """Give the speed above which no fit has a Kolmogorov–Smirnov distance larger than `distance`.
+
+        It is the lower edge of a velocity bin, the last one for which this holds; nan if even the fastest bin
+        is farther away. Any form fails a test of significance if the samples are many enough; a distance is
+        how much it fails by. Of sets of a thousand independent samples of the form itself one in twenty lies
+        farther than 0.03 from its own fit.
+
+        Parameters
+        ----------
+        distance : float
+        high : float
+            Velocity bins with centres above are left out, in m/s: those of the first impacts, for instance,
+            whose density is not that of an ensemble but follows from the release.
+        """
+        used = self.table["velocity"].to_numpy() <= high
+        far = ~(self.table["ks_distance"].to_numpy()[used] <= distance)
+        edges = self.table["velocity_edges"].to_numpy()
+        first = int(np.flatnonzero(far)[-1]) + 1 if far.any() else 0
+        return float(edges[first]) if first < far.size else np.nan
+
+
+def slopes(
+    data: xr.Dataset,
+    velocity_bins: ArrayLike | None = None,
+    *,
+    location: float | None = None,
+    resamples: int = 99,
+    seed: int = 1,
+) -> Slopes:
+    """Fit the asymmetric Laplace density to ε in each bin of impact velocity, the paper's Fig. 4 for every v.
+
+    Parameters
+    ----------
+    data : xarray.Dataset
+        Impacts as from `restitution.simulate`; or counts as from `restitution.statistics`, whose velocity
+        bins are then used, and which have no particles to draw again: standard errors are nan.
+    velocity_bins : array_like, shape (bins + 1,)
+        Edges in m/s, strictly increasing; not for counts. Bins of a constant ratio, `numpy.geomspace`, hold
+        about as many impacts each, for the speed falls by a share at every impact.
+    location : float, optional
+        The cusp, e.g. the law's ε^n; fitted in each bin unless given.
+    resamples : int, default 99
+        At least 2.
+    seed : int
+        Of the bootstrap. The same particles are drawn again in all bins, so that errors are correlated as the
+        slopes are.
+
+    Raises
+    ------
+    ValueError
+        If `velocity_bins` are missing, or given with counts, or ``resamples < 2``.
+    """
+    if resamples < 2:
+        raise ValueError(f"resamples = {resamples!r}: at least two are needed")
+    if "count" in data:
+        if velocity_bins is not None:
+            raise ValueError("velocity_bins: counts have their own; leave it out")
+        return _from_counts(data, location)
+    if velocity_bins is None:
+        raise ValueError("velocity_bins: missing; recorded impacts need edges in m/s")
+    edges = increasing_edges(velocity_bins, "velocity_bins")
+    velocity, restitution = columns(data, "impact_velocity", "restitution")
+    particles = velocity.shape[0]
+    random = np.random.default_rng(seed)
+    times = random.multinomial(particles, np.full(particles, 1.0 / particles), size=resamples)
+    rows = edges.size - 1
+    fits: list[Fit | None] = [None] * rows
+    near, members = np.full(rows, np.nan), np.zeros(rows)
+    drawn = np.full((rows, resamples, len(_NAMES)), np.nan)
+    for i in range(rows):
+        inside = (velocity >= edges[i]) & (velocity < edges[i + 1]) & (np.abs(restitution) < LARGEST)
+        particle, x = np.nonzero(inside)[0], restitution[inside]
+        members[i] = np.unique(particle).size
+        order = np.argsort(x)
+        particle, x = particle[order], x[order]
+        if x.size < _LEAST or members[i] < _FEWEST or x[0] == x[-1]:
+            continue
+        one = asymmetric_laplace(x, location)
+        fits[i], near[i] = one, distances(one, x)[0]
+        drawn[i] = [_again(x, row[particle], location) for row in times]
+    # A draw without any of the bin's particles leaves nan.
+    errors = np.array([_deviation(one) for one in drawn])
+    return _assembled(edges, fits, near, errors, drawn, members)
+
+
+def _again(x: Array, times: NDArray[np.int64], location: float | None) -> list[float]:
+    again = np.repeat(x, times)
+    if again.size == 0 or again[0] == again[-1]:
+        return [np.nan] * len(_NAMES)
+    parameters = asymmetric_laplace(again, location).parameters
+    return [parameters[name] for name in _NAMES]
+
+
+def _deviation(drawn: Array) -> Array:
+    """Take the standard deviation of what was drawn and is not nan, shape (names,)."""
+    known = drawn[np.isfinite(drawn[:, 0])]
+    return known.std(axis=0, ddof=1) if len(known) > 1 else np.full(drawn.shape[1], np.nan)
+
+
+def _from_counts(statistics: xr.Dataset, location: float | None) -> Slopes:
+    if "velocity_edges" not in statistics:
+        raise ValueError("data: statistics without velocity bins; give velocity_bins to `statistics`")
+    edges = statistics["velocity_edges"].to_numpy()
+    rows = edges.size - 1
+    fits: list[Fit | None] = [None] * rows
+    near = np.full(rows, np.nan)
+    free = len(_NAMES) - (location is not None)
+    outside = ("restitution_underflow", "restitution_overflow")
+    filled = sum(statistics[name].to_numpy() > 0 for name in outside)
+    filled += np.count_nonzero(statistics["count"].transpose("velocity", "restitution"), axis=1)
+    for i in np.flatnonzero((statistics["number"].to_numpy() >= _LEAST) & (filled > free)):
+        counts = Counts.at(statistics, float(edges[i]))
+        one = asymmetric_laplace(counts, location)
+        fits[i], near[i] = one, float(np.max(np.abs(counts.cumulative() - one.cdf(counts.edges))))
+    unknown = np.full((rows, len(_NAMES)), np.nan)
+    return _assembled(edges, fits, near, unknown, np.empty((rows, 0, len(_NAMES))), np.full(rows, np.nan))
+
+
+def _assembled(
+    edges: Array, fits: list[Fit | None], near: Array, errors: Array, drawn: Array, particles: Array
+) -> Slopes:
+    columns = {name: [np.nan if one is None else one.parameters[name] for one in fits] for name in _NAMES}
+    columns |= {f"{name}_error": errors[:, i].tolist() for i, name in enumerate(_NAMES)}
+    columns |= {"ks_distance": near.tolist(), "samples": [0 if one is None else one.samples for one in fits]}
+    speed = {"velocity": ("velocity", centres(edges), {"units": "m s-1", "long_name": "impact velocity"})}
+    table = xr.Dataset({name: ("velocity", values) for name, values in columns.items()}, coords=speed)
+    table["particles"] = ("velocity", particles)
+    table["velocity_edges"] = ("velocity_edge", edges, {"units": "m s-1"})
+    resampled = xr.Dataset(
+        {name: (("velocity", "resample"), drawn[:, :, i]) for i, name in enumerate(_NAMES)}, coords=speed
+    )
+    return Slopes(table, resampled.transpose("resample", "velocity"))

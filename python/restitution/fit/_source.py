@@ -1,0 +1,102 @@
+"""What may be fitted: an array, binned counts, recorded impacts or statistics at an impact velocity."""
+
+from collections.abc import Sequence
+from typing import TypeAlias
+
+import numpy as np
+import xarray as xr
+from numpy.typing import ArrayLike, NDArray
+
+from restitution._bins import LARGEST
+from restitution.fit._counts import Counts
+from restitution.fit._result import Array, finite_samples
+
+Window: TypeAlias = float | tuple[float, float]
+Samples: TypeAlias = ArrayLike | Counts | xr.Dataset
+Parts: TypeAlias = Samples | Sequence[Counts] | Sequence[xr.Dataset]
+
+
+def taken(samples: Samples, velocity: Window | None, location: float | None = None) -> Array | Counts:
+    """Give what a family fits: a flat array or counts.
+
+    Parameters
+    ----------
+    samples : array_like, Counts or xarray.Dataset
+        Values of any shape; binned counts; impacts as from `restitution.simulate`; or statistics as from
+        `restitution.statistics`.
+    velocity : float or tuple of two floats, in m/s
+        For a Dataset, and for that alone. Impacts: the window (low, high), low ≤ v < high. Statistics: the
+        velocity bin that holds the number, or a window whose ends are edges of velocity bins.
+    location : float, optional
+        Of a cusp that is given; must be finite.
+
+    Raises
+    ------
+    ValueError
+        If `velocity` is missing, superfluous or outside the data, no impact is there, or the samples or the
+        location are not as they must be.
+    """
+    if location is not None and not np.isfinite(location):
+        raise ValueError(f"location = {location!r}: a finite number is needed")
+    if isinstance(samples, xr.Dataset):
+        if "count" in samples:
+            return counted(samples, velocity)
+        return finite_samples(recorded(samples, velocity)[0], location)
+    if velocity is not None:
+        raise ValueError(f"velocity = {velocity!r}: is for a Dataset; other samples have no impact velocity")
+    return samples if isinstance(samples, Counts) else finite_samples(samples, location)
+
+
+def counted(statistics: xr.Dataset, velocity: Window | None) -> Counts:
+    """Take the counts of a velocity bin, or of several together."""
+    if velocity is None:
+        raise ValueError("velocity: missing; statistics need a number or a window (low, high) in m/s")
+    if "velocity_edges" not in statistics:
+        raise ValueError("samples: statistics without velocity bins; give velocity_bins to `statistics`")
+    if not isinstance(velocity, tuple | list | np.ndarray):
+        return Counts.at(statistics, float(velocity))
+    low, high = window(velocity)
+    edges = statistics["velocity_edges"].to_numpy()
+    first, last = (int(np.argmin(np.abs(edges - v))) for v in (low, high))
+    allowed = 1e-6 * float(np.diff(edges).min())
+    if first >= last or abs(edges[first] - low) > allowed or abs(edges[last] - high) > allowed:
+        near = ", ".join(f"{v:g}" for v in edges[max(first - 1, 0) : last + 2][:6])
+        raise ValueError(f"velocity = {velocity!r}: must be edges of velocity bins, here {near}, …, in m/s")
+    rows = statistics.isel(velocity=slice(first, last)).sum("velocity")
+    return Counts(
+        edges=statistics["restitution_edges"].to_numpy(),
+        count=rows["count"].to_numpy(),
+        below=int(rows["restitution_underflow"]),
+        above=int(rows["restitution_overflow"]),
+    )
+
+
+def recorded(data: xr.Dataset, velocity: Window | None) -> tuple[Array, NDArray[np.int64]]:
+    """Take restitutions in a velocity window, with the number of the particle of each.
+
+    Those that are not finite or at least 2³³ in magnitude are left out, as in `restitution.reduce`.
+    """
+    speed, restitution = columns(data, "impact_velocity", "restitution")
+    if velocity is None or not isinstance(velocity, tuple | list | np.ndarray):
+        raise ValueError(f"velocity = {velocity!r}: recorded impacts need a window (low, high) in m/s")
+    low, high = window(velocity)
+    particle, impact = np.nonzero((speed >= low) & (speed < high) & (np.abs(restitution) < LARGEST))
+    if particle.size == 0:
+        raise ValueError(f"velocity = {velocity!r}: no impact has an impact velocity there")
+    return restitution[particle, impact], particle
+
+
+def columns(data: xr.Dataset, *names: str) -> tuple[Array, ...]:
+    """Take variables of recorded impacts, each of shape (particles, impacts)."""
+    missing = [name for name in names if name not in data]
+    if missing:
+        raise ValueError(f"data: lacks {', '.join(missing)}; give a Dataset as from restitution.simulate")
+    return tuple(data[name].transpose("particle", "impact").to_numpy() for name in names)
+
+
+def window(velocity: Window) -> tuple[float, float]:
+    """Check a window of impact velocity."""
+    ends = np.asarray(velocity, dtype=np.float64)
+    if ends.shape != (2,) or not ends[0] < ends[1]:
+        raise ValueError(f"velocity = {velocity!r}: must be a window (low, high) with low < high, in m/s")
+    return float(ends[0]), float(ends[1])
