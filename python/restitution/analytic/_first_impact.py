@@ -6,12 +6,12 @@ from restitution.analytic._frozen import FirstImpact
 from restitution.analytic._normal import Fall
 from restitution.analytic._orientation import ORIENTATIONS, OrientationName
 from restitution.analytic._pair import PairFirstImpact
+from restitution.analytic._threshold import BODIES
 from restitution.bodies import Body, Dumbbell, LoadedSphere, Spherocylinder, Spheroid
 from restitution.laws import LAWS, Frictionless, Law, TangentialRestitution
 
 SHORTEST, LONGEST = 1e-100, 1e100  # L/R whose powers, up to the third, are normal numbers
 NARROWEST = 1e-9  # support of ε that leaves the density seven digits
-BODIES = "a Dumbbell, LoadedSphere, Spherocylinder or Spheroid"
 
 
 def first_impact(
@@ -65,7 +65,7 @@ def first_impact(
     >>> egg = rs.Spheroid(equatorial=2e-2, polar=3e-2)
     >>> steel = rs.Coulomb(normal=rs.Plastic(yield_speed=0.02), friction=0.2)
     >>> round(first_impact(egg, steel, release_height=0.1, gravity=9.81).mean(), 3)
-    0.291
+    0.322
     """
     if not isinstance(body, Body):
         raise ParameterError(wrong("body", body, BODIES))
