@@ -25,6 +25,8 @@ from restitution.analytic._orientation import Floats
 from restitution.analytic._panels import nodes, roots, solve
 from restitution.analytic._tilt import Tilt
 
+_NEARLY_VERTICAL = 1e-8  # rad, whose square is rounding
+
 
 @dataclass(frozen=True)
 class BranchedFirstImpact(FirstImpact):
@@ -144,7 +146,7 @@ class BranchedFirstImpact(FirstImpact):
             for start, stop in pairwise(np.unique(self._curve.angle(branch, levels))):
                 theta = start + (stop - start) * step
                 share = (stop - start) * rate * self._tilt.density(theta)
-                own = self._tilt.density(theta) / np.abs(branch.piece.slope(theta))
+                own = self._branch_density(branch, theta)
                 others = self._density(branch.piece.restitution(theta), without=branch)
                 # At an extreme, to rounding, both sides of it have the same density.
                 total -= float(share @ np.log(own + np.where(np.isfinite(others), others, own)))
@@ -171,10 +173,15 @@ class BranchedFirstImpact(FirstImpact):
             if branch is without:
                 continue
             there = _inside(branch, x, top=self._is_top(branch))
-            theta = self._curve.angle(branch, x[there])
-            with np.errstate(divide="ignore", over="ignore"):
-                total[there] += self._tilt.density(theta) / np.abs(branch.piece.slope(theta))
+            total[there] += self._branch_density(branch, self._curve.angle(branch, x[there]))
         return total
+
+    def _branch_density(self, branch: Branch, theta: Floats) -> Floats:
+        """p(θ)/|dε/dθ|."""
+        if self.orientation == "isotropic":  # 0/0 where the axis is vertical; the limit is as good as reached
+            theta = np.clip(theta, _NEARLY_VERTICAL, np.pi - _NEARLY_VERTICAL)
+        with np.errstate(divide="ignore", over="ignore"):
+            return self._tilt.density(theta) / np.abs(branch.piece.slope(theta))
 
     def _probability(self, x: Floats, *, above: bool) -> Floats:
         total = np.zeros(x.shape)
