@@ -30,7 +30,7 @@ CUTS = {
     ),
 }
 ALL: list[FirstImpact] = [
-    first_impact(body, law, orientation, **fall)  # type: ignore[arg-type]
+    first_impact(body, law, orientation, **fall)
     for body, law, fall in CUTS.values()
     for orientation in ("uniform-angle", "isotropic")
 ]
