@@ -5,7 +5,7 @@ reaches its limit, where a material has a kink. On each piece it is analytic; at
 cut again into branches, on which it rises or falls.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import pairwise
 from typing import NamedTuple
@@ -40,7 +40,23 @@ class Branch(NamedTuple):
 
 @dataclass(frozen=True)
 class Piece:
-    """Part of the curve with one formula."""
+    """Part of the curve with one formula.
+
+    Parameters
+    ----------
+    low, high : float
+        Where it is, in rad.
+    hull, impulse
+        What touches, and what the law does; lengths in units of ``unit``.
+    unit : float
+        In m.
+    fall : Fall
+        From where.
+    among : float
+        A speed of the piece in m/s; tells which formula of a material holds.
+    mode : Mode
+        What the contact does.
+    """
 
     low: float
     high: float
@@ -48,7 +64,7 @@ class Piece:
     impulse: Impulse
     unit: float
     fall: Fall
-    among: float = 0.0
+    among: float
     mode: Mode = "stuck"
 
     def state(self, theta: Number) -> tuple[Number, Number, Number]:
@@ -103,12 +119,11 @@ class Curve:
             bends = [float(np.arccos(c)) for c in cosines if -1.0 < c < 1.0]
             for low, high in _between(side.low, side.high, bends):
                 height, _ = side.hull.contact(*turned(0.5 * (low + high)))
-                among = float(max(self.fall.squared_speed(outline.unit * height), 0.0) ** 0.5)
+                among = float(self.fall.squared_speed(outline.unit * height) ** 0.5)
                 plain = Piece(low, high, side.hull, impulse, outline.unit, self.fall, among)
                 for start, stop in _between(low, high, _limits(plain)):
-                    beyond = plain.margin(0.5 * (start + stop)) > 0.0
-                    mode = impulse.modes()[int(beyond)]
-                    found.append(Piece(start, stop, side.hull, impulse, outline.unit, self.fall, among, mode))
+                    beyond = bool(plain.margin(0.5 * (start + stop)) > 0.0)
+                    found.append(replace(plain, low=start, high=stop, mode=impulse.modes()[beyond]))
         return tuple(found)
 
     @cached_property
@@ -121,9 +136,8 @@ class Curve:
         """Where ε rises or falls, ascending in θ."""
         found = []
         for piece in self.pieces:
-            for low, high in _between(
-                piece.low, piece.high, extremes(piece.restitution, piece.low, piece.high)
-            ):
+            turns = extremes(piece.restitution, piece.low, piece.high)
+            for low, high in _between(piece.low, piece.high, turns):
                 ends = piece.restitution(np.array([low, high]))
                 found.append(Branch(low, high, float(ends[0]), float(ends[1]), piece))
         return tuple(found)

@@ -98,7 +98,7 @@ def _fall(body: Body, law: Law, release_height: float | None, gravity: float | N
                 raise ParameterError(
                     wrong(name, value, f"left out: law.normal = {law.normal!r} at any speed")
                 )
-        return Fall(release_height=1.0, gravity=1.0)
+        return Fall(release_height=2.0 * body.solid.farthest(), gravity=1.0)  # any: nothing depends on it
     for name, value in given.items():
         if value is None:
             text = f": missing; law.normal = {type(law.normal).__name__} depends on the speed"

@@ -19,7 +19,7 @@ from dataclasses import dataclass
 from typing import Literal, TypeAlias
 
 from restitution.analytic._disc import Number
-from restitution.laws import ChatterjeeRuina, Coulomb, Frictionless, Law
+from restitution.laws import ChatterjeeRuina, Coulomb, Frictionless, Law, TangentialRestitution
 
 Mode: TypeAlias = Literal["free", "stuck", "sliding", "part"]
 
@@ -48,7 +48,9 @@ class Impulse:
                 return "stuck", "sliding"
             case ChatterjeeRuina():
                 return "part", "sliding"
-        return "stuck", "stuck"
+            case TangentialRestitution():
+                return "stuck", "stuck"
+        raise TypeError(f"no closed form of {self.law!r}")
 
     def margin(self, normal: Number, height: Number, arm: Number) -> Number:
         """Positive where the tangential impulse would leave the friction cone; ε^n = normal."""

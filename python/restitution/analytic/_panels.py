@@ -35,16 +35,17 @@ def panels(function: Function, low: float, high: float) -> Floats:
     ArithmeticError
         If there is a singularity on the interval.
     """
-    allowed = GROWTH * float(np.max(np.abs(function(np.linspace(low, high, 129)))))
+    greatest = float(np.max(np.abs(function(np.linspace(low, high, 129)))))
     lows, highs = np.array([low]), np.array([high])
     edges = [low, high]
     for _ in range(_MOST_HALVINGS):
         middle = 0.5 * (lows + highs)
         with np.errstate(all="ignore"):
             image = function(Disc(middle, highs - lows))
+        greatest = max(greatest, float(np.max(np.abs(function(middle)))))
         # A formula that is constant on the interval gives a plain number.
         bound = image.bound if isinstance(image, Disc) else np.full_like(middle, abs(image))
-        rough = ~(bound <= allowed)
+        rough = bound > GROWTH * greatest
         if not rough.any():
             return np.sort(np.array(edges))
         edges.extend(middle[rough])
