@@ -11,7 +11,9 @@ from numpy.typing import NDArray
 import restitution as rs
 from reference.arithmetic import mp
 from restitution.analytic import first_impact, negative_threshold
+from restitution.analytic._branched import BranchedFirstImpact
 from restitution.analytic._impulse import Impulse
+from restitution.analytic._normal import Fall
 from restitution.bodies import Body
 from restitution.laws import Law
 
@@ -243,23 +245,36 @@ def by_quadrature(distribution: Any, order: int, orientation: str, cuts: list[fl
         return float(mpmath.quad(integrand, cuts, maxdegree=7))
 
 
+GLASS = rs.Viscoelastic(young_modulus=1e7, poisson_ratio=0.3, dissipation=1e-3, density=1000.0, radius=0.01)
+FALL = {"release_height": 4.0, "gravity": 9.81}
+
+
 @pytest.mark.parametrize("orientation", ["uniform-angle", "isotropic"])
 @pytest.mark.parametrize(
-    ("body", "law"),
+    ("body", "law", "fall"),
     [
-        (rs.Spheroid(equatorial=1.0, polar=3.0), rs.Frictionless(normal=0.9)),
-        (rs.Spheroid(equatorial=1.0, polar=0.1), rs.TangentialRestitution(normal=0.4)),
-        (rs.LoadedSphere(radius=1.0, load=8e3, offset=0.9), rs.Coulomb(normal=0.4, friction=0.1)),
+        (rs.Spheroid(equatorial=1.0, polar=3.0), rs.Frictionless(normal=0.9), {}),
+        (rs.Spheroid(equatorial=1.0, polar=0.1), rs.TangentialRestitution(normal=0.4), {}),
+        (rs.LoadedSphere(radius=1.0, load=8e3, offset=0.9), rs.Coulomb(normal=0.4, friction=0.1), {}),
         (
             rs.Spherocylinder(radius=1.0, separation=3.0),
             rs.ChatterjeeRuina(normal=0.5, tangential=1, friction=0.4),
+            {},
+        ),
+        (rs.Spheroid(equatorial=1.0, polar=3.0), rs.Coulomb(normal=GLASS, friction=0.3), FALL),
+        (
+            rs.Dumbbell(radius=(1.0, 0.5), separation=2.0),
+            rs.Frictionless(normal=rs.Plastic(yield_speed=7.0)),
+            FALL,
         ),
     ],
-    ids=["prolate", "oblate", "loaded", "capsule"],
+    ids=["prolate", "oblate", "loaded", "capsule", "glass", "plastic"],
 )
-def test_moments_are_exact_to_rounding(body: Body, law: Law, orientation: str) -> None:
+def test_moments_are_exact_to_rounding(
+    body: Body, law: Law, fall: dict[str, float], orientation: Any
+) -> None:
     """Against tanh-sinh quadrature between the angles at which the formula changes."""
-    distribution: Any = first_impact(body, law, orientation)  # type: ignore[arg-type]
+    distribution: Any = first_impact(body, law, orientation, **fall)
     cuts = [0.0, *(piece.high for piece in distribution._curve.pieces)]
     for order in (0, 1, 2, 3, 12):
         expected = by_quadrature(distribution, order, orientation, cuts)
@@ -273,6 +288,37 @@ def test_moments_are_exact_to_rounding(body: Body, law: Law, orientation: str) -
     assert skewness * distribution.std() ** 3 == pytest.approx(central, abs=1e-14)
     central = fourth - 4 * mean * third + 6 * mean**2 * square - 3 * mean**4
     assert (kurtosis + 3) * distribution.var() ** 2 == pytest.approx(central, abs=1e-14)
+
+
+@pytest.mark.parametrize("orientation", ["uniform-angle", "isotropic"])
+@pytest.mark.parametrize("kind", [rs.Dumbbell, rs.Spherocylinder])
+@pytest.mark.parametrize("elongation", [0.3, 2.0, 30.0, 1e4])
+@pytest.mark.parametrize("law", [rs.TangentialRestitution(normal=0.6), rs.Frictionless(normal=0.6)])
+def test_two_ways_to_the_same_distribution(law: Law, elongation: float, kind: Any, orientation: Any) -> None:
+    """Two equal balls have an elementary inverse; the general way, by branches, gives the same."""
+    body = kind(radius=1.0, separation=elongation)
+    fall = Fall(release_height=3.0 + elongation, gravity=1.0)
+    direct, general = first_impact(body, law, orientation), BranchedFirstImpact(body, law, orientation, fall)
+    assert general.support() == pytest.approx(direct.support(), abs=1e-15)
+    x = direct.ppf(np.linspace(0.01, 0.99, 50))
+    np.testing.assert_allclose(general.cdf(x), direct.cdf(x), rtol=0, atol=1e-13)
+    np.testing.assert_allclose(general.pdf(x), direct.pdf(x), rtol=2e-12)
+    np.testing.assert_allclose(general.ppf(direct.cdf(x)), x, rtol=0, atol=1e-14)
+    np.testing.assert_allclose(general.cos_theta(x), direct.cos_theta(x), rtol=0, atol=1e-13)
+    for order in (1, 2, 7, 20):
+        assert general.moment(order) == pytest.approx(direct.moment(order), rel=0, abs=1e-15)
+    assert general.std() == pytest.approx(direct.std(), rel=1e-14)
+    assert general.stats("sk") == pytest.approx(direct.stats("sk"), rel=0, abs=1e-12)
+    assert general.entropy() == pytest.approx(direct.entropy(), abs=1e-7)
+
+
+def test_a_nearly_spherical_body_without_friction() -> None:
+    """As L → 0 the loss goes to w sin²θ, w = (1 + ε_n)L²/(4J) with J = 2R²/5; σ keeps its digits."""
+    for kind in (rs.Dumbbell, rs.Spherocylinder):
+        body, w = kind(radius=1.0, separation=1e-9), 1.6 * 1e-18 / 1.6
+        for orientation, share in (("uniform-angle", np.sqrt(1 / 8)), ("isotropic", np.sqrt(4 / 45))):
+            distribution = first_impact(body, rs.Frictionless(normal=0.6), orientation)  # type: ignore[arg-type]
+            assert distribution.std() == pytest.approx(w * share, rel=3e-9)
 
 
 def test_sympy_integrates_the_loaded_sphere() -> None:

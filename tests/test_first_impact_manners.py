@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy import stats
 
@@ -39,6 +39,7 @@ each = pytest.mark.parametrize(
 )
 
 
+@settings(max_examples=50)
 @given(distribution=st.sampled_from(ALL), q=st.floats(0, 1))
 def test_quantiles_invert_the_distribution_function(distribution: FirstImpact, q: float) -> None:
     """To what the neighbouring ε of the quantile have as probability."""
