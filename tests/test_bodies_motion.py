@@ -279,9 +279,3 @@ def test_impossible_bodies(make: Callable[[], Body], text: str) -> None:
     with pytest.raises(ValueError) as caught:  # noqa: PT011 - the message is looked at
         make()
     assert str(caught.value).startswith(text)
-
-
-def test_the_first_impact_in_closed_form_is_that_of_equal_spheres() -> None:
-    """Eqs. 13 to 22 are for the paper's body; others are refused by name."""
-    with pytest.raises(ValueError, match=r"body = Dumbbell.*: must be a Dumbbell of equal spheres"):
-        rs.analytic.first_impact(rs.Dumbbell(radius=(1.0, 2.0), separation=3.0), LAW)

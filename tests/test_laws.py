@@ -203,11 +203,6 @@ def test_what_is_wrong_with_a_law_in_a_file(tmp_path: Path, text: str, expected:
     assert str(caught.value).splitlines() == [f"{path}: {line}" for line in expected]
 
 
-def test_the_closed_form_of_the_first_impact_wants_a_number(body: rs.Dumbbell) -> None:
-    with pytest.raises(ValueError, match=r"law\.normal = Plastic.*: must be a number"):
-        rs.analytic.first_impact(body, rs.TangentialRestitution(normal=rs.Plastic(yield_speed=0.1)))
-
-
 @pytest.mark.parametrize("material", [rs.Plastic(yield_speed=0.1), rs.Tabulated(v=[0.0, 1.0], e=[0.9, 0.5])])
 def test_speeds_are_in_metres_per_second_for_every_shape(material: rs.Plastic | rs.Tabulated) -> None:
     """A sphere has at every impact the coefficient of its speed in m/s, whichever engine follows it.

@@ -12,6 +12,10 @@ from restitution._parameters import Allowed, Number, ParameterError, Parameters,
 
 Floats = npt.NDArray[np.float64]
 
+PADE_ABOVE = np.polynomial.Polynomial([1.0, 1.07232, 0.574198, 0.141552])
+PADE_BELOW = np.polynomial.Polynomial([1.0, 1.07232, 1.72765, 1.37842, 1.19449, 0.467273, 0.235585])
+"""Numerator and denominator of a viscoelastic sphere's ε^n, in powers of v*."""
+
 
 class Material(Parameters):
     """A normal coefficient of restitution ε^n that depends on the speed; call it to see it."""
@@ -90,9 +94,7 @@ class Viscoelastic(Material):
 
     def _coefficient(self, speed: Floats) -> Floats:
         x = self.beta**0.5 * speed**0.1
-        above = np.polynomial.Polynomial([1.0, 1.07232, 0.574198, 0.141552])
-        below = np.polynomial.Polynomial([1.0, 1.07232, 1.72765, 1.37842, 1.19449, 0.467273, 0.235585])
-        return np.asarray(above(x) / below(x))
+        return np.asarray(PADE_ABOVE(x) / PADE_BELOW(x))
 
 
 class Plastic(Material):

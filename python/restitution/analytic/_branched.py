@@ -1,0 +1,235 @@
+"""The distribution of ε at the first impact from rest, as a sum over the branches of ε(θ)."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cached_property
+from itertools import pairwise
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+from scipy.integrate import quad
+
+from restitution.analytic._curve import Branch, Curve
+from restitution.analytic._frozen import (
+    FirstImpact,
+    RandomState,
+    Values,
+    floats,
+    generator,
+    probability,
+    scalar,
+)
+from restitution.analytic._normal import Fall
+from restitution.analytic._orientation import Floats
+from restitution.analytic._panels import nodes, roots, solve
+from restitution.analytic._tilt import Tilt
+
+_NEARLY_VERTICAL = 1e-8  # rad, whose square is rounding
+
+
+@dataclass(frozen=True)
+class BranchedFirstImpact(FirstImpact):
+    """Distribution of ε(θ) where ε need not rise with the cosine; make it with `first_impact`.
+
+    ε(θ), its slope and where its formula changes are closed forms. P(ε <= x) is the probability of the angles
+    between the roots of ε(θ) = x, one on each branch, found to rounding; the density is the sum of
+    p(θ)/|dε/dθ| over them, and infinite at an extreme of ε(θ). Moments are Gauss sums over panels on which a
+    bound in the complex plane proves them exact to rounding.
+
+    Parameters
+    ----------
+    body, law, orientation
+        As in `first_impact`.
+    fall : Fall
+        From where; without effect on a law with a number for ``normal``.
+    """
+
+    fall: Fall
+
+    @cached_property
+    def _curve(self) -> Curve:
+        return Curve(self.body, self.law, self.fall)
+
+    @cached_property
+    def _tilt(self) -> Tilt:
+        return Tilt(self.orientation, self._curve.limit)
+
+    @cached_property
+    def _support(self) -> tuple[float, float]:
+        ends = [value for branch in self._curve.branches for value in (branch.first, branch.last)]
+        return min(ends), max(ends)
+
+    def support(self) -> tuple[float, float]:
+        return self._support
+
+    def restitution(self, cos_theta: ArrayLike) -> Values:
+        cosine = floats(cos_theta)
+        cosine = np.where(np.abs(cosine) <= 1.0, cosine, np.nan)
+        theta = np.arccos(np.abs(cosine) if self._curve.limit < np.pi else cosine)
+        return scalar(self._curve.restitution(theta))
+
+    def cos_theta(self, restitution: ArrayLike) -> Values:
+        value = floats(restitution)
+        greatest = np.full(value.shape, np.nan)
+        for branch in self._curve.branches:
+            there = _inside(branch, value)
+            cosine = np.abs(np.cos(self._curve.angle(branch, value[there])))
+            greatest[there] = np.fmax(greatest[there], cosine)
+        return scalar(greatest)
+
+    def pdf(self, x: ArrayLike) -> Values:
+        return scalar(self._density(floats(x)))
+
+    def logpdf(self, x: ArrayLike) -> Values:
+        with np.errstate(divide="ignore"):
+            return scalar(np.log(self.pdf(x)))
+
+    def cdf(self, x: ArrayLike) -> Values:
+        return scalar(self._probability(floats(x), above=False))
+
+    def sf(self, x: ArrayLike) -> Values:
+        return scalar(self._probability(floats(x), above=True))
+
+    def ppf(self, q: ArrayLike) -> Values:
+        return self._quantile(probability(q), above=False)
+
+    def isf(self, q: ArrayLike) -> Values:
+        return self._quantile(probability(q), above=True)
+
+    def rvs(self, size: int | tuple[int, ...] | None = None, random_state: RandomState = None) -> Values:
+        uniform = np.asarray(generator(random_state).random(size))
+        return scalar(self._curve.restitution(self._tilt.quantile(uniform)))
+
+    def mean(self) -> float:
+        return self._raw(1)
+
+    def std(self) -> float:
+        return float(np.sqrt(self._central(2)))
+
+    def expect(
+        self,
+        func: Callable[[float], float] | None = None,
+        lb: float | None = None,
+        ub: float | None = None,
+        conditional: bool = False,
+        **options: Any,
+    ) -> float:
+        low, high = self.support()
+        ends = floats([low if lb is None else lb, high if ub is None else ub])
+        total = part = 0.0
+        for branch in self._curve.branches:
+
+            def integrand(theta: float, branch: Branch = branch) -> float:
+                value = float(branch.piece.restitution(np.float64(theta)))
+                return float(self._tilt.density(theta)) * (value if func is None else func(value))
+
+            if ends[0] > max(branch.first, branch.last) or ends[1] < min(branch.first, branch.last):
+                continue
+            start, stop = np.sort(self._curve.angle(branch, ends))
+            total += quad(integrand, start, stop, **options)[0]
+            part += self._tilt.between(start, stop)
+        return float(total / part if conditional else total)
+
+    def entropy(self) -> float:
+        """Differential entropy, -∫ p ln p dε, to 1e-7."""
+        branches = self._curve.branches
+        levels = np.unique([value for branch in branches for value in (branch.first, branch.last)])
+        nodes, weights = np.polynomial.legendre.leggauss(128)
+        u = 0.5 * (1.0 + nodes)
+        # Flat at both ends, where ln p may diverge.
+        step = u**4 * (35.0 - 84.0 * u + 70.0 * u**2 - 20.0 * u**3)
+        rate = 0.5 * weights * 140.0 * (u * (1.0 - u)) ** 3
+        total = 0.0
+        for branch in branches:
+            # Where other branches begin or end at the same ε the density jumps.
+            for start, stop in pairwise(np.unique(self._curve.angle(branch, levels))):
+                theta = start + (stop - start) * step
+                share = (stop - start) * rate * self._tilt.density(theta)
+                own = self._branch_density(branch, theta)
+                others = self._density(branch.piece.restitution(theta), without=branch)
+                # At an extreme, to rounding, both sides of it have the same density.
+                total -= float(share @ np.log(own + np.where(np.isfinite(others), others, own)))
+        return total
+
+    @property
+    def probability_above_normal(self) -> float:
+        """P(ε > ε^n), ε^n at the speed of the impact."""
+        total = 0.0
+        for piece in self._curve.pieces:
+            raised = piece.raised
+            if np.ndim(raised(np.zeros(1))) == 0:  # the same for every angle
+                continue
+            cuts = [piece.low, *roots(raised, piece.low, piece.high), piece.high]
+            for start, stop in pairwise(cuts):
+                if raised(0.5 * (start + stop)) > 0.0:
+                    total += self._tilt.between(start, stop)
+        return total
+
+    def _density(self, x: Floats, without: Branch | None = None) -> Floats:
+        """Density at ε = x, of all branches but one."""
+        total = np.where(np.isnan(x), np.nan, 0.0)
+        for branch in self._curve.branches:
+            if branch is without:
+                continue
+            there = _inside(branch, x, top=self._is_top(branch))
+            total[there] += self._branch_density(branch, self._curve.angle(branch, x[there]))
+        return total
+
+    def _branch_density(self, branch: Branch, theta: Floats) -> Floats:
+        """p(θ)/|dε/dθ|."""
+        if self.orientation == "isotropic":  # 0/0 where the axis is vertical; the limit is as good as reached
+            theta = np.clip(theta, _NEARLY_VERTICAL, np.pi - _NEARLY_VERTICAL)
+        with np.errstate(divide="ignore", over="ignore"):
+            return self._tilt.density(theta) / np.abs(branch.piece.slope(theta))
+
+    def _probability(self, x: Floats, *, above: bool) -> Floats:
+        total = np.zeros(x.shape)
+        for branch in self._curve.branches:
+            share = self._tilt.below(self._curve.angle(branch, x))
+            rising = branch.last > branch.first
+            if rising == above:
+                total += self._tilt.below(branch.high) - share
+            else:
+                total += share - self._tilt.below(branch.low)
+        low, high = self.support()
+        total = np.where(x >= high, 0.0 if above else 1.0, np.clip(total, 0.0, 1.0))
+        total = np.where(x <= low, 1.0 if above else 0.0, total)
+        return np.where(np.isnan(x), np.nan, total)
+
+    def _quantile(self, q: Floats, *, above: bool) -> Values:
+        low, high = self.support()
+        found = solve(
+            lambda x: self._probability(x, above=above) - q, np.full(q.shape, low), np.full(q.shape, high)
+        )
+        found = np.where(q == 0.0, high if above else low, np.where(q == 1.0, low if above else high, found))
+        return scalar(np.where(np.isnan(q), np.nan, found))
+
+    def _is_top(self, branch: Branch) -> bool:
+        """Whether no other branch goes on from the upper end."""
+        most = max(branch.first, branch.last)
+        starts = [min(other.first, other.last) for other in self._curve.branches]
+        return not np.any(np.abs(np.array(starts) - most) <= 4.0 * np.finfo(float).eps)
+
+    def _sum(self, function: Callable[[Floats], Floats], order: int) -> float:
+        """Mean of a function of ε that is a polynomial of this order."""
+        total = 0.0
+        for piece, edges in zip(self._curve.pieces, self._curve.edges, strict=True):
+            theta, weights = nodes(edges, order)
+            total += float((weights * self._tilt.density(theta)) @ function(piece.restitution(theta)))
+        return total
+
+    def _raw(self, order: int) -> float:
+        return self._sum(lambda value: value**order, order)
+
+    def _central(self, order: int) -> float:
+        mean = self.mean()
+        return self._sum(lambda value: (value - mean) ** order, order)
+
+    def _standardised(self, order: int) -> float:
+        return float(self._central(order) / self._central(2) ** (order / 2))
+
+
+def _inside(branch: Branch, x: Floats, *, top: bool = True) -> NDArray[np.bool_]:
+    least, most = min(branch.first, branch.last), max(branch.first, branch.last)
+    return (x >= least) & ((x <= most) if top else (x < most))

@@ -1,0 +1,195 @@
+"""What every distribution of ε at the first impact from rest can do."""
+
+from abc import ABC, abstractmethod
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any, TypeAlias
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from restitution._parameters import ParameterError, wrong
+from restitution.analytic._orientation import Floats, OrientationName
+from restitution.bodies import Body
+from restitution.laws import Law
+
+Values: TypeAlias = Any  # np.float64 for a scalar argument, an array of floats otherwise
+RandomState: TypeAlias = int | np.random.Generator | np.random.RandomState | None
+
+
+@dataclass(frozen=True)
+class FirstImpact(ABC):
+    """Distribution of ε at the first impact from rest; make it with `first_impact`.
+
+    Methods have the names and manners of a frozen `scipy.stats` distribution: arguments of any shape, a NumPy
+    scalar for a scalar, nan for nan and for a probability outside [0, 1].
+
+    Parameters
+    ----------
+    body, law, orientation
+        As in `first_impact`.
+    """
+
+    body: Body
+    law: Law
+    orientation: OrientationName
+
+    @abstractmethod
+    def support(self) -> tuple[float, float]:
+        """Least and greatest ε."""
+
+    @abstractmethod
+    def restitution(self, cos_theta: ArrayLike) -> Values:
+        """ε at the angle θ between symmetry axis and plane normal; nan unless -1 <= cos θ <= 1."""
+
+    @abstractmethod
+    def cos_theta(self, restitution: ArrayLike) -> Values:
+        """Greatest |cos θ| that gives ε; nan outside the support."""
+
+    @property
+    def probability_above_normal(self) -> float:
+        """P(ε > ε^n), ε^n at the speed of the impact.
+
+        0 but for Chatterjee and Ruina's law with e_t > e: under all others the lever arm only takes away.
+        """
+        return 0.0
+
+    @property
+    def probability_negative(self) -> float:
+        """P(ε < 0): the centre of mass goes on downwards."""
+        return float(self.cdf(0.0))
+
+    @abstractmethod
+    def pdf(self, x: ArrayLike) -> Values:
+        """Probability density at ε = x."""
+
+    @abstractmethod
+    def logpdf(self, x: ArrayLike) -> Values:
+        """Logarithm of `pdf`; -inf outside the support."""
+
+    @abstractmethod
+    def cdf(self, x: ArrayLike) -> Values:
+        """Probability that ε <= x; ``cdf(0)`` is the probability that the body goes on downwards."""
+
+    @abstractmethod
+    def sf(self, x: ArrayLike) -> Values:
+        """Probability that ε > x, accurate also where it is small."""
+
+    @abstractmethod
+    def ppf(self, q: ArrayLike) -> Values:
+        """Quantile: the ε with ``cdf(ε) = q``; nan unless ``0 <= q <= 1``."""
+
+    @abstractmethod
+    def isf(self, q: ArrayLike) -> Values:
+        """Upper quantile: the ε with ``sf(ε) = q``; nan unless ``0 <= q <= 1``."""
+
+    @abstractmethod
+    def mean(self) -> float:
+        """Mean of ε."""
+
+    @abstractmethod
+    def std(self) -> float:
+        """Square root of the variance of ε."""
+
+    @abstractmethod
+    def expect(
+        self,
+        func: Callable[[float], float] | None = None,
+        lb: float | None = None,
+        ub: float | None = None,
+        conditional: bool = False,
+        **options: Any,
+    ) -> float:
+        """Mean of ``func(ε)``, of ε itself if left out, by `scipy.integrate.quad` without a singularity.
+
+        Parameters
+        ----------
+        func : callable, optional
+            Of one number.
+        lb, ub : float, optional
+            Only ε in [lb, ub] count.
+        conditional : bool
+            Divide by the probability of [lb, ub].
+        **options
+            For `scipy.integrate.quad`.
+        """
+
+    @abstractmethod
+    def entropy(self) -> float:
+        """Differential entropy, -∫ p ln p dε."""
+
+    @abstractmethod
+    def _raw(self, order: int) -> float:
+        """Mean of ε to a power."""
+
+    @abstractmethod
+    def _standardised(self, order: int) -> float:
+        """Mean of (ε - mean)/std to a power."""
+
+    def logcdf(self, x: ArrayLike) -> Values:
+        """Logarithm of `cdf`."""
+        with np.errstate(divide="ignore"):
+            return scalar(np.log(self.cdf(x)))
+
+    def logsf(self, x: ArrayLike) -> Values:
+        """Logarithm of `sf`."""
+        with np.errstate(divide="ignore"):
+            return scalar(np.log(self.sf(x)))
+
+    def rvs(self, size: int | tuple[int, ...] | None = None, random_state: RandomState = None) -> Values:
+        """Draw independent ε; the same ``random_state`` (seed or generator's state) gives the same ones."""
+        return self.ppf(generator(random_state).random(size))
+
+    def var(self) -> float:
+        """Variance of ε."""
+        return self.std() ** 2
+
+    def stats(self, moments: str = "mv") -> tuple[float, ...]:
+        """Mean "m", variance "v", skewness "s" and excess kurtosis "k", in the order of ``moments``."""
+        make: dict[str, Callable[[], float]] = {
+            "m": self.mean,
+            "v": self.var,
+            "s": lambda: self._standardised(3),
+            "k": lambda: self._standardised(4) - 3.0,
+        }
+        if not set(moments) <= set(make):
+            raise ParameterError(wrong("moments", moments, "letters of 'mvsk'"))
+        return tuple(make[letter]() for letter in moments)
+
+    def moment(self, order: int) -> float:
+        """Mean of ε to the power ``order`` (a whole number >= 0)."""
+        if isinstance(order, bool) or not isinstance(order, int | np.integer) or order < 0:
+            raise ParameterError(wrong("order", order, "a whole number >= 0"))
+        return self._raw(int(order))
+
+    def median(self) -> float:
+        """Median of ε."""
+        return float(self.ppf(0.5))
+
+    def interval(self, confidence: ArrayLike) -> tuple[Values, Values]:
+        """Both ends of the range that leaves out equal probability on either side."""
+        tail = 0.5 * (1.0 - probability(confidence))
+        return self.ppf(tail), self.isf(tail)
+
+
+def generator(random_state: RandomState) -> np.random.Generator | np.random.RandomState:
+    """Take a generator, or make one from a seed."""
+    if isinstance(random_state, np.random.Generator | np.random.RandomState):
+        return random_state
+    return np.random.default_rng(random_state)
+
+
+def floats(x: ArrayLike) -> Floats:
+    """Take numbers of any shape."""
+    return np.asarray(x, dtype=np.float64)
+
+
+def probability(q: ArrayLike) -> Floats:
+    """Take probabilities of any shape; nan outside [0, 1]."""
+    value = floats(q)
+    return np.where((value >= 0.0) & (value <= 1.0), value, np.nan)
+
+
+def scalar(values: Values) -> Values:
+    """Make a 0-d array a NumPy scalar, as scipy does."""
+    return np.asarray(values)[()]

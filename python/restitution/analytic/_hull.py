@@ -1,0 +1,107 @@
+"""Where a body touches the plane: height h of the centre of mass and lever arm a, for every angle.
+
+The centre of mass of a body that stands on the plane is h(θ) high, its support function. The point of contact
+is h below it and a = |h′| beside it. For a ball of radius ϱ at s on the axis h = ϱ - s cos θ, a = |s| sin θ;
+for a spheroid h² = A² sin²θ + C² cos²θ, a = |C² - A²| sin θ cos θ/h.
+"""
+
+import math
+from dataclasses import dataclass
+from typing import NamedTuple
+
+from restitution.analytic._disc import Number
+from restitution.bodies import Body, Dumbbell, LoadedSphere, Spherocylinder, Spheroid
+
+
+@dataclass(frozen=True)
+class Ball:
+    """A ball on the axis: its radius ϱ, and its place s from the centre of mass along the axis."""
+
+    radius: float
+    place: float
+
+    def contact(self, sine: Number, cosine: Number) -> tuple[Number, Number]:
+        """Height h and lever arm a."""
+        return self.radius - self.place * cosine, abs(self.place) * sine
+
+    def cosine(self, height: float) -> float:
+        """Cos θ at which the centre of mass is so high; nan if it never is."""
+        return (self.radius - height) / self.place if self.place else math.nan
+
+
+@dataclass(frozen=True)
+class Ellipsoid:
+    """A spheroid about its centre: semi-axes A across and C along the axis. For θ in [0, π/2]."""
+
+    equatorial: float
+    polar: float
+
+    def contact(self, sine: Number, cosine: Number) -> tuple[Number, Number]:
+        """Height h and lever arm a."""
+        across, along = self.equatorial * sine, self.polar * cosine
+        height = (across * across + along * along) ** 0.5
+        excess = abs((self.polar - self.equatorial) * (self.polar + self.equatorial))
+        return height, excess * sine * cosine / height
+
+    def cosine(self, height: float) -> float:
+        """Cos θ at which the centre of mass is so high; nan if it never is."""
+        a, c = self.equatorial, self.polar
+        square = (height - a) * (height + a) / ((c - a) * (c + a)) if a != c else math.nan
+        return math.sqrt(square) if square >= 0.0 else math.nan
+
+
+class Side(NamedTuple):
+    """A part of the surface, and the angles from low to high at which it touches."""
+
+    low: float
+    high: float
+    hull: Ball | Ellipsoid
+
+
+@dataclass(frozen=True)
+class Outline:
+    """All that the first impact needs of a body's shape; lengths in units of ``unit``.
+
+    Parameters
+    ----------
+    unit : float
+        Greatest height of the centre of mass above the plane, in m.
+    inertia : float
+        J = J_xx/m.
+    sides : tuple of Side
+        From θ = 0 to π/2 if the body looks the same upside down, else to π.
+    """
+
+    unit: float
+    inertia: float
+    sides: tuple[Side, ...]
+
+    @classmethod
+    def of(cls, body: Body) -> "Outline":
+        """Take it from a body."""
+        unit = body.solid.farthest()
+        inertia = body.transverse_inertia / unit / body.mass / unit
+        return cls(unit, inertia, _sides(body, unit))
+
+
+def _sides(body: Body, unit: float) -> tuple[Side, ...]:
+    right = 0.5 * math.pi
+    match body:
+        case Spheroid():
+            return (Side(0.0, right, Ellipsoid(body.equatorial / unit, body.polar / unit)),)
+        case Spherocylinder():
+            return (Side(0.0, right, Ball(body.radius / unit, -0.5 * body.separation / unit)),)
+        case LoadedSphere():
+            return (Side(0.0, math.pi, Ball(body.radius / unit, -body.centre_of_mass / unit)),)
+        case Dumbbell():
+            half, centre = 0.5 * body.separation / unit, body.centre_of_mass / unit
+            one = Ball(body.radii[0] / unit, half - centre)
+            two = Ball(body.radii[1] / unit, -half - centre)
+            if body.is_equal:
+                return (Side(0.0, right, two),)
+            level = body.radii[0] - body.radii[1]
+            if abs(level) >= body.separation:  # one sphere holds the other, or they are one
+                return (Side(0.0, math.pi, one if level >= 0.0 else two),)
+            turn = math.acos(level / body.separation)  # both touch
+            return Side(0.0, turn, two), Side(turn, math.pi, one)
+    raise TypeError(f"no outline of {body!r}")

@@ -1,0 +1,110 @@
+"""What an impact from rest gives back, for every law: all have a closed form there.
+
+The point of contact, h below and a beside the centre of mass, comes down along the normal: there is no slip
+before the impact. With J = J_xx/m and D = J + a² + h², the impulse matrix per unit mass has K_nn = 1 + a²/J,
+K_uu = 1 + h²/J and |K_nu| = ah/J, and every law gives ε = ε^n - λ with a loss λ as if
+
+* "free": nothing acted along the plane, λ = (1 + ε^n) a²/(J + a²);
+* "stuck": the point of contact never slipped, λ = (1 + ε^n) a²/D;
+* "sliding": friction were at its limit throughout, λ = (1 + ε^n)(a² - μah)/(J + a² - μah);
+* "part": the tangential impulse were (1 + e_t) times that of a sticking plastic impact,
+  λ = (1 + e) a²/(J + a²) - (1 + e_t) a²h²/((J + a²)D), which for e_t = e is as if stuck.
+
+The paper's law is "stuck" for any ε^t (Eq. 17). Under Coulomb's law the contact slides from the start and for
+good if ah > μ(J + h²), else it never does; v_n is linear in the impulse, so that all hypotheses agree.
+Chatterjee and Ruina's law is "part" inside the friction cone, and "sliding" on it.
+"""
+
+from dataclasses import dataclass
+from typing import Literal, TypeAlias
+
+from restitution.analytic._disc import Number
+from restitution.laws import ChatterjeeRuina, Coulomb, Frictionless, Law, TangentialRestitution
+
+Mode: TypeAlias = Literal["free", "stuck", "sliding", "part"]
+
+
+@dataclass(frozen=True)
+class Impulse:
+    """The impulse of an impact from rest.
+
+    Parameters
+    ----------
+    law : Law
+        What an impact does.
+    inertia : float
+        J, in the square of the unit of h and a.
+    """
+
+    law: Law
+    inertia: float
+
+    def modes(self) -> tuple[Mode, Mode]:
+        """Modes where `margin` is not positive, and where it is."""
+        match self.law:
+            case Frictionless():
+                return "free", "free"
+            case Coulomb():
+                return "stuck", "sliding"
+            case ChatterjeeRuina():
+                return "part", "sliding"
+            case TangentialRestitution():
+                return "stuck", "stuck"
+        raise TypeError(f"no closed form of {self.law!r}")
+
+    def margin(self, normal: Number, height: Number, arm: Number) -> Number:
+        """Positive where the tangential impulse would leave the friction cone; ε^n = normal."""
+        inertia, couple = self.inertia, height * arm
+        match self.law:
+            case Coulomb(friction=friction):
+                return couple - friction * (inertia + height * height)
+            case ChatterjeeRuina(friction=friction, tangential=tangential):
+                room = inertia + arm * arm - friction * couple
+                whole = inertia + arm * arm + height * height
+                return (1.0 + tangential) * couple * room - friction * inertia * (1.0 + normal) * whole
+        return 0.0
+
+    def loss(self, mode: Mode, normal: Number, height: Number, arm: Number) -> Number:
+        """λ = ε^n - ε, ε^n = normal."""
+        square, inertia = arm * arm, self.inertia
+        if mode == "stuck":  # (17)
+            return (1.0 + normal) * square / (inertia + square + height * height)
+        if mode == "sliding":
+            dragged = square - self._friction * (height * arm)
+            return (1.0 + normal) * dragged / (inertia + dragged)
+        free = square / (inertia + square)
+        if mode == "free":
+            return (1.0 + normal) * free
+        share = height * height / (inertia + square + height * height)
+        return free * (1.0 + normal - self._kept * share)
+
+    def raised(self, mode: Mode, normal: Number, height: Number, arm: Number) -> Number:
+        """Positive where ε > ε^n."""
+        if mode == "sliding":
+            return self._friction * height - arm
+        if mode == "part":
+            square = height * height
+            return self._kept * square - (1.0 + normal) * (self.inertia + arm * arm + square)
+        return -1.0
+
+    def threshold(self, mode: Mode, height: Number, arm: Number) -> Number:
+        """Constant ε^n at which ε = 0 in this mode."""
+        square, inertia = arm * arm, self.inertia
+        if mode == "stuck":
+            return square / (inertia + height * height)
+        if mode == "sliding":
+            return (square - self._friction * (height * arm)) / inertia
+        if mode == "free":
+            return square / inertia
+        share = height * height / (inertia + square + height * height)
+        return square / inertia * (1.0 - self._kept * share)
+
+    @property
+    def _friction(self) -> float:
+        """μ."""
+        return self.law.friction if isinstance(self.law, Coulomb | ChatterjeeRuina) else 0.0
+
+    @property
+    def _kept(self) -> float:
+        """1 + e_t."""
+        return 1.0 + self.law.tangential if isinstance(self.law, ChatterjeeRuina) else 0.0

@@ -1,0 +1,66 @@
+"""The ε^n below which a body that falls from rest can go on downwards after its first impact."""
+
+import numpy as np
+
+from restitution._parameters import ParameterError, wrong
+from restitution.analytic._disc import Number, turned
+from restitution.analytic._hull import Outline, Side
+from restitution.analytic._impulse import Impulse, Mode
+from restitution.analytic._panels import extremes
+from restitution.bodies import Body
+from restitution.laws import LAWS, Law
+
+BODIES = "a Dumbbell, LoadedSphere, Spherocylinder or Spheroid"
+
+
+def negative_threshold(body: Body, law: Law) -> float:
+    """ε^n below which ε < 0 occurs at the first impact from rest; from it on ε >= 0 at every angle.
+
+    In each mode of the contact ε rises with ε^n and is 0 at a closed form in height h and lever arm a; where
+    a law has two modes, the one that holds has the greater of the two. Their maximum over all angles is at
+    the end of a side of the body, or at a zero of the derivative. docs/first-impact.md has it in closed form.
+
+    Parameters
+    ----------
+    body : Dumbbell, LoadedSphere, Spherocylinder or Spheroid
+        What falls.
+    law : TangentialRestitution, Frictionless, Coulomb or ChatterjeeRuina
+        What an impact does; its own ``normal`` does not matter.
+
+    Returns
+    -------
+    float
+        Threshold, >= 0 and exact to rounding. If it is more than 1, ε < 0 occurs whatever ε^n.
+
+    Raises
+    ------
+    ValueError
+        Naming the argument, its value and what is allowed.
+
+    Examples
+    --------
+    >>> import restitution as rs
+    >>> from restitution.analytic import negative_threshold
+    >>> body = rs.Dumbbell(radius=3e-3, separation=6e-3)
+    >>> round(12 * negative_threshold(body, rs.TangentialRestitution(normal=0.5)), 12)
+    5.0
+    >>> round(7 * negative_threshold(body, rs.Frictionless(normal=0.5)), 12)
+    5.0
+    """
+    if not isinstance(body, Body):
+        raise ParameterError(wrong("body", body, BODIES))
+    if not isinstance(law, Law):
+        raise ParameterError(wrong("law", law, LAWS))
+    outline = Outline.of(body)
+    impulse = Impulse(law, outline.inertia)
+    modes = sorted(set(impulse.modes()))
+    return max(_greatest(impulse, mode, side) for side in outline.sides for mode in modes)
+
+
+def _greatest(impulse: Impulse, mode: Mode, side: Side) -> float:
+    def threshold(theta: Number) -> Number:
+        height, arm = side.hull.contact(*turned(theta))
+        return impulse.threshold(mode, height, arm)
+
+    angles = np.array([side.low, *extremes(threshold, side.low, side.high), side.high])
+    return max(0.0, float(np.max(threshold(angles))))
