@@ -3,15 +3,20 @@
 use crate::Error;
 use crate::body::{Body, Solid};
 use crate::collision::{InPlane, Law};
+use crate::elementary::sincos;
 use crate::lanes::{self, Pack, Sink};
 use crate::level::Level;
 use crate::records::{Records, Table};
 use crate::release::Orientation;
 use crate::scales::Scales;
 use crate::spatial;
+use crate::spin::Spin;
+use crate::state::State;
 use crate::statistics::{Bins, By, Counter, Tally};
 use crate::trajectory::Limits;
+use crate::vector::Vector;
 use pulp::{Simd, WithSimd};
+use std::f64::consts::FRAC_PI_2;
 use std::ops::Range;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, AtomicU64, AtomicUsize, Ordering};
@@ -27,12 +32,18 @@ pub struct Run<'a> {
     pub particles: usize,
     /// Most impacts of a particle.
     pub impacts: usize,
-    /// Height of the centre of mass at release, in m.
+    /// Height of the centre of mass over the plane at release, along the plane normal, in m.
     pub release_height: f64,
     /// Acceleration of gravity, in m/s².
     pub gravity: f64,
-    /// Law of the angle at release.
+    /// Law of the symmetry axis at release.
     pub orientation: Orientation<'a>,
+    /// Law of the angular velocity at release.
+    pub spin: Spin<'a>,
+    /// Velocity of the centre of mass at release, in m/s.
+    pub velocity: Vector,
+    /// Angle α in [0, π/2) by which the plane is inclined, falling along x: in its frame gravity is g(sin α, 0, −cos α).
+    pub incline: f64,
     /// A particle ends when √(2 E_kin/m) falls below this after an impact, in m/s; 0 never does.
     pub minimum_speed: f64,
     /// Seed of the random numbers.
@@ -75,12 +86,18 @@ impl Monitor {
 pub(crate) const BLOCK: usize = 96;
 
 impl Run<'_> {
-    /// What the sums of ε are taken about: ε^n at the speed that a drop from the release height has on the plane.
+    /// What the sums of ε are taken about: ε^n at the normal speed that a fall from the release has on the plane.
     pub fn origin(&self) -> f64 {
         let drop = self.release_height - self.body.unit;
-        self.law
-            .normal()
-            .at((2.0 * self.gravity * drop.max(0.0)).sqrt())
+        let gained = 2.0 * self.gravity * sincos(self.incline).1 * drop.max(0.0);
+        let start = self.velocity.z;
+        self.law.normal().at(start.mul_add(start, gained).sqrt())
+    }
+
+    /// Whether all particles are let go at rest, over a level plane. All directions along the plane are then alike, and each
+    /// particle stays in the vertical plane of its axis.
+    fn is_at_rest(&self) -> bool {
+        self.spin.is_none() && self.velocity == Vector::default() && self.incline == 0.0
     }
 
     /// Runs every particle and keeps every impact. A run that is cancelled returns the particles that were begun.
@@ -114,6 +131,9 @@ impl Run<'_> {
         drop(rows);
         ended.into_iter().collect::<Result<(), Error>>()?;
         records.truncate(started.into_inner());
+        if !plan.at_rest {
+            records.add_release(&plan);
+        }
         Ok(records)
     }
 
@@ -172,7 +192,15 @@ pub(crate) struct Plan<'a> {
     pub scales: Scales,
     /// Height of the centre of mass at release.
     height: f64,
+    /// Velocity of the centre of mass at release.
+    velocity: Vector,
+    /// tan α.
+    slope: f64,
+    at_rest: bool,
 }
+
+/// Most of any component of spin and velocity: their squares shall not overflow.
+const FASTEST: f64 = 1e100;
 
 impl<'a> Plan<'a> {
     pub fn new(run: &'a Run<'a>) -> Result<Self, Error> {
@@ -187,20 +215,41 @@ impl<'a> Plan<'a> {
             allowed,
         )?;
         run.orientation.check(run.particles)?;
-        let scales = Scales::new(run.body.unit, run.gravity)?;
+        let incline = run.incline;
+        let allowed = "in [0, pi/2) (rad)";
+        Error::unless(
+            (0.0..FRAC_PI_2).contains(&incline),
+            "incline",
+            incline,
+            allowed,
+        )?;
+        let (sine, cosine) = sincos(incline);
+        let scales = Scales::new(run.body.unit, run.gravity * cosine)?;
+        run.spin.check(run.particles, FASTEST / scales.time)?;
+        let velocity = run.velocity;
+        for component in [velocity.x, velocity.y, velocity.z] {
+            let allowed = "finite, at most 1e100 sqrt(gR) (m/s) either way";
+            let most = FASTEST * scales.speed;
+            Error::unless(component.abs() <= most, "velocity", component, allowed)?;
+        }
         let plan = Self {
             run,
             body: run.body.scaled,
             law: run.law.scaled(&scales),
             scales,
             height: run.release_height / scales.length,
+            velocity: velocity / scales.speed,
+            slope: sine / cosine,
+            at_rest: run.is_at_rest(),
         };
         // A body put down on the plane may be off by the rounding of its height.
         let clear = |cosine: f64| {
             plan.height >= plan.body.hull.support(cosine) * (1.0 - 4.0 * f64::EPSILON)
         };
         let clear = match run.orientation {
-            Orientation::Given(_) => (0..run.particles).all(|i| clear(plan.release(i).1)),
+            Orientation::Given(_) | Orientation::Directions(_) => {
+                (0..run.particles).all(|i| clear(plan.release(i).1))
+            }
             Orientation::UniformAngle | Orientation::Isotropic => {
                 run.release_height >= run.body.farthest() * (1.0 - 4.0 * f64::EPSILON)
             }
@@ -219,6 +268,31 @@ impl<'a> Plan<'a> {
         self.run.orientation.draw(self.run.seed, particle as u64)
     }
 
+    /// Azimuth at release, in rad, and angular velocity, in rad/s.
+    pub fn start(&self, particle: usize) -> (f64, Vector) {
+        let (seed, number) = (self.run.seed, particle as u64);
+        let azimuth = self.run.orientation.azimuth(seed, number);
+        let angle = self.release(particle);
+        let spin = self.run.spin.draw(seed, number, angle, sincos(azimuth));
+        (azimuth, spin)
+    }
+
+    /// How a particle is let go.
+    fn state(&self, particle: usize) -> State {
+        let Run {
+            orientation, seed, ..
+        } = *self.run;
+        if self.at_rest {
+            return orientation.release(&self.body, self.height, seed, particle as u64);
+        }
+        let (sine, cosine) = self.release(particle);
+        let (azimuth, spin) = self.start(particle);
+        let (y, x) = sincos(azimuth);
+        let axis = Vector::new(sine * x, sine * y, cosine);
+        let spin = spin * self.scales.time;
+        State::with_spin(&self.body, self.height, self.velocity, axis, spin)
+    }
+
     /// Bounces a range of particles and tells `sink`.
     pub fn bounce(
         &self,
@@ -228,7 +302,7 @@ impl<'a> Plan<'a> {
         sink: &mut impl Sink,
     ) -> Result<(), Error> {
         let count = particles.len() as u64;
-        if !self.body.hull.is_equal_pair() {
+        if !self.at_rest || !self.body.hull.is_equal_pair() {
             self.bounce_in_space(particles, monitor, sink)?;
         } else if let Some(law) = self.law.steady() {
             self.bounce_under(&law, particles, level, monitor, sink)?;
@@ -271,18 +345,20 @@ impl<'a> Plan<'a> {
         monitor: &Monitor,
         sink: &mut impl Sink,
     ) -> Result<(), Error> {
-        let Run {
-            orientation, seed, ..
-        } = *self.run;
         for (place, particle) in particles.enumerate() {
-            let release = orientation.release(&self.body, self.height, seed, particle as u64);
             sink.begin(place);
-            spatial::bounce(&self.body, &self.law, release, self.limits(), sink, || {
-                !monitor.is_cancelled()
-            })
+            spatial::bounce(
+                &self.body,
+                &self.law,
+                self.slope,
+                self.state(particle),
+                self.limits(),
+                sink,
+                || !monitor.is_cancelled(),
+            )
             .map_err(|stuck| Error::Numerical {
                 particle: particle as u64,
-                seed,
+                seed: self.run.seed,
                 flight: stuck.impacts as u64,
             })?;
         }
