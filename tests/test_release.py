@@ -33,13 +33,13 @@ def uniform(x: Array, low: float, high: float) -> None:
     """Six moments e^(2πik(x - low)/(high - low)) within five standard errors of 0: 4e-6 of false alarm."""
     phase = 2.0 * np.pi * (x - low) / (high - low)
     for k in (1, 2, 3):
-        for part in (np.cos(k * phase), np.sin(k * phase)):
-            assert abs(part.mean()) < 5.0 / np.sqrt(2.0 * x.size)
+        mean = np.mean([np.cos(k * phase), np.sin(k * phase)], axis=1)
+        assert np.abs(mean).max() < 5.0 / np.sqrt(2.0 * x.size)
 
 
 def uncorrelated(*columns: Array) -> None:
     """Every correlation within five standard errors of 0: 6e-7 of false alarm each."""
-    correlation = np.corrcoef(np.stack(columns))
+    correlation: Array = np.asarray(np.corrcoef(np.stack(columns)))
     off = correlation[~np.eye(len(columns), dtype=bool)]
     assert (np.abs(off) < 5.0 / np.sqrt(columns[0].size)).all()
 
@@ -101,7 +101,7 @@ def test_the_azimuth_is_drawn_unless_it_is_given() -> None:
 
 def impulse(law: Law, slip: Array, fall: float) -> Array:
     """Tangential impulse per mass on a sphere, K = 7/2: sticks, or slips throughout (Walton; Brach)."""
-    speed = np.linalg.norm(slip)
+    speed = float(np.linalg.norm(slip))
     if isinstance(law, rs.TangentialRestitution):
         size = (1.0 - law.tangential) * 2.0 / 7.0 * speed
     elif isinstance(law, rs.Coulomb):
@@ -110,7 +110,8 @@ def impulse(law: Law, slip: Array, fall: float) -> Array:
         size = min(law.friction * (1.0 + law.constant) * fall, (1.0 + law.tangential) * 2.0 / 7.0 * speed)
     else:
         size = 0.0
-    return -size * slip / speed
+    along: Array = -size / speed * slip
+    return along
 
 
 @pytest.mark.parametrize("friction", [0.05, 0.3, 10.0])
@@ -331,7 +332,7 @@ incline = 0.25
         ("[run.spin]\nrate = 7", rs.RandomSpin(rate=7)),
     ],
 )
-def test_files(text: str, spin: object, tmp_path: Path) -> None:
+def test_files(text: str, spin: Any, tmp_path: Path) -> None:
     """A TOML file and the call are the same run; a netCDF file gives everything back."""
     path = tmp_path / "run.toml"
     path.write_text(RUN_FILE + text, encoding="utf-8")

@@ -1,8 +1,8 @@
 """Spinning and moving dumbbells beside a general integrator: quaternions, Euler's equations, events.
 
-Nothing in `reference.initial_value` knows that the flight has a closed form. It is right to 1e-12 a step, with
-up to a few hundred steps a flight: 1e-10. How that grows from impact to impact is seen from a second run whose
-release is off by as much.
+Nothing in `reference.initial_value` knows that the flight has a closed form. It is right to 1e-12 a
+step, with up to a few hundred steps a flight: 1e-10. How that grows from impact to impact is seen from
+a second run whose release is off by as much.
 """
 
 from itertools import islice

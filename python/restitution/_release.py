@@ -78,12 +78,12 @@ def _velocity(value: Any) -> tuple[float, ...]:
 
 
 def _rate(value: Any) -> float | tuple[float, float]:
-    single = not (isinstance(value, list | tuple | np.ndarray) and np.shape(value) == (2,))
-    numbers = [_plain_number(part) for part in ([value] if single else value)]
-    good = all(isinstance(x, int | float) and not isinstance(x, bool) and 0 <= x < math.inf for x in numbers)
-    if not good or numbers != sorted(numbers) or numbers[-1] > np.finfo(np.float64).max:
+    pair = isinstance(value, list | tuple) and len(value) == 2
+    parts = [_plain_number(part) for part in (value if pair else [value])]
+    rates = None if any(isinstance(part, bool) for part in parts) else _array(parts)
+    if rates is None or rates.ndim != 1 or not 0.0 <= rates[0] <= rates[-1] < math.inf:
         raise ParameterError(wrong("rate", value, _RATES))
-    return float(numbers[0]) if single else (float(numbers[0]), float(numbers[1]))
+    return (float(rates[0]), float(rates[1])) if pair else float(rates[0])
 
 
 class RandomSpin(Parameters):

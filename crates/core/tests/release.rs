@@ -221,11 +221,11 @@ fn an_impact_at_the_release() {
     let tumble = Spin::Fixed(Vector::new(0.0, 50.0, 0.0));
     let level = [[std::f64::consts::FRAC_PI_2, 0.0]];
     let upright = [[0.0, 0.0]];
-    let down = Vector::new(0.0, 0.0, -0.5);
+    let (down, gently) = (Vector::new(0.0, 0.0, -0.5), Vector::new(0.0, 0.0, -0.1));
     let none = Vector::default();
     for (orientation, height, spin, velocity, sphere) in [
         (&level, radius, tumble, none, 1),
-        (&level, radius, tumble, down, 1),
+        (&level, radius, tumble, gently, 1),
         (&upright, 2.0 * radius, Spin::NONE, down, 2),
         (&upright, 2.0 * radius, tumble, down, 2),
     ] {
