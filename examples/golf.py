@@ -76,11 +76,13 @@ def drop(law: Law, spin: float, particles: int, impacts: int):
     )
 
 
-def extremes(ratio: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Largest ε of a smooth double ball that falls and least of one that rises, at |ω|R/|v| = ratio."""
+def extremes(ratio: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Largest and least ε of a smooth double ball that falls, and least of one that rises, at |ω|R/|v|."""
     x = np.linspace(0.0, 1.0, 1001)[:, None]
     gain = (1.0 + NORMAL) / (1.0 + x**2 / 1.4)
-    return -1.0 + np.max(gain * (1.0 + ratio * x), axis=0), -1.0 - np.max(gain * (ratio * x - 1.0), axis=0)
+    most, least = np.max(gain * (1.0 + ratio * x), axis=0), np.min(gain * (1.0 - ratio * x), axis=0)
+    rising = np.max(gain * (ratio * x - 1.0), axis=0)
+    return -1.0 + most, -1.0 + np.maximum(least, 0.0), -1.0 - np.maximum(rising, 0.0)
 
 
 def first_impacts(axes: Axes) -> None:
@@ -110,9 +112,10 @@ def first_impacts(axes: Axes) -> None:
 def all_impacts(axes: Axes) -> None:
     """Draw ε of the first impacts against |ω|R/|v|, which E_rot/E_tot tells of a smooth body."""
     ratio = np.linspace(0.0, 6.0, 601)
-    highest, lowest = extremes(ratio)
+    highest, least, lowest = extremes(ratio)
     axes.plot(ratio, highest, "k")
-    axes.plot(ratio[lowest < -1.0], lowest[lowest < -1.0], "k")
+    axes.plot(ratio[ratio < 1.0], least[ratio < 1.0], "k")
+    axes.plot(ratio[ratio > 1.0], lowest[ratio > 1.0], "k")
     for spin, color, marker in zip(SPINS[1:], fg.COLORS[1:], fg.MARKERS[1:], strict=False):
         found = drop(rs.Frictionless(normal=NORMAL), spin, 400, 4)
         share = found.rotational_fraction.values
