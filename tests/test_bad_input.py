@@ -27,7 +27,6 @@ ORIENTATION = "must be 'uniform-angle', 'isotropic' or a 1-D array of angles in 
 LAW_TYPES = '"tangential-restitution" or "frictionless" or "coulomb" or "chatterjee-ruina"'
 SPIN = "must be None, (ωx, ωy, ωz) in rad/s, an array of them, one per particle, or a RandomSpin"
 VELOCITY = "must be None or (vx, vy, vz), finite, in m/s"
-RATE = "must be a finite number >= 0, or a pair (low, high) of them with low <= high (rad/s)"
 ANGLE = "must be a finite angle in rad, at most 2**20 either way"
 
 NOT_FINITE = (math.nan, math.inf, -math.inf)
@@ -160,39 +159,6 @@ def test_angles(body: rs.Dumbbell, law: rs.TangentialRestitution) -> None:
     assert refused([0.1, 0.2]) == expected.format(2)
     assert refused([]) == expected.format(0)
     assert refused([[0.1, 0.2]]) == expected.format(1)
-
-
-def test_random_spins() -> None:
-    """A rate is one number or an interval; an axis is one of three."""
-    for rate in (
-        -1,
-        math.nan,
-        math.inf,
-        "fast",
-        None,
-        True,
-        (1, 2, 3),
-        (2, 1),
-        (0, math.inf),
-        (-1, 1),
-        10**400,
-    ):
-        check(message(lambda rate=rate: rs.RandomSpin(rate=rate)), "rate", rate, RATE)  # type: ignore[misc]
-    axes = "must be 'isotropic' or 'horizontal' or 'across'"
-    for axis in ("vertical", 3, None):
-        check(message(lambda axis=axis: rs.RandomSpin(rate=1, axis=axis)), "axis", axis, axes)  # type: ignore[misc]
-
-
-def test_spins(body: rs.Dumbbell, law: rs.TangentialRestitution) -> None:
-    """An array is refused with the index and value of the first bad number; a vector likewise."""
-
-    def refused(spin: Any) -> str:
-        return message(lambda: rs.simulate(body, law, particles=2, spin=spin))
-
-    assert refused([[1, 2, 3], [4, math.nan, 6]]) == "spin[1, 1] = nan: must be finite (rad/s)"
-    assert refused([0, 0, -math.inf]) == "spin[2] = -inf: must be finite (rad/s)"
-    text = message(lambda: rs.simulate(body, law, particles=2, orientation=[[0.1, 0.2], [0.3, math.inf]]))
-    assert text == f"orientation[1, 1] = inf: {ANGLE}"
 
 
 def test_a_tilted_body_may_start_lower(body: rs.Dumbbell, law: rs.TangentialRestitution) -> None:

@@ -157,8 +157,7 @@ def _side_by_side(runs: list[xr.Dataset], bodies: Mapping[str, Body], laws: Mapp
     shared = {
         name: value
         for name, value in first.attrs.items()
-        if all(name in run.attrs and np.array_equal(run.attrs[name], value) for run in runs)
-        and name not in LEDGER
+        if all(name in run.attrs and run.attrs[name] == value for run in runs) and name not in LEDGER
     }
     shared["title"] = "Statistics of the impacts of bodies under collision laws"
     return xr.Dataset(variables, coordinates, shared)

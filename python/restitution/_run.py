@@ -120,11 +120,11 @@ class Run(Parameters):
             **{name: getattr(self, name) for name in self.NUMBERS},
             "orientation": self.orientation if self.angles is None else "given",
             **self._spin_attributes(),
-            "velocity": np.array(self.velocity),
+            "velocity": self.velocity,
             "seed": np.uint64(self.seed),
         }
 
     def _spin_attributes(self) -> dict[str, Any]:
         if isinstance(self.spin, RandomSpin):
-            return {"spin": "random", "spin_rate": np.array(self.spin.rates), "spin_axis": self.spin.axis}
-        return {"spin": np.array(self.spin) if self.spins is None else "given"}
+            return {"spin": "random", "spin_rate": self.spin.rates, "spin_axis": self.spin.axis}
+        return {"spin": self.spin if self.spins is None else "given"}

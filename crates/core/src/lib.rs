@@ -41,6 +41,7 @@ mod error;
 mod flight;
 mod lanes;
 mod level;
+mod plan;
 mod random;
 mod records;
 mod release;

@@ -1,8 +1,8 @@
 //! The table of all impacts of a run, filled row by row from many threads.
 
 use crate::elementary::{angle, angle_in_lanes};
-use crate::ensemble::Plan;
 use crate::lanes::{Impact, Pack, Sink};
+use crate::plan::Plan;
 use crate::trajectory::StopReason;
 use pulp::Simd;
 
