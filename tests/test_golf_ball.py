@@ -165,3 +165,9 @@ def test_how_much_spin_it_takes() -> None:
     assert ratio[np.argmax(highest >= 2.0)] == pytest.approx(least, abs=2e-3)
     assert least == pytest.approx(1.78, abs=5e-3)
     assert ratio[np.argmax(lowest <= -4.0)] == pytest.approx(1.0 + part * (1.0 + 1.0 / 1.4), abs=2e-3)
+
+
+def test_the_figure(tmp_path: Path) -> None:
+    """The script draws docs/images/golf.png."""
+    GOLF["draw"](tmp_path / "golf.png")
+    assert (tmp_path / "golf.png").read_bytes().startswith(b"\x89PNG")
