@@ -25,6 +25,8 @@ SHAPES = '"dumbbell" or "loaded-sphere" or "spherocylinder" or "spheroid"'
 THREADS = "must be a whole number in [1, 1024] or None"
 ORIENTATION = "must be 'uniform-angle', 'isotropic' or a 1-D array of angles in rad, one per particle"
 LAW_TYPES = '"tangential-restitution" or "frictionless" or "coulomb" or "chatterjee-ruina"'
+SPIN = "must be None, (ωx, ωy, ωz) in rad/s, an array of them, one per particle, or a RandomSpin"
+VELOCITY = "must be None or (vx, vy, vz), finite, in m/s"
 ANGLE = "must be a finite angle in rad, at most 2**20 either way"
 
 NOT_FINITE = (math.nan, math.inf, -math.inf)
@@ -62,12 +64,21 @@ RUN = [
     ("orientation", "upright", ORIENTATION),
     ("orientation", None, ORIENTATION),
     ("orientation", 0.3, ORIENTATION),
-    ("orientation", [[0.1, 0.2]], ORIENTATION),
+    ("orientation", [[0.1, 0.2, 0.3]], ORIENTATION),
     ("orientation", [[0.1], [0.1, 0.2]], ORIENTATION),
     ("orientation", ["0.1", "0.2"], ORIENTATION),
     ("orientation", [True, False], ORIENTATION),
     ("orientation", [0.1, 1j], ORIENTATION),
     ("orientation", np.zeros((40, 40)), ORIENTATION),
+    ("orientation", np.zeros((40, 2, 1)), ORIENTATION),
+    *real("incline", (-0.1, math.pi / 2, 90), "must be a real number in [0, 1.5707963267948966)"),
+    *(
+        ("spin", value, SPIN)
+        for value in (1.0, "fast", True, [1, 2], [1, 2, "3"], np.zeros((4, 2)), [[1, 2]])
+    ),
+    ("spin", np.zeros((7, 3)), "must be one per particle, and particles = "),
+    *(("velocity", value, VELOCITY) for value in (1.0, "up", [1, 2], [1, 2, None], [[1, 2, 3]])),
+    *(("velocity", [0, 0, value], VELOCITY) for value in NOT_FINITE),
 ]
 THREADS_CASES = [
     ("threads", value, THREADS) for value in (0, -1, 1025, 10**30, 1.5, True, "2", [1], math.nan)
@@ -147,6 +158,7 @@ def test_angles(body: rs.Dumbbell, law: rs.TangentialRestitution) -> None:
     expected = "orientation = an array of {} angles: must be one angle per particle, and particles = 3"
     assert refused([0.1, 0.2]) == expected.format(2)
     assert refused([]) == expected.format(0)
+    assert refused([[0.1, 0.2]]) == expected.format(1)
 
 
 def test_a_tilted_body_may_start_lower(body: rs.Dumbbell, law: rs.TangentialRestitution) -> None:
@@ -222,6 +234,12 @@ def test_a_body_beyond_floating_point(values: dict[str, float]) -> None:
 def test_absurd_scales(body: rs.Dumbbell, law: rs.TangentialRestitution) -> None:
     """Finite heights and gravities that overflow in the engine's units, R and √(R/g)."""
     assert message(lambda: rs.simulate(body, law, release_height=1.7e308)).startswith("release_height = 1")
+    assert message(lambda: rs.simulate(body, law, spin=[0, 1e200, 0])).startswith(
+        "spin = 1e200: must be finite, at"
+    )
+    assert message(lambda: rs.simulate(body, law, velocity=[0, 0, 1e200])).startswith(
+        "velocity = 1e200: must be"
+    )
     assert "must be such that R/g and gR" in message(lambda: rs.simulate(body, law, gravity=1e-320))
 
 
@@ -300,7 +318,8 @@ def test_a_file_with_much_wrong(tmp_path: Path) -> None:
         "law": {"type": '"friction"', "normal": "0.98"},
         "run": {"particle": "3", "body": "1", "seed": "-1"},
     }
-    takes = "[run] takes particles, impacts, release_height, gravity, orientation, minimum_speed, seed"
+    takes = "[run] takes particles, impacts, release_height, gravity, orientation, spin, velocity, incline, "
+    takes += "minimum_speed, seed"
     lines = refused(write(tmp_path / "run.toml", tables))
     assert [re.sub(r" \(.*\)$", "", line) for line in lines] == [  # without units and such
         "boddy: unknown; did you mean body? the file takes body, law, run",

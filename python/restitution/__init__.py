@@ -8,6 +8,7 @@ if TYPE_CHECKING:
     from restitution._core import NumericalError, build_info
     from restitution._energy import EnergyWarning
     from restitution._reduce import reduce
+    from restitution._release import RandomSpin
     from restitution._simulate import SimulationInterrupted, simulate
     from restitution._statistics import statistics
     from restitution.bodies import Dumbbell, LoadedSphere, Spherocylinder, Spheroid
@@ -32,6 +33,7 @@ __all__ = [
     "LoadedSphere",
     "NumericalError",
     "Plastic",
+    "RandomSpin",
     "SimulationInterrupted",
     "Spherocylinder",
     "Spheroid",
@@ -58,6 +60,7 @@ _HOMES = {
     "build_info": "_core",
     "compare": "_compare",
     "EnergyWarning": "_energy",
+    "RandomSpin": "_release",
     "reduce": "_reduce",
     "SimulationInterrupted": "_simulate",
     "ChatterjeeRuina": "laws",

@@ -96,6 +96,9 @@ def simulate(
     release_height = 0.06            # of the centre of mass, m
     gravity = 9.81                   # m/s2
     orientation = "uniform-angle"    # or "isotropic", or a list of angles, rad
+    spin = \[0.0, 0.0, 0.0]           # rad/s; or a table \[run.spin]: rate, axis
+    velocity = \[0.0, 0.0, 0.0]       # of the centre of mass, m/s
+    incline = 0.0                    # of the plane, falling along x, rad
     minimum_speed = 0.0              # m/s: slower particles end; 0: none does
     seed = 1
     """

@@ -64,6 +64,22 @@ _PER_PARTICLE: dict[str, dict[str, Any]] = {
     "release_angle": {"long_name": "angle between symmetry axis and plane normal at release", "units": "rad"},
 }
 
+# Where particles are let go with spin or velocity, or over an inclined plane.
+_IN_SPACE: dict[str, tuple[tuple[str, ...], dict[str, Any]]] = {
+    "release_azimuth": (
+        ("particle",),
+        {
+            "long_name": "azimuth of the symmetry axis at release, from x towards y",
+            "units": "rad",
+            "symbol": "φ",
+        },
+    ),
+    "release_spin": (
+        ("particle", "component"),
+        {"long_name": "angular velocity at release", "units": "rad s-1", "symbol": "ω"},
+    ),
+}
+
 
 def dataset(run: Run, table: dict[str, Any]) -> xr.Dataset:
     """Turn the records of the core into a Dataset of dimensions (particle, impact)."""
@@ -72,6 +88,10 @@ def dataset(run: Run, table: dict[str, Any]) -> xr.Dataset:
         variables[name] = (("particle", "impact"), table[name], attrs)
     for name, attrs in _PER_PARTICLE.items():
         variables[name] = (("particle",), table[name], attrs)
+    for name, (dimensions, attrs) in _IN_SPACE.items():
+        if name in table:
+            variables[name] = (dimensions, table[name], attrs)
+            variables["component"] = (("component",), ["x", "y", "z"], {"long_name": "z: the plane normal"})
     attrs = attributes(run, "Impacts of bouncing aspherical particles")
     attrs |= ledger_of(table["energy_ratio"])
     cut_short = np.count_nonzero(table["stop_reason"] == STOP_REASONS.index("interrupted"))

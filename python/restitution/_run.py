@@ -1,40 +1,15 @@
 """The parameters of a run: one validation for `simulate`, `statistics` and the TOML file."""
 
-from typing import Annotated, Any, ClassVar, Literal, get_args
+import math
+from typing import Annotated, Any, ClassVar
 
 import numpy as np
-import numpy.typing as npt
-from pydantic import BeforeValidator, Field, InstanceOf, model_validator
+from pydantic import ConfigDict, Field, InstanceOf, model_validator
 
 from restitution._parameters import Allowed, Number, ParameterError, Parameters, Problem, Whole, wrong
+from restitution._release import FloatArray, OrientationOfRun, RandomSpin, SpinOfRun, VelocityOfRun
 from restitution.bodies import Body
 from restitution.laws import LAWS, Law
-
-Orientation = Literal["uniform-angle", "isotropic"]
-
-_ORIENTATIONS = "'uniform-angle', 'isotropic' or a 1-D array of angles in rad, one per particle"
-
-_MOST_RADIANS = 2.0**20
-"""Range of the engine's sine and cosine."""
-
-
-def _orientation(value: Any) -> Any:
-    if isinstance(value, str) and value in get_args(Orientation):
-        return value
-    try:
-        angles = np.asarray(value)
-    except ValueError:  # lists of different lengths
-        angles = np.empty(())
-    if angles.ndim != 1 or angles.dtype.kind not in "iuf":
-        raise ParameterError(wrong("orientation", value, _ORIENTATIONS))
-    angles = angles.astype(np.float64)
-    beyond = np.flatnonzero(~(np.abs(angles) <= _MOST_RADIANS))
-    if beyond.size:
-        first = int(beyond[0])
-        allowed = "a finite angle in rad, at most 2**20 either way"
-        raise ParameterError(wrong(f"orientation[{first}]", float(angles[first]), allowed))
-    angles.flags.writeable = False
-    return angles
 
 
 class Run(Parameters):
@@ -47,12 +22,19 @@ class Run(Parameters):
     particles, impacts : int
         Number of particles and most impacts of each; > 0.
     release_height : float
-        Height of the centre of mass at release, in m. No part of it may be below the plane.
+        Distance of the centre of mass from the plane at release, in m. No part may be below the plane.
     gravity : float
         Acceleration of gravity in m/s², > 0.
-    orientation : {"uniform-angle", "isotropic"} or array of float, shape (particles,)
+    orientation : {"uniform-angle", "isotropic"} or array of float, shape (particles,) or (particles, 2)
         Angle θ between symmetry axis and plane normal at release: uniform in [0, π), every direction alike,
-        or given in rad.
+        or given in rad. The azimuth φ of the axis is uniform in [0, 2π), or given beside θ.
+    spin : tuple of three floats, array of float, shape (particles, 3), or RandomSpin
+        Angular velocity at release, in rad/s; the same for all, one each, or drawn at random.
+    velocity : tuple of three floats
+        Velocity of the centre of mass at release, in m/s.
+    incline : float
+        Angle in [0, π/2) by which the plane is inclined, in rad. In its frame gravity is
+        g (sin α, 0, -cos α): z is the plane normal, and the plane falls along x.
     minimum_speed : float
         A particle ends when √(2 E_kin/m) after an impact falls below this, in m/s; 0 never does.
     seed : int
@@ -65,11 +47,15 @@ class Run(Parameters):
     impacts: Annotated[Whole, Field(ge=1, lt=2**40, description="most impacts of a particle")] = 400
     release_height: Annotated[Number, Field(gt=0, description="height of the centre of mass, m")] = 0.06
     gravity: Annotated[Number, Field(gt=0, description="m/s²")] = 9.81
-    orientation: Annotated[Any, BeforeValidator(_orientation)] = "uniform-angle"
+    orientation: OrientationOfRun = "uniform-angle"
+    spin: SpinOfRun = (0.0, 0.0, 0.0)
+    velocity: VelocityOfRun = (0.0, 0.0, 0.0)
+    incline: Annotated[Number, Field(ge=0, lt=math.pi / 2, description="rad")] = 0.0
     minimum_speed: Annotated[Number, Field(ge=0, description="m/s; 0 never stops a particle")] = 0.0
     seed: Annotated[Whole, Field(ge=0, lt=2**64)] = 1
 
-    NUMBERS: ClassVar = ("particles", "impacts", "release_height", "gravity", "minimum_speed")
+    model_config: ClassVar[ConfigDict] = ConfigDict(validate_default=True)
+    NUMBERS: ClassVar = ("particles", "impacts", "release_height", "gravity", "minimum_speed", "incline")
 
     @model_validator(mode="after")
     def _nothing_below_the_plane(self) -> "Run":
@@ -86,17 +72,42 @@ class Run(Parameters):
             raise ParameterError(wrong("release_height", self.release_height, allowed))
         return self
 
+    @model_validator(mode="after")
+    def _one_spin_per_particle(self) -> "Run":
+        spins = self.spins
+        if spins is not None and len(spins) != self.particles:
+            given = f"an array of {len(spins)} angular velocities"
+            allowed = f"one per particle, and particles = {self.particles}"
+            raise ParameterError(Problem("spin", f" = {given}: must be {allowed}"))
+        return self
+
     @property
-    def angles(self) -> npt.NDArray[np.float64] | None:
-        """The angles at release where they were given, in rad, shape (particles,)."""
-        return None if isinstance(self.orientation, str) else self.orientation
+    def angles(self) -> FloatArray | None:
+        """The angles θ at release where they were given, in rad, shape (particles,)."""
+        if isinstance(self.orientation, str):
+            return None
+        angles: FloatArray = self.orientation
+        return angles if angles.ndim == 1 else angles[:, 0]
+
+    @property
+    def spins(self) -> FloatArray | None:
+        """The angular velocities where each particle has its own, in rad/s, shape (particles, 3)."""
+        return self.spin if isinstance(self.spin, np.ndarray) else None
+
+    def fall_speed(self, drop: float) -> float:
+        """Give the normal velocity in m/s after the centre of mass has come nearer by `drop`, in m."""
+        fall = 2.0 * self.gravity * math.cos(self.incline) * drop
+        return math.sqrt(fall + self.velocity[2] ** 2)
 
     def parameters(self) -> dict[str, Any]:
         """Name every parameter as the core does."""
+        spin = self.spin
         return {
             "body": self.body.solid,
             "law": self.law.parameters(),
             **{name: getattr(self, name) for name in (*self.NUMBERS, "orientation", "seed")},
+            "spin": spin.parameters() if isinstance(spin, RandomSpin) else spin,
+            "velocity": self.velocity,
         }
 
     def attributes(self) -> dict[str, Any]:
@@ -108,5 +119,12 @@ class Run(Parameters):
             **self.law.attributes(),
             **{name: getattr(self, name) for name in self.NUMBERS},
             "orientation": self.orientation if self.angles is None else "given",
+            **self._spin_attributes(),
+            "velocity": self.velocity,
             "seed": np.uint64(self.seed),
         }
+
+    def _spin_attributes(self) -> dict[str, Any]:
+        if isinstance(self.spin, RandomSpin):
+            return {"spin": "random", "spin_rate": self.spin.rates, "spin_axis": self.spin.axis}
+        return {"spin": self.spin if self.spins is None else "given"}

@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING, Literal
 import numpy.typing as npt
 
 from restitution import _core
+from restitution._release import RandomSpin
 from restitution._resources import check_memory, checked_threads, progress_bar
 from restitution._run import Run
 from restitution.bodies import Body
@@ -38,12 +39,15 @@ def simulate(
     release_height: float = 0.06,
     gravity: float = 9.81,
     orientation: Literal["uniform-angle", "isotropic"] | npt.ArrayLike = "uniform-angle",
+    spin: npt.ArrayLike | RandomSpin | None = None,
+    velocity: npt.ArrayLike | None = None,
+    incline: float = 0.0,
     minimum_speed: float = 0.0,
     seed: int = 1,
     threads: int | None = None,
     progress: bool = False,
 ) -> "xr.Dataset":
-    """Drop particles from rest and record every impact with the plane (the paper's Sec. III, steps 1-7).
+    """Drop particles and record every impact with the plane (the paper's Sec. III, steps 1-7).
 
     Parameters
     ----------
@@ -54,12 +58,19 @@ def simulate(
     particles, impacts : int
         Number of particles, and the most impacts that each may have; both > 0.
     release_height : float
-        Height of the centre of mass at release, in m; no part may be below the plane.
+        Distance of the centre of mass from the plane at release, in m; no part may be below the plane.
     gravity : float
         Acceleration of gravity in m/s², > 0.
-    orientation : {"uniform-angle", "isotropic"} or array of float, shape (particles,)
+    orientation : {"uniform-angle", "isotropic"} or array of float, shape (particles,) or (particles, 2)
         The angle θ between symmetry axis and plane normal at release: uniform in [0, π) (above Eq. 18), every
-        direction of the axis alike, or given in rad.
+        direction of the axis alike, or given in rad. Its azimuth φ is uniform in [0, 2π), or given beside θ.
+    spin : array of float, shape (3,) or (particles, 3), or RandomSpin, optional
+        Angular velocity ω at release, in rad/s: the same for all, one each, or drawn at random.
+    velocity : array of float, shape (3,), optional
+        Velocity of the centre of mass at release, in m/s. It may lead up or down.
+    incline : float
+        Angle α by which the plane is inclined, in rad, in [0, π/2): gravity is g (sin α, 0, -cos α). Every
+        vector is in the frame of the plane: z along its normal, x down the slope.
     minimum_speed : float
         A particle ends when √(2 E_kin/m) after an impact falls below this, in m/s. 0 never does.
     seed : int
@@ -75,7 +86,8 @@ def simulate(
         Dimensions (particle, impact). Variables over both: ``time``, ``impact_velocity``,
         ``rebound_velocity``, ``restitution``, ``rotational_fraction``, ``energy_ratio``, ``angle`` (float64,
         NaN where the impact never happened) and ``contact`` (which sphere touched, or which half of a
-        spheroid). Over particles: ``impacts``, ``stop_reason``, ``release_angle``. Units are in the
+        spheroid). Over particles: ``impacts``, ``stop_reason``, ``release_angle``; with spin, velocity or
+        incline also ``release_azimuth`` and, over (particle, component), ``release_spin``. Units are in the
         variables' attributes, all parameters in the Dataset's, as are ``energy_created_impacts``, the
         number of impacts that multiplied the kinetic energy by more than 1 + 1e-12, their share of all
         impacts, ``energy_created_share``, and if there are any ``largest_energy_ratio``.
@@ -120,6 +132,9 @@ def simulate(
         release_height=release_height,
         gravity=gravity,
         orientation=orientation,
+        spin=spin,
+        velocity=velocity,
+        incline=incline,
         minimum_speed=minimum_speed,
         seed=seed,
     )

@@ -10,6 +10,7 @@ from restitution import _core
 from restitution._bins import FRACTION_BINS, assemble, by_velocity, checked_edges
 from restitution._dataset import STOP_REASONS, attributes
 from restitution._energy import add_by_row, ledger, warn
+from restitution._release import RandomSpin
 from restitution._resources import available_memory, checked_threads, progress_bar
 from restitution._run import Run
 from restitution._simulate import SimulationInterrupted
@@ -28,6 +29,9 @@ def statistics(
     release_height: float = 0.06,
     gravity: float = 9.81,
     orientation: Literal["uniform-angle", "isotropic"] | npt.ArrayLike = "uniform-angle",
+    spin: npt.ArrayLike | RandomSpin | None = None,
+    velocity: npt.ArrayLike | None = None,
+    incline: float = 0.0,
     minimum_speed: float = 0.0,
     seed: int = 1,
     threads: int | None = None,
@@ -44,8 +48,10 @@ def statistics(
 
     Parameters
     ----------
-    body, law, particles, impacts, release_height, gravity, orientation, minimum_speed, seed, threads
+    body, law, particles, impacts, release_height, gravity, orientation, spin, velocity, incline
         As in `restitution.simulate`.
+    minimum_speed, seed, threads
+        Likewise.
     velocity_bins : array_like, shape (nv + 1,), or None
         Edges of the impact velocity bins in m/s; finite, strictly increasing, uniform. With None the rows are
         the numbers of the impacts instead, dimension ``impact``.
@@ -95,6 +101,9 @@ def statistics(
         release_height=release_height,
         gravity=gravity,
         orientation=orientation,
+        spin=spin,
+        velocity=velocity,
+        incline=incline,
         minimum_speed=minimum_speed,
         seed=seed,
     )

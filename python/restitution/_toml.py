@@ -1,10 +1,11 @@
-"""Runs written down as TOML files: the tables ``[body]``, ``[law]`` and ``[run]``."""
+"""Runs written down as TOML files: the tables ``[body]``, ``[law]`` and ``[run]``, with ``[run.spin]``."""
 
 import tomllib
 from pathlib import Path
 from typing import Any, TypeVar
 
 from restitution._parameters import ParameterError, Parameters, Problem, unknown, wrong
+from restitution._release import RandomSpin
 from restitution._run import Run
 from restitution.bodies import Dumbbell, LoadedSphere, Spherocylinder, Spheroid
 from restitution.laws import (
@@ -64,7 +65,10 @@ def read(path: Path) -> Run:
             raise ValueError(f"{path}: not a TOML file: {error}") from None
     reader = _Reader(tables)
     parts = {name: reader.chosen(name, reader.table(name)) for name in _PARTS}
-    run = reader.made("run", Run, reader.table("run"), parts)
+    table = reader.table("run")
+    if isinstance(table.get("spin"), dict):
+        parts["spin"] = reader.made("run.spin", RandomSpin, table["spin"], {})
+    run = reader.made("run", Run, table, parts)
     if reader.problems or run is None:
         raise ValueError("\n".join(f"{path}: {problem}" for problem in reader.problems))
     return run

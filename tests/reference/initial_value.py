@@ -33,9 +33,19 @@ class Impact(NamedTuple):
     contact: int
 
 
-def released(angle: float, height: float, velocity: Array | None = None, spin: Array | None = None) -> Array:
-    """The axis leans by `angle` from the vertical towards +x; `velocity` and `spin` are the laboratory's."""
-    attitude = np.array([np.cos(angle / 2), 0.0, np.sin(angle / 2), 0.0])
+def released(
+    angle: float,
+    height: float,
+    velocity: Array | None = None,
+    spin: Array | None = None,
+    azimuth: float = 0.0,
+) -> Array:
+    """The axis leans by `angle` from the vertical towards +x, and is turned about the vertical by `azimuth`.
+
+    `velocity` and `spin` are the laboratory's.
+    """
+    turned = Rotation.from_euler("ZY", [azimuth, angle])
+    attitude = turned.as_quat(scalar_first=True)
     state = np.concatenate([[height], np.zeros(3), attitude, np.zeros(3)])
     if velocity is not None:
         state[VELOCITY] = velocity
@@ -50,18 +60,24 @@ def frame(state: Array) -> Array:
 
 
 class Problem:
-    """Body (with L < 2R, where one integral covers it), law, and the integrator's relative tolerance."""
+    """Body (with L < 2R, where one integral covers it), law, gravity, and the integrator's tolerance.
+
+    The law is the paper's, or without `tangential` the frictionless one. `gravity` points down, or, over a
+    plane inclined by `incline`, also along +x.
+    """
 
     def __init__(
         self,
         radius: float,
         separation: float,
         normal: float,
-        tangential: float,
+        tangential: float | None,
         gravity: float = 9.81,
         tolerance: float = 1e-12,
+        incline: float = 0.0,
     ) -> None:
-        self.radius, self.arm, self.gravity, self.tolerance = radius, separation / 2, gravity, tolerance
+        self.radius, self.arm, self.tolerance = radius, separation / 2, tolerance
+        self.gravity, self.along = gravity * np.cos(incline), gravity * np.sin(incline)
         self.normal, self.tangential = normal, tangential
 
         def over_slices(weight: Callable[[float, float], float]) -> float:
@@ -87,7 +103,7 @@ class Problem:
             w * r + x * q - y * p,
         ]
         spin = [(b - c) * q * r / a, (c - a) * r * p / b, (a - b) * p * q / c]
-        return np.array([state[3], 0.0, 0.0, -self.gravity, *(0.5 * rate for rate in attitude), *spin])
+        return np.array([state[3], self.along, 0.0, -self.gravity, *(0.5 * rate for rate in attitude), *spin])
 
     def gap(self, sign: int) -> Event:
         """Distance of sphere +1 or -1 from the plane, as an event that ends the integration at 0."""
@@ -152,9 +168,14 @@ class Problem:
         x, y, z = sign * self.arm * axes[:, 2] - np.array([0.0, 0.0, self.radius])  # r_c (6)
         skew = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])  # [r]ω = r × ω
         contact = state[VELOCITY] - skew @ spin  # v_c (7)
-        wanted = np.array([self.tangential, self.tangential, -self.normal]) * contact  # v_c' (9)
         eye, nothing = np.eye(3), np.zeros((3, 3))
-        left = np.block([[eye, nothing, -eye], [nothing, tensor, -skew], [eye, -skew, nothing]])
+        last = np.block([eye, -skew, nothing])  # v_c'
+        if self.tangential is None:
+            wanted = np.array([0.0, 0.0, -self.normal * contact[2]])
+            last[:2] = np.eye(9)[6:8]  # P_t = 0
+        else:
+            wanted = np.array([self.tangential, self.tangential, -self.normal]) * contact  # v_c' (9)
+        left = np.block([[eye, nothing, -eye], [nothing, tensor, -skew], [last]])
         right = np.concatenate([state[VELOCITY], tensor @ spin, wanted])
         solution = np.linalg.solve(left, right)
         after = state.copy()

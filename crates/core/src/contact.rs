@@ -26,9 +26,10 @@ pub enum Departure {
 }
 
 impl Departure {
-    /// Of a release: a sphere may be on the plane, at rest or on its way up.
+    /// Of a release: a sphere may be on the plane, at rest or on its way up. One that is on its way down meets the plane at
+    /// once, and is left to the search.
     pub fn of_release(body: &Body, state: State) -> Self {
-        let flight = Flight::new(state);
+        let flight = Flight::new(state, 0.0); // the start alone matters, not where it falls to
         let tilt_rate = flight.tilt_rate(flight.phase(0.0));
         let gaps = state.gaps(body);
         let on_the_plane = Sphere::BOTH.into_iter().find_map(|sphere| {

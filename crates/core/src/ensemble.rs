@@ -1,16 +1,18 @@
 //! Many particles, on all cores, each alone: the result cannot depend on the schedule.
 
 use crate::Error;
-use crate::body::{Body, Solid};
+use crate::body::Solid;
 use crate::collision::{InPlane, Law};
+use crate::elementary::sincos;
 use crate::lanes::{self, Pack, Sink};
 use crate::level::Level;
+use crate::plan::Plan;
 use crate::records::{Records, Table};
 use crate::release::Orientation;
-use crate::scales::Scales;
 use crate::spatial;
+use crate::spin::Spin;
 use crate::statistics::{Bins, By, Counter, Tally};
-use crate::trajectory::Limits;
+use crate::vector::Vector;
 use pulp::{Simd, WithSimd};
 use std::ops::Range;
 use std::sync::Mutex;
@@ -27,12 +29,18 @@ pub struct Run<'a> {
     pub particles: usize,
     /// Most impacts of a particle.
     pub impacts: usize,
-    /// Height of the centre of mass at release, in m.
+    /// Height of the centre of mass over the plane at release, along the plane normal, in m.
     pub release_height: f64,
     /// Acceleration of gravity, in m/s².
     pub gravity: f64,
-    /// Law of the angle at release.
+    /// Law of the symmetry axis at release.
     pub orientation: Orientation<'a>,
+    /// Law of the angular velocity at release.
+    pub spin: Spin<'a>,
+    /// Velocity of the centre of mass at release, in m/s.
+    pub velocity: Vector,
+    /// Angle α in [0, π/2) by which the plane is inclined, falling along x: in its frame gravity is g(sin α, 0, −cos α).
+    pub incline: f64,
     /// A particle ends when √(2 E_kin/m) falls below this after an impact, in m/s; 0 never does.
     pub minimum_speed: f64,
     /// Seed of the random numbers.
@@ -75,12 +83,18 @@ impl Monitor {
 pub(crate) const BLOCK: usize = 96;
 
 impl Run<'_> {
-    /// What the sums of ε are taken about: ε^n at the speed that a drop from the release height has on the plane.
+    /// What the sums of ε are taken about: ε^n at the normal speed that a fall from the release has on the plane.
     pub fn origin(&self) -> f64 {
         let drop = self.release_height - self.body.unit;
-        self.law
-            .normal()
-            .at((2.0 * self.gravity * drop.max(0.0)).sqrt())
+        let gained = 2.0 * self.gravity * sincos(self.incline).1 * drop.max(0.0);
+        let start = self.velocity.z;
+        self.law.normal().at(start.mul_add(start, gained).sqrt())
+    }
+
+    /// Whether all particles are let go at rest, over a level plane. All directions along the plane are then alike, and each
+    /// particle stays in the vertical plane of its axis.
+    pub(crate) fn is_at_rest(&self) -> bool {
+        self.spin.is_none() && self.velocity == Vector::default() && self.incline == 0.0
     }
 
     /// Runs every particle and keeps every impact. A run that is cancelled returns the particles that were begun.
@@ -114,6 +128,9 @@ impl Run<'_> {
         drop(rows);
         ended.into_iter().collect::<Result<(), Error>>()?;
         records.truncate(started.into_inner());
+        if !plan.at_rest {
+            records.add_release(&plan);
+        }
         Ok(records)
     }
 
@@ -164,61 +181,7 @@ impl Means {
     }
 }
 
-/// A run that has been checked, in the core's units.
-pub(crate) struct Plan<'a> {
-    run: &'a Run<'a>,
-    pub body: Body,
-    law: Law<'a>,
-    pub scales: Scales,
-    /// Height of the centre of mass at release.
-    height: f64,
-}
-
-impl<'a> Plan<'a> {
-    pub fn new(run: &'a Run<'a>) -> Result<Self, Error> {
-        Error::unless(run.particles > 0, "particles", 0.0, "> 0")?;
-        Error::unless(run.impacts > 0, "impacts", 0.0, "> 0")?;
-        let speed = run.minimum_speed;
-        let allowed = "finite and >= 0 (m/s)";
-        Error::unless(
-            speed.is_finite() && speed >= 0.0,
-            "minimum_speed",
-            speed,
-            allowed,
-        )?;
-        run.orientation.check(run.particles)?;
-        let scales = Scales::new(run.body.unit, run.gravity)?;
-        let plan = Self {
-            run,
-            body: run.body.scaled,
-            law: run.law.scaled(&scales),
-            scales,
-            height: run.release_height / scales.length,
-        };
-        // A body put down on the plane may be off by the rounding of its height.
-        let clear = |cosine: f64| {
-            plan.height >= plan.body.hull.support(cosine) * (1.0 - 4.0 * f64::EPSILON)
-        };
-        let clear = match run.orientation {
-            Orientation::Given(_) => (0..run.particles).all(|i| clear(plan.release(i).1)),
-            Orientation::UniformAngle | Orientation::Isotropic => {
-                run.release_height >= run.body.farthest() * (1.0 - 4.0 * f64::EPSILON)
-            }
-        };
-        Error::unless(
-            clear && plan.height.is_finite(),
-            "release_height",
-            run.release_height,
-            "finite and high enough that no part is below the plane at release",
-        )?;
-        Ok(plan)
-    }
-
-    /// Sine and cosine of the angle at release.
-    pub fn release(&self, particle: usize) -> (f64, f64) {
-        self.run.orientation.draw(self.run.seed, particle as u64)
-    }
-
+impl Plan<'_> {
     /// Bounces a range of particles and tells `sink`.
     pub fn bounce(
         &self,
@@ -228,7 +191,7 @@ impl<'a> Plan<'a> {
         sink: &mut impl Sink,
     ) -> Result<(), Error> {
         let count = particles.len() as u64;
-        if !self.body.hull.is_equal_pair() {
+        if !self.at_rest || !self.body.hull.is_equal_pair() {
             self.bounce_in_space(particles, monitor, sink)?;
         } else if let Some(law) = self.law.steady() {
             self.bounce_under(&law, particles, level, monitor, sink)?;
@@ -257,13 +220,6 @@ impl<'a> Plan<'a> {
         })
     }
 
-    fn limits(&self) -> Limits {
-        Limits {
-            impacts: self.run.impacts,
-            minimum_speed: self.run.minimum_speed / self.scales.speed,
-        }
-    }
-
     /// As [`Plan::bounce`], for what the lanes cannot follow.
     fn bounce_in_space(
         &self,
@@ -271,18 +227,20 @@ impl<'a> Plan<'a> {
         monitor: &Monitor,
         sink: &mut impl Sink,
     ) -> Result<(), Error> {
-        let Run {
-            orientation, seed, ..
-        } = *self.run;
         for (place, particle) in particles.enumerate() {
-            let release = orientation.release(&self.body, self.height, seed, particle as u64);
             sink.begin(place);
-            spatial::bounce(&self.body, &self.law, release, self.limits(), sink, || {
-                !monitor.is_cancelled()
-            })
+            spatial::bounce(
+                &self.body,
+                &self.law,
+                self.slope,
+                self.state(particle),
+                self.limits(),
+                sink,
+                || !monitor.is_cancelled(),
+            )
             .map_err(|stuck| Error::Numerical {
                 particle: particle as u64,
-                seed,
+                seed: self.run.seed,
                 flight: stuck.impacts as u64,
             })?;
         }

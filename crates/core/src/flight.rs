@@ -16,6 +16,8 @@ const SLOWEST: f64 = 1e-150;
 #[derive(Debug, Clone, Copy)]
 pub struct Flight {
     start: State,
+    /// Acceleration along x: tan α where the plane is inclined by α, for the unit of acceleration is g cos α.
+    slope: f64,
     /// Rate of rotation of the axis, Ω = |**Λ**|/J_xx.
     pub rate: f64,
     /// The axis is `constant + cosine cos φ + sine sin φ`, φ = Ωt (3).
@@ -47,8 +49,8 @@ impl Phase {
 }
 
 impl Flight {
-    /// The flight that follows from `start`.
-    pub fn new(start: State) -> Self {
+    /// The flight that follows from `start`, over a plane that falls along x with this slope.
+    pub fn new(start: State, slope: f64) -> Self {
         let rate = start.precession.norm();
         // Slower than this nothing turns in any time; every direction then serves, and this one suits planar motion.
         let about = if rate > SLOWEST {
@@ -60,6 +62,7 @@ impl Flight {
         let cosine = start.axis - constant;
         Self {
             start,
+            slope,
             rate,
             constant,
             cosine,
@@ -126,8 +129,9 @@ impl Flight {
         State {
             lift: body.hull.lift(sphere, axis.z), // (2)
             velocity: Vector {
+                x: self.slope.mul_add(time, self.start.velocity.x), // (5)
+                y: self.start.velocity.y,
                 z: self.climb(time),
-                ..self.start.velocity
             },
             axis,
             precession: self.start.precession,

@@ -1,8 +1,8 @@
 //! The table of all impacts of a run, filled row by row from many threads.
 
 use crate::elementary::{angle, angle_in_lanes};
-use crate::ensemble::Plan;
 use crate::lanes::{Impact, Pack, Sink};
+use crate::plan::Plan;
 use crate::trajectory::StopReason;
 use pulp::Simd;
 
@@ -33,6 +33,10 @@ pub struct Records {
     pub stop_reason: Vec<i8>,
     /// θ at release in rad, per particle.
     pub release_angle: Vec<f64>,
+    /// Azimuth of the axis at release in rad, per particle; of none if all were let go at rest.
+    pub release_azimuth: Vec<f64>,
+    /// Angular velocity at release in rad/s, likewise.
+    pub release_spin: Vec<[f64; 3]>,
 }
 
 impl Records {
@@ -52,6 +56,8 @@ impl Records {
             impacts: vec![0; particles],
             stop_reason: vec![StopReason::Interrupted as i8; particles],
             release_angle: vec![f64::NAN; particles],
+            release_azimuth: Vec::new(),
+            release_spin: Vec::new(),
         }
     }
 
@@ -78,6 +84,15 @@ impl Records {
         self.impacts.truncate(particles);
         self.stop_reason.truncate(particles);
         self.release_angle.truncate(particles);
+    }
+
+    /// Adds how the particles were let go, where that is more than an angle.
+    pub(crate) fn add_release(&mut self, plan: &Plan<'_>) {
+        for particle in 0..self.particles() {
+            let (azimuth, spin) = plan.start(particle);
+            self.release_azimuth.push(azimuth);
+            self.release_spin.push([spin.x, spin.y, spin.z]);
+        }
     }
 
     /// The rows, one a particle.

@@ -18,13 +18,14 @@ pub(crate) struct Stuck {
 pub(crate) fn bounce(
     body: &Body,
     law: &Law<'_>,
+    slope: f64,
     release: State,
     limits: Limits,
     sink: &mut impl Sink,
     go_on: impl Fn() -> bool,
 ) -> Result<(), Stuck> {
     let mut impacts = 0;
-    let ended = trajectory::bounce(body, law, release, limits, |impact| {
+    let ended = trajectory::bounce(body, law, slope, release, limits, |impact| {
         sink.impact(impacts, 0, &in_lane(impact, body));
         impacts += 1;
         go_on()

@@ -76,10 +76,12 @@ pub(crate) const UNRESOLVED: f64 = 8.0 / 8_796_093_022_208.0;
 /// This many unresolved flights in a row are a collapse.
 pub const COLLAPSE_RUN: u32 = 16;
 
-/// Bounces a particle until a limit is reached; `record` sees every impact and says whether to go on.
+/// Bounces a particle until a limit is reached; `record` sees every impact and says whether to go on. The plane falls along
+/// x with the given slope, tan α.
 pub fn bounce(
     body: &Body,
     law: &Law<'_>,
+    slope: f64,
     release: State,
     limits: Limits,
     mut record: impl FnMut(&Impact) -> bool,
@@ -89,7 +91,7 @@ pub fn bounce(
     let mut clock = 0.0;
     let mut unresolved = 0;
     for _ in 0..limits.impacts {
-        let flight = Flight::new(state);
+        let flight = Flight::new(state, slope);
         let (time, before, sphere) = match first_contact(&flight, body, departure)? {
             Landing::Impact {
                 time,

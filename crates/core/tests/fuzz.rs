@@ -10,7 +10,7 @@ use proptest::prelude::*;
 use proptest::test_runner::{Config, RngSeed, TestError, TestRunner};
 use restitution_core::{
     Dumbbell, Impact, Law, Level, Limits, Means, Monitor, Orientation, Records, Run, Scales, Shape,
-    bounce,
+    Spin, Vector, bounce,
 };
 use std::f64::consts::{FRAC_PI_2, PI};
 use std::time::{Duration, Instant};
@@ -62,6 +62,9 @@ impl Case {
             gravity: self.gravity,
             orientation,
             minimum_speed: self.minimum_speed * (self.gravity * self.radius).sqrt(),
+            spin: Spin::NONE,
+            velocity: Vector::default(),
+            incline: 0.0,
             seed: self.seed,
         }
     }
@@ -174,6 +177,7 @@ fn compare(case: &Case) -> Result<u64, TestCaseError> {
         let reason = bounce(
             &body,
             &run.law.scaled(&scales),
+            0.0,
             release,
             limits,
             |impact: &Impact| {

@@ -2,8 +2,8 @@
 
 use restitution_core::{
     ChatterjeeRuina, Coulomb, Dumbbell, Frictionless, Hypothesis, Impact, Law, Level, Limits,
-    Means, Monitor, Normal, Orientation, Plastic, Records, Run, Scales, StopReason, Tabulated,
-    TangentialRestitution, Viscoelastic, bounce,
+    Means, Monitor, Normal, Orientation, Plastic, Records, Run, Scales, Spin, StopReason,
+    Tabulated, TangentialRestitution, Vector, Viscoelastic, bounce,
 };
 
 fn run(elongation: f64, law: Law<'_>, particles: usize, impacts: usize) -> Run<'_> {
@@ -19,6 +19,9 @@ fn run(elongation: f64, law: Law<'_>, particles: usize, impacts: usize) -> Run<'
         gravity: 9.81,
         orientation: Orientation::UniformAngle,
         minimum_speed: 0.0,
+        spin: Spin::NONE,
+        velocity: Vector::default(),
+        incline: 0.0,
         seed: 11,
     }
 }
@@ -55,6 +58,7 @@ fn agrees_with_the_oracle(run: &Run<'_>) {
         let reason = bounce(
             &body,
             &run.law.scaled(&scales),
+            0.0,
             release,
             limits,
             |impact: &Impact| {

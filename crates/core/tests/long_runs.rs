@@ -29,23 +29,30 @@ fn a_million_impacts_are_in_order_and_above_the_plane() {
                     impacts: 2000,
                     minimum_speed: 1e-4,
                 };
-                let reason = bounce(&body, &law(normal, tangential), release, limits, |impact| {
-                    assert!(impact.time >= last, "{} after {last}", impact.time);
-                    last = impact.time;
-                    let gaps = impact.before.gaps(&body);
-                    deepest = deepest.max(-gaps[0]).max(-gaps[1]);
-                    assert!(gaps[impact.sphere as usize].abs() <= 1e-12);
-                    let numbers = [
-                        impact.rotational_fraction(&body),
-                        impact.energy_ratio(&body),
-                        impact.restitution(),
-                        impact.before.angle(),
-                    ];
-                    assert!(numbers.iter().all(|x| x.is_finite()), "{impact:?}");
-                    assert!((0.0..=1.0).contains(&numbers[0]));
-                    total += 1;
-                    true
-                });
+                let reason = bounce(
+                    &body,
+                    &law(normal, tangential),
+                    0.0,
+                    release,
+                    limits,
+                    |impact| {
+                        assert!(impact.time >= last, "{} after {last}", impact.time);
+                        last = impact.time;
+                        let gaps = impact.before.gaps(&body);
+                        deepest = deepest.max(-gaps[0]).max(-gaps[1]);
+                        assert!(gaps[impact.sphere as usize].abs() <= 1e-12);
+                        let numbers = [
+                            impact.rotational_fraction(&body),
+                            impact.energy_ratio(&body),
+                            impact.restitution(),
+                            impact.before.angle(),
+                        ];
+                        assert!(numbers.iter().all(|x| x.is_finite()), "{impact:?}");
+                        assert!((0.0..=1.0).contains(&numbers[0]));
+                        total += 1;
+                        true
+                    },
+                );
                 assert_ne!(reason, Ok(StopReason::Interrupted));
             }
         }
@@ -73,14 +80,21 @@ fn energy_never_grows_where_it_cannot() {
                 impacts: 2000,
                 minimum_speed: 1e-4,
             };
-            bounce(&body, &law(normal, tangential), release, limits, |impact| {
-                // Rounding: that of the height, of v²/2 and of the sum.
-                let allowed = 16.0 * f64::EPSILON * (1.0 + held);
-                let now = energy(&impact.after, &body);
-                assert!(now <= held + allowed, "{:e} gained", now - held);
-                held = now;
-                true
-            })
+            bounce(
+                &body,
+                &law(normal, tangential),
+                0.0,
+                release,
+                limits,
+                |impact| {
+                    // Rounding: that of the height, of v²/2 and of the sum.
+                    let allowed = 16.0 * f64::EPSILON * (1.0 + held);
+                    let now = energy(&impact.after, &body);
+                    assert!(now <= held + allowed, "{:e} gained", now - held);
+                    held = now;
+                    true
+                },
+            )
             .unwrap();
         }
     }
@@ -100,7 +114,7 @@ fn reversal_conserves_energy() {
             minimum_speed: 0.0,
         };
         let mut end = 0.0;
-        bounce(&body, &law(1.0, -1.0), release, limits, |impact| {
+        bounce(&body, &law(1.0, -1.0), 0.0, release, limits, |impact| {
             end = energy(&impact.after, &body);
             true
         })

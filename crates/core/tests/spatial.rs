@@ -56,6 +56,7 @@ fn the_table_holds_what_the_oracle_says() {
             let reason = bounce(
                 &body.scaled,
                 &run.law,
+                0.0,
                 release,
                 limits,
                 |impact: &Impact| {

@@ -118,7 +118,7 @@ fn the_speed_threshold_is_obeyed_exactly() {
             impacts: 200,
             minimum_speed,
         };
-        let reason = bounce(&body, &law, release, limits, |impact| {
+        let reason = bounce(&body, &law, 0.0, release, limits, |impact| {
             all.push(*impact);
             true
         });
@@ -214,6 +214,7 @@ fn the_recorder_may_stop() {
     let reason = bounce(
         &body,
         &law(0.98, 1.0),
+        0.0,
         at_rest(&body, 20.0, 0.7),
         limits,
         |_| {

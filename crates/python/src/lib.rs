@@ -3,6 +3,7 @@
 mod bodies;
 mod distribution;
 mod laws;
+mod release;
 mod watch;
 
 use bodies::Solid;
@@ -13,7 +14,7 @@ use pyo3::exceptions::{PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use restitution_core::statistics::{Axis, Bins, By, CREATES_ENERGY, Moments};
-use restitution_core::{Error, Level, Means, Orientation, Run};
+use restitution_core::{Error, Level, Means, Run, Vector};
 
 create_exception!(
     restitution,
@@ -38,13 +39,6 @@ fn level() -> PyResult<Level> {
     }
 }
 
-/// How to let particles go: the name of a law or an array of angles.
-#[derive(FromPyObject)]
-enum Release<'py> {
-    Name(String),
-    Angles(PyReadonlyArray1<'py, f64>),
-}
-
 /// The parameters of a run, as the items of a dictionary.
 #[derive(FromPyObject)]
 #[pyo3(from_item_all)]
@@ -55,13 +49,17 @@ struct Parameters<'py> {
     impacts: usize,
     release_height: f64,
     gravity: f64,
-    orientation: Release<'py>,
+    orientation: release::Axes<'py>,
+    spin: release::Spins<'py>,
+    velocity: [f64; 3],
+    incline: f64,
     minimum_speed: f64,
     seed: u64,
 }
 
 impl Parameters<'_> {
     fn run(&self) -> PyResult<Run<'_>> {
+        let [x, y, z] = self.velocity;
         Ok(Run {
             body: self.body.0,
             law: self.law.law()?,
@@ -69,11 +67,10 @@ impl Parameters<'_> {
             impacts: self.impacts,
             release_height: self.release_height,
             gravity: self.gravity,
-            orientation: match &self.orientation {
-                Release::Angles(angles) => Orientation::Given(angles.as_slice()?),
-                Release::Name(name) if name == "isotropic" => Orientation::Isotropic,
-                Release::Name(_) => Orientation::UniformAngle,
-            },
+            orientation: self.orientation.law()?,
+            spin: self.spin.law()?,
+            velocity: Vector::new(x, y, z),
+            incline: self.incline,
             minimum_speed: self.minimum_speed,
             seed: self.seed,
         })
@@ -131,6 +128,11 @@ fn simulate<'py>(
     table.set_item("impacts", records.impacts.into_pyarray(py))?;
     table.set_item("stop_reason", records.stop_reason.into_pyarray(py))?;
     table.set_item("release_angle", records.release_angle.into_pyarray(py))?;
+    if !records.release_azimuth.is_empty() {
+        table.set_item("release_azimuth", records.release_azimuth.into_pyarray(py))?;
+        let spins = records.release_spin.into_flattened();
+        set(py, &table, "release_spin", (shape.0, 3), spins)?;
+    }
     Ok((table, interrupted))
 }
 

@@ -60,6 +60,11 @@ class Ensemble:
         if self.run.angles is not None:
             allowed = "'uniform-angle' or 'isotropic': a distribution is learned from random orientations"
             raise ParameterError(wrong("orientation", self.run.orientation, allowed))
+        if self.run.spins is not None:
+            allowed = (
+                "None, one for all particles, or a RandomSpin: a distribution is learned from random draws"
+            )
+            raise ParameterError(wrong("spin", self.run.spin, allowed))
         if self.run.particles < 2 * len(self.heights):
             allowed = f"at least {2 * len(self.heights)}, two for each release height"
             raise ParameterError(wrong("particles", self.run.particles, allowed))

@@ -10,6 +10,7 @@ import xarray as xr
 
 from restitution._dataset import check_writable, save
 from restitution._parameters import ParameterError, wrong
+from restitution._release import RandomSpin
 from restitution._run import Run
 from restitution.bodies import Body
 from restitution.distribution._c import header
@@ -63,6 +64,9 @@ class FluctuatingRestitution(TabulatedDistribution):
         release_height: npt.ArrayLike = 0.06,
         gravity: float = 9.81,
         orientation: str = "uniform-angle",
+        spin: npt.ArrayLike | RandomSpin | None = None,
+        velocity: npt.ArrayLike | None = None,
+        incline: float = 0.0,
         minimum_speed: float = 0.0,
         seed: int = 1,
         velocities: npt.ArrayLike | None = None,
@@ -77,8 +81,10 @@ class FluctuatingRestitution(TabulatedDistribution):
 
         Parameters
         ----------
-        body, law, particles, impacts, gravity, orientation, minimum_speed, seed, threads, progress
-            As in `restitution.simulate`; `orientation` by name. Take `impacts` large enough for the particles
+        orientation, spin
+            As in `restitution.simulate`, but not one for each particle.
+        body, law, particles, impacts, gravity, velocity, incline, minimum_speed, seed, threads, progress
+            As in `restitution.simulate`. Take `impacts` large enough for the particles
             to become slower than the least speed: those that are slow early are unusual.
         release_height : float or array_like
             Height of the centre of mass at release, in m; several heights share the particles equally.
@@ -120,6 +126,9 @@ class FluctuatingRestitution(TabulatedDistribution):
                 release_height=height,
                 gravity=gravity,
                 orientation=orientation,
+                spin=spin,
+                velocity=velocity,
+                incline=incline,
                 minimum_speed=minimum_speed,
                 seed=seed,
             )

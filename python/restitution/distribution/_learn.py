@@ -1,6 +1,5 @@
 """From an ensemble to the Dataset of a learned distribution."""
 
-import math
 from collections.abc import Callable, Iterator
 from typing import Literal, TypeAlias, get_args
 
@@ -78,8 +77,7 @@ def _checked(velocities: npt.ArrayLike | None, ensemble: Ensemble) -> Floats:
     if velocities is None:
         # Upright either way or level: in one of these the centre of mass comes lowest.
         lowest = min(run.body.solid.lowest(np.array([cosine])) for cosine in (-1.0, 0.0, 1.0))
-        fastest = math.sqrt(2.0 * run.gravity * (min(ensemble.heights) - lowest))
-        return np.array(_RANGE) * fastest
+        return np.array(_RANGE) * run.fall_speed(min(ensemble.heights) - lowest)
     try:
         nodes = np.array(velocities, dtype=np.float64)
     except (TypeError, ValueError):

@@ -2,8 +2,8 @@
 
 use super::axis::{Axis, ROUND};
 use super::moments::{Extremes, MOST_RECENT, Moments, NARROW, QUANTA, Recent, Sums};
-use crate::ensemble::Plan;
 use crate::lanes::{Impact, Mask, Pack, Sink};
+use crate::plan::Plan;
 use crate::trajectory::StopReason;
 use pulp::Simd;
 

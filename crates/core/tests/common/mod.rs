@@ -7,8 +7,8 @@ use restitution_core::collision::collide;
 use restitution_core::{
     Body, ChatterjeeRuina, Coulomb, Departure, Dumbbell, Flight, Frictionless, Hypothesis, Impact,
     Landing, Law, Level, Limits, Means, Monitor, Normal, Orientation, Plastic, Records, Run, Shape,
-    Sphere, State, StopReason, Tabulated, TangentialRestitution, Vector, Viscoelastic, bounce,
-    first_contact,
+    Sphere, Spin, State, StopReason, Tabulated, TangentialRestitution, Vector, Viscoelastic,
+    bounce, first_contact,
 };
 use std::f64::consts::PI;
 
@@ -59,7 +59,7 @@ pub fn energy(state: &State, body: &Body) -> f64 {
 
 /// The first contact of a flight, which must be found.
 pub fn landing(state: State, body: &Body, departure: Departure) -> Landing {
-    first_contact(&Flight::new(state), body, departure).unwrap()
+    first_contact(&Flight::new(state, 0.0), body, departure).unwrap()
 }
 
 /// The whole trajectory, and why it ended.
@@ -74,7 +74,7 @@ pub fn trajectory(
         impacts,
         minimum_speed: 0.0,
     };
-    let reason = bounce(body, law, release, limits, |impact| {
+    let reason = bounce(body, law, 0.0, release, limits, |impact| {
         all.push(*impact);
         true
     });
@@ -136,6 +136,9 @@ pub fn paper(elongation: f64, law: Law<'_>) -> Run<'_> {
         gravity: 9.81,
         orientation: Orientation::UniformAngle,
         minimum_speed: 0.0,
+        spin: Spin::NONE,
+        velocity: Vector::default(),
+        incline: 0.0,
         seed: 2014,
     }
 }
