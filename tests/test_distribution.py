@@ -181,9 +181,9 @@ def test_what_is_left_is_noise(
 ) -> None:
     """Other bodies and laws, 10⁶ impacts: what is stated is noise, √10 times that of 10⁷.
 
-    The fresh particles are as many, and what was learned scatters by √(2/3) of what they do: a typical
-    distance is 1.3 of their scatter, and 3.7 would be exceeded in one of 10⁵ intervals, were the scatter known
-    exactly. `python -m benchmarks.accuracy` is the table with ten times as many.
+    The fresh particles are as many, and what was learned scatters by √(2/3) of what they do. A typical
+    distance is 1.3 of their scatter, and 3.7 would be exceeded in one of 10⁵ intervals if the scatter were
+    known exactly. `python -m benchmarks.accuracy` is the table with ten times as many.
     """
     assert isinstance(law.normal, float)
     body = rs.Dumbbell(radius=3e-3, separation=separation)
