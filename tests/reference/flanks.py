@@ -67,5 +67,6 @@ def scaled_flanks(particles: int, seed: int) -> xr.Dataset:
             "impact_velocity": (("particle", "impact"), v),
             "restitution": (("particle", "impact"), e),
             "rotational_fraction": (("particle", "impact"), np.full_like(v, 0.5)),
+            "energy_ratio": (("particle", "impact"), np.full_like(v, 0.9)),
         }
     )
