@@ -12,6 +12,7 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+from scipy import stats
 
 import restitution as rs
 from restitution._energy import EnergyWarning
@@ -73,8 +74,11 @@ def measured(case: Case, scale: float) -> str:
     particles = round(scale * case.particles)
     lowest = max(case.body.solid.lowest(np.array([cosine])) for cosine in (-1.0, 0.0, 1.0))
     assert isinstance(case.law.normal, float)
-    number = math.ceil(-1000.0 * math.log(case.law.normal)) if case.spread else 1  # steps of 0.1 % in v
-    heights = tuple(lowest + 0.06 * np.geomspace(case.law.normal**2, 1.0, number + 1)[1:])
+    heights: tuple[float, ...] = (lowest + 0.06,)
+    if case.spread:  # over two losses, 0.1 % in v apart in the middle, thinning out to both ends
+        number = math.ceil(-2000.0 * math.log(case.law.normal))
+        spread = stats.triang(0.5).ppf((np.arange(number) + 0.5) / number)
+        heights = tuple(lowest + 0.06 * case.law.normal ** (4.0 * spread))
     how: dict[str, Any] = {"impacts": case.impacts, "orientation": case.orientation}
     dist = rs.FluctuatingRestitution.learn(
         case.body, case.law, particles=particles, release_height=heights, seed=1, **how

@@ -3,7 +3,7 @@
 use crate::{means, python_error, watch};
 use numpy::{IntoPyArray, PyArray1, PyReadonlyArray1};
 use pyo3::prelude::*;
-use restitution_core::distribution::{At, Layout, Mixture, Values};
+use restitution_core::distribution::{At, BLOCK, Layout, Mixture, Values};
 use restitution_core::{Error, Means, Monitor};
 
 /// The table, as the items of a dictionary.
@@ -44,11 +44,18 @@ impl Table<'_> {
             speed: Values::new(v, "v", size).map_err(python_error)?,
             condition: Values::new(z, "given", size).map_err(python_error)?,
         };
-        let (out, interrupted) = watch::run(py, None, |monitor| {
+        let compute = |monitor: &Monitor| {
             let mut out = vec![0.0; size];
             work(&mixture, at, &mut out, means, monitor)?;
             Ok(out)
-        })?;
+        };
+        let (out, interrupted) = if size <= BLOCK {
+            // A code that asks for one value at a time shall not wait for threads to start.
+            let out = py.detach(|| compute(&Monitor::default()));
+            (out.map_err(python_error)?, false)
+        } else {
+            watch::run(py, None, compute)?
+        };
         Ok((out.into_pyarray(py), interrupted))
     }
 }

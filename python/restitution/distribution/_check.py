@@ -2,7 +2,6 @@
 
 import numpy as np
 
-from restitution.distribution._count import intervals
 from restitution.distribution._ensemble import BATCHES
 from restitution.distribution._table import Floats, Ints, Table
 
@@ -25,13 +24,15 @@ class Check:
 
     def add(self, batch: int, velocity: Floats, restitution: Floats, z: Floats) -> None:
         """Count impacts of a batch, which shares no particle with any other, by interval and u."""
-        for i, (weight, epsilon, condition) in intervals(self.table.speeds, velocity, restitution, z):
-            low, high = self.table.speeds[i : i + 2]
-            u = self.table.value("cdf", epsilon, low + weight * (high - low), condition)
-            place = np.minimum((u * _LEVELS).astype(np.int64), _LEVELS - 1)
-            count = np.bincount(place, minlength=_LEVELS)
-            self.count[i] += count
-            self._batches[batch, i] += count.reshape(_COARSE, -1).sum(axis=1)
+        number = np.searchsorted(self.table.speeds, velocity, side="right") - 1
+        inside = (number >= 0) & (number < self.table.speeds.size - 1)
+        for column in (restitution, z):
+            inside &= np.isfinite(column)
+        u = self.table.value("cdf", restitution[inside], velocity[inside], z[inside])
+        place = number[inside] * _LEVELS + np.minimum((u * _LEVELS).astype(np.int64), _LEVELS - 1)
+        count = np.bincount(place, minlength=self.count.size).reshape(self.count.shape)
+        self.count += count
+        self._batches[batch] += count.reshape(*count.shape[:1], _COARSE, -1).sum(axis=2)
 
     def impacts(self) -> Ints:
         """Impacts in each interval."""

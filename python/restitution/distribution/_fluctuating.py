@@ -89,9 +89,10 @@ class FluctuatingRestitution(TabulatedDistribution):
         release_height : float or array_like
             Height of the centre of mass at release, in m; several heights share the particles equally.
             Particles from one height have few separate speeds at first, and p(ε | v) has as fine a structure:
-            near the release velocity √(2gh), and for nearly round bodies everywhere. Heights that span the
-            loss of one impact and lie so close that they differ by 0.1 % in v average over it:
-            ``R + (h - R) * np.geomspace(normal**2, 1, int(1000 * np.log(1 / normal)) + 2)``.
+            near the release velocity √(2gh), and for nearly round bodies everywhere. Heights spread over
+            two losses average over it if they differ by 0.1 % in v or less, and thin out to both ends,
+            so that impacts of one number fade into those of the next: with n = 2000 ln(1/ε^n),
+            ``R + (h - R) * normal ** (4 * scipy.stats.triang(0.5).ppf((np.arange(n) + 0.5) / n))``.
         velocities : array_like, optional
             The least and the greatest speed to learn, in m/s, or all nodes. From 0.04 to 0.4 of the release
             velocity unless told, in nodes that lie as close as the number of impacts allows.

@@ -9,8 +9,8 @@ use crate::{Error, Means, Monitor};
 use rayon::iter::{IndexedParallelIterator, ParallelIterator};
 use rayon::slice::ParallelSliceMut;
 
-/// Values that a thread takes at a time.
-const BLOCK: usize = 1 << 14;
+/// Values that a thread takes at a time; no more than these are computed by the caller's own.
+pub const BLOCK: usize = 1 << 14;
 
 /// One value for all, or a value for each.
 #[derive(Debug, Clone, Copy)]
@@ -37,6 +37,10 @@ fn in_blocks(
     monitor: &Monitor,
     fill: impl Fn(usize, &mut [f64]) + Sync,
 ) -> Result<(), Error> {
+    if out.len() <= BLOCK {
+        fill(0, out);
+        return Ok(());
+    }
     means.pool()?.install(|| {
         out.par_chunks_mut(BLOCK)
             .enumerate()
