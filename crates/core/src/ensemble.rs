@@ -263,6 +263,8 @@ const VECTORS: usize = 3;
 const SCALARS: usize = 4;
 /// Groups of them that take turns.
 const GROUPS: usize = 4;
+/// Vectors whose sines and cosines are computed side by side: some groups at once.
+const WIDE: usize = 6;
 
 impl<L: InPlane, T: Sink> WithSimd for Work<'_, L, T> {
     type Output = Result<(), Error>;
@@ -270,16 +272,16 @@ impl<L: InPlane, T: Sink> WithSimd for Work<'_, L, T> {
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) -> Self::Output {
         if size_of::<S::f64s>() == size_of::<f64>() {
-            self.side_by_side::<S, SCALARS>(simd)
+            self.side_by_side::<S, SCALARS, SCALARS>(simd)
         } else {
-            self.side_by_side::<S, VECTORS>(simd)
+            self.side_by_side::<S, VECTORS, WIDE>(simd)
         }
     }
 }
 
 impl<L: InPlane, T: Sink> Work<'_, L, T> {
     #[inline(always)]
-    fn side_by_side<S: Simd, const K: usize>(self, simd: S) -> Result<(), Error> {
+    fn side_by_side<S: Simd, const K: usize, const W: usize>(self, simd: S) -> Result<(), Error> {
         let Self {
             plan,
             law,
@@ -297,7 +299,7 @@ impl<L: InPlane, T: Sink> Work<'_, L, T> {
                 (sines[lane], cosines[lane]) = plan.release(first + lane);
             }
             sink.begin(first - particles.start);
-            lanes::bounce::<S, K, GROUPS>(
+            lanes::bounce::<S, K, W, GROUPS>(
                 simd,
                 &plan.body,
                 law,

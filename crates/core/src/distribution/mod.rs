@@ -37,18 +37,16 @@ fn in_blocks(
     monitor: &Monitor,
     fill: impl Fn(usize, &mut [f64]) + Sync,
 ) -> Result<(), Error> {
+    let fill = |(number, block): (usize, &mut [f64])| {
+        if !monitor.is_cancelled() {
+            fill(number * BLOCK, block);
+        }
+    };
     if out.len() <= BLOCK {
-        fill(0, out);
-        return Ok(());
+        fill((0, out));
+    } else {
+        let pool = means.pool()?;
+        pool.install(|| out.par_chunks_mut(BLOCK).enumerate().for_each(fill));
     }
-    means.pool()?.install(|| {
-        out.par_chunks_mut(BLOCK)
-            .enumerate()
-            .for_each(|(number, block)| {
-                if !monitor.is_cancelled() {
-                    fill(number * BLOCK, block);
-                }
-            });
-    });
     Ok(())
 }

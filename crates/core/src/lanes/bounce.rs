@@ -2,7 +2,7 @@
 
 use super::collision::collide;
 use super::contact::{Departure, Pass, Search};
-use super::flight::State;
+use super::flight::{Phase, State};
 use super::{Mask, Pack};
 use crate::body::Body;
 use crate::collision::InPlane;
@@ -91,6 +91,9 @@ struct Group<S: Simd, const K: usize> {
     departure: Departure<S, K>,
     search: Search<S, K>,
     pass: Pass<S, K>,
+    /// Where the next pass looks, and sine and cosine there.
+    time: Pack<S, K>,
+    phase: Phase<S, K>,
     /// Time since release.
     clock: Pack<S, K>,
     /// Unresolved flights in a row.
@@ -104,9 +107,10 @@ struct Group<S: Simd, const K: usize> {
 /// Bounces the particles of a release, at most as many as N groups hold. Calls `go_on` before every impact.
 ///
 /// Each phase of an impact goes through all groups before the next begins. What a group waits for, such as the branch on whether
-/// it has landed, is then known when its turn comes.
+/// it has landed, is then known when its turn comes. Sines and cosines of the first passes are computed for W vectors side by side,
+/// with nothing else in the registers.
 #[inline(always)]
-pub(crate) fn bounce<S: Simd, const K: usize, const N: usize>(
+pub(crate) fn bounce<S: Simd, const K: usize, const W: usize, const N: usize>(
     simd: S,
     body: &Body,
     law: &impl InPlane,
@@ -132,11 +136,17 @@ pub(crate) fn bounce<S: Simd, const K: usize, const N: usize>(
             group.depart(body, number, sink);
         }
         for group in groups.iter_mut() {
-            group.pass = group.search.pass(group.search.departed());
+            group.time = group.search.departed();
+        }
+        phases::<S, K, W>(groups);
+        for group in groups.iter_mut() {
+            group.pass = group.search.pass(group.time, group.phase);
+            group.time = group.pass.next;
         }
         // Hardly any group is done after the first pass.
+        phases::<S, K, W>(groups);
         for group in groups.iter_mut() {
-            group.pass = group.search.pass(group.pass.next);
+            group.pass = group.search.pass(group.time, group.phase);
         }
         let mut passes = 2;
         loop {
@@ -148,7 +158,9 @@ pub(crate) fn bounce<S: Simd, const K: usize, const N: usize>(
                         return Err(group.stuck(waiting, number));
                     }
                     searching = true;
-                    group.pass = group.search.pass(group.pass.next);
+                    group.time = group.pass.next;
+                    group.phase = Phase::of(group.search.angle(group.time));
+                    group.pass = group.search.pass(group.time, group.phase);
                 }
             }
             passes += 1;
@@ -176,6 +188,28 @@ pub(crate) fn bounce<S: Simd, const K: usize, const N: usize>(
     Ok(())
 }
 
+/// Computes the phases where the groups look next, of W vectors at a time.
+#[inline(always)]
+fn phases<S: Simd, const K: usize, const W: usize>(groups: &mut [Group<S, K>]) {
+    let mut chunks = groups.chunks_exact_mut(W / K);
+    for chunk in &mut chunks {
+        let mut angle = Pack::<S, W>::splat(chunk[0].time.simd(), 0.0);
+        for (i, group) in chunk.iter().enumerate() {
+            angle.set_part(i * K, &group.search.angle(group.time));
+        }
+        let phase = Phase::of(angle);
+        for (i, group) in chunk.iter_mut().enumerate() {
+            group.phase = Phase {
+                sin: phase.sin.part(i * K),
+                cos: phase.cos.part(i * K),
+            };
+        }
+    }
+    for group in chunks.into_remainder() {
+        group.phase = Phase::of(group.search.angle(group.time));
+    }
+}
+
 impl<S: Simd, const K: usize> Group<S, K> {
     #[inline(always)]
     fn empty(simd: S, body: &Body, lift: f64) -> Self {
@@ -193,11 +227,17 @@ impl<S: Simd, const K: usize> Group<S, K> {
             speed: zero,
         };
         let search = Search::new(state, departure, body.half_separation);
+        let phase = Phase {
+            sin: zero,
+            cos: zero,
+        };
         Self {
             state,
             departure,
             search,
-            pass: search.pass(zero),
+            pass: search.pass(zero, phase),
+            time: zero,
+            phase,
             clock: zero,
             unresolved: zero,
             active: Mask::splat(simd, false),

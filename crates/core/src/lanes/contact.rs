@@ -139,12 +139,16 @@ impl<S: Simd, const K: usize> Search<S, K> {
         step.eq(0.0).select(0.0, self.skip(step))
     }
 
-    /// A pass at `time`.
+    /// What the body has turned through at `time`: φ = ωt.
     #[inline(always)]
-    pub fn pass(&self, time: Pack<S, K>) -> Pass<S, K> {
-        let angle = self.start.spin * time;
-        let never = !angle.abs().le(RANGE);
-        let phase = Phase::of(angle);
+    pub fn angle(&self, time: Pack<S, K>) -> Pack<S, K> {
+        self.start.spin * time
+    }
+
+    /// A pass at `time`, with the phase there.
+    #[inline(always)]
+    pub fn pass(&self, time: Pack<S, K>, phase: Phase<S, K>) -> Pass<S, K> {
+        let never = !self.angle(time).abs().le(RANGE);
         let moment = Moment {
             time,
             lift: self.start.lift_at(time),

@@ -22,8 +22,8 @@ pub(crate) struct State<S: Simd, const K: usize> {
 /// Sine and cosine of the phase φ = ωt.
 #[derive(Clone, Copy)]
 pub(super) struct Phase<S: Simd, const K: usize> {
-    sin: Pack<S, K>,
-    cos: Pack<S, K>,
+    pub sin: Pack<S, K>,
+    pub cos: Pack<S, K>,
 }
 
 impl<S: Simd, const K: usize> Phase<S, K> {

@@ -103,6 +103,21 @@ impl<S: Simd, const K: usize> Pack<S, K> {
         [self.simd.less_than_f64s(zero, zero); K]
     }
 
+    /// Vectors `first` to `first` + H.
+    #[inline(always)]
+    pub fn part<const H: usize>(&self, first: usize) -> Pack<S, H> {
+        let mut part = Pack::splat(self.simd, 0.0);
+        part.vectors
+            .copy_from_slice(&self.vectors[first..first + H]);
+        part
+    }
+
+    /// Replaces vectors `first` to `first` + H.
+    #[inline(always)]
+    pub fn set_part<const H: usize>(&mut self, first: usize, part: &Pack<S, H>) {
+        self.vectors[first..first + H].copy_from_slice(&part.vectors);
+    }
+
     /// self · factor + addend, rounded once.
     #[inline(always)]
     pub fn mul_add(self, factor: impl Operand<S, K>, addend: impl Operand<S, K>) -> Self {

@@ -311,9 +311,6 @@ impl Sink for Counter<'_> {
         let quanta = offset.mul_add(QUANTA, ROUND);
         let fraction_quanta = fraction.mul_add(FRACTION_QUANTA, ROUND);
         let (before, after) = (impact.energy_before, impact.energy_after);
-        let gaining = impact.active & (before * CREATES_ENERGY).lt(after);
-        let factor = gaining.select(after / before, 0.0);
-        let gain = gaining.select(ROUND + 1.0, ROUND);
         for lane in 0..width {
             sites[whole(&site, lane) as usize] += 1;
             fraction_sites[whole(&fraction_site, lane) as usize] += 1;
@@ -323,17 +320,16 @@ impl Sink for Counter<'_> {
                 .fractions
                 .wrapping_add(whole(&fraction_quanta, lane) as u64);
             row.extremes.add(restitution.as_slice()[lane]);
-            row.gains.add(whole(&gain, lane), factor.as_slice()[lane]);
         }
-        let odd = gaining & !plain;
-        if odd.any() {
-            odd.each(|lane| {
-                let gains = Gains {
-                    count: 1,
-                    largest: factor.as_slice()[lane],
-                };
-                self.tally.gains[whole(&row, lane) as usize].merge(gains);
-            });
+        let gaining = impact.active & (before * CREATES_ENERGY).lt(after);
+        if gaining.any() {
+            let factor = gaining.select(after / before, 0.0);
+            let gain = gaining.select(ROUND + 1.0, ROUND);
+            let row = gaining.select(row, nowhere(rows.len()));
+            for lane in 0..width {
+                let row = &mut rows[whole(&row, lane) as usize];
+                row.gains.add(whole(&gain, lane), factor.as_slice()[lane]);
+            }
         }
         let large = summed & !plain;
         if large.any() {
