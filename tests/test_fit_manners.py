@@ -189,3 +189,12 @@ def test_bad_input_is_named() -> None:
     for call, message in cases:
         with pytest.raises(ValueError, match=message):
             call()
+
+
+@pytest.mark.parametrize("family", [fit.asymmetric_laplace, fit.gaussian, fit.student_t])
+def test_samples_that_are_no_numbers_are_named(family: Any) -> None:
+    """Strings and objects are refused with what they are."""
+    with pytest.raises(ValueError, match="samples = 'fast': must be numbers"):
+        family("fast")
+    with pytest.raises(ValueError, match="samples = 'fast'"):
+        fit.bootstrap(family, "fast", resamples=2)

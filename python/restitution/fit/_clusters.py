@@ -120,7 +120,7 @@ def clustered(samples: Parts, clusters: ArrayLike | None, velocity: Window | Non
     elif velocity is not None:
         raise ValueError(f"velocity = {velocity!r}: is for a Dataset; other samples have no impact velocity")
     else:
-        values = np.asarray(samples, dtype=np.float64).ravel()
+        values = finite_samples(np.asarray(samples))
         labels = np.arange(values.size) if clusters is None else np.asarray(clusters).ravel()
     x = finite_samples(values)
     if labels.shape != x.shape:

@@ -1,5 +1,6 @@
 """What every fit returns, and the check of what every fit is given."""
 
+import reprlib
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from math import log
@@ -75,10 +76,13 @@ def finite_samples(samples: ArrayLike, location: float | None = None) -> Array:
     Raises
     ------
     ValueError
-        If `samples` is empty, holds NaN, inf or magnitudes above 1e100, or does not spread at all (about
-        `location`, where that is given): the likelihood then has no maximum.
+        If `samples` are no numbers, none at all, hold NaN, inf or magnitudes above 1e100, or do not spread
+        at all (about `location`, where that is given): the likelihood then has no maximum.
     """
-    x = np.asarray(samples, dtype=np.float64).ravel()
+    try:
+        x = np.asarray(samples, dtype=np.float64).ravel()
+    except (TypeError, ValueError):
+        raise ValueError(f"samples = {reprlib.repr(samples)}: must be numbers, or a Dataset") from None
     if x.size == 0:
         raise ValueError("samples: empty; at least one value is needed")
     bad = x.size - np.count_nonzero(np.isfinite(x))
