@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 import xarray as xr
@@ -120,7 +120,7 @@ def clustered(samples: Parts, clusters: ArrayLike | None, velocity: Window | Non
     elif velocity is not None:
         raise ValueError(f"velocity = {velocity!r}: is for a Dataset; other samples have no impact velocity")
     else:
-        values = finite_samples(np.asarray(samples))
+        values = finite_samples(cast(ArrayLike, samples))
         labels = np.arange(values.size) if clusters is None else np.asarray(clusters).ravel()
     x = finite_samples(values)
     if labels.shape != x.shape:
