@@ -33,6 +33,8 @@ SPEEDS = {0.4: (0.38, 0.42), 0.1: (0.095, 0.105)}
 """Speeds of the histograms and of the table of families, with their windows, in m/s."""
 HIGHEST = 0.9
 """Speed in m/s up to which the distance of the fit is judged: the first impacts have their own density."""
+RETURNED = 0.7
+"""An impact at v is of a particle that has returned if an earlier one was slower than this times v."""
 SHOWN = (0.04, 0.06, 0.08, 0.1, 0.12, 0.15, 0.18, 0.21, 0.24, 0.26, 0.28, 0.4, 0.6, 0.8)
 """Speeds of the rows of the table in m/s: of each the velocity bin nearest to it."""
 FAMILIES: dict[str, Callable[..., fit.Fit]] = {
@@ -53,6 +55,7 @@ class Measured:
     impacts: int
     slopes: fit.Slopes
     dependence: xr.Dataset
+    parts: dict[str, tuple[fit.Slopes, xr.Dataset]]  # on the way down, returned: bins twice as wide
     samples: dict[float, np.ndarray[Any, np.dtype[np.float64]]]
     boots: dict[float, dict[str, fit.Bootstrap]]
     goodness: dict[float, dict[str, fit.Goodness]]
@@ -61,6 +64,11 @@ class Measured:
     def end(self) -> float:
         """Speed below which the form fails, in m/s."""
         return self.slopes.fails_below(high=HIGHEST)
+
+    @property
+    def end_down(self) -> float:
+        """Speed below which it fails for particles on the way down, in m/s."""
+        return self.parts["down"][0].fails_below(high=HIGHEST)
 
     def law(self, side: str, *, reservoir: bool = True) -> fit.PowerLaw:
         """Growth in √(v₀²/v² − 1), or in v."""
@@ -81,12 +89,26 @@ def measure(particles: int = 4000, *, judged: int = 1000, resamples: int = 99, s
     some = data.isel(particle=slice(judged))
     slow: dict[str, Any] = {"resamples": resamples // 2, "seed": seed}
     velocity, restitution = data.impact_velocity.to_numpy(), data.restitution.to_numpy()
+    slowest = np.minimum.accumulate(np.where(np.isfinite(velocity), velocity, np.inf), axis=1)
+    before = np.hstack([np.full((particles, 1), np.inf), slowest[:, :-1]])
+    down = xr.DataArray(before >= RETURNED * velocity, dims=data.impact_velocity.dims)
+    parts = {
+        name: data.assign(restitution=data.restitution.where(chosen))
+        for name, chosen in (("down", down), ("returned", ~down))
+    }
     return Measured(
         particles=particles,
         judged=judged,
         impacts=int(data.impacts.sum()),
         slopes=fit.slopes(data, EDGES, location=NORMAL, resamples=resamples, seed=seed),
         dependence=fit.dependence(data, EDGES, lags=3),
+        parts={
+            name: (
+                fit.slopes(part, EDGES[::2], location=NORMAL, resamples=2),
+                fit.dependence(part, EDGES[::2], lags=1),
+            )
+            for name, part in parts.items()
+        },
         samples={v: restitution[(velocity >= w[0]) & (velocity < w[1])] for v, w in SPEEDS.items()},
         boots={
             v: {name: fit.bootstrap(family, some, velocity=w, **slow) for name, family in FAMILIES.items()}
@@ -124,6 +146,16 @@ def tables(found: Measured) -> str:
             f"{int(one.samples)}",
         ]
         lines.append(f"| {float(one.velocity):.3f} | " + " | ".join(cells) + " |")
+    head = "| v (m/s) | share returned | D, down | D, returned | alternation, down | alternation, returned |"
+    lines += ["", head, "|---" * 6 + "|"]
+    for v in SHOWN[1:12]:
+        slopes, pairs = zip(*(found.parts[name] for name in ("down", "returned")), strict=True)
+        near = [one.table.sel(velocity=v, method="nearest") for one in slopes]
+        other = [one.sel(velocity=v, method="nearest") for one in pairs]
+        share = float(near[1].samples) / float(near[0].samples + near[1].samples)
+        cells = [f"{share:.2f}", *(f"{float(one.ks_distance):.3f}" for one in near)]
+        cells += [f"{float(one.alternation):.3f} ± {float(one.alternation_error):.3f}" for one in other]
+        lines.append(f"| {float(near[0].velocity):.3f} | " + " | ".join(cells) + " |")
     lines += ["", "| v (m/s) | family | ΔAIC | ΔBIC | D | p (D) | p (A²) | tr J H⁻¹ (k) |", "|---" * 8 + "|"]
     for v, boots in found.boots.items():
         best = [min(getattr(boot, what) for boot in boots.values()) for what in ("aic", "bic")]
@@ -180,27 +212,36 @@ def draw(found: Measured) -> Figure:
     return figure
 
 
+_PARTS = (("down", "on the way down", fg.COLORS[0], "--"), ("returned", "returned", fg.COLORS[1], "-."))
+
+
 def _distance(axes: Axes, found: Measured, v: np.ndarray[Any, np.dtype[np.float64]]) -> None:
-    axes.plot(v, found.slopes.table["ks_distance"], color=fg.COLORS[2])
+    axes.plot(v, found.slopes.table["ks_distance"], color=fg.COLORS[2], label="all impacts")
+    for part, label, color, style in _PARTS:
+        table = found.parts[part][0].table
+        axes.plot(table["velocity"], table["ks_distance"], color=color, linestyle=style, label=label)
     axes.axhline(0.03, color="0.4", linewidth=0.7, linestyle=":")
-    axes.set_ylim(0, 0.12)
+    axes.set_ylim(0, 0.32)
     axes.set_ylabel("distance $D$ of the fit")
+    axes.legend(loc="upper right")
 
 
 def _dependence(axes: Axes, found: Measured, v: np.ndarray[Any, np.dtype[np.float64]]) -> None:
-    data = found.dependence
-    first = data.isel(lag=0)
-    for values, error, color, style, label in (
-        (first.autocorrelation, first.autocorrelation_error, fg.COLORS[0], "-", r"$\varepsilon$, lag 1"),
-        (data.alternation, data.alternation_error, fg.COLORS[1], "-", "alternation"),
-        (data.crossing, data.crossing_error, fg.COLORS[2], "--", "crossing"),
-    ):
-        fg.line(axes, v, values.to_numpy(), error.to_numpy(), color=color, linestyle=style, label=label)
+    first = found.dependence.isel(lag=0)
+    values, error = first.autocorrelation.to_numpy(), first.autocorrelation_error.to_numpy()
+    fg.line(axes, v, values, error, color=fg.COLORS[5], label=r"lag 1 of $\varepsilon$")
+    swaps = [("all impacts", fg.COLORS[2], "-", found.dependence)]
+    swaps += [(label, color, style, found.parts[part][1]) for part, label, color, style in _PARTS]
+    for label, color, style, data in swaps:
+        speed = data["velocity"].to_numpy()
+        values, error = data.alternation.to_numpy(), data.alternation_error.to_numpy()
+        seen = (speed < 0.4) | (label != "returned")  # few return to higher speeds
+        fg.line(axes, speed[seen], values[seen], error[seen], color=color, linestyle=style)
     for level in (0.0, 0.5):
         axes.axhline(level, color="0.4", linewidth=0.7, linestyle=":")
-    axes.set_ylim(-0.75, 1.0)
-    axes.set_ylabel("correlation; shares")
-    axes.legend(loc="lower right", bbox_to_anchor=(1.0, 0.02))
+    axes.set_ylim(-0.75, 1.15)
+    axes.set_ylabel("correlation; alternation")
+    axes.legend(loc="lower right")
 
 
 def _density(axes: Axes, found: Measured, speed: float) -> None:
@@ -237,15 +278,16 @@ def caption(found: Measured) -> str:
             f"(b). (b) The same against x, with the speed v₀ = {RELEASE_SPEED:.4f} m/s of the first impact;",
             f"lines: power laws fitted from {GROWTH[0]:g} to {GROWTH[1]:g} m/s. (c), (f) Densities at two",
             "speeds; points: histogram; band: 95 % confidence of the asymmetric Laplace fit. (d)",
-            "Kolmogorov–Smirnov distance between impacts and fit; dotted: 0.03. Grey but in (c), (f): it is",
-            f"exceeded, below {found.end:.3f} m/s; near v₀ the first impacts show. (e) Rank",
-            "autocorrelation of successive ε, share of impacts",
-            "after which the other sphere touches (alternation), share after which ε crosses its median;",
-            "bands: ± one standard error over particles; dotted: independent impacts. The paper's law with",
-            f"ε_n = {NORMAL:g}; L/R = {ELONGATION:g}, R = {1e3 * RADIUS:g} mm, centre of mass released at",
-            f"{1e3 * HEIGHT:g} mm, θ uniform in [0, π), g = {GRAVITY:g} m/s²; {found.particles} particles,",
-            f"{found.impacts / 1e6:.2f} million impacts; in (c) and (f) fits to {found.judged} particles;",
-            f"restitution {rs.__version__}.",
+            "Kolmogorov–Smirnov distance between impacts and fit; dotted: 0.03. Grey but in (c), (f): all",
+            f"impacts exceed it, below {found.end:.3f} m/s; near v₀ the first impacts show. Returned: an",
+            f"earlier impact of the particle was slower than {RETURNED:g}v; on the way down: none was, and",
+            f"0.03 is exceeded below {found.end_down:.3f} m/s. (e) Rank autocorrelation of successive ε, of",
+            "all impacts, and share of impacts after which the other sphere touches (alternation; lines as",
+            "in (d)); bands: ± one standard error over particles; dotted: independent impacts.",
+            f"The paper's law with ε_n = {NORMAL:g}; L/R = {ELONGATION:g}, R = {1e3 * RADIUS:g} mm,",
+            f"centre of mass released at {1e3 * HEIGHT:g} mm, θ uniform in [0, π), g = {GRAVITY:g} m/s²;",
+            f"{found.particles} particles, {found.impacts / 1e6:.2f} million impacts;",
+            f"in (c) and (f) fits to {found.judged} particles; restitution {rs.__version__}.",
         ]
     )
 
