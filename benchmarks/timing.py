@@ -68,8 +68,9 @@ def table(times: Times, yardstick: str) -> str:
         faster = times.ratios(yardstick, name)
         wall, cpu = np.median(times.wall[:, column]), np.median(times.cpu[:, column])
         by_cpu = np.median(times.cpu[:, own] / times.cpu[:, column])
+        digits = ".4g" if wall < 1e4 else ".0f"
         lines.append(
-            f"{name:<32}{1e3 / wall:>10.3g}{wall:>9.4g}{cpu:>9.4g}"
+            f"{name:<32}{1e3 / wall:>10.3g}{wall:>9{digits}}{cpu:>9{digits}}"
             f"{faster.min():>9.3g}{np.median(faster):>9.3g}{faster.max():>9.3g}{by_cpu:>11.3g}"
         )
     return "\n".join(lines)
