@@ -1,4 +1,4 @@
-"""p(ε | v): one distribution in all its functions; what was learned is what is simulated, and how well."""
+"""p(ε | v): one distribution in all its functions; conditions, files, counts, and bad input."""
 
 from pathlib import Path
 from typing import Any
@@ -12,8 +12,6 @@ from scipy import stats
 import restitution as rs
 from restitution._run import Run
 from restitution.distribution import FluctuatingRestitution
-from restitution.distribution._check import Check
-from restitution.distribution._count import Counter
 from restitution.distribution._ensemble import FRESH, Ensemble
 
 Floats = NDArray[np.float64]
@@ -140,66 +138,6 @@ def test_a_hundred_thousandth_of_the_draws_is_where_it_should_be(learned: Fluctu
             assert abs(share - q) < 5 * np.sqrt(q / draws.size)
 
 
-def test_every_speed_is_as_simulated() -> None:
-    """Nine million impacts: no interval of one per cent in v is farther than 0.01 from fresh particles.
-
-    Slower impacts are left to docs/theory.md: below 0.2 m/s p(ε | v) has lines that no node resolves.
-
-    There are twice as many of those: 0.87/√100 000 = 0.003 of a typical distance is their own noise.
-    """
-    how: dict[str, Any] = {"impacts": 250, "seed": 1}
-    released = tuple(heights(40))
-    dist = FluctuatingRestitution.learn(
-        BODY, LAW, particles=110_000, **how, release_height=released, velocities=(0.2, 0.85)
-    )
-    assert 0.8e7 < float(dist.data.impacts.sum()) < 1e7
-    assert np.diff(np.log(dist.data.velocity)).max() < 0.015
-    # Of what is stated the fresh particles' own scatter makes the most: its like is in what was learned.
-    scatter = dist.data.ks_scatter
-    assert 0.8 < float((scatter / (0.87 / np.sqrt(dist.data.fresh_impacts))).median()) < 1.3
-    assert float((dist.data.ks_distance / scatter).median()) < 2.0
-    check = Check(dist._table)
-    fresh = Ensemble(Run(body=BODY, law=LAW, particles=220_000, impacts=250, seed=1000), released)
-    for block in fresh.blocks(FRESH):
-        check.add(
-            block.batch, block.velocity.ravel(), block.restitution.ravel(), np.zeros(block.velocity.size)
-        )
-    assert check.impacts().min() > 80_000
-    assert check.distances().max() < 0.01
-    # What the distribution states rests on as many impacts as it was learned from.
-    assert float(dist.data.ks_distance.max()) < 0.012
-
-
-@pytest.mark.parametrize(
-    ("separation", "law", "particles", "impacts"),
-    [
-        (1.5e-3, LAW, 7000, 200),
-        (6e-3, LAW, 8000, 200),
-        (1.5e-3, rs.Frictionless(normal=0.9), 25_000, 60),
-    ],
-)
-def test_what_is_left_is_noise(
-    separation: float, law: rs.TangentialRestitution | rs.Frictionless, particles: int, impacts: int
-) -> None:
-    """Other bodies and laws, 10⁶ impacts: what is stated is noise, √10 times that of 10⁷.
-
-    The fresh particles are as many, and what was learned scatters by √(2/3) of what they do. A typical
-    distance is 1.3 of their scatter, and 3.7 would be exceeded in one of 10⁵ intervals if the scatter were
-    known exactly. `python -m benchmarks.accuracy` is the table with ten times as many.
-    """
-    assert isinstance(law.normal, float)
-    body = rs.Dumbbell(radius=3e-3, separation=separation)
-    lowest = 3e-3 + 0.5 * separation
-    released = lowest + 0.06 * np.geomspace(law.normal**2, 1.0, int(1000 * np.log(1 / law.normal)) + 2)
-    how: dict[str, Any] = {"particles": particles, "impacts": impacts, "release_height": released}
-    dist = FluctuatingRestitution.learn(body, law, **how, seed=4)
-    assert 0.8e6 < float(dist.data.impacts.sum()) < 1.2e6
-    ratio = dist.data.ks_distance / dist.data.ks_scatter
-    assert 1.0 < float(ratio.median()) < 1.6
-    assert float(ratio.max()) < 4.0
-    assert float(dist.data.ks_distance.quantile(0.95)) < 0.01 * np.sqrt(10)
-
-
 def test_the_stated_distance_is_that_of_a_fresh_simulation(learned: FluctuatingRestitution) -> None:
     """Another simulation, compared by SciPy at each impact's own speed, is as far away as `distance` says."""
     data = rs.simulate(BODY, LAW, particles=500, impacts=200, release_height=float(heights(3)[1]), seed=77)
@@ -211,70 +149,6 @@ def test_the_stated_distance_is_that_of_a_fresh_simulation(learned: FluctuatingR
         exact = stats.kstest(learned.cdf(e[here], v[here]), "uniform").statistic
         assert int(found.impacts[i]) == here.sum()
         assert exact <= float(found.ks_distance[i]) < exact + 2 / 4096
-
-
-def test_both_tails_are_there() -> None:
-    """Touching spheres: ε < 0 and ε > 1 are as frequent as in a fresh run, within five standard errors."""
-    dist = FluctuatingRestitution.learn(TOUCHING, LAW, particles=8000, impacts=100, velocities=(0.3, 0.6))
-    low, high = dist.support(np.array([0.31, 0.45, 0.6]))
-    assert np.all(low < -0.3)
-    assert np.all(high > 1.5)
-    data = rs.simulate(TOUCHING, LAW, particles=8000, impacts=100, seed=9)
-    v, e = data.impact_velocity.to_numpy(), data.restitution.to_numpy()
-    inside = (v >= 0.3) & (v < 0.6)
-    for below, edge in ((True, 0.0), (False, 1.0), (True, -0.2), (False, 1.5)):
-        learned = np.where(inside, dist.cdf(edge, np.where(inside, v, 0.4)), 0.0)
-        learned = learned if below else np.where(inside, 1.0 - learned, 0.0)
-        seen = np.where(inside & ((e < edge) if below else (e > edge)), 1.0, 0.0)
-        difference = (seen - learned).sum(axis=1)  # of each particle: its impacts are correlated
-        # The learned one scatters as much as the fresh one.
-        error = np.sqrt(2 * difference.size) * difference.std()
-        assert abs(difference.sum()) < 5 * error
-        assert seen.sum() > 100
-
-
-def test_the_errors_are_those_of_repetition() -> None:
-    """Thirty ensembles: the scatter of F is what each states, within a half; impacts alone would say less."""
-    q = np.array([0.2, 0.5, 0.9])
-    how: dict[str, Any] = {"particles": 600, "impacts": 150, "velocities": np.geomspace(0.05, 0.1, 6)}
-    dists = [FluctuatingRestitution.learn(BODY, LAW, **how, seed=seed) for seed in range(30)]
-    node = float(dists[0].data.velocity[2])
-    x = dists[0].ppf(q, node)
-    found = np.array([dist.cdf(x, node) for dist in dists])
-    stated = np.sqrt(np.mean([dist.cdf_error(x, node) ** 2 for dist in dists], axis=0))
-    scatter = found.std(axis=0, ddof=1)
-    # The standard deviation of 30 numbers has a relative error of 1/√58; the three are not independent.
-    assert np.all(np.abs(stated / scatter - 1) < 4 / np.sqrt(58))
-    naive = np.sqrt(q * (1 - q) / float(dists[0].data.impacts[2]))
-    assert np.all(stated > 1.2 * naive)
-    for moment in ("mean", "std"):
-        scatter = np.std([getattr(dist, moment)(node) for dist in dists], ddof=1)
-        stated = np.sqrt(np.mean([getattr(dist, f"{moment}_error")(node) ** 2 for dist in dists]))
-        assert abs(stated / scatter - 1) < 4 / np.sqrt(58)
-    density = np.array([dist.pdf(x, node) for dist in dists])
-    stated = np.sqrt(np.mean([dist.pdf_error(x, node) ** 2 for dist in dists], axis=0))
-    assert np.all(np.abs(stated / density.std(axis=0, ddof=1) - 1) < 0.6)  # bins differ from run to run
-
-
-def test_a_known_distribution_is_learned() -> None:
-    """Impacts drawn from a Gaussian whose width goes as 1/v: counted at nodes, it is that Gaussian again.
-
-    Of 400 000 impacts 12 000 or more count at a node: four times 0.5/√12 000 is 0.018, and the curvature of F
-    in v adds less than 0.002 at nodes 4 % apart.
-    """
-    rng = np.random.default_rng(1)
-    v = rng.uniform(0.1, 0.2, 400_000)
-    e = 0.9 + 0.02 / v * rng.normal(size=v.size)
-    nodes = np.geomspace(0.1, 0.2, 18)
-    edges = [0.9 + 0.02 / node * stats.norm.ppf(np.arange(1, 100) / 100) for node in nodes]
-    counter = Counter(nodes, [np.zeros(1)] * nodes.size, edges)
-    for batch, part in enumerate(np.array_split(np.arange(v.size), 20)):
-        counter.add(batch, v[part], e[part], np.zeros(part.size))
-    assert counter.impacts().sum() == pytest.approx(v.size)
-    for node, (histogram, _, error) in zip(nodes, counter.histograms(), strict=True):
-        exact = stats.norm.cdf(histogram.edges, 0.9, 0.02 / node)
-        assert np.abs(histogram.cumulative - exact)[1:-1].max() < 0.02
-        assert 0.5 < error.max() / (0.5 / np.sqrt(24_000)) < 2
 
 
 def test_the_condition_explains_the_dependence(conditional: FluctuatingRestitution) -> None:
