@@ -15,7 +15,6 @@ import numpy as np
 from scipy import stats
 
 import restitution as rs
-from restitution._energy import EnergyWarning
 from restitution._run import Run
 from restitution.bodies import Body
 from restitution.distribution._check import Check
@@ -38,7 +37,6 @@ class Case:
     particles: int
     impacts: int
     spread: bool = True
-    orientation: str = "uniform-angle"
 
 
 CASES = {
@@ -82,16 +80,12 @@ def measured(case: Case, scale: float) -> str:
         number = math.ceil(-2000.0 * math.log(case.law.normal))
         spread = stats.triang(0.5).ppf((np.arange(number) + 0.5) / number)
         heights = tuple(lowest + 0.06 * case.law.normal ** (4.0 * spread))
-    how: dict[str, Any] = {"impacts": case.impacts, "orientation": case.orientation}
+    how: dict[str, Any] = {"impacts": case.impacts}
     dist = rs.FluctuatingRestitution.learn(
         case.body, case.law, particles=particles, release_height=heights, seed=1, **how
     )
     run = Run(body=case.body, law=case.law, particles=2 * particles, seed=FRESH_SEED, **how)
-    check = Check(dist._table)
-    for block in Ensemble(run, heights).blocks(FRESH):
-        check.add(
-            block.batch, block.velocity.ravel(), block.restitution.ravel(), np.zeros(block.velocity.size)
-        )
+    check = Check.of(dist._table, Ensemble(run, heights).blocks(FRESH))
     found, scatter = check.distances(), check.scatter()
     worst = int(np.argmax(found))
     low, high = dist.velocities
@@ -114,7 +108,7 @@ def main() -> None:
     parser.add_argument("--scale", type=float, default=1.0, help="times the particles")
     parser.add_argument("--only", default="", help="rows whose name contains this")
     options = parser.parse_args()
-    warnings.simplefilter("ignore", EnergyWarning)
+    warnings.simplefilter("ignore", rs.EnergyWarning)
     head = "| body, law | impacts | v, m/s | nodes | median | worst, at v | above 0.01 | stated |"
     print(head, "|---" * 8 + "|", sep="\n")
     for name, case in CASES.items():

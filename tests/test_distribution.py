@@ -10,20 +10,12 @@ from numpy.typing import NDArray
 from scipy import stats
 
 import restitution as rs
+from reference.ensembles import BODY, LAW, heights
 from restitution._run import Run
 from restitution.distribution import FluctuatingRestitution
 from restitution.distribution._ensemble import FRESH, Ensemble
 
 Floats = NDArray[np.float64]
-
-BODY = rs.Dumbbell(radius=3e-3, separation=3e-4)
-TOUCHING = rs.Dumbbell(radius=3e-3, separation=6e-3)
-LAW = rs.TangentialRestitution(normal=0.98)
-
-
-def heights(number: int, normal: float = 0.98) -> Floats:
-    """Heights of release that span the loss of one impact."""
-    return np.asarray(3e-3 + 0.057 * np.geomspace(normal**2, 1.0, number))
 
 
 @pytest.fixture(scope="module")

@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 from scipy import stats
 
 import restitution as rs
+from reference.ensembles import BODY, LAW, TOUCHING, heights
 from restitution._run import Run
 from restitution.distribution import FluctuatingRestitution
 from restitution.distribution._check import Check
@@ -15,15 +16,6 @@ from restitution.distribution._count import Counter
 from restitution.distribution._ensemble import FRESH, Ensemble
 
 Floats = NDArray[np.float64]
-
-BODY = rs.Dumbbell(radius=3e-3, separation=3e-4)
-TOUCHING = rs.Dumbbell(radius=3e-3, separation=6e-3)
-LAW = rs.TangentialRestitution(normal=0.98)
-
-
-def heights(number: int, normal: float = 0.98) -> Floats:
-    """Heights of release that span the loss of one impact."""
-    return np.asarray(3e-3 + 0.057 * np.geomspace(normal**2, 1.0, number))
 
 
 def test_every_speed_is_as_simulated() -> None:
@@ -44,12 +36,8 @@ def test_every_speed_is_as_simulated() -> None:
     scatter = dist.data.ks_scatter
     assert 0.8 < float((scatter / (0.87 / np.sqrt(dist.data.fresh_impacts))).median()) < 1.3
     assert float((dist.data.ks_distance / scatter).median()) < 2.0
-    check = Check(dist._table)
     fresh = Ensemble(Run(body=BODY, law=LAW, particles=220_000, impacts=250, seed=1000), released)
-    for block in fresh.blocks(FRESH):
-        check.add(
-            block.batch, block.velocity.ravel(), block.restitution.ravel(), np.zeros(block.velocity.size)
-        )
+    check = Check.of(dist._table, fresh.blocks(FRESH))
     assert check.impacts().min() > 80_000
     assert check.distances().max() < 0.01
     # What the distribution states rests on as many impacts as it was learned from.

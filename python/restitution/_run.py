@@ -8,7 +8,7 @@ from pydantic import ConfigDict, Field, InstanceOf, model_validator
 
 from restitution._parameters import Allowed, Number, ParameterError, Parameters, Problem, Whole, wrong
 from restitution._release import FloatArray, OrientationOfRun, RandomSpin, SpinOfRun, VelocityOfRun
-from restitution.bodies import Body
+from restitution.bodies import BODIES, Body
 from restitution.laws import LAWS, Law
 
 
@@ -41,7 +41,7 @@ class Run(Parameters):
         Seed of the random numbers, in [0, 2⁶⁴).
     """
 
-    body: Annotated[InstanceOf[Body], Allowed("a Dumbbell, LoadedSphere, Spherocylinder or Spheroid")]
+    body: Annotated[InstanceOf[Body], Allowed(BODIES)]
     law: Annotated[InstanceOf[Law], Allowed(LAWS)]
     particles: Annotated[Whole, Field(ge=1, lt=2**40, description="number of particles")] = 1000
     impacts: Annotated[Whole, Field(ge=1, lt=2**40, description="most impacts of a particle")] = 400

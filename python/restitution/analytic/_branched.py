@@ -81,10 +81,6 @@ class BranchedFirstImpact(FirstImpact):
     def pdf(self, x: ArrayLike) -> Values:
         return scalar(self._density(floats(x)))
 
-    def logpdf(self, x: ArrayLike) -> Values:
-        with np.errstate(divide="ignore"):
-            return scalar(np.log(self.pdf(x)))
-
     def cdf(self, x: ArrayLike) -> Values:
         return scalar(self._probability(floats(x), above=False))
 

@@ -2,13 +2,12 @@
 
 from restitution._parameters import ParameterError, Problem, wrong
 from restitution.analytic._branched import BranchedFirstImpact
-from restitution.analytic._frozen import FirstImpact
+from restitution.analytic._frozen import FirstImpact, check
 from restitution.analytic._normal import Fall
 from restitution.analytic._orientation import ORIENTATIONS, OrientationName
 from restitution.analytic._pair import PairFirstImpact
-from restitution.analytic._threshold import BODIES
 from restitution.bodies import Body, Dumbbell, LoadedSphere, Spherocylinder, Spheroid
-from restitution.laws import LAWS, Frictionless, Law, TangentialRestitution
+from restitution.laws import Frictionless, Law, TangentialRestitution
 
 SHORTEST, LONGEST = 1e-100, 1e100  # L/R whose powers, up to the third, are normal numbers
 NARROWEST = 1e-9  # support of ε that leaves the density seven digits
@@ -67,10 +66,7 @@ def first_impact(
     >>> round(first_impact(egg, steel, release_height=0.1, gravity=9.81).mean(), 3)
     0.322
     """
-    if not isinstance(body, Body):
-        raise ParameterError(wrong("body", body, BODIES))
-    if not isinstance(law, Law):
-        raise ParameterError(wrong("law", law, LAWS))
+    check(body, law)
     if not (isinstance(orientation, str) and orientation in ORIENTATIONS):
         raise ParameterError(wrong("orientation", orientation, " or ".join(map(repr, ORIENTATIONS))))
     fall = _fall(body, law, release_height, gravity)

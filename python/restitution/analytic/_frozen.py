@@ -10,8 +10,8 @@ from numpy.typing import ArrayLike
 
 from restitution._parameters import ParameterError, wrong
 from restitution.analytic._orientation import Floats, OrientationName
-from restitution.bodies import Body
-from restitution.laws import Law
+from restitution.bodies import BODIES, Body
+from restitution.laws import LAWS, Law
 
 Values: TypeAlias = Any  # np.float64 for a scalar argument, an array of floats otherwise
 RandomState: TypeAlias = int | np.random.Generator | np.random.RandomState | None
@@ -62,10 +62,6 @@ class FirstImpact(ABC):
     @abstractmethod
     def pdf(self, x: ArrayLike) -> Values:
         """Probability density at ε = x."""
-
-    @abstractmethod
-    def logpdf(self, x: ArrayLike) -> Values:
-        """Logarithm of `pdf`; -inf outside the support."""
 
     @abstractmethod
     def cdf(self, x: ArrayLike) -> Values:
@@ -126,6 +122,11 @@ class FirstImpact(ABC):
     def _standardised(self, order: int) -> float:
         """Mean of (ε - mean)/std to a power."""
 
+    def logpdf(self, x: ArrayLike) -> Values:
+        """Logarithm of `pdf`; -inf outside the support."""
+        with np.errstate(divide="ignore"):
+            return scalar(np.log(self.pdf(x)))
+
     def logcdf(self, x: ArrayLike) -> Values:
         """Logarithm of `cdf`."""
         with np.errstate(divide="ignore"):
@@ -170,6 +171,14 @@ class FirstImpact(ABC):
         """Both ends of the range that leaves out equal probability on either side."""
         tail = 0.5 * (1.0 - probability(confidence))
         return self.ppf(tail), self.isf(tail)
+
+
+def check(body: Body, law: Law) -> None:
+    """Refuse what is no body, or no law."""
+    if not isinstance(body, Body):
+        raise ParameterError(wrong("body", body, BODIES))
+    if not isinstance(law, Law):
+        raise ParameterError(wrong("law", law, LAWS))
 
 
 def generator(random_state: RandomState) -> np.random.Generator | np.random.RandomState:

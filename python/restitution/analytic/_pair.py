@@ -75,39 +75,30 @@ class PairFirstImpact(FirstImpact):
             return scalar(self._relative_density(x) / self._impact.greatest_loss)
 
     def logpdf(self, x: ArrayLike) -> Values:
-        """Logarithm of `pdf`; -inf outside the support."""
         with np.errstate(divide="ignore"):
             return scalar(np.log(self._relative_density(x)) - np.log(self._impact.greatest_loss))
 
     def cdf(self, x: ArrayLike) -> Values:
-        """Probability that ε <= x; ``cdf(0)`` is the probability that the body goes on downwards."""
         return scalar(self._orientation.below(*self._angle(floats(x))))
 
     def sf(self, x: ArrayLike) -> Values:
-        """Probability that ε > x, accurate also where it is small."""
         return scalar(self._orientation.above(*self._angle(floats(x))))
 
     def ppf(self, q: ArrayLike) -> Values:
-        """Quantile: the ε with ``cdf(ε) = q``; nan unless ``0 <= q <= 1``."""
         below = probability(q)
         return scalar(self._impact.restitution(*self._orientation.quantile(below, 1.0 - below)))
 
     def isf(self, q: ArrayLike) -> Values:
-        """Upper quantile: the ε with ``sf(ε) = q``; nan unless ``0 <= q <= 1``."""
         above = probability(q)
         return scalar(self._impact.restitution(*self._orientation.quantile(1.0 - above, above)))
 
     def mean(self) -> float:
-        """Mean of ε."""
         return self._impact.normal - self._impact.greatest_loss * self._mean_loss
 
     def std(self) -> float:
-        """Square root of the variance of ε."""
         return self._impact.greatest_loss * float(np.sqrt(self._central(2)))
 
     def entropy(self) -> float:
-        """Differential entropy, -∫ p ln p dε."""
-
         def integrand(u: float) -> float:  # q = u³ tames the logarithm, steep at q = b where b is small
             cosine, _ = self._orientation.quantile(np.asarray(u**3), np.asarray(1.0 - u**3))
             return float(3.0 * u * u * np.log(self._impact.relative_slope(cosine)))
@@ -123,19 +114,6 @@ class PairFirstImpact(FirstImpact):
         conditional: bool = False,
         **options: Any,
     ) -> float:
-        """Mean of ``func(ε)`` by `scipy.integrate.quad` over the quantile function, without a singularity.
-
-        Parameters
-        ----------
-        func : callable, optional
-            Of one number; ε itself if left out.
-        lb, ub : float, optional
-            Only ε in [lb, ub] count.
-        conditional : bool
-            Divide by the probability of [lb, ub].
-        **options
-            For `scipy.integrate.quad`.
-        """
         low = 0.0 if lb is None else float(self.cdf(lb))
         high = 1.0 if ub is None else float(self.cdf(ub))
 

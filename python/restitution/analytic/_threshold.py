@@ -2,15 +2,13 @@
 
 import numpy as np
 
-from restitution._parameters import ParameterError, wrong
 from restitution.analytic._disc import Number, turned
+from restitution.analytic._frozen import check
 from restitution.analytic._hull import Outline, Side
 from restitution.analytic._impulse import Impulse, Mode
 from restitution.analytic._panels import extremes
 from restitution.bodies import Body
-from restitution.laws import LAWS, Law
-
-BODIES = "a Dumbbell, LoadedSphere, Spherocylinder or Spheroid"
+from restitution.laws import Law
 
 
 def negative_threshold(body: Body, law: Law) -> float:
@@ -47,10 +45,7 @@ def negative_threshold(body: Body, law: Law) -> float:
     >>> round(7 * negative_threshold(body, rs.Frictionless(normal=0.5)), 12)
     5.0
     """
-    if not isinstance(body, Body):
-        raise ParameterError(wrong("body", body, BODIES))
-    if not isinstance(law, Law):
-        raise ParameterError(wrong("law", law, LAWS))
+    check(body, law)
     outline = Outline.of(body)
     impulse = Impulse(law, outline.inertia)
     modes = sorted(set(impulse.modes()))

@@ -6,4 +6,6 @@ from restitution.bodies._loaded_sphere import LoadedSphere
 from restitution.bodies._spherocylinder import Spherocylinder
 from restitution.bodies._spheroid import Spheroid
 
-__all__ = ["Body", "Dumbbell", "LoadedSphere", "Spherocylinder", "Spheroid"]
+__all__ = ["BODIES", "Body", "Dumbbell", "LoadedSphere", "Spherocylinder", "Spheroid"]
+
+BODIES = "a Dumbbell, LoadedSphere, Spherocylinder or Spheroid"

@@ -1,8 +1,11 @@
 """How far a learned distribution is from impacts that it has not seen."""
 
+from collections.abc import Iterable
+
 import numpy as np
 
-from restitution.distribution._ensemble import BATCHES
+from restitution.distribution._count import placed
+from restitution.distribution._ensemble import BATCHES, Impacts
 from restitution.distribution._table import Floats, Ints, Table
 
 _LEVELS = 4096
@@ -22,13 +25,18 @@ class Check:
         self.count: Ints = np.zeros((table.speeds.size - 1, _LEVELS), dtype=np.int64)
         self._batches: Ints = np.zeros((BATCHES, table.speeds.size - 1, _COARSE), dtype=np.int64)
 
-    def add(self, batch: int, velocity: Floats, restitution: Floats, z: Floats) -> None:
+    @classmethod
+    def of(cls, table: Table, blocks: Iterable[Impacts]) -> "Check":
+        """Hold a table against an ensemble."""
+        check = cls(table)
+        for block in blocks:
+            check.add(block.batch, block.velocity, block.restitution)
+        return check
+
+    def add(self, batch: int, velocity: Floats, restitution: Floats) -> None:
         """Count impacts of a batch, which shares no particle with any other, by interval and u."""
-        number = np.searchsorted(self.table.speeds, velocity, side="right") - 1
-        inside = (number >= 0) & (number < self.table.speeds.size - 1)
-        for column in (restitution, z):
-            inside &= np.isfinite(column)
-        u = self.table.value("cdf", restitution[inside], velocity[inside], z[inside])
+        number, inside = placed(self.table.speeds, velocity, restitution)
+        u = self.table.value("cdf", restitution[inside], velocity[inside])
         place = number[inside] * _LEVELS + np.minimum((u * _LEVELS).astype(np.int64), _LEVELS - 1)
         count = np.bincount(place, minlength=self.count.size).reshape(self.count.shape)
         self.count += count

@@ -7,21 +7,29 @@ import numpy as np
 import numpy.typing as npt
 
 from restitution.distribution._ensemble import BATCHES
-from restitution.distribution._table import Floats, Histogram
+from restitution.distribution._table import Floats, Histogram, Ints
 
 Chosen: TypeAlias = "slice | npt.NDArray[np.bool_]"
 
 
-def intervals(nodes: Floats, velocity: Floats, *columns: Floats) -> Iterator[tuple[int, tuple[Floats, ...]]]:
-    """Yield the impacts between each two neighbouring nodes that have any: the interval, weights, columns.
+def placed(nodes: Floats, velocity: Floats, *columns: Floats) -> tuple[Ints, npt.NDArray[np.bool_]]:
+    """Tell between which two neighbouring nodes each impact lies, and whether it counts.
 
-    The weight is that of the upper node; impacts outside the nodes, and those with NaN in any column, are
-    left out.
+    Those outside the nodes, and those with NaN in any column, do not.
     """
     number = np.searchsorted(nodes, velocity, side="right") - 1
     inside = (number >= 0) & (number < nodes.size - 1)
     for column in columns:
         inside &= np.isfinite(column)
+    return number, inside
+
+
+def intervals(nodes: Floats, velocity: Floats, *columns: Floats) -> Iterator[tuple[int, tuple[Floats, ...]]]:
+    """Yield the impacts between each two neighbouring nodes that have any: the interval, weights, columns.
+
+    The weight is that of the upper node.
+    """
+    number, inside = placed(nodes, velocity, *columns)
     number = number[inside].astype(np.int32)
     order = np.argsort(number, kind="stable")
     sorted_columns = [column[inside][order] for column in (velocity, *columns)]

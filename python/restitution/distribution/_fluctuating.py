@@ -227,8 +227,7 @@ class FluctuatingRestitution(TabulatedDistribution):
         check = Check(self._table)
         columns = [data[name].transpose("particle", ...).to_numpy() for name in names]
         for batch in range(BATCHES):
-            velocity, restitution = (column[batch::BATCHES].ravel() for column in columns)
-            check.add(batch, velocity, restitution, np.zeros(velocity.size))
+            check.add(batch, *(column[batch::BATCHES] for column in columns))
         low, high = self._table.speeds[:-1], self._table.speeds[1:]
         return xr.Dataset(
             {

@@ -61,9 +61,7 @@ def learn(
             groups = _condition_nodes([look(block) for block in pilot], nodes)
             conditional = _count(ensemble, pilot, scale, nodes, groups, look, advance)
         del pilot
-        check = Check(table)
-        for block in ensemble.blocks(FRESH, advance):
-            check.add(block.batch, *_unconditional(block))
+        check = Check.of(table, ensemble.blocks(FRESH, advance))
     attrs = attributes(
         ensemble.run, "Distribution of the coefficient of restitution at given impact velocity"
     )

@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from restitution.fit._counts import Counts, pooled
 from restitution.fit._result import Array, Fit, finite_samples
-from restitution.fit._source import Parts, Window, counted, recorded
+from restitution.fit._source import Parts, Window, counted, no_window, recorded
 
 _GRID = 1000
 
@@ -117,12 +117,11 @@ def clustered(samples: Parts, clusters: ArrayLike | None, velocity: Window | Non
         if clusters is not None:
             raise ValueError("clusters: a Dataset knows its particles, leave them out")
         values, labels = recorded(samples, velocity)
-    elif velocity is not None:
-        raise ValueError(f"velocity = {velocity!r}: is for a Dataset; other samples have no impact velocity")
+        x = finite_samples(values)
     else:
-        values = finite_samples(cast(ArrayLike, samples))
-        labels = np.arange(values.size) if clusters is None else np.asarray(clusters).ravel()
-    x = finite_samples(values)
+        no_window(velocity)
+        x = finite_samples(cast(ArrayLike, samples))
+        labels = np.arange(x.size) if clusters is None else np.asarray(clusters).ravel()
     if labels.shape != x.shape:
         raise ValueError(f"clusters: {labels.size} values; one for each of the {x.size} samples is needed")
     order = np.argsort(labels, kind="stable")

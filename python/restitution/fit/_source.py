@@ -42,8 +42,7 @@ def taken(samples: Samples, velocity: Window | None, location: float | None = No
         if "count" in samples:
             return counted(samples, velocity)
         return finite_samples(recorded(samples, velocity)[0], location)
-    if velocity is not None:
-        raise ValueError(f"velocity = {velocity!r}: is for a Dataset; other samples have no impact velocity")
+    no_window(velocity)
     return samples if isinstance(samples, Counts) else finite_samples(samples, location)
 
 
@@ -92,6 +91,12 @@ def columns(data: xr.Dataset, *names: str) -> tuple[Array, ...]:
     if missing:
         raise ValueError(f"data: lacks {', '.join(missing)}; give a Dataset as from restitution.simulate")
     return tuple(data[name].transpose("particle", "impact").to_numpy() for name in names)
+
+
+def no_window(velocity: Window | None) -> None:
+    """Refuse an impact velocity of samples that have none."""
+    if velocity is not None:
+        raise ValueError(f"velocity = {velocity!r}: is for a Dataset; other samples have no impact velocity")
 
 
 def window(velocity: Window) -> tuple[float, float]:

@@ -1,5 +1,6 @@
 """Materials: the normal coefficient of restitution as a function of the normal contact speed."""
 
+from abc import abstractmethod
 from collections.abc import Callable
 from typing import Annotated, Any
 
@@ -38,8 +39,9 @@ class Material(Parameters):
             raise ParameterError(wrong("speed", speed, ">= 0 (m/s)"))
         return self._coefficient(v)
 
+    @abstractmethod
     def _coefficient(self, speed: Floats) -> Floats:
-        raise NotImplementedError
+        """ε^n at speeds >= 0, or nan."""
 
 
 class Viscoelastic(Material):
