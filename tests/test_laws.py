@@ -108,6 +108,31 @@ def test_energy_in_whole_runs() -> None:
     assert float(rs.simulate(body, rs.TangentialRestitution(normal=0.98)).energy_ratio.max()) > 2
 
 
+def test_stronge_where_slip_stops_in_compression() -> None:
+    """W. J. Stronge, Proc. R. Soc. A 431, 169 (1990): e² is work of restitution over work of compression.
+
+    v_n is linear in the impulse p: it grows by K_s = K_nn - sμK_nu while slip of sign s lasts, and by
+    K_t = K_nn - K_nu²/K_uu while the contact sticks. Slip that stops at v_s < 0 leaves the work
+    (v² - v_s²)/2K_s + v_s²/2K_t, hence v' = e√(v_s² + (v² - v_s²)K_t/K_s).
+    """
+    random = np.random.default_rng(5)
+    met = 0
+    while met < 200:
+        one = contact(random, planar=True)
+        normal, friction = random.uniform(0.0, 1.0), random.uniform(0.0, 1.5)
+        (nn, nu), (_, uu) = one.matrix[0][:2], one.matrix[1][:2]
+        sign = np.sign(one.slip[1])
+        stops = -one.slip[1] / (nu - sign * friction * uu)
+        sliding, sticking = nn - sign * friction * nu, nn - nu**2 / uu
+        slow = one.slip[0] + sliding * stops
+        if not (stops > 0 and slow < 0 and abs(nu / uu) < friction):
+            continue
+        met += 1
+        _, separation = _core.respond(rs.Coulomb(normal=normal, friction=friction).parameters(), *one)
+        square = slow**2 + (one.slip[0] ** 2 - slow**2) * sticking / sliding
+        assert separation == pytest.approx(normal * np.sqrt(square), rel=1e-12, abs=1e-14)
+
+
 @pytest.mark.parametrize("law", LAWS, ids=str)
 def test_statistics_count_what_simulate_records(body: rs.Dumbbell, law: Law) -> None:
     """Whatever the law, and also where the sums have no constant ε^n to be taken about."""
