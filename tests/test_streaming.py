@@ -24,7 +24,7 @@ COUNTS = (
     "velocity_underflow",
     "velocity_overflow",
 )
-QUANTUM = 2.0**-26
+QUANTUM = 2.0**-24
 """The core rounds ε − ε^n to multiples of this before it sums."""
 
 LAW = rs.TangentialRestitution(normal=0.9, tangential=0.4)

@@ -68,7 +68,7 @@ def statistics(
         As from `restitution.reduce`, and ``particles_ended`` (stop_reason), the number of particles by stop
         reason. Over all impacts, in the bins or not, the attributes ``energy_created_impacts``,
         ``energy_created_share`` and ``largest_energy_ratio``, as from `simulate`. The moments rest on exact
-        sums of ε - ε^n rounded to 2⁻²⁶ ≈ 1.5e-8.
+        sums of ε - ε^n rounded to 2⁻²⁴ ≈ 6e-8.
 
     Raises
     ------

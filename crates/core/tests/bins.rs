@@ -65,7 +65,7 @@ impl Expected {
                         bin(&edges.restitution, value),
                         bin(&edges.fraction, fraction),
                     ];
-                    let offset = (value - run.origin()) * 2.0_f64.powi(26);
+                    let offset = (value - run.origin()) * 2.0_f64.powi(24);
                     expected.quanta[row].push(offset.round_ties_even() as i128);
                     expected.values[row].push(value);
                     expected.fractions[row] +=
@@ -144,7 +144,7 @@ fn sum(values: impl Iterator<Item = f64>) -> f64 {
 /// are larger: three ulp of each term are allowed here, and no more.
 fn agree(found: &Moments, quanta: &[i128], origin: f64) -> Result<(), TestCaseError> {
     let n = quanta.len() as f64;
-    let unit = 2.0_f64.powi(-26);
+    let unit = 2.0_f64.powi(-24);
     let mean = unit * (quanta.iter().sum::<i128>() as f64 / n);
     let rounding = 4.0 * f64::EPSILON;
     prop_assert!((found.mean - (origin + mean)).abs() <= rounding * (origin.abs() + mean.abs()));

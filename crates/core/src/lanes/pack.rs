@@ -118,6 +118,16 @@ impl<S: Simd, const K: usize> Pack<S, K> {
         self.vectors[first..first + H].copy_from_slice(&part.vectors);
     }
 
+    /// The lanes of four packs as records of four, in an order of their own, which is the same for all packs.
+    #[inline(always)]
+    pub fn records(fields: [Self; 4]) -> [[S::f64s; 4]; K] {
+        let simd = fields[0].simd;
+        let [a, b, c, d] = fields.map(|field| field.vectors);
+        each_vector!(records = [[a[0]; 4]; K], k => {
+            simd.interleave_shfl_f64s([a[k], b[k], c[k], d[k]])
+        })
+    }
+
     /// self · factor + addend, rounded once.
     #[inline(always)]
     pub fn mul_add(self, factor: impl Operand<S, K>, addend: impl Operand<S, K>) -> Self {
@@ -217,6 +227,12 @@ impl<S: Simd, const K: usize> Mask<S, K> {
             all = simd.or_m64s(all, self.masks[k]);
         }
         simd.first_true_m64s(all) < size_of::<S::f64s>() / size_of::<f64>()
+    }
+
+    /// Whether all lanes are true.
+    #[inline(always)]
+    pub fn all(self) -> bool {
+        !(!self).any()
     }
 
     /// Calls `f` with every lane that is true, in order.

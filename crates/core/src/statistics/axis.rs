@@ -15,6 +15,9 @@ pub(super) const ROUND: f64 = 6_755_399_441_055_744.0;
 #[derive(Debug, Clone, PartialEq)]
 pub struct Axis {
     edges: Vec<f64>,
+    /// The lowest edge and the number of edges, at hand in the hot loop.
+    low: f64,
+    last: f64,
     /// Bins per unit.
     density: f64,
 }
@@ -45,39 +48,73 @@ impl Axis {
         }
         Ok(Self {
             edges: edges.to_vec(),
+            low,
+            last: edges.len() as f64,
             density,
         })
     }
 
     /// Number of bins, those below and above included.
-    pub(super) fn bins(&self) -> usize {
-        self.edges.len() + 1
+    pub(super) fn bins(&self) -> f64 {
+        self.last + 1.0
     }
 
-    /// Number of the bin of each lane, plus [`ROUND`]: 0 below, 1 to n inside, n + 1 above. NaN may be anywhere.
+    /// Numbers of the bins of N quantities on an axis each, plus [`ROUND`]: 0 below, 1 to n inside, n + 1 above. NaN may be
+    /// anywhere.
     #[inline(always)]
-    pub(super) fn locate<S: Simd, const K: usize>(&self, x: Pack<S, K>) -> Pack<S, K> {
-        let last = self.edges.len() as f64;
+    pub(super) fn locate<S: Simd, const K: usize, const N: usize>(
+        axes: [&Self; N],
+        x: [Pack<S, K>; N],
+    ) -> [Pack<S, K>; N] {
+        let mut bins = x;
+        let mut most = Pack::splat(x[0].simd(), 0.0);
+        for i in 0..N {
+            let Located { bin, off } = axes[i].nearest(x[i]);
+            bins[i] = bin;
+            most = most.max(off);
+        }
+        if !most.lt(0.5 - NEAR).all() {
+            for i in 0..N {
+                bins[i] = axes[i].located_exactly(x[i]);
+            }
+        }
+        bins
+    }
+
+    #[inline(always)]
+    fn nearest<S: Simd, const K: usize>(&self, x: Pack<S, K>) -> Located<S, K> {
         // Whole numbers are in the middle of the bins.
-        let place = (x - self.edges[0])
+        let place = (x - self.low)
             .mul_add(self.density, 0.5)
             .max(0.0)
-            .min(last);
-        let mut bin = place + ROUND;
-        let off = (place - (bin - ROUND)).abs();
-        let near = !off.lt(0.5 - NEAR);
-        if near.any() {
-            near.each(|lane| {
-                bin.as_mut_slice()[lane] =
-                    ROUND + self.decide(x.as_slice()[lane], place.as_slice()[lane]);
-            });
+            .min(self.last);
+        let bin = place + ROUND;
+        Located {
+            bin,
+            off: (place - (bin - ROUND)).abs(),
+        }
+    }
+
+    /// The bins where an edge is near, or a lane is NaN.
+    #[cold]
+    #[inline(always)]
+    fn located_exactly<S: Simd, const K: usize>(&self, x: Pack<S, K>) -> Pack<S, K> {
+        let Located { mut bin, off } = self.nearest(x);
+        for (lane, bin) in bin.as_mut_slice().iter_mut().enumerate() {
+            if off.as_slice()[lane] >= 0.5 - NEAR {
+                *bin = ROUND + self.decide(x.as_slice()[lane]);
+            }
         }
         bin
     }
 
-    /// The bin on one or the other side of the edge nearest to `place`.
+    /// The bin of a number that is near an edge.
     #[cold]
-    fn decide(&self, x: f64, place: f64) -> f64 {
+    #[inline(never)]
+    fn decide(&self, x: f64) -> f64 {
+        let place = ((x - self.low).mul_add(self.density, 0.5))
+            .max(0.0)
+            .min(self.last);
         let edge = (place as usize).min(self.edges.len() - 1);
         if x < self.edges[edge] {
             edge as f64
@@ -85,4 +122,11 @@ impl Axis {
             edge as f64 + 1.0
         }
     }
+}
+
+/// Bins, and how far from their middle.
+#[derive(Clone, Copy)]
+struct Located<S: Simd, const K: usize> {
+    bin: Pack<S, K>,
+    off: Pack<S, K>,
 }

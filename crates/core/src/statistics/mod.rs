@@ -1,10 +1,12 @@
 //! Statistics that merge exactly: integer counts and integer sums, so that no order of adding can change them.
 
 mod axis;
+mod counter;
 mod moments;
+mod recent;
 mod tally;
 
 pub use axis::Axis;
+pub(crate) use counter::Counter;
 pub use moments::{Moments, Sums};
-pub(crate) use tally::Counter;
 pub use tally::{Bins, By, CREATES_ENERGY, Gains, Grid, Tally};

@@ -1,69 +1,12 @@
 //! Moments as exact integer sums of a rounded quantity.
 //!
-//! Each value is rounded to a multiple of 2⁻²⁶ ≈ 1.5·10⁻⁸ once; its powers are then summed without any further rounding,
+//! Each value is rounded to a multiple of 2⁻²⁴ ≈ 6·10⁻⁸ once; its powers are then summed without any further rounding,
 //! in integers wide enough for 2⁶⁴ values. Sums of sums are sums: merging is associative and commutative to the last bit.
 
+use super::recent::{Extremes, Totals};
+
 /// Quanta in a unit.
-pub(super) const QUANTA: f64 = 67_108_864.0; // 2²⁶
-/// Largest offset, in quanta, whose powers [`Recent`] can take: 2.
-pub(super) const NARROW: u64 = 1 << 27;
-/// So many values fit into the words of [`Recent`]: their fourth powers are at most 2¹⁰⁸ each.
-pub(super) const MOST_RECENT: u32 = 1 << 19;
-
-/// Σq, Σq², Σq³, Σq⁴ of a limited number of values of limited size, q the value's offset in quanta: what the hot loop adds to.
-#[derive(Clone, Copy)]
-pub(super) struct Recent {
-    first: i64,
-    second: u128,
-    third: i128,
-    fourth: u128,
-}
-
-impl Recent {
-    pub const EMPTY: Self = Self {
-        first: 0,
-        second: 0,
-        third: 0,
-        fourth: 0,
-    };
-
-    /// Adds an offset of at most [`NARROW`] quanta; of any other the sums mean nothing, but nothing panics.
-    #[inline(always)]
-    pub fn add(&mut self, q: i64) {
-        let square = q.wrapping_mul(q) as u64;
-        self.first = self.first.wrapping_add(q);
-        self.second = self.second.wrapping_add(u128::from(square));
-        let cube = i128::from(square as i64) * i128::from(q);
-        self.third = self.third.wrapping_add(cube);
-        let fourth = u128::from(square) * u128::from(square);
-        self.fourth = self.fourth.wrapping_add(fourth);
-    }
-}
-
-/// The smallest and the largest of the recent values.
-#[derive(Clone, Copy)]
-pub(super) struct Extremes {
-    minimum: f64,
-    maximum: f64,
-}
-
-impl Extremes {
-    pub const EMPTY: Self = Self {
-        minimum: f64::INFINITY,
-        maximum: f64::NEG_INFINITY,
-    };
-
-    /// Stores only what is new, which is rare.
-    #[inline(always)]
-    pub fn add(&mut self, value: f64) {
-        if value < self.minimum {
-            self.minimum = value;
-        }
-        if value > self.maximum {
-            self.maximum = value;
-        }
-    }
-}
+pub(super) const QUANTA: f64 = 16_777_216.0; // 2²⁴
 
 /// A two's-complement integer of N 64-bit words, low word first.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -197,18 +140,14 @@ impl Sums {
     }
 
     /// Adds what is recent.
-    pub(super) fn absorb(&mut self, recent: &Recent, extremes: &Extremes) {
-        let Recent {
-            first,
-            second,
-            third,
-            fourth,
-        } = *recent;
+    pub(super) fn absorb(&mut self, recent: &Totals, extremes: &Extremes) {
         let sign = |negative: bool| if negative { u64::MAX } else { 0 };
-        self.first.add([first as u64], sign(first < 0));
-        self.second.add(words(second), 0);
-        self.third.add(words(third as u128), sign(third < 0));
-        self.fourth.add(words(fourth), 0);
+        self.first
+            .add([recent.first as u64], sign(recent.first < 0));
+        self.second.add([recent.second], 0);
+        self.third
+            .add(words(recent.third as u128), sign(recent.third < 0));
+        self.fourth.add(words(recent.fourth as u128), 0);
         self.minimum = self.minimum.min(extremes.minimum);
         self.maximum = self.maximum.max(extremes.maximum);
     }

@@ -1,0 +1,248 @@
+//! Counts impacts into a [`Tally`].
+
+use super::axis::{Axis, ROUND};
+use super::moments::{QUANTA, Sums};
+use super::recent::{Extremes, FRACTION_QUANTA, LARGEST, Recent, Words, words};
+use super::tally::{Bins, By, CREATES_ENERGY, Gains, Tally};
+use crate::lanes::{Impact, Pack, Sink};
+use crate::plan::Plan;
+use crate::trajectory::StopReason;
+use pulp::Simd;
+
+/// Counts impacts, by way of narrow integers that are emptied before they can overflow. Where an impact belongs is computed for
+/// all lanes side by side and put in a queue; the queue is counted lane by lane, while other arithmetic waits for its results.
+/// Lanes that hold no impact, or none that can be summed there, go to a site or a row of their own that nobody reads, so that all
+/// lanes do the same.
+pub(crate) struct Counter<'a> {
+    tally: Tally,
+    bins: &'a Bins,
+    plan: &'a Plan<'a>,
+    restitution: Vec<u32>,
+    fraction: Vec<u32>,
+    rows: Vec<Row>,
+    /// Impacts since the last emptying.
+    recent: u32,
+    queue: Queue,
+}
+
+/// Room in the queue.
+const LENGTH: usize = 96;
+/// So many impacts are counted before the grids are emptied.
+const MOST_RECENT: u32 = u32::MAX - LENGTH as u32;
+
+/// Impacts to be counted, lane by lane. Whole numbers have [`ROUND`] added to them.
+#[repr(align(64))]
+struct Queue {
+    places: [Place; LENGTH],
+    words: [Words; LENGTH],
+    length: usize,
+}
+
+/// Where an impact is counted: indices into the grids of ε and of E_rot/E_tot, and the row. Its last number is ε.
+type Place = [f64; 4];
+
+/// What is recent in a row.
+#[derive(Clone, Copy)]
+#[repr(align(64))]
+struct Row {
+    sums: Recent,
+    extremes: Extremes,
+    gains: Gains,
+}
+
+impl Row {
+    const EMPTY: Self = Self {
+        sums: Recent::EMPTY,
+        extremes: Extremes::EMPTY,
+        gains: Gains {
+            count: 0,
+            largest: 0.0,
+        },
+    };
+}
+
+/// The whole number in the low bits of `x`, to which [`ROUND`] was added.
+#[inline(always)]
+fn whole(x: f64) -> usize {
+    x.to_bits() as u32 as usize
+}
+
+/// The last place, which nobody reads, plus [`ROUND`].
+#[inline(always)]
+fn nowhere<T>(places: &[T]) -> f64 {
+    (places.len() - 1) as f64 + ROUND
+}
+
+/// Makes the lanes of four packs records of four numbers, and puts them into longer ones of a queue, from their number `first` on.
+#[inline(always)]
+fn put<S: Simd, const K: usize, const N: usize>(
+    queue: &mut [[f64; N]],
+    first: usize,
+    packs: [Pack<S, K>; 4],
+) {
+    let records = Pack::records(packs);
+    let records: &[[f64; 4]] = pulp::bytemuck::cast_slice(&records);
+    for (whole, part) in queue.iter_mut().zip(records) {
+        whole[first..first + 4].copy_from_slice(part);
+    }
+}
+
+/// Moves what is recent in a row to the tally.
+#[cold]
+#[inline(never)]
+fn empty_row(tally: &mut Tally, row: &mut Row, number: usize) {
+    let row = std::mem::replace(row, Row::EMPTY);
+    if let Some(sums) = tally.sums.get_mut(number) {
+        let totals = row.sums.totals();
+        sums.absorb(&totals, &row.extremes);
+        tally.fractions[number] += u128::from(totals.fractions);
+        tally.gains[number].merge(row.gains);
+    }
+}
+
+impl<'a> Counter<'a> {
+    pub fn new(bins: &'a Bins, plan: &'a Plan<'a>, origin: f64) -> Self {
+        let tally = Tally::new(bins, origin);
+        Self {
+            bins,
+            plan,
+            restitution: vec![0; tally.restitution.counts().len() + 1],
+            fraction: vec![0; tally.fraction.counts().len() + 1],
+            rows: vec![Row::EMPTY; tally.sums.len() + 1],
+            recent: 0,
+            queue: Queue {
+                places: [[0.0; 4]; LENGTH],
+                words: [[0.0; 8]; LENGTH],
+                length: 0,
+            },
+            tally,
+        }
+    }
+
+    fn empty(&mut self) {
+        self.recent = 0;
+        self.tally.restitution.absorb(&mut self.restitution);
+        self.tally.fraction.absorb(&mut self.fraction);
+        for row in 0..self.tally.sums.len() {
+            empty_row(&mut self.tally, &mut self.rows[row], row);
+        }
+    }
+
+    pub fn finish(mut self) -> Tally {
+        self.count();
+        self.empty();
+        self.tally
+    }
+
+    /// Counts what is in the queue.
+    #[inline(always)]
+    fn count(&mut self) {
+        let length = std::mem::take(&mut self.queue.length).min(LENGTH);
+        if self.recent > MOST_RECENT {
+            self.empty();
+        }
+        self.recent += length as u32;
+        let (restitution, fraction) = (&mut self.restitution[..], &mut self.fraction[..]);
+        let (queue, rows) = (&self.queue, &mut self.rows[..]);
+        for (place, words) in queue.places.iter().zip(&queue.words).take(length) {
+            let [site, fraction_site, number, value] = *place;
+            restitution[whole(site)] += 1;
+            fraction[whole(fraction_site)] += 1;
+            let number = whole(number);
+            let row = &mut rows[number];
+            row.extremes.add(value);
+            let full = row.sums.add(words);
+            if full {
+                empty_row(&mut self.tally, row, number);
+            }
+        }
+    }
+
+    /// Sums a value that is too far off for [`Recent`].
+    #[cold]
+    #[inline(never)]
+    fn sum_large(&mut self, row: usize, restitution: f64, fraction: f64) {
+        let quanta = (restitution - self.tally.origin) * QUANTA;
+        self.tally.sums[row].add(quanta.round_ties_even() as i64);
+        self.tally.fractions[row] += (fraction * FRACTION_QUANTA).round_ties_even() as u128;
+        self.rows[row].extremes.add(restitution);
+    }
+}
+
+impl Sink for Counter<'_> {
+    fn begin(&mut self, _: usize) {}
+
+    #[inline(always)]
+    fn impact<S: Simd, const K: usize>(&mut self, number: usize, _: usize, impact: &Impact<S, K>) {
+        let width = Pack::<S, K>::WIDTH;
+        if self.queue.length + width > LENGTH {
+            self.count();
+        }
+        let at = self.queue.length;
+        self.queue.length += width;
+
+        let simd = impact.time.simd();
+        let restitution = impact.restitution();
+        let fraction = impact.rotational_fraction();
+        let (columns, fractions) = (&self.bins.restitution, &self.bins.fraction);
+        let (row, column, fraction_column) = match &self.bins.by {
+            By::Velocity(axis) => {
+                let velocity = impact.fall * self.plan.scales.speed;
+                let located = Axis::locate(
+                    [axis, columns, fractions],
+                    [velocity, restitution, fraction],
+                );
+                (located[0], located[1], located[2])
+            }
+            By::Number(_) => {
+                let row = Pack::splat(simd, number as f64 + ROUND);
+                let located = Axis::locate([columns, fractions], [restitution, fraction]);
+                (row, located[0], located[1])
+            }
+        };
+        let offset = restitution - self.tally.origin;
+        let start = row - ROUND;
+        let mut site = start.mul_add(columns.bins() + 1.0, column);
+        let mut fraction_site = start.mul_add(fractions.bins() + 1.0, fraction_column);
+        let mut plain_row = row;
+        let plain = impact.active & offset.abs().le(LARGEST) & fraction.le(1.0);
+        if !plain.all() {
+            let defined = restitution.abs().lt(Sums::LARGEST) & fraction.le(1.0);
+            let last = start.mul_add(columns.bins() + 1.0, columns.bins() + ROUND);
+            site = defined.select(site, last);
+            site = impact.active.select(site, nowhere(&self.restitution));
+            let last = start.mul_add(fractions.bins() + 1.0, fractions.bins() + ROUND);
+            fraction_site = defined.select(fraction_site, last);
+            fraction_site = impact.active.select(fraction_site, nowhere(&self.fraction));
+            plain_row = plain.select(row, nowhere(&self.rows));
+            (impact.active & defined & !plain).each(|lane| {
+                let (restitution, fraction) =
+                    (restitution.as_slice()[lane], fraction.as_slice()[lane]);
+                self.sum_large(whole(row.as_slice()[lane]), restitution, fraction);
+            });
+        }
+        let queue = &mut self.queue;
+        let lanes = at..at + width;
+        let places = [site, fraction_site, plain_row, restitution];
+        put(&mut queue.places[lanes.clone()], 0, places);
+        let [low, high] = words(offset, fraction);
+        put(&mut queue.words[lanes.clone()], 0, low);
+        put(&mut queue.words[lanes], 4, high);
+        let (before, after) = (impact.energy_before, impact.energy_after);
+        let gaining = impact.active & (before * CREATES_ENERGY).lt(after);
+        if gaining.any() {
+            let factor = gaining.select(after / before, 0.0);
+            let gain = gaining.select(1.0, 0.0);
+            let row = gaining.select(row, nowhere(&self.rows));
+            for lane in 0..width {
+                let row = &mut self.rows[whole(row.as_slice()[lane])];
+                row.gains
+                    .add(gain.as_slice()[lane] as u64, factor.as_slice()[lane]);
+            }
+        }
+    }
+
+    fn end(&mut self, _: usize, _: usize, reason: StopReason) {
+        self.tally.stops[reason as usize] += 1;
+    }
+}

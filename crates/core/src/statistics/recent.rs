@@ -1,0 +1,121 @@
+//! What the hot loop adds to: the sums of a limited number of values, in words of 64 bits.
+//!
+//! A whole number k that is added to 1.5·2⁵², or to a multiple of it, stands in the low bits of the result. Such bits are
+//! added as they are, modulo 2⁶⁴, and what the 1.5·2⁵² contribute is taken off when the sums are read. Powers that have too many
+//! digits for one word are in two parts, which a fused multiply-add separates without an error.
+
+use super::axis::ROUND;
+use super::moments::QUANTA;
+use crate::lanes::Pack;
+use pulp::Simd;
+
+/// Largest offset of a value: its q has at most 25 bits, and its powers have at most 50, 75 and 100.
+pub(super) const LARGEST: f64 = 2.0;
+/// Quanta of E_rot/E_tot.
+pub(super) const FRACTION_QUANTA: f64 = 4_398_046_511_104.0; // 2⁴²
+/// So many values fit into a sum: a word adds at most 2⁵⁰ for each.
+pub(super) const MOST: u64 = 4096;
+
+/// Units of the high parts of q³ and q⁴.
+const CUBIC: f64 = 33_554_432.0; // 2²⁵
+const QUARTIC: f64 = 1_125_899_906_842_624.0; // 2⁵⁰
+
+/// What a value adds: q, q², q³ high and low, q⁴ high and low, E_rot/E_tot, and, as a plain binary 1, the value itself.
+pub(super) type Words = [f64; 8];
+
+/// Both halves of the words for an offset of ε from its origin, and E_rot/E_tot.
+#[inline(always)]
+pub(super) fn words<S: Simd, const K: usize>(
+    offset: Pack<S, K>,
+    fraction: Pack<S, K>,
+) -> [[Pack<S, K>; 4]; 2] {
+    let first = offset.mul_add(QUANTA, ROUND);
+    let q = first - ROUND;
+    let square = q * q;
+    let cube = square.mul_add(q, CUBIC * ROUND);
+    let rest_of_cube = square.mul_add(q, CUBIC * ROUND - cube);
+    let fourth = square.mul_add(square, QUARTIC * ROUND);
+    let rest_of_fourth = square.mul_add(square, QUARTIC * ROUND - fourth);
+    [
+        [first, square + ROUND, cube, rest_of_cube + ROUND],
+        [
+            fourth,
+            rest_of_fourth + ROUND,
+            fraction.mul_add(FRACTION_QUANTA, ROUND),
+            Pack::splat(offset.simd(), f64::from_bits(1)),
+        ],
+    ]
+}
+
+/// Sums over up to [`MOST`] values.
+#[derive(Clone, Copy)]
+#[repr(align(64))]
+pub(super) struct Recent([u64; 8]);
+
+/// The same as plain numbers.
+pub(super) struct Totals {
+    /// Σq, Σq², Σq³, Σq⁴.
+    pub first: i64,
+    pub second: u64,
+    pub third: i128,
+    pub fourth: i128,
+    /// Σ E_rot/E_tot.
+    pub fractions: u64,
+}
+
+impl Recent {
+    pub const EMPTY: Self = Self([0; 8]);
+
+    /// Adds what a value adds, and tells whether that was the last for which there is room.
+    #[inline(always)]
+    pub fn add(&mut self, words: &Words) -> bool {
+        // All words are read before any is written, so that a vector or two can hold them.
+        let sums: [u64; 8] = std::array::from_fn(|i| self.0[i].wrapping_add(words[i].to_bits()));
+        self.0 = sums;
+        sums[7] == MOST
+    }
+
+    /// The sums.
+    pub fn totals(&self) -> Totals {
+        let number = self.0[7];
+        let sum = |word: usize, unit: f64| {
+            let offset = (unit * ROUND).to_bits();
+            self.0[word].wrapping_sub(offset.wrapping_mul(number)) as i64
+        };
+        let joined = |high: usize, unit: f64| {
+            i128::from(sum(high, unit)) * unit as i128 + i128::from(sum(high + 1, 1.0))
+        };
+        Totals {
+            first: sum(0, 1.0),
+            second: sum(1, 1.0) as u64,
+            third: joined(2, CUBIC),
+            fourth: joined(4, QUARTIC),
+            fractions: sum(6, 1.0) as u64,
+        }
+    }
+}
+
+/// The smallest and the largest of the recent values.
+#[derive(Clone, Copy)]
+pub(super) struct Extremes {
+    pub minimum: f64,
+    pub maximum: f64,
+}
+
+impl Extremes {
+    pub const EMPTY: Self = Self {
+        minimum: f64::INFINITY,
+        maximum: f64::NEG_INFINITY,
+    };
+
+    /// Stores only what is new, which is rare.
+    #[inline(always)]
+    pub fn add(&mut self, value: f64) {
+        if value < self.minimum {
+            self.minimum = value;
+        }
+        if value > self.maximum {
+            self.maximum = value;
+        }
+    }
+}
