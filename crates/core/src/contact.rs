@@ -307,13 +307,14 @@ impl<'a> Search<'a> {
     /// Whether `step` leads to a contact that the expansion in [`Search::landed`] locates to double precision.
     fn is_last(&self, gap: &Gap, step: f64, time: f64) -> bool {
         gap.rate < 0.0
-            && step <= LAST * (time + step)
-            && self.flight.rate * step <= LAST
-            && (self.is_nearly_straight(gap, step) || self.bound * (step * step) <= INVISIBLE)
+            && (-LAST).mul_add(time + step, step) <= 0.0
+            && self.flight.rate.mul_add(step, -LAST) <= 0.0
+            && (self.is_nearly_straight(gap, step)
+                || self.bound.mul_add(step * step, -INVISIBLE) <= 0.0)
     }
 
     fn is_nearly_straight(&self, gap: &Gap, step: f64) -> bool {
-        self.hull.is_of_balls() && self.sway * step <= LAST * gap.root
+        self.hull.is_of_balls() && self.sway.mul_add(step, -(LAST * gap.root)) <= 0.0
     }
 
     /// The contact after the last certified step: the zero of the gap's fourth-order expansion, by a step of third order.

@@ -257,12 +257,12 @@ struct Work<'a, L, T> {
     sink: &'a mut T,
 }
 
-/// Vectors that are computed with side by side: enough to keep the arithmetic units busy, few enough for the registers.
-const VECTORS: usize = 3;
+/// Vectors that are computed with side by side.
+const VECTORS: usize = 1;
 /// Where there are no vectors.
 const SCALARS: usize = 4;
-/// Groups of them that take turns.
-const GROUPS: usize = 4;
+/// Groups of them that take turns: enough for the arithmetic units to be busy, few enough for the fastest cache.
+const GROUPS: usize = 12;
 /// Vectors whose sines and cosines are computed side by side: some groups at once.
 const WIDE: usize = 6;
 

@@ -1,7 +1,7 @@
 //! The bounce loop, the paper's steps 1–7, for as many particles at once as there are lanes.
 
 use super::collision::collide;
-use super::contact::{Departure, Pass, Search};
+use super::contact::{Departure, Look, Pass, Search};
 use super::flight::{Phase, State};
 use super::{Mask, Pack};
 use crate::body::Body;
@@ -87,13 +87,18 @@ pub(crate) struct Stuck {
 #[derive(Clone, Copy)]
 #[repr(align(64))]
 struct Group<S: Simd, const K: usize> {
-    state: State<S, K>,
-    departure: Departure<S, K>,
+    /// The search from the start of the flight, which gives way to the state before the impact.
     search: Search<S, K>,
-    pass: Pass<S, K>,
-    /// Where the next pass looks, and sine and cosine there.
+    /// Where the search looks, and sine and cosine there; then of the impact.
     time: Pack<S, K>,
     phase: Phase<S, K>,
+    /// What it sees and does there.
+    look: Look<S, K>,
+    pass: Pass<S, K>,
+    /// What an impact changes: v_x, v_z and ω after it.
+    glide: Pack<S, K>,
+    climb: Pack<S, K>,
+    spin: Pack<S, K>,
     /// Time since release.
     clock: Pack<S, K>,
     /// Unresolved flights in a row.
@@ -106,9 +111,10 @@ struct Group<S: Simd, const K: usize> {
 
 /// Bounces the particles of a release, at most as many as N groups hold. Calls `go_on` before every impact.
 ///
-/// Each phase of an impact goes through all groups before the next begins. What a group waits for, such as the branch on whether
-/// it has landed, is then known when its turn comes. Sines and cosines of the first passes are computed for W vectors side by side,
-/// with nothing else in the registers.
+/// An impact is cut into stages, and each goes through all groups before the next begins. What a stage needs is then long
+/// known when its turn comes, and the same stage of several groups is under way at once, as many as the processor can
+/// look ahead; one stage after another for one group would be a single chain, with the arithmetic units waiting most of the time.
+/// Sines and cosines are computed for W vectors side by side, with nothing else in the registers.
 #[inline(always)]
 pub(crate) fn bounce<S: Simd, const K: usize, const W: usize, const N: usize>(
     simd: S,
@@ -133,20 +139,22 @@ pub(crate) fn bounce<S: Simd, const K: usize, const W: usize, const N: usize>(
             return Ok(());
         }
         for group in groups.iter_mut() {
-            group.depart(body, number, sink);
-        }
-        for group in groups.iter_mut() {
-            group.time = group.search.departed();
+            group.depart(number, sink);
         }
         phases::<S, K, W>(groups);
         for group in groups.iter_mut() {
-            group.pass = group.search.pass(group.time, group.phase);
-            group.time = group.pass.next;
+            group.look = group.search.look(group.time, group.phase);
+        }
+        for group in groups.iter_mut() {
+            group.time = group.search.pass(group.time, &group.look).next;
         }
         // Hardly any group is done after the first pass.
         phases::<S, K, W>(groups);
         for group in groups.iter_mut() {
-            group.pass = group.search.pass(group.time, group.phase);
+            group.look = group.search.look(group.time, group.phase);
+        }
+        for group in groups.iter_mut() {
+            group.pass = group.search.pass(group.time, &group.look);
         }
         let mut passes = 2;
         loop {
@@ -160,7 +168,8 @@ pub(crate) fn bounce<S: Simd, const K: usize, const W: usize, const N: usize>(
                     searching = true;
                     group.time = group.pass.next;
                     group.phase = Phase::of(group.search.angle(group.time));
-                    group.pass = group.search.pass(group.time, group.phase);
+                    group.look = group.search.look(group.time, group.phase);
+                    group.pass = group.search.pass(group.time, &group.look);
                 }
             }
             passes += 1;
@@ -168,10 +177,19 @@ pub(crate) fn bounce<S: Simd, const K: usize, const W: usize, const N: usize>(
                 break;
             }
         }
+        for group in groups.iter_mut() {
+            group.land(number, sink);
+        }
+        for group in groups.iter_mut() {
+            group.collide(body, law);
+        }
         let mut active = false;
         for group in groups.iter_mut() {
-            group.land(body, law, limits, number, sink);
+            group.tell(body, limits, number, sink);
             active |= group.active.any();
+        }
+        for group in groups.iter_mut() {
+            group.start(body);
         }
         if !active {
             return Ok(());
@@ -231,13 +249,16 @@ impl<S: Simd, const K: usize> Group<S, K> {
             sin: zero,
             cos: zero,
         };
+        let look = search.look(zero, phase);
         Self {
-            state,
-            departure,
             search,
-            pass: search.pass(zero, phase),
+            look,
+            pass: search.pass(zero, &look),
             time: zero,
             phase,
+            glide: zero,
+            climb: zero,
+            spin: zero,
             clock: zero,
             unresolved: zero,
             active: Mask::splat(simd, false),
@@ -250,46 +271,69 @@ impl<S: Simd, const K: usize> Group<S, K> {
     fn occupy(&mut self, body: &Body, release: &Release<'_>, first: usize) {
         let particles = Pack::<S, K>::WIDTH.min(release.sines.len() - first);
         let (from, to) = (first, first + particles);
+        let (mut start, mut departure) = (self.search.start, self.search.departure);
         let State {
             sine, cosine, lift, ..
-        } = &mut self.state;
+        } = &mut start;
         sine.as_mut_slice()[..particles].copy_from_slice(&release.sines[from..to]);
         cosine.as_mut_slice()[..particles].copy_from_slice(&release.cosines[from..to]);
         let one = cosine.mul_add(body.half_separation, *lift).le(0.0);
         let two = cosine.mul_add(-body.half_separation, *lift).le(0.0);
-        self.departure.sphere = one.select(1.0, two.select(-1.0, 0.0 * *cosine));
+        departure.sphere = one.select(1.0, two.select(-1.0, 0.0 * *cosine));
         let mut occupied = 0.0 * *cosine;
         occupied.as_mut_slice()[..particles].fill(1.0);
         self.active = occupied.eq(1.0);
         self.first = first;
+        self.search = Search::new(start, departure, body.half_separation);
     }
 
-    /// Starts a flight.
+    /// Finds where the search looks first.
     #[inline(always)]
-    fn depart(&mut self, body: &Body, number: usize, sink: &mut impl Sink) {
-        self.search = Search::new(self.state, self.departure, body.half_separation);
-        let still = self.departure.speed.le(0.0);
+    fn depart(&mut self, number: usize, sink: &mut impl Sink) {
+        let still = self.search.departure.speed.le(0.0);
         if still.any() {
             let rests = still & self.search.rests();
             self.end(rests, number, StopReason::Collapse, sink);
         }
+        self.time = self.search.departed();
     }
 
-    /// Ends a flight, and has the impact.
+    /// Ends a flight.
     #[inline(always)]
-    fn land(
-        &mut self,
-        body: &Body,
-        law: &impl InPlane,
-        limits: Limits,
-        number: usize,
-        sink: &mut impl Sink,
-    ) {
-        let landing = self.search.landing(&self.pass);
-        self.end(landing.never, number, StopReason::NeverLands, sink);
-        let before = landing.state;
-        let (after, speed) = collide(body, law, &before, landing.sphere);
-        self.clock = self.clock + landing.time;
+    fn land(&mut self, number: usize, sink: &mut impl Sink) {
+        self.end(self.look.never, number, StopReason::NeverLands, sink);
+        (self.time, self.phase) = self
+            .search
+            .landing(self.time, self.phase, &self.look, &self.pass);
+    }
+
+    /// Has the impact.
+    #[inline(always)]
+    fn collide(&mut self, body: &Body, law: &impl InPlane) {
+        let before = self
+            .search
+            .start
+            .landing(self.time, self.phase, self.look.gap.side);
+        let sphere = self.look.gap.one.select(1.0, -1.0_f64);
+        let (after, speed) = collide(body, law, &before, sphere);
+        self.search.start = before;
+        self.glide = after.glide;
+        self.climb = after.climb;
+        self.spin = after.spin;
+        self.search.departure = Departure { sphere, speed };
+    }
+
+    /// Tells the sink, and whether that was the end.
+    #[inline(always)]
+    fn tell(&mut self, body: &Body, limits: Limits, number: usize, sink: &mut impl Sink) {
+        let before = self.search.start;
+        let after = State {
+            glide: self.glide,
+            climb: self.climb,
+            spin: self.spin,
+            ..before
+        };
+        self.clock = self.clock + self.time;
         let energy_after = after.kinetic_energy(body.transverse);
         let impact = Impact {
             time: self.clock,
@@ -300,7 +344,7 @@ impl<S: Simd, const K: usize> Group<S, K> {
             energy_after,
             sine: before.sine,
             cosine: before.cosine,
-            sphere: landing.sphere,
+            sphere: self.search.departure.sphere,
             active: self.active,
         };
         sink.impact(number, self.first, &impact);
@@ -308,7 +352,7 @@ impl<S: Simd, const K: usize> Group<S, K> {
             let slow = (2.0 * energy_after).lt(limits.minimum_speed * limits.minimum_speed);
             self.end(slow, number + 1, StopReason::SpeedBelowThreshold, sink);
         }
-        let low = (self.search.bound * (landing.time * landing.time)).lt(UNRESOLVED);
+        let low = (self.search.bound * (self.time * self.time)).lt(UNRESOLVED);
         if low.any() {
             self.unresolved = low.select(self.unresolved + 1.0, 0.0);
             let collapsed = self.unresolved.eq(f64::from(COLLAPSE_RUN));
@@ -316,11 +360,18 @@ impl<S: Simd, const K: usize> Group<S, K> {
         } else {
             self.unresolved = Pack::splat(self.clock.simd(), 0.0);
         }
-        self.departure = Departure {
-            sphere: landing.sphere,
-            speed,
+    }
+
+    /// Starts the next flight.
+    #[inline(always)]
+    fn start(&mut self, body: &Body) {
+        let start = State {
+            glide: self.glide,
+            climb: self.climb,
+            spin: self.spin,
+            ..self.search.start
         };
-        self.state = after;
+        self.search = Search::new(start, self.search.departure, body.half_separation);
     }
 
     /// Ends the active lanes in `which`. Rare.

@@ -15,19 +15,6 @@ pub(super) struct Departure<S: Simd, const K: usize> {
     pub speed: Pack<S, K>,
 }
 
-/// How the flights end.
-#[derive(Clone, Copy)]
-pub(super) struct Landing<S: Simd, const K: usize> {
-    /// Flight time.
-    pub time: Pack<S, K>,
-    /// The state just before the impact.
-    pub state: State<S, K>,
-    /// ±1: the sphere that touches.
-    pub sphere: Pack<S, K>,
-    /// No contact while the axis can be followed.
-    pub never: Mask<S, K>,
-}
-
 /// Where the flights are.
 #[derive(Clone, Copy)]
 struct Moment<S: Simd, const K: usize> {
@@ -40,45 +27,49 @@ struct Moment<S: Simd, const K: usize> {
 
 /// The gap under a sphere.
 #[derive(Clone, Copy)]
-struct Gap<S: Simd, const K: usize> {
+pub(super) struct Gap<S: Simd, const K: usize> {
     /// Whether it is sphere 1.
-    one: Mask<S, K>,
+    pub one: Mask<S, K>,
     /// ±L/2.
-    side: Pack<S, K>,
+    pub side: Pack<S, K>,
     width: Pack<S, K>,
     rate: Pack<S, K>,
     root: Pack<S, K>,
 }
 
-/// One pass of the search: where it was at a time, and the certified step from there.
+/// What a pass of the search sees: the gap that may close first.
+#[derive(Clone, Copy)]
+#[repr(align(64))]
+pub(super) struct Look<S: Simd, const K: usize> {
+    tilt: Pack<S, K>,
+    tilt_rate: Pack<S, K>,
+    /// The gap.
+    pub gap: Gap<S, K>,
+    /// The lanes that never land while the axis can be followed.
+    pub never: Mask<S, K>,
+}
+
+/// What a pass of the search does: the certified step.
 #[derive(Clone, Copy)]
 #[repr(align(64))]
 pub(super) struct Pass<S: Simd, const K: usize> {
-    time: Pack<S, K>,
-    phase: Phase<S, K>,
-    tilt: Pack<S, K>,
-    tilt_rate: Pack<S, K>,
-    side: Pack<S, K>,
-    root: Pack<S, K>,
     step: Pack<S, K>,
     /// Where the next pass looks; lanes that are done stay and find the same again.
     pub next: Pack<S, K>,
-    one: Mask<S, K>,
     /// The lanes whose step is the last, or that never land.
     pub done: Mask<S, K>,
-    /// The lanes that never land.
-    never: Mask<S, K>,
 }
 
 /// What the search needs to know of a flight.
 #[derive(Clone, Copy)]
+#[repr(align(64))]
 pub(super) struct Search<S: Simd, const K: usize> {
-    start: State<S, K>,
-    departure: Departure<S, K>,
+    /// The state at the start.
+    pub start: State<S, K>,
+    /// How the flight starts.
+    pub departure: Departure<S, K>,
     /// L/2.
     lever: f64,
-    /// ω².
-    square: Pack<S, K>,
     /// (L/2)ω².
     sway: Pack<S, K>,
     /// M, the bound on −f″.
@@ -88,10 +79,10 @@ pub(super) struct Search<S: Simd, const K: usize> {
 }
 
 impl<S: Simd, const K: usize> Search<S, K> {
+    /// Of a flight from `start`.
     #[inline(always)]
     pub fn new(start: State<S, K>, departure: Departure<S, K>, lever: f64) -> Self {
-        let square = start.spin * start.spin;
-        let sway = lever * square;
+        let sway = lever * (start.spin * start.spin);
         let above = start.climb.mul_add(start.climb, 2.0 * (start.lift - lever));
         let root = above.sqrt();
         let reaches = !above.le(0.0);
@@ -99,7 +90,6 @@ impl<S: Simd, const K: usize> Search<S, K> {
             start,
             departure,
             lever,
-            square,
             sway,
             bound: 1.0 + sway,
             up: reaches.select(start.climb - root, f64::INFINITY),
@@ -112,7 +102,7 @@ impl<S: Simd, const K: usize> Search<S, K> {
     pub fn rests(&self) -> Mask<S, K> {
         let moment = self.beginning();
         let on = self.departure.sphere;
-        let bend = -self.square * moment.tilt;
+        let bend = -(self.start.spin * self.start.spin) * moment.tilt;
         let held = (on * self.lever).mul_add(bend, -1.0).le(0.0);
         let other = self.gap(&moment, on.lt(0.0));
         let both = other.rate.lt(0.0) & other.width.le(TOUCHING);
@@ -145,9 +135,9 @@ impl<S: Simd, const K: usize> Search<S, K> {
         self.start.spin * time
     }
 
-    /// A pass at `time`, with the phase there.
+    /// What is to be seen at `time`, with the phase there.
     #[inline(always)]
-    pub fn pass(&self, time: Pack<S, K>, phase: Phase<S, K>) -> Pass<S, K> {
+    pub fn look(&self, time: Pack<S, K>, phase: Phase<S, K>) -> Look<S, K> {
         let never = !self.angle(time).abs().le(RANGE);
         let moment = Moment {
             time,
@@ -157,39 +147,42 @@ impl<S: Simd, const K: usize> Search<S, K> {
             tilt_rate: self.start.tilt_rate(phase),
         };
         let mut gap = self.nearer(&moment);
-        let leaving = gap.width.le(TOUCHING) & !gap.rate.lt(0.0);
-        if (leaving | time.eq(0.0)).any() {
+        // Does it touch and not approach, or is this the start? One comparison, because masks are dearer than numbers.
+        let leaving = (gap.width - TOUCHING).max(-gap.rate);
+        if leaving.min(time).le(0.0).any() {
             gap = self.careful(&moment, gap);
         }
-        let step = self.certified(&gap);
-        let done = never | self.is_last(&gap, step, time);
-        Pass {
-            time,
-            phase,
+        Look {
             tilt: moment.tilt,
             tilt_rate: moment.tilt_rate,
-            side: gap.side,
-            root: gap.root,
-            step,
-            next: done.select(time, self.skip(time + step)),
-            one: gap.one,
-            done,
+            gap,
             never,
         }
     }
 
-    /// The landing to which the last pass leads.
+    /// The step from `time`.
     #[inline(always)]
-    pub fn landing(&self, last: &Pass<S, K>) -> Landing<S, K> {
-        let step = self.landed(last);
-        let time = last.time + step;
-        let phase = last.phase.advanced(self.start.spin * step);
-        Landing {
-            time,
-            state: self.start.landing(time, phase, last.side),
-            sphere: last.one.select(1.0, -1.0_f64),
-            never: last.never,
+    pub fn pass(&self, time: Pack<S, K>, look: &Look<S, K>) -> Pass<S, K> {
+        let step = self.certified(&look.gap);
+        let done = look.never | self.is_last(&look.gap, step, time);
+        Pass {
+            step,
+            next: done.select(time, self.skip(time + step)),
+            done,
         }
+    }
+
+    /// Time and phase of the landing to which the last pass, at `time`, leads.
+    #[inline(always)]
+    pub fn landing(
+        &self,
+        time: Pack<S, K>,
+        phase: Phase<S, K>,
+        look: &Look<S, K>,
+        last: &Pass<S, K>,
+    ) -> (Pack<S, K>, Phase<S, K>) {
+        let step = self.landed(look, last);
+        (time + step, phase.advanced(self.start.spin * step))
     }
 
     #[inline(always)]
@@ -293,31 +286,33 @@ impl<S: Simd, const K: usize> Search<S, K> {
     /// Past the time that the centre of mass spends out of reach.
     #[inline(always)]
     fn skip(&self, time: Pack<S, K>) -> Pack<S, K> {
-        (self.up.le(time) & time.lt(self.down)).select(self.down, time)
+        self.up.le(time).select(time.max(self.down), time)
     }
 
     #[inline(always)]
     fn is_last(&self, gap: &Gap<S, K>, step: Pack<S, K>, time: Pack<S, K>) -> Mask<S, K> {
-        gap.rate.lt(0.0)
-            & step.le(LAST * (time + step))
-            & (self.start.spin.abs() * step).le(LAST)
-            & (self.is_nearly_straight(gap.root, step) | (self.bound * (step * step)).le(INVISIBLE))
+        let late = (time + step).mul_add(-LAST, step);
+        let turned = self.start.spin.abs().mul_add(step, -LAST);
+        let visible = self.bound.mul_add(step * step, -INVISIBLE);
+        let bent = self.bent(gap.root, step);
+        // None may exceed 0, but the smaller of two.
+        gap.rate.lt(0.0) & late.max(turned).max(bent.min(visible)).le(0.0)
     }
 
+    /// At most 0 where the gap is nearly straight.
     #[inline(always)]
-    fn is_nearly_straight(&self, root: Pack<S, K>, step: Pack<S, K>) -> Mask<S, K> {
-        (self.sway * step).le(LAST * root)
+    fn bent(&self, root: Pack<S, K>, step: Pack<S, K>) -> Pack<S, K> {
+        self.sway.mul_add(step, -(LAST * root))
     }
 
     /// The contact after the last certified step: the zero of the gap's fourth-order expansion, by a step of third order.
     #[inline(always)]
-    fn landed(&self, last: &Pass<S, K>) -> Pack<S, K> {
-        let Pass {
-            side, step, root, ..
-        } = *last;
-        let second = side * (-self.square * last.tilt);
-        let third = -(side * self.square) * last.tilt_rate;
-        let fourth = -self.square * second;
+    fn landed(&self, look: &Look<S, K>, last: &Pass<S, K>) -> Pack<S, K> {
+        let (side, step, root) = (look.gap.side, last.step, look.gap.root);
+        let square = self.start.spin * self.start.spin;
+        let second = side * (-square * look.tilt);
+        let third = -(side * square) * look.tilt_rate;
+        let fourth = -square * second;
         let slack = second + self.sway;
         let bend = (step * fourth).mul_add(1.0 / 12.0, third * (1.0 / 3.0));
         let left = 0.5 * (step * step) * step.mul_add(bend, slack);
@@ -326,7 +321,7 @@ impl<S: Simd, const K: usize> Search<S, K> {
         let newton = left * inverse;
         let curvature = step.mul_add(third, second - 1.0);
         let correction = newton.mul_add(0.5 * curvature * newton * inverse, newton);
-        let curved = self.is_nearly_straight(root, step) & !left.eq(0.0);
+        let curved = self.bent(root, step).le(0.0) & !left.eq(0.0);
         curved.select(step + correction, step)
     }
 }
