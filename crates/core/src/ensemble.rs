@@ -257,13 +257,9 @@ struct Work<'a, L, T> {
     sink: &'a mut T,
 }
 
-/// Vectors that are computed with side by side.
-const VECTORS: usize = 1;
-/// Where there are no vectors.
-const SCALARS: usize = 4;
-/// Groups of them that take turns: enough for the arithmetic units to be busy, few enough for the fastest cache.
+/// Vectors of particles that take turns: enough for the arithmetic units to be busy, few enough for the fastest cache.
 const GROUPS: usize = 12;
-/// Vectors whose sines and cosines are computed side by side: some groups at once.
+/// Vectors whose sines and cosines are computed side by side.
 const WIDE: usize = 6;
 
 impl<L: InPlane, T: Sink> WithSimd for Work<'_, L, T> {
@@ -271,17 +267,6 @@ impl<L: InPlane, T: Sink> WithSimd for Work<'_, L, T> {
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) -> Self::Output {
-        if size_of::<S::f64s>() == size_of::<f64>() {
-            self.side_by_side::<S, SCALARS, SCALARS>(simd)
-        } else {
-            self.side_by_side::<S, VECTORS, WIDE>(simd)
-        }
-    }
-}
-
-impl<L: InPlane, T: Sink> Work<'_, L, T> {
-    #[inline(always)]
-    fn side_by_side<S: Simd, const K: usize, const W: usize>(self, simd: S) -> Result<(), Error> {
         let Self {
             plan,
             law,
@@ -291,7 +276,7 @@ impl<L: InPlane, T: Sink> Work<'_, L, T> {
         } = self;
         let run = plan.run;
         let limits = plan.limits();
-        let width = GROUPS * Pack::<S, K>::WIDTH;
+        let width = GROUPS * Pack::<S, 1>::WIDTH;
         let (mut sines, mut cosines) = ([0.0; BLOCK], [0.0; BLOCK]);
         for first in particles.clone().step_by(width) {
             let count = width.min(particles.end - first);
@@ -299,7 +284,7 @@ impl<L: InPlane, T: Sink> Work<'_, L, T> {
                 (sines[lane], cosines[lane]) = plan.release(first + lane);
             }
             sink.begin(first - particles.start);
-            lanes::bounce::<S, K, W, GROUPS>(
+            lanes::bounce::<S, 1, WIDE, GROUPS>(
                 simd,
                 &plan.body,
                 law,
