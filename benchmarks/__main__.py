@@ -2,8 +2,11 @@
 
 import argparse
 import warnings
+from importlib.util import find_spec
 from time import perf_counter
 from typing import Any
+
+import numpy as np
 
 import restitution as rs
 from benchmarks import agreement, footprint, machine, timing
@@ -47,6 +50,22 @@ def speed(peers: Peers, work: Work, particles: int, rounds: int) -> None:
     print(timing.comparison(times, "simulate: one thread over two", one, two))
     for row in peers.writing:
         print(timing.comparison(times, f"simulate, one thread, over {row.name}", one, row.name))
+    if find_spec("numba"):
+        print("\nshare of the vector units' throughput, best round")
+        for line in throughput(times):
+            print(line)
+
+
+def throughput(times: timing.Times) -> list[str]:
+    """What share of the vector units' throughput each level reached."""
+    from benchmarks.throughput import clock, shares
+
+    best = {
+        level: float(np.min(times.wall[:, times.names.index(name)]))
+        for level in rs.build_info()["simd_available"]
+        if (name := f"statistics, {level}, 1 thread") in times.names
+    }
+    return shares(best, clock())
 
 
 def rest(particles: int) -> None:
