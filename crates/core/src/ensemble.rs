@@ -284,7 +284,7 @@ impl<L: InPlane, T: Sink> WithSimd for Work<'_, L, T> {
                 (sines[lane], cosines[lane]) = plan.release(first + lane);
             }
             sink.begin(first - particles.start);
-            lanes::bounce::<S, 1, WIDE, GROUPS>(
+            lanes::bounce::<S, WIDE, GROUPS>(
                 simd,
                 &plan.body,
                 law,

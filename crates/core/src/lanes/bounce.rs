@@ -82,29 +82,29 @@ pub(crate) struct Stuck {
     pub impacts: usize,
 }
 
-/// As many particles as a [`Pack`] has lanes. Aligned, and with it the stack, to a line of the cache, which a vector must not
+/// As many particles as a vector has lanes. Aligned, and with it the stack, to a line of the cache, which a vector must not
 /// straddle.
 #[derive(Clone, Copy)]
 #[repr(align(64))]
-struct Group<S: Simd, const K: usize> {
+struct Group<S: Simd> {
     /// The search from the start of the flight, which gives way to the state before the impact.
-    search: Search<S, K>,
+    search: Search<S, 1>,
     /// Where the search looks, and sine and cosine there; then of the impact.
-    time: Pack<S, K>,
-    phase: Phase<S, K>,
+    time: Pack<S, 1>,
+    phase: Phase<S, 1>,
     /// What it sees and does there.
-    look: Look<S, K>,
-    pass: Pass<S, K>,
+    look: Look<S, 1>,
+    pass: Pass<S, 1>,
     /// What an impact changes: v_x, v_z and ω after it.
-    glide: Pack<S, K>,
-    climb: Pack<S, K>,
-    spin: Pack<S, K>,
+    glide: Pack<S, 1>,
+    climb: Pack<S, 1>,
+    spin: Pack<S, 1>,
     /// Time since release.
-    clock: Pack<S, K>,
+    clock: Pack<S, 1>,
     /// Unresolved flights in a row.
-    unresolved: Pack<S, K>,
+    unresolved: Pack<S, 1>,
     /// Which lanes hold a particle still.
-    active: Mask<S, K>,
+    active: Mask<S, 1>,
     /// Number of lane 0.
     first: usize,
 }
@@ -116,7 +116,7 @@ struct Group<S: Simd, const K: usize> {
 /// look ahead; one stage after another for one group would be a single chain, with the arithmetic units waiting most of the time.
 /// Sines and cosines are computed for W vectors side by side, with nothing else in the registers.
 #[inline(always)]
-pub(crate) fn bounce<S: Simd, const K: usize, const W: usize, const N: usize>(
+pub(crate) fn bounce<S: Simd, const W: usize, const N: usize>(
     simd: S,
     body: &Body,
     law: &impl InPlane,
@@ -125,11 +125,11 @@ pub(crate) fn bounce<S: Simd, const K: usize, const W: usize, const N: usize>(
     sink: &mut impl Sink,
     go_on: impl Fn() -> bool,
 ) -> Result<(), Stuck> {
-    let mut groups = [Group::<S, K>::empty(simd, body, release.lift); N];
-    let occupied = release.sines.len().div_ceil(Pack::<S, K>::WIDTH);
+    let mut groups = [Group::<S>::empty(simd, body, release.lift); N];
+    let occupied = release.sines.len().div_ceil(Pack::<S, 1>::WIDTH);
     let groups = &mut groups[..occupied];
     for (i, group) in groups.iter_mut().enumerate() {
-        group.occupy(body, &release, i * Pack::<S, K>::WIDTH);
+        group.occupy(body, &release, i * Pack::<S, 1>::WIDTH);
     }
     for number in 0..limits.impacts {
         if !go_on() {
@@ -141,7 +141,7 @@ pub(crate) fn bounce<S: Simd, const K: usize, const W: usize, const N: usize>(
         for group in groups.iter_mut() {
             group.depart(number, sink);
         }
-        phases::<S, K, W>(groups);
+        phases::<S, W>(groups);
         for group in groups.iter_mut() {
             group.look = group.search.look(group.time, group.phase);
         }
@@ -149,7 +149,7 @@ pub(crate) fn bounce<S: Simd, const K: usize, const W: usize, const N: usize>(
             group.time = group.search.pass(group.time, &group.look).next;
         }
         // Hardly any group is done after the first pass.
-        phases::<S, K, W>(groups);
+        phases::<S, W>(groups);
         for group in groups.iter_mut() {
             group.look = group.search.look(group.time, group.phase);
         }
@@ -208,18 +208,18 @@ pub(crate) fn bounce<S: Simd, const K: usize, const W: usize, const N: usize>(
 
 /// Computes the phases where the groups look next, of W vectors at a time.
 #[inline(always)]
-fn phases<S: Simd, const K: usize, const W: usize>(groups: &mut [Group<S, K>]) {
-    let mut chunks = groups.chunks_exact_mut(W / K);
+fn phases<S: Simd, const W: usize>(groups: &mut [Group<S>]) {
+    let mut chunks = groups.chunks_exact_mut(W);
     for chunk in &mut chunks {
         let mut angle = Pack::<S, W>::splat(chunk[0].time.simd(), 0.0);
         for (i, group) in chunk.iter().enumerate() {
-            angle.set_part(i * K, &group.search.angle(group.time));
+            angle.set_part(i, &group.search.angle(group.time));
         }
         let phase = Phase::of(angle);
         for (i, group) in chunk.iter_mut().enumerate() {
             group.phase = Phase {
-                sin: phase.sin.part(i * K),
-                cos: phase.cos.part(i * K),
+                sin: phase.sin.part(i),
+                cos: phase.cos.part(i),
             };
         }
     }
@@ -228,7 +228,7 @@ fn phases<S: Simd, const K: usize, const W: usize>(groups: &mut [Group<S, K>]) {
     }
 }
 
-impl<S: Simd, const K: usize> Group<S, K> {
+impl<S: Simd> Group<S> {
     #[inline(always)]
     fn empty(simd: S, body: &Body, lift: f64) -> Self {
         let zero = Pack::splat(simd, 0.0);
@@ -269,7 +269,7 @@ impl<S: Simd, const K: usize> Group<S, K> {
     /// Takes the particles of a release from number `first` on.
     #[inline(always)]
     fn occupy(&mut self, body: &Body, release: &Release<'_>, first: usize) {
-        let particles = Pack::<S, K>::WIDTH.min(release.sines.len() - first);
+        let particles = Pack::<S, 1>::WIDTH.min(release.sines.len() - first);
         let (from, to) = (first, first + particles);
         let (mut start, mut departure) = (self.search.start, self.search.departure);
         let State {
@@ -376,7 +376,7 @@ impl<S: Simd, const K: usize> Group<S, K> {
 
     /// Ends the active lanes in `which`. Rare.
     #[inline(always)]
-    fn end(&mut self, which: Mask<S, K>, impacts: usize, reason: StopReason, sink: &mut impl Sink) {
+    fn end(&mut self, which: Mask<S, 1>, impacts: usize, reason: StopReason, sink: &mut impl Sink) {
         let ending = which & self.active;
         if ending.any() {
             ending.each(|lane| sink.end(self.first + lane, impacts, reason));
@@ -385,7 +385,7 @@ impl<S: Simd, const K: usize> Group<S, K> {
     }
 
     #[cold]
-    fn stuck(&self, waiting: Mask<S, K>, impacts: usize) -> Stuck {
+    fn stuck(&self, waiting: Mask<S, 1>, impacts: usize) -> Stuck {
         let mut first = None;
         waiting.each(|lane| {
             first.get_or_insert(self.first + lane);
