@@ -49,8 +49,9 @@ def run(work: Work, angles: Array, threads: int, level: str) -> Grid:
 def rows() -> list[Peer[Grid]]:
     """The best level with one thread and with two, then the others with one."""
     best, *others = reversed(rs.build_info()["simd_available"])
-    return [
-        Peer(f"statistics, {best}, 1 thread", partial(run, threads=1, level=best), share=4.0),
-        Peer(f"statistics, {best}, 2 threads", partial(run, threads=2, level=best), share=4.0),
-        *(Peer(f"statistics, {level}, 1 thread", partial(run, threads=1, level=level)) for level in others),
-    ]
+    return [row(best, 1), row(best, 2), *(row(level, 1) for level in others)]
+
+
+def row(level: str, threads: int) -> Peer[Grid]:
+    name = f"statistics, {level}, {threads} thread{'s' * (threads > 1)}"
+    return Peer(name, partial(run, threads=threads, level=level), share=1.0 if level == "scalar" else 4.0)
