@@ -137,6 +137,7 @@ impl Run<'_> {
     /// Runs every particle and keeps the statistics of the impacts only, in memory that does not grow with the run.
     pub fn statistics(&self, bins: &Bins, means: Means, monitor: &Monitor) -> Result<Tally, Error> {
         let plan = Plan::new(self)?;
+        bins.check()?;
         if let By::Number(rows) = bins.by {
             let allowed = "at most the number of rows";
             Error::unless(

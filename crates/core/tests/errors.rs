@@ -3,9 +3,11 @@
 mod common;
 
 use common::*;
+use restitution_core::statistics::{Axis, Bins, By};
 use restitution_core::{
-    ChatterjeeRuina, Coulomb, Dumbbell, Error, Frictionless, Hypothesis, LoadedSphere, Orientation,
-    Plastic, Run, Spherocylinder, Spheroid, Tabulated, TangentialRestitution, Viscoelastic,
+    ChatterjeeRuina, Coulomb, Dumbbell, Error, Frictionless, Hypothesis, Level, LoadedSphere,
+    Means, Monitor, Orientation, Plastic, Run, Spherocylinder, Spheroid, Tabulated,
+    TangentialRestitution, Viscoelastic,
 };
 
 /// The name of the parameter that is wrong; its value must be in the message, too.
@@ -251,5 +253,42 @@ fn angles() {
             ..run(&one_on_end)
         })),
         "release_height"
+    );
+}
+
+#[test]
+fn bins() {
+    let axis = |edges: &[f64]| Axis::new("edges", edges).unwrap();
+    let fine: Vec<f64> = (0..=1 << 10).map(f64::from).collect();
+    let of = |rows: usize, restitution: &[f64], fraction: &[f64]| {
+        let bins = Bins {
+            by: By::Number(rows),
+            restitution: axis(restitution),
+            fraction: axis(fraction),
+        };
+        let means = Means {
+            threads: 1,
+            level: Level::best(),
+        };
+        let run = paper(0.1, law(0.9, 1.0));
+        culprit(
+            &run.statistics(&bins, means, &Monitor::default())
+                .unwrap_err(),
+        )
+    };
+    let coarse = [0.0, 1.0];
+    assert_eq!(of(1, &coarse, &coarse), "impacts");
+    // Sites are numbered with 32 bits: four of them, or 1027, in each row.
+    assert_eq!(
+        of(1 << 30, &coarse, &coarse),
+        "sites of the grid of restitution_bins"
+    );
+    assert_eq!(
+        of(1 << 22, &fine, &coarse),
+        "sites of the grid of restitution_bins"
+    );
+    assert_eq!(
+        of(1 << 22, &coarse, &fine),
+        "sites of the grid of fraction_bins"
     );
 }

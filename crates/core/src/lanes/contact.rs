@@ -295,7 +295,7 @@ impl<S: Simd, const K: usize> Search<S, K> {
         let turned = self.start.spin.abs().mul_add(step, -LAST);
         let visible = self.bound.mul_add(step * step, -INVISIBLE);
         let bent = self.bent(gap.root, step);
-        // None may exceed 0, but the smaller of two.
+        // Excesses: at most 0 are all, but of the last two one is enough.
         gap.rate.lt(0.0) & late.max(turned).max(bent.min(visible)).le(0.0)
     }
 

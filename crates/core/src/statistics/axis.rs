@@ -55,7 +55,13 @@ impl Axis {
     }
 
     /// Number of bins, those below and above included.
-    pub(super) fn bins(&self) -> f64 {
+    pub(super) fn bins(&self) -> usize {
+        self.edges.len() + 1
+    }
+
+    /// The bin after the last, where what has no bin is counted.
+    #[inline(always)]
+    pub(super) fn beyond(&self) -> f64 {
         self.last + 1.0
     }
 
@@ -66,55 +72,51 @@ impl Axis {
         axes: [&Self; N],
         x: [Pack<S, K>; N],
     ) -> [Pack<S, K>; N] {
+        let mut places = x;
         let mut bins = x;
         let mut most = Pack::splat(x[0].simd(), 0.0);
         for i in 0..N {
-            let Located { bin, off } = axes[i].nearest(x[i]);
-            bins[i] = bin;
-            most = most.max(off);
+            places[i] = axes[i].place(x[i]);
+            bins[i] = places[i] + ROUND;
+            most = most.max(off(places[i], bins[i]));
         }
         if !most.lt(0.5 - NEAR).all() {
             for i in 0..N {
-                bins[i] = axes[i].located_exactly(x[i]);
+                axes[i].decide(x[i], places[i], &mut bins[i]);
             }
         }
         bins
     }
 
+    /// Where `x` is, in bin widths: whole numbers are in the middle of the bins.
     #[inline(always)]
-    fn nearest<S: Simd, const K: usize>(&self, x: Pack<S, K>) -> Located<S, K> {
-        // Whole numbers are in the middle of the bins.
-        let place = (x - self.low)
+    fn place<S: Simd, const K: usize>(&self, x: Pack<S, K>) -> Pack<S, K> {
+        (x - self.low)
             .mul_add(self.density, 0.5)
             .max(0.0)
-            .min(self.last);
-        let bin = place + ROUND;
-        Located {
-            bin,
-            off: (place - (bin - ROUND)).abs(),
-        }
+            .min(self.last)
     }
 
-    /// The bins where an edge is near, or a lane is NaN.
-    #[cold]
+    /// Has the edges decide in the lanes that are near one.
     #[inline(always)]
-    fn located_exactly<S: Simd, const K: usize>(&self, x: Pack<S, K>) -> Pack<S, K> {
-        let Located { mut bin, off } = self.nearest(x);
+    fn decide<S: Simd, const K: usize>(
+        &self,
+        x: Pack<S, K>,
+        place: Pack<S, K>,
+        bin: &mut Pack<S, K>,
+    ) {
+        let off = off(place, *bin);
         for (lane, bin) in bin.as_mut_slice().iter_mut().enumerate() {
             if off.as_slice()[lane] >= 0.5 - NEAR {
-                *bin = ROUND + self.decide(x.as_slice()[lane]);
+                *bin = ROUND + self.compare(x.as_slice()[lane], place.as_slice()[lane]);
             }
         }
-        bin
     }
 
     /// The bin of a number that is near an edge.
     #[cold]
     #[inline(never)]
-    fn decide(&self, x: f64) -> f64 {
-        let place = ((x - self.low).mul_add(self.density, 0.5))
-            .max(0.0)
-            .min(self.last);
+    fn compare(&self, x: f64, place: f64) -> f64 {
         let edge = (place as usize).min(self.edges.len() - 1);
         if x < self.edges[edge] {
             edge as f64
@@ -124,9 +126,8 @@ impl Axis {
     }
 }
 
-/// Bins, and how far from their middle.
-#[derive(Clone, Copy)]
-struct Located<S: Simd, const K: usize> {
-    bin: Pack<S, K>,
-    off: Pack<S, K>,
+/// How far a place is from the middle of its bin.
+#[inline(always)]
+fn off<S: Simd, const K: usize>(place: Pack<S, K>, bin: Pack<S, K>) -> Pack<S, K> {
+    (place - (bin - ROUND)).abs()
 }

@@ -1,10 +1,10 @@
 //! Counts impacts into a [`Tally`].
 
 use super::axis::{Axis, ROUND};
-use super::moments::{QUANTA, Sums};
-use super::recent::{Extremes, FRACTION_QUANTA, LARGEST, Recent, Words, words};
+use super::moments::Sums;
+use super::recent::{Extremes, FRACTION_QUANTA, LARGEST, QUANTA, Recent, Words, words};
 use super::tally::{Bins, By, CREATES_ENERGY, Gains, Tally};
-use crate::lanes::{Impact, Pack, Sink};
+use crate::lanes::{Impact, Mask, Pack, Sink};
 use crate::plan::Plan;
 use crate::trajectory::StopReason;
 use pulp::Simd;
@@ -61,7 +61,7 @@ impl Row {
     };
 }
 
-/// The whole number in the low bits of `x`, to which [`ROUND`] was added.
+/// The whole number in the low bits of `x`, to which [`ROUND`] was added. All are below 2³², see [`Bins::check`].
 #[inline(always)]
 fn whole(x: f64) -> usize {
     x.to_bits() as u32 as usize
@@ -71,6 +71,29 @@ fn whole(x: f64) -> usize {
 #[inline(always)]
 fn nowhere<T>(places: &[T]) -> f64 {
     (places.len() - 1) as f64 + ROUND
+}
+
+/// Numbers in a grid: `column` of the row that is `start` rows from the first.
+#[inline(always)]
+fn sites<S: Simd, const K: usize>(
+    axis: &Axis,
+    start: Pack<S, K>,
+    column: Pack<S, K>,
+) -> Pack<S, K> {
+    start.mul_add(axis.beyond() + 1.0, column)
+}
+
+/// The same where there may be impacts that are not defined, in the last column, or none, at a site that nobody reads.
+#[inline(always)]
+fn all_sites<S: Simd, const K: usize>(
+    (axis, counts): (&Axis, &[u32]),
+    start: Pack<S, K>,
+    column: Pack<S, K>,
+    defined: Mask<S, K>,
+    active: Mask<S, K>,
+) -> Pack<S, K> {
+    let column = defined.select(column, axis.beyond() + ROUND);
+    active.select(sites(axis, start, column), nowhere(counts))
 }
 
 /// Makes the lanes of four packs records of four numbers, and puts them into longer ones of a queue, from their number `first` on.
@@ -137,7 +160,7 @@ impl<'a> Counter<'a> {
     /// Counts what is in the queue.
     #[inline(always)]
     fn count(&mut self) {
-        let length = std::mem::take(&mut self.queue.length).min(LENGTH);
+        let length = std::mem::take(&mut self.queue.length);
         if self.recent > MOST_RECENT {
             self.empty();
         }
@@ -202,20 +225,19 @@ impl Sink for Counter<'_> {
         };
         let offset = restitution - self.tally.origin;
         let start = row - ROUND;
-        let mut site = start.mul_add(columns.bins() + 1.0, column);
-        let mut fraction_site = start.mul_add(fractions.bins() + 1.0, fraction_column);
+        let mut site = sites(columns, start, column);
+        let mut fraction_site = sites(fractions, start, fraction_column);
         let mut plain_row = row;
         let plain = impact.active & offset.abs().le(LARGEST) & fraction.le(1.0);
         if !plain.all() {
             let defined = restitution.abs().lt(Sums::LARGEST) & fraction.le(1.0);
-            let last = start.mul_add(columns.bins() + 1.0, columns.bins() + ROUND);
-            site = defined.select(site, last);
-            site = impact.active.select(site, nowhere(&self.restitution));
-            let last = start.mul_add(fractions.bins() + 1.0, fractions.bins() + ROUND);
-            fraction_site = defined.select(fraction_site, last);
-            fraction_site = impact.active.select(fraction_site, nowhere(&self.fraction));
+            let active = impact.active;
+            let grid = (columns, &self.restitution[..]);
+            site = all_sites(grid, start, column, defined, active);
+            let grid = (fractions, &self.fraction[..]);
+            fraction_site = all_sites(grid, start, fraction_column, defined, active);
             plain_row = plain.select(row, nowhere(&self.rows));
-            (impact.active & defined & !plain).each(|lane| {
+            (active & defined & !plain).each(|lane| {
                 let (restitution, fraction) =
                     (restitution.as_slice()[lane], fraction.as_slice()[lane]);
                 self.sum_large(whole(row.as_slice()[lane]), restitution, fraction);

@@ -3,10 +3,7 @@
 //! Each value is rounded to a multiple of 2⁻²⁴ ≈ 6·10⁻⁸ once; its powers are then summed without any further rounding,
 //! in integers wide enough for 2⁶⁴ values. Sums of sums are sums: merging is associative and commutative to the last bit.
 
-use super::recent::{Extremes, Totals};
-
-/// Quanta in a unit.
-pub(super) const QUANTA: f64 = 16_777_216.0; // 2²⁴
+use super::recent::{Extremes, QUANTA, Totals};
 
 /// A two's-complement integer of N 64-bit words, low word first.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

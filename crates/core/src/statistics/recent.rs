@@ -5,10 +5,11 @@
 //! digits for one word are in two parts, which a fused multiply-add separates without an error.
 
 use super::axis::ROUND;
-use super::moments::QUANTA;
 use crate::lanes::Pack;
 use pulp::Simd;
 
+/// Quanta in a unit of ε.
+pub(super) const QUANTA: f64 = 16_777_216.0; // 2²⁴
 /// Largest offset of a value: its q has at most 25 bits, and its powers have at most 50, 75 and 100.
 pub(super) const LARGEST: f64 = 2.0;
 /// Quanta of E_rot/E_tot.

@@ -3,6 +3,7 @@
 use super::axis::Axis;
 use super::moments::{Moments, Sums};
 use super::recent::FRACTION_QUANTA;
+use crate::Error;
 
 /// An impact creates energy where it multiplies the kinetic energy by more than this. Rounding makes a few 10⁻¹⁵ of it.
 pub const CREATES_ENERGY: f64 = 1.0 + 1e-12;
@@ -31,9 +32,20 @@ impl Bins {
     /// Number of rows.
     pub fn rows(&self) -> usize {
         match &self.by {
-            By::Velocity(axis) => axis.bins() as usize,
+            By::Velocity(axis) => axis.bins(),
             By::Number(impacts) => *impacts,
         }
+    }
+
+    /// Checks that 32 bits are enough to number the sites of each grid and one more.
+    pub(crate) fn check(&self) -> Result<(), Error> {
+        let check = |name: &'static str, axis: &Axis| {
+            let sites = self.rows().saturating_mul(axis.bins() + 1);
+            let allowed = "at most 2^32 - 1: rows times (bins + 3)";
+            Error::unless(sites <= u32::MAX as usize, name, sites as f64, allowed)
+        };
+        check("sites of the grid of restitution_bins", &self.restitution)?;
+        check("sites of the grid of fraction_bins", &self.fraction)
     }
 }
 
@@ -124,8 +136,8 @@ impl Tally {
     pub fn new(bins: &Bins, origin: f64) -> Self {
         let rows = bins.rows();
         Self {
-            restitution: Grid::new(rows, bins.restitution.bins() as usize + 1),
-            fraction: Grid::new(rows, bins.fraction.bins() as usize + 1),
+            restitution: Grid::new(rows, bins.restitution.bins() + 1),
+            fraction: Grid::new(rows, bins.fraction.bins() + 1),
             origin,
             sums: vec![Sums::EMPTY; rows],
             fractions: vec![0; rows],
