@@ -2,15 +2,12 @@
 
 import argparse
 import warnings
-from importlib.util import find_spec
 from time import perf_counter
 from typing import Any
 
-import numpy as np
-
 import restitution as rs
 from benchmarks import agreement, footprint, machine, timing
-from benchmarks.peers import Peers, available
+from benchmarks.peers import Peers, available, statistics
 from benchmarks.work import Peer, Work
 
 CHECKED = 5000  # particles of the fast peers
@@ -50,7 +47,7 @@ def speed(peers: Peers, work: Work, particles: int, rounds: int) -> None:
     print(timing.comparison(times, "simulate: one thread over two", one, two))
     for row in peers.writing:
         print(timing.comparison(times, f"simulate, one thread, over {row.name}", one, row.name))
-    if find_spec("numba"):
+    if peers.counting:  # the clock needs Numba as well
         print("\nshare of the vector units' throughput, best round")
         for line in throughput(times):
             print(line)
@@ -61,9 +58,8 @@ def throughput(times: timing.Times) -> list[str]:
     from benchmarks.throughput import clock, shares
 
     best = {
-        level: float(np.min(times.wall[:, times.names.index(name)]))
+        level: float(times.wall[:, times.names.index(statistics.name(level, 1))].min())
         for level in rs.build_info()["simd_available"]
-        if (name := f"statistics, {level}, 1 thread") in times.names
     }
     return shares(best, clock())
 

@@ -52,6 +52,14 @@ def rows() -> list[Peer[Grid]]:
     return [row(best, 1), row(best, 2), *(row(level, 1) for level in others)]
 
 
+def name(level: str, threads: int) -> str:
+    """What the row is called."""
+    return f"statistics, {level}, {threads} thread{'s' * (threads > 1)}"
+
+
 def row(level: str, threads: int) -> Peer[Grid]:
-    name = f"statistics, {level}, {threads} thread{'s' * (threads > 1)}"
-    return Peer(name, partial(run, threads=threads, level=level), share=1.0 if level == "scalar" else 4.0)
+    return Peer(
+        name(level, threads),
+        partial(run, threads=threads, level=level),
+        share=1.0 if level == "scalar" else 4.0,
+    )
