@@ -1,10 +1,13 @@
 """What all tests share."""
 
+from pathlib import Path
+
 import matplotlib
 import pytest
 from hypothesis import settings
 
 import restitution as rs
+from reference.command import SMALL
 
 matplotlib.use("Agg")
 
@@ -23,3 +26,11 @@ def body() -> rs.Dumbbell:
 def law() -> rs.TangentialRestitution:
     """The paper's law of Figs. 2-7."""
     return rs.TangentialRestitution(normal=0.98)
+
+
+@pytest.fixture
+def parameters(tmp_path: Path) -> Path:
+    """A file of parameters, none of which has its default value."""
+    path = tmp_path / "run.toml"
+    path.write_text(SMALL, encoding="utf-8")
+    return path

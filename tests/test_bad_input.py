@@ -10,10 +10,10 @@ from typing import Any
 
 import numpy as np
 import pytest
-from typer.testing import CliRunner
 
 import restitution as rs
-from restitution._cli import BAD_INPUT, app
+from reference.command import invoke
+from restitution._cli import BAD_INPUT
 from restitution._toml import read
 
 POSITIVE = "must be a finite number > 0"
@@ -290,7 +290,7 @@ IN_A_FILE = [
 def refused(path: Path) -> list[str]:
     """What the command says of a bad file; nothing is written."""
     before = sorted(path.parent.iterdir())
-    result = CliRunner().invoke(app, ["simulate", str(path), "--out", str(path.with_name("run.nc"))])
+    result = invoke("simulate", path, "--out", path.with_name("run.nc"))
     assert sorted(path.parent.iterdir()) == before
     assert result.exit_code == BAD_INPUT
     assert result.stdout == ""

@@ -1,13 +1,8 @@
 """The command line: the results of the call, errors in a line, files whole or not at all, nothing lost."""
 
-import os
-import pty
 import re
 import resource
-import signal
 import subprocess
-import sys
-import termios
 import tomllib
 from pathlib import Path
 from typing import Any
@@ -15,70 +10,14 @@ from typing import Any
 import numpy as np
 import pytest
 import xarray as xr
-from typer.testing import CliRunner, Result
 
 import restitution as rs
-from restitution._cli import BAD_INPUT, FAILED, INTERRUPTED, app
+from reference.command import COMMAND, SMALL, invoke, load, small
+from restitution._cli import BAD_INPUT, FAILED, INTERRUPTED
 from restitution._dataset import STOP_REASONS, save
 from restitution._toml import read
 
 ROOT = Path(__file__).parents[1]
-COMMAND = [sys.executable, "-c", "from restitution._cli import main; main()"]
-
-SMALL = """
-[body]
-shape = "dumbbell"
-radius = 2e-3
-separation = 3e-3
-density = 7800
-
-[law]
-type = "tangential-restitution"
-normal = 0.9
-tangential = 0.95
-
-[run]
-particles = 7
-impacts = 11
-release_height = 0.05
-gravity = 1.62
-orientation = "isotropic"
-minimum_speed = 0.1
-seed = 18446744073709551615
-"""
-
-
-def invoke(*words: object) -> Result:
-    """Run a command in this process."""
-    return CliRunner().invoke(app, [str(word) for word in words])
-
-
-@pytest.fixture
-def parameters(tmp_path: Path) -> Path:
-    """A file of parameters, none of which has its default value."""
-    path = tmp_path / "run.toml"
-    path.write_text(SMALL, encoding="utf-8")
-    return path
-
-
-def small() -> xr.Dataset:
-    """The same run as a call."""
-    return rs.simulate(
-        rs.Dumbbell(radius=2e-3, separation=3e-3, density=7800),
-        rs.TangentialRestitution(normal=0.9, tangential=0.95),
-        particles=7,
-        impacts=11,
-        release_height=0.05,
-        gravity=1.62,
-        orientation="isotropic",
-        minimum_speed=0.1,
-        seed=2**64 - 1,
-    )
-
-
-def load(path: Path) -> xr.Dataset:
-    """A netCDF file as xarray reads it without being told anything."""
-    return xr.load_dataset(path)
 
 
 def test_a_file_gives_what_the_call_gives(parameters: Path) -> None:
@@ -284,107 +223,6 @@ def test_a_saved_dataset_is_read_unchanged(tmp_path: Path) -> None:
     data = small()
     save(data, tmp_path / "run.nc")
     xr.testing.assert_identical(load(tmp_path / "run.nc"), data)
-
-
-# Ctrl-C
-
-LONG = """
-[body]
-shape = "dumbbell"
-radius = 3e-3
-separation = 3e-4
-[law]
-type = "tangential-restitution"
-normal = 0.98
-[run]
-impacts = 20
-particles = """
-
-
-# The command, with a Ctrl-C as soon as some particles have finished and others have not.
-PRESSING = """
-import signal
-from restitution import _core
-from restitution._cli import main
-
-engine = _core.simulate
-
-
-def simulate(run, threads, progress):
-    def press(finished):
-        if 0 < finished < run["particles"]:
-            signal.raise_signal(signal.SIGINT)
-
-    return engine(run, threads, press)
-
-
-_core.simulate = simulate
-main()
-"""
-
-
-def test_ctrl_c_keeps_what_was_finished(tmp_path: Path) -> None:
-    """A true signal in a true process, in the midst of its work.
-
-    The file has the particles that were begun: those that finished have the bits that an uninterrupted run
-    gives them, the others have the stop reason "interrupted", and the file says that it is incomplete.
-    """
-    parameters, out = tmp_path / "run.toml", tmp_path / "run.nc"
-    words = ["simulate", str(parameters), "--out", str(out), "--force", "--threads", "1"]
-    for particles in (400_000, 800_000, 1_600_000):  # until this machine takes long enough to be interrupted
-        parameters.write_text(f"{LONG}{particles}", encoding="utf-8")
-        command = [sys.executable, "-c", PRESSING, *words]
-        done = subprocess.run(command, capture_output=True, text=True, check=False)
-        if done.returncode != 0:
-            break
-    assert (done.returncode, done.stderr) == (INTERRUPTED, "interrupted; writing the impacts so far\n")
-
-    data = load(out)
-    cut = (data.stop_reason == STOP_REASONS.index("interrupted")).to_numpy()
-    assert 0 < cut.sum() < cut.size < particles
-    done_and_cut = f"{(~cut).sum()} of {particles} particles are finished, {cut.sum()} cut short"
-    assert data.attrs["incomplete"] == f"interrupted: {done_and_cut}"
-    assert f"interrupted {cut.sum()}" in done.stdout
-    run = read(parameters)
-    whole = rs.simulate(run.body, run.law, particles=run.particles, impacts=run.impacts)
-    for name in whole.data_vars:
-        np.testing.assert_array_equal(data[name].to_numpy()[~cut], whole[name].to_numpy()[: cut.size][~cut])
-    assert sorted(tmp_path.iterdir()) == [out, parameters]
-    out.unlink()
-
-
-def test_a_terminal_gets_a_progress_bar(parameters: Path) -> None:
-    """And nothing else does, as the empty standard error of the other tests shows."""
-    terminal, end = pty.openpty()
-    termios.tcsetwinsize(end, (24, 80))  # a bar needs room
-    command = [*COMMAND, "simulate", str(parameters), "--out", str(parameters.with_name("run.nc"))]
-    subprocess.run(command, stderr=end, stdout=subprocess.DEVNULL, check=True)
-    os.close(end)
-    assert "simulate: 100%" in os.read(terminal, 10_000).decode()
-    os.close(terminal)
-
-
-@pytest.mark.parametrize("presses", [1, 2])
-def test_ctrl_c_while_the_file_is_written(
-    parameters: Path, monkeypatch: pytest.MonkeyPatch, presses: int
-) -> None:
-    """The first one waits for the file, the second one gives it up; either way no part of a file is left."""
-    out = parameters.with_name("run.nc")
-    write = xr.Dataset.to_netcdf
-
-    def pressed(data: xr.Dataset, *where: Any, **how: Any) -> None:
-        for _ in range(presses):
-            signal.raise_signal(signal.SIGINT)
-        write(data, *where, **how)
-
-    monkeypatch.setattr(xr.Dataset, "to_netcdf", pressed)
-    result = invoke("simulate", parameters, "--out", out)
-    assert result.exit_code == INTERRUPTED
-    assert signal.getsignal(signal.SIGINT) is signal.default_int_handler
-    if presses == 1:
-        xr.testing.assert_identical(load(out), small())
-    else:
-        assert list(parameters.parent.iterdir()) == [parameters]
 
 
 def test_paper_hands_over_its_options(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -11,10 +11,10 @@ from typing import Any
 import numpy as np
 import pytest
 import xarray as xr
-from typer.testing import CliRunner, Result
 
 import restitution as rs
-from restitution._cli import BAD_INPUT, FAILED, INTERRUPTED, app
+from reference.command import invoke
+from restitution._cli import BAD_INPUT, FAILED, INTERRUPTED
 
 RUN = """
 [body]
@@ -31,11 +31,6 @@ particles = 3000
 impacts = 50
 seed = 3
 """
-
-
-def invoke(*words: object) -> Result:
-    """Run a command in this process."""
-    return CliRunner().invoke(app, [str(word) for word in words])
 
 
 @pytest.fixture

@@ -1,0 +1,59 @@
+"""The command line, and a small run to give it."""
+
+import sys
+from pathlib import Path
+
+import xarray as xr
+from typer.testing import CliRunner, Result
+
+import restitution as rs
+from restitution._cli import app
+
+COMMAND = [sys.executable, "-c", "from restitution._cli import main; main()"]
+
+SMALL = """
+[body]
+shape = "dumbbell"
+radius = 2e-3
+separation = 3e-3
+density = 7800
+
+[law]
+type = "tangential-restitution"
+normal = 0.9
+tangential = 0.95
+
+[run]
+particles = 7
+impacts = 11
+release_height = 0.05
+gravity = 1.62
+orientation = "isotropic"
+minimum_speed = 0.1
+seed = 18446744073709551615
+"""
+
+
+def invoke(*words: object) -> Result:
+    """Run a command in this process."""
+    return CliRunner().invoke(app, [str(word) for word in words])
+
+
+def small() -> xr.Dataset:
+    """The same run as a call."""
+    return rs.simulate(
+        rs.Dumbbell(radius=2e-3, separation=3e-3, density=7800),
+        rs.TangentialRestitution(normal=0.9, tangential=0.95),
+        particles=7,
+        impacts=11,
+        release_height=0.05,
+        gravity=1.62,
+        orientation="isotropic",
+        minimum_speed=0.1,
+        seed=2**64 - 1,
+    )
+
+
+def load(path: Path) -> xr.Dataset:
+    """A netCDF file as xarray reads it without being told anything."""
+    return xr.load_dataset(path)
