@@ -2,13 +2,15 @@
 //!
 //! The gap f under either sphere obeys f″ ≥ −M throughout a flight, M = 1 + (L/2)AΩ², or another bound for another hull. A step to the first zero of the
 //! lower bound f + f′τ − Mτ²/2 can therefore not pass a contact; such steps converge quadratically to the first one.
-//! While the centre of mass is higher than the spheres can reach, the step goes to where it comes back down. When the
-//! step has become small, the contact is where the third-order expansion of f has its zero; smooth hulls go on with certified
-//! steps until nothing of the gap can be left.
+//! While the centre of mass is higher than the spheres can reach, the step goes to where it comes back down. When a step
+//! turns the axis and bends the gap by little, f falls to its only zero just behind it; an expansion of f from before the step and
+//! another at the zero of the first locate it to double precision. Whether the other sphere can have touched on that last
+//! way, which no lower bound covers, is checked afterwards. Smooth hulls go on with certified steps until nothing of the gap
+//! can be left.
 
 use crate::body::{Body, Hull};
 use crate::elementary::RANGE;
-use crate::flight::{Flight, Phase};
+use crate::flight::{Attitude, Flight};
 use crate::state::{Sphere, State};
 
 /// How a flight starts.
@@ -30,7 +32,7 @@ impl Departure {
     /// once, and is left to the search.
     pub fn of_release(body: &Body, state: State) -> Self {
         let flight = Flight::new(state, 0.0); // the start alone matters, not where it falls to
-        let tilt_rate = flight.tilt_rate(flight.phase(0.0));
+        let tilt_rate = flight.tilt_rate(flight.attitude(0.0));
         let gaps = state.gaps(body);
         let on_the_plane = Sphere::BOTH.into_iter().find_map(|sphere| {
             let side = body.hull.ball(sphere, state.axis.z).offset;
@@ -58,7 +60,7 @@ pub enum Landing {
     },
     /// The sphere on the plane does not leave it: no relative motion, and gravity holds it down.
     Resting,
-    /// No contact within the flight times in which the axis can be followed (its phase exceeds [`RANGE`]).
+    /// No contact within the flight times in which the axis can be followed (its angle exceeds [`RANGE`]).
     Never,
 }
 
@@ -66,10 +68,16 @@ pub enum Landing {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct NoConvergence;
 
-/// The last step is at most this part of the flight time, turns the axis by at most this angle, and the gap bends away from
-/// its tangent by at most about this part of it: 2⁻¹¹...
+/// A contact is near if the step turns the axis by at most this angle, and the gap bends away from its tangent by at most
+/// about this part of it.
+pub(crate) const NEAR: f64 = 0.125;
+/// It is located if the correction at the zero of the expansion is at most this part of the step, 2⁻¹⁸. Relative to the step the
+/// next correction is twice the cube of that.
+pub(crate) const SMALL: f64 = 1.0 / 262_144.0;
+/// At a grazing contact and for a smooth hull the last step is at most this part of the flight time, turns the axis by at most
+/// this angle, 2⁻¹¹...
 pub(crate) const LAST: f64 = 1.0 / 2048.0;
-/// ...or, at a grazing contact and for a smooth hull, by no more than this, which cannot be seen: 2⁻⁵² R.
+/// ...and leaves no more of the gap than this, which cannot be seen: 2⁻⁵² R.
 pub(crate) const INVISIBLE: f64 = 1.0 / 4_503_599_627_370_496.0;
 /// A sphere that is not approaching is left alone at least until its gap may have bent by that: 2⁻²⁶/M.
 pub(crate) const SHORTEST: f64 = 1.0 / 67_108_864.0;
@@ -95,15 +103,15 @@ pub fn first_contact(
         if !followed {
             return Ok(Landing::Never);
         }
-        let phase = flight.phase(angle);
-        let moment = Moment::of(flight, time, phase);
+        let attitude = flight.attitude(angle);
+        let moment = Moment::of(flight, time, attitude);
         let gap = search.nearer(&moment);
         let step = search.certified(&gap);
-        if search.is_last(&gap, step, time) {
-            let step = search.landed(&moment, &gap, step);
-            let time = time + step;
-            let phase = phase.advanced(flight.rate * step);
-            let state = flight.landing(time, phase, body, gap.sphere);
+        if let Some((time, attitude)) = search
+            .arrival(&moment, attitude, &gap, step)
+            .or_else(|| search.grazing(&moment, attitude, &gap, step))
+        {
+            let state = flight.landing(time, attitude, body, gap.sphere);
             return Ok(Landing::Impact {
                 time,
                 state,
@@ -139,13 +147,13 @@ struct Moment {
 }
 
 impl Moment {
-    fn of(flight: &Flight, time: f64, phase: Phase) -> Self {
+    fn of(flight: &Flight, time: f64, attitude: Attitude) -> Self {
         Self {
             time,
             lift: flight.lift(time),
             climb: flight.climb(time),
-            tilt: flight.tilt(phase),
-            tilt_rate: flight.tilt_rate(phase),
+            tilt: flight.tilt(attitude),
+            tilt_rate: flight.tilt_rate(attitude),
         }
     }
 }
@@ -193,7 +201,7 @@ impl<'a> Search<'a> {
         let Departure::Touching { sphere, speed } = self.departure else {
             return false;
         };
-        let moment = Moment::of(self.flight, 0.0, self.flight.phase(0.0));
+        let moment = Moment::of(self.flight, 0.0, self.flight.attitude(0.0));
         let other = self.gap(&moment, sphere.other());
         speed <= 0.0
             && self.bend(&moment, sphere, -1.0) <= 0.0
@@ -202,7 +210,7 @@ impl<'a> Search<'a> {
 
     /// The first step. Both spheres are looked at: the one on the plane is just leaving it.
     fn departed(&self) -> f64 {
-        let moment = Moment::of(self.flight, 0.0, self.flight.phase(0.0));
+        let moment = Moment::of(self.flight, 0.0, self.flight.attitude(0.0));
         let [one, two] = Sphere::BOTH.map(|sphere| self.certified(&self.gap(&moment, sphere)));
         let step = one.min(two);
         if step == 0.0 {
@@ -304,24 +312,66 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// Whether `step` leads to a contact that the expansion in [`Search::landed`] locates to double precision.
-    fn is_last(&self, gap: &Gap, step: f64, time: f64) -> bool {
-        gap.rate < 0.0
-            && (-LAST).mul_add(time + step, step) <= 0.0
-            && self.flight.rate.mul_add(step, -LAST) <= 0.0
-            && (self.is_nearly_straight(gap, step)
-                || self.bound.mul_add(step * step, -INVISIBLE) <= 0.0)
+    /// Whether the gap falls to its only zero just behind `step`.
+    fn is_near(&self, gap: &Gap, step: f64) -> bool {
+        self.hull.is_of_balls()
+            && gap.rate < 0.0
+            && self.flight.rate.mul_add(step, -NEAR) <= 0.0
+            && self.sway.mul_add(step, -(NEAR * gap.root)) <= 0.0
     }
 
-    fn is_nearly_straight(&self, gap: &Gap, step: f64) -> bool {
-        self.hull.is_of_balls() && self.sway.mul_add(step, -(LAST * gap.root)) <= 0.0
-    }
-
-    /// The contact after the last certified step: the zero of the gap's fourth-order expansion, by a step of third order.
-    fn landed(&self, moment: &Moment, gap: &Gap, step: f64) -> f64 {
-        if !self.is_nearly_straight(gap, step) {
-            return step; // what is left of the gap cannot be seen
+    /// Time and attitude of the contact behind `step`, if it is near and the other sphere does not touch before.
+    fn arrival(
+        &self,
+        moment: &Moment,
+        attitude: Attitude,
+        gap: &Gap,
+        step: f64,
+    ) -> Option<(f64, Attitude)> {
+        if !self.is_near(gap, step) {
+            return None;
         }
+        let ahead = self.expanded(moment, gap, step);
+        let attitude = attitude.turned(self.flight.rate * ahead);
+        let there = Moment::of(self.flight, moment.time + ahead, attitude);
+        // What is left of the gap, by a step of third order.
+        let width = self.hull.gap(gap.sphere, there.tilt, there.lift); // (2)
+        let lever = self.lever(&there, gap.sphere);
+        let inverse = -1.0 / lever.mul_add(there.tilt_rate, there.climb);
+        let newton = width * inverse;
+        let curvature = self.bend(&there, gap.sphere, -1.0); // f″
+        let rest = newton.mul_add(0.5 * curvature * newton * inverse, newton);
+        let attitude = attitude.advanced(self.flight.rate * rest);
+
+        let small = newton.abs() <= SMALL * step;
+        // Where the other sphere touched after `step`, its gap cannot have become larger since than gravity and rotation open it.
+        let since = (ahead - step) + rest;
+        let tilt = self.flight.tilt(attitude);
+        let other = gap.sphere.other();
+        let lift = self.hull.lift(gap.sphere, tilt);
+        let first = self.hull.is_one(gap.sphere, other)
+            || self.hull.gap(other, tilt, lift) >= 0.5 * self.sway * (since * since);
+        (small && first).then_some((there.time + rest, attitude))
+    }
+
+    /// Time and attitude at the end of `step`, if what it leaves of the gap cannot be seen.
+    fn grazing(
+        &self,
+        moment: &Moment,
+        attitude: Attitude,
+        gap: &Gap,
+        step: f64,
+    ) -> Option<(f64, Attitude)> {
+        let time = moment.time + step;
+        let last = gap.rate < 0.0
+            && (-LAST).mul_add(time, step) <= 0.0
+            && self.flight.rate.mul_add(step, -LAST) <= 0.0
+            && self.bound.mul_add(step * step, -INVISIBLE) <= 0.0;
+        last.then(|| (time, attitude.turned(self.flight.rate * step)))
+    }
+
+    /// A step to the zero of the gap's fourth-order expansion, of third order behind `step`.
+    fn expanded(&self, moment: &Moment, gap: &Gap, step: f64) -> f64 {
         let side = self.lever(moment, gap.sphere);
         let square = self.flight.rate * self.flight.rate;
         let second = self.bend(moment, gap.sphere, 0.0); // f″ without gravity
@@ -331,9 +381,6 @@ impl<'a> Search<'a> {
         // What is left of the gap after the step, and how fast it closes there.
         let bend = (step * fourth).mul_add(1.0 / 12.0, third * (1.0 / 3.0));
         let left = 0.5 * (step * step) * step.mul_add(bend, slack);
-        if left == 0.0 {
-            return step;
-        }
         let speed = step.mul_add(-step.mul_add(0.5 * third, slack), gap.root);
         let inverse = 1.0 / speed;
         let newton = left * inverse;

@@ -5,7 +5,7 @@
 //! axis; in general **ω** itself precesses, but the axis moves as in (3) with **Λ**/J_xx in the place of **ω**.
 
 use crate::body::Body;
-use crate::elementary::sincos;
+use crate::elementary::{sincos, sincos_of_moderate};
 use crate::state::{Sphere, State};
 use crate::vector::Vector;
 
@@ -28,23 +28,33 @@ pub struct Flight {
     amplitude: f64,
 }
 
-/// Sine and cosine of the phase φ.
+/// How far the axis has turned, (3).
 #[derive(Debug, Clone, Copy)]
-pub struct Phase {
-    sin: f64,
-    cos: f64,
+pub struct Attitude {
+    /// The part of the axis that turns.
+    turning: Vector,
+    /// The same a quarter turn on.
+    leading: Vector,
 }
 
-impl Phase {
-    /// The phase a small `angle` later: exact in double precision for angles up to 2⁻¹¹.
-    pub fn advanced(self, angle: f64) -> Self {
-        let square = angle * angle;
-        let sin = angle * square.mul_add(-1.0 / 6.0, 1.0);
-        let cos = square.mul_add(square.mul_add(1.0 / 24.0, -0.5), 1.0);
+impl Attitude {
+    /// The attitude after another turn through an angle with this sine and cosine.
+    fn after(self, sin: f64, cos: f64) -> Self {
         Self {
-            sin: self.sin.mul_add(cos, self.cos * sin),
-            cos: self.cos.mul_add(cos, -(self.sin * sin)),
+            turning: self.turning.mul_add(cos, self.leading * sin), // (3)
+            leading: self.leading.mul_add(cos, self.turning * -sin), // (3)
         }
+    }
+
+    /// The attitude a moderate `angle` later: exact in double precision for angles up to 0.15.
+    pub fn turned(self, angle: f64) -> Self {
+        let (sin, cos) = sincos_of_moderate(angle);
+        self.after(sin, cos)
+    }
+
+    /// The attitude a small `angle` later: exact in double precision for angles up to 2⁻¹⁸.
+    pub fn advanced(self, angle: f64) -> Self {
+        self.after(angle, (angle * angle).mul_add(-0.5, 1.0))
     }
 }
 
@@ -77,10 +87,14 @@ impl Flight {
         &self.start
     }
 
-    /// Sine and cosine of the phase `angle` = Ωt.
-    pub fn phase(&self, angle: f64) -> Phase {
+    /// Where the axis points when it has turned through `angle` = Ωt.
+    pub fn attitude(&self, angle: f64) -> Attitude {
         let (sin, cos) = sincos(angle);
-        Phase { sin, cos }
+        let start = Attitude {
+            turning: self.cosine,
+            leading: self.sine,
+        };
+        start.after(sin, cos)
     }
 
     /// Height of the centre of mass above the hull's level at `time` (5).
@@ -94,15 +108,13 @@ impl Flight {
     }
 
     /// e_z, the vertical component of the axis (3).
-    pub fn tilt(&self, phase: Phase) -> f64 {
-        let turning = self.sine.z.mul_add(phase.sin, self.constant.z);
-        self.cosine.z.mul_add(phase.cos, turning) // (3)
+    pub fn tilt(&self, attitude: Attitude) -> f64 {
+        attitude.turning.z + self.constant.z // (3)
     }
 
     /// de_z/dt.
-    pub fn tilt_rate(&self, phase: Phase) -> f64 {
-        let turning = self.cosine.z * phase.sin;
-        self.rate * self.sine.z.mul_add(phase.cos, -turning)
+    pub fn tilt_rate(&self, attitude: Attitude) -> f64 {
+        self.rate * attitude.leading.z
     }
 
     /// d²e_z/dt² where the tilt is `tilt`.
@@ -121,9 +133,8 @@ impl Flight {
     }
 
     /// The state at `time`, when `sphere` touches the plane.
-    pub fn landing(&self, time: f64, phase: Phase, body: &Body, sphere: Sphere) -> State {
-        let turning = self.sine.mul_add(phase.sin, self.constant);
-        let axis = self.cosine.mul_add(phase.cos, turning); // (3)
+    pub fn landing(&self, time: f64, attitude: Attitude, body: &Body, sphere: Sphere) -> State {
+        let axis = attitude.turning + self.constant; // (3)
         // One Newton step to unit length; rounding would otherwise accumulate over the impacts.
         let axis = axis * axis.dot(axis).mul_add(-0.5, 1.5);
         State {

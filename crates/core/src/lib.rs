@@ -64,7 +64,7 @@ pub use collision::{
 pub use contact::{Departure, Landing, NoConvergence, first_contact};
 pub use ensemble::{Means, Monitor, Run, default_threads};
 pub use error::Error;
-pub use flight::{Flight, Phase};
+pub use flight::{Attitude, Flight};
 pub use level::Level;
 pub use records::Records;
 pub use release::Orientation;

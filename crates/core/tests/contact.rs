@@ -144,6 +144,34 @@ proptest! {
         }
     }
 
+    /// A spinning body that is nearly level when it comes down: both spheres arrive at nearly the same time, and neither is in
+    /// the plane when the other is said to touch first, nor was it on the last way, at any distance from its end.
+    #[test]
+    fn the_other_sphere_is_not_overlooked(
+        elongation in 0.01..4.0_f64, rate in magnitude(-2.0, 2.0), beyond in magnitude(-3.0, 2.0), lean in magnitude(-15.0, -0.5),
+        sides in (any::<bool>(), any::<bool>()),
+    ) {
+        let body = dumbbell(elongation);
+        let drop = body.half_separation * (1.0 + beyond); // so that no attitude reaches the plane
+        let sign = |side: bool| if side { 1.0 } else { -1.0 };
+        let (rate, lean) = (sign(sides.0) * rate, sign(sides.1) * lean);
+        // Where the axis would be level but for `lean`, the centre of mass is at R.
+        let angle = 0.5 * std::f64::consts::PI + lean - rate * (2.0 * drop).sqrt();
+        let axis = Vector::new(angle.sin(), 0.0, angle.cos());
+        let start = State::with_spin(&body, 1.0 + drop, Vector::default(), axis, Vector::new(0.0, rate, 0.0));
+        let Landing::Impact { time, .. } = landing(start, &body, Departure::Free) else {
+            panic!("it falls");
+        };
+        let allowed = gap_tolerance(&start, &body, time, 1.0 + drop);
+        for sphere in Sphere::BOTH {
+            for step in 0..400 {
+                let before = gap(&start, &body, time * (1.0 - 0.5_f64.powf(0.1 * f64::from(step))), sphere);
+                prop_assert!(before >= -allowed, "{before:e} under {sphere:?}, {step} before {time}");
+            }
+            prop_assert!(gap(&start, &body, time, sphere) >= -allowed);
+        }
+    }
+
     /// Let go on the plane while spinning: the lower sphere, if it starts down into the plane, hits at once.
     #[test]
     fn a_contact_at_release_is_hit_at_once_if_it_approaches((body, law, free) in motion()) {

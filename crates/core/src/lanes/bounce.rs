@@ -1,12 +1,14 @@
 //! The bounce loop, the paper's steps 1–7, for as many particles at once as there are lanes.
 
+use super::arrival::{Arrival, Leap, Residue};
 use super::collision::collide;
-use super::contact::{Departure, Look, Pass, Search};
-use super::flight::{Phase, State};
+use super::contact::{Departure, Look, Search};
+use super::flight::State;
 use super::{Mask, Pack};
 use crate::body::Body;
 use crate::collision::InPlane;
 use crate::contact::MOST_STEPS;
+use crate::elementary::sincos_in_lanes;
 use crate::trajectory::{COLLAPSE_RUN, Limits, StopReason, UNRESOLVED};
 use pulp::Simd;
 
@@ -89,12 +91,14 @@ pub(crate) struct Stuck {
 struct Group<S: Simd> {
     /// The search from the start of the flight, which gives way to the state before the impact.
     search: Search<S, 1>,
-    /// Where the search looks, and sine and cosine there; then of the impact.
+    /// Where the search looks, and sine and cosine there.
     time: Pack<S, 1>,
-    phase: Phase<S, 1>,
-    /// What it sees and does there.
+    turned: (Pack<S, 1>, Pack<S, 1>),
+    /// What it sees there, and where that leads.
     look: Look<S, 1>,
-    pass: Pass<S, 1>,
+    leap: Leap<S, 1>,
+    residue: Residue<S, 1>,
+    arrival: Arrival<S, 1>,
     /// What an impact changes: v_x, v_z and ω after it.
     glide: Pack<S, 1>,
     climb: Pack<S, 1>,
@@ -141,44 +145,24 @@ pub(crate) fn bounce<S: Simd, const W: usize, const N: usize>(
         for group in groups.iter_mut() {
             group.depart(number, sink);
         }
-        phases::<S, W>(groups);
+        turn::<S, W>(groups);
         for group in groups.iter_mut() {
-            group.look = group.search.look(group.time, group.phase);
+            group.look = group.search.look(group.time, group.turned);
         }
         for group in groups.iter_mut() {
-            group.time = group.search.pass(group.time, &group.look).next;
-        }
-        // Hardly any group is done after the first pass.
-        phases::<S, W>(groups);
-        for group in groups.iter_mut() {
-            group.look = group.search.look(group.time, group.phase);
+            group.leap = group.search.leap(&group.look);
         }
         for group in groups.iter_mut() {
-            group.pass = group.search.pass(group.time, &group.look);
-        }
-        let mut passes = 2;
-        loop {
-            let mut searching = false;
-            for group in groups.iter_mut() {
-                let waiting = group.active & !group.pass.done;
-                if waiting.any() {
-                    if passes == MOST_STEPS {
-                        return Err(group.stuck(waiting, number));
-                    }
-                    searching = true;
-                    group.time = group.pass.next;
-                    group.phase = Phase::of(group.search.angle(group.time));
-                    group.look = group.search.look(group.time, group.phase);
-                    group.pass = group.search.pass(group.time, &group.look);
-                }
-            }
-            passes += 1;
-            if !searching {
-                break;
-            }
+            group.residue = group.search.residue(group.time, &group.look, &group.leap);
         }
         for group in groups.iter_mut() {
-            group.land(number, sink);
+            group.arrival = group
+                .search
+                .arrival(&group.look, &group.leap, &group.residue);
+        }
+        for group in groups.iter_mut() {
+            group.search_on(number)?;
+            group.end(group.look.never, number, StopReason::NeverLands, sink);
         }
         for group in groups.iter_mut() {
             group.collide(body, law);
@@ -206,25 +190,22 @@ pub(crate) fn bounce<S: Simd, const W: usize, const N: usize>(
     Ok(())
 }
 
-/// Computes the phases where the groups look next, of W vectors at a time.
+/// Computes sine and cosine of the angle where the groups look first, of W vectors at a time.
 #[inline(always)]
-fn phases<S: Simd, const W: usize>(groups: &mut [Group<S>]) {
+fn turn<S: Simd, const W: usize>(groups: &mut [Group<S>]) {
     let mut chunks = groups.chunks_exact_mut(W);
     for chunk in &mut chunks {
         let mut angle = Pack::<S, W>::splat(chunk[0].time.simd(), 0.0);
         for (i, group) in chunk.iter().enumerate() {
             angle.set_part(i, &group.search.angle(group.time));
         }
-        let phase = Phase::of(angle);
+        let (sin, cos) = sincos_in_lanes(angle);
         for (i, group) in chunk.iter_mut().enumerate() {
-            group.phase = Phase {
-                sin: phase.sin.part(i),
-                cos: phase.cos.part(i),
-            };
+            group.turned = (sin.part(i), cos.part(i));
         }
     }
     for group in chunks.into_remainder() {
-        group.phase = Phase::of(group.search.angle(group.time));
+        group.turned = sincos_in_lanes(group.search.angle(group.time));
     }
 }
 
@@ -245,17 +226,18 @@ impl<S: Simd> Group<S> {
             speed: zero,
         };
         let search = Search::new(state, departure, body.half_separation);
-        let phase = Phase {
-            sin: zero,
-            cos: zero,
-        };
-        let look = search.look(zero, phase);
+        let turned = (zero, Pack::splat(simd, 1.0));
+        let look = search.look(zero, turned);
+        let leap = search.leap(&look);
+        let residue = search.residue(zero, &look, &leap);
         Self {
             search,
             look,
-            pass: search.pass(zero, &look),
+            leap,
+            residue,
+            arrival: search.arrival(&look, &leap, &residue),
             time: zero,
-            phase,
+            turned,
             glide: zero,
             climb: zero,
             spin: zero,
@@ -298,22 +280,37 @@ impl<S: Simd> Group<S> {
         self.time = self.search.departed();
     }
 
-    /// Ends a flight.
+    /// Searches on until every particle has arrived, which most groups have after the first pass.
     #[inline(always)]
-    fn land(&mut self, number: usize, sink: &mut impl Sink) {
-        self.end(self.look.never, number, StopReason::NeverLands, sink);
-        (self.time, self.phase) = self
-            .search
-            .landing(self.time, self.phase, &self.look, &self.pass);
+    fn search_on(&mut self, number: usize) -> Result<(), Stuck> {
+        let mut passes = 1;
+        while (self.active & !self.arrival.done).any() {
+            self.search
+                .graze(self.time, &self.look, &self.leap, &mut self.arrival);
+            let waiting = self.active & !self.arrival.done;
+            if passes == MOST_STEPS {
+                return Err(self.stuck(waiting, number));
+            }
+            if waiting.any() {
+                self.time = self.search.next(self.time, &self.leap, &self.arrival);
+                self.turned = sincos_in_lanes(self.search.angle(self.time));
+                self.look = self.search.look(self.time, self.turned);
+                self.leap = self.search.leap(&self.look);
+                self.residue = self.search.residue(self.time, &self.look, &self.leap);
+                self.arrival = self.search.arrival(&self.look, &self.leap, &self.residue);
+                passes += 1;
+            }
+        }
+        Ok(())
     }
 
     /// Has the impact.
     #[inline(always)]
     fn collide(&mut self, body: &Body, law: &impl InPlane) {
-        let before = self
-            .search
-            .start
-            .landing(self.time, self.phase, self.look.gap.side);
+        let before =
+            self.search
+                .start
+                .landing(self.arrival.time, self.arrival.attitude, self.look.gap.side);
         let sphere = self.look.gap.one.select(1.0, -1.0_f64);
         let (after, speed) = collide(body, law, &before, sphere);
         self.search.start = before;
@@ -333,7 +330,7 @@ impl<S: Simd> Group<S> {
             spin: self.spin,
             ..before
         };
-        self.clock = self.clock + self.time;
+        self.clock = self.clock + self.arrival.time;
         let energy_after = after.kinetic_energy(body.transverse);
         let impact = Impact {
             time: self.clock,
@@ -352,7 +349,7 @@ impl<S: Simd> Group<S> {
             let slow = (2.0 * energy_after).lt(limits.minimum_speed * limits.minimum_speed);
             self.end(slow, number + 1, StopReason::SpeedBelowThreshold, sink);
         }
-        let low = (self.search.bound * (self.time * self.time)).lt(UNRESOLVED);
+        let low = (self.search.bound * (self.arrival.time * self.arrival.time)).lt(UNRESOLVED);
         if low.any() {
             self.unresolved = low.select(self.unresolved + 1.0, 0.0);
             let collapsed = self.unresolved.eq(f64::from(COLLAPSE_RUN));

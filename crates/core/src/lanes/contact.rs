@@ -1,8 +1,8 @@
 //! WHEN: the first contact, (2). See [`crate::contact`] for why it cannot be missed.
 
-use super::flight::{Phase, State};
+use super::flight::{Attitude, State};
 use super::{Mask, Pack};
-use crate::contact::{INVISIBLE, LAST, SHORTEST, TOUCHING};
+use crate::contact::{SHORTEST, TOUCHING};
 use crate::elementary::RANGE;
 use pulp::Simd;
 
@@ -32,32 +32,20 @@ pub(super) struct Gap<S: Simd, const K: usize> {
     pub one: Mask<S, K>,
     /// ±L/2.
     pub side: Pack<S, K>,
-    width: Pack<S, K>,
-    rate: Pack<S, K>,
-    root: Pack<S, K>,
+    pub width: Pack<S, K>,
+    pub rate: Pack<S, K>,
+    pub root: Pack<S, K>,
 }
 
 /// What a pass of the search sees: the gap that may close first.
 #[derive(Clone, Copy)]
 #[repr(align(64))]
 pub(super) struct Look<S: Simd, const K: usize> {
-    tilt: Pack<S, K>,
-    tilt_rate: Pack<S, K>,
+    pub attitude: Attitude<S, K>,
     /// The gap.
     pub gap: Gap<S, K>,
     /// The lanes that never land while the axis can be followed.
     pub never: Mask<S, K>,
-}
-
-/// What a pass of the search does: the certified step.
-#[derive(Clone, Copy)]
-#[repr(align(64))]
-pub(super) struct Pass<S: Simd, const K: usize> {
-    step: Pack<S, K>,
-    /// Where the next pass looks; lanes that are done stay and find the same again.
-    pub next: Pack<S, K>,
-    /// The lanes whose step is the last, or that never land.
-    pub done: Mask<S, K>,
 }
 
 /// What the search needs to know of a flight.
@@ -71,7 +59,7 @@ pub(super) struct Search<S: Simd, const K: usize> {
     /// L/2.
     lever: f64,
     /// (L/2)ω².
-    sway: Pack<S, K>,
+    pub sway: Pack<S, K>,
     /// M, the bound on −f″.
     pub bound: Pack<S, K>,
     up: Pack<S, K>,
@@ -135,16 +123,17 @@ impl<S: Simd, const K: usize> Search<S, K> {
         self.start.spin * time
     }
 
-    /// What is to be seen at `time`, with the phase there.
+    /// What is to be seen at `time`, with sine and cosine of the angle there.
     #[inline(always)]
-    pub fn look(&self, time: Pack<S, K>, phase: Phase<S, K>) -> Look<S, K> {
+    pub fn look(&self, time: Pack<S, K>, turned: (Pack<S, K>, Pack<S, K>)) -> Look<S, K> {
         let never = !self.angle(time).abs().le(RANGE);
+        let attitude = self.start.attitude(turned);
         let moment = Moment {
             time,
             lift: self.start.lift_at(time),
             climb: self.start.climb - time,
-            tilt: self.start.tilt(phase),
-            tilt_rate: self.start.tilt_rate(phase),
+            tilt: attitude.cosine,
+            tilt_rate: self.start.tilt_rate(attitude),
         };
         let mut gap = self.nearer(&moment);
         // Does it touch and not approach, or is this the start? One comparison, because masks are dearer than numbers.
@@ -153,36 +142,10 @@ impl<S: Simd, const K: usize> Search<S, K> {
             gap = self.careful(&moment, gap);
         }
         Look {
-            tilt: moment.tilt,
-            tilt_rate: moment.tilt_rate,
+            attitude,
             gap,
             never,
         }
-    }
-
-    /// The step from `time`.
-    #[inline(always)]
-    pub fn pass(&self, time: Pack<S, K>, look: &Look<S, K>) -> Pass<S, K> {
-        let step = self.certified(&look.gap);
-        let done = look.never | self.is_last(&look.gap, step, time);
-        Pass {
-            step,
-            next: done.select(time, self.skip(time + step)),
-            done,
-        }
-    }
-
-    /// Time and phase of the landing to which the last pass, at `time`, leads.
-    #[inline(always)]
-    pub fn landing(
-        &self,
-        time: Pack<S, K>,
-        phase: Phase<S, K>,
-        look: &Look<S, K>,
-        last: &Pass<S, K>,
-    ) -> (Pack<S, K>, Phase<S, K>) {
-        let step = self.landed(look, last);
-        (time + step, phase.advanced(self.start.spin * step))
     }
 
     #[inline(always)]
@@ -275,7 +238,7 @@ impl<S: Simd, const K: usize> Search<S, K> {
 
     /// First zero τ ≥ 0 of f + f′τ − Mτ²/2: no contact can come earlier.
     #[inline(always)]
-    fn certified(&self, gap: &Gap<S, K>) -> Pack<S, K> {
+    pub fn certified(&self, gap: &Gap<S, K>) -> Pack<S, K> {
         let approaching = gap.rate.lt(0.0);
         let speed = gap.rate.abs() + gap.root;
         let numerator = approaching.select(2.0 * gap.width, speed.max(SHORTEST));
@@ -285,43 +248,7 @@ impl<S: Simd, const K: usize> Search<S, K> {
 
     /// Past the time that the centre of mass spends out of reach.
     #[inline(always)]
-    fn skip(&self, time: Pack<S, K>) -> Pack<S, K> {
+    pub fn skip(&self, time: Pack<S, K>) -> Pack<S, K> {
         self.up.le(time).select(time.max(self.down), time)
-    }
-
-    #[inline(always)]
-    fn is_last(&self, gap: &Gap<S, K>, step: Pack<S, K>, time: Pack<S, K>) -> Mask<S, K> {
-        let late = (time + step).mul_add(-LAST, step);
-        let turned = self.start.spin.abs().mul_add(step, -LAST);
-        let visible = self.bound.mul_add(step * step, -INVISIBLE);
-        let bent = self.bent(gap.root, step);
-        // Excesses: at most 0 are all, but of the last two one is enough.
-        gap.rate.lt(0.0) & late.max(turned).max(bent.min(visible)).le(0.0)
-    }
-
-    /// At most 0 where the gap is nearly straight.
-    #[inline(always)]
-    fn bent(&self, root: Pack<S, K>, step: Pack<S, K>) -> Pack<S, K> {
-        self.sway.mul_add(step, -(LAST * root))
-    }
-
-    /// The contact after the last certified step: the zero of the gap's fourth-order expansion, by a step of third order.
-    #[inline(always)]
-    fn landed(&self, look: &Look<S, K>, last: &Pass<S, K>) -> Pack<S, K> {
-        let (side, step, root) = (look.gap.side, last.step, look.gap.root);
-        let square = self.start.spin * self.start.spin;
-        let second = side * (-square * look.tilt);
-        let third = -(side * square) * look.tilt_rate;
-        let fourth = -square * second;
-        let slack = second + self.sway;
-        let bend = (step * fourth).mul_add(1.0 / 12.0, third * (1.0 / 3.0));
-        let left = 0.5 * (step * step) * step.mul_add(bend, slack);
-        let speed = step.mul_add(-step.mul_add(0.5 * third, slack), root);
-        let inverse = 1.0 / speed;
-        let newton = left * inverse;
-        let curvature = step.mul_add(third, second - 1.0);
-        let correction = newton.mul_add(0.5 * curvature * newton * inverse, newton);
-        let curved = self.bent(root, step).le(0.0) & !left.eq(0.0);
-        curved.select(step + correction, step)
     }
 }

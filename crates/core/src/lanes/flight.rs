@@ -1,7 +1,7 @@
 //! MOTION: the free flight, (3)–(5), in a vertical plane.
 
 use super::Pack;
-use crate::elementary::sincos_in_lanes;
+use crate::elementary::moderate_sincos_in_lanes;
 use pulp::Simd;
 
 /// Position and motion, as [`crate::State`] in the plane.
@@ -19,30 +19,34 @@ pub(crate) struct State<S: Simd, const K: usize> {
     pub spin: Pack<S, K>,
 }
 
-/// Sine and cosine of the phase φ = ωt.
+/// Where the axis points.
 #[derive(Clone, Copy)]
-pub(super) struct Phase<S: Simd, const K: usize> {
-    pub sin: Pack<S, K>,
-    pub cos: Pack<S, K>,
+pub(super) struct Attitude<S: Simd, const K: usize> {
+    pub sine: Pack<S, K>,
+    pub cosine: Pack<S, K>,
 }
 
-impl<S: Simd, const K: usize> Phase<S, K> {
+impl<S: Simd, const K: usize> Attitude<S, K> {
+    /// The attitude after another turn through an angle with this sine and cosine (3).
     #[inline(always)]
-    pub fn of(angle: Pack<S, K>) -> Self {
-        let (sin, cos) = sincos_in_lanes(angle);
-        Self { sin, cos }
+    fn after(self, sin: Pack<S, K>, cos: Pack<S, K>) -> Self {
+        Self {
+            sine: self.sine.mul_add(cos, self.cosine * sin), // (3)
+            cosine: self.cosine.mul_add(cos, -(self.sine * sin)), // (3)
+        }
     }
 
-    /// The phase a small `angle` later: exact in double precision for angles up to 2⁻¹¹.
+    /// The attitude a moderate `angle` later: exact in double precision for angles up to 0.15.
+    #[inline(always)]
+    pub fn turned(self, angle: Pack<S, K>) -> Self {
+        let (sin, cos) = moderate_sincos_in_lanes(angle);
+        self.after(sin, cos)
+    }
+
+    /// The attitude a small `angle` later: exact in double precision for angles up to 2⁻¹⁸.
     #[inline(always)]
     pub fn advanced(self, angle: Pack<S, K>) -> Self {
-        let square = angle * angle;
-        let sin = angle * square.mul_add(-1.0 / 6.0, 1.0);
-        let cos = square.mul_add(square.mul_add(1.0 / 24.0, -0.5), 1.0);
-        Self {
-            sin: self.sin.mul_add(cos, self.cos * sin),
-            cos: self.cos.mul_add(cos, -(self.sin * sin)),
-        }
+        self.after(angle, (angle * angle).mul_add(-0.5, 1.0))
     }
 }
 
@@ -53,23 +57,28 @@ impl<S: Simd, const K: usize> State<S, K> {
         time.mul_add(time.mul_add(-0.5, self.climb), self.lift) // (5)
     }
 
-    /// e_z at a phase (3).
+    /// Where the axis points when the body has turned through φ, of which sine and cosine are given.
     #[inline(always)]
-    pub(super) fn tilt(&self, phase: Phase<S, K>) -> Pack<S, K> {
-        self.cosine.mul_add(phase.cos, -(self.sine * phase.sin)) // (3)
+    pub fn attitude(&self, (sin, cos): (Pack<S, K>, Pack<S, K>)) -> Attitude<S, K> {
+        let Self { sine, cosine, .. } = *self;
+        Attitude { sine, cosine }.after(sin, cos)
     }
 
     /// de_z/dt.
     #[inline(always)]
-    pub(super) fn tilt_rate(&self, phase: Phase<S, K>) -> Pack<S, K> {
-        -self.spin * self.sine.mul_add(phase.cos, self.cosine * phase.sin)
+    pub fn tilt_rate(&self, attitude: Attitude<S, K>) -> Pack<S, K> {
+        -self.spin * attitude.sine
     }
 
     /// The state after `time`, when the sphere on the side `side` = ±L/2 of the centre of mass touches the plane.
     #[inline(always)]
-    pub(super) fn landing(&self, time: Pack<S, K>, phase: Phase<S, K>, side: Pack<S, K>) -> Self {
-        let sine = self.sine.mul_add(phase.cos, self.cosine * phase.sin); // (3)
-        let cosine = self.tilt(phase);
+    pub(super) fn landing(
+        &self,
+        time: Pack<S, K>,
+        attitude: Attitude<S, K>,
+        side: Pack<S, K>,
+    ) -> Self {
+        let Attitude { sine, cosine } = attitude;
         // One Newton step to unit length.
         let length = sine.mul_add(sine, cosine * cosine).mul_add(-0.5, 1.5);
         let (sine, cosine) = (sine * length, cosine * length);

@@ -4,9 +4,9 @@
 //! the module of the same name one level up with the components that vanish left out and every rounding the same:
 //! the results agree to the last bit with the three-dimensional engine, whatever the SIMD level.
 //!
-//! All lanes take the same impact at the same time and wait for the slowest search, which is seldom more than a step
-//! behind. A lane whose particle has ended computes on without being looked at.
+//! All lanes take the same impact at the same time and wait for the slowest search; it is rare that one needs a second pass. A lane whose particle has ended computes on without being looked at.
 
+mod arrival;
 mod bounce;
 mod collision;
 mod contact;
