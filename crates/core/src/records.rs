@@ -232,6 +232,8 @@ impl Sink for Table<'_> {
         }
     }
 
+    fn meanwhile(&mut self) {}
+
     fn end(&mut self, lane: usize, impacts: usize, reason: StopReason) {
         let row = &mut self.rows[self.first + lane];
         row.blank(impacts);

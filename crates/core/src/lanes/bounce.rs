@@ -64,6 +64,8 @@ pub(crate) trait Sink {
         first: usize,
         impact: &Impact<S, K>,
     );
+    /// Does a little of what has piled up. Called again and again while other arithmetic waits for its results.
+    fn meanwhile(&mut self);
     /// Particle `lane` of the release has ended after `impacts` impacts.
     fn end(&mut self, lane: usize, impacts: usize, reason: StopReason);
 }
@@ -118,7 +120,8 @@ struct Group<S: Simd> {
 /// An impact is cut into stages, and each goes through all groups before the next begins. What a stage needs is then long
 /// known when its turn comes, and the same stage of several groups is under way at once, as many as the processor can
 /// look ahead; one stage after another for one group would be a single chain, with the arithmetic units waiting most of the time.
-/// Sines and cosines are computed for W vectors side by side, with nothing else in the registers.
+/// Sines and cosines are computed for W vectors side by side, with nothing else in the registers. The stages have the multipliers busy,
+/// and the sink counts in between.
 #[inline(always)]
 pub(crate) fn bounce<S: Simd, const W: usize, const N: usize>(
     simd: S,
@@ -144,21 +147,26 @@ pub(crate) fn bounce<S: Simd, const W: usize, const N: usize>(
         }
         for group in groups.iter_mut() {
             group.depart(number, sink);
+            sink.meanwhile();
         }
-        turn::<S, W>(groups);
+        turn::<S, W>(groups, sink);
         for group in groups.iter_mut() {
             group.look = group.search.look(group.time, group.turned);
+            sink.meanwhile();
         }
         for group in groups.iter_mut() {
             group.leap = group.search.leap(&group.look);
+            sink.meanwhile();
         }
         for group in groups.iter_mut() {
             group.residue = group.search.residue(group.time, &group.look, &group.leap);
+            sink.meanwhile();
         }
         for group in groups.iter_mut() {
             group.arrival = group
                 .search
                 .arrival(&group.look, &group.leap, &group.residue);
+            sink.meanwhile();
         }
         for group in groups.iter_mut() {
             group.search_on(number)?;
@@ -166,6 +174,7 @@ pub(crate) fn bounce<S: Simd, const W: usize, const N: usize>(
         }
         for group in groups.iter_mut() {
             group.collide(body, law);
+            sink.meanwhile();
         }
         let mut active = false;
         for group in groups.iter_mut() {
@@ -174,6 +183,7 @@ pub(crate) fn bounce<S: Simd, const W: usize, const N: usize>(
         }
         for group in groups.iter_mut() {
             group.start(body);
+            sink.meanwhile();
         }
         if !active {
             return Ok(());
@@ -192,7 +202,7 @@ pub(crate) fn bounce<S: Simd, const W: usize, const N: usize>(
 
 /// Computes sine and cosine of the angle where the groups look first, of W vectors at a time.
 #[inline(always)]
-fn turn<S: Simd, const W: usize>(groups: &mut [Group<S>]) {
+fn turn<S: Simd, const W: usize>(groups: &mut [Group<S>], sink: &mut impl Sink) {
     let mut chunks = groups.chunks_exact_mut(W);
     for chunk in &mut chunks {
         let mut angle = Pack::<S, W>::splat(chunk[0].time.simd(), 0.0);
@@ -202,6 +212,7 @@ fn turn<S: Simd, const W: usize>(groups: &mut [Group<S>]) {
         let (sin, cos) = sincos_in_lanes(angle);
         for (i, group) in chunk.iter_mut().enumerate() {
             group.turned = (sin.part(i), cos.part(i));
+            sink.meanwhile();
         }
     }
     for group in chunks.into_remainder() {

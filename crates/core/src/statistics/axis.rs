@@ -18,6 +18,8 @@ pub struct Axis {
     /// The lowest edge and the number of edges, at hand in the hot loop.
     low: f64,
     last: f64,
+    /// What the number of a site grows by from row to row of a grid: the bins and one more.
+    pub(super) stride: f64,
     /// Bins per unit.
     density: f64,
 }
@@ -50,6 +52,7 @@ impl Axis {
             edges: edges.to_vec(),
             low,
             last: edges.len() as f64,
+            stride: edges.len() as f64 + 2.0,
             density,
         })
     }
@@ -80,12 +83,14 @@ impl Axis {
             bins[i] = places[i] + ROUND;
             most = most.max(off(places[i], bins[i]));
         }
-        if !most.lt(0.5 - NEAR).all() {
-            for i in 0..N {
-                axes[i].decide(x[i], places[i], &mut bins[i]);
-            }
+        if most.lt(0.5 - NEAR).all() {
+            return bins;
         }
-        bins
+        let mut exact = bins;
+        for i in 0..N {
+            exact[i] = axes[i].decided(x[i], places[i], bins[i]);
+        }
+        exact
     }
 
     /// Where `x` is, in bin widths: whole numbers are in the middle of the bins.
@@ -97,20 +102,23 @@ impl Axis {
             .min(self.last)
     }
 
-    /// Has the edges decide in the lanes that are near one.
+    /// The bins where the edges decide in the lanes that are near one.
     #[inline(always)]
-    fn decide<S: Simd, const K: usize>(
+    fn decided<S: Simd, const K: usize>(
         &self,
         x: Pack<S, K>,
         place: Pack<S, K>,
-        bin: &mut Pack<S, K>,
-    ) {
-        let off = off(place, *bin);
-        for (lane, bin) in bin.as_mut_slice().iter_mut().enumerate() {
+        bin: Pack<S, K>,
+    ) -> Pack<S, K> {
+        let off = off(place, bin);
+        // Copies, so that lanes are in memory here only, where hardly anything ever comes.
+        let (x, place, mut decided) = (x.part::<K>(0), place.part::<K>(0), bin.part::<K>(0));
+        for (lane, bin) in decided.as_mut_slice().iter_mut().enumerate() {
             if off.as_slice()[lane] >= 0.5 - NEAR {
                 *bin = ROUND + self.compare(x.as_slice()[lane], place.as_slice()[lane]);
             }
         }
+        decided
     }
 
     /// The bin of a number that is near an edge.

@@ -2,7 +2,7 @@
 
 use super::axis::{Axis, ROUND};
 use super::moments::Sums;
-use super::recent::{Extremes, FRACTION_QUANTA, LARGEST, QUANTA, Recent, Words, words};
+use super::recent::{Extremes, FRACTION_QUANTA, Half, LARGEST, QUANTA, Recent, words};
 use super::tally::{Bins, By, CREATES_ENERGY, Gains, Tally};
 use crate::lanes::{Impact, Mask, Pack, Sink};
 use crate::plan::Plan;
@@ -34,8 +34,12 @@ const MOST_RECENT: u32 = u32::MAX - LENGTH as u32;
 #[repr(align(64))]
 struct Queue {
     places: [Place; LENGTH],
-    words: [Words; LENGTH],
+    /// What they add to the sums, in halves.
+    low: [Half; LENGTH],
+    high: [Half; LENGTH],
     length: usize,
+    /// How many of them have been counted.
+    counted: usize,
 }
 
 /// Where an impact is counted: indices into the grids of ε and of E_rot/E_tot, and the row. Its last number is ε.
@@ -80,7 +84,7 @@ fn sites<S: Simd, const K: usize>(
     start: Pack<S, K>,
     column: Pack<S, K>,
 ) -> Pack<S, K> {
-    start.mul_add(axis.beyond() + 1.0, column)
+    start.mul_add(axis.stride, column)
 }
 
 /// The same where there may be impacts that are not defined, in the last column, or none, at a site that nobody reads.
@@ -96,18 +100,11 @@ fn all_sites<S: Simd, const K: usize>(
     active.select(sites(axis, start, column), nowhere(counts))
 }
 
-/// Makes the lanes of four packs records of four numbers, and puts them into longer ones of a queue, from their number `first` on.
+/// Makes the lanes of four packs records of four numbers.
 #[inline(always)]
-fn put<S: Simd, const K: usize, const N: usize>(
-    queue: &mut [[f64; N]],
-    first: usize,
-    packs: [Pack<S, K>; 4],
-) {
+fn put<S: Simd, const K: usize>(queue: &mut [[f64; 4]], packs: [Pack<S, K>; 4]) {
     let records = Pack::records(packs);
-    let records: &[[f64; 4]] = pulp::bytemuck::cast_slice(&records);
-    for (whole, part) in queue.iter_mut().zip(records) {
-        whole[first..first + 4].copy_from_slice(part);
-    }
+    queue.copy_from_slice(pulp::bytemuck::cast_slice(&records));
 }
 
 /// Moves what is recent in a row to the tally.
@@ -135,8 +132,10 @@ impl<'a> Counter<'a> {
             recent: 0,
             queue: Queue {
                 places: [[0.0; 4]; LENGTH],
-                words: [[0.0; 8]; LENGTH],
+                low: [[0.0; 4]; LENGTH],
+                high: [[0.0; 4]; LENGTH],
                 length: 0,
+                counted: 0,
             },
             tally,
         }
@@ -160,21 +159,31 @@ impl<'a> Counter<'a> {
     /// Counts what is in the queue.
     #[inline(always)]
     fn count(&mut self) {
-        let length = std::mem::take(&mut self.queue.length);
+        while self.queue.counted < self.queue.length {
+            self.count_next();
+        }
+        self.recent += self.queue.length as u32;
+        self.queue.length = 0;
+        self.queue.counted = 0;
         if self.recent > MOST_RECENT {
             self.empty();
         }
-        self.recent += length as u32;
-        let (restitution, fraction) = (&mut self.restitution[..], &mut self.fraction[..]);
-        let (queue, rows) = (&self.queue, &mut self.rows[..]);
-        for (place, words) in queue.places.iter().zip(&queue.words).take(length) {
-            let [site, fraction_site, number, value] = *place;
-            restitution[whole(site)] += 1;
-            fraction[whole(fraction_site)] += 1;
+    }
+
+    /// Counts the next impact in the queue, if there is one.
+    #[inline(always)]
+    fn count_next(&mut self) {
+        let queue = &mut self.queue;
+        let i = queue.counted;
+        if i < queue.length {
+            queue.counted = i + 1;
+            let [site, fraction_site, number, value] = queue.places[i];
+            self.restitution[whole(site)] += 1;
+            self.fraction[whole(fraction_site)] += 1;
             let number = whole(number);
-            let row = &mut rows[number];
+            let row = &mut self.rows[number];
             row.extremes.add(value);
-            let full = row.sums.add(words);
+            let full = row.sums.add(&queue.low[i], &queue.high[i]);
             if full {
                 empty_row(&mut self.tally, row, number);
             }
@@ -246,10 +255,10 @@ impl Sink for Counter<'_> {
         let queue = &mut self.queue;
         let lanes = at..at + width;
         let places = [site, fraction_site, plain_row, restitution];
-        put(&mut queue.places[lanes.clone()], 0, places);
+        put(&mut queue.places[lanes.clone()], places);
         let [low, high] = words(offset, fraction);
-        put(&mut queue.words[lanes.clone()], 0, low);
-        put(&mut queue.words[lanes], 4, high);
+        put(&mut queue.low[lanes.clone()], low);
+        put(&mut queue.high[lanes], high);
         let (before, after) = (impact.energy_before, impact.energy_after);
         let gaining = impact.active & (before * CREATES_ENERGY).lt(after);
         if gaining.any() {
@@ -262,6 +271,11 @@ impl Sink for Counter<'_> {
                     .add(gain.as_slice()[lane] as u64, factor.as_slice()[lane]);
             }
         }
+    }
+
+    #[inline(always)]
+    fn meanwhile(&mut self) {
+        self.count_next();
     }
 
     fn end(&mut self, _: usize, _: usize, reason: StopReason) {

@@ -21,10 +21,10 @@ pub(super) const MOST: u64 = 4096;
 const CUBIC: f64 = 33_554_432.0; // 2²⁵
 const QUARTIC: f64 = 1_125_899_906_842_624.0; // 2⁵⁰
 
-/// What a value adds: q, q², q³ high and low, q⁴ high and low, E_rot/E_tot, and, as a plain binary 1, the value itself.
-pub(super) type Words = [f64; 8];
+/// Half of what a value adds: q, q², q³ high and low; q⁴ high and low, E_rot/E_tot, and, as a plain binary 1, the value itself.
+pub(super) type Half = [f64; 4];
 
-/// Both halves of the words for an offset of ε from its origin, and E_rot/E_tot.
+/// Both halves for an offset of ε from its origin, and E_rot/E_tot.
 #[inline(always)]
 pub(super) fn words<S: Simd, const K: usize>(
     offset: Pack<S, K>,
@@ -69,9 +69,11 @@ impl Recent {
 
     /// Adds what a value adds, and tells whether that was the last for which there is room.
     #[inline(always)]
-    pub fn add(&mut self, words: &Words) -> bool {
+    pub fn add(&mut self, low: &Half, high: &Half) -> bool {
         // All words are read before any is written, so that a vector or two can hold them.
-        let sums: [u64; 8] = std::array::from_fn(|i| self.0[i].wrapping_add(words[i].to_bits()));
+        let sums: [u64; 8] = std::array::from_fn(|i| {
+            self.0[i].wrapping_add(if i < 4 { low[i] } else { high[i - 4] }.to_bits())
+        });
         self.0 = sums;
         sums[7] == MOST
     }
