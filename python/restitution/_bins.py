@@ -1,5 +1,6 @@
 """Uniform half-open bins, and the Dataset in which statistics are handed over."""
 
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
@@ -56,10 +57,11 @@ def centres(edges: FloatArray) -> FloatArray:
 def assemble(
     counts: dict[str, IntArray],
     moments: dict[str, FloatArray],
-    rows: xr.DataArray,
+    rows: xr.Variable,
     columns: dict[str, FloatArray],
+    more: Mapping[str, Any],
 ) -> xr.Dataset:
-    """Lay statistics out by row and bin.
+    """Lay statistics out by row and bin, all at once: adding to a Dataset takes as long as making one.
 
     Parameters
     ----------
@@ -68,12 +70,14 @@ def assemble(
         the undefined.
     moments : dict of float arrays, shape (rows,)
         ``mean``, ``variance``, ``skewness``, ``kurtosis``, ``minimum``, ``maximum``, ``mean_fraction``.
-    rows : xarray.DataArray, shape (rows,)
-        The coordinate of the rows.
+    rows : xarray.Variable, shape (rows,)
+        The coordinate of the rows, named like its dimension.
     columns : dict of float arrays, shape (bins + 1,)
         Edges of ``restitution`` and ``fraction``.
+    more : mapping of str to what a Dataset takes as a variable
+        Further variables.
     """
-    row = str(rows.name)
+    row = str(rows.dims[0])
     grid, fractions = counts["count"], counts["fraction_count"]
     per_row = {
         "number": (grid[:, :-1].sum(axis=1), "impacts whose restitution is defined"),
@@ -95,7 +99,7 @@ def assemble(
     for name, edges in columns.items():
         variables[f"{name}_edges"] = ((f"{name}_edge",), edges, {"units": "1"})
         coordinates[name] = ((name,), centres(edges), {"units": "1", "long_name": about[name]})
-    return xr.Dataset(variables, coordinates)
+    return xr.Dataset(variables | dict(more), coordinates)
 
 
 def by_velocity(
@@ -103,23 +107,19 @@ def by_velocity(
     moments: dict[str, FloatArray],
     velocity_edges: FloatArray,
     columns: dict[str, FloatArray],
+    more: Mapping[str, Any],
 ) -> xr.Dataset:
     """`assemble` for rows that are bins of impact velocity, with one row more below them and one above."""
-    rows = xr.DataArray(
-        centres(velocity_edges),
-        dims="velocity",
-        name="velocity",
-        attrs={"units": "m s-1", "long_name": "impact velocity"},
-    )
-    inner = slice(1, -1)
-    found = assemble(
-        {name: grid[inner] for name, grid in counts.items()},
-        {name: values[inner] for name, values in moments.items()},
-        rows,
+    about = {"units": "m s-1", "long_name": "impact velocity"}
+    outer = {
+        name: ((), np.int64(counts["count"][row].sum()), {"long_name": f"impacts {where} the velocity bins"})
+        for name, row, where in (("velocity_underflow", 0, "below"), ("velocity_overflow", -1, "above"))
+    }
+    edges = {"velocity_edges": ("velocity_edge", velocity_edges, {"units": "m s-1"})}
+    return assemble(
+        {name: grid[1:-1] for name, grid in counts.items()},
+        {name: values[1:-1] for name, values in moments.items()},
+        xr.Variable("velocity", centres(velocity_edges), about),
         columns,
+        outer | edges | dict(more),
     )
-    for name, outer, where in (("velocity_underflow", 0, "below"), ("velocity_overflow", -1, "above")):
-        text = {"long_name": f"impacts {where} the velocity bins"}
-        found[name] = xr.DataArray(np.int64(counts["count"][outer].sum()), attrs=text)
-    found["velocity_edges"] = xr.DataArray(velocity_edges, dims="velocity_edge", attrs={"units": "m s-1"})
-    return found

@@ -4,6 +4,7 @@ import errno
 import os
 import tempfile
 from collections.abc import Iterable
+from functools import cache
 from importlib.metadata import version
 from pathlib import Path
 from typing import Any
@@ -103,13 +104,19 @@ def dataset(run: Run, table: dict[str, Any]) -> xr.Dataset:
     return xr.Dataset(variables, attrs=attrs)
 
 
+@cache
+def _version() -> str:
+    """Tell the version; looking it up takes as long as a small run."""
+    return version("restitution")
+
+
 def attributes(run: Run, title: str) -> dict[str, Any]:
     """Give what every result carries: title, conventions, version, all parameters and the seed."""
     return {
         "title": title,
         "Conventions": "CF-1.11",
-        "source": f"restitution {version('restitution')}",
-        "version": version("restitution"),
+        "source": f"restitution {_version()}",
+        "version": _version(),
         "references": "A. Glielmo, N. Gunkelmann, T. Pöschel, Phys. Rev. E 90, 052204 (2014)",
         **run.attributes(),
     }

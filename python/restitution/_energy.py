@@ -52,24 +52,25 @@ def ledger_of(energy_ratio: FloatArray) -> dict[str, Any]:
     return ledger(impacts, created, float(np.fmax.reduce(energy_ratio, axis=None)))
 
 
-def add_by_row(found: xr.Dataset, created: IntArray, largest: FloatArray) -> None:
-    """Add to statistics what each of their rows says of the energy.
+def by_row(row: str, created: IntArray, largest: FloatArray) -> dict[str, Any]:
+    """Give the variables that say what each row of statistics knows of the energy.
 
     Parameters
     ----------
-    found : xarray.Dataset
-        Its variable ``number`` has the dimension of the rows.
+    row : str
+        The dimension of the rows.
     created : array of int, shape (rows,)
         Impacts that created energy.
     largest : array of float, shape (rows,)
         Largest energy ratio of these; of no meaning where there are none.
     """
-    row = found["number"].dims
     text = "impacts that multiplied the kinetic energy by more than 1 + 1e-12"
-    found["energy_created"] = (row, created, {"long_name": text})
-    text = "largest factor by which an impact multiplied the kinetic energy, where any created energy"
+    highest = "largest factor by which an impact multiplied the kinetic energy, where any created energy"
     factors = np.where(created > 0, largest, np.nan)
-    found["largest_energy_ratio"] = (row, factors, {"long_name": text, "units": "1"})
+    return {
+        "energy_created": (row, created, {"long_name": text}),
+        "largest_energy_ratio": (row, factors, {"long_name": highest, "units": "1"}),
+    }
 
 
 def warn(data: xr.Dataset, *, stacklevel: int = 2) -> None:

@@ -22,7 +22,7 @@ from restitution._bins import (
     checked_edges,
 )
 from restitution._core import CREATES_ENERGY
-from restitution._energy import add_by_row
+from restitution._energy import by_row
 
 
 def reduce(
@@ -92,8 +92,8 @@ def reduce(
     gains = _tally(row[created], rows)
     row, restitution, fraction = row[defined], restitution[defined], fraction[defined]
     moments = {**_moments(restitution, row, rows), "mean_fraction": _mean(fraction, row, rows)}
-    found = by_velocity(counts, moments, velocity_edges, columns)
-    add_by_row(found, gains[1:-1], largest[1:-1])
+    ledger = by_row("velocity", gains[1:-1], largest[1:-1])
+    found = by_velocity(counts, moments, velocity_edges, columns, ledger)
     content = "statistics of restitution in bins of impact velocity, bins lo <= x < hi"
     return found.assign_attrs(data.attrs, content=content)
 

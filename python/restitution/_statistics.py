@@ -1,6 +1,6 @@
 """Statistics of a run of any size, in memory that the bins alone decide."""
 
-from typing import Literal
+from typing import Any, Literal
 
 import numpy as np
 import numpy.typing as npt
@@ -9,7 +9,7 @@ import xarray as xr
 from restitution import _core
 from restitution._bins import FRACTION_BINS, assemble, by_velocity, checked_edges
 from restitution._dataset import STOP_REASONS, attributes
-from restitution._energy import add_by_row, ledger, warn
+from restitution._energy import by_row, ledger, warn
 from restitution._release import RandomSpin
 from restitution._resources import available_memory, checked_threads, progress_bar
 from restitution._run import Run
@@ -121,24 +121,22 @@ def statistics(
         )
     counts = {name: table[name] for name in ("count", "fraction_count")}
     moments = {name: table[name] for name in _MOMENTS}
+    more: dict[str, Any] = {
+        "stop_reason": ("stop_reason", list(STOP_REASONS)),
+        "particles_ended": (
+            "stop_reason",
+            table["stops"],
+            {"long_name": "particles by the reason why they ended"},
+        ),
+    }
+    created, largest = table["energy_created"], table["largest_energy_ratio"]
     if velocity is None:
-        rows = xr.DataArray(
-            np.arange(run.impacts),
-            dims="impact",
-            name="impact",
-            attrs={"long_name": "number of the impact, from 0"},
-        )
-        found = assemble(counts, moments, rows, columns)
-    else:
-        found = by_velocity(counts, moments, velocity, columns)
-    found["particles_ended"] = xr.DataArray(
-        table["stops"],
-        dims="stop_reason",
-        coords={"stop_reason": list(STOP_REASONS)},
-        attrs={"long_name": "particles by the reason why they ended"},
-    )
-    inner = slice(None) if velocity is None else slice(1, -1)  # the outer rows are beyond the bins
-    add_by_row(found, table["energy_created"][inner], table["largest_energy_ratio"][inner])
+        rows = xr.Variable("impact", np.arange(run.impacts), {"long_name": "number of the impact, from 0"})
+        more |= by_row("impact", created, largest)
+        found = assemble(counts, moments, rows, columns, more)
+    else:  # the outer rows are beyond the bins
+        more |= by_row("velocity", created[1:-1], largest[1:-1])
+        found = by_velocity(counts, moments, velocity, columns, more)
     found.attrs = attributes(run, "Statistics of the impacts of bouncing aspherical particles")
     found.attrs |= ledger(
         int(table["count"].sum()),

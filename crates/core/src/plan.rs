@@ -75,14 +75,14 @@ impl<'a> Plan<'a> {
         let clear = |cosine: f64| {
             plan.height >= plan.body.hull.support(cosine) * (1.0 - 4.0 * f64::EPSILON)
         };
-        let clear = match run.orientation {
-            Orientation::Given(_) | Orientation::Directions(_) => {
-                (0..run.particles).all(|i| clear(plan.release(i).1))
-            }
-            Orientation::UniformAngle | Orientation::Isotropic => {
-                run.release_height >= run.body.farthest() * (1.0 - 4.0 * f64::EPSILON)
-            }
-        };
+        let high = run.release_height >= run.body.farthest() * (1.0 - 4.0 * f64::EPSILON);
+        let clear = high
+            || match run.orientation {
+                Orientation::Given(_) | Orientation::Directions(_) => {
+                    (0..run.particles).all(|i| clear(plan.release(i).1))
+                }
+                Orientation::UniformAngle | Orientation::Isotropic => false,
+            };
         Error::unless(
             clear && plan.height.is_finite(),
             "release_height",
