@@ -110,15 +110,14 @@ impl Axis {
         place: Pack<S, K>,
         bin: Pack<S, K>,
     ) -> Pack<S, K> {
-        let off = off(place, bin);
-        // Copies, so that lanes are in memory here only, where hardly anything ever comes.
-        let (x, place, mut decided) = (x.part::<K>(0), place.part::<K>(0), bin.part::<K>(0));
+        // Lanes are in memory here only, where hardly anything ever comes.
+        let far = off(place, bin).lt(0.5 - NEAR);
+        let (x, place) = (far.select(0.0, x), far.select(0.0, place));
+        let mut decided = place;
         for (lane, bin) in decided.as_mut_slice().iter_mut().enumerate() {
-            if off.as_slice()[lane] >= 0.5 - NEAR {
-                *bin = ROUND + self.compare(x.as_slice()[lane], place.as_slice()[lane]);
-            }
+            *bin = ROUND + self.compare(x.as_slice()[lane], *bin);
         }
-        decided
+        far.select(bin, decided)
     }
 
     /// The bin of a number that is near an edge.
