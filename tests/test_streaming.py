@@ -11,6 +11,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import restitution as rs
+from restitution.laws import Law
 
 COUNTS = (
     "count",
@@ -75,6 +76,19 @@ def test_it_counts_what_simulate_records(
     np.testing.assert_array_equal(
         found.particles_ended, np.bincount(data.stop_reason.to_numpy().astype(int), minlength=5)
     )
+
+
+@pytest.mark.parametrize("velocity_bins", [np.linspace(0.0, 0.8, 9), None], ids=["velocity", "number"])
+@pytest.mark.parametrize("law", [LAW, rs.Frictionless(normal=0.98)], ids=["creates energy", "does not"])
+def test_counts_alone_are_the_same_counts(velocity_bins: Any, law: Law) -> None:
+    """Nothing else changes, neither the ledger of energy; what rests on more than counts is left out."""
+    body = rs.Dumbbell(radius=3e-3, separation=3e-3)
+    full = rs.statistics(body, law, **call(velocity_bins=velocity_bins))
+    found = rs.statistics(body, law, **call(velocity_bins=velocity_bins, counts_only=True))
+    left_out = {"mean", "variance", "skewness", "kurtosis", "minimum", "maximum", "mean_fraction"}
+    left_out |= {"fraction_count", "fraction_underflow", "fraction_overflow", "fraction_edges"}
+    xr.testing.assert_identical(found, full.drop_vars([*left_out, "fraction"]))
+    assert (float(found.energy_created.sum()) > 0) == (law == LAW)
 
 
 def test_nothing_is_dropped() -> None:

@@ -66,34 +66,35 @@ def assemble(
     Parameters
     ----------
     counts : dict of int64 arrays, shape (rows, bins + 3)
-        ``count`` and ``fraction_count``; the columns are what is below the bins, the bins, what is above, and
-        the undefined.
+        ``count`` and perhaps ``fraction_count``; the columns are what is below the bins, the bins, what is
+        above, and the undefined.
     moments : dict of float arrays, shape (rows,)
-        ``mean``, ``variance``, ``skewness``, ``kurtosis``, ``minimum``, ``maximum``, ``mean_fraction``.
+        ``mean``, ``variance``, ``skewness``, ``kurtosis``, ``minimum``, ``maximum``, ``mean_fraction``;
+        or none.
     rows : xarray.Variable, shape (rows,)
         The coordinate of the rows, named like its dimension.
     columns : dict of float arrays, shape (bins + 1,)
-        Edges of ``restitution`` and ``fraction``.
+        Edges of ``restitution`` and, with ``fraction_count``, of ``fraction``.
     more : mapping of str to what a Dataset takes as a variable
         Further variables.
     """
     row = str(rows.dims[0])
-    grid, fractions = counts["count"], counts["fraction_count"]
+    grid = counts["count"]
+    site = {"long_name": "impacts in the site"}
+    variables: dict[str, Any] = {"count": ((row, "restitution"), grid[:, 1:-2], site)}
     per_row = {
         "number": (grid[:, :-1].sum(axis=1), "impacts whose restitution is defined"),
         "undefined": (grid[:, -1], "impacts whose restitution is not finite or at least 2**33 in magnitude"),
         "restitution_underflow": (grid[:, 0], "impacts below the restitution bins"),
         "restitution_overflow": (grid[:, -2], "impacts above the restitution bins"),
-        "fraction_underflow": (fractions[:, 0], "impacts below the fraction bins"),
-        "fraction_overflow": (fractions[:, -2], "impacts above the fraction bins"),
-        **{name: (moments[name], text) for name, text in _MOMENTS.items()},
     }
-    site = {"long_name": "impacts in the site"}
+    if "fraction_count" in counts:
+        fractions = counts["fraction_count"]
+        variables["fraction_count"] = ((row, "fraction"), fractions[:, 1:-2], site)
+        per_row["fraction_underflow"] = (fractions[:, 0], "impacts below the fraction bins")
+        per_row["fraction_overflow"] = (fractions[:, -2], "impacts above the fraction bins")
+    per_row |= {name: (values, _MOMENTS[name]) for name, values in moments.items()}
     about = {"restitution": "restitution (Eq. 1)", "fraction": "E_rot/E_tot before the impact (Eq. 12)"}
-    variables: dict[str, Any] = {
-        "count": ((row, "restitution"), grid[:, 1:-2], site),
-        "fraction_count": ((row, "fraction"), fractions[:, 1:-2], site),
-    }
     variables |= {name: ((row,), values, {"long_name": text}) for name, (values, text) in per_row.items()}
     coordinates: dict[str, Any] = {row: rows}
     for name, edges in columns.items():

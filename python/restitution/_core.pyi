@@ -62,7 +62,7 @@ def statistics(
     run: Mapping[str, Any],
     velocity_bins: npt.NDArray[np.float64] | None,
     restitution_bins: npt.NDArray[np.float64],
-    fraction_bins: npt.NDArray[np.float64],
+    fraction_bins: npt.NDArray[np.float64] | None,
     threads: int,
     progress: Callable[[int], None] | None,
 ) -> tuple[dict[str, npt.NDArray[Any]], bool]: ...

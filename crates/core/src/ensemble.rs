@@ -11,7 +11,7 @@ use crate::records::{Records, Table};
 use crate::release::Orientation;
 use crate::spatial;
 use crate::spin::Spin;
-use crate::statistics::{Bins, By, Counter, Tally};
+use crate::statistics::{Bins, By, Counter, Counts, Tally, Tallying};
 use crate::vector::Vector;
 use pulp::{Simd, WithSimd};
 use std::ops::Range;
@@ -147,10 +147,31 @@ impl Run<'_> {
                 allowed,
             )?;
         }
+        let origin = self.origin();
+        let mut total = Tally::new(bins, origin);
+        let tallies = match &bins.fraction {
+            Some(fractions) => self.tallies(&plan, means, monitor, || {
+                Counter::new(bins, fractions, &plan, origin)
+            }),
+            None => self.tallies(&plan, means, monitor, || Counts::new(bins, &plan, origin)),
+        };
+        for tally in tallies? {
+            total.merge(&tally?);
+        }
+        Ok(total)
+    }
+
+    /// The tallies of all threads. Blocks go to whichever thread is free; the sums are whole numbers and do not mind.
+    fn tallies<T: Tallying>(
+        &self,
+        plan: &Plan<'_>,
+        means: Means,
+        monitor: &Monitor,
+        counter: impl Fn() -> T + Sync,
+    ) -> Result<Vec<Result<Tally, Error>>, Error> {
         let next = AtomicUsize::new(0);
-        // Blocks go to whichever thread is free; the sums are whole numbers and do not mind.
-        let tallies = means.pool()?.broadcast(|_| {
-            let mut counter = Counter::new(bins, &plan, self.origin());
+        Ok(means.pool()?.broadcast(|_| {
+            let mut counter = counter();
             loop {
                 let first = next.fetch_add(BLOCK, Ordering::Relaxed);
                 if first >= self.particles || monitor.is_cancelled() {
@@ -159,12 +180,7 @@ impl Run<'_> {
                 let particles = first..self.particles.min(first + BLOCK);
                 plan.bounce(particles, means.level, monitor, &mut counter)?;
             }
-        });
-        let mut total = Tally::new(bins, self.origin());
-        for tally in tallies {
-            total.merge(&tally?);
-        }
-        Ok(total)
+        }))
     }
 }
 

@@ -63,7 +63,7 @@ impl Digest {
             self.word(*count);
         }
         for row in 0..rows {
-            let m = tally.moments(row);
+            let m = tally.moments(row).unwrap();
             let numbers = [
                 m.mean,
                 m.variance,
@@ -71,7 +71,7 @@ impl Digest {
                 m.kurtosis,
                 m.minimum,
                 m.maximum,
-                tally.mean_fraction(row),
+                tally.mean_fraction(row).unwrap(),
             ];
             numbers.into_iter().for_each(|x| self.number(x));
         }
@@ -245,7 +245,7 @@ fn bins(by: By) -> Bins {
     Bins {
         by,
         restitution: edges(-1.0, 0.01, 300),
-        fraction: edges(0.0, 0.02, 50),
+        fraction: Some(edges(0.0, 0.02, 50)),
     }
 }
 

@@ -264,7 +264,7 @@ fn bins() {
         let bins = Bins {
             by: By::Number(rows),
             restitution: axis(restitution),
-            fraction: axis(fraction),
+            fraction: Some(axis(fraction)),
         };
         let means = Means {
             threads: 1,

@@ -100,7 +100,7 @@ fn every_impact_is_counted() {
         let bins = Bins {
             by: By::Number(run.impacts),
             restitution: axis(&[-1.0, 0.0, 1.0]),
-            fraction: axis(&[0.0, 0.5, 1.0]),
+            fraction: Some(axis(&[0.0, 0.5, 1.0])),
         };
         let tally = run.statistics(&bins, MEANS, &Monitor::default()).unwrap();
         let counted: u64 = (0..run.impacts).map(|row| tally.number(row)).sum();

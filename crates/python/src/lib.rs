@@ -145,7 +145,7 @@ fn statistics<'py>(
     run: Parameters<'py>,
     velocity_bins: Option<PyReadonlyArray1<'py, f64>>,
     restitution_bins: PyReadonlyArray1<'py, f64>,
-    fraction_bins: PyReadonlyArray1<'py, f64>,
+    fraction_bins: Option<PyReadonlyArray1<'py, f64>>,
     threads: usize,
     progress: Option<Bound<'py, PyAny>>,
 ) -> PyResult<(Bound<'py, PyDict>, bool)> {
@@ -160,14 +160,16 @@ fn statistics<'py>(
             None => By::Number(run.impacts),
         },
         restitution: axis("restitution_bins", &restitution_bins)?,
-        fraction: axis("fraction_bins", &fraction_bins)?,
+        fraction: fraction_bins
+            .map(|edges| axis("fraction_bins", &edges))
+            .transpose()?,
     };
     let (tally, interrupted) = watch::run(py, progress, |monitor| {
         run.statistics(&bins, means, monitor)
     })?;
 
     let rows = bins.rows();
-    let moments: Vec<_> = (0..rows).map(|row| tally.moments(row)).collect();
+    let moments: Vec<_> = (0..rows).filter_map(|row| tally.moments(row)).collect();
     let column =
         |f: fn(&Moments) -> f64| moments.iter().map(f).collect::<Vec<_>>().into_pyarray(py);
     let table = PyDict::new(py);
@@ -184,7 +186,9 @@ fn statistics<'py>(
     table.set_item("kurtosis", column(|m| m.kurtosis))?;
     table.set_item("minimum", column(|m| m.minimum))?;
     table.set_item("maximum", column(|m| m.maximum))?;
-    let fractions: Vec<_> = (0..rows).map(|row| tally.mean_fraction(row)).collect();
+    let fractions: Vec<_> = (0..rows)
+        .filter_map(|row| tally.mean_fraction(row))
+        .collect();
     table.set_item("mean_fraction", fractions.into_pyarray(py))?;
     let created: Vec<_> = tally.gains.iter().map(|row| row.count as i64).collect();
     table.set_item("energy_created", created.into_pyarray(py))?;

@@ -1,10 +1,12 @@
 //! Counts impacts into a [`Tally`].
 
+use super::Tallying;
 use super::axis::{Axis, ROUND};
 use super::moments::Sums;
+use super::places::{all_sites, nowhere, sites, whole};
 use super::recent::{Extremes, FRACTION_QUANTA, Half, LARGEST, QUANTA, Recent, words};
 use super::tally::{Bins, By, CREATES_ENERGY, Gains, Tally};
-use crate::lanes::{Impact, Mask, Pack, Sink};
+use crate::lanes::{Impact, Pack, Sink};
 use crate::plan::Plan;
 use crate::trajectory::StopReason;
 use pulp::Simd;
@@ -15,7 +17,9 @@ use pulp::Simd;
 /// lanes do the same.
 pub(crate) struct Counter<'a> {
     tally: Tally,
-    bins: &'a Bins,
+    by: &'a By,
+    columns: &'a Axis,
+    fractions: &'a Axis,
     plan: &'a Plan<'a>,
     restitution: Vec<u32>,
     fraction: Vec<u32>,
@@ -65,41 +69,6 @@ impl Row {
     };
 }
 
-/// The whole number in the low bits of `x`, to which [`ROUND`] was added. All are below 2³², see [`Bins::check`].
-#[inline(always)]
-fn whole(x: f64) -> usize {
-    x.to_bits() as u32 as usize
-}
-
-/// The last place, which nobody reads, plus [`ROUND`].
-#[inline(always)]
-fn nowhere<T>(places: &[T]) -> f64 {
-    (places.len() - 1) as f64 + ROUND
-}
-
-/// Numbers in a grid: `column` of the row that is `start` rows from the first.
-#[inline(always)]
-fn sites<S: Simd, const K: usize>(
-    axis: &Axis,
-    start: Pack<S, K>,
-    column: Pack<S, K>,
-) -> Pack<S, K> {
-    start.mul_add(axis.stride, column)
-}
-
-/// The same where there may be impacts that are not defined, in the last column, or none, at a site that nobody reads.
-#[inline(always)]
-fn all_sites<S: Simd, const K: usize>(
-    (axis, counts): (&Axis, &[u32]),
-    start: Pack<S, K>,
-    column: Pack<S, K>,
-    defined: Mask<S, K>,
-    active: Mask<S, K>,
-) -> Pack<S, K> {
-    let column = defined.select(column, axis.beyond() + ROUND);
-    active.select(sites(axis, start, column), nowhere(counts))
-}
-
 /// Makes the lanes of four packs records of four numbers.
 #[inline(always)]
 fn put<S: Simd, const K: usize>(queue: &mut [[f64; 4]], packs: [Pack<S, K>; 4]) {
@@ -121,10 +90,13 @@ fn empty_row(tally: &mut Tally, row: &mut Row, number: usize) {
 }
 
 impl<'a> Counter<'a> {
-    pub fn new(bins: &'a Bins, plan: &'a Plan<'a>, origin: f64) -> Self {
+    /// `fractions` are those of the bins.
+    pub fn new(bins: &'a Bins, fractions: &'a Axis, plan: &'a Plan<'a>, origin: f64) -> Self {
         let tally = Tally::new(bins, origin);
         Self {
-            bins,
+            by: &bins.by,
+            columns: &bins.restitution,
+            fractions,
             plan,
             restitution: vec![0; tally.restitution.counts().len() + 1],
             fraction: vec![0; tally.fraction.counts().len() + 1],
@@ -148,12 +120,6 @@ impl<'a> Counter<'a> {
         for row in 0..self.tally.sums.len() {
             empty_row(&mut self.tally, &mut self.rows[row], row);
         }
-    }
-
-    pub fn finish(mut self) -> Tally {
-        self.count();
-        self.empty();
-        self.tally
     }
 
     /// Counts what is in the queue.
@@ -216,8 +182,8 @@ impl Sink for Counter<'_> {
         let simd = impact.time.simd();
         let restitution = impact.restitution();
         let fraction = impact.rotational_fraction();
-        let (columns, fractions) = (&self.bins.restitution, &self.bins.fraction);
-        let (row, column, fraction_column) = match &self.bins.by {
+        let (columns, fractions) = (self.columns, self.fractions);
+        let (row, column, fraction_column) = match self.by {
             By::Velocity(axis) => {
                 let velocity = impact.fall * self.plan.scales.speed;
                 let located = Axis::locate(
@@ -280,5 +246,13 @@ impl Sink for Counter<'_> {
 
     fn end(&mut self, _: usize, _: usize, reason: StopReason) {
         self.tally.stops[reason as usize] += 1;
+    }
+}
+
+impl Tallying for Counter<'_> {
+    fn finish(mut self) -> Tally {
+        self.count();
+        self.empty();
+        self.tally
     }
 }

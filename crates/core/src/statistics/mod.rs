@@ -2,11 +2,20 @@
 
 mod axis;
 mod counter;
+mod counts;
 mod moments;
+mod places;
 mod recent;
 mod tally;
 
 pub use axis::Axis;
 pub(crate) use counter::Counter;
+pub(crate) use counts::Counts;
 pub use moments::{Moments, Sums};
 pub use tally::{Bins, By, CREATES_ENERGY, Gains, Grid, Tally};
+
+/// Makes a [`Tally`] of the impacts that it is told of.
+pub(crate) trait Tallying: crate::lanes::Sink {
+    /// The tally.
+    fn finish(self) -> Tally;
+}

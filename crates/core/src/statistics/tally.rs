@@ -24,8 +24,8 @@ pub struct Bins {
     pub by: By,
     /// Columns of the grid of ε.
     pub restitution: Axis,
-    /// Columns of the grid of E_rot/E_tot.
-    pub fraction: Axis,
+    /// Columns of the grid of E_rot/E_tot. Without them impacts are counted by row and ε, and nothing is summed.
+    pub fraction: Option<Axis>,
 }
 
 impl Bins {
@@ -45,7 +45,9 @@ impl Bins {
             Error::unless(sites <= u32::MAX as usize, name, sites as f64, allowed)
         };
         check("sites of the grid of restitution_bins", &self.restitution)?;
-        check("sites of the grid of fraction_bins", &self.fraction)
+        self.fraction.as_ref().map_or(Ok(()), |axis| {
+            check("sites of the grid of fraction_bins", axis)
+        })
     }
 }
 
@@ -54,13 +56,13 @@ impl Bins {
 pub struct Tally {
     /// Impacts by row and bin of ε; the last column counts those whose ε is not finite or at least 2³³.
     pub restitution: Grid,
-    /// Impacts by row and bin of E_rot/E_tot; the last column as above.
+    /// Impacts by row and bin of E_rot/E_tot; the last column as above. Without columns if only ε was asked for.
     pub fraction: Grid,
     /// What ε is measured from in the sums: ε^n, so that nearly round bodies lose no digits.
     pub(super) origin: f64,
-    /// Sums of ε − origin by row.
+    /// Sums of ε − origin by row; none if only counts were asked for.
     pub(super) sums: Vec<Sums>,
-    /// Σ E_rot/E_tot by row, in units of 2⁻⁴².
+    /// Σ E_rot/E_tot by row, in units of 2⁻⁴², likewise.
     pub(super) fractions: Vec<u128>,
     /// Impacts that create energy, by row.
     pub gains: Vec<Gains>,
@@ -135,12 +137,14 @@ impl Tally {
     /// Of nothing; moments will be taken about `origin` first.
     pub fn new(bins: &Bins, origin: f64) -> Self {
         let rows = bins.rows();
+        let summed = bins.fraction.as_ref().map_or(0, |_| rows);
+        let columns = bins.fraction.as_ref().map_or(0, |axis| axis.bins() + 1);
         Self {
             restitution: Grid::new(rows, bins.restitution.bins() + 1),
-            fraction: Grid::new(rows, bins.fraction.bins() + 1),
+            fraction: Grid::new(rows, columns),
             origin,
-            sums: vec![Sums::EMPTY; rows],
-            fractions: vec![0; rows],
+            sums: vec![Sums::EMPTY; summed],
+            fractions: vec![0; summed],
             gains: vec![Gains::default(); rows],
             stops: [0; 5],
         }
@@ -172,13 +176,15 @@ impl Tally {
             .sum()
     }
 
-    /// Moments of ε in a row.
-    pub fn moments(&self, row: usize) -> Moments {
-        self.sums[row].moments(self.number(row), self.origin)
+    /// Moments of ε in a row, if they were asked for.
+    pub fn moments(&self, row: usize) -> Option<Moments> {
+        let sums = self.sums.get(row)?;
+        Some(sums.moments(self.number(row), self.origin))
     }
 
-    /// Mean of E_rot/E_tot in a row; NaN where there are none.
-    pub fn mean_fraction(&self, row: usize) -> f64 {
-        self.fractions[row] as f64 / FRACTION_QUANTA / self.number(row) as f64
+    /// Mean of E_rot/E_tot in a row, if it was asked for; NaN where there are none.
+    pub fn mean_fraction(&self, row: usize) -> Option<f64> {
+        let sum = *self.fractions.get(row)?;
+        Some(sum as f64 / FRACTION_QUANTA / self.number(row) as f64)
     }
 }

@@ -1,0 +1,139 @@
+//! Counts impacts by row and ε alone.
+
+use super::Tallying;
+use super::axis::{Axis, ROUND};
+use super::moments::Sums;
+use super::places::{all_sites, sites, whole};
+use super::tally::{Bins, By, CREATES_ENERGY, Tally};
+use crate::lanes::{Impact, Pack, Sink};
+use crate::plan::Plan;
+use crate::trajectory::StopReason;
+use pulp::Simd;
+
+/// Counts impacts in the grid of ε and keeps the ledger of energy, as [`super::Counter`] does, and nothing else.
+pub(crate) struct Counts<'a> {
+    tally: Tally,
+    bins: &'a Bins,
+    plan: &'a Plan<'a>,
+    restitution: Vec<u32>,
+    /// Impacts since the last emptying.
+    recent: u32,
+    /// Where impacts are to be counted, with [`ROUND`] added.
+    queue: [f64; LENGTH],
+    length: usize,
+    /// How many of them have been counted.
+    counted: usize,
+}
+
+/// Room in the queue.
+const LENGTH: usize = 96;
+/// So many impacts are counted before the grid is emptied.
+const MOST_RECENT: u32 = u32::MAX - LENGTH as u32;
+
+impl<'a> Counts<'a> {
+    pub fn new(bins: &'a Bins, plan: &'a Plan<'a>, origin: f64) -> Self {
+        let tally = Tally::new(bins, origin);
+        Self {
+            bins,
+            plan,
+            restitution: vec![0; tally.restitution.counts().len() + 1],
+            recent: 0,
+            queue: [0.0; LENGTH],
+            length: 0,
+            counted: 0,
+            tally,
+        }
+    }
+
+    /// Counts what is in the queue.
+    #[inline(always)]
+    fn count(&mut self) {
+        while self.counted < self.length {
+            self.count_next();
+        }
+        self.recent += self.length as u32;
+        self.length = 0;
+        self.counted = 0;
+        if self.recent > MOST_RECENT {
+            self.empty();
+        }
+    }
+
+    /// Counts the next impact in the queue, if there is one.
+    #[inline(always)]
+    fn count_next(&mut self) {
+        if self.counted < self.length {
+            self.restitution[whole(self.queue[self.counted])] += 1;
+            self.counted += 1;
+        }
+    }
+
+    fn empty(&mut self) {
+        self.recent = 0;
+        self.tally.restitution.absorb(&mut self.restitution);
+    }
+}
+
+impl Sink for Counts<'_> {
+    fn begin(&mut self, _: usize) {}
+
+    #[inline(always)]
+    fn impact<S: Simd, const K: usize>(&mut self, number: usize, _: usize, impact: &Impact<S, K>) {
+        let width = Pack::<S, K>::WIDTH;
+        if self.length + width > LENGTH {
+            self.count();
+        }
+        let restitution = impact.restitution();
+        let columns = &self.bins.restitution;
+        let (row, column) = match &self.bins.by {
+            By::Velocity(axis) => {
+                let velocity = impact.fall * self.plan.scales.speed;
+                let [row, column] = Axis::locate([axis, columns], [velocity, restitution]);
+                (row, column)
+            }
+            By::Number(_) => {
+                let [column] = Axis::locate([columns], [restitution]);
+                (
+                    Pack::splat(impact.fall.simd(), number as f64 + ROUND),
+                    column,
+                )
+            }
+        };
+        let start = row - ROUND;
+        let defined = restitution.abs().lt(Sums::LARGEST);
+        let site = if (impact.active & defined).all() {
+            sites(columns, start, column)
+        } else {
+            let grid = (columns, &self.restitution[..]);
+            all_sites(grid, start, column, defined, impact.active)
+        };
+        self.queue[self.length..][..width].copy_from_slice(site.as_slice());
+        self.length += width;
+        let (before, after) = (impact.energy_before, impact.energy_after);
+        let gaining = impact.active & (before * CREATES_ENERGY).lt(after);
+        if gaining.any() {
+            let factor = after / before;
+            gaining.each(|lane| {
+                let row = whole(row.as_slice()[lane]);
+                self.tally.gains[row].add(1, factor.as_slice()[lane]);
+            });
+        }
+    }
+
+    #[inline(always)]
+    fn meanwhile(&mut self) {
+        self.count_next();
+    }
+
+    fn end(&mut self, _: usize, _: usize, reason: StopReason) {
+        self.tally.stops[reason as usize] += 1;
+    }
+}
+
+impl Tallying for Counts<'_> {
+    fn finish(mut self) -> Tally {
+        self.count();
+        self.empty();
+        self.tally
+    }
+}
