@@ -7,7 +7,15 @@ from typing import Any
 
 import numpy as np
 
-from benchmarks.peers.numba_planar import Flight, compiled, impulse, inlined, jump_then_steps, longest_steps
+from benchmarks.peers.numba_planar import (
+    Flight,
+    compiled,
+    expand_the_last,
+    impulse,
+    inlined,
+    jump_then_steps,
+    longest_steps,
+)
 from benchmarks.work import Array, Counts, Grid, Peer, Work
 
 
@@ -79,6 +87,7 @@ def run(work: Work, angles: Array, count: Any) -> Grid:
 def rows() -> list[Peer[Grid]]:
     """The yardstick first."""
     return [
+        Peer("Numba grid, our search", partial(run, count=loop(expand_the_last))),
         Peer("Numba grid, longest steps", partial(run, count=loop(longest_steps))),
         Peer("Numba grid, jump and steps", partial(run, count=loop(jump_then_steps))),
     ]

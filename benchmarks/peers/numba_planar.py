@@ -1,7 +1,7 @@
 """The planar motion as an expert would write it with Numba: scalar, with strict arithmetic (no fastmath).
 
 From rest the motion stays in one vertical plane, so the state is (z, v_x, v_z, e_x, e_z, ω), and e turns at a
-constant rate. There are two ways to find the next contact, neither of which can pass it; both take the state
+constant rate. There are three ways to find the next contact, none of which can pass it; all take the state
 and the sphere just hit (+1 at +L/2, -1, or 0 for none) and return the duration, v_z, e_x, e_z and the sphere
 that touches.
 
@@ -91,6 +91,75 @@ def jump_then_steps(
         v = v0 - g * time
         c, s = cos(spin * time), sin(spin * time)
         x, y = x0 * c + y0 * s, y0 * c - x0 * s
+
+
+@inlined
+def expand_the_last(
+    radius: float, arm: float, g: float, z0: float, v0: float, x0: float, y0: float, spin: float, hit: int
+) -> Flight:
+    """The jump, certified steps until the contact is near, then two expansions: as this package does it."""
+    touching = 1e-14 * radius
+    square = spin * spin
+    sway = arm * square
+    bend = g + sway
+    per_bend = 1.0 / bend
+    above = v0 * v0 + 2.0 * g * (z0 - radius - arm)
+    up = down = 0.0
+    if above > 0.0:
+        up, down = (v0 - sqrt(above)) / g, (v0 + sqrt(above)) / g
+    rate, lift = -arm * spin * x0, arm * y0
+    plus = z0 - radius + lift if hit <= 0 else 0.0  # the sphere just hit has gap 0 and rises
+    minus = z0 - radius - lift if hit >= 0 else 0.0
+    other = plus if hit < 0 else minus
+    if hit != 0 and other <= touching and v0 - hit * rate < 0.0:
+        return 0.0, v0, x0, y0, -hit
+    time = per_bend * min(
+        v0 + rate + sqrt((v0 + rate) ** 2 + 2.0 * bend * max(plus, 0.0)),
+        v0 - rate + sqrt((v0 - rate) ** 2 + 2.0 * bend * max(minus, 0.0)),
+    )
+    while True:
+        if up <= time < down:
+            time = down
+        z = z0 + (v0 - 0.5 * g * time) * time
+        v = v0 - g * time
+        c, s = cos(spin * time), sin(spin * time)
+        x, y = x0 * c + y0 * s, y0 * c - x0 * s
+        # The lower bound of the lower sphere reaches zero first, unless the axis swings through the level.
+        turning = -spin * x
+        level = turning * ((z - radius) * turning - v * y) - 0.5 * bend * (y * y)
+        side = arm if (turning if level >= 0.0 else y) < 0.0 else -arm
+        gap, closing = max(z - radius + side * y, 0.0), v + side * turning
+        root = sqrt(closing * closing + 2.0 * bend * gap)
+        touched = 1 if side > 0.0 else -1
+        if gap <= touching and closing < 0.0:
+            return time, v, x, y, touched
+        step = 2.0 * gap / (root - closing) if closing < 0.0 else per_bend * (closing + root)
+        if closing < 0.0 and abs(spin) * step <= 0.125 and sway * step <= 0.125 * root:
+            second, third = -side * square * y, -side * square * turning
+            slack = second + sway
+            left = 0.5 * step * step * (slack + step * (third / 3.0 - step * square * second / 12.0))
+            inverse = 1.0 / (root - step * (slack + 0.5 * third * step))
+            newton = left * inverse
+            ahead = step + newton * (1.0 + 0.5 * (second - g + step * third) * newton * inverse)
+            a = spin * ahead
+            b = a * a
+            s = a + a * b * (-1 / 6 + b * (1 / 120 + b * (-1 / 5040 + b / 362880)))
+            c = 1.0 + b * (-0.5 + b * (1 / 24 + b * (-1 / 720 + b * (1 / 40320 - b / 3628800))))
+            x, y = x * c + y * s, y * c - x * s
+            there = time + ahead
+            v = v0 - g * there
+            inverse = -1.0 / (v - side * spin * x)
+            newton = (z0 + (v0 - 0.5 * g * there) * there - radius + side * y) * inverse
+            rest = newton * (1.0 + 0.5 * (-side * square * y - g) * newton * inverse)
+            a = spin * rest
+            c = 1.0 - 0.5 * a * a
+            x, y = x * c + y * a, y * c - x * a
+            late = ahead - step + rest
+            if abs(newton) <= step / 262144.0 and -2.0 * side * y >= 0.5 * sway * late * late:
+                return there + rest, v0 - g * (there + rest), x, y, touched
+        if time + step == time:  # closer than the clock resolves
+            return time, v, x, y, touched
+        time += step
 
 
 @inlined

@@ -65,9 +65,12 @@ class Run(Parameters):
             allowed = f"one angle per particle, and particles = {self.particles}"
             raise ParameterError(Problem("orientation", f" = {given}: must be {allowed}"))
         solid = self.body.solid
-        lowest = solid.farthest() if angles is None else solid.lowest(np.cos(angles))
+        lowest = solid.farthest()
         # A body put down on the plane may be off by the rounding of its height.
-        if self.release_height < lowest * (1.0 - 4.0 * np.finfo(np.float64).eps):
+        rounding = 1.0 - 4.0 * np.finfo(np.float64).eps
+        if angles is not None and self.release_height < lowest * rounding:
+            lowest = solid.lowest(np.cos(angles))
+        if self.release_height < lowest * rounding:
             allowed = f"at least {lowest!r} m, or a part of the body would reach below the plane"
             raise ParameterError(wrong("release_height", self.release_height, allowed))
         return self

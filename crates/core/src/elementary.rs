@@ -67,6 +67,7 @@ const ARCSINE: [f64; 10] = [
 ];
 
 /// (sin x, cos x) for |x| ≤ [`RANGE`].
+#[inline(always)]
 pub fn sincos(x: f64) -> (f64, f64) {
     debug_assert!(x.abs() <= RANGE, "sincos({x}) is out of range");
     let (sine, cosine) = sincos_in_lanes(Pack::<_, 1>::splat(Scalar::new(), x));

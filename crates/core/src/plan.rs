@@ -93,6 +93,7 @@ impl<'a> Plan<'a> {
     }
 
     /// Sine and cosine of the angle at release.
+    #[inline(always)]
     pub fn release(&self, particle: usize) -> (f64, f64) {
         self.run.orientation.draw(self.run.seed, particle as u64)
     }

@@ -23,7 +23,8 @@ pub enum Orientation<'a> {
 }
 
 impl Orientation<'_> {
-    /// (sin θ, cos θ) of a particle.
+    /// (sin θ, cos θ) of a particle. Inlined, with all it calls, to be compiled for the SIMD level of its caller.
+    #[inline(always)]
     pub fn draw(&self, seed: u64, particle: u64) -> (f64, f64) {
         match self {
             Self::UniformAngle => sincos(PI * uniform(seed, particle, 0)),
