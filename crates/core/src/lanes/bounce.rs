@@ -4,6 +4,7 @@ use super::arrival::{Arrival, Leap, Residue};
 use super::collision::collide;
 use super::contact::{Departure, Look, Search};
 use super::flight::State;
+use super::sink::{Impact, Sink};
 use super::{Mask, Pack};
 use crate::body::Body;
 use crate::collision::InPlane;
@@ -11,64 +12,6 @@ use crate::contact::MOST_STEPS;
 use crate::elementary::sincos_in_lanes;
 use crate::trajectory::{COLLAPSE_RUN, Limits, StopReason, UNRESOLVED};
 use pulp::Simd;
-
-/// One impact in each lane.
-pub(crate) struct Impact<S: Simd, const K: usize> {
-    /// Time since release.
-    pub time: Pack<S, K>,
-    /// v_G^n before, positive when falling, and the normal velocity of the centre of mass after, positive when rising.
-    pub fall: Pack<S, K>,
-    pub rise: Pack<S, K>,
-    /// Kinetic energy of the rotation before.
-    pub rotation: Pack<S, K>,
-    /// Kinetic energies before and after.
-    pub energy_before: Pack<S, K>,
-    pub energy_after: Pack<S, K>,
-    /// Of the angle between the axis and the plane normal, up to the sign of the sine.
-    pub sine: Pack<S, K>,
-    pub cosine: Pack<S, K>,
-    /// ±1: the sphere that touched.
-    pub sphere: Pack<S, K>,
-    /// The lanes in which there is an impact.
-    pub active: Mask<S, K>,
-}
-
-impl<S: Simd, const K: usize> Impact<S, K> {
-    /// The coefficient of restitution (1).
-    #[inline(always)]
-    pub fn restitution(&self) -> Pack<S, K> {
-        self.rise / self.fall // (1)
-    }
-
-    /// E_rot/E_tot before the impact (12).
-    #[inline(always)]
-    pub fn rotational_fraction(&self) -> Pack<S, K> {
-        self.rotation / self.energy_before // (12)
-    }
-
-    /// Kinetic energy after the impact over that before.
-    #[inline(always)]
-    pub fn energy_ratio(&self) -> Pack<S, K> {
-        self.energy_after / self.energy_before
-    }
-}
-
-/// Takes what happens to the particles of a release.
-pub(crate) trait Sink {
-    /// From now on number 0 of the release is particle `first` of the block.
-    fn begin(&mut self, first: usize);
-    /// Impact `number`, counted from 0, has happened to the particles of the release from `first` on, one in each lane.
-    fn impact<S: Simd, const K: usize>(
-        &mut self,
-        number: usize,
-        first: usize,
-        impact: &Impact<S, K>,
-    );
-    /// Does a little of what has piled up. Called again and again while other arithmetic waits for its results.
-    fn meanwhile(&mut self);
-    /// Particle `lane` of the release has ended after `impacts` impacts.
-    fn end(&mut self, lane: usize, impacts: usize, reason: StopReason);
-}
 
 /// Particles released from rest.
 pub(crate) struct Release<'a> {

@@ -12,6 +12,8 @@ mod collision;
 mod contact;
 mod flight;
 mod pack;
+mod sink;
 
-pub(crate) use bounce::{Impact, Release, Sink, bounce};
+pub(crate) use bounce::{Release, bounce};
 pub(crate) use pack::{Mask, Operand, Pack};
+pub(crate) use sink::{Impact, Sink};
