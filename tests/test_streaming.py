@@ -91,6 +91,13 @@ def test_counts_alone_are_the_same_counts(velocity_bins: Any, law: Law) -> None:
     assert (float(found.energy_created.sum()) > 0) == (law == LAW)
 
 
+@pytest.mark.parametrize("value", ["yes", 1, None])
+def test_counts_only_is_yes_or_no(value: Any) -> None:
+    body = rs.Dumbbell(radius=3e-3, separation=3e-3)
+    with pytest.raises(ValueError, match=r"^counts_only = .*: must be True or False$"):
+        rs.statistics(body, LAW, **call(counts_only=value))
+
+
 def test_nothing_is_dropped() -> None:
     """Every impact that happened is in a bin, beside the bins, or among the undefined."""
     body = rs.Dumbbell(radius=3e-3, separation=6e-3)

@@ -111,6 +111,8 @@ def statistics(
         minimum_speed=minimum_speed,
         seed=seed,
     )
+    if not isinstance(counts_only, bool | np.bool_):
+        raise ValueError(f"counts_only = {counts_only!r}: must be True or False")
     columns = {"restitution": checked_edges(restitution_bins, "restitution_bins")}
     if not counts_only:
         columns["fraction"] = checked_edges(fraction_bins, "fraction_bins")
