@@ -2,6 +2,7 @@
 
 use super::Tallying;
 use super::axis::{Axis, ROUND};
+use super::backlog::{Backlog, LENGTH};
 use super::moments::Sums;
 use super::places::{all_sites, nowhere, sites, whole};
 use super::recent::{Extremes, FRACTION_QUANTA, Half, LARGEST, QUANTA, Recent, words};
@@ -24,15 +25,9 @@ pub(crate) struct Counter<'a> {
     restitution: Vec<u32>,
     fraction: Vec<u32>,
     rows: Vec<Row>,
-    /// Impacts since the last emptying.
-    recent: u32,
+    backlog: Backlog,
     queue: Queue,
 }
-
-/// Room in the queue.
-const LENGTH: usize = 96;
-/// So many impacts are counted before the grids are emptied.
-const MOST_RECENT: u32 = u32::MAX - LENGTH as u32;
 
 /// Impacts to be counted, lane by lane. Whole numbers have [`ROUND`] added to them.
 #[repr(align(64))]
@@ -41,9 +36,6 @@ struct Queue {
     /// What they add to the sums, in halves.
     low: [Half; LENGTH],
     high: [Half; LENGTH],
-    length: usize,
-    /// How many of them have been counted.
-    counted: usize,
 }
 
 /// Where an impact is counted: indices into the grids of ε and of E_rot/E_tot, and the row. Its last number is ε.
@@ -101,20 +93,17 @@ impl<'a> Counter<'a> {
             restitution: vec![0; tally.restitution.counts().len() + 1],
             fraction: vec![0; tally.fraction.counts().len() + 1],
             rows: vec![Row::EMPTY; tally.sums.len() + 1],
-            recent: 0,
+            backlog: Backlog::default(),
             queue: Queue {
                 places: [[0.0; 4]; LENGTH],
                 low: [[0.0; 4]; LENGTH],
                 high: [[0.0; 4]; LENGTH],
-                length: 0,
-                counted: 0,
             },
             tally,
         }
     }
 
     fn empty(&mut self) {
-        self.recent = 0;
         self.tally.restitution.absorb(&mut self.restitution);
         self.tally.fraction.absorb(&mut self.fraction);
         for row in 0..self.tally.sums.len() {
@@ -125,34 +114,27 @@ impl<'a> Counter<'a> {
     /// Counts what is in the queue.
     #[inline(always)]
     fn count(&mut self) {
-        while self.queue.counted < self.queue.length {
-            self.count_next();
+        while let Some(i) = self.backlog.next() {
+            self.count_one(i);
         }
-        self.recent += self.queue.length as u32;
-        self.queue.length = 0;
-        self.queue.counted = 0;
-        if self.recent > MOST_RECENT {
+        if self.backlog.restart() {
             self.empty();
         }
     }
 
-    /// Counts the next impact in the queue, if there is one.
+    /// Counts number `i` in the queue.
     #[inline(always)]
-    fn count_next(&mut self) {
-        let queue = &mut self.queue;
-        let i = queue.counted;
-        if i < queue.length {
-            queue.counted = i + 1;
-            let [site, fraction_site, number, value] = queue.places[i];
-            self.restitution[whole(site)] += 1;
-            self.fraction[whole(fraction_site)] += 1;
-            let number = whole(number);
-            let row = &mut self.rows[number];
-            row.extremes.add(value);
-            let full = row.sums.add(&queue.low[i], &queue.high[i]);
-            if full {
-                empty_row(&mut self.tally, row, number);
-            }
+    fn count_one(&mut self, i: usize) {
+        let queue = &self.queue;
+        let [site, fraction_site, number, value] = queue.places[i];
+        self.restitution[whole(site)] += 1;
+        self.fraction[whole(fraction_site)] += 1;
+        let number = whole(number);
+        let row = &mut self.rows[number];
+        row.extremes.add(value);
+        let full = row.sums.add(&queue.low[i], &queue.high[i]);
+        if full {
+            empty_row(&mut self.tally, row, number);
         }
     }
 
@@ -173,11 +155,10 @@ impl Sink for Counter<'_> {
     #[inline(always)]
     fn impact<S: Simd, const K: usize>(&mut self, number: usize, _: usize, impact: &Impact<S, K>) {
         let width = Pack::<S, K>::WIDTH;
-        if self.queue.length + width > LENGTH {
+        if !self.backlog.has_room(width) {
             self.count();
         }
-        let at = self.queue.length;
-        self.queue.length += width;
+        let lanes = self.backlog.take(width);
 
         let simd = impact.time.simd();
         let restitution = impact.restitution();
@@ -219,7 +200,6 @@ impl Sink for Counter<'_> {
             });
         }
         let queue = &mut self.queue;
-        let lanes = at..at + width;
         let places = [site, fraction_site, plain_row, restitution];
         put(&mut queue.places[lanes.clone()], places);
         let [low, high] = words(offset, fraction);
@@ -241,7 +221,9 @@ impl Sink for Counter<'_> {
 
     #[inline(always)]
     fn meanwhile(&mut self) {
-        self.count_next();
+        if let Some(i) = self.backlog.next() {
+            self.count_one(i);
+        }
     }
 
     fn end(&mut self, _: usize, _: usize, reason: StopReason) {

@@ -2,6 +2,7 @@
 
 use super::Tallying;
 use super::axis::{Axis, ROUND};
+use super::backlog::{Backlog, LENGTH};
 use super::moments::Sums;
 use super::places::{all_sites, sites, whole};
 use super::tally::{Bins, By, CREATES_ENERGY, Tally};
@@ -16,19 +17,10 @@ pub(crate) struct Counts<'a> {
     bins: &'a Bins,
     plan: &'a Plan<'a>,
     restitution: Vec<u32>,
-    /// Impacts since the last emptying.
-    recent: u32,
+    backlog: Backlog,
     /// Where impacts are to be counted, with [`ROUND`] added.
     queue: [f64; LENGTH],
-    length: usize,
-    /// How many of them have been counted.
-    counted: usize,
 }
-
-/// Room in the queue.
-const LENGTH: usize = 96;
-/// So many impacts are counted before the grid is emptied.
-const MOST_RECENT: u32 = u32::MAX - LENGTH as u32;
 
 impl<'a> Counts<'a> {
     pub fn new(bins: &'a Bins, plan: &'a Plan<'a>, origin: f64) -> Self {
@@ -37,10 +29,8 @@ impl<'a> Counts<'a> {
             bins,
             plan,
             restitution: vec![0; tally.restitution.counts().len() + 1],
-            recent: 0,
+            backlog: Backlog::default(),
             queue: [0.0; LENGTH],
-            length: 0,
-            counted: 0,
             tally,
         }
     }
@@ -48,28 +38,21 @@ impl<'a> Counts<'a> {
     /// Counts what is in the queue.
     #[inline(always)]
     fn count(&mut self) {
-        while self.counted < self.length {
-            self.count_next();
+        while let Some(i) = self.backlog.next() {
+            self.count_one(i);
         }
-        self.recent += self.length as u32;
-        self.length = 0;
-        self.counted = 0;
-        if self.recent > MOST_RECENT {
+        if self.backlog.restart() {
             self.empty();
         }
     }
 
-    /// Counts the next impact in the queue, if there is one.
+    /// Counts number `i` in the queue.
     #[inline(always)]
-    fn count_next(&mut self) {
-        if self.counted < self.length {
-            self.restitution[whole(self.queue[self.counted])] += 1;
-            self.counted += 1;
-        }
+    fn count_one(&mut self, i: usize) {
+        self.restitution[whole(self.queue[i])] += 1;
     }
 
     fn empty(&mut self) {
-        self.recent = 0;
         self.tally.restitution.absorb(&mut self.restitution);
     }
 }
@@ -80,7 +63,7 @@ impl Sink for Counts<'_> {
     #[inline(always)]
     fn impact<S: Simd, const K: usize>(&mut self, number: usize, _: usize, impact: &Impact<S, K>) {
         let width = Pack::<S, K>::WIDTH;
-        if self.length + width > LENGTH {
+        if !self.backlog.has_room(width) {
             self.count();
         }
         let restitution = impact.restitution();
@@ -107,8 +90,7 @@ impl Sink for Counts<'_> {
             let grid = (columns, &self.restitution[..]);
             all_sites(grid, start, column, defined, impact.active)
         };
-        self.queue[self.length..][..width].copy_from_slice(site.as_slice());
-        self.length += width;
+        self.queue[self.backlog.take(width)].copy_from_slice(site.as_slice());
         let (before, after) = (impact.energy_before, impact.energy_after);
         let gaining = impact.active & (before * CREATES_ENERGY).lt(after);
         if gaining.any() {
@@ -122,7 +104,9 @@ impl Sink for Counts<'_> {
 
     #[inline(always)]
     fn meanwhile(&mut self) {
-        self.count_next();
+        if let Some(i) = self.backlog.next() {
+            self.count_one(i);
+        }
     }
 
     fn end(&mut self, _: usize, _: usize, reason: StopReason) {

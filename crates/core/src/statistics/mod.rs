@@ -1,6 +1,7 @@
 //! Statistics that merge exactly: integer counts and integer sums, so that no order of adding can change them.
 
 mod axis;
+mod backlog;
 mod counter;
 mod counts;
 mod moments;

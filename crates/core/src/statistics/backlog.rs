@@ -1,0 +1,58 @@
+//! Impacts that wait to be counted.
+
+use std::ops::Range;
+
+/// Room for so many.
+pub(super) const LENGTH: usize = 96;
+/// So many impacts are counted before narrow counters are emptied, which no counter of 32 bits can then have overflowed.
+const MOST: u32 = u32::MAX - LENGTH as u32;
+
+/// How far a queue of [`LENGTH`] is filled, and how far it has been counted.
+#[derive(Default)]
+pub(super) struct Backlog {
+    length: usize,
+    counted: usize,
+    /// Impacts counted since the last emptying.
+    recent: u32,
+}
+
+impl Backlog {
+    /// Whether there is room for `width` more.
+    #[inline(always)]
+    pub fn has_room(&self, width: usize) -> bool {
+        self.length + width <= LENGTH
+    }
+
+    /// The places of `width` more, for which there is room.
+    #[inline(always)]
+    pub fn take(&mut self, width: usize) -> Range<usize> {
+        let first = self.length;
+        self.length += width;
+        first..self.length
+    }
+
+    /// The next to be counted, if there is one.
+    #[inline(always)]
+    pub fn next(&mut self) -> Option<usize> {
+        let next = self.counted;
+        if next < self.length {
+            self.counted += 1;
+            Some(next)
+        } else {
+            None
+        }
+    }
+
+    /// Starts anew when all are counted, and tells whether the narrow counters must be emptied.
+    #[inline(always)]
+    pub fn restart(&mut self) -> bool {
+        self.recent += self.length as u32;
+        self.length = 0;
+        self.counted = 0;
+        let full = self.recent > MOST;
+        if full {
+            self.recent = 0;
+        }
+        full
+    }
+}
