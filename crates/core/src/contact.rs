@@ -103,13 +103,12 @@ pub fn first_contact(
         if !followed {
             return Ok(Landing::Never);
         }
-        let attitude = flight.attitude(angle);
-        let moment = Moment::of(flight, time, attitude);
+        let moment = Moment::of(flight, time, flight.attitude(angle));
         let gap = search.nearer(&moment);
         let step = search.certified(&gap);
         if let Some((time, attitude)) = search
-            .arrival(&moment, attitude, &gap, step)
-            .or_else(|| search.grazing(&moment, attitude, &gap, step))
+            .arrival(&moment, &gap, step)
+            .or_else(|| search.grazing(&moment, &gap, step))
         {
             let state = flight.landing(time, attitude, body, gap.sphere);
             return Ok(Landing::Impact {
@@ -141,6 +140,7 @@ struct Moment {
     time: f64,
     lift: f64,
     climb: f64,
+    attitude: Attitude,
     /// e_z and its rate.
     tilt: f64,
     tilt_rate: f64,
@@ -152,6 +152,7 @@ impl Moment {
             time,
             lift: flight.lift(time),
             climb: flight.climb(time),
+            attitude,
             tilt: flight.tilt(attitude),
             tilt_rate: flight.tilt_rate(attitude),
         }
@@ -321,18 +322,12 @@ impl<'a> Search<'a> {
     }
 
     /// Time and attitude of the contact behind `step`, if it is near and the other sphere does not touch before.
-    fn arrival(
-        &self,
-        moment: &Moment,
-        attitude: Attitude,
-        gap: &Gap,
-        step: f64,
-    ) -> Option<(f64, Attitude)> {
+    fn arrival(&self, moment: &Moment, gap: &Gap, step: f64) -> Option<(f64, Attitude)> {
         if !self.is_near(gap, step) {
             return None;
         }
         let ahead = self.expanded(moment, gap, step);
-        let attitude = attitude.turned(self.flight.rate * ahead);
+        let attitude = moment.attitude.turned(self.flight.rate * ahead);
         let there = Moment::of(self.flight, moment.time + ahead, attitude);
         // What is left of the gap, by a step of third order.
         let width = self.hull.gap(gap.sphere, there.tilt, there.lift); // (2)
@@ -341,7 +336,7 @@ impl<'a> Search<'a> {
         let newton = width * inverse;
         let curvature = self.bend(&there, gap.sphere, -1.0); // f″
         let rest = newton.mul_add(0.5 * curvature * newton * inverse, newton);
-        let attitude = attitude.advanced(self.flight.rate * rest);
+        let attitude = there.attitude.advanced(self.flight.rate * rest);
 
         let small = newton.abs() <= SMALL * step;
         // Where the other sphere touched after `step`, its gap cannot have become larger since than gravity and rotation open it.
@@ -355,19 +350,13 @@ impl<'a> Search<'a> {
     }
 
     /// Time and attitude at the end of `step`, if what it leaves of the gap cannot be seen.
-    fn grazing(
-        &self,
-        moment: &Moment,
-        attitude: Attitude,
-        gap: &Gap,
-        step: f64,
-    ) -> Option<(f64, Attitude)> {
+    fn grazing(&self, moment: &Moment, gap: &Gap, step: f64) -> Option<(f64, Attitude)> {
         let time = moment.time + step;
         let last = gap.rate < 0.0
             && (-LAST).mul_add(time, step) <= 0.0
             && self.flight.rate.mul_add(step, -LAST) <= 0.0
             && self.bound.mul_add(step * step, -INVISIBLE) <= 0.0;
-        last.then(|| (time, attitude.turned(self.flight.rate * step)))
+        last.then(|| (time, moment.attitude.turned(self.flight.rate * step)))
     }
 
     /// A step to the zero of the gap's fourth-order expansion, of third order behind `step`.

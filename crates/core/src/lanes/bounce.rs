@@ -277,13 +277,7 @@ impl<S: Simd> Group<S> {
     /// Tells the sink, and whether that was the end.
     #[inline(always)]
     fn tell(&mut self, body: &Body, limits: Limits, number: usize, sink: &mut impl Sink) {
-        let before = self.search.start;
-        let after = State {
-            glide: self.glide,
-            climb: self.climb,
-            spin: self.spin,
-            ..before
-        };
+        let (before, after) = (self.search.start, self.after());
         self.clock = self.clock + self.arrival.time;
         let energy_after = after.kinetic_energy(body.transverse);
         let impact = Impact {
@@ -316,13 +310,18 @@ impl<S: Simd> Group<S> {
     /// Starts the next flight.
     #[inline(always)]
     fn start(&mut self, body: &Body) {
-        let start = State {
+        self.search = Search::new(self.after(), self.search.departure, body.half_separation);
+    }
+
+    /// The state after the impact.
+    #[inline(always)]
+    fn after(&self) -> State<S, 1> {
+        State {
             glide: self.glide,
             climb: self.climb,
             spin: self.spin,
             ..self.search.start
-        };
-        self.search = Search::new(start, self.search.departure, body.half_separation);
+        }
     }
 
     /// Ends the active lanes in `which`. Rare.
