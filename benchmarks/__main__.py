@@ -41,11 +41,10 @@ def speed(peers: Peers, work: Work, particles: int, rounds: int) -> None:
     yardstick = (peers.counting or peers.engine)[0].name
     print(f"\n{timing.table(times, yardstick)}")
     print(f"\n{rounds} rounds in {perf_counter() - start:.0f} s. Ratios of times, taken within a round:")
-    one, two = (row.name for row in peers.engine[:2])
-    print(timing.comparison(times, "statistics: one thread over two", one, two))
-    best = rs.build_info()["simd"]
-    one, two = (statistics.name(best, threads, counts_only=True) for threads in (1, 2))
-    print(timing.comparison(times, "statistics, counts only: one thread over two", one, two))
+    best = rs.build_info()["simd_available"][-1]
+    for call, counts_only in (("statistics", False), ("statistics, counts only", True)):
+        one, two = (statistics.name(best, threads, counts_only) for threads in (1, 2))
+        print(timing.comparison(times, f"{call}: one thread over two", one, two))
     one, two = (row.name for row in peers.recording[:2])
     print(timing.comparison(times, "simulate: one thread over two", one, two))
     for row in peers.writing:

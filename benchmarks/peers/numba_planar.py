@@ -19,6 +19,24 @@ inlined = numba.njit(error_model="numpy", inline="always")
 
 
 @inlined
+def moved(
+    g: float, z0: float, v0: float, x0: float, y0: float, spin: float, time: float
+) -> tuple[float, float, float, float]:
+    """z, v_z, e_x and e_z after a time."""
+    c, s = cos(spin * time), sin(spin * time)
+    return z0 + (v0 - 0.5 * g * time) * time, v0 - g * time, x0 * c + y0 * s, y0 * c - x0 * s
+
+
+@inlined
+def out_of_reach(radius: float, arm: float, g: float, z0: float, v0: float) -> tuple[float, float]:
+    """From when to when the centre of mass is above R + L/2; (0, 0) if never."""
+    above = v0 * v0 + 2.0 * g * (z0 - radius - arm)
+    if above > 0.0:
+        return (v0 - sqrt(above)) / g, (v0 + sqrt(above)) / g
+    return 0.0, 0.0
+
+
+@inlined
 def longest_steps(
     radius: float, arm: float, g: float, z0: float, v0: float, x0: float, y0: float, spin: float, hit: int
 ) -> Flight:
@@ -48,10 +66,7 @@ def longest_steps(
             return time, v, x, y, 1 if plus < minus else -1
         skip = 0
         time += step
-        z = z0 + (v0 - 0.5 * g * time) * time
-        v = v0 - g * time
-        c, s = cos(spin * time), sin(spin * time)
-        x, y = x0 * c + y0 * s, y0 * c - x0 * s
+        z, v, x, y = moved(g, z0, v0, x0, y0, spin, time)
 
 
 @inlined
@@ -62,10 +77,7 @@ def jump_then_steps(
     touching = 1e-14 * radius
     bend = g + arm * spin * spin
     per_bend = 1.0 / bend
-    above = v0 * v0 + 2.0 * g * (z0 - radius - arm)
-    up = down = 0.0
-    if above > 0.0:
-        up, down = (v0 - sqrt(above)) / g, (v0 + sqrt(above)) / g
+    up, down = out_of_reach(radius, arm, g, z0, v0)
     time, z, v, x, y = 0.0, z0, v0, x0, y0
     skip = hit  # the sphere just hit has gap 0 and rises
     while True:
@@ -87,10 +99,7 @@ def jump_then_steps(
         time += step
         if up <= time < down:
             time = down
-        z = z0 + (v0 - 0.5 * g * time) * time
-        v = v0 - g * time
-        c, s = cos(spin * time), sin(spin * time)
-        x, y = x0 * c + y0 * s, y0 * c - x0 * s
+        z, v, x, y = moved(g, z0, v0, x0, y0, spin, time)
 
 
 @inlined
@@ -103,10 +112,7 @@ def expand_the_last(
     sway = arm * square
     bend = g + sway
     per_bend = 1.0 / bend
-    above = v0 * v0 + 2.0 * g * (z0 - radius - arm)
-    up = down = 0.0
-    if above > 0.0:
-        up, down = (v0 - sqrt(above)) / g, (v0 + sqrt(above)) / g
+    up, down = out_of_reach(radius, arm, g, z0, v0)
     rate, lift = -arm * spin * x0, arm * y0
     plus = z0 - radius + lift if hit <= 0 else 0.0  # the sphere just hit has gap 0 and rises
     minus = z0 - radius - lift if hit >= 0 else 0.0
@@ -120,10 +126,7 @@ def expand_the_last(
     while True:
         if up <= time < down:
             time = down
-        z = z0 + (v0 - 0.5 * g * time) * time
-        v = v0 - g * time
-        c, s = cos(spin * time), sin(spin * time)
-        x, y = x0 * c + y0 * s, y0 * c - x0 * s
+        z, v, x, y = moved(g, z0, v0, x0, y0, spin, time)
         # The lower bound of the lower sphere reaches zero first, unless the axis swings through the level.
         turning = -spin * x
         level = turning * ((z - radius) * turning - v * y) - 0.5 * bend * (y * y)
