@@ -19,8 +19,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import restitution as rs
-from restitution import _simulate
+from restitution import _core, _simulate
 from restitution._core import sincos
+from restitution._run import Run
 
 RADIUS = 3e-3
 COLUMNS = (
@@ -294,3 +295,10 @@ def test_an_error_in_the_progress_bar_is_not_swallowed(monkeypatch: pytest.Monke
     monkeypatch.setattr(_simulate, "progress_bar", lambda *_, **__: nullcontext(fail))
     with pytest.raises(ZeroDivisionError):
         bounce(0.1, 0.98, 1.0, progress=True)
+
+
+def test_a_panic_is_one_clear_exception() -> None:
+    """A table that no machine can address, asked for behind the checks, panics in the worker of the core."""
+    run = Run(body=rs.Dumbbell(radius=RADIUS, separation=RADIUS), law=rs.Frictionless(normal=0.9), impacts=1)
+    with pytest.raises(RuntimeError, match=r"^the core panicked: capacity overflow$"):
+        _core.simulate({**run.parameters(), "particles": 2**61}, 1, None)
