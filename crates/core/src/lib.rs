@@ -12,8 +12,8 @@
 //! | paper | here |
 //! |---|---|
 //! | n (plane normal), z | `z`, upward |
-//! | r_G, v_G | [`State::height`], [`State::velocity`] |
-//! | ω | [`State::spin`], derived from the precession vector **Λ**/J_xx, [`State::precession`] |
+//! | r_G, v_G | [`State::lift`], [`State::velocity`] |
+//! | ω | derived from the precession vector **Λ**/J_xx, [`State::precession`] |
 //! | Â(t)·(0, 0, 1) | [`State::axis`], from sphere 2 to sphere 1 |
 //! | L/2, J_xx, J_zz | [`Body::half_separation`], [`Body::transverse`], [`Body::axial`] |
 //! | r_c, v_c | `arm`, `slip` in [`collision`] |
@@ -22,54 +22,50 @@
 //! # From the equation to the code
 //! | equation | file |
 //! |---|---|
-//! | (1), (12) | `trajectory.rs` |
-//! | (2) | `contact.rs` |
-//! | (3)–(5) | `flight.rs` |
-//! | (6)–(8), (11) | `collision/mod.rs` |
+//! | (1), (12) | `engine/impact.rs` |
+//! | (2) | `body/hull/`, `search/` |
+//! | (3)–(5) | `flight/` |
+//! | (6)–(8), (11) | `engine/strike.rs` |
 //! | (9), (10) | `collision/tangential.rs` |
-//! | (18) | `release.rs` |
+//! | (18) | `run/orientation.rs` |
 //! | (A1)–(A8) | `body/dumbbell.rs` |
 #![forbid(unsafe_code)]
 
 mod body;
 pub mod collision;
-mod contact;
+mod columns;
 pub mod distribution;
-pub mod elementary;
-mod ensemble;
+mod engine;
 mod error;
 mod flight;
-mod lanes;
-mod level;
-mod plan;
+mod follow;
+mod memory;
 mod random;
 mod records;
-mod release;
-mod scales;
-mod spatial;
-mod spin;
-mod state;
+mod run;
+mod search;
+mod simd;
+mod simulate;
 pub mod statistics;
-mod trajectory;
-mod vector;
+mod threads;
+mod variable;
 
 pub use body::{
-    Ball, Body, Dumbbell, Ellipsoid, Hull, LoadedSphere, Pair, Shape, Solid, Spherocylinder,
-    Spheroid,
+    Body, Dumbbell, LoadedSphere, Shape, Solid, Sphere, Spherocylinder, Spheroid, Surface,
 };
 pub use collision::{
-    ChatterjeeRuina, Coulomb, Frictionless, Hypothesis, Law, Normal, Plastic, Tabulated,
+    ChatterjeeRuina, Coulomb, Frictionless, Hypothesis, Law, Normal, Plastic, Points, Tabulated,
     TangentialRestitution, Viscoelastic,
 };
-pub use contact::{Departure, Landing, NoConvergence, first_contact};
-pub use ensemble::{Means, Monitor, Run, default_threads};
-pub use error::Error;
-pub use flight::{Attitude, Flight};
-pub use level::Level;
-pub use records::Records;
-pub use release::Orientation;
-pub use scales::Scales;
-pub use spin::{About, Spin};
-pub use state::{Sphere, State};
-pub use trajectory::{COLLAPSE_RUN, Impact, Limits, StopReason, bounce};
-pub use vector::Vector;
+pub use columns::{Columns, PER_IMPACT, PER_PARTICLE, Records};
+pub use engine::{
+    COLLAPSE_RUN, Departure, Landing, Limits, NoConvergence, SingleImpact, StopReason, collide,
+    first_contact, trajectory,
+};
+pub use error::{Error, Value};
+pub use flight::{State, Vector};
+pub use follow::Followed;
+pub use run::{About, Height, Orientation, Run, Scales, Spin};
+pub use simd::{Level, elementary};
+pub use threads::{Means, Monitor, default_threads};
+pub use variable::{Values, Variable, When};

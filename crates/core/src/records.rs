@@ -1,176 +1,94 @@
-//! The table of all impacts of a run, filled row by row from many threads.
+//! The table of all impacts of a run, filled block by block from many threads.
 
-use crate::elementary::{angle, angle_in_lanes};
-use crate::lanes::{Impact, Pack, Sink};
-use crate::plan::Plan;
-use crate::trajectory::StopReason;
+use crate::Error;
+use crate::columns::{Block, ROOM, Records};
+use crate::engine::{Impact, Meanwhile, Sink, StopReason};
+use crate::memory::empty;
+use crate::run::{Height, Plan};
+use crate::simd::elementary::angle;
+use crate::threads::Monitor;
 use pulp::Simd;
 
-/// Every impact of a run, in SI units. Tables are row-major of shape (particle, impact), with NaN (0 in `contact`) where
-/// there was no impact; the rest has one entry a particle.
-#[derive(Debug, Clone)]
-pub struct Records {
-    columns: usize,
-    /// Time since release, in s.
-    pub time: Vec<f64>,
-    /// v_G^n before the impact, in m/s.
-    pub impact_velocity: Vec<f64>,
-    /// Normal velocity of the centre of mass after the impact, in m/s.
-    pub rebound_velocity: Vec<f64>,
-    /// ε (1).
-    pub restitution: Vec<f64>,
-    /// E_rot/E_tot before the impact (12).
-    pub rotational_fraction: Vec<f64>,
-    /// Kinetic energy after the impact over that before.
-    pub energy_ratio: Vec<f64>,
-    /// Angle between the axis and the plane normal, in rad.
-    pub angle: Vec<f64>,
-    /// 1 or 2: the sphere, or the half of a spheroid, that touched; 0: no impact.
-    pub contact: Vec<i8>,
-    /// Number of impacts, per particle.
-    pub impacts: Vec<i64>,
-    /// [`StopReason`] as a number, per particle.
-    pub stop_reason: Vec<i8>,
-    /// θ at release in rad, per particle.
-    pub release_angle: Vec<f64>,
-    /// Azimuth of the axis at release in rad, per particle; of none if all were let go at rest.
-    pub release_azimuth: Vec<f64>,
-    /// Angular velocity at release in rad/s, likewise.
-    pub release_spin: Vec<[f64; 3]>,
-}
+/// Cells that are blanked after a run was cut short, at most: some tenths of a second.
+const MOST_BLANKED: usize = 1 << 22;
+/// Cells that are blanked between two looks at whether to end.
+const STRIDE: usize = 1 << 16;
 
 impl Records {
-    /// Zeros, which cost nothing yet: the rows are written, and blanked where no impact happened, by those who fill them.
-    pub(crate) fn new(particles: usize, impacts: usize) -> Self {
-        let table = || vec![0.0; particles * impacts];
-        Self {
-            columns: impacts,
-            time: table(),
-            impact_velocity: table(),
-            rebound_velocity: table(),
-            restitution: table(),
-            rotational_fraction: table(),
-            energy_ratio: table(),
-            angle: table(),
-            contact: vec![0; particles * impacts],
-            impacts: vec![0; particles],
-            stop_reason: vec![StopReason::Interrupted as i8; particles],
-            release_angle: vec![f64::NAN; particles],
-            release_azimuth: Vec::new(),
-            release_spin: Vec::new(),
+    /// Ends a run that was cut short, in no time however long the rows are: the columns end with the longest row, and where
+    /// the rest of the others would take long to blank, those that were cut short are left out. The first row is that of the
+    /// particle `first`.
+    pub(crate) fn settle(&mut self, first: usize) {
+        self.reached = self.longest();
+        if self.missing() > MOST_BLANKED {
+            self.leave_out_cut_short(first);
+            self.reached = self.longest();
+        }
+        let reached = self.reached;
+        let mut rows = self.block();
+        for row in 0..rows.impacts.len() {
+            if !rows.settled[row] {
+                rows.blank(row, rows.impacts[row] as usize..reached);
+            }
         }
     }
 
-    /// Number of particles.
-    pub fn particles(&self) -> usize {
-        self.impacts.len()
+    fn longest(&self) -> usize {
+        self.impacts.iter().max().map_or(0, |&most| most as usize)
     }
 
-    /// Keeps the first particles only. Memory that nobody wrote to is never touched.
-    pub(crate) fn truncate(&mut self, particles: usize) {
-        let tables = [
-            &mut self.time,
-            &mut self.impact_velocity,
-            &mut self.rebound_velocity,
-            &mut self.restitution,
-            &mut self.rotational_fraction,
-            &mut self.energy_ratio,
-            &mut self.angle,
-        ];
-        for table in tables {
-            table.truncate(particles * self.columns);
+    /// Cells that would have to be blanked.
+    fn missing(&self) -> usize {
+        let open = self.settled.iter().zip(&self.impacts);
+        let open = open.filter(|(settled, _)| !**settled);
+        open.map(|(_, &impacts)| self.reached - impacts as usize)
+            .sum()
+    }
+
+    /// Keeps the rows of the particles that finished, and their numbers.
+    fn leave_out_cut_short(&mut self, first: usize) {
+        let cut_short = |&row: &usize| self.stop_reason[row] == StopReason::Interrupted as i8;
+        let kept: Vec<usize> = (0..self.particles())
+            .filter(|row| !cut_short(row))
+            .collect();
+        for (place, &row) in kept.iter().enumerate() {
+            self.move_up(row, place);
         }
-        self.contact.truncate(particles * self.columns);
-        self.impacts.truncate(particles);
-        self.stop_reason.truncate(particles);
-        self.release_angle.truncate(particles);
+        self.truncate(kept.len());
+        self.particle = kept.into_iter().map(|row| (first + row) as i64).collect();
     }
 
-    /// Adds how the particles were let go, where that is more than an angle.
-    pub(crate) fn add_release(&mut self, plan: &Plan<'_>) {
-        for particle in 0..self.particles() {
-            let (azimuth, spin) = plan.start(particle);
+    /// Adds how the particles, which are those from `first` on, were let go, where that is more than an angle.
+    pub(crate) fn add_release(&mut self, plan: &Plan<'_>, first: usize) -> Result<(), Error> {
+        let particle = |row: usize, this: &Self| {
+            let known = this.particle.get(row);
+            known.map_or(first + row, |&number| number as usize)
+        };
+        if let Height::Random { .. } = plan.run.release_height {
+            self.release_height = empty(ROOM, self.particles())?;
+            for row in 0..self.particles() {
+                let height = plan.release_height(particle(row, self));
+                self.release_height.push(height);
+            }
+        }
+        if plan.at_rest {
+            return Ok(());
+        }
+        self.release_azimuth = empty(ROOM, self.particles())?;
+        self.release_spin = empty(ROOM, self.particles())?;
+        for row in 0..self.particles() {
+            let particle = particle(row, self);
+            let (azimuth, spin) = plan.spinning(particle);
             self.release_azimuth.push(azimuth);
             self.release_spin.push([spin.x, spin.y, spin.z]);
         }
-    }
-
-    /// The rows, one a particle.
-    pub(crate) fn rows(&mut self) -> impl Iterator<Item = Row<'_>> {
-        let n = self.columns;
-        let velocities = self
-            .impact_velocity
-            .chunks_mut(n)
-            .zip(self.rebound_velocity.chunks_mut(n));
-        let ratios = self
-            .restitution
-            .chunks_mut(n)
-            .zip(self.energy_ratio.chunks_mut(n));
-        let fractions = self.rotational_fraction.chunks_mut(n);
-        let geometry = self.angle.chunks_mut(n).zip(self.contact.chunks_mut(n));
-        let ends = self.impacts.iter_mut().zip(&mut self.stop_reason);
-        self.time
-            .chunks_mut(n)
-            .zip(velocities)
-            .zip(ratios.zip(fractions))
-            .zip(geometry)
-            .zip(ends.zip(&mut self.release_angle))
-            .map(
-                |((((time, velocities), (ratios, fraction)), geometry), (end, release_angle))| {
-                    Row {
-                        time,
-                        impact_velocity: velocities.0,
-                        rebound_velocity: velocities.1,
-                        restitution: ratios.0,
-                        energy_ratio: ratios.1,
-                        rotational_fraction: fraction,
-                        angle: geometry.0,
-                        contact: geometry.1,
-                        impacts: end.0,
-                        stop_reason: end.1,
-                        release_angle,
-                    }
-                },
-            )
-    }
-}
-
-/// The part of [`Records`] that belongs to one particle.
-pub(crate) struct Row<'a> {
-    time: &'a mut [f64],
-    impact_velocity: &'a mut [f64],
-    rebound_velocity: &'a mut [f64],
-    restitution: &'a mut [f64],
-    rotational_fraction: &'a mut [f64],
-    energy_ratio: &'a mut [f64],
-    angle: &'a mut [f64],
-    contact: &'a mut [i8],
-    impacts: &'a mut i64,
-    stop_reason: &'a mut i8,
-    release_angle: &'a mut f64,
-}
-
-impl Row<'_> {
-    /// Marks the impacts from number `first` on as never happened.
-    pub(crate) fn blank(&mut self, first: usize) {
-        let numbers = [
-            &mut self.time,
-            &mut self.impact_velocity,
-            &mut self.rebound_velocity,
-            &mut self.restitution,
-            &mut self.rotational_fraction,
-            &mut self.energy_ratio,
-            &mut self.angle,
-        ];
-        for column in numbers {
-            column[first..].fill(f64::NAN);
-        }
+        Ok(())
     }
 }
 
 /// Takes the impacts of a block of particles into its rows.
 pub(crate) struct Table<'a> {
-    rows: Vec<Row<'a>>,
+    block: Block<'a>,
     plan: &'a Plan<'a>,
     /// The row of the particle in lane 0.
     first: usize,
@@ -178,17 +96,38 @@ pub(crate) struct Table<'a> {
 
 impl<'a> Table<'a> {
     /// The rows of the particles from `particle` on.
-    pub fn new(mut rows: Vec<Row<'a>>, plan: &'a Plan<'a>, particle: usize) -> Self {
-        for (i, row) in rows.iter_mut().enumerate() {
+    pub fn new(block: Block<'a>, plan: &'a Plan<'a>, particle: usize) -> Self {
+        for (i, release_angle) in block.release_angle.iter_mut().enumerate() {
             let (sine, cosine) = plan.release(particle + i);
-            *row.release_angle = angle(sine, cosine);
+            *release_angle = angle(sine, cosine);
         }
         Self {
-            rows,
+            block,
             plan,
             first: 0,
         }
     }
+
+    /// Marks the impacts after the last of each particle as never happened, unless the run is cut short meanwhile.
+    pub fn finish(mut self, monitor: &Monitor) {
+        let end = self.block.columns;
+        for row in 0..self.block.impacts.len() {
+            let mut first = self.block.impacts[row] as usize;
+            while first < end {
+                if monitor.is_cancelled() {
+                    return;
+                }
+                let next = end.min(first + STRIDE);
+                self.block.blank(row, first..next);
+                first = next;
+            }
+            self.block.settled[row] = true;
+        }
+    }
+}
+
+impl Meanwhile for Table<'_> {
+    fn meanwhile(&mut self) {}
 }
 
 impl Sink for Table<'_> {
@@ -203,41 +142,13 @@ impl Sink for Table<'_> {
         first: usize,
         impact: &Impact<S, K>,
     ) {
-        let scales = &self.plan.scales;
-        let time = impact.time * scales.time;
-        let impact_velocity = impact.fall * scales.speed;
-        let rebound_velocity = impact.rise * scales.speed;
-        let restitution = impact.restitution();
-        let fraction = impact.rotational_fraction();
-        let energy_ratio = impact.energy_ratio();
-        let angle = angle_in_lanes(impact.sine, impact.cosine);
-        let sphere = impact.sphere.lt(0.0).select(2.0, 1.0_f64);
-        let active = impact.active.select(1.0, 0.0_f64);
-        for (lane, row) in self.rows[self.first + first..]
-            .iter_mut()
-            .enumerate()
-            .take(Pack::<S, K>::WIDTH)
-        {
-            if active.as_slice()[lane] == 0.0 {
-                continue;
-            }
-            row.time[number] = time.as_slice()[lane];
-            row.impact_velocity[number] = impact_velocity.as_slice()[lane];
-            row.rebound_velocity[number] = rebound_velocity.as_slice()[lane];
-            row.restitution[number] = restitution.as_slice()[lane];
-            row.rotational_fraction[number] = fraction.as_slice()[lane];
-            row.energy_ratio[number] = energy_ratio.as_slice()[lane];
-            row.angle[number] = angle.as_slice()[lane];
-            row.contact[number] = sphere.as_slice()[lane] as i8;
-        }
+        let row = self.first + first;
+        self.block.record(number, row, impact, self.plan);
     }
 
-    fn meanwhile(&mut self) {}
-
     fn end(&mut self, lane: usize, impacts: usize, reason: StopReason) {
-        let row = &mut self.rows[self.first + lane];
-        row.blank(impacts);
-        *row.impacts = impacts as i64;
-        *row.stop_reason = reason as i8;
+        let row = self.first + lane;
+        self.block.impacts[row] = impacts as i64;
+        self.block.stop_reason[row] = reason as i8;
     }
 }

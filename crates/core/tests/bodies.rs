@@ -1,14 +1,16 @@
 //! Every shape: no contact missed and none invented, the balances at an impact, and the limits in which shapes coincide.
 
 mod common;
+mod scalar;
 
 use common::*;
 use proptest::prelude::*;
-use restitution_core::collision::collide;
+use restitution_core::collide;
 use restitution_core::{
-    Body, Dumbbell, Hull, Landing, Law, LoadedSphere, Shape, Solid, Sphere, Spherocylinder,
-    Spheroid, State, Vector,
+    Body, Dumbbell, Landing, Law, LoadedSphere, Shape, Solid, Sphere, Spherocylinder, Spheroid,
+    State, Surface, Vector,
 };
+use scalar::*;
 
 /// A shape with what the tests know of its outside by themselves.
 #[derive(Debug, Clone)]
@@ -100,10 +102,8 @@ fn unequal() -> impl Strategy<Value = Case> {
         let body = shape.scaled();
         // Of the two centres one is known from the hull, whatever it is; the other one is L away.
         let [one, two, l] = [1.0, two, separation].map(|x| x / shape.unit());
-        let s = match body.hull {
-            Hull::Single(ball, Sphere::Two) => ball.offset + l,
-            hull => hull.ball(Sphere::One, 0.0).offset,
-        };
+        let engulfed = two > one && two - one >= l;
+        let s = body.hull.lever(Sphere::One, 0.0) + if engulfed { l } else { 0.0 };
         let outside = Outside::Balls(vec![(s, one), (s - l, two)]);
         Case { body, outside }
     })
@@ -228,7 +228,7 @@ proptest! {
         let body = &case.body;
         let (law, sphere) = (law(normal, tangential), Sphere::Two);
         let mut before = State { lift: body.hull.lift(sphere, free.axis.z), ..free };
-        let arm = case.arm(before.axis, if let Hull::Single(_, name) = body.hull { name } else { sphere });
+        let arm = case.arm(before.axis, if let Surface::Single(_) = body.hull { body.hull.name(sphere, 0.0) } else { sphere });
         let velocity = |state: &State| state.velocity + state.spin(body).cross(arm);
         if velocity(&before).z > 0.0 {
             before.velocity = before.velocity * -1.0;

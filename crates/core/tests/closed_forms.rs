@@ -1,10 +1,12 @@
 //! Motions with a solution on paper.
 
 mod common;
+mod scalar;
 
 use common::*;
 use proptest::prelude::*;
 use restitution_core::{Orientation, Run, Solid};
+use scalar::*;
 use std::f64::consts::{FRAC_PI_2, PI};
 
 /// Half an ulp of 1.
@@ -48,11 +50,11 @@ proptest! {
         let run = Run {
             particles: 1,
             impacts: 12,
-            release_height: 3e-3 + drop,
+            release_height: (3e-3 + drop).into(),
             ..paper(0.0, law(normal, 1.0))
         };
         let records = simulate(&run);
-        let first = (2.0 * (run.release_height - 3e-3) / run.gravity).sqrt();
+        let first = (2.0 * (run.release_height.middle() - 3e-3) / run.gravity).sqrt();
         let (mut time, mut flight) = (first, 2.0 * first);
         for i in 0..run.impacts {
             let allowed = (16.0 + 16.0 * i as f64 / normal) * ROUNDING;
@@ -102,7 +104,7 @@ proptest! {
         prop_assert!((records.restitution[0] - expected).abs() <= 32.0 * ROUNDING);
         let ratio = 1.0 - (1.0 - normal) * (1.0 + expected);
         prop_assert!((records.energy_ratio[0] - ratio).abs() <= 64.0 * ROUNDING);
-        let drop = run.release_height - 3e-3 - 0.5 * separation * angle.cos().abs();
+        let drop = run.release_height.middle() - 3e-3 - 0.5 * separation * angle.cos().abs();
         let speed = (2.0 * gravity * drop).sqrt();
         // The fall is a difference of heights: its rounding weighs 0.06/drop.
         let allowed = 16.0 * (0.06 / drop) * ROUNDING;

@@ -83,7 +83,7 @@ fn figure_2() -> Run<'static> {
     let radius = 10e-3;
     Run {
         body: Dumbbell::new(radius, 0.1 * radius, 2500.0).unwrap().into(),
-        release_height: radius + 1.0 / (2.0 * 9.81),
+        release_height: (radius + 1.0 / (2.0 * 9.81)).into(),
         particles: 700,
         impacts: 500,
         seed: 1,
@@ -228,7 +228,7 @@ fn jobs(angles: &[f64]) -> Vec<(&'static str, Run<'_>)> {
             Run {
                 particles: 300,
                 impacts: 100,
-                release_height: 1e4,
+                release_height: 1e4.into(),
                 ..paper(0.1, law(0.98, 1.0))
             },
         ),
@@ -359,7 +359,7 @@ fn portions_have_the_digests_of_the_whole() {
     let bins = bins(By::Velocity(edges(0.0, 0.01, 120)));
     let digests = |portion: usize, means: Means| {
         let (mut table, mut statistics) = (Digest::new(), Digest::new());
-        let mut total = Tally::new(&bins, whole.origin());
+        let mut total = Tally::new(&bins, whole.origin()).unwrap();
         for angles in angles.chunks(portion) {
             let run = Run {
                 particles: angles.len(),

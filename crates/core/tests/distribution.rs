@@ -19,14 +19,14 @@ struct Table {
 }
 
 impl Table {
-    fn layout(&self) -> Layout<'_> {
+    fn layout(&self) -> Layout {
         Layout {
-            speeds: &self.speeds,
-            first: &self.first,
-            conditions: &self.conditions,
-            start: &self.start,
-            edges: &self.edges,
-            cumulative: &self.cumulative,
+            speeds: self.speeds.clone(),
+            first: self.first.clone(),
+            conditions: self.conditions.clone(),
+            start: self.start.clone(),
+            edges: self.edges.clone(),
+            cumulative: self.cumulative.clone(),
         }
     }
 

@@ -5,24 +5,30 @@ mod common;
 use common::*;
 use restitution_core::statistics::{Axis, Bins, By};
 use restitution_core::{
-    ChatterjeeRuina, Coulomb, Dumbbell, Error, Frictionless, Hypothesis, Level, LoadedSphere,
-    Means, Monitor, Orientation, Plastic, Run, Spherocylinder, Spheroid, Tabulated,
+    About, ChatterjeeRuina, Coulomb, Dumbbell, Error, Frictionless, Hypothesis, Level,
+    LoadedSphere, Means, Monitor, Orientation, Plastic, Run, Spherocylinder, Spheroid, Tabulated,
     TangentialRestitution, Viscoelastic,
 };
 
 /// The name of the parameter that is wrong; its value must be in the message, too.
 fn culprit(error: &Error) -> &'static str {
-    let Error::Parameter {
-        name,
-        value,
-        allowed,
-    } = error
-    else {
-        panic!("{error}");
+    let (name, value, allowed) = match error {
+        Error::Parameter {
+            name,
+            value,
+            allowed,
+        } => (name, value, allowed.as_str()),
+        Error::Magnitude {
+            name,
+            value,
+            allowed,
+        } => (name, value, *allowed),
+        _ => panic!("{error}"),
     };
-    let message = error.to_string();
-    assert!(message.contains(name) && message.contains(allowed));
-    assert!(message.contains(&format!("{value:?}")));
+    assert_eq!(
+        error.to_string(),
+        format!("{name} = {value}: must be {allowed}")
+    );
     name
 }
 
@@ -164,6 +170,30 @@ fn materials() {
     }
 }
 
+/// Names that nobody knows are refused with those that there are.
+#[test]
+fn names() {
+    for (error, text) in [
+        (
+            Hypothesis::named("Newton").unwrap_err(),
+            "hypothesis = 'Newton': must be 'stronge' or 'poisson' or 'newton'",
+        ),
+        (
+            About::named("").unwrap_err(),
+            "axis = '': must be 'isotropic' or 'horizontal' or 'across'",
+        ),
+        (
+            Orientation::named("random").unwrap_err(),
+            "orientation = 'random': must be 'uniform-angle' or 'isotropic'",
+        ),
+    ] {
+        assert_eq!(error.to_string(), text);
+    }
+    for (name, hypothesis) in Hypothesis::NAMED {
+        assert_eq!(Hypothesis::named(name).unwrap(), hypothesis);
+    }
+}
+
 #[test]
 fn runs() {
     let run = || paper(0.1, law(0.9, 1.0));
@@ -176,7 +206,7 @@ fn runs() {
             name(Run {
                 gravity,
                 body: Dumbbell::new(1e20, 0.0, 1.0).unwrap().into(),
-                release_height: 1e21,
+                release_height: 1e21.into(),
                 ..run()
             }),
             "gravity"
@@ -217,7 +247,7 @@ fn runs() {
     ] {
         assert_eq!(
             name(Run {
-                release_height,
+                release_height: release_height.into(),
                 ..run()
             }),
             "release_height"
@@ -243,13 +273,13 @@ fn angles() {
     let lying = [1.5, 1.6, 1.7];
     let release_height = 3e-3 + 2e-5;
     simulate(&Run {
-        release_height,
+        release_height: release_height.into(),
         ..run(&lying)
     });
     let one_on_end = [1.5, 0.0, 1.7];
     assert_eq!(
         culprit(&error_of(&Run {
-            release_height,
+            release_height: release_height.into(),
             ..run(&one_on_end)
         })),
         "release_height"

@@ -1,10 +1,12 @@
 //! The free flight against what mechanics conserves, and against an integrator that knows only Euler's equations.
 
 mod common;
+mod scalar;
 
 use common::*;
 use proptest::prelude::*;
 use restitution_core::{Body, Departure, Landing, State, Vector};
+use scalar::*;
 
 proptest! {
     #![proptest_config(cases(2000))]

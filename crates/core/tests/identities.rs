@@ -2,10 +2,12 @@
 //! law itself.
 
 mod common;
+mod scalar;
 
 use common::*;
 use proptest::prelude::*;
-use restitution_core::collision::collide;
+use restitution_core::collide;
+use scalar::*;
 
 proptest! {
     #![proptest_config(cases(4000))]

@@ -1,12 +1,14 @@
 //! Particles let go with spin and velocity, over a plane that may be inclined.
 
 mod common;
+mod scalar;
 
 use common::*;
 use restitution_core::{
-    About, Frictionless, Impact, Law, Level, Limits, LoadedSphere, Means, Monitor, Orientation,
-    Records, Run, Scales, Solid, Spheroid, Spin, State, StopReason, Vector, bounce,
+    About, Frictionless, Law, Level, Limits, LoadedSphere, Means, Monitor, Orientation, Records,
+    Run, Scales, SingleImpact, Solid, Spheroid, Spin, State, StopReason, Vector, trajectory,
 };
+use scalar::Observed;
 
 const TUMBLING: Spin<'_> = Spin::Random {
     low: 10.0,
@@ -50,14 +52,14 @@ fn released(run: &Run<'_>, records: &Records, particle: usize) -> State {
     let level = Vector::new(azimuth.cos(), azimuth.sin(), 0.0) * angle.sin();
     State::with_spin(
         &run.body.scaled,
-        run.release_height / scales.length,
+        run.release_height.middle() / scales.length,
         run.velocity / scales.speed,
         Vector::new(level.x, level.y, angle.cos()),
         Vector::new(x, y, z) * scales.time,
     )
 }
 
-/// The records say how each particle was let go: from there the oracle has the same first impact. The angles in them are
+/// The records say how each particle was let go: from there a particle by itself has the same first impact. The angles in them are
 /// good to a rounding or two, of up to 300 rad/s times 0.2 s of turning and a lever of a few R.
 #[test]
 fn the_records_tell_the_release() {
@@ -74,13 +76,13 @@ fn the_records_tell_the_release() {
             let release = released(&run, &records, particle);
             let slope = run.incline.tan();
             let mut first = None;
-            bounce(
+            trajectory(
                 &body.scaled,
                 &run.law,
                 slope,
                 release,
                 limits,
-                |impact: &Impact| {
+                |impact: &SingleImpact| {
                     first = Some(*impact);
                     true
                 },
@@ -114,15 +116,15 @@ fn what_a_frictionless_plane_conserves() {
                 minimum_speed: 0.0,
             };
             let (mut left, mut since, mut way) = (release, 0.0, 0.0);
-            bounce(
+            trajectory(
                 &body,
                 &run.law,
                 slope,
                 release,
                 limits,
-                |impact: &Impact| {
+                |impact: &SingleImpact| {
                     let flight = impact.time - since;
-                    let Impact { before, after, .. } = *impact;
+                    let SingleImpact { before, after, .. } = *impact;
                     let small = 1e-13 * (1.0 + left.kinetic_energy(&body));
                     let gained = slope * flight;
                     assert!((before.velocity.x - left.velocity.x - gained).abs() <= small);
@@ -196,7 +198,7 @@ fn zero_is_at_rest() {
     assert!(same(&given, &simulate(&Run { orientation, ..run })));
 }
 
-/// The three-dimensional engine has the lanes' numbers in the limit of no spin: 10⁻³⁰⁰ rad/s changes none of them in the first
+/// Motion in space has the numbers of planar motion in the limit of no spin: 10⁻³⁰⁰ rad/s changes none of them in the first
 /// flights but by the rounding of an axis that is not in the x–z plane.
 #[test]
 fn hardly_any_spin() {
@@ -233,7 +235,7 @@ fn an_impact_at_the_release() {
             particles: 1,
             impacts: 2,
             orientation: Orientation::Directions(orientation),
-            release_height: height,
+            release_height: height.into(),
             spin,
             velocity,
             ..paper(2.0, Frictionless::new(0.5).unwrap().into())
@@ -268,7 +270,7 @@ fn from_the_plane() {
     let release_height = 2.0 * run.body.unit;
     let velocity = Vector::new(0.0, 0.0, 0.7);
     let up = simulate(&Run {
-        release_height,
+        release_height: release_height.into(),
         velocity,
         ..run
     });
@@ -280,7 +282,7 @@ fn from_the_plane() {
         (Spin::NONE, Vector::new(0.3, 0.0, 0.0)),
     ] {
         let stays = simulate(&Run {
-            release_height,
+            release_height: release_height.into(),
             spin,
             velocity,
             ..run

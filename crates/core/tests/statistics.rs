@@ -6,7 +6,7 @@ mod tallies;
 use common::*;
 use proptest::prelude::*;
 use restitution_core::statistics::{By, Tally};
-use restitution_core::{Law, Level, Orientation, Run};
+use restitution_core::{Law, Level, Means, Monitor, Orientation, Run};
 use std::sync::LazyLock;
 use tallies::*;
 
@@ -35,6 +35,7 @@ fn nothing(law: &Law<'_>) -> Tally {
         &Edges::coarse().bins(By::Number(ROWS)),
         law.normal().at(1.0),
     )
+    .unwrap()
 }
 
 /// The pieces cover what merging has to cope with: sums beyond 128 bits, and impacts without a place.
@@ -131,12 +132,41 @@ proptest! {
         if backwards {
             portions.reverse();
         }
-        let mut total = Tally::new(&bins, normal);
+        let mut total = Tally::new(&bins, normal).unwrap();
         for portion in portions {
             total.merge(&statistics(&run(portion), &bins, level, threads));
         }
         prop_assert_eq!(&total, &whole);
         prop_assert_eq!(bits(&total, bins.rows()), bits(&whole, bins.rows()));
+    }
+}
+
+proptest! {
+    #![proptest_config(cases(30))]
+
+    /// Parts of a run with random releases that are counted apart, written down as whole numbers, read back and merged in any
+    /// order: the tally of the whole run. Words of other bins and of sums about another origin are refused.
+    #[test]
+    fn parts_that_were_written_down_are_the_run(
+        elongation in elongation(), seed in any::<u64>(), cut in 1..199_usize, second in 1..199_usize, level in level(),
+    ) {
+        let run = Run { particles: 200, impacts: ROWS, seed, ..paper(elongation, law(0.9, 1.0)) };
+        let bins = Edges::coarse().by_velocity();
+        let whole = statistics(&run, &bins, level, 2);
+        let (low, high) = (cut.min(second), cut.max(second));
+        let mut total = Tally::new(&bins, run.origin()).unwrap();
+        for part in [high..200, 0..low, low..high] {
+            if !part.is_empty() {
+                let means = Means { threads: 1, level };
+                let tally = run.statistics_of_part(part, &bins, means, &Monitor::default()).unwrap();
+                let words = tally.to_words();
+                prop_assert_eq!(&Tally::from_words(&bins, run.origin(), &words).unwrap(), &tally);
+                prop_assert!(Tally::from_words(&bins, run.origin(), &words[1..]).is_err());
+                prop_assert!(Tally::from_words(&bins, 0.5, &words).is_err());
+                total.merge(&tally);
+            }
+        }
+        prop_assert_eq!(&total, &whole);
     }
 }
 
@@ -154,7 +184,7 @@ fn long_runs_are_emptied_in_time() {
     let bins = Edges::coarse().by_velocity();
     let whole = statistics(&run(&angles), &bins, Level::best(), 1);
     assert!(whole.restitution.counts().iter().sum::<u64>() > 1 << 19);
-    let mut total = Tally::new(&bins, 0.98);
+    let mut total = Tally::new(&bins, 0.98).unwrap();
     for portion in angles.chunks(400) {
         total.merge(&statistics(&run(portion), &bins, Level::best(), 1));
     }

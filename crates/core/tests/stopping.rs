@@ -1,12 +1,14 @@
 //! Every trajectory says why it ended, and the table says as much as happened and no more.
 
 mod common;
+mod scalar;
 
 use common::*;
 use restitution_core::{
-    COLLAPSE_RUN, Impact, Limits, Monitor, Orientation, Records, Run, State, StopReason, Vector,
-    bounce,
+    COLLAPSE_RUN, Limits, Monitor, Orientation, Records, Run, SingleImpact as Impact, State,
+    StopReason, Vector,
 };
+use scalar::*;
 
 /// What happened is finite, what did not is NaN or 0, and each particle's count tells where one ends and the other begins.
 fn is_consistent(run: &Run<'_>, records: &Records) {
@@ -48,7 +50,7 @@ fn the_number_of_impacts_is_reached() {
 #[test]
 fn a_body_from_too_high_never_lands() {
     let run = Run {
-        release_height: 3e6,
+        release_height: 3e6.into(),
         ..paper(0.1, law(0.98, 1.0))
     };
     let records = simulate(&run);
@@ -118,7 +120,7 @@ fn the_speed_threshold_is_obeyed_exactly() {
             impacts: 200,
             minimum_speed,
         };
-        let reason = bounce(&body, &law, 0.0, release, limits, |impact| {
+        let reason = restitution_core::trajectory(&body, &law, 0.0, release, limits, |impact| {
             all.push(*impact);
             true
         });
@@ -148,7 +150,7 @@ fn the_threshold_is_a_speed_in_metres_per_second() {
     let body = run.body.scaled;
     let threshold = 0.2 / (9.81_f64 * 3e-3).sqrt();
     for (particle, &angle) in angles.iter().enumerate() {
-        let release = at_rest(&body, run.release_height / 3e-3, angle);
+        let release = at_rest(&body, run.release_height.middle() / 3e-3, angle);
         let (free, _) = trajectory(&body, &run.law, release, 300);
         let slow =
             |impact: &Impact| 2.0 * impact.after.kinetic_energy(&body) < threshold * threshold;
@@ -211,7 +213,7 @@ fn the_recorder_may_stop() {
         minimum_speed: 0.0,
     };
     let mut count = 0;
-    let reason = bounce(
+    let reason = restitution_core::trajectory(
         &body,
         &law(0.98, 1.0),
         0.0,

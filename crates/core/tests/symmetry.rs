@@ -2,11 +2,14 @@
 //! spheres, rotations about the normal, units.
 
 mod common;
+mod scalar;
 
 use common::*;
 use proptest::prelude::*;
-use restitution_core::collision::collide;
-use restitution_core::{Dumbbell, Impact, Landing, Orientation, Run, Sphere, State, Vector};
+use restitution_core::{
+    Dumbbell, Landing, Orientation, Run, SingleImpact as Impact, Sphere, State, Vector, collide,
+};
+use scalar::*;
 use std::f64::consts::PI;
 
 /// Both trajectories, impact by impact, after `image` has been applied to the first: equal to the last bit.
@@ -157,7 +160,7 @@ fn ensemble(radius: f64, density: f64, gravity: f64, angles: &[f64]) -> Run<'_> 
         body: Dumbbell::new(radius, 0.5 * radius, density).unwrap().into(),
         particles: angles.len(),
         impacts: 200,
-        release_height: 20.0 * radius,
+        release_height: (20.0 * radius).into(),
         gravity,
         orientation: Orientation::Given(angles),
         ..paper(0.5, law(0.9, 0.5))

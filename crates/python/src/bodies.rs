@@ -1,6 +1,6 @@
 //! Bodies: made from the parameters of a shape, in SI units, and handed to a run as they are.
 
-use super::python_error;
+use crate::errors::python_error;
 use numpy::PyReadonlyArray1;
 use pyo3::prelude::*;
 use restitution_core::{Dumbbell, LoadedSphere, Shape, Spherocylinder, Spheroid};
@@ -42,6 +42,17 @@ impl Solid {
             .iter()
             .map(|&cosine| self.0.lowest(cosine));
         Ok(heights.fold(0.0, f64::max))
+    }
+
+    /// Whether nothing is below the plane at a height of the centre of mass, in m, whichever of `cosines` is cos θ, or whatever
+    /// that is.
+    #[pyo3(signature = (height, cosines=None))]
+    fn clears(&self, height: f64, cosines: Option<PyReadonlyArray1<'_, f64>>) -> PyResult<bool> {
+        let lowest = match cosines {
+            Some(cosines) => self.lowest(cosines)?,
+            None => self.farthest(),
+        };
+        Ok(restitution_core::Solid::clears(height, lowest))
     }
 
     /// The largest of these heights over all angles.

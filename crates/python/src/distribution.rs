@@ -1,52 +1,48 @@
-//! A learned distribution of the coefficient of restitution: arrays in, arrays out.
+//! A learned distribution of the coefficient of restitution, checked when it is made: arrays in, arrays out.
 
-use crate::{means, python_error, watch};
+use crate::errors::python_error;
+use crate::{means, watch};
 use numpy::{IntoPyArray, PyArray1, PyReadonlyArray1};
 use pyo3::prelude::*;
-use restitution_core::distribution::{At, BLOCK, Layout, Mixture, Values};
+use restitution_core::distribution::{At, BLOCK, Layout, Values};
 use restitution_core::{Error, Means, Monitor};
 
-/// The table, as the items of a dictionary.
-#[derive(FromPyObject)]
-#[pyo3(from_item_all)]
-pub struct Table<'py> {
-    speeds: PyReadonlyArray1<'py, f64>,
-    first: PyReadonlyArray1<'py, i64>,
-    conditions: PyReadonlyArray1<'py, f64>,
-    start: PyReadonlyArray1<'py, i64>,
-    edges: PyReadonlyArray1<'py, f64>,
-    cumulative: PyReadonlyArray1<'py, f64>,
-}
+/// The table of a distribution.
+#[pyclass(frozen, module = "restitution._core")]
+pub struct Mixture(restitution_core::distribution::Mixture);
+
+type Array<'py> = PyReadonlyArray1<'py, f64>;
 
 /// Values and whether they are cut short by Ctrl-C.
 type Filled<'py> = (Bound<'py, PyArray1<f64>>, bool);
 
-impl Table<'_> {
+/// A function of the table at each of some points.
+type Function = fn(
+    &restitution_core::distribution::Mixture,
+    Values<'_>,
+    At<'_>,
+    &mut [f64],
+    Means,
+    &Monitor,
+) -> Result<(), Error>;
+
+impl Mixture {
     /// Fills `size` values at speeds and conditions.
     fn fill<'py>(
         &self,
         py: Python<'py>,
-        (v, z): (&[f64], &[f64]),
+        (v, z): (&Array<'py>, &Array<'py>),
         (size, threads): (usize, usize),
-        work: impl FnOnce(&Mixture, At, &mut [f64], Means, &Monitor) -> Result<(), Error> + Send,
+        work: impl FnOnce(At<'_>, &mut [f64], Means, &Monitor) -> Result<(), Error> + Send,
     ) -> PyResult<Filled<'py>> {
-        let layout = Layout {
-            speeds: self.speeds.as_slice()?,
-            first: self.first.as_slice()?,
-            conditions: self.conditions.as_slice()?,
-            start: self.start.as_slice()?,
-            edges: self.edges.as_slice()?,
-            cumulative: self.cumulative.as_slice()?,
-        };
         let means = means(threads)?;
-        let mixture = Mixture::new(layout).map_err(python_error)?;
         let at = At {
-            speed: Values::new(v, "v", size).map_err(python_error)?,
-            condition: Values::new(z, "given", size).map_err(python_error)?,
+            speed: Values::new(v.as_slice()?, "v", size).map_err(python_error)?,
+            condition: Values::new(z.as_slice()?, "given", size).map_err(python_error)?,
         };
         let compute = |monitor: &Monitor| {
-            let mut out = vec![0.0; size];
-            work(&mixture, at, &mut out, means, monitor)?;
+            let mut out = restitution_core::distribution::values(size)?;
+            work(at, &mut out, means, monitor)?;
             Ok(out)
         };
         let (out, interrupted) = if size <= BLOCK {
@@ -58,55 +54,109 @@ impl Table<'_> {
         };
         Ok((out.into_pyarray(py), interrupted))
     }
+
+    fn value<'py>(
+        &self,
+        py: Python<'py>,
+        function: Function,
+        x: &Array<'py>,
+        at: (&Array<'py>, &Array<'py>),
+        threads: usize,
+    ) -> PyResult<Filled<'py>> {
+        let x = x.as_slice()?;
+        self.fill(py, at, (x.len(), threads), |at, out, means, monitor| {
+            function(
+                &self.0,
+                Values::new(x, "x", x.len())?,
+                at,
+                out,
+                means,
+                monitor,
+            )
+        })
+    }
 }
 
-/// Probability of a restitution up to x ("cdf"), density at x ("pdf") or quantile of x ("ppf"), at impact velocities v under
-/// conditions z; v and z have the size of x, or 1.
-#[pyfunction]
-#[pyo3(signature = (table, what, x, v, z, threads))]
-pub fn mixture_value<'py>(
-    py: Python<'py>,
-    table: Table<'py>,
-    what: &str,
-    x: PyReadonlyArray1<'py, f64>,
-    v: PyReadonlyArray1<'py, f64>,
-    z: PyReadonlyArray1<'py, f64>,
-    threads: usize,
-) -> PyResult<Filled<'py>> {
-    let x = x.as_slice()?;
-    let size = (x.len(), threads);
-    table.fill(
-        py,
-        (v.as_slice()?, z.as_slice()?),
-        size,
-        |mixture, at, out, means, monitor| {
-            let x = Values::new(x, "x", x.len())?;
-            match what {
-                "cdf" => mixture.cdf(x, at, out, means, monitor),
-                "pdf" => mixture.pdf(x, at, out, means, monitor),
-                _ => mixture.ppf(x, at, out, means, monitor),
-            }
-        },
-    )
+#[pymethods]
+impl Mixture {
+    /// The table in ragged arrays.
+    #[new]
+    fn new(
+        speeds: Array<'_>,
+        first: PyReadonlyArray1<'_, i64>,
+        conditions: Array<'_>,
+        start: PyReadonlyArray1<'_, i64>,
+        edges: Array<'_>,
+        cumulative: Array<'_>,
+    ) -> PyResult<Self> {
+        let layout = Layout {
+            speeds: speeds.as_slice()?.to_vec(),
+            first: first.as_slice()?.to_vec(),
+            conditions: conditions.as_slice()?.to_vec(),
+            start: start.as_slice()?.to_vec(),
+            edges: edges.as_slice()?.to_vec(),
+            cumulative: cumulative.as_slice()?.to_vec(),
+        };
+        let mixture = restitution_core::distribution::Mixture::new(layout);
+        mixture.map(Self).map_err(python_error)
+    }
+
+    /// Probability of a restitution up to x, at impact velocities v under conditions z; both have the size of x, or 1.
+    fn cdf<'py>(
+        &self,
+        py: Python<'py>,
+        x: Array<'py>,
+        v: Array<'py>,
+        z: Array<'py>,
+        threads: usize,
+    ) -> PyResult<Filled<'py>> {
+        let function = restitution_core::distribution::Mixture::cdf;
+        self.value(py, function, &x, (&v, &z), threads)
+    }
+
+    /// Density at x, likewise.
+    fn pdf<'py>(
+        &self,
+        py: Python<'py>,
+        x: Array<'py>,
+        v: Array<'py>,
+        z: Array<'py>,
+        threads: usize,
+    ) -> PyResult<Filled<'py>> {
+        let function = restitution_core::distribution::Mixture::pdf;
+        self.value(py, function, &x, (&v, &z), threads)
+    }
+
+    /// Quantile of x, likewise.
+    fn ppf<'py>(
+        &self,
+        py: Python<'py>,
+        x: Array<'py>,
+        v: Array<'py>,
+        z: Array<'py>,
+        threads: usize,
+    ) -> PyResult<Filled<'py>> {
+        let function = restitution_core::distribution::Mixture::ppf;
+        self.value(py, function, &x, (&v, &z), threads)
+    }
+
+    /// Draws `size` restitutions at impact velocities v under conditions z.
+    fn draw<'py>(
+        &self,
+        py: Python<'py>,
+        v: Array<'py>,
+        z: Array<'py>,
+        size: usize,
+        seed: u64,
+        threads: usize,
+    ) -> PyResult<Filled<'py>> {
+        let draw = |at: At<'_>, out: &mut [f64], means, monitor: &Monitor| {
+            self.0.rvs(at, seed, out, means, monitor)
+        };
+        self.fill(py, (&v, &z), (size, threads), draw)
+    }
 }
 
-/// Draws `size` restitutions at impact velocities v under conditions z.
-#[pyfunction]
-#[pyo3(signature = (table, v, z, size, seed, threads))]
-pub fn mixture_draw<'py>(
-    py: Python<'py>,
-    table: Table<'py>,
-    v: PyReadonlyArray1<'py, f64>,
-    z: PyReadonlyArray1<'py, f64>,
-    size: usize,
-    seed: u64,
-    threads: usize,
-) -> PyResult<Filled<'py>> {
-    let at = (v.as_slice()?, z.as_slice()?);
-    table.fill(
-        py,
-        at,
-        (size, threads),
-        |mixture, at, out, means, monitor| mixture.rvs(at, seed, out, means, monitor),
-    )
+pub fn add_to(module: &Bound<'_, PyModule>) -> PyResult<()> {
+    module.add_class::<Mixture>()
 }

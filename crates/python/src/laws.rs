@@ -1,142 +1,186 @@
-//! The law of a run, from the items of a dictionary; and single contacts, for tests and for a look at a law alone.
+//! Normal coefficients and laws, checked when they are made; and single contacts, for tests and for a look at a law alone.
 
-use crate::python_error;
+use crate::errors::python_error;
 use numpy::{IntoPyArray, PyArray1, PyReadonlyArray1};
-use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
-use restitution_core::collision::{Components, Contact};
+use restitution_core::collision::{Components, Contact, MOST_FRICTION, PADE_ABOVE, PADE_BELOW};
 use restitution_core::{
-    ChatterjeeRuina, Coulomb, Error, Frictionless, Hypothesis, Law, Normal, Plastic, Tabulated,
+    ChatterjeeRuina, Coulomb, Error, Frictionless, Hypothesis, Normal, Plastic, Points,
     TangentialRestitution, Viscoelastic,
 };
+use std::sync::Arc;
 
-/// A number, or the parameters of a material.
-#[derive(FromPyObject)]
-pub enum NormalParameters {
-    Constant(f64),
-    #[pyo3(from_item_all)]
-    Viscoelastic {
-        young_modulus: f64,
-        poisson_ratio: f64,
-        dissipation: f64,
-        density: f64,
-        radius: f64,
-    },
-    #[pyo3(from_item_all)]
-    Plastic {
-        yield_speed: f64,
-    },
-    #[pyo3(from_item_all)]
-    Tabulated {
-        v: Vec<f64>,
-        e: Vec<f64>,
-    },
+/// A normal coefficient with whatever it needs.
+enum Coefficient {
+    Closed(Normal<'static>),
+    Measured(Points),
 }
 
-impl NormalParameters {
-    fn normal(&self) -> Result<Normal<'_>, Error> {
+impl Coefficient {
+    fn normal(&self) -> Normal<'_> {
         match self {
-            Self::Constant(value) => Ok((*value).into()),
-            Self::Viscoelastic {
-                young_modulus,
-                poisson_ratio,
-                dissipation,
-                density,
-                radius,
-            } => Viscoelastic::new(
-                *young_modulus,
-                *poisson_ratio,
-                *dissipation,
-                *density,
-                *radius,
-            )
-            .map(Into::into),
-            Self::Plastic { yield_speed } => Plastic::new(*yield_speed).map(Into::into),
-            Self::Tabulated { v, e } => Tabulated::new(v, e).map(Into::into),
+            Self::Closed(normal) => *normal,
+            Self::Measured(points) => points.coefficient().into(),
         }
     }
 }
 
-/// A law by name, with the parameters that it has.
-#[derive(FromPyObject)]
-#[pyo3(from_item_all)]
-pub struct LawParameters {
-    #[pyo3(item("type"))]
-    name: String,
-    normal: NormalParameters,
-    #[pyo3(default)]
-    tangential: f64,
-    #[pyo3(default)]
-    friction: f64,
-    #[pyo3(default)]
-    hypothesis: String,
-}
+/// A normal coefficient that depends on the speed.
+#[pyclass(frozen, module = "restitution._core")]
+pub struct Material(Arc<Coefficient>);
 
-impl LawParameters {
-    pub fn law(&self) -> PyResult<Law<'_>> {
-        let normal = self.normal.normal().map_err(python_error)?;
-        let (tangential, friction) = (self.tangential, self.friction);
-        let law = match self.name.as_str() {
-            "TangentialRestitution" => {
-                TangentialRestitution::new(normal, tangential).map(Into::into)
-            }
-            "Frictionless" => Frictionless::new(normal).map(Into::into),
-            "Coulomb" => Coulomb::new(normal, friction, self.hypothesis()?).map(Into::into),
-            "ChatterjeeRuina" => ChatterjeeRuina::new(normal, tangential, friction).map(Into::into),
-            name => return Err(PyValueError::new_err(format!("no law is called {name}"))),
-        };
-        law.map_err(python_error)
-    }
-
-    fn hypothesis(&self) -> PyResult<Hypothesis> {
-        match self.hypothesis.as_str() {
-            "stronge" => Ok(Hypothesis::Stronge),
-            "poisson" => Ok(Hypothesis::Poisson),
-            "newton" => Ok(Hypothesis::Newton),
-            name => Err(PyValueError::new_err(format!(
-                "no hypothesis is called {name}"
-            ))),
+#[pymethods]
+impl Material {
+    /// β of a viscoelastic sphere, in (s/m)^{1/5}.
+    #[getter]
+    fn beta(&self) -> Option<f64> {
+        match self.0.normal() {
+            Normal::Viscoelastic(sphere) => Some(sphere.beta()),
+            _ => None,
         }
     }
+
+    /// ε^n as the engine computes it, at speeds in m/s.
+    fn at<'py>(
+        &self,
+        py: Python<'py>,
+        speeds: PyReadonlyArray1<'py, f64>,
+    ) -> PyResult<Bound<'py, PyArray1<f64>>> {
+        let normal = self.0.normal();
+        let values = speeds.as_slice()?.iter().map(|&speed| normal.at(speed));
+        Ok(values.collect::<Vec<_>>().into_pyarray(py))
+    }
 }
 
-/// ε^n as the engine computes it, at speeds in m/s.
+fn closed(normal: Result<impl Into<Normal<'static>>, Error>) -> PyResult<Material> {
+    let normal = normal.map_err(python_error)?.into();
+    Ok(Material(Arc::new(Coefficient::Closed(normal))))
+}
+
 #[pyfunction]
-pub fn normal_coefficient<'py>(
-    py: Python<'py>,
-    normal: NormalParameters,
-    speeds: PyReadonlyArray1<'py, f64>,
-) -> PyResult<Bound<'py, PyArray1<f64>>> {
-    let normal = normal.normal().map_err(python_error)?;
-    let values = speeds.as_slice()?.iter().map(|&speed| normal.at(speed));
-    Ok(values.collect::<Vec<_>>().into_pyarray(py))
+fn viscoelastic(
+    young_modulus: f64,
+    poisson_ratio: f64,
+    dissipation: f64,
+    density: f64,
+    radius: f64,
+) -> PyResult<Material> {
+    closed(Viscoelastic::new(
+        young_modulus,
+        poisson_ratio,
+        dissipation,
+        density,
+        radius,
+    ))
+}
+
+#[pyfunction]
+fn plastic(yield_speed: f64) -> PyResult<Material> {
+    closed(Plastic::new(yield_speed))
+}
+
+#[pyfunction]
+fn tabulated(v: Vec<f64>, e: Vec<f64>) -> PyResult<Material> {
+    let points = Points::new(v, e).map_err(python_error)?;
+    Ok(Material(Arc::new(Coefficient::Measured(points))))
+}
+
+/// A number, or a material.
+#[derive(FromPyObject)]
+enum Given<'py> {
+    Constant(f64),
+    Material(PyRef<'py, Material>),
+}
+
+/// A collision law, ready for a run.
+#[pyclass(frozen, module = "restitution._core")]
+pub struct Law {
+    coefficient: Arc<Coefficient>,
+    /// With a constant in the place of the coefficient.
+    rule: restitution_core::Law<'static>,
+}
+
+impl Law {
+    /// The law as the core takes it.
+    pub fn law(&self) -> restitution_core::Law<'_> {
+        self.rule.with_normal(self.coefficient.normal())
+    }
+}
+
+#[pymethods]
+impl Law {
+    /// The impulse that the law answers a contact with, over m, and the normal velocity of the contact afterwards. Vectors
+    /// are along n, u and w; `slip` is the contact velocity in m/s, `arm` leads from the centre of mass to the contact along
+    /// n and u, `inertia` is J_xx/m in the square of its unit, and `across` is the entry of m K for w.
+    fn respond(&self, slip: Triple, arm: (f64, f64), inertia: f64, across: f64) -> (Triple, f64) {
+        let (normal, along, w) = slip;
+        let response = self.law().respond(&Contact {
+            slip: Components {
+                normal,
+                along,
+                across: w,
+            },
+            inertia,
+            arm_normal: arm.0,
+            arm_along: arm.1,
+            across,
+        });
+        let p = response.impulse;
+        ((p.normal, p.along, p.across), response.separation_speed)
+    }
 }
 
 type Triple = (f64, f64, f64);
 
-/// The impulse that a law answers a contact with, over m, and the normal velocity of the contact afterwards. Vectors are
-/// along n, u and w; `slip` is the contact velocity in m/s, `arm` leads from the centre of mass to the contact along n and
-/// u, `inertia` is J_xx/m in the square of its unit, and `across` is the entry of m K for w.
+/// A law of `rule`, which is given a constant in the place of a material.
+fn law<L: Into<restitution_core::Law<'static>>>(
+    normal: Given<'_>,
+    rule: impl FnOnce(Normal<'static>) -> Result<L, Error>,
+) -> PyResult<Law> {
+    let (constant, coefficient) = match normal {
+        Given::Constant(value) => (value, Arc::new(Coefficient::Closed(value.into()))),
+        Given::Material(material) => (1.0, Arc::clone(&material.0)),
+    };
+    let rule = rule(constant.into()).map_err(python_error)?.into();
+    Ok(Law { coefficient, rule })
+}
+
 #[pyfunction]
-pub fn respond(
-    law: LawParameters,
-    slip: Triple,
-    arm: (f64, f64),
-    inertia: f64,
-    across: f64,
-) -> PyResult<(Triple, f64)> {
-    let (normal, along, w) = slip;
-    let response = law.law()?.respond(&Contact {
-        slip: Components {
-            normal,
-            along,
-            across: w,
-        },
-        inertia,
-        arm_normal: arm.0,
-        arm_along: arm.1,
-        across,
-    });
-    let p = response.impulse;
-    Ok(((p.normal, p.along, p.across), response.separation_speed))
+fn tangential_restitution(normal: Given<'_>, tangential: f64) -> PyResult<Law> {
+    law(normal, |normal| {
+        TangentialRestitution::new(normal, tangential)
+    })
+}
+
+#[pyfunction]
+fn frictionless(normal: Given<'_>) -> PyResult<Law> {
+    law(normal, Frictionless::new)
+}
+
+#[pyfunction]
+fn coulomb(normal: Given<'_>, friction: f64, hypothesis: &str) -> PyResult<Law> {
+    let hypothesis = Hypothesis::named(hypothesis).map_err(python_error)?;
+    law(normal, |normal| Coulomb::new(normal, friction, hypothesis))
+}
+
+#[pyfunction]
+fn chatterjee_ruina(normal: Given<'_>, tangential: f64, friction: f64) -> PyResult<Law> {
+    law(normal, |normal| {
+        ChatterjeeRuina::new(normal, tangential, friction)
+    })
+}
+
+pub fn add_to(module: &Bound<'_, PyModule>) -> PyResult<()> {
+    module.add("MOST_FRICTION", MOST_FRICTION)?;
+    module.add("PADE", (PADE_ABOVE, PADE_BELOW))?;
+    module.add("HYPOTHESES", Hypothesis::NAMED.map(|(name, _)| name))?;
+    module.add_class::<Material>()?;
+    module.add_class::<Law>()?;
+    module.add_function(wrap_pyfunction!(viscoelastic, module)?)?;
+    module.add_function(wrap_pyfunction!(plastic, module)?)?;
+    module.add_function(wrap_pyfunction!(tabulated, module)?)?;
+    module.add_function(wrap_pyfunction!(tangential_restitution, module)?)?;
+    module.add_function(wrap_pyfunction!(frictionless, module)?)?;
+    module.add_function(wrap_pyfunction!(coulomb, module)?)?;
+    module.add_function(wrap_pyfunction!(chatterjee_ruina, module)?)
 }

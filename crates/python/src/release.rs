@@ -1,8 +1,9 @@
 //! How particles are let go: laws by name, or arrays.
 
-use numpy::{PyReadonlyArray1, PyReadonlyArray2};
+use crate::errors::{python_error, unless};
+use numpy::{PyReadonlyArray1, PyReadonlyArray2, PyUntypedArrayMethods};
 use pyo3::prelude::*;
-use restitution_core::{About, Orientation, Spin, Vector};
+use restitution_core::{About, Height, Orientation, Spin, Vector};
 
 /// The name of a law, an array of angles θ, or one of rows (θ, φ).
 #[derive(FromPyObject)]
@@ -15,11 +16,39 @@ pub enum Axes<'py> {
 impl Axes<'_> {
     pub fn law(&self) -> PyResult<Orientation<'_>> {
         Ok(match self {
-            Self::Name(name) if name == "isotropic" => Orientation::Isotropic,
-            Self::Name(_) => Orientation::UniformAngle,
+            Self::Name(name) => Orientation::named(name).map_err(python_error)?,
             Self::Angles(angles) => Orientation::Given(angles.as_slice()?),
-            Self::Directions(rows) => Orientation::Directions(rows.as_slice()?.as_chunks().0),
+            Self::Directions(rows) => {
+                let columns = rows.shape()[1];
+                unless(
+                    columns == 2,
+                    "columns of orientation",
+                    columns,
+                    "2, for θ and φ",
+                )?;
+                Orientation::Directions(rows.as_slice()?.as_chunks().0)
+            }
         })
+    }
+}
+
+/// One height, or the least and the largest of random ones; in m.
+#[derive(FromPyObject)]
+pub enum Heights {
+    Fixed(f64),
+    #[pyo3(from_item_all)]
+    Random {
+        lowest: f64,
+        highest: f64,
+    },
+}
+
+impl Heights {
+    pub fn law(&self) -> Height {
+        match *self {
+            Self::Fixed(height) => Height::Fixed(height),
+            Self::Random { lowest, highest } => Height::Random { lowest, highest },
+        }
     }
 }
 
@@ -34,22 +63,32 @@ pub enum Spins<'py> {
         high: f64,
         axis: String,
     },
+    #[pyo3(from_item_all)]
+    Thermal {
+        thermal: f64,
+    },
 }
 
 impl Spins<'_> {
     pub fn law(&self) -> PyResult<Spin<'_>> {
         Ok(match self {
             Self::Fixed([x, y, z]) => Spin::Fixed(Vector::new(*x, *y, *z)),
-            Self::Given(rows) => Spin::Given(rows.as_slice()?.as_chunks().0),
+            Self::Given(rows) => {
+                let columns = rows.shape()[1];
+                unless(
+                    columns == 3,
+                    "columns of spin",
+                    columns,
+                    "3, for x, y and z",
+                )?;
+                Spin::Given(rows.as_slice()?.as_chunks().0)
+            }
             Self::Random { low, high, axis } => Spin::Random {
                 low: *low,
                 high: *high,
-                about: match axis.as_str() {
-                    "across" => About::Across,
-                    "horizontal" => About::Horizontal,
-                    _ => About::Isotropic,
-                },
+                about: About::named(axis).map_err(python_error)?,
             },
+            Self::Thermal { thermal } => Spin::Thermal { rate: *thermal },
         })
     }
 }

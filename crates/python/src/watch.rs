@@ -1,18 +1,20 @@
 //! The one door for long work: releases the GIL, lets Ctrl-C through, reports progress, turns panics into exceptions.
 
-use crate::python_error;
+use crate::errors::python_error;
 use pyo3::exceptions::{PyKeyboardInterrupt, PyRuntimeError};
 use pyo3::prelude::*;
 use restitution_core::{Error, Monitor};
+use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::mpsc::{RecvTimeoutError, channel};
+use std::sync::{Arc, Mutex};
 use std::thread;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 /// How often signals are looked at and progress is told.
 const TICK: Duration = Duration::from_millis(50);
 
-/// Runs `work` on a thread of its own; `progress`, if any, is called with the number of finished particles. Returns what
-/// `work` returned and whether Ctrl-C made it stop early.
+/// Runs `work` on a thread of its own, or here where the system gives none; `progress`, if any, is called with the number of
+/// finished particles. Returns what `work` returned and whether Ctrl-C made it stop early.
 pub fn run<T: Send>(
     py: Python<'_>,
     progress: Option<Bound<'_, PyAny>>,
@@ -20,16 +22,25 @@ pub fn run<T: Send>(
 ) -> PyResult<(T, bool)> {
     let monitor = Monitor::default();
     let progress = progress.map(Bound::unbind);
+    let work = Mutex::new(Some(work));
+    let taken = || {
+        let mut work = work.lock().expect("nobody panics who holds it");
+        work.take().expect("it is taken once")
+    };
     py.detach(|| {
         thread::scope(|scope| {
             let (sender, receiver) = channel();
             let monitor = &monitor;
-            let worker = scope.spawn(move || {
-                let result = work(monitor);
+            let spawned = thread::Builder::new().spawn_scoped(scope, || {
+                let sender = sender; // dropped with this thread, whatever happens
+                let result = taken()(monitor);
                 // The receiver outlives this thread; a failure to send has no one to tell.
                 let _ = sender.send(());
                 result
             });
+            let Ok(worker) = spawned else {
+                return run_here(progress, taken());
+            };
             let mut interrupt = None;
             loop {
                 let ended = receiver.recv_timeout(TICK) != Err(RecvTimeoutError::Timeout);
@@ -41,22 +52,52 @@ pub fn run<T: Send>(
                     break;
                 }
             }
-            let result = worker.join().map_err(|panic| {
-                let message = panic
-                    .downcast_ref::<String>()
-                    .map(String::as_str)
-                    .or_else(|| panic.downcast_ref::<&str>().copied())
-                    .unwrap_or("no message");
-                PyRuntimeError::new_err(format!("the core panicked: {message}"))
-            })?;
-            let result = result.map_err(python_error)?;
-            match interrupt {
-                None => Ok((result, false)),
-                Some(error) if is_keyboard_interrupt(&error) => Ok((result, true)),
-                Some(error) => Err(error),
-            }
+            ended(worker.join(), interrupt)
         })
     })
+}
+
+/// Runs `work` on this thread, which looks after signals and progress between impacts.
+fn run_here<T>(
+    progress: Option<Py<PyAny>>,
+    work: impl FnOnce(&Monitor) -> Result<T, Error>,
+) -> PyResult<(T, bool)> {
+    let interrupt = Arc::new(Mutex::new((Instant::now(), None)));
+    let state = interrupt.clone();
+    let monitor = Monitor::attended(move |monitor| {
+        let mut state = state.lock().expect("nobody panics who holds it");
+        if state.0.elapsed() > TICK {
+            if let Err(error) = attend(monitor, progress.as_ref()) {
+                monitor.cancel();
+                state.1.get_or_insert(error);
+            }
+            state.0 = Instant::now();
+        }
+    });
+    let result = catch_unwind(AssertUnwindSafe(|| work(&monitor)));
+    let interrupt = interrupt.lock().ok().and_then(|mut state| state.1.take());
+    ended(result, interrupt)
+}
+
+/// What the caller is told of work that has ended, perhaps because of a signal.
+fn ended<T>(
+    result: thread::Result<Result<T, Error>>,
+    interrupt: Option<PyErr>,
+) -> PyResult<(T, bool)> {
+    let result = result.map_err(|panic| {
+        let message = panic
+            .downcast_ref::<String>()
+            .map(String::as_str)
+            .or_else(|| panic.downcast_ref::<&str>().copied())
+            .unwrap_or("no message");
+        PyRuntimeError::new_err(format!("the core panicked: {message}"))
+    })?;
+    let result = result.map_err(python_error)?;
+    match interrupt {
+        None => Ok((result, false)),
+        Some(error) if is_keyboard_interrupt(&error) => Ok((result, true)),
+        Some(error) => Err(error),
+    }
 }
 
 fn attend(monitor: &Monitor, progress: Option<&Py<PyAny>>) -> PyResult<()> {

@@ -2,7 +2,8 @@
 
 use super::inertia::Part;
 use super::{
-    Ball, Body, Hull, Pair, Shape, check_density, check_distance, check_length, representable, seen,
+    Ball, Body, EqualPair, Pair, Shape, Single, Surface, check_density, check_distance,
+    check_length, representable, seen,
 };
 use crate::Error;
 use std::f64::consts::PI;
@@ -162,7 +163,7 @@ impl Shape for Dumbbell {
             let half_separation = 0.5 * elongation;
             let mass = self.mass_factor();
             return Body {
-                hull: Hull::Pair(Pair::equal(half_separation)),
+                hull: Surface::EqualPair(EqualPair::new(half_separation)),
                 half_separation,
                 transverse: self.transverse_factor() / mass,
                 axial: self.axial_factor() / mass,
@@ -174,14 +175,18 @@ impl Shape for Dumbbell {
             radius,
         };
         let [one, two] = self.radii();
-        let hull = Hull::of_balls([ball(0.0, one), ball(-elongation, two)], elongation);
+        let balls = [ball(0.0, one), ball(-elongation, two)];
+        let (hull, half_separation) = if one - two >= elongation {
+            (Surface::Single(Single::new(balls[0], true)), 0.0)
+        } else if two - one >= elongation {
+            (Surface::Single(Single::new(balls[1], false)), 0.0)
+        } else {
+            let pair = Pair::new(balls, elongation);
+            (Surface::Pair(pair), 0.5 * elongation)
+        };
         Body {
             hull,
-            half_separation: if let Hull::Pair(_) = hull {
-                0.5 * elongation
-            } else {
-                0.0
-            },
+            half_separation,
             transverse: part.transverse / part.mass,
             axial: part.axial / part.mass,
         }

@@ -1,9 +1,10 @@
 //! A sphere with a point mass inside: round, and yet no sphere.
 
 use super::inertia::Part;
-use super::{Ball, Body, Hull, Shape, check_density, check_distance, check_length, representable};
+use super::{
+    Ball, Body, Shape, Single, Surface, check_density, check_distance, check_length, representable,
+};
 use crate::Error;
-use crate::state::Sphere;
 
 /// A homogeneous sphere with a point mass on its axis, in SI units. The axis points from the centre to the load.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -67,7 +68,7 @@ impl Shape for LoadedSphere {
             radius: 1.0,
         };
         Body {
-            hull: Hull::Single(ball, Sphere::One),
+            hull: Surface::Single(Single::new(ball, true)),
             half_separation: 0.0,
             transverse: part.transverse / part.mass / square,
             axial: part.axial / part.mass / square,

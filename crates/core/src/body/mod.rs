@@ -4,7 +4,6 @@
 //! smooth; what either has to tell is in [`Hull`].
 
 mod dumbbell;
-mod ellipsoid;
 mod hull;
 mod inertia;
 mod loaded_sphere;
@@ -12,8 +11,8 @@ mod spherocylinder;
 mod spheroid;
 
 pub use dumbbell::Dumbbell;
-pub use ellipsoid::Ellipsoid;
-pub use hull::{Ball, Hull, Pair};
+pub use hull::{Ball, Ellipsoid, EqualPair, Pair, Single, Sphere, Surface};
+pub(crate) use hull::{Hull, Part, Swing, with_hull};
 pub use loaded_sphere::LoadedSphere;
 pub use spherocylinder::Spherocylinder;
 pub use spheroid::Spheroid;
@@ -24,7 +23,7 @@ use crate::Error;
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Body {
     /// What can touch the plane.
-    pub hull: Hull,
+    pub hull: Surface,
     /// Half the distance between the centres of the two spheres, L/(2R); 0 if there is only one, or none.
     pub half_separation: f64,
     /// J_xx/(mR²), about the centre of mass.
@@ -88,10 +87,15 @@ impl Solid {
         self.unit * self.scaled.hull.support(cosine)
     }
 
+    /// Whether a `height` of the centre of mass, in m, is as large as one of these. A body put down on the plane may be off by
+    /// the rounding of its height.
+    pub fn clears(height: f64, lowest: f64) -> bool {
+        height >= lowest * (1.0 - 4.0 * f64::EPSILON)
+    }
+
     /// The largest of these heights over all angles.
     pub fn farthest(&self) -> f64 {
-        let hull = &self.scaled.hull;
-        self.unit * (hull.level() + hull.ceiling(1.0))
+        self.unit * self.scaled.hull.farthest()
     }
 }
 
@@ -106,7 +110,7 @@ fn representable<S: Shape>(shape: S, name: &'static str) -> Result<S, Error> {
         body.transverse,
         body.axial,
     ];
-    Error::unless(
+    Error::unless_beyond(
         all.iter().all(|x| x.is_normal()),
         name,
         shape.unit(),

@@ -1,7 +1,8 @@
 //! A cylinder with hemispherical caps: it touches like a dumbbell, and is heavier in the middle.
 
 use super::{
-    Body, Hull, Pair, Shape, check_density, check_distance, check_length, representable, seen,
+    Body, EqualPair, Shape, Surface, check_density, check_distance, check_length, representable,
+    seen,
 };
 use crate::Error;
 use std::f64::consts::PI;
@@ -71,7 +72,7 @@ impl Shape for Spherocylinder {
         let mass = self.mass_factor();
         let half_separation = 0.5 * seen(self.elongation());
         Body {
-            hull: Hull::Pair(Pair::equal(half_separation)),
+            hull: Surface::EqualPair(EqualPair::new(half_separation)),
             half_separation,
             transverse: self.transverse_factor() / mass,
             axial: self.axial_factor() / mass,

@@ -1,6 +1,6 @@
 //! An ellipsoid of revolution: prolate, oblate, or a sphere.
 
-use super::{Body, Ellipsoid, Hull, Shape, check_density, check_length, representable};
+use super::{Body, Ellipsoid, Shape, Surface, check_density, check_length, representable};
 use crate::Error;
 use std::f64::consts::PI;
 
@@ -63,7 +63,7 @@ impl Shape for Spheroid {
     fn scaled(&self) -> Body {
         let (a, c) = self.axes();
         Body {
-            hull: Hull::Ellipsoid(Ellipsoid::new(a, c)),
+            hull: Surface::Ellipsoid(Ellipsoid::new(a, c)),
             half_separation: 0.0,
             transverse: (a * a + c * c) / 5.0,
             axial: 2.0 / 5.0 * (a * a),

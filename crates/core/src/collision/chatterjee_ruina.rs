@@ -1,9 +1,9 @@
 //! The law of A. Chatterjee and A. Ruina, *A new algebraic rigid-body collision law based on impulse space considerations*,
 //! J. Appl. Mech. **65**, 939 (1998).
 
-use super::{Components, Contact, Normal, Plane, Rebound, Response, length};
+use super::{Contacts, Normal, Responses};
 use crate::Error;
-use crate::lanes::Pack;
+use crate::simd::Pack;
 use pulp::Simd;
 
 /// P = (1 + e) P_I + κ (P_II − P_I), with P_I the impulse of a frictionless and P_II that of a sticking plastic impact, and
@@ -15,8 +15,8 @@ use pulp::Simd;
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ChatterjeeRuina<'a> {
     pub(super) normal: Normal<'a>,
-    tangential: f64,
-    friction: f64,
+    pub(super) tangential: f64,
+    pub(super) friction: f64,
 }
 
 impl<'a> ChatterjeeRuina<'a> {
@@ -42,7 +42,10 @@ impl<'a> ChatterjeeRuina<'a> {
     }
 
     #[inline(always)]
-    pub(super) fn in_plane<S: Simd, const K: usize>(&self, contact: &Plane<S, K>) -> Rebound<S, K> {
+    pub(super) fn respond<S: Simd, const K: usize, const SPACE: bool>(
+        &self,
+        contact: &Contacts<S, K>,
+    ) -> Responses<S, K> {
         let speed = contact.approach_speed();
         let restitution = self.normal.in_lanes(speed);
         let zero = Pack::splat(speed.simd(), 0.0);
@@ -50,46 +53,33 @@ impl<'a> ChatterjeeRuina<'a> {
         let frictionless = speed / contact.normal_response(); // P_I
         let left = contact.coupling().mul_add(frictionless, contact.slip_along); // slip after P_I
         let (normal, along) = contact.impulse(zero, -left); // P_II − P_I
+        let (across, tangential) = if SPACE {
+            let across = -contact.slip_across / contact.across_response();
+            (across, length(along, across))
+        } else {
+            (zero, along.abs())
+        };
         let most = restitution.mul_add(frictionless, frictionless);
-        let excess = normal.mul_add(-self.friction, along.abs());
+        let excess = normal.mul_add(-self.friction, tangential);
         let wanted = 1.0 + self.tangential;
         let outside = (most * self.friction).lt(excess * wanted);
         let share = outside.select(most * self.friction / excess, wanted); // κ
-        Rebound {
+        Responses {
             normal: share.mul_add(normal, most),
             along: share * along,
+            across: share * across,
             separation_speed: restitution * speed, // P_II − P_I leaves the normal velocity alone
         }
     }
+}
 
-    pub(super) fn in_space(&self, contact: &Contact) -> Response {
-        let plane = contact.plane();
-        let speed = contact.slip.normal.abs();
-        let restitution = self.normal.at(speed);
-
-        let frictionless = speed / plane.normal_response().as_slice()[0]; // P_I
-        let coupling = plane.coupling().as_slice()[0];
-        let further = contact.impulse(Components {
-            normal: 0.0,
-            along: -coupling.mul_add(frictionless, contact.slip.along),
-            across: -contact.slip.across,
-        }); // P_II − P_I
-        let most = restitution.mul_add(frictionless, frictionless);
-        let tangential = length(further.along, further.across);
-        let excess = further.normal.mul_add(-self.friction, tangential);
-        let wanted = 1.0 + self.tangential;
-        let share = if most * self.friction < excess * wanted {
-            most * self.friction / excess
-        } else {
-            wanted
-        }; // κ
-        Response {
-            impulse: Components {
-                normal: share.mul_add(further.normal, most),
-                along: share * further.along,
-                across: share * further.across,
-            },
-            separation_speed: restitution * speed,
-        }
-    }
+/// √(a² + b²), also where the squares would underflow.
+#[inline(always)]
+fn length<S: Simd, const K: usize>(a: Pack<S, K>, b: Pack<S, K>) -> Pack<S, K> {
+    let (a, b) = (a.abs(), b.abs());
+    let (most, least) = (a.max(b), a.min(b));
+    let ratio = least / most;
+    least
+        .eq(0.0)
+        .select(most, most * ratio.mul_add(ratio, 1.0).sqrt())
 }

@@ -5,9 +5,10 @@
 //! |K_nu| ≤ μ K_uu, and otherwise slips on the way that K_nu drives it. Both are dP_u/dp = −K_nu/K_uu, limited to ±μ. In the
 //! plane the contact velocity is then linear in p on either side of the one impulse p_s at which the slip vanishes.
 
-use super::{Normal, Plane, Rebound};
+use super::turning::{Slipping, turning};
+use super::{Contacts, Normal, Responses};
 use crate::Error;
-use crate::lanes::Pack;
+use crate::simd::Pack;
 use pulp::Simd;
 
 /// When the restitution that follows the compression is over. The three agree as long as the slip neither stops nor turns.
@@ -23,6 +24,20 @@ pub enum Hypothesis {
     Poisson,
     /// I. Newton: v_c^n′ = −ε_n v_c^n. Energy can grow where the slip stops or reverses.
     Newton,
+}
+
+impl Hypothesis {
+    /// Every hypothesis, by name.
+    pub const NAMED: [(&'static str, Self); 3] = [
+        ("stronge", Self::Stronge),
+        ("poisson", Self::Poisson),
+        ("newton", Self::Newton),
+    ];
+
+    /// The hypothesis of that name.
+    pub fn named(name: &str) -> Result<Self, Error> {
+        Error::chosen("hypothesis", name, &Self::NAMED)
+    }
 }
 
 /// Coulomb friction with coefficient μ.
@@ -53,21 +68,52 @@ impl<'a> Coulomb<'a> {
     }
 
     #[inline(always)]
-    pub(super) fn in_plane<S: Simd, const K: usize>(&self, contact: &Plane<S, K>) -> Rebound<S, K> {
+    pub(super) fn respond<S: Simd, const K: usize, const SPACE: bool>(
+        &self,
+        contact: &Contacts<S, K>,
+    ) -> Responses<S, K> {
+        let straight = self.in_plane(contact);
+        let turns = !contact.slip_across.eq(0.0);
+        if !SPACE || self.friction == 0.0 || !turns.any() {
+            return straight;
+        }
+        let speed = contact.approach_speed();
+        let slipping = Slipping {
+            speed,
+            along: contact.slip_along,
+            across: contact.slip_across,
+            nn: contact.normal_response(),
+            nu: contact.coupling(),
+            uu: contact.along_response(),
+            ww: contact.across_response(),
+            restitution: self.normal.in_lanes(speed),
+        };
+        let answer = turning(&slipping, self.friction, self.hypothesis);
+        Responses {
+            normal: turns.select(answer.normal, straight.normal),
+            along: turns.select(answer.along, straight.along),
+            across: turns.select(answer.across, straight.across),
+            separation_speed: turns.select(answer.separation_speed, straight.separation_speed),
+        }
+    }
+
+    #[inline(always)]
+    fn in_plane<S: Simd, const K: usize>(&self, contact: &Contacts<S, K>) -> Responses<S, K> {
         let speed = contact.approach_speed();
         let restitution = self.normal.in_lanes(speed);
         let path = Path::new(contact, self.friction);
         let (normal, separation_speed) = path.end(speed, restitution, self.hypothesis);
-        Rebound {
+        Responses {
             normal,
             along: path.friction(normal),
+            across: normal * 0.0,
             separation_speed,
         }
     }
 }
 
 /// Beyond this the products below could overflow; nothing that is finite slips any longer anyway.
-const MOST_FRICTION: f64 = 1e100;
+pub const MOST_FRICTION: f64 = 1e100;
 
 pub(super) fn check_friction(friction: f64) -> Result<(), Error> {
     Error::unless(
@@ -92,7 +138,7 @@ struct Path<S: Simd, const K: usize> {
 
 impl<S: Simd, const K: usize> Path<S, K> {
     #[inline(always)]
-    fn new(contact: &Plane<S, K>, friction: f64) -> Self {
+    fn new(contact: &Contacts<S, K>, friction: f64) -> Self {
         let slip = contact.slip_along.abs();
         let zero = Pack::splat(slip.simd(), 0.0);
         let (nn, uu) = (contact.normal_response(), contact.along_response());

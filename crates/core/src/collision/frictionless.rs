@@ -1,6 +1,6 @@
 //! The law without friction: P ∥ **n**.
 
-use super::{Normal, Plane, Rebound};
+use super::{Contacts, Normal, Responses};
 use crate::Error;
 use pulp::Simd;
 
@@ -22,12 +22,16 @@ impl<'a> Frictionless<'a> {
     }
 
     #[inline(always)]
-    pub(super) fn in_plane<S: Simd, const K: usize>(&self, contact: &Plane<S, K>) -> Rebound<S, K> {
+    pub(super) fn respond<S: Simd, const K: usize, const SPACE: bool>(
+        &self,
+        contact: &Contacts<S, K>,
+    ) -> Responses<S, K> {
         let speed = contact.approach_speed();
         let restitution = self.normal.in_lanes(speed);
-        Rebound {
+        Responses {
             normal: restitution.mul_add(speed, speed) / contact.normal_response(),
             along: speed * 0.0,
+            across: speed * 0.0,
             separation_speed: restitution * speed,
         }
     }

@@ -1,11 +1,10 @@
 //! The choice of a law.
 
 use super::{
-    ChatterjeeRuina, Components, Contact, Coulomb, Frictionless, Normal, Plane, Rebound, Response,
-    TangentialRestitution, tangential::Steady,
+    ChatterjeeRuina, Components, Contact, Contacts, Coulomb, Frictionless, Normal, Response,
+    Responses, TangentialRestitution, tangential::Steady,
 };
-use crate::scales::Scales;
-use pulp::{Scalar, Simd, WithSimd};
+use pulp::{Simd, WithSimd};
 
 /// A collision law: what an impact does. Its normal coefficient may borrow a table.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -31,33 +30,49 @@ impl<'a> Law<'a> {
         }
     }
 
-    /// The law for speeds in the unit of `scales` instead of m/s.
-    pub fn scaled(&self, scales: &Scales) -> Self {
-        let mut law = *self;
-        let normal = match &mut law {
-            Self::TangentialRestitution(law) => &mut law.normal,
-            Self::Frictionless(law) => &mut law.normal,
-            Self::Coulomb(law) => &mut law.normal,
-            Self::ChatterjeeRuina(law) => &mut law.normal,
-        };
-        *normal = normal.scaled(scales);
-        law
+    /// The law for speeds in this `unit`, in m/s, instead of m/s.
+    pub fn scaled(&self, unit: f64) -> Self {
+        self.with_normal(self.normal().scaled(unit))
+    }
+
+    /// The law with another normal coefficient, which has been checked.
+    pub fn with_normal<'b>(&self, normal: Normal<'b>) -> Law<'b> {
+        match *self {
+            Self::TangentialRestitution(TangentialRestitution { tangential, .. }) => {
+                Law::TangentialRestitution(TangentialRestitution { normal, tangential })
+            }
+            Self::Frictionless(_) => Law::Frictionless(Frictionless { normal }),
+            Self::Coulomb(Coulomb {
+                friction,
+                hypothesis,
+                ..
+            }) => Law::Coulomb(Coulomb {
+                normal,
+                friction,
+                hypothesis,
+            }),
+            Self::ChatterjeeRuina(ChatterjeeRuina {
+                tangential,
+                friction,
+                ..
+            }) => Law::ChatterjeeRuina(ChatterjeeRuina {
+                normal,
+                tangential,
+                friction,
+            }),
+        }
     }
 
     /// The response to a contact.
     pub fn respond(&self, contact: &Contact) -> Response {
-        if contact.slip.across == 0.0 {
-            return planar(self.in_plane(&contact.plane()));
-        }
-        match self {
-            Self::TangentialRestitution(law) => {
-                let mut response = planar(self.in_plane(&contact.plane()));
-                response.impulse.across = law.across(contact);
-                response
-            }
-            Self::Frictionless(_) => planar(self.in_plane(&contact.plane())),
-            Self::Coulomb(law) => law.in_space(contact),
-            Self::ChatterjeeRuina(law) => law.in_space(contact),
+        let found = Respond::respond::<_, 1, true>(self, &contact.in_lane());
+        Response {
+            impulse: Components {
+                normal: found.normal.as_slice()[0],
+                along: found.along.as_slice()[0],
+                across: found.across.as_slice()[0],
+            },
+            separation_speed: found.separation_speed.as_slice()[0],
         }
     }
 
@@ -70,49 +85,43 @@ impl<'a> Law<'a> {
     }
 }
 
-/// A law as the bounce loop of the lanes takes it.
-pub(crate) trait InPlane {
-    /// The response where nothing slips across the plane of the axis.
-    fn in_plane<S: Simd, const K: usize>(&self, contact: &Plane<S, K>) -> Rebound<S, K>;
+/// A law as the bounce loop takes it.
+pub(crate) trait Respond {
+    /// The responses to contacts. Unless in `SPACE`, nothing slips across the plane of the axis.
+    fn respond<S: Simd, const K: usize, const SPACE: bool>(
+        &self,
+        contact: &Contacts<S, K>,
+    ) -> Responses<S, K>;
 }
 
-impl InPlane for Law<'_> {
+impl Respond for Law<'_> {
     /// A call that chooses the law: written out in the bounce loop, all of them would crowd it.
     #[inline(always)]
-    fn in_plane<S: Simd, const K: usize>(&self, contact: &Plane<S, K>) -> Rebound<S, K> {
+    fn respond<S: Simd, const K: usize, const SPACE: bool>(
+        &self,
+        contact: &Contacts<S, K>,
+    ) -> Responses<S, K> {
         let simd = contact.slip_normal.simd();
-        simd.vectorize(Choice { law: self, contact })
-    }
-}
-
-/// One lane, as a response in space.
-fn planar(rebound: Rebound<Scalar, 1>) -> Response {
-    Response {
-        impulse: Components {
-            normal: rebound.normal.as_slice()[0],
-            along: rebound.along.as_slice()[0],
-            across: 0.0,
-        },
-        separation_speed: rebound.separation_speed.as_slice()[0],
+        simd.vectorize(Choice::<S, K, SPACE> { law: self, contact })
     }
 }
 
 /// A law and the contacts that it is to answer, to be compiled for each SIMD level.
-struct Choice<'a, 'b, S: Simd, const K: usize> {
+struct Choice<'a, 'b, S: Simd, const K: usize, const SPACE: bool> {
     law: &'a Law<'b>,
-    contact: &'a Plane<S, K>,
+    contact: &'a Contacts<S, K>,
 }
 
-impl<S: Simd, const K: usize> WithSimd for Choice<'_, '_, S, K> {
-    type Output = Rebound<S, K>;
+impl<S: Simd, const K: usize, const SPACE: bool> WithSimd for Choice<'_, '_, S, K, SPACE> {
+    type Output = Responses<S, K>;
 
     #[inline(always)]
     fn with_simd<T: Simd>(self, _: T) -> Self::Output {
         match self.law {
-            Law::TangentialRestitution(law) => law.in_plane(self.contact),
-            Law::Frictionless(law) => law.in_plane(self.contact),
-            Law::Coulomb(law) => law.in_plane(self.contact),
-            Law::ChatterjeeRuina(law) => law.in_plane(self.contact),
+            Law::TangentialRestitution(law) => law.respond::<S, K, SPACE>(self.contact),
+            Law::Frictionless(law) => law.respond::<S, K, SPACE>(self.contact),
+            Law::Coulomb(law) => law.respond::<S, K, SPACE>(self.contact),
+            Law::ChatterjeeRuina(law) => law.respond::<S, K, SPACE>(self.contact),
         }
     }
 }

@@ -2,32 +2,28 @@
 //!
 //! In the frame of **n**, of **u**, the horizontal direction of the axis, and of **w** = **n** × **u**, the matrix
 //! K = I/m + [**r**_c]ᵀĴ⁻¹[**r**_c], which turns an impulse into the change of contact velocity (10), falls apart into a
-//! 2×2 block {**n**, **u**} and a single entry for **w**. Where nothing slips along **w** every law is closed form, and its
-//! formula is written once, in a function `in_plane` over any number of particles side by side ([`Plane`]).
+//! 2×2 block {**n**, **u**} and a single entry for **w**. A formula is written once, over any number of contacts side by side
+//! ([`Contacts`]); what it has to say of **w** is left out where all motion is in the plane of **n** and **u**.
 
 mod chatterjee_ruina;
+mod contact;
 mod coulomb;
 mod frictionless;
 mod law;
 mod normal;
-mod plane;
-mod series;
 mod tangential;
 mod turning;
 
 pub use chatterjee_ruina::ChatterjeeRuina;
-pub use coulomb::{Coulomb, Hypothesis};
+pub(crate) use contact::{Contacts, Responses};
+pub use coulomb::{Coulomb, Hypothesis, MOST_FRICTION};
 pub use frictionless::Frictionless;
-pub(crate) use law::InPlane;
 pub use law::Law;
-pub use normal::{Normal, Plastic, Tabulated, Viscoelastic};
-pub(crate) use plane::{Plane, Rebound};
+pub(crate) use law::Respond;
+pub use normal::{Normal, PADE_ABOVE, PADE_BELOW, Plastic, Points, Tabulated, Viscoelastic};
 pub use tangential::TangentialRestitution;
 
-use crate::body::Body;
-use crate::lanes::Pack;
-use crate::state::{Sphere, State};
-use crate::vector::Vector;
+use crate::simd::one;
 use pulp::Scalar;
 
 /// Components along **n**, **u** and **w**.
@@ -59,10 +55,9 @@ pub struct Contact {
 impl Contact {
     /// The impulse that changes the contact velocity by `change`: K P = Δ**v**_c (10), solved as in (14).
     pub fn impulse(&self, change: Components) -> Components {
-        let lane = |x| Pack::splat(Scalar::new(), x);
         let (normal, along) = self
-            .plane()
-            .impulse(lane(change.normal), lane(change.along));
+            .in_lane()
+            .impulse(one(change.normal), one(change.along));
         Components {
             normal: normal.as_slice()[0],
             along: along.as_slice()[0],
@@ -81,16 +76,11 @@ impl Contact {
         }
     }
 
-    /// What of the contact lies in the vertical plane of the axis.
-    fn plane(&self) -> Plane<Scalar, 1> {
-        let lane = |x| Pack::splat(Scalar::new(), x);
-        Plane {
-            slip_normal: lane(self.slip.normal),
-            slip_along: lane(self.slip.along),
-            inertia: self.inertia,
-            arm_normal: lane(self.arm_normal),
-            arm_along: lane(self.arm_along),
-        }
+    /// The contact in a single lane.
+    pub(super) fn in_lane(&self) -> Contacts<Scalar, 1> {
+        let slip = [self.slip.normal, self.slip.along, self.slip.across];
+        let arm = [self.arm_normal, self.arm_along];
+        Contacts::in_space(slip.map(one), self.inertia, arm.map(one), one(self.across))
     }
 }
 
@@ -102,62 +92,3 @@ pub struct Response {
     /// Normal velocity of the point of contact after the impact, ≥ 0.
     pub separation_speed: f64,
 }
-
-/// √(a² + b²), also where the squares would underflow.
-fn length(a: f64, b: f64) -> f64 {
-    let (a, b) = (a.abs(), b.abs());
-    let (most, least) = (a.max(b), a.min(b));
-    if least == 0.0 {
-        return most;
-    }
-    let ratio = least / most;
-    most * ratio.mul_add(ratio, 1.0).sqrt()
-}
-
-/// The state after the impact of `sphere`, and the speed at which the point of contact leaves the plane.
-pub fn collide(body: &Body, law: &Law<'_>, before: &State, sphere: Sphere) -> (State, f64) {
-    let axis = before.axis;
-    let ball = body.hull.ball(sphere, axis.z);
-    let arm = axis.mul_add(ball.offset, Vector::new(0.0, 0.0, -ball.radius)); // r_c (6)
-    let velocity = before.velocity + before.spin(body).cross(arm); // v_c (7)
-
-    let sine = axis.horizontal();
-    let along = if sine > UPRIGHT {
-        Vector::new(axis.x / sine, axis.y / sine, 0.0)
-    } else {
-        Vector::new(1.0, 0.0, 0.0) // an upright axis has no horizontal direction, and none is needed
-    };
-    let across = Vector::new(-along.y, along.x, 0.0);
-
-    let inverse = 1.0 / body.transverse;
-    // What of r_c × w lies across the axis, and along it.
-    let (twist, roll) = (ball.radius * axis.z - ball.offset, ball.radius * sine);
-    let contact = Contact {
-        slip: Components {
-            normal: velocity.z.min(0.0), // a grazing contact may have turned around within the last step
-            along: velocity.dot(along),
-            across: velocity.dot(across),
-        },
-        inertia: body.transverse,
-        arm_normal: arm.z,
-        arm_along: ball.offset * sine,
-        across: (twist * twist).mul_add(inverse, (roll * roll).mul_add(1.0 / body.axial, 1.0)),
-    };
-    let Response {
-        impulse,
-        separation_speed,
-    } = law.respond(&contact);
-    let impulse = along.mul_add(
-        impulse.along,
-        across.mul_add(impulse.across, Vector::new(0.0, 0.0, impulse.normal)),
-    );
-    let after = State {
-        velocity: before.velocity + impulse, // (11)
-        precession: arm.cross(impulse).mul_add(inverse, before.precession), // (11)
-        ..*before
-    };
-    (after, separation_speed)
-}
-
-/// Below this sine of the tilt its square underflows.
-const UPRIGHT: f64 = 1e-150;

@@ -1,8 +1,8 @@
 //! The paper's law, (9): both components of the contact velocity change by a fixed factor.
 
-use super::{Contact, InPlane, Normal, Plane, Rebound};
+use super::{Contacts, Normal, Respond, Responses};
 use crate::Error;
-use crate::lanes::Operand;
+use crate::simd::{Operand, Pack};
 use pulp::Simd;
 
 /// Normal and tangential restitution of the contact velocity, (9).
@@ -13,7 +13,7 @@ use pulp::Simd;
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct TangentialRestitution<'a> {
     pub(super) normal: Normal<'a>,
-    tangential: f64,
+    pub(super) tangential: f64,
 }
 
 impl<'a> TangentialRestitution<'a> {
@@ -43,33 +43,37 @@ impl<'a> TangentialRestitution<'a> {
     }
 
     #[inline(always)]
-    pub(super) fn in_plane<S: Simd, const K: usize>(&self, contact: &Plane<S, K>) -> Rebound<S, K> {
+    pub(super) fn respond<S: Simd, const K: usize, const SPACE: bool>(
+        &self,
+        contact: &Contacts<S, K>,
+    ) -> Responses<S, K> {
         let restitution = self.normal.in_lanes(contact.approach_speed());
-        self.with(-restitution, -(restitution + 1.0), contact)
+        self.with::<S, K, SPACE>(-restitution, -(restitution + 1.0), contact)
     }
 
     /// The response with this −ε^n and −(1 + ε^n).
     #[inline(always)]
-    fn with<S: Simd, const K: usize>(
+    fn with<S: Simd, const K: usize, const SPACE: bool>(
         &self,
         rebound: impl Operand<S, K>,
         change: impl Operand<S, K>,
-        contact: &Plane<S, K>,
-    ) -> Rebound<S, K> {
+        contact: &Contacts<S, K>,
+    ) -> Responses<S, K> {
         let (normal, along) = contact.impulse(
             contact.slip_normal * change,                 // (9), (10)
             (self.tangential - 1.0) * contact.slip_along, // (9), (10)
         );
-        Rebound {
+        let across = if SPACE {
+            (self.tangential - 1.0) * contact.slip_across / contact.across_response() // (9), (10)
+        } else {
+            Pack::splat(normal.simd(), 0.0)
+        };
+        Responses {
             normal,
             along,
+            across,
             separation_speed: contact.slip_normal * rebound, // (9)
         }
-    }
-
-    /// Impulse along **w**.
-    pub(super) fn across(&self, contact: &Contact) -> f64 {
-        (self.tangential - 1.0) * contact.slip.across / contact.across // (9), (10)
     }
 }
 
@@ -79,9 +83,13 @@ pub(crate) struct Steady<'a> {
     normal: f64,
 }
 
-impl InPlane for Steady<'_> {
+impl Respond for Steady<'_> {
     #[inline(always)]
-    fn in_plane<S: Simd, const K: usize>(&self, contact: &Plane<S, K>) -> Rebound<S, K> {
-        self.law.with(-self.normal, -(1.0 + self.normal), contact)
+    fn respond<S: Simd, const K: usize, const SPACE: bool>(
+        &self,
+        contact: &Contacts<S, K>,
+    ) -> Responses<S, K> {
+        self.law
+            .with::<S, K, SPACE>(-self.normal, -(1.0 + self.normal), contact)
     }
 }

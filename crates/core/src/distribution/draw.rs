@@ -59,7 +59,7 @@ fn choose(u: f64, (left, weight): (usize, f64)) -> (usize, f64) {
     }
 }
 
-impl Mixture<'_> {
+impl Mixture {
     /// Draws a restitution for each element of `out`. Draw i of a seed is the same however many there are and whatever the
     /// threads: it rests on two uniform numbers, u₁ for node and condition, u₂ for the quantile.
     pub fn rvs(
@@ -73,15 +73,16 @@ impl Mixture<'_> {
         let layout = &self.layout;
         // The short cuts cost a search for every edge: draws of a time step do without.
         let many = out.len() > layout.edges.len();
-        let inverses: Vec<_> = (0..layout.conditions.len())
-            .map(|component| Inverse::new(self.histogram(component), many))
+        let components = if many { layout.conditions.len() } else { 0 };
+        let inverses: Vec<_> = (0..components)
+            .map(|component| Inverse::new(self.histogram(component), true))
             .collect();
         in_blocks(out, means, monitor, |first, block| {
             let (mut speed, mut site) = (f64::NAN, (0, 0.0));
             for (i, out) in block.iter_mut().enumerate() {
                 let v = at.speed.at(first + i);
                 if v != speed {
-                    (speed, site) = (v, place(layout.speeds, v));
+                    (speed, site) = (v, place(&layout.speeds, v));
                 }
                 let (u1, u2) = pair(seed, (first + i) as u64);
                 let (node, rest) = choose(u1, site);
@@ -91,8 +92,10 @@ impl Mixture<'_> {
                 let component = components.start + choose(rest, condition).0;
                 *out = if v.is_nan() || z.is_nan() {
                     f64::NAN
-                } else {
+                } else if many {
                     inverses[component].quantile(u2)
+                } else {
+                    Inverse::new(self.histogram(component), false).quantile(u2)
                 };
             }
         })

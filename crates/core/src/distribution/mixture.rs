@@ -4,27 +4,27 @@ use super::{Values, in_blocks};
 use crate::{Error, Means, Monitor};
 
 /// The table, in ragged arrays. A node is a speed; it has one component, or one for each of its conditions.
-#[derive(Debug, Clone, Copy)]
-pub struct Layout<'a> {
+#[derive(Debug, Clone)]
+pub struct Layout {
     /// Speeds of the nodes, increasing, at least two.
-    pub speeds: &'a [f64],
+    pub speeds: Vec<f64>,
     /// Where the components of each node start, and one number more.
-    pub first: &'a [i64],
+    pub first: Vec<i64>,
     /// Condition of each component, increasing within a node.
-    pub conditions: &'a [f64],
+    pub conditions: Vec<f64>,
     /// Where the edges of each component start, and one number more.
-    pub start: &'a [i64],
+    pub start: Vec<i64>,
     /// Edges of the bins of ε, increasing within a component, at least two.
-    pub edges: &'a [f64],
+    pub edges: Vec<f64>,
     /// Probability below each edge: from 0 to 1 within a component.
-    pub cumulative: &'a [f64],
+    pub cumulative: Vec<f64>,
 }
 
 /// p(ε | v, z) = Σ w_k(v, z) p_k(ε): the weights of the nodes next to v, and in each of the conditions next to z, are linear
 /// and add up to 1. Beyond the first and last node, or condition, that one counts alone.
 #[derive(Debug)]
-pub struct Mixture<'a> {
-    pub(super) layout: Layout<'a>,
+pub struct Mixture {
+    pub(super) layout: Layout,
 }
 
 /// The components that count, with their weights: two nodes of up to two conditions.
@@ -50,9 +50,9 @@ pub(super) fn place(points: &[f64], x: f64) -> (usize, f64) {
     (left, weight.clamp(0.0, 1.0))
 }
 
-impl<'a> Mixture<'a> {
+impl Mixture {
     /// Checks the table.
-    pub fn new(layout: Layout<'a>) -> Result<Self, Error> {
+    pub fn new(layout: Layout) -> Result<Self, Error> {
         let rises = |x: &[f64]| x.windows(2).all(|pair| pair[0] < pair[1]);
         let ranges = |start: &[i64], size: usize, least: i64| {
             start.first() == Some(&0)
@@ -66,7 +66,7 @@ impl<'a> Mixture<'a> {
             start,
             edges,
             cumulative,
-        } = layout;
+        } = &layout;
         let sound = speeds.len() >= 2
             && rises(speeds)
             && first.len() == speeds.len() + 1
@@ -87,7 +87,7 @@ impl<'a> Mixture<'a> {
             });
         let allowed =
             "edges and cumulative probabilities that increase, from 0 to 1, for each node";
-        Error::unless(sound, "table", speeds.len() as f64, allowed)?;
+        Error::unless(sound, "table", speeds.len(), allowed)?;
         Ok(Self { layout })
     }
 
@@ -97,7 +97,7 @@ impl<'a> Mixture<'a> {
     }
 
     /// Edges and probabilities below them.
-    pub(super) fn histogram(&self, component: usize) -> (&'a [f64], &'a [f64]) {
+    pub(super) fn histogram(&self, component: usize) -> (&[f64], &[f64]) {
         let start = &self.layout.start[component..component + 2];
         let range = start[0] as usize..start[1] as usize;
         (
@@ -111,7 +111,7 @@ impl<'a> Mixture<'a> {
             list: [(0, 0.0); 4],
             length: 0,
         };
-        let (left, right_share) = place(self.layout.speeds, v);
+        let (left, right_share) = place(&self.layout.speeds, v);
         for (node, share) in [(left, 1.0 - right_share), (left + 1, right_share)] {
             let components = self.components(node);
             let (below, above_share) = place(&self.layout.conditions[components.clone()], z);

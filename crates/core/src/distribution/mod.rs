@@ -6,8 +6,7 @@ mod mixture;
 pub use mixture::{At, Layout, Mixture};
 
 use crate::{Error, Means, Monitor};
-use rayon::iter::{IndexedParallelIterator, ParallelIterator};
-use rayon::slice::ParallelSliceMut;
+use std::sync::Mutex;
 
 /// Values that a thread takes at a time; no more than these are computed by the caller's own.
 pub const BLOCK: usize = 1 << 14;
@@ -21,13 +20,18 @@ impl<'a> Values<'a> {
     pub fn new(values: &'a [f64], name: &'static str, length: usize) -> Result<Self, Error> {
         let allowed = "one value, or as many as are asked for";
         let size = values.len();
-        Error::unless(size == 1 || size == length, name, size as f64, allowed)?;
+        Error::unless(size == 1 || size == length, name, size, allowed)?;
         Ok(Self(values))
     }
 
     fn at(&self, index: usize) -> f64 {
         self.0[if self.0.len() == 1 { 0 } else { index }]
     }
+}
+
+/// Room for so many values.
+pub fn values(size: usize) -> Result<Vec<f64>, Error> {
+    crate::memory::zeros("size", size)
 }
 
 /// Fills `out` block by block, with `fill(first, block)`; whatever the threads, the same.
@@ -44,9 +48,16 @@ fn in_blocks(
     };
     if out.len() <= BLOCK {
         fill((0, out));
-    } else {
-        let pool = means.pool()?;
-        pool.install(|| out.par_chunks_mut(BLOCK).enumerate().for_each(fill));
+        return Ok(());
     }
+    let number = out.len().div_ceil(BLOCK);
+    let blocks = Mutex::new(out.chunks_mut(BLOCK).enumerate());
+    means.each_thread(number, || {
+        loop {
+            let next = blocks.lock().expect("nobody panics who holds it").next();
+            let Some(block) = next else { break };
+            fill(block);
+        }
+    })?;
     Ok(())
 }

@@ -1,7 +1,8 @@
-//! A uniform axis of half-open bins, lo ≤ x < hi, compared with the very edges that were given.
+//! An axis of half-open bins, lo ≤ x < hi, compared with the very edges that were given.
 
+use super::cells::Cells;
 use crate::Error;
-use crate::lanes::Pack;
+use crate::simd::Pack;
 use pulp::Simd;
 
 /// Largest departure of an edge from uniform spacing, in bin widths.
@@ -11,30 +12,29 @@ const NEAR: f64 = 1e-6;
 /// 1.5 · 2⁵²: adding it to |x| < 2⁵¹ rounds to the nearest integer, which then stands in the low bits.
 pub(super) const ROUND: f64 = 6_755_399_441_055_744.0;
 
-/// Bins between uniform edges, with one for what is below and one for what is above.
+/// Bins between edges, with one for what is below and one for what is above.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Axis {
     edges: Vec<f64>,
-    /// The lowest edge and the number of edges, at hand in the hot loop.
+    /// The lowest edge and the number of edges, at hand in the hot loop; 0 where the edges are not uniform.
     low: f64,
     last: f64,
+    /// The number of the bin after the last, where what has no bin is counted.
+    beyond: f64,
     /// What the number of a site grows by from row to row of a grid: the bins and one more.
     pub(super) stride: f64,
-    /// Bins per unit.
+    /// Bins per unit; 0 where the edges are not uniform.
     density: f64,
+    /// Where the edges are not uniform, how to find the bin.
+    cells: Option<Cells>,
 }
 
 impl Axis {
-    /// Checks that there are at least two edges, finite, increasing and uniform; `name` is for the error.
+    /// Checks that there are at least two edges, finite and increasing; `name` is for the error.
     pub fn new(name: &'static str, edges: &[f64]) -> Result<Self, Error> {
         let bins = edges.len().saturating_sub(1);
-        Error::unless(bins > 0, name, edges.len() as f64, "at least two edges")?;
-        Error::unless(
-            bins <= 1 << 24,
-            name,
-            edges.len() as f64,
-            "at most 2^24 bins",
-        )?;
+        Error::unless(bins > 0, name, edges.len(), "at least two edges")?;
+        Error::unless(bins <= 1 << 24, name, edges.len(), "at most 2^24 bins")?;
         let (low, high) = (edges[0], edges[bins]);
         let width = (high - low) / bins as f64;
         let density = 1.0 / width;
@@ -44,16 +44,25 @@ impl Axis {
             width,
             "increasing edges",
         )?;
-        for (i, &edge) in edges.iter().enumerate() {
-            let off = (edge - (low + i as f64 * width)).abs() * density;
-            Error::unless(off <= UNIFORM, name, edge, "finite, uniform edges")?;
+        for pair in edges.windows(2) {
+            let increasing = pair[0] < pair[1] && pair[0].is_finite() && pair[1].is_finite();
+            Error::unless(increasing, name, pair[1], "finite, increasing edges")?;
         }
+        let off = |(i, &edge): (usize, &f64)| (edge - (low + i as f64 * width)).abs() * density;
+        let uniform = edges.iter().enumerate().map(off).all(|off| off <= UNIFORM);
+        let count = edges.len() as f64;
         Ok(Self {
             edges: edges.to_vec(),
-            low,
-            last: edges.len() as f64,
-            stride: edges.len() as f64 + 2.0,
-            density,
+            low: if uniform { low } else { 0.0 },
+            last: if uniform { count } else { 0.0 },
+            beyond: count + 1.0,
+            stride: count + 2.0,
+            density: if uniform { density } else { 0.0 },
+            cells: if uniform {
+                None
+            } else {
+                Some(Cells::new(edges))
+            },
         })
     }
 
@@ -65,7 +74,7 @@ impl Axis {
     /// The bin after the last, where what has no bin is counted.
     #[inline(always)]
     pub(super) fn beyond(&self) -> f64 {
-        self.last + 1.0
+        self.beyond
     }
 
     /// Numbers of the bins of N quantities on an axis each, plus [`ROUND`]: 0 below, 1 to n inside, n + 1 above. NaN may be
@@ -83,14 +92,17 @@ impl Axis {
             bins[i] = places[i] + ROUND;
             most = most.max(off(places[i], bins[i]));
         }
-        if most.lt(0.5 - NEAR).all() {
-            return bins;
+        if !most.lt(0.5 - NEAR).all() {
+            for i in 0..N {
+                bins[i] = axes[i].decided(x[i], places[i], bins[i]);
+            }
         }
-        let mut exact = bins;
         for i in 0..N {
-            exact[i] = axes[i].decided(x[i], places[i], bins[i]);
+            if let Some(cells) = &axes[i].cells {
+                bins[i] = cells.locate(x[i]);
+            }
         }
-        exact
+        bins
     }
 
     /// Where `x` is, in bin widths: whole numbers are in the middle of the bins.

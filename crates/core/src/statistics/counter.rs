@@ -6,10 +6,13 @@ use super::backlog::{Backlog, LENGTH};
 use super::moments::Sums;
 use super::places::{all_sites, nowhere, sites, whole};
 use super::recent::{Extremes, FRACTION_QUANTA, Half, LARGEST, QUANTA, Recent, words};
-use super::tally::{Bins, By, CREATES_ENERGY, Gains, Tally};
-use crate::lanes::{Impact, Pack, Sink};
-use crate::plan::Plan;
-use crate::trajectory::StopReason;
+use super::tally::{Bins, By, CREATES_ENERGY, Gains, Tally, WHAT};
+use crate::Error;
+use crate::engine::StopReason;
+use crate::engine::{Impact, Meanwhile, Sink};
+use crate::memory::{filled, zeros};
+use crate::run::Plan;
+use crate::simd::Pack;
 use pulp::Simd;
 
 /// Counts impacts, by way of narrow integers that are emptied before they can overflow. Where an impact belongs is computed for
@@ -83,16 +86,21 @@ fn empty_row(tally: &mut Tally, row: &mut Row, number: usize) {
 
 impl<'a> Counter<'a> {
     /// `fractions` are those of the bins.
-    pub fn new(bins: &'a Bins, fractions: &'a Axis, plan: &'a Plan<'a>, origin: f64) -> Self {
-        let tally = Tally::new(bins, origin);
-        Self {
+    pub fn new(
+        bins: &'a Bins,
+        fractions: &'a Axis,
+        plan: &'a Plan<'a>,
+        origin: f64,
+    ) -> Result<Self, Error> {
+        let tally = Tally::new(bins, origin)?;
+        Ok(Self {
             by: &bins.by,
             columns: &bins.restitution,
             fractions,
             plan,
-            restitution: vec![0; tally.restitution.counts().len() + 1],
-            fraction: vec![0; tally.fraction.counts().len() + 1],
-            rows: vec![Row::EMPTY; tally.sums.len() + 1],
+            restitution: zeros(WHAT, tally.restitution.counts().len() + 1)?,
+            fraction: zeros(WHAT, tally.fraction.counts().len() + 1)?,
+            rows: filled(WHAT, Row::EMPTY, tally.sums.len() + 1)?,
             backlog: Backlog::default(),
             queue: Queue {
                 places: [[0.0; 4]; LENGTH],
@@ -100,7 +108,7 @@ impl<'a> Counter<'a> {
                 high: [[0.0; 4]; LENGTH],
             },
             tally,
-        }
+        })
     }
 
     fn empty(&mut self) {
@@ -146,6 +154,15 @@ impl<'a> Counter<'a> {
         self.tally.sums[row].add(quanta.round_ties_even() as i64);
         self.tally.fractions[row] += (fraction * FRACTION_QUANTA).round_ties_even() as u128;
         self.rows[row].extremes.add(restitution);
+    }
+}
+
+impl Meanwhile for Counter<'_> {
+    #[inline(always)]
+    fn meanwhile(&mut self) {
+        if let Some(i) = self.backlog.next() {
+            self.count_one(i);
+        }
     }
 }
 
@@ -216,13 +233,6 @@ impl Sink for Counter<'_> {
                 row.gains
                     .add(gain.as_slice()[lane] as u64, factor.as_slice()[lane]);
             }
-        }
-    }
-
-    #[inline(always)]
-    fn meanwhile(&mut self) {
-        if let Some(i) = self.backlog.next() {
-            self.count_one(i);
         }
     }
 

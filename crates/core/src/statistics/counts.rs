@@ -5,10 +5,13 @@ use super::axis::{Axis, ROUND};
 use super::backlog::{Backlog, LENGTH};
 use super::moments::Sums;
 use super::places::{all_sites, sites, whole};
-use super::tally::{Bins, By, CREATES_ENERGY, Tally};
-use crate::lanes::{Impact, Pack, Sink};
-use crate::plan::Plan;
-use crate::trajectory::StopReason;
+use super::tally::{Bins, By, CREATES_ENERGY, Tally, WHAT};
+use crate::Error;
+use crate::engine::StopReason;
+use crate::engine::{Impact, Meanwhile, Sink};
+use crate::memory::zeros;
+use crate::run::Plan;
+use crate::simd::Pack;
 use pulp::Simd;
 
 /// Counts impacts in the grid of ε and keeps the ledger of energy, as [`super::Counter`] does, and nothing else.
@@ -23,16 +26,16 @@ pub(crate) struct Counts<'a> {
 }
 
 impl<'a> Counts<'a> {
-    pub fn new(bins: &'a Bins, plan: &'a Plan<'a>, origin: f64) -> Self {
-        let tally = Tally::new(bins, origin);
-        Self {
+    pub fn new(bins: &'a Bins, plan: &'a Plan<'a>, origin: f64) -> Result<Self, Error> {
+        let tally = Tally::new(bins, origin)?;
+        Ok(Self {
             bins,
             plan,
-            restitution: vec![0; tally.restitution.counts().len() + 1],
+            restitution: zeros(WHAT, tally.restitution.counts().len() + 1)?,
             backlog: Backlog::default(),
             queue: [0.0; LENGTH],
             tally,
-        }
+        })
     }
 
     /// Counts what is in the queue.
@@ -54,6 +57,15 @@ impl<'a> Counts<'a> {
 
     fn empty(&mut self) {
         self.tally.restitution.absorb(&mut self.restitution);
+    }
+}
+
+impl Meanwhile for Counts<'_> {
+    #[inline(always)]
+    fn meanwhile(&mut self) {
+        if let Some(i) = self.backlog.next() {
+            self.count_one(i);
+        }
     }
 }
 
@@ -99,13 +111,6 @@ impl Sink for Counts<'_> {
                 let row = whole(row.as_slice()[lane]);
                 self.tally.gains[row].add(1, factor.as_slice()[lane]);
             });
-        }
-    }
-
-    #[inline(always)]
-    fn meanwhile(&mut self) {
-        if let Some(i) = self.backlog.next() {
-            self.count_one(i);
         }
     }
 

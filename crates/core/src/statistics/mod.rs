@@ -2,12 +2,14 @@
 
 mod axis;
 mod backlog;
+mod cells;
 mod counter;
 mod counts;
 mod moments;
 mod places;
 mod recent;
 mod tally;
+mod words;
 
 pub use axis::Axis;
 pub(crate) use counter::Counter;
@@ -16,7 +18,7 @@ pub use moments::{Moments, Sums};
 pub use tally::{Bins, By, CREATES_ENERGY, Gains, Grid, Tally};
 
 /// Makes a [`Tally`] of the impacts that it is told of.
-pub(crate) trait Tallying: crate::lanes::Sink {
+pub(crate) trait Tallying: crate::engine::Sink {
     /// The tally.
     fn finish(self) -> Tally;
 }

@@ -4,6 +4,7 @@
 //! in integers wide enough for 2⁶⁴ values. Sums of sums are sums: merging is associative and commutative to the last bit.
 
 use super::recent::{Extremes, QUANTA, Totals};
+use super::words::float;
 
 /// A two's-complement integer of N 64-bit words, low word first.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -157,6 +158,17 @@ impl Sums {
         self.fourth.add(other.fourth.0, 0);
         self.minimum = self.minimum.min(other.minimum);
         self.maximum = self.maximum.max(other.maximum);
+    }
+
+    /// Shows every word to `visit`, which may change it.
+    pub(super) fn words(&mut self, visit: &mut impl FnMut(&mut u64)) {
+        self.first.0.iter_mut().for_each(&mut *visit);
+        self.second.0.iter_mut().for_each(&mut *visit);
+        self.third.0.iter_mut().for_each(&mut *visit);
+        self.fourth.0.iter_mut().for_each(&mut *visit);
+        for extreme in [&mut self.minimum, &mut self.maximum] {
+            float(extreme, visit);
+        }
     }
 
     /// Moments of `number` values whose offsets were taken from `origin`; NaN where there are none.

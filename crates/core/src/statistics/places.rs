@@ -1,7 +1,7 @@
 //! Where impacts are counted: whole numbers in the low bits of doubles, with [`ROUND`] added to them.
 
 use super::axis::{Axis, ROUND};
-use crate::lanes::{Mask, Pack};
+use crate::simd::{Mask, Pack};
 use pulp::Simd;
 
 /// The whole number in the low bits of `x`, to which [`ROUND`] was added. All are below 2³², see [`super::Bins::check`].

@@ -5,7 +5,7 @@
 //! digits for one word are in two parts, which a fused multiply-add separates without an error.
 
 use super::axis::ROUND;
-use crate::lanes::Pack;
+use crate::simd::Pack;
 use pulp::Simd;
 
 /// Quanta in a unit of ε.

@@ -4,9 +4,15 @@ use super::axis::Axis;
 use super::moments::{Moments, Sums};
 use super::recent::FRACTION_QUANTA;
 use crate::Error;
+use crate::memory::{filled, zeros};
 
 /// An impact creates energy where it multiplies the kinetic energy by more than this. Rounding makes a few 10⁻¹⁵ of it.
 pub const CREATES_ENERGY: f64 = 1.0 + 1e-12;
+
+/// What the memory is for.
+pub(super) const WHAT: &str = "velocity_bins or impacts, times restitution_bins and fraction_bins";
+/// Sites that are looked at together: in fine grids most are empty, and memory that is only read takes no room.
+const PART: usize = 512;
 
 /// What the rows of the grids stand for.
 #[derive(Debug, Clone, PartialEq)]
@@ -42,7 +48,7 @@ impl Bins {
         let check = |name: &'static str, axis: &Axis| {
             let sites = self.rows().saturating_mul(axis.bins() + 1);
             let allowed = "at most 2^32 - 1: rows times (bins + 3)";
-            Error::unless(sites <= u32::MAX as usize, name, sites as f64, allowed)
+            Error::unless(sites <= u32::MAX as usize, name, sites, allowed)
         };
         check("sites of the grid of restitution_bins", &self.restitution)?;
         self.fraction.as_ref().map_or(Ok(()), |axis| {
@@ -99,15 +105,23 @@ impl Gains {
 #[derive(Debug, Clone, PartialEq)]
 pub struct Grid {
     columns: usize,
-    counts: Vec<u64>,
+    pub(super) counts: Vec<u64>,
 }
 
 impl Grid {
-    fn new(rows: usize, columns: usize) -> Self {
-        Self {
-            columns,
-            counts: vec![0; rows * columns],
+    fn new(rows: usize, columns: usize) -> Result<Self, Error> {
+        let counts = zeros(WHAT, rows * columns)?;
+        Ok(Self { columns, counts })
+    }
+
+    /// A copy of the counts, row by row, as the numbers that NumPy counts with.
+    pub fn to_counts(&self) -> Result<Vec<i64>, Error> {
+        let mut copy = zeros(WHAT, self.counts.len())?;
+        let parts = copy.chunks_mut(PART).zip(self.counts.chunks(PART));
+        for (copies, counts) in parts.filter(|(_, counts)| counts.iter().any(|&count| count > 0)) {
+            copies.copy_from_slice(pulp::bytemuck::cast_slice::<u64, i64>(counts));
         }
+        Ok(copy)
     }
 
     /// Number of columns: one below the bins, the bins, one above, one for what has no place.
@@ -121,33 +135,39 @@ impl Grid {
     }
 
     pub(super) fn absorb(&mut self, recent: &mut [u32]) {
-        for (count, recent) in self.counts.iter_mut().zip(recent) {
-            *count += u64::from(std::mem::take(recent));
+        let parts = self.counts.chunks_mut(PART).zip(recent.chunks_mut(PART));
+        for (counts, recent) in parts.filter(|(_, recent)| recent.iter().any(|&count| count > 0)) {
+            for (count, recent) in counts.iter_mut().zip(recent) {
+                *count += u64::from(std::mem::take(recent));
+            }
         }
     }
 
     fn merge(&mut self, other: &Self) {
-        for (count, other) in self.counts.iter_mut().zip(&other.counts) {
-            *count += other;
+        let parts = self.counts.chunks_mut(PART).zip(other.counts.chunks(PART));
+        for (counts, others) in parts.filter(|(_, others)| others.iter().any(|&count| count > 0)) {
+            for (count, other) in counts.iter_mut().zip(others) {
+                *count += other;
+            }
         }
     }
 }
 
 impl Tally {
     /// Of nothing; moments will be taken about `origin` first.
-    pub fn new(bins: &Bins, origin: f64) -> Self {
+    pub fn new(bins: &Bins, origin: f64) -> Result<Self, Error> {
         let rows = bins.rows();
         let summed = bins.fraction.as_ref().map_or(0, |_| rows);
         let columns = bins.fraction.as_ref().map_or(0, |axis| axis.bins() + 1);
-        Self {
-            restitution: Grid::new(rows, bins.restitution.bins() + 1),
-            fraction: Grid::new(rows, columns),
+        Ok(Self {
+            restitution: Grid::new(rows, bins.restitution.bins() + 1)?,
+            fraction: Grid::new(rows, columns)?,
             origin,
-            sums: vec![Sums::EMPTY; summed],
-            fractions: vec![0; summed],
-            gains: vec![Gains::default(); rows],
+            sums: filled(WHAT, Sums::EMPTY, summed)?,
+            fractions: zeros(WHAT, summed)?,
+            gains: filled(WHAT, Gains::default(), rows)?,
             stops: [0; 5],
-        }
+        })
     }
 
     /// Adds what another tally with the same bins and origin has.

@@ -1,14 +1,12 @@
-//! What the tests share: every call of the engine's interface, random motions, and the gaps worked out in another way.
+//! What the tests share: runs, and random parameters.
 #![allow(dead_code, reason = "each test file uses its own part")]
 
 use proptest::prelude::*;
 use proptest::test_runner::{Config, RngSeed};
-use restitution_core::collision::collide;
 use restitution_core::{
-    Body, ChatterjeeRuina, Coulomb, Departure, Dumbbell, Flight, Frictionless, Hypothesis, Impact,
-    Landing, Law, Level, Limits, Means, Monitor, Normal, Orientation, Plastic, Records, Run, Shape,
-    Sphere, Spin, State, StopReason, Tabulated, TangentialRestitution, Vector, Viscoelastic,
-    bounce, first_contact,
+    Body, ChatterjeeRuina, Coulomb, Dumbbell, Frictionless, Hypothesis, Law, Level, Means, Monitor,
+    Normal, Orientation, Plastic, Records, Run, Shape, Spin, Tabulated, TangentialRestitution,
+    Vector, Viscoelastic,
 };
 use std::f64::consts::PI;
 
@@ -33,95 +31,6 @@ pub fn law(normal: f64, tangential: f64) -> Law<'static> {
         .into()
 }
 
-/// A state at rest, as the paper lets go of its particles.
-pub fn at_rest(body: &Body, height: f64, angle: f64) -> State {
-    let axis = Vector::new(angle.sin(), 0.0, angle.cos());
-    State::with_spin(body, height, Vector::default(), axis, Vector::default())
-}
-
-/// The same state at another height.
-pub fn at_height(state: &State, height: f64) -> State {
-    State {
-        lift: height - 1.0,
-        ..*state
-    }
-}
-
-/// Height of the centre of mass above R.
-pub fn lift(state: &State) -> f64 {
-    state.lift
-}
-
-/// Kinetic and potential energy.
-pub fn energy(state: &State, body: &Body) -> f64 {
-    state.kinetic_energy(body) + state.lift
-}
-
-/// The first contact of a flight, which must be found.
-pub fn landing(state: State, body: &Body, departure: Departure) -> Landing {
-    first_contact(&Flight::new(state, 0.0), body, departure).unwrap()
-}
-
-/// The whole trajectory, and why it ended.
-pub fn trajectory(
-    body: &Body,
-    law: &Law<'_>,
-    release: State,
-    impacts: usize,
-) -> (Vec<Impact>, StopReason) {
-    let mut all = Vec::new();
-    let limits = Limits {
-        impacts,
-        minimum_speed: 0.0,
-    };
-    let reason = bounce(body, law, 0.0, release, limits, |impact| {
-        all.push(*impact);
-        true
-    });
-    (all, reason.unwrap())
-}
-
-/// A flight with its landing, as the bounce loop goes through them.
-#[derive(Debug)]
-pub struct Leg {
-    pub start: State,
-    pub departure: Departure,
-    pub time: f64,
-    pub impact: Impact,
-}
-
-/// The first flights of a trajectory.
-pub fn legs(body: &Body, law: &Law<'_>, release: State, most: usize) -> Vec<Leg> {
-    let mut start = release;
-    let mut departure = Departure::Free;
-    let mut legs = Vec::new();
-    while legs.len() < most {
-        let Landing::Impact {
-            time,
-            state: before,
-            sphere,
-        } = landing(start, body, departure)
-        else {
-            break;
-        };
-        let (after, speed) = collide(body, law, &before, sphere);
-        legs.push(Leg {
-            start,
-            departure,
-            time,
-            impact: Impact {
-                time,
-                before,
-                after,
-                sphere,
-            },
-        });
-        departure = Departure::Touching { sphere, speed };
-        start = after;
-    }
-    legs
-}
-
 /// An ensemble like the paper's: radius 3 mm, dropped from 60 mm.
 pub fn paper(elongation: f64, law: Law<'_>) -> Run<'_> {
     let radius = 3e-3;
@@ -132,7 +41,7 @@ pub fn paper(elongation: f64, law: Law<'_>) -> Run<'_> {
         law,
         particles: 100,
         impacts: 100,
-        release_height: 0.06,
+        release_height: 0.06.into(),
         gravity: 9.81,
         orientation: Orientation::UniformAngle,
         minimum_speed: 0.0,
@@ -171,40 +80,6 @@ pub fn columns(records: &Records) -> [(&'static str, &[f64]); 7] {
         ("energy_ratio", &records.energy_ratio),
         ("angle", &records.angle),
     ]
-}
-
-/// The gap under a sphere a time after `start`: the parabola, and the axis turned about **Λ** by Rodrigues' formula with
-/// the platform's sine and cosine.
-pub fn gap(start: &State, body: &Body, time: f64, sphere: Sphere) -> f64 {
-    let side = sphere.sign() * body.half_separation;
-    let rate = start.precession.norm();
-    let tilt = if rate == 0.0 {
-        start.axis.z
-    } else {
-        let about = start.precession / rate;
-        let (sin, cos) = (rate * time).sin_cos();
-        let along = about.dot(start.axis) * about.z;
-        start.axis.z * cos + about.cross(start.axis).z * sin + along * (1.0 - cos)
-    };
-    (start.lift + side * tilt) + time * (start.velocity.z - 0.5 * time)
-}
-
-/// What sixteen roundings of the largest term of [`gap`] amount to, the rounding of the time included: the engine's and
-/// the test's own. `fastest` is the largest energy so far: an earlier landing was as inexact as that.
-pub fn gap_tolerance(start: &State, body: &Body, time: f64, fastest: f64) -> f64 {
-    let turning = body.half_separation * start.precession.norm() * time;
-    let path = start.velocity.z.abs() * time + time * time + start.lift.abs();
-    16.0 * f64::EPSILON * (1.0 + body.half_separation + path + turning + fastest)
-}
-
-/// Velocity of the point of contact, (7), (8).
-pub fn contact_velocity(state: &State, body: &Body, sphere: Sphere) -> Vector {
-    state.velocity + state.spin(body).cross(arm(state, body, sphere))
-}
-
-/// From the centre of mass to the point of contact, (6).
-pub fn arm(state: &State, body: &Body, sphere: Sphere) -> Vector {
-    state.axis * (sphere.sign() * body.half_separation) - Vector::new(0.0, 0.0, 1.0)
 }
 
 /// Directions, uniform on the sphere, with the corners of the program among them: upright, level and nearly so.
@@ -288,44 +163,15 @@ pub fn every_law((normal, tangential): (f64, f64)) -> impl Strategy<Value = Law<
     )
 }
 
-/// A body, a law and a free state above the plane: every spin, also about the symmetry axis, up to a rate of 10³ √(g/R).
-pub fn motion() -> impl Strategy<Value = (Body, Law<'static>, State)> {
-    let velocity = (
-        direction(),
-        prop_oneof![1 => Just(0.0), 4 => magnitude(-6.0, 1.3)],
-    );
-    let spin = (
-        direction(),
-        prop_oneof![1 => Just(0.0), 4 => magnitude(-6.0, 3.0)],
-    );
-    let space = prop_oneof![1 => Just(0.0), 2 => magnitude(-14.0, 0.0), 3 => 0.0..40.0_f64];
+/// Every number of the records as bits, impact by impact and release by release; all that are none are one.
+pub fn all_bits(records: &Records) -> impl PartialEq + use<> {
+    let word = |x: f64| if x.is_nan() { u64::MAX } else { x.to_bits() };
+    let words = |column: &[f64]| column.iter().map(|&x| word(x)).collect::<Vec<_>>();
     (
-        elongation(),
-        coefficients().prop_flat_map(every_law),
-        direction(),
-        velocity,
-        spin,
-        space,
-        any::<bool>(),
+        columns(records).map(|(_, column)| words(column)),
+        [&records.contact, &records.stop_reason].map(Clone::clone),
+        records.impacts.clone(),
+        [&records.release_angle, &records.release_azimuth].map(|column| words(column)),
+        words(records.release_spin.as_flattened()),
     )
-        .prop_map(
-            |(elongation, law, axis, (v, speed), (w, rate), space, axial)| {
-                let body = dumbbell(elongation);
-                let height = 1.0 + body.half_separation * axis.z.abs() + space;
-                let w = if axial { axis } else { w };
-                let state = State::with_spin(&body, height, v * speed, axis, w * rate);
-                (body, law, state)
-            },
-        )
-}
-
-/// A contact that is about to be hit: sphere, and the state with its point of contact approaching the plane.
-pub fn approach() -> impl Strategy<Value = (Body, Law<'static>, State, Sphere)> {
-    (motion(), any::<bool>()).prop_filter_map("not approaching", |((body, law, state), one)| {
-        let sphere = if one { Sphere::One } else { Sphere::Two };
-        let side = sphere.sign() * body.half_separation;
-        let state = at_height(&state, 1.0 - side * state.axis.z);
-        let approaching = contact_velocity(&state, &body, sphere).z < 0.0;
-        approaching.then_some((body, law, state, sphere))
-    })
 }

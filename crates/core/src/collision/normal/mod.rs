@@ -5,13 +5,12 @@ mod tabulated;
 mod viscoelastic;
 
 pub use plastic::Plastic;
-pub use tabulated::Tabulated;
-pub use viscoelastic::Viscoelastic;
+pub use tabulated::{Points, Tabulated};
+pub use viscoelastic::{PADE_ABOVE, PADE_BELOW, Viscoelastic};
 
 use crate::Error;
-use crate::lanes::Pack;
-use crate::scales::Scales;
-use pulp::{Scalar, Simd};
+use crate::simd::Pack;
+use pulp::{Scalar, Simd, WithSimd};
 
 /// ε^n, in [0, 1].
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -44,21 +43,46 @@ impl Normal<'_> {
         }
     }
 
-    /// The coefficient for speeds in the unit of `scales` instead of m/s.
-    pub(super) fn scaled(&self, scales: &Scales) -> Self {
+    /// [`Self::in_lanes`] as a call: written out in the bounce loop, all of them would crowd it.
+    #[inline(always)]
+    pub(crate) fn apart<S: Simd, const K: usize>(&self, speed: Pack<S, K>) -> Pack<S, K> {
+        speed.simd().vectorize(Coefficients {
+            normal: self,
+            speed,
+        })
+    }
+
+    /// The coefficient for speeds in this `unit`, in m/s, instead of m/s.
+    pub(super) fn scaled(&self, unit: f64) -> Self {
         match self {
             Self::Constant(_) => *self,
-            Self::Viscoelastic(material) => Self::Viscoelastic(material.scaled(scales.speed)),
-            Self::Plastic(material) => Self::Plastic(material.scaled(scales.speed)),
-            Self::Tabulated(table) => Self::Tabulated(table.scaled(scales.speed)),
+            Self::Viscoelastic(material) => Self::Viscoelastic(material.scaled(unit)),
+            Self::Plastic(material) => Self::Plastic(material.scaled(unit)),
+            Self::Tabulated(table) => Self::Tabulated(table.scaled(unit)),
         }
     }
 
-    pub(super) fn checked(self) -> Result<Self, Error> {
+    /// The coefficient, if it is one.
+    pub fn checked(self) -> Result<Self, Error> {
         if let Self::Constant(value) = self {
             Error::unless((0.0..=1.0).contains(&value), "normal", value, "in [0, 1]")?;
         }
         Ok(self)
+    }
+}
+
+/// A coefficient and the speeds at which it is wanted, to be compiled for each SIMD level.
+struct Coefficients<'a, 'b, S: Simd, const K: usize> {
+    normal: &'a Normal<'b>,
+    speed: Pack<S, K>,
+}
+
+impl<S: Simd, const K: usize> WithSimd for Coefficients<'_, '_, S, K> {
+    type Output = Pack<S, K>;
+
+    #[inline(always)]
+    fn with_simd<T: Simd>(self, _: T) -> Self::Output {
+        self.normal.in_lanes(self.speed)
     }
 }
 

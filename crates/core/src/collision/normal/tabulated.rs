@@ -1,7 +1,7 @@
 //! A coefficient as it was measured.
 
 use crate::Error;
-use crate::lanes::Pack;
+use crate::simd::Pack;
 use pulp::Simd;
 
 /// ε^n(v) by linear interpolation between points, and constant beyond the first and the last.
@@ -11,6 +11,30 @@ pub struct Tabulated<'a> {
     values: &'a [f64],
     /// What the speeds asked for are measured in, in m/s.
     unit: f64,
+}
+
+/// The points of a [`Tabulated`] coefficient, kept and checked once.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Points {
+    speeds: Vec<f64>,
+    values: Vec<f64>,
+}
+
+impl Points {
+    /// As [`Tabulated::new`].
+    pub fn new(speeds: Vec<f64>, values: Vec<f64>) -> Result<Self, Error> {
+        Tabulated::new(&speeds, &values)?;
+        Ok(Self { speeds, values })
+    }
+
+    /// The coefficient that they are of.
+    pub fn coefficient(&self) -> Tabulated<'_> {
+        Tabulated {
+            speeds: &self.speeds,
+            values: &self.values,
+            unit: 1.0,
+        }
+    }
 }
 
 impl<'a> Tabulated<'a> {
@@ -24,7 +48,7 @@ impl<'a> Tabulated<'a> {
             last = Some(speed);
         }
         let same = values.len() == speeds.len();
-        let count = values.len() as f64;
+        let count = values.len();
         Error::unless(same, "e", count, "as many coefficients as there are speeds")?;
         for &value in values {
             Error::unless((0.0..=1.0).contains(&value), "e", value, "in [0, 1]")?;

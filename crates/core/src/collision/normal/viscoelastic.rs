@@ -2,8 +2,8 @@
 //! restitution*, Phys. Rev. E **84**, 021302 (2011).
 
 use crate::Error;
-use crate::elementary::{fifth_root, polynomial};
-use crate::lanes::Pack;
+use crate::simd::Pack;
+use crate::simd::elementary::{fifth_root, polynomial};
 use pulp::Simd;
 use std::f64::consts::PI;
 
@@ -17,9 +17,10 @@ pub struct Viscoelastic {
     scale: f64,
 }
 
-/// Coefficients of v*⁰, v*¹, ... .
-const NUMERATOR: [f64; 4] = [1.0, 1.072_32, 0.574_198, 0.141_552];
-const DENOMINATOR: [f64; 7] = [
+/// Coefficients of v*⁰, v*¹, ... in the numerator of ε^n(v*).
+pub const PADE_ABOVE: [f64; 4] = [1.0, 1.072_32, 0.574_198, 0.141_552];
+/// The same in its denominator.
+pub const PADE_BELOW: [f64; 7] = [
     1.0, 1.072_32, 1.727_65, 1.378_42, 1.194_49, 0.467_273, 0.235_585,
 ];
 
@@ -67,13 +68,18 @@ impl Viscoelastic {
                 * radius
                 * radius.sqrt()); // ρ/m
         let scale = (1.5 * dissipation).sqrt() * fifth_root(stiffness);
-        Error::unless(
+        Error::unless_beyond(
             stiffness.is_normal() && scale < LARGEST,
             "young_modulus",
             young_modulus,
             "such that the ratio of stiffness and mass neither overflows nor underflows",
         )?;
         Ok(Self { scale })
+    }
+
+    /// β, in (s/m)^{1/5}.
+    pub fn beta(&self) -> f64 {
+        self.scale * self.scale
     }
 
     pub(super) fn scaled(&self, unit: f64) -> Self {
@@ -89,7 +95,7 @@ impl Viscoelastic {
             *x = fifth_root(*x); // v^{1/10}
         }
         let x = root * self.scale; // v*
-        polynomial(NUMERATOR, x) / polynomial(DENOMINATOR, x)
+        polynomial(PADE_ABOVE, x) / polynomial(PADE_BELOW, x)
     }
 }
 

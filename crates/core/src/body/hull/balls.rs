@@ -1,0 +1,139 @@
+//! Hulls of balls: two spheres on the axis, or one.
+
+use super::{Hull, Part, Swing};
+use crate::simd::{Mask, Pack};
+use pulp::Simd;
+
+/// What distinguishes hulls of balls, whose gaps are linear in e_z.
+pub(super) trait Balls: Copy {
+    /// Whether there are two.
+    const TWO: bool;
+    /// The levers s of spheres 1 and 2.
+    fn levers(&self) -> [f64; 2];
+    /// e_z less that at which both spheres touch: negative where sphere 1 is the lower one.
+    fn lean<S: Simd, const K: usize>(&self, tilt: Pack<S, K>) -> Pack<S, K>;
+    /// Height of the centre of mass at which lift is 0.
+    fn level(&self) -> f64;
+    /// Lift above which nothing can touch while |e_z| ≤ `reach`.
+    fn ceiling<S: Simd, const K: usize>(&self, reach: Pack<S, K>) -> Pack<S, K>;
+    /// The radius of a sphere.
+    fn radius<S: Simd, const K: usize>(&self, one: Mask<S, K>) -> Pack<S, K>;
+    /// ±1 for sphere 1 or 2.
+    fn name<S: Simd, const K: usize>(&self, one: Mask<S, K>) -> Pack<S, K>;
+}
+
+impl<B: Balls> Hull for B {
+    const TWO: bool = B::TWO;
+
+    fn level(&self) -> f64 {
+        Balls::level(self)
+    }
+
+    fn sharpness(&self) -> f64 {
+        1.0
+    }
+
+    #[inline(always)]
+    fn ceiling<S: Simd, const K: usize>(&self, reach: Pack<S, K>) -> Pack<S, K> {
+        Balls::ceiling(self, reach)
+    }
+
+    #[inline(always)]
+    fn sway<S: Simd, const K: usize>(&self, amplitude: Pack<S, K>, _: Pack<S, K>) -> Pack<S, K> {
+        let [one, two] = self.levers();
+        one.abs().max(two.abs()) * amplitude
+    }
+
+    #[inline(always)]
+    fn part<S: Simd, const K: usize>(&self, one: Mask<S, K>) -> Part<S, K> {
+        let [first, second] = self.levers();
+        Part {
+            one,
+            lever: one.select(first, second),
+        }
+    }
+
+    /// Both lower bounds have the same curvature, so that they cross only when the axis, turning at its present rate, leans to
+    /// neither sphere: up to then it is the lower sphere's that counts, afterwards the other's.
+    #[inline(always)]
+    fn nearer<S: Simd, const K: usize>(
+        &self,
+        lift: Pack<S, K>,
+        climb: Pack<S, K>,
+        swing: &Swing<S, K>,
+        bound: Pack<S, K>,
+    ) -> Part<S, K> {
+        if !B::TWO {
+            return self.part(Mask::splat(lift.simd(), true));
+        }
+        let (lean, rate) = (self.lean(swing.tilt), swing.rate);
+        // lift + climb t − Mt²/2 at t = −lean/rate, times rate²: both gaps there.
+        let level = rate.mul_add(
+            lift.mul_add(rate, -(climb * lean)),
+            -(0.5 * bound * (lean * lean)),
+        );
+        // If both spheres are in the air then, the one that is going down is or will be the lower one.
+        let swings = Pack::splat(lift.simd(), 0.0).le(level);
+        self.part(swings.select(rate, lean).lt(0.0))
+    }
+
+    #[inline(always)]
+    fn gap<S: Simd, const K: usize>(
+        &self,
+        part: &Part<S, K>,
+        tilt: Pack<S, K>,
+        lift: Pack<S, K>,
+    ) -> Pack<S, K> {
+        part.lever.mul_add(self.lean(tilt), lift) // (2)
+    }
+
+    #[inline(always)]
+    fn lift<S: Simd, const K: usize>(&self, part: &Part<S, K>, tilt: Pack<S, K>) -> Pack<S, K> {
+        -(part.lever * self.lean(tilt)) // (2)
+    }
+
+    #[inline(always)]
+    fn lever<S: Simd, const K: usize>(&self, part: &Part<S, K>, _: Pack<S, K>) -> Pack<S, K> {
+        part.lever
+    }
+
+    #[inline(always)]
+    fn radius<S: Simd, const K: usize>(&self, part: &Part<S, K>, _: Pack<S, K>) -> Pack<S, K> {
+        Balls::radius(self, part.one)
+    }
+
+    #[inline(always)]
+    fn bend<S: Simd, const K: usize>(
+        &self,
+        part: &Part<S, K>,
+        swing: &Swing<S, K>,
+        addend: f64,
+    ) -> Pack<S, K> {
+        part.lever.mul_add(swing.acceleration, addend)
+    }
+
+    #[inline(always)]
+    fn bends<S: Simd, const K: usize>(
+        &self,
+        part: &Part<S, K>,
+        swing: &Swing<S, K>,
+    ) -> [Pack<S, K>; 3] {
+        linear_bends(part.lever, swing)
+    }
+
+    #[inline(always)]
+    fn name<S: Simd, const K: usize>(&self, part: &Part<S, K>, _: Pack<S, K>) -> Pack<S, K> {
+        Balls::name(self, part.one)
+    }
+}
+
+/// The second to fourth derivatives of a gap that is linear in e_z.
+#[inline(always)]
+fn linear_bends<S: Simd, const K: usize>(
+    lever: Pack<S, K>,
+    swing: &Swing<S, K>,
+) -> [Pack<S, K>; 3] {
+    let second = lever * swing.acceleration;
+    let third = -(lever * swing.square) * swing.rate;
+    [second, third, -swing.square * second]
+}

@@ -1,0 +1,116 @@
+//! What a law needs to know of a contact, and what it answers.
+//!
+//! In the frame of **n**, of **u**, the horizontal direction of the axis, and of **w** = **n** × **u**, the matrix
+//! K = I/m + [**r**_c]ᵀĴ⁻¹[**r**_c], which turns an impulse into the change of contact velocity (10), falls apart into a
+//! 2×2 block {**n**, **u**} and a single entry for **w**. A law sees the contact velocity and K, and nothing of the body.
+
+use crate::simd::Pack;
+use pulp::Simd;
+
+/// A contact in each lane.
+#[derive(Clone, Copy)]
+pub(crate) struct Contacts<S: Simd, const K: usize> {
+    /// Velocity **v**_c of the point of contact (7), (8); `slip_normal` ≤ 0.
+    pub slip_normal: Pack<S, K>,
+    pub slip_along: Pack<S, K>,
+    /// 0 in the plane.
+    pub slip_across: Pack<S, K>,
+    /// J_xx.
+    pub(super) inertia: f64,
+    /// **r**_c along **n** and **u**.
+    pub(super) arm_normal: Pack<S, K>,
+    pub(super) arm_along: Pack<S, K>,
+    /// K_ww; of no meaning in the plane.
+    pub(super) across: Pack<S, K>,
+}
+
+/// What a law answers in each lane.
+#[derive(Clone, Copy)]
+pub(crate) struct Responses<S: Simd, const K: usize> {
+    /// Impulse P on the particle.
+    pub normal: Pack<S, K>,
+    pub along: Pack<S, K>,
+    /// 0 in the plane.
+    pub across: Pack<S, K>,
+    /// Normal velocity of the point of contact after the impact, ≥ 0.
+    pub separation_speed: Pack<S, K>,
+}
+
+impl<S: Simd, const K: usize> Contacts<S, K> {
+    /// A contact that slips in the vertical plane of the axis only. `inertia` is J_xx, `arm` is **r**_c along **n** and **u**.
+    #[inline(always)]
+    pub fn in_plane(slip: [Pack<S, K>; 2], inertia: f64, arm: [Pack<S, K>; 2]) -> Self {
+        let zero = Pack::splat(slip[0].simd(), 0.0);
+        Self::in_space([slip[0], slip[1], zero], inertia, arm, zero)
+    }
+
+    /// A contact that slips in any direction along the plane, with `across` = K_ww.
+    #[inline(always)]
+    pub fn in_space(
+        [slip_normal, slip_along, slip_across]: [Pack<S, K>; 3],
+        inertia: f64,
+        [arm_normal, arm_along]: [Pack<S, K>; 2],
+        across: Pack<S, K>,
+    ) -> Self {
+        Self {
+            slip_normal,
+            slip_along,
+            slip_across,
+            inertia,
+            arm_normal,
+            arm_along,
+            across,
+        }
+    }
+
+    /// −v_c^n ≥ 0.
+    #[inline(always)]
+    pub fn approach_speed(&self) -> Pack<S, K> {
+        self.slip_normal.abs()
+    }
+
+    /// The impulse along **n** and **u** that changes the contact velocity by this much: K P = Δ**v**_c (10), solved as in
+    /// (14).
+    #[inline(always)]
+    pub fn impulse(&self, normal: Pack<S, K>, along: Pack<S, K>) -> (Pack<S, K>, Pack<S, K>) {
+        let (n, u, j) = (self.arm_normal, self.arm_along, self.inertia);
+        let nn = n.mul_add(n, j);
+        let inverse = 1.0 / u.mul_add(u, nn); // 1/(J_xx/m + r_c²)
+        let cross = n * u;
+        (
+            nn.mul_add(normal, cross * along) * inverse, // (14)
+            u.mul_add(u, j).mul_add(along, cross * normal) * inverse, // (14)
+        )
+    }
+
+    /// K_nn.
+    #[inline(always)]
+    pub fn normal_response(&self) -> Pack<S, K> {
+        (self.arm_along * self.arm_along).mul_add(1.0 / self.inertia, 1.0)
+    }
+
+    /// K_uu.
+    #[inline(always)]
+    pub fn along_response(&self) -> Pack<S, K> {
+        (self.arm_normal * self.arm_normal).mul_add(1.0 / self.inertia, 1.0)
+    }
+
+    /// K_nu.
+    #[inline(always)]
+    pub fn coupling(&self) -> Pack<S, K> {
+        -(self.arm_normal * self.arm_along) * (1.0 / self.inertia)
+    }
+
+    /// K_ww.
+    #[inline(always)]
+    pub fn across_response(&self) -> Pack<S, K> {
+        self.across
+    }
+
+    /// K_nn − K_nu²/K_uu, what a normal impulse changes where the contact sticks.
+    #[inline(always)]
+    pub fn sticking_response(&self) -> Pack<S, K> {
+        let nn = self.arm_normal.mul_add(self.arm_normal, self.inertia);
+        self.arm_along.mul_add(self.arm_along, nn) / nn
+    }
+}

@@ -1,0 +1,51 @@
+//! The bounce loop: next contact, motion until then, impact, again and again, for groups of particles that take turns.
+
+use super::end::{Limits, StopReason};
+use super::group::{Release, Stuck};
+use super::impact::Sink;
+use super::leg::Legs;
+use super::strike::Turn;
+use crate::body::Body;
+use crate::simd::Pack;
+use pulp::Simd;
+use std::ops::Range;
+
+/// Bounces the `particles` of a release, at most as many as N groups hold. Calls `go_on` before every impact.
+///
+/// How a group gets from one impact to the next is up to the `legs`; here it is told, and ended.
+#[inline(always)]
+pub(crate) fn bounce<S: Simd, T: Turn, const N: usize>(
+    simd: S,
+    (body, limits): (&Body, Limits),
+    legs: &impl Legs<S, T>,
+    (release, particles): (&impl Release, Range<usize>),
+    sink: &mut impl Sink,
+    go_on: impl Fn() -> bool,
+) -> Result<(), Stuck> {
+    let mut groups = legs.groups::<N>(simd, release, particles.clone());
+    let groups = &mut groups[..particles.len().div_ceil(Pack::<S, 1>::WIDTH)];
+    let mut number = 0;
+    let last = loop {
+        if number == limits.impacts {
+            break StopReason::ImpactsReached;
+        }
+        if !go_on() {
+            break StopReason::Interrupted;
+        }
+        legs.fly(simd, groups, number, sink)?;
+        let mut active = false;
+        for group in groups.iter_mut() {
+            group.tell(body, limits, number, sink);
+            active |= group.active.any();
+        }
+        number += 1;
+        if !active {
+            break StopReason::ImpactsReached;
+        }
+    };
+    for group in groups {
+        group.end(group.active, number, last);
+        group.close(sink);
+    }
+    Ok(())
+}

@@ -1,0 +1,336 @@
+//! As many particles as a vector has lanes, and the stages of an impact.
+
+use super::end::{COLLAPSE_RUN, Limits, StopReason, UNRESOLVED};
+use super::impact::{Impact, Sink};
+use super::strike::{Strike, Touch, Turn};
+use crate::body::{Body, Hull};
+use crate::collision::Respond;
+use crate::flight::{Flight, State, States};
+use crate::search::{Arrival, Departure, Leap, Look, MOST_STEPS, Residue, Search};
+use crate::simd::elementary::sincos_in_lanes;
+use crate::simd::{Mask, Pack};
+use pulp::{Simd, WithSimd};
+use std::ops::Range;
+
+/// A flight of a group that turns in the way T.
+type FlightOf<S, T> = <T as Turn>::Flight<S, 1>;
+/// Its state.
+pub(crate) type StateOf<S, T> = <FlightOf<S, T> as Flight<S, 1>>::State;
+/// What an impact changes of it.
+type MotionOf<S, T> = <StateOf<S, T> as States<S, 1>>::Motion;
+
+/// Most lanes of a vector.
+const LANES: usize = 8;
+
+/// How particles are let go.
+pub(crate) trait Release {
+    /// The state of a particle at its release.
+    fn start(&self, particle: usize) -> State;
+}
+
+/// Where the contact search did not end.
+#[derive(Debug)]
+pub(crate) struct Stuck {
+    pub lane: usize,
+    pub impacts: usize,
+}
+
+/// A contact.
+pub(crate) struct Found<S: Simd, T: Turn> {
+    /// Flight time.
+    pub time: Pack<S, 1>,
+    /// The state just before the impact.
+    pub state: StateOf<S, T>,
+    /// ±1: the sphere that touches.
+    pub sphere: Pack<S, 1>,
+}
+
+/// As many particles as a vector has lanes. Aligned, and with it the stack, to a line of the cache, which a vector must not
+/// straddle.
+#[derive(Clone, Copy)]
+#[repr(align(64))]
+pub(crate) struct Group<S: Simd, T: Turn> {
+    /// The search from the start of the flight, which gives way to the state before the impact.
+    search: Search<S, FlightOf<S, T>, 1>,
+    /// Where the search looks, and sine and cosine there.
+    pub time: Pack<S, 1>,
+    pub turned: (Pack<S, 1>, Pack<S, 1>),
+    /// What it sees there, and where that leads.
+    look: Look<S, 1>,
+    leap: Leap<S, 1>,
+    residue: Residue<S, 1>,
+    arrival: Arrival<S, 1>,
+    /// The motion after the impact.
+    after: MotionOf<S, T>,
+    /// Speed at which the point of contact approached the plane.
+    approach: Pack<S, 1>,
+    /// Time since release.
+    clock: Pack<S, 1>,
+    /// Unresolved flights in a row.
+    unresolved: Pack<S, 1>,
+    /// Which lanes hold a particle still.
+    pub active: Mask<S, 1>,
+    /// Number of lane 0, and how many lanes were occupied.
+    first: usize,
+    particles: usize,
+    /// After how many impacts, and why, the particles ended that have.
+    ends: [(usize, StopReason); LANES],
+}
+
+impl<S: Simd, T: Turn> Group<S, T> {
+    /// A group without particles, which looks at a body at rest.
+    #[inline(always)]
+    pub fn empty(simd: S, hull: &impl Hull) -> Self {
+        let zero = Pack::splat(simd, 0.0);
+        let state = StateOf::<S, T>::resting(simd, 1.0);
+        let departure = Departure {
+            sphere: zero,
+            speed: zero,
+        };
+        let part = hull.part(Mask::splat(simd, false));
+        Self {
+            search: Search::new(FlightOf::<S, T>::new(state, 0.0), departure, hull),
+            look: Look::nothing(part),
+            leap: Leap::none(simd),
+            residue: Residue::none(simd),
+            arrival: Arrival::none(simd),
+            time: zero,
+            turned: (zero, zero),
+            after: state.motion(),
+            approach: zero,
+            clock: zero,
+            unresolved: zero,
+            active: Mask::splat(simd, false),
+            first: 0,
+            particles: 0,
+            ends: [(0, StopReason::Interrupted); LANES],
+        }
+    }
+
+    /// Takes `particles` of a release, at most as many as there are lanes. To the sink they are numbered from `first` on.
+    #[inline(always)]
+    pub fn occupy(
+        &mut self,
+        first: usize,
+        particles: Range<usize>,
+        release: &impl Release,
+        slope: f64,
+        hull: &impl Hull,
+    ) {
+        let mut state = self.before();
+        let mut occupied = 0.0 * self.clock;
+        (self.first, self.particles) = (first, particles.len());
+        for (lane, particle) in particles.enumerate() {
+            state.put(lane, &release.start(particle));
+            occupied.as_mut_slice()[lane] = 1.0;
+        }
+        self.active = occupied.eq(1.0);
+        self.search = Search::released(FlightOf::<S, T>::new(state, slope), hull);
+    }
+
+    /// The state before the impact, or at the start of the flight.
+    #[inline(always)]
+    fn before(&self) -> StateOf<S, T> {
+        *self.search.flight.start()
+    }
+
+    /// Starts as after an impact.
+    pub fn depart_from(&mut self, departure: Departure<S, 1>) {
+        self.search.departure = departure;
+    }
+
+    /// The contact that was found; else why there is none.
+    pub fn found(&self) -> Result<Found<S, T>, StopReason> {
+        if self.active.any() {
+            Ok(Found {
+                time: self.arrival.time,
+                state: self.before(),
+                sphere: self.search.departure.sphere,
+            })
+        } else {
+            Err(self.ends[0].1)
+        }
+    }
+
+    /// The angle of which sine and cosine are wanted.
+    #[inline(always)]
+    pub fn angle(&self) -> Pack<S, 1> {
+        self.search.angle(self.time)
+    }
+
+    /// Finds where the search looks first.
+    #[inline(always)]
+    pub fn depart(&mut self, number: usize, hull: &impl Hull) {
+        let still = self.search.departure.speed.le(0.0);
+        if still.any() {
+            let rests = still & self.search.rests(hull);
+            self.end(rests, number, StopReason::Collapse);
+        }
+        self.time = self.search.departed(hull);
+    }
+
+    #[inline(always)]
+    pub fn look(&mut self, hull: &impl Hull) {
+        self.look = self.search.look(self.time, self.turned, hull);
+    }
+
+    #[inline(always)]
+    pub fn leap(&mut self, hull: &impl Hull) {
+        self.leap = self.search.leap(&self.look, hull);
+    }
+
+    #[inline(always)]
+    pub fn residue(&mut self, hull: &impl Hull) {
+        self.residue = self.search.residue(self.time, &self.look, &self.leap, hull);
+    }
+
+    #[inline(always)]
+    pub fn arrive(&mut self, hull: &impl Hull) {
+        self.arrival = self
+            .search
+            .arrival(&self.look, &self.leap, &self.residue, hull);
+    }
+
+    /// Whether a particle has not arrived after the first pass of the search: rare, but for spinning smooth hulls.
+    #[inline(always)]
+    pub fn is_waiting(&self) -> bool {
+        (self.active & !self.arrival.done).any()
+    }
+
+    /// Ends the particles that never land.
+    #[inline(always)]
+    pub fn end_those_that_never_land(&mut self, number: usize) {
+        self.end(self.look.never, number, StopReason::NeverLands);
+    }
+
+    /// Searches on until every particle has arrived.
+    #[inline(always)]
+    fn search_on(&mut self, number: usize, hull: &impl Hull) -> Result<(), Stuck> {
+        for _ in 0..MOST_STEPS {
+            self.search
+                .graze(self.time, &self.look, &self.leap, &mut self.arrival);
+            if !self.is_waiting() {
+                return Ok(());
+            }
+            self.time = self.search.next(self.time, &self.leap, &self.arrival);
+            self.turned = sincos_in_lanes(self.angle());
+            self.look(hull);
+            self.leap(hull);
+            self.residue(hull);
+            self.arrive(hull);
+            if !self.is_waiting() {
+                return Ok(());
+            }
+        }
+        Err(self.stuck(self.active & !self.arrival.done, number))
+    }
+
+    /// Comes down on the plane.
+    #[inline(always)]
+    pub fn land(&mut self, hull: &impl Hull) {
+        let Arrival { time, attitude, .. } = self.arrival;
+        let state = self.search.flight.state(time, attitude);
+        let (part, tilt) = (&self.look.gap.part, state.tilt());
+        self.search.departure.sphere = hull.name(part, tilt);
+        self.search.flight.end(state, hull.lift(part, tilt)); // (2)
+    }
+
+    /// Applies the collision law.
+    #[inline(always)]
+    pub fn collide(&mut self, body: &Body, hull: &impl Hull, law: &impl Respond) {
+        let touch = Touch::of(hull, &self.look.gap.part, self.before().tilt());
+        let struck = self.before().strike(body, law, touch);
+        self.after = struck.motion;
+        self.approach = struck.approach;
+        self.search.departure.speed = struck.separation;
+    }
+
+    /// Tells the sink, and ends the particles for which that was the last impact.
+    #[inline(always)]
+    pub fn tell(&mut self, body: &Body, limits: Limits, number: usize, sink: &mut impl Sink) {
+        let before = self.before();
+        let after = before.moving(self.after);
+        self.clock = self.clock + self.arrival.time;
+        let energy_after = after.kinetic_energy(body);
+        let impact = Impact {
+            time: self.clock,
+            fall: -before.climb(),
+            rise: after.climb(),
+            rotation: before.rotational_energy(body),
+            energy_before: before.kinetic_energy(body),
+            energy_after,
+            sine: before.sine(),
+            cosine: before.tilt(),
+            sphere: self.search.departure.sphere,
+            approach: self.approach,
+            before: before.in_space(),
+            after: after.in_space(),
+            active: self.active,
+        };
+        sink.impact(number, self.first, &impact);
+        if limits.minimum_speed > 0.0 {
+            let slow = (2.0 * energy_after).lt(limits.minimum_speed * limits.minimum_speed);
+            self.end(slow, number + 1, StopReason::SpeedBelowThreshold);
+        }
+        let low = (self.search.bound * (self.arrival.time * self.arrival.time)).lt(UNRESOLVED);
+        if low.any() {
+            self.unresolved = low.select(self.unresolved + 1.0, 0.0);
+            let collapsed = self.unresolved.eq(f64::from(COLLAPSE_RUN));
+            self.end(collapsed, number + 1, StopReason::Collapse);
+        } else {
+            self.unresolved = Pack::splat(self.clock.simd(), 0.0);
+        }
+    }
+
+    /// Starts the next flight.
+    #[inline(always)]
+    pub fn start(&mut self, slope: f64, hull: &impl Hull) {
+        let flight = FlightOf::<S, T>::new(self.before().moving(self.after), slope);
+        self.search = Search::new(flight, self.search.departure, hull);
+    }
+
+    /// Ends the active lanes in `which`. Rare.
+    #[inline(always)]
+    pub fn end(&mut self, which: Mask<S, 1>, impacts: usize, reason: StopReason) {
+        let ending = which & self.active;
+        if ending.any() {
+            ending.each(|lane| self.ends[lane] = (impacts, reason));
+            self.active = self.active & !ending;
+        }
+    }
+
+    /// Tells the sink how the particles ended.
+    pub fn close(&self, sink: &mut impl Sink) {
+        for (lane, &(impacts, reason)) in self.ends[..self.particles].iter().enumerate() {
+            sink.end(self.first + lane, impacts, reason);
+        }
+    }
+
+    #[cold]
+    fn stuck(&self, waiting: Mask<S, 1>, impacts: usize) -> Stuck {
+        let mut first = None;
+        waiting.each(|lane| {
+            first.get_or_insert(self.first + lane);
+        });
+        Stuck {
+            lane: first.unwrap_or(self.first),
+            impacts,
+        }
+    }
+}
+
+/// More passes of the search for one group, compiled apart: written out in every loop they would crowd it.
+pub(super) struct SearchOn<'a, S: Simd, T: Turn, H> {
+    pub group: &'a mut Group<S, T>,
+    pub hull: &'a H,
+    pub number: usize,
+}
+
+impl<S: Simd, T: Turn, H: Hull> WithSimd for SearchOn<'_, S, T, H> {
+    type Output = Result<(), Stuck>;
+
+    #[inline(always)]
+    fn with_simd<U: Simd>(self, _: U) -> Self::Output {
+        self.group.search_on(self.number, self.hull)
+    }
+}

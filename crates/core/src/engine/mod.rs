@@ -1,0 +1,20 @@
+//! The bounce loop, the paper's steps 1–7: next contact, motion until then, impact, for as many particles at once as there are
+//! lanes, however they turn and whatever hull they have.
+
+mod bounce;
+mod end;
+mod group;
+mod impact;
+mod leg;
+mod single;
+mod strike;
+
+pub(crate) use bounce::bounce;
+pub use end::{COLLAPSE_RUN, Limits, StopReason};
+pub(crate) use group::{Release, Stuck};
+pub(crate) use impact::{Impact, Meanwhile, Sink};
+pub(crate) use leg::{Apart, Legs, Together};
+pub use single::{
+    Departure, Landing, NoConvergence, SingleImpact, collide, first_contact, trajectory,
+};
+pub(crate) use strike::{Planar, Spatial, Turn};

@@ -1,0 +1,171 @@
+//! The impact of a body: its contact as a law sees it, (6)–(8), and its motion afterwards, (11).
+
+use crate::body::{Body, Hull, Part};
+use crate::collision::{Contacts, Respond};
+use crate::flight::{
+    Flight, PlanarMotion, PlanarStates, SpatialFlight, SpatialMotion, SpatialStates, States,
+    Vectors,
+};
+use crate::simd::Pack;
+use pulp::Simd;
+
+/// A way to turn.
+pub(crate) trait Turn: Copy {
+    /// A flight of as many particles as there are lanes.
+    type Flight<S: Simd, const K: usize>: Flight<S, K, State: Strike<S, K>>;
+}
+
+/// In a vertical plane.
+#[derive(Clone, Copy)]
+pub(crate) struct Planar;
+
+/// In any way.
+#[derive(Clone, Copy)]
+pub(crate) struct Spatial;
+
+impl Turn for Planar {
+    type Flight<S: Simd, const K: usize> = PlanarStates<S, K>;
+}
+
+impl Turn for Spatial {
+    type Flight<S: Simd, const K: usize> = SpatialFlight<S, K>;
+}
+
+/// A ball of the hull at the contact: its lever and its radius.
+#[derive(Clone, Copy)]
+pub(crate) struct Touch<S: Simd, const K: usize> {
+    pub lever: Pack<S, K>,
+    pub radius: Pack<S, K>,
+}
+
+impl<S: Simd, const K: usize> Touch<S, K> {
+    /// Of a part of a hull at this tilt.
+    #[inline(always)]
+    pub fn of(hull: &impl Hull, part: &Part<S, K>, tilt: Pack<S, K>) -> Self {
+        Self {
+            lever: hull.lever(part, tilt),
+            radius: hull.radius(part, tilt),
+        }
+    }
+}
+
+/// What an impact did.
+pub(crate) struct Struck<M, S: Simd, const K: usize> {
+    /// The motion after it.
+    pub motion: M,
+    /// Speeds at which the point of contact approached the plane and leaves it.
+    pub approach: Pack<S, K>,
+    pub separation: Pack<S, K>,
+}
+
+/// What can strike the plane.
+pub(crate) trait Strike<S: Simd, const K: usize>: States<S, K> {
+    /// The impact of the part of the hull at the contact.
+    fn strike(
+        &self,
+        body: &Body,
+        law: &impl Respond,
+        touch: Touch<S, K>,
+    ) -> Struck<Self::Motion, S, K>;
+}
+
+impl<S: Simd, const K: usize> Strike<S, K> for PlanarStates<S, K> {
+    #[inline(always)]
+    fn strike(
+        &self,
+        body: &Body,
+        law: &impl Respond,
+        Touch { lever, radius }: Touch<S, K>,
+    ) -> Struck<PlanarMotion<S, K>, S, K> {
+        let j = body.transverse;
+        let PlanarMotion { glide, climb, spin } = self.motion;
+        let arm_x = self.sine * lever; // r_c (6)
+        let arm_z = self.cosine.mul_add(lever, -radius); // r_c (6)
+        let slip = [
+            (climb - spin * arm_x).min(0.0), // v_c (7); a grazing contact may have turned around within the last step
+            glide + spin * arm_z,            // v_c (7)
+        ];
+        let contact = Contacts::in_plane(slip, j, [arm_z, arm_x]);
+        let response = law.respond::<S, K, false>(&contact);
+        let torque = arm_z.mul_add(response.along, -(arm_x * response.normal));
+        let motion = PlanarMotion {
+            glide: glide + response.along,       // (11)
+            climb: climb + response.normal,      // (11)
+            spin: torque.mul_add(1.0 / j, spin), // (11)
+        };
+        Struck {
+            motion,
+            approach: contact.approach_speed(),
+            separation: response.separation_speed,
+        }
+    }
+}
+
+/// Below this sine of the tilt its square underflows: an upright axis has no horizontal direction, and none is needed.
+const UPRIGHT: f64 = 1e-150;
+
+impl<S: Simd, const K: usize> Strike<S, K> for SpatialStates<S, K> {
+    #[inline(always)]
+    fn strike(
+        &self,
+        body: &Body,
+        law: &impl Respond,
+        Touch { lever, radius }: Touch<S, K>,
+    ) -> Struck<SpatialMotion<S, K>, S, K> {
+        let SpatialMotion {
+            velocity,
+            precession,
+        } = self.motion;
+        let axis = self.axis;
+        let arm = Vectors {
+            x: axis.x * lever,
+            y: axis.y * lever,
+            z: axis.z.mul_add(lever, -radius),
+        }; // r_c (6)
+        let turning = self.spin(body).cross(arm);
+        let (x, y) = (velocity.x + turning.x, velocity.y + turning.y); // v_c (7)
+
+        let sine = self.sine();
+        let upright = sine.le(UPRIGHT);
+        let inverse = 1.0 / sine.max(UPRIGHT);
+        let along_x = upright.select(1.0, axis.x * inverse);
+        let along_y = upright.select(0.0, axis.y * inverse);
+
+        // What of r_c × w lies across the axis, and along it.
+        let (twist, roll) = (radius * axis.z - lever, radius * sine);
+        let across = (twist * twist).mul_add(
+            1.0 / body.transverse,
+            (roll * roll).mul_add(1.0 / body.axial, 1.0),
+        );
+        let slip = [
+            (velocity.z + turning.z).min(0.0), // a grazing contact may have turned around within the last step
+            x.mul_add(along_x, y * along_y),
+            y.mul_add(along_x, -(x * along_y)),
+        ];
+        let arms = [arm.z, lever * sine];
+        let contact = Contacts::in_space(slip, body.transverse, arms, across);
+        let response = law.respond::<S, K, true>(&contact);
+        let impulse = Vectors {
+            x: response
+                .along
+                .mul_add(along_x, -(response.across * along_y)),
+            y: response.along.mul_add(along_y, response.across * along_x),
+            z: response.normal,
+        };
+        let motion = SpatialMotion {
+            velocity: Vectors {
+                x: velocity.x + impulse.x,
+                y: velocity.y + impulse.y,
+                z: velocity.z + impulse.z,
+            }, // (11)
+            precession: arm
+                .cross(impulse)
+                .mul_add(1.0 / body.transverse, precession), // (11)
+        };
+        Struck {
+            motion,
+            approach: contact.approach_speed(),
+            separation: response.separation_speed,
+        }
+    }
+}

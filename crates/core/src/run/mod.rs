@@ -1,0 +1,66 @@
+//! A run, in SI units, and how its particles are let go.
+
+mod block;
+mod height;
+mod orientation;
+mod plan;
+mod scales;
+mod spin;
+
+pub(crate) use block::BLOCK;
+pub use height::Height;
+pub use orientation::Orientation;
+pub(crate) use plan::Plan;
+pub use scales::Scales;
+pub use spin::{About, Spin};
+
+use crate::body::Solid;
+use crate::collision::Law;
+use crate::flight::Vector;
+use crate::simd::elementary::sincos;
+
+/// A run, in SI units.
+#[derive(Debug, Clone, Copy)]
+pub struct Run<'a> {
+    /// The body.
+    pub body: Solid,
+    /// The collision law.
+    pub law: Law<'a>,
+    /// Number of particles.
+    pub particles: usize,
+    /// Most impacts of a particle.
+    pub impacts: usize,
+    /// Law of the height of the centre of mass over the plane at release, along the plane normal, in m.
+    pub release_height: Height,
+    /// Acceleration of gravity, in m/s².
+    pub gravity: f64,
+    /// Law of the symmetry axis at release.
+    pub orientation: Orientation<'a>,
+    /// Law of the angular velocity at release.
+    pub spin: Spin<'a>,
+    /// Velocity of the centre of mass at release, in m/s.
+    pub velocity: Vector,
+    /// Angle α in [0, π/2) by which the plane is inclined, falling along x: in its frame gravity is g(sin α, 0, −cos α).
+    pub incline: f64,
+    /// A particle ends when √(2 E_kin/m) falls below this after an impact, in m/s; 0 never does.
+    pub minimum_speed: f64,
+    /// Seed of the random numbers.
+    pub seed: u64,
+}
+
+impl Run<'_> {
+    /// What the sums of ε are taken about: ε^n at the normal speed that a fall from the release has on the plane; of random
+    /// heights the one in the middle.
+    pub fn origin(&self) -> f64 {
+        let drop = self.release_height.middle() - self.body.unit;
+        let gained = 2.0 * self.gravity * sincos(self.incline).1 * drop.max(0.0);
+        let start = self.velocity.z;
+        self.law.normal().at(start.mul_add(start, gained).sqrt())
+    }
+
+    /// Whether all particles are let go at rest, over a level plane. All directions along the plane are then alike, and each
+    /// particle stays in the vertical plane of its axis.
+    pub(crate) fn is_at_rest(&self) -> bool {
+        self.spin.is_none() && self.velocity == Vector::default() && self.incline == 0.0
+    }
+}

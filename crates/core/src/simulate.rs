@@ -1,0 +1,140 @@
+//! Many particles, on all cores, each alone: the result cannot depend on the schedule.
+
+use crate::Error;
+use crate::columns::{Columns, Records};
+use crate::records::Table;
+use crate::run::{BLOCK, Plan, Run};
+use crate::statistics::{Bins, By, Counter, Counts, Tally, Tallying};
+use crate::threads::{Means, Monitor};
+use std::ops::Range;
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+impl Run<'_> {
+    /// Runs every particle and keeps every impact. A run that is cancelled returns the particles that were begun.
+    pub fn simulate(&self, means: Means, monitor: &Monitor) -> Result<Records, Error> {
+        self.simulate_part(0..self.particles, means, monitor)
+    }
+
+    /// As [`Run::simulate`], for some of the particles of the run.
+    pub fn simulate_part(
+        &self,
+        part: Range<usize>,
+        means: Means,
+        monitor: &Monitor,
+    ) -> Result<Records, Error> {
+        self.simulate_columns(part, &Columns::usual(&self.law, false), means, monitor)
+    }
+
+    /// As [`Run::simulate_part`], with these variables of each impact.
+    pub fn simulate_columns(
+        &self,
+        part: Range<usize>,
+        columns: &Columns,
+        means: Means,
+        monitor: &Monitor,
+    ) -> Result<Records, Error> {
+        let plan = Plan::new(self)?;
+        self.check_part(&part)?;
+        Error::unless(
+            part.len().checked_mul(self.impacts).is_some(),
+            "particles",
+            part.len(),
+            "such that particles × impacts can be counted",
+        )?;
+        let mut records = Records::new(part.len(), self.impacts, columns)?;
+        let started = AtomicUsize::new(part.start);
+        let rows = Mutex::new(records.block());
+        // Blocks go in order to whichever thread is free, so that a run that is cancelled leaves a table of those begun.
+        let ended = means.each_thread(part.len().div_ceil(BLOCK), || {
+            while !monitor.is_cancelled() {
+                let mut rows = rows.lock().expect("no thread panics while it takes rows");
+                let block = rows.split(BLOCK);
+                let count = block.impacts.len();
+                let first = started.fetch_add(count, Ordering::Relaxed);
+                drop(rows);
+                if count == 0 {
+                    break;
+                }
+                let particles = first..first + count;
+                let mut table = Table::new(block, &plan, first);
+                plan.bounce(particles, means.level, monitor, &mut table)?;
+                table.finish(monitor);
+            }
+            Ok(())
+        })?;
+        ended.into_iter().collect::<Result<(), Error>>()?;
+        records.truncate(started.into_inner() - part.start);
+        if monitor.is_cancelled() {
+            records.settle(part.start);
+        }
+        records.add_release(&plan, part.start)?;
+        Ok(records)
+    }
+
+    /// Runs every particle and keeps the statistics of the impacts only, in memory that does not grow with the run.
+    pub fn statistics(&self, bins: &Bins, means: Means, monitor: &Monitor) -> Result<Tally, Error> {
+        self.statistics_of_part(0..self.particles, bins, means, monitor)
+    }
+
+    /// As [`Run::statistics`], for some of the particles of the run. Tallies of its parts merge to that of the run.
+    pub fn statistics_of_part(
+        &self,
+        part: Range<usize>,
+        bins: &Bins,
+        means: Means,
+        monitor: &Monitor,
+    ) -> Result<Tally, Error> {
+        let plan = Plan::new(self)?;
+        self.check_part(&part)?;
+        bins.check()?;
+        if let By::Number(rows) = bins.by {
+            let allowed = "at most the number of rows";
+            Error::unless(self.impacts <= rows, "impacts", self.impacts, allowed)?;
+        }
+        let origin = self.origin();
+        let tallies = match &bins.fraction {
+            Some(fractions) => Self::tallies(&plan, part, means, monitor, || {
+                Counter::new(bins, fractions, &plan, origin)
+            }),
+            None => Self::tallies(&plan, part, means, monitor, || {
+                Counts::new(bins, &plan, origin)
+            }),
+        };
+        let mut tallies = tallies?.into_iter();
+        let mut total = tallies.next().expect("at least one thread counts")?;
+        for tally in tallies {
+            total.merge(&tally?);
+        }
+        Ok(total)
+    }
+
+    /// The tallies of all threads. Blocks go to whichever thread is free; the sums are whole numbers, whose order is of no
+    /// consequence.
+    fn tallies<T: Tallying>(
+        plan: &Plan<'_>,
+        part: Range<usize>,
+        means: Means,
+        monitor: &Monitor,
+        counter: impl Fn() -> Result<T, Error> + Sync,
+    ) -> Result<Vec<Result<Tally, Error>>, Error> {
+        let next = AtomicUsize::new(part.start);
+        means.each_thread(part.len().div_ceil(BLOCK), || {
+            let mut counter = counter()?;
+            loop {
+                let first = next.fetch_add(BLOCK, Ordering::Relaxed);
+                if first >= part.end || monitor.is_cancelled() {
+                    return Ok(counter.finish());
+                }
+                let particles = first..part.end.min(first + BLOCK);
+                plan.bounce(particles, means.level, monitor, &mut counter)?;
+            }
+        })
+    }
+
+    fn check_part(&self, part: &Range<usize>) -> Result<(), Error> {
+        let allowed = "at least one of the particles of the run, from the first to before the last";
+        let inside = part.start < part.end && part.end <= self.particles;
+        Error::unless(inside, "part", part.end as f64, allowed)
+    }
+}

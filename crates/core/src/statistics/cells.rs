@@ -1,0 +1,245 @@
+//! Bins of any widths: a table of narrow cells says between which few edges a number lies, and the edges decide.
+//!
+//! Cells are found by a rounded formula. It never decreases with x, so that an edge in an earlier cell is below x and one in a
+//! later cell above it, however it is rounded: those in the same cell alone need be compared.
+
+use super::axis::ROUND;
+use super::places::whole;
+use crate::simd::Pack;
+use pulp::{Scalar, Simd, WithSimd};
+
+/// Most cells, unless there are more edges: what a nearby cache holds.
+const MOST: usize = 1 << 14;
+
+/// Cells over the edges of an axis.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Cells {
+    scale: Scale,
+    cells: Vec<Cell>,
+    /// Number of the last cell.
+    last: f64,
+    /// The edges, and one that nothing reaches, if some cell has several.
+    crowded: Option<Vec<f64>>,
+}
+
+/// What is known of a cell.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Cell {
+    /// The lowest edge that is not in an earlier cell.
+    edge: f64,
+    /// Number of edges in earlier cells, plus [`ROUND`].
+    number: f64,
+}
+
+/// How cells divide the numbers.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Scale {
+    /// Into equal intervals from the lowest to the highest edge.
+    Linear { low: f64, density: f64 },
+    /// Into parts of an octave, as logarithmic bins want them: by the bits of a number as they are, which ascend with it.
+    Octaves { low: i64, shift: u32 },
+}
+
+impl Scale {
+    /// The cells of numbers, from 0 to `last`; of NaN any.
+    #[inline(always)]
+    fn cells<S: Simd, const K: usize>(self, x: Pack<S, K>, last: f64) -> Pack<S, K> {
+        match self {
+            Self::Linear { low, density } => ((x - low) * density).max(0.0).min(last) + ROUND,
+            Self::Octaves { low, shift } => {
+                let (mut cells, last) = (x, last as i64);
+                for x in cells.as_mut_slice() {
+                    let above = ascending(*x).saturating_sub(low).max(0);
+                    *x = f64::from_bits((above >> shift).min(last) as u64);
+                }
+                cells
+            }
+        }
+    }
+
+    /// The cell of a number.
+    fn cell(self, x: f64, cells: usize) -> usize {
+        let x = Pack::<_, 1>::splat(Scalar::new(), x);
+        index(self.cells(x, (cells - 1) as f64).as_slice()[0], cells)
+    }
+
+    /// Number of edges in the cells before each of so many.
+    fn before(self, edges: &[f64], cells: usize) -> Vec<u32> {
+        let mut before = vec![0; cells + 1];
+        for &edge in edges {
+            before[self.cell(edge, cells) + 1] += 1;
+        }
+        for cell in 0..cells {
+            before[cell + 1] += before[cell];
+        }
+        before
+    }
+}
+
+/// A cell as an index, however the number of it was made.
+#[inline(always)]
+fn index(cell: f64, cells: usize) -> usize {
+    whole(cell).min(cells - 1)
+}
+
+/// Most edges in a cell.
+fn crowd(before: &[u32]) -> u32 {
+    let each = before.windows(2).map(|pair| pair[1] - pair[0]);
+    each.max().unwrap_or(0)
+}
+
+/// A whole number that ascends with x.
+#[inline(always)]
+fn ascending(x: f64) -> i64 {
+    let bits = (x + 0.0).to_bits() as i64; // one zero
+    bits ^ (((bits >> 63) as u64) >> 1) as i64
+}
+
+impl Cells {
+    /// Of increasing, finite edges: as few cells as keep them apart, if that is possible.
+    pub fn new(edges: &[f64]) -> Self {
+        let (low, high) = (edges[0], edges[edges.len() - 1]);
+        // Below the second edge there is one bin, however many octaves it has: logarithmic bins may begin at 0.
+        let (first, last) = (ascending(edges[1]), ascending(high));
+        let octaves = u64::BITS - (last.wrapping_sub(first) as u64).leading_zeros();
+        let mut count = edges.len().next_power_of_two();
+        let most = MOST.max(count);
+        loop {
+            let density = count as f64 / (high - low);
+            let shift = (octaves + 1).saturating_sub(count.trailing_zeros());
+            let before_second = first.saturating_sub(1 << shift);
+            let found = [
+                Scale::Linear { low, density },
+                Scale::Octaves {
+                    low: before_second,
+                    shift,
+                },
+            ]
+            .map(|scale| (scale, scale.before(edges, count)))
+            .map(|(scale, before)| (crowd(&before), scale, before));
+            let [equal, logarithmic] = found;
+            let (crowd, scale, before) = if logarithmic.0 < equal.0 {
+                logarithmic
+            } else {
+                equal
+            };
+            if crowd <= 1 || count >= most {
+                let mut edges = edges.to_vec();
+                edges.push(f64::INFINITY);
+                let of = |&number: &u32| Cell {
+                    edge: edges[number as usize],
+                    number: f64::from(number) + ROUND,
+                };
+                return Self {
+                    scale,
+                    cells: before[..count].iter().map(of).collect(),
+                    last: (count - 1) as f64,
+                    crowded: (crowd > 1).then_some(edges),
+                };
+            }
+            count *= 2;
+        }
+    }
+
+    /// Numbers of the bins, plus [`ROUND`]: 0 below, 1 to n inside, n + 1 above. NaN may be anywhere. A call: written out in the
+    /// loop of uniform bins it would crowd that.
+    #[inline(always)]
+    pub fn locate<S: Simd, const K: usize>(&self, x: Pack<S, K>) -> Pack<S, K> {
+        x.simd().vectorize(Locate { cells: self, x })
+    }
+
+    /// The bins where a cell may have several edges.
+    #[cold]
+    #[inline(never)]
+    fn compare(edges: &[f64], x: &[f64], bins: &mut [f64]) {
+        for (bin, &x) in bins.iter_mut().zip(x) {
+            let more = edges[whole(*bin)..].iter().take_while(|&&edge| edge <= x);
+            *bin += more.count() as f64;
+        }
+    }
+}
+
+/// Numbers to be located, to be compiled for each SIMD level.
+struct Locate<'a, S: Simd, const K: usize> {
+    cells: &'a Cells,
+    x: Pack<S, K>,
+}
+
+impl<S: Simd, const K: usize> WithSimd for Locate<'_, S, K> {
+    type Output = Pack<S, K>;
+
+    #[inline(always)]
+    fn with_simd<U: Simd>(self, _: U) -> Pack<S, K> {
+        let Cells {
+            scale,
+            cells,
+            last,
+            crowded,
+        } = self.cells;
+        // Infinity is beyond the last edge, but not beyond the one that nothing reaches.
+        let x = self.x.min(f64::MAX);
+        let places = scale.cells(x, *last);
+        let (mut edge, mut number) = (x, x);
+        for lane in 0..Pack::<S, K>::WIDTH {
+            let cell = cells[index(places.as_slice()[lane], cells.len())];
+            edge.as_mut_slice()[lane] = cell.edge;
+            number.as_mut_slice()[lane] = cell.number;
+        }
+        let mut bins = edge.le(x).select(number + 1.0, number);
+        if let Some(edges) = crowded {
+            Cells::compare(edges, x.as_slice(), bins.as_mut_slice());
+        }
+        bins
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    fn agrees(edges: &[f64], x: f64) {
+        let cells = Cells::new(edges);
+        let bin = cells.locate(Pack::<_, 1>::splat(Scalar::new(), x));
+        let expected = edges.partition_point(|&edge| edge <= x);
+        assert_eq!(whole(bin.as_slice()[0]), expected, "{x} in {edges:?}");
+    }
+
+    proptest! {
+        /// As by binary search: at every edge, one bit beside it, and anywhere.
+        #[test]
+        fn the_edges_decide(
+            mut edges in prop::collection::vec(prop_oneof![-1e3..1e3_f64, -1e-9..1e-9_f64, any::<f64>()], 2..40),
+            x in prop_oneof![-1e3..1e3_f64, any::<f64>()],
+        ) {
+            edges.retain(|edge| edge.abs() < 1e100);
+            edges.push(-2e100);
+            edges.push(2e100);
+            edges.sort_by(f64::total_cmp);
+            edges.dedup();
+            for &edge in &edges {
+                for near in [edge.next_down(), edge, edge.next_up()] {
+                    agrees(&edges, near);
+                }
+            }
+            for x in [x, 0.0, -0.0, f64::INFINITY, f64::NEG_INFINITY, f64::MAX] {
+                if !x.is_nan() {
+                    agrees(&edges, x);
+                }
+            }
+        }
+    }
+
+    /// Logarithmic bins over six decades, and with a bin from 0 before them: no cell has several edges.
+    #[test]
+    fn logarithmic_bins_are_found_at_once() {
+        let mut edges: Vec<_> = (0..601)
+            .map(|i| 10.0_f64.powf(f64::from(i) / 100.0 - 6.0))
+            .collect();
+        for _ in 0..2 {
+            let cells = Cells::new(&edges);
+            assert_eq!(cells.crowded, None);
+            edges.insert(0, 0.0);
+        }
+    }
+}

@@ -1,0 +1,63 @@
+//! A tally as a list of whole numbers. Parts of a run that were counted at different times or places are kept in this form and
+//! merge to the bits of the whole.
+
+use super::tally::{Bins, Tally};
+use crate::Error;
+
+impl Tally {
+    /// Every number that the tally holds, in an order that the bins alone decide: the origin, the grids, the sums, the ledger of
+    /// energy, the particles by stop reason.
+    pub fn to_words(&self) -> Vec<u64> {
+        let mut words = Vec::new();
+        self.clone().visit(&mut |word| words.push(*word));
+        words
+    }
+
+    /// The tally with these bins that had these words. Words of another number of rows or columns are refused, and so are those of
+    /// sums that were taken about another origin.
+    pub fn from_words(bins: &Bins, origin: f64, words: &[u64]) -> Result<Self, Error> {
+        let mut tally = Self::new(bins, origin)?;
+        let mut needed = 0_usize;
+        tally.visit(&mut |_| needed += 1);
+        let allowed = "as many as these bins have";
+        Error::unless(words.len() == needed, "words", words.len() as f64, allowed)?;
+        let mut words = words.iter();
+        tally.visit(&mut |word| {
+            if let Some(&given) = words.next() {
+                *word = given;
+            }
+        });
+        let allowed = "that of this run";
+        let same = tally.origin.to_bits() == origin.to_bits();
+        Error::unless(same, "origin of the words", tally.origin, allowed)?;
+        Ok(tally)
+    }
+
+    /// Shows every word to `visit`, which may change it.
+    fn visit(&mut self, visit: &mut impl FnMut(&mut u64)) {
+        float(&mut self.origin, visit);
+        self.restitution.counts.iter_mut().for_each(&mut *visit);
+        self.fraction.counts.iter_mut().for_each(&mut *visit);
+        for sums in &mut self.sums {
+            sums.words(visit);
+        }
+        for sum in &mut self.fractions {
+            let (mut low, mut high) = (*sum as u64, (*sum >> 64) as u64);
+            visit(&mut low);
+            visit(&mut high);
+            *sum = u128::from(high) << 64 | u128::from(low);
+        }
+        for gains in &mut self.gains {
+            visit(&mut gains.count);
+            float(&mut gains.largest, visit);
+        }
+        self.stops.iter_mut().for_each(visit);
+    }
+}
+
+/// Shows the bits of a number.
+pub(super) fn float(number: &mut f64, visit: &mut impl FnMut(&mut u64)) {
+    let mut bits = number.to_bits();
+    visit(&mut bits);
+    *number = f64::from_bits(bits);
+}

@@ -1,0 +1,124 @@
+//! Impacts recorded: each variable as xarray takes it, with its dimensions, its values and its attributes.
+
+use crate::errors::python_error;
+use crate::laws::Law;
+use crate::{Parameters, means, range, watch};
+use numpy::{Element, IntoPyArray, PyArray1, PyArrayMethods};
+use pyo3::prelude::*;
+use pyo3::types::{PyDict, PySlice, PyTuple};
+use restitution_core::{Columns, Values, Variable};
+
+/// Of the rows that are there, where some between them had to be left out.
+const NUMBER: Variable = Variable {
+    name: "particle",
+    text: "number of the particle, from 0",
+    ..Variable::PLAIN
+};
+
+fn named(columns: &[String]) -> PyResult<Columns> {
+    Columns::named(columns.iter().map(String::as_str)).map_err(python_error)
+}
+
+/// The names of what is recorded of an impact under a law, with its full state or without.
+#[pyfunction]
+#[pyo3(signature = (law, state=false))]
+fn columns(law: &Law, state: bool) -> Vec<&'static str> {
+    Columns::usual(&law.law(), state).names()
+}
+
+/// Runs the particles from `part[0]` to before `part[1]` of the ensemble, or all, and records the variables of these names,
+/// or those that are usual under its law; returns them by name and whether the run was cut short by Ctrl-C.
+#[pyfunction]
+#[pyo3(signature = (run, threads, progress, part=None, columns=None))]
+fn simulate<'py>(
+    py: Python<'py>,
+    run: Parameters<'py>,
+    threads: usize,
+    progress: Option<Bound<'py, PyAny>>,
+    part: Option<(usize, usize)>,
+    columns: Option<Vec<String>>,
+) -> PyResult<(Bound<'py, PyDict>, bool)> {
+    let run = run.run()?;
+    let means = means(threads)?;
+    let columns = match columns {
+        Some(names) => named(&names)?,
+        None => Columns::usual(&run.law, false),
+    };
+    let part = range(part, run.particles);
+    let (mut records, interrupted) = watch::run(py, progress, |monitor| {
+        run.simulate_columns(part, &columns, means, monitor)
+    })?;
+    let (particles, reached) = (records.particles(), records.reached);
+    let table = PyDict::new(py);
+    if !records.particle.is_empty() {
+        let numbers = Values::Counts(std::mem::take(&mut records.particle));
+        let dimensions = [("particle", particles)];
+        table.set_item("particle", variable(py, &NUMBER, &dimensions, numbers)?)?;
+    }
+    for (about, values) in records.per_impact() {
+        let dimensions = [("particle", particles), ("impact", run.impacts)];
+        let (names, values, attributes) = variable(py, &about, &dimensions, values)?;
+        let within = (PySlice::full(py), PySlice::new(py, 0, reached as isize, 1));
+        table.set_item(about.name, (names, values.get_item(within)?, attributes))?;
+    }
+    for (about, values) in records.per_particle() {
+        let dimensions = [("particle", particles)];
+        table.set_item(about.name, variable(py, &about, &dimensions, values)?)?;
+    }
+    Ok((table, interrupted))
+}
+
+/// Memory that an impact takes with the variables of these names.
+#[pyfunction]
+fn bytes_per_impact(columns: Vec<String>) -> PyResult<usize> {
+    Ok(named(&columns)?.bytes())
+}
+
+/// Dimensions, values and attributes, named as the CF conventions have them.
+fn variable<'py>(
+    py: Python<'py>,
+    about: &Variable,
+    dimensions: &[(&str, usize)],
+    values: Values,
+) -> PyResult<(Bound<'py, PyTuple>, Bound<'py, PyAny>, Bound<'py, PyDict>)> {
+    let mut dimensions = dimensions.to_vec();
+    if about.vector {
+        dimensions.push(("component", 3));
+    }
+    let (names, shape): (Vec<_>, Vec<_>) = dimensions.into_iter().unzip();
+    let attributes = PyDict::new(py);
+    attributes.set_item("long_name", about.text)?;
+    if let Some(unit) = about.unit {
+        attributes.set_item("units", unit)?;
+    }
+    if let Some(symbol) = about.symbol {
+        attributes.set_item("symbol", symbol)?;
+    }
+    if !about.meanings.is_empty() {
+        let numbers: Vec<_> = (0..about.meanings.len() as i8).collect();
+        attributes.set_item("flag_values", numbers.into_pyarray(py))?;
+        attributes.set_item("flag_meanings", about.meanings.join(" "))?;
+    }
+    let values = match values {
+        Values::Numbers(values) => shaped(py, values, shape)?,
+        Values::Flags(values) => shaped(py, values, shape)?,
+        Values::Counts(values) => shaped(py, values, shape)?,
+    };
+    Ok((PyTuple::new(py, names)?, values, attributes))
+}
+
+/// Hands a row-major table over to NumPy without copying it.
+fn shaped<T: Element>(
+    py: Python<'_>,
+    values: Vec<T>,
+    shape: Vec<usize>,
+) -> PyResult<Bound<'_, PyAny>> {
+    let flat: Bound<'_, PyArray1<T>> = values.into_pyarray(py);
+    Ok(flat.reshape(shape)?.into_any())
+}
+
+pub fn add_to(module: &Bound<'_, PyModule>) -> PyResult<()> {
+    module.add_function(wrap_pyfunction!(columns, module)?)?;
+    module.add_function(wrap_pyfunction!(simulate, module)?)?;
+    module.add_function(wrap_pyfunction!(bytes_per_impact, module)?)
+}

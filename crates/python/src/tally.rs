@@ -1,0 +1,169 @@
+//! Counts and sums of a run or a part of it, which merge to the bits of the whole.
+
+use crate::errors::python_error;
+use crate::{Parameters, means, range, set, watch};
+use numpy::{IntoPyArray, PyArray1, PyReadonlyArray1};
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+use restitution_core::statistics as core;
+use restitution_core::statistics::{Axis, Bins, By, Moments};
+
+/// The edges of the bins. Rows are bins of the impact velocity, or, without edges, the numbers of the impacts.
+#[derive(FromPyObject)]
+#[pyo3(from_item_all)]
+struct Edges<'py> {
+    velocity: Option<PyReadonlyArray1<'py, f64>>,
+    restitution: PyReadonlyArray1<'py, f64>,
+    fraction: Option<PyReadonlyArray1<'py, f64>>,
+}
+
+impl Edges<'_> {
+    fn bins(&self, impacts: usize) -> PyResult<Bins> {
+        let axis = |name, edges: &PyReadonlyArray1<'_, f64>| {
+            Axis::new(name, edges.as_slice()?).map_err(python_error)
+        };
+        Ok(Bins {
+            by: match &self.velocity {
+                Some(edges) => By::Velocity(axis("velocity_bins", edges)?),
+                None => By::Number(impacts),
+            },
+            restitution: axis("restitution_bins", &self.restitution)?,
+            fraction: self
+                .fraction
+                .as_ref()
+                .map(|edges| axis("fraction_bins", edges))
+                .transpose()?,
+        })
+    }
+}
+
+/// What the impacts of some particles of a run add up to.
+#[pyclass(frozen, module = "restitution._core")]
+struct Tally {
+    bins: Bins,
+    origin: f64,
+    tally: core::Tally,
+}
+
+#[pymethods]
+impl Tally {
+    /// The tally of a run with these bins that had these words.
+    #[staticmethod]
+    fn read(
+        run: Parameters<'_>,
+        edges: Edges<'_>,
+        words: PyReadonlyArray1<'_, u64>,
+    ) -> PyResult<Self> {
+        let run = run.run()?;
+        let (bins, origin) = (edges.bins(run.impacts)?, run.origin());
+        let tally = core::Tally::from_words(&bins, origin, words.as_slice()?);
+        Ok(Self {
+            tally: tally.map_err(python_error)?,
+            bins,
+            origin,
+        })
+    }
+
+    /// Every number of the tally.
+    fn words<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<u64>> {
+        self.tally.to_words().into_pyarray(py)
+    }
+
+    /// The tally of what this one and others counted.
+    fn merged(&self, others: Vec<PyRef<'_, Self>>) -> PyResult<Self> {
+        let mut total = core::Tally::new(&self.bins, self.origin).map_err(python_error)?;
+        total.merge(&self.tally);
+        for other in others {
+            if other.bins != self.bins || other.origin.to_bits() != self.origin.to_bits() {
+                let text = "others: must be tallies with the same bins and the same coefficient of the law";
+                return Err(PyValueError::new_err(text));
+            }
+            total.merge(&other.tally);
+        }
+        Ok(Self {
+            bins: self.bins.clone(),
+            origin: self.origin,
+            tally: total,
+        })
+    }
+
+    /// The counts and moments by name.
+    fn table<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let tally = &self.tally;
+        let table = self.moments(py)?;
+        for (name, grid) in [
+            ("count", &tally.restitution),
+            ("fraction_count", &tally.fraction),
+        ] {
+            let counts = grid.to_counts().map_err(python_error)?;
+            set(py, &table, name, (self.bins.rows(), grid.columns()), counts)?;
+        }
+        let created: Vec<_> = tally.gains.iter().map(|row| row.count as i64).collect();
+        table.set_item("energy_created", created.into_pyarray(py))?;
+        let largest: Vec<_> = tally.gains.iter().map(|row| row.largest).collect();
+        table.set_item("largest_energy_ratio", largest.into_pyarray(py))?;
+        let stops = tally.stops.map(|count| count as i64).to_vec();
+        table.set_item("stops", stops.into_pyarray(py))?;
+        Ok(table)
+    }
+
+    /// The number of impacts in each row whose ε is defined, and their moments by name.
+    fn moments<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let tally = &self.tally;
+        // Row by row: a fine grid is large, and one row of it is still at hand when it is looked at again.
+        let (mut numbers, mut moments, mut fractions) = (vec![], vec![], vec![]);
+        for row in 0..self.bins.rows() {
+            numbers.push(tally.number(row) as i64);
+            moments.extend(tally.moments(row));
+            fractions.extend(tally.mean_fraction(row));
+        }
+        let column =
+            |f: fn(&Moments) -> f64| moments.iter().map(f).collect::<Vec<_>>().into_pyarray(py);
+        let table = PyDict::new(py);
+        table.set_item("number", numbers.into_pyarray(py))?;
+        table.set_item("mean", column(|m| m.mean))?;
+        table.set_item("variance", column(|m| m.variance))?;
+        table.set_item("skewness", column(|m| m.skewness))?;
+        table.set_item("kurtosis", column(|m| m.kurtosis))?;
+        table.set_item("minimum", column(|m| m.minimum))?;
+        table.set_item("maximum", column(|m| m.maximum))?;
+        table.set_item("mean_fraction", fractions.into_pyarray(py))?;
+        Ok(table)
+    }
+}
+
+/// Runs the particles from `part[0]` to before `part[1]` of the ensemble, or all, and counts their impacts. Returns the tally and
+/// whether the run was cut short by Ctrl-C.
+#[pyfunction]
+#[pyo3(signature = (run, edges, threads, progress, part=None))]
+fn statistics<'py>(
+    py: Python<'py>,
+    run: Parameters<'py>,
+    edges: Edges<'py>,
+    threads: usize,
+    progress: Option<Bound<'py, PyAny>>,
+    part: Option<(usize, usize)>,
+) -> PyResult<(Tally, bool)> {
+    let run = run.run()?;
+    let means = means(threads)?;
+    let bins = edges.bins(run.impacts)?;
+    let part = range(part, run.particles);
+    let (tally, interrupted) = watch::run(py, progress, |monitor| {
+        run.statistics_of_part(part, &bins, means, monitor)
+    })?;
+    let origin = run.origin();
+    Ok((
+        Tally {
+            bins,
+            origin,
+            tally,
+        },
+        interrupted,
+    ))
+}
+
+pub fn add_to(module: &Bound<'_, PyModule>) -> PyResult<()> {
+    module.add_class::<Tally>()?;
+    module.add_function(wrap_pyfunction!(statistics, module)?)
+}

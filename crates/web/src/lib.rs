@@ -1,0 +1,82 @@
+//! The thin binding for the browser: a run as a row of numbers in, tables of numbers out. No physics, no threads, no unsafe
+//! block; only the names by which the page calls are exported.
+//!
+//! The page writes [`parameters::COUNT`] numbers at [`run_parameters`], calls [`simulate`] or [`follow`], and reads the table
+//! at [`table`], of as many numbers as the call returned. A call that fails returns −1, and [`message`] says why.
+#![deny(unsafe_code)]
+
+mod parameters;
+mod path;
+mod records;
+
+use parameters::Parameters;
+use restitution_core::Error;
+use std::cell::RefCell;
+use std::sync::atomic::{AtomicU64, Ordering};
+
+/// Where the page writes the parameters: the bits of `f64`.
+static PARAMETERS: [AtomicU64; parameters::COUNT] =
+    [const { AtomicU64::new(0) }; parameters::COUNT];
+
+thread_local! {
+    static TABLE: RefCell<Vec<f64>> = const { RefCell::new(Vec::new()) };
+    static MESSAGE: RefCell<String> = const { RefCell::new(String::new()) };
+}
+
+/// Runs `work` on the parameters and keeps the table it makes; returns the number of its entries.
+fn keep(work: impl FnOnce(&Parameters) -> Result<Vec<f64>, Error>) -> f64 {
+    let numbers = std::array::from_fn(|i| f64::from_bits(PARAMETERS[i].load(Ordering::Relaxed)));
+    match work(&Parameters(numbers)) {
+        Ok(table) => {
+            let count = table.len() as f64;
+            TABLE.set(table);
+            count
+        }
+        Err(error) => {
+            MESSAGE.set(error.to_string());
+            -1.0
+        }
+    }
+}
+
+/// Address of the parameters.
+#[allow(unsafe_code)]
+#[unsafe(no_mangle)]
+pub extern "C" fn run_parameters() -> *const AtomicU64 {
+    PARAMETERS.as_ptr()
+}
+
+/// Bounces `count` particles of the run from number `first` on; the table is that of [`records::simulate`].
+#[allow(unsafe_code)]
+#[unsafe(no_mangle)]
+pub extern "C" fn simulate(first: usize, count: usize) -> f64 {
+    keep(|parameters| records::simulate(&parameters.run()?, first, count))
+}
+
+/// Follows one particle through space; the table is that of [`path::follow`].
+#[allow(unsafe_code)]
+#[unsafe(no_mangle)]
+pub extern "C" fn follow(particle: usize) -> f64 {
+    keep(|parameters| path::follow(&parameters.run()?, particle))
+}
+
+/// Address of the table that the last call made.
+#[allow(unsafe_code)]
+#[unsafe(no_mangle)]
+pub extern "C" fn table() -> *const f64 {
+    TABLE.with_borrow(Vec::as_ptr)
+}
+
+/// Address of what the last call that failed has to say, in UTF-8.
+#[allow(unsafe_code)]
+#[unsafe(no_mangle)]
+pub extern "C" fn message() -> *const u8 {
+    MESSAGE.with_borrow(|text| text.as_ptr())
+}
+
+/// Its length in bytes.
+#[allow(unsafe_code)]
+#[unsafe(no_mangle)]
+pub extern "C" fn message_length() -> usize {
+    MESSAGE.with_borrow(String::len)
+}

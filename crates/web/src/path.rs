@@ -1,0 +1,45 @@
+//! One particle through space: where each flight starts. Between, the motion is in closed form, and the page draws it.
+
+use restitution_core::{Error, Followed, Run, Scales, Sphere, State};
+
+/// Numbers a flight: start time; height of the centre of mass; velocity (3); axis (3); Λ/J_xx (3); ω along the axis less that of
+/// Λ/J_xx, the rate at which the body rolls about its axis; energy of rotation over the mass; which sphere touched, 0 at release.
+pub const COLUMNS: usize = 14;
+
+/// The flights, row by row; the first starts at the release. SI units.
+pub fn follow(run: &Run<'_>, particle: usize) -> Result<Vec<f64>, Error> {
+    let followed = Followed::new(run, particle)?;
+    let scales = &followed.scales;
+    let mut rows = row(run, scales, 0.0, &followed.release, 0.0).to_vec();
+    followed.bounce(|impact| {
+        let sphere = match impact.sphere {
+            Sphere::One => 1.0,
+            Sphere::Two => 2.0,
+        };
+        rows.extend(row(run, scales, impact.time, &impact.after, sphere));
+        true
+    })?;
+    Ok(rows)
+}
+
+fn row(run: &Run<'_>, scales: &Scales, time: f64, state: &State, sphere: f64) -> [f64; COLUMNS] {
+    let body = &run.body.scaled;
+    let (velocity, axis, turning) = (state.velocity, state.axis, state.precession);
+    let roll = (state.spin(body) - turning).dot(axis);
+    [
+        time * scales.time,
+        (state.lift + body.hull.level()) * scales.length,
+        velocity.x * scales.speed,
+        velocity.y * scales.speed,
+        velocity.z * scales.speed,
+        axis.x,
+        axis.y,
+        axis.z,
+        turning.x / scales.time,
+        turning.y / scales.time,
+        turning.z / scales.time,
+        roll / scales.time,
+        state.rotational_energy(body) * scales.speed * scales.speed,
+        sphere,
+    ]
+}
