@@ -1,18 +1,20 @@
-"""`python -m benchmarks`: check the physics, time the peers in turns, print one table."""
+"""`python -m benchmarks`: check the physics, time the peers in turns, print tables; `--rows` chooses some."""
 
 import argparse
 import warnings
+from collections.abc import Iterable
 from time import perf_counter
 from typing import Any
 
 import restitution as rs
-from benchmarks import agreement, footprint, machine, timing
+from benchmarks import agreement, bodies, footprint, machine, studies, timing
 from benchmarks.peers import Peers, available, statistics
 from benchmarks.work import Peer, Work
 
 CHECKED = 5000  # particles of the fast peers
 WINDOW = 8  # of the impact velocity: 0.40 to 0.45 m/s
 LONG = 500_000  # particles
+PARTS = ("planar", "bodies", "loops", "threads", "memory", "studies")
 
 
 def check(peers: Peers, work: Work, particles: int) -> None:
@@ -66,38 +68,79 @@ def throughput(times: timing.Times) -> list[str]:
     return shares(best, clock())
 
 
-def rest(particles: int) -> None:
-    """Print what starting takes, and the memory that statistics need."""
+def rest(long: bool, only: str) -> None:
+    """Print what starting takes, and the memory that statistics need: of every row with `long`."""
     seconds = footprint.start_up()
     print("\nstart   ", ", ".join(f"{name} {value:.3f} s" for name, value in seconds.items()))
-    for number in (particles // 100, particles):
-        found = footprint.memory(number)
-        print(
-            f"memory   at most {found['peak']:.0f} MB, of which {found['before']:.0f} MB before the run: "
-            f"statistics of {found['impacts']:.3g} impacts, all threads, {found['seconds']:.2f} s"
-        )
+    for name in (row.name for row in bodies.EVERY if only in row.name):
+        if not long and name != bodies.YARDSTICK.name:
+            continue
+        for number in (LONG // 100, 10 * LONG if long else LONG):
+            found = footprint.memory(number, name)
+            print(
+                f"memory   at most {found['peak']:.0f} MB, of which {found['before']:.0f} MB before the run "
+                f"(<= {MEMORY} MB): {name}, {found['impacts']:.3g} impacts, all threads, "
+                f"{found['seconds']:.2f} s"
+            )
+
+
+MEMORY = 200
+"""MB that a run of any length may take."""
+
+
+def planar(options: argparse.Namespace) -> None:
+    """The job of Fig. 2 beside the peers."""
+    work = Work(impacts=options.impacts)
+    peers = available()
+    print(f"\nwork     {options.particles} particles, {work}")
+    for text in peers.missing:
+        print(text)
+    check(peers, work, options.particles)
+    speed(peers, work, options.particles, options.rounds)
 
 
 def main() -> None:
     parser = argparse.ArgumentParser(prog="python -m benchmarks", description=__doc__)
-    parser.add_argument("--rounds", type=int, default=9, help="how often each peer is timed (default 9)")
-    parser.add_argument("--particles", type=int, default=25_000, help="particles a round (default 25000)")
-    parser.add_argument("--impacts", type=int, default=200, help="impacts a particle (default 200)")
-    parser.add_argument("--long", action="store_true", help="measure memory over 10⁹ impacts, not 10⁸")
+    parser.add_argument(
+        "--rows", nargs="+", choices=PARTS, default=PARTS, help="which tables (default: all of them)"
+    )
+    parser.add_argument(
+        "--only", default="", help="of bodies, threads and memory: rows whose name contains this"
+    )
+    parser.add_argument("--rounds", type=int, default=9, help="how often each row is timed (default 9)")
+    parser.add_argument("--particles", type=int, default=25_000, help="of the planar job (default 25000)")
+    parser.add_argument(
+        "--impacts", type=int, default=200, help="of the planar job, a particle (default 200)"
+    )
+    parser.add_argument("--long", action="store_true", help="memory of every row over 10⁹ impacts")
     options = parser.parse_args()
     if min(options.rounds, options.particles, options.impacts) < 1:
         parser.error("--rounds, --particles and --impacts must be at least 1")
 
     warnings.simplefilter("ignore", rs.EnergyWarning)
-    work = Work(impacts=options.impacts)
-    peers = available()
     print(machine.describe())
-    print(f"work     {options.particles} particles, {work}")
-    for line in peers.missing:
-        print(line)
-    check(peers, work, options.particles)
-    speed(peers, work, options.particles, options.rounds)
-    rest(10 * LONG if options.long else LONG)
+    if "planar" in options.rows:
+        planar(options)
+    if "bodies" in options.rows:
+        print(f"\n{bodies.HEAD}   over the first row; one thread, ns an impact")
+        show(bodies.table(options.rounds, options.only))
+    if "loops" in options.rows:
+        print(f"\n{bodies.HEAD}   over `statistics` of the same; one thread")
+        show(bodies.loops(options.rounds))
+    if "threads" in options.rows:
+        print(f"\n{bodies.HEAD}   one thread over two; ns with two")
+        show(bodies.threads(options.rounds, options.only))
+    if "memory" in options.rows:
+        rest(options.long, options.only)
+    if "studies" in options.rows:
+        print()
+        show(studies.report())
+
+
+def show(lines: Iterable[str]) -> None:
+    """Print each line as soon as it is known."""
+    for text in lines:
+        print(text, flush=True)
 
 
 main()

@@ -1,16 +1,21 @@
 """Do all peers compute the same physics? Asked before anything is timed."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 
+import restitution as rs
+from benchmarks.spinning import Released, Spinning
 from benchmarks.work import Array, Counts, Grid, Lattice, Peer, Records, Work
 
 ULP = 2.0**-52
 ROUNDINGS = 100.0  # of one impact in any peer, each counted in full
 NUDGE = 1e-9  # rad
+IN_SPACE = 1e-13  # relative error of one impact that is rounded in space: several hundred roundings
+INTEGRATED = 1e-7  # of one whose friction is integrated
+KNOWN = 1e-3  # where more than this is allowed, nothing can be compared
 GROUPS = 20
 LEAST = 5 * GROUPS  # particles
 ROWS = 25  # of the lattice in a window of σ(v): 0.05 m/s
@@ -52,6 +57,35 @@ def same_impacts(peers: Sequence[Peer[Records]], work: Work, particles: int = 50
                 )
             worst = max(worst, float(error.max()))
     return worst
+
+
+def same_spinning(job: Spinning, loop: Callable[..., Any], particles: int = 50, impacts: int = 8) -> float:
+    """Compare v and ε of the first impacts of a spinning body; largest error over allowance.
+
+    As `same_impacts`, with more allowed where the loop integrates friction.
+
+    Raises
+    ------
+    Disagreement
+        Naming the job, if the loop disagrees.
+    """
+    from benchmarks.peers.numba_spinning import run
+
+    released = Released.random(particles, seed=1)
+    right = job.first(released, impacts)
+    mine, nudged = (run(job, start, loop, impacts)[1] for start in (released, released.nudged()))
+    grown = np.abs(nudged - mine).max(axis=2, keepdims=True) / NUDGE
+    one = IN_SPACE if isinstance(job.law, rs.TangentialRestitution) else INTEGRATED
+    allowance = one * (1.0 + np.maximum.accumulate(grown, axis=1)) * (1.0 + np.abs(right))
+    known = allowance <= KNOWN
+    error = np.where(known, np.abs(mine - right) / allowance, 0.0)
+    if not (error <= 1.0).all() or known.sum() < known.size / 4:
+        particle, impact, _ = np.unravel_index(np.argmax(~(error <= 1.0)), error.shape)
+        raise Disagreement(
+            f"spinning {job.name}: v and ε of particle {particle}, impact {impact} are "
+            f"{mine[particle, impact]}, not {right[particle, impact]}"
+        )
+    return float(error.max())
 
 
 def same_counts(peers: Sequence[Peer[Grid]], work: Work, particles: int = 1000) -> int:

@@ -1,13 +1,14 @@
 """What is not speed: how long the start takes, and how much memory statistics need.
 
-`python -m benchmarks.footprint PARTICLES` runs statistics and prints what they took; `memory` does that in a
-process of its own.
+`python -m benchmarks.footprint PARTICLES ROW` runs a row of `bodies` and prints what it took; `memory` does
+that in a process of its own.
 """
 
 import json
 import subprocess
 import sys
 import sysconfig
+import warnings
 from pathlib import Path
 from time import perf_counter
 
@@ -36,9 +37,9 @@ def _seconds(command: list[str]) -> float:
     return perf_counter() - start
 
 
-def memory(particles: int) -> dict[str, float]:
+def memory(particles: int, row: str) -> dict[str, float]:
     """Impacts, seconds, and the most memory resident (MB) before and at the end; NaN where unknown."""
-    command = [sys.executable, "-m", "benchmarks.footprint", str(particles)]
+    command = [sys.executable, "-m", "benchmarks.footprint", str(particles), row]
     done = subprocess.run(command, check=True, capture_output=True, text=True, cwd=ROOT)
     found: dict[str, float] = json.loads(done.stdout)
     return found
@@ -55,26 +56,13 @@ def peak() -> float:
 
 def main() -> None:
     import restitution as rs
-    from benchmarks.work import Work
+    from benchmarks.bodies import EVERY, LEAST_LEARNED
 
-    work = Work()
-
-    def run(particles: int) -> int:
-        found = rs.statistics(
-            rs.Dumbbell(radius=work.radius, separation=work.separation),
-            rs.TangentialRestitution(normal=work.normal, tangential=work.tangential),
-            particles=particles,
-            impacts=work.impacts,
-            release_height=work.release_height,
-            gravity=work.gravity,
-            velocity_bins=work.lattice.velocity,
-            restitution_bins=work.lattice.restitution,
-        )
-        return int(found["number"].sum() + found["velocity_underflow"] + found["velocity_overflow"])
-
-    run(1)  # imports
+    warnings.simplefilter("ignore", rs.EnergyWarning)
+    row = next(row for row in EVERY if row.name == sys.argv[2])
+    row.run(LEAST_LEARNED if row.learned else 1, threads=0, seed=0)  # imports
     before, start = peak(), perf_counter()
-    number = run(int(sys.argv[1]))
+    number = row.run(int(sys.argv[1]), threads=0, seed=1)
     seconds = perf_counter() - start
     print(json.dumps({"impacts": number, "seconds": seconds, "before": before, "peak": peak()}))
 

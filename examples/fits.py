@@ -35,6 +35,8 @@ HIGHEST = 0.9
 """Speed in m/s up to which the distance of the fit is judged: the first impacts have their own density."""
 RETURNED = 0.7
 """An impact at v is of a particle that has returned if an earlier one was slower than this times v."""
+REPEATED = (0.1, 0.28, 0.4)
+"""Speeds in m/s at which the fit is repeated with other ensembles."""
 SHOWN = (0.04, 0.06, 0.08, 0.1, 0.12, 0.15, 0.18, 0.21, 0.24, 0.26, 0.28, 0.4, 0.6, 0.8)
 """Speeds of the rows of the table in m/s: of each the velocity bin nearest to it."""
 FAMILIES: dict[str, Callable[..., fit.Fit]] = {
@@ -75,9 +77,9 @@ class Measured:
         return self.slopes.power_law(side, *GROWTH, release_speed=RELEASE_SPEED if reservoir else None)
 
 
-def measure(particles: int = 4000, *, judged: int = 1000, resamples: int = 99, seed: int = 1) -> Measured:
-    """Drop the particles of the paper's Fig. 2 and fit."""
-    data = rs.simulate(
+def drop(particles: int, seed: int) -> xr.Dataset:
+    """Drop the particles of the paper's Fig. 2."""
+    return rs.simulate(
         rs.Dumbbell(radius=RADIUS, separation=ELONGATION * RADIUS),
         rs.TangentialRestitution(normal=NORMAL),
         particles=particles,
@@ -86,6 +88,36 @@ def measure(particles: int = 4000, *, judged: int = 1000, resamples: int = 99, s
         gravity=GRAVITY,
         seed=seed,
     )
+
+
+def repeat(particles: int = 4000, ensembles: int = 14) -> str:
+    """Fit a and b at some speeds to one ensemble after another, and write the table of docs/fits.md."""
+    found: dict[float, list[list[float]]] = {v: [] for v in REPEATED}
+    for seed in range(2, 2 + ensembles):
+        data = drop(particles, seed)
+        for v, values in found.items():
+            k = int(np.searchsorted(EDGES, v)) - 1
+            one = fit.asymmetric_laplace(data, location=NORMAL, velocity=(EDGES[k], EDGES[k + 1]))
+            values.append([one.parameters["above"], one.parameters["below"]])
+    lines = ["| v (m/s) | a: mean | of one | b: mean | of one | ensembles |", "|---" * 6 + "|"]
+    for v, values in found.items():
+        k = int(np.searchsorted(EDGES, v)) - 1
+        mean, single = np.mean(values, axis=0), np.std(values, axis=0, ddof=1)
+        pairs = zip(mean, single / np.sqrt(ensembles), single, strict=True)
+        cells = [cell for m, e, s in pairs for cell in (f"{m:.4f} ± {e:.4f}", f"± {s:.4f}")]
+        lines.append(f"| {EDGES[k]:.4f} to {EDGES[k + 1]:.4f} | {' | '.join(cells)} | {ensembles} |")
+    return "\n".join(lines)
+
+
+def measure(
+    particles: int = 4000,
+    *,
+    judged: int = 1000,
+    resamples: int = 99,
+    seed: int = 1,
+) -> Measured:
+    """Drop the particles of the paper's Fig. 2 and fit."""
+    data = drop(particles, seed)
     some = data.isel(particle=slice(judged))
     slow: dict[str, Any] = {"resamples": resamples // 2, "seed": seed}
     velocity, restitution = data.impact_velocity.to_numpy(), data.restitution.to_numpy()

@@ -2,7 +2,7 @@
 
     python examples/golf.py golf.png
 
-draws docs/images/golf.png.
+draws docs/images/golf.png; `python docs/pages.py release` also writes the table of docs/release.md.
 """
 
 import sys
@@ -10,6 +10,7 @@ from pathlib import Path
 
 import numpy as np
 from matplotlib.axes import Axes
+from scipy.optimize import brentq
 
 import restitution as rs
 from restitution import figures as fg
@@ -74,6 +75,36 @@ def drop(law: Law, spin: float, particles: int, impacts: int):
         orientation=np.stack([angles, np.zeros(particles)], axis=1),
         spin=(0.0, spin, 0.0),
     )
+
+
+def spin_for(law: Law, angle: float, velocity: float, wanted: float) -> float:
+    """Find the spin in rad/s at which an impact at `angle` (rad) with `velocity` (m/s) has the ε `wanted`."""
+
+    def excess(spin: float) -> float:
+        return float(restitution(law, np.array(angle), np.array(velocity), np.array(spin))) - wanted
+
+    return float(brentq(excess, 1.0, 2000.0, xtol=1e-12))
+
+
+def table() -> str:
+    """Write the table of docs/release.md: the spins in rad/s for ε = +2 and for ε = −4."""
+    falling, rising, rise = np.radians(150.0), np.radians(110.0), 0.5
+    speed = float(np.sqrt(2.0 * GRAVITY * (HEIGHT - RADIUS * (1.0 + np.abs(np.cos(falling))))))
+    lines = [
+        f"| spin in rad/s for | ε = +2: released at 2R + {1e3 * DROP:g} mm, 150° at the impact | "
+        f"ε = −4: rising with {rise:g} m/s, 110° |",
+        "|---|---|---|",
+    ]
+    for name, law in {
+        "`Frictionless`": rs.Frictionless(normal=NORMAL),
+        "`Coulomb`, μ = 0.1, slips": rs.Coulomb(normal=NORMAL, friction=0.1),
+        "`ChatterjeeRuina`, e_t = 0, sticks": rs.ChatterjeeRuina(normal=NORMAL, tangential=0.0, friction=1e6),
+        "`TangentialRestitution`, ε_t = 1": rs.TangentialRestitution(normal=NORMAL, tangential=1.0),
+        "`TangentialRestitution`, ε_t = 0": rs.TangentialRestitution(normal=NORMAL, tangential=0.0),
+    }.items():
+        spins = spin_for(law, falling, speed, 2.0), spin_for(law, rising, -rise, -4.0)
+        lines.append(f"| {name} | {spins[0]:.0f} | {spins[1]:.0f} |")
+    return "\n".join(lines)
 
 
 def extremes(ratio: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:

@@ -27,7 +27,7 @@ Array = NDArray[np.float64]
 GRAVITY = 9.81
 ULP = 2.0**-52
 MARGIN = 20.0  # the engine rounds some dozens of times an impact; measured: at most 5
-# A recorded value adds its own rounding. v_G' = v_G + P/m cancels, at ε^n = 0.4 to 1/3.5 of P/m, and a
+# A recorded value adds its own rounding. v_G' = v_G + P/m cancels, at ε_n = 0.4 to 1/3.5 of P/m, and a
 # ratio of energies doubles that; measured: at most 7 units.
 RECORDED = 16 * ULP
 PARTED = 1e-6  # of the largest value of a variable in the trajectory
@@ -44,7 +44,7 @@ NORMAL = (0.4, 0.9, 0.98, 1.0)
 TANGENTIAL = (-1.0, 0.0, 0.5, 1.0)
 RIGHT = np.pi / 2
 AWKWARD = (1e-9, 1e-3, 0.7, RIGHT - 1e-3, RIGHT - 1e-9, RIGHT + 1e-9, RIGHT + 1e-3, np.pi - 1e-9)
-# Every elongation meets every ε^n and every ε^n every ε^t; the angles, two a case, take turns.
+# Every elongation meets every ε_n and every ε_n every ε_t; the angles, two a case, take turns.
 CASES = [
     (elongation, normal, TANGENTIAL[(i + j) % 4], [AWKWARD[(2 * i + 3 * j + k) % 8] for k in (0, 5)])
     for (i, elongation), (j, normal) in product(enumerate(ELONGATIONS), enumerate(NORMAL))

@@ -103,7 +103,7 @@ def random_axes(orientation: str, count: int, rng: np.random.Generator) -> Float
 
 @pytest.mark.parametrize("elongation", ELONGATIONS)
 def test_the_angle_gives_what_eq_10_gives_whatever_the_tangential_coefficient(elongation: float) -> None:
-    """From rest the contact point moves along n, so that ε^t, drawn at random here, has nothing to act on."""
+    """From rest the contact point moves along n, so that ε_t, drawn at random here, has nothing to act on."""
     rng = np.random.default_rng(1)
     body = rs.Dumbbell(radius=0.7, separation=0.7 * elongation, density=3.0)
     axes, tangential = random_axes("isotropic", 500, rng), rng.uniform(-1, 1, 500)
@@ -183,7 +183,7 @@ def test_the_density_is_the_corrected_eq_21(elongation: float, orientation: str)
 @pytest.mark.parametrize("orientation", LAWS)
 @pytest.mark.parametrize("elongation", ELONGATIONS)
 def test_the_density_integrates_to_one(elongation: float, orientation: str) -> None:
-    """To 1e-12 with the singular end included: with ε^n = 0 a float comes as near to it as tanh-sinh asks.
+    """To 1e-12 with the singular end included: with ε_n = 0 a float comes as near to it as tanh-sinh asks.
 
     The peak of width b w at the lower end gets its own intervals.
     """
@@ -240,14 +240,14 @@ def test_moments_have_all_digits(elongation: float, orientation: str) -> None:
 
 @pytest.mark.parametrize("elongation", ELONGATIONS)
 def test_the_mean_has_a_closed_form(elongation: float) -> None:
-    """With b = 2β/(1 + β²), E(ε^n - ε)/w = (1 + β²)[1/2 - (atan β + (β - atan β)/β²)/π].
+    """With b = 2β/(1 + β²), E(ε_n - ε)/w = (1 + β²)[1/2 - (atan β + (β - atan β)/β²)/π].
 
     It is the sum of the Fourier series of Eq. 17 in θ. For c uniform, the partial fractions of
     (1 - c²)/(1 + bc) give 1/b² - 1/(2b) + (1 - 1/b²) ln(1 + b)/b.
     """
     inertia, length = Body.dumbbell(1.0, elongation).transverse, mp.mpf(elongation)
     denominator = 4 * inertia + 4 + length**2
-    w, b = length**2 / denominator, 4 * length / denominator  # ε^n = 0
+    w, b = length**2 / denominator, 4 * length / denominator  # ε_n = 0
     beta = b / (1 + mp.sqrt(1 - b**2))
     uniform = (1 + beta**2) * (mp.mpf(1) / 2 - (mp.atan(beta) + (beta - mp.atan(beta)) / beta**2) / mp.pi)
     isotropic = 1 / b**2 - 1 / (2 * b) + (1 - 1 / b**2) * mp.log(1 + b) / b
@@ -257,7 +257,7 @@ def test_the_mean_has_a_closed_form(elongation: float) -> None:
 
 @pytest.mark.parametrize("normal", [0.0, 0.98])
 def test_a_nearly_spherical_body(normal: float) -> None:
-    """As L → 0, (ε^n - ε)/w → sin²θ with w → (1 + ε^n)L²/(5.6 R²): the arcsine law if θ is uniform."""
+    """As L → 0, (ε_n - ε)/w → sin²θ with w → (1 + ε_n)L²/(5.6 R²): the arcsine law if θ is uniform."""
     elongation = 1e-9  # the corrections are of the order of b, L/R
     w = (1 + normal) * elongation**2 / 5.6
     uniform, isotropic = (make(elongation, normal, law) for law in LAWS)
@@ -272,7 +272,7 @@ def test_a_nearly_spherical_body(normal: float) -> None:
 
 
 def test_the_upper_tail_keeps_all_digits() -> None:
-    """ε a hair below ε^n, where cos θ is 1 to rounding: sf, isf and cos θ against fifty digits."""
+    """ε a hair below ε_n, where cos θ is 1 to rounding: sf, isf and cos θ against fifty digits."""
     for orientation in LAWS:
         distribution, exact = make(1.0, 0.0, orientation), Exact(1.0, 0.0, orientation)
         for loss in (1e-3, 1e-12, 1e-60, 1e-250):

@@ -146,7 +146,7 @@ def test_scipy_takes_it_for_a_distribution() -> None:
 
 
 def test_only_the_shape_and_the_normal_coefficient_matter() -> None:
-    """Neither size, nor density, nor ε^t."""
+    """Neither size, nor density, nor ε_t."""
     expected = FIG_9["uniform-angle"]
     for radius, density, tangential in ((2.0**-8, 7850.0, -1.0), (2.0**-200, 1.0, 0.5)):
         body = rs.Dumbbell(radius=radius, separation=2 * radius, density=density)

@@ -30,7 +30,7 @@ VELOCITY = "must be None or (vx, vy, vz), finite, in m/s"
 ANGLE = "must be a finite angle in rad, at most 2**20 either way"
 
 NOT_FINITE = (math.nan, math.inf, -math.inf)
-NO_NUMBERS = (True, np.True_, None, "0.5", b"1", 1j, [1.0], np.array([1.0, 2.0]))
+NO_NUMBERS = (True, np.True_, None, "0.5", b"1", 1j, [1.0], np.array([1.0, 2.0, 3.0]))
 NO_WHOLE_NUMBERS = (*NO_NUMBERS, 2.0, 2.5, np.float64(3), math.nan, math.inf)
 
 
@@ -235,10 +235,10 @@ def test_absurd_scales(body: rs.Dumbbell, law: rs.TangentialRestitution) -> None
     """Finite heights and gravities that overflow in the engine's units, R and √(R/g)."""
     assert message(lambda: rs.simulate(body, law, release_height=1.7e308)).startswith("release_height = 1")
     assert message(lambda: rs.simulate(body, law, spin=[0, 1e200, 0])).startswith(
-        "spin = 1e200: must be finite, at"
+        "spin = 1e+200: must be at most"
     )
     assert message(lambda: rs.simulate(body, law, velocity=[0, 0, 1e200])).startswith(
-        "velocity = 1e200: must be"
+        "velocity = 1e+200: must be at most"
     )
     assert "must be such that R/g and gR" in message(lambda: rs.simulate(body, law, gravity=1e-320))
 
@@ -322,7 +322,7 @@ def test_a_file_with_much_wrong(tmp_path: Path) -> None:
     takes += "minimum_speed, seed"
     lines = refused(write(tmp_path / "run.toml", tables))
     assert [re.sub(r" \(.*\)$", "", line) for line in lines] == [  # without units and such
-        "boddy: unknown; did you mean body? the file takes body, law, run",
+        "boddy: unknown; did you mean body? the file takes body, law, run, statistics, distribution",
         "body.raduis: unknown; did you mean body.radius? [body] takes shape, radius, separation, density",
         "body.radius: missing; must be a finite number > 0",
         "body.separation = -1: must be a finite number >= 0",

@@ -5,8 +5,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from benchmarks import agreement, timing
+from benchmarks import agreement, bodies, timing
 from benchmarks.peers import brentq_grid, simulate, statistics
+from benchmarks.spinning import JOBS
 from benchmarks.timing import Times
 from benchmarks.work import Array, Grid, Peer, Work
 
@@ -46,3 +47,29 @@ def test_ratios_are_taken_within_a_round() -> None:
     assert fast.split() == ["fast", "50", "20", "9", "10", "10", "10", "10"]
     line = timing.comparison(times, "one over the other", "yardstick", "fast")
     assert line.split()[-4:] == ["10", "(10", "to", "10)"]
+
+
+@pytest.mark.filterwarnings("ignore::restitution.EnergyWarning")
+def test_every_row_bounces_about_as_often_as_the_yardstick() -> None:
+    """Thirty particles of each. Down an incline, one in four with friction comes to roll: 182 ± 3 impacts."""
+    rows = (bodies.YARDSTICK, *bodies.ROWS)
+    assert len({row.name for row in bodies.EVERY}) == len(bodies.EVERY)
+    for row in rows:
+        number = row.run(30, threads=1, seed=1) / bodies.WORK.impacts
+        assert number == 30 or (row.release and number > 25), row.name
+
+
+def test_a_target_that_is_missed_is_said_to_be() -> None:
+    """Some ratios are to be small, others large."""
+    times, ratios = np.array([5.0, 6.0, 7.0]), np.array([1.0, 2.0, 3.0])
+    small = bodies.line("row", times, ratios, 1.9, at_least=False)
+    assert small.split() == ["row", "6", "2", "(1", "to", "3)", "<=", "1.9", "MISSED"]
+    assert bodies.line("row", times, ratios, 1.9, at_least=True).split()[-2:] == [">=", "1.9"]
+
+
+def test_the_spinning_job_has_the_engines_inertia() -> None:
+    """What the Numba loops are given is the body of `restitution`."""
+    for job in JOBS:
+        across, axial = job.inertia
+        assert across == pytest.approx(job.body.transverse_inertia / job.body.mass, rel=1e-14)
+        assert axial == pytest.approx(job.body.axial_inertia / job.body.mass, rel=1e-14)

@@ -1,5 +1,9 @@
 """Verdicts on the paper's claims: each comes out both ways on runs made up so that the answer is known."""
 
+import re
+from pathlib import Path
+from typing import Any
+
 import numpy as np
 import pytest
 import xarray as xr
@@ -24,12 +28,13 @@ from reference.made_up_runs import (
     skew,
     where_slow,
 )
-from restitution._dataset import STOP_REASONS
+from restitution._core import STOP_REASONS
 from restitution.analytic import first_impact
 from restitution.paper import _claims as claims
 from restitution.paper._claims import (
     _dependence,
     _energy,
+    _experiments,
     _first,
     _negative,
     _reservoir,
@@ -141,6 +146,65 @@ def test_shape(fast: Noise, slow: Noise, verdict: str) -> None:
 )
 def test_dependence(key: str, change: Function, verdict: str) -> None:
     assert judged(_dependence, key, main=run(change=change)).verdict == verdict
+
+
+def of_rotation(noise: Noise) -> xr.Dataset:
+    """A run whose scatter at a given share of rotation is the same at every speed."""
+    data = run(fraction=lambda v: 0.004 / v**2)
+    share = data["rotational_fraction"].to_numpy()
+    e = 0.98 + 0.2 * np.sqrt(share) * noise(np.random.default_rng(9), SHAPE)
+    return changed(data, restitution=e)
+
+
+def remembering(data: xr.Dataset, slow: float, fast: float) -> xr.Dataset:
+    """The same with angles of which so large a share is that of the impact before."""
+    random = np.random.default_rng(10)
+    angle = data["angle"].to_numpy().copy()
+    kept = random.random(SHAPE) < np.where(data["impact_velocity"].to_numpy() < 0.15, slow, fast)
+    for k in range(1, IMPACTS):
+        angle[:, k] = np.where(kept[:, k], angle[:, k - 1], angle[:, k])
+    return changed(data, angle=angle)
+
+
+QUIET, NOISY = run(sigma=lambda v: np.full_like(v, 1e-4)), run(sigma=lambda v: np.full_like(v, 0.1))
+
+
+@pytest.mark.parametrize(
+    ("key", "chosen", "verdict"),
+    [
+        ("considerable-variance", {"main": NOISY, "beads": {0.01: NOISY, 0.02: NOISY}}, "holds"),
+        ("considerable-variance", {"main": NOISY, "beads": {0.01: QUIET, 0.02: QUIET}}, "holds in part"),
+        ("considerable-variance", {"main": QUIET, "beads": {0.01: QUIET, 0.02: QUIET}}, "fails"),
+        ("rotation-explains-scatter", {"main": of_rotation(normal)}, "holds"),
+        ("rotation-explains-scatter", {"main": run(sigma=lambda v: 0.01 / v, noise=normal)}, "fails"),
+        ("regime-not-relevant", {"beads": dict.fromkeys((0.01, 0.02), remembering(MAIN, 0.9, 0.0))}, "holds"),
+        (
+            "regime-not-relevant",
+            {"beads": {0.01: remembering(MAIN, 0.9, 0.9), 0.02: remembering(MAIN, 0.9, 0.0)}},
+            "holds in part",
+        ),
+        ("regime-not-relevant", {"beads": dict.fromkeys((0.01, 0.02), remembering(MAIN, 0.9, 0.9))}, "fails"),
+    ],
+)
+def test_experiments(key: str, chosen: dict[str, Any], verdict: str) -> None:
+    assert judged(_experiments, key, **chosen).verdict == verdict
+
+
+@pytest.mark.parametrize(
+    ("key", "shares", "verdict"),
+    [
+        ("eccentricity-dominates", (0.9, 0.9), "holds"),
+        ("eccentricity-dominates", (0.9, 0.1), "holds in part"),
+        ("eccentricity-dominates", (0.1, 0.1), "fails"),
+        ("may-dominate", (0.9, 0.1), "holds"),
+        ("may-dominate", (0.2, 0.1), "fails"),
+    ],
+)
+def test_what_dominates(
+    monkeypatch: pytest.MonkeyPatch, key: str, shares: tuple[float, float], verdict: str
+) -> None:
+    monkeypatch.setattr(_experiments, "_shares", lambda _: {"steel": shares, "glass": shares})
+    assert judged(_experiments, key).verdict == verdict
 
 
 def negative(right: Array, left: Array) -> xr.Dataset:
@@ -280,6 +344,8 @@ def test_all_claims_are_judged_once_with_their_rule(monkeypatch: pytest.MonkeyPa
     assert all(claim in found for claim in _shape.judge(runs(), SETTINGS))
     keys = [claim.key for claim in found]
     assert len(set(keys)) == len(keys) >= 20
+    page = (Path(__file__).parents[1] / "docs" / "claims.md").read_text(encoding="utf-8")
+    assert set(re.findall(r"\| `([a-z0-9-]+)` \|", page)) == set(keys)
     for claim in found:
         assert claim.verdict in ("holds", "holds in part", "fails")
         assert claim.quote

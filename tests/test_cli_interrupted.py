@@ -16,7 +16,7 @@ import xarray as xr
 import restitution as rs
 from reference.command import COMMAND, invoke, load, small
 from restitution._cli import INTERRUPTED
-from restitution._dataset import STOP_REASONS
+from restitution._core import STOP_REASONS
 from restitution._toml import read
 
 LONG = """
@@ -41,12 +41,12 @@ from restitution._cli import main
 engine = _core.simulate
 
 
-def simulate(run, threads, progress):
+def simulate(run, threads, progress, **columns):
     def press(finished):
         if 0 < finished < run["particles"]:
             signal.raise_signal(signal.SIGINT)
 
-    return engine(run, threads, press)
+    return engine(run, threads, press, **columns)
 
 
 _core.simulate = simulate
@@ -61,7 +61,7 @@ def test_ctrl_c_keeps_what_was_finished(tmp_path: Path) -> None:
     gives them, the others have the stop reason "interrupted", and the file says that it is incomplete.
     """
     parameters, out = tmp_path / "run.toml", tmp_path / "run.nc"
-    words = ["simulate", str(parameters), "--out", str(out), "--force", "--threads", "1"]
+    words = ["simulate", str(parameters), "--out", str(out), "--overwrite", "--threads", "1"]
     for particles in (400_000, 800_000, 1_600_000):  # until this machine takes long enough to be interrupted
         parameters.write_text(f"{LONG}{particles}", encoding="utf-8")
         command = [sys.executable, "-c", PRESSING, *words]

@@ -43,7 +43,7 @@ def test_each_combination_is_the_run_alone(found: xr.Dataset) -> None:
                 np.testing.assert_array_equal(here[variable], alone[variable], err_msg=str(variable))
             for total in ("all_impacts", "energy_created_impacts", "energy_created_share"):
                 assert here[total].item() == alone.attrs[total]
-            assert here["largest_factor"].item() == alone.attrs.get("largest_energy_ratio", 1.0)
+            assert here["largest_energy_ratio_of_all"].item() == alone.attrs.get("largest_energy_ratio", 1.0)
 
 
 def test_names_tell_what_differs(found: xr.Dataset) -> None:
@@ -83,7 +83,7 @@ def test_it_can_be_written_and_read(found: xr.Dataset, tmp_path: Any) -> None:
 def test_rows_by_number() -> None:
     """Without velocity bins the rows are the numbers of the impacts, as in `statistics`."""
     found = rs.compare(BODIES, LAWS[1:2], **(RUN | {"velocity_bins": None}))
-    assert found["count"].dims == ("body", "law", "impact", "restitution")
+    assert found["restitution_count"].dims == ("body", "law", "impact", "restitution")
 
 
 @pytest.mark.parametrize(

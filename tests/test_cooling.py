@@ -36,7 +36,9 @@ def learned() -> rs.FluctuatingRestitution:
     body, law = rs.Dumbbell(radius=3e-3, separation=3e-4), rs.Frictionless(normal=0.9)
     how: dict[str, Any] = {"particles": 6000, "impacts": 250, "velocities": (0.05, 2.0)}
     heights = 3e-3 + np.geomspace(0.81, 1.0, 30)
-    return rs.FluctuatingRestitution.learn(body, law, release_height=heights, **how).clamped()
+    # So few heights leave structure in p(ε | v) below 0.1 m/s, which these tests do not look at.
+    with pytest.warns(rs.DistanceWarning):
+        return rs.FluctuatingRestitution.learn(body, law, release_height=heights, **how).clamped()
 
 
 def replicas(example: ModuleType, rule: Any, theta: float, end: float, number: int = 12) -> list[Floats]:

@@ -45,7 +45,7 @@ def test_map_is_the_histogram_of_all_impacts(runs: Runs, every: xr.Dataset) -> N
     edges = drawn["velocity_edges"].to_numpy(), drawn["restitution_edges"].to_numpy()
     # NumPy closes its last bin; nothing lies on it here.
     expected, _, _ = np.histogram2d(v[np.isfinite(v)], e[np.isfinite(v)], bins=list(edges))
-    np.testing.assert_array_equal(drawn["count"], expected)
+    np.testing.assert_array_equal(drawn["restitution_count"], expected)
     np.testing.assert_allclose(np.diff(edges[0]), 0.002, rtol=1e-9)
     np.testing.assert_allclose(np.diff(edges[1]), 0.01, rtol=1e-9)
     np.testing.assert_allclose(edges[0] / 0.002, np.round(edges[0] / 0.002), rtol=1e-12)
@@ -76,7 +76,7 @@ def test_histograms_are_those_of_all_impacts(runs: Runs, every: xr.Dataset) -> N
             values = every[name].to_numpy()[(v >= low) & (v < high)]
             part = shown.isel(speed=k)
             expected, _ = np.histogram(values, part["edges"])
-            np.testing.assert_array_equal(part["count"], expected)
+            np.testing.assert_array_equal(part["impacts"], expected)
             assert (int(part["number"]), int(part["outside"])) == (values.size, values.size - expected.sum())
 
 

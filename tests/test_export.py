@@ -155,6 +155,25 @@ def test_speeds_beyond_are_not_a_number_unless_clamped(
     np.testing.assert_array_equal(ask(program, table), plain.ppf(0.5, list(plain.velocities)))
 
 
+@pytest.mark.parametrize("language", ["C99", "C++11", "Fortran 2008"])
+def test_unseen_conditions_are_not_a_number_unless_clamped(
+    plain: FluctuatingRestitution, language: str, tmp_path: Path
+) -> None:
+    """The rule of `rvs`: what it refuses gives NaN, and what it takes does not."""
+    nodes = plain.data.velocity.to_numpy()
+    v = 0.5 * (nodes[7] + nodes[8])
+    highest = float(plain.data.given_highest[7:9].max())
+    table = np.array([[v, z, 0.5, 0.5] for z in (highest, np.nextafter(highest, 1.0), 1.0)])
+    call = "restitution_sample_given(v, z, u1, u2)"
+    for name, dist, seen in (("raise", plain, [1, 0, 0]), ("clamp", plain.clamped(), [1, 1, 1])):
+        (tmp_path / name).mkdir()
+        program = compiled(dist, language, call, tmp_path / name, "restitution")
+        np.testing.assert_array_equal(np.isfinite(ask(program, table)), seen)
+    plain.rvs(v, given=highest)
+    with pytest.raises(ValueError, match="what was seen of rotational_fraction"):
+        plain.rvs(v, given=np.nextafter(highest, 1.0))
+
+
 def test_the_source_says_what_it_is(plain: FluctuatingRestitution, tmp_path: Path) -> None:
     """Parameters, range, units and accuracy are in the comment; files are whole and not replaced unasked."""
     for write, name in ((plain.to_c, "dist.h"), (plain.to_fortran, "dist.f90")):

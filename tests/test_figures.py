@@ -21,7 +21,6 @@ from restitution import figures as fg
 from restitution.paper import _data as data
 from restitution.paper import _redraw, redraw
 from restitution.paper._figures import FIGURES, PaperFigure, SavedFigure, draw_all
-from restitution.paper._folder import unfinished
 from restitution.paper._runs import Runs, derived_seed, simulate_all
 from restitution.paper._settings import Settings
 
@@ -171,7 +170,7 @@ def test_population_is_normalised_by_its_largest_and_blank_where_empty() -> None
 def test_both_branches_of_negative_restitution_are_drawn(runs: Runs) -> None:
     """Fig. 7 shows ε < 0 on both sides of v = 0: below -1 left, above right, as the plane can only push."""
     drawn = data.low_velocity_map(runs, SMALL)
-    count = drawn["count"]
+    count = drawn["restitution_count"]
     left, right = count.sel(velocity=slice(None, 0)), count.sel(velocity=slice(0, None))
     assert int(left.sel(restitution=slice(None, -1)).sum()) > 0
     assert int(right.sel(restitution=slice(-1, 0)).sum()) > 0
@@ -255,41 +254,6 @@ def test_drawing_leaves_matplotlib_as_it_was(runs: Runs) -> None:
     assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0
 
 
-def test_folder_is_filled_at_the_end(tmp_path: Path) -> None:
-    """Nothing is in place while the work is on, and then all of it; other files in the folder stay."""
-    (tmp_path / "mine.txt").write_text("mine")
-    (tmp_path / "figure.png").write_text("old")
-    with unfinished(tmp_path) as draft:
-        (draft / "figure.png").write_text("new")
-        (draft / "report.html").write_text("report")
-        assert (tmp_path / "figure.png").read_text() == "old"
-    assert {file.name for file in tmp_path.iterdir()} == {"mine.txt", "figure.png", "report.html"}
-    assert (tmp_path / "figure.png").read_text() == "new"
-
-
-@pytest.mark.parametrize("trouble", [RuntimeError, KeyboardInterrupt])
-def test_failure_leaves_no_trace(tmp_path: Path, trouble: type[BaseException]) -> None:
-    """An error or Ctrl-C half-way leaves neither half-written files nor a folder that was not there."""
-
-    def fail(folder: Path) -> None:
-        with unfinished(folder) as draft:
-            (draft / "figure.png").write_text("half")
-            raise trouble
-
-    for folder in (tmp_path / "made" / "here", tmp_path):
-        with pytest.raises(trouble):
-            fail(folder)
-        assert list(tmp_path.iterdir()) == []
-
-
-def test_unusable_folder_is_found_out_first(tmp_path: Path) -> None:
-    """A file where the folder should be, or above it, is an error before any work; the message names it."""
-    (tmp_path / "file").write_text("")
-    for out in (tmp_path / "file", tmp_path / "file" / "below"):
-        with pytest.raises(OSError, match=r"out cannot be written to.*file"), unfinished(out):
-            pytest.fail("the work began")
-
-
 def test_redraw_checks_first_and_puts_files_in_place_last(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, runs: Runs
 ) -> None:
@@ -334,3 +298,49 @@ def test_redraw_checks_first_and_puts_files_in_place_last(
     assert calls == ["simulate 500000 3", "draw", "judge", "report"]
     assert found == tmp_path / "new" / "report.html"
     assert sorted(file.name for file in found.parent.iterdir()) == ["figure.png", "report.html"]
+
+
+def test_a_figure_of_ones_own_takes_three_lines(tmp_path: Path) -> None:
+    """Maps, densities, scatter, moments and trajectories; saved under a string, as one file or as two."""
+    body, law = rs.Dumbbell(radius=3e-3, separation=3e-4), rs.TangentialRestitution(normal=0.98)
+    bins: dict[str, Any] = {
+        "velocity_bins": np.linspace(0.0, 1.1, 23),
+        "restitution_bins": np.linspace(0.0, 2.0, 41),
+    }
+    found = rs.statistics(body, law, particles=200, **bins)
+    both = rs.compare([body], [law, rs.Frictionless(normal=0.98)], particles=50, **bins)
+    data = rs.simulate(body, law, particles=3, impacts=30)
+    figures = {
+        "map": rs.figures.map(found),
+        "fraction": rs.figures.map(found, of="fraction"),
+        "densities": rs.figures.densities(found, [0.2, 0.4]),
+        "scatter": rs.figures.scatter({"one": found, "the same": found}),
+        "compared": rs.figures.scatter(both),
+        "moments": rs.figures.moments(found),
+        "trajectory": rs.figures.trajectory(data, 1),
+    }
+    for name, drawn in figures.items():
+        assert [path.name for path in rs.figures.save(drawn, str(tmp_path / name))] == [
+            f"{name}.png",
+            f"{name}.pdf",
+        ]
+    (svg,) = rs.figures.save(figures["map"], str(tmp_path / "map.svg"))
+    assert svg.read_text(encoding="utf-8").startswith("<?xml")
+    with pytest.raises(ValueError, match=r"velocities = 3.0: must be in \[0, 1.1\) m/s, the velocity bins"):
+        rs.figures.densities(found, 3.0)
+    with pytest.raises(ValueError, match="found lacks restitution_count"):
+        rs.figures.map(data)
+    with pytest.raises(ValueError, match=r"particle = 3: must be a whole number in \[0, 2\]"):
+        rs.figures.trajectory(data, 3)
+
+
+def test_the_drawn_trajectory_lands_where_the_body_touches(tmp_path: Path) -> None:
+    """At every impact the centre of mass is R + L/2 |cos θ| high (Eqs. 2, 5): heights that only θ knows."""
+    body, law = rs.Dumbbell(radius=3e-3, separation=3e-3), rs.TangentialRestitution(normal=0.9)
+    data = rs.simulate(body, law, particles=1, impacts=12, seed=4)
+    drawn = rs.figures.trajectory(data, impacts=12).axes[0].lines[0]
+    time, height = np.asarray(drawn.get_xdata()), 1e-3 * np.asarray(drawn.get_ydata())
+    landings = height.reshape(12, 40)[:, -1]
+    np.testing.assert_allclose(time.reshape(12, 40)[:, -1], data.time[0], rtol=1e-15)
+    expected = body.radius + body.separation / 2 * abs(np.cos(data.angle.values[0]))
+    np.testing.assert_allclose(landings, expected, rtol=0, atol=1e-12)

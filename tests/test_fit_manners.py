@@ -122,7 +122,10 @@ def test_bad_input_is_named() -> None:
     one = fit.slopes(data, [0.1, 0.3, 0.5], resamples=2)
     wide = fit.slopes(data, np.linspace(0.1, 0.5, 5), resamples=2)
     cases: list[tuple[Callable[[], Any], str]] = [
-        (lambda: fit.bootstrap(fit.gaussian, x, resamples=1), "resamples = 1: at least two"),
+        (
+            lambda: fit.bootstrap(fit.gaussian, x, resamples=1),
+            r"resamples = 1: must be a whole number in \[2, 1000000\]",
+        ),
         (lambda: fit.bootstrap(fit.gaussian, x, [1]), "clusters: 1 values"),
         (lambda: fit.bootstrap(fit.gaussian, x, [1, 1, 1]), "clusters: all samples are in one"),
         (lambda: fit.bootstrap(fit.gaussian, x, resamples=2).interval("mean", 1.0), "confidence = 1.0: must"),
@@ -136,9 +139,9 @@ def test_bad_input_is_named() -> None:
             lambda: fit.goodness(fit.gaussian, [Counts(edges, np.ones(2))] * 2, clusters=[1, 2]),
             "clusters: counts are drawn again run by run",
         ),
-        (lambda: Counts(edges, np.ones(3)), r"count: shape \(3,\)"),
-        (lambda: Counts(edges[::-1], np.ones(2)), "edges: must be finite and strictly increasing"),
-        (lambda: Counts(edges, np.array([1.0, -1.0])), r"count: holds \[-1.\]"),
+        (lambda: Counts(edges, np.ones(3)), r"count = .*: must be a 1-D array of 2 counts"),
+        (lambda: Counts(edges[::-1], np.ones(2)), "edges goes from 2.0 to 1.0: edges must increase"),
+        (lambda: Counts(edges, np.array([1.0, -1.0])), r"count\[1\] = -1.0: must be a count in"),
         (lambda: Counts(edges, np.array([1.0, 0.0])), r"count: 1 bin\(s\) filled"),
         (lambda: fit.slopes(data), "velocity_bins: missing"),
         (
@@ -148,7 +151,10 @@ def test_bad_input_is_named() -> None:
         (lambda: one.power_law("left"), "side = 'left': must be 'above' or 'below'"),
         (lambda: wide.power_law("above", release_speed=0.3), "release_speed = 0.3: must be above 0.45 m/s"),
         (lambda: one.power_law("above"), "low = 0.0, high = inf: fewer than three bins"),
-        (lambda: fit.dependence(data, [0.0, 1.0], lags=0), "lags = 0: must be at least 1"),
+        (
+            lambda: fit.dependence(data, [0.0, 1.0], lags=0),
+            r"lags = 0: must be a whole number in \[1, 10000\]",
+        ),
     ]
     statistics = rs.reduce(data, np.linspace(0.1, 0.5, 5), np.linspace(0.0, 2.0, 201))
     by_impact = statistics.drop_vars("velocity_edges")
@@ -158,7 +164,7 @@ def test_bad_input_is_named() -> None:
         (lambda: fit.laplace(data, velocity=0.3), "velocity = 0.3: recorded impacts need a window"),
         (lambda: fit.laplace(data, velocity=(0.4, 0.3)), r"velocity = \(0.4, 0.3\): must be a window"),
         (lambda: fit.laplace(data, velocity=(np.nan, 0.3)), r"velocity = \(nan, 0.3\): must be a window"),
-        (lambda: fit.laplace(data, velocity=(5.0, 6.0)), r"velocity = \(5.0, 6.0\): no impact"),
+        (lambda: fit.laplace(data, velocity=(5.0, 6.0)), r"velocity = \(5.0, 6.0\): must be where"),
         (lambda: fit.laplace(x, velocity=(0.1, 0.2)), "velocity = .*: is for a Dataset"),
         (lambda: fit.goodness(fit.laplace, x, velocity=0.2), "velocity = 0.2: is for a Dataset"),
         (lambda: fit.bootstrap(fit.laplace, x, velocity=0.2), "velocity = 0.2: is for a Dataset"),
@@ -170,10 +176,13 @@ def test_bad_input_is_named() -> None:
         ),
         (lambda: fit.laplace(by_impact, velocity=0.2), "samples: statistics without velocity bins"),
         (lambda: fit.slopes(by_impact), "data: statistics without velocity bins"),
-        (lambda: fit.laplace(xr.Dataset(), velocity=(0.1, 0.2)), "data: lacks impact_velocity, restitution"),
-        (lambda: fit.slopes(data.drop_vars("restitution"), [0.1, 0.2]), "data: lacks restitution"),
-        (lambda: fit.dependence(data, [0.1, 0.2]), "data: lacks contact"),
-        (lambda: fit.slopes(data, [0.1, 0.2], resamples=1), "resamples = 1: at least two"),
+        (lambda: fit.laplace(xr.Dataset(), velocity=(0.1, 0.2)), "samples lacks impact_velocity"),
+        (lambda: fit.slopes(data.drop_vars("restitution"), [0.1, 0.2]), "data lacks restitution"),
+        (lambda: fit.dependence(data, [0.1, 0.2]), "data lacks contact"),
+        (
+            lambda: fit.slopes(data, [0.1, 0.2], resamples=1),
+            r"resamples = 1: must be a whole number in \[2, 1000000\]",
+        ),
         (lambda: fit.bootstrap(fit.laplace, statistics, velocity=0.2), "samples: one set of counts"),
         (lambda: fit.bootstrap(fit.laplace, data, [1], velocity=(0.1, 0.2)), "clusters: a Dataset knows its"),
         (
@@ -181,7 +190,7 @@ def test_bad_input_is_named() -> None:
             "2 bins are filled; 2 parameters need at least 3",
         ),
         (lambda: fit.asymmetric_laplace(four), "count: 3 bins are filled; 3 parameters need at least 4"),
-        (lambda: fit.asymmetric_laplace(four, np.nan), "location = nan: a finite"),
+        (lambda: fit.asymmetric_laplace(four, np.nan), "location = nan: must be a finite"),
         (lambda: fit.cusp_mixture(x, 1.0), "samples: 3 value"),
         (lambda: fit.bootstrap(fit.laplace, [1.0, 1.0, 2.0, 2.0], [0, 0, 1, 1]), "clusters: 2 are too few"),
         (lambda: fit.gaussian([1.0, 1e101]), r"samples: magnitudes up to 1e\+101"),

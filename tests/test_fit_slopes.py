@@ -58,6 +58,8 @@ def test_slopes_of_counts_are_those_of_the_impacts() -> None:
         assert np.isnan(one.table[f"{side}_error"]).all()
         assert one.power_law(side).exponent == pytest.approx(other.power_law(side).exponent, abs=0.03)
         assert np.isnan(one.power_law(side).exponent_error)
+        assert "counts do not say" in one.power_law(side).without_errors
+        assert other.power_law(side).without_errors == ""
 
 
 def test_the_exponential_form_fails_where_the_samples_are_gaussian() -> None:

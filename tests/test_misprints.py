@@ -104,7 +104,7 @@ def general_contact() -> tuple[Any, Any, Any, Any]:
 
 
 def test_14_has_a_minus_and_15_and_17_follow() -> None:
-    """With the minus, P of Eq. 14 solves Eq. 10 with ε^t = 1, for every orientation, spin and velocity."""
+    """With the minus, P of Eq. 14 solves Eq. 10 with ε_t = 1, for every orientation, spin and velocity."""
     axis, contact, spin, velocity = general_contact()
     c = -axis[2]
     up = sp.Matrix([0, 0, 1])

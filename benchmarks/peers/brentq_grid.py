@@ -74,7 +74,7 @@ class Dumbbell:
         jx = (work.tangential - 1) * (self.vx + self.spin * rz)  # left side of (10)
         jz = -(1 + work.normal) * (self.vz - self.spin * rx)
         d = self.inertia + rx**2 + rz**2
-        px = ((self.inertia + rx**2) * jx + rx * rz * jz) / d  # (14), for any ε^t
+        px = ((self.inertia + rx**2) * jx + rx * rz * jz) / d  # (14), for any ε_t
         pz = ((self.inertia + rz**2) * jz + rx * rz * jx) / d
         rotation = self.inertia * self.spin**2
         energy = rotation + self.vx**2 + self.vz**2

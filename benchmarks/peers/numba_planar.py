@@ -184,6 +184,6 @@ def impulse(
     jx = (tangential - 1.0) * (vx + spin * rz)  # left side of (10)
     jz = -(1.0 + normal) * (vz - spin * rx)
     d = 1.0 / (inertia + rx * rx + rz * rz)
-    px = ((inertia + rx * rx) * jx + rx * rz * jz) * d  # (14), for any ε^t
+    px = ((inertia + rx * rx) * jx + rx * rz * jz) * d  # (14), for any ε_t
     pz = ((inertia + rz * rz) * jz + rx * rz * jx) * d
     return vx + px, vz + pz, spin + (rz * px - rx * pz) / inertia  # (11)

@@ -3,16 +3,27 @@
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from restitution import analytic, figures, fit
+    from restitution import analytic, figures, fit, flight, sound, study
     from restitution._compare import compare
     from restitution._core import NumericalError, build_info
     from restitution._energy import EnergyWarning
     from restitution._reduce import reduce
-    from restitution._release import RandomSpin
+    from restitution._release import RandomHeight, RandomSpin
     from restitution._simulate import SimulationInterrupted, simulate
     from restitution._statistics import statistics
-    from restitution.bodies import Dumbbell, LoadedSphere, Spherocylinder, Spheroid
-    from restitution.distribution import FluctuatingRestitution
+    from restitution._trajectory import trajectory
+    from restitution.bodies import (
+        Dumbbell,
+        LoadedSphere,
+        Spherocylinder,
+        Spheroid,
+        ball_grade,
+        from_roundness,
+    )
+    from restitution.budget import ErrorBudget, RequiredRoundness, error_budget, required_roundness
+    from restitution.distribution import DistanceWarning, FluctuatingRestitution
+    from restitution.explorer import explore
+    from restitution.inference import posterior
     from restitution.laws import (
         ChatterjeeRuina,
         Coulomb,
@@ -22,18 +33,23 @@ if TYPE_CHECKING:
         TangentialRestitution,
         Viscoelastic,
     )
+    from restitution.study import sweep
 
 __all__ = [
     "ChatterjeeRuina",
     "Coulomb",
+    "DistanceWarning",
     "Dumbbell",
     "EnergyWarning",
+    "ErrorBudget",
     "FluctuatingRestitution",
     "Frictionless",
     "LoadedSphere",
     "NumericalError",
     "Plastic",
+    "RandomHeight",
     "RandomSpin",
+    "RequiredRoundness",
     "SimulationInterrupted",
     "Spherocylinder",
     "Spheroid",
@@ -41,13 +57,24 @@ __all__ = [
     "TangentialRestitution",
     "Viscoelastic",
     "analytic",
+    "ball_grade",
     "build_info",
     "compare",
+    "error_budget",
+    "explore",
     "figures",
     "fit",
+    "flight",
+    "from_roundness",
+    "posterior",
     "reduce",
+    "required_roundness",
     "simulate",
+    "sound",
     "statistics",
+    "study",
+    "sweep",
+    "trajectory",
 ]
 
 _HOMES = {
@@ -55,11 +82,21 @@ _HOMES = {
     "LoadedSphere": "bodies",
     "Spherocylinder": "bodies",
     "Spheroid": "bodies",
+    "ball_grade": "bodies",
+    "from_roundness": "bodies",
+    "ErrorBudget": "budget",
+    "RequiredRoundness": "budget",
+    "error_budget": "budget",
+    "required_roundness": "budget",
+    "DistanceWarning": "distribution",
     "FluctuatingRestitution": "distribution",
     "NumericalError": "_core",
     "build_info": "_core",
     "compare": "_compare",
+    "explore": "explorer",
+    "posterior": "inference",
     "EnergyWarning": "_energy",
+    "RandomHeight": "_release",
     "RandomSpin": "_release",
     "reduce": "_reduce",
     "SimulationInterrupted": "_simulate",
@@ -72,6 +109,8 @@ _HOMES = {
     "Viscoelastic": "laws",
     "simulate": "_simulate",
     "statistics": "_statistics",
+    "sweep": "study",
+    "trajectory": "_trajectory",
 }
 """The module that each public name comes from; the others are modules themselves."""
 

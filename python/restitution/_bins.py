@@ -1,4 +1,4 @@
-"""Uniform half-open bins, and the Dataset in which statistics are handed over."""
+"""Half-open bins, and the Dataset in which statistics are handed over."""
 
 from collections.abc import Mapping
 from typing import Any
@@ -7,17 +7,24 @@ import numpy as np
 import numpy.typing as npt
 import xarray as xr
 
+from restitution._arrays import reals
+from restitution._core import LARGEST_RESTITUTION
+from restitution._parameters import ParameterError, Problem, wrong
+
 FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.int64]
 
 FRACTION_BINS: FloatArray = np.linspace(0.0, 1.0, 51)
 FRACTION_BINS.flags.writeable = False
 
-LARGEST = 2.0**33
+_FARTHEST = 1e100
+"""Of any edge, so that widths and centres are finite."""
+_MOST_BINS = 10_000_000
+LARGEST = LARGEST_RESTITUTION
 """A restitution of this magnitude or more counts as undefined: its fourth power leaves the exact sums."""
 
 _MOMENTS = {
-    "mean": "mean of restitution",
+    "mean_restitution": "mean of restitution",
     "variance": "variance of restitution, sum of squares over the number",
     "skewness": "skewness of restitution",
     "kurtosis": "kurtosis of restitution, Pearson's: 3 for a Gaussian",
@@ -28,26 +35,42 @@ _MOMENTS = {
 
 
 def increasing_edges(bins: npt.ArrayLike, name: str) -> FloatArray:
-    edges = np.array(bins, dtype=np.float64)
+    edges = np.array(reals(name, bins, "a 1-D array of at least two finite edges", finite=False))
     if edges.ndim != 1 or edges.size < 2:
         raise ValueError(f"{name} has shape {edges.shape}: needs one dimension and at least two edges")
     if not np.all(np.isfinite(edges)):
         raise ValueError(f"{name} holds {edges[~np.isfinite(edges)][0]}: edges must be finite")
-    widths = np.diff(edges)
+    with np.errstate(over="ignore"):
+        widths = np.diff(edges)
     if not np.all(widths > 0):
         at = int(np.argmin(widths > 0))
         raise ValueError(f"{name} goes from {edges[at]} to {edges[at + 1]}: edges must increase strictly")
+    if np.abs(edges).max() > _FARTHEST:
+        raise ValueError(f"{name} goes from {edges[0]} to {edges[-1]}: at most {_FARTHEST:g} either way")
     return edges
 
 
-def checked_edges(bins: npt.ArrayLike, name: str) -> FloatArray:
-    edges = increasing_edges(bins, name)
-    widths = np.diff(edges)
-    # Room for edges that were rounded once each, as by linspace or arange, and no more.
-    allowed = 1e-9 * widths.mean() + 8 * np.spacing(np.abs(edges).max())
-    if np.ptp(widths) > allowed:
-        raise ValueError(f"{name} has widths from {widths.min()} to {widths.max()}: bins must be uniform")
-    return edges
+def edges_from(bins: npt.ArrayLike, span: npt.ArrayLike | None, name: str) -> npt.ArrayLike:
+    """Give the edges of bins that are a number with a range, as `numpy.histogram` takes them; else `bins`."""
+    kind = name.removesuffix("_bins")
+    if isinstance(bins, bool) or not isinstance(bins, int | np.integer):
+        if span is not None:
+            raise ParameterError(wrong(f"{kind}_range", span, f"left out: {name} are edges, not a number"))
+        return bins
+    if span is None:
+        raise ParameterError(
+            Problem(f"{kind}_range", f": missing; {name} = {bins} needs a range (low, high)")
+        )
+    ends = reals(f"{kind}_range", span, "(low, high) with low < high", dimensions=(1,))
+    if ends.shape != (2,) or not ends[0] < ends[1]:
+        raise ParameterError(wrong(f"{kind}_range", span, "(low, high) with low < high"))
+    if not 1 <= bins <= _MOST_BINS:
+        raise ParameterError(wrong(name, bins, f"edges, or a number of bins in [1, {_MOST_BINS}]"))
+    return np.linspace(ends[0], ends[1], int(bins) + 1)
+
+
+def checked_edges(bins: npt.ArrayLike, name: str, span: npt.ArrayLike | None = None) -> FloatArray:
+    return increasing_edges(edges_from(bins, span, name), name)
 
 
 def centres(edges: FloatArray) -> FloatArray:
@@ -66,11 +89,11 @@ def assemble(
     Parameters
     ----------
     counts : dict of int64 arrays, shape (rows, bins + 3)
-        ``count`` and perhaps ``fraction_count``; the columns are what is below the bins, the bins, what is
-        above, and the undefined.
+        ``restitution_count`` and perhaps ``fraction_count``; the columns are what is below the bins, the
+        bins, what is above, and the undefined.
     moments : dict of float arrays, shape (rows,)
-        ``mean``, ``variance``, ``skewness``, ``kurtosis``, ``minimum``, ``maximum``, ``mean_fraction``;
-        or none.
+        ``mean_restitution``, ``variance``, ``skewness``, ``kurtosis``, ``minimum``, ``maximum``,
+        ``mean_fraction``; or none.
     rows : xarray.Variable, shape (rows,)
         The coordinate of the rows, named like its dimension.
     columns : dict of float arrays, shape (bins + 1,)
@@ -79,9 +102,9 @@ def assemble(
         Further variables.
     """
     row = str(rows.dims[0])
-    grid = counts["count"]
+    grid = counts["restitution_count"]
     site = {"long_name": "impacts in the site"}
-    variables: dict[str, Any] = {"count": ((row, "restitution"), grid[:, 1:-2], site)}
+    variables: dict[str, Any] = {"restitution_count": ((row, "restitution"), grid[:, 1:-2], site)}
     per_row = {
         "number": (grid[:, :-1].sum(axis=1), "impacts whose restitution is defined"),
         "undefined": (grid[:, -1], "impacts whose restitution is not finite or at least 2**33 in magnitude"),
@@ -113,7 +136,11 @@ def by_velocity(
     """`assemble` for rows that are bins of impact velocity, with one row more below them and one above."""
     about = {"units": "m s-1", "long_name": "impact velocity"}
     outer = {
-        name: ((), np.int64(counts["count"][row].sum()), {"long_name": f"impacts {where} the velocity bins"})
+        name: (
+            (),
+            np.int64(counts["restitution_count"][row].sum()),
+            {"long_name": f"impacts {where} the velocity bins"},
+        )
         for name, row, where in (("velocity_underflow", 0, "below"), ("velocity_overflow", -1, "above"))
     }
     edges = {"velocity_edges": ("velocity_edge", velocity_edges, {"units": "m s-1"})}

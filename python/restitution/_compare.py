@@ -1,5 +1,7 @@
 """The statistics of several bodies under several laws, side by side."""
 
+from __future__ import annotations
+
 import warnings
 from collections.abc import Iterable, Mapping
 from itertools import product
@@ -11,6 +13,7 @@ import xarray as xr
 from restitution._energy import LEDGER, WHY, EnergyWarning, factor, percent, reported_elsewhere
 from restitution._parameters import Parameters, shown
 from restitution._resources import progress_bar
+from restitution._simulate import SimulationInterrupted
 from restitution._statistics import statistics
 from restitution.bodies import Body
 from restitution.laws import Law
@@ -21,7 +24,7 @@ _PER_RUN = {
     "all_impacts": "impacts of the run, in the bins or not",
     "energy_created_impacts": "of these, impacts that multiplied the kinetic energy by more than 1 + 1e-12",
     "energy_created_share": "their share",
-    "largest_factor": "their largest factor, 1 where there are none",
+    "largest_energy_ratio_of_all": "their largest factor, 1 where there are none",
 }
 
 
@@ -37,7 +40,7 @@ def compare(
     Parameters
     ----------
     bodies, laws : mapping of str to Body or Law, or iterable of them
-        What falls, and what an impact does. Without names they are called by their class and those
+        The bodies and the collision laws. Without names they are called by their class and those
         parameters in which they differ from others of their class.
     progress : bool
         Show a progress bar on standard error, over the combinations.
@@ -49,15 +52,18 @@ def compare(
     -------
     xarray.Dataset
         As from `restitution.statistics`, with dimensions (body, law) first. Over (body, law) also
-        ``all_impacts``, ``energy_created_impacts``, ``energy_created_share`` and ``largest_factor``; over
-        body and over law ``body_parameters`` and ``law_parameters``. The attributes are what all runs share.
+        ``all_impacts``, ``energy_created_impacts``, ``energy_created_share`` and
+        ``largest_energy_ratio_of_all``; over body and over law ``body_parameters`` and ``law_parameters``.
+        Each parameter in which bodies differ is a coordinate over body, such as ``separation``, and likewise
+        over law: ``found.swap_dims(body="separation")`` makes an axis of it. The attributes are what all runs
+        share.
 
     Raises
     ------
     ValueError
         Naming the argument that is wrong.
     SimulationInterrupted
-        On Ctrl-C.
+        On Ctrl-C; its ``data`` holds the combinations that were finished, and says which in ``finished``.
 
     Warns
     -----
@@ -73,7 +79,7 @@ def compare(
     ...     [rs.Frictionless(normal=0.98), rs.Coulomb(normal=0.98, friction=0.3)],
     ...     particles=50, velocity_bins=np.linspace(0.0, 1.2, 13),
     ...     restitution_bins=np.linspace(-1.0, 3.0, 401))
-    >>> found["mean"].dims, found["law"].values.tolist()
+    >>> found["mean_restitution"].dims, found["law"].values.tolist()
     (('body', 'law', 'velocity'), ['Frictionless', 'Coulomb'])
     """
     solids = _named("bodies", bodies, Body)
@@ -83,9 +89,12 @@ def compare(
         reported_elsewhere(),  # below, once
         progress_bar("compare", len(pairs), "combinations", show=progress) as tell,
     ):
-        runs = []
+        runs: list[xr.Dataset] = []
         for done, (body, law) in enumerate(pairs, start=1):
-            runs.append(statistics(solids[body], rules[law], **run))
+            try:
+                runs.append(statistics(solids[body], rules[law], **run))
+            except SimulationInterrupted as stop:
+                raise SimulationInterrupted(_finished(runs, stop.data, solids, rules)) from None
             if tell is not None:
                 tell(done)
     found = _side_by_side(runs, solids, rules)
@@ -93,11 +102,32 @@ def compare(
     return found
 
 
+def _finished(
+    runs: list[xr.Dataset], begun: xr.Dataset, bodies: Mapping[str, Body], laws: Mapping[str, Law]
+) -> xr.Dataset:
+    """Put the finished runs side by side, with nothing in the places of the others."""
+    empty = xr.zeros_like(begun)
+    for name, variable in begun.data_vars.items():
+        if str(name).endswith("_edges"):
+            empty[name] = variable
+        elif variable.dtype.kind == "f":
+            empty[name] = variable * np.nan
+    empty.attrs |= dict.fromkeys(("all_impacts", "energy_created_impacts"), 0)
+    empty.attrs |= {"energy_created_share": 0.0, "largest_energy_ratio": 1.0}
+    missing = len(bodies) * len(laws) - len(runs)
+    found = _side_by_side([*runs, *[empty] * missing], bodies, laws)
+    finished = np.arange(len(bodies) * len(laws)) < len(runs)
+    about = {"long_name": "whether the run was finished; there is nothing of the others"}
+    found["finished"] = (("body", "law"), finished.reshape(len(bodies), len(laws)), about)
+    incomplete = f"interrupted: {len(runs)} of {finished.size} combinations are finished"
+    return found.assign_attrs(incomplete=incomplete)
+
+
 def _named(what: str, given: Mapping[str, T] | Iterable[T], kind: type[Any]) -> dict[str, T]:
     """Give every body or law its name."""
     if isinstance(given, Mapping):
         named = dict(given)
-    elif isinstance(given, Iterable) and not isinstance(given, Parameters | str):
+    elif isinstance(given, Iterable) and not isinstance(given, Parameters | str) and not _is_scalar(given):
         values = list(given)
         for value in values:
             _check(what, value, kind)
@@ -115,6 +145,10 @@ def _named(what: str, given: Mapping[str, T] | Iterable[T], kind: type[Any]) -> 
             raise ValueError(f"{what}: {shown(name)} is not a name; must be a str")
         _check(what, value, kind)
     return named
+
+
+def _is_scalar(given: object) -> bool:
+    return isinstance(given, np.ndarray) and given.ndim == 0
 
 
 def _check(what: str, value: object, kind: type) -> None:
@@ -152,6 +186,7 @@ def _side_by_side(runs: list[xr.Dataset], bodies: Mapping[str, Body], laws: Mapp
         "law": list(laws),
         **{str(k): v for k, v in first.coords.items()},
     }
+    coordinates |= _parameters("body", bodies.values()) | _parameters("law", laws.values())
     coordinates["body_parameters"] = (("body",), [repr(body) for body in bodies.values()])
     coordinates["law_parameters"] = (("law",), [repr(law) for law in laws.values()])
     shared = {
@@ -163,8 +198,38 @@ def _side_by_side(runs: list[xr.Dataset], bodies: Mapping[str, Body], laws: Mapp
     return xr.Dataset(variables, coordinates, shared)
 
 
+def _parameters(axis: str, objects: Iterable[Parameters]) -> dict[str, Any]:
+    """Give the parameters in which objects differ, each as a coordinate: numbers as numbers, NaN for none."""
+    rows: list[dict[str, Any]] = []
+    units: dict[str, str] = {}
+    for one in objects:
+        row: dict[str, Any] = {}
+        for name, field in type(one).model_fields.items():
+            value = getattr(one, name)
+            units.setdefault(name, field.description or "1")
+            if isinstance(value, tuple) and len(value) == 2:
+                row |= {f"{name}_1": value[0], f"{name}_2": value[1]}
+            else:
+                row[name] = value if isinstance(value, float | str) else repr(value)
+        rows.append(row)
+    found: dict[str, Any] = {}
+    for name in dict.fromkeys(key for row in rows for key in row):
+        values = [row.get(name) for row in rows]
+        if all(value == values[0] for value in values):
+            continue
+        numeric = all(value is None or isinstance(value, float) for value in values)
+        if numeric:
+            column = np.array([np.nan if value is None else value for value in values])
+            unit = units.get(name.removesuffix("_1").removesuffix("_2"), "1")
+            found[name] = ((axis,), column, {"long_name": f"{name} of the {axis}", "units": unit})
+        else:
+            words = ["" if value is None else str(value) for value in values]
+            found[name] = ((axis,), words, {"long_name": f"{name} of the {axis}"})
+    return found
+
+
 def _total(run: xr.Dataset, name: str) -> int | float:
-    if name == "largest_factor":
+    if name == "largest_energy_ratio_of_all":
         return float(run.attrs.get("largest_energy_ratio", 1.0))
     value: int | float = run.attrs[name]
     return value
@@ -174,7 +239,10 @@ def _warn(found: xr.Dataset) -> None:
     created = found["energy_created_impacts"].sum("body")
     laws = [str(law) for law in found["law"].values[created > 0]]
     if laws:
-        share, largest = float(found["energy_created_share"].max()), float(found["largest_factor"].max())
+        share, largest = (
+            float(found["energy_created_share"].max()),
+            float(found["largest_energy_ratio_of_all"].max()),
+        )
         warnings.warn(
             f"Impacts created kinetic energy under {', '.join(laws)}: in up to {percent(share)} of the "
             f"impacts of a run, at most by a factor of {factor(largest)}. {WHY}",

@@ -1,30 +1,68 @@
-from collections.abc import Callable, Mapping
-from typing import Any
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any, TypeAlias
 
 import numpy as np
 import numpy.typing as npt
 
 __all__ = [
+    "AXES",
     "CREATES_ENERGY",
+    "HYPOTHESES",
+    "LARGEST_RESTITUTION",
+    "MOST_FRICTION",
+    "MOST_RADIANS",
+    "ORIENTATIONS",
+    "PADE",
+    "STOP_REASONS",
+    "Law",
+    "MagnitudeError",
+    "Material",
+    "Mixture",
     "NumericalError",
+    "ParameterError",
     "Solid",
+    "Tally",
     "build_info",
+    "bytes_per_impact",
+    "chatterjee_ruina",
+    "columns",
+    "coulomb",
     "dumbbell",
+    "frictionless",
     "loaded_sphere",
-    "mixture_draw",
-    "mixture_value",
-    "normal_coefficient",
-    "respond",
+    "plastic",
     "simulate",
     "sincos",
     "spherocylinder",
     "spheroid",
     "statistics",
+    "tabulated",
+    "tangential_restitution",
+    "viscoelastic",
 ]
 
 CREATES_ENERGY: float
+LARGEST_RESTITUTION: float
+MOST_RADIANS: float
+ORIENTATIONS: list[str]
+AXES: list[str]
+HYPOTHESES: list[str]
+STOP_REASONS: list[str]
+
+MOST_FRICTION: float
+PADE: tuple[list[float], list[float]]
+
+_Table: TypeAlias = dict[str, tuple[tuple[str, ...], npt.NDArray[Any], dict[str, Any]]]
+_Edges: TypeAlias = Mapping[str, npt.NDArray[np.float64] | None]
 
 class NumericalError(RuntimeError): ...
+
+class ParameterError(ValueError):
+    name: str
+    value: float | int | str
+    allowed: str
+
+class MagnitudeError(ParameterError): ...
 
 class Solid:
     @property
@@ -36,50 +74,100 @@ class Solid:
     @property
     def centre_of_mass(self) -> float: ...
     def lowest(self, cosines: npt.NDArray[np.float64]) -> float: ...
+    def clears(self, height: float, cosines: npt.NDArray[np.float64] | None = None) -> bool: ...
     def farthest(self) -> float: ...
+
+class Material:
+    @property
+    def beta(self) -> float | None: ...
+    def at(self, speeds: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]: ...
+
+class Law:
+    def respond(
+        self,
+        slip: tuple[float, float, float],
+        arm: tuple[float, float],
+        inertia: float,
+        across: float,
+    ) -> tuple[tuple[float, float, float], float]: ...
+
+class Mixture:
+    def __init__(
+        self,
+        speeds: npt.NDArray[np.float64],
+        first: npt.NDArray[np.int64],
+        conditions: npt.NDArray[np.float64],
+        start: npt.NDArray[np.int64],
+        edges: npt.NDArray[np.float64],
+        cumulative: npt.NDArray[np.float64],
+    ) -> None: ...
+    def cdf(
+        self,
+        x: npt.NDArray[np.float64],
+        v: npt.NDArray[np.float64],
+        z: npt.NDArray[np.float64],
+        threads: int,
+    ) -> tuple[npt.NDArray[np.float64], bool]: ...
+    def pdf(
+        self,
+        x: npt.NDArray[np.float64],
+        v: npt.NDArray[np.float64],
+        z: npt.NDArray[np.float64],
+        threads: int,
+    ) -> tuple[npt.NDArray[np.float64], bool]: ...
+    def ppf(
+        self,
+        x: npt.NDArray[np.float64],
+        v: npt.NDArray[np.float64],
+        z: npt.NDArray[np.float64],
+        threads: int,
+    ) -> tuple[npt.NDArray[np.float64], bool]: ...
+    def draw(
+        self,
+        v: npt.NDArray[np.float64],
+        z: npt.NDArray[np.float64],
+        size: int,
+        seed: int,
+        threads: int,
+    ) -> tuple[npt.NDArray[np.float64], bool]: ...
 
 def dumbbell(radius: tuple[float, float], separation: float, density: tuple[float, float]) -> Solid: ...
 def loaded_sphere(radius: float, density: float, load: float, offset: float) -> Solid: ...
 def spherocylinder(radius: float, separation: float, density: float) -> Solid: ...
 def spheroid(equatorial: float, polar: float, density: float) -> Solid: ...
 def sincos(x: float) -> tuple[float, float]: ...
-def normal_coefficient(
-    normal: float | Mapping[str, Any], speeds: npt.NDArray[np.float64]
-) -> npt.NDArray[np.float64]: ...
-def respond(
-    law: Mapping[str, Any],
-    slip: tuple[float, float, float],
-    arm: tuple[float, float],
-    inertia: float,
-    across: float,
-) -> tuple[tuple[float, float, float], float]: ...
+def viscoelastic(
+    young_modulus: float, poisson_ratio: float, dissipation: float, density: float, radius: float
+) -> Material: ...
+def plastic(yield_speed: float) -> Material: ...
+def tabulated(v: Sequence[float], e: Sequence[float]) -> Material: ...
+def tangential_restitution(normal: float | Material, tangential: float) -> Law: ...
+def frictionless(normal: float | Material) -> Law: ...
+def coulomb(normal: float | Material, friction: float, hypothesis: str) -> Law: ...
+def chatterjee_ruina(normal: float | Material, tangential: float, friction: float) -> Law: ...
 def simulate(
     run: Mapping[str, Any],
     threads: int,
     progress: Callable[[int], None] | None,
-) -> tuple[dict[str, npt.NDArray[Any]], bool]: ...
+    part: tuple[int, int] | None = None,
+    columns: Sequence[str] | None = None,
+) -> tuple[_Table, bool]: ...
+def columns(law: Law, state: bool = False) -> list[str]: ...
+def bytes_per_impact(columns: Sequence[str]) -> int: ...
+
+class Tally:
+    @staticmethod
+    def read(run: Mapping[str, Any], edges: _Edges, words: npt.NDArray[np.uint64]) -> Tally: ...
+    def words(self) -> npt.NDArray[np.uint64]: ...
+    def merged(self, others: Sequence[Tally]) -> Tally: ...
+    def table(self) -> dict[str, npt.NDArray[Any]]: ...
+    def moments(self) -> dict[str, npt.NDArray[Any]]: ...
+
 def statistics(
     run: Mapping[str, Any],
-    velocity_bins: npt.NDArray[np.float64] | None,
-    restitution_bins: npt.NDArray[np.float64],
-    fraction_bins: npt.NDArray[np.float64] | None,
+    edges: _Edges,
     threads: int,
     progress: Callable[[int], None] | None,
-) -> tuple[dict[str, npt.NDArray[Any]], bool]: ...
+    part: tuple[int, int] | None = None,
+) -> tuple[Tally, bool]: ...
 def build_info() -> dict[str, Any]: ...
-def mixture_value(
-    table: Mapping[str, Any],
-    what: str,
-    x: npt.NDArray[np.float64],
-    v: npt.NDArray[np.float64],
-    z: npt.NDArray[np.float64],
-    threads: int,
-) -> tuple[npt.NDArray[np.float64], bool]: ...
-def mixture_draw(
-    table: Mapping[str, Any],
-    v: npt.NDArray[np.float64],
-    z: npt.NDArray[np.float64],
-    size: int,
-    seed: int,
-    threads: int,
-) -> tuple[npt.NDArray[np.float64], bool]: ...

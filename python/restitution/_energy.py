@@ -13,7 +13,7 @@ from restitution._core import CREATES_ENERGY
 
 
 class EnergyWarning(UserWarning):
-    """Impacts of a run left with more kinetic energy than they had, which is the collision law's doing.
+    """Impacts of a run left with more kinetic energy than they had, as the collision law demands.
 
     An impact counts where it multiplies the kinetic energy by more than 1 + 1e-12: rounding makes some 1e-15.
     """
@@ -53,7 +53,7 @@ def ledger_of(energy_ratio: FloatArray) -> dict[str, Any]:
 
 
 def by_row(row: str, created: IntArray, largest: FloatArray) -> dict[str, Any]:
-    """Give the variables that say what each row of statistics knows of the energy.
+    """Give the variables on energy of each row of statistics.
 
     Parameters
     ----------

@@ -4,10 +4,13 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from difflib import get_close_matches
 from reprlib import Repr
-from typing import Annotated, Any, ClassVar, NamedTuple
+from typing import Annotated, Any, ClassVar, NamedTuple, Self
 
 import numpy as np
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, ValidationError
+from pydantic_core import PydanticCustomError
+
+from restitution import _display
 
 
 class Problem(NamedTuple):
@@ -31,6 +34,10 @@ class ParameterError(ValueError):
         return "\n".join(map(str, self.problems))
 
 
+class TooLargeError(ParameterError, MemoryError):
+    """What is asked for takes more memory than this process can have; a ValueError and a MemoryError."""
+
+
 def wrong(name: str, value: Any, allowed: str) -> Problem:
     """Say that a value is not one of those that are allowed."""
     return Problem(name, f" = {shown(value)}: must be {allowed}")
@@ -41,6 +48,12 @@ def unknown(name: str, taker: str, allowed: Iterable[str], prefix: str = "") -> 
     names = list(allowed)
     meant = "".join(f"did you mean {prefix}{close}? " for close in get_close_matches(name, names, n=1))
     return Problem(prefix + name, f": unknown; {meant}{taker} takes {', '.join(names)}")
+
+
+def listed(kinds: Iterable[type]) -> str:
+    """Name classes in words."""
+    *others, last = (kind.__name__ for kind in kinds)
+    return f"{', '.join(others)} or {last}"
 
 
 _SHORT = Repr()
@@ -60,13 +73,24 @@ def shown(value: Any) -> str:
 
 
 def _plain_number(value: Any) -> Any:
-    """Make a Python number of a NumPy scalar or 0-d array."""
-    scalar = isinstance(value, np.generic) or (isinstance(value, np.ndarray) and value.ndim == 0)
-    return value.item() if scalar else value
+    """Make a Python number of a NumPy scalar or 0-d array; what is masked, or a date, stays what it is."""
+    if not isinstance(value, np.generic | np.ndarray) or value.ndim != 0 or value.dtype.kind not in "biuf":
+        return value
+    if np.ma.is_masked(value):
+        return value
+    return float(value) if value.dtype.kind == "f" else value.item()
 
 
-Number = Annotated[float, BeforeValidator(_plain_number), Field(strict=True, allow_inf_nan=False)]
-Whole = Annotated[int, BeforeValidator(_plain_number), Field(strict=True)]
+def _number_itself(value: Any) -> int | float:
+    """Refuse what is made a number of: pydantic would take dates, masked and complex values."""
+    value = _plain_number(value)
+    if isinstance(value, bool) or not isinstance(value, int | float):
+        raise PydanticCustomError("no_number", "no number")
+    return value
+
+
+Number = Annotated[float, BeforeValidator(_number_itself), Field(strict=True, allow_inf_nan=False)]
+Whole = Annotated[int, BeforeValidator(_number_itself), Field(strict=True)]
 
 
 @dataclass(frozen=True)
@@ -76,22 +100,77 @@ class Allowed:
     text: str
 
 
-class Parameters(BaseModel):
+class Parameters(BaseModel, metaclass=_display.Listed):
     """A frozen set of named parameters.
 
     Raises
     ------
     ValueError
         Naming each argument that is wrong, its value, and what is allowed.
+    TypeError
+        If parameters are given without their names.
     """
 
     model_config: ClassVar[ConfigDict] = ConfigDict(frozen=True, extra="forbid", arbitrary_types_allowed=True)
 
-    def __init__(self, **values: Any) -> None:
+    def __init__(self, *values: Any, **named: Any) -> None:
+        if values:
+            fields = [name for name in type(self).model_fields if name not in named]
+            meant = zip(fields, values, strict=False)
+            example = ", ".join(f"{name}={shown(value)}" for name, value in meant)
+            given = ", ".join(map(shown, values))
+            kind = type(self).__name__
+            raise TypeError(f"{kind}({given}): parameters are given by name, as in {kind}({example})")
         try:
-            super().__init__(**values)
+            super().__init__(**named)
         except ValidationError as error:
             raise ParameterError(*_problems(type(self), error)) from None
+
+    # What is worked out from the fields, compiled objects among it, is neither copied nor pickled.
+
+    def _fields(self) -> dict[str, Any]:
+        return {name: value for name, value in self.__dict__.items() if name in type(self).model_fields}
+
+    def __getstate__(self) -> dict[Any, Any]:
+        return super().__getstate__() | {"__dict__": self._fields()}
+
+    def __copy__(self) -> Self:
+        copied = type(self).__new__(type(self))
+        copied.__setstate__(self.__getstate__())
+        return copied
+
+    def __deepcopy__(self, memo: dict[int, Any] | None = None) -> Self:
+        return self.__copy__()  # nothing in it can change
+
+    @classmethod
+    def __pydantic_init_subclass__(cls, **options: Any) -> None:
+        cls.__signature__ = _display.signature(cls)
+
+    def __setattr__(self, name: str, value: Any) -> None:
+        raise AttributeError(f"{name}: {self!r} cannot be changed; make another")
+
+    def __delattr__(self, name: str) -> None:
+        raise AttributeError(f"{name}: {self!r} cannot be changed; make another")
+
+    def __dir__(self) -> list[str]:
+        return sorted({*_display.public_names(type(self)), *type(self).model_fields})
+
+    def __str__(self) -> str:
+        return repr(self)
+
+    def _repr_html_(self) -> str:
+        return _display.table(type(self).__name__, self._rows())
+
+    def _rows(self) -> Iterator[tuple[str, str]]:
+        """Yield the names and values that a notebook shows."""
+        for name, field in type(self).model_fields.items():
+            value = getattr(self, name)
+            if isinstance(value, Parameters):
+                yield name, type(value).__name__
+                for key, text in value._rows():
+                    yield f"{name}.{key}", text
+            else:
+                yield name, _display.value(value, field.description)
 
 
 def _problems(model: type[BaseModel], error: ValidationError) -> Iterator[Problem]:
@@ -106,9 +185,8 @@ def _problems(model: type[BaseModel], error: ValidationError) -> Iterator[Proble
                 cause = problem["ctx"]["error"]
                 if isinstance(cause, ParameterError):
                     yield from cause.problems
-                else:  # the core's messages start with the name, too
-                    name, space, text = str(cause).partition(" ")
-                    yield Problem(name, space + text)
+                else:  # of the core
+                    yield wrong(cause.name, cause.value, cause.allowed)
             case _:
                 yield wrong(name, problem["input"], _allowed(model, name))
 

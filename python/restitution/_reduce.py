@@ -8,10 +8,15 @@ is counted too, so that for the impacts that happened
 ``number = sum(fraction_count) + fraction_underflow + fraction_overflow`` in every velocity bin.
 """
 
+from __future__ import annotations
+
 import numpy as np
 import numpy.typing as npt
 import xarray as xr
 
+from restitution._arrays import whole
+from restitution._batches import BATCHES, batches_of
+from restitution._batches import standard_errors as standard_errors_of
 from restitution._bins import (
     FRACTION_BINS,
     LARGEST,
@@ -23,6 +28,7 @@ from restitution._bins import (
 )
 from restitution._core import CREATES_ENERGY
 from restitution._energy import by_row
+from restitution._recorded import records
 
 
 def reduce(
@@ -30,6 +36,11 @@ def reduce(
     velocity_bins: npt.ArrayLike,
     restitution_bins: npt.ArrayLike,
     fraction_bins: npt.ArrayLike = FRACTION_BINS,
+    *,
+    velocity_range: tuple[float, float] | None = None,
+    restitution_range: tuple[float, float] | None = None,
+    fraction_range: tuple[float, float] | None = None,
+    batches: int = BATCHES,
 ) -> xr.Dataset:
     """Count impacts on the (impact velocity, restitution) lattice and take moments in each velocity bin.
 
@@ -37,25 +48,23 @@ def reduce(
     ----------
     data : xarray.Dataset
         Impacts as from `restitution.simulate`. An impact happened where ``impact_velocity`` is not NaN.
-    velocity_bins : array_like, shape (nv + 1,)
-        Edges of the impact velocity bins in m/s; finite, strictly increasing, uniform.
-    restitution_bins : array_like, shape (nr + 1,)
-        Edges of the restitution bins, likewise.
-    fraction_bins : array_like, shape (nf + 1,)
-        Edges of the bins of E_rot/E_tot (Eq. 12), likewise; 50 bins on [0, 1) unless told.
+    velocity_bins, restitution_bins, fraction_bins, velocity_range, restitution_range, fraction_range
+        As in `restitution.statistics`.
+    batches : int
+        Batches of particles whose scatter gives the standard errors of the moments, as there.
 
     Returns
     -------
     xarray.Dataset
         Coordinates ``velocity``, ``restitution``, ``fraction`` (bin centres); ``velocity_edges``,
-        ``restitution_edges``, ``fraction_edges``; int64 grids ``count`` (velocity, restitution) and
-        ``fraction_count`` (velocity, fraction).
+        ``restitution_edges``, ``fraction_edges``; int64 grids ``restitution_count`` (velocity,
+        restitution) and ``fraction_count`` (velocity, fraction).
 
         For each velocity bin, over all its finite restitutions whether or not they lie inside
-        ``restitution_bins``: ``number``, ``mean``, ``variance`` (divided by the number, not by the number
-        less one), ``skewness``, ``kurtosis`` (Pearson's: 3 for a Gaussian, 6 for a symmetric Laplace
-        distribution), ``minimum``, ``maximum``, and ``mean_fraction``. Where a bin is empty they are NaN;
-        skewness and kurtosis also where all values are equal.
+        ``restitution_bins``: ``number``, ``mean_restitution``, ``variance`` (divided by the number, not by
+        the number less one), ``skewness``, ``kurtosis`` (Pearson's: 3 for a Gaussian, 6 for a symmetric
+        Laplace distribution), ``minimum``, ``maximum``, and ``mean_fraction``. Where a bin is empty they are
+        NaN; skewness and kurtosis also where all values are equal.
 
         Over all impacts of the bin: ``energy_created``, the number of those that multiplied the kinetic
         energy by more than 1 + 1e-12, and ``largest_energy_ratio``, the largest factor of these, NaN where
@@ -69,21 +78,27 @@ def reduce(
     Raises
     ------
     ValueError
-        If bins are not one-dimensional, finite, strictly increasing and uniform; or data lack a variable.
+        If bins are not one-dimensional, finite and strictly increasing; or data lack a variable.
     """
-    velocity_edges = checked_edges(velocity_bins, "velocity_bins")
+    velocity_edges = checked_edges(velocity_bins, "velocity_bins", velocity_range)
     columns = {
-        "restitution": checked_edges(restitution_bins, "restitution_bins"),
-        "fraction": checked_edges(fraction_bins, "fraction_bins"),
+        "restitution": checked_edges(restitution_bins, "restitution_bins", restitution_range),
+        "fraction": checked_edges(fraction_bins, "fraction_bins", fraction_range),
     }
+    parts = batches_of(data.sizes.get("particle", 0) if isinstance(data, xr.Dataset) else 0, batches)
     names = ("impact_velocity", "restitution", "rotational_fraction", "energy_ratio")
-    velocity, restitution, fraction, energy = _impacts(data, *names)
+    velocity, restitution, fraction, energy = (column.ravel() for column in records("data", data, *names))
+    happened = ~np.isnan(velocity)
+    particle = np.repeat(np.arange(data.sizes["particle"]), data.sizes["impact"])[happened]
+    velocity, restitution, fraction, energy = (
+        column[happened] for column in (velocity, restitution, fraction, energy)
+    )
     # Rows as in the core: below, the bins, above.
     rows = velocity_edges.size + 1
     row = _bin(velocity, velocity_edges) + 1
     defined = (np.abs(restitution) < LARGEST) & np.isfinite(fraction)
     counts = {
-        "count": _grid(row, restitution, defined, rows, columns["restitution"]),
+        "restitution_count": _grid(row, restitution, defined, rows, columns["restitution"]),
         "fraction_count": _grid(row, fraction, defined, rows, columns["fraction"]),
     }
     created = energy > CREATES_ENERGY
@@ -92,8 +107,18 @@ def reduce(
     gains = _tally(row[created], rows)
     row, restitution, fraction = row[defined], restitution[defined], fraction[defined]
     moments = {**_moments(restitution, row, rows), "mean_fraction": _mean(fraction, row, rows)}
-    ledger = by_row("velocity", gains[1:-1], largest[1:-1])
-    found = by_velocity(counts, moments, velocity_edges, columns, ledger)
+    more = by_row("velocity", gains[1:-1], largest[1:-1])
+    if len(parts) > 1:
+        batch = np.searchsorted([last for _, last in parts], particle[defined], side="right")
+        cells = (batch * rows + row, rows * len(parts))
+        single = _moments(restitution, *cells) | {"mean_fraction": _mean(fraction, *cells)}
+        single["number"] = _tally(*cells).astype(np.float64)
+        shaped = {name: values.reshape(len(parts), rows)[:, 1:-1] for name, values in single.items()}
+        each = [{name: values[i] for name, values in shaped.items()} for i in range(len(parts))]
+        more |= {
+            name: ("velocity", values, about) for name, (values, about) in standard_errors_of(each).items()
+        }
+    found = by_velocity(counts, moments, velocity_edges, columns, more)
     content = "statistics of restitution in bins of impact velocity, bins lo <= x < hi"
     return found.assign_attrs(data.attrs, content=content)
 
@@ -125,12 +150,13 @@ def standard_errors(data: xr.Dataset, velocity_bins: npt.ArrayLike, *, block: in
     """
     edges = checked_edges(velocity_bins, "velocity_bins")
     nv = edges.size - 1
-    columns = data[["impact_velocity", "restitution", "rotational_fraction"]].transpose("particle", "impact")
-    velocity, restitution, fraction = (columns[name].to_numpy() for name in columns.data_vars)
+    block = whole("block", block, 1)
+    names = ("impact_velocity", "restitution", "rotational_fraction")
+    velocity, restitution, fraction = records("data", data, *names)
     bins = _bin(velocity, edges)
     kept = (bins >= 0) & (bins < nv) & (np.abs(restitution) < LARGEST) & np.isfinite(fraction)
     pooled = _moments(restitution[kept], bins[kept], nv)
-    mean, variance = pooled["mean"], pooled["variance"]
+    mean, variance = pooled["mean_restitution"], pooled["variance"]
     number = _tally(bins[kept], nv)
 
     particles = np.zeros(nv, np.int64)
@@ -166,16 +192,6 @@ def standard_errors(data: xr.Dataset, velocity_bins: npt.ArrayLike, *, block: in
     )
 
 
-def _impacts(data: xr.Dataset, *names: str) -> list[FloatArray]:
-    """Give these variables of the impacts that happened: where the first is not NaN."""
-    missing = [name for name in names if name not in data]
-    if missing:
-        raise ValueError(f"data lacks {', '.join(missing)}: give a Dataset as from restitution.simulate")
-    columns = [data[name].to_numpy().ravel() for name in names]
-    happened = ~np.isnan(columns[0])
-    return [column[happened] for column in columns]
-
-
 def _bin(values: FloatArray, edges: FloatArray) -> IntArray:
     """Index of the bin: -1 below the first edge, the number of bins from the last edge on (and for NaN)."""
     return np.searchsorted(edges, values, side="right").astype(np.int64) - 1
@@ -208,13 +224,16 @@ def _moments(values: FloatArray, bins: IntArray, size: int) -> dict[str, FloatAr
     minimum[empty] = maximum[empty] = np.nan
     # Rounding may carry a mean past the extremes; equal values must have exactly their value as mean.
     mean = np.clip(_mean(values, bins, size), minimum, maximum)
+    # Values that differ by their rounding alone are equal, as they are in the sums of `statistics`.
+    rounding = 16.0 * np.finfo(np.float64).eps * np.maximum(np.abs(minimum), np.abs(maximum))
+    equal = maximum - minimum <= rounding
     with np.errstate(invalid="ignore", divide="ignore", over="ignore"):
-        deviation = values - mean[bins]
+        deviation = np.where(equal[bins], 0.0, values - mean[bins])
         square = deviation * deviation
         m2, m3, m4 = (_mean(power, bins, size) for power in (square, square * deviation, square * square))
         skewness, kurtosis = m3 / m2**1.5, m4 / m2**2
     return {
-        "mean": mean,
+        "mean_restitution": mean,
         "variance": m2,
         "skewness": skewness,
         "kurtosis": kurtosis,

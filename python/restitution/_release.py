@@ -1,16 +1,18 @@
-"""How particles are let go: the axis, spin and velocity of a run, checked."""
+"""How particles are released: the height, axis, spin and velocity of a run, checked."""
 
 import math
-from typing import Annotated, Any, Literal, TypeAlias, get_args
+from typing import Annotated, Any, Literal, Self, TypeAlias, get_args
 
 import numpy as np
 import numpy.typing as npt
-from pydantic import BeforeValidator
+from pydantic import BeforeValidator, Field, TypeAdapter, ValidationError, model_validator
 
-from restitution._parameters import Allowed, ParameterError, Parameters, _plain_number, wrong
+from restitution import _core
+from restitution._arrays import check_each, reals
+from restitution._parameters import Allowed, Number, ParameterError, Parameters, _plain_number, wrong
 
 Orientation = Literal["uniform-angle", "isotropic"]
-Axis = Literal["isotropic", "horizontal", "across"]
+Axis = Literal["isotropic", "horizontal", "across", "thermal"]
 FloatArray: TypeAlias = npt.NDArray[np.float64]
 
 _ORIENTATIONS = (
@@ -18,44 +20,38 @@ _ORIENTATIONS = (
     "or a 2-D array of their pairs (θ, φ)"
 )
 _SPINS = "None, (ωx, ωy, ωz) in rad/s, an array of them, one per particle, or a RandomSpin"
+_HEIGHTS = "a finite number > 0 (height of the centre of mass, m), or a RandomHeight"
 _VELOCITIES = "None or (vx, vy, vz), finite, in m/s"
 _RATES = "a finite number >= 0, or a pair (low, high) of them with low <= high (rad/s)"
 _AXES = " or ".join(f"'{axis}'" for axis in get_args(Axis))
-
-_MOST_RADIANS = 2.0**20
-"""Range of the engine's sine and cosine."""
+_height_of_all = TypeAdapter(Annotated[Number, Field(gt=0)])
 
 
-def _array(value: Any) -> FloatArray | None:
-    """Give the value as real numbers, read-only; None if it is not an array of such."""
-    try:
-        array = np.asarray(value)
-    except ValueError:  # lists of different lengths
-        return None
-    if array.dtype.kind not in "iuf":
-        return None
-    array = np.array(array, dtype=np.float64, order="C")
+def _array(name: str, value: Any, allowed: str, *dimensions: int) -> FloatArray:
+    """Take an array of real numbers, finite or not, and keep a read-only copy."""
+    array = np.array(reals(name, value, allowed, dimensions=dimensions, finite=False))
     array.flags.writeable = False
     return array
-
-
-def _first(name: str, array: FloatArray, good: npt.NDArray[np.bool_], allowed: str) -> None:
-    """Name the first element that is not good."""
-    if not good.all():
-        index = tuple(int(i) for i in np.argwhere(~good)[0])
-        place = ", ".join(map(str, index))
-        raise ParameterError(wrong(f"{name}[{place}]", float(array[index]), allowed))
 
 
 def _orientation(value: Any) -> Any:
     if isinstance(value, str) and value in get_args(Orientation):
         return value
-    angles = _array(value)
-    if angles is None or not (angles.ndim == 1 or (angles.ndim == 2 and angles.shape[1] == 2)):
+    angles = _array("orientation", value, _ORIENTATIONS, 1, 2)
+    if angles.ndim == 2 and angles.shape[1] != 2:
         raise ParameterError(wrong("orientation", value, _ORIENTATIONS))
-    near = np.abs(angles) <= _MOST_RADIANS
-    _first("orientation", angles, near, "a finite angle in rad, at most 2**20 either way")
+    near = np.abs(angles) <= _core.MOST_RADIANS
+    check_each("orientation", angles, near, "a finite angle in rad, at most 2**20 either way")
     return angles
+
+
+def _height(value: Any) -> Any:
+    if isinstance(value, RandomHeight):
+        return value
+    try:
+        return _height_of_all.validate_python(value)
+    except ValidationError:
+        raise ParameterError(wrong("release_height", value, _HEIGHTS)) from None
 
 
 def _spin(value: Any) -> Any:
@@ -63,27 +59,62 @@ def _spin(value: Any) -> Any:
         value = (0.0, 0.0, 0.0)
     if isinstance(value, RandomSpin):
         return value
-    spins = _array(value)
-    if spins is None or spins.ndim not in (1, 2) or spins.shape[-1] != 3:
+    spins = _array("spin", value, _SPINS, 1, 2)
+    if spins.shape[-1] != 3:
         raise ParameterError(wrong("spin", value, _SPINS))
-    _first("spin", spins, np.isfinite(spins), "finite (rad/s)")
+    check_each("spin", spins, np.isfinite(spins), "finite (rad/s)")
     return spins if spins.ndim == 2 else tuple(spins.tolist())
 
 
 def _velocity(value: Any) -> tuple[float, ...]:
-    velocity = _array((0.0, 0.0, 0.0) if value is None else value)
-    if velocity is None or velocity.shape != (3,) or not np.isfinite(velocity).all():
+    velocity = _array("velocity", (0.0, 0.0, 0.0) if value is None else value, _VELOCITIES, 1)
+    if velocity.shape != (3,) or not np.isfinite(velocity).all():
         raise ParameterError(wrong("velocity", value, _VELOCITIES))
     return tuple(velocity.tolist())
 
 
 def _rate(value: Any) -> float | tuple[float, float]:
     pair = isinstance(value, list | tuple) and len(value) == 2
-    parts = [_plain_number(part) for part in (value if pair else [value])]
-    rates = None if any(isinstance(part, bool) for part in parts) else _array(parts)
-    if rates is None or rates.ndim != 1 or not 0.0 <= rates[0] <= rates[-1] < math.inf:
+    rates = _array("rate", [_plain_number(part) for part in (value if pair else [value])], _RATES, 1)
+    if not 0.0 <= rates[0] <= rates[-1] < math.inf:
         raise ParameterError(wrong("rate", value, _RATES))
     return (float(rates[0]), float(rates[1])) if pair else float(rates[0])
+
+
+class RandomHeight(Parameters):
+    """A height that is drawn for each particle, to be the ``release_height`` of a run.
+
+    Its density is (1 + cos πs)/(highest - lowest) with s from -1 at the lowest to 1 at the highest height: a
+    raised cosine, `scipy.stats.cosine`, which with its slope vanishes at both ends. Particles that fall from
+    one height have few separate speeds at their first impacts; from these they have all, without steps.
+
+    Parameters
+    ----------
+    lowest, highest : float
+        Heights of the centre of mass over the plane in m; 0 < lowest < highest.
+
+    Examples
+    --------
+    >>> import restitution as rs
+    >>> body, law = rs.Dumbbell(radius=3e-3, separation=3e-4), rs.Frictionless(normal=0.9)
+    >>> data = rs.simulate(body, law, release_height=rs.RandomHeight(lowest=0.05, highest=0.07), particles=4)
+    >>> bool(((data.release_height > 0.05) & (data.release_height < 0.07)).all())
+    True
+    """
+
+    lowest: Annotated[Number, Field(gt=0, description="m")]
+    highest: Annotated[Number, Field(gt=0, description="m")]
+
+    @model_validator(mode="after")
+    def _in_order(self) -> Self:
+        if not self.lowest < self.highest:
+            allowed = f"greater than lowest = {self.lowest!r} (m)"
+            raise ParameterError(wrong("highest", self.highest, allowed))
+        return self
+
+    def parameters(self) -> dict[str, Any]:
+        """Name every parameter as the core does."""
+        return {"lowest": self.lowest, "highest": self.highest}
 
 
 class RandomSpin(Parameters):
@@ -92,10 +123,14 @@ class RandomSpin(Parameters):
     Parameters
     ----------
     rate : float or (float, float)
-        |ω| in rad/s, finite and >= 0: the same for all, or uniform between the two.
-    axis : {"isotropic", "horizontal", "across"}
+        |ω| in rad/s, finite and >= 0: the same for all, or uniform between the two. Of a thermal spin one
+        number, √⟨ω²⟩.
+    axis : {"isotropic", "horizontal", "across", "thermal"}
         The direction of ω: all alike, all along the plane alike, or all across the body's symmetry axis
-        alike, so that it tumbles. Independent of the rate.
+        alike, so that it tumbles; independent of the rate. "thermal" is Maxwell's distribution,
+        exp(-E_rot/T): the components of ω along the axis and across it are Gaussian, with the same mean
+        energy T/2 each.
+        With the moments of inertia J about the axis and J' across it, ⟨ω²⟩ = T (1/J + 2/J').
 
     Examples
     --------
@@ -107,6 +142,12 @@ class RandomSpin(Parameters):
     rate: Annotated[float | tuple[float, float], Allowed(_RATES), BeforeValidator(_rate)]
     axis: Annotated[Axis, Allowed(_AXES)] = "isotropic"
 
+    @model_validator(mode="after")
+    def _one_temperature(self) -> Self:
+        if self.axis == "thermal" and isinstance(self.rate, tuple):
+            raise ParameterError(wrong("rate", self.rate, "one number, √⟨ω²⟩ in rad/s, of a thermal spin"))
+        return self
+
     @property
     def rates(self) -> tuple[float, float]:
         """Least and largest |ω|, in rad/s."""
@@ -115,9 +156,12 @@ class RandomSpin(Parameters):
     def parameters(self) -> dict[str, Any]:
         """Name every parameter as the core does."""
         low, high = self.rates
+        if self.axis == "thermal":
+            return {"thermal": low}
         return {"low": low, "high": high, "axis": self.axis}
 
 
+HeightOfRun = Annotated[Any, BeforeValidator(_height)]
 OrientationOfRun = Annotated[Any, BeforeValidator(_orientation)]
 SpinOfRun = Annotated[Any, BeforeValidator(_spin)]
 VelocityOfRun = Annotated[Any, BeforeValidator(_velocity)]

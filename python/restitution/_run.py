@@ -1,28 +1,42 @@
 """The parameters of a run: one validation for `simulate`, `statistics` and the TOML file."""
 
 import math
-from typing import Annotated, Any, ClassVar
+from collections.abc import Mapping
+from typing import Annotated, Any, ClassVar, Self
 
 import numpy as np
+import numpy.typing as npt
 from pydantic import ConfigDict, Field, InstanceOf, model_validator
 
 from restitution._parameters import Allowed, Number, ParameterError, Parameters, Problem, Whole, wrong
-from restitution._release import FloatArray, OrientationOfRun, RandomSpin, SpinOfRun, VelocityOfRun
+from restitution._release import (
+    FloatArray,
+    HeightOfRun,
+    OrientationOfRun,
+    RandomHeight,
+    RandomSpin,
+    SpinOfRun,
+    VelocityOfRun,
+)
 from restitution.bodies import BODIES, Body
 from restitution.laws import LAWS, Law
 
+_BEYOND = 1e10
+"""Heights and the like, over those of the body: beyond, 16 digits do not tell where its surface is."""
+
 
 class Run(Parameters):
-    """What `simulate` needs to know, checked.
+    """The parameters of `simulate`, checked.
 
     Parameters
     ----------
     body, law
-        What falls and what an impact does.
+        The body and the collision law.
     particles, impacts : int
         Number of particles and most impacts of each; > 0.
-    release_height : float
-        Distance of the centre of mass from the plane at release, in m. No part may be below the plane.
+    release_height : float or RandomHeight
+        Distance of the centre of mass from the plane at release, in m; the same for all or drawn at random.
+        No part may be below the plane.
     gravity : float
         Acceleration of gravity in m/s², > 0.
     orientation : {"uniform-angle", "isotropic"} or array of float, shape (particles,) or (particles, 2)
@@ -45,7 +59,7 @@ class Run(Parameters):
     law: Annotated[InstanceOf[Law], Allowed(LAWS)]
     particles: Annotated[Whole, Field(ge=1, lt=2**40, description="number of particles")] = 1000
     impacts: Annotated[Whole, Field(ge=1, lt=2**40, description="most impacts of a particle")] = 400
-    release_height: Annotated[Number, Field(gt=0, description="height of the centre of mass, m")] = 0.06
+    release_height: HeightOfRun = 0.06
     gravity: Annotated[Number, Field(gt=0, description="m/s²")] = 9.81
     orientation: OrientationOfRun = "uniform-angle"
     spin: SpinOfRun = (0.0, 0.0, 0.0)
@@ -55,7 +69,11 @@ class Run(Parameters):
     seed: Annotated[Whole, Field(ge=0, lt=2**64)] = 1
 
     model_config: ClassVar[ConfigDict] = ConfigDict(validate_default=True)
-    NUMBERS: ClassVar = ("particles", "impacts", "release_height", "gravity", "minimum_speed", "incline")
+
+    @classmethod
+    def called(cls, arguments: Mapping[str, Any]) -> Self:
+        """Take the parameters of a run from the arguments of a function that has them among its own."""
+        return cls(**{name: arguments[name] for name in cls.model_fields})
 
     @model_validator(mode="after")
     def _nothing_below_the_plane(self) -> "Run":
@@ -65,15 +83,49 @@ class Run(Parameters):
             allowed = f"one angle per particle, and particles = {self.particles}"
             raise ParameterError(Problem("orientation", f" = {given}: must be {allowed}"))
         solid = self.body.solid
-        lowest = solid.farthest()
-        # A body put down on the plane may be off by the rounding of its height.
-        rounding = 1.0 - 4.0 * np.finfo(np.float64).eps
-        if angles is not None and self.release_height < lowest * rounding:
-            lowest = solid.lowest(np.cos(angles))
-        if self.release_height < lowest * rounding:
+        least = self.heights[0]
+        if solid.clears(least):
+            return self
+        cosines = None if angles is None else np.cos(angles)
+        if cosines is None or not solid.clears(least, cosines):
+            lowest = solid.farthest() if cosines is None else solid.lowest(cosines)
             allowed = f"at least {lowest!r} m, or a part of the body would reach below the plane"
             raise ParameterError(wrong("release_height", self.release_height, allowed))
         return self
+
+    @model_validator(mode="after")
+    def _within_the_digits(self) -> "Run":
+        """Refuse heights, speeds and spins so large that a double has no digits left for the body."""
+        solid = self.body.solid
+        least = min(solid.lowest(np.array([cosine])) for cosine in (-1.0, 0.0, 1.0))
+        highest = self.heights[1]
+        if highest > _BEYOND * least:
+            of = "the least height of the centre of mass over the plane"
+            raise ParameterError(self._beyond("release_height", highest, _BEYOND * least, "m", of))
+        falling = self.gravity * math.cos(self.incline)
+        if self.incline > math.pi / 2 - 1.0 / _BEYOND:
+            allowed = (
+                f"at most pi/2 - {1.0 / _BEYOND:g}: a double has no digits left for gravity towards the plane"
+            )
+            raise ParameterError(wrong("incline", self.incline, allowed))
+        fastest = math.sqrt(_BEYOND) * math.sqrt(falling) * math.sqrt(least)
+        for component in self.velocity:
+            if abs(component) > fastest:
+                of = "the square of what a fall from the body's own height gives"
+                raise ParameterError(self._beyond("velocity", component, fastest, "m/s", of))
+        most = math.sqrt(_BEYOND) * math.sqrt(falling) / math.sqrt(solid.farthest())
+        spins = self.spin.rates if isinstance(self.spin, RandomSpin) else self.spin
+        spin = float(np.max(np.abs(spins), initial=0.0))
+        if spin > most:
+            raise ParameterError(
+                self._beyond("spin", spin, most, "rad/s", "gravity over the body's size, of the square")
+            )
+        return self
+
+    @staticmethod
+    def _beyond(name: str, value: float, most: float, unit: str, of: str) -> Problem:
+        allowed = f"at most {most:.6g} {unit}, {_BEYOND:g} times {of}"
+        return wrong(name, value, f"{allowed}; beyond, a double has no digits left for the body")
 
     @model_validator(mode="after")
     def _one_spin_per_particle(self) -> "Run":
@@ -83,6 +135,12 @@ class Run(Parameters):
             allowed = f"one per particle, and particles = {self.particles}"
             raise ParameterError(Problem("spin", f" = {given}: must be {allowed}"))
         return self
+
+    @property
+    def heights(self) -> tuple[float, float]:
+        """Least and largest height at release, in m."""
+        height = self.release_height
+        return (height.lowest, height.highest) if isinstance(height, RandomHeight) else (height, height)
 
     @property
     def angles(self) -> FloatArray | None:
@@ -97,35 +155,50 @@ class Run(Parameters):
         """The angular velocities where each particle has its own, in rad/s, shape (particles, 3)."""
         return self.spin if isinstance(self.spin, np.ndarray) else None
 
+    def of(self, rows: npt.NDArray[np.int64]) -> Self:
+        """Give the run of these of its particles; what is drawn for them depends on their new numbers."""
+        changed: dict[str, Any] = {"particles": rows.size}
+        if self.angles is not None:
+            changed["orientation"] = self.orientation[rows]
+        if self.spins is not None:
+            changed["spin"] = self.spins[rows]
+        return self.model_copy(update=changed)
+
     def fall_speed(self, drop: float) -> float:
         """Give the normal velocity in m/s after the centre of mass has come nearer by `drop`, in m."""
         fall = 2.0 * self.gravity * math.cos(self.incline) * drop
         return math.sqrt(fall + self.velocity[2] ** 2)
 
     def parameters(self) -> dict[str, Any]:
-        """Name every parameter as the core does."""
-        spin = self.spin
-        return {
+        """Name every parameter as the core does, compiled where the core knows it as an object of its own."""
+        compiled = {
             "body": self.body.solid,
-            "law": self.law.parameters(),
-            **{name: getattr(self, name) for name in (*self.NUMBERS, "orientation", "seed")},
-            "spin": spin.parameters() if isinstance(spin, RandomSpin) else spin,
-            "velocity": self.velocity,
+            "law": self.law.compiled,
         }
+        for name in ("release_height", "spin"):
+            value = getattr(self, name)
+            random = isinstance(value, RandomHeight | RandomSpin)
+            compiled[name] = value.parameters() if random else value
+        return {name: compiled.get(name, getattr(self, name)) for name in type(self).model_fields}
 
     def attributes(self) -> dict[str, Any]:
         """Every parameter under its own name, as plain values that a netCDF file can hold."""
-        return {
-            "body": type(self.body).__name__,
-            **self.body.model_dump(),
-            "law": type(self.law).__name__,
-            **self.law.attributes(),
-            **{name: getattr(self, name) for name in self.NUMBERS},
-            "orientation": self.orientation if self.angles is None else "given",
-            **self._spin_attributes(),
-            "velocity": self.velocity,
-            "seed": np.uint64(self.seed),
+        written = {
+            "body": {"body": type(self.body).__name__, **self.body.model_dump()},
+            "law": {"law": type(self.law).__name__, **self.law.attributes()},
+            "orientation": {"orientation": self.orientation if self.angles is None else "given"},
+            "release_height": self._height_attributes(),
+            "spin": self._spin_attributes(),
+            "seed": {"seed": self.seed},
         }
+        names = type(self).model_fields
+        parts = [written.get(name, {name: getattr(self, name)}) for name in names]
+        return {key: value for part in parts for key, value in part.items()}
+
+    def _height_attributes(self) -> dict[str, Any]:
+        if isinstance(self.release_height, RandomHeight):
+            return {"release_height": "random", "release_height_range": self.heights}
+        return {"release_height": self.release_height}
 
     def _spin_attributes(self) -> dict[str, Any]:
         if isinstance(self.spin, RandomSpin):

@@ -1,11 +1,14 @@
 """Every impact of every particle, as an xarray Dataset."""
 
-from typing import TYPE_CHECKING, Literal
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Literal, TypeAlias, get_args
 
 import numpy.typing as npt
 
 from restitution import _core
-from restitution._release import RandomSpin
+from restitution._parameters import ParameterError, wrong
+from restitution._release import RandomHeight, RandomSpin
 from restitution._resources import check_memory, checked_threads, progress_bar
 from restitution._run import Run
 from restitution.bodies import Body
@@ -13,6 +16,11 @@ from restitution.laws import Law
 
 if TYPE_CHECKING:
     import xarray as xr
+
+
+Record: TypeAlias = Literal["impacts", "state"]
+POSITION = 24
+"""Bytes of a position."""
 
 
 class SimulationInterrupted(KeyboardInterrupt):
@@ -25,7 +33,7 @@ class SimulationInterrupted(KeyboardInterrupt):
         reason ``interrupted``.
     """
 
-    def __init__(self, data: "xr.Dataset") -> None:
+    def __init__(self, data: xr.Dataset) -> None:
         super().__init__("interrupted; the impacts so far are in the exception's `data`")
         self.data = data
 
@@ -36,7 +44,7 @@ def simulate(
     *,
     particles: int = 1000,
     impacts: int = 400,
-    release_height: float = 0.06,
+    release_height: float | RandomHeight = 0.06,
     gravity: float = 9.81,
     orientation: Literal["uniform-angle", "isotropic"] | npt.ArrayLike = "uniform-angle",
     spin: npt.ArrayLike | RandomSpin | None = None,
@@ -44,21 +52,23 @@ def simulate(
     incline: float = 0.0,
     minimum_speed: float = 0.0,
     seed: int = 1,
+    record: Record = "impacts",
     threads: int | None = None,
     progress: bool = False,
-) -> "xr.Dataset":
+) -> xr.Dataset:
     """Drop particles and record every impact with the plane (the paper's Sec. III, steps 1-7).
 
     Parameters
     ----------
     body : Dumbbell, LoadedSphere, Spherocylinder or Spheroid
-        What falls.
+        The body that is dropped.
     law : Law
-        What an impact does.
+        The collision law.
     particles, impacts : int
         Number of particles, and the most impacts that each may have; both > 0.
-    release_height : float
-        Distance of the centre of mass from the plane at release, in m; no part may be below the plane.
+    release_height : float or RandomHeight
+        Distance of the centre of mass from the plane at release, in m, the same for all or drawn at random;
+        no part may be below the plane.
     gravity : float
         Acceleration of gravity in m/s², > 0.
     orientation : {"uniform-angle", "isotropic"} or array of float, shape (particles,) or (particles, 2)
@@ -67,7 +77,7 @@ def simulate(
     spin : array of float, shape (3,) or (particles, 3), or RandomSpin, optional
         Angular velocity ω at release, in rad/s: the same for all, one each, or drawn at random.
     velocity : array of float, shape (3,), optional
-        Velocity of the centre of mass at release, in m/s. It may lead up or down.
+        Velocity of the centre of mass at release, in m/s. It may point up or down.
     incline : float
         Angle α by which the plane is inclined, in rad, in [0, π/2): gravity is g (sin α, 0, -cos α). Every
         vector is in the frame of the plane: z along its normal, x down the slope.
@@ -75,6 +85,8 @@ def simulate(
         A particle ends when √(2 E_kin/m) after an impact falls below this, in m/s. 0 never does.
     seed : int
         Seed of the random numbers, in [0, 2⁶⁴). The same seed gives the same bits with any number of threads.
+    record : {"impacts", "state"}
+        With "state" also the full state at each impact, in 144 bytes more.
     threads : int, optional
         Number of threads; one for each core if not given.
     progress : bool
@@ -86,8 +98,13 @@ def simulate(
         Dimensions (particle, impact). Variables over both: ``time``, ``impact_velocity``,
         ``rebound_velocity``, ``restitution``, ``rotational_fraction``, ``energy_ratio``, ``angle`` (float64,
         NaN where the impact never happened) and ``contact`` (which sphere touched, or which half of a
-        spheroid). Over particles: ``impacts``, ``stop_reason``, ``release_angle``; with spin, velocity or
-        incline also ``release_azimuth`` and, over (particle, component), ``release_spin``. Units are in the
+        spheroid); where ε_n depends on the speed also ``microscopic``, its value at the speed of the
+        contact. Over particles: ``impacts``, ``stop_reason``, ``release_angle``; where heights are
+        drawn also ``release_height``; with spin, velocity or
+        incline also ``release_azimuth`` and, over (particle, component), ``release_spin``. With
+        ``record="state"`` also, over (particle, impact, component), ``position`` and ``axis`` at the impact,
+        which both stay through it, ``velocity_before``, ``velocity_after``, ``angular_velocity_before`` and
+        ``angular_velocity_after``; `trajectory` makes of them the motion between impacts. Units are in the
         variables' attributes, all parameters in the Dataset's, as are ``energy_created_impacts``, the
         number of impacts that multiplied the kinetic energy by more than 1 + 1e-12, their share of all
         impacts, ``energy_created_share``, and if there are any ``largest_energy_ratio``.
@@ -124,34 +141,35 @@ def simulate(
     """
     from restitution._energy import warn
 
-    run = Run(
-        body=body,
-        law=law,
-        particles=particles,
-        impacts=impacts,
-        release_height=release_height,
-        gravity=gravity,
-        orientation=orientation,
-        spin=spin,
-        velocity=velocity,
-        incline=incline,
-        minimum_speed=minimum_speed,
-        seed=seed,
-    )
-    data = simulate_run(run, threads=threads, progress=progress)
+    run = Run.called(locals())
+    data = simulate_run(run, threads=threads, progress=progress, record=record)
     warn(data)
     return data
 
 
-def simulate_run(run: Run, *, threads: int | None = None, progress: bool = False) -> "xr.Dataset":
+def checked_record(record: object) -> Record:
+    """Refuse what is neither "impacts" nor "state"."""
+    if record == "impacts" or record == "state":
+        return "state" if record == "state" else "impacts"
+    raise ParameterError(wrong("record", record, " or ".join(map(repr, get_args(Record)))))
+
+
+def simulate_run(
+    run: Run, *, threads: int | None = None, progress: bool = False, record: Record = "impacts"
+) -> xr.Dataset:
     """`simulate` for parameters that are already checked."""
-    from restitution._dataset import BYTES_PER_IMPACT, dataset
+    from restitution._dataset import dataset
+    from restitution._trajectory import with_positions
 
     number = checked_threads(threads)
-    check_memory(run.particles * run.impacts, BYTES_PER_IMPACT)
+    state = checked_record(record) == "state"
+    columns = _core.columns(run.law.compiled, state)
+    check_memory(run.particles * run.impacts, _core.bytes_per_impact(columns) + state * POSITION)
     with progress_bar("simulate", run.particles, "particles", show=progress) as tell:
-        table, interrupted = _core.simulate(run.parameters(), number, tell)
+        table, interrupted = _core.simulate(run.parameters(), number, tell, columns=columns)
     data = dataset(run, table)
+    if state:
+        data = with_positions(data)
     if interrupted:
         raise SimulationInterrupted(data)
     return data

@@ -1,23 +1,36 @@
-"""Statistics of a run of any size, in memory that the bins alone decide."""
+"""Statistics of a run of any size, in memory that depends on the bins alone."""
 
-from typing import Any, Literal
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import partial
+from typing import Any, Literal, TypeAlias
 
 import numpy as np
 import numpy.typing as npt
 import xarray as xr
 
 from restitution import _core
-from restitution._bins import FRACTION_BINS, assemble, by_velocity, checked_edges
-from restitution._dataset import STOP_REASONS, attributes
+from restitution._arrays import flag
+from restitution._batches import BATCHES, batches_of, standard_errors
+from restitution._bins import FRACTION_BINS, assemble, by_velocity, checked_edges, edges_from
+from restitution._core import STOP_REASONS
+from restitution._dataset import attributes
 from restitution._energy import by_row, ledger, warn
-from restitution._release import RandomSpin
+from restitution._parameters import Problem, TooLargeError
+from restitution._release import RandomHeight, RandomSpin
 from restitution._resources import available_memory, checked_threads, progress_bar
 from restitution._run import Run
 from restitution._simulate import SimulationInterrupted
 from restitution.bodies import Body
 from restitution.laws import Law
 
-_MOMENTS = ("mean", "variance", "skewness", "kurtosis", "minimum", "maximum", "mean_fraction")
+Edges: TypeAlias = dict[str, npt.NDArray[np.float64] | None]
+"""Edges of the bins of ``velocity`` or None, of ``restitution``, and of ``fraction`` or None."""
+
+_SAME = ("variance", "skewness", "kurtosis", "minimum", "maximum", "mean_fraction")
+MOMENTS = {"mean_restitution": "mean", **{name: name for name in _SAME}}
+"""What the result calls the moments, and what the core does: a Dataset has a method `mean`."""
 
 
 def statistics(
@@ -26,7 +39,7 @@ def statistics(
     *,
     particles: int = 1000,
     impacts: int = 400,
-    release_height: float = 0.06,
+    release_height: float | RandomHeight = 0.06,
     gravity: float = 9.81,
     orientation: Literal["uniform-angle", "isotropic"] | npt.ArrayLike = "uniform-angle",
     spin: npt.ArrayLike | RandomSpin | None = None,
@@ -36,9 +49,13 @@ def statistics(
     seed: int = 1,
     threads: int | None = None,
     velocity_bins: npt.ArrayLike | None,
+    velocity_range: tuple[float, float] | None = None,
     restitution_bins: npt.ArrayLike,
+    restitution_range: tuple[float, float] | None = None,
     fraction_bins: npt.ArrayLike = FRACTION_BINS,
+    fraction_range: tuple[float, float] | None = None,
     counts_only: bool = False,
+    batches: int = BATCHES,
     progress: bool = False,
 ) -> xr.Dataset:
     """Drop an ensemble and keep only the statistics of its impacts.
@@ -53,26 +70,32 @@ def statistics(
         As in `restitution.simulate`.
     minimum_speed, seed, threads
         Likewise.
-    velocity_bins : array_like, shape (nv + 1,), or None
-        Edges of the impact velocity bins in m/s; finite, strictly increasing, uniform. With None the rows are
+    velocity_bins : int, array_like of shape (nv + 1,), or None
+        Edges of the impact velocity bins in m/s, finite and strictly increasing, of any widths; or their
+        number, with ``velocity_range`` (low, high), as `numpy.histogram` takes them. With None the rows are
         the numbers of the impacts instead, dimension ``impact``.
-    restitution_bins : array_like, shape (nr + 1,)
-        Edges of the restitution bins, likewise.
-    fraction_bins : array_like, shape (nf + 1,)
-        Edges of the bins of E_rot/E_tot (Eq. 12), likewise; 50 bins on [0, 1) unless told.
+    restitution_bins : int or array_like, shape (nr + 1,)
+        Edges of the restitution bins, or their number with ``restitution_range``, likewise.
+    fraction_bins : int or array_like, shape (nf + 1,)
+        Edges of the bins of E_rot/E_tot (Eq. 12), or their number with ``fraction_range``, likewise; 50 bins
+        on [0, 1) by default.
     counts_only : bool
         Leave out the moments, the extremes and E_rot/E_tot: what remains are the counts of restitution, which
         is what p(ε | v) is made of, and the energy. It takes a quarter less time.
+    batches : int
+        Batches of particles whose scatter gives the standard errors of the moments; 1 leaves the errors out
+        and saves some milliseconds a batch. With fewer than two particles a batch there are no errors.
     progress : bool
         Show a progress bar on standard error.
 
     Returns
     -------
     xarray.Dataset
-        As from `restitution.reduce`, and ``particles_ended`` (stop_reason), the number of particles by stop
-        reason. Over all impacts, in the bins or not, the attributes ``energy_created_impacts``,
+        As from `restitution.reduce`; the standard errors of the moments in each row, which are called
+        ``mean_restitution_error`` and so on; and ``particles_ended`` (stop_reason), the number of particles
+        by stop reason. Over all impacts, in the bins or not, the attributes ``energy_created_impacts``,
         ``energy_created_share`` and ``largest_energy_ratio``, as from `simulate`. The moments rest on exact
-        sums of ε - ε^n rounded to 2⁻²⁴ ≈ 6e-8.
+        sums of ε - ε_n rounded to 2⁻²⁴ ≈ 6e-8.
 
     Raises
     ------
@@ -94,40 +117,88 @@ def statistics(
     >>> law = rs.TangentialRestitution(normal=0.98)
     >>> found = rs.statistics(body, law, particles=50, velocity_bins=np.linspace(0.0, 1.2, 13),
     ...                       restitution_bins=np.linspace(-1.0, 3.0, 401))
-    >>> found["count"].dims
+    >>> found["restitution_count"].dims
     ('velocity', 'restitution')
     """
-    run = Run(
-        body=body,
-        law=law,
-        particles=particles,
-        impacts=impacts,
-        release_height=release_height,
-        gravity=gravity,
-        orientation=orientation,
-        spin=spin,
-        velocity=velocity,
-        incline=incline,
-        minimum_speed=minimum_speed,
-        seed=seed,
+    run = Run.called(locals())
+    counts_only = flag("counts_only", counts_only)
+    edges = edges_of(
+        None if velocity_bins is None else edges_from(velocity_bins, velocity_range, "velocity_bins"),
+        edges_from(restitution_bins, restitution_range, "restitution_bins"),
+        None if counts_only else edges_from(fraction_bins, fraction_range, "fraction_bins"),
     )
-    if not isinstance(counts_only, bool | np.bool_):
-        raise ValueError(f"counts_only = {counts_only!r}: must be True or False")
-    columns = {"restitution": checked_edges(restitution_bins, "restitution_bins")}
-    if not counts_only:
-        columns["fraction"] = checked_edges(fraction_bins, "fraction_bins")
-    velocity = None if velocity_bins is None else checked_edges(velocity_bins, "velocity_bins")
     number = checked_threads(threads)
-    height = run.impacts if velocity is None else velocity.size + 1
-    _check_memory(height, sum(edges.size + 2 for edges in columns.values()), number)
+    parts = batches_of(run.particles, 1 if counts_only else batches)
+    _check_memory(run, edges, number)
     with progress_bar("statistics", run.particles, "particles", show=progress) as tell:
-        table, interrupted = _core.statistics(
-            run.parameters(), velocity, columns["restitution"], columns.get("fraction"), number, tell
+        tally, rows, interrupted = _counted(run, edges, number, parts, tell)
+    found = dataset_of(run, edges, tally)
+    if len(rows) > 1:
+        row = "impact" if edges["velocity"] is None else "velocity"
+        found = found.assign(
+            {name: (row, values, attrs) for name, (values, attrs) in standard_errors(rows).items()}
         )
-    counts = {"count": table["count"]}
-    if not counts_only:
+    if interrupted:
+        raise SimulationInterrupted(found.assign_attrs(incomplete="interrupted by the user"))
+    warn(found)
+    return found
+
+
+def _counted(
+    run: Run,
+    edges: Edges,
+    threads: int,
+    parts: list[tuple[int, int]],
+    tell: Callable[[int], None] | None,
+) -> tuple[_core.Tally, list[dict[str, Any]], bool]:
+    """Count batch by batch; give the sum, the moments of every batch, and whether Ctrl-C ended it early."""
+    total: _core.Tally | None = None
+    rows: list[dict[str, Any]] = []
+    for first, last in parts:
+        advance = None if tell is None else partial(_shifted, tell, first)
+        tally, interrupted = _core.statistics(run.parameters(), edges, threads, advance, (first, last))
+        total = tally if total is None else total.merged([tally])
+        if interrupted and not rows:
+            break  # at once: a part of one batch has no scatter
+        if len(parts) > 1:
+            rows.append(_moments(edges, tally))
+        if interrupted:
+            break
+    assert total is not None
+    return total, rows, interrupted
+
+
+def _shifted(tell: Callable[[int], None], first: int, done: int) -> None:
+    tell(first + done)
+
+
+def _moments(edges: Edges, tally: _core.Tally) -> dict[str, Any]:
+    """Take the rows that a result has, and of them what standard errors are made of."""
+    table = tally.moments()
+    inner = slice(None) if edges["velocity"] is None else slice(1, -1)
+    return {name: table[key][inner] for name, key in (MOMENTS | {"number": "number"}).items()}
+
+
+def edges_of(
+    velocity_bins: npt.ArrayLike | None, restitution_bins: npt.ArrayLike, fraction_bins: npt.ArrayLike | None
+) -> Edges:
+    """Check the bins and name them as the core does."""
+    return {
+        "velocity": None if velocity_bins is None else checked_edges(velocity_bins, "velocity_bins"),
+        "restitution": checked_edges(restitution_bins, "restitution_bins"),
+        "fraction": None if fraction_bins is None else checked_edges(fraction_bins, "fraction_bins"),
+    }
+
+
+def dataset_of(run: Run, edges: Edges, tally: _core.Tally) -> xr.Dataset:
+    """Lay out what was counted as `statistics` returns it."""
+    table = tally.table()
+    columns = {name: own for name, own in edges.items() if name != "velocity" and own is not None}
+    counts = {"restitution_count": table["count"]}
+    moments = {}
+    if "fraction" in columns:
         counts["fraction_count"] = table["fraction_count"]
-    moments = {name: table[name] for name in (() if counts_only else _MOMENTS)}
+        moments = {name: table[key] for name, key in MOMENTS.items()}
     more: dict[str, Any] = {
         "stop_reason": ("stop_reason", list(STOP_REASONS)),
         "particles_ended": (
@@ -137,6 +208,7 @@ def statistics(
         ),
     }
     created, largest = table["energy_created"], table["largest_energy_ratio"]
+    velocity = edges["velocity"]
     if velocity is None:
         rows = xr.Variable("impact", np.arange(run.impacts), {"long_name": "number of the impact, from 0"})
         more |= by_row("impact", created, largest)
@@ -145,24 +217,23 @@ def statistics(
         more |= by_row("velocity", created[1:-1], largest[1:-1])
         found = by_velocity(counts, moments, velocity, columns, more)
     found.attrs = attributes(run, "Statistics of the impacts of bouncing aspherical particles")
-    found.attrs |= ledger(
-        int(table["count"].sum()),
-        int(table["energy_created"].sum()),
-        float(table["largest_energy_ratio"].max()),
-    )
-    if interrupted:
-        raise SimulationInterrupted(found.assign_attrs(incomplete="interrupted by the user"))
-    warn(found)
+    every = int((found["number"] + found["undefined"]).sum())
+    if velocity is not None:
+        every += int(found["velocity_underflow"] + found["velocity_overflow"])
+    found.attrs |= ledger(every, int(created.sum()), float(largest.max()))
     return found
 
 
-def _check_memory(rows: int, columns: int, threads: int) -> None:
-    """Refuse grids that the machine cannot hold: 12 bytes a site and 400 a row a thread, and the total."""
+def _check_memory(run: Run, edges: Edges, threads: int) -> None:
+    """Refuse grids that this process cannot hold: 12 bytes a site and 400 a row, a thread, and the total."""
+    velocity = edges["velocity"]
+    rows = run.impacts if velocity is None else velocity.size + 1
+    columns = sum(own.size + 2 for name, own in edges.items() if name != "velocity" and own is not None)
     copies = (threads or _core.build_info()["threads"]) + 1
-    needed = copies * rows * (12 * columns + 400)
-    if needed > available_memory():
-        raise ValueError(
-            f"velocity_bins, restitution_bins, fraction_bins: {rows:,} rows of {columns:,} sites in "
-            f"{copies} copies take {needed / 1e9:.3g} GB: must be at most {available_memory() / 1e9:.3g} GB, "
-            "what this machine has"
+    needed, available = copies * rows * (12 * columns + 400), available_memory()
+    if needed > available:
+        text = (
+            f": {rows:,} rows of {columns:,} sites in {copies} copies take {needed / 1e9:.3g} GB: must be "
+            f"at most {available / 1e9:.3g} GB, what this process can have"
         )
+        raise TooLargeError(Problem("velocity_bins, restitution_bins, fraction_bins", text))

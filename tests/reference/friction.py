@@ -13,7 +13,7 @@ VANISHED = 1e-9
 
 
 class Contact(NamedTuple):
-    """What `restitution._core.respond` takes: vectors along n, u and w, masses in the body's."""
+    """What the `respond` of a compiled law takes: vectors along n, u and w, masses in the body's."""
 
     slip: tuple[float, float, float]
     arm: tuple[float, float]

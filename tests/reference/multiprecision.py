@@ -11,7 +11,7 @@ from reference.top import Body, State
 
 @dataclass(frozen=True)
 class Law:
-    """The coefficients ε^n and ε^t of Eq. 9."""
+    """The coefficients ε_n and ε_t of Eq. 9."""
 
     normal: Real
     tangential: Real

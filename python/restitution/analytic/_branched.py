@@ -1,5 +1,7 @@
 """The distribution of ε at the first impact from rest, as a sum over the branches of ε(θ)."""
 
+from __future__ import annotations
+
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
@@ -64,13 +66,13 @@ class BranchedFirstImpact(FirstImpact):
         return self._support
 
     def restitution(self, cos_theta: ArrayLike) -> Values:
-        cosine = floats(cos_theta)
+        cosine = floats(cos_theta, "cos_theta")
         cosine = np.where(np.abs(cosine) <= 1.0, cosine, np.nan)
         theta = np.arccos(np.abs(cosine) if self._curve.limit < np.pi else cosine)
         return scalar(self._curve.restitution(theta))
 
     def cos_theta(self, restitution: ArrayLike) -> Values:
-        value = floats(restitution)
+        value = floats(restitution, "restitution")
         greatest = np.full(value.shape, np.nan)
         for branch in self._curve.branches:
             there = _inside(branch, value)
@@ -150,7 +152,7 @@ class BranchedFirstImpact(FirstImpact):
 
     @property
     def probability_above_normal(self) -> float:
-        """P(ε > ε^n), ε^n at the speed of the impact."""
+        """P(ε > ε_n), ε_n at the speed of the impact."""
         total = 0.0
         for piece in self._curve.pieces:
             raised = piece.raised

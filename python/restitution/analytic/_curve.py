@@ -83,7 +83,7 @@ class Piece:
         return self.impulse.margin(*self.state(theta))
 
     def raised(self, theta: Number) -> Number:
-        """Positive where ε > ε^n."""
+        """Positive where ε > ε_n."""
         return self.impulse.raised(self.mode, *self.state(theta))
 
     def slope(self, theta: Floats) -> Floats:
@@ -98,7 +98,7 @@ class Curve:
     Parameters
     ----------
     body, law
-        What falls, what an impact does.
+        The body and the collision law.
     fall : Fall
         From where; without effect on a law with a number for ``normal``.
     """

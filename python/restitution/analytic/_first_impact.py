@@ -1,5 +1,7 @@
 """`first_impact`: the distribution of ε at the first impact from rest, for every body and law."""
 
+from __future__ import annotations
+
 from restitution._parameters import ParameterError, Problem, wrong
 from restitution.analytic._branched import BranchedFirstImpact
 from restitution.analytic._frozen import FirstImpact, check

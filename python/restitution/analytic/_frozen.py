@@ -1,4 +1,6 @@
-"""What every distribution of ε at the first impact from rest can do."""
+"""The methods of every distribution of ε at the first impact from rest."""
+
+from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Callable
@@ -8,6 +10,9 @@ from typing import Any, TypeAlias
 import numpy as np
 from numpy.typing import ArrayLike
 
+from restitution._arrays import generator as _generator
+from restitution._arrays import reals
+from restitution._display import table, value
 from restitution._parameters import ParameterError, wrong
 from restitution.analytic._orientation import Floats, OrientationName
 from restitution.bodies import BODIES, Body
@@ -21,7 +26,7 @@ RandomState: TypeAlias = int | np.random.Generator | np.random.RandomState | Non
 class FirstImpact(ABC):
     """Distribution of ε at the first impact from rest; make it with `first_impact`.
 
-    Methods have the names and manners of a frozen `scipy.stats` distribution: arguments of any shape, a NumPy
+    The methods follow the conventions of frozen `scipy.stats` distributions: arguments of any shape, a NumPy
     scalar for a scalar, nan for nan and for a probability outside [0, 1].
 
     Parameters
@@ -33,6 +38,21 @@ class FirstImpact(ABC):
     body: Body
     law: Law
     orientation: OrientationName
+
+    def _repr_html_(self) -> str:
+        low, high = self.support()
+        return table(
+            "Restitution at the first impact from rest",
+            (
+                ("body", repr(self.body)),
+                ("law", repr(self.law)),
+                ("orientation", self.orientation),
+                ("support", value((low, high))),
+                ("mean", value(self.mean())),
+                ("std", value(self.std())),
+                ("P(ε < 0)", value(self.probability_negative)),
+            ),
+        )
 
     @abstractmethod
     def support(self) -> tuple[float, float]:
@@ -48,7 +68,7 @@ class FirstImpact(ABC):
 
     @property
     def probability_above_normal(self) -> float:
-        """P(ε > ε^n), ε^n at the speed of the impact.
+        """P(ε > ε_n), ε_n at the speed of the impact.
 
         0 but for Chatterjee and Ruina's law with e_t > e: under all others the lever arm only takes away.
         """
@@ -174,7 +194,7 @@ class FirstImpact(ABC):
 
 
 def check(body: Body, law: Law) -> None:
-    """Refuse what is no body, or no law."""
+    """Refuse what is not a body or not a law."""
     if not isinstance(body, Body):
         raise ParameterError(wrong("body", body, BODIES))
     if not isinstance(law, Law):
@@ -185,17 +205,17 @@ def generator(random_state: RandomState) -> np.random.Generator | np.random.Rand
     """Take a generator, or make one from a seed."""
     if isinstance(random_state, np.random.Generator | np.random.RandomState):
         return random_state
-    return np.random.default_rng(random_state)
+    return np.random.default_rng() if random_state is None else _generator("random_state", random_state)
 
 
-def floats(x: ArrayLike) -> Floats:
+def floats(x: ArrayLike, name: str = "x") -> Floats:
     """Take numbers of any shape."""
-    return np.asarray(x, dtype=np.float64)
+    return reals(name, x, "a number or an array of numbers", finite=False)
 
 
 def probability(q: ArrayLike) -> Floats:
     """Take probabilities of any shape; nan outside [0, 1]."""
-    value = floats(q)
+    value = floats(q, "q")
     return np.where((value >= 0.0) & (value <= 1.0), value, np.nan)
 
 

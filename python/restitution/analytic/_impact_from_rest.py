@@ -1,21 +1,21 @@
 """The restitution of an impact from rest as a function of the angle, and its inverse, without cancellation.
 
 Bodies that touch with the lower one of two equal balls of radius R, their centres L apart: dumbbells and
-spherocylinders. With c = |cos θ|, the loss λ = ε^n - ε and J = J_xx/m,
+spherocylinders. With c = |cos θ|, the loss λ = ε_n - ε and J = J_xx/m,
 
-    paper's law (Eq. 17)   λ = w sin²θ / (1 + b c),           w = (1 + ε^n) L²/D,  b = 4LR/D,
+    paper's law (Eq. 17)   λ = w sin²θ / (1 + b c),           w = (1 + ε_n) L²/D,  b = 4LR/D,
                            D = 4J + 4R² + L²,
-    without friction       λ = w (1 + q) sin²θ/(1 + q sin²θ),  w = (1 + ε^n) q/(1 + q),  q = L²/(4J).
+    without friction       λ = w (1 + q) sin²θ/(1 + q sin²θ),  w = (1 + ε_n) q/(1 + q),  q = L²/(4J).
 
 Either falls strictly from w to 0 as c rises from 0 to 1, whatever the parameters: for Eq. 17 dλ/dc =
--w (bc² + 2c + b)/(1 + bc)² with 0 < b < 1, because D > 4R² + L² >= 4LR. So ε rises strictly with c, from ε^n
-- w (axis horizontal) to ε^n (axis vertical), and has one inverse.
+-w (bc² + 2c + b)/(1 + bc)² with 0 < b < 1, because D > 4R² + L² >= 4LR. So ε rises strictly with c, from ε_n
+- w (axis horizontal) to ε_n (axis vertical), and has one inverse.
 
 The inverse takes c and sin θ from different formulas, each exact at its own end. With t = λ/w, for Eq. 17:
 c² + btc = 1 - t has the root c = 2(1 - t)/(bt + √(b²t² + 4(1 - t))), and sin²θ = t(1 + bc). Without friction:
 sin²θ = t/(1 + q(1 - t)) and c² = (1 - t)(1 + q)/(1 + q(1 - t)).
 
-ε^t does not occur: from rest without spin the contact point moves along the normal, v_c^t = 0.
+ε_t does not occur: from rest without spin the contact point moves along the normal, v_c^t = 0.
 """
 
 from abc import ABC, abstractmethod
@@ -35,9 +35,9 @@ class ImpactFromRest(ABC):
     Parameters
     ----------
     normal : float
-        ε^n.
+        ε_n.
     greatest_loss : float
-        w, the loss ε^n - ε of an impact with horizontal axis.
+        w, the loss ε_n - ε of an impact with horizontal axis.
     """
 
     normal: float
@@ -48,10 +48,10 @@ class ImpactFromRest(ABC):
         return self.normal - self.greatest_loss * self.relative_loss(cosine, sine)
 
     def share(self, restitution: Floats) -> tuple[Floats, Floats]:
-        """Give t = (ε^n - ε)/w, and 1 - t, at ε inside the support."""
+        """Give t = (ε_n - ε)/w, and 1 - t, at ε inside the support."""
         part = np.clip(
             (self.normal - restitution) / self.greatest_loss, 0.0, 1.0
-        )  # ε^n - w is a rounded number
+        )  # ε_n - w is a rounded number
         return part, 1.0 - part
 
     @abstractmethod
@@ -66,7 +66,7 @@ class ImpactFromRest(ABC):
 
     @abstractmethod
     def relative_loss(self, cosine: Floats, sine: Floats) -> Floats:
-        """(ε^n - ε)/w, in [0, 1]; keeps its digits where ε is one ulp from ε^n."""
+        """(ε_n - ε)/w, in [0, 1]; keeps its digits where ε is one ulp from ε_n."""
 
     @abstractmethod
     def angle(self, restitution: Floats) -> tuple[Floats, Floats]:

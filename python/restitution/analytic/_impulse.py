@@ -2,15 +2,15 @@
 
 The point of contact, h below and a beside the centre of mass, comes down along the normal: there is no slip
 before the impact. With J = J_xx/m and D = J + a² + h², the impulse matrix per unit mass has K_nn = 1 + a²/J,
-K_uu = 1 + h²/J and |K_nu| = ah/J, and every law gives ε = ε^n - λ with a loss λ as if
+K_uu = 1 + h²/J and |K_nu| = ah/J, and every law gives ε = ε_n - λ with a loss λ as if
 
-* "free": nothing acted along the plane, λ = (1 + ε^n) a²/(J + a²);
-* "stuck": the point of contact never slipped, λ = (1 + ε^n) a²/D;
-* "sliding": friction were at its limit throughout, λ = (1 + ε^n)(a² - μah)/(J + a² - μah);
+* "free": nothing acted along the plane, λ = (1 + ε_n) a²/(J + a²);
+* "stuck": the point of contact never slipped, λ = (1 + ε_n) a²/D;
+* "sliding": friction were at its limit throughout, λ = (1 + ε_n)(a² - μah)/(J + a² - μah);
 * "part": the tangential impulse were (1 + e_t) times that of a sticking plastic impact,
   λ = (1 + e) a²/(J + a²) - (1 + e_t) a²h²/((J + a²)D), which for e_t = e is as if stuck.
 
-The paper's law is "stuck" for any ε^t (Eq. 17). Under Coulomb's law the contact slides from the start and for
+The paper's law is "stuck" for any ε_t (Eq. 17). Under Coulomb's law the contact slides from the start and for
 good if ah > μ(J + h²), else it never does; v_n is linear in the impulse, so that all hypotheses agree.
 Chatterjee and Ruina's law is "part" inside the friction cone, and "sliding" on it.
 """
@@ -31,7 +31,7 @@ class Impulse:
     Parameters
     ----------
     law : Law
-        What an impact does.
+        The collision law.
     inertia : float
         J, in the square of the unit of h and a.
     """
@@ -53,7 +53,7 @@ class Impulse:
         raise TypeError(f"no closed form of {self.law!r}")
 
     def margin(self, normal: Number, height: Number, arm: Number) -> Number:
-        """Positive where the tangential impulse would leave the friction cone; ε^n = normal."""
+        """Positive where the tangential impulse would leave the friction cone; ε_n = normal."""
         inertia, couple = self.inertia, height * arm
         match self.law:
             case Coulomb(friction=friction):
@@ -65,7 +65,7 @@ class Impulse:
         return 0.0
 
     def loss(self, mode: Mode, normal: Number, height: Number, arm: Number) -> Number:
-        """λ = ε^n - ε, ε^n = normal."""
+        """λ = ε_n - ε, ε_n = normal."""
         square, inertia = arm * arm, self.inertia
         if mode == "stuck":  # (17)
             return (1.0 + normal) * square / (inertia + square + height * height)
@@ -79,7 +79,7 @@ class Impulse:
         return free * (1.0 + normal - self._kept * share)
 
     def raised(self, mode: Mode, normal: Number, height: Number, arm: Number) -> Number:
-        """Positive where ε > ε^n."""
+        """Positive where ε > ε_n."""
         if mode == "sliding":
             return self._friction * height - arm
         if mode == "part":
@@ -88,7 +88,7 @@ class Impulse:
         return -1.0
 
     def threshold(self, mode: Mode, height: Number, arm: Number) -> Number:
-        """Constant ε^n at which ε = 0 in this mode."""
+        """Constant ε_n at which ε = 0 in this mode."""
         square, inertia = arm * arm, self.inertia
         if mode == "stuck":
             return square / (inertia + height * height)

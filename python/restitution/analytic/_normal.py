@@ -5,10 +5,13 @@ from typing import Annotated
 import numpy as np
 from pydantic import Field
 
+from restitution._core import PADE
 from restitution._parameters import Number, Parameters
 from restitution.analytic import _disc
 from restitution.laws import Plastic, Tabulated, Viscoelastic
-from restitution.laws._materials import PADE_ABOVE, PADE_BELOW
+
+_ABOVE, _BELOW = map(np.polynomial.Polynomial, PADE)
+"""Numerator and denominator of a viscoelastic sphere's ε_n, in powers of v*."""
 
 
 class Fall(Parameters):
@@ -27,7 +30,7 @@ class Fall(Parameters):
 
 
 def kinks(normal: float | Viscoelastic | Plastic | Tabulated) -> tuple[float, ...]:
-    """Speeds in m/s at which the formula of ε^n changes."""
+    """Speeds in m/s at which the formula of ε_n changes."""
     match normal:
         case Plastic():
             return (normal.yield_speed,)
@@ -39,11 +42,14 @@ def kinks(normal: float | Viscoelastic | Plastic | Tabulated) -> tuple[float, ..
 def coefficient(
     normal: float | Viscoelastic | Plastic | Tabulated, squared: _disc.Number, among: float
 ) -> _disc.Number:
-    """ε^n at v² by the formula that holds about the speed ``among``."""
+    """ε_n at v², complex or a disc, by the formula that holds about the speed ``among``.
+
+    For real speeds this is what the core computes; between its kinks it is continued into the complex plane.
+    """
     match normal:
         case Viscoelastic():
             x = normal.beta**0.5 * squared**0.05
-            return PADE_ABOVE(x) / PADE_BELOW(x)
+            return _ABOVE(x) / _BELOW(x)
         case Plastic():
             if among <= normal.yield_speed:
                 return 1.0

@@ -1,5 +1,7 @@
 """The distribution of ε at the first impact from rest of two equal balls on an axis."""
 
+from __future__ import annotations
+
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
@@ -23,8 +25,8 @@ class PairFirstImpact(FirstImpact):
     Density, distribution function and quantiles are closed forms; moments are Gauss sums over the quantile
     function, exact to rounding.
 
-    The density is infinite (but integrable) at the upper end ε^n of the support for "uniform-angle", and
-    without friction at the lower end, too. Where L/R is so small that the support is only a few ulp of ε^n
+    The density is infinite (but integrable) at the upper end ε_n of the support for "uniform-angle", and
+    without friction at the lower end, too. Where L/R is so small that the support is only a few ulp of ε_n
     wide, `std`, `var`, `stats` and `entropy` keep all digits; an ε that is given or returned is a rounded
     number.
 
@@ -51,7 +53,7 @@ class PairFirstImpact(FirstImpact):
         return ORIENTATIONS[self.orientation]
 
     def support(self) -> tuple[float, float]:
-        """Least and greatest ε: axis horizontal and axis vertical (ε^n)."""
+        """Least and greatest ε: axis horizontal and axis vertical (ε_n)."""
         return self._impact.normal - self._impact.greatest_loss, self._impact.normal
 
     def restitution(self, cos_theta: ArrayLike) -> Values:
@@ -59,13 +61,13 @@ class PairFirstImpact(FirstImpact):
 
         The contact is with the lower sphere, hence the same value at cos θ and -cos θ.
         """
-        cosine = np.abs(floats(cos_theta))
+        cosine = np.abs(floats(cos_theta, "cos_theta"))
         cosine = np.where(cosine <= 1.0, cosine, np.nan)
         return scalar(self._impact.restitution(cosine, np.sqrt((1.0 - cosine) * (1.0 + cosine))))
 
     def cos_theta(self, restitution: ArrayLike) -> Values:
         """|cos θ| in [0, 1] that gives ε, the inverse of `restitution`; nan outside the support."""
-        value = floats(restitution)
+        value = floats(restitution, "restitution")
         cosine, _ = self._angle(value)
         return scalar(np.where(self._outside(value), np.nan, cosine))
 
@@ -139,7 +141,7 @@ class PairFirstImpact(FirstImpact):
         """(c, sin θ) at ε, of the nearer end outside the support; exact at both ends."""
         low, high = self.support()
         cosine, sine = self._impact.angle(np.clip(restitution, low, high))
-        lowest = (restitution <= low) & (restitution < high)  # the rounded ε^n - w may differ from ε at c = 0
+        lowest = (restitution <= low) & (restitution < high)  # the rounded ε_n - w may differ from ε at c = 0
         return np.where(lowest, 0.0, cosine), np.where(lowest, 1.0, sine)
 
     def _relative_density(self, x: ArrayLike) -> Floats:
@@ -152,12 +154,12 @@ class PairFirstImpact(FirstImpact):
 
     @cached_property
     def _mean_loss(self) -> float:
-        """Mean of (ε^n - ε)/w."""
+        """Mean of (ε_n - ε)/w."""
         q, weights = _gauss(self._impact.nodes(1))
         return float(weights @ self._impact.relative_loss(*self._orientation.quantile(q, 1.0 - q)))
 
     def _central(self, order: int) -> float:
-        """Central moment of (ε^n - ε)/w."""
+        """Central moment of (ε_n - ε)/w."""
         q, weights = _gauss(self._impact.nodes(order))
         loss = self._impact.relative_loss(*self._orientation.quantile(q, 1.0 - q))
         return float(weights @ (loss - self._mean_loss) ** order)

@@ -1,4 +1,6 @@
-"""The ε^n below which a body that falls from rest can go on downwards after its first impact."""
+"""The ε_n below which a body that falls from rest can go on downwards after its first impact."""
+
+from __future__ import annotations
 
 import numpy as np
 
@@ -12,23 +14,23 @@ from restitution.laws import Law
 
 
 def negative_threshold(body: Body, law: Law) -> float:
-    """ε^n below which ε < 0 occurs at the first impact from rest; from it on ε >= 0 at every angle.
+    """ε_n below which ε < 0 occurs at the first impact from rest; from it on ε >= 0 at every angle.
 
-    In each mode of the contact ε rises with ε^n and is 0 at a closed form in height h and lever arm a; where
+    In each mode of the contact ε rises with ε_n and is 0 at a closed form in height h and lever arm a; where
     a law has two modes, the one that holds has the greater of the two. Their maximum over all angles is at
     the end of a side of the body, or at a zero of the derivative. docs/first-impact.md has it in closed form.
 
     Parameters
     ----------
     body : Dumbbell, LoadedSphere, Spherocylinder or Spheroid
-        What falls.
+        The body that is dropped.
     law : TangentialRestitution, Frictionless, Coulomb or ChatterjeeRuina
-        What an impact does; its own ``normal`` does not matter.
+        The collision law; its own ``normal`` does not matter.
 
     Returns
     -------
     float
-        Threshold, >= 0 and exact to rounding. If it is more than 1, ε < 0 occurs whatever ε^n.
+        Threshold, >= 0 and exact to rounding. If it is more than 1, ε < 0 occurs whatever ε_n.
 
     Raises
     ------

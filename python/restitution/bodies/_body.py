@@ -1,11 +1,13 @@
 """What every shape has."""
 
 from abc import abstractmethod
+from collections.abc import Iterator
+from functools import cached_property
 from typing import Self
 
 from pydantic import model_validator
 
-from restitution import _core
+from restitution import _core, _display
 from restitution._parameters import ParameterError, Parameters, Problem, shown
 
 
@@ -16,24 +18,31 @@ class Body(Parameters):
     inertia follow.
     """
 
-    @property
     @abstractmethod
+    def _compile(self) -> _core.Solid:
+        """Make the body as the core knows it."""
+
+    @cached_property
     def solid(self) -> _core.Solid:
-        """The body as the core knows it."""
+        """The body as the core knows it, made and checked once."""
+        return self._compile()
 
     @model_validator(mode="after")
     def _is_possible(self) -> Self:
         try:
             _ = self.solid
-        except ValueError as error:
-            _, _, allowed = str(error).partition(": ")
-            if "overflow" not in allowed:
-                raise
+        except _core.MagnitudeError as error:
             first, *others = type(self).model_fields
             given = "".join(f", {name} = {shown(getattr(self, name))}" for name in others)
-            text = f" = {shown(getattr(self, first))}{given}: {allowed}"
+            text = f" = {shown(getattr(self, first))}{given}: must be {error.allowed}"
             raise ParameterError(Problem(first, text)) from None
         return self
+
+    def _rows(self) -> Iterator[tuple[str, str]]:
+        yield from super()._rows()
+        yield "mass", _display.value(self.mass, "kg")
+        yield "transverse_inertia", _display.value(self.transverse_inertia, "kg m²")
+        yield "axial_inertia", _display.value(self.axial_inertia, "kg m²")
 
     @property
     def mass(self) -> float:

@@ -1,12 +1,13 @@
 """Two spheres, equal or not."""
 
-from typing import Annotated
+from typing import Annotated, Self
 
 from pydantic import Field
 
 from restitution import _core
 from restitution._parameters import Number
 from restitution.bodies._body import Body
+from restitution.bodies._length_width import LengthWidth
 from restitution.bodies._pair import PositivePair, both
 
 
@@ -43,10 +44,36 @@ class Dumbbell(Body):
     separation: Annotated[Number, Field(ge=0, description="m")]
     density: PositivePair = 2500.0
 
-    @property
-    def solid(self) -> _core.Solid:
-        """The body as the core knows it; mass and inertia by (A3), (A5) with L⁵/160 for L⁵/180, and (A8)."""
+    def _compile(self) -> _core.Solid:
+        """Make the body: mass and inertia by (A3), (A5) with L⁵/160 for L⁵/180, and (A8)."""
         return _core.dumbbell(self.radii, self.separation, self.densities)
+
+    @classmethod
+    def from_length_width(
+        cls, length: float, width: float, *, density: float | tuple[float, float] = 2500.0
+    ) -> Self:
+        """Make equal spheres with this length along the axis, L + 2R, and this width across it, 2R.
+
+        Parameters
+        ----------
+        length, width : float
+            In m, > 0; the length is at least the width.
+        density : float or (float, float)
+            In kg/m³, > 0.
+
+        Raises
+        ------
+        ValueError
+            If a value is out of range; the message names it.
+
+        Examples
+        --------
+        >>> import restitution as rs
+        >>> rs.Dumbbell.from_length_width(6.3e-3, 6.0e-3).elongation.__round__(9)
+        0.1
+        """
+        size = LengthWidth(length=length, width=width).elongated()
+        return cls(radius=0.5 * size.width, separation=size.length - size.width, density=density)
 
     @property
     def radii(self) -> tuple[float, float]:

@@ -38,9 +38,8 @@ class LoadedSphere(Body):
     load: Annotated[Number, Field(ge=0, description="kg")]
     offset: Annotated[Number, Field(ge=0, description="m")]
 
-    @property
-    def solid(self) -> _core.Solid:
-        """The body as the core knows it."""
+    def _compile(self) -> _core.Solid:
+        """Make the body as the core knows it."""
         return _core.loaded_sphere(self.radius, self.density, self.load, self.offset)
 
     @property

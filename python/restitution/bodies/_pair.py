@@ -3,6 +3,7 @@
 import math
 from typing import Annotated, Any
 
+import numpy as np
 from pydantic import BeforeValidator, ValidationInfo
 
 from restitution._parameters import Allowed, ParameterError, _plain_number, wrong
@@ -24,6 +25,8 @@ def _positive(value: Any) -> float | None:
 
 def _checked(value: Any, info: ValidationInfo) -> float | tuple[float, float]:
     name = str(info.field_name)
+    if isinstance(value, np.ndarray) and value.shape == (2,):
+        value = value.tolist()
     if not (isinstance(value, list | tuple) and len(value) == 2):
         number = _positive(value)
         if number is None:

@@ -35,9 +35,8 @@ class Spherocylinder(Body):
     separation: Annotated[Number, Field(ge=0, description="m")]
     density: Annotated[Number, Field(gt=0, description="kg/m³")] = 2500.0
 
-    @property
-    def solid(self) -> _core.Solid:
-        """The body as the core knows it."""
+    def _compile(self) -> _core.Solid:
+        """Make the body as the core knows it."""
         return _core.spherocylinder(self.radius, self.separation, self.density)
 
     @property

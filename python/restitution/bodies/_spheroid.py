@@ -1,12 +1,13 @@
 """An ellipsoid of revolution."""
 
-from typing import Annotated
+from typing import Annotated, Self
 
 from pydantic import Field
 
 from restitution import _core
-from restitution._parameters import Number
+from restitution._parameters import Number, ParameterError, wrong
 from restitution.bodies._body import Body
+from restitution.bodies._length_width import LengthWidth
 
 
 class Spheroid(Body):
@@ -33,10 +34,37 @@ class Spheroid(Body):
     polar: Annotated[Number, Field(gt=0, description="m")]
     density: Annotated[Number, Field(gt=0, description="kg/m³")] = 2500.0
 
-    @property
-    def solid(self) -> _core.Solid:
-        """The body as the core knows it."""
+    def _compile(self) -> _core.Solid:
+        """Make the body as the core knows it."""
         return _core.spheroid(self.equatorial, self.polar, self.density)
+
+    @classmethod
+    def from_length_width(cls, length: float, width: float, *, density: float = 2500.0) -> Self:
+        """Make a spheroid with this length along the axis and this width across it.
+
+        Parameters
+        ----------
+        length, width : float
+            In m, > 0: twice the polar and twice the equatorial semi-axis.
+        density : float
+            In kg/m³, > 0.
+
+        Raises
+        ------
+        ValueError
+            If a value is out of range; the message names it.
+
+        Examples
+        --------
+        >>> import restitution as rs
+        >>> rs.Spheroid.from_length_width(6e-2, 4e-2).elongation
+        1.5
+        """
+        size = LengthWidth(length=length, width=width)
+        if not 1e-3 <= size.length / size.width <= 1e3:
+            allowed = f"between 1/1000 and 1000 times width = {size.width!r} (m)"
+            raise ParameterError(wrong("length", size.length, allowed))
+        return cls(equatorial=0.5 * size.width, polar=0.5 * size.length, density=density)
 
     @property
     def elongation(self) -> float:

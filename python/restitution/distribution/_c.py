@@ -65,6 +65,7 @@ static inline double NAME_sample_given(double v, double z, double u1, double u2)
 {
     int node, first, component;
 RANGE
+SEEN
     node = NAME_choose(NAME_velocity, NAME_nodes, v, &u1);
     first = NAME_given_first[node];
     component = first + NAME_choose(NAME_given + first, NAME_given_first[node + 1] - first, z, &u1);
@@ -75,6 +76,12 @@ RANGE
 """
 
 _RANGE = """    if (!(v >= NAME_velocity[0] && v <= NAME_velocity[NAME_nodes - 1])) {
+        return (double)NAN;
+    }"""
+
+_SEEN = """    node = NAME_below(NAME_velocity, NAME_nodes, v);
+    if (!((z >= NAME_given_lowest[node] || z >= NAME_given_lowest[node + 1])
+          && (z <= NAME_given_highest[node] || z <= NAME_given_highest[node + 1]))) {
         return (double)NAN;
     }"""
 
@@ -96,7 +103,11 @@ def header(data: xr.Dataset, name: str) -> str:
     if "given" in data.attrs:
         lines += _arrays(name, "given_", _store.table(data, "given_"))
         functions += _GIVEN
-    functions = functions.replace("RANGE\n", f"{_RANGE}\n" if checked else "").replace("NAME", name)
+        if checked:
+            for key in ("given_lowest", "given_highest"):
+                lines += [_array(f"{name}_{key}", data[key].to_numpy())]
+    functions = functions.replace("RANGE\n", f"{_RANGE}\n" if checked else "")
+    functions = functions.replace("SEEN\n", f"{_SEEN}\n" if checked else "").replace("NAME", name)
     return "\n".join(lines) + "\n" + functions + f"\n#endif /* {guard} */\n"
 
 

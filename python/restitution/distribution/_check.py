@@ -1,14 +1,19 @@
 """How far a learned distribution is from impacts that it has not seen."""
 
+import warnings
 from collections.abc import Iterable
 
 import numpy as np
+import xarray as xr
 
 from restitution.distribution._count import placed
 from restitution.distribution._ensemble import BATCHES, Impacts
+from restitution.distribution._nodes import POINT
 from restitution.distribution._table import Floats, Ints, Table
 
 _LEVELS = 4096
+_FAR, _TIMES = 0.05, 3.5
+"""A distance beyond both, of fresh impacts and in terms of their scatter, is worth a warning."""
 _COARSE, _RESAMPLES, _SEED = 256, 64, 1
 
 
@@ -22,6 +27,8 @@ class Check:
 
     def __init__(self, table: Table) -> None:
         self.table = table
+        self._random = np.random.default_rng(_SEED)
+        self._has_points = any(np.diff(part.edges).min() < POINT for part in table)
         self.count: Ints = np.zeros((table.speeds.size - 1, _LEVELS), dtype=np.int64)
         self._batches: Ints = np.zeros((BATCHES, table.speeds.size - 1, _COARSE), dtype=np.int64)
 
@@ -36,11 +43,20 @@ class Check:
     def add(self, batch: int, velocity: Floats, restitution: Floats) -> None:
         """Count impacts of a batch, which shares no particle with any other, by interval and u."""
         number, inside = placed(self.table.speeds, velocity, restitution)
-        u = self.table.value("cdf", restitution[inside], velocity[inside])
+        u = self._levels(restitution[inside], velocity[inside])
         place = number[inside] * _LEVELS + np.minimum((u * _LEVELS).astype(np.int64), _LEVELS - 1)
         count = np.bincount(place, minlength=self.count.size).reshape(self.count.shape)
         self.count += count
         self._batches[batch] += count.reshape(*count.shape[:1], _COARSE, -1).sum(axis=2)
+
+    def _levels(self, restitution: Floats, velocity: Floats) -> Floats:
+        """F(ε | v); evenly between the levels on either side of ε where it is a point mass."""
+        u = self.table.value("cdf", restitution, velocity)
+        if self._has_points:
+            below, above = (self.table.value("cdf", restitution + side, velocity) for side in (-POINT, POINT))
+            even = self._random.random(u.size)
+            u = np.where(above - below > 0.5 / _LEVELS, below + even * (above - below), u)
+        return u
 
     def impacts(self) -> Ints:
         """Impacts in each interval."""
@@ -52,7 +68,7 @@ class Check:
         return np.asarray(np.max(np.abs(_shares(self.count) - exact), axis=1) + 1.0 / _LEVELS)
 
     def scatter(self) -> Floats:
-        """Tell which part of the distances the scatter of the impacts makes: the mean of a bootstrap.
+        """Estimate the part of the distances that is scatter of the impacts: the mean of a bootstrap.
 
         Batches of particles are resampled, each as often as a Poisson number of mean 1 says, and held against
         all of them at 256 u. Independent impacts scatter by 0.87/√impacts. NaN for a single batch.
@@ -66,6 +82,31 @@ class Check:
         known = np.isfinite(distances)
         with np.errstate(invalid="ignore"):
             return np.asarray(np.where(known, distances, 0.0).sum(axis=0) / known.sum(axis=0))
+
+
+class DistanceWarning(UserWarning):
+    """A learned distribution is farther from fresh impacts than their scatter explains."""
+
+
+def warn_of_distance(data: xr.Dataset, *, stacklevel: int) -> None:
+    """Warn if the worst interval is too far; `stacklevel` is that of `warnings.warn`."""
+    distance, scatter, impacts = (
+        data[name].to_numpy() for name in ("ks_distance", "ks_scatter", "fresh_impacts")
+    )
+    # A single batch has no scatter; independent impacts have this one.
+    scatter = np.where(np.isfinite(scatter), scatter, 0.87 / np.sqrt(np.maximum(impacts, 1)))
+    far = (distance > _FAR) & (distance > _TIMES * scatter)
+    if far.any():
+        worst = int(np.nanargmax(np.where(far, distance, np.nan)))
+        low, high = data["velocity"].to_numpy()[worst : worst + 2]
+        warnings.warn(
+            f"the learned distribution is {distance[worst]:.3f} from fresh impacts at {low:.4g} to "
+            f"{high:.4g} m/s (Kolmogorov-Smirnov), and their scatter makes {scatter[worst]:.3f}; so it is in "
+            f"{int(far.sum())} of {far.size} intervals. More particles, heights of release spread over the "
+            "losses of an impact, or another range of velocities bring it nearer",
+            DistanceWarning,
+            stacklevel=stacklevel + 1,
+        )
 
 
 def _shares(count: Ints) -> Floats:

@@ -13,7 +13,7 @@ Chosen: TypeAlias = "slice | npt.NDArray[np.bool_]"
 
 
 def placed(nodes: Floats, velocity: Floats, *columns: Floats) -> tuple[Ints, npt.NDArray[np.bool_]]:
-    """Tell between which two neighbouring nodes each impact lies, and whether it counts.
+    """Find between which two neighbouring nodes each impact lies, and whether it counts.
 
     Those outside the nodes, and those with NaN in any column, do not.
     """
@@ -74,6 +74,7 @@ class Counter:
         size = int(self.start[-1])
         self.count = np.zeros((BATCHES, size))
         self.lowest, self.highest = np.full(len(edges), np.inf), np.full(len(edges), -np.inf)
+        self.seen = np.array([np.full(nodes.size, np.inf), np.full(nodes.size, -np.inf)])
         # Σw, Σwx and Σwx², x being ε above one of the edges in the middle.
         self._powers = np.zeros((3, BATCHES, len(edges)))
 
@@ -81,6 +82,8 @@ class Counter:
         """Count impacts of a batch, which shares no particle with any other."""
         for i, (weight, epsilon, condition) in intervals(self.nodes, velocity, restitution, z):
             for node, share in ((i, 1.0 - weight), (i + 1, weight)):
+                self.seen[0, node] = min(self.seen[0, node], condition.min())
+                self.seen[1, node] = max(self.seen[1, node], condition.max())
                 for k, chosen, part in shares(condition, self.conditions[node]):
                     component = int(self.first[node]) + k
                     self._add_to(batch, component, epsilon[chosen], share[chosen] * part)
@@ -108,11 +111,12 @@ class Counter:
         n, first, second = self._powers
         total, correction = n.sum(axis=0), self._correction()
         mean = first.sum(axis=0) / total
-        variance = second.sum(axis=0) / total - mean**2
+        variance = np.maximum(second.sum(axis=0) / total - mean**2, 0.0)
         # To first order a batch moves the mean by Σw(x - <x>), the variance by Σw((x - <x>)² - σ²).
         moved = (first - mean * n, second - 2.0 * mean * first + (mean**2 - variance) * n)
         errors = [np.sqrt(correction * np.sum(part**2, axis=0)) / total for part in moved]
-        return errors[0], errors[1] / (2.0 * np.sqrt(variance))
+        spread = variance > 0.0
+        return errors[0], np.where(spread, errors[1] / (2.0 * np.sqrt(np.where(spread, variance, 1.0))), 0.0)
 
     def _correction(self) -> float:
         batches = np.count_nonzero(self.count.any(axis=1))
@@ -138,12 +142,9 @@ class Counter:
             low, high = int(filled[0]), int(filled[-1]) + 1
             # The greatest may be the very edge that its bin starts at.
             lower = inner[low : high - 1]
-            top = (
-                max(self.highest[component], np.nextafter(lower[-1], np.inf))
-                if lower.size
-                else self.highest[component]
-            )
-            edges = np.concatenate([[self.lowest[component]], lower, [top]])
+            edges = np.concatenate([[self.lowest[component]], lower])
+            top = max(self.highest[component], np.nextafter(edges[-1], np.inf))
+            edges = np.append(edges, top)
             cumulative = np.concatenate([[0.0], np.minimum(np.cumsum(count)[low:high] / total, 1.0)])
             cumulative[-1] = 1.0
             below = np.concatenate([[0.0], errors[1][low:high]])

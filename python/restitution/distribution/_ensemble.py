@@ -6,7 +6,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from restitution._parameters import ParameterError, wrong
+from restitution._parameters import ParameterError, Problem, wrong
+from restitution._release import RandomHeight, RandomSpin
 from restitution._run import Run
 from restitution._simulate import simulate_run
 from restitution.distribution._table import Floats
@@ -20,7 +21,7 @@ _IMPACTS_PER_ROUND = 4_000_000
 
 
 class Impacts(NamedTuple):
-    """What is looked at of some impacts of a batch; shape (particles, impacts), NaN where there was none.
+    """The variables of some impacts of a batch; shape (particles, impacts), NaN where there was none.
 
     Parameters
     ----------
@@ -42,29 +43,31 @@ class Impacts(NamedTuple):
 class Ensemble:
     """Particles that are released alike, or in equal parts from several heights.
 
+    Given orientations and spins are dealt out to the heights at random, in another way in each stream, so
+    that the fresh ensemble has them all, too, but none of the trajectories that were learned from.
+
     Parameters
     ----------
     run : Run
         With the particles and the seed of the whole.
-    heights : tuple of float
+    heights : tuple of float, or of one RandomHeight
         Heights of release, in m.
     threads : int, optional
         For the simulation.
     """
 
     run: Run
-    heights: tuple[float, ...]
+    heights: tuple[float | RandomHeight, ...]
     threads: int | None = None
 
     def __post_init__(self) -> None:
-        if self.run.angles is not None:
-            allowed = "'uniform-angle' or 'isotropic': a distribution is learned from random orientations"
-            raise ParameterError(wrong("orientation", self.run.orientation, allowed))
-        if self.run.spins is not None:
-            allowed = (
-                "None, one for all particles, or a RandomSpin: a distribution is learned from random draws"
+        spread = len(self.heights) > 1 or isinstance(self.heights[0], RandomHeight)
+        if self.run.angles is not None and not isinstance(self.run.spin, RandomSpin) and not spread:
+            text = (
+                ": orientations, spins and the height are all given; must be random in one of them, or the "
+                "fresh impacts that a distribution is held against are those that it was learned from"
             )
-            raise ParameterError(wrong("spin", self.run.spin, allowed))
+            raise ParameterError(Problem("orientation, spin, release_height", text))
         if self.run.particles < 2 * len(self.heights):
             allowed = f"at least {2 * len(self.heights)}, two for each release height"
             raise ParameterError(wrong("particles", self.run.particles, allowed))
@@ -88,14 +91,19 @@ class Ensemble:
         batches one by one, from run to run going on where the last one stopped.
         """
         names = ("impact_velocity", "restitution", "rotational_fraction")
+        shuffled = np.random.default_rng(np.random.SeedSequence(self.run.seed, spawn_key=(stream,)))
+        rows = shuffled.permutation(self.run.particles)
+        begun = 0
         for number, runs in enumerate(self.rounds()):
             dealt: list[list[list[Floats]]] = [[] for _ in range(BATCHES)]
             first = 0
             for k, (height, particles) in enumerate(runs):
                 hashed = np.random.SeedSequence(self.run.seed, spawn_key=(stream, number, k))
                 seed = int(hashed.generate_state(1, np.uint64)[0])
-                changed = {"particles": particles, "release_height": self.heights[height], "seed": seed}
-                data = simulate_run(self.run.model_copy(update=changed), threads=self.threads)
+                part = self.run.of(rows[begun : begun + particles])
+                begun += particles
+                changed = {"release_height": self.heights[height], "seed": seed}
+                data = simulate_run(part.model_copy(update=changed), threads=self.threads)
                 columns = [data[name].to_numpy() for name in names]
                 for row in range(min(BATCHES, particles)):
                     batch = dealt[(first + row) % BATCHES]

@@ -1,4 +1,4 @@
-"""A learned distribution at a glance: quantiles over impact velocity, densities, confidence bands."""
+"""Figure of a learned distribution: quantiles over impact velocity, densities, confidence bands."""
 
 import io
 
@@ -7,7 +7,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from restitution import figures as fg
-from restitution.distribution._tabulated import TabulatedDistribution
+from restitution.distribution._errors import EstimatedDistribution
 
 _LEVELS = (0.05, 0.25, 0.5, 0.75, 0.95)
 _CONFIDENCE = 1.96
@@ -19,7 +19,7 @@ _RESTITUTION = r"coefficient of restitution $\varepsilon$"
 _TICKS = [scale * 10.0**power for power in range(-6, 4) for scale in (1, 2, 5)]
 
 
-def image(dist: TabulatedDistribution, suffix: str) -> bytes:
+def image(dist: EstimatedDistribution, suffix: str) -> bytes:
     """Draw and encode; without a date, so that the same distribution gives the same bytes."""
     dated = {"pdf": {"CreationDate": None}, "svg": {"Date": None}}
     content = io.BytesIO()
@@ -28,12 +28,15 @@ def image(dist: TabulatedDistribution, suffix: str) -> bytes:
 
 
 @fg.styled
-def draw(dist: TabulatedDistribution) -> Figure:
+def draw(dist: EstimatedDistribution) -> Figure:
     """Draw quantiles, densities at four speeds, standard deviation and distance to fresh impacts.
 
     Shaded are pointwise 95 % confidence bands: 1.96 standard errors, over batches of particles, either way.
     """
-    figure, [[quantiles, densities], [deviation, distance]] = fg.panels(fg.PAGE, 5.0, 2, 2)
+    rows = 2 if dist.given is None else 3
+    figure, [[quantiles, densities], [deviation, distance], *conditional] = fg.panels(
+        fg.PAGE, 2.5 * rows, rows, 2
+    )
     speeds = dist.data["velocity"].to_numpy()
     _quantiles(quantiles, dist)
     for k, v in enumerate(np.geomspace(speeds[0], speeds[-1], 6)[1:-1]):
@@ -47,7 +50,8 @@ def draw(dist: TabulatedDistribution) -> Figure:
     low, high = densities.get_xlim()
     densities.set_xlim(low - 0.1 * (high - low), high + 0.25 * (high - low))  # for the letter, the legend
     densities.legend(title="m/s", loc="upper right")
-    sigma, band = dist.std(speeds), _CONFIDENCE * np.nan_to_num(dist.std_error(speeds))
+    sigma = dist.std(speeds)
+    band = _CONFIDENCE * dist.std_error(speeds) if dist.has_errors else np.zeros_like(sigma)
     (drawn,) = deviation.plot(speeds, sigma)
     below = np.where(band < sigma, sigma - band, sigma)
     deviation.fill_between(speeds, below, sigma + band, color=drawn.get_color(), alpha=0.3, linewidth=0)
@@ -66,29 +70,69 @@ def draw(dist: TabulatedDistribution) -> Figure:
             axes.set_xlabel(_VELOCITY)
             fg.plain_log(axes, _TICKS)
             axes.set_xlim(speeds[0], speeds[-1])
+    for row in conditional:
+        _given(row, dist)
     return figure
 
 
-def _quantiles(axes: Axes, dist: TabulatedDistribution) -> None:
+def _given(row: list[Axes], dist: EstimatedDistribution) -> None:
+    """Draw the middle half of ε at a small, a middle and a great condition, over v and over ε at one v."""
+    names = {
+        "rotational_fraction": r"$E_\mathrm{rot}/E_\mathrm{tot}$",
+        "previous": "level of the last impact",
+    }
+    speeds = dist.data["velocity"].to_numpy()
+    middle = float(np.sqrt(speeds[0] * speeds[-1]))
+    first = np.concatenate([[0], np.cumsum(dist.data["given_components"].to_numpy())])
+    conditions = dist.data["given"].to_numpy()
+    near = int(np.argmin(np.abs(speeds - middle)))
+    there = conditions[first[near] : first[near + 1]]
+    for k, z in enumerate((there[0], there[there.size // 2], there[-1])):
+        seen = (speeds >= 0) & (dist.data["given_lowest"] <= z) & (z <= dist.data["given_highest"]).to_numpy()
+        v = speeds[seen.to_numpy()]
+        low, half, high = (dist.ppf(q, v, given=z) for q in (0.25, 0.5, 0.75))
+        label = f"{z:.2g}"
+        (drawn,) = row[0].plot(v, half, color=fg.COLORS[k], label=label)
+        row[0].fill_between(v, low, high, color=drawn.get_color(), alpha=0.2, linewidth=0)
+        ends = dist.ppf([1e-3, 1.0 - 1e-3], speeds[near], given=z)
+        x = np.linspace(ends[0], ends[1], 300)
+        density = dist.pdf(x, speeds[near], given=z)
+        row[1].plot(x, np.where(density > 0, density, np.nan), color=fg.COLORS[k], label=label, linewidth=0.7)
+    row[0].set_xlabel(_VELOCITY)
+    row[0].set_ylabel(_RESTITUTION)
+    fg.plain_log(row[0], _TICKS)
+    row[0].set_xlim(speeds[0], speeds[-1])
+    row[1].set_xlabel(_RESTITUTION)
+    row[1].set_ylabel(rf"$p(\varepsilon\,|\,v, z)$ at {speeds[near]:.3g} m/s")
+    row[1].set_yscale("log")
+    for axes, name in zip(row, "ef", strict=True):
+        low, high = axes.get_ylim()
+        axes.set_ylim(top=high * 10 if axes is row[1] else high + 0.35 * (high - low))
+        axes.legend(title=f"given {names[str(dist.given)]}", loc="upper right", ncols=3)
+        fg.letter(axes, f"({name})")
+
+
+def _quantiles(axes: Axes, dist: EstimatedDistribution) -> None:
     speeds = dist.data["velocity"].to_numpy()
     for q in _LEVELS:
         x = dist.ppf(q, speeds)
-        # The error of F over the density is that of the quantile.
-        error = dist.cdf_error(x, speeds) / np.maximum(dist.pdf(x, speeds), 1e-300)
         (drawn,) = axes.plot(speeds, x, label=f"{100 * q:g} %")
-        band = _CONFIDENCE * np.nan_to_num(error)
-        axes.fill_between(speeds, x - band, x + band, color=drawn.get_color(), alpha=0.3, linewidth=0)
+        if dist.has_errors:
+            band = _CONFIDENCE * dist.ppf_error(q, speeds)
+            axes.fill_between(speeds, x - band, x + band, color=drawn.get_color(), alpha=0.3, linewidth=0)
     axes.set_ylabel(_RESTITUTION)
     low, high = axes.get_ylim()
     axes.set_ylim(low, high + 0.3 * (high - low))  # room for the panel's letter and the legend
     axes.legend(loc="upper right", ncols=3)
 
 
-def _density(axes: Axes, dist: TabulatedDistribution, v: float, color: str) -> None:
+def _density(axes: Axes, dist: EstimatedDistribution, v: float, color: str) -> None:
     low, high = dist.ppf([1e-4, 1.0 - 1e-4], v)
     x = np.linspace(low, high, 400)
     density = np.where(dist.pdf(x, v) > 0, dist.pdf(x, v), np.nan)
-    band = _CONFIDENCE * np.nan_to_num(dist.pdf_error(x, v))
     axes.plot(x, density, color=color, label=f"{v:.3g}", linewidth=0.7)
+    if not dist.has_errors:
+        return
+    band = _CONFIDENCE * dist.pdf_error(x, v)
     below = np.where(band < density, density - band, density)  # a logarithmic axis has no room for zero
     axes.fill_between(x, below, density + band, color=color, alpha=0.3, linewidth=0, step="mid")

@@ -1,54 +1,64 @@
 """`FluctuatingRestitution`: p(ε | v), used like a distribution of scipy.stats with the argument v."""
 
-from collections.abc import Iterator
+from __future__ import annotations
+
+import errno
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 import numpy.typing as npt
 import xarray as xr
 
-from restitution._dataset import check_writable, save
+from restitution._arrays import reals, whole
+from restitution._dataset import save
+from restitution._display import table, value
+from restitution._files import path_from, write
 from restitution._parameters import ParameterError, wrong
-from restitution._release import RandomSpin
+from restitution._recorded import records
+from restitution._release import RandomHeight, RandomSpin
+from restitution._resources import checked_threads
 from restitution._run import Run
 from restitution.bodies import Body
+from restitution.distribution import _defaults as defaults
 from restitution.distribution._c import header
-from restitution.distribution._check import Check
+from restitution.distribution._check import Check, warn_of_distance
 from restitution.distribution._ensemble import BATCHES, Ensemble, Impacts
+from restitution.distribution._errors import EstimatedDistribution
 from restitution.distribution._fortran import module
 from restitution.distribution._from_statistics import from_statistics
-from restitution.distribution._learn import Given, condition, learn
+from restitution.distribution._learn import Given, checked_speeds, condition, learn
 from restitution.distribution._memory import correlations
-from restitution.distribution._store import require
-from restitution.distribution._tabulated import TabulatedDistribution
-from restitution.distribution._text import image_format, write
+from restitution.distribution._store import sealed, unsealed
 from restitution.laws import Law
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 
-class FluctuatingRestitution(TabulatedDistribution):
+class FluctuatingRestitution(EstimatedDistribution):
     """The coefficient of restitution as a random number whose distribution depends on the impact velocity.
 
-    Make it with `learn`, `from_statistics` or `load`. Methods have the names and manners of `scipy.stats`,
+    Make it with `learn`, `from_statistics` or `load`. The methods follow the conventions of `scipy.stats`,
     and broadcast their arguments against the impact velocity v, in m/s.
 
     At each of some tens to hundreds of speeds, the nodes, stands a histogram with bins of equal probability
-    that halve towards the tails. Between two nodes p(ε | v) = (1 - w) p_i(ε) + w p_(i+1)(ε), w linear in v,
-    so that density, distribution function, quantiles, draws and moments all belong to one distribution,
-    continuous in v. The impacts were counted at both nodes beside them with the same weights. The support
-    ends at the least and the greatest ε that were seen; ε < 0 and ε > 1 are as probable as they were found.
+    that halve towards the tails; a sphere's is one bin, as wide as rounding. Between two nodes
+    p(ε | v) = (1 - w) p_i(ε) + w p_(i+1)(ε), w linear in v, so that density, distribution function,
+    quantiles, draws and moments all belong to one distribution, continuous in v. The impacts were counted at
+    both nodes beside them with the same weights. The support ends at the least and the greatest ε that were
+    seen; ε < 0 and ε > 1 are as probable as they were found.
 
-    Speeds outside `velocities` are an error, or taken as the nearest learned one by what `clamped` returns.
+    A speed outside `velocities` is refused, or taken as the nearest learned one by what `clamped` returns.
 
-    With ``given``, p(ε | v, z) is known as well: see `learn`.
+    With ``given``, p(ε | v, z) is known as well, see `learn`. A condition that no impact at that speed had is
+    refused or taken as the nearest by the same rule.
 
     Attributes
     ----------
     data : xarray.Dataset
-        The tables, how they were learned (all parameters in the attributes), their standard errors, and
+        The tables, how they were learned (all parameters in the attributes, with the heights of release and
+        ``release_height_asked`` where those were spread about one), their standard errors, and
         ``ks_distance``, the Kolmogorov–Smirnov distance between each two nodes to a fresh ensemble with other
         random numbers.
     """
@@ -60,20 +70,20 @@ class FluctuatingRestitution(TabulatedDistribution):
         law: Law,
         *,
         particles: int = 20_000,
-        impacts: int = 1000,
-        release_height: npt.ArrayLike = 0.06,
+        impacts: int | None = None,
+        release_height: npt.ArrayLike | RandomHeight = 0.06,
         gravity: float = 9.81,
-        orientation: str = "uniform-angle",
+        orientation: Literal["uniform-angle", "isotropic"] | npt.ArrayLike = "uniform-angle",
         spin: npt.ArrayLike | RandomSpin | None = None,
         velocity: npt.ArrayLike | None = None,
         incline: float = 0.0,
-        minimum_speed: float = 0.0,
+        minimum_speed: float | None = None,
         seed: int = 1,
         velocities: npt.ArrayLike | None = None,
         given: Given | None = None,
         threads: int | None = None,
         progress: bool = False,
-    ) -> "FluctuatingRestitution":
+    ) -> FluctuatingRestitution:
         """Learn p(ε | v) from an ensemble of bouncing particles.
 
         The ensemble is simulated in rounds, and again with other random numbers to measure how far the result
@@ -81,21 +91,25 @@ class FluctuatingRestitution(TabulatedDistribution):
 
         Parameters
         ----------
-        orientation, spin
-            As in `restitution.simulate`, but not one for each particle.
-        body, law, particles, impacts, gravity, velocity, incline, minimum_speed, seed, threads, progress
-            As in `restitution.simulate`. Take `impacts` large enough for the particles
-            to become slower than the least speed: those that are slow early are unusual.
-        release_height : float or array_like
-            Height of the centre of mass at release, in m; several heights share the particles equally.
-            Particles from one height have few separate speeds at first, and p(ε | v) has as fine a structure:
-            near the release velocity √(2gh), and for nearly round bodies everywhere. Heights spread over
-            two losses average over it if they differ by 0.1 % in v or less, and thin out to both ends,
-            so that impacts of one number fade into those of the next: with n = 2000 ln(1/ε^n),
-            ``R + (h - R) * normal ** (4 * scipy.stats.triang(0.5).ppf((np.arange(n) + 0.5) / n))``.
+        body, law, particles, gravity, orientation, spin, velocity, incline, seed, threads, progress
+            As in `restitution.simulate`. Orientations or spins of each particle are dealt out to the heights
+            at random; if nothing is random, there is nothing to hold the result against, and it is refused.
+        impacts : int, optional
+            The most impacts of a particle. By default, as many as it takes ninety-nine of a hundred
+            particles to become slower than `minimum_speed`, 4096 at most: those that are slow early are
+            unusual.
+        release_height : float, array_like or RandomHeight
+            Height of the centre of mass at release, in m. From a single height the first impacts have few
+            separate speeds, and p(ε | v) as fine a structure; particles are therefore released from heights
+            about the one asked for, one loss of energy to either side, dense in the middle and none at the
+            ends. An array of heights is taken as it is, in equal parts; ``[h]`` is one height. A
+            `RandomHeight` is taken as it is, too.
+        minimum_speed : float, optional
+            As in `restitution.simulate`; by default the speed from which no learned impact velocity is
+            reached.
         velocities : array_like, optional
             The least and the greatest speed to learn, in m/s, or all nodes. From 0.04 to 0.4 of the release
-            velocity unless told, in nodes that lie as close as the number of impacts allows.
+            velocity by default, in nodes that lie as close as the number of impacts allows.
         given : {"rotational_fraction", "previous"}, optional
             Also learn p(ε | v, z) with z the rotational share of the kinetic energy before the impact
             (Eq. 12), or the quantile level, `cdf`, of the particle's previous ε at its own impact velocity:
@@ -104,42 +118,46 @@ class FluctuatingRestitution(TabulatedDistribution):
         Raises
         ------
         ValueError
-            If a parameter is out of range, speeds were hardly ever met, or ε does not spread (a sphere).
+            If a parameter is out of range, or speeds were hardly ever met.
+
+        Warns
+        -----
+        DistanceWarning
+            If fresh impacts are farther from the result than 0.05 in the sense of Kolmogorov and Smirnov, and
+            than 3.5 times what their scatter makes of it. docs/theory.md says what to do.
 
         Examples
         --------
         >>> import restitution as rs
         >>> body = rs.Dumbbell(radius=3e-3, separation=3e-4)
         >>> law = rs.TangentialRestitution(normal=0.98)
-        >>> dist = rs.FluctuatingRestitution.learn(body, law, particles=400, impacts=400)
+        >>> dist = rs.FluctuatingRestitution.learn(body, law, particles=400, velocities=(0.2, 0.6))
         >>> dist.rvs(0.3, size=3, random_state=1).shape
         (3,)
         """
-        heights = np.atleast_1d(np.asarray(release_height))
-        if heights.ndim != 1 or heights.size == 0:
-            raise ParameterError(wrong("release_height", release_height, "a height or several, in m"))
-        runs = [
-            Run(
-                body=body,
-                law=law,
-                particles=particles,
-                impacts=impacts,
-                release_height=height,
-                gravity=gravity,
-                orientation=orientation,
-                spin=spin,
-                velocity=velocity,
-                incline=incline,
-                minimum_speed=minimum_speed,
-                seed=seed,
-            )
-            for height in heights
-        ]
-        ensemble = Ensemble(runs[0], tuple(run.release_height for run in runs), threads)
-        return cls(learn(ensemble, velocities, given, progress))
+        heights = [release_height] if isinstance(release_height, RandomHeight) else _heights(release_height)
+        arguments = dict(locals()) | {
+            "impacts": 1 if impacts is None else impacts,
+            "minimum_speed": 0.0 if minimum_speed is None else minimum_speed,
+        }
+        runs = [Run.called(arguments | {"release_height": height}) for height in heights]
+        run = runs[0]
+        nodes = checked_speeds(velocities, min(runs, key=lambda one: one.heights[0]))
+        if minimum_speed is None:
+            run = run.model_copy(update={"minimum_speed": defaults.minimum_speed(run, float(nodes[0]))})
+        if impacts is None:
+            run = run.model_copy(update={"impacts": defaults.impacts(run, checked_threads(threads) or None)})
+        one_asked = not isinstance(release_height, RandomHeight) and np.ndim(release_height) == 0
+        spread = defaults.heights(run) if one_asked else tuple(one.release_height for one in runs)
+        ensemble = Ensemble(run, spread, threads)
+        found = cls(learn(ensemble, nodes, given, progress))
+        if one_asked:
+            found.data.attrs["release_height_asked"] = run.release_height
+        warn_of_distance(found.data, stacklevel=2)
+        return found
 
     @classmethod
-    def from_statistics(cls, statistics: xr.Dataset) -> "FluctuatingRestitution":
+    def from_statistics(cls, statistics: xr.Dataset) -> FluctuatingRestitution:
         """Take p(ε | v) from counts, such as those of `restitution.statistics` or `restitution.reduce`.
 
         The nodes are the centres of the velocity bins, the edges those of the restitution bins, thinned to
@@ -159,25 +177,31 @@ class FluctuatingRestitution(TabulatedDistribution):
         return cls(from_statistics(statistics))
 
     @classmethod
-    def load(cls, path: str | Path) -> "FluctuatingRestitution":
+    def load(cls, path: str | Path) -> FluctuatingRestitution:
         """Read a distribution that `save` wrote."""
-        return cls(xr.load_dataset(path, engine="netcdf4"))
+        path = path_from("path", path)
+        try:
+            data = xr.load_dataset(path, engine="netcdf4")
+        except OSError:
+            raise
+        except Exception as error:  # of netCDF, which raises many kinds where a file came to harm
+            raise OSError(errno.EIO, f"cannot be read as netCDF: {error}", str(path)) from error
+        return cls(unsealed(data, str(path)))
 
     def save(self, path: str | Path, *, replace: bool = False) -> None:
         """Write a netCDF file, whole or not at all; an existing one only with ``replace``."""
-        check_writable(Path(path), replace=replace)
-        save(self.data, Path(path))
+        save(sealed(self.data), path_from("path", path), replace=replace)
 
-    def clamped(self) -> "FluctuatingRestitution":
-        """Give the same distribution, with speeds beyond the learned ones taken as the nearest of them."""
+    def clamped(self) -> FluctuatingRestitution:
+        """Give the same distribution, with speeds and conditions beyond the learned taken as the nearest."""
         return FluctuatingRestitution(self.data.assign_attrs(beyond="clamp"))
 
     def to_c(self, path: str | Path, *, name: str = "restitution", replace: bool = False) -> None:
         """Write a C99 and C++ header with the table and ``double restitution_sample(v, u1, u2)``.
 
         It needs nothing but the standard library. u1 and u2 are uniform random numbers of the caller's own.
-        Speeds beyond the learned ones give NaN; what `clamped` returns takes them as the nearest. With a
-        condition there is ``restitution_sample_given(v, z, u1, u2)``, too.
+        Where the methods here refuse a speed or a condition it gives NaN; what `clamped` returns takes them
+        as the nearest. With a condition there is ``restitution_sample_given(v, z, u1, u2)``, too.
 
         Parameters
         ----------
@@ -186,26 +210,23 @@ class FluctuatingRestitution(TabulatedDistribution):
         name : str
             What all names in the header start with.
         """
-        write(Path(path), header(self.data, name), replace=replace)
+        write(path_from("path", path), header(self.data, name).encode("ascii"), replace=replace)
 
     def to_fortran(self, path: str | Path, *, name: str = "restitution", replace: bool = False) -> None:
         """Write a Fortran 2008 module with the table and the elemental ``restitution_sample(v, u1, u2)``.
 
         As `to_c`; `name` is also that of the module.
         """
-        write(Path(path), module(self.data, name), replace=replace)
+        write(path_from("path", path), module(self.data, name).encode("ascii"), replace=replace)
 
-    def figure(self) -> "Figure":
-        """Draw quantiles over v, densities with confidence bands, σ(ε) and the distance to fresh impacts."""
+    def figure(self) -> Figure:
+        """Draw quantiles over v, densities with confidence bands, σ(ε) and the distance to fresh impacts.
+
+        With a condition also what ε is at three values of it. `savefig` of the figure writes it to a file.
+        """
         from restitution.distribution._figure import draw
 
         return draw(self)
-
-    def draw(self, path: str | Path, *, replace: bool = False) -> None:
-        """Write `figure` as .png, .pdf or .svg, whole or not at all."""
-        from restitution.distribution._figure import image
-
-        write(Path(path), image(self, image_format(Path(path))), replace=replace)
 
     def distance(self, data: xr.Dataset) -> xr.Dataset:
         """Measure how far impacts are from this distribution.
@@ -223,9 +244,8 @@ class FluctuatingRestitution(TabulatedDistribution):
             scatter makes of it, by bootstrap over particles; and ``impacts``.
         """
         names = ("impact_velocity", "restitution")
-        require(data, "data", names, "a result of restitution.simulate")
         check = Check(self._table)
-        columns = [data[name].transpose("particle", ...).to_numpy() for name in names]
+        columns = records("data", data, *names)
         for batch in range(BATCHES):
             check.add(batch, *(column[batch::BATCHES] for column in columns))
         low, high = self._table.speeds[:-1], self._table.speeds[1:]
@@ -259,12 +279,8 @@ class FluctuatingRestitution(TabulatedDistribution):
             wide; each with its standard error over particles.
         """
         names = ("impact_velocity", "restitution", "rotational_fraction")
-        require(data, "data", names, "a result of restitution.simulate")
-        if isinstance(lags, bool) or not isinstance(lags, int) or lags < 1:
-            raise ParameterError(wrong("lags", lags, "a whole number > 0"))
-        velocity, restitution, fraction = (
-            data[name].transpose("particle", "impact").to_numpy() for name in names
-        )
+        lags = whole("lags", lags, 1, 10_000)
+        velocity, restitution, fraction = records("data", data, *names)
         low, high = self.velocities
         inside = (velocity >= low) & (velocity <= high)
         speed = np.where(inside, velocity, np.nan)
@@ -275,19 +291,36 @@ class FluctuatingRestitution(TabulatedDistribution):
             levels["p(ε | v, z)"] = self._conditional.value("cdf", restitution, speed, z)
         return correlations(levels, lags)
 
-    def summary(self) -> Iterator[str]:
-        """Say in a few lines what was learned and how well."""
+    def summary(self) -> str:
+        """Summarise in a few lines what was learned and how well."""
         low, high = self.velocities
-        yield f"{float(self.data['impacts'].sum()):.0f} impacts at {low:.4g} to {high:.4g} m/s"
-        yield f"{self.data.sizes['node']} histograms, {self.data.sizes['edge']} edges"
+        lines = [f"{float(self.data['impacts'].sum()):.0f} impacts at {low:.4g} to {high:.4g} m/s"]
+        lines += [f"{self.data.sizes['node']} histograms, {self.data.sizes['edge']} edges"]
+        if self.given is not None:
+            lines += [f"also given {self.data['given'].attrs['long_name']}"]
         if "ks_distance" in self.data:
-            worst = int(np.argmax(self.data["ks_distance"].to_numpy()))
+            worst = int(np.nanargmax(self.data["ks_distance"].to_numpy()))
             speed, scatter = (float(self.data[name][worst]) for name in ("velocity", "ks_scatter"))
-            yield (
+            lines += [
                 "Kolmogorov-Smirnov distance to fresh impacts: "
                 f"{float(self.data['ks_distance'][worst]):.4f} at most, at {speed:.4g} m/s, "
                 f"where their own scatter makes {scatter:.4f}"
-            )
+            ]
+        return "\n".join(lines)
+
+    def _repr_html_(self) -> str:
+        attrs, (low, high) = self.data.attrs, self.velocities
+        rows = [(name, str(attrs[name])) for name in ("body", "law") if name in attrs]
+        rows += [("impact velocity", value((low, high), "m/s")), ("nodes", str(self.data.sizes["node"]))]
+        rows += [("impacts", f"{float(self.data['impacts'].sum()):.0f}")]
+        if self.given is not None:
+            rows += [("given", self.given)]
+        if "ks_distance" in self.data:
+            rows += [("largest ks_distance", value(float(self.data["ks_distance"].max())))]
+        speeds = np.array([low, (low * high) ** 0.5, high])
+        for v, mean, std in zip(speeds, self.mean(speeds), self.std(speeds), strict=True):
+            rows += [(f"ε at {v:.3g} m/s", f"{mean:.4g} ± {std:.2g}")]
+        return table("FluctuatingRestitution", rows)
 
     def __repr__(self) -> str:
         low, high = self.velocities
@@ -297,14 +330,9 @@ class FluctuatingRestitution(TabulatedDistribution):
         return f"<FluctuatingRestitution: {about}>"
 
 
-def learn_run(
-    run: Run,
-    *,
-    velocities: npt.ArrayLike | None = None,
-    given: Given | None = None,
-    threads: int | None = None,
-    progress: bool = False,
-) -> FluctuatingRestitution:
-    """`FluctuatingRestitution.learn` for parameters that are already checked."""
-    ensemble = Ensemble(run, (run.release_height,), threads)
-    return FluctuatingRestitution(learn(ensemble, velocities, given, progress))
+def _heights(release_height: npt.ArrayLike) -> list[float]:
+    several = "a height or several, in m, or a RandomHeight"
+    heights = reals("release_height", release_height, several, dimensions=(0, 1), finite=False)
+    if heights.size == 0:
+        raise ParameterError(wrong("release_height", release_height, several))
+    return [float(height) for height in heights.ravel()]

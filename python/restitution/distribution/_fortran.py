@@ -74,6 +74,7 @@ _GIVEN = """
     real(dp) :: u
     integer :: node, component, first, last
 RANGE
+SEEN
     u = u1
     call NAME_choose(NAME_velocity, v, u, node)
     first = NAME_given_first(node) + 1
@@ -93,6 +94,13 @@ _RANGE = """    if (.not. (v >= NAME_velocity(1) .and. v <= NAME_velocity(size(N
 
 _PER_LINE, _PER_STATEMENT = 4, 400
 
+_SEEN = """    node = NAME_below(NAME_velocity, v)
+    if (.not. (z >= minval(NAME_given_lowest(node:node + 1)) &
+      .and. z <= maxval(NAME_given_highest(node:node + 1)))) then
+      x = ieee_value(x, ieee_quiet_nan)
+      return
+    end if"""
+
 
 def module(data: xr.Dataset, name: str) -> str:
     """Write the module; see `FluctuatingRestitution.to_fortran`."""
@@ -106,11 +114,15 @@ def module(data: xr.Dataset, name: str) -> str:
         public.append(f"{name}_sample_given")
         functions += _GIVEN
         declarations += _declared(name, "given_", _store.table(data, "given_"))
+        if checked:
+            for key in ("given_lowest", "given_highest"):
+                declarations += _data(f"{name}_{key}", data[key].to_numpy())
     lines += [f"module {name}"]
     if checked:
         lines += ["  use, intrinsic :: ieee_arithmetic, only: ieee_value, ieee_quiet_nan"]
     lines += ["  implicit none", "  private", f"  public :: {', '.join(public)}"]
     lines += ["  integer, parameter :: dp = kind(1.0d0)", *declarations]
+    functions = functions.replace("SEEN\n", f"{_SEEN}\n" if checked else "")
     functions = functions.replace("RANGE\n", f"{_RANGE}\n" if checked else "").replace("NAME", name)
     return "\n".join(lines) + "\n" + functions + f"\nend module {name}\n"
 

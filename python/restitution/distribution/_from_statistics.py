@@ -3,20 +3,17 @@
 import numpy as np
 import xarray as xr
 
-from restitution.distribution._nodes import LEAST_IMPACTS
+from restitution.distribution._nodes import LEAST_IMPACTS, POINT
 from restitution.distribution._store import of_histograms, require
 from restitution.distribution._table import Floats, Histogram
 
 
 def from_statistics(statistics: xr.Dataset) -> xr.Dataset:
     """Make the Dataset of a distribution; see `FluctuatingRestitution.from_statistics`."""
-    needed = ("count", "restitution_edges", "minimum", "maximum", "velocity")
+    needed = ("restitution_count", "restitution_edges", "minimum", "maximum", "velocity")
     instead = "a result of restitution.statistics or restitution.reduce with velocity bins"
     require(statistics, "statistics", needed, instead)
-    names = ("restitution_underflow", "count", "restitution_overflow")
-    below, inside, above = (statistics[name].to_numpy() for name in names)
-    counts = np.concatenate([below[:, None], inside, above[:, None]], axis=1).astype(np.float64)
-    number = counts.sum(axis=1)
+    counts, number = _counts(statistics)
     velocity = statistics["velocity"].to_numpy()
     kept = np.flatnonzero((number >= LEAST_IMPACTS) & (velocity > 0))
     if kept.size < 2:
@@ -38,11 +35,35 @@ def from_statistics(statistics: xr.Dataset) -> xr.Dataset:
     return of_histograms(velocity[rows], histograms, number[rows], {**attrs, "title": title})
 
 
+def quantiles(statistics: xr.Dataset, levels: Floats) -> Floats:
+    """Give quantiles of restitution in each velocity bin, shape (velocities, levels).
+
+    They are those of the learned distribution at the middle of the bin; NaN where there are fewer impacts
+    than it needs.
+    """
+    counts, number = _counts(statistics)
+    edges = statistics["restitution_edges"].to_numpy()
+    extremes = [statistics[name].to_numpy() for name in ("minimum", "maximum")]
+    found = np.full((number.size, levels.size), np.nan)
+    for row in np.flatnonzero(number >= LEAST_IMPACTS):
+        histogram = _histogram(counts[row], edges, *(float(e[row]) for e in extremes))
+        found[row] = np.interp(levels, histogram.cumulative, histogram.edges)
+    return found
+
+
+def _counts(statistics: xr.Dataset) -> tuple[Floats, Floats]:
+    """Give the counts of each velocity bin with those beyond the bins first and last, and their sum."""
+    names = ("restitution_underflow", "restitution_count", "restitution_overflow")
+    below, inside, above = (statistics[name].to_numpy() for name in names)
+    counts = np.concatenate([below[:, None], inside, above[:, None]], axis=1).astype(np.float64)
+    return counts, counts.sum(axis=1)
+
+
 def _histogram(count: Floats, edges: Floats, minimum: float, maximum: float) -> Histogram:
     """Thin the bins of a row to equal probability, halving towards the tails; no edge moves."""
-    if minimum == maximum:
-        raise ValueError(
-            f"statistics: restitution does not spread, it is {minimum} throughout a velocity bin"
+    if maximum - minimum < POINT:
+        return Histogram(
+            np.array([minimum, max(maximum, np.nextafter(minimum, np.inf))]), np.array([0.0, 1.0])
         )
     filled = np.flatnonzero(count)
     low, high = int(filled[0]), int(filled[-1]) + 1

@@ -7,12 +7,15 @@ import numpy as np
 import numpy.typing as npt
 import xarray as xr
 
+from restitution._arrays import reals
 from restitution._dataset import attributes
 from restitution._parameters import ParameterError, Problem, wrong
 from restitution._resources import progress_bar
+from restitution._run import Run
 from restitution.distribution import _nodes
 from restitution.distribution._check import Check
 from restitution.distribution._count import Counter, shares
+from restitution.distribution._defaults import speeds
 from restitution.distribution._ensemble import FRESH, LEARNING, Ensemble, Impacts
 from restitution.distribution._store import assemble
 from restitution.distribution._table import Floats, Table
@@ -22,17 +25,12 @@ Part: TypeAlias = tuple[Floats, Floats, Floats]
 """Impact velocity, restitution and condition of single impacts."""
 
 _PILOT = 2_000_000
-_RANGE = (0.04, 0.4)
-"""Learned speeds where none are asked for, over the largest possible one at the first impact."""
 
 
-def learn(
-    ensemble: Ensemble, velocities: npt.ArrayLike | None, given: Given | None, progress: bool
-) -> xr.Dataset:
+def learn(ensemble: Ensemble, nodes: Floats, given: Given | None, progress: bool) -> xr.Dataset:
     """Simulate the ensemble, count its impacts, and measure the result against a fresh ensemble."""
-    if given is not None and given not in get_args(Given):
+    if given is not None and not (isinstance(given, str) and given in get_args(Given)):
         raise ParameterError(wrong("given", given, " or ".join(map(repr, get_args(Given))) + " or None"))
-    nodes = _checked(velocities, ensemble)
     total = (2 if given is None else 3) * ensemble.run.particles
     done = 0
 
@@ -66,22 +64,17 @@ def learn(
         ensemble.run, "Distribution of the coefficient of restitution at given impact velocity"
     )
     if len(ensemble.heights) > 1:
-        attrs["release_height"] = np.array(ensemble.heights)
+        attrs["release_height"] = list(ensemble.heights)
     return assemble(counter, conditional, given, check, attrs)
 
 
-def _checked(velocities: npt.ArrayLike | None, ensemble: Ensemble) -> Floats:
-    run = ensemble.run
+def checked_speeds(velocities: npt.ArrayLike | None, run: Run) -> Floats:
+    """Give the least and the greatest speed to learn, or all nodes, in m/s."""
     if velocities is None:
-        # Upright either way or level: in one of these the centre of mass comes lowest.
-        lowest = min(run.body.solid.lowest(np.array([cosine])) for cosine in (-1.0, 0.0, 1.0))
-        return np.array(_RANGE) * run.fall_speed(min(ensemble.heights) - lowest)
-    try:
-        nodes = np.array(velocities, dtype=np.float64)
-    except (TypeError, ValueError):
-        nodes = np.empty(0)
-    if not (nodes.ndim == 1 and nodes.size >= 2 and np.all(np.isfinite(nodes))):
-        allowed = "the least and the greatest speed, or all nodes, finite, in m/s"
+        return speeds(run)
+    allowed = "the least and the greatest speed, or all nodes, finite, in m/s"
+    nodes = np.array(reals("velocities", velocities, allowed, dimensions=(1,), finite=False))
+    if nodes.size < 2 or not np.all(np.isfinite(nodes)):
         raise ParameterError(wrong("velocities", velocities, allowed))
     if nodes[0] <= 0 or not np.all(np.diff(nodes) > 0):
         raise ParameterError(wrong("velocities", velocities, "> 0 and strictly increasing"))

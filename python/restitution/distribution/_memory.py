@@ -1,4 +1,4 @@
-"""What successive impacts of a particle have to do with each other, given a condition or not."""
+"""How successive impacts of a particle depend on each other, with and without a condition."""
 
 import numpy as np
 import xarray as xr

@@ -8,6 +8,8 @@ import numpy as np
 from restitution._parameters import ParameterError, wrong
 from restitution.distribution._table import Floats
 
+POINT = 1e-9
+"""Restitutions that differ by less are the same: those of a sphere, apart from rounding."""
 LEAST_IMPACTS = 500
 """Fewer impacts than these in an interval between two nodes are refused."""
 _LEAST_INTERVALS, _CELLS = 8, 256
@@ -71,7 +73,7 @@ def bins(restitution: Floats, scale: float, where: str) -> Floats:
     """Place the edges of bins that are equally probable in the middle and halve in probability to the tails.
 
     Beyond what is in `restitution` the edges go on, twice as far with every step, because the whole ensemble
-    reaches farther.
+    reaches farther. Where all restitutions are the same, as those of a sphere, one bin holds them.
 
     Parameters
     ----------
@@ -87,14 +89,17 @@ def bins(restitution: Floats, scale: float, where: str) -> Floats:
     ndarray
         Inner edges, strictly increasing; the outermost bins are open.
     """
-    if restitution.size < 2 or np.ptp(restitution) < 1e-9:
-        spread = float(np.ptp(restitution)) if restitution.size else 0.0
-        allowed = "a body and a law that make restitution spread there by more than 1e-9"
-        raise ParameterError(wrong(f"spread of restitution at {where}", spread, allowed))
+    if restitution.size < 2:
+        allowed = f"2 or more at {where}: more particles, more impacts of each, or another range"
+        raise ParameterError(wrong("impacts of the first particles", restitution.size, allowed))
+    reach = 2.0 ** np.arange(1, 20) - 1.0
+    least, most = float(restitution.min()), float(restitution.max())
+    if most - least < POINT:
+        ends = np.array([least, np.nextafter(most, np.inf)])
+        return np.unique(np.concatenate([ends, least - POINT * reach, most + POINT * reach]))
     number = int(np.clip(2.0 * (scale * restitution.size) ** (1 / 3), 8, 256))  # Rice's rule
     levels = np.arange(1, number) / number
     tails = 0.5 ** np.arange(1, max(2, int(np.log2(restitution.size / number)))) / number
     inner = np.unique(np.quantile(restitution, np.concatenate([levels, tails, 1.0 - tails])))
-    reach = 2.0 ** np.arange(1, 20) - 1.0
     below, above = inner[1] - inner[0], inner[-1] - inner[-2]
     return np.unique(np.concatenate([inner, inner[0] - below * reach, inner[-1] + above * reach]))

@@ -1,11 +1,14 @@
 """The Dataset that a learned distribution is kept in: ragged tables, their errors, what they came from."""
 
+from collections.abc import Mapping
+from hashlib import blake2b
 from typing import Any
 
 import numpy as np
 import xarray as xr
 
-from restitution._parameters import ParameterError, wrong
+from restitution._arrays import reals
+from restitution._parameters import ParameterError, Problem, wrong
 from restitution.distribution._check import Check
 from restitution.distribution._count import Counter
 from restitution.distribution._table import Floats, Histogram, Table
@@ -27,27 +30,14 @@ def assemble(
     ``probability_below`` (edge) the histograms themselves. ``probability_error`` (edge) is the standard
     error of the probability of the bin that starts there, ``probability_below_error`` that of the one below,
     ``mean_error`` and ``std_error`` (node) those of the moments. With a condition
-    the tables again with the prefix ``given_``, for each of the ``given_components`` of a node at its
-    ``given``. ``ks_distance``, ``ks_scatter`` and ``fresh_impacts`` (interval) are how far a fresh ensemble
-    is from this distribution between two nodes, and how far its own scatter alone takes it.
+    the tables and their errors again with the prefix ``given_``, for each of the ``given_components`` of a
+    node at its ``given``, and the ``given_lowest`` and ``given_highest`` condition that a node has seen.
+    ``ks_distance``, ``ks_scatter`` and ``fresh_impacts`` (interval) are how far a fresh ensemble is from this
+    distribution between two nodes, and how far its own scatter alone takes it.
     """
     parts = list(counter.histograms())
     data = of_histograms(counter.nodes, [part for part, _, _ in parts], counter.impacts(), attrs)
-    for name, errors, text in (
-        (
-            "probability_error",
-            [np.append(share, np.nan) for _, share, _ in parts],
-            "the probability of the bin above the edge",
-        ),
-        ("probability_below_error", [below for _, _, below in parts], "probability_below"),
-    ):
-        about = {"long_name": f"standard error of {text}; a batch of particles is a draw", "units": "1"}
-        data[name] = ("edge", np.concatenate(errors), about)
-    for name, moment, moment_errors in zip(
-        ("mean_error", "std_error"), ("mean", "standard deviation"), counter.moment_errors(), strict=True
-    ):
-        about = {"long_name": f"standard error of the {moment}; a batch of particles is a draw", "units": "1"}
-        data[name] = ("node", moment_errors, about)
+    data = data.assign(_errors(counter, "", "node"))
     if conditional is not None and given is not None:
         histograms = [part for part, _, _ in conditional.histograms()]
         sizes = [group.size for group in conditional.conditions]
@@ -55,7 +45,18 @@ def assemble(
         data["given_components"] = ("node", sizes, {"long_name": "conditions of the node"})
         data["given"] = ("given_component", np.concatenate(conditional.conditions), about)
         data["given_impacts"] = ("given_component", conditional.impacts(), {"units": "1"})
-        data = data.assign(_ragged(histograms, "given_"))
+        data = data.assign(_ragged(histograms, "given_")).assign(
+            _errors(conditional, "given_", "given_component")
+        )
+        # A level of probability is met everywhere in [0, 1], however few impacts there were.
+        seen = (
+            conditional.seen
+            if given == "rotational_fraction"
+            else np.tile([[0.0], [1.0]], counter.nodes.size)
+        )
+        for name, values in zip(("lowest", "highest"), seen, strict=True):
+            text = f"{name} condition that was seen at the node"
+            data[f"given_{name}"] = ("node", values, {"long_name": text, "units": "1"})
         data.attrs["given"] = given
     data["ks_distance"] = (
         "interval",
@@ -69,6 +70,30 @@ def assemble(
     )
     data["fresh_impacts"] = ("interval", check.impacts(), {"long_name": "impacts behind ks_distance"})
     return data
+
+
+def _errors(counter: Counter, prefix: str, component: str) -> dict[str, Any]:
+    parts = list(counter.histograms())
+    about = "standard error of {}; a batch of particles is a draw"
+    mean, deviation = counter.moment_errors()
+    found = {
+        "probability_error": (
+            f"{prefix}edge",
+            np.concatenate([np.append(share, np.nan) for _, share, _ in parts]),
+            "the probability of the bin above the edge",
+        ),
+        "probability_below_error": (
+            f"{prefix}edge",
+            np.concatenate([below for _, _, below in parts]),
+            "probability_below",
+        ),
+        "mean_error": (component, mean, "the mean"),
+        "std_error": (component, deviation, "the standard deviation"),
+    }
+    return {
+        f"{prefix}{name}": (dimension, values, {"long_name": about.format(text), "units": "1"})
+        for name, (dimension, values, text) in found.items()
+    }
 
 
 def of_histograms(
@@ -114,9 +139,18 @@ def check(data: xr.Dataset) -> None:
         raise ValueError(f"data lacks the attributes {', '.join(lacking)} of a FluctuatingRestitution")
     prefixes = [""]
     if "given" in data.attrs:
-        names = ("given", "given_components", *(f"given_{name}" for name in _TABLE))
+        names = (
+            "given",
+            "given_components",
+            "given_lowest",
+            "given_highest",
+            *(f"given_{name}" for name in _TABLE),
+        )
         require(data, "data", names, "the Dataset of a FluctuatingRestitution")
         prefixes.append("given_")
+    for name in ("velocity", *(f"{prefix}{name}" for prefix in prefixes for name in _TABLE)):
+        allowed = "finite numbers, as a FluctuatingRestitution has them"
+        reals(f"data.{name}", data[name].to_numpy(), allowed, dimensions=(1,))
     for prefix in prefixes:
         try:
             found = table(data, prefix)
@@ -127,7 +161,7 @@ def check(data: xr.Dataset) -> None:
 
 
 def require(data: xr.Dataset, name: str, needed: tuple[str, ...], instead: str) -> None:
-    """Refuse what is no Dataset, or lacks something."""
+    """Refuse what is not a Dataset, or lacks something."""
     if not isinstance(data, xr.Dataset):
         raise ParameterError(wrong(name, data, instead))
     lacking = [variable for variable in needed if variable not in data]
@@ -151,3 +185,52 @@ def table(data: xr.Dataset, prefix: str = "") -> Table:
         edges=data[f"{prefix}restitution_edge"].to_numpy(),
         cumulative=data[f"{prefix}probability_below"].to_numpy(),
     )
+
+
+FORMAT = 1
+"""Of the file; grows when a file of before cannot be read any more."""
+_FORMAT, _CHECKSUM = "format_version", "checksum"
+
+
+def sealed(data: xr.Dataset) -> xr.Dataset:
+    """Add what tells a reader the format, and whether every number is still what it was."""
+    return data.assign_attrs({_FORMAT: FORMAT, _CHECKSUM: _checksum(data)})
+
+
+def unsealed(data: xr.Dataset, path: str) -> xr.Dataset:
+    """Check what `sealed` added, and take it off again.
+
+    Raises
+    ------
+    ParameterError
+        If it is no such file, of another format, or has come to harm.
+    """
+    attrs = dict(data.attrs)
+    version, checksum = attrs.pop(_FORMAT, None), attrs.pop(_CHECKSUM, None)
+    if version is None or checksum is None:
+        lacks = ": lacks format version or checksum: must be a file that FluctuatingRestitution.save wrote"
+        raise ParameterError(Problem(path, lacks))
+    if version != FORMAT:
+        text = f": is of format version {version}: must be {FORMAT}; save it again with this version"
+        raise ParameterError(Problem(path, text))
+    plain = data.drop_attrs(deep=False).assign_attrs(attrs)
+    if checksum != _checksum(plain):
+        raise ParameterError(Problem(path, ": has come to harm: its checksum is not that of what it holds"))
+    return plain
+
+
+def _checksum(data: xr.Dataset) -> str:
+    """Hash names, dimensions, numbers and attributes, as they are after a journey through a file."""
+    digest = blake2b(digest_size=16)
+    for name, variable in sorted(data.variables.items(), key=lambda item: str(item[0])):
+        values = np.ascontiguousarray(variable.to_numpy())
+        about = (str(name), variable.dims, values.dtype.newbyteorder("=").str, values.shape)
+        digest.update(repr(about).encode())
+        digest.update(values.tobytes())
+        digest.update(_plain(variable.attrs).encode())
+    digest.update(_plain(data.attrs).encode())
+    return digest.hexdigest()
+
+
+def _plain(attrs: Mapping[Any, Any]) -> str:
+    return repr([(str(name), np.atleast_1d(value).tolist()) for name, value in sorted(attrs.items())])

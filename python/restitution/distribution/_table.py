@@ -1,7 +1,7 @@
 """The table behind a learned distribution: histograms at nodes, and their mixtures."""
 
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, fields
 from functools import cached_property
 from typing import Any, Literal
 
@@ -15,6 +15,7 @@ Floats = npt.NDArray[np.float64]
 Ints = npt.NDArray[np.int64]
 
 _ANY: Floats = np.zeros(1)
+_Function = Callable[[Floats, Floats, Floats, int], tuple[Floats, bool]]
 
 
 @dataclass(frozen=True)
@@ -71,14 +72,20 @@ class Table:
             cumulative=np.concatenate([part.cumulative for part in histograms]),
         )
 
+    def __getitem__(self, component: int) -> Histogram:
+        here = slice(self.start[component], self.start[component + 1])
+        return Histogram(self.edges[here], self.cumulative[here])
+
     def __iter__(self) -> Iterator[Histogram]:
-        for low, high in zip(self.start[:-1], self.start[1:], strict=True):
-            yield Histogram(self.edges[low:high], self.cumulative[low:high])
+        return (self[i] for i in range(len(self.conditions)))
+
+    def __getstate__(self) -> dict[str, Any]:
+        return {field.name: getattr(self, field.name) for field in fields(self)}
 
     @cached_property
-    def _core(self) -> dict[str, Any]:
-        names = ("speeds", "first", "conditions", "start", "edges", "cumulative")
-        return {name: np.ascontiguousarray(getattr(self, name)) for name in names}
+    def _mixture(self) -> _core.Mixture:
+        """The table as the core knows it, checked once."""
+        return _core.Mixture(*(np.ascontiguousarray(values) for values in self.__getstate__().values()))
 
     def value(
         self, what: Literal["cdf", "pdf", "ppf"], x: npt.ArrayLike, v: npt.ArrayLike, z: npt.ArrayLike = 0.0
@@ -87,9 +94,8 @@ class Table:
         values = [np.asarray(value, dtype=np.float64) for value in (x, v, z)]
         shape = np.broadcast_shapes(*(value.shape for value in values))
         points = np.broadcast_to(values[0], shape).ravel()
-        found, interrupted = _core.mixture_value(
-            self._core, what, points, _flat(values[1], shape), _flat(values[2], shape), 0
-        )
+        function: _Function = getattr(self._mixture, what)
+        found, interrupted = function(points, _flat(values[1], shape), _flat(values[2], shape), 0)
         if interrupted:
             raise KeyboardInterrupt
         return found.reshape(shape)
@@ -99,8 +105,8 @@ class Table:
     ) -> Floats:
         """Draw as many as `shape` says, at v and z broadcast to it."""
         size = int(np.prod(shape, dtype=np.int64))
-        found, interrupted = _core.mixture_draw(
-            self._core, _flat(v, shape), _flat(z, shape), size, seed, checked_threads(threads)
+        found, interrupted = self._mixture.draw(
+            _flat(v, shape), _flat(z, shape), size, seed, checked_threads(threads)
         )
         if interrupted:
             raise KeyboardInterrupt
@@ -112,27 +118,74 @@ class Table:
         low, high = self.speeds[left], self.speeds[left + 1]
         return left, (np.clip(v, low, high) - low) / (high - low)
 
-    def moments(self, v: Floats, z: Floats) -> tuple[Floats, Floats]:
-        """Mean and variance at v and z."""
-        centres, spreads = self._moments
-        parts: list[tuple[Floats, Floats, Floats]] = []
+    def parts(self, v: Floats, z: Floats) -> list[tuple[Floats, Ints]]:
+        """Give the components that make up the mixture at v and z, each with its weight."""
         left, right_share = self.weights(v)
+        found = []
         for node, share in ((left, 1.0 - right_share), (left + 1, right_share)):
-            for component, part in self._chosen(node, z):
-                parts.append((share * part, centres[component], spreads[component]))
-        mean = np.sum([weight * centre for weight, centre, _ in parts], axis=0)
-        variance = np.sum([w * (spread + (centre - mean) ** 2) for w, centre, spread in parts], axis=0)
-        return mean, variance
+            found += [(share * part, component) for component, part in self._chosen(node, z)]
+        return found
+
+    def mean(self, v: Floats, z: Floats) -> Floats:
+        """Mean at v and z."""
+        return np.asarray(sum(weight * self._moments[0][i] for weight, i in self.parts(v, z)))
+
+    def central(self, v: Floats, z: Floats) -> tuple[Floats, Floats, Floats]:
+        """Second, third and fourth central moment at v and z."""
+        mean = self.mean(v, z)
+        sums = [np.zeros(mean.shape) for _ in range(3)]
+        for weight, i in self.parts(v, z):
+            centre, m2, m3, m4 = (moment[i] for moment in self._moments)
+            d = centre - mean
+            sums[0] += weight * (m2 + d**2)
+            sums[1] += weight * (m3 + 3.0 * d * m2 + d**3)
+            sums[2] += weight * (m4 + 4.0 * d * m3 + 6.0 * d**2 * m2 + d**4)
+        return sums[0], sums[1], sums[2]
+
+    def expectation(
+        self, function: Callable[[Floats], Floats], v: Floats, z: Floats, low: float, high: float, order: int
+    ) -> Floats:
+        """Mean of a function that is 0 outside [low, high]; exact where it is a polynomial of this order.
+
+        Gauss's rule on the part of every bin that lies in [low, high].
+        """
+        points, weights = np.polynomial.legendre.leggauss(order // 2 + 1)
+        total: Floats = np.zeros(np.broadcast_shapes(v.shape, z.shape))
+        for share, component in self.parts(v, z):
+            for i in np.unique(component):
+                part = self[int(i)]
+                edges = np.clip(part.edges, low, high)
+                width = np.diff(edges)
+                density = np.diff(part.cumulative) / np.diff(part.edges)
+                x = edges[:-1, None] + 0.5 * width[:, None] * (1.0 + points)
+                value = float(np.sum(0.5 * weights * (density * width)[:, None] * function(x)))
+                total = total + np.where(component == i, share * value, 0.0)
+        return np.where(np.isnan(v + z), np.nan, total)
+
+    def entropy(self, v: float, z: float) -> float:
+        """Differential entropy of the mixture, whose density is constant between neighbouring edges."""
+        components = {int(i) for weight, i in self.parts(np.float64(v), np.float64(z)) if weight > 0.0}  # type: ignore[arg-type]
+        edges = np.unique(np.concatenate([self[i].edges for i in components]))
+        width = np.diff(edges)
+        density = self.value("pdf", edges[:-1] + 0.5 * width, v, z)
+        filled = density > 0.0
+        return float(-np.sum((density * width * np.log(np.where(filled, density, 1.0)))[filled]))
 
     @cached_property
-    def _moments(self) -> tuple[Floats, Floats]:
-        """Mean and variance of each component: within a bin the density is constant."""
-        mean, variance = np.empty(len(self.conditions)), np.empty(len(self.conditions))
+    def _moments(self) -> tuple[Floats, Floats, Floats, Floats]:
+        """Mean and central moments 2 to 4 of each component: within a bin the density is constant."""
+        found = np.empty((4, len(self.conditions)))
         for i, part in enumerate(self):
             share, centre = np.diff(part.cumulative), 0.5 * (part.edges[:-1] + part.edges[1:])
-            mean[i] = share @ centre
-            variance[i] = share @ ((centre - mean[i]) ** 2 + np.diff(part.edges) ** 2 / 12.0)
-        return mean, variance
+            mean = share @ centre
+            u, h2 = centre - mean, np.diff(part.edges) ** 2
+            found[:, i] = (
+                mean,
+                share @ (u**2 + h2 / 12.0),
+                share @ (u**3 + u * h2 / 4.0),
+                share @ (u**4 + u**2 * h2 / 2.0 + h2**2 / 80.0),
+            )
+        return found[0], found[1], found[2], found[3]
 
     def _chosen(self, node: Ints, z: Floats) -> Iterator[tuple[Ints, Floats]]:
         """Yield the component below z and the one above, each with its weight, at given nodes."""

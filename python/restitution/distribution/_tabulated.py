@@ -1,16 +1,19 @@
 """A table of p(ε | v) with the methods of a scipy.stats distribution."""
 
+from __future__ import annotations
+
 import math
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from functools import cached_property
 from operator import index
-from typing import Any, TypeAlias
+from typing import Any, Literal, TypeAlias
 
 import numpy as np
 import numpy.typing as npt
 import xarray as xr
 
-from restitution._parameters import ParameterError, wrong
+from restitution._arrays import reals
+from restitution._parameters import ParameterError, TooLargeError, _plain_number, wrong
 from restitution._resources import available_memory
 from restitution.distribution import _store
 from restitution.distribution._learn import Given
@@ -27,6 +30,18 @@ class TabulatedDistribution:
         _store.check(data)
         self.data = data
 
+    def __eq__(self, other: object) -> bool:
+        if type(other) is not type(self):
+            return NotImplemented
+        return self.data.identical(other.data)
+
+    def __hash__(self) -> int:
+        return hash((type(self), self.velocities, *sorted(self.data.sizes.values())))
+
+    def __getstate__(self) -> dict[str, Any]:
+        """Leave behind what follows from the data."""
+        return {"data": self.data}
+
     @property
     def velocities(self) -> tuple[float, float]:
         """Least and greatest learned speed, in m/s."""
@@ -40,22 +55,43 @@ class TabulatedDistribution:
 
     def pdf(self, x: npt.ArrayLike, v: npt.ArrayLike, given: npt.ArrayLike | None = None) -> Values:
         """Probability density at ε = x, at impact velocity v."""
-        table, z = self._at(given)
-        return table.value("pdf", _numbers("x", x), self._speeds(v), z)[()]
+        return self._value("pdf", "x", x, v, given)
+
+    def logpdf(self, x: npt.ArrayLike, v: npt.ArrayLike, given: npt.ArrayLike | None = None) -> Values:
+        """Logarithm of `pdf`; -inf outside the support."""
+        return _log(self.pdf(x, v, given))
 
     def cdf(self, x: npt.ArrayLike, v: npt.ArrayLike, given: npt.ArrayLike | None = None) -> Values:
         """Probability that ε <= x."""
-        table, z = self._at(given)
-        return table.value("cdf", _numbers("x", x), self._speeds(v), z)[()]
+        return self._value("cdf", "x", x, v, given)
+
+    def logcdf(self, x: npt.ArrayLike, v: npt.ArrayLike, given: npt.ArrayLike | None = None) -> Values:
+        """Logarithm of `cdf`."""
+        return _log(self.cdf(x, v, given))
 
     def sf(self, x: npt.ArrayLike, v: npt.ArrayLike, given: npt.ArrayLike | None = None) -> Values:
         """Probability that ε > x."""
         return (1.0 - np.asarray(self.cdf(x, v, given)))[()]
 
+    def logsf(self, x: npt.ArrayLike, v: npt.ArrayLike, given: npt.ArrayLike | None = None) -> Values:
+        """Logarithm of `sf`."""
+        return _log(self.sf(x, v, given))
+
     def ppf(self, q: npt.ArrayLike, v: npt.ArrayLike, given: npt.ArrayLike | None = None) -> Values:
         """Quantile: the ε with ``cdf(ε, v) = q``; nan unless ``0 <= q <= 1``."""
-        table, z = self._at(given)
-        return table.value("ppf", _numbers("q", q), self._speeds(v), z)[()]
+        return self._value("ppf", "q", q, v, given)
+
+    def isf(self, q: npt.ArrayLike, v: npt.ArrayLike, given: npt.ArrayLike | None = None) -> Values:
+        """Upper quantile: the ε with ``sf(ε, v) = q``; nan unless ``0 <= q <= 1``."""
+        return self.ppf(1.0 - numbers("q", q), v, given)
+
+    def interval(
+        self, confidence: npt.ArrayLike, v: npt.ArrayLike, given: npt.ArrayLike | None = None
+    ) -> tuple[Values, Values]:
+        """Both ends of the range that leaves out equal probability on either side."""
+        level = numbers("confidence", confidence)
+        tail = 0.5 * (1.0 - np.where((level >= 0.0) & (level <= 1.0), level, np.nan))
+        return self.ppf(tail, v, given), self.ppf(1.0 - tail, v, given)
 
     def median(self, v: npt.ArrayLike, given: npt.ArrayLike | None = None) -> Values:
         """Median of ε."""
@@ -67,17 +103,73 @@ class TabulatedDistribution:
 
     def mean(self, v: npt.ArrayLike, given: npt.ArrayLike | None = None) -> Values:
         """Mean of ε."""
-        table, z = self._at(given)
-        return table.moments(self._speeds(v), z)[0][()]
+        table, speeds, z = self._at(v, given)
+        return table.mean(speeds, z)[()]
 
     def var(self, v: npt.ArrayLike, given: npt.ArrayLike | None = None) -> Values:
         """Variance of ε."""
-        table, z = self._at(given)
-        return table.moments(self._speeds(v), z)[1][()]
+        table, speeds, z = self._at(v, given)
+        return table.central(speeds, z)[0][()]
 
     def std(self, v: npt.ArrayLike, given: npt.ArrayLike | None = None) -> Values:
         """Square root of the variance of ε."""
         return np.sqrt(self.var(v, given))
+
+    def stats(
+        self, v: npt.ArrayLike, given: npt.ArrayLike | None = None, moments: str = "mv"
+    ) -> tuple[Values, ...]:
+        """Mean "m", variance "v", skewness "s" and excess kurtosis "k", in the order of ``moments``."""
+        if not isinstance(moments, str) or not set(moments) <= set("mvsk"):
+            raise ParameterError(wrong("moments", moments, "letters of 'mvsk'"))
+        table, speeds, z = self._at(v, given)
+        m2, m3, m4 = table.central(speeds, z)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            found = {"m": table.mean(speeds, z), "v": m2, "s": m3 / m2**1.5, "k": m4 / m2**2 - 3.0}
+        return tuple(found[letter][()] for letter in moments)
+
+    def moment(self, order: int, v: npt.ArrayLike, given: npt.ArrayLike | None = None) -> Values:
+        """Mean of ε to the power ``order`` (a whole number >= 0)."""
+        if isinstance(order, bool) or not isinstance(order, int | np.integer) or order < 0:
+            raise ParameterError(wrong("order", order, "a whole number >= 0"))
+        table, speeds, z = self._at(v, given)
+        return table.expectation(lambda x: x ** int(order), speeds, z, -np.inf, np.inf, int(order))[()]
+
+    def expect(
+        self,
+        func: Callable[[float], float] | None,
+        v: npt.ArrayLike,
+        given: npt.ArrayLike | None = None,
+        lb: float | None = None,
+        ub: float | None = None,
+        conditional: bool = False,
+    ) -> Values:
+        """Mean of ``func(ε)``, of ε itself if that is None.
+
+        Gauss's rule with eight points in every bin of the histograms: exact for polynomials of order 15.
+
+        Parameters
+        ----------
+        func : callable or None
+            Of one number.
+        v, given : array_like
+            Impact velocity in m/s, and condition.
+        lb, ub : float, optional
+            Only ε in [lb, ub] count.
+        conditional : bool
+            Divide by the probability of [lb, ub].
+        """
+        table, speeds, z = self._at(v, given)
+        low, high = (-np.inf if lb is None else float(lb)), (np.inf if ub is None else float(ub))
+        function = (lambda x: x) if func is None else np.vectorize(func, otypes=[np.float64])
+        found = table.expectation(function, speeds, z, low, high, 15)
+        if conditional:
+            found = found / (self.cdf(high, v, given) - self.cdf(low, v, given))
+        return found[()]
+
+    def entropy(self, v: npt.ArrayLike, given: npt.ArrayLike | None = None) -> Values:
+        """Differential entropy, -∫ p ln p dε."""
+        table, speeds, z = self._at(v, given)
+        return np.asarray(np.vectorize(table.entropy, otypes=[np.float64])(speeds, z))[()]
 
     def rvs(
         self,
@@ -94,75 +186,25 @@ class TabulatedDistribution:
         v : array_like
             Impact velocity in m/s.
         size : int or tuple of int, optional
-            Shape of the result, which `v` and `given` broadcast to; theirs unless told.
+            Shape of the result, which `v` and `given` broadcast to; theirs by default.
         random_state : int, numpy.random.Generator, numpy.random.RandomState, optional
             A seed in [0, 2⁶⁴), or what to draw one from. The same seed gives the same bits with any number of
             threads, and the same first draws whatever the size.
         given : array_like, optional
             Condition.
         threads : int, optional
-            One for each core unless told.
+            One for each core by default.
         """
-        table, z = self._at(given)
-        speeds = self._speeds(v)
+        table, speeds, z = self._at(v, given)
         own = np.broadcast_shapes(speeds.shape, z.shape)
         shape = own if size is None else _shape(size)
         if shape != own and not _reaches(own, shape):
             raise ParameterError(wrong("size", size, f"a shape that {own} broadcasts to"))
-        if 8 * math.prod(shape) > available_memory():
-            most = available_memory() // 8
-            raise ParameterError(
-                wrong("size", size, f"at most {most:.4g} draws, which this machine can hold")
-            )
+        available = available_memory()
+        if 8 * math.prod(shape) > available:
+            allowed = f"at most {available // 8:.4g} draws, which this process can hold"
+            raise TooLargeError(wrong("size", size, allowed))
         return table.draw(speeds, z, shape, _seed(random_state), threads)[()]
-
-    def pdf_error(self, x: npt.ArrayLike, v: npt.ArrayLike) -> Values:
-        """Give the standard error of `pdf`, at most; nan where the distribution was made from counts alone.
-
-        Batches of particles are the draws, not impacts. Neighbouring nodes share impacts; their errors are
-        added as if they were one.
-        """
-        return self._error(x, v, "probability_error")
-
-    def cdf_error(self, x: npt.ArrayLike, v: npt.ArrayLike) -> Values:
-        """Give the standard error of `cdf`, at most, as `pdf_error`."""
-        return self._error(x, v, "probability_below_error")
-
-    def mean_error(self, v: npt.ArrayLike) -> Values:
-        """Give the standard error of `mean`, at most, as `pdf_error`."""
-        return self._moment_error(v, "mean_error")
-
-    def std_error(self, v: npt.ArrayLike) -> Values:
-        """Give the standard error of `std`, at most, as `pdf_error`."""
-        return self._moment_error(v, "std_error")
-
-    def _moment_error(self, v: npt.ArrayLike, name: str) -> Values:
-        speed = self._speeds(v)
-        if name not in self.data:
-            return np.full(speed.shape, np.nan)[()]
-        return np.interp(speed, self._table.speeds, self.data[name].to_numpy())[()]
-
-    def _error(self, x: npt.ArrayLike, v: npt.ArrayLike, name: str) -> Values:
-        value, speed = np.broadcast_arrays(_numbers("x", x), self._speeds(v))
-        error = np.full(value.shape, np.nan)
-        if name not in self.data:
-            return error[()]
-        errors, start = self.data[name].to_numpy(), self._table.start
-        left, share = self._table.weights(speed)
-        error[...] = 0.0
-        for node, weight in ((left, 1.0 - share), (left + 1, share)):
-            for i in np.unique(node):
-                here = node == i
-                edges = self._table.edges[start[i] : start[i + 1]]
-                own = errors[start[i] : start[i + 1]]
-                if name == "probability_below_error":
-                    found = np.interp(value[here], edges, own)
-                else:
-                    density = np.concatenate([[0.0], own[:-1] / np.diff(edges), [0.0]])
-                    found = density[np.searchsorted(edges, value[here], side="right")]
-                error[here] += weight[here] * found
-        error[np.isnan(value) | np.isnan(speed)] = np.nan
-        return error[()]
 
     @cached_property
     def _table(self) -> Table:
@@ -172,47 +214,76 @@ class TabulatedDistribution:
     def _conditional(self) -> Table:
         return _store.table(self.data, "given_")
 
-    def _at(self, given: npt.ArrayLike | None) -> tuple[Table, Floats]:
+    def _value(
+        self,
+        what: Literal["pdf", "cdf", "ppf"],
+        name: str,
+        x: npt.ArrayLike,
+        v: npt.ArrayLike,
+        given: npt.ArrayLike | None,
+    ) -> Values:
+        table, speeds, z = self._at(v, given)
+        return table.value(what, numbers(name, x), speeds, z)[()]
+
+    def _at(self, v: npt.ArrayLike, given: npt.ArrayLike | None) -> tuple[Table, Floats, Floats]:
+        """Give the table to use, with speeds and conditions inside its range or clamped to it."""
+        speeds = numbers("v", v)
+        low, high = self.velocities
+        if self._clamps:
+            self._refuse("v", speeds, speeds < 0.0, "a speed, >= 0 m/s")
+        else:
+            allowed = f"in [{low!r}, {high!r}] m/s, the speeds that were learned; clamped() takes any"
+            self._refuse("v", speeds, (speeds < low) | (speeds > high), allowed)
         if given is None:
-            return self._table, np.zeros(())
+            return self._table, speeds, np.zeros(())
         if self.given is None:
             raise ParameterError(
                 wrong("given", given, "None: the distribution was learned without a condition")
             )
-        z = _numbers("given", given)
-        beyond = (z < 0.0) | (z > 1.0)
-        if np.any(beyond):
-            raise ParameterError(wrong("given", float(z[beyond].flat[0]), f"in [0, 1], {self.given}"))
-        return self._conditional, z
+        z = numbers("given", given)
+        self._refuse("given", z, (z < 0.0) | (z > 1.0), f"in [0, 1], {self.given}")
+        if not self._clamps:
+            self._seen(speeds, z)
+        return self._conditional, speeds, z
 
-    def _speeds(self, v: npt.ArrayLike) -> Floats:
-        speeds = _numbers("v", v)
-        low, high = self.velocities
-        allowed = f"in [{low!r}, {high!r}] m/s, the speeds that were learned; clamped() takes any"
-        if self.data.attrs.get("beyond") == "clamp":
-            low, high, allowed = 0.0, np.inf, "a speed, >= 0 m/s"
-        beyond = (speeds < low) | (speeds > high)
-        if np.any(beyond):
-            raise ParameterError(wrong("v", float(speeds[beyond].flat[0]), allowed))
-        return speeds
+    def _seen(self, speeds: Floats, z: Floats) -> None:
+        """Refuse a condition that no impact at such a speed had."""
+        left, _ = self._table.weights(speeds)
+        least, most = (self.data[name].to_numpy() for name in ("given_lowest", "given_highest"))
+        low = np.minimum(least[left], least[left + 1])
+        high = np.maximum(most[left], most[left + 1])
+        unseen = ((z < low) | (z > high)) & ~np.isnan(speeds)
+        if np.any(unseen):
+            z, speeds, low, high = (
+                np.broadcast_to(part, unseen.shape)[unseen] for part in (z, speeds, low, high)
+            )
+            seen = f"in [{low[0]:.6g}, {high[0]:.6g}], what was seen of {self.given} at {speeds[0]:.4g} m/s"
+            raise ParameterError(wrong("given", float(z[0]), f"{seen}; clamped() takes any"))
+
+    @property
+    def _clamps(self) -> bool:
+        return bool(self.data.attrs.get("beyond") == "clamp")
+
+    @staticmethod
+    def _refuse(name: str, values: Floats, bad: npt.NDArray[np.bool_], allowed: str) -> None:
+        if np.any(bad):
+            raise ParameterError(wrong(name, float(values[bad].flat[0]), allowed))
 
 
-def _numbers(name: str, values: npt.ArrayLike) -> Floats:
-    """Give real numbers as an array; what is masked is nan."""
-    allowed = "a number or an array of numbers"
-    try:
-        found = np.ma.asarray(values) if isinstance(values, np.ma.MaskedArray) else np.asarray(values)
-    except ValueError as error:
-        raise ParameterError(wrong(name, values, allowed)) from error
-    if found.dtype.kind not in "buif" and found.size:
-        raise ParameterError(wrong(name, values, allowed))
-    return np.asarray(np.ma.filled(found.astype(np.float64), np.nan))
+def _log(values: Values) -> Values:
+    with np.errstate(divide="ignore"):
+        return np.log(values)
+
+
+def numbers(name: str, values: npt.ArrayLike) -> Floats:
+    """Give real numbers as an array; nan is one."""
+    return reals(name, values, "a number or an array of numbers", finite=False)
 
 
 def _shape(size: Any) -> tuple[int, ...]:
     try:
         shape = tuple(index(length) for length in (size if isinstance(size, Iterable) else (size,)))
-    except TypeError:
+    except Exception:  # whatever the object raises
         shape = (-1,)
     if isinstance(size, bool) or min(shape, default=0) < 0:
         raise ParameterError(wrong("size", size, "a whole number >= 0 or a tuple of them"))
@@ -231,7 +302,7 @@ def _seed(random_state: RandomState) -> int:
         return int.from_bytes(random_state.bytes(8), "little")
     if isinstance(random_state, np.random.Generator) or random_state is None:
         return int(np.random.default_rng(random_state).integers(2**64, dtype=np.uint64, endpoint=False))
-    if isinstance(random_state, bool) or not isinstance(random_state, int | np.integer):
+    if not isinstance(_plain_number(random_state), int) or isinstance(_plain_number(random_state), bool):
         allowed = "a seed in [0, 2**64), a numpy.random.Generator or RandomState, or None"
         raise ParameterError(wrong("random_state", random_state, allowed))
     if not 0 <= random_state < 2**64:

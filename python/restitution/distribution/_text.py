@@ -1,13 +1,11 @@
-"""What the exported sources have in common: the comment at the top, names, and files whole or not at all."""
+"""What the exported sources have in common: the comment at the top, and names."""
 
-import os
 import re
 from collections.abc import Iterator
 from pathlib import Path
 
 import xarray as xr
 
-from restitution._dataset import check_writable, part, umask
 from restitution._parameters import ParameterError, wrong
 from restitution.distribution._table import Floats, Ints
 
@@ -16,7 +14,7 @@ _IMAGES = (".png", ".pdf", ".svg")
 
 
 def checked_name(name: str) -> str:
-    """Refuse what is no identifier in C, C++ and Fortran."""
+    """Refuse what is not an identifier in C, C++ and Fortran."""
     if not isinstance(name, str) or not re.fullmatch(r"[A-Za-z][A-Za-z0-9_]{0,23}", name):
         allowed = "a letter and then at most 23 letters, digits and underscores"
         raise ParameterError(wrong("name", name, allowed))
@@ -24,20 +22,22 @@ def checked_name(name: str) -> str:
 
 
 def about(data: xr.Dataset) -> Iterator[str]:
-    """Yield the lines that say where the numbers come from and what they are good for."""
+    """Yield the lines on the origin and the range of the numbers."""
     attrs = data.attrs
-    yield f"Coefficient of restitution at random, p(eps | v): {attrs['source']}."
+    yield f"Coefficient of restitution at random, p(eps | v): {_ascii(attrs['source'])}."
     yield ""
     for name, value in attrs.items():
         if name not in _LEFT_OUT:
-            yield f"  {name} = {_ascii(value)}"
+            yield f"  {_ascii(name)} = {_ascii(value)}"
     yield ""
     low, high = float(data["velocity"][0]), float(data["velocity"][-1])
-    beyond = "are taken as the nearest of these" if attrs["beyond"] == "clamp" else "give NaN"
+    clamps = attrs["beyond"] == "clamp"
+    beyond = "are taken as the nearest of these" if clamps else "give NaN"
     yield f"v is the normal impact velocity in m/s, from {low!r} to {high!r}; others {beyond}."
     yield "u1 and u2 are independent uniform random numbers in [0, 1) of yours."
     if "given" in attrs:
         yield f"z in [0, 1] is the condition: {_ascii(data['given'].attrs['long_name'])}."
+        yield f"What no impact at that speed had {'is' if clamps else 'gives NaN, not'} taken as the nearest."
     if "ks_distance" in data:
         worst = float(data["ks_distance"].max())
         yield f"Kolmogorov-Smirnov distance to impacts that were not learned from: at most {worst:.4f}."
@@ -50,23 +50,14 @@ def image_format(path: Path) -> str:
     return path.suffix[1:].lower()
 
 
-def write(path: Path, content: str | bytes, *, replace: bool) -> None:
-    """Write a file whole or not at all."""
-    check_writable(path, replace=replace)
-    target = path.resolve()
-    name = part(target)
-    try:
-        Path(name).write_bytes(content.encode("ascii") if isinstance(content, str) else content)
-        os.chmod(name, 0o666 & ~umask())
-        os.replace(name, target)
-    except BaseException:
-        os.unlink(name)
-        raise
-
-
 def _ascii(value: object) -> str:
+    """Write a value as one line that neither ends nor begins a comment in any language."""
     text = " ".join(str(value.tolist() if hasattr(value, "tolist") else value).split())
-    text = text.encode("ascii", "replace").decode("ascii").replace("*/", "* /")
+    text = text.encode("ascii", "replace").decode("ascii")
+    text = "".join(letter if letter.isprintable() else "?" for letter in text)
+    for mark in ("*/", "/*", "??"):  # the last begins a trigraph
+        while mark in text:
+            text = text.replace(mark, " ".join(mark))
     return text if len(text) <= 90 else f"{text[:87]}..."
 
 

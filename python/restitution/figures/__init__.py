@@ -1,6 +1,12 @@
-"""Plots of restitution data in a journal's style; they draw what they are given and compute nothing."""
+"""Figures in a journal's style: of one's own results in a line each, and the pieces that they are made of.
+
+`map`, `densities`, `scatter`, `moments` and `trajectory` take what `statistics`, `compare` and `simulate`
+give and return a Matplotlib figure, which a notebook shows and `save` writes. The other functions draw what
+they are given into a panel.
+"""
 
 from restitution.figures._panels import histogram, line, plain_log, population, population_bar
+from restitution.figures._plots import densities, map, moments, scatter, trajectory
 from restitution.figures._style import COLORMAP, COLORS, COLUMN, MARKERS, PAGE, letter, panels, save, styled
 
 __all__ = [
@@ -9,13 +15,18 @@ __all__ = [
     "COLUMN",
     "MARKERS",
     "PAGE",
+    "densities",
     "histogram",
     "letter",
     "line",
+    "map",
+    "moments",
     "panels",
     "plain_log",
     "population",
     "population_bar",
     "save",
+    "scatter",
     "styled",
+    "trajectory",
 ]

@@ -1,5 +1,7 @@
 """What a panel shows: populations of a lattice, histograms, lines with their standard error."""
 
+from __future__ import annotations
+
 from collections.abc import Sequence
 from typing import Any
 

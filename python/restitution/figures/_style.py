@@ -1,5 +1,6 @@
 """One journal style for every figure: sizes, fonts, colours, and how a figure is made and saved."""
 
+import io
 from collections.abc import Callable
 from functools import wraps
 from pathlib import Path
@@ -11,15 +12,17 @@ from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
+from restitution._files import path_from, whole_files
+
 COLUMN = 3.4
 """Width of one column in a Physical Review journal, in inches."""
 PAGE = 7.0
 """Width of both columns, in inches."""
 
 COLORS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#56B4E9", "#000000")
-"""Line colours of Okabe and Ito, told apart with every kind of colour vision."""
+"""Line colours of Okabe and Ito, distinguishable with every kind of colour vision."""
 MARKERS = ("o", "s", "^", "D", "v", "x")
-"""A marker for each line colour, so that nothing is told by colour alone."""
+"""A marker for each line colour, so that lines do not differ by colour alone."""
 COLORMAP = "viridis"
 """Perceptually uniform map for populations."""
 
@@ -50,6 +53,21 @@ _STYLE: dict[Any, Any] = {
     # Text stays text in the PDF, with the glyphs embedded as TrueType, as journals ask.
     "pdf.fonttype": 42,
 }
+
+_SCREEN = 100
+"""Pixels of an inch on a screen; a notebook is given twice as many, for fine screens."""
+
+
+class _Displayed(Figure):
+    """A figure that a notebook shows, whether pyplot is loaded or not."""
+
+    def _repr_png_(self) -> tuple[bytes, dict[str, int]]:
+        content = io.BytesIO()
+        with mpl.rc_context(_STYLE):
+            self.savefig(content, format="png", dpi=2 * _SCREEN)
+        width, height = (round(_SCREEN * inches) for inches in self.get_size_inches())
+        return content.getvalue(), {"width": width, "height": height}
+
 
 P = ParamSpec("P")
 T = TypeVar("T")
@@ -85,7 +103,7 @@ def panels(
     -------
     tuple of Figure and list of rows of Axes
     """
-    figure = Figure(figsize=(width, height), layout="constrained")
+    figure = _Displayed(figsize=(width, height), layout="constrained")
     FigureCanvasAgg(figure)
     axes: list[list[Axes]] = figure.subplots(rows, columns, squeeze=False, **shared).tolist()
     return figure, axes
@@ -98,19 +116,44 @@ def letter(axes: Axes, text: str, *, left: bool = True) -> None:
 
 
 @styled
-def save(figure: Figure, stem: Path, title: str, caption: str) -> tuple[Path, Path]:
-    """Save a figure as ``stem.png`` (300 dpi) and ``stem.pdf``, the caption in their metadata.
+def save(figure: Figure, name: str | Path, title: str = "", caption: str = "") -> tuple[Path, ...]:
+    """Save a figure for print and screen, with title and caption in the files' metadata.
 
-    No date is written: the same figure gives the same bytes. The arrangement of the panels is made once,
-    for both, and stays.
+    No date is written: the same figure gives the same bytes. The arrangement of the panels is made once, for
+    all files, and stays.
+
+    Parameters
+    ----------
+    figure : Figure
+        What is saved.
+    name : str or Path
+        Ending in .png, .pdf or .svg: that one file. Else both ``name.png`` (300 dpi) and ``name.pdf``. Files
+        of these names are replaced, each whole or not at all.
+    title, caption : str, optional
+        Go into the metadata.
 
     Returns
     -------
     tuple of Path
-        The PNG and the PDF.
+        The files that were written.
     """
-    png, pdf = stem.with_name(stem.name + ".png"), stem.with_name(stem.name + ".pdf")
-    figure.savefig(png, dpi=300, metadata={"Title": title, "Description": caption})
-    figure.set_layout_engine("none")
-    figure.savefig(pdf, dpi=600, metadata={"Title": title, "Subject": caption, "CreationDate": None})
-    return png, pdf
+    path = path_from("name", name)
+    single = path.suffix.lower() in _METADATA
+    paths = (path,) if single else tuple(path.with_name(path.name + suffix) for suffix in (".png", ".pdf"))
+    with whole_files(paths, replace=True) as drafts:
+        for one, draft in zip(paths, drafts, strict=True):
+            suffix = one.suffix.lower()
+            about, dated = _METADATA[suffix]
+            metadata = {"Title": title, about: caption} | dated
+            dpi = 300 if suffix == ".png" else 600
+            figure.savefig(draft, format=suffix[1:], dpi=dpi, metadata=metadata)
+            figure.set_layout_engine("none")
+    return paths
+
+
+_METADATA: dict[str, tuple[str, dict[str, Any]]] = {
+    ".png": ("Description", {}),
+    ".pdf": ("Subject", {"CreationDate": None}),
+    ".svg": ("Description", {"Date": None}),
+}
+"""By ending: where the caption goes, and what would be a date."""

@@ -1,5 +1,7 @@
 """Asymmetric densities with a cusp: the Laplace distribution, fitted exactly, and its generalisation."""
 
+from __future__ import annotations
+
 from math import exp, log, sqrt
 from typing import Any
 
@@ -29,7 +31,7 @@ def asymmetric_laplace(
         `Counts` or as from `restitution.statistics`, for which the likelihood of the bins, Σ c_j ln ∫_j p dx
         with an open bin at either end, is maximised numerically.
     location : float, optional
-        The cusp m, e.g. the law's ε^n; fitted if left out.
+        The cusp m, e.g. the law's ε_n; fitted if left out.
     velocity : float or tuple of two floats, optional
         For a Dataset, in m/s: the window (low, high) of the impact velocity, low ≤ v < high; for statistics a
         number too, which means the velocity bin that holds it. A window of statistics must end at edges.

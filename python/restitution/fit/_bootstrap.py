@@ -1,4 +1,6 @@
-"""Standard errors, confidence bands and honest information criteria, by drawing particles again."""
+"""Standard errors, confidence bands and information criteria from resampled particles."""
+
+from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -8,14 +10,17 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from restitution.fit._clusters import clustered, refitted
+from restitution._arrays import generator, real, whole
+from restitution._content import Content
+from restitution._parameters import ParameterError, wrong
+from restitution.fit._clusters import MOST_RESAMPLES, clustered, fitted_by, refitted
 from restitution.fit._counts import Counts
 from restitution.fit._result import Array, Fit
 from restitution.fit._source import Parts, Window
 
 
-@dataclass(frozen=True)
-class Bootstrap:
+@dataclass(frozen=True, eq=False)
+class Bootstrap(Content):
     """A fit with what it becomes when particles are drawn again with replacement.
 
     Attributes
@@ -44,6 +49,8 @@ class Bootstrap:
 
     def draws(self, name: str) -> Array:
         """Give a parameter of all resampled fits, shape (resamples,)."""
+        if not isinstance(name, str) or name not in self.fit.parameters:
+            raise ParameterError(wrong("name", name, " or ".join(map(repr, self.fit.parameters))))
         return np.array([one.parameters[name] for one in self.resampled])
 
     def interval(self, name: str, confidence: float = 0.95) -> tuple[float, float]:
@@ -58,7 +65,7 @@ class Bootstrap:
 
     @property
     def effective_samples(self) -> float:
-        """Number of independent samples that would know the parameters as well: n k/tr(J H⁻¹).
+        """Number of independent samples that would determine the parameters equally well: n k/tr(J H⁻¹).
 
         n samples and k free parameters; tr(J H⁻¹)/k is the design effect, the mean factor by which the
         correlation inside particles multiplies the variance of an estimate.
@@ -125,12 +132,11 @@ def bootstrap(
     >>> bool(low < 0.03 < high)
     True
     """
-    if resamples < 2:
-        raise ValueError(f"resamples = {resamples!r}: at least two are needed")
+    resamples = whole("resamples", resamples, 2, MOST_RESAMPLES)
+    random = generator("seed", seed)
     source = clustered(samples, clusters, velocity)
     pool = source.pool()
-    fit = family(pool)
-    random = np.random.default_rng(seed)
+    fit = fitted_by(family, pool)
     again = tuple(refitted(family, source, random)[1] for _ in range(resamples))
     losses = [fit.loglikelihood - _loglikelihood(one, pool) for one in again]
     return Bootstrap(fit, again, source.number, float(2.0 * np.mean(losses)))
@@ -143,6 +149,5 @@ def _loglikelihood(fit: Fit, samples: Array | Counts) -> float:
 
 
 def _levels(confidence: float) -> list[float]:
-    if not 0.0 < confidence < 1.0:
-        raise ValueError(f"confidence = {confidence!r}: must be in (0, 1)")
+    confidence = real("confidence", confidence, "a number in (0, 1)", lambda share: 0.0 < share < 1.0)
     return [0.5 * (1.0 - confidence), 0.5 * (1.0 + confidence)]

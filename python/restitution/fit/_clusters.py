@@ -1,5 +1,7 @@
 """Samples that belong to particles: what a bootstrap draws again are particles, never single impacts."""
 
+from __future__ import annotations
+
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any, cast
@@ -8,11 +10,16 @@ import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike, NDArray
 
+from restitution._arrays import check_each, reals
+from restitution._parameters import ParameterError, shown, wrong
 from restitution.fit._counts import Counts, pooled
 from restitution.fit._result import Array, Fit, finite_samples
 from restitution.fit._source import Parts, Window, counted, no_window, recorded
 
 _GRID = 1000
+
+MOST_RESAMPLES = 1_000_000
+"""Draws of a bootstrap, beyond which nothing is learned."""
 
 
 @dataclass(frozen=True)
@@ -102,15 +109,15 @@ def clustered(samples: Parts, clusters: ArrayLike | None, velocity: Window | Non
     """
     several = isinstance(samples, list | tuple) and len(samples) > 0
     if several and isinstance(samples[0], Counts | xr.Dataset):  # type: ignore[index]
-        parts = [one if isinstance(one, Counts) else counted(one, velocity) for one in samples]  # type: ignore
+        parts = [one if isinstance(one, Counts) else counted(one, velocity) for one in samples]  # type: ignore[arg-type, union-attr]
         if clusters is not None:
             raise ValueError("clusters: counts are drawn again run by run, and take none")
         _several(len(parts), "counts")
         pooled(parts)
         return Tallied(parts)
-    if isinstance(samples, Counts) or (isinstance(samples, xr.Dataset) and "count" in samples):
+    if isinstance(samples, Counts) or (isinstance(samples, xr.Dataset) and "restitution_count" in samples):
         raise ValueError(
-            "samples: one set of counts, in which particles are not told apart; give those of several "
+            "samples: one set of counts, which do not distinguish particles; give those of several "
             "independent runs in a list"
         )
     if isinstance(samples, xr.Dataset):
@@ -121,13 +128,21 @@ def clustered(samples: Parts, clusters: ArrayLike | None, velocity: Window | Non
     else:
         no_window(velocity)
         x = finite_samples(cast(ArrayLike, samples))
-        labels = np.arange(x.size) if clusters is None else np.asarray(clusters).ravel()
+        labels = np.arange(x.size) if clusters is None else _labels(clusters)
     if labels.shape != x.shape:
         raise ValueError(f"clusters: {labels.size} values; one for each of the {x.size} samples is needed")
     order = np.argsort(labels, kind="stable")
     _, start = np.unique(labels[order], return_index=True)
     _several(start.size, "clusters")
     return Clustered(x[order], np.append(start, x.size))
+
+
+def _labels(clusters: ArrayLike) -> NDArray[np.int64]:
+    allowed = "whole numbers, one for each sample"
+    labels = reals("clusters", clusters, allowed).ravel()
+    check_each("clusters", labels, (labels == np.rint(labels)) & (np.abs(labels) < 2.0**63), allowed)
+    given = np.asarray(clusters).ravel()  # doubles do not tell neighbours above 2**53 apart
+    return (labels if given.dtype.kind == "f" else given).astype(np.int64)
 
 
 def refitted(
@@ -142,10 +157,22 @@ def refitted(
     """
     again = source.redrawn(random)
     try:
-        return again, family(again)
+        return again, fitted_by(family, again)
     except ValueError as error:
         text = f"clusters: {source.number} are too few, some drawn again cannot be fitted ({error})"
         raise ValueError(text) from error
+
+
+def fitted_by(family: Callable[[Any], Fit], samples: Array | Counts) -> Fit:
+    """Fit, if `family` does that."""
+    if not callable(family):
+        raise ParameterError(wrong("family", family, "a function from samples to a Fit"))
+    fit = family(samples)
+    if not isinstance(fit, Fit):
+        raise ParameterError(
+            wrong("family", family, f"a function from samples to a Fit; it gave {shown(fit)}")
+        )
+    return fit
 
 
 def empirical(samples: Array | Counts, grid: Array) -> Array:

@@ -1,5 +1,7 @@
 """Binned counts in the place of samples, and the fit that maximises their likelihood."""
 
+from __future__ import annotations
+
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from types import MappingProxyType
@@ -10,17 +12,24 @@ import xarray as xr
 from numpy.typing import ArrayLike
 from scipy import optimize
 
+from restitution._arrays import check_each, real, reals, whole
+from restitution._bins import increasing_edges
+from restitution._content import Content
+from restitution._parameters import ParameterError, wrong
+from restitution._recorded import counted
 from restitution.fit._result import Array, Fit
 
 Maker: TypeAlias = Callable[[Array, float, float], tuple[Any, dict[str, float]]]
 """From an unbounded point, the median and the spread to a distribution and its parameters."""
 
+_MOST = 2.0**53
+"""Beyond it doubles do not count."""
 _IMPOSSIBLE = 1e-300
 """Probability of a bin where the distribution says 0: the likelihood must stay a number to be maximised."""
 
 
-@dataclass(frozen=True)
-class Counts:
+@dataclass(frozen=True, eq=False)
+class Counts(Content):
     """How many samples are in each bin; taken by every fit in the place of the samples.
 
     Parameters
@@ -44,23 +53,25 @@ class Counts:
     above: int = 0
 
     def __post_init__(self) -> None:
-        edges, count = np.asarray(self.edges, dtype=np.float64), np.asarray(self.count, dtype=np.float64)
-        if edges.ndim != 1 or count.shape != (edges.size - 1,):
-            raise ValueError(f"count: shape {count.shape}; {edges.shape} edges need one count between two")
-        if not (np.all(np.isfinite(edges)) and np.all(np.diff(edges) > 0)):
-            raise ValueError("edges: must be finite and strictly increasing")
-        numbers = np.concatenate([[self.below], count, [self.above]])
-        if not np.all(numbers >= 0) or not np.all(np.isfinite(numbers)):
-            raise ValueError(f"count: holds {numbers[~(numbers >= 0)][:1]}; counts are finite and >= 0")
+        edges = increasing_edges(self.edges, "edges")
+        allowed = f"a 1-D array of {edges.size - 1} counts >= 0, one for each bin"
+        count = np.array(reals("count", self.count, allowed, dimensions=(1,)))
+        if count.size != edges.size - 1:
+            raise ParameterError(wrong("count", self.count, allowed))
+        check_each("count", count, (count >= 0) & (count <= _MOST), "a count in [0, 2**53]")
+        below, above = (whole(name, getattr(self, name), 0, 2**53) for name in ("below", "above"))
+        numbers = np.concatenate([[below], count, [above]])
         if np.count_nonzero(numbers) < 2:
             raise ValueError(
                 f"count: {np.count_nonzero(numbers)} bin(s) filled; the likelihood of a scale has no maximum"
             )
-        object.__setattr__(self, "edges", edges)
-        object.__setattr__(self, "count", count)
+        for array in (edges, count):
+            array.flags.writeable = False
+        for name, value in (("edges", edges), ("count", count), ("below", below), ("above", above)):
+            object.__setattr__(self, name, value)
 
     @classmethod
-    def at(cls, statistics: xr.Dataset, velocity: float) -> "Counts":
+    def at(cls, statistics: xr.Dataset, velocity: float) -> Counts:
         """Take the counts of the velocity bin that holds `velocity`, in m/s, from `restitution.statistics`.
 
         Raises
@@ -68,6 +79,8 @@ class Counts:
         ValueError
             If no velocity bin holds it.
         """
+        statistics = counted("statistics", statistics)
+        velocity = real("velocity", velocity, "a speed in m/s, in one of the velocity bins")
         edges = statistics["velocity_edges"].to_numpy()
         row = int(np.searchsorted(edges, velocity, side="right")) - 1
         if not 0 <= row < edges.size - 1:
@@ -75,7 +88,7 @@ class Counts:
         one = statistics.isel(velocity=row)
         return cls(
             edges=one["restitution_edges"].to_numpy(),
-            count=one["count"].to_numpy(),
+            count=one["restitution_count"].to_numpy(),
             below=int(one["restitution_underflow"]),
             above=int(one["restitution_overflow"]),
         )

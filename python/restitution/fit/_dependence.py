@@ -1,12 +1,15 @@
 """How far successive impacts are from independent: autocorrelation, alternation between the spheres, runs."""
 
+from __future__ import annotations
+
 import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike, NDArray
 
+from restitution._arrays import whole
 from restitution._bins import centres, increasing_edges
+from restitution._recorded import records
 from restitution.fit._result import Array
-from restitution.fit._source import columns
 
 
 def dependence(data: xr.Dataset, velocity_bins: ArrayLike, *, lags: int = 5) -> xr.Dataset:
@@ -40,10 +43,9 @@ def dependence(data: xr.Dataset, velocity_bins: ArrayLike, *, lags: int = 5) -> 
     ValueError
         If `velocity_bins` are not as they must be, ``lags < 1``, or data lack a variable.
     """
-    if lags < 1:
-        raise ValueError(f"lags = {lags!r}: must be at least 1")
+    lags = whole("lags", lags, 1, 10_000)
     edges = increasing_edges(velocity_bins, "velocity_bins")
-    velocity, restitution, contact = columns(data, "impact_velocity", "restitution", "contact")
+    velocity, restitution, contact = records("data", data, "impact_velocity", "restitution", "contact")
     rows = edges.size - 1
     row = np.searchsorted(edges, velocity, side="right") - 1
     row[~((velocity >= edges[0]) & (velocity < edges[-1]) & np.isfinite(restitution))] = -1

@@ -1,5 +1,7 @@
 """The usual candidates for the density of ε, by maximum likelihood; SciPy's routines for samples."""
 
+from __future__ import annotations
+
 from math import exp
 from typing import Any
 

@@ -1,5 +1,7 @@
 """Whether a fit is good, and whether it is better than another one."""
 
+from __future__ import annotations
+
 from collections.abc import Callable
 from dataclasses import dataclass
 from math import erfc, inf, sqrt
@@ -9,14 +11,25 @@ import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike
 
-from restitution.fit._clusters import Clustered, Tallied, clustered, empirical, refitted
+from restitution._arrays import generator, whole
+from restitution._content import Content
+from restitution._parameters import ParameterError, wrong
+from restitution.fit._clusters import (
+    MOST_RESAMPLES,
+    Clustered,
+    Tallied,
+    clustered,
+    empirical,
+    fitted_by,
+    refitted,
+)
 from restitution.fit._counts import Counts
 from restitution.fit._result import Array, Fit, finite_samples
-from restitution.fit._source import Parts, Window
+from restitution.fit._source import Parts, Window, no_window
 
 
-@dataclass(frozen=True)
-class Goodness:
+@dataclass(frozen=True, eq=False)
+class Goodness(Content):
     """Goodness of a fit, with p-values by bootstrap.
 
     Attributes
@@ -77,15 +90,13 @@ def goodness(
     ValueError
         As the fit does, if `resamples` < 1, or labels do not match.
     """
-    if resamples < 1:
-        raise ValueError(f"resamples = {resamples!r}: at least one is needed")
-    random = np.random.default_rng(seed)
+    resamples = whole("resamples", resamples, 1, MOST_RESAMPLES)
+    random = generator("seed", seed)
     if clusters is not None or not _is_plain(samples):
         return _clustered_goodness(family, clustered(samples, clusters, velocity), resamples, random)
-    if velocity is not None:
-        raise ValueError(f"velocity = {velocity!r}: is for a Dataset; other samples have no impact velocity")
+    no_window(velocity)
     x = finite_samples(samples)  # type: ignore[arg-type]
-    fit = family(x)
+    fit = fitted_by(family, x)
     observed = distances(fit, x)
     reached = np.ones(2)
     for _ in range(resamples):
@@ -105,7 +116,7 @@ def _clustered_goodness(
     family: Callable[[Any], Fit], source: Clustered | Tallied, resamples: int, random: np.random.Generator
 ) -> Goodness:
     grid, pool = source.grid(), source.pool()
-    fit = family(pool)
+    fit = fitted_by(family, pool)
     fitted = fit.cdf(grid)
     gap = empirical(pool, grid) - fitted
     size = fit.samples
@@ -134,8 +145,8 @@ def distances(fit: Fit, samples: Array) -> Array:
     return np.array([ks, -n - float(np.sum((2 * rank - 1) * logs)) / n])
 
 
-@dataclass(frozen=True)
-class Comparison:
+@dataclass(frozen=True, eq=False)
+class Comparison(Content):
     """Two fits of the same samples compared by Vuong's test (Econometrica 57, 307 (1989)).
 
     Attributes
@@ -185,6 +196,9 @@ def compare(
     ValueError
         As `bootstrap`.
     """
+    for name, given in (("first", first), ("second", second)):
+        if not isinstance(given, Fit):
+            raise ParameterError(wrong(name, given, "a Fit"))
     source = clustered(samples, clusters, velocity)
     if isinstance(source, Clustered):
         difference = first.logpdf(source.samples) - second.logpdf(source.samples)

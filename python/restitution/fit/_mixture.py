@@ -1,4 +1,6 @@
-"""A cusp on a broad background: two exponentials that meet at ε^n, mixed with a Gaussian."""
+"""A cusp on a broad background: two exponentials that meet at ε_n, mixed with a Gaussian."""
+
+from __future__ import annotations
 
 from dataclasses import dataclass
 from math import log
@@ -8,6 +10,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy import optimize, special, stats
 
+from restitution._arrays import real
+from restitution._content import Content
 from restitution.fit._asymmetric import asymmetric_laplace, frozen
 from restitution.fit._counts import Counts, fit_counts
 from restitution.fit._result import Array, Fit, fitted
@@ -19,8 +23,8 @@ _SPREAD_OUT = 2000
 """Samples that stand for counts where the search begins."""
 
 
-@dataclass(frozen=True)
-class Mixture:
+@dataclass(frozen=True, eq=False)
+class Mixture(Content):
     """A share of one distribution and the rest of another, with the methods that fits need.
 
     Parameters
@@ -78,7 +82,7 @@ class Mixture:
 def cusp_mixture(samples: Samples, location: float, *, velocity: Window | None = None) -> Fit:
     """Fit p = s p_cusp + (1 - s) p_Gauss: an asymmetric Laplace density with a fixed cusp, and a Gaussian.
 
-    Where impacts of particles that hardly rotate, all near ε^n, are mixed with others, either form alone
+    Where impacts of particles that hardly rotate, all near ε_n, are mixed with others, either form alone
     fails. The likelihood is maximised by a quasi-Newton method with its exact gradient, from two starts.
 
     Parameters
@@ -87,7 +91,7 @@ def cusp_mixture(samples: Samples, location: float, *, velocity: Window | None =
     velocity : float or tuple of two floats, optional
         As in `asymmetric_laplace`.
     location : float
-        The cusp, e.g. the law's ε^n.
+        The cusp, e.g. the law's ε_n.
 
     Returns
     -------
@@ -100,9 +104,10 @@ def cusp_mixture(samples: Samples, location: float, *, velocity: Window | None =
     ValueError
         As `asymmetric_laplace`, or if there are fewer than six samples.
     """
+    location = real("location", location, "a finite number")
     x = taken(samples, velocity, location)
     if isinstance(x, Counts):
-        return _from_counts(x, float(location))
+        return _from_counts(x, location)
     if x.size < 6:
         raise ValueError(f"samples: {x.size} value(s); five parameters need at least six")
     spread = _spread(x, location)

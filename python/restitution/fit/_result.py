@@ -1,6 +1,7 @@
 """What every fit returns, and the check of what every fit is given."""
 
-import reprlib
+from __future__ import annotations
+
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from math import log
@@ -10,13 +11,18 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from restitution._arrays import generator, reals, whole
+from restitution._content import Content
+from restitution._display import table, value
+
 Array = NDArray[np.float64]
 
 _LARGEST = 1e100
+_MOST_DRAWS = 10**9
 
 
-@dataclass(frozen=True)
-class Fit:
+@dataclass(frozen=True, eq=False)
+class Fit(Content):
     """A distribution fitted to samples by maximum likelihood.
 
     Attributes
@@ -43,6 +49,19 @@ class Fit:
     loglikelihood: float
     distribution: Any = field(repr=False, compare=False)
 
+    def __str__(self) -> str:
+        numbers = ", ".join(f"{name} = {value(number)}" for name, number in self.parameters.items())
+        return f"{self.family}, by maximum likelihood of {self.samples} samples: {numbers}"
+
+    def _repr_html_(self) -> str:
+        rows = [(name, value(number)) for name, number in self.parameters.items()]
+        rows += [
+            ("samples", str(self.samples)),
+            ("ln L", value(self.loglikelihood)),
+            ("AIC", value(self.aic)),
+        ]
+        return table(f"{self.family}, by maximum likelihood", rows)
+
     @property
     def aic(self) -> float:
         """Akaike's criterion, 2 k − 2 ln L; lower is better."""
@@ -55,19 +74,25 @@ class Fit:
 
     def pdf(self, x: ArrayLike) -> Array:
         """Probability density at `x`, in 1/unit of the samples; shape of `x`."""
-        return np.asarray(self.distribution.pdf(x))
+        return self._at(self.distribution.pdf, x)
 
     def logpdf(self, x: ArrayLike) -> Array:
         """Natural logarithm of the density at `x`; shape of `x`."""
-        return np.asarray(self.distribution.logpdf(x))
+        return self._at(self.distribution.logpdf, x)
 
     def cdf(self, x: ArrayLike) -> Array:
         """Probability of a value up to `x`; shape of `x`."""
-        return np.asarray(self.distribution.cdf(x))
+        return self._at(self.distribution.cdf, x)
+
+    def _at(self, function: Any, x: ArrayLike) -> Array:
+        points = reals("x", x, "numbers", finite=False)
+        with np.errstate(over="ignore"):  # so far off that the density is 0
+            return np.asarray(function(points))
 
     def rvs(self, size: int, seed: int | np.random.Generator = 1) -> Array:
         """`size` independent draws, shape (size,)."""
-        return np.asarray(self.distribution.rvs(size=size, random_state=np.random.default_rng(seed)))
+        number, random = whole("size", size, 0, _MOST_DRAWS), generator("seed", seed)
+        return np.asarray(self.distribution.rvs(size=number, random_state=random))
 
 
 def finite_samples(samples: ArrayLike, location: float | None = None) -> Array:
@@ -76,13 +101,10 @@ def finite_samples(samples: ArrayLike, location: float | None = None) -> Array:
     Raises
     ------
     ValueError
-        If `samples` are no numbers, none at all, hold NaN, inf or magnitudes above 1e100, or do not spread
+        If `samples` are not numbers, none at all, hold NaN, inf or magnitudes above 1e100, or do not spread
         at all (about `location`, where that is given): the likelihood then has no maximum.
     """
-    try:
-        x = np.asarray(samples, dtype=np.float64).ravel()
-    except (TypeError, ValueError):
-        raise ValueError(f"samples = {reprlib.repr(samples)}: must be numbers, or a Dataset") from None
+    x = reals("samples", samples, "numbers, Counts or a Dataset", finite=False).ravel()
     if x.size == 0:
         raise ValueError("samples: empty; at least one value is needed")
     bad = x.size - np.count_nonzero(np.isfinite(x))

@@ -1,17 +1,24 @@
 """The flanks of p(ε | v) as functions of v: their slopes, how they grow, and where the form ends."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass
+from math import isnan
 
 import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike, NDArray
 
+from restitution._arrays import generator, real, whole
 from restitution._bins import LARGEST, centres, increasing_edges
+from restitution._content import Content
+from restitution._parameters import ParameterError, wrong
+from restitution._recorded import counted, records
 from restitution.fit._asymmetric import asymmetric_laplace
+from restitution.fit._clusters import MOST_RESAMPLES
 from restitution.fit._counts import Counts
 from restitution.fit._judgement import distances
 from restitution.fit._result import Array, Fit
-from restitution.fit._source import columns
 
 _SIDES = ("above", "below")
 _NAMES = ("location", *_SIDES)
@@ -21,8 +28,8 @@ _FEWEST = 10
 """Nor is one with fewer particles, whose redrawn samples say nothing about the error."""
 
 
-@dataclass(frozen=True)
-class PowerLaw:
+@dataclass(frozen=True, eq=False)
+class PowerLaw(Content):
     """y = amplitude · x^exponent, fitted to ln y by weighted least squares.
 
     Attributes
@@ -30,12 +37,14 @@ class PowerLaw:
     exponent, amplitude : float
         The amplitude is y at x = 1.
     exponent_error, amplitude_error : float
-        Standard errors over redrawn particles; nan for counts.
+        Standard errors over resampled particles.
     scatter : float
         Root mean square distance of ln y from the line: the relative error that the law makes.
     misfit : float
-        The same in standard errors of ln y, nan for counts: about 1 where a power law holds, larger where
-        the double logarithmic plot is bent.
+        The same in standard errors of ln y: about 1 where a power law holds, larger where the double
+        logarithmic plot is bent.
+    without_errors : str
+        Why both errors and the misfit are nan; empty where they are known.
     """
 
     exponent: float
@@ -44,18 +53,20 @@ class PowerLaw:
     amplitude_error: float
     scatter: float
     misfit: float
+    without_errors: str = ""
 
 
-@dataclass(frozen=True)
-class Slopes:
+@dataclass(frozen=True, eq=False)
+class Slopes(Content):
     """Asymmetric Laplace fits in bins of the impact velocity.
 
     Attributes
     ----------
     table : xarray.Dataset
         Over ``velocity``: ``location`` of the cusp, decay lengths ``above`` and ``below``, each with its
-        standard error over redrawn particles (``above_error``, …); ``ks_distance`` of the fit; ``samples``,
-        ``particles``. NaN where a bin has fewer than 30 samples or 10 particles, or
+        standard error over resampled particles (``above_error``, …); ``ks_distance`` of the fit;
+        ``samples``, ``particles``. The attribute ``standard_errors`` says where the errors come from, or
+        why there are none. NaN where a bin has fewer than 30 samples or 10 particles, or
         no more filled bins of counts than parameters.
     resampled : xarray.Dataset
         ``above`` and ``below`` over (``resample``, ``velocity``).
@@ -85,8 +96,14 @@ class Slopes:
             If there is no such side, fewer than three bins have a fit there, or ``release_speed`` is not
             above them.
         """
-        if side not in _SIDES:
-            raise ValueError(f"side = {side!r}: must be 'above' or 'below'")
+        if not isinstance(side, str) or side not in _SIDES:
+            raise ParameterError(wrong("side", side, "'above' or 'below'"))
+        speed = "a speed in m/s"
+        low, high = (
+            real(name, given, speed, lambda v: not isnan(v)) for name, given in (("low", low), ("high", high))
+        )
+        if release_speed is not None:
+            release_speed = real("release_speed", release_speed, "a finite speed in m/s")
         v, y = self.table["velocity"].to_numpy(), self.table[side].to_numpy()
         chosen = (v >= low) & (v <= high) & (y > 0)
         if np.count_nonzero(chosen) < 3:
@@ -96,7 +113,9 @@ class Slopes:
             raise ValueError(
                 f"release_speed = {release_speed!r}: must be above {v.max():g} m/s, the fastest bin"
             )
-        x = np.log(v) if release_speed is None else 0.5 * np.log((release_speed / v) ** 2 - 1.0)
+        x = np.log(v)
+        if release_speed is not None:  # ln √(v₀²/v² − 1), whatever the speeds
+            x = np.log(release_speed) - x + 0.5 * np.log1p(-((v / release_speed) ** 2))
         error = self.table[f"{side}_error"].to_numpy()[chosen] / y
         known = bool(np.all(np.isfinite(error) & (error > 0)))
         weight = 1.0 / error if known else np.ones_like(error)
@@ -110,6 +129,7 @@ class Slopes:
         drawn = np.array([line(one) for one in again if np.all(one > 0)])
         spread = np.std(drawn, axis=0, ddof=1) if len(drawn) > 1 else np.full(2, np.nan)
         amplitude = float(np.exp(intercept))
+        origin = str(self.table.attrs["standard_errors"])
         return PowerLaw(
             exponent=float(exponent),
             exponent_error=float(spread[0]),
@@ -117,6 +137,7 @@ class Slopes:
             amplitude_error=amplitude * float(spread[1]),
             scatter=float(np.sqrt(np.sum(residual**2) / (x.size - 2))),
             misfit=float(np.sqrt(np.sum((residual * weight) ** 2) / (x.size - 2))) if known else np.nan,
+            without_errors="" if len(drawn) > 1 else origin,
         )
 
     def fails_below(self, distance: float = 0.03, high: float = np.inf) -> float:
@@ -134,6 +155,8 @@ class Slopes:
             Velocity bins with centres above are left out, in m/s: those of the first impacts, for instance,
             whose density is not that of an ensemble but follows from the release.
         """
+        distance = real("distance", distance, "a number", lambda d: not isnan(d))
+        high = real("high", high, "a speed in m/s", lambda v: not isnan(v))
         used = self.table["velocity"].to_numpy() <= high
         far = ~(self.table["ks_distance"].to_numpy()[used] <= distance)
         edges = self.table["velocity_edges"].to_numpy()
@@ -155,12 +178,13 @@ def slopes(
     ----------
     data : xarray.Dataset
         Impacts as from `restitution.simulate`; or counts as from `restitution.statistics`, whose velocity
-        bins are then used, and which have no particles to draw again: standard errors are nan.
+        bins are then used. They do not say which particle an impact belongs to, so that there are no
+        standard errors.
     velocity_bins : array_like, shape (bins + 1,)
         Edges in m/s, strictly increasing; not for counts. Bins of a constant ratio, `numpy.geomspace`, hold
         about as many impacts each, for the speed falls by a share at every impact.
     location : float, optional
-        The cusp, e.g. the law's ε^n; fitted in each bin unless given.
+        The cusp, e.g. the law's ε_n; fitted in each bin unless given.
     resamples : int, default 99
         At least 2.
     seed : int
@@ -172,18 +196,19 @@ def slopes(
     ValueError
         If `velocity_bins` are missing, or given with counts, or ``resamples < 2``.
     """
-    if resamples < 2:
-        raise ValueError(f"resamples = {resamples!r}: at least two are needed")
-    if "count" in data:
+    resamples = whole("resamples", resamples, 2, MOST_RESAMPLES)
+    random = generator("seed", seed)
+    if location is not None:
+        location = real("location", location, "a finite number")
+    if isinstance(data, xr.Dataset) and "restitution_count" in data:
         if velocity_bins is not None:
             raise ValueError("velocity_bins: counts have their own; leave it out")
         return _from_counts(data, location)
     if velocity_bins is None:
         raise ValueError("velocity_bins: missing; recorded impacts need edges in m/s")
     edges = increasing_edges(velocity_bins, "velocity_bins")
-    velocity, restitution = columns(data, "impact_velocity", "restitution")
+    velocity, restitution = records("data", data, "impact_velocity", "restitution")
     particles = velocity.shape[0]
-    random = np.random.default_rng(seed)
     times = random.multinomial(particles, np.full(particles, 1.0 / particles), size=resamples)
     rows = edges.size - 1
     fits: list[Fit | None] = [None] * rows
@@ -222,6 +247,7 @@ def _deviation(drawn: Array) -> Array:
 def _from_counts(statistics: xr.Dataset, location: float | None) -> Slopes:
     if "velocity_edges" not in statistics:
         raise ValueError("data: statistics without velocity bins; give velocity_bins to `statistics`")
+    statistics = counted("data", statistics)
     edges = statistics["velocity_edges"].to_numpy()
     rows = edges.size - 1
     fits: list[Fit | None] = [None] * rows
@@ -229,7 +255,7 @@ def _from_counts(statistics: xr.Dataset, location: float | None) -> Slopes:
     free = len(_NAMES) - (location is not None)
     outside = ("restitution_underflow", "restitution_overflow")
     filled = sum(statistics[name].to_numpy() > 0 for name in outside)
-    filled += np.count_nonzero(statistics["count"].transpose("velocity", "restitution"), axis=1)
+    filled += np.count_nonzero(statistics["restitution_count"].transpose("velocity", "restitution"), axis=1)
     for i in np.flatnonzero((statistics["number"].to_numpy() >= _LEAST) & (filled > free)):
         counts = Counts.at(statistics, float(edges[i]))
         one = asymmetric_laplace(counts, location)
@@ -248,6 +274,9 @@ def _assembled(
     table = xr.Dataset({name: ("velocity", values) for name, values in columns.items()}, coords=speed)
     table["particles"] = ("velocity", particles)
     table["velocity_edges"] = ("velocity_edge", edges, {"units": "m s-1"})
+    by_particle = "over resampled particles"
+    none = "unknown: counts do not say which particle an impact belongs to"
+    table.attrs["standard_errors"] = by_particle if drawn.shape[1] else none
     resampled = xr.Dataset(
         {name: (("velocity", "resample"), drawn[:, :, i]) for i, name in enumerate(_NAMES)}, coords=speed
     )

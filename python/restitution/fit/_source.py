@@ -7,7 +7,11 @@ import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike, NDArray
 
+from restitution._arrays import real, reals
 from restitution._bins import LARGEST
+from restitution._parameters import ParameterError, Problem, shown, wrong
+from restitution._recorded import counted as recorded_counts
+from restitution._recorded import records
 from restitution.fit._counts import Counts
 from restitution.fit._result import Array, finite_samples
 
@@ -36,10 +40,10 @@ def taken(samples: Samples, velocity: Window | None, location: float | None = No
         If `velocity` is missing, superfluous or outside the data, no impact is there, or the samples or the
         location are not as they must be.
     """
-    if location is not None and not np.isfinite(location):
-        raise ValueError(f"location = {location!r}: a finite number is needed")
+    if location is not None:
+        real("location", location, "a finite number, at most 1e100 either way", lambda x: abs(x) <= 1e100)
     if isinstance(samples, xr.Dataset):
-        if "count" in samples:
+        if "restitution_count" in samples:
             return counted(samples, velocity)
         return finite_samples(recorded(samples, velocity)[0], location)
     no_window(velocity)
@@ -52,19 +56,20 @@ def counted(statistics: xr.Dataset, velocity: Window | None) -> Counts:
         raise ValueError("velocity: missing; statistics need a number or a window (low, high) in m/s")
     if "velocity_edges" not in statistics:
         raise ValueError("samples: statistics without velocity bins; give velocity_bins to `statistics`")
-    if not isinstance(velocity, tuple | list | np.ndarray):
-        return Counts.at(statistics, float(velocity))
+    statistics = recorded_counts("samples", statistics)
+    if not isinstance(velocity, tuple | list) and np.ndim(velocity) == 0:
+        return Counts.at(statistics, velocity)
     low, high = window(velocity)
     edges = statistics["velocity_edges"].to_numpy()
     first, last = (int(np.argmin(np.abs(edges - v))) for v in (low, high))
     allowed = 1e-6 * float(np.diff(edges).min())
     if first >= last or abs(edges[first] - low) > allowed or abs(edges[last] - high) > allowed:
         near = ", ".join(f"{v:g}" for v in edges[max(first - 1, 0) : last + 2][:6])
-        raise ValueError(f"velocity = {velocity!r}: must be edges of velocity bins, here {near}, …, in m/s")
+        raise ParameterError(wrong("velocity", velocity, f"edges of velocity bins, here {near}, …, in m/s"))
     rows = statistics.isel(velocity=slice(first, last)).sum("velocity")
     return Counts(
         edges=statistics["restitution_edges"].to_numpy(),
-        count=rows["count"].to_numpy(),
+        count=rows["restitution_count"].to_numpy(),
         below=int(rows["restitution_underflow"]),
         above=int(rows["restitution_overflow"]),
     )
@@ -75,33 +80,28 @@ def recorded(data: xr.Dataset, velocity: Window | None) -> tuple[Array, NDArray[
 
     Those that are not finite or at least 2³³ in magnitude are left out, as in `restitution.reduce`.
     """
-    speed, restitution = columns(data, "impact_velocity", "restitution")
+    speed, restitution = records("samples", data, "impact_velocity", "restitution")
     if velocity is None or not isinstance(velocity, tuple | list | np.ndarray):
-        raise ValueError(f"velocity = {velocity!r}: recorded impacts need a window (low, high) in m/s")
+        text = f" = {shown(velocity)}: recorded impacts need a window (low, high) in m/s"
+        raise ParameterError(Problem("velocity", text))
     low, high = window(velocity)
     particle, impact = np.nonzero((speed >= low) & (speed < high) & (np.abs(restitution) < LARGEST))
     if particle.size == 0:
-        raise ValueError(f"velocity = {velocity!r}: no impact has an impact velocity there")
+        raise ParameterError(wrong("velocity", velocity, "where there are impacts; none is there"))
     return restitution[particle, impact], particle
-
-
-def columns(data: xr.Dataset, *names: str) -> tuple[Array, ...]:
-    """Take variables of recorded impacts, each of shape (particles, impacts)."""
-    missing = [name for name in names if name not in data]
-    if missing:
-        raise ValueError(f"data: lacks {', '.join(missing)}; give a Dataset as from restitution.simulate")
-    return tuple(data[name].transpose("particle", "impact").to_numpy() for name in names)
 
 
 def no_window(velocity: Window | None) -> None:
     """Refuse an impact velocity of samples that have none."""
     if velocity is not None:
-        raise ValueError(f"velocity = {velocity!r}: is for a Dataset; other samples have no impact velocity")
+        text = f" = {shown(velocity)}: is for a Dataset; other samples have no impact velocity"
+        raise ParameterError(Problem("velocity", text))
 
 
 def window(velocity: Window) -> tuple[float, float]:
     """Check a window of impact velocity."""
-    ends = np.asarray(velocity, dtype=np.float64)
+    allowed = "a window (low, high) with low < high, in m/s"
+    ends = reals("velocity", velocity, allowed, dimensions=(1,), finite=False)
     if ends.shape != (2,) or not ends[0] < ends[1]:
-        raise ValueError(f"velocity = {velocity!r}: must be a window (low, high) with low < high, in m/s")
+        raise ParameterError(wrong("velocity", velocity, allowed))
     return float(ends[0]), float(ends[1])

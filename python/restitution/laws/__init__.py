@@ -1,5 +1,6 @@
-"""Laws: what an impact does. And materials: how its normal coefficient depends on the speed."""
+"""Collision laws, and materials: how the normal coefficient depends on the speed."""
 
+from restitution._parameters import listed
 from restitution.laws._chatterjee_ruina import ChatterjeeRuina
 from restitution.laws._coulomb import Coulomb
 from restitution.laws._frictionless import Frictionless
@@ -8,7 +9,9 @@ from restitution.laws._materials import Plastic, Tabulated, Viscoelastic
 from restitution.laws._tangential_restitution import TangentialRestitution
 
 __all__ = [
+    "KINDS",
     "LAWS",
+    "MATERIALS",
     "ChatterjeeRuina",
     "Coulomb",
     "Frictionless",
@@ -19,5 +22,9 @@ __all__ = [
     "Viscoelastic",
 ]
 
-LAWS = "a TangentialRestitution, Frictionless, Coulomb or ChatterjeeRuina"
+KINDS = (TangentialRestitution, Frictionless, Coulomb, ChatterjeeRuina)
+"""Every law."""
+MATERIALS = (Viscoelastic, Plastic, Tabulated)
+"""Every material."""
+LAWS = f"a {listed(KINDS)}"
 """What may stand for a law, in words."""

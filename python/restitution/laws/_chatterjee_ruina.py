@@ -4,6 +4,7 @@ from typing import Annotated
 
 from pydantic import Field
 
+from restitution import _core
 from restitution._parameters import Number
 from restitution.laws._law import Friction, Law
 
@@ -17,11 +18,11 @@ class ChatterjeeRuina(Law):
 
     Parameters
     ----------
-    normal : float, Viscoelastic, Plastic or Tabulated
+    normal : float, Viscoelastic, Plastic, Tabulated or callable
         Normal coefficient e, in [0, 1], or a material.
     tangential : float
         Tangential coefficient e_t, in [-1, 1]: -1 is frictionless, 0 sticks, 1 reverses the slip. For a
-        sphere it is -ε^t.
+        sphere it is -ε_t.
     friction : float
         Coefficient of friction μ, in [0, 1e100].
 
@@ -33,3 +34,6 @@ class ChatterjeeRuina(Law):
 
     tangential: Annotated[Number, Field(ge=-1, le=1)]
     friction: Friction
+
+    def _compile(self, normal: float | _core.Material) -> _core.Law:
+        return _core.chatterjee_ruina(normal, self.tangential, self.friction)

@@ -2,6 +2,7 @@
 
 from typing import Annotated, Literal
 
+from restitution import _core
 from restitution._parameters import Allowed
 from restitution.laws._law import Friction, Law
 
@@ -18,8 +19,8 @@ class Coulomb(Law):
 
     Parameters
     ----------
-    normal : float, Viscoelastic, Plastic or Tabulated
-        Coefficient of restitution ε^n, in [0, 1], or a material. What it means, the hypothesis says.
+    normal : float, Viscoelastic, Plastic, Tabulated or callable
+        Coefficient of restitution ε_n, in [0, 1], or a material. What it means, the hypothesis says.
     friction : float
         Coefficient of friction μ, in [0, 1e100]. 0 is `Frictionless`.
     hypothesis : {"stronge", "poisson", "newton"}, default "stronge"
@@ -36,3 +37,6 @@ class Coulomb(Law):
 
     friction: Friction
     hypothesis: Annotated[Hypothesis, Allowed("'stronge', 'poisson' or 'newton'")] = "stronge"
+
+    def _compile(self, normal: float | _core.Material) -> _core.Law:
+        return _core.coulomb(normal, self.friction, self.hypothesis)

@@ -1,19 +1,24 @@
 """What all laws have in common: the normal coefficient, and how a law is written down."""
 
-from typing import Annotated, Any
+from abc import abstractmethod
+from functools import cached_property
+from typing import Annotated, Any, Self
 
-from pydantic import BeforeValidator, Field, TypeAdapter, ValidationError
+from pydantic import BeforeValidator, Field, TypeAdapter, ValidationError, model_validator
 
+from restitution import _core
 from restitution._parameters import Allowed, Number, ParameterError, Parameters, wrong
 from restitution.laws._materials import Material, Plastic, Tabulated, Viscoelastic
 
-_NORMAL = "a real number in [0, 1] or a Viscoelastic, Plastic or Tabulated"
+_NORMAL = "a real number in [0, 1] or a Viscoelastic, Plastic, Tabulated or function of the speed"
 _number = TypeAdapter(Annotated[Number, Field(ge=0, le=1)])
 
 
 def _normal(value: Any) -> Any:
     if isinstance(value, Material):
         return value
+    if callable(value) and not isinstance(value, type):
+        return Tabulated.from_function(value)
     try:
         return _number.validate_python(value)
     except ValidationError:
@@ -23,27 +28,42 @@ def _normal(value: Any) -> Any:
 NormalCoefficient = Annotated[
     float | Viscoelastic | Plastic | Tabulated, BeforeValidator(_normal), Allowed(_NORMAL)
 ]
-"""ε^n: a number, or a function of the speed."""
+"""ε_n: a number, or a function of the speed."""
 
-Friction = Annotated[Number, Field(ge=0, le=1e100)]
+Friction = Annotated[Number, Field(ge=0, le=_core.MOST_FRICTION)]
 """μ; the bound keeps products of it finite, and nothing slips long before."""
 
 
 class Law(Parameters):
-    """A collision law: what an impact does.
+    """A collision law: the impulse as a function of the contact velocity.
 
     Parameters
     ----------
-    normal : float, Viscoelastic, Plastic or Tabulated
-        Normal coefficient of restitution ε^n, in [0, 1], or a material that gives it for the normal speed at
-        which the contact point approaches the plane.
+    normal : float, Viscoelastic, Plastic, Tabulated or callable
+        Normal coefficient of restitution ε_n, in [0, 1], or a material that gives it for the normal speed at
+        which the contact point approaches the plane. A function of one speed in m/s becomes
+        `Tabulated.from_function` of it, to 1e-6 up to 100 m/s.
     """
 
     normal: NormalCoefficient
 
+    @abstractmethod
+    def _compile(self, normal: float | _core.Material) -> _core.Law:
+        """Make the law as the core knows it, with the normal coefficient as the core knows that."""
+
+    @cached_property
+    def compiled(self) -> _core.Law:
+        """The law as the core knows it, made and checked once."""
+        return self._compile(self.normal.compiled if isinstance(self.normal, Material) else self.normal)
+
+    @model_validator(mode="after")
+    def _is_possible(self) -> Self:
+        _ = self.compiled
+        return self
+
     @property
     def constant(self) -> float:
-        """ε^n where it is a number.
+        """ε_n where it is a number.
 
         Raises
         ------
@@ -53,10 +73,6 @@ class Law(Parameters):
         if isinstance(self.normal, Material):
             raise ParameterError(wrong("normal", self.normal, "a number, the same at every speed"))
         return self.normal
-
-    def parameters(self) -> dict[str, Any]:
-        """Name every parameter as the core does."""
-        return {"type": type(self).__name__, **self.model_dump()}
 
     def attributes(self) -> dict[str, Any]:
         """Every parameter under its own name, those of a material after `normal_`, as plain values."""

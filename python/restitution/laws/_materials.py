@@ -2,53 +2,55 @@
 
 from abc import abstractmethod
 from collections.abc import Callable
-from typing import Annotated, Any
+from functools import cached_property
+from typing import Annotated, Any, Self
 
 import numpy as np
 import numpy.typing as npt
 from pydantic import BeforeValidator, Field, model_validator
 
 from restitution import _core
+from restitution._arrays import reals
 from restitution._parameters import Allowed, Number, ParameterError, Parameters, Problem, wrong
 
 Floats = npt.NDArray[np.float64]
 
-PADE_ABOVE = np.polynomial.Polynomial([1.0, 1.07232, 0.574198, 0.141552])
-PADE_BELOW = np.polynomial.Polynomial([1.0, 1.07232, 1.72765, 1.37842, 1.19449, 0.467273, 0.235585])
-"""Numerator and denominator of a viscoelastic sphere's ε^n, in powers of v*."""
-
 
 class Material(Parameters):
-    """A normal coefficient of restitution ε^n that depends on the speed; call it to see it."""
+    """A normal coefficient of restitution ε_n that depends on the speed; call it to see it."""
 
-    def __call__(self, speed: npt.ArrayLike) -> Floats:
-        """ε^n at normal contact speeds.
+    def __call__(self, speed: "npt.ArrayLike") -> "Floats":
+        """ε_n at normal contact speeds.
 
         Parameters
         ----------
         speed : array_like
-            In m/s, >= 0, of any shape.
+            In m/s, of any shape. Of a velocity, such as the recorded impact velocities, some of which are
+            negative, the magnitude counts.
 
         Returns
         -------
         ndarray
-            ε^n, of the shape of `speed`; nan for nan.
+            ε_n, of the shape of `speed`; nan for nan.
         """
-        v = np.asarray(speed, dtype=np.float64)
-        if np.any(v < 0.0):
-            raise ParameterError(wrong("speed", speed, ">= 0 (m/s)"))
-        return self._coefficient(v)
+        v = np.abs(reals("speed", speed, "real numbers (m/s), or nan", finite=False))
+        return np.where(np.isnan(v), np.nan, self.compiled.at(v.ravel()).reshape(v.shape))
 
     @abstractmethod
-    def _coefficient(self, speed: Floats) -> Floats:
-        """ε^n at speeds >= 0, or nan."""
+    def _compile(self) -> _core.Material:
+        """Make the coefficient as the core knows it."""
+
+    @cached_property
+    def compiled(self) -> _core.Material:
+        """The coefficient as the core knows it, made and checked once; every ε_n(v) is the core's."""
+        return self._compile()
 
 
 class Viscoelastic(Material):
     """A viscoelastic sphere on a rigid plane (Müller and Pöschel, Phys. Rev. E 84, 021302 (2011)).
 
     The force at a compression ξ is (4/3)√R Y/(1 - ν²) (ξ^{3/2} + (3/2) A ξ^{1/2} dξ/dt), and the contact ends
-    where it would turn to attraction. ε^n is the Padé approximant [3/6] in v* = β^{1/2} v^{1/10}, with
+    where it would turn to attraction. ε_n is the Padé approximant [3/6] in v* = β^{1/2} v^{1/10}, with
     β = (3/2) A k^{2/5} and k = (4/3)√R Y/((1 - ν²)m); 1 at v = 0, and falling with the speed.
 
     Parameters
@@ -81,28 +83,26 @@ class Viscoelastic(Material):
     density: Annotated[Number, Field(gt=0, description="kg/m³")]
     radius: Annotated[Number, Field(gt=0, description="m")]
 
+    def _compile(self) -> _core.Material:
+        return _core.viscoelastic(**self.model_dump())
+
     @model_validator(mode="after")
-    def _representable(self) -> "Viscoelastic":
-        _core.normal_coefficient(self.model_dump(), np.empty(0))
+    def _is_possible(self) -> Self:
+        _ = self.compiled
         return self
 
     @property
     def beta(self) -> float:
         """β in (s/m)^{1/5}: the dissipation in the units that elasticity and inertia make."""
-        stiffness = self.young_modulus / (
-            np.pi * (1 - self.poisson_ratio**2) * self.density * self.radius**2.5
-        )
-        return float(1.5 * self.dissipation * stiffness**0.4)
-
-    def _coefficient(self, speed: Floats) -> Floats:
-        x = self.beta**0.5 * speed**0.1
-        return np.asarray(PADE_ABOVE(x) / PADE_BELOW(x))
+        beta = self.compiled.beta
+        assert beta is not None
+        return beta
 
 
 class Plastic(Material):
     """Elastic-perfectly plastic spheres (Thornton, J. Appl. Mech. 64, 383 (1997)).
 
-    ε^n = √(6√3/5) √(1 - x²/6) (x/(x + 2√(6/5 - x²/5)))^{1/4} with x = v_y/v; 1 up to v_y, and 1.185 x^{1/4}
+    ε_n = √(6√3/5) √(1 - x²/6) (x/(x + 2√(6/5 - x²/5)))^{1/4} with x = v_y/v; 1 up to v_y, and 1.185 x^{1/4}
     far beyond it.
 
     Parameters
@@ -118,23 +118,18 @@ class Plastic(Material):
 
     yield_speed: Annotated[Number, Field(gt=0, description="m/s")]
 
-    def _coefficient(self, speed: Floats) -> Floats:
-        x = self.yield_speed / np.maximum(speed, self.yield_speed)
-        ratio = x / (x + 2.0 * np.sqrt(1.2 - x**2 / 5.0))
-        value = np.sqrt(1.2 * np.sqrt(3.0)) * np.sqrt(1.0 - x**2 / 6.0) * ratio**0.25
-        return np.where(speed <= self.yield_speed, 1.0, np.minimum(value, 1.0))
+    def _compile(self) -> _core.Material:
+        return _core.plastic(self.yield_speed)
 
 
 def _numbers(name: str, good: Callable[[float], bool], allowed: str) -> BeforeValidator:
     """Take a 1-D sequence of numbers, each of them good."""
 
     def check(value: Any) -> tuple[float, ...]:
-        try:
-            array = np.asarray(value)
-        except ValueError:  # lists of different lengths
-            array = np.empty(())
-        if array.ndim != 1 or array.dtype.kind not in "iuf" or not array.size:
-            raise ParameterError(wrong(name, value, "a 1-D array of at least one number"))
+        some = "a 1-D array of at least one number"
+        array = reals(name, value, some, dimensions=(1,), finite=False)
+        if not array.size:
+            raise ParameterError(wrong(name, value, some))
         numbers = tuple(map(float, array))
         for i, x in enumerate(numbers):
             if not good(x):
@@ -152,7 +147,7 @@ class Tabulated(Material):
     v : array_like, shape (n,)
         Speeds in m/s: finite, >= 0, increasing; n >= 1.
     e : array_like, shape (n,)
-        ε^n at these speeds, each in [0, 1].
+        ε_n at these speeds, each in [0, 1].
 
     Examples
     --------
@@ -184,5 +179,94 @@ class Tabulated(Material):
             raise ParameterError(Problem("e", f"{given}: must be one for each of the {len(self.v)} speeds"))
         return self
 
-    def _coefficient(self, speed: Floats) -> Floats:
-        return np.asarray(np.interp(speed, self.v, self.e))
+    @classmethod
+    def from_function(
+        cls, function: Callable[[float], float], *, fastest: float = 100.0, tolerance: float = 1e-6
+    ) -> Self:
+        """Tabulate a function of the speed, as densely as linear interpolation needs.
+
+        Every interval is halved until the function is within the tolerance of the straight line at a quarter,
+        a half and three quarters of it. A jump is placed to within one part in 10⁹ of its speed.
+
+        Parameters
+        ----------
+        function : callable
+            ε_n, in [0, 1], of one speed in m/s. It is called now and never again: the table is what is
+            compared, copied, pickled and written to files.
+        fastest : float
+            Speed in m/s up to which the function is tabulated; beyond it ε_n stays as it is there.
+        tolerance : float
+            Largest error of ε_n, in [1e-12, 0.1].
+
+        Raises
+        ------
+        ValueError
+            If the function gives something else than a number in [0, 1] at a speed, or needs more than
+            100 000 points.
+
+        Examples
+        --------
+        >>> import restitution as rs
+        >>> measured = rs.Tabulated.from_function(lambda v: 0.97 * (1.0 + v / 3.0) ** -0.25)
+        >>> round(float(measured(0.5)), 6), len(measured.v)
+        (0.93333, 810)
+        """
+        return cls(**dict(zip("ve", _tabulated(function, fastest, tolerance), strict=True)))
+
+    def _compile(self) -> _core.Material:
+        return _core.tabulated(self.v, self.e)
+
+
+_MOST_POINTS = 100_000
+_NARROWEST = 1e-9
+"""Of an interval, over its speed."""
+
+
+def _is_in(value: Any, low: float, high: float) -> bool:
+    number = isinstance(value, int | float | np.number) and not isinstance(value, bool)
+    return number and bool(low <= value <= high)
+
+
+def _tabulated(
+    function: Callable[[float], float], fastest: float, tolerance: float
+) -> tuple[list[float], list[float]]:
+    """Give speeds, and the function there; see `Tabulated.from_function`."""
+    if not callable(function):
+        raise ParameterError(wrong("function", function, "a function of the speed"))
+    if not _is_in(fastest, 5e-324, float(np.finfo(np.float64).max)):
+        raise ParameterError(wrong("fastest", fastest, "a finite number > 0 (m/s)"))
+    if not _is_in(tolerance, 1e-12, 0.1):
+        raise ParameterError(wrong("tolerance", tolerance, "a number in [1e-12, 0.1]"))
+
+    def at(speed: float) -> float:
+        try:
+            value = function(speed)
+            number = float(value)
+        except Exception as error:
+            text = f" gave {type(error).__name__}: {error} at {speed!r} m/s: must give ε_n in [0, 1]"
+            raise ParameterError(Problem("normal", text)) from error
+        if not 0.0 <= number <= 1.0:
+            text = f" gave {value!r} at {speed!r} m/s: must give ε_n in [0, 1] up to {fastest!r} m/s; "
+            raise ParameterError(Problem("normal", text + "Tabulated.from_function takes a lower `fastest`"))
+        return number
+
+    speeds, values = [0.0], [at(0.0)]
+    last = float(fastest)
+    waiting = [(last, at(last))]
+    while waiting:
+        low, (high, above) = speeds[-1], waiting[-1]
+        below, width = values[-1], high - low
+        inner = [(low + share * width, share) for share in (0.25, 0.5, 0.75)]
+        seen = [at(speed) for speed, _ in inner]
+        off = [abs(e - below - share * (above - below)) for e, (_, share) in zip(seen, inner, strict=True)]
+        narrow = width <= _NARROWEST * low or not low < inner[0][0] < inner[2][0] < high
+        if max(off) > tolerance and not narrow:
+            waiting.append((inner[1][0], seen[1]))
+        else:
+            speeds.append(high)
+            values.append(above)
+            waiting.pop()
+        if len(speeds) > _MOST_POINTS:
+            text = f" needs more than {_MOST_POINTS:,} points for {tolerance!r}: must be smoother"
+            raise ParameterError(Problem("normal", text + ", or have a greater tolerance"))
+    return speeds, values

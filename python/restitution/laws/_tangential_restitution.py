@@ -4,6 +4,7 @@ from typing import Annotated
 
 from pydantic import Field
 
+from restitution import _core
 from restitution._parameters import Number
 from restitution.laws._law import Law
 
@@ -20,11 +21,11 @@ class TangentialRestitution(Law):
 
     Parameters
     ----------
-    normal : float, Viscoelastic, Plastic or Tabulated
-        Normal coefficient of restitution ε^n at the contact point, in [0, 1], or a material.
+    normal : float, Viscoelastic, Plastic, Tabulated or callable
+        Normal coefficient of restitution ε_n at the contact point, in [0, 1], or a material.
     tangential : float, default 1
-        Tangential coefficient of restitution ε^t at the contact point, in [-1, 1]. Kinetic theory writes
-        β = -ε^t.
+        Tangential coefficient of restitution ε_t at the contact point, in [-1, 1]. Kinetic theory writes
+        β = -ε_t.
 
     Examples
     --------
@@ -33,3 +34,6 @@ class TangentialRestitution(Law):
     """
 
     tangential: Annotated[Number, Field(ge=-1, le=1)] = 1.0
+
+    def _compile(self, normal: float | _core.Material) -> _core.Law:
+        return _core.tangential_restitution(normal, self.tangential)

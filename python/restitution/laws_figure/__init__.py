@@ -14,7 +14,13 @@ TITLE = "What the collision law does to the coefficient of restitution"
 
 
 def write(
-    out: Path, *, impacts: int, seed: int, threads: int | None = None, progress: bool = False
+    out: Path,
+    *,
+    impacts: int,
+    seed: int,
+    threads: int | None = None,
+    progress: bool = False,
+    overwrite: bool = False,
 ) -> tuple[Path, str]:
     """Measure, and write ``laws.png``, ``.pdf``, ``.nc``, ``.txt`` (the caption) and ``.md`` (the table).
 
@@ -24,6 +30,8 @@ def write(
         The folder to write to, all or nothing.
     impacts, seed, threads, progress
         As in `measure`.
+    overwrite : bool
+        Whether files of an earlier call are replaced.
 
     Returns
     -------
@@ -33,12 +41,14 @@ def write(
     Raises
     ------
     OSError
-        If `out` cannot be written to; before the work begins.
+        If `out` cannot be written to, or holds anything and is not to be overwritten; before the work begins.
     """
     from restitution._dataset import save
-    from restitution.paper._folder import unfinished
+    from restitution._files import check_folder, whole_folder
 
-    with unfinished(out) as folder:
+    names = [f"laws.{kind}" for kind in ("png", "pdf", "nc", "txt", "md")]
+    check_folder(out, replace=overwrite)
+    with whole_folder(out, replace=overwrite, names=names) as folder:
         data = measure(impacts, seed, threads=threads, progress=progress)
         text, rows = caption(data), table(data)
         fg.save(draw(data), folder / "laws", TITLE, text)

@@ -16,10 +16,10 @@ def caption(data: xr.Dataset) -> str:
         [
             "The same bodies under six collision laws. Columns: dumbbells of two spheres of radius R,",
             f"centres L apart, L/R = {elongations}. Rows: probability density of the coefficient of",
-            f"restitution ε (Eq. 1) at the impact velocity {about['speed']:g} ± 0.005 m/s (the ranges of ε",
+            f"restitution ε (Eq. 1) at the impact velocity {about['speed']:g} ± 0.01 m/s (the ranges of ε",
             "differ); its standard deviation; mean rotational over total kinetic energy before the",
             "impact; share of impacts that multiply the kinetic energy by more than 1 + 10⁻¹²; the",
-            "largest factor of any, less 1. All but the first in bins of 0.01 m/s of the impact velocity.",
+            "largest factor of any, less 1. All but the first in bins of 0.02 m/s of the impact velocity.",
             "Dash-dotted: what no impact under ε_t = 1 can exceed. Laws that are not seen in the last two",
             f"rows created no energy there; at no velocity did: {quiet}.",
             "Where a line is not seen in the first three rows, others cover it.",

@@ -16,8 +16,8 @@ FloatArray = npt.NDArray[np.float64]
 
 _LINES: tuple[Literal["-", "--", ":"], ...] = ("-", "-", "-", "--", ":", "-")
 _COLORS = ("#D55E00", "#000000", "#0072B2", "#56B4E9", "#009E73", "#CC79A7")
-_VELOCITY_TICKS = (0.01, 0.03, 0.1, 0.3, 1.0)
-_RANGE = (0.01, 1.1)
+_VELOCITY_TICKS = (0.03, 0.1, 0.3, 1.0)
+_RANGE = (0.018, 1.1)
 _LETTERS = "abcdefghijklmnopqrst"
 _VELOCITY = r"impact velocity $v_G^n$ (m/s)"
 
@@ -114,13 +114,13 @@ def _gain(axes: Axes, body: xr.Dataset) -> None:
     lowest = 1e-4 * bound
     axes.axhline(bound, color="0.55", linewidth=0.8, linestyle="-.")
     for law in range(body.sizes["law"]):
-        gain = _shown(body["largest_factor"].isel(law=law)) - 1
+        gain = _shown(body["largest_energy_ratio"].isel(law=law)) - 1
         axes.plot(body["velocity"], gain, color=_COLORS[law], linestyle=_LINES[law])
     axes.set_yscale("log")
     axes.set_ylim(lowest, 30 * bound)
     axes.yaxis.set_major_locator(LogLocator(numticks=6))
     axes.yaxis.set_minor_formatter(NullFormatter())
-    if not np.any((_shown(body["largest_factor"]) - 1 > lowest)[:, _drawn(body)]):
+    if not np.any((_shown(body["largest_energy_ratio"]) - 1 > lowest)[:, _drawn(body)]):
         _say_none(axes)
 
 

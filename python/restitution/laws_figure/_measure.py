@@ -1,4 +1,4 @@
-"""What the laws do to the same bodies: statistics with standard errors, and the bound on created energy."""
+"""The same bodies under all laws: statistics with standard errors, and the bound on created energy."""
 
 from math import ceil, sqrt
 from typing import Any
@@ -16,7 +16,7 @@ from restitution.laws import ChatterjeeRuina, Coulomb, Frictionless, Law, Tangen
 FloatArray = npt.NDArray[np.float64]
 
 NORMAL, FRICTION, STICK = 0.98, 0.3, 0.0
-"""ε^n of all laws, μ of those with friction, and e_t of Chatterjee and Ruina's."""
+"""ε_n of all laws, μ of those with friction, and e_t of Chatterjee and Ruina's."""
 LAWS: dict[str, Law] = {
     "ε_t = 1 (the paper's)": TangentialRestitution(normal=NORMAL, tangential=1.0),
     "frictionless": Frictionless(normal=NORMAL),
@@ -29,7 +29,8 @@ RADIUS = 3e-3
 SPEED = 0.4
 """Where p(ε | v) is drawn, in m/s: the middle of a velocity bin."""
 SLOWEST = 0.05
-"""Shares are given for all impacts and for those from here on, in m/s: a body rattles before it rests."""
+"""Shares are given for all impacts and for those from here on, in m/s, an edge of the velocity bins: a body
+rattles before it rests."""
 BATCHES = 16
 _MEAN_IMPACTS = 1230
 """Mean number of impacts of a particle over all combinations."""
@@ -48,7 +49,7 @@ RUN: dict[str, Any] = {
     "release_height": 0.06,
     "gravity": 9.81,
     "orientation": "uniform-angle",
-    "velocity_bins": 0.005 + 0.01 * np.arange(231),
+    "velocity_bins": np.linspace(0.01, 2.31, 116),
 }
 
 
@@ -69,12 +70,12 @@ def measure(impacts: int, seed: int, *, threads: int | None = None, progress: bo
     Returns
     -------
     xarray.Dataset
-        Dimensions (elongation, law) and velocity (bins of 0.01 m/s), or site (bins of ε). ``density`` at
+        Dimensions (elongation, law) and velocity (bins of 0.02 m/s), or site (bins of ε). ``density`` at
         the impact velocity of 0.4 m/s, ``deviation``, ``mean_fraction``, ``created_share`` and
-        ``largest_factor`` in each velocity bin; ``total_share`` and ``total_factor`` over the impacts from
-        0.05 m/s on, ``all_share`` and ``all_factor`` over all; ``bound``, which no factor under the paper's
-        law can exceed. Standard errors are called ``…_error``; they come from the scatter of 16 independent
-        batches of particles.
+        ``largest_energy_ratio`` in each velocity bin; ``total_share`` and ``total_factor`` over the impacts
+        from 0.05 m/s on, ``all_share`` and ``all_factor`` over all; ``bound``, which no factor under the
+        paper's law can exceed. Standard errors are called ``…_error``; they come from the scatter of 16
+        independent batches of particles.
 
     Raises
     ------
@@ -104,6 +105,7 @@ def measure(impacts: int, seed: int, *, threads: int | None = None, progress: bo
                         particles=particles,
                         seed=int(one),
                         threads=threads,
+                        batches=1,
                         restitution_bins=np.linspace(low, high, _SITES + 1),
                         **RUN,
                     ).isel(body=0, drop=True)
@@ -118,7 +120,7 @@ def measure(impacts: int, seed: int, *, threads: int | None = None, progress: bo
 
 def _reduced(batches: xr.Dataset, body: Dumbbell) -> xr.Dataset:
     """Pool the batches of one body, dimensions (batch, law, …); their scatter gives the errors."""
-    number, mean, variance = (batches[name] for name in ("number", "mean", "variance"))
+    number, mean, variance = (batches[name] for name in ("number", "mean_restitution", "variance"))
     found = xr.Dataset(attrs=batches.attrs)
 
     def weighted(values: xr.DataArray) -> xr.DataArray:
@@ -138,20 +140,20 @@ def _reduced(batches: xr.Dataset, body: Dumbbell) -> xr.Dataset:
     text = "share of impacts that create energy"
     keep("created_share", created.sum("batch") / happened.sum("batch"), created / happened, text, units="1")
     text = "largest factor by which an impact multiplied the kinetic energy"
-    found["largest_factor"] = factor.max("batch").assign_attrs(long_name=text, units="1")
+    found["largest_energy_ratio"] = factor.max("batch").assign_attrs(long_name=text, units="1")
     found["number"] = number.sum("batch").assign_attrs(long_name="impacts in the velocity bin")
 
     row = batches.sel(velocity=SPEED, method="nearest")
     width = float(batches["restitution"][1] - batches["restitution"][0])
     total = row["number"].sum("batch")
-    density = row["count"].sum("batch") / (total * width)
+    density = row["restitution_count"].sum("batch") / (total * width)
     found["density"] = _by_site(density).assign_attrs(
         long_name="probability density of restitution", units="1"
     )
     found["restitution"] = _by_site(batches["restitution"]).assign_attrs(units="1")
-    found["density_error"] = _by_site((row["count"] / (row["number"] * width)).std("batch", ddof=1)) / sqrt(
-        BATCHES
-    )
+    found["density_error"] = _by_site(
+        (row["restitution_count"] / (row["number"] * width)).std("batch", ddof=1)
+    ) / sqrt(BATCHES)
 
     fast = batches["velocity"] >= SLOWEST
     text = f"share of energy-creating impacts at {SLOWEST:g} m/s and above"
@@ -164,7 +166,7 @@ def _reduced(batches: xr.Dataset, body: Dumbbell) -> xr.Dataset:
     text = "share of energy-creating impacts among all"
     keep("all_share", gains.sum("batch") / impacts.sum("batch"), gains / impacts, text)
     found["all_factor"] = (
-        batches["largest_factor"].max("batch").assign_attrs(long_name="largest factor of all")
+        batches["largest_energy_ratio_of_all"].max("batch").assign_attrs(long_name="largest factor of all")
     )
     found["all_impacts"] = impacts.sum("batch").assign_attrs(long_name="all impacts")
     found["total_impacts"] = all_fast.sum("batch").assign_attrs(

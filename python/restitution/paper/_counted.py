@@ -88,6 +88,7 @@ def count_all(
             orientation=s.orientation,
             seed=recorded.attrs["seed"],
             threads=threads,
+            batches=1,
             velocity_bins=velocity,
             restitution_bins=restitution,
             fraction_bins=mesh(*s.fraction_range, s.fraction_mesh),

@@ -22,7 +22,7 @@ _FEWEST_FOR_QUANTILES = 200
 
 
 def restitution_map(runs: Runs, s: Settings) -> xr.Dataset:
-    """Fig. 2: ``count`` on the lattice of impact velocity and restitution."""
+    """Fig. 2: ``restitution_count`` on the lattice of impact velocity and restitution."""
     return runs.counted.lattice.assign_attrs(_about_counted(runs.counted.lattice))
 
 
@@ -47,7 +47,7 @@ def restitution_histograms(runs: Runs, s: Settings) -> xr.Dataset:
         fitted = fit.asymmetric_laplace(values)
         # The cusp itself is among the points, lest the curve cut it off.
         points = np.sort(np.append(np.linspace(edges[0], edges[-1], 400), fitted.parameters["location"]))
-        count = coarse(counted["count"].to_numpy(), s, width)
+        count = coarse(counted["restitution_count"].to_numpy(), s, width)
         part = _histogram(count, int(counted["number"]), edges, _together(particle, values, edges))
         part["fit_point"] = ("point", points)
         part["fit_density"] = ("point", fitted.pdf(points))
@@ -96,7 +96,7 @@ def first_impact(runs: Runs, s: Settings) -> xr.Dataset:
     drawn["printed_density"] = ("point", printed_density(points, body, s.first_law))
     chance = np.diff(exact.cdf(edges))
     deviation = np.sqrt(values.size * chance * (1 - chance))
-    drawn["pull"] = ("bin", (drawn["count"].to_numpy() - values.size * chance) / deviation)
+    drawn["pull"] = ("bin", (drawn["impacts"].to_numpy() - values.size * chance) / deviation)
     drawn["negative"] = np.count_nonzero(values < 0) / values.size
     drawn["negative_exact"] = float(exact.cdf(0.0))
     return drawn.assign_attrs(_about(runs.first))
@@ -192,7 +192,7 @@ def _histogram(count: IntArray, number: int, edges: FloatArray, together: FloatA
     return xr.Dataset(
         {
             "edges": ("edge", edges),
-            "count": ("bin", count),
+            "impacts": ("bin", count),
             "density": ("bin", count * scale, {"long_name": "probability density"}),
             "density_error": ("bin", error * scale, {"long_name": "standard error, a particle is a cluster"}),
             "number": number,

@@ -19,7 +19,7 @@ _DEVIATION = r"standard deviation $\sigma(\varepsilon)$"
 def restitution_map(drawn: xr.Dataset) -> Figure:
     """Fig. 2 from `restitution_map`."""
     figure, [[axes]] = fg.panels(fg.COLUMN, 2.7)
-    _map(figure, axes, drawn, "restitution", "count")
+    _map(figure, axes, drawn, "restitution", "restitution_count")
     axes.set_ylabel(_RESTITUTION)
     return figure
 
@@ -37,7 +37,7 @@ def fraction_map(drawn: xr.Dataset) -> Figure:
 def low_velocity_map(drawn: xr.Dataset) -> Figure:
     """Fig. 7 from `low_velocity_map`."""
     figure, [[axes]] = fg.panels(fg.COLUMN, 2.7)
-    _map(figure, axes, drawn, "restitution", "count")
+    _map(figure, axes, drawn, "restitution", "restitution_count")
     axes.set_ylabel(_RESTITUTION)
     axes.xaxis.set_major_locator(MultipleLocator(0.02))
     for line in (axes.axhline, axes.axvline):

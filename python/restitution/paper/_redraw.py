@@ -3,11 +3,10 @@
 import os
 from pathlib import Path
 
-from tqdm import tqdm
-
+from restitution._files import check_folder, whole_folder
+from restitution._resources import bar
 from restitution.paper._claims import judge
-from restitution.paper._figures import draw_all
-from restitution.paper._folder import unfinished
+from restitution.paper._figures import FIGURES, draw_all
 from restitution.paper._report import write_report
 from restitution.paper._runs import check_impacts, simulate_all
 from restitution.paper._settings import Settings
@@ -19,6 +18,8 @@ def redraw(
     seed: int = 1,
     threads: int | None = None,
     progress: bool = True,
+    *,
+    overwrite: bool = False,
 ) -> Path:
     """Redraw Figs. 2-7 and 9, with two figures of what the paper leaves open, and judge the paper's claims.
 
@@ -26,8 +27,7 @@ def redraw(
     ----------
     out : path
         Folder for the report, and for each figure its PNG, PDF, caption and data; made if it does not
-        exist. Files of an earlier call are replaced, others are left alone. Nothing appears there before
-        all is done.
+        exist. Nothing appears there before all is done.
     impacts : int
         Impacts to count for each of Figs. 2-5 and 7 and each curve of Fig. 6, at least 400 000, the number
         in the paper's Fig. 2. At most 4 000 000 of them are recorded, for the claims and the standard errors.
@@ -37,6 +37,8 @@ def redraw(
         As in `restitution.simulate`. The same seed gives the same figures with any number.
     progress : bool
         Whether to show progress bars.
+    overwrite : bool
+        Whether files of an earlier call are replaced; others are left alone.
 
     Returns
     -------
@@ -48,13 +50,16 @@ def redraw(
     ValueError
         If `impacts` or `seed` is out of range.
     OSError
-        If `out` cannot be written to; found out before anything is computed.
+        If `out` cannot be written to, or holds anything and is not to be overwritten; found out before
+        anything is computed.
     """
     settings = Settings()
     check_impacts(settings, impacts)
     folder = Path(out)
-    stages = tqdm(total=4, desc="paper", unit="stage", disable=not progress)
-    with stages, unfinished(folder) as draft:
+    stages = bar(show=progress, total=4, desc="paper", unit="stage")
+    check_folder(folder, replace=overwrite)
+    names = [f"{figure.name}.{kind}" for figure in FIGURES for kind in ("png", "pdf", "nc", "txt")]
+    with stages, whole_folder(folder, replace=overwrite, names=[*names, "report.html"]) as draft:
         runs = simulate_all(settings, impacts, seed, threads, progress)
         stages.update()
         figures = draw_all(runs, settings, draft, progress)

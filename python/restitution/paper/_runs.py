@@ -6,10 +6,10 @@ from math import ceil
 
 import numpy as np
 import xarray as xr
-from tqdm import tqdm
 
 import restitution as rs
 from restitution._energy import reported_elsewhere
+from restitution._resources import bar as bar_of
 from restitution.laws import TangentialRestitution
 from restitution.paper._counted import Counted, count_all
 from restitution.paper._settings import Settings
@@ -120,7 +120,7 @@ def simulate_all(
     s = settings
     number = 6 + 2 * len(s.bead_elongations) + len(s.energy_elongations)
     number += 2 * (len(s.radii) + len(s.heights))
-    with tqdm(total=number, desc="simulations", unit="run", leave=False, disable=not progress) as bar:
+    with bar_of(show=progress, total=number, desc="simulations", unit="run", leave=False) as bar:
 
         def drop(
             name: str,

@@ -45,7 +45,7 @@ def at_speeds(counted: xr.Dataset, s: Settings) -> Iterator[xr.Dataset]:
     edges = counted["velocity_edges"].to_numpy()
     for window in s.speed_windows:
         low, high = (int(np.argmin(np.abs(edges - v))) for v in window)
-        inside = counted[["count", "fraction_count", "number"]].isel(velocity=slice(low, high))
+        inside = counted[["restitution_count", "fraction_count", "number"]].isel(velocity=slice(low, high))
         yield inside.sum("velocity")
 
 

@@ -1,8 +1,10 @@
 """The paper's quantitative claims, judged against the simulations."""
 
+from restitution._words import with_error
 from restitution.paper._claims import (
     _dependence,
     _energy,
+    _experiments,
     _first,
     _negative,
     _reservoir,
@@ -10,7 +12,7 @@ from restitution.paper._claims import (
     _shape,
     _unsaid,
 )
-from restitution.paper._claims._claim import SIGNIFICANT, Claim, Measurement, Verdict, with_error
+from restitution.paper._claims._claim import SIGNIFICANT, Claim, Measurement, Verdict
 from restitution.paper._claims._energy import Gains, gains_by_elongation
 from restitution.paper._claims._unsaid import deviations
 from restitution.paper._runs import Runs
@@ -28,7 +30,7 @@ __all__ = [
     "with_error",
 ]
 
-_GROUPS = (_scatter, _reservoir, _shape, _dependence, _negative, _first, _energy, _unsaid)
+_GROUPS = (_scatter, _reservoir, _shape, _dependence, _negative, _first, _energy, _unsaid, _experiments)
 
 
 def judge(runs: Runs, settings: Settings) -> list[Claim]:

@@ -1,6 +1,7 @@
 """Claims on the dependence of successive impacts at low speed (Sec. III)."""
 
 import numpy as np
+import xarray as xr
 from numpy.typing import NDArray
 
 from restitution.paper._claims._claim import SIGNIFICANT, Claim, Measurement, listed, verdict
@@ -17,15 +18,15 @@ def judge(runs: Runs, settings: Settings) -> list[Claim]:
     return [_independent(runs, settings), _sphere_to_sphere(runs, settings)]
 
 
-def _followed(impacts: Impacts, runs: Runs) -> Impacts:
-    """Those impacts that have a next one with a finite ε."""
-    e = runs.main["restitution"].to_numpy()
+def followed(impacts: Impacts, data: xr.Dataset) -> Impacts:
+    """Those impacts of a run that have a next one with a finite ε."""
+    e = data["restitution"].to_numpy()
     follows = np.zeros(e.shape, dtype=np.bool_)
     follows[:, :-1] = np.isfinite(e[:, 1:])
     return impacts.only(follows[impacts.where] & np.isfinite(e[impacts.where]))
 
 
-def _next(impacts: Impacts, values: NDArray[np.generic]) -> Array:
+def following(impacts: Impacts, values: NDArray[np.generic]) -> Array:
     """Values at the impacts that follow."""
     particle, impact = impacts.where
     return Impacts((particle, impact + 1), impacts.cell, impacts.cells, impacts.particles).of(values)
@@ -34,17 +35,17 @@ def _next(impacts: Impacts, values: NDArray[np.generic]) -> Array:
 def _changes(impacts: Impacts, runs: Runs) -> Array:
     """1.0 where the next impact is on the other sphere, else 0.0."""
     contact = runs.main["contact"].to_numpy()
-    return np.not_equal(impacts.of(contact), _next(impacts, contact)).astype(np.float64)
+    return np.not_equal(impacts.of(contact), following(impacts, contact)).astype(np.float64)
 
 
 def _independent(runs: Runs, settings: Settings) -> Claim:
-    impacts = _followed(in_windows(runs.main["impact_velocity"], settings.speed_windows), runs)
+    impacts = followed(in_windows(runs.main["impact_velocity"], settings.speed_windows), runs.main)
     labels = [f"{v:g} m/s" for v in settings.speeds]
     tilt = np.abs(np.cos(runs.main["angle"].to_numpy()))
     e = runs.main["restitution"].to_numpy()
     change = impacts.means(_changes(impacts, runs))
-    orientation = impacts.correlations(impacts.of(tilt), _next(impacts, tilt))
-    restitution = impacts.correlations(impacts.of(e), _next(impacts, e))
+    orientation = impacts.correlations(impacts.of(tilt), following(impacts, tilt))
+    restitution = impacts.correlations(impacts.of(e), following(impacts, e))
     scores = np.array([change.beyond(0.5), orientation.beyond(0), restitution.beyond(0)])
     dependent = np.max(np.abs(scores), axis=0) > SIGNIFICANT
     named = [label for label, yes in zip(labels, dependent, strict=True) if yes]
@@ -69,7 +70,7 @@ def _independent(runs: Runs, settings: Settings) -> Claim:
 
 def _sphere_to_sphere(runs: Runs, settings: Settings) -> Claim:
     bins = falling(runs.main, 1e-3, SLOW_BINS)
-    impacts = _followed(bins.impacts, runs)
+    impacts = followed(bins.impacts, runs.main)
     change = impacts.means(_changes(impacts, runs))
     low = settings.speed_windows[0][1]
     slow = np.flatnonzero(bins.speeds < low)
@@ -91,7 +92,7 @@ def _sphere_to_sphere(runs: Runs, settings: Settings) -> Claim:
         "some; fails otherwise.",
         why="The particle comes down on the other sphere more often than not."
         if above.size and above.all()
-        else "The slower the impact, the more often the next one is on the SAME sphere: "
+        else "The slower the impact, the more often the next one is on the same sphere: "
         f"{100 * (1 - shown.value[-1]):.3g} % at {bins.labels[slow[-1]]}. Many small jumps on one sphere, "
         "then the other.",
     )

@@ -6,7 +6,8 @@ from dataclasses import dataclass
 import numpy as np
 import xarray as xr
 
-from restitution.paper._claims._claim import Claim, Measurement, verdict, with_error
+from restitution._words import with_error
+from restitution.paper._claims._claim import Claim, Measurement, verdict
 from restitution.paper._claims._estimate import Array, in_bins
 from restitution.paper._runs import Runs
 from restitution.paper._settings import Settings

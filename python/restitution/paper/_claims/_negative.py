@@ -4,8 +4,9 @@ from itertools import pairwise
 
 import numpy as np
 
+from restitution._words import with_error
 from restitution.analytic import first_impact
-from restitution.paper._claims._claim import SIGNIFICANT, Claim, Measurement, listed, verdict, with_error
+from restitution.paper._claims._claim import SIGNIFICANT, Claim, Measurement, listed, verdict
 from restitution.paper._claims._estimate import blocks, in_bins, in_blocks
 from restitution.paper._claims._trend import RISING_RULE, falling, trend
 from restitution.paper._runs import Runs

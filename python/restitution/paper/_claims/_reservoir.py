@@ -6,8 +6,9 @@ from itertools import pairwise
 import numpy as np
 import xarray as xr
 
-from restitution._dataset import STOP_REASONS
-from restitution.paper._claims._claim import SIGNIFICANT, Claim, Measurement, listed, verdict, with_error
+from restitution._core import STOP_REASONS
+from restitution._words import with_error
+from restitution.paper._claims._claim import SIGNIFICANT, Claim, Measurement, listed, verdict
 from restitution.paper._claims._energy import energies
 from restitution.paper._claims._estimate import Array, Estimate, blocks, in_blocks, in_windows
 from restitution.paper._claims._trend import RISING_RULE, falling, trend

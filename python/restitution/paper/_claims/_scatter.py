@@ -4,7 +4,8 @@ from itertools import pairwise
 
 import numpy as np
 
-from restitution.paper._claims._claim import SIGNIFICANT, Claim, Measurement, listed, verdict, with_error
+from restitution._words import with_error
+from restitution.paper._claims._claim import SIGNIFICANT, Claim, Measurement, listed, verdict
 from restitution.paper._claims._energy import energies
 from restitution.paper._claims._estimate import in_bins, in_windows
 from restitution.paper._claims._trend import RISING_RULE, falling, trend

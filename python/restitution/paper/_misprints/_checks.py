@@ -92,7 +92,7 @@ def negative_restitution() -> Check:
     low, _ = distribution.support()
     printed, _ = quad(lambda s: float(printed_density(s, BODY, LAW)), low, 0)
     right, _ = quad(lambda s: float(distribution.pdf(s)), low, 0)
-    # ε = -1 + P·n/(m|v_G|) (13) falls from ε^n as the axis leans; beyond this angle it is negative.
+    # ε = -1 + P·n/(m|v_G|) (13) falls from ε_n as the axis leans; beyond this angle it is negative.
     zero = brentq(lambda theta: fall(theta)[2] - 1, 0, np.pi / 2, xtol=1e-14)
     return Check(printed, right, 1 - float(zero) / (np.pi / 2))
 

@@ -20,7 +20,7 @@ def printed_density(
     body : Dumbbell
         With ``separation > 0``.
     law : TangentialRestitution
-        Gives ε^n.
+        Gives ε_n.
 
     Returns
     -------

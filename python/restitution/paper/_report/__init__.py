@@ -30,6 +30,10 @@ class Figure(Protocol):
         """The picture."""
 
     @property
+    def shows(self) -> str:
+        """What can be seen in it, for those who cannot see it."""
+
+    @property
     def caption(self) -> str:
         """What it shows, with all parameters."""
 
@@ -60,12 +64,12 @@ def write_report(
         If a file cannot be read or written.
     """
     parts = {
-        "claims": ("The claims, judged", sections.summary(claims)),
+        "claims": ("The claims of the paper, checked", sections.summary(claims)),
         "figures": ("The figures, redrawn", sections.figures(figures)),
         "numbers": ("The numbers behind each verdict", sections.details(claims)),
         "misprints": ("Misprints", sections.misprints()),
         "sensitivity": ("What radius and release height change", sections.sensitivity(runs, settings)),
-        "energy": ("What the paper does not say: energy is created", sections.energy(runs)),
+        "energy": ("Not in the paper: impacts that create energy", sections.energy(runs)),
         "parameters": ("Parameters", sections.parameters(settings)),
         "runs": ("Simulations", sections.simulations(runs)),
         "reproduce": ("How to reproduce this report", sections.reproduce(runs)),
@@ -82,12 +86,13 @@ def write_report(
 <head>
 <meta charset="utf-8">
 <meta name="viewport" content="width=device-width, initial-scale=1">
+<meta name="color-scheme" content="light dark">
 <title>{text(sections.TITLE)}</title>
 <style>
 {style}</style>
 </head>
 <body>
-<header>
+<header id="top">
 {sections.heading(claims, runs)}
 </header>
 <nav aria-label="Contents">

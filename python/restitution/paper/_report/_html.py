@@ -1,4 +1,4 @@
-"""The few pieces of HTML that the report is made of; only `text` and `prose` let foreign text in."""
+"""The pieces of HTML that the report is made of; only `text` and `prose` let foreign text in."""
 
 import re
 from base64 import b64encode
@@ -14,6 +14,12 @@ _CLASSES: dict[Verdict, str] = {"holds": "holds", "holds in part": "part", "fail
 _SUBSCRIPT = re.compile(r"(?<=[A-Za-zΑ-ω\]])_([A-Za-zΑ-ω]{1,5})(?![A-Za-z_])")
 _MINUS = re.compile(r"(?<![\w)\-])-(?=[\d.])")
 _SUPERSCRIPT = re.compile(r"\^([A-Za-z0-9]|\([^()]*\))")
+_DOI = re.compile(r"\bDOI (10\.\d{4,9}/[\w./-]*\w)")
+_THOUSANDS = re.compile(r"(?<=\d) (?=\d{3}(?!\d))")
+_BEFORE_UNIT = re.compile(r"(?<=\d) (?=(?:%|°|m/s²?|mm|m|kg|rad|ms|s|standard errors)(?![\w/]))")
+_AROUND_SIGN = re.compile(r" ?([±=<>≤≥≈×]|&lt;|&gt;) (?=[\d.(−-])")
+_AFTER_NAME = re.compile(r"\b(Figs?\.|Eqs?\.|Secs?\.) (?=\(?[A-Z\d])")
+_OPEN_MINUS = re.compile(r"(?<=[\[(])−(?=[(|])")
 
 
 def text(value: object) -> str:
@@ -22,9 +28,24 @@ def text(value: object) -> str:
 
 
 def prose(value: str) -> str:
-    """Escape text with formulas: ``x_y`` is lowered, ``x^y`` raised, ``-1`` gets a true minus sign."""
-    lowered = _SUBSCRIPT.sub(r"<sub>\1</sub>", _MINUS.sub("−", text(value)))
-    return _SUPERSCRIPT.sub(lambda match: f"<sup>{match[1].strip('()')}</sup>", lowered)
+    """Escape text with formulas: ``x_y`` is lowered, ``x^y`` raised, ``-1`` gets a true minus sign.
+
+    Lines do not break within a number, before its unit or after a sign, and a DOI becomes a link.
+    """
+    whole = _together(_MINUS.sub("−", text(value)))
+    lowered = _SUBSCRIPT.sub(r"<sub>\1</sub>", whole)
+    raised = _SUPERSCRIPT.sub(lambda match: f"<sup>{match[1].strip('()')}</sup>", lowered)
+    return _DOI.sub(r'<a href="https://doi.org/\1">doi:\1</a>', raised)
+
+
+def _together(value: str) -> str:
+    """Join by no-break spaces what a line break would tear apart."""
+    value = _BEFORE_UNIT.sub("\u00a0", _THOUSANDS.sub("\u202f", value))
+    value = _AROUND_SIGN.sub(
+        lambda match: ("\u00a0" if match[0][0] == " " else "") + match[1] + "\u00a0", value
+    )
+    value = value.replace(" − ", "\u00a0−\u00a0")
+    return _OPEN_MINUS.sub("−\u2060", _AFTER_NAME.sub("\\1\u00a0", value))
 
 
 def badge(verdict: Verdict) -> str:
@@ -39,12 +60,14 @@ def mark(kind: str, serious: bool) -> str:
 
 def count(verdict: Verdict, number: int) -> str:
     """Say how many claims have this verdict, as a list item."""
-    return f'<li class="{_CLASSES[verdict]}"><b>{number}</b>{text(verdict)}</li>'
+    words = verdict if number == 1 else verdict.replace("holds", "hold").replace("fails", "fail")
+    return f'<li class="{_CLASSES[verdict]}"><b>{number}</b> {text(words)}</li>'
 
 
 def section(anchor: str, title: str, *body: str) -> str:
     """Make a section that the table of contents can point to."""
-    return f'<section id="{anchor}">\n<h2>{text(title)}</h2>\n' + "\n".join(body) + "\n</section>"
+    top = '<p class="top"><a href="#top">Back to the top</a></p>'
+    return "\n".join((f'<section id="{anchor}">\n<h2>{text(title)}</h2>', *body, top, "</section>"))
 
 
 def paragraph(value: str, style: str = "") -> str:
@@ -53,9 +76,9 @@ def paragraph(value: str, style: str = "") -> str:
 
 
 def table(
-    headers: Sequence[str], rows: Iterable[Sequence[str]], *, caption: str = "", numbers: Sequence[int] = ()
+    headers: Sequence[str], rows: Iterable[Sequence[str]], *, caption: str, numbers: Sequence[int] = ()
 ) -> str:
-    """Make a table of cells that are HTML already.
+    """Make a table of cells that are HTML already; on a phone it is folded, with the caption to open it.
 
     Parameters
     ----------
@@ -64,7 +87,7 @@ def table(
     rows : iterable of sequence of str
         The first cell of each row is its header.
     caption : str
-        Text above the table, if any.
+        What it shows.
     numbers : sequence of int
         Columns that are set flush right.
     """
@@ -75,10 +98,13 @@ def table(
         parts = (f"<{t}{c}>{v}</{t[:2]}>" for t, c, v in zip(tags, styles, row, strict=True))
         return f"<tr>{''.join(parts)}</tr>"
 
-    above = f"<caption>{prose(caption)}</caption>" if caption else ""
+    about = prose(caption)
     head = f"<thead>{cells(headers, True)}</thead>" if any(headers) else ""
     body = "\n".join(cells(row, False) for row in rows)
-    return f'<div class="scroll"><table>{above}{head}<tbody>\n{body}\n</tbody></table></div>'
+    return (
+        f'<details class="fold"><summary>{about}</summary>\n<div class="scroll"><table>'
+        f"<caption>{about}</caption>{head}<tbody>\n{body}\n</tbody></table></div></details>"
+    )
 
 
 def image(path: Path, alternative: str) -> str:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, get_args
 import numpy as np
 import xarray as xr
 
-from restitution._dataset import STOP_REASONS
+from restitution._core import STOP_REASONS
 from restitution.paper._claims import (
     SIGNIFICANT,
     Claim,
@@ -27,7 +27,7 @@ from restitution.paper._settings import Settings
 if TYPE_CHECKING:
     from restitution.paper._report import Figure
 
-TITLE = "Coefficient of restitution of aspherical particles: redrawn and judged"
+TITLE = "Coefficient of restitution of aspherical particles: figures redrawn, claims checked"
 PAPER = (
     "A. Glielmo, N. Gunkelmann, T. Pöschel, “Coefficient of restitution of aspherical particles”, "
     "Phys. Rev. E 90, 052204 (2014), DOI 10.1103/PhysRevE.90.052204"
@@ -50,10 +50,11 @@ def heading(claims: Sequence[Claim], runs: Runs) -> str:
             f"<h1>{html.text(TITLE)}</h1>",
             html.paragraph(PAPER + ".", "lead"),
             html.paragraph(
-                f"Figures 2 to 7 and 9 simulated anew, with {_grouped(counted)} impacts behind Fig. 2, and "
-                f"each of {len(claims)} quantitative claims of the paper beside the number measured here, "
-                f"on the first {_grouped(recorded)} of these impacts if nothing else is said, with its "
-                f"standard error and a verdict by a stated rule. Made by {source(runs)}, seed {runs.seed}."
+                f"Figures 2 to 7 and 9 are simulated anew, with {_grouped(counted)} impacts behind Fig. 2. "
+                f"Each of the {len(claims)} quantitative claims of the paper stands beside the number "
+                "measured here, with its standard error and a verdict by a stated rule. Unless stated "
+                f"otherwise, the numbers are of the first {_grouped(recorded)} of these impacts. Made by "
+                f"{source(runs)}, seed {runs.seed}."
             ),
             f'<ul class="counts">\n{counts}\n</ul>',
         )
@@ -69,7 +70,8 @@ def summary(claims: Sequence[Claim]) -> str:
         for claim in claims
     )
     return (
-        '<table class="summary"><thead><tr><th scope="col">The paper</th><th scope="col">What we find</th>'
+        '<table class="summary"><caption>Claims in the order of the paper; each verdict leads to its '
+        'numbers.</caption><thead><tr><th scope="col">The paper</th><th scope="col">What we find</th>'
         f'<th scope="col">Verdict</th></tr></thead><tbody>\n{rows}\n</tbody></table>'
     )
 
@@ -78,7 +80,7 @@ def figures(found: Sequence["Figure"]) -> str:
     """Show every figure with its caption."""
     return "\n".join(
         f'<figure id="{html.text(figure.name)}">\n<h3>{html.prose(figure.title)}</h3>\n'
-        f"{html.image(figure.png, figure.title)}\n"
+        f"{html.image(figure.png, figure.shows)}\n"
         f"<figcaption>{html.prose(figure.caption)}</figcaption>\n</figure>"
         for figure in found
     )
@@ -117,6 +119,7 @@ def _misprint(one: Misprint) -> str:
     numbers = html.table(
         ("", "as printed", "corrected", "independent"),
         [(html.prose(one.quantity), *(html.prose(f"{round(value, 12) + 0.0:.6g}") for value in check))],
+        caption=f"Eq. {one.equation}: one number three ways",
         numbers=(1, 2, 3),
     )
     kind = html.mark(one.kind, one.kind == "misprint")
@@ -145,9 +148,9 @@ def sensitivity(runs: Runs, settings: Settings) -> str:
             f"{SIGNIFICANT:g} standard errors from our choice; –: not reached."
         )
     ]
-    for name, by, ours in (
-        ("R", runs.by_radius, settings.radius),
-        ("released from", runs.by_height, settings.release_height),
+    for name, by_what, by, ours in (
+        ("R", "radius", runs.by_radius, settings.radius),
+        ("released from", "release height", runs.by_height, settings.release_height),
     ):
         for elongation in by[ours]:
             reference = deviations(by[ours][elongation], settings)
@@ -167,7 +170,12 @@ def sensitivity(runs: Runs, settings: Settings) -> str:
                 rows.append((html.text(f"{name} {1e3 * value:g} mm{mark}"), *cells))
             speeds = (html.text(f"{v:g} m/s") for v in settings.speeds)
             parts.append(
-                html.table(("", *speeds), rows, caption=f"L/R = {elongation:g}", numbers=range(1, 5))
+                html.table(
+                    ("", *speeds),
+                    rows,
+                    caption=f"σ(ε) at four speeds for L/R = {elongation:g}, by {by_what}",
+                    numbers=range(1, 5),
+                )
             )
     return "\n".join(parts)
 
@@ -192,7 +200,8 @@ def energy(runs: Runs) -> str:
         for elongation, one in found.items()
     ]
     headers = ("L/R", "share of impacts that create energy", "the same above round-off", "largest factor")
-    return f"{text}\n{html.table(headers, rows, numbers=(1, 2, 3))}"
+    caption = "Impacts that create kinetic energy, by L/R"
+    return f"{text}\n{html.table(headers, rows, caption=caption, numbers=(1, 2, 3))}"
 
 
 def parameters(settings: Settings) -> str:
@@ -207,7 +216,8 @@ def parameters(settings: Settings) -> str:
         for row in settings.rows()
     ]
     note = html.paragraph("What the paper states is marked “paper”; where it is silent the choice is ours.")
-    return f"{note}\n{html.table(('', 'value', 'unit', 'source'), rows)}"
+    headers = ("parameter", "value", "unit", "source")
+    return f"{note}\n{html.table(headers, rows, caption='Parameters of the figures')}"
 
 
 def simulations(runs: Runs) -> str:
@@ -262,7 +272,8 @@ def simulations(runs: Runs) -> str:
         "is regularised. What is counted is not recorded; the recorded run of the same seed is its first "
         "particles."
     )
-    return f"{note}\n{html.table(headers, rows, numbers=(1, 2, 3, 5, 6))}"
+    caption = "Simulations: size, seed, and why trajectories ended"
+    return f"{note}\n{html.table(headers, rows, caption=caption, numbers=(1, 2, 3, 5, 6))}"
 
 
 def reproduce(runs: Runs) -> str:
@@ -280,7 +291,7 @@ def citation(runs: Runs) -> str:
         "The restitution developers, “restitution: the coefficient of restitution as a distribution, not a "
         f"number”, version {runs.main.attrs['version']}"
     )
-    return f"<ul>\n<li>{html.text(PAPER)}</li>\n<li>{html.text(software)}</li>\n</ul>"
+    return f"<ul>\n<li>{html.prose(PAPER)}</li>\n<li>{html.text(software)}</li>\n</ul>"
 
 
 def _datasets(value: Any) -> Iterator[xr.Dataset]:

@@ -1,0 +1,229 @@
+"""What every body, law and release costs, beside the equal dumbbell dropped from rest with the paper's law.
+
+The dumbbell has L/R = 0.1, and every row bounces as often as it does. Ratios are taken within a round; a row
+is given as many particles as take it about `SECONDS`.
+"""
+
+import math
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, field
+from time import perf_counter
+from typing import Any
+
+import numpy as np
+
+import restitution as rs
+from benchmarks.work import Array, Work
+
+SECONDS = 0.4
+LEAST = 100  # particles
+LEAST_LEARNED = 2000  # so that every speed has enough impacts to be learned from
+ROUNDS_LEARNED = 3  # they take long
+MOST = 200_000
+Bodies = rs.Dumbbell | rs.LoadedSphere | rs.Spherocylinder | rs.Spheroid
+Laws = rs.TangentialRestitution | rs.Coulomb
+
+WORK = Work()
+R = WORK.radius
+PAPER = rs.TangentialRestitution(normal=WORK.normal, tangential=WORK.tangential)
+DUMBBELL = rs.Dumbbell(radius=R, separation=WORK.separation)
+UNEQUAL = rs.Dumbbell(radius=(R, 0.8 * R), separation=R)
+LOADED = rs.LoadedSphere(radius=R, density=2500.0, load=2e-3, offset=0.5 * R)
+CAPSULE = rs.Spherocylinder(radius=R, separation=WORK.separation)
+THROWN: dict[str, Any] = {
+    "orientation": "isotropic",
+    "spin": rs.RandomSpin(rate=(10.0, 90.0)),
+    "velocity": (0.2, 0.1, 0.0),
+    "incline": 0.1,
+}
+REST: dict[str, Any] = {}
+
+
+def spheroid(aspect: float) -> rs.Spheroid:
+    """Of the same equatorial radius as the dumbbell."""
+    return rs.Spheroid(equatorial=R, polar=aspect * R)
+
+
+@dataclass(frozen=True)
+class Row:
+    """A body under a law, let go somehow; `target` is how many times longer than the dumbbell it may take."""
+
+    name: str
+    target: float
+    body: Bodies
+    law: Laws
+    release: dict[str, Any]
+    learned: bool = False
+    bins: dict[str, Array] = field(default_factory=dict)
+
+    def run(self, particles: int, threads: int, seed: int) -> int:
+        """Bounce as many particles on this number of threads (0: all); the number of impacts."""
+        common: dict[str, Any] = {
+            "particles": particles,
+            "impacts": WORK.impacts,
+            "release_height": 2.0 * R + WORK.release_height,  # high enough for the longest body
+            "gravity": WORK.gravity,
+            "threads": threads or None,
+            "seed": seed,
+            **self.release,
+        }
+        if self.learned:
+            dist = rs.FluctuatingRestitution.learn(self.body, self.law, velocities=LEARNED, **common)
+            return 2 * particles * WORK.impacts if dist is not None else 0
+        lattice = {"velocity_bins": WORK.lattice.velocity, "restitution_bins": WORK.lattice.restitution}
+        bins: dict[str, Any] = lattice | self.bins
+        found = rs.statistics(self.body, self.law, **bins, **common)
+        beside = ("number", "undefined", "velocity_underflow", "velocity_overflow")
+        return sum(int(found[name].sum()) for name in beside)
+
+
+LEARNED = (0.1, 0.4)  # m/s
+# As many bins as the lattice has: of equal ratios from 1 mm/s on; a seventieth as wide at ε_n as at the ends.
+LOGARITHMIC = np.geomspace(1e-3, WORK.lattice.velocity[-1], WORK.lattice.velocity.size)
+DENSE = WORK.normal + np.sinh(np.linspace(-5.0, 5.0, WORK.lattice.restitution.size)) / np.sinh(5.0)
+
+
+def coulomb(hypothesis: Any) -> rs.Coulomb:
+    return rs.Coulomb(normal=WORK.normal, friction=0.3, hypothesis=hypothesis)
+
+
+HYPOTHESES = ("stronge", "poisson", "newton")
+YARDSTICK = Row("equal dumbbell at rest", 1.0, DUMBBELL, PAPER, REST)
+ROWS = (
+    Row("logarithmic bins of velocity", 1.5, DUMBBELL, PAPER, REST, bins={"velocity_bins": LOGARITHMIC}),
+    Row(
+        "uneven bins of velocity and ε",
+        1.5,
+        DUMBBELL,
+        PAPER,
+        REST,
+        bins={"velocity_bins": LOGARITHMIC, "restitution_bins": DENSE},
+    ),
+    Row("unequal pair at rest", 1.3, UNEQUAL, PAPER, REST),
+    Row("loaded sphere at rest", 1.3, LOADED, PAPER, REST),
+    Row("spherocylinder at rest", 1.3, CAPSULE, PAPER, REST),
+    *(Row(f"spheroid {aspect:g} at rest", 3.0, spheroid(aspect), PAPER, REST) for aspect in (1.05, 2.0, 0.5)),
+    Row("equal dumbbell thrown", 2.5, DUMBBELL, PAPER, THROWN),
+    Row("unequal pair thrown", 2.5, UNEQUAL, PAPER, THROWN),
+    Row("loaded sphere thrown", 2.5, LOADED, PAPER, THROWN),
+    Row("spherocylinder thrown", 2.5, CAPSULE, PAPER, THROWN),
+    *(
+        Row(f"spheroid {aspect:g} thrown", 4.0, spheroid(aspect), PAPER, THROWN)
+        for aspect in (1.05, 2.0, 0.5)
+    ),
+    *(Row(f"Coulomb in the plane, {name}", 1.3, DUMBBELL, coulomb(name), REST) for name in HYPOTHESES),
+    *(
+        Row(f"Coulomb with turning slip, {name}", 10.0, DUMBBELL, coulomb(name), THROWN)
+        for name in HYPOTHESES
+    ),
+)
+LEARN_YARDSTICK = Row("learn, equal dumbbell at rest", 1.0, DUMBBELL, PAPER, REST, learned=True)
+LEARN = Row(
+    "learn, spinning spheroid, Coulomb",
+    6.0,
+    spheroid(2.0),
+    coulomb("stronge"),
+    {"spin": THROWN["spin"]},
+    learned=True,
+)
+
+EVERY = (YARDSTICK, *ROWS, LEARN_YARDSTICK, LEARN)
+
+
+@dataclass(frozen=True)
+class Timed:
+    """Something to be timed, after a first run that may compile: particles, seed -> impacts."""
+
+    name: str
+    run: Callable[[int, int], int]
+
+
+def particles_for(job: Timed, seconds: float, least: int) -> int:
+    """How many particles take about that long."""
+    job.run(least, 0)
+    start = perf_counter()
+    job.run(least, 1)
+    took = perf_counter() - start
+    return min(max(least, math.ceil(least * seconds / took)), MOST)
+
+
+def measured(jobs: Sequence[Timed], rounds: int, seconds: float = SECONDS, least: int = LEAST) -> Array:
+    """Nanoseconds an impact, (round, job); every other round goes through the jobs backwards."""
+    sizes = [particles_for(job, seconds, least) for job in jobs]
+    times = np.empty((rounds, len(jobs)))
+    for turn in range(rounds):
+        order = range(len(jobs)) if turn % 2 == 0 else reversed(range(len(jobs)))
+        for column in order:
+            start = perf_counter()
+            number = jobs[column].run(sizes[column], turn)
+            times[turn, column] = 1e9 * (perf_counter() - start) / number
+    return times
+
+
+def line(name: str, nanoseconds: Array, ratios: Array, target: float, at_least: bool) -> str:
+    """One row: its time, its ratio with the range over the rounds, the target, and whether it is reached."""
+    ratio = float(np.median(ratios))
+    reached = ratio >= target if at_least else ratio <= target
+    return (
+        f"{name:<40}{np.median(nanoseconds):>9.4g}{ratio:>9.3g}   ({ratios.min():.3g} to {ratios.max():.3g})"
+        f"   {'>=' if at_least else '<='} {target:g}{'' if reached else '   MISSED'}"
+    )
+
+
+HEAD = f"{'':<40}{'ns':>9}{'ratio':>9}"
+
+
+def timed(row: Row, threads: int = 1) -> Timed:
+    return Timed(row.name, lambda particles, seed: row.run(particles, threads, seed))
+
+
+def table(rounds: int, only: str = "") -> Iterator[str]:
+    """Every row over the yardstick, one thread; `only` those whose name contains this."""
+    for yardstick, rows in ((YARDSTICK, ROWS), (LEARN_YARDSTICK, (LEARN,))):
+        chosen = [row for row in rows if only in row.name]
+        if not chosen:
+            continue
+        jobs = [timed(row) for row in (yardstick, *chosen)]
+        if yardstick.learned:
+            times = measured(jobs, min(rounds, ROUNDS_LEARNED), least=LEAST_LEARNED)
+        else:
+            times = measured(jobs, rounds)
+        yield f"{yardstick.name:<40}{np.median(times[:, 0]):>9.4g}{1:>9}"
+        for column, row in enumerate(chosen, 1):
+            ratios = times[:, column] / times[:, 0]
+            yield line(row.name, times[:, column], ratios, row.target, at_least=False)
+
+
+def threads(rounds: int, only: str = "") -> Iterator[str]:
+    """Every row with one thread over the same with two."""
+    for row in EVERY:
+        if only in row.name:
+            jobs = [timed(row), timed(row, threads=2)]
+            if row.learned:
+                times = measured(jobs, min(rounds, ROUNDS_LEARNED), least=LEAST_LEARNED)
+            else:
+                times = measured(jobs, rounds)
+            yield line(row.name, times[:, 1], times[:, 0] / times[:, 1], 1.9, at_least=True)
+
+
+def loops(rounds: int) -> Iterator[str]:
+    """The Numba loops for bodies that spin over `statistics` of the same; each checked first."""
+    from benchmarks import agreement
+    from benchmarks.peers.numba_spinning import LOOPS, run
+    from benchmarks.spinning import JOBS, Released, Spinning
+
+    def pair(job: Spinning) -> list[Timed]:
+        def own(particles: int, seed: int) -> int:
+            return job.statistics(Released.random(particles, seed)).impacts
+
+        def peer(particles: int, seed: int) -> int:
+            return run(job, Released.random(particles, seed), LOOPS[job.name])[0].impacts
+
+        return [Timed(job.name, own), Timed(job.name, peer)]
+
+    for job in JOBS:
+        worst = agreement.same_spinning(job, LOOPS[job.name])
+        times = measured(pair(job), rounds)
+        name = f"Numba loop, spinning {job.name}, {type(job.law).__name__}"
+        yield line(name, times[:, 1], times[:, 1] / times[:, 0], 10.0, at_least=True)
+        yield f"    the same first impacts to {worst:.2g} of what is allowed"

@@ -1,0 +1,166 @@
+"""Whether posteriors are calibrated: synthetic experiments whose truth is drawn from the prior.
+
+``python -m benchmarks.calibration OUT [EXPERIMENTS]`` writes ``calibration.png``, ``calibration.md`` and
+``calibration.csv`` into the folder OUT; 500 experiments take some five minutes on one core. If the posterior
+is right, the rank of the truth among its draws is uniform, and an interval of 90 % covers it in 90 %
+(Talts et al., arXiv:1804.06788).
+"""
+
+import sys
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+import numpy.typing as npt
+import xarray as xr
+from matplotlib.figure import Figure
+from scipy import stats
+from tqdm import tqdm
+
+import restitution as rs
+from restitution import figures as fg
+
+Array = npt.NDArray[np.float64]
+
+DIAMETER, DROP, IMPACTS, ERROR = 6e-3, 0.1, 17, 2e-5
+NORMAL, ELONGATION = (0.85, 0.97), (2e-3, 0.2)
+"""Of these the truth is drawn: uniform, and uniform in the logarithm."""
+NAMES = ("normal", "elongation")
+
+
+@dataclass(frozen=True)
+class Calibration:
+    """Ranks of the truth among the draws, over their number; one row for each experiment.
+
+    Attributes
+    ----------
+    truth, rank : ndarray, shape (experiments, 2)
+        Of ε_n and L/R.
+    told : ndarray of bool, shape (experiments,)
+        Whether the verdict was that the times tell the shape.
+    limit : ndarray, shape (experiments,)
+        The upper limit of L/R.
+    """
+
+    truth: Array
+    rank: Array
+    told: npt.NDArray[np.bool_]
+    limit: Array
+
+
+def experiment(seed: int) -> tuple[tuple[float, float], xr.DataTree]:
+    """Drop a ball of the prior, time it, and infer what it was: ε_n and L/R, and the posterior."""
+    rng = np.random.default_rng(seed)
+    while True:
+        normal = rng.uniform(*NORMAL)
+        elongation = float(np.exp(rng.uniform(*np.log(ELONGATION))))
+        law = rs.Frictionless(normal=normal)
+        run = rs.simulate(
+            rs.from_roundness(DIAMETER, 0.25 * elongation * DIAMETER),
+            law,
+            particles=1,
+            impacts=IMPACTS,
+            release_height=DROP + DIAMETER / 2.0,
+            seed=int(rng.integers(2**40)),
+        )
+        times = run.time.values[0] + rng.normal(0.0, ERROR, IMPACTS)
+        flights = np.diff(times)
+        # An impact soon after another would have been heard as one with it.
+        if np.all(flights > 0.0) and np.all(flights[1:] > 0.1 * flights[:-1]):
+            break
+    data = rs.flight.restitution(times, ERROR, drop_height=DROP)
+    found = rs.posterior(
+        data, law, diameter=DIAMETER, elongation=ELONGATION, particles=300, draws=640, seed=seed
+    )
+    return (normal, elongation), found
+
+
+def calibrate(experiments: int, first: int = 1) -> Calibration:
+    """Make experiments with the seeds from `first`."""
+    truths, ranks, told, limits = [], [], [], []
+    for seed in tqdm(range(first, first + experiments), disable=not sys.stderr.isatty()):
+        truth, found = experiment(seed)
+        truths.append(truth)
+        drawn = [found["posterior"].to_dataset()[name].values.ravel() for name in NAMES]
+        ranks.append([float(np.mean(one < true)) for one, true in zip(drawn, truth, strict=True)])
+        told.append(bool(found.attrs["elongation_told"]))
+        limits.append(float(found.attrs["elongation_upper_limit"]))
+    return Calibration(np.array(truths), np.array(ranks), np.array(told), np.array(limits))
+
+
+_COLUMNS = "normal,elongation,rank_normal,rank_elongation,told,limit"
+
+
+def written(found: Calibration) -> str:
+    """Write a line for each experiment, in the order of their seeds."""
+    rows = np.column_stack([found.truth, found.rank, found.told, found.limit])
+    lines = [",".join(f"{value:.6g}" for value in row) for row in rows]
+    return "\n".join([_COLUMNS, *lines]) + "\n"
+
+
+def read(path: Path) -> Calibration:
+    """Read what was written."""
+    rows = np.loadtxt(path, delimiter=",", skiprows=1)
+    return Calibration(rows[:, :2], rows[:, 2:4], rows[:, 4].astype(np.bool_), rows[:, 5])
+
+
+def covered(rank: Array, share: float) -> float:
+    """Share of experiments whose truth is inside the central interval."""
+    return float(np.mean(np.abs(rank - 0.5) < 0.5 * share))
+
+
+def table(found: Calibration) -> str:
+    """Write how often intervals cover, and whether ranks are uniform."""
+    lines = [
+        "| parameter | 50 % covers | 90 % covers | 95 % covers | p, ranks uniform |",
+        "|---|---|---|---|---|",
+    ]
+    for name, rank in zip(("ε_n", "L/R"), found.rank.T, strict=True):
+        shares = [f"{100 * covered(rank, share):.1f} %" for share in (0.5, 0.9, 0.95)]
+        p = stats.kstest(rank, "uniform").pvalue
+        lines.append(f"| {name} | {' | '.join(shares)} | {p:.2g} |")
+    return "\n".join(lines) + "\n"
+
+
+def sentence(found: Calibration) -> str:
+    """Say what the verdicts were worth."""
+    small = found.truth[:, 1] < 0.008
+    below = found.truth[:, 1] < found.limit
+    return (
+        f"{len(found.rank)} experiments. The shape was told in {100 * found.told.mean():.0f} % of all, in "
+        f"{100 * found.told[small].mean():.0f} % where L/R < 0.008, and in "
+        f"{100 * found.told[~small].mean():.0f} % above. Where it was not told, L/R was below the upper "
+        f"limit in {100 * below[~found.told].mean():.0f} %.\n"
+    )
+
+
+@fg.styled
+def draw(found: Calibration) -> Figure:
+    """Draw histograms of the ranks with the band of 95 % for uniform ones."""
+    figure, [row] = fg.panels(fg.PAGE, 2.4, 1, 2)
+    n, bins = len(found.rank), 20
+    low, high = stats.binom(n, 1.0 / bins).ppf([0.025, 0.975])
+    for axes, rank, name in zip(row, found.rank.T, (r"$\varepsilon_n$", "$L/R$"), strict=True):
+        axes.axhspan(low, high, color="0.85")
+        axes.hist(rank, bins=bins, range=(0.0, 1.0), color=fg.COLORS[0], histtype="step")
+        axes.set_xlabel(f"rank of the true {name} among its draws")
+        axes.set_ylabel("experiments")
+        axes.set_xlim(0.0, 1.0)
+    return figure
+
+
+def main(out: Path, experiments: int) -> None:
+    """Write figure and table."""
+    found = calibrate(experiments)
+    out.mkdir(parents=True, exist_ok=True)
+    fg.save(
+        draw(found), out / "calibration", "Calibration", "Ranks of the truth among draws of the posterior"
+    )
+    (out / "calibration.md").write_text(f"{table(found)}\n{sentence(found)}", encoding="utf-8")
+    (out / "calibration.csv").write_text(written(found), encoding="utf-8")
+
+
+if __name__ == "__main__":
+    if len(sys.argv) not in (2, 3):
+        sys.exit("usage: python -m benchmarks.calibration OUT [EXPERIMENTS]")
+    main(Path(sys.argv[1]), int(sys.argv[2]) if len(sys.argv) == 3 else 500)

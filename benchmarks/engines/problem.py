@@ -1,0 +1,84 @@
+"""The dumbbell problem as an engine is given it, and what is read off its motion."""
+
+import csv
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+import numpy.typing as npt
+
+Floats = npt.NDArray[np.float64]
+
+RADIUS = SEPARATION = 0.01
+NORMAL, HEIGHT, GRAVITY = 0.9, 0.06, 9.81
+MASS, TRANSVERSE, AXIAL = 0.017671458676442584, 1.3032700773876405e-06, 7.510369937488098e-07
+"""Of two overlapping spheres of 2500 kg/m³, in kg and kg m²."""
+SPACING = 0.2
+"""Between bodies, in m, which must not meet."""
+REFERENCE = Path(__file__).parent / "reference"
+
+
+@dataclass(frozen=True)
+class Motion:
+    """Vertical velocity of the centres of mass, in m/s, shape (times, bodies), at equal steps in s."""
+
+    step: float
+    velocity: Floats
+
+
+def impacts(motion: Motion) -> tuple[Floats, Floats]:
+    """Find v and ε of every impact; shape (impacts, bodies), NaN where there is none.
+
+    Between impacts a velocity falls by g a step. Neighbouring steps in which it does not are an impact, from
+    the velocity at its begin, less one step of gravity, to that at its end.
+    """
+    kicked = np.diff(motion.velocity, axis=0) + GRAVITY * motion.step > 2e-3
+    found: list[list[tuple[float, float]]] = []
+    for body in range(motion.velocity.shape[1]):
+        at = np.flatnonzero(kicked[:, body])
+        starts = at[np.diff(at, prepend=-2) > 1]
+        ends = at[np.diff(at, append=at[-1] + 2 if at.size else 0) > 1]
+        v = motion.velocity[:, body]
+        before = -(v[starts] - GRAVITY * motion.step)
+        after = v[ends + 1]
+        found.append([(b, a / b) for b, a in zip(before, after, strict=True) if b > 1e-3])
+    most = max((len(row) for row in found), default=0)
+    table = np.full((2, max(most, 1), len(found)), np.nan)
+    for body, row in enumerate(found):
+        for i, pair in enumerate(row):
+            table[:, i, body] = pair
+    return table[0], table[1]
+
+
+def read(name: str) -> dict[str, Floats]:
+    """Read a file of the reference as columns."""
+    with (REFERENCE / f"{name}.csv").open(encoding="utf-8", newline="") as file:
+        names, *rows = csv.reader(file)
+    return dict(zip(names, np.array(rows, dtype=float).T, strict=True))
+
+
+def of_first_impacts(motion: Motion) -> tuple[float, float]:
+    """Give the median error of ε at the first impact, and the share of the angles where it is above 0.02.
+
+    A flat body touches with its other end soon after; what an engine takes for one impact may be both.
+    """
+    off = np.abs(impacts(motion)[1][0] - read("first_impacts")["restitution"])
+    return float(np.nanmedian(off)), float(np.mean(~(off < 0.02)))
+
+
+def of_spread(motion: Motion, window: tuple[float, float] = (0.3, 0.4)) -> tuple[float, float, float, int]:
+    """Give σ in a window of v over the reference's, its error, mean ε less the reference's, how many.
+
+    The error is over bodies, left out in groups, for the impacts of one are not independent.
+    """
+    v, epsilon = impacts(motion)
+    inside = (v >= window[0]) & (v < window[1])
+    reference = read("statistics")
+    row = int(np.argmin(np.abs(reference["velocity"] - np.mean(window))))
+    groups = np.arange(v.shape[1]) % 16
+    every = epsilon[inside]
+    parts = [epsilon[:, groups != g][inside[:, groups != g]].std() for g in range(16)]
+    error = np.sqrt(15 / 16 * np.sum((np.array(parts) - np.mean(parts)) ** 2))
+    sigma = reference["std_restitution"][row]
+    shift = every.mean() - reference["mean_restitution"][row]
+    return every.std() / sigma, error / sigma, float(shift), int(every.size)

@@ -1,0 +1,132 @@
+"""Numbers from outside, checked in one place: real, unmasked, without units; the error names the argument."""
+
+import math
+from collections.abc import Callable, Collection
+from operator import index
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from restitution._parameters import ParameterError, _plain_number, wrong
+
+FloatArray = npt.NDArray[np.float64]
+
+_DEEPEST = 32
+"""Lists in lists that are looked into; no table of ours has more than two."""
+_UNITS = ("to_value", "dimensionality")
+"""Attributes that tell the quantities of astropy, unyt and pint, whose units NumPy drops without a word."""
+
+
+def reals(
+    name: str,
+    value: Any,
+    allowed: str,
+    *,
+    dimensions: Collection[int] | None = None,
+    finite: bool = True,
+) -> FloatArray:
+    """Take an array of real numbers as doubles, without a copy where it is one already.
+
+    Parameters
+    ----------
+    name : str
+        Of the argument, for the error.
+    value : Any
+        A number, an array, or anything that NumPy makes real numbers of. Booleans, complex numbers, dates,
+        strings, objects, masked values and quantities with units are refused, inside lists too.
+    allowed : str
+        What is allowed, in words.
+    dimensions : collection of int, optional
+        Numbers of dimensions that are allowed.
+    finite : bool
+        Whether NaN and infinities are refused.
+
+    Raises
+    ------
+    ParameterError
+        Naming the argument, or the first element of it, that is wrong.
+    """
+    reason = _stray(value, 0)
+    if reason is not None:
+        raise ParameterError(wrong(name, value, f"{allowed}; it {reason}"))
+    try:
+        found = np.asarray(value)
+    except MemoryError:
+        raise
+    except Exception:  # lists of different lengths, or whatever the object itself raises
+        raise ParameterError(wrong(name, value, allowed)) from None
+    if found.dtype.kind not in "iuf":
+        raise ParameterError(wrong(name, value, allowed))
+    if dimensions is not None and found.ndim not in dimensions:
+        raise ParameterError(wrong(name, value, allowed))
+    with np.errstate(over="ignore"):  # of extended precision, to infinity
+        numbers = np.asarray(found, dtype=np.float64, order="C")
+    if finite:
+        check_each(name, numbers, np.isfinite(numbers), allowed)
+    return numbers
+
+
+def real(name: str, value: Any, allowed: str, good: Callable[[float], bool] = math.isfinite) -> float:
+    """Take one number for which `good` holds."""
+    number = float(reals(name, value, allowed, dimensions=(0,), finite=False))
+    if not good(number):
+        raise ParameterError(wrong(name, number, allowed))
+    return number
+
+
+def whole(name: str, value: Any, least: int, most: int | None = None) -> int:
+    """Take a whole number in [least, most]."""
+    allowed = f"a whole number >= {least}" if most is None else f"a whole number in [{least}, {most}]"
+    plain = _plain_number(value)
+    try:
+        number = index(plain)
+    except Exception:  # whatever the object raises
+        raise ParameterError(wrong(name, value, allowed)) from None
+    if isinstance(plain, bool) or number < least or (most is not None and number > most):
+        raise ParameterError(wrong(name, value, allowed))
+    return number
+
+
+def flag(name: str, value: Any) -> bool:
+    """Take True or False."""
+    if not isinstance(value, bool | np.bool_):
+        raise ParameterError(wrong(name, value, "True or False"))
+    return bool(value)
+
+
+def generator(name: str, seed: Any) -> np.random.Generator:
+    """Take a seed, or the generator itself."""
+    if isinstance(seed, np.random.Generator):
+        return seed
+    try:
+        return np.random.default_rng(whole(name, seed, 0))
+    except ParameterError:
+        allowed = "a whole number >= 0 or a numpy.random.Generator"
+        raise ParameterError(wrong(name, seed, allowed)) from None
+
+
+def check_each(name: str, array: FloatArray, good: npt.NDArray[np.bool_], allowed: str) -> None:
+    """Name the first element that is not good."""
+    if not good.all():
+        at = tuple(int(i) for i in np.argwhere(~good)[0])
+        place = f"[{', '.join(map(str, at))}]" if at else ""
+        raise ParameterError(wrong(f"{name}{place}", float(array[at]), allowed))
+
+
+def _stray(value: Any, depth: int) -> str | None:
+    """Say what NumPy would silently convert to a number, or drop."""
+    if isinstance(value, np.ma.MaskedArray):
+        return "holds masked values" if np.ma.is_masked(value) else None
+    if isinstance(value, list | tuple):
+        if depth > _DEEPEST:
+            return "is too deeply nested"
+        kinds = set(map(type, value))
+        if kinds & {bool, np.bool_}:
+            return "holds True or False"
+        if kinds <= {float, int}:
+            return None
+        return next((found for part in value if (found := _stray(part, depth + 1))), None)
+    if any(hasattr(value, attribute) for attribute in _UNITS):
+        return "has units of its own"
+    return None

@@ -1,0 +1,86 @@
+"""What the commands share: options, exit statuses, and how errors and warnings are shown."""
+
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Annotated, NoReturn
+
+import typer
+
+from restitution._signals import ending
+from restitution._streams import is_terminal, tell
+
+FAILED, BAD_INPUT, WARNED, INTERRUPTED = 1, 2, 3, 130
+"""Exit statuses: files or numbers in trouble; input that is refused; doubtful accuracy; Ctrl-C.
+
+Other signals that end a command give 128 + their number.
+"""
+
+RunFile = Annotated[
+    Path,
+    typer.Argument(metavar="RUN.toml", help="The parameters; [bold]restitution template[/bold] has all."),
+]
+Out = Annotated[
+    Path, typer.Option("--out", "-o", metavar="FILE", help="The netCDF file to write, whole or not at all.")
+]
+Folder = Annotated[
+    Path, typer.Option("--out", "-o", metavar="DIR", help="The directory to write to, all or nothing.")
+]
+Threads = Annotated[
+    int | None,
+    typer.Option(
+        "--threads",
+        "-j",
+        metavar="N",
+        help="Number of threads; one for each core if not given. Never changes the result.",
+    ),
+]
+Quiet = Annotated[
+    bool, typer.Option("--quiet", "-q", help="Show no progress and no summary; errors and warnings remain.")
+]
+Overwrite = Annotated[bool, typer.Option("--overwrite", help="Replace files that exist.")]
+
+
+def progress(quiet: bool) -> bool:
+    """Whether to show a progress bar."""
+    return not quiet and is_terminal(sys.stderr)
+
+
+@contextmanager
+def errors_in_a_line() -> Iterator[None]:
+    """Show expected errors as one line each instead of a traceback; signals end the block likewise."""
+    with ending() as came:
+        try:
+            yield
+        except ValueError as error:
+            fail(str(error), BAD_INPUT)
+        except OSError as error:
+            fail(f"{error.filename}: {error.strerror}" if error.filename else str(error), FAILED)
+        except (RuntimeError, MemoryError) as error:  # NumericalError is a RuntimeError
+            fail(str(error) or "out of memory", FAILED)
+        except Kept as kept:
+            raise typer.Exit(128 + (came + kept.late)[-1]) from None
+        except KeyboardInterrupt:
+            tell("interrupted")
+            raise typer.Exit(128 + came[-1] if came else INTERRUPTED) from None
+
+
+class Kept(KeyboardInterrupt):
+    """A command was interrupted, has said so, and has kept what was finished."""
+
+    def __init__(self, late: list[int]) -> None:
+        super().__init__()
+        self.late = late
+
+
+def press_again() -> None:
+    """Say that a file is being written, for `put_off`."""
+    tell("interrupted; the file is being written, press Ctrl-C again to abandon it")
+
+
+def fail(message: str, code: int) -> NoReturn:
+    """Print the error and exit."""
+    for line in message.splitlines():
+        tell(f"error: {line}")
+    raise typer.Exit(code)

@@ -1,0 +1,59 @@
+"""`restitution listen`: from a recording of a bouncing ball to a page."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from restitution._cli._common import Overwrite, errors_in_a_line
+from restitution._streams import say, tell
+
+
+def listen(
+    file: Annotated[Path, typer.Argument(metavar="FILE", help="The recording: WAV, FLAC, OGG, MP3 or AIFF.")],
+    diameter: Annotated[float, typer.Option(metavar="D", help="Diameter of the ball, m.")],
+    out: Annotated[
+        Path,
+        typer.Option(metavar="PAGE.html", help="The page to write; PAGE.csv and PAGE.nc stand beside it."),
+    ],
+    mass: Annotated[
+        float | None, typer.Option(metavar="M", help="Mass of the ball, kg: accounts for air drag.")
+    ] = None,
+    drop: Annotated[
+        float | None, typer.Option(metavar="H", help="Fall from rest to the first impact heard, m.")
+    ] = None,
+    drop_error: Annotated[float, typer.Option(metavar="S", help="Standard error of the drop, m.")] = 0.0,
+    gravity: Annotated[float, typer.Option(metavar="G", help="Acceleration of gravity, m/s2.")] = 9.81,
+    gravity_error: Annotated[float, typer.Option(metavar="S", help="Standard error of it, m/s2.")] = 0.0,
+    out_of_roundness: Annotated[
+        float | None, typer.Option(metavar="T", help="Out-of-roundness of the ball, m, where it is measured.")
+    ] = None,
+    overwrite: Overwrite = False,
+) -> None:
+    """Find the impacts of a bouncing ball in a recording, and evaluate them.
+
+    Writes one page that needs nothing else: the impacts marked on the waveform,
+    close-ups of onsets, the coefficient of restitution against the speed with
+    errors, the laws that fit it, what the times say of the ball's shape, and an
+    error budget; beside it a table of all impacts (CSV) and all numbers with their
+    covariance (netCDF).
+    """
+    with errors_in_a_line():
+        from restitution.listen import write
+        from restitution.listen._analysis import Setting
+
+        setting = Setting(
+            diameter=diameter,
+            mass=mass,
+            drop=drop,
+            drop_uncertainty=drop_error,
+            gravity=gravity,
+            gravity_uncertainty=gravity_error,
+            out_of_roundness=out_of_roundness,
+        )
+        analysis = write(file, out, setting, replace=overwrite)
+        for warning in analysis.warnings:
+            tell(f"note: {warning}")
+        for series in analysis.series:
+            say(series.sentence(setting))
+        say(str(out))

@@ -1,0 +1,289 @@
+"""The commands that drop particles: `simulate`, `statistics`, `compare` and `distribution`."""
+
+import warnings
+from collections.abc import Iterator
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from restitution._cli._common import (
+    WARNED,
+    Kept,
+    Out,
+    Overwrite,
+    Quiet,
+    RunFile,
+    Threads,
+    errors_in_a_line,
+    press_again,
+    progress,
+)
+from restitution._signals import put_off
+from restitution._streams import say, tell
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+Bins = Annotated[int | None, typer.Option(metavar="N", help="Number of bins; of the file if not given.")]
+Record = Annotated[
+    str, typer.Option(metavar="WHAT", help="impacts; or state: also position, axis and velocities.")
+]
+Span = Annotated[
+    tuple[float, float] | None, typer.Option(metavar="LOW HIGH", help="Range of these bins; likewise.")
+]
+
+
+def simulate(
+    run: RunFile,
+    out: Out,
+    record: Record = "impacts",
+    threads: Threads = None,
+    overwrite: Overwrite = False,
+    quiet: Quiet = False,
+) -> None:
+    """Drop particles and write every impact to a netCDF file.
+
+    The file holds what restitution.simulate returns for the same parameters; in
+    Python xarray.open_dataset reads it. Ctrl-C ends the run early; the impacts so
+    far are written all the same, and the attribute "incomplete" of the file says so.
+    """
+    interrupted = False
+    with errors_in_a_line():
+        from restitution._dataset import save
+        from restitution._files import check, check_apart
+        from restitution._resources import checked_threads
+        from restitution._simulate import SimulationInterrupted, checked_record, simulate_run
+        from restitution._toml import read
+
+        parameters = read(run)
+        checked_threads(threads)
+        check_apart([run], [out])
+        check(out, replace=overwrite)
+        try:
+            data = simulate_run(
+                parameters, threads=threads, progress=progress(quiet), record=checked_record(record)
+            )
+        except SimulationInterrupted as stop:
+            data, interrupted = stop.data, True
+            tell("interrupted; writing the impacts so far")
+        with put_off(press_again) as late:
+            save(data, out, replace=overwrite)
+        for line in _summary(data) if not quiet else ():
+            say(line)
+        if interrupted or late:
+            raise Kept(late)
+
+
+def statistics(
+    run: RunFile,
+    out: Out,
+    velocity_bins: Bins = None,
+    velocity_range: Span = None,
+    restitution_bins: Bins = None,
+    restitution_range: Span = None,
+    threads: Threads = None,
+    overwrite: Overwrite = False,
+    quiet: Quiet = False,
+) -> None:
+    r"""Count impacts by velocity and restitution, as many as you like.
+
+    The file holds what restitution.statistics returns: counts, moments and energy.
+    The bins are those of the table \[statistics] of RUN.toml, or of the options.
+    Ctrl-C ends the run early; what was counted is written all the same.
+    """
+    given = _given(locals())
+    with errors_in_a_line():
+        import restitution as rs
+        from restitution._toml import read_all
+
+        study = read_all(run, single=True)
+        how = study.statistics | given
+        (body,), (law,) = study.bodies.values(), study.laws.values()
+        _counted(
+            lambda: rs.statistics(body, law, **study.run, **how, threads=threads, progress=progress(quiet)),
+            run,
+            out,
+            overwrite=overwrite,
+            quiet=quiet,
+        )
+
+
+def compare(
+    run: RunFile,
+    out: Out,
+    velocity_bins: Bins = None,
+    velocity_range: Span = None,
+    restitution_bins: Bins = None,
+    restitution_range: Span = None,
+    threads: Threads = None,
+    overwrite: Overwrite = False,
+    quiet: Quiet = False,
+) -> None:
+    r"""Count the impacts of several bodies under several laws.
+
+    RUN.toml has a table [\[body]] for each body and a table [\[law]] for each law,
+    which may have a key "name". The file holds what restitution.compare returns.
+    Ctrl-C ends the work early; combinations that were finished are written.
+    """
+    given = _given(locals())
+    with errors_in_a_line():
+        import restitution as rs
+        from restitution._toml import read_all
+
+        study = read_all(run)
+        how = study.run | study.statistics | given
+        _counted(
+            lambda: rs.compare(study.bodies, study.laws, **how, threads=threads, progress=progress(quiet)),
+            run,
+            out,
+            overwrite=overwrite,
+            quiet=quiet,
+        )
+
+
+def distribution(
+    run: RunFile,
+    out: Out,
+    header: Annotated[
+        Path | None, typer.Option(metavar="FILE", help="A C99 and C++ header with a sampler.")
+    ] = None,
+    fortran: Annotated[
+        Path | None, typer.Option(metavar="FILE", help="A Fortran module with a sampler.")
+    ] = None,
+    figure: Annotated[Path | None, typer.Option(metavar="FILE", help="A figure: .png, .pdf or .svg.")] = None,
+    velocities: Annotated[
+        tuple[float, float] | None,
+        typer.Option(
+            metavar="LOW HIGH",
+            help="Speeds to learn, m/s; 0.04 to 0.4 of the release velocity if not given.",
+        ),
+    ] = None,
+    given: Annotated[
+        str | None,
+        typer.Option(
+            metavar="CONDITION", help='Also learn it given "rotational_fraction" or "previous" restitution.'
+        ),
+    ] = None,
+    threads: Threads = None,
+    overwrite: Overwrite = False,
+    quiet: Quiet = False,
+) -> None:
+    """Learn the distribution of the coefficient of restitution at given impact velocity.
+
+    The file holds what restitution.FluctuatingRestitution.learn returns for the
+    same parameters. The distance of the distribution from impacts that it was not
+    learned from is measured and printed; where it is larger than their scatter
+    explains, that is a warning, and the exit status is 3. Ctrl-C ends the work, and
+    nothing is written.
+    """
+    with errors_in_a_line():
+        from restitution._dataset import put
+        from restitution._files import check, check_apart, whole_files
+        from restitution._resources import checked_threads
+        from restitution._toml import read_all
+        from restitution.distribution import FluctuatingRestitution, _c, _fortran, image, image_format
+        from restitution.distribution._store import sealed
+
+        study = read_all(run, single=True)
+        checked_threads(threads)
+        if figure is not None:
+            image_format(figure)
+        paths = [path for path in (out, header, fortran, figure) if path is not None]
+        check_apart([run], paths)
+        for path in paths:
+            check(path, replace=overwrite)
+        how = study.run | study.distribution | _given({"velocities": velocities, "given": given})
+        (body,), (law,) = study.bodies.values(), study.laws.values()
+        with warnings.catch_warnings(record=True) as doubts:
+            warnings.simplefilter("always")
+            found = FluctuatingRestitution.learn(body, law, **how, threads=threads, progress=progress(quiet))
+        with whole_files(paths, replace=overwrite) as drafts:
+            draft = dict(zip(paths, drafts, strict=True))
+            put(sealed(found.data), draft[out])
+            if header is not None:
+                draft[header].write_text(_c.header(found.data, "restitution"), encoding="ascii")
+            if fortran is not None:
+                draft[fortran].write_text(_fortran.module(found.data, "restitution"), encoding="ascii")
+            if figure is not None:
+                draft[figure].write_bytes(image(found, image_format(figure)))
+        if not quiet:
+            say(str(found.summary()))
+        for doubt in doubts:
+            tell(f"warning: {doubt.message}")
+    if doubts:
+        raise typer.Exit(WARNED)
+
+
+_OPTIONS = (
+    "velocity_bins",
+    "velocity_range",
+    "restitution_bins",
+    "restitution_range",
+    "velocities",
+    "given",
+)
+
+
+def _given(options: dict[str, Any]) -> dict[str, Any]:
+    """Give those options that were used."""
+    return {name: options[name] for name in _OPTIONS if options.get(name) is not None}
+
+
+def _counted(count: Any, run: Path, out: Path, *, overwrite: bool, quiet: bool) -> None:
+    """Count, write what was counted, and say what it is."""
+    from restitution._dataset import save
+    from restitution._files import check, check_apart
+    from restitution._simulate import SimulationInterrupted
+
+    check_apart([run], [out])
+    check(out, replace=overwrite)
+    interrupted = False
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # the summary says what they would
+        try:
+            found = count()
+        except SimulationInterrupted as stop:
+            found, interrupted = stop.data, True
+            tell("interrupted; writing what was counted so far")
+    with put_off(press_again) as late:
+        save(found, out, replace=overwrite)
+    for line in _counts(found) if not quiet else ():
+        say(line)
+    if interrupted or late:
+        raise Kept(late)
+
+
+def _counts(found: "xr.Dataset") -> Iterator[str]:
+    inside, total = int(found["restitution_count"].sum()), int(found["number"].sum())
+    yield f"{total} impacts in the rows, {inside} of them in the bins of restitution"
+    if "body" not in found.dims:
+        yield from _energy(found.attrs)
+        return
+    for body in found["body"].values:
+        for law in found["law"].values:
+            here = found.sel(body=body, law=law)
+            yield (
+                f"{body}, {law}: {int(here['all_impacts'])} impacts, "
+                f"{100 * float(here['energy_created_share']):.3g} % of them created kinetic energy"
+            )
+
+
+def _summary(data: "xr.Dataset") -> Iterator[str]:
+    """Say what a run holds: impacts, why the particles stopped, and whether energy was created."""
+    from restitution._core import STOP_REASONS
+
+    impacts = int(data.impacts.sum())
+    yield f"{data.sizes['particle']} particles, {impacts} impacts"
+    counts = [(int((data.stop_reason == code).sum()), name) for code, name in enumerate(STOP_REASONS)]
+    yield "stop reasons: " + ", ".join(f"{name} {count}" for count, name in counts if count)
+    yield from _energy(data.attrs)
+
+
+def _energy(attrs: dict[str, Any]) -> Iterator[str]:
+    from restitution._energy import factor
+
+    gains = attrs["energy_created_impacts"]
+    if gains:
+        largest = attrs["largest_energy_ratio"]
+        yield f"{gains} impacts created kinetic energy, at most by a factor of {factor(largest)}"

@@ -1,0 +1,71 @@
+"""How objects are shown: in `help`, in completion, printed, and in a notebook."""
+
+import inspect
+import re
+from collections.abc import Iterable
+from html import escape
+from typing import TYPE_CHECKING
+
+from pydantic import BaseModel
+
+if TYPE_CHECKING:
+    from pydantic._internal._model_construction import ModelMetaclass
+else:
+    ModelMetaclass = type(BaseModel)
+
+_HIDDEN = frozenset(dir(BaseModel)) | {"model_config", "parameters", "attributes", "solid"}
+"""What pydantic and the core need and nobody types; all of it works, none of it is listed."""
+
+
+def public_names(cls: type) -> list[str]:
+    """Names of a class that `help` and completion show."""
+    found = {name for one in cls.__mro__ if one is not object for name in vars(one)}
+    return sorted(name for name in found - _HIDDEN if not name.startswith("_"))
+
+
+class Listed(ModelMetaclass):
+    """A metaclass that hides the internals of a class from `help` and completion."""
+
+    def __dir__(cls) -> list[str]:
+        return public_names(cls)
+
+
+class _Words(str):
+    """An annotation that is shown as it reads."""
+
+    __slots__ = ()
+
+    def __repr__(self) -> str:
+        return str(self)
+
+
+def signature(cls: type[BaseModel]) -> inspect.Signature:
+    """Give the fields of a class as its keyword arguments, with annotations that can be read."""
+    parameters = []
+    for name, field in cls.model_fields.items():
+        kind = field.annotation
+        text = kind.__name__ if isinstance(kind, type) else re.sub(r"\w+\.", "", str(kind))
+        default = inspect.Parameter.empty if field.is_required() else field.default
+        parameters.append(
+            inspect.Parameter(name, inspect.Parameter.KEYWORD_ONLY, default=default, annotation=_Words(text))
+        )
+    return inspect.Signature(parameters)
+
+
+def table(title: str, rows: Iterable[tuple[str, object]]) -> str:
+    """Write an HTML table of names and values, for `_repr_html_`."""
+    lines = "".join(
+        f'<tr><th style="text-align:left;font-weight:normal">{escape(name)}</th>'
+        f'<td style="text-align:right">{escape(str(value))}</td></tr>'
+        for name, value in rows
+    )
+    caption = f'<caption style="text-align:left;font-weight:bold">{escape(title)}</caption>'
+    return f"<table>{caption}<tbody>{lines}</tbody></table>"
+
+
+def value(number: object, unit: str | None = None) -> str:
+    """Write a number, or a pair, in six digits with its unit."""
+    parts = number if isinstance(number, tuple) else (number,)
+    text = ", ".join(f"{part:.6g}" if isinstance(part, float | int) else str(part) for part in parts[:8])
+    text = f"{text}, … ({len(parts)} numbers)" if len(parts) > 8 else text
+    return f"{text} {unit}" if unit else text

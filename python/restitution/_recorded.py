@@ -1,0 +1,78 @@
+"""Datasets from outside, checked in one place: recorded impacts, and counts in bins."""
+
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from restitution._arrays import FloatArray, check_each, reals
+from restitution._bins import increasing_edges
+from restitution._parameters import ParameterError, Problem, wrong
+
+
+def records(name: str, data: Any, *names: str) -> tuple[FloatArray, ...]:
+    """Take variables of recorded impacts, each of shape (particles, impacts).
+
+    Raises
+    ------
+    ParameterError
+        If `data` is not a Dataset, lacks a variable, or has one of other dimensions or of no real numbers.
+    """
+    if not isinstance(data, xr.Dataset):
+        raise ParameterError(wrong(name, data, "a Dataset as from restitution.simulate"))
+    missing = [each for each in names if each not in data]
+    if missing:
+        text = f" lacks {', '.join(missing)}: must be a Dataset as from restitution.simulate"
+        raise ParameterError(Problem(name, text))
+    found = []
+    for each in names:
+        variable = data[each]
+        if set(variable.dims) != {"particle", "impact"}:
+            text = f" has dimensions ({', '.join(map(str, variable.dims))}): must be (particle, impact)"
+            raise ParameterError(Problem(f"{name}.{each}", text))
+        numbers = variable.transpose("particle", "impact").to_numpy()
+        found.append(reals(f"{name}.{each}", numbers, "real numbers, NaN for none", finite=False))
+    return tuple(found)
+
+
+_COUNTED = {
+    "restitution_count": ("velocity", "restitution"),
+    "velocity_edges": ("velocity_edge",),
+    "restitution_edges": ("restitution_edge",),
+    "restitution_underflow": ("velocity",),
+    "restitution_overflow": ("velocity",),
+}
+
+
+def counted(name: str, data: Any) -> xr.Dataset:
+    """Take counts by velocity bin and restitution bin, with their edges.
+
+    Raises
+    ------
+    ParameterError
+        If `data` is not a Dataset, lacks a variable, has one of other dimensions, edges that do not
+        increase or do not fit, or counts that are not whole numbers >= 0.
+    """
+    if not isinstance(data, xr.Dataset):
+        raise ParameterError(wrong(name, data, "a Dataset as from restitution.statistics"))
+    missing = [each for each in _COUNTED if each not in data]
+    if missing:
+        text = f" lacks {', '.join(missing)}: must be a Dataset as from restitution.statistics, by velocity"
+        raise ParameterError(Problem(name, text))
+    for each, dimensions in _COUNTED.items():
+        variable = data[each]
+        if set(variable.dims) != set(dimensions):
+            needed = ", ".join(dimensions)
+            text = f" has dimensions ({', '.join(map(str, variable.dims))}): must be ({needed})"
+            raise ParameterError(Problem(f"{name}.{each}", text))
+        if each.endswith("_edges"):
+            increasing_edges(variable.to_numpy(), f"{name}.{each}")
+            bins = data.sizes[each.removesuffix("_edges")]
+            if variable.size != bins + 1:
+                text = f" has {variable.size} edges: must be one more than the {bins} bins"
+                raise ParameterError(Problem(f"{name}.{each}", text))
+        else:
+            allowed = "whole numbers >= 0"
+            counts = reals(f"{name}.{each}", variable.to_numpy(), allowed)
+            check_each(f"{name}.{each}", counts, (counts >= 0) & (counts == np.rint(counts)), allowed)
+    return data.transpose("velocity", ..., "restitution", missing_dims="ignore")

@@ -1,0 +1,154 @@
+"""The commands `restitution sweep STUDY.toml` and `restitution sweep merge`."""
+
+import sys
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+from typer.core import TyperGroup
+
+from restitution._streams import is_terminal, say, tell
+
+
+class _RunUnlessNamed(TyperGroup):
+    """A group that takes a study where others take the name of a command."""
+
+    def parse_args(self, ctx: Any, args: list[str]) -> list[str]:
+        names = (*self.commands, *ctx.help_option_names)
+        if args and args[0] not in names:
+            args = ["run", *args]
+        left: list[str] = super().parse_args(ctx, args)
+        return left
+
+
+app = typer.Typer(
+    cls=_RunUnlessNamed,
+    no_args_is_help=True,
+    rich_markup_mode="rich",
+    context_settings={"help_option_names": ["-h", "--help"]},
+    help="Vary parameters of a run, on one machine or many: [bold]restitution sweep STUDY.toml --out "
+    "STORE.zarr[/bold]. [bold]run[/bold] need not be written.",
+)
+
+Out = Annotated[Path, typer.Option(metavar="STORE", help="The Zarr store; it is made if it is not there.")]
+Threads = Annotated[
+    int | None,
+    typer.Option(
+        metavar="N", help="Number of threads; one for each core if not given. Never changes the result."
+    ),
+]
+
+
+@app.command(
+    epilog="Example: [bold]restitution sweep study.toml --out study.zarr[/bold]; in Python then "
+    "[bold]xarray.open_zarr('study.zarr')[/bold]."
+)
+def run(
+    study: Annotated[
+        Path, typer.Argument(metavar="STUDY.toml", help="A run, what is varied and what is measured.")
+    ],
+    out: Out,
+    threads: Threads = None,
+    scheduler: Annotated[
+        str | None,
+        typer.Option(metavar="ADDRESS", help="A Dask cluster: tcp://host:8786, or its scheduler file."),
+    ] = None,
+    shard: Annotated[
+        str | None,
+        typer.Option(
+            metavar="I/N", help="Do part I of N, as one job of an array; [bold]merge[/bold] joins them."
+        ),
+    ] = None,
+    dry_run: Annotated[
+        bool,
+        typer.Option("--dry-run", help="Time a few particles, tell what the study will cost, and leave."),
+    ] = False,
+    status: Annotated[bool, typer.Option("--status", help="Tell how far the store is, and leave.")] = False,
+) -> None:
+    r"""Run a study, or resume it.
+
+    Every task is kept in the store as soon as it is done. Whatever stops the
+    command, the same command goes on from there: what is missing or damaged is
+    computed, and the end has the bits of an undisturbed study. Ctrl-C leaves a
+    store that can be read.
+
+    STUDY.toml is a run as for [bold]restitution simulate[/bold] and:
+
+    \[sweep]
+    "body.separation" = \[3e-5, 1e-4, 3e-4]
+    "law.normal" = { from = 0.5, to = 0.98, points = 8 }
+
+    \[statistics]
+    velocity_bins = { from = 0.0, to = 1.1, bins = 110 }
+    restitution_bins = { from = -1.0, to = 3.0, bins = 200 }
+
+    \[effort]                         # may be left out
+    until = { std = 0.01 }            # add particles up to this standard error
+    """
+    from restitution._cli._common import errors_in_a_line
+
+    with errors_in_a_line():
+        from restitution.study import estimate, study_of, sweep
+        from restitution.study import status as status_of
+
+        if status:
+            say(str(status_of(out)))
+            return
+        if dry_run:
+            from restitution import build_info
+            from restitution._resources import checked_threads
+
+            number = checked_threads(threads) or build_info()["threads"]
+            say(str(estimate(study_of(study), number)))
+            return
+        part = None if shard is None else _shard(shard)
+        options: dict[str, Any] = {"threads": threads, "shard": part, "progress": is_terminal(sys.stderr)}
+        try:
+            if scheduler is None:
+                sweep(study, out, **options)
+            else:
+                from restitution.study._engines import client_at
+
+                with client_at(scheduler) as client:
+                    sweep(study, out, client, **options)
+        except ImportError as error:
+            raise RuntimeError(str(error)) from None
+        except KeyboardInterrupt:
+            tell(f"{out}: {status_of(out)}; the same command goes on")
+            raise
+        say(f"{out}: {status_of(out)}")
+
+
+@app.command(epilog="Example: [bold]restitution sweep merge --out study.zarr part*.zarr[/bold].")
+def merge(
+    out: Out,
+    parts: Annotated[
+        list[Path] | None,
+        typer.Argument(
+            metavar="PART...", help="Stores of the same study; none, if all shards wrote to STORE."
+        ),
+    ] = None,
+    threads: Threads = None,
+) -> None:
+    """Put the shards of a study together.
+
+    What is damaged or missing is left out and reported; the command that made the
+    shards, without --shard, computes it.
+    """
+    from restitution._cli._common import errors_in_a_line
+
+    with errors_in_a_line():
+        from restitution.study import merge as merge_stores
+
+        found = merge_stores(out, parts or [], threads=threads)
+        say(f"{out}: {found}")
+    if found.finished < found.points:
+        raise typer.Exit(1)
+
+
+def _shard(text: str) -> tuple[int, int]:
+    number, _, total = text.partition("/")
+    try:
+        return int(number), int(total)
+    except ValueError:
+        raise ValueError(f"shard = {text!r}: must be I/N, as 3/64") from None

@@ -1,0 +1,164 @@
+"""The motion between impacts in closed form: where a particle is at any time, from its recorded states."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import numpy.typing as npt
+
+from restitution._arrays import FloatArray, check_each, reals
+from restitution._parameters import ParameterError, Problem, wrong
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+_NEEDED = ("time", "position", "axis", "velocity_after", "angular_velocity_after", "release_angle")
+_ABOUT = {
+    "position": ("position of the centre of mass; the release is over the origin, z = 0 the plane", "m"),
+    "velocity": ("velocity of the centre of mass", "m s-1"),
+    "axis": ("unit vector of the symmetry axis, from sphere 2 to sphere 1", "1"),
+    "angular_velocity": ("angular velocity", "rad s-1"),
+}
+
+
+def with_positions(data: xr.Dataset) -> xr.Dataset:
+    """Make positions of the recorded heights and velocities: in flight gravity alone acts (5)."""
+    time, after = data["time"].to_numpy(), data["velocity_after"].to_numpy()
+    position = np.empty(after.shape)
+    position[..., 2] = data["height"].to_numpy()
+    duration = np.diff(time, axis=1, prepend=0.0)
+    pull = _gravity(data)
+    for i in range(2):
+        start = np.empty(time.shape)
+        start[:, :1], start[:, 1:] = data.attrs["velocity"][i], after[:, :-1, i]
+        np.cumsum(duration * (start + 0.5 * pull[i] * duration), axis=1, out=position[..., i])
+    about, unit = _ABOUT["position"]
+    attrs = {"long_name": f"{about}; at the impact", "units": unit}
+    return data.drop_vars("height").assign(position=(("particle", "impact", "component"), position, attrs))
+
+
+def trajectory(data: xr.Dataset, particle: int, times: npt.ArrayLike) -> xr.Dataset:
+    """Give the exact motion of a particle at any times, from its release to its last recorded impact.
+
+    Between impacts the centre of mass moves on a parabola, and a free body of revolution turns about its
+    angular momentum **Λ** at the constant rate Λ/J', its moment of inertia across the axis being J'; the
+    formulas are closed, no step is taken. At the time of an impact it is the motion after it.
+
+    Parameters
+    ----------
+    data : xarray.Dataset
+        Impacts from `restitution.simulate` with ``record="state"``.
+    particle : int
+        Its number, as in the coordinate ``particle``.
+    times : float or array_like, shape (n,)
+        Times since release in s, in any order, from 0 to that of the last impact.
+
+    Returns
+    -------
+    xarray.Dataset
+        Over ``time`` and ``component`` (x, y, z, in the frame of the plane): ``position`` of the centre of
+        mass in m, relative to the point of the plane under the release, ``velocity`` in m/s, ``axis``, the
+        unit vector of the symmetry axis, and ``angular_velocity`` in rad/s; over ``time`` the number of
+        ``impacts`` up to then.
+
+    Raises
+    ------
+    ValueError
+        If there are no states, no such particle, or times before the release or after the last impact.
+
+    Examples
+    --------
+    >>> import restitution as rs
+    >>> body, law = rs.Dumbbell(radius=3e-3, separation=3e-3), rs.Coulomb(normal=0.9, friction=0.2)
+    >>> data = rs.simulate(body, law, particles=5, impacts=20, spin=(0.0, 30.0, 10.0), record="state")
+    >>> path = rs.trajectory(data, 3, [0.0, 0.1, 0.2])
+    >>> path.position.shape, path.impacts.values.tolist()
+    ((3, 3), [0, 0, 1])
+    """
+    import xarray as xr
+
+    if not isinstance(data, xr.Dataset) or any(name not in data for name in _NEEDED):
+        lacking = [] if not isinstance(data, xr.Dataset) else [name for name in _NEEDED if name not in data]
+        text = f" lacks {', '.join(lacking)}" if lacking else f" is of type {type(data).__name__}"
+        raise ParameterError(
+            Problem("data", f'{text}: must be from restitution.simulate(..., record="state")')
+        )
+    one = _particle(data, particle)
+    asked = reals("times", times, "times in s, one or several", dimensions=(0, 1), finite=False)
+    when = np.atleast_1d(asked)
+    recorded = one["time"].to_numpy()
+    happened = recorded[~np.isnan(recorded)]
+    last = float(happened[-1]) if happened.size else 0.0
+    allowed = f"in [0, {last!r}] s, from the release to the last recorded impact of particle {particle}"
+    check_each("times", when, (when >= 0.0) & (when <= last), allowed)
+
+    flight = np.searchsorted(happened, when, side="right")
+    begin = _begin(one, happened.size)
+    elapsed = (when - begin["time"][flight])[:, None]
+    position, velocity, axis, spin = (
+        begin[name][flight] for name in ("position", "velocity", "axis", "angular_velocity")
+    )
+    pull = np.array(_gravity(data))
+    along = np.sum(spin * axis, axis=1, keepdims=True)
+    slender = 1.0 - float(data.attrs["axial_inertia"]) / float(data.attrs["transverse_inertia"])
+    precession = spin - slender * along * axis  # Λ/J'
+    turned = _turned(axis, precession * elapsed)
+    found = {
+        "position": position + elapsed * (velocity + 0.5 * elapsed * pull),
+        "velocity": velocity + elapsed * pull,
+        "axis": turned,
+        "angular_velocity": precession + slender * along * turned,
+    }
+    variables: dict[str, Any] = {
+        name: (("time", "component"), values, {"long_name": _ABOUT[name][0], "units": _ABOUT[name][1]})
+        for name, values in found.items()
+    }
+    variables["impacts"] = ("time", flight, {"long_name": "number of impacts up to then"})
+    coordinates = {
+        "time": ("time", when, {"long_name": "time since release", "units": "s"}),
+        "component": data["component"],
+    }
+    return xr.Dataset(variables, coordinates, data.attrs | {"particle": int(particle)})
+
+
+def _particle(data: xr.Dataset, particle: int) -> xr.Dataset:
+    numbers = data["particle"].to_numpy()
+    at = np.flatnonzero(numbers == particle) if np.ndim(particle) == 0 else np.empty(0)
+    if isinstance(particle, bool) or at.size != 1:
+        raise ParameterError(wrong("particle", particle, f"one of {numbers[0]} to {numbers[-1]}"))
+    return data.isel(particle=int(at[0]))
+
+
+def _gravity(data: xr.Dataset) -> tuple[float, float, float]:
+    gravity, incline = float(data.attrs["gravity"]), float(data.attrs["incline"])
+    return gravity * float(np.sin(incline)), 0.0, -gravity * float(np.cos(incline))
+
+
+def _begin(one: xr.Dataset, impacts: int) -> dict[str, FloatArray]:
+    """Give the states from which the flights begin: the release, then what each impact left."""
+    angle = float(one["release_angle"])
+    azimuth = float(one["release_azimuth"]) if "release_azimuth" in one else 0.0
+    level = np.sin(angle)
+    height = float(one["release_height"] if "release_height" in one else one.attrs["release_height"])
+    released = {
+        "time": 0.0,
+        "position": [0.0, 0.0, height],
+        "velocity": one.attrs["velocity"],
+        "axis": [level * np.cos(azimuth), level * np.sin(azimuth), np.cos(angle)],
+        "angular_velocity": one["release_spin"].to_numpy() if "release_spin" in one else np.zeros(3),
+    }
+    after = {"velocity": "velocity_after", "angular_velocity": "angular_velocity_after"}
+    return {
+        name: np.concatenate([[value], one[after.get(name, name)].to_numpy()[:impacts]])
+        for name, value in released.items()
+    }
+
+
+def _turned(vectors: FloatArray, rotations: FloatArray) -> FloatArray:
+    """Turn vectors about rotation vectors, by their lengths in rad."""
+    angle = np.linalg.norm(rotations, axis=1, keepdims=True)
+    about = rotations / np.where(angle > 0.0, angle, 1.0)
+    along = about * np.sum(about * vectors, axis=1, keepdims=True)
+    turned: FloatArray = along + np.cos(angle) * (vectors - along) + np.sin(angle) * np.cross(about, vectors)
+    return turned

@@ -1,0 +1,147 @@
+"""Nearly round bodies from what a roundness gauge or a ball's grade tells."""
+
+import math
+from numbers import Integral
+from typing import Annotated, Literal, TypeAlias, get_args
+
+from pydantic import Field
+
+from restitution._parameters import Allowed, Number, ParameterError, Parameters, Whole, wrong
+from restitution.bodies._body import Body
+from restitution.bodies._dumbbell import Dumbbell
+from restitution.bodies._loaded_sphere import LoadedSphere
+from restitution.bodies._spheroid import Spheroid
+
+Form: TypeAlias = Literal["lobed", "flattened", "dumbbell", "off-centre"]
+
+_FORMS = ", ".join(map(repr, get_args(Form)))
+_MOST = 0.1
+"""Out-of-roundness over diameter up to which a ball is called nearly round."""
+
+GRADES = {
+    3: 0.08e-6,
+    5: 0.13e-6,
+    10: 0.25e-6,
+    16: 0.4e-6,
+    20: 0.5e-6,
+    24: 0.6e-6,
+    28: 0.7e-6,
+    40: 1.0e-6,
+    48: 1.2e-6,
+    60: 1.5e-6,
+    100: 2.5e-6,
+    200: 5e-6,
+    500: 13e-6,
+    1000: 25e-6,
+}
+"""Allowed deviation from spherical form in m: ISO 3290-1 up to 200; 48, 500 and 1000 of ANSI/ABMA 10."""
+
+
+class _Asked(Parameters):
+    diameter: Annotated[Number, Field(gt=0, description="m")]
+    out_of_roundness: Annotated[Number, Field(ge=0, description="m")]
+    form: Annotated[Form, Allowed(_FORMS)]
+    lobes: Annotated[Whole, Field(ge=2, le=1000)]
+    density: Annotated[Number, Field(gt=0, description="kg/m³")]
+
+
+def from_roundness(
+    diameter: float,
+    out_of_roundness: float,
+    *,
+    form: Form = "lobed",
+    lobes: int = 2,
+    density: float = 2500.0,
+) -> Body:
+    """Make a body that stands for a nearly round ball.
+
+    The out-of-roundness t is the radial one, "deviation from spherical form" in ISO 3290: the largest
+    distance between the surface and the sphere around it. At a contact the normal passes the centre of mass
+    at a distance, the lever arm, and its mean square over all orientations decides what the shape does:
+    t²/2 for two lobes, for a flattened ball, for a dumbbell and for a centre of mass off by t alike, and
+    n²t²/8 for n lobes.
+
+    Parameters
+    ----------
+    diameter : float
+        Mean of the largest and the smallest diameter, in m; > 0.
+    out_of_roundness : float
+        t in m; from 0 to a tenth of the diameter. Callipers see diameters: of a ball with two lobes they
+        differ by 2 t, of one with an odd number of lobes not at all.
+    form : {"lobed", "flattened", "dumbbell", "off-centre"}
+        What is wrong with the ball. "lobed": a prolate `Spheroid`; for more than two lobes that with the
+        same mean square of the lever arm, n t/2 for t. "flattened": an oblate `Spheroid`. "dumbbell": the
+        paper's body, with a ridge-free surface but for its waist. "off-centre": a round ball whose centre of
+        mass is t off its centre, by a load at its surface, as by a bubble on the other side.
+    lobes : int
+        Number of lobes of form "lobed", >= 2.
+    density : float
+        Mean density in kg/m³, > 0.
+
+    Returns
+    -------
+    Spheroid, Dumbbell or LoadedSphere
+
+    Raises
+    ------
+    ValueError
+        If a value is out of range; the message names it.
+
+    Examples
+    --------
+    >>> import restitution as rs
+    >>> rs.from_roundness(6e-3, 2.5e-6).elongation.__round__(6)
+    1.000834
+    """
+    asked = _Asked(
+        diameter=diameter, out_of_roundness=out_of_roundness, form=form, lobes=lobes, density=density
+    )
+    if asked.lobes != 2 and asked.form != "lobed":
+        raise ParameterError(wrong("lobes", lobes, f"left out: form = {form!r} has none"))
+    t = asked.out_of_roundness * (asked.lobes / 2.0)
+    if t > _MOST * asked.diameter:
+        most = 2.0 * _MOST * asked.diameter / asked.lobes
+        allowed = f"in [0, {most:g}], nearly round (m)"
+        raise ParameterError(wrong("out_of_roundness", out_of_roundness, allowed))
+    long, short = 0.5 * (asked.diameter + t), 0.5 * (asked.diameter - t)
+    match asked.form:
+        case "lobed":
+            return Spheroid(equatorial=short, polar=long, density=asked.density)
+        case "flattened":
+            return Spheroid(equatorial=long, polar=short, density=asked.density)
+        case "dumbbell":
+            return Dumbbell(radius=short, separation=2.0 * t, density=asked.density)
+        case "off-centre":
+            radius = 0.5 * asked.diameter
+            mass = 4.0 / 3.0 * math.pi * radius**3 * asked.density
+            share = t / radius  # a load m' at the surface moves the centre of mass by R m'/m
+            return LoadedSphere(
+                radius=radius, density=asked.density * (1.0 - share), load=mass * share, offset=radius
+            )
+
+
+def ball_grade(grade: int) -> float:
+    """Give the largest out-of-roundness of a ball of a grade, in m.
+
+    The number of a grade is the deviation from spherical form in millionths of an inch, rounded: ISO 3290-1
+    for grades 3 to 200, ANSI/ABMA 10 for 48, 500 and 1000.
+
+    Parameters
+    ----------
+    grade : int
+        3, 5, 10, 16, 20, 24, 28, 40, 48, 60, 100, 200, 500 or 1000.
+
+    Raises
+    ------
+    ValueError
+        If there is no such grade.
+
+    Examples
+    --------
+    >>> import restitution as rs
+    >>> rs.ball_grade(100)
+    2.5e-06
+    """
+    if not isinstance(grade, Integral) or grade not in GRADES:
+        raise ParameterError(wrong("grade", grade, f"one of {', '.join(map(str, GRADES))}"))
+    return GRADES[grade]

@@ -1,0 +1,77 @@
+"""How an ensemble is released and followed where nothing else is asked for."""
+
+import math
+
+import numpy as np
+
+from restitution._run import Run
+from restitution._simulate import simulate_run
+from restitution.distribution._table import Floats
+from restitution.laws._materials import Material
+
+RANGE = (0.04, 0.4)
+"""Learned speeds where none are asked for, over the largest possible one at the first impact."""
+
+_LEVELS_PER_LOSS, _FEWEST, _PARTICLES_EACH = 1000.0, 24, 4
+_PILOTS, _STILL_FAST = 64, 0.01
+_LEAST_IMPACTS, _MOST_IMPACTS = 256, 4096
+
+
+def lowest_position(run: Run) -> float:
+    """Height in m of the centre of mass of the body in its lowest position on the plane."""
+    # Upright either way or level: in one of these the centre of mass comes lowest.
+    return min(run.body.solid.lowest(np.array([cosine])) for cosine in (-1.0, 0.0, 1.0))
+
+
+def speeds(run: Run) -> Floats:
+    """Give the least and the greatest speed to learn, in m/s."""
+    return np.array(RANGE) * run.fall_speed(run.heights[0] - lowest_position(run))
+
+
+def heights(run: Run) -> tuple[float, ...]:
+    """Spread the heights of release about the one that was asked for, over one loss of energy to either side.
+
+    From a single height the first impacts have few separate speeds, and p(ε | v) as fine a structure. The
+    heights above the highest position on the plane are (ε_n)^(2x) times the one asked for, with x triangular
+    in [-1, 1]: dense in the middle and none at both ends, so that impacts of one number fade into those of
+    the next. With 1000 of them for each loss, neighbours differ by 0.1 % in v.
+    """
+    base = run.body.solid.farthest()
+    drop = run.release_height - base
+    normal = run.law.normal
+    kept = float(normal(run.fall_speed(drop))) if isinstance(normal, Material) else normal
+    kept = min(max(kept, 0.05), 0.999)
+    wanted = round(2.0 * _LEVELS_PER_LOSS * math.log(1.0 / kept))
+    number = min(max(wanted, _FEWEST), run.particles // _PARTICLES_EACH)
+    if number < 2 or drop <= 0.0:
+        return (run.release_height,)
+    share = (np.arange(number) + 0.5) / number
+    lower = share < 0.5
+    x = np.where(lower, np.sqrt(2.0 * share) - 1.0, 1.0 - np.sqrt(2.0 * (1.0 - share)))
+    return tuple((base + drop * kept ** (2.0 * x)).tolist())
+
+
+def minimum_speed(run: Run, slowest: float) -> float:
+    """Give the speed in m/s below which a particle no longer reaches the slowest learned impact velocity.
+
+    Until the next impact the centre of mass may come down from the highest to the lowest position on the
+    plane. Impacts can create energy, hence never more than half of the slowest speed.
+    """
+    gravity = run.gravity * math.cos(run.incline)
+    gained = 2.0 * gravity * (run.body.solid.farthest() - lowest_position(run))
+    return min(math.sqrt(max(slowest**2 - gained, 0.0)), 0.5 * slowest)
+
+
+def impacts(run: Run, threads: int | None) -> int:
+    """Give the least power of two of impacts after which one particle in a hundred still is faster, or fewer.
+
+    4096 where there is none: some trajectories rattle for ever.
+    """
+    number = _LEAST_IMPACTS
+    while number < _MOST_IMPACTS:
+        few = run.of(np.arange(min(run.particles, _PILOTS)))
+        data = simulate_run(few.model_copy(update={"impacts": number}), threads=threads)
+        if float((data["stop_reason"] == 0).mean()) <= _STILL_FAST:
+            break
+        number *= 2
+    return number

@@ -1,0 +1,117 @@
+"""The page and its links: what follows # in its address is a set-up."""
+
+from importlib.resources import files
+from typing import Any
+from urllib.parse import urlencode
+
+import numpy as np
+
+from restitution._release import RandomHeight, RandomSpin
+from restitution._run import Run
+from restitution.bodies import Dumbbell, Spherocylinder, Spheroid
+from restitution.laws import ChatterjeeRuina, Coulomb, Frictionless, TangentialRestitution
+
+MOST_IMPACTS = 2_000_000
+"""More than these the page does not keep."""
+
+NUMBERS = ("release_height", "gravity", "incline", "minimum_speed")
+_LAWS = {
+    TangentialRestitution: "tangential-restitution",
+    Frictionless: "frictionless",
+    Coulomb: "coulomb",
+    ChatterjeeRuina: "chatterjee-ruina",
+}
+
+
+def page() -> str:
+    """Give the page: one HTML file that needs nothing else.
+
+    Raises
+    ------
+    FileNotFoundError
+        If the package was installed from a checkout where the page was not built.
+    """
+    found = files("restitution.explorer").joinpath("explorer.html")
+    if not found.is_file():
+        raise FileNotFoundError(2, "the explorer is not built; run `make web` in the checkout", str(found))
+    return found.read_text(encoding="utf-8")
+
+
+def link(run: Run) -> str:
+    """Give what follows # in the address of the page that shows a run.
+
+    Parameters
+    ----------
+    run : Run
+        A run that the page can show: a dumbbell of equal spheres, a spherocylinder or a prolate spheroid
+        under a law with a constant normal coefficient, all particles with the same spin and velocity. Of a
+        run of more than 2 000 000 impacts the page shows the first particles.
+
+    Raises
+    ------
+    ValueError
+        If the page cannot show the run; the message says what of it.
+    """
+    # Every value is written, for a default of the package may change, and a link shall stay.
+    values: dict[str, Any] = {
+        **_body(run),
+        "law": _LAWS[type(run.law)],
+        **_law(run),
+        **_orientation(run),
+        **_motion(run),
+        **{name: getattr(run, name) for name in NUMBERS},
+        "impacts": run.impacts,
+        "particles": max(1, min(run.particles, MOST_IMPACTS // run.impacts)),
+        "seed": run.seed,
+    }
+    if run.seed >= 2**53:
+        raise _cannot("seed", run.seed, "below 2**53")
+    return urlencode(values)
+
+
+def _cannot(name: str, value: object, allowed: str) -> ValueError:
+    return ValueError(f"{name} = {value}: the explorer shows this only if it is {allowed}")
+
+
+def _body(run: Run) -> dict[str, Any]:
+    body = run.body
+    if isinstance(body, Dumbbell) and body.is_equal:
+        return _shape("dumbbell", body.radii[0], body.elongation)
+    if isinstance(body, Spherocylinder):
+        return _shape("spherocylinder", body.radius, body.separation / body.radius)
+    if isinstance(body, Spheroid) and body.polar >= body.equatorial:
+        return _shape("spheroid", body.equatorial, 2.0 * (body.polar / body.equatorial - 1.0))
+    allowed = "a Dumbbell of equal spheres, a Spherocylinder or a prolate Spheroid"
+    raise _cannot("body", repr(body), allowed)
+
+
+def _shape(name: str, radius: float, elongation: float) -> dict[str, Any]:
+    # The page makes the length from this again, to twelve digits.
+    return {"shape": name, "radius": radius, "elongation": float(f"{elongation:.15g}")}
+
+
+def _law(run: Run) -> dict[str, Any]:
+    values = run.law.model_dump()
+    if not isinstance(values["normal"], float | int):
+        raise _cannot("law.normal", type(run.law.normal).__name__, "a number")
+    return values
+
+
+def _orientation(run: Run) -> dict[str, Any]:
+    if run.angles is None:
+        return {"orientation": run.orientation}
+    if run.angles.size != 1 or np.ndim(run.orientation) != 1:
+        raise _cannot("orientation", "an array", "a name, or the one angle of one particle")
+    return {"orientation": "given", "angle": float(run.angles[0])}
+
+
+def _motion(run: Run) -> dict[str, Any]:
+    if isinstance(run.release_height, RandomHeight):
+        raise _cannot("release_height", "of each particle its own", "the same for all")
+    if isinstance(run.spin, RandomSpin) or run.spins is not None:
+        raise _cannot("spin", "of each particle its own", "the same for all")
+    x, y, z = run.spin
+    along, across, up = run.velocity
+    if x or across:
+        raise _cannot("spin and velocity", (run.spin, run.velocity), "(0, y, z) and (x, 0, z)")
+    return {"spin_y": y, "spin_z": z, "velocity_x": along, "velocity_z": up}

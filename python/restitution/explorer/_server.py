@@ -1,0 +1,60 @@
+"""The page served on this machine, for this machine alone."""
+
+import webbrowser
+from collections.abc import Callable
+from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
+
+from restitution._arrays import whole
+from restitution.explorer._page import page
+
+
+def serve(
+    fragment: str = "", *, port: int = 0, browse: bool = True, tell: Callable[[str], object] = print
+) -> None:
+    """Serve the explorer until Ctrl-C.
+
+    Parameters
+    ----------
+    fragment : str
+        What follows # in its address: a set-up, from `restitution.explorer.link`.
+    port : int
+        Port on this machine, in [0, 65535]; 0 takes a free one.
+    browse : bool
+        Open the browser.
+    tell : callable
+        Hears the address once the page is there.
+
+    Raises
+    ------
+    ValueError
+        If `port` is out of range.
+    FileNotFoundError
+        If the page was not built.
+    OSError
+        If the port is taken.
+    """
+    port = whole("port", port, 0, 65535)
+    content = page().encode()
+
+    class Handler(BaseHTTPRequestHandler):
+        def do_GET(self) -> None:
+            if self.path.partition("?")[0] != "/":
+                self.send_error(404)
+                return
+            self.send_response(200)
+            self.send_header("Content-Type", "text/html; charset=utf-8")
+            self.send_header("Content-Length", str(len(content)))
+            self.end_headers()
+            self.wfile.write(content)
+
+        def log_message(self, format: str, *arguments: object) -> None:
+            """Keep the terminal quiet."""
+
+    with ThreadingHTTPServer(("127.0.0.1", port), Handler) as server:
+        address = f"http://127.0.0.1:{server.server_port}/"
+        if fragment:
+            address += f"#{fragment}"
+        tell(address)
+        if browse:
+            webbrowser.open(address)
+        server.serve_forever()

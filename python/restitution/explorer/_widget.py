@@ -1,0 +1,108 @@
+"""The page inside a notebook: Jupyter, marimo, VS Code, through anywidget."""
+
+from typing import TYPE_CHECKING, Any
+
+from restitution._arrays import whole
+from restitution._run import Run
+from restitution.explorer._page import NUMBERS, link, page
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+# In a frame of its own, the page's style and keys do not meet the notebook's. A Blob's address can carry #.
+_ESM = """
+export default {
+  render({ model, el }) {
+    const url = URL.createObjectURL(new Blob([model.get("page")], { type: "text/html" }));
+    const frame = document.createElement("iframe");
+    frame.title = "Restitution explorer";
+    frame.style = `width: 100%; height: ${model.get("height")}px; border: 0`;
+    frame.src = `${url}#${model.get("fragment")}`;
+    el.append(frame);
+    return () => URL.revokeObjectURL(url);
+  },
+};
+"""
+
+
+def explore(data: "xr.Dataset", *, height: int = 900) -> Any:
+    """Show a run in the explorer, inside a notebook.
+
+    The page computes the run again, in the browser, to the same bits; an angle that was given comes back from
+    its sine and cosine, and may differ in its last digit.
+
+    Parameters
+    ----------
+    data : xarray.Dataset
+        From `restitution.simulate`: what counts is how it was made, which is in its attributes.
+    height : int
+        Height of the frame in pixels, > 0.
+
+    Returns
+    -------
+    anywidget.AnyWidget
+        Shows itself as the last value of a cell.
+
+    Raises
+    ------
+    ValueError
+        If `data` is not from `simulate`, or of a run that the page cannot show; the message says what of it.
+    ImportError
+        If anywidget is not installed: ``pip install 'restitution[notebook]'``.
+
+    Examples
+    --------
+    >>> import restitution as rs
+    >>> body = rs.Dumbbell(radius=3e-3, separation=3e-4)
+    >>> data = rs.simulate(body, rs.Frictionless(normal=0.9), particles=10, impacts=20)
+    >>> rs.explore(data)  # doctest: +SKIP
+    """
+    fragment = link(_run_of(data))
+    height = whole("height", height, 1, 100_000)
+    try:
+        import anywidget
+        import traitlets
+    except ImportError:
+        raise ImportError("explore needs anywidget: pip install 'restitution[notebook]'") from None
+
+    class Explorer(anywidget.AnyWidget):
+        _esm = _ESM
+        page = traitlets.Unicode().tag(sync=True)
+        fragment = traitlets.Unicode().tag(sync=True)
+        height = traitlets.Int().tag(sync=True)
+
+    return Explorer(page=page(), fragment=fragment, height=height)
+
+
+def _run_of(data: "xr.Dataset") -> Run:
+    """Make the run again from the attributes of its Dataset."""
+    from restitution import bodies, laws
+
+    attributes = dict(data.attrs)
+    try:
+        body_type = getattr(bodies, str(attributes["body"]))
+        law_type = getattr(laws, str(attributes["law"]))
+        body = body_type(**{name: attributes[name] for name in body_type.model_fields})
+        law = law_type(**{name: attributes[name] for name in law_type.model_fields})
+        orientation = attributes["orientation"]
+        if orientation == "given":
+            orientation = data["release_angle"].to_numpy()
+        spin = attributes["spin"]
+        if isinstance(spin, str):
+            raise ValueError(f"spin = {spin}: the explorer shows this only if it is the same for all")
+        numbers = {name: attributes[name] for name in NUMBERS}
+        return Run(
+            body=body,
+            law=law,
+            **numbers,
+            particles=int(attributes["particles"]),
+            impacts=int(attributes["impacts"]),
+            orientation=orientation,
+            spin=tuple(map(float, spin)),
+            velocity=tuple(map(float, attributes["velocity"])),
+            seed=int(attributes["seed"]),
+        )
+    except (KeyError, AttributeError) as error:
+        raise ValueError(
+            f"data: not a Dataset from restitution.simulate, or of a law without numbers: {error}"
+        ) from None

@@ -1,0 +1,269 @@
+"""Figures of one's own results in a line each: maps, densities, scatter, moments and trajectories."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any, Literal
+
+import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from restitution._arrays import reals, whole
+from restitution._parameters import ParameterError, wrong
+from restitution.figures._panels import line, population, population_bar
+from restitution.figures._style import COLORS, COLUMN, MARKERS, PAGE, letter, panels, styled
+
+if TYPE_CHECKING:
+    import numpy.typing as npt
+
+    from restitution.distribution import FluctuatingRestitution
+
+VELOCITY = r"impact velocity $v_G^n$ (m/s)"
+RESTITUTION = r"coefficient of restitution $\varepsilon$"
+FRACTION = r"$E_\mathrm{rot}/E_\mathrm{tot}$"
+DEVIATION = r"standard deviation $\sigma(\varepsilon)$"
+
+
+@styled
+def map(found: xr.Dataset, of: Literal["restitution", "fraction"] = "restitution") -> Figure:
+    """Draw where the impacts are in the plane of velocity and restitution, as the paper's Figs. 2 and 3.
+
+    Parameters
+    ----------
+    found : xarray.Dataset
+        As from `restitution.statistics` or `restitution.reduce`, by velocity.
+    of : {"restitution", "fraction"}
+        What stands over the velocity: ε, or E_rot/E_tot.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+        Shown by a notebook; `save` writes it.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import restitution as rs
+    >>> found = rs.statistics(
+    ...     rs.Dumbbell(radius=3e-3, separation=3e-4), rs.TangentialRestitution(normal=0.98), particles=100,
+    ...     velocity_bins=np.linspace(0.0, 1.2, 121), restitution_bins=np.linspace(0.5, 1.5, 101))
+    >>> figure = rs.figures.map(found)
+    """
+    if not isinstance(of, str) or of not in ("restitution", "fraction"):
+        raise ParameterError(wrong("of", of, "'restitution' or 'fraction'"))
+    _require("found", found, f"{of}_count", "velocity_edges", f"{of}_edges")
+    figure, [[axes]] = panels(COLUMN, 2.7)
+    edges = [found[f"{name}_edges"].to_numpy() for name in ("velocity", of)]
+    counts = found[f"{of}_count"].transpose("velocity", of).to_numpy()
+    population_bar(figure, population(axes, edges[0], edges[1], counts), axes)
+    axes.set_xlabel(VELOCITY)
+    axes.set_ylabel(RESTITUTION if of == "restitution" else FRACTION)
+    return figure
+
+
+@styled
+def densities(found: xr.Dataset | FluctuatingRestitution, velocities: npt.ArrayLike) -> Figure:
+    """Draw p(ε | v) at some speeds, on a logarithmic axis, as the paper's Fig. 4.
+
+    Parameters
+    ----------
+    found : xarray.Dataset or FluctuatingRestitution
+        Statistics by velocity, of which the bins that hold the speeds are drawn, or a learned distribution.
+    velocities : array_like
+        At most six impact velocities in m/s.
+    """
+    from restitution.distribution import FluctuatingRestitution
+
+    if not isinstance(found, xr.Dataset | FluctuatingRestitution):
+        raise ParameterError(
+            wrong("found", found, "a Dataset of restitution.statistics, or a FluctuatingRestitution")
+        )
+    allowed = f"1 to {len(COLORS)} speeds in m/s"
+    speeds = np.atleast_1d(reals("velocities", velocities, allowed, dimensions=(0, 1)))
+    if not 1 <= speeds.size <= len(COLORS):
+        raise ParameterError(wrong("velocities", velocities, allowed))
+    figure, [[axes]] = panels(COLUMN, 2.7)
+    for k, v in enumerate(speeds):
+        if isinstance(found, xr.Dataset):
+            edges, density, name = _bin_density(found, float(v))
+        else:
+            low, high = found.support(float(v))
+            edges = np.linspace(low, high, 401)
+            density = np.diff(found.cdf(edges, float(v))) / np.diff(edges)
+            name = f"{v:g} m/s"
+        axes.stairs(np.where(density > 0, density, np.nan), edges, baseline=None, color=COLORS[k], label=name)
+    axes.set_yscale("log")
+    axes.set_xlabel(RESTITUTION)
+    axes.set_ylabel(r"$p(\varepsilon\,|\,v)$")
+    axes.set_ylim(top=30.0 * axes.get_ylim()[1])  # for the legend
+    axes.legend(title="impact velocity", ncols=2 if speeds.size > 2 else 1, loc="upper right")
+    return figure
+
+
+@styled
+def scatter(found: xr.Dataset | Mapping[str, xr.Dataset]) -> Figure:
+    """Draw the standard deviation of ε over the impact velocity, as the paper's Fig. 6.
+
+    Parameters
+    ----------
+    found : xarray.Dataset or mapping of str to xarray.Dataset
+        Statistics by velocity: one, several with their names, or those of `restitution.compare`, whose
+        lines are named by body and law. Bins of fewer than 100 impacts are left out, and those that reach
+        down to v = 0, where ε diverges.
+    """
+    figure, [[axes]] = panels(COLUMN, 2.7)
+    lines = _lines(found)
+    for k, (name, one) in enumerate(lines.items()):
+        style: dict[str, Any] = {
+            "color": COLORS[k % len(COLORS)],
+            "marker": MARKERS[k // len(COLORS) % len(MARKERS)],
+        }
+        _moment(axes, one, "deviation", label=name if len(lines) > 1 else None, markersize=2.0, **style)
+    axes.set_xscale("log")
+    axes.set_yscale("log")
+    axes.set_xlabel(VELOCITY)
+    axes.set_ylabel(DEVIATION)
+    if len(lines) > 1:
+        axes.legend()
+    return figure
+
+
+@styled
+def moments(found: xr.Dataset) -> Figure:
+    """Draw mean, standard deviation, skewness and kurtosis of ε over the impact velocity.
+
+    Parameters
+    ----------
+    found : xarray.Dataset
+        Statistics by velocity. Bands are ± one standard error where there are standard errors. Bins of fewer
+        than 100 impacts are left out, and those that reach down to v = 0, where ε diverges.
+    """
+    figure, rows = panels(PAGE, 4.6, 2, 2, sharex=True)
+    names = {
+        "mean_restitution": "mean of $\\varepsilon$",
+        "deviation": DEVIATION,
+        "skewness": "skewness",
+        "kurtosis": "kurtosis (3: Gaussian, 6: Laplace)",
+    }
+    places = [axes for row in rows for axes in row]
+    for axes, (name, label), mark in zip(places, names.items(), "abcd", strict=True):
+        _moment(axes, found, name)
+        axes.set_ylabel(label)
+        letter(axes, f"({mark})", left=False)
+    for axes in rows[-1]:
+        axes.set_xlabel(VELOCITY)
+    return figure
+
+
+@styled
+def trajectory(data: xr.Dataset, particle: int = 0, impacts: int = 20) -> Figure:
+    """Draw the height of the centre of mass of a particle over time, and what its impacts did.
+
+    Heights are exact: parabolas that the recorded velocities put together.
+
+    Parameters
+    ----------
+    data : xarray.Dataset
+        As from `restitution.simulate`.
+    particle : int
+        Which one.
+    impacts : int
+        How many of its impacts.
+    """
+    _require(
+        "data", data, "time", "impact_velocity", "rebound_velocity", "restitution", "rotational_fraction"
+    )
+    particle = whole("particle", particle, 0, data.sizes["particle"] - 1)
+    impacts = whole("impacts", impacts, 1)
+    one = data.isel(particle=particle, impact=slice(0, impacts))
+    time, fall, rise, ratio, fraction = (
+        one[name].dropna("impact").to_numpy()
+        for name in ("time", "impact_velocity", "rebound_velocity", "restitution", "rotational_fraction")
+    )
+    gravity = float(data.attrs["gravity"]) * np.cos(float(data.attrs["incline"]))
+    start = float(one["release_height"] if "release_height" in one else data.attrs["release_height"])
+    when, height = _heights(time, fall, rise, gravity, start)
+    figure, [[path], [below]] = panels(COLUMN, 3.6, 2, 1, sharex=True)
+    path.plot(when, 1e3 * height, linewidth=0.8)
+    path.set_ylabel("height (mm)")
+    path.set_ylim(bottom=0.0)
+    below.plot(time, ratio, linestyle="none", marker=MARKERS[0], color=COLORS[0], label=r"$\varepsilon$")
+    below.plot(time, fraction, linestyle="none", marker=MARKERS[1], color=COLORS[1], label=FRACTION)
+    below.set_xlabel("time since release (s)")
+    below.legend()
+    return figure
+
+
+def _heights(
+    time: npt.NDArray[np.float64],
+    fall: npt.NDArray[np.float64],
+    rise: npt.NDArray[np.float64],
+    gravity: float,
+    start: float,
+) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.float64]]:
+    """Give times and heights of the centre of mass, forty to a flight, to the end of the last one."""
+    begin = np.concatenate([[0.0], time[:-1]])
+    duration = time - begin
+    upward = np.concatenate([gravity * duration[:1] - fall[:1], rise[:-1]])
+    share = np.linspace(0.0, 1.0, 40)
+    elapsed = duration[:, None] * share
+    climbed = upward[:, None] * elapsed - 0.5 * gravity * elapsed**2
+    base = start + np.concatenate([[0.0], np.cumsum(climbed[:, -1])[:-1]])
+    return (begin[:, None] + elapsed).ravel(), (base[:, None] + climbed).ravel()
+
+
+def _moment(axes: Axes, found: xr.Dataset, name: str, **style: Any) -> None:
+    """Draw a moment of the velocity bins that have enough impacts, and none at v = 0, where ε diverges."""
+    _require("found", found, "variance", "number", "velocity_edges")
+    lower = xr.DataArray(found["velocity_edges"].to_numpy()[:-1], dims="velocity")
+    enough = (found["number"] >= 100) & (lower > 0)
+    values = np.sqrt(found["variance"]) if name == "deviation" else found[name]
+    error = f"{name}_error"
+    shown = np.where(enough, values, np.nan)
+    if name == "deviation":
+        shown = np.where(shown > 0, shown, np.nan)  # a logarithmic axis has no room for zero
+    band = np.where(enough, found[error], np.nan) if error in found else None
+    line(axes, found["velocity"].to_numpy(), shown, band, **style)
+
+
+def _lines(found: xr.Dataset | Mapping[str, xr.Dataset]) -> dict[str, xr.Dataset]:
+    """Give every set of statistics its name."""
+    if isinstance(found, xr.DataArray) or not isinstance(found, Mapping) or not found:
+        raise ParameterError(wrong("found", found, "a Dataset of restitution.statistics, or several"))
+    if not isinstance(found, xr.Dataset):
+        return {str(name): one for name, one in found.items()}
+    if "body" not in found.dims:
+        return {"": found}
+    lines = {}
+    for body in found["body"].values:
+        for law in found["law"].values:
+            name = ", ".join(
+                str(one) for one, axis in ((body, "body"), (law, "law")) if found.sizes[axis] > 1
+            )
+            lines[name or str(body)] = found.sel(body=body, law=law)
+    return lines
+
+
+def _bin_density(found: xr.Dataset, v: float) -> tuple[Any, Any, str]:
+    """Give edges and density of the velocity bin that holds v, and the bin in words."""
+    _require("found", found, "restitution_count", "velocity_edges", "restitution_edges", "number")
+    ends = found["velocity_edges"].to_numpy()
+    row = int(np.searchsorted(ends, v, side="right")) - 1
+    if not 0 <= row < ends.size - 1:
+        raise ParameterError(wrong("velocities", v, f"in [{ends[0]:g}, {ends[-1]:g}) m/s, the velocity bins"))
+    here = found.isel(velocity=row)
+    edges = found["restitution_edges"].to_numpy()
+    with np.errstate(invalid="ignore", divide="ignore"):
+        density = here["restitution_count"].to_numpy() / (int(here["number"]) * np.diff(edges))
+    return edges, density, f"{ends[row]:.3g} to {ends[row + 1]:.3g} m/s"
+
+
+def _require(name: str, data: object, *variables: str) -> None:
+    origin = "restitution.simulate" if name == "data" else "restitution.statistics, by velocity"
+    if not isinstance(data, xr.Dataset):
+        raise ParameterError(wrong(name, data, f"a Dataset as from {origin}"))
+    lacking = [each for each in variables if each not in data]
+    if lacking:
+        raise ValueError(f"{name} lacks {', '.join(lacking)}: must be a Dataset as from {origin}")

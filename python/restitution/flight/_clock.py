@@ -1,0 +1,69 @@
+"""What times of flight would give for a simulated run."""
+
+import math
+
+import numpy as np
+import xarray as xr
+
+from restitution._parameters import ParameterError, Problem, wrong
+
+
+def clock(data: xr.Dataset) -> xr.Dataset:
+    """Add to a simulated run what an experimenter gets from its times alone.
+
+    The centre of mass of a non-spherical body is at a height h_i at impact i that depends on its angle.
+    Over a flight that lasts Δt, h_{i+1} - h_i = v' Δt - g Δt²/2: the clock's g Δt/2 misses the rebound
+    velocity by -(h_{i+1} - h_i)/Δt and the next impact velocity by +(h_{i+1} - h_i)/Δt.
+
+    Parameters
+    ----------
+    data : Dataset
+        A run as `restitution.simulate` returns it.
+
+    Returns
+    -------
+    xarray.Dataset
+        The same with ``clock_velocity``, g Δt/2 in m/s, which stands for the impact velocity, and
+        ``clock_restitution``, the ratio of the times of flight after and before the impact. Both are NaN at
+        the first impact, the second also at the last.
+
+    Raises
+    ------
+    ValueError
+        If the Dataset is not a run.
+
+    Examples
+    --------
+    >>> import restitution as rs
+    >>> body, law = rs.Dumbbell(radius=3e-3, separation=3e-4), rs.TangentialRestitution(normal=0.98)
+    >>> heard = rs.flight.clock(rs.simulate(body, law, particles=100, impacts=10))
+    >>> difference = (heard.clock_restitution - heard.restitution).std()
+    >>> 1e-4 < float(difference) < 1e-2
+    True
+    """
+    if not isinstance(data, xr.Dataset):
+        raise ParameterError(wrong("data", data, "a Dataset that simulate returned"))
+    missing = [name for name in ("time", "rebound_velocity") if name not in data]
+    if missing or "gravity" not in data.attrs or "impact" not in data.dims:
+        raise ParameterError(Problem("data", ": not a run; must be a Dataset that simulate returned"))
+    gravity = data.attrs["gravity"] * math.cos(data.attrs.get("incline", 0.0))
+    flight = data.time.diff("impact").values
+    velocity = np.full(data.time.shape, np.nan)
+    velocity[..., 1:] = 0.5 * gravity * flight
+    ratio = np.full(data.time.shape, np.nan)
+    # Two spheres that touch at once are two impacts with no flight between.
+    with np.errstate(divide="ignore", invalid="ignore"):
+        ratio[..., 1:-1] = flight[..., 1:] / flight[..., :-1]
+    ratio[~np.isfinite(ratio)] = np.nan
+    return data.assign(
+        clock_velocity=(
+            data.time.dims,
+            velocity,
+            {"long_name": "impact velocity from the time of flight", "units": "m s-1", "symbol": "g Δt/2"},
+        ),
+        clock_restitution=(
+            data.time.dims,
+            ratio,
+            {"long_name": "coefficient of restitution from the times of flight", "units": "1"},
+        ),
+    )

@@ -1,0 +1,77 @@
+"""ε(v) as it was measured, with the laws that were fitted."""
+
+from collections.abc import Iterable
+
+import numpy as np
+import xarray as xr
+from matplotlib.figure import Figure
+
+from restitution._parameters import ParameterError, wrong
+from restitution.figures import COLORS, COLUMN, line, panels, styled
+from restitution.flight._law_fit import LawFit
+from restitution.flight._series import series_of
+
+_POINTS = 200
+
+
+@styled
+def draw(data: xr.Dataset | Iterable[xr.Dataset], *fits: LawFit) -> Figure:
+    """Draw ε against v with error bars, and each law with its band of one standard error.
+
+    Parameters
+    ----------
+    data : Dataset or iterable of Dataset
+        As `restitution.flight.restitution` returns it.
+    *fits : LawFit
+        Laws fitted to them. A fitted scatter widens the band by a lighter one.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+        To be saved with its ``savefig``.
+
+    Raises
+    ------
+    ValueError
+        If no coefficient was measured.
+    """
+    needed = ("restitution", "restitution_error", "impact_velocity", "impact_velocity_error")
+    series = series_of(data, *needed)
+    known = [np.isfinite(one.restitution.values) for one in series]
+    if not any(rows.any() for rows in known):
+        raise ParameterError(
+            wrong("data", data, "a Dataset of flight.restitution with at least one coefficient")
+        )
+    figure, [[axes]] = panels(COLUMN, 2.6)
+    speeds = np.concatenate(
+        [one.impact_velocity.values[rows] for one, rows in zip(series, known, strict=True)]
+    )
+    # Where shape makes hundreds of points scatter far, the curves must stay in sight.
+    for number, (one, rows) in enumerate(zip(series, known, strict=True)):
+        axes.errorbar(
+            one.impact_velocity.values[rows],
+            one.restitution.values[rows],
+            xerr=one.impact_velocity_error.values[rows],
+            yerr=one.restitution_error.values[rows],
+            linestyle="none",
+            marker="o",
+            markersize=2.5,
+            elinewidth=0.6,
+            color=COLORS[-1 - number % 2],
+            label="measured" if number == 0 else None,
+            zorder=3,
+        )
+    along = np.linspace(speeds.min(), speeds.max(), _POINTS)
+    for number, law in enumerate(fits):
+        color = COLORS[number % len(COLORS)]
+        style = ("-", "--", "-.", ":")[number % 4]
+        line(axes, along, law(along), law.error(along), color=color, linestyle=style, label=law.law)
+        if law.scatter > 0.0:
+            middle = law(along)
+            axes.fill_between(
+                along, middle - law.scatter, middle + law.scatter, color=color, alpha=0.1, linewidth=0
+            )
+    axes.set_xlabel(r"impact velocity $v$ (m/s)")
+    axes.set_ylabel(r"coefficient of restitution $\varepsilon$")
+    axes.legend()
+    return figure

@@ -1,0 +1,69 @@
+"""How stores of several machines become one."""
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+from restitution._files import path_from
+from restitution._parameters import ParameterError, Problem
+from restitution.study._drive import Driver
+from restitution.study._engines import engine
+from restitution.study._status import Status, status, study_in
+from restitution.study._store import Store, check, need_zarr
+from restitution.study._study import Study, study_of
+from restitution.study._sweep import opened
+
+
+def merge(
+    out: str | Path, parts: Sequence[str | Path] = (), *, study: Any = None, threads: int | None = None
+) -> Status:
+    """Put the tasks of several stores into one, and work out the results of all points that are complete.
+
+    Parameters
+    ----------
+    out : str or Path
+        The store; it is made if it is not there. One that several shards wrote to needs no other parts.
+    parts : sequence of str or Path
+        Other stores of the same study; they are left as they are. What is damaged in them is left out.
+    study : optional
+        As in `sweep`; needed where the study has a function that no file can name.
+    threads : int, optional
+        As in `sweep`.
+
+    Returns
+    -------
+    Status
+        What the store holds now.
+
+    Raises
+    ------
+    ValueError
+        If the stores are not of one study and one version of the physics, with what differs.
+    """
+    need_zarr()
+    path, others = path_from("out", out), [path_from("parts", part) for part in parts]
+    if not path.exists() and not others:
+        raise ParameterError(Problem("out", f" = {str(path)!r}: there is no such store, and no parts for it"))
+    wanted = study_of(study if study is not None else study_in(path if path.exists() else others[0]))
+    for part in others:
+        check(part, wanted)
+    store, template = opened(path, wanted)
+    for part in others:
+        _copy(Store(part, wanted.digest), store, wanted)
+    points = range(wanted.design.points)
+    with engine(None, threads) as work:
+        Driver(wanted, store, work, template, points, compute=False).run(writes=True)
+    return status(path)
+
+
+def _copy(part: Store, store: Store, wanted: Study) -> None:
+    """Copy the tasks that are undamaged in one store and not in the other."""
+    number = wanted.effort.task_batches
+    for point in range(wanted.design.points):
+        for task in sorted(part.there(point)):
+            first = task * number
+            if task in store.there(point) and store.valid(point, first, number).all():
+                continue
+            rows, good, _ = part.read(point, first, number)
+            if good.all():
+                store.write(point, first, rows)

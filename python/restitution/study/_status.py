@@ -1,0 +1,71 @@
+"""The status of a study, read from its store."""
+
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+import xarray as xr
+
+from restitution._files import path_from
+from restitution.study._store import Store, identity, need_zarr
+from restitution.study._study import Study, study_of
+
+
+@dataclass(frozen=True)
+class Status:
+    """What a store holds.
+
+    Attributes
+    ----------
+    points, finished : int
+        Points of the study, and those whose results are there.
+    tasks, there : int
+        Tasks without which no point can end, and tasks that are there; among them those that were added for
+        the standard error that is asked for.
+    """
+
+    points: int
+    finished: int
+    tasks: int
+    there: int
+
+    def __str__(self) -> str:
+        share = self.finished / self.points
+        return (
+            f"{self.finished} of {self.points} points finished ({100 * share:.0f} %); "
+            f"{self.there} tasks done, {self.tasks} at least"
+        )
+
+
+def status(out: str | Path) -> Status:
+    """Tell how far a study has come, from a look at its store."""
+    need_zarr()
+    path = path_from("out", out)
+    batches = int(identity(path)["effort"]["batches"])
+    store = Store(path, b"")
+    points = int(store.words.shape[0])
+    there = sum(len(store.there(point)) for point in range(points))
+    finished = int(np.count_nonzero(np.asarray(store.group["status"][...]) == 1))
+    return Status(points, finished, points * batches // store.task_batches, there)
+
+
+def open_store(path: Path) -> xr.Dataset:
+    """Open the results of a store."""
+    found: xr.Dataset = xr.open_zarr(path, chunks=None)
+    return found
+
+
+def study_in(path: Path) -> Study:
+    """Read a study back from its store."""
+    found = {key: value for key, value in identity(path).items() if key != "physics"}
+    if "measure" in found:
+        found["measure"] = {key: found["measure"][key] for key in ("function", "of")}
+    effort = dict(found["effort"])
+    if not effort["until"]:
+        del effort["most_particles"]
+    if effort["velocities"] is None:
+        del effort["velocities"]
+    try:
+        return study_of({**found, "effort": effort})
+    except ValueError as error:
+        raise ValueError(f"{path}: its study cannot be made again: {error}") from None

@@ -1,0 +1,399 @@
+"""The Zarr store of a study (format 3): what every task counted, and the labelled results.
+
+The array ``tasks/words`` holds a row for each batch of each point: the words of `restitution._core.Tally`,
+and after them a digest, BLAKE2b, of the study, the point, the batch and the words. A task writes its rows as
+one chunk, which takes its place in one step: its digest shows whether what is read back is what was written.
+Everything else in the store follows from these rows.
+"""
+
+import contextlib
+import hashlib
+import json
+import math
+import os
+import shutil
+import warnings
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+import xarray as xr
+
+from restitution._dataset import version_here
+from restitution._files import draft_folder
+from restitution.study._axes import Design
+from restitution.study._physics import fingerprint
+from restitution.study._point import Words
+from restitution.study._study import Study
+
+_IDENTITY = "restitution_study"
+_DIGEST = 4
+"""Words of a digest."""
+_LARGE = 4096
+"""Numbers of a variable at a point from which on each point has a chunk of its own."""
+_CHUNK = 4_000_000
+"""Bytes of a chunk of the other variables, at most where the shape allows it."""
+
+
+class Refused(ValueError):
+    """A store that belongs to something else."""
+
+
+def need_zarr() -> None:
+    """Say what to install."""
+    try:
+        import zarr
+    except ImportError:
+        raise ImportError("parameter studies need zarr: pip install 'restitution[sweep]'") from None
+    if int(zarr.__version__.partition(".")[0]) < 3:
+        raise ImportError(
+            f"parameter studies need zarr 3, here is {zarr.__version__}: pip install 'restitution[sweep]'"
+        )
+
+
+class Store:
+    """A store that is open.
+
+    Parameters
+    ----------
+    path : Path
+        A directory, which every worker can reach under this name.
+    study : bytes
+        The digest of the study.
+    """
+
+    def __init__(self, path: Path, study: bytes) -> None:
+        import zarr
+
+        self.path, self.study = path, study
+        self.group: Any = zarr.open_group(str(path), mode="r+", zarr_format=3, use_consolidated=False)
+        self._ensured: set[str] = set()
+        words: Any = self.group["tasks/words"]
+        self.words = words
+        self.task_batches = int(words.chunks[1])
+
+    def valid(self, point: int, first: int, count: int) -> npt.NDArray[np.bool_]:
+        """Tell which batches of a point are there, undamaged."""
+        return self.read(point, first, count)[1]
+
+    def read(self, point: int, first: int, count: int) -> tuple[Words, npt.NDArray[np.bool_], bytes]:
+        """Read rows of a point, tell which are what was written, and give their digests."""
+        width = self.words.shape[2]
+        rows, good = np.zeros((count, width), np.uint64), np.zeros(count, np.bool_)
+        for start in range(0, count, self.task_batches):
+            part = slice(start, start + self.task_batches)
+            try:
+                rows[part] = self.words[point, first + part.start : first + part.stop]
+            except PermissionError:
+                raise
+            except Exception:  # a chunk that is cut or spoilt fails in any way that a decoder can
+                continue
+            for i in range(part.start, min(part.stop, count)):
+                good[i] = rows[i, -_DIGEST:].tobytes() == self._digest(point, first + i, rows[i, :-_DIGEST])
+        return rows[:, :-_DIGEST], good, rows[:, -_DIGEST:].tobytes()
+
+    def write(self, point: int, first: int, rows: Words) -> None:
+        """Commit the rows of a task, in one step."""
+        signed = [
+            np.concatenate([row, np.frombuffer(self._digest(point, first + i, row), np.uint64)])
+            for i, row in enumerate(rows)
+        ]
+        self.words[point, first : first + len(rows)] = np.stack(signed)
+
+    def there(self, point: int) -> set[int]:
+        """Tell which tasks of a point have a chunk, whatever is in it."""
+        folder = self.path / "tasks" / "words" / "c" / str(point)
+        try:
+            return {int(entry.name) for entry in os.scandir(folder) if entry.name.isdigit()}
+        except FileNotFoundError:
+            return set()
+
+    def _digest(self, point: int, batch: int, row: Words) -> bytes:
+        place = point.to_bytes(8, "little") + batch.to_bytes(8, "little")
+        digest = hashlib.blake2b(self.study + place, digest_size=8 * _DIGEST)
+        digest.update(np.ascontiguousarray(row).data)
+        return digest.digest()
+
+    def ensure(self, found: xr.Dataset, design: Design) -> None:
+        """Make the arrays of the results, if they are not there, from what was found at a point."""
+        for name, variable in found.variables.items():
+            if name in self._ensured or str(name) in self.group:
+                self._ensured.add(str(name))
+                continue
+            own = name in found.data_vars and not _is_common(str(name), variable)
+            dims = (*design.dims, *map(str, variable.dims)) if own else tuple(map(str, variable.dims))
+            shape = (*design.shape, *variable.shape) if own else variable.shape
+            chunks = _chunks(design, variable) if own else shape
+            with contextlib.suppress(FileExistsError, ValueError):  # another worker was faster
+                array = self.group.create_array(
+                    str(name),
+                    shape=shape,
+                    chunks=tuple(max(1, n) for n in chunks),
+                    dtype=variable.dtype,
+                    dimension_names=dims,
+                    attributes={**_plain(variable.attrs), "coordinates": " ".join(_coordinates(design))}
+                    if own and _coordinates(design)
+                    else _plain(variable.attrs),
+                    compressors=_fast(variable.dtype.itemsize),
+                    fill_value=np.nan if variable.dtype.kind == "f" else 0,
+                )
+                if not own:
+                    array[...] = variable.to_numpy()
+
+    def restore(self, found: xr.Dataset, design: Design) -> None:
+        """Write what is the same at every point again, where it is not what it should be."""
+        wanted = {axis.name: np.array(axis.values, dtype=np.float64) for axis in design.axes}
+        for name, variable in found.variables.items():
+            if name not in found.data_vars or _is_common(str(name), variable):
+                wanted[str(name)] = variable.to_numpy()
+        for name, values in wanted.items():
+            try:
+                same = np.array_equal(np.asarray(self.group[name][...]), values)
+            except (PermissionError, KeyError):
+                raise
+            except Exception:  # cut or spoilt
+                same = False
+            if not same:
+                self.group[name][...] = values
+
+    def write_large(self, found: xr.Dataset, place: tuple[int, ...]) -> None:
+        """Write the variables that have a chunk for each point."""
+        for name in large(found):
+            self.group[name][place] = found.variables[name].to_numpy()
+
+    def read_large(self, names: list[str], place: tuple[int, ...]) -> dict[str, npt.NDArray[Any]] | None:
+        """Read them back; None if they are not there, or damaged."""
+        try:
+            return {name: np.asarray(self.group[name][place]) for name in names}
+        except PermissionError:
+            raise
+        except Exception:
+            return None
+
+    def large_arrays(self, design: Design) -> list[str]:
+        """Name the arrays that have a chunk for each point."""
+        own = len(design.shape)
+        return sorted(
+            name
+            for name, array in self.group.arrays()
+            if array.shape[:own] == design.shape and math.prod(array.shape[own:]) >= _LARGE
+        )
+
+    def consolidate(self) -> None:
+        """Put the metadata of all arrays in one place, so that the store opens at once."""
+        import zarr
+
+        with warnings.catch_warnings():
+            warnings.simplefilter(
+                "ignore"
+            )  # consolidation is not in the specification of format 3, and Xarray uses it
+            zarr.consolidate_metadata(str(self.path), zarr_format=3)
+
+
+def large(found: xr.Dataset) -> list[str]:
+    """Name the variables that have a chunk for each point."""
+    return sorted(name for name, v in _own(found) if _is_large(name, v))
+
+
+def small(found: xr.Dataset) -> list[str]:
+    """Name the other variables that every point has."""
+    return sorted(name for name, v in _own(found) if not _is_large(name, v) and not _is_common(name, v))
+
+
+def common(found: xr.Dataset) -> list[str]:
+    """Name the variables that are the same at every point."""
+    return sorted(name for name, v in _own(found) if _is_common(name, v))
+
+
+def _own(found: xr.Dataset) -> Iterator[tuple[str, xr.Variable]]:
+    """Give the variables that are not coordinates, as they are: a DataArray of each takes longer to make."""
+    return ((str(name), v) for name, v in found.variables.items() if name not in found.coords)
+
+
+def create_or_open(path: Path, study: Study, words: int) -> tuple[Store, bool]:
+    """Open the store of a study, or make it; tell whether it was there.
+
+    Raises
+    ------
+    Refused
+        If what is there is another study, another version of the physics, or no store; it says what differs.
+    """
+    made = False
+    if not path.exists():
+        path.parent.mkdir(parents=True, exist_ok=True)
+        draft = draft_folder(path)
+        try:
+            _create(draft, study, words)
+            draft.chmod(0o777 & ~_umask())
+            try:
+                os.rename(draft, path)
+                made = True
+            except OSError:
+                if not path.exists():
+                    raise
+        finally:
+            shutil.rmtree(draft, ignore_errors=True)
+    check(path, study)
+    return Store(path, study.digest), not made
+
+
+def check(path: Path, study: Study) -> None:
+    """Refuse a store that does not belong to a study, and say what differs."""
+    found = identity(path)
+    wanted = _identity(study)
+    differences = list(_differences(found, wanted))
+    if not differences:
+        return
+    most = 12
+    lines = [f"  {name}: {there} in the store, {here} here" for name, there, here in differences[:most]]
+    if len(differences) > most:
+        lines.append(f"  and {len(differences) - most} more")
+    physics = any(name.startswith("physics") for name, _, _ in differences)
+    advice = (
+        "install that version to go on with it, or write to a new store"
+        if physics
+        else "write to a new store"
+    )
+    raise Refused(f"{path}: is the store of another study; {advice}. What differs:\n" + "\n".join(lines))
+
+
+def identity(path: Path) -> dict[str, Any]:
+    """Read what a store says that it is."""
+    try:
+        text = (path / "zarr.json").read_text(encoding="utf-8")
+        found = json.loads(json.loads(text)["attributes"][_IDENTITY])
+    except (OSError, ValueError, KeyError, TypeError):
+        raise Refused(
+            f"{path}: is not the store of a study, or its zarr.json is damaged; give another path"
+        ) from None
+    if not isinstance(found, dict):
+        raise Refused(f"{path}: is not the store of a study; give another path")
+    return found
+
+
+def _identity(study: Study) -> dict[str, Any]:
+    plain: dict[str, Any] = json.loads(json.dumps({"physics": fingerprint(), **study.identity}))
+    return plain
+
+
+def _create(path: Path, study: Study, words: int) -> None:
+    import zarr
+
+    effort, design = study.effort, study.design
+    about = {
+        "title": "Parameter study of the coefficient of restitution of bouncing aspherical bodies",
+        "Conventions": "CF-1.11",
+        "source": f"restitution {version_here()}",
+        "references": "A. Glielmo, N. Gunkelmann, T. Pöschel, Phys. Rev. E 90, 052204 (2014)",
+        _IDENTITY: json.dumps(_identity(study)),  # as text, which netCDF takes too
+    }
+    group = zarr.create_group(str(path), zarr_format=3, attributes=about)
+    for axis in design.axes:
+        values = np.array(axis.values, dtype=np.float64)
+        dims = (axis.name,) if design.kind == "grid" else ("point",)
+        array = group.create_array(
+            axis.name,
+            shape=values.shape,
+            chunks=values.shape,
+            dtype=values.dtype,
+            dimension_names=dims,
+            attributes={"long_name": axis.parameter, **_units(study, axis.parameter)},
+            fill_value=np.nan,
+        )
+        array[...] = values
+    group.create_array(
+        "status",
+        shape=design.shape,
+        chunks=design.shape,
+        dtype=np.uint8,
+        dimension_names=design.dims,
+        attributes={
+            "long_name": "state of the point",
+            "flag_values": [0, 1],
+            "flag_meanings": "unfinished finished",
+        },
+        fill_value=0,
+    )[...] = 0
+    batches = effort.blocks * effort.batches
+    group.create_group("tasks").create_array(
+        "words",
+        shape=(design.points, batches, words + _DIGEST),
+        chunks=(1, effort.task_batches, words + _DIGEST),
+        dtype=np.uint64,
+        dimension_names=("point", "batch", "word"),
+        compressors=_fast(8),
+        attributes={"long_name": "what each batch of particles counted, and its digest"},
+        fill_value=0,
+    )
+    Store(path, study.digest).consolidate()
+
+
+def _fast(size: int) -> Any:
+    """Choose a compressor that costs next to nothing; most of what is stored are small numbers and zeros."""
+    from zarr.codecs import BloscCodec
+
+    return BloscCodec(cname="lz4", clevel=5, shuffle="shuffle", typesize=size)
+
+
+def _units(study: Study, parameter: str) -> dict[str, str]:
+    """Give the unit of a parameter, as its description has it."""
+    target: Any = study.base
+    *parts, last = parameter.split(".")
+    for part in parts:
+        target = target if part == "run" else getattr(target, part)
+    about = type(target).model_fields[last].description or ""
+    unit = about.rpartition(",")[2].strip()
+    known = {"m": "m", "m/s²": "m s-2", "rad": "rad", "m/s": "m s-1"}
+    return {"units": known[unit]} if unit in known else {}
+
+
+def _differences(there: Any, here: Any, name: str = "") -> Iterator[tuple[str, str, str]]:
+    if isinstance(there, Mapping) and isinstance(here, Mapping):
+        for key in sorted(set(there) | set(here)):
+            yield from _differences(there.get(key), here.get(key), f"{name}.{key}" if name else key)
+    elif there != here:
+        yield name, _short(there), _short(here)
+
+
+def _short(value: Any) -> str:
+    text = "nothing" if value is None else json.dumps(value)
+    return text if len(text) <= 60 else f"{text[:40]} … {text[-12:]}"
+
+
+def _is_common(name: str, variable: Any) -> bool:
+    """Tell whether a variable is the same at every point: edges of bins."""
+    return name.endswith("_edges") and variable.dims == (f"{name[:-1]}",)
+
+
+def _is_large(name: str, variable: Any) -> bool:
+    return bool(variable.size >= _LARGE)
+
+
+def _chunks(design: Design, variable: Any) -> tuple[int, ...]:
+    if variable.size >= _LARGE:
+        return (*(1 for _ in design.shape), *variable.shape)
+    room = max(1, _CHUNK // max(1, variable.size * variable.dtype.itemsize))
+    sizes = []
+    for size in reversed(design.shape):
+        sizes.append(min(size, room))
+        room = max(1, room // size)
+    return (*reversed(sizes), *variable.shape)
+
+
+def _coordinates(design: Design) -> list[str]:
+    """Name what Xarray must treat as coordinates: parameters of a design that is not a grid."""
+    return [] if design.kind == "grid" else [axis.name for axis in design.axes]
+
+
+def _plain(attrs: Mapping[Any, Any]) -> dict[str, Any]:
+    return {
+        str(key): value.tolist() if isinstance(value, np.ndarray) else value for key, value in attrs.items()
+    }
+
+
+def _umask() -> int:
+    mask = os.umask(0)
+    os.umask(mask)
+    return mask

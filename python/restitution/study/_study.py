@@ -1,0 +1,290 @@
+"""A study, checked: a run, what is varied in it, what is measured, and with what effort."""
+
+import hashlib
+import inspect
+import json
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from importlib import import_module
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from restitution._bins import edges_from
+from restitution._files import path_from
+from restitution._parameters import ParameterError, Parameters, Problem, unknown, wrong
+from restitution._release import RandomHeight
+from restitution._run import Run
+from restitution._statistics import Edges, edges_of
+from restitution._toml import run_of, table_of, tables_in, tables_of
+from restitution.laws._materials import Material
+from restitution.study._axes import Design, design
+from restitution.study._effort import Effort, effort
+from restitution.study._forms import Form, forms_of
+
+Measure = Callable[[xr.Dataset], xr.Dataset]
+"""A function of what `restitution.statistics` or `restitution.simulate` returns."""
+
+_OF = ("statistics", "simulate")
+_TABLES = ("body", "law", "run", "sweep", "statistics", "learn", "fit", "measure", "first_impact", "effort")
+
+
+@dataclass(frozen=True)
+class Study:
+    """What a study is. Two studies with the same `identity` have the same results, to the bit.
+
+    Attributes
+    ----------
+    base : Run
+        The run at the first point.
+    design : Design
+        The points.
+    edges : dict or None
+        Bins of the impacts that are counted, as `restitution._statistics.edges_of` gives them.
+    forms : tuple of Form
+        What is taken from the statistics of a point by name: quantiles, a fit.
+    measure : callable or None
+        A function of a Dataset that is measured besides.
+    of : {"statistics", "simulate"}
+        What it is a function of.
+    first_impact : bool
+        Whether mean and standard deviation of the first impact are worked out from their closed form.
+    effort : Effort
+        How many particles at each point, and in how many batches.
+    """
+
+    base: Run
+    design: Design
+    edges: Edges | None
+    forms: tuple[Form, ...]
+    measure: Measure | None
+    of: str
+    first_impact: bool
+    effort: Effort
+
+    def run(self, point: int) -> Run:
+        """Give the run at a point.
+
+        Raises
+        ------
+        ValueError
+            If its parameters do not go together.
+        """
+        values = self.design.values(point)
+        try:
+            return _changed(self.base, values)
+        except ParameterError as error:
+            here = ", ".join(f"{key} = {value!r}" for key, value in values.items())
+            texts = (Problem(name, text) for name, text in error.problems)
+            raise ParameterError(*(Problem(f"at {here}: ", str(text)) for text in texts)) from None
+
+    @cached_property
+    def identity(self) -> dict[str, Any]:
+        """Everything that the results depend on, as plain values."""
+        tables = tables_of(self.base)
+        edges = self.edges or {}
+        bins = {f"{name}_bins": own.tolist() for name, own in edges.items() if own is not None}
+        return {
+            **tables,
+            "sweep": {
+                "design": self.design.kind,
+                **{axis.parameter: list(axis.values) for axis in self.design.axes},
+            },
+            **({"statistics": bins} if self.edges else {}),
+            **{form.name: form.table() for form in self.forms},
+            **({"measure": {"of": self.of, **_named(self.measure)}} if self.measure else {}),
+            **({"first_impact": {}} if self.first_impact else {}),
+            "effort": self.effort.table(),
+        }
+
+    @cached_property
+    def digest(self) -> bytes:
+        """SHA-256 of `identity`."""
+        return hashlib.sha256(json.dumps(self.identity, sort_keys=True).encode()).digest()
+
+
+def study_of(source: Any) -> Study:
+    """Make a study of a TOML file or of tables.
+
+    Parameters
+    ----------
+    source : str, Path or mapping
+        A file, or the same tables as a mapping, in which ``body`` and ``law`` may be a body and a law, and
+        ``measure`` a function.
+
+    Raises
+    ------
+    ValueError
+        Naming everything that is wrong.
+    """
+    if isinstance(source, Study):
+        return source
+    if isinstance(source, str | Path):
+        return _study(tables_in(path_from("study", source)), str(source))
+    if isinstance(source, Mapping):
+        return _study(dict(source), "study")
+    raise ParameterError(wrong("study", source, "a path of a TOML file, or its tables as a mapping"))
+
+
+def _study(tables: dict[str, Any], source: str) -> Study:
+    try:
+        for name in tables:
+            if name not in _TABLES:
+                raise ParameterError(unknown(name, "a study", _TABLES))
+        own = {name: tables.pop(name) for name in _TABLES[3:] if name in tables}
+        points = design(own.get("sweep", {}), seed=int(dict(tables.get("run", {})).get("seed", 1)))
+        plain = {
+            name: table_of(table) if isinstance(table, Parameters) else _copy(table)
+            for name, table in tables.items()
+        }
+        for parameter, value in points.values(0).items():
+            _set(plain, parameter, value)
+    except ParameterError as error:
+        raise ValueError("\n".join(f"{source}: {problem}" for problem in error.problems)) from None
+    base = run_of(plain, source)
+    try:
+        measure, of = _measure(own.get("measure"))
+        edges = _edges(own["statistics"]) if "statistics" in own else None
+        forms = forms_of(own, edges, base)
+        first = "first_impact" in own
+        if first and own["first_impact"]:
+            raise ParameterError(wrong("first_impact", own["first_impact"], "an empty table"))
+        if first and isinstance(base.release_height, RandomHeight) and isinstance(base.law.normal, Material):
+            allowed = "a number, for the closed form of [first_impact] where the coefficient varies"
+            raise ParameterError(wrong("run.release_height", base.release_height, allowed))
+        if measure is not None and of == "statistics" and edges is None:
+            raise ParameterError(Problem("statistics", ": missing; the measure is a function of them"))
+        if edges is None and measure is None and not first:
+            tables_of_measures = "[statistics], [measure] or [first_impact]"
+            raise ParameterError(
+                Problem("statistics", f": nothing is measured; there must be {tables_of_measures}")
+            )
+        amount = effort(own.get("effort", {}), base)
+        found = Study(base, points, edges, forms, measure, of, first, amount)
+        for point in range(points.points):
+            found.run(point)
+    except ParameterError as error:
+        raise ValueError("\n".join(f"{source}: {problem}" for problem in error.problems)) from None
+    except ValueError as error:
+        raise ValueError(f"{source}: {error}") from None
+    return found
+
+
+def _copy(table: Any) -> Any:
+    return {key: _copy(value) for key, value in table.items()} if isinstance(table, Mapping) else table
+
+
+def _set(tables: dict[str, Any], parameter: str, value: float) -> None:
+    """Put a value in its place; the table need not name it."""
+    *parts, last = parameter.split(".")
+    if not parts or parts[0] not in _TABLES[:3]:
+        allowed = "the table and the name of a parameter of [body], [law] or [run], as body.separation"
+        raise ParameterError(Problem("sweep", f'."{parameter}": must be {allowed}'))
+    table = tables
+    for part in parts:
+        table = table.setdefault(part, {})
+        if not isinstance(table, dict):
+            raise ParameterError(
+                Problem(f"sweep.{parameter}", f": {part} is {table!r} and has no parameters")
+            )
+    table[last] = value
+
+
+def _changed(parameters: Run, values: Mapping[str, float]) -> Run:
+    """Make a run with other values, checked as any other."""
+    fields = {name: getattr(parameters, name) for name in type(parameters).model_fields}
+    tree: dict[str, Any] = {}
+    for parameter, value in values.items():
+        _set(tree, parameter, value)
+    for name in ("body", "law"):
+        fields[name] = _with(fields[name], tree.get(name, {}))
+    for name, value in tree.get("run", {}).items():
+        fields[name] = _with(fields[name], value) if isinstance(value, dict) else value
+    return Run(**fields)
+
+
+def _with(parameters: Any, changes: Mapping[str, Any]) -> Any:
+    if not changes:
+        return parameters
+    fields = {name: getattr(parameters, name) for name in type(parameters).model_fields}
+    for name, value in changes.items():
+        fields[name] = _with(fields[name], value) if isinstance(value, dict) else value
+    return type(parameters)(**fields)
+
+
+def _edges(table: Any) -> Edges:
+    """Read ``[statistics]``."""
+    names = ("velocity_bins", "restitution_bins", "fraction_bins")
+    spans = tuple(name.replace("_bins", "_range") for name in names)
+    if not isinstance(table, Mapping):
+        raise ParameterError(wrong("statistics", table, "a table [statistics]"))
+    for stranger in set(table) - set(names) - set(spans):
+        raise ParameterError(unknown(stranger, "[statistics]", (*names, *spans), prefix="statistics."))
+    if "restitution_bins" not in table:
+        raise ParameterError(
+            Problem("statistics.restitution_bins", ": missing; must be { from, to, bins } or edges")
+        )
+    bins = {"velocity_bins": None, "fraction_bins": {"from": 0.0, "to": 1.0, "bins": 50}, **table}
+    return edges_of(
+        *(_bins(name, bins[name], table.get(span)) for name, span in zip(names, spans, strict=True))
+    )
+
+
+def _bins(name: str, value: Any, span: Any) -> Any:
+    """Give edges, written as such, as a number with a range, or as a table."""
+    if not isinstance(value, Mapping):
+        return None if value is None and span is None else edges_from(value, span, name)
+    if span is not None:
+        kind = name.removesuffix("_bins")
+        raise ParameterError(wrong(f"statistics.{kind}_range", span, f"left out: {name} has its own ends"))
+    good = (
+        set(value) == {"from", "to", "bins"}
+        and isinstance(value["bins"], int)
+        and 1 <= value["bins"] <= 2**24
+    )
+    if not good:
+        raise ParameterError(
+            wrong(f"statistics.{name}", dict(value), "{ from, to, bins } with bins >= 1, or edges")
+        )
+    return np.linspace(value["from"], value["to"], value["bins"] + 1)
+
+
+def _measure(table: Any) -> tuple[Measure | None, str]:
+    """Read ``[measure]``: a function, or its name in a file."""
+    if table is None:
+        return None, _OF[0]
+    if callable(table):
+        return table, _OF[0]
+    names = ("function", "of")
+    if not isinstance(table, Mapping):
+        raise ParameterError(wrong("measure", table, "a function of a Dataset, or a table [measure]"))
+    for stranger in set(table) - set(names):
+        raise ParameterError(unknown(stranger, "[measure]", names, prefix="measure."))
+    of, function = table.get("of", _OF[0]), table.get("function")
+    if of not in _OF:
+        raise ParameterError(wrong("measure.of", of, " or ".join(map(repr, _OF))))
+    if isinstance(function, str):
+        module, _, name = function.partition(":")
+        try:
+            function = getattr(import_module(module), name)
+        except (ImportError, AttributeError, ValueError) as error:
+            text = f"{error}; must be 'module:function', importable where the study runs"
+            raise ParameterError(Problem("measure.function", f" = {function!r}: {text}")) from None
+    if not callable(function):
+        raise ParameterError(wrong("measure.function", function, "'module:function', or a function"))
+    return function, of
+
+
+def _named(function: Any) -> dict[str, str]:
+    """Tell functions apart: by their place, and by what is written there."""
+    name = (
+        f"{getattr(function, '__module__', '')}:{getattr(function, '__qualname__', type(function).__name__)}"
+    )
+    try:
+        text = inspect.getsource(function)
+    except (OSError, TypeError):
+        text = repr(getattr(getattr(function, "__code__", None), "co_code", ""))
+    return {"function": name, "source": hashlib.sha256(text.encode()).hexdigest()}

@@ -1,0 +1,34 @@
+"""`make hostile`: every value of the catalogue at every argument of every public function."""
+
+import os
+import sys
+import tempfile
+import warnings
+
+import restitution as rs
+from reference.hostile import VALUES
+from test_contract import FUNCTIONS, arguments, attack
+
+
+def main(wanted: list[str]) -> int:
+    """Attack the functions whose names hold a word of `wanted`, or all; tell what breaks the contract."""
+    warnings.simplefilter("error")
+    warnings.filterwarnings("ignore", category=rs.EnergyWarning)
+    calls = failures = 0
+    os.chdir(tempfile.mkdtemp())  # some values are names of files that can be written
+    for name in FUNCTIONS:
+        if wanted and not any(word in name for word in wanted):
+            continue
+        for argument in arguments(name):
+            for value in VALUES:
+                calls += 1
+                found = attack(name, argument, value)
+                if found is not None:
+                    failures += 1
+                    print(f"{name}({argument} = {value}): {found}")
+    print(f"{calls} calls, {failures} break the contract")
+    return min(failures, 1)
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))

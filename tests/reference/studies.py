@@ -1,0 +1,86 @@
+"""A small study, what runs it in processes of its own, and the bits of its store."""
+
+import hashlib
+import os
+import subprocess
+import time
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+from reference.command import COMMAND
+
+SMALL_STUDY = """
+[body]
+shape = "dumbbell"
+radius = 3e-3
+
+[law]
+type = "tangential-restitution"
+
+[run]
+particles = 64
+impacts = {impacts}
+seed = 7
+
+[sweep]
+"body.separation" = [1e-4, 3e-4, 2e-3]
+"law.normal" = {{ from = 0.7, to = 0.98, points = {normals} }}
+
+[statistics]
+velocity_bins = {{ from = 0.0, to = 1.1, bins = 11 }}
+restitution_bins = {{ from = -1.0, to = 3.0, bins = 40 }}
+
+[effort]
+batches = 4
+"""
+
+
+def written(folder: Path, *, impacts: int = 60, normals: int = 2) -> Path:
+    """Write a study of 3 x normals points."""
+    path = folder / "study.toml"
+    path.write_text(SMALL_STUDY.format(impacts=impacts, normals=normals), encoding="utf-8")
+    return path
+
+
+def started(*words: object, code: str = "", **more: Any) -> "subprocess.Popen[str]":
+    """Start `restitution sweep` in a process of its own, after some other code."""
+    program = COMMAND if not code else [COMMAND[0], "-c", f"{code}\n{COMMAND[2]}"]
+    pipes = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, "text": True} | more
+    return subprocess.Popen([*program, "sweep", *map(str, words)], start_new_session=True, **pipes)
+
+
+def finished(process: "subprocess.Popen[str]", seconds: float = 300.0) -> tuple[int, str, str]:
+    """Wait for a process; it must not hang."""
+    try:
+        out, error = process.communicate(timeout=seconds)
+    except subprocess.TimeoutExpired:
+        process.kill()
+        raise
+    return process.returncode, out, error
+
+
+def when(
+    holds: Callable[[], bool], process: "subprocess.Popen[str] | None" = None, seconds: float = 120
+) -> None:
+    """Wait until something holds, as long as a process lives."""
+    end = time.monotonic() + seconds
+    while not holds():
+        assert time.monotonic() < end, "it never came to hold"
+        assert process is None or process.poll() is None, finished(process)
+        time.sleep(0.01)
+
+
+def chunks(store: Path) -> list[Path]:
+    """Chunks of the tasks that are done."""
+    return sorted(path for path in (store / "tasks" / "words" / "c").glob("*/*/0"))
+
+
+def bits(store: Path) -> dict[str, str]:
+    """Digests of everything in a store, but for what a killed process left half-written."""
+    files = (path for path in store.rglob("*") if path.is_file() and path.suffix != ".partial")
+    return {
+        os.fspath(path.relative_to(store)): hashlib.sha256(path.read_bytes()).hexdigest()
+        for path in files
+        if path != store / "zarr.json"  # the order in which it lists the arrays is that of the directory
+    }

@@ -1,0 +1,157 @@
+"""The one door for numbers: what NumPy would take for a number without a word is refused, by name."""
+
+from decimal import Decimal
+from fractions import Fraction
+from typing import Any
+
+import numpy as np
+import pytest
+import xarray as xr
+
+import restitution as rs
+from restitution._arrays import real, reals, whole
+from restitution._recorded import counted, records
+
+
+class Quantity:
+    """As astropy's: an array to NumPy, which forgets the unit."""
+
+    def to_value(self) -> list[float]:
+        return [1.0]
+
+    def __array__(self, dtype: Any = None, copy: Any = None) -> Any:
+        return np.array([1.0])
+
+
+class Failing:
+    """Raises whatever is asked of it."""
+
+    def __array__(self, dtype: Any = None, copy: Any = None) -> Any:
+        raise RuntimeError("no array")
+
+
+def nested(depth: int) -> Any:
+    """A list in a list, and so on."""
+    return [nested(depth - 1)] if depth else [1.0]
+
+
+NO_REALS: list[Any] = [
+    np.ma.masked,
+    np.ma.masked_array([0.0, 1.0], [False, True]),
+    [np.ma.masked_array([0.0, 1.0], [False, True])],
+    [0.0, np.ma.masked],
+    np.array(["2020-01-01", "2020-01-02"], dtype="datetime64[D]"),
+    np.array([1, 2], dtype="timedelta64[ns]"),
+    [True, False],
+    [0.0, True],
+    [[0.0], [np.True_]],
+    np.array([True, False]),
+    [0.0, 1j],
+    np.array([1.0, 2.0], dtype=complex),
+    ["0", "1"],
+    "01",
+    b"01",
+    np.array([0.0, 1.0], dtype=object),
+    [Decimal(1), Decimal(2)],
+    [Fraction(1), Fraction(2)],
+    [None, 1.0],
+    None,
+    {0.0, 1.0},
+    {0.0: 1.0},
+    (x for x in (0.0, 1.0)),
+    [[0.0], [1.0, 2.0]],
+    np.array([(1.0, 2.0)], dtype=[("a", "f8"), ("b", "f8")]),
+    object(),
+    Quantity(),
+    Failing(),
+    nested(70),
+    10**400,
+]
+
+
+@pytest.mark.parametrize("value", NO_REALS, ids=lambda value: type(value).__name__)
+def test_what_is_no_array_of_reals(value: Any) -> None:
+    with pytest.raises(ValueError, match=r"(?s)^bins = .*: must be edges"):
+        reals("bins", value, "edges")
+
+
+@pytest.mark.parametrize(
+    "value",
+    [
+        [0, 1],
+        (0.0, 1),
+        range(2),
+        np.array([0.0, 1.0], dtype=">f8"),
+        np.array([0, 1], dtype=np.uint8),
+        np.array([0.0, 1.0], dtype=np.longdouble),
+        np.ma.masked_array([0.0, 1.0], [False, False]),
+        [np.ma.masked_array([0.0, 1.0])[0], 1.0],
+        xr.DataArray([0.0, 1.0]),
+        np.array([[0.0, 5.0], [1.0, 5.0]])[:, 0],
+    ],
+    ids=lambda value: type(value).__name__,
+)
+def test_what_is_one(value: Any) -> None:
+    found = reals("bins", value, "edges")
+    assert found.dtype == np.float64
+    assert found.dtype.isnative
+    assert found.tolist() == [0.0, 1.0]
+
+
+def test_the_element_that_is_not_finite_is_named() -> None:
+    with pytest.raises(ValueError, match=r"^bins\[1, 0\] = inf: must be edges"):
+        reals("bins", [[0.0, 1.0], [np.inf, np.nan]], "edges")
+    with pytest.raises(ValueError, match=r"^x = nan: must be a number"):
+        real("x", np.nan, "a number")
+    assert np.isinf(reals("bins", np.longdouble("1e400"), "edges", finite=False))
+
+
+@pytest.mark.parametrize("value", [True, np.True_, 1.0, "1", None, np.ma.masked, 1j, np.timedelta64(1, "ns")])
+def test_what_is_no_whole_number(value: Any) -> None:
+    with pytest.raises(ValueError, match=r"^lags = .*: must be a whole number >= 1"):
+        whole("lags", value, 1)
+    assert whole("lags", np.uint8(3), 1) == 3
+
+
+def test_scalars_that_pydantic_would_convert() -> None:
+    """A masked separation is no sphere, a date no radius."""
+    for value in (np.ma.masked, np.timedelta64(3, "ns"), np.complex64(1), np.array("1"), 10**400):
+        with pytest.raises(ValueError, match=r"^separation = .*: must be a finite number >= 0"):
+            rs.Dumbbell(radius=3e-3, separation=value)
+        with pytest.raises(ValueError, match=r"^radius\[0\] = .*: must be a finite number > 0"):
+            rs.Dumbbell(radius=(value, 1.0), separation=0.0)
+    assert rs.Dumbbell(radius=np.float32(0.5), separation=np.longdouble(0.25)).separation == 0.25
+
+
+def test_datasets_that_are_none(body: rs.Dumbbell, law: rs.TangentialRestitution) -> None:
+    """Variables of other dimensions or types, and counts that count nothing, by name."""
+    data = rs.simulate(body, law, particles=3, impacts=4)
+    for harmed, message in (
+        (None, "data = None: must be a Dataset"),
+        (data.to_dataframe(), "data = .*: must be a Dataset"),
+        (data.drop_vars("restitution"), "data lacks restitution"),
+        (data.isel(impact=0), r"data.impact_velocity has dimensions \(particle\): must be"),
+        (data.rename(impact="bounce"), r"data.impact_velocity has dimensions \(particle, bounce\)"),
+        (data.assign(restitution=data.restitution.astype(str)), "data.restitution = .*: must be real"),
+        (data.assign(restitution=data.restitution > 0), "data.restitution = .*: must be real"),
+        (data.assign(restitution=data.restitution + 0j), "data.restitution = .*: must be real"),
+    ):
+        with pytest.raises(ValueError, match=f"(?s)^{message}"):
+            records("data", harmed, "impact_velocity", "restitution")
+    found = rs.reduce(data, np.linspace(0, 2, 5), np.linspace(-1, 2, 4))
+    for harmed, message in (
+        (data, "data lacks restitution_count"),
+        (
+            found.assign(restitution_count=found.restitution_count - 1),
+            r"data.restitution_count\[0, 0\] = -1.0: must be whole",
+        ),
+        (
+            found.assign(restitution_count=found.restitution_count + 0.5),
+            r"data.restitution_count\[0, 0\] = 0.5: must be whole",
+        ),
+        (found.isel(velocity=0), "data.restitution_count has dimensions"),
+        (found.assign(velocity_edges=-found.velocity_edges), "data.velocity_edges goes from -0.0 to -0.5"),
+        (found.isel(velocity=slice(2)), "data.velocity_edges has 5 edges: must be one more than the 2"),
+    ):
+        with pytest.raises(ValueError, match=f"(?s)^{message}"):
+            counted("data", harmed)

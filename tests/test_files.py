@@ -1,0 +1,161 @@
+"""Files and folders appear whole or not at all, and never over what somebody else has put there."""
+
+import errno
+import os
+from pathlib import Path
+
+import pytest
+
+from restitution._files import check, whole_file, whole_folder, write
+
+
+def names(folder: Path) -> set[str]:
+    return {file.name for file in folder.iterdir()}
+
+
+def test_a_file_appears_when_the_block_ends(tmp_path: Path) -> None:
+    """Until then a draft stands beside its place, whose name says what it is a part of."""
+    path = tmp_path / "run.nc"
+    with whole_file(path) as draft:
+        draft.write_text("half")
+        assert not path.exists()
+        assert draft.parent == tmp_path
+        assert draft.name.startswith(".run.nc.")
+        assert draft.suffix == ".part"
+    assert (names(tmp_path), path.read_text()) == ({"run.nc"}, "half")
+    (tmp_path / "fresh").touch()
+    assert path.stat().st_mode == (tmp_path / "fresh").stat().st_mode
+
+
+@pytest.mark.parametrize("links", [True, False], ids=["links", "a file system without links"])
+def test_what_appears_meanwhile_is_replaced_only_if_asked(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, links: bool
+) -> None:
+    """The last step is the check, so that of two runs to one name the second one is told."""
+
+    def no_links(*_: object) -> None:
+        raise OSError(errno.EPERM, os.strerror(errno.EPERM))
+
+    if not links:
+        monkeypatch.setattr(os, "link", no_links)
+    path = tmp_path / "run.nc"
+
+    def meanwhile(*, replace: bool) -> None:
+        with whole_file(path, replace=replace) as draft:
+            draft.write_text("mine")
+            path.write_text("theirs")
+
+    with pytest.raises(FileExistsError, match=r"exists already.*run\.nc"):
+        meanwhile(replace=False)
+    assert (names(tmp_path), path.read_text()) == ({"run.nc"}, "theirs")
+    meanwhile(replace=True)
+    assert (names(tmp_path), path.read_text()) == ({"run.nc"}, "mine")
+    path.unlink()
+    write(path, "alone")
+    assert (names(tmp_path), path.read_text()) == ({"run.nc"}, "alone")
+
+
+@pytest.mark.parametrize("trouble", [RuntimeError(), KeyboardInterrupt(), OSError(errno.ENOSPC, "disk full")])
+def test_trouble_leaves_no_part_of_anything(tmp_path: Path, trouble: BaseException) -> None:
+    """An error of the system that names no file names the one that was asked for."""
+
+    def file() -> None:
+        with whole_file(tmp_path / "run.nc") as draft:
+            draft.write_text("half")
+            raise trouble
+
+    def folder(path: Path) -> None:
+        with whole_folder(path) as draft:
+            (draft / "figure.png").write_text("half")
+            raise trouble
+
+    with pytest.raises(type(trouble)) as caught:
+        file()
+    if isinstance(caught.value, OSError):
+        assert (caught.value.errno, caught.value.filename) == (errno.ENOSPC, str(tmp_path / "run.nc"))
+    for path in (tmp_path / "made" / "here", tmp_path):
+        with pytest.raises(type(trouble)):
+            folder(path)
+    assert names(tmp_path) == set()
+
+
+def test_what_cannot_be_written_is_found_out_first(tmp_path: Path) -> None:
+    """By `check`, and by a block that never begins; nothing is left of the attempt."""
+    (tmp_path / "taken").write_text("precious")
+    for path, replace in (
+        (tmp_path / "taken", False),
+        (tmp_path, True),
+        (tmp_path / "none" / "run.nc", True),
+    ):
+        with pytest.raises(OSError, match=str(tmp_path)):
+            check(path, replace=replace)
+        with pytest.raises(OSError, match=str(tmp_path)), whole_file(path, replace=replace):
+            pytest.fail("the work began")
+    check(tmp_path / "taken", replace=True)
+    for out in (tmp_path / "taken", tmp_path / "taken" / "below"):
+        with pytest.raises(OSError, match=r"out cannot be written to.*taken"), whole_folder(out):
+            pytest.fail("the work began")
+    assert (names(tmp_path), (tmp_path / "taken").read_text()) == ({"taken"}, "precious")
+
+
+def test_a_new_folder_appears_in_one_step(tmp_path: Path) -> None:
+    out = tmp_path / "new" / "paper"
+    with whole_folder(out) as draft:
+        (draft / "figure.png").write_text("drawn")
+        (draft / "report.html").write_text("report")
+        assert not out.exists()
+    assert (names(out.parent), names(out)) == ({"paper"}, {"figure.png", "report.html"})
+    (tmp_path / "fresh").mkdir()
+    assert out.stat().st_mode == (tmp_path / "fresh").stat().st_mode
+
+
+def test_a_folder_keeps_what_is_in_it(tmp_path: Path) -> None:
+    """Nothing is in place while the work is on, and then all of it; other files in the folder stay."""
+    (tmp_path / "mine.txt").write_text("mine")
+    (tmp_path / "figure.png").write_text("old")
+    with whole_folder(tmp_path, replace=True) as draft:
+        (draft / "figure.png").write_text("new")
+        (draft / "report.html").write_text("report")
+        assert (tmp_path / "figure.png").read_text() == "old"
+    assert names(tmp_path) == {"mine.txt", "figure.png", "report.html"}
+    assert (tmp_path / "figure.png").read_text() == "new"
+
+
+@pytest.mark.parametrize("replace", [False, True])
+def test_a_folder_that_cannot_take_all_takes_none(tmp_path: Path, replace: bool) -> None:
+    """Where something is in the way, here a folder, the files that were moved before are taken back."""
+    (tmp_path / "report.html").mkdir()
+    if replace:
+        (tmp_path / "figure.png").write_text("old")
+
+    def fill() -> None:
+        with whole_folder(tmp_path, replace=replace) as draft:
+            (draft / "figure.png").write_text("new")
+            (draft / "report.html").write_text("report")
+
+    with pytest.raises(OSError, match=r"report\.html"):
+        fill()
+    assert names(tmp_path) == ({"report.html", "figure.png"} if replace else {"report.html"})
+    assert not replace or (tmp_path / "figure.png").read_text() == "old"
+
+
+def test_a_folder_that_appears_meanwhile_is_not_written_over(tmp_path: Path) -> None:
+    out = tmp_path / "paper"
+
+    def fill() -> None:
+        with whole_folder(out) as draft:
+            (draft / "figure.png").write_text("mine")
+            out.mkdir()
+            (out / "figure.png").write_text("theirs")
+
+    with pytest.raises(FileExistsError, match=r"exists already.*figure\.png"):
+        fill()
+    assert (names(tmp_path), names(out)) == ({"paper"}, {"figure.png"})
+    assert (out / "figure.png").read_text() == "theirs"
+
+
+def test_a_symbolic_link_stays_one(tmp_path: Path) -> None:
+    (tmp_path / "link").symlink_to(tmp_path / "file")
+    write(tmp_path / "link", b"through")
+    assert (tmp_path / "link").is_symlink()
+    assert (tmp_path / "file").read_bytes() == b"through"

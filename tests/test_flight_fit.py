@@ -1,0 +1,178 @@
+"""Laws fitted to times of flight: χ²/n = 1 where the law is right, and more where it is not."""
+
+import math
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+
+import restitution as rs
+from reference.bouncing import impact_times
+
+EXPERIMENTS = 100
+ERROR = 3e-5
+
+SOFT = rs.Viscoelastic(young_modulus=1e8, poisson_ratio=0.4, dissipation=5e-6, density=1200.0, radius=5e-3)
+
+LAWS: dict[str, tuple[tuple[float, ...], Callable[[float], float]]] = {
+    "constant": ((0.93,), lambda _: 0.93),
+    "power law": ((0.9, 0.04), lambda v: 0.9 * v**-0.04),
+    "viscoelastic": ((SOFT.beta,), lambda v: float(SOFT(v))),
+    "plastic": ((0.05,), lambda v: float(rs.Plastic(yield_speed=0.05)(v))),
+}
+
+
+@pytest.fixture(scope="module", params=LAWS)
+def experiments(request: pytest.FixtureRequest) -> tuple[str, list[rs.flight.LawFit]]:
+    """Many experiments with a perfect sphere of one law; only the clock errs."""
+    name = request.param
+    rng = np.random.default_rng(11)
+    true = impact_times(LAWS[name][1], 2.5, 12)
+    noise = rng.normal(0.0, ERROR, (EXPERIMENTS, true.size))
+    return name, [rs.flight.fit(rs.flight.restitution(true + errors, ERROR), name) for errors in noise]
+
+
+def test_chi_square_of_a_perfect_model_is_its_degrees_of_freedom(
+    experiments: tuple[str, list[rs.flight.LawFit]],
+) -> None:
+    """The mean of N values of χ²/n has the standard error √(2/(n N))."""
+    _, fits = experiments
+    freedom = fits[0].degrees_of_freedom
+    mean = np.mean([fit.chi2 / freedom for fit in fits])
+    assert abs(mean - 1.0) < 4.0 * math.sqrt(2.0 / (freedom * len(fits)))
+
+
+def test_parameters_scatter_about_the_truth_by_their_errors(
+    experiments: tuple[str, list[rs.flight.LawFit]],
+) -> None:
+    """(fitted - true)/error has mean 0 ± 1/√N and standard deviation 1 ± 1/√(2N)."""
+    name, fits = experiments
+    for place, true in enumerate(LAWS[name][0]):
+        pulls = [
+            (list(fit.parameters.values())[place] - true) / list(fit.errors.values())[place] for fit in fits
+        ]
+        assert abs(np.mean(pulls)) < 4.0 / math.sqrt(len(fits))
+        assert abs(np.std(pulls) - 1.0) < 4.0 / math.sqrt(2.0 * len(fits))
+
+
+def test_bands_are_the_scatter_of_the_fitted_curves(experiments: tuple[str, list[rs.flight.LawFit]]) -> None:
+    _, fits = experiments
+    speeds = np.array([0.9, 1.7])
+    curves = np.array([fit(speeds) for fit in fits])
+    assert fits[0].error(speeds) == pytest.approx(curves.std(0), rel=4.0 / math.sqrt(2.0 * len(fits)))
+
+
+def test_intervals_taken_as_independent_are_1_5_times_too_sure() -> None:
+    """The variance of Δt_1 - ε Δt_0 is s²(2 + 2ε + 2ε²), not s²(2 + 2ε²): a time is shared."""
+    ratio = 0.93
+    true = impact_times(lambda _: ratio, 2.5, 30)
+    rng = np.random.default_rng(2)
+    total = []
+    for _ in range(400):
+        flights = np.diff(true + rng.normal(0.0, ERROR, true.size))
+        residual = flights[1:] - ratio * flights[:-1]
+        total.append(np.mean(residual**2 / (2.0 * ERROR**2 * (1.0 + ratio**2))))
+    assert np.mean(total) == pytest.approx(1.0 + ratio / (1.0 + ratio**2), rel=0.02)
+    assert 1.0 + ratio / (1.0 + ratio**2) == pytest.approx(1.5, abs=0.002)
+
+
+def test_the_wrong_law_is_found_out() -> None:
+    true = impact_times(LAWS["viscoelastic"][1], 2.5, 12)
+    data = rs.flight.restitution(true + np.random.default_rng(1).normal(0.0, ERROR, 12), ERROR)
+    fits = [rs.flight.fit(data, law) for law in ("constant", "plastic", "viscoelastic")]
+    assert [fit.p_value > 1e-3 for fit in fits] == [False, False, True]
+    table = rs.flight.compare(*fits).splitlines()
+    assert table[2].startswith("| viscoelastic |")
+    assert table[2].endswith("| 0.0 |")
+
+
+def test_scatter_of_the_ball_is_told_from_errors_of_the_clock() -> None:
+    """ε scatters by 0.01 as if by shape; the mean over N fits of 28 impacts has the error 0.01/√(2·28·N)."""
+    rng = np.random.default_rng(5)
+    number, spreads, pulls = 40, [], []
+    for _ in range(number):
+        times = impact_times(lambda _: 0.93 + 0.01 * rng.standard_normal(), 2.5, 30)
+        data = rs.flight.restitution(times + rng.normal(0.0, ERROR, 30), ERROR)
+        fit = rs.flight.fit(data, "constant", scatter="fit")
+        spreads.append(fit.scatter)
+        pulls.append((fit.parameters["restitution"] - 0.93) / fit.errors["restitution"])
+        assert fit.scatter_error == pytest.approx(0.01 / math.sqrt(2.0 * 28.0), rel=0.5)
+    # The likelihood takes one of 28 degrees of freedom for the mean: 0.01 √(27/28).
+    within = 4.0 * 0.01 / math.sqrt(2 * 28 * number)
+    assert np.mean(spreads) == pytest.approx(0.01 * math.sqrt(27 / 28), abs=within)
+    assert abs(np.mean(pulls)) < 4.0 / math.sqrt(number)
+
+
+def test_an_error_of_g_moves_the_yield_speed_alone() -> None:
+    """Times scale as 1/g: a yield speed has the relative error of g, a constant coefficient none."""
+    yielding = impact_times(LAWS["plastic"][1], 2.5, 12)
+    fit = rs.flight.fit(rs.flight.restitution(yielding, 1e-8, gravity_uncertainty=0.0981), "plastic")
+    assert fit.errors["yield_speed"] / fit.parameters["yield_speed"] == pytest.approx(0.01, rel=1e-3)
+    constant = impact_times(lambda _: 0.93, 2.5, 12)
+    sure, unsure = (
+        rs.flight.fit(rs.flight.restitution(constant, ERROR, gravity_uncertainty=error)).errors["restitution"]
+        for error in (0.0, 0.0981)
+    )
+    assert unsure == pytest.approx(sure, rel=1e-6)
+
+
+def test_series_are_fitted_together() -> None:
+    """Two series with independent errors have half the variance; an error of g is common and stays."""
+    true = impact_times(lambda _: 0.93, 2.5, 12)
+    data = rs.flight.restitution(true, ERROR)
+    one, two = rs.flight.fit(data, "constant"), rs.flight.fit([data, data], "constant")
+    assert two.errors["restitution"] == pytest.approx(one.errors["restitution"] / math.sqrt(2.0), rel=1e-9)
+    yielding = rs.flight.restitution(
+        impact_times(LAWS["plastic"][1], 2.5, 12), 1e-9, gravity_uncertainty=0.0981
+    )
+    fit = rs.flight.fit([yielding, yielding], "plastic")
+    assert fit.errors["yield_speed"] / fit.parameters["yield_speed"] == pytest.approx(0.01, rel=1e-3)
+
+
+def test_materials_are_laws() -> None:
+    data = rs.flight.restitution(impact_times(LAWS["plastic"][1], 2.5, 12), ERROR)
+    assert str(rs.flight.fit(data, rs.Plastic)) == str(rs.flight.fit(data, "plastic"))
+    assert rs.flight.fit(data, rs.Viscoelastic).law == "viscoelastic"
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        ({"law": "cubic"}, "law = 'cubic': must be 'constant', 'power law', 'viscoelastic', 'plastic', or"),
+        ({"scatter": -1.0}, 'scatter = -1.0: must be "fit" or a number in [0, 1e30]'),
+        ({"data": 3}, "data = 3: must be a Dataset of flight.restitution, or several"),
+    ],
+)
+def test_errors_of_a_fit(arguments: dict[str, object], message: str) -> None:
+    data = rs.flight.restitution(impact_times(lambda _: 0.9, 2.0, 6), 1e-4)
+    with pytest.raises(ValueError) as error:  # noqa: PT011  # the text is compared
+        rs.flight.fit(**({"data": data} | arguments))  # type: ignore[arg-type]
+    assert str(error.value).startswith(message)
+
+
+def test_a_fit_needs_errors_and_enough_impacts() -> None:
+    with pytest.raises(ValueError, match=r"data: times without errors; must have an uncertainty > 0"):
+        rs.flight.fit(rs.flight.restitution(impact_times(lambda _: 0.9, 2.0, 6)))
+    with pytest.raises(ValueError, match=r"data: 1 coefficients of restitution; must have at least 2"):
+        rs.flight.fit(rs.flight.restitution(impact_times(lambda _: 0.9, 2.0, 3), 1e-4))
+
+
+def test_the_figure_shows_points_curves_and_bands() -> None:
+    true = impact_times(lambda _: 0.93, 2.5, 12)
+    data = rs.flight.restitution(true, 1e-4)
+    figure = rs.flight.draw(data, rs.flight.fit(data), rs.flight.fit(data, "power law", scatter=0.01))
+    [axes] = figure.axes
+    legend = axes.get_legend()
+    assert legend is not None
+    names = [text.get_text() for text in legend.get_texts()]
+    assert sorted(names) == ["constant", "measured", "power law"]
+    assert len(axes.collections) >= 3
+
+
+def test_a_law_that_nothing_tells_has_infinite_errors() -> None:
+    """Far from the data, the best yield speed is above all speeds: it is reported so, and refuted."""
+    true = impact_times(lambda _: 0.93, 2.3, 20)
+    data = rs.flight.restitution(true, 2e-6, drop_height=0.28, drop_height_uncertainty=1e-3)
+    fit = rs.flight.fit(data, "plastic")
+    assert fit.p_value < 1e-6
+    assert fit.errors["yield_speed"] > 0.0

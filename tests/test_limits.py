@@ -1,0 +1,235 @@
+"""Memory and threads that a process may not have, and Ctrl-C: errors that name what was asked for."""
+
+import json
+import os
+import subprocess
+import sys
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+import restitution as rs
+from reference.command import SMALL
+from restitution._resources import available_memory
+
+SETUP = """
+import json, os, resource, signal, sys, threading, time, warnings
+import numpy as np
+import restitution as rs
+body = rs.Dumbbell(radius=3e-3, separation=3e-4)
+law = rs.TangentialRestitution(normal=0.98)
+warnings.simplefilter("ignore", rs.EnergyWarning)
+rs.simulate(body, law, particles=2, impacts=2)
+bins = {"velocity_bins": np.linspace(0, 1.2, 13), "restitution_bins": np.linspace(-1, 3, 41)}
+rs.statistics(body, law, particles=2, impacts=2, **bins)
+def told(call, *args, **options):
+    try:
+        call(*args, **options)
+        print(json.dumps(["done", ""]))
+    except Exception as error:
+        print(json.dumps([type(error).__name__, str(error)]))
+"""
+
+
+def run(code: str, **environment: str) -> list[Any]:
+    """Run code in a process of its own; give what it printed, line by line."""
+    command = [sys.executable, "-c", SETUP + code]
+    env = os.environ | environment
+    done = subprocess.run(command, capture_output=True, text=True, check=False, timeout=120, env=env)
+    assert (done.returncode, done.stderr) == (0, "")
+    return [json.loads(line) for line in done.stdout.splitlines()]
+
+
+def test_memory_that_is_not_there() -> None:
+    """Under a limit on the address space: refused beforehand, naming what was asked for; the rest goes on."""
+    found = run("""
+used = int(open("/proc/self/statm").read().split()[0]) * resource.getpagesize()
+resource.setrlimit(resource.RLIMIT_AS, (used + 2**29, resource.RLIM_INFINITY))
+told(rs.simulate, body, law, particles=10_000, impacts=1000)
+wide = bins | {"restitution_bins": np.linspace(-1, 3, 10**6), "velocity_bins": np.linspace(0, 1, 101)}
+told(rs.statistics, body, law, threads=1, **wide)
+told(rs.simulate, body, law, particles=100, impacts=100)
+from restitution import _resources, _simulate, _statistics
+huge = lambda: 2**60
+_resources.available_memory = _statistics.available_memory = huge
+told(rs.simulate, body, law, particles=10**6, impacts=1000)
+told(rs.statistics, body, law, threads=1, **wide)
+told(rs.simulate, body, law, particles=100, impacts=100)
+""")
+    refused, bins, done, failed, bins_failed, again = found
+    assert (refused[0], bins[0]) == ("TooLargeError", "TooLargeError")
+    assert refused[1].startswith("particles * impacts = 1e+07: must be at most ")
+    assert bins[1].startswith("velocity_bins, restitution_bins, fraction_bins: ")
+    assert (failed[0], bins_failed[0]) == ("MemoryError", "MemoryError")
+    assert failed[1].startswith("particles * impacts: 8.000 GB more are needed")
+    assert bins_failed[1].startswith("velocity_bins or impacts, times restitution_bins and fraction_bins: ")
+    assert done == again == ["done", ""]
+
+
+def test_draws_that_no_memory_holds() -> None:
+    found = run("""
+dist = rs.FluctuatingRestitution.learn(body, law, particles=200, impacts=400, velocities=[0.2, 0.25, 0.3])
+used = int(open("/proc/self/statm").read().split()[0]) * resource.getpagesize()
+resource.setrlimit(resource.RLIMIT_AS, (used + 2**29, resource.RLIM_INFINITY))
+told(dist.rvs, 0.25, size=3 * 10**8)
+from restitution.distribution import _tabulated
+_tabulated.available_memory = lambda: 2**60
+told(dist.rvs, 0.25, size=3 * 10**8)
+told(dist.rvs, 0.25, size=10**5)
+""")
+    assert found[0][0] == "TooLargeError"
+    assert found[0][1].startswith("size = 300000000: must be at most")
+    assert found[1] == ["MemoryError", "size: 2.400 GB more are needed, which this process cannot have"]
+    assert found[2] == ["done", ""]
+
+
+def test_a_refused_size_is_a_bad_argument_too(body: rs.Dumbbell, law: rs.TangentialRestitution) -> None:
+    for kind in (ValueError, MemoryError):
+        with pytest.raises(kind, match=r"particles \* impacts = 1e\+15: must be at most"):
+            rs.simulate(body, law, particles=10**9, impacts=10**6)
+
+
+def test_the_command_line_under_a_limit(tmp_path: Path) -> None:
+    """`ulimit -v`: a line, and no core dump."""
+    text = SMALL.replace("particles = 7", "particles = 10000000").replace("impacts = 11", "impacts = 10")
+    (tmp_path / "run.toml").write_text(text, encoding="utf-8")
+    line = f"ulimit -v 4000000; '{sys.executable}' -c 'from restitution._cli import main; main()' simulate "
+    line += f"'{tmp_path}/run.toml' --out '{tmp_path}/run.nc'"
+    done = subprocess.run(["bash", "-c", line], capture_output=True, text=True, check=False)
+    assert done.returncode == 2
+    assert done.stderr.startswith("error: particles * impacts = 1e+08: must be at most")
+    assert sorted(file.name for file in tmp_path.iterdir()) == ["run.toml"]
+
+
+def test_threads_that_the_system_does_not_give() -> None:
+    """One thread needs none; more are an error of ours, which `except Exception` catches.
+
+    Statistics count batches of particles one after the other, each of which needs work for two threads.
+    """
+    found = run("""
+if os.geteuid() == 0:
+    os.setuid(65534)  # the limit does not bind the superuser
+resource.setrlimit(resource.RLIMIT_NPROC, (0, 0))
+told(rs.simulate, body, law, particles=1000, impacts=100, threads=1)
+told(rs.statistics, body, law, particles=1000, impacts=100, threads=1, **bins)
+told(rs.simulate, body, law, particles=1000, impacts=100, threads=4)
+told(rs.statistics, body, law, particles=10_000, impacts=100, threads=4, **bins)
+signal.setitimer(signal.ITIMER_REAL, 0.3)
+def press(*_):
+    raise KeyboardInterrupt
+signal.signal(signal.SIGALRM, press)
+start = time.monotonic()
+try:
+    rs.simulate(body, law, particles=1_000_000, impacts=100, threads=1)
+except rs.SimulationInterrupted as stop:
+    print(json.dumps([time.monotonic() - start, stop.data.sizes["particle"]]))
+""")
+    assert found[:2] == [["done", ""], ["done", ""]]
+    for kind, text in found[2:4]:
+        assert kind == "RuntimeError"
+        assert text.startswith("threads = 4: the system gives no more threads (")
+        assert text.endswith("; one needs none")
+    seconds, particles = found[4]
+    assert seconds < 5
+    assert 0 < particles < 1_000_000
+
+
+def test_the_environment_does_not_decide_how_many_threads() -> None:
+    """Affinity does, and nothing but the runs' own argument; `build_info` says what is used."""
+    [[threads, seconds]] = run(
+        """
+os.sched_setaffinity(0, {min(os.sched_getaffinity(0))})
+start = time.monotonic()
+rs.simulate(body, law, particles=5)
+print(json.dumps([rs.build_info()["threads"], time.monotonic() - start]))
+""",
+        RAYON_NUM_THREADS="2000",
+    )
+    assert threads == 1
+    assert seconds < 5
+
+
+def test_few_particles_need_few_threads() -> None:
+    """A thousand threads for five particles are one."""
+    [most] = run("""
+import pathlib
+most = 0
+def watch(_):
+    global most
+    most = max(most, len(list(pathlib.Path("/proc/self/task").iterdir())))
+from restitution import _core, _simulate
+before = len(list(pathlib.Path("/proc/self/task").iterdir()))
+old = _core.simulate
+_core.simulate = lambda run, threads, tell, **columns: old(run, threads, watch, **columns)
+rs.simulate(body, law, particles=5, threads=1024)
+print(most - before)
+""")
+    assert most <= 1
+
+
+@pytest.mark.parametrize(
+    ("call", "within"),
+    [
+        ("rs.simulate(body, law, particles=1, impacts=10**8)", 2.0),
+        ("rs.simulate(body, rs.TangentialRestitution(normal=0.1), particles=100, impacts=10**6)", 2.0),
+        ("rs.simulate(body, law, particles=100, impacts=10**6)", 2.0),
+    ],
+)
+def test_ctrl_c_within_a_second(call: str, within: float) -> None:
+    """However long the rows are; the bound leaves room for a busy machine."""
+    [[seconds, kept]] = run(f"""
+pressed = []
+def press():
+    pressed.append(time.monotonic())
+    os.kill(os.getpid(), signal.SIGINT)
+threading.Timer(0.5, press).start()
+try:
+    {call}
+except rs.SimulationInterrupted as stop:
+    print(json.dumps([time.monotonic() - pressed[0], int(stop.data.impacts.sum())]))
+""")
+    assert seconds < within
+    assert kept > 0
+
+
+def test_ctrl_c_in_fine_statistics() -> None:
+    """Grids of 2·10⁸ sites, most of them empty, cost the processor less than a second after it."""
+    [[seconds, kept]] = run("""
+fine = {"velocity_bins": np.linspace(0, 1.2, 1001), "restitution_bins": np.linspace(-1, 3, 200_001)}
+pressed = []
+def press():
+    pressed.append(time.process_time())
+    os.kill(os.getpid(), signal.SIGINT)
+threading.Timer(0.5, press).start()
+try:
+    rs.statistics(body, law, particles=10**7, impacts=100, threads=1, **fine)
+except rs.SimulationInterrupted as stop:
+    print(json.dumps([time.process_time() - pressed[0], stop.data.attrs["all_impacts"]]))
+""")
+    assert seconds < 1.5
+    assert kept > 0
+
+
+def test_what_bounds_the_memory(tmp_path: Path) -> None:
+    """The least of free memory and control groups, of either version and at any height, less what is used."""
+
+    def write(path: str, text: str) -> None:
+        (tmp_path / path).parent.mkdir(parents=True, exist_ok=True)
+        (tmp_path / path).write_text(text, encoding="ascii")
+
+    write("proc/meminfo", "MemTotal: 9 kB\nMemAvailable:    8000000 kB\n")
+    assert available_memory(tmp_path) == 8_192_000_000
+    write("proc/self/cgroup", "0::/user/job\n")
+    write("sys/fs/cgroup/user/job/memory.max", "max\n")
+    write("sys/fs/cgroup/user/job/memory.current", "100\n")
+    assert available_memory(tmp_path) == 8_192_000_000
+    write("sys/fs/cgroup/user/memory.max", "1000000\n")
+    write("sys/fs/cgroup/user/memory.current", "400000\n")
+    write("sys/fs/cgroup/user/memory.stat", "anon 1\ninactive_file 50000\n")
+    assert available_memory(tmp_path) == 650_000
+    write("proc/self/cgroup", "5:cpu,memory:/job\n")
+    write("sys/fs/cgroup/memory/job/memory.limit_in_bytes", "5000\n")
+    write("sys/fs/cgroup/memory/job/memory.usage_in_bytes", "6000\n")
+    assert available_memory(tmp_path) == 0
+    assert available_memory() > 0

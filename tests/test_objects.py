@@ -1,0 +1,136 @@
+"""Objects where people meet them: `help`, completion, print, notebooks, and what cannot be done to them."""
+
+import inspect
+import pydoc
+import textwrap
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import pytest
+import xarray as xr
+
+import restitution as rs
+
+BODY = rs.Dumbbell(radius=3e-3, separation=3e-4)
+LAW = rs.TangentialRestitution(normal=0.98)
+OBJECTS = [
+    BODY,
+    rs.LoadedSphere(radius=3e-3, load=1e-5, offset=1e-3),
+    rs.Spherocylinder(radius=3e-3, separation=1e-3),
+    rs.Spheroid(equatorial=2e-2, polar=3e-2),
+    LAW,
+    rs.Frictionless(normal=rs.Plastic(yield_speed=0.1)),
+    rs.Coulomb(normal=0.9, friction=0.3),
+    rs.ChatterjeeRuina(normal=0.9, tangential=0.0, friction=0.3),
+    rs.RandomSpin(rate=(0.0, 3.0)),
+    rs.Tabulated(v=np.linspace(0, 1, 50), e=np.linspace(1, 0.5, 50)),
+]
+MODULES = (rs.analytic, rs.fit)
+PUBLIC = [getattr(rs, name) for name in rs.__all__] + [getattr(m, n) for m in MODULES for n in m.__all__]
+CALLABLE = [one for one in PUBLIC if callable(one)]
+
+
+@pytest.mark.parametrize("thing", CALLABLE, ids=lambda one: one.__name__)
+def test_help_is_about_the_package(thing: Any) -> None:
+    """No member of pydantic, no expansion of NumPy's ArrayLike."""
+    text = pydoc.plain(pydoc.render_doc(thing))
+    for word in ("_SupportsArray", "PydanticUndefined", "model_", "__pydantic", "ValidationError"):
+        assert word not in text
+    assert "No documentation" not in text
+
+
+@pytest.mark.parametrize("thing", [rs.simulate, rs.statistics, rs.FluctuatingRestitution.learn])
+def test_the_signature_fits_a_screen(thing: Any) -> None:
+    """At 80 columns, less than the 24 lines of a terminal before the prose."""
+    assert len(textwrap.wrap(str(inspect.signature(thing)), 80)) < 20
+    assert "npt.ArrayLike" in str(inspect.signature(thing))
+
+
+@pytest.mark.parametrize("one", OBJECTS, ids=lambda one: type(one).__name__)
+def test_an_object_says_what_it_is(one: Any) -> None:
+    """Printed it is its class with its parameters; a notebook gets a table of them; completion lists ours."""
+    assert str(one) == repr(one)
+    assert str(one).startswith(f"{type(one).__name__}(")
+    html = one._repr_html_()
+    for name in type(one).model_fields:
+        assert f">{name}<" in html
+        assert name in dir(one)
+    assert html.count("<tr>") == html.count("</tr>") > 0
+    assert not [name for name in dir(one) if name.startswith(("model_", "_", "parse_", "json", "dict"))]
+    assert len(html) < 4000
+
+
+@pytest.mark.parametrize("one", OBJECTS, ids=lambda one: type(one).__name__)
+def test_an_object_stays_what_it_is(one: Any) -> None:
+    name = next(iter(type(one).model_fields))
+    changes: list[Callable[[], None]] = [
+        lambda: setattr(one, name, 1.0),
+        lambda: setattr(one, "colour", 1),
+        lambda: delattr(one, name),
+    ]
+    for change in changes:
+        with pytest.raises(AttributeError, match="cannot be changed; make another"):
+            change()
+
+
+def test_parameters_have_names() -> None:
+    with pytest.raises(
+        TypeError, match=r"Dumbbell\(0.003, 0.0003\): parameters are given by name, as in Dumbbell"
+    ):
+        rs.Dumbbell(3e-3, 3e-4)  # type: ignore[call-arg]
+    with pytest.raises(TypeError, match=r"Coulomb\(0.9\): .* as in Coulomb\(normal=0.9\)"):
+        rs.Coulomb(0.9, friction=0.3)  # type: ignore[call-arg]
+    with pytest.raises(
+        ValueError, match=r"radius = array\(\[1., 2., 3.\]\): must be a finite number > 0 \(or one"
+    ):
+        rs.Dumbbell(radius=np.array([1.0, 2.0, 3.0]), separation=1.0)
+    assert rs.Dumbbell(radius=np.array([1.0, 2.0]), separation=1.0).radii == (1.0, 2.0)
+
+
+def test_distributions_and_fits_have_tables() -> None:
+    found = rs.analytic.first_impact(BODY, LAW)
+    assert "P(ε &lt; 0)" in found._repr_html_()
+    fit = rs.fit.gaussian(np.random.default_rng(1).normal(size=100))
+    assert "Gaussian, by maximum likelihood" in fit._repr_html_()
+    how: dict[str, Any] = {"particles": 400, "velocities": (0.2, 0.6)}
+    learned = rs.FluctuatingRestitution.learn(BODY, LAW, **how)
+    assert "largest ks_distance" in learned._repr_html_()
+    figure: Any = learned.figure()
+    png, size = figure._repr_png_()
+    assert png.startswith(b"\x89PNG")
+    assert size["width"] == pytest.approx(700, abs=1)
+
+
+def test_no_variable_has_the_name_of_a_method() -> None:
+    """`found.mean` must be the variable or the method of xarray, and no one should have to know which."""
+    data = rs.simulate(BODY, LAW, particles=400, impacts=400)
+    bins: dict[str, Any] = {
+        "velocity_bins": np.linspace(0.1, 1.0, 4),
+        "restitution_bins": np.linspace(0.0, 2.0, 5),
+    }
+    learned = rs.FluctuatingRestitution.learn(BODY, LAW, particles=400, velocities=(0.2, 0.6))
+    datasets = {
+        "simulate": data,
+        "statistics": rs.statistics(BODY, LAW, particles=20, impacts=40, **bins),
+        "by impact": rs.statistics(BODY, LAW, particles=20, impacts=40, **bins | {"velocity_bins": None}),
+        "reduce": rs.reduce(data, **bins),
+        "compare": rs.compare([BODY], [LAW], particles=20, impacts=40, **bins),
+        "learned": learned.data,
+        "distance": learned.distance(data),
+        "memory": learned.memory(data),
+        "dependence": rs.fit.dependence(data, bins["velocity_bins"]),
+    }
+    taken = set(dir(xr.Dataset))
+    assert {name: [str(v) for v in d.variables if v in taken] for name, d in datasets.items()} == {
+        name: [] for name in datasets
+    }
+
+
+def test_a_fit_prints_as_text() -> None:
+    """Family, number of samples and parameters, and nothing of how they are kept."""
+    found = rs.fit.laplace(np.array([0.5, 1.0, 1.5, 1.25]))
+    assert (
+        str(found)
+        == "symmetric Laplace, by maximum likelihood of 4 samples: location = 1.125, scale = 0.3125"
+    )

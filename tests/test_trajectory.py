@@ -1,0 +1,184 @@
+"""The motion between impacts in closed form: beside recorded states, the plane, and an integrator."""
+
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+import pytest
+import xarray as xr
+from scipy.integrate import solve_ivp
+
+import restitution as rs
+
+Floats = npt.NDArray[np.float64]
+
+EPS = float(np.finfo(np.float64).eps)
+BODY = rs.Dumbbell(radius=3e-3, separation=4e-3)
+LAW = rs.Coulomb(normal=0.9, friction=0.3)
+RUNS: dict[str, dict[str, Any]] = {
+    "at rest": {},
+    "thrown": {
+        "spin": rs.RandomSpin(rate=(0.0, 300.0)),
+        "velocity": (0.1, -0.2, 0.1),
+        "orientation": "isotropic",
+        "incline": 0.2,
+        "release_height": rs.RandomHeight(lowest=0.03, highest=0.06),
+    },
+}
+
+
+def run(which: str, **more: Any) -> xr.Dataset:
+    how: dict[str, Any] = {"particles": 6, "impacts": 25, "seed": 3, "record": "state"} | RUNS[which] | more
+    return rs.simulate(BODY, LAW, **how)
+
+
+def at_impacts(data: xr.Dataset, particle: int) -> Floats:
+    times: Floats = data["time"].sel(particle=particle).dropna("impact").to_numpy()
+    return times
+
+
+def support(path: xr.Dataset) -> Floats:
+    """Height of the centre of mass at which the lower sphere touches: R + L/2 |e_z| (2)."""
+    upward = np.abs(path["axis"].sel(component="z").to_numpy())
+    height: Floats = BODY.radius + 0.5 * BODY.separation * upward
+    return height
+
+
+@pytest.mark.parametrize("which", RUNS)
+def test_it_goes_from_state_to_state(which: str) -> None:
+    """At the end of every flight stands the state before the impact, and at its beginning the one after it.
+
+    Rounding is that of the clock: a time t is known to ε t, in which it moves and turns by v ε t, ω ε t.
+    """
+    data = run(which)
+    for particle in range(6):
+        one = data.sel(particle=particle).dropna("impact", subset=["time"])
+        times = at_impacts(data, particle)
+        clock = 32.0 * EPS * times[-1]
+        rate = float(np.abs(one["angular_velocity_before"]).max()) + 10.0
+        for when, states in ((np.nextafter(times, 0.0), "before"), (times, "after")):
+            path = rs.trajectory(data, particle, when)
+            named = {
+                "position": one["position"],
+                "axis": one["axis"],
+                "velocity": one[f"velocity_{states}"],
+                "angular_velocity": one[f"angular_velocity_{states}"],
+            }
+            for name, expected in named.items():
+                size = float(np.abs(expected).max()) + 1.0
+                off = np.abs(path[name].to_numpy() - expected.to_numpy()).max()
+                assert off <= clock * rate * size, (particle, states, name)
+        np.testing.assert_array_equal(path["impacts"], np.arange(1, times.size + 1))
+
+
+@pytest.mark.parametrize("which", RUNS)
+def test_the_body_touches_at_impacts_and_never_dips(which: str) -> None:
+    """The gap of the lower sphere is 0 at each impact and positive between, to rounding."""
+    data = run(which)
+    for particle in range(6):
+        times = at_impacts(data, particle)
+        rounding = 64.0 * EPS * times[-1] * (1.0 + BODY.separation * 400.0)
+        touching = rs.trajectory(data, particle, times)
+        gap = touching["position"].sel(component="z") - support(touching)
+        assert np.abs(gap).max() <= rounding
+        dense = np.sort(np.random.default_rng(particle).uniform(0.0, times[-1], 4000))
+        path = rs.trajectory(data, particle, dense)
+        assert (path["position"].sel(component="z") - support(path)).min() >= -rounding
+        np.testing.assert_allclose(np.linalg.norm(path["axis"], axis=1), 1.0, rtol=32 * EPS)
+
+
+def test_a_flight_is_that_of_a_general_integrator() -> None:
+    """Newton and Euler's equations for the axis and the angular momentum, by DOP853 to 1e-12.
+
+    dx/dt = v, dv/dt = g; de/dt = ω × e with ω = Λ/J' + (1/J - 1/J') (Λ·e) e; Λ stays.
+    """
+    data = run("thrown")
+    gravity = 9.81 * np.array([np.sin(0.2), 0.0, -np.cos(0.2)])
+    across, about = BODY.transverse_inertia, BODY.axial_inertia
+    for particle in range(3):
+        times = at_impacts(data, particle)
+        for begin, end in ((0.0, times[0]), (times[3], times[4])):
+            within = np.linspace(begin, np.nextafter(end, 0.0), 7)
+            path = rs.trajectory(data, particle, within)
+            x, v, e, w = (
+                path[name].to_numpy() for name in ("position", "velocity", "axis", "angular_velocity")
+            )
+            momentum = across * w[0] + (about - across) * (w[0] @ e[0]) * e[0]
+
+            def spin(axis: Floats, momentum: Floats = momentum) -> Floats:
+                along = (1.0 / about - 1.0 / across) * (momentum @ axis)
+                turning: Floats = momentum / across + along * axis
+                return turning
+
+            def motion(_: float, state: Floats, spin: Any = spin) -> Floats:
+                return np.concatenate([state[3:6], gravity, np.cross(spin(state[6:]), state[6:])])
+
+            start = np.concatenate([x[0], v[0], e[0]])
+            solved = solve_ivp(
+                motion, (begin, within[-1]), start, "DOP853", within, rtol=1e-12, atol=1e-15
+            ).y.T
+            np.testing.assert_allclose(np.hstack([x, v, e]), solved, rtol=0.0, atol=3e-11)
+            np.testing.assert_allclose(w, [spin(axis) for axis in solved[:, 6:]], rtol=0.0, atol=1e-8)
+
+
+def test_times_in_any_order_and_one_alone() -> None:
+    data = run("at rest")
+    times = at_impacts(data, 2)
+    asked = np.array([times[7], 0.0, 0.5 * times[0], times[3]])
+    path = rs.trajectory(data, 2, asked)
+    np.testing.assert_array_equal(path["impacts"], [8, 0, 0, 4])
+    for i, when in enumerate(asked):
+        assert rs.trajectory(data, 2, float(when))["position"].identical(path["position"][i : i + 1])
+    released = path.isel(time=1)
+    np.testing.assert_array_equal(released["position"], [0.0, 0.0, 0.06])
+    np.testing.assert_array_equal(released["velocity"], 0.0)
+    angle = float(data["release_angle"][2])
+    np.testing.assert_allclose(released["axis"], [np.sin(angle), 0.0, np.cos(angle)], rtol=1e-15)
+
+
+def test_states_survive_a_file(tmp_path: Any) -> None:
+    data = run("thrown")
+    data.to_netcdf(tmp_path / "run.nc")
+    again = xr.load_dataset(tmp_path / "run.nc")
+    when = [0.0, 0.01, float(at_impacts(data, 1)[-1])]
+    expected, found = (rs.trajectory(one, 1, when) for one in (data, again))
+    for name in expected.data_vars:
+        np.testing.assert_array_equal(expected[name], found[name])
+
+
+def test_the_state_is_recorded_for_who_asks() -> None:
+    """The rest of the records is the same to the bit."""
+    usual, full = run("thrown", record="impacts"), run("thrown")
+    more = {"position", "axis"} | {
+        f"{name}_{when}" for name in ("velocity", "angular_velocity") for when in ("before", "after")
+    }
+    assert set(full.data_vars) - set(usual.data_vars) == more
+    for name in usual.data_vars:
+        xr.testing.assert_identical(usual[name], full[name])
+    for name in more:
+        assert full[name].dims == ("particle", "impact", "component")
+
+
+@pytest.mark.parametrize(
+    ("wrong", "said"),
+    [
+        ({"data": 3}, r'data is of type int: must be from restitution.simulate\(..., record="state"\)'),
+        ({"data": "impacts"}, r"data lacks position, axis, velocity_after, angular_velocity_after: must be"),
+        ({"particle": 6}, r"particle = 6: must be one of 0 to 5"),
+        ({"particle": [1, 2]}, r"particle = \[1, 2\]: must be one of 0 to 5"),
+        ({"times": -0.1}, r"times.* = -0\.1: must be in \[0, .*\] s, from the release to the last recorded"),
+        ({"times": [0.0, 1e9]}, r"times\[1\] = 1000000000\.0: must be in \[0, .*\] s"),
+        ({"times": np.nan}, r"times.* = nan: must be in"),
+    ],
+)
+def test_bad_arguments_are_named(wrong: dict[str, Any], said: str) -> None:
+    given: dict[str, Any] = {"data": run("at rest"), "particle": 0, "times": 0.01} | wrong
+    if wrong.get("data") == "impacts":
+        given["data"] = run("at rest", record="impacts")
+    with pytest.raises(ValueError, match=f"^{said}"):
+        rs.trajectory(**given)
+
+
+def test_what_to_record_is_one_of_two() -> None:
+    with pytest.raises(ValueError, match=r"^record = 'all': must be 'impacts' or 'state'$"):
+        run("at rest", record="all")
