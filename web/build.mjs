@@ -1,0 +1,62 @@
+// Builds the page: one file that needs nothing else, on any static host, from a disk, offline.
+//   node build.mjs [OUT.html]
+import { build } from "esbuild";
+import { mkdirSync, readFileSync, writeFileSync } from "node:fs";
+import { dirname, join } from "node:path";
+import { fileURLToPath } from "node:url";
+import { gzipSync } from "node:zlib";
+
+const here = dirname(fileURLToPath(import.meta.url));
+const at = (...names) => join(here, ...names);
+const out = process.argv[2] ?? at("..", "python", "restitution", "explorer", "explorer.html");
+const text = (...names) => readFileSync(at(...names), "utf8");
+
+const bundled = new Set(["uplot"]); // whose style sheet is in the page, too
+
+async function bundle(entry, define = {}) {
+  const result = await build({
+    entryPoints: [at(entry)],
+    bundle: true,
+    write: false,
+    minify: true,
+    format: "iife",
+    target: "es2022",
+    legalComments: "none",
+    metafile: true,
+    absWorkingDir: here,
+    define,
+  });
+  for (const input of Object.keys(result.metafile.inputs)) {
+    const name = /^node_modules\/((?:@[^/]+\/)?[^/]+)/.exec(input)?.[1];
+    if (name) bundled.add(name);
+  }
+  return result.outputFiles[0].text;
+}
+
+const core = readFileSync(at("module", "restitution_web.wasm")).toString("base64");
+const worker = await bundle("src/engine/worker.ts");
+const script = await bundle("src/main.ts", { CORE: JSON.stringify(core), WORKER: JSON.stringify(worker) });
+const style = text("node_modules/uplot/dist/uPlot.min.css") + text("src/style.css");
+const version = text("..", "Cargo.toml").match(/^version = "(.*)"/m)[1];
+
+function licence(name) {
+  const { version, license } = JSON.parse(text("node_modules", name, "package.json"));
+  return `${name} ${version}, ${license}\n\n${text("node_modules", name, "LICENSE")}`;
+}
+const licences = [
+  `restitution\n\n${text("..", "LICENSE")}`,
+  ...[...bundled].sort().map(licence),
+  text("module", "LICENCES.txt"),
+].join("\n\n----------------------------------------\n\n");
+
+const escaped = licences.replace(/[&<>]/g, (c) => `&#${c.charCodeAt(0)};`);
+// A function as the replacement: "$" in a bundle means nothing. "</script" would end the element that holds it.
+const page = text("src/page.html")
+  .replace("/*STYLE*/", () => style)
+  .replace("/*VERSION*/", () => version)
+  .replace("/*LICENCES*/", () => escaped)
+  .replace("/*SCRIPT*/", () => script.replace(/<\/script/gi, "<\\/script"));
+mkdirSync(dirname(out), { recursive: true });
+writeFileSync(out, page);
+const kilobytes = (length) => `${(length / 1000).toFixed(0)} kB`;
+console.log(`${out}: ${kilobytes(Buffer.byteLength(page))}, compressed ${kilobytes(gzipSync(page, { level: 9 }).length)}`);

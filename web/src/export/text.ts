@@ -1,0 +1,94 @@
+/** A set-up as the file of the desktop program, as Python, and its impacts as CSV. */
+
+import { COLUMNS } from "../engine/layout";
+import { DIGESTED, type Run } from "../engine/run";
+import { DENSITY, LAW_PARAMETERS, lengthOf, particlesOf, type Setup } from "../setup";
+
+/** As Python and TOML write a float. */
+function float(x: number): string {
+  const text = String(x);
+  return Number.isInteger(x) && !text.includes("e") ? `${text}.0` : text;
+}
+
+const quoted = (text: string) => JSON.stringify(text);
+
+function body(s: Setup): [string, string][] {
+  const density: [string, string] = ["density", float(DENSITY)];
+  return s.shape === "spheroid"
+    ? [["equatorial", float(s.radius)], ["polar", float(lengthOf(s))], density]
+    : [["radius", float(s.radius)], ["separation", float(lengthOf(s))], density];
+}
+
+function law(s: Setup): [string, string][] {
+  return LAW_PARAMETERS[s.law].map((key) => [key, typeof s[key] === "number" ? float(s[key]) : quoted(s[key])]);
+}
+
+function run(s: Setup): [string, string][] {
+  return [
+    ["particles", String(particlesOf(s))],
+    ["impacts", String(s.impacts)],
+    ["release_height", float(s.release_height)],
+    ["gravity", float(s.gravity)],
+    ["orientation", s.orientation === "given" ? `[${float(s.angle)}]` : quoted(s.orientation)],
+    ["spin", `[0.0, ${float(s.spin_y)}, ${float(s.spin_z)}]`],
+    ["velocity", `[${float(s.velocity_x)}, 0.0, ${float(s.velocity_z)}]`],
+    ["incline", float(s.incline)],
+    ["minimum_speed", float(s.minimum_speed)],
+    ["seed", String(s.seed)],
+  ];
+}
+
+/** RUN.toml for `restitution simulate`. */
+export function toml(s: Setup): string {
+  const table = (name: string, rows: [string, string][]) =>
+    `[${name}]\n${rows.map(([key, value]) => `${key} = ${value}\n`).join("")}`;
+  return [
+    "# restitution simulate run.toml --out run.nc\n",
+    table("body", [["shape", quoted(s.shape)], ...body(s)]),
+    table("law", [["type", quoted(s.law)], ...law(s)]),
+    table("run", run(s)),
+  ].join("\n");
+}
+
+const CLASSES = {
+  dumbbell: "Dumbbell",
+  spherocylinder: "Spherocylinder",
+  spheroid: "Spheroid",
+  "tangential-restitution": "TangentialRestitution",
+  frictionless: "Frictionless",
+  coulomb: "Coulomb",
+  "chatterjee-ruina": "ChatterjeeRuina",
+};
+
+/** The lines of Python that make the same data, to the last bit. */
+export function python(s: Setup): string {
+  const list = (rows: [string, string][], separator: string) =>
+    rows.map(([key, value]) => `${key}=${value}`).join(separator);
+  const names = DIGESTED.map(quoted).join(", ");
+  return `import hashlib
+
+import restitution as rs
+
+body = rs.${CLASSES[s.shape]}(${list(body(s), ", ")})
+law = rs.${CLASSES[s.law]}(${list(law(s), ", ")})
+data = rs.simulate(
+    body,
+    law,
+    ${list(run(s), ",\n    ")},
+)
+columns = (${names})
+print(hashlib.sha256(b"".join(data[name].values.tobytes() for name in columns)).hexdigest())
+`;
+}
+
+/** One line an impact. */
+export function csv({ columns, counts, particles, setup }: Run): string {
+  const lines = [`particle,impact,${COLUMNS.join(",")}`];
+  for (let particle = 0; particle < particles; particle++) {
+    for (let i = 0; i < counts[particle]; i++) {
+      const place = particle * setup.impacts + i;
+      lines.push(`${particle},${i},${COLUMNS.map((name) => columns[name][place]).join(",")}`);
+    }
+  }
+  return lines.join("\n") + "\n";
+}

@@ -1,0 +1,12 @@
+/** What the tests import: parts of the page that need no browser. */
+
+export { Engine } from "./engine/module";
+export { COLUMNS, numbers } from "./engine/layout";
+export { DIGESTED } from "./engine/run";
+export { python, toml } from "./export/text";
+export { restitution, transverseInertia } from "./first-impact";
+export { fromHash, initial, toHash } from "./link";
+export { DEFAULT, particlesOf } from "./setup";
+export { Path } from "./stage/path";
+export { contactArm } from "./stage/body";
+export { at, TOUR } from "./tour";

@@ -1,0 +1,108 @@
+/** The motion of one particle in closed form, from the starts of its flights: crates/web/src/path.rs. */
+
+import { Quaternion, Vector3 } from "three";
+
+const COLUMNS = 14;
+
+export interface Flight {
+  start: number;
+  place: Vector3;
+  velocity: Vector3;
+  axis: Vector3;
+  turning: Vector3;
+  roll: number;
+  /** Energy of rotation over the mass, m²/s². */
+  rotation: number;
+  sphere: number;
+  attitude: Quaternion;
+}
+
+export interface Moment {
+  place: Vector3;
+  velocity: Vector3;
+  attitude: Quaternion;
+  flight: Flight;
+  /** Number of impacts so far. */
+  impacts: number;
+}
+
+const UP = new Vector3(0, 0, 1);
+
+export class Path {
+  readonly flights: Flight[] = [];
+  readonly gravity: Vector3;
+
+  constructor(rows: Float64Array, gravity: number, incline: number) {
+    this.gravity = new Vector3(gravity * Math.sin(incline), 0, -gravity * Math.cos(incline));
+    for (let i = 0; i < rows.length; i += COLUMNS) {
+      const at = (k: number) => rows[i + k];
+      const vector = (k: number) => new Vector3(at(k), at(k + 1), at(k + 2));
+      const flight: Flight = {
+        start: at(0),
+        place: new Vector3(0, 0, at(1)),
+        velocity: vector(2),
+        axis: vector(5),
+        turning: vector(8),
+        roll: at(11),
+        rotation: at(12),
+        sphere: at(13),
+        attitude: new Quaternion().setFromUnitVectors(UP, vector(5)),
+      };
+      const last = this.flights.at(-1);
+      if (last) {
+        // The engine keeps no place along the plane, for the plane looks the same everywhere; and of the attitude the axis only.
+        const end = this.during(last, flight.start - last.start);
+        flight.place.setX(end.place.x).setY(end.place.y);
+        const carried = UP.clone().applyQuaternion(end.attitude);
+        flight.attitude = new Quaternion().setFromUnitVectors(carried, flight.axis).multiply(end.attitude);
+      }
+      this.flights.push(flight);
+    }
+  }
+
+  /** Time of the last impact. */
+  get end(): number {
+    return this.flights.at(-1)!.start;
+  }
+
+  /** Number of the flight under way at a time. */
+  flightAt(time: number): number {
+    let [low, high] = [0, this.flights.length - 1];
+    while (low < high) {
+      const middle = (low + high + 1) >> 1;
+      if (this.flights[middle].start <= time) low = middle;
+      else high = middle - 1;
+    }
+    return low;
+  }
+
+  at(time: number): Moment {
+    const impacts = this.flightAt(time);
+    const flight = this.flights[impacts];
+    return { ...this.during(flight, Math.max(0, time - flight.start)), flight, impacts };
+  }
+
+  /** Duration of a flight; the last one has no end, and is shown for as long as it would take to come down again. */
+  duration(k: number): number {
+    const next = this.flights[k + 1];
+    return next ? next.start - this.flights[k].start : (2 * Math.max(this.flights[k].velocity.z, 0)) / -this.gravity.z;
+  }
+
+  /** Highest place of the centre of mass in a flight. */
+  peak(k: number): number {
+    const { place, velocity } = this.flights[k];
+    const rise = Math.max(velocity.z, 0);
+    return place.z + (rise * rise) / (-2 * this.gravity.z);
+  }
+
+  /** Place, velocity and attitude some time after the start of a flight: (3), (5). */
+  private during(flight: Flight, time: number): { place: Vector3; velocity: Vector3; attitude: Quaternion } {
+    const place = flight.place.clone().addScaledVector(flight.velocity, time).addScaledVector(this.gravity, (time * time) / 2);
+    const velocity = flight.velocity.clone().addScaledVector(this.gravity, time);
+    const rate = flight.turning.length();
+    const turned = new Quaternion();
+    if (rate > 0) turned.setFromAxisAngle(flight.turning.clone().divideScalar(rate), rate * time);
+    const rolled = new Quaternion().setFromAxisAngle(UP, flight.roll * time);
+    return { place, velocity, attitude: turned.multiply(flight.attitude).multiply(rolled) };
+  }
+}

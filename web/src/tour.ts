@@ -1,0 +1,97 @@
+/** The guided tour: the paper in ten stops, for a lecture. Each is a set-up and what to look at. */
+
+import type { State } from "./link";
+import type { Kind } from "./pick";
+import { DEFAULT, type Setup } from "./setup";
+
+export interface Stop {
+  title: string;
+  text: string;
+  a?: Partial<Setup>;
+  b?: Partial<Setup>;
+  view?: Partial<Pick<State, "speed" | "range" | "density">>;
+  /** The impact to replay. */
+  kind?: Kind;
+}
+
+export const TOUR: readonly Stop[] = [
+  {
+    title: "A sphere has one coefficient of restitution",
+    text: "A sphere (L = 0) loses the same share of its speed at every impact: ε = ε_n = 0.98, a line. Now move L/R from 0. The body of Fig. 1 of the paper is two overlapping spheres whose centres are L apart.",
+    a: { elongation: 0, impacts: 100, particles: 100 },
+  },
+  {
+    title: "Fig. 2: ε of a slightly elongated body scatters",
+    text: "The dumbbell of the paper, L/R = 0.1: hardly to be told from a sphere by eye. ε depends on how it lies and spins when it touches. Slow impacts scatter most. Colour: how many impacts, on a logarithmic scale.",
+    a: {},
+  },
+  {
+    title: "ε > 1: rotation gives back",
+    text: "At many impacts the body leaves faster than it came. Watch the bars: rotation, charged by earlier impacts, goes into translation. The impact with the largest ε among fast ones is replayed.",
+    a: {},
+    kind: "superelastic",
+  },
+  {
+    title: "Figs. 3 and 5: the reservoir fills",
+    text: "Released from rest, a body has no rotation. The slower it has become, the more of its energy rotates (lattice and mean). The density shows E_rot/E_tot at the marked speed: drag the line.",
+    a: {},
+    view: { density: "fraction", speed: 0.2 },
+  },
+  {
+    title: "Fig. 4: p(ε | v) has a cusp",
+    text: "At a given speed ε has a density with a peak near ε_n and flanks that look straight on a logarithmic scale: nearly a Laplace density. Drag the line to lower speeds: it widens, and below 0.3 m/s lines grow out of it (last stop).",
+    a: { particles: 1000 },
+    view: { speed: 0.4 },
+  },
+  {
+    title: "Fig. 6: even good glass beads scatter",
+    text: "Two set-ups with the same random numbers: L/R = 0.01 (A) and 0.02 (B), glass beads of average make. The standard deviation σ(ε) grows as they slow down. Twice the elongation gives four to five times the scatter: the rotation that a body picks up grows with L, and so does what it does at the next impact.",
+    a: { elongation: 0.01 },
+    b: { elongation: 0.02 },
+    view: { speed: 0.5 },
+  },
+  {
+    title: "Fig. 7: ε < 0, in two ways",
+    text: "Slow impacts, and ε from −3 to 4. Right of v = 0 a falling body turns so fast that its centre goes on downwards after the impact. Left of it the body is hit while its centre rises. One of the first kind is replayed; choose the other kind below the scene.",
+    a: { particles: 1000 },
+    view: { range: "fig7", speed: 0.05 },
+    kind: "downward",
+  },
+  {
+    title: "Fig. 9: the first impact, exactly",
+    text: "Two touching spheres (L = 2R) of soft material, ε_n = 0.4, at their first impact from rest. The line is the density in closed form, Eqs. 17 to 21. Already without any spin, 3 % of the bodies go on downwards.",
+    a: { elongation: 2, normal: 0.4, impacts: 1, particles: 20000 },
+    view: { range: "all" },
+  },
+  {
+    title: "A surprise: the law creates energy",
+    text: "A: the paper's law, which keeps the tangential velocity of the contact (ε_t = 1). B: no friction. They are not the same: A's plane must push sideways, and kinetic energy can grow. The impact that creates most is replayed. Nothing of the kind happens in B, whose scatter is larger by far.",
+    a: { elongation: 0.5 },
+    b: { elongation: 0.5, law: "frictionless" },
+    kind: "gain",
+  },
+  {
+    title: "A surprise: slow bodies fall into step",
+    text: "One in thirty slow bodies turns by half a turn in each bounce, or each two, for hundreds of impacts, and climbs while it loses energy: vω = πg/2. They draw the sharp lines of Fig. 2 at low speed. One is replayed.",
+    a: { particles: 1000, impacts: 1000 },
+    view: { speed: 0.1, range: "fig2" },
+    kind: "locked",
+  },
+];
+
+/** The state of a stop. */
+export function at(stop: number, state: State): State {
+  const { a, b, view } = TOUR[stop - 1];
+  return {
+    ...state,
+    a: { ...DEFAULT, ...a },
+    b: b && { ...DEFAULT, ...b },
+    speed: 0.4,
+    range: "fig2",
+    density: "restitution",
+    particle: 0,
+    impact: 0,
+    ...view,
+    stop,
+  };
+}

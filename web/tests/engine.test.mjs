@@ -1,0 +1,152 @@
+// The engine in the browser is the engine of the desktop: the same bits; and what the page derives from it is right.
+import assert from "node:assert/strict";
+import { mkdtempSync, readdirSync, readFileSync, writeFileSync } from "node:fs";
+import { tmpdir } from "node:os";
+import { join } from "node:path";
+import { fileURLToPath } from "node:url";
+import { test } from "node:test";
+import { command, digest, engine, native, page, simulate } from "./library.mjs";
+
+const small = { particles: 20, impacts: 60 };
+const SETUPS = {
+  "the paper's": {},
+  "no friction, long": { law: "frictionless", elongation: 3, normal: 0.9, orientation: "isotropic" },
+  "friction, with spin": { law: "coulomb", hypothesis: "poisson", friction: 0.2, spin_y: 40, spin_z: -25, velocity_x: 0.3 },
+  "Newton's hypothesis": { law: "coulomb", hypothesis: "newton", normal: 0.8 },
+  "Chatterjee and Ruina, on a slope": { law: "chatterjee-ruina", tangential: -0.5, incline: 0.2 },
+  "a spherocylinder": { shape: "spherocylinder", elongation: 0.5, radius: 0.0123, release_height: 0.2 },
+  "a spheroid, on the Moon": { shape: "spheroid", elongation: 0.4, gravity: 1.62, normal: 0.7 },
+  "a sphere": { elongation: 0 },
+  "one angle, stopped early": { orientation: "given", angle: 1.1, minimum_speed: 0.3 },
+  "a large seed": { seed: 2 ** 52 + 12345 },
+};
+
+test("the same bits as the native engine, by the lines of Python that the page shows", () => {
+  const setups = Object.entries(SETUPS).map(([name, change]) => [name, { ...page.DEFAULT, ...small, ...change }]);
+  // One process: each starts the whole of Python.
+  const printed = native(setups.map(([, setup]) => page.python(setup)).join("\n")).split("\n");
+  assert.equal(printed.length, setups.length);
+  setups.forEach(([name, setup], k) => assert.equal(digest(setup), printed[k], name));
+  assert.equal(new Set(printed).size, printed.length, "every set-up has its own digest");
+});
+
+test("the TOML file of the page is the same run on the desktop", () => {
+  const setup = { ...page.DEFAULT, ...small, ...SETUPS["friction, with spin"] };
+  const folder = mkdtempSync(join(tmpdir(), "restitution-"));
+  writeFileSync(join(folder, "run.toml"), page.toml(setup));
+  command("simulate", join(folder, "run.toml"), "--out", join(folder, "run.nc"));
+  const names = JSON.stringify(page.DIGESTED);
+  const lines = `import hashlib, xarray\ndata = xarray.open_dataset(${JSON.stringify(join(folder, "run.nc"))})\n` +
+    `print(hashlib.sha256(b"".join(data[name].values.tobytes() for name in ${names})).hexdigest())`;
+  assert.equal(digest(setup), native(lines));
+});
+
+test("portions of a run are the run", () => {
+  const setup = { ...page.DEFAULT, particles: 7, impacts: 30 };
+  const { columns } = simulate(setup);
+  const part = engine.simulate(page.numbers(setup), 3, 2);
+  assert.deepEqual(part.subarray(0, 60), columns.time.subarray(90, 150));
+});
+
+test("a set-up that cannot be is refused in the engine's words", () => {
+  const refused = (change, words) =>
+    assert.throws(() => engine.simulate(page.numbers({ ...page.DEFAULT, ...change }), 0, 1), words);
+  refused({ release_height: 1e-3 }, /release_height = 0\.001: must be finite and high enough/);
+  refused({ normal: 1.5 }, /1\.5: must be/);
+  refused({ gravity: 0 }, /gravity = 0\.0: must be finite and > 0/);
+});
+
+test("the closed form of the first impact agrees with the engine, angle by angle", () => {
+  for (const law of ["tangential-restitution", "frictionless"]) {
+    for (const [elongation, normal] of [[0.1, 0.98], [0.7, 0.6], [2, 0.4]]) {
+      const setup = { ...page.DEFAULT, law, elongation, normal, particles: 200, impacts: 1 };
+      const { columns } = simulate(setup);
+      columns.restitution.forEach((epsilon, k) => {
+        const exact = page.restitution(setup, Math.abs(Math.cos(columns.angle[k])));
+        assert.ok(Math.abs(epsilon - exact) < 1e-13, `${law}, L/R ${elongation}: ${epsilon} against ${exact}`);
+      });
+    }
+  }
+});
+
+test("the path of the scene goes through the impacts, with the lowest point on the plane", () => {
+  for (const change of [{}, SETUPS["friction, with spin"], SETUPS["a spheroid, on the Moon"], SETUPS["Chatterjee and Ruina, on a slope"]]) {
+    const setup = { ...page.DEFAULT, ...small, ...change };
+    const { columns, counts } = simulate(setup);
+    const path = new page.Path(engine.follow(page.numbers(setup), 4), setup.gravity, setup.incline);
+    assert.equal(path.flights.length, counts[4] + 1);
+    for (let i = 0; i < counts[4]; i++) {
+      const place = 4 * setup.impacts + i;
+      const [flight, next] = [path.flights[i], path.flights[i + 1]];
+      assert.equal(next.start, columns.time[place]);
+      const before = path.at(next.start * (1 - 1e-15) - 1e-15);
+      const end = before.impacts === i ? before : path.at(flight.start);
+      if (before.impacts === i) {
+        assert.ok(Math.abs(-end.velocity.z - columns.impact_velocity[place]) < 1e-9);
+        // What it falls in the moment that is left, and roundings of the height.
+        const left = Math.abs(end.velocity.z) * (next.start * 2e-15 + 2e-15);
+        assert.ok(Math.abs(end.place.z - next.place.z) < 1e-9 * setup.radius + 1e-12 + left);
+      }
+      // The attitude that is carried along ends where the engine says that the axis points, and the contact touches.
+      const arm = page.contactArm(setup, next.axis, next.sphere);
+      assert.ok(Math.abs(next.place.z + arm.z) < 1e-9 * setup.radius, `gap ${next.place.z + arm.z}`);
+      const carried = end.attitude.clone().invert().multiply(next.attitude);
+      if (before.impacts === i) assert.ok(carried.angleTo(carried.identity()) < 1e-6);
+    }
+  }
+});
+
+test("a link is a set-up: what goes in comes out, and nonsense is named", () => {
+  const state = page.initial();
+  assert.equal(page.toHash(state), "");
+  state.a = { ...state.a, law: "coulomb", friction: 0.25, radius: 1e-3, seed: 77 };
+  state.b = { ...state.a, elongation: 0.02 };
+  Object.assign(state, { speed: -0.05, range: "fig7", density: "fraction", particle: 12, impact: 3, stop: 4 });
+  const { state: read, problems } = page.fromHash(`#${page.toHash(state)}`);
+  assert.deepEqual(problems, []);
+  assert.deepEqual(read, state);
+  const bad = page.fromHash("#normal=2&law=magic&particles=1e9&impacts=0.5&speed=fast&seed=");
+  assert.equal(bad.problems.length, 6);
+  assert.match(bad.problems.join("\n"), /normal = 2: must be in \[0, 1\]/);
+  assert.deepEqual(bad.state.a, page.DEFAULT);
+  for (const hash of ["#b.normal=", "#%zz", "#b&b.seed=-1", "#particles=2000000&impacts=400"]) {
+    const { state: safe } = page.fromHash(hash);
+    assert.ok(safe.a.particles * safe.a.impacts <= 2_000_000);
+  }
+});
+
+test("links of the pages to the explorer are set-ups", () => {
+  const folder = fileURLToPath(new URL("../../docs/", import.meta.url));
+  let seen = 0;
+  for (const name of readdirSync(folder).filter((file) => file.endsWith(".md"))) {
+    for (const [, state] of readFileSync(folder + name, "utf8").matchAll(/\]\(explorer:([^)]*)\)/g)) {
+      assert.deepEqual(page.fromHash(`#${state}`).problems, [], `${name}: ${state}`);
+      seen++;
+    }
+  }
+  assert.ok(seen > 5);
+});
+
+test("what the tour says of its runs is so", () => {
+  const run = (stop, of = "a", change = {}) => simulate({ ...page.at(stop, page.initial())[of], ...change });
+  const sigma = ({ columns }, low, high) => {
+    const seen = [...columns.restitution].filter((_, i) => columns.impact_velocity[i] >= low && columns.impact_velocity[i] < high);
+    const mean = seen.reduce((a, b) => a + b) / seen.length;
+    return Math.sqrt(seen.reduce((a, b) => a + (b - mean) ** 2, 0) / seen.length);
+  };
+  // 1: a sphere has one coefficient.
+  assert.ok(run(1).columns.restitution.every((x) => Math.abs(x - 0.98) < 1e-13));
+  // 6: twice the elongation, four to five times the scatter; between seeds the ratio varies by 0.3.
+  const beads = { particles: 100 };
+  const ratio = sigma(run(6, "b", beads), 0.3, 0.5) / sigma(run(6, "a", beads), 0.3, 0.5);
+  assert.ok(ratio > 3.5 && ratio < 5.7, `ratio ${ratio}`);
+  // 8: 2.95 % of 20 000, with a standard error of 0.12 %; 4 of them here.
+  const first = run(8).columns.restitution;
+  const negative = first.filter((x) => x < 0).length / first.length;
+  assert.ok(Math.abs(negative - 0.0295) < 4 * 0.0012, `${negative}`);
+  // 9: energy grows under the paper's law, never without friction; and the scatter of B is larger.
+  const [paper, smooth] = [run(9), run(9, "b")];
+  assert.ok(paper.columns.energy_ratio.some((x) => x > 1.5));
+  assert.ok(smooth.columns.energy_ratio.every((x) => !(x > 1 + 1e-12)));
+  assert.ok(sigma(smooth, 0.38, 0.42) > 1.5 * sigma(paper, 0.38, 0.42));
+});

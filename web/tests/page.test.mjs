@@ -1,0 +1,250 @@
+// The page in a real browser, opened from the disk: load, change, drag, replay, tour, links, downloads; nothing in the console, nothing
+// from the network, no violation that axe-core can see.
+import assert from "node:assert/strict";
+import { mkdirSync, readFileSync } from "node:fs";
+import { createRequire } from "node:module";
+import { fileURLToPath } from "node:url";
+import { after, before, test } from "node:test";
+import { gzipSync } from "node:zlib";
+import { launch } from "./browser.mjs";
+import { digest, PAGE, page as library } from "./library.mjs";
+
+const AXE = readFileSync(createRequire(import.meta.url).resolve("axe-core/axe.min.js"), "utf8");
+const SHOTS = fileURLToPath(new URL("../shots/", import.meta.url));
+const SMALL = "particles=20&impacts=100";
+
+let browser;
+before(async () => {
+  mkdirSync(SHOTS, { recursive: true });
+  browser = await launch();
+});
+after(() => browser?.close());
+
+/** The page with this state, in a window of its own; `check` sees that nothing went wrong on the way. */
+async function open(hash, { width = 1400, height = 1000, scheme = "light", motion = "reduce" } = {}) {
+  const context = await browser.newContext({
+    viewport: { width, height },
+    colorScheme: scheme,
+    reducedMotion: motion,
+    locale: "en-GB", // a locale like C.UTF-8 is none to a page
+    acceptDownloads: true,
+  });
+  // A machine that is busy otherwise is slow, not wrong.
+  context.setDefaultTimeout(180_000);
+  const page = await context.newPage();
+  const trouble = [];
+  page.on("console", (message) => trouble.push(`${message.type()}: ${message.text()}`));
+  page.on("pageerror", (error) => trouble.push(error.stack));
+  page.on("request", (request) => {
+    if (!/^(file|blob|data):/.test(request.url())) trouble.push(`asked for ${request.url()}`);
+  });
+  await page.goto(`file://${PAGE}#${hash}`);
+  await done(page);
+  const close = async () => {
+    // Software rendering warns of itself; that is the test's doing.
+    assert.deepEqual(trouble.filter((line) => !/GPU stall|GroupMarkerNotSet|swiftshader/i.test(line)), []);
+    await context.close();
+  };
+  return { page, close };
+}
+
+const done = (page) => page.waitForFunction(() => document.documentElement.dataset.state === "done");
+const hashOf = (page) => page.evaluate(() => location.hash.slice(1));
+const shown = (page) => page.locator("#summary code").allTextContents();
+const set = (page, id, value) =>
+  page.locator(`#${id}`).evaluate((input, x) => {
+    input.value = x;
+    input.dispatchEvent(new Event("input", { bubbles: true }));
+    input.dispatchEvent(new Event("change", { bubbles: true }));
+  }, String(value));
+
+test("the page is one file of less than 1 MB compressed", () => {
+  const content = readFileSync(PAGE);
+  assert.ok(gzipSync(content).length < 1_000_000);
+  assert.doesNotMatch(content.toString().replace(/<pre id="licence-text"[\s\S]*?<\/pre>/, ""), /(src|href)="https?:/);
+});
+
+test("the digests on the page are those of the engine, for two set-ups side by side", async () => {
+  const { page, close } = await open(`${SMALL}&b=1&b.law=frictionless&b.particles=20&b.impacts=100`);
+  const a = { ...library.DEFAULT, particles: 20, impacts: 100 };
+  assert.deepEqual(await shown(page), [digest(a), digest({ ...a, law: "frictionless" })]);
+  await close();
+});
+
+test("a slider changes the run, the address and the lines of Python; the address brings it back", async () => {
+  const { page, close } = await open(SMALL);
+  const [old] = await shown(page);
+  await set(page, "elongation", 0.5);
+  await set(page, "law", "coulomb");
+  await set(page, "friction", 0.2);
+  await done(page);
+  assert.equal(await page.locator("#tangential").isVisible(), false);
+  const [now] = await shown(page);
+  assert.notEqual(now, old);
+  const hash = await hashOf(page);
+  assert.match(hash, /elongation=0\.5/);
+  assert.match(await page.locator("#code").textContent(), /rs\.Coulomb\(normal=0\.98, friction=0\.2, hypothesis="stronge"\)/);
+  const again = await open(hash);
+  assert.deepEqual(await shown(again.page), [now]);
+  await again.close();
+  await page.evaluate(() => (location.hash = "normal=7"));
+  await page.waitForFunction(() => !document.getElementById("problem").hidden);
+  assert.match(await page.locator("#problem").textContent(), /normal = 7: must be in \[0, 1\]/);
+  await close();
+});
+
+test("what cannot be is said in words, and the next slider heals it", async () => {
+  const { page, close } = await open(`${SMALL}&orientation=given&angle=1`);
+  const radius = page.locator("#normal-number");
+  await radius.fill("1.7");
+  await radius.blur();
+  assert.equal(await radius.getAttribute("aria-invalid"), "true");
+  assert.doesNotMatch(await hashOf(page), /normal/);
+  await set(page, "elongation", 3);
+  await set(page, "release_height", 5);
+  await done(page);
+  assert.equal(await page.locator("#problem").isVisible(), false, "the body is lifted over the plane");
+  await close();
+});
+
+test("the line of the speed is dragged, and p(ε | v) follows; so does the slider, by keys", async () => {
+  const { page, close } = await open("particles=50&impacts=200");
+  const plot = await page.locator("#scatter-a .u-over").boundingBox();
+  // v = 0.4 of [0, 1.1 × fall]
+  const x = plot.x + (plot.width * 0.4) / (1.1 * Math.sqrt(2 * 9.81 * 0.057));
+  await page.mouse.move(x, plot.y + 10);
+  await page.mouse.down();
+  await page.mouse.move(x - plot.width * 0.15, plot.y + 20, { steps: 4 });
+  await page.mouse.up();
+  const speed = Number(new URLSearchParams(await hashOf(page)).get("speed"));
+  assert.ok(speed > 0.15 && speed < 0.3, `${speed}`);
+  assert.match(await page.locator("#density-text").textContent(), new RegExp(`of ${speed} m/s; mean of ε`));
+  await page.locator("#speed").focus();
+  await page.keyboard.press("ArrowRight");
+  const next = Number(new URLSearchParams(await hashOf(page)).get("speed"));
+  assert.ok(next > speed && next < speed + 0.01);
+  await close();
+});
+
+test("a picked impact is replayed, and found again by its link", async () => {
+  const { page, close } = await open("particles=50&impacts=200");
+  for (const kind of ["gain", "superelastic"]) {
+    await page.locator("#kind").selectOption(kind);
+    await page.locator("#find").click();
+    await page.waitForFunction(() => /particle/.test(document.getElementById("found").textContent));
+    const [, particle, impact] = /particle (\d+), impact (\d+)/.exec(await page.locator("#found").textContent());
+    await page.waitForFunction((text) => document.querySelector("#impact caption").textContent === text, `Impact ${impact} of particle ${particle}`);
+    const state = new URLSearchParams(await hashOf(page));
+    assert.equal(Number(state.get("particle") ?? 0), Number(particle));
+    assert.equal(Number(state.get("impact")), Number(impact) - 1);
+  }
+  const table = await page.locator("#impact").innerText();
+  const again = await open(await hashOf(page));
+  await again.page.waitForFunction(() => /^Impact/.test(document.querySelector("#impact caption").textContent));
+  assert.equal(await again.page.locator("#impact").innerText(), table);
+  await again.close();
+  const plot = await page.locator("#scatter-a .u-over").boundingBox();
+  await page.mouse.click(plot.x + plot.width * 0.12, plot.y + plot.height * 0.5);
+  await page.waitForFunction((old) => document.querySelector("#impact").innerText !== old, table);
+  await close();
+});
+
+test("the bounce plays, stops, and is stepped through by keys", async () => {
+  const { page, close } = await open(SMALL, { motion: "no-preference" });
+  await page.waitForFunction(() => document.getElementById("play").textContent === "Pause");
+  await page.waitForFunction(() => /Impact 1 /.test(document.querySelector("#impact caption").textContent));
+  await page.locator("#play").press("Space");
+  assert.equal(await page.locator("#play").textContent(), "Play");
+  const caption = () => page.locator("#impact caption").textContent();
+  const number = async () => Number(/\d+/.exec(await caption())?.[0] ?? 0);
+  const start = await number();
+  await page.locator("#later").press("Enter");
+  await page.waitForFunction((n) => Number(/\d+/.exec(document.querySelector("#impact caption").textContent)[0]) === n, start + 1);
+  // The scene is no empty canvas.
+  const colours = await page.locator("#stage canvas").evaluate((canvas) => {
+    const copy = document.createElement("canvas");
+    [copy.width, copy.height] = [canvas.width, canvas.height];
+    copy.getContext("2d").drawImage(canvas, 0, 0);
+    const { data } = copy.getContext("2d").getImageData(0, 0, copy.width, copy.height);
+    const seen = new Set();
+    for (let i = 0; i < data.length; i += 4) seen.add(data[i] * 65536 + data[i + 1] * 256 + data[i + 2]);
+    return seen.size;
+  });
+  assert.ok(colours > 50, `${colours} colours`);
+  await close();
+});
+
+test("files: PNG, SVG, CSV, TOML, Python", async () => {
+  const { page, close } = await open(SMALL);
+  const file = async (button) => {
+    const waiting = page.waitForEvent("download");
+    await page.locator(`#${button}`).click();
+    const download = await waiting;
+    return { name: download.suggestedFilename(), content: readFileSync(await download.path()) };
+  };
+  for (const what of ["stage", "scatter-a", "density", "sigma", "reservoir"]) {
+    await page.locator("#what").selectOption(what);
+    const png = await file("png");
+    assert.equal(png.content.subarray(1, 4).toString(), "PNG", what);
+    assert.ok(png.content.length > 2000, what);
+    if (what === "stage") continue;
+    const { name, content } = await file("svg");
+    assert.equal(name, `${what}.svg`);
+    const wrong = await page.evaluate((text) => new DOMParser().parseFromString(text, "image/svg+xml").querySelector("parsererror")?.textContent, content.toString());
+    assert.equal(wrong, undefined);
+    assert.doesNotMatch(content.toString(), /NaN|Infinity|undefined/, what);
+  }
+  const lines = (await file("csv")).content.toString().trim().split("\n");
+  assert.equal(lines[0], `particle,impact,${library.COLUMNS.join(",")}`);
+  assert.equal(lines.length, 1 + 20 * 100);
+  const setup = { ...library.DEFAULT, particles: 20, impacts: 100 };
+  assert.equal((await file("toml")).content.toString(), library.toml(setup));
+  assert.equal((await file("python")).content.toString(), library.python(setup));
+  await close();
+});
+
+test("the tour has ten stops, by keys, and each is a link", async () => {
+  const { page, close } = await open("");
+  await page.locator("#tour-start").press("Enter");
+  for (let stop = 1; stop <= 10; stop++) {
+    await page.waitForFunction((n) => document.getElementById("tour-number").textContent === `Stop ${n} of 10`, stop);
+    assert.equal(await page.evaluate(() => document.activeElement.id), "tour-title");
+    assert.match(await hashOf(page), new RegExp(`stop=${stop}$`));
+    if (stop < 10) await page.locator("#tour-next").press("Enter");
+  }
+  await page.locator("#tour-end").click();
+  assert.equal(await page.locator("#tour").isVisible(), false);
+  await close();
+});
+
+test("a redraw takes less than 100 ms", async () => {
+  const { page, close } = await open("particles=100&impacts=100");
+  const times = [];
+  for (const speed of [0.1, 0.2, 0.3, 0.5, 0.6]) {
+    await set(page, "speed", speed);
+    await page.waitForTimeout(60);
+    times.push(Number(await page.evaluate(() => document.documentElement.dataset.redraw)));
+  }
+  times.sort((a, b) => a - b);
+  assert.ok(times[2] < 100, `${times} ms`);
+  await close();
+});
+
+const LOOKS = [
+  ["desktop", { width: 1400, height: 1000 }, SMALL],
+  ["tablet-dark", { width: 820, height: 1180, scheme: "dark" }, `${SMALL}&elongation=0.5&b=1&b.elongation=0.5&b.law=frictionless&b.particles=20&b.impacts=100`],
+  ["phone", { width: 390, height: 844 }, `${SMALL}&stop=3`],
+];
+for (const [name, window, hash] of LOOKS) {
+  test(`${name}: no violation that axe-core sees, nothing wider than the window; web/shots/${name}.png`, async () => {
+    const { page, close } = await open(hash, window);
+    await page.evaluate(AXE);
+    const { violations } = await page.evaluate(() => axe.run());
+    assert.deepEqual(violations.map((v) => `${v.id}: ${v.nodes.map((n) => n.html).join("; ")}`), []);
+    const wide = await page.evaluate(() => document.documentElement.scrollWidth);
+    assert.ok(wide <= window.width, `${wide} px`);
+    await page.waitForTimeout(500);
+    await page.screenshot({ path: `${SHOTS}${name}.png`, fullPage: true });
+    await close();
+  });
+}
