@@ -1,0 +1,107 @@
+"""Sphinx: the pages of this folder, the docstrings and the explorer as one site. `make docs` builds it."""
+
+import os
+import shutil
+from importlib.metadata import version as version_of
+from pathlib import Path
+
+HERE = Path(__file__).parent
+BUILT = (
+    HERE.parent / "build" / "static"
+)  # what the site takes from elsewhere; nothing is loaded from other hosts
+
+project = "restitution"
+author = "The restitution developers"
+copyright = author
+version = release = version_of("restitution")
+
+extensions = [
+    "myst_nb",
+    "sphinx.ext.autodoc",
+    "sphinx.ext.autosummary",
+    "sphinx.ext.napoleon",
+    "sphinx.ext.mathjax",
+    "sphinx_copybutton",
+    "sphinx_design",
+]
+exclude_patterns = ["README.md"]
+myst_enable_extensions = ["dollarmath", "amsmath", "deflist", "colon_fence", "attrs_block"]
+myst_heading_anchors = 4
+myst_dmath_double_inline = True
+# explorer:stop=3 is the explorer at the third stop of its tour
+myst_url_schemes = {"http": None, "https": None, "explorer": "explorer.html#{{path}}"}
+
+nb_execution_mode = "cache"
+nb_execution_cache_path = str(HERE.parent / "build" / "notebooks")
+nb_execution_raise_on_error = True
+nb_execution_in_temp = True
+nb_execution_timeout = 300
+nb_ipywidgets_js: dict[str, dict[str, str]] = {}  # no widgets, no script from elsewhere
+
+autosummary_generate = True
+autodoc_typehints = "none"  # types and shapes are in the docstrings
+autodoc_member_order = "bysource"
+napoleon_use_rtype = False
+
+mathjax_path = "tex-svg.js"
+mathjax3_config = {"chtml": {"displayAlign": "left"}, "svg": {"displayAlign": "left", "displayIndent": "2em"}}
+
+html_theme = "pydata_sphinx_theme"
+html_title = f"restitution {release}"
+html_extra_path = ["../python/restitution/explorer/explorer.html"]
+html_static_path = ["_static", str(BUILT)]
+html_js_files = ["zoom.js"]
+html_css_files = ["site.css"]
+html_theme_options: dict[str, object] = {
+    "show_prev_next": True,
+    "navigation_with_keys": True,
+    "header_links_before_dropdown": 8,
+    "secondary_sidebar_items": ["page-toc"],
+    "footer_start": ["copyright"],
+    "footer_end": [],
+}
+html_sidebars: dict[str, list[str]] = {name: [] for name in ("index", "start", "gallery")}
+html_show_sourcelink = False
+html_domain_indices = False
+
+# A site of several versions (docs/versions.py) says where it is, and which of them this one is.
+if site := os.environ.get("RESTITUTION_SITE"):
+    html_theme_options["switcher"] = {
+        "json_url": f"{site}/versions.json",
+        "version_match": os.environ["RESTITUTION_VERSION"],
+    }
+    html_theme_options["check_switcher"] = False
+    html_theme_options["navbar_end"] = ["version-switcher", "theme-switcher"]
+
+BUILT.mkdir(parents=True, exist_ok=True)
+shutil.copy(HERE.parent / "web" / "node_modules" / "mathjax" / "es5" / "tex-svg.js", BUILT)
+
+
+def _plain_bars(app: object, what: str, name: str, thing: object, options: object, lines: list[str]) -> None:
+    """|x| in a docstring is a magnitude, not a substitution of reStructuredText."""
+    lines[:] = [
+        line if line.lstrip().startswith((">>>", "...")) else line.replace("|", r"\|") for line in lines
+    ]
+
+
+PAGES_ABOVE = {
+    "architecture": "ARCHITECTURE.md",
+    "changelog": "CHANGELOG.md",
+    "conduct": "CODE_OF_CONDUCT.md",
+    "contributing": "CONTRIBUTING.md",
+}
+
+
+def _page_from_above(app: object, name: str, source: list[str]) -> None:
+    """Show a page of the folder above, whose links are from there."""
+    if name in PAGES_ABOVE:
+        text = (HERE.parent / PAGES_ABOVE[name]).read_text(encoding="utf-8").replace("](docs/", "](")
+        for here, there in PAGES_ABOVE.items():
+            text = text.replace(f"]({there})", f"]({here}.md)")
+        source[0] = text
+
+
+def setup(app: object) -> None:
+    """Let Sphinx know."""
+    app.connect("source-read", _page_from_above)  # type: ignore[attr-defined]
+    app.connect("autodoc-process-docstring", _plain_bars)  # type: ignore[attr-defined]

@@ -1,0 +1,146 @@
+"""Tables and figures of the pages: `python docs/pages.py energy` makes those of docs/energy.md anew.
+
+What is made stands in its page between comments, one with the command and one with a stamp, each table in its
+own place:
+
+    <!-- python docs/pages.py energy -->
+    ...
+    <!-- stamp 0123456789ab -->
+
+The stamp is a digest of the tables, of the figures, of the size of the run, and of what the same code prints
+in a small run. `tests/test_pages.py` makes the small runs again: where the code, the engine, a table or a
+figure has changed since, the page is stale, and the test says which command sets it right. Results do not
+depend on the machine, so neither does the stamp.
+"""
+
+import argparse
+import hashlib
+import re
+import sys
+import warnings
+from collections.abc import Callable
+from dataclasses import dataclass
+from importlib import import_module
+from pathlib import Path
+from typing import Any
+
+import matplotlib
+
+ROOT = Path(__file__).parents[1]
+IMAGES = ROOT / "docs" / "images"
+_BLOCK = "<!-- python docs/pages.py {name} -->\n(.*?)<!-- stamp (.*?) -->"
+
+
+def _script(name: str) -> Any:
+    """Import a script of examples/, or a module of benchmarks/."""
+    for folder in (ROOT / "examples", ROOT):
+        if str(folder) not in sys.path:
+            sys.path.insert(0, str(folder))
+    return import_module(name)
+
+
+def energy(impacts: int, images: Path | None) -> str:
+    """Make the table and the figure of `restitution laws`."""
+    from restitution import laws_figure as laws
+
+    data = laws.measure(impacts, 1)
+    if images is not None:
+        laws.draw(data).savefig(images / "laws.png", dpi=200)
+    return laws.table(data)
+
+
+def fits(particles: int, images: Path | None) -> str:
+    """Make the table of other ensembles of examples/fits.py."""
+    return str(_script("fits").repeat(particles, 14 if images else 2))
+
+
+def locking(particles: int, images: Path | None) -> str:
+    """Make the table and the figure of examples/locking.py."""
+    script = _script("locking")
+    if images is not None:
+        script.draw(images / "locking.png")
+        return str(script.table(particles))
+    return str(script.table(particles, seeds=2))
+
+
+def release(drops: int, images: Path | None) -> str:
+    """Make the table and the figure of examples/golf.py."""
+    script = _script("golf")
+    if images is not None:
+        script.draw(images / "golf.png")
+    return str(script.table())
+
+
+def laws(contacts: int, images: Path | None) -> str:
+    """Make the table of benchmarks/impulse.py."""
+    return str(_script("benchmarks.impulse").table())
+
+
+@dataclass(frozen=True)
+class Block:
+    """What makes a page's tables and figures, how large the run is for the page and for its stamp."""
+
+    make: Callable[[int, Path | None], str]
+    size: int
+    small: int
+    figures: tuple[str, ...] = ()
+
+
+BLOCKS = {
+    "energy": Block(energy, 10_000_000, 20_000, ("laws.png",)),
+    "fits": Block(fits, 4000, 100),
+    "laws": Block(laws, 0, 0),
+    "locking": Block(locking, 5000, 100, ("locking.png",)),
+    "release": Block(release, 0, 0, ("golf.png",)),
+}
+"""By the name of the page."""
+
+
+def made(name: str) -> tuple[list[str], str]:
+    """Return the tables that stand between the comments of a page, and its stamp."""
+    text = (ROOT / "docs" / f"{name}.md").read_text(encoding="utf-8")
+    found = re.findall(_BLOCK.format(name=name), text, re.DOTALL)
+    if not found or len({stamp for _, stamp in found}) > 1:
+        raise ValueError(f"docs/{name}.md needs <!-- python docs/pages.py {name} -->, with the same stamp")
+    return [table.strip() for table, _ in found], found[0][1]
+
+
+def stamp(name: str, tables: list[str]) -> str:
+    """Digest a page's tables and figures, and what its code prints in a small run."""
+    block = BLOCKS[name]
+    digest = hashlib.sha256(repr((block.size, tables, block.make(block.small, None))).encode())
+    for figure in block.figures:
+        digest.update((IMAGES / figure).read_bytes())
+    return digest.hexdigest()[:12]
+
+
+def remake(name: str) -> None:
+    """Make the tables and figures of a page, and write them into it."""
+    block, page = BLOCKS[name], ROOT / "docs" / f"{name}.md"
+    places = len(made(name)[0])  # before anything is computed
+    tables = block.make(block.size, IMAGES).strip().split("\n\n")
+    if len(tables) != places:
+        raise ValueError(f"docs/{name}.md has room for {places} tables, and there are {len(tables)}")
+    print("\n\n".join(tables))
+    current, rest = stamp(name, tables), iter(tables)
+
+    def whole(_: re.Match[str]) -> str:
+        return f"<!-- python docs/pages.py {name} -->\n\n{next(rest)}\n\n<!-- stamp {current} -->"
+
+    text = page.read_text(encoding="utf-8")
+    page.write_text(re.sub(_BLOCK.format(name=name), whole, text, flags=re.DOTALL), encoding="utf-8")
+
+
+def main() -> None:
+    """Make the pages that are asked for."""
+    matplotlib.use("Agg")
+    parser = argparse.ArgumentParser(description="Make tables and figures of docs/ anew.")
+    parser.add_argument("names", nargs="*", choices=[[], *BLOCKS], metavar="NAME", help=", ".join(BLOCKS))
+    warnings.simplefilter("ignore", import_module("restitution").EnergyWarning)
+    for name in parser.parse_args().names or BLOCKS:
+        print(name, flush=True)
+        remake(name)
+
+
+if __name__ == "__main__":
+    main()
