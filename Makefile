@@ -5,12 +5,14 @@ BIN := $(VENV)/bin
 STAMP := $(VENV)/.installed
 IMPACTS ?= 100000000
 OUT ?= paper
+SHARD ?= 0/256
+FUZZ ?= 300
 CORE := $(shell find crates -name '*.rs' -o -name 'Cargo.toml') Cargo.toml Cargo.lock pyproject.toml
 
-.PHONY: help install paper test lint bench clean
+.PHONY: help install pages paper calibrate test fuzz hostile audit mutants test-arm test-web bench-web web docs wheel licences coverage lint bench clean
 
 help:  ## list the targets
-	@grep -hE '^[a-z]+:.*##' $(MAKEFILE_LIST) | sed 's/:.*##/\t/' | expand -t 12
+	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed 's/:.*##/\t/' | expand -t 12
 
 $(STAMP): $(CORE)
 	test -x $(BIN)/python || $(PYTHON) -m venv $(VENV)
@@ -20,21 +22,87 @@ $(STAMP): $(CORE)
 install: $(STAMP)  ## build the core and install the package into .venv
 
 paper: $(STAMP)  ## redraw and judge the whole paper into $(OUT)/
-	$(BIN)/restitution paper --out $(OUT) --impacts $(IMPACTS)
+	$(BIN)/restitution paper --overwrite --out $(OUT) --impacts $(IMPACTS)
+
+calibrate: $(STAMP)  ## 500 synthetic experiments: do posteriors cover? Ten minutes on one core
+	$(BIN)/python -m benchmarks.calibration build/calibration
 
 lint: $(STAMP)
 	cargo fmt --all --check
+	$(PYTHON) packaging/licences.py --check
 	cargo clippy --workspace --all-targets --locked -- -D warnings
 	$(BIN)/ruff check
 	$(BIN)/ruff format --check
 	$(BIN)/mypy
 
-test: lint  ## every check: Rust format, clippy, Rust tests, ruff, mypy, pytest
+test: lint  ## every check: Rust format, clippy, Rust tests, ruff, mypy, pytest, the explorer
 	cargo test --workspace --locked
 	$(BIN)/python -m pytest
+	$(MAKE) test-web
+
+# The kept module must be of these sources: built anew here, it would pass where everybody else gets the old one.
+test-web: $(STAMP) web/node_modules/.package-lock.json  ## the explorer: types, its engine beside the native one, the page in a real browser
+	$(PYTHON) web/module/build.py --check
+	cd web && npx tsc --project . && node build.mjs && node --test --test-reporter=spec tests/*.test.mjs
+
+web: web/node_modules/.package-lock.json  ## the explorer: the core as WebAssembly, and the page around it
+	$(PYTHON) web/module/build.py
+	cd web && node build.mjs
+
+web/node_modules/.package-lock.json: web/package.json web/package-lock.json
+	@command -v npm >/dev/null && command -v node >/dev/null && \
+	    node -e 'process.exit(+(parseInt(process.versions.node) < 20))' || \
+	    { echo "The explorer needs Node.js 20 or later, with npm (Debian: nodejs, npm). All else is there without it." >&2; exit 1; }
+	cd web && npm ci --no-audit --no-fund
+	touch $@
+
+docs: $(STAMP) web  ## the site, into build/site: no warning, every line of code run, every link followed
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --upgrade 'pip>=25.1'
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --group docs
+	rm -rf build/site
+	$(BIN)/python -m sphinx -W --keep-going -b html -d build/doctrees docs build/site
+	$(BIN)/python docs/check.py build/site
+	$(BIN)/python -m pytest tests/test_import.py -q -k pages
+
+wheel: $(STAMP) web  ## wheels for Linux into dist/, each installed and run in an environment of its own
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --upgrade 'pip>=25.1'
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --group wheel
+	$(BIN)/python packaging/wheel.py $(MACHINE)
+
+licences:  ## list the licences of what is compiled into the package and the page
+	$(PYTHON) packaging/licences.py
+
+fuzz:  ## random runs beside the oracle and between the SIMD levels, $(FUZZ) seconds each
+	RESTITUTION_FUZZ_SECONDS=$(FUZZ) cargo test -p restitution-core --locked --test agreement --test fuzz -- --nocapture
+
+hostile: $(STAMP)  ## every hostile value at every argument of every public function
+	$(BIN)/python tests/hostile.py
+
+audit:  ## known weaknesses of dependencies; says of each check whether it ran
+	sh tests/audit.sh
+
+mutants: $(STAMP)  ## do the tests notice changes of the core and the package? SHARD=0/64 takes a part
+	sh tests/mutants.sh $(SHARD)
+
+test-arm:  ## the digests on AArch64, under qemu-user; installs nothing and says what it needs
+	sh crates/core/tests/arm.sh
+
+pages: $(STAMP)  ## tables and figures of docs/ anew
+	$(BIN)/python docs/pages.py
 
 bench: $(STAMP)  ## speed beside the peers, as ratios measured in one run
 	$(BIN)/python -m benchmarks
 
+bench-web: $(STAMP) web  ## the explorer's first picture, redraw and frame rate
+	cd web && node tests/speed.mjs
+
+# Rust as far as its own tests go; what Python drives is counted in Python.
+coverage: $(STAMP)  ## lines that the tests reach, in Python and in Rust, into build/coverage
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check 'pytest-cov>=6'
+	$(BIN)/python -m pytest --cov=restitution --cov-report=term --cov-report=html:build/coverage/python $(TESTS)
+	@cargo llvm-cov --version >/dev/null 2>&1 || \
+	    { echo "Rust's coverage takes cargo-llvm-cov (cargo install cargo-llvm-cov; rustup component add llvm-tools)." >&2; exit 1; }
+	cargo llvm-cov --package restitution-core --locked --html --output-dir build/coverage/rust
+
 clean:  ## remove everything that was built
-	rm -rf $(VENV) target build paper
+	rm -rf $(VENV) target build dist paper web/node_modules web/shots
