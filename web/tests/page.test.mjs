@@ -177,6 +177,8 @@ test("the bounce plays, stops, and is stepped through by keys", async () => {
 test("files: PNG, SVG, CSV, TOML, Python", async () => {
   const { page, close } = await open(SMALL);
   const file = async (button) => {
+    // A browser ignores the eleventh download within a second.
+    await page.waitForTimeout(150);
     const waiting = page.waitForEvent("download");
     await page.locator(`#${button}`).click();
     const download = await waiting;
