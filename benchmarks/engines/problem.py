@@ -1,6 +1,7 @@
 """The dumbbell problem as an engine is given it, and what is read off its motion."""
 
 import csv
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -24,6 +25,23 @@ class Motion:
 
     step: float
     velocity: Floats
+
+
+def record(
+    advance: Callable[[int], Sequence[float] | Floats], bodies: int, seconds: float, step: float
+) -> Motion:
+    """Record a motion from rest, step by step."""
+    number = round(seconds / step)
+    velocity = np.zeros((number + 1, bodies))
+    for k in range(number):
+        velocity[k + 1] = advance(k)
+    return Motion(step, velocity)
+
+
+def damping(stiffness: float, mass: float = 1.0) -> float:
+    """Give the damping in kg/s (for a mass of 1: in 1/s) with which a spring returns ε_n head-on."""
+    decay = -np.log(NORMAL)
+    return float(2 * np.sqrt(mass * stiffness) * decay / np.hypot(np.pi, decay))
 
 
 def impacts(motion: Motion) -> tuple[Floats, Floats]:

@@ -1,6 +1,5 @@
 """Rapier: impulses once a step or more often, Newton's coefficient of restitution, single precision."""
 
-import numpy as np
 import rapier3d as rapier
 
 from benchmarks.engines.problem import (
@@ -15,6 +14,7 @@ from benchmarks.engines.problem import (
     TRANSVERSE,
     Floats,
     Motion,
+    record,
 )  # fmt: skip
 
 NAME = "Rapier (rapier3d 0.36.1)"
@@ -50,9 +50,9 @@ def run(angles: Floats, seconds: float, step: float, stiffness: float) -> Motion
             for end in (-1, 1)
         ]
         handles.append(world.add_body(body, spheres))
-    number = round(seconds / step)
-    velocity = np.zeros((number + 1, angles.size))
-    for k in range(number):
+
+    def advance(_: int) -> list[float]:
         world.step()
-        velocity[k + 1] = [world.rigid_bodies[handle].linvel.z for handle in handles]
-    return Motion(step, velocity)
+        return [world.rigid_bodies[handle].linvel.z for handle in handles]
+
+    return record(advance, angles.size, seconds, step)
