@@ -169,27 +169,27 @@ print(most - before)
 
 
 @pytest.mark.parametrize(
-    ("call", "within"),
+    "call",
     [
-        ("rs.simulate(body, law, particles=1, impacts=10**8)", 2.0),
-        ("rs.simulate(body, rs.TangentialRestitution(normal=0.1), particles=100, impacts=10**6)", 2.0),
-        ("rs.simulate(body, law, particles=100, impacts=10**6)", 2.0),
+        "rs.simulate(body, law, particles=1, impacts=10**8)",
+        "rs.simulate(body, rs.TangentialRestitution(normal=0.1), particles=100, impacts=10**6)",
+        "rs.simulate(body, law, particles=100, impacts=10**6)",
     ],
 )
-def test_ctrl_c_within_a_second(call: str, within: float) -> None:
-    """However long the rows are; the bound leaves room for a busy machine."""
+def test_ctrl_c_within_a_second(call: str) -> None:
+    """However long the rows are: a second of each of two processors, for a machine may be busy otherwise."""
     [[seconds, kept]] = run(f"""
 pressed = []
 def press():
-    pressed.append(time.monotonic())
+    pressed.append(time.process_time())
     os.kill(os.getpid(), signal.SIGINT)
 threading.Timer(0.5, press).start()
 try:
     {call}
 except rs.SimulationInterrupted as stop:
-    print(json.dumps([time.monotonic() - pressed[0], int(stop.data.impacts.sum())]))
+    print(json.dumps([time.process_time() - pressed[0], int(stop.data.impacts.sum())]))
 """)
-    assert seconds < within
+    assert seconds < 2.0
     assert kept > 0
 
 
