@@ -1,13 +1,17 @@
 //! Which vector instructions to use: found out when the program runs, or told.
 
 use crate::Error;
-use pulp::{Scalar, Simd, WithSimd};
+#[cfg(not(all(target_arch = "wasm32", target_feature = "simd128")))]
+use pulp::Scalar;
+use pulp::{Simd, WithSimd};
 
 /// A SIMD level. All of them give the same bits.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Level {
-    /// One double at a time, on any machine.
+    /// One double at a time, on any machine but where WebAssembly has vectors.
     Scalar,
+    /// Two doubles at a time, on WebAssembly.
+    Simd128,
     /// Two doubles at a time, on AArch64.
     Neon,
     /// Four doubles at a time, with fused multiply-add.
@@ -18,19 +22,26 @@ pub enum Level {
 
 impl Level {
     /// Every level, slowest first.
-    pub const ALL: [Self; 4] = [Self::Scalar, Self::Neon, Self::Avx2, Self::Avx512];
+    pub const ALL: [Self; 5] = [
+        Self::Scalar,
+        Self::Simd128,
+        Self::Neon,
+        Self::Avx2,
+        Self::Avx512,
+    ];
 
     /// The fastest level of this machine.
     pub fn best() -> Self {
         Self::available()
             .next_back()
-            .expect("the scalar level is always there")
+            .expect("there is always a level")
     }
 
-    /// `scalar`, `neon`, `avx2` or `avx512`.
+    /// `scalar`, `simd128`, `neon`, `avx2` or `avx512`.
     pub fn name(self) -> &'static str {
         match self {
             Self::Scalar => "scalar",
+            Self::Simd128 => "simd128",
             Self::Neon => "neon",
             Self::Avx2 => "avx2",
             Self::Avx512 => "avx512",
@@ -90,7 +101,7 @@ impl Level {
         use pulp::x86::{V3, V4};
         match self {
             Self::Scalar => Some(Simd::vectorize(Scalar::new(), work)),
-            Self::Neon => None,
+            Self::Simd128 | Self::Neon => None,
             Self::Avx2 => V3::try_new().map(|simd| Simd::vectorize(simd, work)),
             Self::Avx512 => V4::try_new().map(|simd| Simd::vectorize(simd, work)),
         }
@@ -102,11 +113,23 @@ impl Level {
         match self {
             Self::Scalar => Some(Simd::vectorize(Scalar::new(), work)),
             Self::Neon => Neon::try_new().map(|simd| Simd::vectorize(simd, work)),
-            Self::Avx2 | Self::Avx512 => None,
+            Self::Simd128 | Self::Avx2 | Self::Avx512 => None,
         }
     }
 
-    #[cfg(not(any(target_arch = "x86_64", target_arch = "aarch64")))]
+    // A scalar level beside it would double the module.
+    #[cfg(all(target_arch = "wasm32", target_feature = "simd128"))]
+    fn try_run<W: WithSimd>(self, work: W) -> Option<W::Output> {
+        use pulp::wasm::Simd128;
+        let simd = (self == Self::Simd128).then(Simd128::try_new).flatten();
+        simd.map(|simd| Simd::vectorize(simd, work))
+    }
+
+    #[cfg(not(any(
+        target_arch = "x86_64",
+        target_arch = "aarch64",
+        all(target_arch = "wasm32", target_feature = "simd128")
+    )))]
     fn try_run<W: WithSimd>(self, work: W) -> Option<W::Output> {
         (self == Self::Scalar).then(|| Simd::vectorize(Scalar::new(), work))
     }

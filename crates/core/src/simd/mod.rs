@@ -4,6 +4,8 @@
 //! level. A pack of one lane ([`one`]) is the scalar.
 
 pub mod elementary;
+#[cfg(any(target_arch = "wasm32", test))]
+mod fused;
 mod level;
 mod pack;
 

@@ -53,6 +53,15 @@ macro_rules! each_vector {
     }};
 }
 
+/// a·b + c rounded once, by an instruction where there is one.
+#[inline(always)]
+fn fused<S: Simd>(simd: S, a: S::f64s, b: S::f64s, c: S::f64s) -> S::f64s {
+    #[cfg(target_arch = "wasm32")]
+    return super::fused::mul_add(simd, a, b, c);
+    #[cfg(not(target_arch = "wasm32"))]
+    simd.mul_add_f64s(a, b, c)
+}
+
 impl<S: Simd, const K: usize> Pack<S, K> {
     /// Number of lanes.
     pub const WIDTH: usize = K * size_of::<S::f64s>() / size_of::<f64>();
@@ -133,7 +142,7 @@ impl<S: Simd, const K: usize> Pack<S, K> {
     pub fn mul_add(self, factor: impl Operand<S, K>, addend: impl Operand<S, K>) -> Self {
         let (a, simd) = (self.vectors, self.simd);
         let (b, c) = (factor.in_lanes(simd).vectors, addend.in_lanes(simd).vectors);
-        self.with(each_vector!(r = a, k => simd.mul_add_f64s(a[k], b[k], c[k])))
+        self.with(each_vector!(r = a, k => fused(simd, a[k], b[k], c[k])))
     }
 
     /// Square root.
