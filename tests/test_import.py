@@ -13,6 +13,7 @@ import sys
 import tomllib
 from collections.abc import Iterator
 from pathlib import Path
+from types import ModuleType
 from typing import Any
 
 import pytest
@@ -93,6 +94,33 @@ def test_examples_in_docstrings(name: str) -> None:
     """They are run, and give what they say they give."""
     result = doctest.testmod(importlib.import_module(name), optionflags=doctest.ELLIPSIS)
     assert result.failed == 0
+
+
+def public_names(module: ModuleType, prefix: str = "") -> Iterator[tuple[str, Any, ModuleType]]:
+    """Every public name of the package with what it stands for, and the module that it is a name of."""
+    for name in module.__all__:
+        value = getattr(module, name)
+        if inspect.ismodule(value):
+            yield from public_names(value, f"{prefix}{name}.")
+        else:
+            yield prefix + name, value, module
+
+
+def test_every_public_name_has_an_example() -> None:
+    """In its docstring or that of a method; a constant, which has none, in that of its module."""
+    lacking = []
+    for name, value, module in public_names(rs):
+        constant = not callable(value)
+        finder = doctest.DocTestFinder(recurse=not constant, exclude_empty=True)
+        tests = finder.find(module if constant else value, name, module=False, globs={})
+        examples = [example.source for test in tests for example in test.examples]
+        wanted = name.split(".")[-1] if constant else ""
+        if not any(wanted in source for source in examples):
+            lacking.append(name)
+        if value in (rs.NumericalError, rs.build_info):  # in the compiled module `testmod` finds neither
+            for test in tests:
+                assert doctest.DocTestRunner().run(test).failed == 0, name
+    assert not lacking
 
 
 def blocks(page: Path, language: str) -> list[str]:

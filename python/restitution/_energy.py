@@ -16,6 +16,19 @@ class EnergyWarning(UserWarning):
     """Impacts of a run left with more kinetic energy than they had, as the collision law demands.
 
     An impact counts where it multiplies the kinetic energy by more than 1 + 1e-12: rounding makes some 1e-15.
+
+    Examples
+    --------
+    >>> import warnings
+    >>> import restitution as rs
+    >>> body = rs.Dumbbell(radius=3e-3, separation=3e-3)
+    >>> with warnings.catch_warnings(record=True) as caught:
+    ...     warnings.simplefilter("always")
+    ...     data = rs.simulate(body, rs.TangentialRestitution(normal=0.98), particles=20, impacts=50)
+    >>> caught[0].category is rs.EnergyWarning
+    True
+    >>> 0.0 < data.attrs["energy_created_share"] < 1.0
+    True
     """
 
 

@@ -79,6 +79,16 @@ def reduce(
     ------
     ValueError
         If bins are not one-dimensional, finite and strictly increasing; or data lack a variable.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import restitution as rs
+    >>> data = rs.simulate(rs.Dumbbell(radius=3e-3, separation=3e-4), rs.TangentialRestitution(normal=0.98),
+    ...                    particles=50, impacts=100)
+    >>> found = rs.reduce(data, np.linspace(0.0, 1.2, 13), np.linspace(-1.0, 3.0, 401))
+    >>> int(found["number"].sum() + found["velocity_overflow"])
+    5000
     """
     velocity_edges = checked_edges(velocity_bins, "velocity_bins", velocity_range)
     columns = {

@@ -31,6 +31,15 @@ class SimulationInterrupted(KeyboardInterrupt):
     data : xarray.Dataset
         As `simulate` returns it, with the particles that were begun; those that were cut short have the stop
         reason ``interrupted``.
+
+    Examples
+    --------
+    >>> import restitution as rs
+    >>> body, law = rs.Dumbbell(radius=3e-3, separation=3e-4), rs.TangentialRestitution(normal=0.98)
+    >>> try:
+    ...     data = rs.simulate(body, law, particles=10)
+    ... except rs.SimulationInterrupted as stopped:
+    ...     data = stopped.data  # what Ctrl-C left
     """
 
     def __init__(self, data: xr.Dataset) -> None:

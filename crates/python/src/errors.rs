@@ -9,7 +9,16 @@ create_exception!(
     restitution,
     NumericalError,
     PyRuntimeError,
-    "The engine could not follow a particle; the message names it and the seed that reproduces it."
+    "The engine could not follow a particle; the message names it and the seed that reproduces it.
+
+Examples
+--------
+>>> import restitution as rs
+>>> try:
+...     data = rs.simulate(rs.Dumbbell(radius=3e-3, separation=3e-4), rs.Frictionless(normal=0.98), particles=5)
+... except rs.NumericalError as error:
+...     print(\"report this:\", error)
+"
 );
 create_exception!(
     restitution._core,

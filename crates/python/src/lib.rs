@@ -74,6 +74,13 @@ fn means(threads: usize) -> PyResult<Means> {
 }
 
 /// The version, the SIMD level in use, the levels of this machine, and the number of threads used where none is given.
+///
+/// Examples
+/// --------
+/// >>> import restitution as rs
+/// >>> about = rs.build_info()
+/// >>> about["version"] == rs.__version__, about["simd"] in about["simd_available"]
+/// (True, True)
 #[pyfunction]
 fn build_info(py: Python<'_>) -> PyResult<Bound<'_, PyDict>> {
     let info = PyDict::new(py);

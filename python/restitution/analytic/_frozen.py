@@ -33,6 +33,16 @@ class FirstImpact(ABC):
     ----------
     body, law, orientation
         As in `first_impact`.
+
+    Examples
+    --------
+    >>> import restitution as rs
+    >>> first = rs.analytic.first_impact(
+    ...     rs.Dumbbell(radius=3e-3, separation=6e-3), rs.TangentialRestitution(normal=0.4))
+    >>> bool(first.cdf(first.mean()) > 0.1)
+    True
+    >>> first.rvs(size=3, random_state=1).shape
+    (3,)
     """
 
     body: Body

@@ -36,6 +36,14 @@ class ErrorBudget(Content):
         ``parameter_standard_deviation``. Over ``impact``: ``impact_velocity`` in m/s, ``restitution``, and
         where they are known the closed forms of a nearly round ball, ``kick``,
         ``shape_standard_deviation_turning`` and ``shape_standard_deviation_still``.
+
+    Examples
+    --------
+    >>> import restitution as rs
+    >>> ball = rs.from_roundness(6e-3, 15e-6)
+    >>> budget = rs.error_budget(ball, rs.Frictionless(normal=0.95), drop=0.1, impacts=10, timing=5e-6)
+    >>> print(budget.table().splitlines()[0])
+    | source | first ε | ε at 0.88 m/s | mean ε | restitution |
     """
 
     data: xr.Dataset
@@ -141,6 +149,13 @@ class RequiredRoundness(Content):
     data : Dataset
         Over ``out_of_roundness`` (m): ``single``, ``mean`` and ``fit``, the root mean square error over ε of
         one coefficient, of the mean over a run and of the fitted ε_n(v).
+
+    Examples
+    --------
+    >>> import restitution as rs
+    >>> wanted = rs.required_roundness(1e-3, diameter=6e-3, law=rs.Frictionless(normal=0.95), drop=0.1)
+    >>> 1e-7 < wanted.out_of_roundness < 1e-4
+    True
     """
 
     out_of_roundness: float

@@ -85,7 +85,18 @@ class Check:
 
 
 class DistanceWarning(UserWarning):
-    """A learned distribution is farther from fresh impacts than their scatter explains."""
+    """A learned distribution is farther from fresh impacts than their scatter explains.
+
+    Examples
+    --------
+    >>> import warnings
+    >>> import restitution as rs
+    >>> with warnings.catch_warnings():
+    ...     warnings.simplefilter("error", rs.DistanceWarning)  # stop there instead
+    ...     dist = rs.FluctuatingRestitution.learn(
+    ...         rs.Dumbbell(radius=3e-3, separation=3e-4), rs.TangentialRestitution(normal=0.98),
+    ...         particles=400, velocities=(0.2, 0.6))
+    """
 
 
 def warn_of_distance(data: xr.Dataset, *, stacklevel: int) -> None:

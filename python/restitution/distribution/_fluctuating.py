@@ -61,6 +61,16 @@ class FluctuatingRestitution(EstimatedDistribution):
         ``release_height_asked`` where those were spread about one), their standard errors, and
         ``ks_distance``, the Kolmogorov–Smirnov distance between each two nodes to a fresh ensemble with other
         random numbers.
+
+    Examples
+    --------
+    >>> import restitution as rs
+    >>> dist = rs.FluctuatingRestitution.learn(
+    ...     rs.Dumbbell(radius=3e-3, separation=3e-4), rs.TangentialRestitution(normal=0.98),
+    ...     particles=400, velocities=(0.2, 0.6))
+    >>> low, high = dist.ppf([0.05, 0.95], 0.3)
+    >>> bool(low < 0.98 < high)
+    True
     """
 
     @classmethod

@@ -2,7 +2,13 @@
 
 `map`, `densities`, `scatter`, `moments` and `trajectory` take what `statistics`, `compare` and `simulate`
 give and return a Matplotlib figure, which a notebook shows and `save` writes. The other functions draw what
-they are given into a panel.
+they are given into a panel, in the sizes, colours and markers that stand here:
+
+>>> from restitution import figures
+>>> figure, [[left, right]] = figures.panels(figures.PAGE, 0.6 * figures.COLUMN, columns=2)
+>>> for i, (color, marker) in enumerate(zip(figures.COLORS, figures.MARKERS, strict=True)):
+...     lines = left.plot([0, 1], [i, i], color=color, marker=marker)
+>>> image = right.imshow([[0.0, 0.5, 1.0]], cmap=figures.COLORMAP)
 """
 
 from restitution.figures._panels import histogram, line, plain_log, population, population_bar

@@ -49,6 +49,15 @@ def population(
     ------
     ValueError
         If every site is empty.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from restitution import figures
+    >>> figure, [[axes]] = figures.panels(figures.COLUMN, 2.5)
+    >>> edges = np.linspace(0.0, 1.0, 3)
+    >>> mesh = figures.population(axes, edges, edges, np.array([[1, 0], [10, 100]]))
+    >>> figures.population_bar(figure, mesh, axes)
     """
     top = int(count.max()) if largest is None else largest
     if not count.any():
@@ -64,7 +73,19 @@ def population(
 
 @styled
 def population_bar(figure: Figure, mesh: QuadMesh, axes: Axes) -> None:
-    """Add the colour bar of a `population`."""
+    """Add the colour bar of a `population`.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from restitution import figures
+    >>> figure, [[axes]] = figures.panels(figures.COLUMN, 2.5)
+    >>> edges = np.linspace(0.0, 1.0, 3)
+    >>> mesh = figures.population(axes, edges, edges, np.array([[1, 0], [10, 100]]))
+    >>> figures.population_bar(figure, mesh, axes)
+    >>> figure.axes[1].get_ylabel()
+    'population / largest population'
+    """
     bar = figure.colorbar(mesh, ax=axes, pad=0.02, aspect=30)
     bar.set_label("population / largest population")
 
@@ -85,6 +106,16 @@ def histogram(axes: Axes, edges: FloatArray, density: FloatArray, error: FloatAr
         Density in the bins and its standard error.
     **style
         As in `matplotlib.axes.Axes.errorbar`.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from restitution import figures
+    >>> epsilon = np.random.default_rng(1).laplace(0.98, 0.03, 1000)
+    >>> count, edges = np.histogram(epsilon, bins=40)
+    >>> scale = 1 / (count.sum() * np.diff(edges))
+    >>> figure, [[axes]] = figures.panels(figures.COLUMN, 2.5)
+    >>> figures.histogram(axes, edges, scale * count, scale * np.sqrt(count), label="drawn")
     """
     filled = density > 0
     centres = 0.5 * (edges[:-1] + edges[1:])
@@ -101,14 +132,32 @@ def histogram(axes: Axes, edges: FloatArray, density: FloatArray, error: FloatAr
 
 @styled
 def line(axes: Axes, x: FloatArray, y: FloatArray, error: FloatArray | None = None, **style: Any) -> None:
-    """Draw y(x), with a band of ± one standard error where `error` is given; NaN leaves a gap."""
+    """Draw y(x), with a band of ± one standard error where `error` is given; NaN leaves a gap.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from restitution import figures
+    >>> v = np.linspace(0.1, 1.0, 10)
+    >>> figure, [[axes]] = figures.panels(figures.COLUMN, 2.5)
+    >>> figures.line(axes, v, 0.98 - 0.02 * v, np.full(10, 0.005), label="measured")
+    """
     (drawn,) = axes.plot(x, y, **style)
     if error is not None:
         axes.fill_between(x, y - error, y + error, color=drawn.get_color(), alpha=0.3, linewidth=0)
 
 
 def plain_log(axes: Axes, ticks: Sequence[float]) -> None:
-    """Make the x axis logarithmic with plain numbers at these ticks."""
+    """Make the x axis logarithmic with plain numbers at these ticks.
+
+    Examples
+    --------
+    >>> from restitution import figures
+    >>> figure, [[axes]] = figures.panels(figures.COLUMN, 2.5)
+    >>> figures.plain_log(axes, [0.1, 0.2, 0.5, 1])
+    >>> axes.get_xscale()
+    'log'
+    """
     axes.set_xscale("log")
     axes.xaxis.set_major_locator(FixedLocator(ticks))
     axes.xaxis.set_major_formatter(StrMethodFormatter("{x:g}"))

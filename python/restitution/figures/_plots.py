@@ -73,6 +73,15 @@ def densities(found: xr.Dataset | FluctuatingRestitution, velocities: npt.ArrayL
         Statistics by velocity, of which the bins that hold the speeds are drawn, or a learned distribution.
     velocities : array_like
         At most six impact velocities in m/s.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import restitution as rs
+    >>> found = rs.statistics(
+    ...     rs.Dumbbell(radius=3e-3, separation=3e-4), rs.TangentialRestitution(normal=0.98), particles=100,
+    ...     velocity_bins=np.linspace(0.0, 1.2, 61), restitution_bins=np.linspace(0.5, 1.5, 101))
+    >>> figure = rs.figures.densities(found, [0.2, 0.4])
     """
     from restitution.distribution import FluctuatingRestitution
 
@@ -112,6 +121,16 @@ def scatter(found: xr.Dataset | Mapping[str, xr.Dataset]) -> Figure:
         Statistics by velocity: one, several with their names, or those of `restitution.compare`, whose
         lines are named by body and law. Bins of fewer than 100 impacts are left out, and those that reach
         down to v = 0, where ε diverges.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import restitution as rs
+    >>> found = rs.compare(
+    ...     {name: rs.Dumbbell(radius=3e-3, separation=L) for name, L in (("short", 3e-4), ("long", 3e-3))},
+    ...     [rs.Frictionless(normal=0.98)], particles=100,
+    ...     velocity_bins=np.linspace(0.0, 1.2, 31), restitution_bins=np.linspace(-1.0, 3.0, 401))
+    >>> figure = rs.figures.scatter(found)
     """
     figure, [[axes]] = panels(COLUMN, 2.7)
     lines = _lines(found)
@@ -139,6 +158,17 @@ def moments(found: xr.Dataset) -> Figure:
     found : xarray.Dataset
         Statistics by velocity. Bands are ± one standard error where there are standard errors. Bins of fewer
         than 100 impacts are left out, and those that reach down to v = 0, where ε diverges.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import restitution as rs
+    >>> found = rs.statistics(
+    ...     rs.Dumbbell(radius=3e-3, separation=3e-4), rs.TangentialRestitution(normal=0.98), particles=100,
+    ...     velocity_bins=np.linspace(0.0, 1.2, 61), restitution_bins=np.linspace(0.5, 1.5, 101))
+    >>> figure = rs.figures.moments(found)
+    >>> len(figure.axes)
+    4
     """
     figure, rows = panels(PAGE, 4.6, 2, 2, sharex=True)
     names = {
@@ -171,6 +201,13 @@ def trajectory(data: xr.Dataset, particle: int = 0, impacts: int = 20) -> Figure
         Which one.
     impacts : int
         How many of its impacts.
+
+    Examples
+    --------
+    >>> import restitution as rs
+    >>> data = rs.simulate(
+    ...     rs.Dumbbell(radius=3e-3, separation=3e-4), rs.TangentialRestitution(normal=0.98), particles=1)
+    >>> figure = rs.figures.trajectory(data, impacts=10)
     """
     _require(
         "data", data, "time", "impact_velocity", "rebound_velocity", "restitution", "rotational_fraction"

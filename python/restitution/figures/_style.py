@@ -74,7 +74,18 @@ T = TypeVar("T")
 
 
 def styled(function: Callable[P, T]) -> Callable[P, T]:
-    """Let `function` run under the journal style; the caller's Matplotlib settings stay as they are."""
+    """Let `function` run under the journal style; the caller's Matplotlib settings stay as they are.
+
+    Examples
+    --------
+    >>> import matplotlib as mpl
+    >>> from restitution import figures
+    >>> @figures.styled
+    ... def family():
+    ...     return mpl.rcParams["font.family"]
+    >>> family()
+    ['STIXGeneral']
+    """
 
     @wraps(function)
     def wrapper(*args: P.args, **kwargs: P.kwargs) -> T:
@@ -102,6 +113,11 @@ def panels(
     Returns
     -------
     tuple of Figure and list of rows of Axes
+
+    Examples
+    --------
+    >>> from restitution import figures
+    >>> figure, [[left, right]] = figures.panels(figures.PAGE, 2.5, columns=2, sharey=True)
     """
     figure = _Displayed(figsize=(width, height), layout="constrained")
     FigureCanvasAgg(figure)
@@ -110,7 +126,15 @@ def panels(
 
 
 def letter(axes: Axes, text: str, *, left: bool = True) -> None:
-    """Write the panel's letter, e.g. "(a)", into its upper corner."""
+    """Write the panel's letter, e.g. "(a)", into its upper corner.
+
+    Examples
+    --------
+    >>> from restitution import figures
+    >>> figure, [[left, right]] = figures.panels(figures.PAGE, 2.5, columns=2)
+    >>> figures.letter(left, "(a)")
+    >>> figures.letter(right, "(b)", left=False)
+    """
     x, side = (0.03, "left") if left else (0.97, "right")
     axes.text(x, 0.96, text, transform=axes.transAxes, ha=side, va="top")
 
@@ -136,6 +160,14 @@ def save(figure: Figure, name: str | Path, title: str = "", caption: str = "") -
     -------
     tuple of Path
         The files that were written.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> from restitution import figures
+    >>> figure, [[axes]] = figures.panels(figures.COLUMN, 2.5)
+    >>> [path.name for path in figures.save(figure, tempfile.mkdtemp() + "/empty", title="Nothing")]
+    ['empty.png', 'empty.pdf']
     """
     path = path_from("name", name)
     single = path.suffix.lower() in _METADATA

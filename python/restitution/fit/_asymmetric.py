@@ -104,6 +104,14 @@ def asymmetric_power(
     ------
     ValueError
         As `asymmetric_laplace`.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from restitution import fit
+    >>> x = np.random.default_rng(1).normal(0.98, 0.03, 4000)
+    >>> 1.8 < fit.asymmetric_power(x).parameters["exponent"] < 2.2  # a Gaussian's is 2
+    True
     """
     x = taken(samples, velocity, location)
     if isinstance(x, Counts):

@@ -35,6 +35,15 @@ class Bootstrap(Content):
         The penalty tr(J H⁻¹) of Takeuchi's criterion, estimated as the mean of 2[ln L(θ) - ln L(θ*)] over the
         resampled fits θ*, with L the likelihood of the samples. It is the number of free parameters where the
         samples are independent and the family is right, and grows with the correlation inside particles.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from restitution import fit
+    >>> x = np.random.default_rng(1).laplace(0.98, 0.03, 1000)
+    >>> found = fit.bootstrap(fit.laplace, x, resamples=20)
+    >>> found.clusters, len(found.resampled)
+    (1000, 20)
     """
 
     fit: Fit

@@ -45,6 +45,16 @@ class Counts(Content):
     ------
     ValueError
         If shapes, edges or counts are not as they must be, or fewer than two bins are filled.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from restitution import fit
+    >>> x = np.random.default_rng(1).laplace(0.98, 0.03, 1000)
+    >>> count, edges = np.histogram(x, bins=np.linspace(0.7, 1.3, 61))
+    >>> counts = fit.Counts(edges, count, below=int((x < 0.7).sum()), above=int((x > 1.3).sum()))
+    >>> bool(abs(fit.laplace(counts).parameters["scale"] - fit.laplace(x).parameters["scale"]) < 1e-3)
+    True
     """
 
     edges: Array

@@ -42,6 +42,15 @@ def dependence(data: xr.Dataset, velocity_bins: ArrayLike, *, lags: int = 5) -> 
     ------
     ValueError
         If `velocity_bins` are not as they must be, ``lags < 1``, or data lack a variable.
+
+    Examples
+    --------
+    >>> import restitution as rs
+    >>> data = rs.simulate(rs.Dumbbell(radius=3e-3, separation=3e-4), rs.TangentialRestitution(normal=0.98),
+    ...                    particles=50, impacts=100)
+    >>> found = rs.fit.dependence(data, [0.2, 0.4, 0.8], lags=3)
+    >>> found["autocorrelation"].dims
+    ('velocity', 'lag')
     """
     lags = whole("lags", lags, 1, 10_000)
     edges = increasing_edges(velocity_bins, "velocity_bins")

@@ -103,6 +103,15 @@ def cusp_mixture(samples: Samples, location: float, *, velocity: Window | None =
     ------
     ValueError
         As `asymmetric_laplace`, or if there are fewer than six samples.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from restitution import fit
+    >>> random = np.random.default_rng(1)
+    >>> x = np.concatenate([random.laplace(0.98, 0.01, 1000), random.normal(0.9, 0.1, 3000)])
+    >>> 0.2 < fit.cusp_mixture(x, 0.98).parameters["share"] < 0.3
+    True
     """
     location = real("location", location, "a finite number")
     x = taken(samples, velocity, location)

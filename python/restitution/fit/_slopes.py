@@ -45,6 +45,17 @@ class PowerLaw(Content):
         logarithmic plot is bent.
     without_errors : str
         Why both errors and the misfit are nan; empty where they are known.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import restitution as rs
+    >>> data = rs.simulate(rs.Dumbbell(radius=3e-3, separation=3e-4), rs.TangentialRestitution(normal=0.98),
+    ...                    particles=200, impacts=150)
+    >>> found = rs.fit.slopes(data, np.geomspace(0.2, 0.9, 5), location=0.98, resamples=19)
+
+    >>> found.power_law("above").exponent < 0  # the flanks are steeper where the ball is faster
+    True
     """
 
     exponent: float
@@ -70,6 +81,17 @@ class Slopes(Content):
         no more filled bins of counts than parameters.
     resampled : xarray.Dataset
         ``above`` and ``below`` over (``resample``, ``velocity``).
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import restitution as rs
+    >>> data = rs.simulate(rs.Dumbbell(radius=3e-3, separation=3e-4), rs.TangentialRestitution(normal=0.98),
+    ...                    particles=200, impacts=150)
+    >>> found = rs.fit.slopes(data, np.geomspace(0.2, 0.9, 5), location=0.98, resamples=19)
+
+    >>> found.table["above_error"].dims, found.resampled["above"].dims
+    (('velocity',), ('resample', 'velocity'))
     """
 
     table: xr.Dataset
@@ -195,6 +217,17 @@ def slopes(
     ------
     ValueError
         If `velocity_bins` are missing, or given with counts, or ``resamples < 2``.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import restitution as rs
+    >>> data = rs.simulate(rs.Dumbbell(radius=3e-3, separation=3e-4), rs.TangentialRestitution(normal=0.98),
+    ...                    particles=200, impacts=150)
+    >>> found = rs.fit.slopes(data, np.geomspace(0.2, 0.9, 5), location=0.98, resamples=19)
+
+    >>> bool((found.table["above"] > 0).all())
+    True
     """
     resamples = whole("resamples", resamples, 2, MOST_RESAMPLES)
     random = generator("seed", seed)

@@ -34,6 +34,12 @@ def draw(data: xr.Dataset | Iterable[xr.Dataset], *fits: LawFit) -> Figure:
     ------
     ValueError
         If no coefficient was measured.
+
+    Examples
+    --------
+    >>> import restitution as rs
+    >>> data = rs.flight.restitution([0.0, 0.4001, 0.7800, 1.1411, 1.4841], 1e-4)
+    >>> figure = rs.flight.draw(data, rs.flight.fit(data, "constant"))
     """
     needed = ("restitution", "restitution_error", "impact_velocity", "impact_velocity_error")
     series = series_of(data, *needed)

@@ -90,6 +90,14 @@ def compare(*fits: LawFit) -> str:
     ------
     ValueError
         If the fits are not of the same data.
+
+    Examples
+    --------
+    >>> import restitution as rs
+    >>> data = rs.flight.restitution([0.0, 0.4001, 0.7800, 1.1411, 1.4841, 1.8098], 1e-4)
+    >>> fits = [rs.flight.fit(data, law) for law in ("constant", "power law")]
+    >>> print(rs.flight.compare(*fits).splitlines()[0])
+    | law | parameters | χ² | n | p | ΔAIC |
     """
     for one in fits:
         if not isinstance(one, LawFit):

@@ -40,6 +40,14 @@ class LawFit(Content):
         Coefficients less parameters.
     loglikelihood : float
         Natural logarithm of the likelihood, up to a constant that all fits of the same data share.
+
+    Examples
+    --------
+    >>> import restitution as rs
+    >>> data = rs.flight.restitution([0.0, 0.4001, 0.7800, 1.1411, 1.4841], 1e-4)
+    >>> found = rs.flight.fit(data, "constant")
+    >>> found.law, list(found.parameters), found.degrees_of_freedom
+    ('constant', ['restitution'], 2)
     """
 
     law: str

@@ -33,6 +33,21 @@ class Estimate:
         Bytes that the store will take, at most: zeros are compressed.
     most : float
         How many times longer it may take, where particles are added until a standard error is reached.
+
+    Examples
+    --------
+    >>> import restitution as rs
+    >>> study = {
+    ...     "body": rs.Dumbbell(radius=3e-3, separation=3e-4),
+    ...     "law": rs.TangentialRestitution(normal=0.98),
+    ...     "run": {"particles": 32, "impacts": 50},
+    ...     "statistics": {"velocity_bins": {"from": 0.0, "to": 1.1, "bins": 11},
+    ...                    "restitution_bins": {"from": -1.0, "to": 3.0, "bins": 40}},
+    ...     "sweep": {"law.normal": [0.9, 0.98]},
+    ... }
+    >>> cost = rs.study.estimate(rs.study.study_of(study), threads=2)
+    >>> cost.points, cost.particles, cost.seconds > 0
+    (2, 64.0, True)
     """
 
     points: int
@@ -70,6 +85,20 @@ def estimate(study: Study, threads: int, points: int | None = None) -> Estimate:
         Threads that will share the work.
     points : int, optional
         Points that will be computed, if not all.
+
+    Examples
+    --------
+    >>> import restitution as rs
+    >>> study = {
+    ...     "body": rs.Dumbbell(radius=3e-3, separation=3e-4),
+    ...     "law": rs.TangentialRestitution(normal=0.98),
+    ...     "run": {"particles": 32, "impacts": 50},
+    ...     "statistics": {"velocity_bins": {"from": 0.0, "to": 1.1, "bins": 11},
+    ...                    "restitution_bins": {"from": -1.0, "to": 3.0, "bins": 40}},
+    ...     "sweep": {"law.normal": [0.9, 0.98]},
+    ... }
+    >>> rs.study.estimate(rs.study.study_of(study), threads=2).points
+    2
     """
     points = study.design.points if points is None else points
     chosen = np.unique(np.linspace(0, study.design.points - 1, min(_POINTS, study.design.points)).astype(int))

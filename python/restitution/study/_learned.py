@@ -34,6 +34,27 @@ def learned(out: str | Path, **values: float) -> FluctuatingRestitution:
     ------
     ValueError
         If a parameter is missing or unknown, the point is not finished, or has too few impacts.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> import restitution as rs
+    >>> study = {
+    ...     "body": rs.Dumbbell(radius=3e-3, separation=3e-4),
+    ...     "law": rs.TangentialRestitution(normal=0.98),
+    ...     "run": {"particles": 32, "impacts": 50},
+    ...     "statistics": {"velocity_bins": {"from": 0.0, "to": 1.1, "bins": 11},
+    ...                    "restitution_bins": {"from": -1.0, "to": 3.0, "bins": 40}},
+    ...     "sweep": {"law.normal": [0.9, 0.98]},
+    ... }
+    >>> out = tempfile.mkdtemp() + "/study.zarr"
+    >>> study["run"] = {"particles": 512, "impacts": 50}
+    >>> study["statistics"] = {"velocity_bins": {"from": 0.2, "to": 1.0, "bins": 4},
+    ...                        "restitution_bins": {"from": -1.0, "to": 3.0, "bins": 400}}
+    >>> found = rs.sweep(study, out=out)
+    >>> dist = rs.study.learned(out, normal=0.98)
+    >>> bool(0.9 < dist.mean(0.5) < 1.0)
+    True
     """
     path = Path(out)
     study, data = study_in(path), open_store(path)

@@ -39,6 +39,25 @@ def merge(
     ------
     ValueError
         If the stores are not of one study and one version of the physics, with what differs.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> import restitution as rs
+    >>> study = {
+    ...     "body": rs.Dumbbell(radius=3e-3, separation=3e-4),
+    ...     "law": rs.TangentialRestitution(normal=0.98),
+    ...     "run": {"particles": 32, "impacts": 50},
+    ...     "statistics": {"velocity_bins": {"from": 0.0, "to": 1.1, "bins": 11},
+    ...                    "restitution_bins": {"from": -1.0, "to": 3.0, "bins": 40}},
+    ...     "sweep": {"law.normal": [0.9, 0.98]},
+    ... }
+    >>> folder = tempfile.mkdtemp()
+    >>> parts = [f"{folder}/{number}.zarr" for number in (1, 2)]
+    >>> for number, part in enumerate(parts, start=1):  # as on two machines
+    ...     found = rs.sweep(study, out=part, shard=(number, 2))
+    >>> rs.study.merge(folder + "/both.zarr", parts).finished
+    2
     """
     need_zarr()
     path, others = path_from("out", out), [path_from("parts", part) for part in parts]

@@ -22,6 +22,23 @@ class Status:
     tasks, there : int
         Tasks without which no point can end, and tasks that are there; among them those that were added for
         the standard error that is asked for.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> import restitution as rs
+    >>> study = {
+    ...     "body": rs.Dumbbell(radius=3e-3, separation=3e-4),
+    ...     "law": rs.TangentialRestitution(normal=0.98),
+    ...     "run": {"particles": 32, "impacts": 50},
+    ...     "statistics": {"velocity_bins": {"from": 0.0, "to": 1.1, "bins": 11},
+    ...                    "restitution_bins": {"from": -1.0, "to": 3.0, "bins": 40}},
+    ...     "sweep": {"law.normal": [0.9, 0.98]},
+    ... }
+    >>> out = tempfile.mkdtemp() + "/study.zarr"
+    >>> found = rs.sweep(study, out=out)
+    >>> print(rs.study.status(out))
+    2 of 2 points finished (100 %); 2 tasks done, 2 at least
     """
 
     points: int
@@ -38,7 +55,25 @@ class Status:
 
 
 def status(out: str | Path) -> Status:
-    """Tell how far a study has come, from a look at its store."""
+    """Tell how far a study has come, from a look at its store.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> import restitution as rs
+    >>> study = {
+    ...     "body": rs.Dumbbell(radius=3e-3, separation=3e-4),
+    ...     "law": rs.TangentialRestitution(normal=0.98),
+    ...     "run": {"particles": 32, "impacts": 50},
+    ...     "statistics": {"velocity_bins": {"from": 0.0, "to": 1.1, "bins": 11},
+    ...                    "restitution_bins": {"from": -1.0, "to": 3.0, "bins": 40}},
+    ...     "sweep": {"law.normal": [0.9, 0.98]},
+    ... }
+    >>> out = tempfile.mkdtemp() + "/study.zarr"
+    >>> found = rs.sweep(study, out=out, shard=(1, 2))
+    >>> rs.study.status(out).there  # of 2 tasks
+    1
+    """
     need_zarr()
     path = path_from("out", out)
     batches = int(identity(path)["effort"]["batches"])
@@ -50,7 +85,25 @@ def status(out: str | Path) -> Status:
 
 
 def open_store(path: Path) -> xr.Dataset:
-    """Open the results of a store."""
+    """Open the results of a store.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> import restitution as rs
+    >>> study = {
+    ...     "body": rs.Dumbbell(radius=3e-3, separation=3e-4),
+    ...     "law": rs.TangentialRestitution(normal=0.98),
+    ...     "run": {"particles": 32, "impacts": 50},
+    ...     "statistics": {"velocity_bins": {"from": 0.0, "to": 1.1, "bins": 11},
+    ...                    "restitution_bins": {"from": -1.0, "to": 3.0, "bins": 40}},
+    ...     "sweep": {"law.normal": [0.9, 0.98]},
+    ... }
+    >>> out = tempfile.mkdtemp() + "/study.zarr"
+    >>> found = rs.sweep(study, out=out)
+    >>> rs.study.open_store(out)["mean_restitution"].dims
+    ('normal', 'velocity')
+    """
     found: xr.Dataset = xr.open_zarr(path, chunks=None)
     return found
 

@@ -38,7 +38,29 @@ _CHUNK = 4_000_000
 
 
 class Refused(ValueError):
-    """A store that belongs to something else."""
+    """A store that belongs to something else.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> import restitution as rs
+    >>> study = {
+    ...     "body": rs.Dumbbell(radius=3e-3, separation=3e-4),
+    ...     "law": rs.TangentialRestitution(normal=0.98),
+    ...     "run": {"particles": 32, "impacts": 50},
+    ...     "statistics": {"velocity_bins": {"from": 0.0, "to": 1.1, "bins": 11},
+    ...                    "restitution_bins": {"from": -1.0, "to": 3.0, "bins": 40}},
+    ...     "sweep": {"law.normal": [0.9, 0.98]},
+    ... }
+    >>> out = tempfile.mkdtemp() + "/study.zarr"
+    >>> found = rs.sweep(study, out=out)
+    >>> study["run"] = {"particles": 64, "impacts": 50}
+    >>> try:
+    ...     rs.sweep(study, out=out)
+    ... except rs.study.Refused as error:
+    ...     print("another study")
+    another study
+    """
 
 
 def need_zarr() -> None:

@@ -54,6 +54,20 @@ class Study:
         Whether mean and standard deviation of the first impact are worked out from their closed form.
     effort : Effort
         How many particles at each point, and in how many batches.
+
+    Examples
+    --------
+    >>> import restitution as rs
+    >>> study = {
+    ...     "body": rs.Dumbbell(radius=3e-3, separation=3e-4),
+    ...     "law": rs.TangentialRestitution(normal=0.98),
+    ...     "run": {"particles": 32, "impacts": 50},
+    ...     "statistics": {"velocity_bins": {"from": 0.0, "to": 1.1, "bins": 11},
+    ...                    "restitution_bins": {"from": -1.0, "to": 3.0, "bins": 40}},
+    ...     "sweep": {"law.normal": [0.9, 0.98]},
+    ... }
+    >>> rs.study.study_of(study).design.points
+    2
     """
 
     base: Run
@@ -119,6 +133,21 @@ def study_of(source: Any) -> Study:
     ------
     ValueError
         Naming everything that is wrong.
+
+    Examples
+    --------
+    >>> import restitution as rs
+    >>> study = {
+    ...     "body": rs.Dumbbell(radius=3e-3, separation=3e-4),
+    ...     "law": rs.TangentialRestitution(normal=0.98),
+    ...     "run": {"particles": 32, "impacts": 50},
+    ...     "statistics": {"velocity_bins": {"from": 0.0, "to": 1.1, "bins": 11},
+    ...                    "restitution_bins": {"from": -1.0, "to": 3.0, "bins": 40}},
+    ...     "sweep": {"law.normal": [0.9, 0.98]},
+    ... }
+    >>> wanted = rs.study.study_of(study)
+    >>> wanted.base.particles, wanted.design.points
+    (32, 2)
     """
     if isinstance(source, Study):
         return source
