@@ -275,9 +275,16 @@ def test_redraw_checks_first_and_puts_files_in_place_last(
         return ["claim"]
 
     def report(
-        path: Path, figures: list[SavedFigure], claims: list[str], given: Runs, settings: Settings
+        path: Path,
+        figures: list[SavedFigure],
+        claims: list[str],
+        given: Runs,
+        settings: Settings,
+        *,
+        explorer: str,
     ) -> None:
         assert claims == ["claim"]
+        assert explorer == "explorer.html"  # a link that holds wherever the folder is taken
         path.write_text("report")
         calls.append("report")
 
@@ -286,6 +293,7 @@ def test_redraw_checks_first_and_puts_files_in_place_last(
         "draw_all": draw,
         "judge": judge,
         "write_report": report,
+        "page": lambda: "the explorer",
     }.items():
         monkeypatch.setattr(_redraw, name, stage)
     (tmp_path / "file").write_text("")
@@ -297,7 +305,9 @@ def test_redraw_checks_first_and_puts_files_in_place_last(
     found = redraw(tmp_path / "new", impacts=500_000, seed=3, progress=False)
     assert calls == ["simulate 500000 3", "draw", "judge", "report"]
     assert found == tmp_path / "new" / "report.html"
-    assert sorted(file.name for file in found.parent.iterdir()) == ["figure.png", "report.html"]
+    written = sorted(file.name for file in found.parent.iterdir())
+    assert written == ["explorer.html", "figure.png", "report.html"]
+    assert (found.parent / "explorer.html").read_text() == "the explorer"
 
 
 def test_a_figure_of_ones_own_takes_three_lines(tmp_path: Path) -> None:

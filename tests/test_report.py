@@ -12,6 +12,7 @@ import pytest
 
 from restitution.paper._claims import Claim, Measurement, deviations, with_error
 from restitution.paper._counted import impacts_counted
+from restitution.paper._figures import FIGURES
 from restitution.paper._misprints import MISPRINTS
 from restitution.paper._report import write_report
 from restitution.paper._report._html import prose
@@ -41,6 +42,7 @@ class Drawn:
     png: Path
     caption: str
     shows: str = "A grey square."
+    stop: int = 2
 
 
 class Page(HTMLParser):
@@ -112,7 +114,7 @@ def drawn(tmp_path_factory: pytest.TempPathFactory) -> list[Drawn]:
     folder = tmp_path_factory.mktemp("figures")
     found = [
         Drawn("figure-2", "Fig. 2", folder / "2.png", "Caption of the second, v_G^n."),
-        Drawn("figure-3", NASTY, folder / "3.png", NASTY),
+        Drawn("figure-3", NASTY, folder / "3.png", NASTY, stop=4),
     ]
     for figure in found:
         picture(figure.png, 20, 10)
@@ -122,19 +124,37 @@ def drawn(tmp_path_factory: pytest.TempPathFactory) -> list[Drawn]:
 @pytest.fixture(scope="module")
 def source(runs: Runs, drawn: list[Drawn], tmp_path_factory: pytest.TempPathFactory) -> str:
     path = tmp_path_factory.mktemp("report") / "report.html"
-    write_report(path, drawn, CLAIMS, runs, SMALL)
+    write_report(path, drawn, CLAIMS, runs, SMALL, explorer="explorer.html")
     return path.read_text(encoding="utf-8")
 
 
 def test_it_needs_no_other_file(source: str) -> None:
-    """No script, no style sheet, embedded pictures; the only links elsewhere are those of DOIs."""
+    """No script, no style sheet, embedded pictures; links elsewhere are DOIs and the page beside it."""
     page = Page(source)
     assert not {"script", "link", "iframe", "object", "form"} & {tag for tag, _ in page.tags}
     elsewhere = {target for target in page.of("href") if not target.startswith("#")}
-    assert elsewhere == {"https://doi.org/10.1103/PhysRevE.90.052204"}
+    live = {"explorer.html#stop=2", "explorer.html#stop=4"}
+    assert elsewhere == {"https://doi.org/10.1103/PhysRevE.90.052204", *live}
     assert all(picture.startswith("data:image/png;base64,") for picture in page.of("src"))
     assert "http" not in source.replace("https://doi.org/", "")
     assert not re.search(r"url\(|@import", source)
+
+
+def test_without_the_explorer_nothing_leads_to_it(runs: Runs, drawn: list[Drawn], tmp_path: Path) -> None:
+    """A package from a checkout where that page was not built still makes the report."""
+    write_report(tmp_path / "report.html", drawn, CLAIMS, runs, SMALL)
+    assert "explorer" not in (tmp_path / "report.html").read_text(encoding="utf-8")
+
+
+def test_every_figure_leads_to_the_stop_that_shows_it() -> None:
+    """The stops of the tour name the figures of the paper that they are about."""
+    tour = (Path(__file__).parents[1] / "web/src/tour.ts").read_text(encoding="utf-8")
+    titles = re.findall(r'^    title: "(.*)",$', tour, re.MULTILINE)
+    for figure in FIGURES:
+        number = re.match(r"Fig\. (\d)", figure.title)
+        assert number is not None
+        title = titles[figure.stop - 1]
+        assert re.match(rf"Figs?\..*\b{number[1]}\b.*:", title), (figure.title, title)
 
 
 def test_it_is_well_formed(source: str) -> None:

@@ -11,6 +11,7 @@ import {
   type Key,
   type Setup,
 } from "./setup";
+import { TOUR, at } from "./tour";
 
 export const RANGES = ["fig2", "fig7", "all"] as const;
 export const DENSITIES = ["restitution", "fraction"] as const;
@@ -104,7 +105,15 @@ function read(prefix: string, from: URLSearchParams, problems: string[]): Setup 
   return setup;
 }
 
+/** A link; of a stop as it is in the tour no more than its number. */
 export function toHash(state: State): string {
+  const short = `stop=${state.stop}`;
+  const written = all(state);
+  if (state.stop && written === all(at(state.stop, initial()))) return short;
+  return written === short ? `particle=0&${short}` : written;
+}
+
+function all(state: State): string {
   const out = new URLSearchParams();
   const start = initial();
   write("", state.a, out);
@@ -122,7 +131,7 @@ export function toHash(state: State): string {
 export function fromHash(hash: string): { state: State; problems: string[] } {
   const from = new URLSearchParams(hash.replace(/^#/, ""));
   const problems: string[] = [];
-  const state = initial();
+  let state = initial();
   state.a = read("", from, problems);
   if (from.has("b")) state.b = read("b.", from, problems);
   const number = (key: "speed" | "particle" | "impact" | "stop", least: number, most: number) => {
@@ -135,7 +144,8 @@ export function fromHash(hash: string): { state: State; problems: string[] } {
   number("speed", -100, 100);
   number("particle", 0, MOST_IMPACTS);
   number("impact", 0, MOST_IMPACTS);
-  number("stop", 0, 10);
+  number("stop", 0, TOUR.length);
+  if (state.stop && [...from.keys()].length === 1) state = at(state.stop, state);
   const range = from.get("range");
   if (RANGES.some((x) => x === range)) state.range = range as State["range"];
   const density = from.get("density");

@@ -115,6 +115,18 @@ test("a link is a set-up: what goes in comes out, and nonsense is named", () => 
   }
 });
 
+test("a link to a stop of the tour is that stop, and what was changed there is not lost", () => {
+  for (let stop = 1; stop <= page.TOUR.length; stop++) {
+    const there = page.at(stop, page.initial());
+    assert.deepEqual(page.fromHash(`#stop=${stop}`), { state: there, problems: [] });
+    assert.equal(page.toHash(there), `stop=${stop}`);
+    for (const change of [{ a: page.DEFAULT, b: undefined, speed: 0.4, range: "fig2", density: "restitution" }, { impact: 3 }]) {
+      const state = { ...there, ...change };
+      assert.deepEqual(page.fromHash(page.toHash(state)).state, state);
+    }
+  }
+});
+
 test("links of the pages to the explorer are set-ups", () => {
   const folder = fileURLToPath(new URL("../../docs/", import.meta.url));
   let seen = 0;

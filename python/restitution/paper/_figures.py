@@ -18,7 +18,7 @@ from restitution.paper._settings import Settings
 
 @dataclass(frozen=True)
 class SavedFigure:
-    """A figure on disk: its short name, its title, what can be seen in it, its files and its caption."""
+    """A figure on disk: name, title, what can be seen, files, caption, and where the explorer shows it."""
 
     name: str
     title: str
@@ -27,6 +27,7 @@ class SavedFigure:
     pdf: Path
     data: Path
     caption: str
+    stop: int
 
 
 @dataclass(frozen=True)
@@ -39,6 +40,7 @@ class PaperFigure:
     reduce: Callable[[Runs, Settings], xr.Dataset]
     draw: Callable[[xr.Dataset], Figure]
     caption: Callable[[xr.Dataset, Settings], str]
+    stop: int  # of the explorer's tour, where such a figure fills up
 
     def save(self, runs: Runs, settings: Settings, folder: Path) -> SavedFigure:
         """Write the figure (``name.png``, ``name.pdf``), its caption (``.txt``) and its data (``.nc``)."""
@@ -49,7 +51,7 @@ class PaperFigure:
         nc = png.with_suffix(".nc")
         packed = {str(name): {"zlib": True} for name, value in drawn.variables.items() if value.ndim > 0}
         drawn.assign_attrs(title=self.title, caption=caption).to_netcdf(nc, engine="netcdf4", encoding=packed)
-        return SavedFigure(self.name, self.title, self.shows, png, pdf, nc, caption)
+        return SavedFigure(self.name, self.title, self.shows, png, pdf, nc, caption, self.stop)
 
 
 def draw_all(runs: Runs, settings: Settings, folder: Path, progress: bool) -> list[SavedFigure]:
@@ -68,6 +70,7 @@ FIGURES = (
         data.restitution_map,
         drawings.restitution_map,
         captions.restitution_map,
+        stop=2,
     ),
     PaperFigure(
         "figure-3",
@@ -78,6 +81,7 @@ FIGURES = (
         data.fraction_map,
         drawings.fraction_map,
         captions.fraction_map,
+        stop=4,
     ),
     PaperFigure(
         "figure-4",
@@ -88,6 +92,7 @@ FIGURES = (
         data.restitution_histograms,
         drawings.restitution_histograms,
         captions.restitution_histograms,
+        stop=5,
     ),
     PaperFigure(
         "figure-5",
@@ -98,6 +103,7 @@ FIGURES = (
         data.fraction_histograms,
         drawings.fraction_histograms,
         captions.fraction_histograms,
+        stop=4,
     ),
     PaperFigure(
         "figure-6",
@@ -108,6 +114,7 @@ FIGURES = (
         data.bead_deviation,
         drawings.bead_deviation,
         captions.bead_deviation,
+        stop=6,
     ),
     PaperFigure(
         "figure-7",
@@ -118,6 +125,7 @@ FIGURES = (
         data.low_velocity_map,
         drawings.low_velocity_map,
         captions.low_velocity_map,
+        stop=7,
     ),
     PaperFigure(
         "figure-9",
@@ -129,6 +137,7 @@ FIGURES = (
         data.first_impact,
         drawings.first_impact,
         captions.first_impact,
+        stop=8,
     ),
     PaperFigure(
         "figure-2-sensitivity",
@@ -139,6 +148,7 @@ FIGURES = (
         data.map_sensitivity,
         drawings.map_sensitivity,
         captions.map_sensitivity,
+        stop=2,
     ),
     PaperFigure(
         "figure-6-sensitivity",
@@ -149,5 +159,6 @@ FIGURES = (
         data.deviation_sensitivity,
         drawings.deviation_sensitivity,
         captions.deviation_sensitivity,
+        stop=6,
     ),
 )

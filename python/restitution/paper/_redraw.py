@@ -1,15 +1,19 @@
 """From nothing to the report: simulate, draw, judge, write, and only then put the files in place."""
 
 import os
+from contextlib import suppress
 from pathlib import Path
 
 from restitution._files import check_folder, whole_folder
 from restitution._resources import bar
+from restitution.explorer import page
 from restitution.paper._claims import judge
 from restitution.paper._figures import FIGURES, draw_all
 from restitution.paper._report import write_report
 from restitution.paper._runs import check_impacts, simulate_all
 from restitution.paper._settings import Settings
+
+PAGES = ("report.html", "explorer.html")
 
 
 def redraw(
@@ -26,8 +30,8 @@ def redraw(
     Parameters
     ----------
     out : path
-        Folder for the report, and for each figure its PNG, PDF, caption and data; made if it does not
-        exist. Nothing appears there before all is done.
+        Folder for the report, the explorer that its figures are linked to, and for each figure its PNG, PDF,
+        caption and data; made if it does not exist. Nothing appears there before all is done.
     impacts : int
         Impacts to count for each of Figs. 2-5 and 7 and each curve of Fig. 6, at least 400 000, the number
         in the paper's Fig. 2. At most 4 000 000 of them are recorded, for the claims and the standard errors.
@@ -43,7 +47,8 @@ def redraw(
     Returns
     -------
     Path
-        The report, an HTML file.
+        The report, an HTML file that needs no other. Its links to the explorer are left out if the package
+        was installed from a checkout where that page was not built.
 
     Raises
     ------
@@ -59,13 +64,17 @@ def redraw(
     stages = bar(show=progress, total=4, desc="paper", unit="stage")
     check_folder(folder, replace=overwrite)
     names = [f"{figure.name}.{kind}" for figure in FIGURES for kind in ("png", "pdf", "nc", "txt")]
-    with stages, whole_folder(folder, replace=overwrite, names=[*names, "report.html"]) as draft:
+    with stages, whole_folder(folder, replace=overwrite, names=[*names, *PAGES]) as draft:
         runs = simulate_all(settings, impacts, seed, threads, progress)
         stages.update()
         figures = draw_all(runs, settings, draft, progress)
         stages.update()
         claims = judge(runs, settings)
         stages.update()
-        write_report(draft / "report.html", figures, claims, runs, settings)
+        report, explorer = PAGES
+        with suppress(FileNotFoundError):
+            (draft / explorer).write_text(page(), encoding="utf-8")
+        linked = explorer if (draft / explorer).exists() else ""
+        write_report(draft / report, figures, claims, runs, settings, explorer=linked)
         stages.update()
-    return folder / "report.html"
+    return folder / report

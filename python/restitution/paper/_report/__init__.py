@@ -37,9 +37,19 @@ class Figure(Protocol):
     def caption(self) -> str:
         """What it shows, with all parameters."""
 
+    @property
+    def stop(self) -> int:
+        """Stop of the explorer's tour that shows it."""
+
 
 def write_report(
-    path: str | Path, figures: Sequence[Figure], claims: Sequence[Claim], runs: Runs, settings: Settings
+    path: str | Path,
+    figures: Sequence[Figure],
+    claims: Sequence[Claim],
+    runs: Runs,
+    settings: Settings,
+    *,
+    explorer: str = "",
 ) -> None:
     """Write the redrawn and judged paper as one self-contained HTML file.
 
@@ -55,6 +65,8 @@ def write_report(
         The simulations.
     settings : Settings
         What was simulated.
+    explorer : str
+        Address of the explorer as seen from the report, to which each figure is then linked.
 
     Raises
     ------
@@ -65,7 +77,7 @@ def write_report(
     """
     parts = {
         "claims": ("The claims of the paper, checked", sections.summary(claims)),
-        "figures": ("The figures, redrawn", sections.figures(figures)),
+        "figures": ("The figures, redrawn", sections.figures(figures, explorer)),
         "numbers": ("The numbers behind each verdict", sections.details(claims)),
         "misprints": ("Misprints", sections.misprints()),
         "sensitivity": ("What radius and release height change", sections.sensitivity(runs, settings)),

@@ -76,14 +76,21 @@ def summary(claims: Sequence[Claim]) -> str:
     )
 
 
-def figures(found: Sequence["Figure"]) -> str:
-    """Show every figure with its caption."""
+def figures(found: Sequence["Figure"], explorer: str) -> str:
+    """Show every figure with its caption, and where it can be made and looked into impact by impact."""
     return "\n".join(
         f'<figure id="{html.text(figure.name)}">\n<h3>{html.prose(figure.title)}</h3>\n'
         f"{html.image(figure.png, figure.shows)}\n"
-        f"<figcaption>{html.prose(figure.caption)}</figcaption>\n</figure>"
+        f"<figcaption>{html.prose(figure.caption)}{_live(figure, explorer)}</figcaption>\n</figure>"
         for figure in found
     )
+
+
+def _live(figure: "Figure", explorer: str) -> str:
+    if not explorer:
+        return ""
+    words = f"Watch it fill up, and replay any impact, at stop {figure.stop} of the explorer's tour."
+    return f'\n<a class="live" href="{html.text(explorer)}#stop={figure.stop}">{html.text(words)}</a>'
 
 
 def details(claims: Sequence[Claim]) -> str:
