@@ -9,6 +9,7 @@ HERE = Path(__file__).parent
 BUILT = (
     HERE.parent / "build" / "static"
 )  # what the site takes from elsewhere; nothing is loaded from other hosts
+EXTRA = HERE.parent / "build" / "extra"  # the redrawn paper, in a folder of its own
 
 project = "restitution"
 author = "The restitution developers"
@@ -28,8 +29,13 @@ exclude_patterns = ["README.md"]
 myst_enable_extensions = ["dollarmath", "amsmath", "deflist", "colon_fence", "attrs_block"]
 myst_heading_anchors = 4
 myst_dmath_double_inline = True
-# explorer:stop=3 is the explorer at the third stop of its tour
-myst_url_schemes = {"http": None, "https": None, "explorer": "explorer.html#{{path}}"}
+# explorer:stop=3 is the explorer at the third stop of its tour, paper:report.html the redrawn paper
+myst_url_schemes = {
+    "http": None,
+    "https": None,
+    "explorer": "explorer.html#{{path}}",
+    "paper": "paper/{{path}}",
+}
 
 nb_execution_mode = "cache"
 nb_execution_cache_path = str(HERE.parent / "build" / "notebooks")
@@ -43,12 +49,13 @@ autodoc_typehints = "none"  # types and shapes are in the docstrings
 autodoc_member_order = "bysource"
 napoleon_use_rtype = False
 
-mathjax_path = "tex-svg.js"
+# with bold Greek letters in the file itself, which it would otherwise look for elsewhere
+mathjax_path = "tex-svg-full.js"
 mathjax3_config = {"chtml": {"displayAlign": "left"}, "svg": {"displayAlign": "left", "displayIndent": "2em"}}
 
 html_theme = "pydata_sphinx_theme"
 html_title = f"restitution {release}"
-html_extra_path = ["../python/restitution/explorer/explorer.html"]
+html_extra_path = ["../python/restitution/explorer/explorer.html", str(EXTRA)]
 html_static_path = ["_static", str(BUILT)]
 html_js_files = ["zoom.js"]
 html_css_files = ["site.css"]
@@ -74,7 +81,8 @@ if site := os.environ.get("RESTITUTION_SITE"):
     html_theme_options["navbar_end"] = ["version-switcher", "theme-switcher"]
 
 BUILT.mkdir(parents=True, exist_ok=True)
-shutil.copy(HERE.parent / "web" / "node_modules" / "mathjax" / "es5" / "tex-svg.js", BUILT)
+EXTRA.mkdir(parents=True, exist_ok=True)
+shutil.copy(HERE.parent / "web" / "node_modules" / "mathjax" / "es5" / "tex-svg-full.js", BUILT)
 
 
 def _plain_bars(app: object, what: str, name: str, thing: object, options: object, lines: list[str]) -> None:
