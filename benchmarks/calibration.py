@@ -37,7 +37,7 @@ class Calibration:
     truth, rank : ndarray, shape (experiments, 2)
         Of ε_n and L/R.
     told : ndarray of bool, shape (experiments,)
-        Whether the verdict was that the times tell the shape.
+        Whether the verdict was that the times determine the shape.
     limit : ndarray, shape (experiments,)
         The upper limit of L/R.
     """
@@ -83,7 +83,7 @@ def calibrate(experiments: int, first: int = 1) -> Calibration:
         truths.append(truth)
         drawn = [found["posterior"].to_dataset()[name].values.ravel() for name in NAMES]
         ranks.append([float(np.mean(one < true)) for one, true in zip(drawn, truth, strict=True)])
-        told.append(bool(found.attrs["elongation_told"]))
+        told.append(bool(found.attrs["elongation_determined"]))
         limits.append(float(found.attrs["elongation_upper_limit"]))
     return Calibration(np.array(truths), np.array(ranks), np.array(told), np.array(limits))
 

@@ -30,7 +30,7 @@ def main(out: Path) -> None:
     """Write the figure."""
     out.mkdir(parents=True, exist_ok=True)
     data, fit = measured()
-    figure = rs.flight.draw(data, fit)
+    figure = rs.flight.figure(data, fit)
     fg.save(figure, out / "lab-sheet", "Lab sheet", "ε against v of a ball that is not quite round")
 
 

@@ -1,4 +1,4 @@
-"""Nothing is believed unseen: files that came to harm, words in generated code, numbers that are rounding."""
+"""What is read is checked first: damaged files, words in generated code, numbers that are rounding."""
 
 import json
 import math
@@ -55,8 +55,8 @@ def test_the_format_of_a_learned_file(learned: FluctuatingRestitution, tmp_path:
     for harmed, message in (
         (data.assign_attrs(format_version=99), "is of format version 99: must be 1"),
         (data.drop_attrs(), "lacks format version or checksum"),
-        (data.assign(velocity=data.velocity * (1 + 1e-15)), "has come to harm"),
-        (data.assign_attrs(law="Coulomb"), "has come to harm"),
+        (data.assign(velocity=data.velocity * (1 + 1e-15)), "is damaged"),
+        (data.assign_attrs(law="Coulomb"), "is damaged"),
     ):
         harmed.to_netcdf(path, engine="netcdf4")
         with pytest.raises(ValueError, match=rf"dist\.nc: {message}"):

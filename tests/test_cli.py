@@ -118,7 +118,10 @@ def test_an_existing_file_is_replaced_only_if_asked(parameters: Path) -> None:
     out.write_text("precious", encoding="utf-8")
     link.symlink_to(out)
     refused = invoke("simulate", parameters, "--out", link)
-    assert (refused.exit_code, refused.stderr) == (FAILED, f"error: {link}: exists already\n")
+    assert (refused.exit_code, refused.stderr) == (
+        FAILED,
+        f"error: {link}: exists already; --overwrite replaces it\n",
+    )
     assert out.read_text(encoding="utf-8") == "precious"
     assert invoke("simulate", parameters, "--out", link, "--overwrite").exit_code == 0
     assert link.is_symlink()
@@ -136,7 +139,7 @@ def places(folder: Path) -> dict[Path, str]:
     return {
         folder / "none" / "run.nc": f"{folder / 'none'}: No such file or directory",
         folder / "taken.nc" / "run.nc": f"{folder / 'taken.nc'}: Not a directory",
-        folder / "taken.nc": f"{folder / 'taken.nc'}: exists already",
+        folder / "taken.nc": f"{folder / 'taken.nc'}: exists already; --overwrite replaces it",
         folder / "folder.nc": f"{folder / 'folder.nc'}: {no_file}",
         Path("/dev/null"): f"/dev/null: {no_file}",
     }

@@ -55,7 +55,10 @@ def test_statistics_are_those_of_the_call(study: Path) -> None:
     xr.testing.assert_identical(load(out), expected)
     assert f"{int(expected.number.sum())} impacts in the rows" in result.stdout
     again = invoke("statistics", study, "-o", out)
-    assert (again.exit_code, again.stderr) == (FAILED, f"error: {out}: exists already\n")
+    assert (again.exit_code, again.stderr) == (
+        FAILED,
+        f"error: {out}: exists already; --overwrite replaces it\n",
+    )
     options = ("--velocity-bins", 2, "--overwrite", "--quiet")
     result = invoke("statistics", study, "-o", out, *options)
     assert (result.exit_code, result.stdout) == (0, "")
@@ -182,7 +185,10 @@ def test_a_bad_distance_is_a_warning_and_a_status(study: Path, monkeypatch: pyte
 def test_folders_with_something_in_them_are_left_alone(command: str, tmp_path: Path) -> None:
     (tmp_path / "mine").write_text("x", encoding="utf-8")
     result = invoke(command, "--out", tmp_path)
-    assert (result.exit_code, result.stderr) == (FAILED, f"error: {tmp_path}: is not empty\n")
+    assert (result.exit_code, result.stderr) == (
+        FAILED,
+        f"error: {tmp_path}: is not empty; --overwrite replaces it\n",
+    )
 
 
 def test_it_is_a_module_and_completes_itself() -> None:

@@ -75,7 +75,7 @@ def test_nothing_is_replaced_unasked_and_nothing_begun_in_vain(run: Path, tmp_pa
     header.write_text("mine", encoding="utf-8")
     result = invoke("distribution", run, "--out", out, "--header", header)
     assert result.exit_code == FAILED
-    assert result.stderr == f"error: {header}: exists already\n"
+    assert result.stderr == f"error: {header}: exists already; --overwrite replaces it\n"
     result = invoke("distribution", run, "--out", out, "--given", "spin")
     assert result.exit_code == BAD_INPUT
     assert "given = 'spin': must be 'rotational_fraction' or 'previous'" in result.stderr

@@ -146,7 +146,9 @@ def test_two_runs_to_one_name(tmp_path: Path) -> None:
     runs = [start("simulate", tmp_path / f"{seed}.toml", "--out", out) for seed in range(3)]
     told = [(run.communicate(timeout=120)[1], run.returncode) for run in runs]
     assert sorted(code for _, code in told) == [0, 1, 1]
-    assert all(text == f"error: {out}: exists already\n" for text, code in told if code)
+    assert all(
+        text == f"error: {out}: exists already; --overwrite replaces it\n" for text, code in told if code
+    )
     winner = next(seed for seed, (_, code) in enumerate(told) if code == 0)
     assert load(out).attrs["seed"] == winner
     assert len(list(tmp_path.iterdir())) == 4

@@ -160,7 +160,7 @@ def test_a_fit_needs_errors_and_enough_impacts() -> None:
 def test_the_figure_shows_points_curves_and_bands() -> None:
     true = impact_times(lambda _: 0.93, 2.5, 12)
     data = rs.flight.restitution(true, 1e-4)
-    figure = rs.flight.draw(data, rs.flight.fit(data), rs.flight.fit(data, "power law", scatter=0.01))
+    figure = rs.flight.figure(data, rs.flight.fit(data), rs.flight.fit(data, "power law", scatter=0.01))
     [axes] = figure.axes
     legend = axes.get_legend()
     assert legend is not None

@@ -62,12 +62,12 @@ def test_some_of_the_experiments_come_out_as_they_are_kept() -> None:
 def test_a_round_ball_gives_an_upper_limit_and_an_egg_a_shape() -> None:
     law = rs.Frictionless(normal=0.93)
     round_ball = quick(heard(1e-3, law, 3), law)
-    assert round_ball.attrs["elongation_told"] == 0
-    assert "do not tell the shape" in round_ball.attrs["verdict"]
+    assert round_ball.attrs["elongation_determined"] == 0
+    assert "do not determine the shape" in round_ball.attrs["verdict"]
     assert 1e-3 < round_ball.attrs["elongation_upper_limit"] < 0.05
     egg = quick(heard(0.15, law, 3), law)
-    assert egg.attrs["elongation_told"] == 1
-    assert egg.attrs["verdict"].startswith("The times tell the shape: L/R = 0.")
+    assert egg.attrs["elongation_determined"] == 1
+    assert egg.attrs["verdict"].startswith("The times determine the shape: L/R = 0.")
     assert 0.05 < float(egg["posterior"].to_dataset().elongation.median()) < 0.3
 
 

@@ -93,7 +93,7 @@ def test_the_closed_form_is_as_good_as_the_page_says(script: dict[str, Any]) -> 
 
 
 def test_the_limits_of_the_closed_form_are_those_of_the_map(script: dict[str, Any]) -> None:
-    """At κ → 0 the axis stands still, exactly; at κ = 10⁹ a flight turns it by any angle.
+    """At κ → 0 the axis is exactly at rest; at κ = 10⁹ a flight turns it by any angle.
 
     In the latter, standard deviations of 4000 scatter by 1.1 %, kurtosis makes it somewhat more; 6 % is five
     times that. The first impact has no spin, and is exact in all limits.

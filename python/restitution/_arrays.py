@@ -15,7 +15,7 @@ FloatArray = npt.NDArray[np.float64]
 _DEEPEST = 32
 """Lists in lists that are looked into; no table of ours has more than two."""
 _UNITS = ("to_value", "dimensionality")
-"""Attributes that tell the quantities of astropy, unyt and pint, whose units NumPy drops without a word."""
+"""Attributes that identify the quantities of astropy, unyt and pint, whose units NumPy drops silently."""
 
 
 def reals(

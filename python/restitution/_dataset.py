@@ -1,4 +1,4 @@
-"""The xarray face of a run: names, units and flags as the core tells them, and files."""
+"""A run as an xarray Dataset, with the names, units and flags of the core; files."""
 
 import errno
 from functools import cache

@@ -14,7 +14,7 @@ else:
     ModelMetaclass = type(BaseModel)
 
 _HIDDEN = frozenset(dir(BaseModel)) | {"model_config", "parameters", "attributes", "solid"}
-"""What pydantic and the core need and nobody types; all of it works, none of it is listed."""
+"""Internals of pydantic and of the core: they work, but are not listed."""
 
 
 def public_names(cls: type) -> list[str]:
@@ -61,6 +61,13 @@ def table(title: str, rows: Iterable[tuple[str, object]]) -> str:
     )
     caption = f'<caption style="text-align:left;font-weight:bold">{escape(title)}</caption>'
     return f"<table>{caption}<tbody>{lines}</tbody></table>"
+
+
+def short(value: object) -> str:
+    """Write a parameter as `repr` does, with the middle of a long table left out."""
+    if isinstance(value, tuple) and len(value) > 8:
+        return f"({', '.join(map(repr, value[:3]))}, ..., {value[-1]!r})"
+    return str(value) if isinstance(value, BaseModel) else repr(value)
 
 
 def value(number: object, unit: str | None = None) -> str:

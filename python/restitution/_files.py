@@ -2,8 +2,8 @@
 
 What is written stands in a draft, `.NAME.*.part`, on the same file system, and takes its place in one step
 when it is complete and on the disk. Unless it may replace, that step fails where something else has appeared
-meanwhile. The name of a draft tells the machine and the process that writes it, so that what a killed process
-left is removed by the next one that writes to the same name.
+meanwhile. The name of a draft contains the machine and the process that writes it, so that what a killed
+process left is removed by the next one that writes to the same name.
 """
 
 import errno
@@ -208,7 +208,7 @@ def _machine() -> str:
 
 
 def _remove_leftovers(name: str, folder: Path) -> None:
-    """Remove drafts of this name whose process, on this machine, is no more."""
+    """Remove drafts of this name whose process, on this machine, has ended."""
     draft = re.compile(rf"\.{re.escape(name)}\.{_machine()}-(\d+)\.[^.]+\.part")
     with suppress(OSError):  # a folder that is not there, or cannot be looked into
         for entry in os.scandir(folder):

@@ -156,7 +156,8 @@ class Parameters(BaseModel, metaclass=_display.Listed):
         return sorted({*_display.public_names(type(self)), *type(self).model_fields})
 
     def __str__(self) -> str:
-        return repr(self)
+        fields = (f"{name}={_display.short(getattr(self, name))}" for name in type(self).model_fields)
+        return f"{type(self).__name__}({', '.join(fields)})"
 
     def _repr_html_(self) -> str:
         return _display.table(type(self).__name__, self._rows())

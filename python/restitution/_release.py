@@ -126,8 +126,8 @@ class RandomSpin(Parameters):
         |ω| in rad/s, finite and >= 0: the same for all, or uniform between the two. Of a thermal spin one
         number, √⟨ω²⟩.
     axis : {"isotropic", "horizontal", "across", "thermal"}
-        The direction of ω: all alike, all along the plane alike, or all across the body's symmetry axis
-        alike, so that it tumbles; independent of the rate. "thermal" is Maxwell's distribution,
+        The direction of ω: isotropic, uniform in the plane, or uniform perpendicular to the symmetry axis,
+        so that the body tumbles; independent of the rate. "thermal" is Maxwell's distribution,
         exp(-E_rot/T): the components of ω along the axis and across it are Gaussian, with the same mean
         energy T/2 each.
         With the moments of inertia J about the axis and J' across it, ⟨ω²⟩ = T (1/J + 2/J').

@@ -26,10 +26,10 @@ def checked_threads(threads: int | None) -> int:
 
 
 def available_memory(root: Path = Path("/")) -> int:
-    """Tell how many bytes this process can still have: the least of what bounds it.
+    """Return how many bytes this process can still allocate: the smallest of all limits.
 
     That is the free memory of the machine, the limits of the process (`ulimit -v`, `ulimit -d`) and those of
-    its control groups, as far as the system tells; else the memory that the machine has.
+    its control groups, as far as the system reports them; else the memory that the machine has.
 
     Parameters
     ----------

@@ -22,7 +22,7 @@ from restitution.bodies import BODIES, Body
 from restitution.laws import LAWS, Law
 
 _BEYOND = 1e10
-"""Heights and the like, over those of the body: beyond, 16 digits do not tell where its surface is."""
+"""Heights and the like, over those of the body: beyond, 16 digits do not resolve its surface."""
 
 
 class Run(Parameters):
@@ -40,7 +40,7 @@ class Run(Parameters):
     gravity : float
         Acceleration of gravity in m/s², > 0.
     orientation : {"uniform-angle", "isotropic"} or array of float, shape (particles,) or (particles, 2)
-        Angle θ between symmetry axis and plane normal at release: uniform in [0, π), every direction alike,
+        Angle θ between symmetry axis and plane normal at release: uniform in [0, π), isotropic,
         or given in rad. The azimuth φ of the axis is uniform in [0, 2π), or given beside θ.
     spin : tuple of three floats, array of float, shape (particles, 3), or RandomSpin
         Angular velocity at release, in rad/s; the same for all, one each, or drawn at random.

@@ -81,8 +81,8 @@ def simulate(
     gravity : float
         Acceleration of gravity in m/s², > 0.
     orientation : {"uniform-angle", "isotropic"} or array of float, shape (particles,) or (particles, 2)
-        The angle θ between symmetry axis and plane normal at release: uniform in [0, π) (above Eq. 18), every
-        direction of the axis alike, or given in rad. Its azimuth φ is uniform in [0, 2π), or given beside θ.
+        The angle θ between symmetry axis and plane normal at release: uniform in [0, π) (above Eq. 18),
+        isotropic, or given in rad. Its azimuth φ is uniform in [0, 2π), or given beside θ.
     spin : array of float, shape (3,) or (particles, 3), or RandomSpin, optional
         Angular velocity ω at release, in rad/s: the same for all, one each, or drawn at random.
     velocity : array of float, shape (3,), optional

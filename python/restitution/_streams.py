@@ -20,7 +20,7 @@ def is_terminal(stream: Any) -> bool:
 
 
 def say(line: str) -> None:
-    """Write a line to standard output; a reader who has left, as `head` does, is no error."""
+    """Write a line to standard output; a closed pipe, as after `head`, is not an error."""
     _put(line, "stdout")
 
 

@@ -27,14 +27,19 @@ app = typer.Typer(
     rich_markup_mode="rich",
     context_settings={"help_option_names": ["-h", "--help"]},
     help="Vary parameters of a run, on one machine or many: [bold]restitution sweep STUDY.toml --out "
-    "STORE.zarr[/bold]. [bold]run[/bold] need not be written.",
+    "STORE.zarr[/bold], which is short for [bold]sweep run[/bold].",
 )
 
-Out = Annotated[Path, typer.Option(metavar="STORE", help="The Zarr store; it is made if it is not there.")]
+Out = Annotated[
+    Path, typer.Option("--out", "-o", metavar="STORE", help="The Zarr store; created if it does not exist.")
+]
 Threads = Annotated[
     int | None,
     typer.Option(
-        metavar="N", help="Number of threads; one for each core if not given. Never changes the result."
+        "--threads",
+        "-j",
+        metavar="N",
+        help="Number of threads; one for each core if not given. Never changes the result.",
     ),
 ]
 
@@ -56,20 +61,24 @@ def run(
     shard: Annotated[
         str | None,
         typer.Option(
-            metavar="I/N", help="Do part I of N, as one job of an array; [bold]merge[/bold] joins them."
+            metavar="I/N", help="Compute part I of N, as one job of an array; [bold]merge[/bold] joins them."
         ),
     ] = None,
     dry_run: Annotated[
         bool,
-        typer.Option("--dry-run", help="Time a few particles, tell what the study will cost, and leave."),
+        typer.Option(
+            "--dry-run", help="Time a few particles, print the estimated cost of the study, and exit."
+        ),
     ] = False,
-    status: Annotated[bool, typer.Option("--status", help="Tell how far the store is, and leave.")] = False,
+    status: Annotated[
+        bool, typer.Option("--status", help="Show how much of the store is done, and exit.")
+    ] = False,
 ) -> None:
     r"""Run a study, or resume it.
 
-    Every task is kept in the store as soon as it is done. Whatever stops the
-    command, the same command goes on from there: what is missing or damaged is
-    computed, and the end has the bits of an undisturbed study. Ctrl-C leaves a
+    Every task is kept in the store as soon as it is done. If the command is
+    stopped, the same command continues: what is missing or damaged is
+    computed, and the result has the same bits as that of an undisturbed study. Ctrl-C leaves a
     store that can be read.
 
     STUDY.toml is a run as for [bold]restitution simulate[/bold] and:
@@ -114,7 +123,7 @@ def run(
         except ImportError as error:
             raise RuntimeError(str(error)) from None
         except KeyboardInterrupt:
-            tell(f"{out}: {status_of(out)}; the same command goes on")
+            tell(f"{out}: {status_of(out)}; the same command continues")
             raise
         say(f"{out}: {status_of(out)}")
 

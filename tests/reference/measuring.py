@@ -87,7 +87,7 @@ MEASURING: dict[str, Attacked] = {
     "flight.fit": (flight.fit, lambda: {"data": good()["measured"], "law": "constant"}, ("scatter",)),
     "flight.compare": (lambda fits: flight.compare(fits), lambda: {"fits": good()["law_fit"]}, ()),
     "flight.clock": (flight.clock, lambda: {"data": good()["data"]}, ()),
-    "flight.draw": (flight.draw, lambda: {"data": good()["measured"]}, ()),
+    "flight.figure": (flight.figure, lambda: {"data": good()["measured"]}, ()),
     "flight.read": (
         flight.read,
         lambda: {"file": folder() / "times.csv"},

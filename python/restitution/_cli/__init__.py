@@ -17,8 +17,8 @@ app = typer.Typer(
     "non-spherical bodies bouncing on a plane.",
     epilog="Examples: [bold]restitution template > run.toml[/bold], "
     "[bold]restitution simulate run.toml --out run.nc[/bold].\n\n"
-    "Exit status: 0 done, 1 a file or the numerics failed, 2 the input is refused, "
-    "3 done, but with a warning about accuracy, 130 interrupted.",
+    "Exit status: 0 done, 1 a file or the numerics failed, 2 invalid input, "
+    "3 done, with a warning about accuracy, 130 interrupted.",
     no_args_is_help=True,
     pretty_exceptions_enable=False,
     rich_markup_mode="rich",
@@ -43,7 +43,7 @@ def _version(wanted: bool) -> None:
 @app.callback()
 def _options(
     version: Annotated[
-        bool, typer.Option("--version", callback=_version, is_eager=True, help="Print the version and leave.")
+        bool, typer.Option("--version", callback=_version, is_eager=True, help="Print the version and exit.")
     ] = False,
 ) -> None:
     pass

@@ -37,9 +37,12 @@ Threads = Annotated[
     ),
 ]
 Quiet = Annotated[
-    bool, typer.Option("--quiet", "-q", help="Show no progress and no summary; errors and warnings remain.")
+    bool,
+    typer.Option(
+        "--quiet", "-q", metavar="", help="Show no progress and no summary; errors and warnings remain."
+    ),
 ]
-Overwrite = Annotated[bool, typer.Option("--overwrite", help="Replace files that exist.")]
+Overwrite = Annotated[bool, typer.Option("--overwrite", metavar="", help="Replace files that exist.")]
 
 
 def progress(quiet: bool) -> bool:
@@ -55,6 +58,8 @@ def errors_in_a_line() -> Iterator[None]:
             yield
         except ValueError as error:
             fail(str(error), BAD_INPUT)
+        except FileExistsError as error:
+            fail(f"{error.filename}: {error.strerror}; --overwrite replaces it", FAILED)
         except OSError as error:
             fail(f"{error.filename}: {error.strerror}" if error.filename else str(error), FAILED)
         except (RuntimeError, MemoryError) as error:  # NumericalError is a RuntimeError

@@ -71,5 +71,5 @@ restitution_range = [-1.0, 3.0]
 
 
 def template() -> None:
-    """Print a commented RUN.toml with all bodies, laws and options, to change at will."""
+    """Print a commented RUN.toml with all bodies, laws and options, to be edited."""
     typer.echo(TEMPLATE, nl=False)

@@ -53,7 +53,7 @@ class Piece:
     fall : Fall
         From where.
     among : float
-        A speed of the piece in m/s; tells which formula of a material holds.
+        A speed of the piece in m/s; determines which formula of a material holds.
     mode : Mode
         What the contact does.
     """

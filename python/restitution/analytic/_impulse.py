@@ -1,4 +1,4 @@
-"""What an impact from rest gives back, for every law: all have a closed form there.
+"""The impulse of an impact from rest, for every law: all have a closed form there.
 
 The point of contact, h below and a beside the centre of mass, comes down along the normal: there is no slip
 before the impact. With J = J_xx/m and D = J + a² + h², the impulse matrix per unit mass has K_nn = 1 + a²/J,

@@ -1,4 +1,4 @@
-"""Nearly round bodies from what a roundness gauge or a ball's grade tells."""
+"""Nearly round bodies from the reading of a roundness gauge or the grade of a ball."""
 
 import math
 from numbers import Integral
@@ -134,7 +134,7 @@ def ball_grade(grade: int) -> float:
     Raises
     ------
     ValueError
-        If there is no such grade.
+        If the grade does not exist.
 
     Examples
     --------

@@ -147,7 +147,7 @@ def weights(experiment: Experiment, shape: Source) -> Array:
     """Covariance that a fit assumes: of times, g and drop, and one scatter of ε for all impacts."""
     setting = experiment.setting
     known = experiment.covariance(setting.timing, setting.gravity_uncertainty, setting.drop_uncertainty)
-    # Without any error all impacts weigh alike.
+    # Without any error all impacts have equal weight.
     scatter = max(float(np.mean(np.diag(shape.covariance))), 1e-24)
     return np.asarray(known + scatter * np.eye(experiment.speed.size))
 

@@ -9,10 +9,10 @@ with q = m/J under the frictionless law, and q = m/(J + m R²) where the tangent
 point is kept (ε_t = 1): the kick is that of the ball about its contact. The angle then turns by 2 v' ω/g
 until the next impact. This is the map of a kicked rotor, with the kick parameter K = 2 c q ε_n v² |h''|/g.
 
-Where K is far above 1 the angles are independent, and ω grows as a random walk does, but for corrections
+Where K is far above 1 the angles are independent, and ω grows as a random walk, up to corrections
 that oscillate as 2 J_2(K) (Rechester and White, Phys. Rev. Lett. 44, 1586 (1980)). Where K is far below 1 the
 ball swings slowly about an angle where h is least. A clock then hardly sees the shape: the gap below the ball
-falls with g + h'' ω², and it is the contact point that comes back with ε_n: times tell ε_n but for h'' ω²/g.
+falls with g + h'' ω², and it is the contact point that comes back with ε_n: times give ε_n up to h'' ω²/g.
 """
 
 from dataclasses import dataclass

@@ -87,7 +87,7 @@ class ErrorBudget(Content):
     def figure(self) -> Figure:
         """Draw the root mean square error √(bias² + variance) of one ε by source, against the speed.
 
-        Where sampling cannot tell it from 0 nothing is drawn.
+        Values that sampling cannot distinguish from 0 are not drawn.
         """
         from restitution.figures import COLORS, COLUMN, panels, styled
 
@@ -117,7 +117,7 @@ class ErrorBudget(Content):
 
 
 def _cell(one: xr.Dataset, prefix: str) -> str:
-    """Bias ± standard deviation; what sampling cannot tell from 0 is 0 or a limit."""
+    """Bias ± standard deviation; what sampling cannot distinguish from 0 is given as 0 or as a limit."""
     bias, deviation, bias_error, deviation_error = (
         float(one[f"{prefix}{name}"])
         for name in ("bias", "standard_deviation", "bias_error", "standard_deviation_error")

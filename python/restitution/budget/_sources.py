@@ -112,7 +112,7 @@ def drag(experiment: Experiment, force: Drag, corrected: bool) -> Source:
 
 
 def _with_drag(experiment: Experiment, terminal: float) -> Array:
-    """ε of a clock that knows of no air, less the law at the speed that it tells."""
+    """ε from times of flight without drag correction, minus the law at the speed inferred from them."""
     g = experiment.setting.gravity
     speed = fall(experiment.setting.drop, g, terminal).speed
     told = [math.sqrt(2.0 * g * experiment.setting.drop)]
@@ -186,7 +186,7 @@ def simulated(experiment: Experiment, body: Body, *, spin: bool, tilt: bool) -> 
     if kept.mean() < _LEAST_KEPT:
         counts = 100.0 * kept.mean()
         text = (
-            f" = {n}: only {counts:.0f} % of such balls bounce so often with flights that can be told apart; "
+            f" = {n}: only {counts:.0f} % of such balls bounce so often with resolved flights; "
             "must be fewer, or the body rounder"
         )
         raise ParameterError(Problem("impacts", text))

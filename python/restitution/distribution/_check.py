@@ -1,4 +1,4 @@
-"""How far a learned distribution is from impacts that it has not seen."""
+"""How far a learned distribution is from impacts that it was not learned from."""
 
 import warnings
 from collections.abc import Iterable
@@ -13,7 +13,7 @@ from restitution.distribution._table import Floats, Ints, Table
 
 _LEVELS = 4096
 _FAR, _TIMES = 0.05, 3.5
-"""A distance beyond both, of fresh impacts and in terms of their scatter, is worth a warning."""
+"""A distance beyond both, of fresh impacts and in terms of their scatter, triggers a warning."""
 _COARSE, _RESAMPLES, _SEED = 256, 64, 1
 
 
@@ -34,7 +34,7 @@ class Check:
 
     @classmethod
     def of(cls, table: Table, blocks: Iterable[Impacts]) -> "Check":
-        """Hold a table against an ensemble."""
+        """Compare a table with an ensemble."""
         check = cls(table)
         for block in blocks:
             check.add(block.batch, block.velocity, block.restitution)
@@ -70,7 +70,7 @@ class Check:
     def scatter(self) -> Floats:
         """Estimate the part of the distances that is scatter of the impacts: the mean of a bootstrap.
 
-        Batches of particles are resampled, each as often as a Poisson number of mean 1 says, and held against
+        Batches of particles are resampled, each a Poisson number of times of mean 1, and compared with
         all of them at 256 u. Independent impacts scatter by 0.87/√impacts. NaN for a single batch.
         """
         filled = self._batches[self._batches.any(axis=(1, 2))]
@@ -112,9 +112,9 @@ def warn_of_distance(data: xr.Dataset, *, stacklevel: int) -> None:
         low, high = data["velocity"].to_numpy()[worst : worst + 2]
         warnings.warn(
             f"the learned distribution is {distance[worst]:.3f} from fresh impacts at {low:.4g} to "
-            f"{high:.4g} m/s (Kolmogorov-Smirnov), and their scatter makes {scatter[worst]:.3f}; so it is in "
-            f"{int(far.sum())} of {far.size} intervals. More particles, heights of release spread over the "
-            "losses of an impact, or another range of velocities bring it nearer",
+            f"{high:.4g} m/s (Kolmogorov-Smirnov), of which {scatter[worst]:.3f} are due to their "
+            f"scatter; so are {int(far.sum())} of {far.size} intervals. More particles, heights of release "
+            "spread over the loss of an impact, or another range of velocities reduce the distance",
             DistanceWarning,
             stacklevel=stacklevel + 1,
         )

@@ -65,7 +65,7 @@ def minimum_speed(run: Run, slowest: float) -> float:
 def impacts(run: Run, threads: int | None) -> int:
     """Give the least power of two of impacts after which one particle in a hundred still is faster, or fewer.
 
-    4096 where there is none: some trajectories rattle for ever.
+    4096 where there is none: some trajectories rattle without end.
     """
     number = _LEAST_IMPACTS
     while number < _MOST_IMPACTS:

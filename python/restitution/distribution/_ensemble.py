@@ -16,7 +16,7 @@ LEARNING, FRESH = 0, 1
 """Streams of random numbers: what is learned from, and what the learned distribution is held against."""
 
 BATCHES = 32
-"""Parts of the ensemble, which share every height alike, whose scatter gives the standard errors."""
+"""Parts of the ensemble, each with equal shares of all heights, whose scatter gives the standard errors."""
 _IMPACTS_PER_ROUND = 4_000_000
 
 
@@ -41,7 +41,7 @@ class Impacts(NamedTuple):
 
 @dataclass(frozen=True)
 class Ensemble:
-    """Particles that are released alike, or in equal parts from several heights.
+    """Particles that are released from one height, or in equal parts from several.
 
     Given orientations and spins are dealt out to the heights at random, in another way in each stream, so
     that the fresh ensemble has them all, too, but none of the trajectories that were learned from.

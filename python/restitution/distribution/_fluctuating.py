@@ -97,13 +97,13 @@ class FluctuatingRestitution(EstimatedDistribution):
         """Learn p(ε | v) from an ensemble of bouncing particles.
 
         The ensemble is simulated in rounds, and again with other random numbers to measure how far the result
-        is from impacts that it has not seen. Memory does not grow with the number of particles.
+        is from impacts that it was not learned from. Memory does not grow with the number of particles.
 
         Parameters
         ----------
         body, law, particles, gravity, orientation, spin, velocity, incline, seed, threads, progress
             As in `restitution.simulate`. Orientations or spins of each particle are dealt out to the heights
-            at random; if nothing is random, there is nothing to hold the result against, and it is refused.
+            at random; if nothing is random, no fresh ensemble can be drawn, and this is an error.
         impacts : int, optional
             The most impacts of a particle. By default, as many as it takes ninety-nine of a hundred
             particles to become slower than `minimum_speed`, 4096 at most: those that are slow early are
@@ -134,7 +134,7 @@ class FluctuatingRestitution(EstimatedDistribution):
         -----
         DistanceWarning
             If fresh impacts are farther from the result than 0.05 in the sense of Kolmogorov and Smirnov, and
-            than 3.5 times what their scatter makes of it. docs/theory.md says what to do.
+            than 3.5 times what their scatter explains. docs/theory.md says what to do.
 
         Examples
         --------
@@ -194,7 +194,7 @@ class FluctuatingRestitution(EstimatedDistribution):
             data = xr.load_dataset(path, engine="netcdf4")
         except OSError:
             raise
-        except Exception as error:  # of netCDF, which raises many kinds where a file came to harm
+        except Exception as error:  # of netCDF, which raises many kinds for a damaged file
             raise OSError(errno.EIO, f"cannot be read as netCDF: {error}", str(path)) from error
         return cls(unsealed(data, str(path)))
 
@@ -285,7 +285,7 @@ class FluctuatingRestitution(EstimatedDistribution):
         -------
         xarray.Dataset
             Over ``distribution`` ("p(ε | v)" and, if there is a condition, "p(ε | v, z)") and ``lag``:
-            the autocorrelation ``level`` of u, and ``spread`` of |u - 1/2|, which tells whether wide follows
+            the autocorrelation ``level`` of u, and ``spread`` of |u - 1/2|, which shows whether wide follows
             wide; each with its standard error over particles.
         """
         names = ("impact_velocity", "restitution", "rotational_fraction")
@@ -314,7 +314,7 @@ class FluctuatingRestitution(EstimatedDistribution):
             lines += [
                 "Kolmogorov-Smirnov distance to fresh impacts: "
                 f"{float(self.data['ks_distance'][worst]):.4f} at most, at {speed:.4g} m/s, "
-                f"where their own scatter makes {scatter:.4f}"
+                f"of which their own scatter explains {scatter:.4f}"
             ]
         return "\n".join(lines)
 

@@ -25,7 +25,7 @@ def assemble(
 ) -> xr.Dataset:
     """Lay a distribution out as a Dataset.
 
-    Components follow each other in ragged arrays, as the CF conventions have them: ``edges`` tells how many
+    Components follow each other in ragged arrays, as the CF conventions have them: ``edges`` gives how many
     each has. ``velocity`` (node) are the speeds of the histograms, ``restitution_edge`` and
     ``probability_below`` (edge) the histograms themselves. ``probability_error`` (edge) is the standard
     error of the probability of the bin that starts there, ``probability_below_error`` that of the one below,
@@ -132,7 +132,7 @@ def _ragged(histograms: list[Histogram], prefix: str) -> dict[str, Any]:
 
 
 def check(data: xr.Dataset) -> None:
-    """Refuse what is not the Dataset of a distribution, or is one that came to harm."""
+    """Refuse what is not the Dataset of a distribution, or is damaged."""
     require(data, "data", ("velocity", *_TABLE), "the Dataset of a FluctuatingRestitution")
     lacking = [name for name in ("source", "beyond") if name not in data.attrs]
     if lacking:
@@ -193,7 +193,7 @@ _FORMAT, _CHECKSUM = "format_version", "checksum"
 
 
 def sealed(data: xr.Dataset) -> xr.Dataset:
-    """Add what tells a reader the format, and whether every number is still what it was."""
+    """Add the format version, and a checksum by which a reader sees that no number has changed."""
     return data.assign_attrs({_FORMAT: FORMAT, _CHECKSUM: _checksum(data)})
 
 
@@ -203,7 +203,7 @@ def unsealed(data: xr.Dataset, path: str) -> xr.Dataset:
     Raises
     ------
     ParameterError
-        If it is no such file, of another format, or has come to harm.
+        If it is not such a file, has another format, or is damaged.
     """
     attrs = dict(data.attrs)
     version, checksum = attrs.pop(_FORMAT, None), attrs.pop(_CHECKSUM, None)
@@ -215,7 +215,7 @@ def unsealed(data: xr.Dataset, path: str) -> xr.Dataset:
         raise ParameterError(Problem(path, text))
     plain = data.drop_attrs(deep=False).assign_attrs(attrs)
     if checksum != _checksum(plain):
-        raise ParameterError(Problem(path, ": has come to harm: its checksum is not that of what it holds"))
+        raise ParameterError(Problem(path, ": is damaged: its checksum does not match its content"))
     return plain
 
 

@@ -61,6 +61,9 @@ _SCREEN = 100
 class _Displayed(Figure):
     """A figure that a notebook shows, whether pyplot is loaded or not."""
 
+    def __repr__(self) -> str:
+        return super().__repr__().replace(type(self).__name__, "Figure")
+
     def _repr_png_(self) -> tuple[bytes, dict[str, int]]:
         content = io.BytesIO()
         with mpl.rc_context(_STYLE):

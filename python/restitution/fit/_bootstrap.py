@@ -12,7 +12,9 @@ from numpy.typing import ArrayLike
 
 from restitution._arrays import generator, real, whole
 from restitution._content import Content
+from restitution._display import table, value
 from restitution._parameters import ParameterError, wrong
+from restitution._words import with_error
 from restitution.fit._clusters import MOST_RESAMPLES, clustered, fitted_by, refitted
 from restitution.fit._counts import Counts
 from restitution.fit._result import Array, Fit
@@ -50,6 +52,20 @@ class Bootstrap(Content):
     resampled: tuple[Fit, ...]
     clusters: int
     effective_parameters: float
+
+    def __str__(self) -> str:
+        return f"{self.fit.family}, {self.clusters} particles: " + ", ".join(
+            map(" = ".join, self._estimates())
+        )
+
+    def _repr_html_(self) -> str:
+        rows = [*self._estimates(), ("samples", str(self.fit.samples)), ("particles", str(self.clusters))]
+        rows += [("AIC", value(self.aic)), ("BIC", value(self.bic))]
+        return table(f"{self.fit.family}, standard errors from {len(self.resampled)} resamples", rows)
+
+    def _estimates(self) -> list[tuple[str, str]]:
+        errors = self.standard_errors
+        return [(name, with_error(x, errors[name])) for name, x in self.fit.parameters.items()]
 
     @property
     def standard_errors(self) -> dict[str, float]:

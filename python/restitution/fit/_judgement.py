@@ -13,7 +13,9 @@ from numpy.typing import ArrayLike
 
 from restitution._arrays import generator, whole
 from restitution._content import Content
+from restitution._display import table, value
 from restitution._parameters import ParameterError, wrong
+from restitution._words import with_error
 from restitution.fit._clusters import (
     MOST_RESAMPLES,
     Clustered,
@@ -58,6 +60,22 @@ class Goodness(Content):
     anderson_darling: float
     anderson_darling_p: float
     resamples: int
+
+    def __str__(self) -> str:
+        return (
+            f"{self.fit.family}: D = {self.kolmogorov_smirnov:.4g}, p = {self.kolmogorov_smirnov_p:.2g}; "
+            f"A² = {self.anderson_darling:.4g}, p = {self.anderson_darling_p:.2g}"
+        )
+
+    def _repr_html_(self) -> str:
+        rows = [
+            ("Kolmogorov-Smirnov D", value(self.kolmogorov_smirnov)),
+            ("p (D)", f"{self.kolmogorov_smirnov_p:.2g}"),
+            ("Anderson-Darling A²", value(self.anderson_darling)),
+            ("p (A²)", f"{self.anderson_darling_p:.2g}"),
+            ("resamples", str(self.resamples)),
+        ]
+        return table(f"{self.fit.family}, goodness of fit", rows)
 
 
 def goodness(
@@ -186,6 +204,17 @@ class Comparison(Content):
 
     difference: float
     standard_error: float
+
+    def __str__(self) -> str:
+        return f"ln L per sample: {with_error(self.difference, self.standard_error)}; p = {self.p:.2g}"
+
+    def _repr_html_(self) -> str:
+        rows = [
+            ("difference of ln L per sample", with_error(self.difference, self.standard_error)),
+            ("z", value(self.z)),
+            ("p", f"{self.p:.2g}"),
+        ]
+        return table("Two fits compared by Vuong's test", rows)
 
     @property
     def z(self) -> float:

@@ -97,6 +97,9 @@ class Slopes(Content):
     table: xr.Dataset
     resampled: xr.Dataset
 
+    def _repr_html_(self) -> str:
+        return str(self.table._repr_html_())
+
     def power_law(
         self, side: str, low: float = 0.0, high: float = np.inf, *, release_speed: float | None = None
     ) -> PowerLaw:

@@ -10,15 +10,15 @@ from restitution.flight._read import read
 from restitution.flight._restitution import restitution
 
 if TYPE_CHECKING:
-    from restitution.flight._figure import draw
+    from restitution.flight._figure import figure
 
-__all__ = ["Drag", "LawFit", "clock", "compare", "draw", "fit", "read", "restitution"]
+__all__ = ["Drag", "LawFit", "clock", "compare", "figure", "fit", "read", "restitution"]
 
 
 def __getattr__(name: str) -> Any:
     """Import Matplotlib when something is drawn."""
-    if name != "draw":
+    if name != "figure":
         raise AttributeError(f"module 'restitution.flight' has no attribute {name!r}")
-    from restitution.flight._figure import draw
+    from restitution.flight._figure import figure
 
-    return draw
+    return figure

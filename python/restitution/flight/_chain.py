@@ -21,7 +21,7 @@ class Chain:
     Attributes
     ----------
     before, after : ndarray, shape (n,)
-        Speed towards and away from the plane, in m/s; NaN where the times do not tell it.
+        Speed towards and away from the plane, in m/s; NaN where the times do not determine it.
     before_by, after_by : ndarray, shape (n, n + 3)
         Derivatives by the n times, g, the height of the drop and the terminal velocity; 0 where the speed
         is NaN.

@@ -15,7 +15,7 @@ _POINTS = 200
 
 
 @styled
-def draw(data: xr.Dataset | Iterable[xr.Dataset], *fits: LawFit) -> Figure:
+def figure(data: xr.Dataset | Iterable[xr.Dataset], *fits: LawFit) -> Figure:
     """Draw ε against v with error bars, and each law with its band of one standard error.
 
     Parameters
@@ -39,7 +39,7 @@ def draw(data: xr.Dataset | Iterable[xr.Dataset], *fits: LawFit) -> Figure:
     --------
     >>> import restitution as rs
     >>> data = rs.flight.restitution([0.0, 0.4001, 0.7800, 1.1411, 1.4841], 1e-4)
-    >>> figure = rs.flight.draw(data, rs.flight.fit(data, "constant"))
+    >>> figure = rs.flight.figure(data, rs.flight.fit(data, "constant"))
     """
     needed = ("restitution", "restitution_error", "impact_velocity", "impact_velocity_error")
     series = series_of(data, *needed)

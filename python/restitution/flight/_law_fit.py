@@ -1,5 +1,7 @@
 """A fitted law: parameters with errors and covariance, and how well it fits."""
 
+from __future__ import annotations
+
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
@@ -9,6 +11,7 @@ from scipy.stats import chi2
 
 from restitution._arrays import check_each, reals
 from restitution._content import Content
+from restitution._display import table
 from restitution._words import with_error
 from restitution.flight._laws import LawOfSpeed, by_parameters
 
@@ -88,12 +91,25 @@ class LawFit(Content):
     def _values(self) -> Array:
         return np.array(list(self.parameters.values()))
 
-    def __str__(self) -> str:
-        parts = [
-            f"{name} = {with_error(value, self.errors[name])}"
-            + (f" {self.units[name]}" if self.units[name] != "1" else "")
+    def _estimates(self) -> list[tuple[str, str]]:
+        """Parameters with their errors and units, as text."""
+        units = {name: "" if unit == "1" else f" {unit}" for name, unit in self.units.items()}
+        return [
+            (name, with_error(value, self.errors[name]) + units[name])
             for name, value in self.parameters.items()
         ]
+
+    def _repr_html_(self) -> str:
+        rows = self._estimates()
+        if self.scatter_error > 0.0:
+            rows.append(("scatter", with_error(self.scatter, self.scatter_error)))
+        else:
+            rows.append(("p", f"{self.p_value:.2g}"))
+        rows += [("χ²", f"{self.chi2:.1f}"), ("degrees of freedom", str(self.degrees_of_freedom))]
+        return table(f"{self.law}, fitted to {self.impacts} coefficients of restitution", rows)
+
+    def __str__(self) -> str:
+        parts = list(map(" = ".join, self._estimates()))
         if self.scatter_error > 0.0:
             parts.append(f"scatter {with_error(self.scatter, self.scatter_error)}")
         freedom = self.degrees_of_freedom

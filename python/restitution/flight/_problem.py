@@ -98,7 +98,7 @@ class Misfit:
         return np.asarray((by * self.variances) @ by.T + np.diag((scatter * self.before) ** 2))
 
     def improve(self, values: Array, scatter: float) -> bool:
-        """Expand about the most probable true numbers; tell whether that changed much."""
+        """Expand about the most probable true values; return whether they changed much."""
         by = self.jacobian(values)
         pull = np.linalg.solve(self.covariance(values, scatter), self.residual(values))
         shift = -self.variances * (by.T @ pull)

@@ -1,5 +1,7 @@
 """Impact velocities and coefficients of restitution from the times of impacts, with their covariance."""
 
+from __future__ import annotations
+
 from importlib.metadata import version
 from typing import Annotated, Any
 
@@ -70,8 +72,8 @@ def restitution(
         ``impact_velocity_error`` in m/s, ``restitution`` and ``restitution_error``; with the further
         dimension ``other_impact`` ``impact_velocity_covariance``, ``restitution_covariance`` and
         ``cross_covariance``, of the velocity at ``impact`` and the coefficient at ``other_impact``. NaN
-        where times do not tell: the last coefficient, the first two numbers without a drop height, and next
-        to a missed impact. The attributes hold all parameters.
+        where the times do not determine them: the last coefficient, the first two numbers without a drop
+        height, and next to a missed impact. The attributes hold all parameters.
 
     Raises
     ------

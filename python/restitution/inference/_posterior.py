@@ -27,7 +27,7 @@ _SHAPES, _FRICTIONS = 10, 6
 """Values of L/R in a decade, and values of friction."""
 _WALKERS, _CHAINS, _BURN = 32, 4, 100
 _TOLD = 3.3
-"""Difference of log-likelihoods from which shapes are told apart: 99 % of χ² with one degree of freedom."""
+"""Difference of log-likelihoods that separates shapes: 99 % of χ² with one degree of freedom."""
 
 
 class Setting(Parameters):
@@ -90,7 +90,7 @@ def posterior(
         In ArviZ's schema: ``posterior`` with ``normal`` (or ``beta``, ``yield_speed``), ``elongation`` (L/R),
         ``out_of_roundness`` (m) and ``friction``, over chain and draw; ``sample_stats`` with ``lp``;
         ``observed_data``; ``likelihood`` with ``profile``, the log-likelihood as a function of L/R, largest
-        over the rest. The attributes hold the settings, ``elongation_told`` (whether the times tell L/R),
+        over the rest. The attributes hold the settings, ``elongation_determined`` (1 or 0),
         ``elongation_upper_limit`` (95 %, for L/R uniform from 0) and ``verdict``, a sentence.
 
     Raises
@@ -111,7 +111,7 @@ def posterior(
     >>> run = rs.simulate(ball, law, particles=1, impacts=14, release_height=0.103)
     >>> data = rs.flight.restitution(run.time.values[0], 1e-5, drop_height=0.1)
     >>> found = rs.posterior(data, law, diameter=6e-3, particles=200, draws=500)
-    >>> bool(found.attrs["elongation_told"])
+    >>> bool(found.attrs["elongation_determined"])
     True
     """
     emcee, from_dict = _packages()
@@ -241,13 +241,13 @@ def _tree(
     t = 0.25 * setting.diameter * 1e6
     if told:
         verdict = (
-            f"The times tell the shape: L/R = {middle:.2g}, between {low:.2g} and {high:.2g} (90 %), an "
+            f"The times determine the shape: L/R = {middle:.2g}, between {low:.2g} and {high:.2g} (90 %), an "
             f"out-of-roundness of {t * middle:.2g} µm."
         )
     else:
         verdict = (
-            f"The times do not tell the shape: a round ball explains them as well. L/R is below {limit:.2g} "
-            f"(95 %), the out-of-roundness below {t * limit:.2g} µm."
+            f"The times do not determine the shape: a round ball explains them as well. L/R is below "
+            f"{limit:.2g} (95 %), the out-of-roundness below {t * limit:.2g} µm."
         )
     tree.attrs |= {
         "title": "Posterior from the times of impacts",
@@ -255,7 +255,7 @@ def _tree(
         "law": repr(family.law),
         "form": family.form,
         **setting.model_dump(),
-        "elongation_told": int(told),
+        "elongation_determined": int(told),
         "elongation_upper_limit": limit,
         "verdict": verdict,
     }

@@ -29,7 +29,7 @@ class Drops(NamedTuple):
     ----------
     statistics : ndarray, shape (kept, 3)
     share : float
-        Of all simulated series, those that bounce as often and can be told apart.
+        Of all simulated series, those that bounce as often and have distinct impacts.
     """
 
     statistics: Array

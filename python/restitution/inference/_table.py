@@ -75,7 +75,7 @@ def table(
     others = [float(np.clip(middle + side * 2.0 * width, low + 1e-9, high)) for side in (-1.0, 1.0)]
     values = [others[0], middle, others[1]]
     sets = [densities(others[0], 1), at_middle, densities(others[1], 2)]
-    # Fine where the best balls tell the parameter well, out to where the worst do.
+    # Fine where the best balls determine the parameter well, extended to where the worst do.
     steep = np.arcsinh(6.0 * width / narrow)
     grid = middle + narrow * np.sinh(steep * np.linspace(-1.0, 1.0, _GRID))
     grid = np.unique(np.clip(grid, low, high))

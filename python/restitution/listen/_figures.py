@@ -46,7 +46,7 @@ _PARAMETERS = {
     "yield_speed": "yield speed (m/s)",
 }
 _LEAST = -12.0
-"""Likelihoods below this, in the logarithm, are all alike: none."""
+"""Likelihoods below this, in the logarithm, are treated as zero."""
 
 
 @styled

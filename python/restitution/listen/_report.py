@@ -120,7 +120,7 @@ def _recording(file: Path, analysis: Analysis) -> list[str]:
 def _series(one: Series, setting: Setting) -> list[str]:
     parts = []
     if one.coefficients:
-        figure = flight.draw(one.data, *(fit for fit in one.fits if fit.aic < one.fits[0].aic + _FAR))
+        figure = flight.figure(one.data, *(fit for fit in one.fits if fit.aic < one.fits[0].aic + _FAR))
         parts.append(_picture(figure, "ε against v with standard errors, and the laws with their bands."))
     if one.fits:
         best = one.fits[0].aic
@@ -179,7 +179,9 @@ def _budget(found: Shape) -> list[str]:
         return parts
     head, _, *lines = [line.strip("| ").split(" | ") for line in found.budget.table().splitlines()]
     rows = [[text(cell.replace(" ± ", "\u00a0±\u00a0")) for cell in line] for line in lines]
-    caption = "Bias ± standard deviation that each source causes; “below”: not told from 0 by the simulation."
+    caption = (
+        "Bias ± standard deviation of each source; “below”: not distinguishable from 0 in the simulation."
+    )
     parts += [
         table([text(cell) for cell in head], rows, caption=caption),
         _picture(found.budget.figure(), "Root mean square error of one ε by its source, against the speed."),

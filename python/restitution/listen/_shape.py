@@ -118,7 +118,7 @@ def _roundness(
         return measured, f"The out-of-roundness is {1e6 * measured:.3g} µm, as measured."
     if draws is None:
         return None, "No budget of errors without an out-of-roundness; give it."
-    told = bool(draws.attrs["elongation_told"])
+    told = bool(draws.attrs["elongation_determined"])
     if told:
         elongation = float(draws["posterior"].to_dataset().elongation.median())
     else:
@@ -129,7 +129,7 @@ def _roundness(
 
 
 def _drop(data: xr.Dataset, law: Frictionless) -> float:
-    """Height of the drop, as measured or as the first flight tells."""
+    """Height of the drop, as measured or as it follows from the first flight."""
     if "drop_height" in data.attrs:
         return float(data.attrs["drop_height"])
     intervals = np.diff(data.time.values)

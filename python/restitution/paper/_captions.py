@@ -182,7 +182,9 @@ def _impacts(drawn: xr.Dataset) -> int:
 
 def _colour(count: xr.DataArray) -> str:
     most = _number(count.max())
-    return f"Colour: impacts on a lattice site over those on the most populated one ({most}); none: blank."
+    return (
+        f"Colour: impacts at a lattice site divided by those at the most populated one ({most}); blank: none."
+    )
 
 
 def _share(count: xr.DataArray, drawn: xr.Dataset) -> str:

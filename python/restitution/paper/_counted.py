@@ -64,7 +64,7 @@ def count_all(
     settings : Settings
         What was simulated, and the bins.
     impacts : int
-        Impacts to count in each ensemble. A few more are counted, because nobody knows beforehand when a
+        Impacts to count in each ensemble. A few more are counted, because it is not known beforehand when a
         trajectory ends.
     main, beads
         The recorded runs, as in `Runs`. With their seeds, their particles are the first of those counted.

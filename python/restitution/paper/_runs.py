@@ -98,8 +98,8 @@ def simulate_all(
     impacts : int
         Impacts to count for each of Figs. 2-5 and 7 and each curve of Fig. 6, at least
         ``settings.least_impacts`` (400 000, the paper's number). At most ``settings.recorded_impacts`` of
-        them are recorded in the main run. A few more are made of both, because nobody knows beforehand when
-        a trajectory ends. Secondary runs have their own fixed sizes (see `Settings`).
+        them are recorded in the main run. A few more are made of both, because the end of a
+        trajectory is not known beforehand. Secondary runs have their own fixed sizes (see `Settings`).
     seed : int
         Seed of everything; each run derives its own from it and its name.
     threads : int, optional

@@ -1,5 +1,7 @@
 """`impacts`: when a bouncing ball hit, from a recording."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass
 from importlib.metadata import version
 from os import PathLike
@@ -72,7 +74,7 @@ def impacts(source: str | PathLike[str] | npt.ArrayLike, rate: float | None = No
         ``flag``: "good", "doubtful" (found, but its time is off, or it is hardly heard), "missed" (there
         must have been one; time NaN), "doubled" (a second sound as loud as the impact before it, which
         belongs to no series); ``series``, counted from 0; ``level``, in dB over the noise. All times have
-        one small delay in common. The attributes tell the band and the rule of each series, and the share
+        one small delay in common. The attributes give the band and the rule of each series, and the share
         of clipped samples.
 
     Raises

@@ -11,9 +11,9 @@ Array = npt.NDArray[np.float64]
 Whole = npt.NDArray[np.int64]
 
 FEWEST = 4
-"""Impacts that are needed to tell a scatter: two ratios of flights, and one mean."""
+"""Impacts that are needed to estimate a scatter: two ratios of flights, and one mean."""
 _SEPARABLE = 12
-"""Impacts that are needed to tell errors of the clock from changes of the ball."""
+"""Impacts that are needed to distinguish errors of the clock from changes of the ball."""
 
 
 @dataclass(frozen=True)

@@ -99,7 +99,7 @@ class Driver:
         self._under_way: dict[Future[Any], tuple[_Open, Task | End]] = {}
 
     def run(self, *, writes: bool) -> None:
-        """Do all that is to be done; `writes` tells whether results are gathered, or left to a merge."""
+        """Do all that is to be done; `writes` says whether results are gathered, or left to a merge."""
         with _first_at(self.store) as alone:
             waiting = iter(self.points if alone else random.sample(self.points, len(self.points)))
             shown = time.monotonic()
@@ -130,7 +130,7 @@ class Driver:
                 self.table.write()
 
     def _fill(self, waiting: Iterator[int]) -> bool:
-        """Have as much under way as there is room for; tell whether anything is."""
+        """Submit as many tasks as there is room for; return whether any is running."""
         room = self.engine.room
         while len(self._under_way) < room:
             if not self._ready:
@@ -312,7 +312,7 @@ def _by_point(array: Any, design: Design) -> bool:
 
 @contextmanager
 def _first_at(store: Store) -> Iterator[bool]:
-    """Tell whether no other driver of this machine is at the store: two then begin with different points.
+    """Whether no other driver of this machine works on the store: two then begin with different points.
 
     Nothing else depends on it: each looks whether a task is there before it begins it, and both write the
     same bits.

@@ -79,11 +79,11 @@ class Effort:
         }
 
     def is_enough(self, found: xr.Dataset, blocks: int) -> bool:
-        """Tell whether a point with so many blocks is finished."""
+        """Whether a point with so many blocks is finished."""
         return blocks >= self.blocks or all(self._excess(found, name) <= 1.0 for name in self.until)
 
     def needed(self, found: xr.Dataset, particles: int) -> int:
-        """Foretell the blocks of a point from a pilot: squares of standard errors fall with the particles."""
+        """Predict the blocks of a point from a pilot: squares of standard errors fall with the particles."""
         excess = max((self._excess(found, name) for name in self.until), default=0.0)
         if not np.isfinite(excess):
             return self.blocks

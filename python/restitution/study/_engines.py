@@ -37,7 +37,7 @@ class Engine:
         return self._executor.submit(function, *arguments, *more)
 
     def stop(self) -> None:
-        """Tell running calls to stop."""
+        """Ask running calls to stop."""
         if self._stop is not None:
             self._stop.set()
 

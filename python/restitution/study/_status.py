@@ -55,7 +55,7 @@ class Status:
 
 
 def status(out: str | Path) -> Status:
-    """Tell how far a study has come, from a look at its store.
+    """Report the progress of a study from its store.
 
     Examples
     --------

@@ -97,11 +97,11 @@ class Store:
         self.task_batches = int(words.chunks[1])
 
     def valid(self, point: int, first: int, count: int) -> npt.NDArray[np.bool_]:
-        """Tell which batches of a point are there, undamaged."""
+        """Return which batches of a point are there, undamaged."""
         return self.read(point, first, count)[1]
 
     def read(self, point: int, first: int, count: int) -> tuple[Words, npt.NDArray[np.bool_], bytes]:
-        """Read rows of a point, tell which are what was written, and give their digests."""
+        """Read rows of a point, return which are undamaged, and their digests."""
         width = self.words.shape[2]
         rows, good = np.zeros((count, width), np.uint64), np.zeros(count, np.bool_)
         for start in range(0, count, self.task_batches):
@@ -125,7 +125,7 @@ class Store:
         self.words[point, first : first + len(rows)] = np.stack(signed)
 
     def there(self, point: int) -> set[int]:
-        """Tell which tasks of a point have a chunk, whatever is in it."""
+        """Return which tasks of a point have a chunk, whatever is in it."""
         folder = self.path / "tasks" / "words" / "c" / str(point)
         try:
             return {int(entry.name) for entry in os.scandir(folder) if entry.name.isdigit()}
@@ -235,7 +235,7 @@ def _own(found: xr.Dataset) -> Iterator[tuple[str, xr.Variable]]:
 
 
 def create_or_open(path: Path, study: Study, words: int) -> tuple[Store, bool]:
-    """Open the store of a study, or make it; tell whether it was there.
+    """Open the store of a study, or create it; return whether it existed.
 
     Raises
     ------
@@ -385,7 +385,7 @@ def _short(value: Any) -> str:
 
 
 def _is_common(name: str, variable: Any) -> bool:
-    """Tell whether a variable is the same at every point: edges of bins."""
+    """Whether a variable is the same at every point: edges of bins."""
     return name.endswith("_edges") and variable.dims == (f"{name[:-1]}",)
 
 

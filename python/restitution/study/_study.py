@@ -308,7 +308,7 @@ def _measure(table: Any) -> tuple[Measure | None, str]:
 
 
 def _named(function: Any) -> dict[str, str]:
-    """Tell functions apart: by their place, and by what is written there."""
+    """Identify a function by its place and its code."""
     name = (
         f"{getattr(function, '__module__', '')}:{getattr(function, '__qualname__', type(function).__name__)}"
     )

@@ -48,7 +48,7 @@ def sweep(
     threads : int, optional
         Number of threads of this machine; one per core by default. Never changes the result.
     shard : (int, int), optional
-        (3, 64) does the third of 64 parts of the points, with nobody to ask; `merge` then puts them together.
+        (3, 64) does the third of 64 parts of the points, without a scheduler; `merge` joins them.
     progress : bool
         Show an estimate of the cost and a progress bar on standard error.
 

@@ -89,7 +89,7 @@ class Ended:
 
 
 def run_task(path: str, task: Task, stop: threading.Event | None = None) -> bool:
-    """Count a range of particles and commit it; tell whether that had been done already."""
+    """Count a range of particles and commit it; return whether that had been done already."""
     store = _open(path, task.point.study)
     point, effort = task.point, task.point.effort
     number = effort.task_batches

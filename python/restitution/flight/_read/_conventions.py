@@ -44,7 +44,7 @@ def _scale(table: Table, row: Row, column: int, unit: str) -> float:
 
 
 def _is_heading(row: Row) -> bool:
-    """Tell words from numbers; a missing number says nothing."""
+    """Whether a cell is a word and not a number; a missing number is neither."""
     values = [as_number(cell) for cell in row.cells]
     return any(value is None for value in values)
 

@@ -39,9 +39,9 @@ def read(
     format : {"phyphox", "audacity", "tracker", "csv"}, optional
         Whose conventions these are; found from the content if not given.
     unit : {"s", "ms", "us"}
-        Unit of times where the file does not tell it.
+        Unit of times where the file does not give it.
     uncertainty : float, optional
-        Standard error of the times in s, > 0, where the file does not tell it; 0, not known, if not given.
+        Standard error of the times in s, > 0, where the file does not give it; 0, not known, if not given.
 
     Returns
     -------

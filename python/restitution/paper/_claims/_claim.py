@@ -25,7 +25,7 @@ class Measurement:
         Standard error; None for a count, an extreme or a p-value.
     unit : str
     at : str
-        Condition that tells it from others of the same name, such as the impact velocity.
+        Condition that distinguishes it from others of the same name, such as the impact velocity.
     """
 
     name: str

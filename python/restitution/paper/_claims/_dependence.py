@@ -93,6 +93,6 @@ def _sphere_to_sphere(runs: Runs, settings: Settings) -> Claim:
         why="The particle comes down on the other sphere more often than not."
         if above.size and above.all()
         else "The slower the impact, the more often the next one is on the same sphere: "
-        f"{100 * (1 - shown.value[-1]):.3g} % at {bins.labels[slow[-1]]}. Many small jumps on one sphere, "
-        "then the other.",
+        f"{100 * (1 - shown.value[-1]):.3g} % at {bins.labels[slow[-1]]}. The body makes many small "
+        "jumps on one sphere, then on the other.",
     )

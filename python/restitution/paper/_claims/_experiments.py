@@ -1,4 +1,4 @@
-"""Claims on bouncing-ball experiments: what the shape does beside everything else (Secs. I, III and V)."""
+"""Claims on bouncing-ball experiments: the effect of the shape and all other errors (Secs. I, III and V)."""
 
 import math
 from dataclasses import dataclass
@@ -63,7 +63,7 @@ def _balls(settings: Settings) -> tuple[Ball, ...]:
 def _shares(settings: Settings) -> dict[str, tuple[float, float]]:
     """Share of the eccentricity in the variance of one late ε, and of the fitted ε_n, by ball and law.
 
-    What spin and a tilted plate do they do by the eccentricity: to a sphere they would do nothing.
+    The effects of spin and of a tilted plate are attributed to the eccentricity: a sphere has none.
     """
     found = {}
     laws = {
@@ -100,7 +100,8 @@ _EXPERIMENT = (
     f"The experiment: a drop of {DROP:g} m, ε_n = {NORMAL:g}, {COEFFICIENTS} coefficients, times to "
     f"{1e6 * TIMING:g} µs, g to {GRAVITY_ERROR:g} m/s², the drop to {1e3 * DROP_ERROR:g} mm, the plate "
     f"level to {1e3 * TILT:g} mrad, a spin of {SPIN:g} rad/s at release; air drag is corrected for, C_d "
-    "known to a tenth. What spin and tilt do counts as the eccentricity's: a sphere would not notice. "
+    "known to a tenth. The effects of spin and tilt are attributed to the eccentricity: a "
+    "sphere has none. "
 )
 
 
@@ -122,7 +123,8 @@ def _dominates(settings: Settings) -> Claim:
         rule=f"{_EXPERIMENT}It dominates with more than half of the variance. Holds if it does for every "
         "ball and law, of one ε and of the fitted ε_n; in part if for some of one ε; fails otherwise.",
         why=f"In one ε it dominates for {'; '.join(single) or 'no ball'}; in the fitted ε_n for "
-        f"{'; '.join(fitted) or 'none'}. A nearly round ball turns too slowly for a clock to see its shape.",
+        f"{'; '.join(fitted) or 'none'}. A nearly round ball turns too slowly for its shape to show in "
+        "times of flight.",
     )
 
 
@@ -142,7 +144,7 @@ def _may_dominate(settings: Settings) -> Claim:
         verdict=verdict(most > 0.5 and least > 0.1, most > 0.5),
         rule=f"{_EXPERIMENT}Of one ε of the average glass beads of Fig. 6: holds if it is more than half for "
         "one bead and law, and more than a tenth for each; in part if only the first; fails otherwise.",
-        why=f"Of glass beads it is between {least:.2g} and {most:.2g}, as the law and the bead will have it.",
+        why=f"For glass beads the share is between {least:.2g} and {most:.2g}, depending on law and bead.",
     )
 
 
@@ -155,7 +157,10 @@ def _considerable(runs: Runs, settings: Settings) -> Claim:
         sigma[elongation] = impacts.deviations(impacts.of(data["restitution"]))
     above = {x: bool(np.all(one.beyond(lost) > SIGNIFICANT)) for x, one in sigma.items()}
     some = {x: bool(np.any(one.beyond(lost) > SIGNIFICANT)) for x, one in sigma.items()}
-    named = ", ".join(f"{x:g}" for x, yes in some.items() if yes) or "none"
+    named, everywhere = (
+        "L/R = " + ", ".join(f"{x:g}" for x, yes in those.items() if yes) if any(those.values()) else "no L/R"
+        for those in (some, above)
+    )
     return Claim(
         key="considerable-variance",
         quote="the angular orientation at the instant of the collision whose variance is considerable, even "
@@ -164,11 +169,11 @@ def _considerable(runs: Runs, settings: Settings) -> Claim:
         where="Abstract; Sec. V",
         measured=tuple(item for x in sigma for item in listed(f"σ(ε), L/R = {x:g}", labels, sigma[x])),
         verdict=verdict(all(above.values()), any(some.values())),
-        rule=f"Considerable is what exceeds 1 − ε_n = {lost:.2g}, all that the material takes. Holds if σ(ε) "
-        f"does, by more than {SIGNIFICANT:g} standard errors, at each of the four speeds for every L/R of "
-        "Figs. 2 and 6; in part if at some speed for some L/R; fails otherwise.",
-        why=f"σ(ε) exceeds it at some of the four speeds for L/R = {named}, and at all of them for L/R = "
-        f"{', '.join(f'{x:g}' for x, yes in above.items() if yes) or 'none'}.",
+        rule=f"Considerable means more than 1 − ε_n = {lost:.2g}, the loss due to the material. Holds if "
+        f"σ(ε) is larger, by more than {SIGNIFICANT:g} standard errors, at each of the four speeds for every "
+        "L/R of Figs. 2 and 6; in part if at some speed for some L/R; fails otherwise.",
+        why=f"σ(ε) exceeds {lost:.2g} at some of the four speeds for {named}, at all of them for "
+        f"{everywhere}.",
     )
 
 
@@ -208,8 +213,8 @@ def _reservoir(runs: Runs, settings: Settings) -> Claim:
         verdict=verdict(compared and explained > 0.8, compared and explained > 0.5),
         rule="If it is the share of rotation that counts, σ(ε) at a given E_rot/E_tot must not depend on the "
         "speed. Speeds above the lowest of the four, bands of E_rot/E_tot; standard deviations of "
-        f"{FEWEST} impacts or more. Holds if more than 80 % of the logarithm of the increase is gone within "
-        "each band; in part if more than half; fails otherwise, and where no band has two speeds.",
+        f"{FEWEST} impacts or more. Holds if more than 80 % of the logarithm of the increase disappears "
+        "within each band; in part if more than half; fails otherwise, and where no band has two speeds.",
         why=f"Between these speeds σ(ε) changes by a factor {ratio:.3g}; at a given share of rotation by "
         f"{within:.3g} at most.",
     )

@@ -36,10 +36,10 @@ def judge(runs: Runs, settings: Settings) -> list[Claim]:
             verdict=verdict(bool(found.pvalue > REJECTED), bool(found.statistic < 0.01)),
             rule=f"Distribution function from Eq. 17 in closed form. Holds if p > {REJECTED:g}; in part if "
             "the distance is below 0.01; fails otherwise.",
-            why=f"Simulation and Eq. 17 differ by {found.statistic:.2g} at most, as chance would have it (p "
-            f"= {found.pvalue:.2g})."
+            why=f"Simulation and Eq. 17 differ by at most {found.statistic:.2g}, consistent with sampling "
+            f"noise (p = {found.pvalue:.2g})."
             if found.pvalue > REJECTED
-            else f"Simulation and Eq. 17 differ by {found.statistic:.2g}, which chance does not explain.",
+            else f"Simulation and Eq. 17 differ by {found.statistic:.2g}, more than sampling noise explains.",
         ),
         Claim(
             key="eq-21",

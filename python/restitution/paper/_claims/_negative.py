@@ -50,8 +50,9 @@ def _branches(runs: Runs) -> Claim:
         verdict=verdict(right > 0 and left > 0 and neither == 0, right + left > 0),
         rule="Holds if both branches are populated and no impact with ε < 0 belongs to neither; in part if "
         "only one branch is populated or some impact belongs to neither; fails if both are empty.",
-        why=f"{with_error(right, None)} impacts let the centre of mass fall on, {with_error(left, None)} hit "
-        f"it while it rises already, {with_error(neither, None)} do neither.",
+        why=f"In {with_error(right, None)} of these impacts the centre of mass continues to fall, in "
+        f"{with_error(left, None)} it is already rising; "
+        f"{with_error(neither, None)} belong to neither branch.",
     )
 
 

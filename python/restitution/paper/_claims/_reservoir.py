@@ -53,8 +53,8 @@ def _share_monotone(runs: Runs, settings: Settings) -> Claim:
         f"{RISING_RULE}",
         why=f"The mean goes from {share.value[0]:.2g} at {bins.labels[0]} to {share.value[-1]:.3g} at "
         f"{bins.labels[-1]}, "
-        f"{'without a significant step back' if found.monotone else 'not at every step up'}. A body that "
-        f"rolls has {rolling:.3f}.",
+        f"{'with no significant decrease' if found.monotone else 'but does not rise at every step'}. For a "
+        f"rolling body it is {rolling:.3f}.",
     )
 
 
@@ -120,8 +120,8 @@ def _ceases(runs: Runs, settings: Settings) -> Claim:
         "first impact left; in part if at least half of the energy is lost by the last impact, on average; "
         "fails otherwise.",
         why=f"{kept} of {np.count_nonzero(ended)} trajectories with infinitely many impacts in finite time "
-        f"keep energy, on average {100 * _mean(left[ended])[0]:.2g} % of what they had: this law does not "
-        "brake rolling."
+        f"retain energy, on average {100 * _mean(left[ended])[0]:.2g} % of the initial energy: this law does "
+        "not slow down rolling."
         if kept
         else "No trajectory collapses with energy left.",
     )

@@ -120,7 +120,7 @@ def _scatter_grows(runs: Runs) -> Claim:
         verdict=found.verdict,
         rule=f"{SPEED_BINS} logarithmic bins of impact velocity, fastest first. {RISING_RULE}",
         why=f"σ(ε) goes from {sigma.value[0]:.2g} at {bins.labels[0]} to {sigma.value[-1]:.2g} at "
-        f"{bins.labels[-1]}, {'without a step back' if found.monotone else 'but not at every step up'}.",
+        f"{bins.labels[-1]}, {'monotonically' if found.monotone else 'but does not rise at every step'}.",
     )
 
 

@@ -50,8 +50,8 @@ def _orientation(runs: Runs, settings: Settings) -> Claim:
         "errors at the first impact and at each of the four speeds; in part if only at the speeds; fails "
         "otherwise.",
         why=f"The first impacts {'agree' if at_first else 'differ'} ({first_apart:.3g} standard errors), the "
-        f"later ones at given speed {'agree' if later else 'differ'} (by {np.max(np.abs(apart)):.2g} at "
-        "most).",
+        f"later ones at given speed {'agree' if later else 'differ'} ({np.max(np.abs(apart)):.2g} "
+        "standard errors at most).",
     )
 
 
@@ -95,10 +95,10 @@ def _size_and_height(runs: Runs, settings: Settings) -> Claim:
         verdict=verdict(all(free.values()), any(free.values())),
         rule="Radius and release height may be left open if σ(ε) at given speed does not depend on them. "
         "Holds if no other radius and no other height changes it at any of the four speeds by more than "
-        f"{SIGNIFICANT:g} standard errors; in part if that is so of one of the two; fails otherwise.",
+        f"{SIGNIFICANT:g} standard errors; in part if only one of the two does not; fails otherwise.",
         why="Largest change of σ(ε) at given speed: "
         + ", ".join(f"{apart:.3g} standard errors with the {name}" for name, apart in worst.items())
-        + f". To be stated: {' and '.join(name for name, yes in free.items() if not yes) or 'neither'}.",
+        + f". Must be stated: {' and '.join(name for name, yes in free.items() if not yes) or 'nothing'}.",
     )
 
 

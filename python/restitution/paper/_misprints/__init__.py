@@ -134,7 +134,7 @@ MISPRINTS = (
         printed="J_xx = ρπ ∫ (½R² − ⅛L²)² + (2Lz² − ½L³)z + (2R² + ½L²)z² + 2Lz³ − 3z⁴ dz",
         corrected="J_xx = ½ρπ ∫ [(R² − ¼L²)² + (2LR² − ½L³)z + (2R² + ½L²)z² + 2Lz³ − 3z⁴] dz",
         proof="Twice the integrand of Eq. A6 is ½ϱ⁴ + 2z²ϱ², which is half the bracket of the corrected "
-        "formula: the factor ½, the square and 2LR² (printed as 2Lz²) are to be mended. Eq. A8 is the "
+        "formula: the factor ½, the square and 2LR² (printed as 2Lz²) must be corrected. Eq. A8 is the "
         "integral of Eq. A6, not of Eq. A7 as printed.",
         quantity="J_xx/(πρR⁵) at L = 2R",
         check=_checks.transverse_inertia,

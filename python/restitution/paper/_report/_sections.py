@@ -51,7 +51,7 @@ def heading(claims: Sequence[Claim], runs: Runs) -> str:
             html.paragraph(PAPER + ".", "lead"),
             html.paragraph(
                 f"Figures 2 to 7 and 9 are simulated anew, with {_grouped(counted)} impacts behind Fig. 2. "
-                f"Each of the {len(claims)} quantitative claims of the paper stands beside the number "
+                f"Each of the {len(claims)} quantitative claims of the paper is compared with the number "
                 "measured here, with its standard error and a verdict by a stated rule. Unless stated "
                 f"otherwise, the numbers are of the first {_grouped(recorded)} of these impacts. Made by "
                 f"{source(runs)}, seed {runs.seed}."
@@ -70,7 +70,7 @@ def summary(claims: Sequence[Claim]) -> str:
         for claim in claims
     )
     return (
-        '<table class="summary"><caption>Claims in the order of the paper; each verdict leads to its '
+        '<table class="summary"><caption>Claims in the order of the paper; each verdict links to its '
         'numbers.</caption><thead><tr><th scope="col">The paper</th><th scope="col">What we find</th>'
         f'<th scope="col">Verdict</th></tr></thead><tbody>\n{rows}\n</tbody></table>'
     )
@@ -98,8 +98,8 @@ def details(claims: Sequence[Claim]) -> str:
     how = html.paragraph(
         "Numbers are given ± one standard error. Impacts of one particle are correlated, so each particle "
         "counts as one draw in every standard error, and p-values rest on at most one impact of each "
-        f"particle at a speed. A difference counts from {SIGNIFICANT:g} standard errors on, so that about "
-        "one report in a hundred has a chance finding."
+        f"particle at a speed. A difference is significant from {SIGNIFICANT:g} standard errors; about one "
+        "report in a hundred then contains a spurious finding."
     )
     cards = (
         f'<article id="{html.text(claim.key)}">\n'
@@ -276,8 +276,8 @@ def simulations(runs: Runs) -> str:
     )
     note = html.paragraph(
         "A trajectory that collapses has infinitely many impacts in finite time; it ends there and nothing "
-        "is regularised. What is counted is not recorded; the recorded run of the same seed is its first "
-        "particles."
+        "is regularised. Counted impacts are not recorded; the recorded run consists of the first particles "
+        "of the run of the same seed."
     )
     caption = "Simulations: size, seed, and why trajectories ended"
     return f"{note}\n{html.table(headers, rows, caption=caption, numbers=(1, 2, 3, 5, 6))}"
