@@ -127,10 +127,10 @@ def sentence(found: Calibration) -> str:
     small = found.truth[:, 1] < 0.008
     below = found.truth[:, 1] < found.limit
     return (
-        f"{len(found.rank)} experiments. The shape was told in {100 * found.told.mean():.0f} % of all, in "
-        f"{100 * found.told[small].mean():.0f} % where L/R < 0.008, and in "
-        f"{100 * found.told[~small].mean():.0f} % above. Where it was not told, L/R was below the upper "
-        f"limit in {100 * below[~found.told].mean():.0f} %.\n"
+        f"{len(found.rank)} experiments. The shape was determined in {100 * found.told.mean():.0f} % of "
+        f"all, in {100 * found.told[small].mean():.0f} % where L/R < 0.008, and in "
+        f"{100 * found.told[~small].mean():.0f} % above. Where it was not determined, L/R was below the "
+        f"upper limit in {100 * below[~found.told].mean():.0f} %.\n"
     )
 
 

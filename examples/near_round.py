@@ -72,7 +72,7 @@ def kind(u: Floats, normal: float, phase: float) -> NDArray[np.int64]:
 
 
 def closed(u: Floats, normal: float, phase: float) -> Floats:
-    """Give σ/δ² in closed form, from three limits: the axis stands still, librates, or has any angle."""
+    """Give σ/δ² in closed form, from three limits: the axis is at rest, librates, or has any angle."""
     gain = 1 + normal
     random = 5 / 56 * gain * np.sqrt(gain**2 * (1 / u**2 - 1) / (1 - normal**2) + 0.5)
     if kick(normal, phase) >= 3:
@@ -96,7 +96,7 @@ def closed_over_map() -> str:
                 part.append(off[kind(u, normal, phase)[at] == number])
     lines = ["| the axis | where | σ of the map over the closed form: mean, rms, worst |", "|---|---|---|"]
     where = ("K < 3, T < 1", "K < 0.3, T > 1", "0.3 < K < 3, T > 1", "K > 3")
-    for name, text, part in zip(("stands still", *KINDS[1:]), where, logs, strict=True):
+    for name, text, part in zip(("at rest", *KINDS[1:]), where, logs, strict=True):
         x = np.concatenate(part)
         percent = 100 * np.expm1(x)
         worst = np.exp(np.abs(x).max())

@@ -106,8 +106,8 @@ def forms() -> str:
         "flattened (oblate)": {"form": "flattened"},
         "dumbbell": {"form": "dumbbell"},
         "centre of mass off by t": {"form": "off-centre"},
-        "three lobes, its stand-in": {"form": "lobed", "lobes": 3},
-        "five lobes, its stand-in": {"form": "lobed", "lobes": 5},
+        "three lobes, equivalent body": {"form": "lobed", "lobes": 3},
+        "five lobes, equivalent body": {"form": "lobed", "lobes": 5},
     }
     for name, form in bodies.items():
         cells = [f"{scatter(rs.from_roundness(DIAMETER, t, **form))[0]:.1e}" for t in FORMS_AT]  # type: ignore[arg-type]
