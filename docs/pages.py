@@ -76,6 +76,11 @@ def laws(contacts: int, images: Path | None) -> str:
     return str(_script("benchmarks.impulse").table())
 
 
+def theory(percent: int, images: Path | None) -> str:
+    """Make the table of benchmarks/accuracy.py."""
+    return str(_script("benchmarks.accuracy").table(percent / 100, rows=None if images else 2))
+
+
 @dataclass(frozen=True)
 class Block:
     """What makes a page's tables and figures, how large the run is for the page and for its stamp."""
@@ -92,6 +97,7 @@ BLOCKS = {
     "laws": Block(laws, 0, 0),
     "locking": Block(locking, 5000, 100, ("locking.png",)),
     "release": Block(release, 0, 0, ("golf.png",)),
+    "theory": Block(theory, 100, 1),
 }
 """By the name of the page."""
 
