@@ -6,10 +6,9 @@ use super::strike::{Strike, Touch, Turn};
 use crate::body::{Body, Hull};
 use crate::collision::Respond;
 use crate::flight::{Flight, State, States};
-use crate::search::{Arrival, Departure, Leap, Look, MOST_STEPS, Residue, Search};
-use crate::simd::elementary::sincos_in_lanes;
+use crate::search::{Arrival, Departure, Leap, Look, Residue, Search};
 use crate::simd::{Mask, Pack};
-use pulp::{Simd, WithSimd};
+use pulp::Simd;
 use std::ops::Range;
 
 /// A flight of a group that turns in the way T.
@@ -18,6 +17,9 @@ type FlightOf<S, T> = <T as Turn>::Flight<S, 1>;
 pub(crate) type StateOf<S, T> = <FlightOf<S, T> as Flight<S, 1>>::State;
 /// What an impact changes of it.
 type MotionOf<S, T> = <StateOf<S, T> as States<S, 1>>::Motion;
+
+/// Groups that take turns: enough for the arithmetic units to be busy, few enough for the fastest cache.
+pub(crate) const GROUPS: usize = 12;
 
 /// Most lanes of a vector.
 const LANES: usize = 8;
@@ -60,6 +62,9 @@ pub(crate) struct Group<S: Simd, T: Turn> {
     leap: Leap<S, 1>,
     residue: Residue<S, 1>,
     arrival: Arrival<S, 1>,
+    /// Up to when it is certain that nothing has touched, and the lanes in which that is still so where the search looks.
+    certain: Pack<S, 1>,
+    clear: Mask<S, 1>,
     /// The motion after the impact.
     after: MotionOf<S, T>,
     /// Speed at which the point of contact approached the plane.
@@ -94,6 +99,8 @@ impl<S: Simd, T: Turn> Group<S, T> {
             leap: Leap::none(simd),
             residue: Residue::none(simd),
             arrival: Arrival::none(simd),
+            certain: zero,
+            clear: Mask::splat(simd, true),
             time: zero,
             turned: (zero, zero),
             after: state.motion(),
@@ -203,26 +210,41 @@ impl<S: Simd, T: Turn> Group<S, T> {
         self.end(self.look.never, number, StopReason::NeverLands);
     }
 
-    /// Searches on until every particle has arrived.
+    /// Has the lanes arrive whose step leaves nothing of the gap that can be seen.
     #[inline(always)]
-    fn search_on(&mut self, number: usize, hull: &impl Hull) -> Result<(), Stuck> {
-        for _ in 0..MOST_STEPS {
-            self.search
-                .graze(self.time, &self.look, &self.leap, &mut self.arrival);
-            if !self.is_waiting() {
-                return Ok(());
-            }
-            self.time = self.search.next(self.time, &self.leap, &self.arrival);
-            self.turned = sincos_in_lanes(self.angle());
-            self.look(hull);
-            self.leap(hull);
-            self.residue(hull);
-            self.arrive(hull);
-            if !self.is_waiting() {
-                return Ok(());
-            }
-        }
-        Err(self.stuck(self.active & !self.arrival.done, number))
+    pub fn graze(&mut self) {
+        let Self {
+            time,
+            look,
+            leap,
+            clear,
+            arrival,
+            ..
+        } = self;
+        self.search.graze(*time, look, leap, *clear, arrival);
+    }
+
+    /// Finds where the next pass looks. Lanes that are done stay and find the same again.
+    #[inline(always)]
+    pub fn go_on(&mut self, hull: &impl Hull) {
+        let (clear, done) = (self.clear, self.arrival.done);
+        let certain = self.search.certain(self.time, &self.leap);
+        let certain = clear.select(certain, self.certain);
+        let aim = self
+            .search
+            .aim(certain, &self.leap, &self.residue, &self.arrival, hull);
+        let next = clear.select(aim, certain);
+        self.time = done.select(self.time, next);
+        self.certain = done.select(self.time, certain);
+    }
+
+    /// Finds out which lanes can have missed no contact on the way to where they look. The others have not arrived.
+    #[inline(always)]
+    pub fn clear(&mut self, hull: &impl Hull) {
+        self.clear = self
+            .search
+            .is_clear(self.certain, self.time, &self.look, hull);
+        self.arrival.done = self.arrival.done & self.clear;
     }
 
     /// Comes down on the plane.
@@ -306,31 +328,16 @@ impl<S: Simd, T: Turn> Group<S, T> {
         }
     }
 
+    /// Which particle has not arrived.
     #[cold]
-    fn stuck(&self, waiting: Mask<S, 1>, impacts: usize) -> Stuck {
+    pub fn stuck(&self, impacts: usize) -> Stuck {
         let mut first = None;
-        waiting.each(|lane| {
+        (self.active & !self.arrival.done).each(|lane| {
             first.get_or_insert(self.first + lane);
         });
         Stuck {
             lane: first.unwrap_or(self.first),
             impacts,
         }
-    }
-}
-
-/// More passes of the search for one group, compiled apart: written out in every loop they would crowd it.
-pub(super) struct SearchOn<'a, S: Simd, T: Turn, H> {
-    pub group: &'a mut Group<S, T>,
-    pub hull: &'a H,
-    pub number: usize,
-}
-
-impl<S: Simd, T: Turn, H: Hull> WithSimd for SearchOn<'_, S, T, H> {
-    type Output = Result<(), Stuck>;
-
-    #[inline(always)]
-    fn with_simd<U: Simd>(self, _: U) -> Self::Output {
-        self.group.search_on(self.number, self.hull)
     }
 }

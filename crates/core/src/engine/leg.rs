@@ -4,8 +4,9 @@
 //! known when its turn comes, and the same stage of several groups is under way at once, as many as the processor can
 //! look ahead; one stage after another for one group would be a single chain, with the arithmetic units waiting most of the time.
 
-use super::group::{Group, Release, SearchOn, Stuck};
+use super::group::{Group, Release, Stuck};
 use super::impact::Meanwhile;
+use super::passes::SearchOn;
 use super::strike::Turn;
 use crate::body::{Body, Hull, Surface, with_hull};
 use crate::collision::{Law, Respond};
@@ -130,15 +131,15 @@ pub(super) fn find<S: Simd, T: Turn>(
         group.arrive(hull);
         sink.meanwhile();
     }
+    if groups.iter().any(Group::is_waiting) {
+        let simd = groups[0].active.simd();
+        simd.vectorize(SearchOn {
+            groups: &mut *groups,
+            hull,
+            number,
+        })?;
+    }
     for group in groups.iter_mut() {
-        if group.is_waiting() {
-            let simd = group.active.simd();
-            simd.vectorize(SearchOn {
-                group,
-                hull,
-                number,
-            })?;
-        }
         group.end_those_that_never_land(number);
     }
     Ok(())

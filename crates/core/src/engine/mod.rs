@@ -6,12 +6,13 @@ mod end;
 mod group;
 mod impact;
 mod leg;
+mod passes;
 mod single;
 mod strike;
 
 pub(crate) use bounce::bounce;
 pub use end::{COLLAPSE_RUN, Limits, StopReason};
-pub(crate) use group::{Release, Stuck};
+pub(crate) use group::{GROUPS, Release, Stuck};
 pub(crate) use impact::{Impact, Meanwhile, Sink};
 pub(crate) use leg::{Apart, Legs, Together};
 pub use single::{

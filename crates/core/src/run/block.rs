@@ -3,7 +3,7 @@
 use super::Plan;
 use crate::Error;
 use crate::body::Surface;
-use crate::engine::{Apart, Legs, Planar, Sink, Spatial, Stuck, Together, Turn, bounce};
+use crate::engine::{Apart, GROUPS, Legs, Planar, Sink, Spatial, Stuck, Together, Turn, bounce};
 use crate::simd::{Level, Pack};
 use crate::threads::Monitor;
 use pulp::{Simd, WithSimd};
@@ -11,9 +11,6 @@ use std::ops::Range;
 
 /// Particles in a block: enough for the threads' bookkeeping not to be seen, few enough for all threads to stay busy.
 pub(crate) const BLOCK: usize = 96;
-
-/// Vectors of particles that take turns: enough for the arithmetic units to be busy, few enough for the fastest cache.
-const GROUPS: usize = 12;
 
 impl Plan<'_> {
     /// Bounces a range of particles and tells `sink`.

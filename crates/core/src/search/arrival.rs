@@ -1,8 +1,8 @@
 //! The end of the search: from the last certified step to the contact. See [`super`] for why it is the right one.
 
 use super::gap::{Gap, Look, Search};
-use super::{INVISIBLE, LAST, NEAR, SMALL};
-use crate::body::Hull;
+use super::{FAR, INVISIBLE, LAST, NEAR, SMALL};
+use crate::body::{Hull, Part};
 use crate::flight::{Attitude, Flight};
 use crate::simd::{Mask, Pack};
 use pulp::Simd;
@@ -144,13 +144,14 @@ impl<S: Simd, F: Flight<S, K>, const K: usize> Search<S, F, K> {
         }
     }
 
-    /// Has the lanes arrive whose step from `time` leaves nothing of the gap that can be seen.
+    /// Has the lanes arrive, of those that are `clear`, whose step from `time` leaves nothing of the gap that can be seen.
     #[inline(always)]
     pub fn graze(
         &self,
         time: Pack<S, K>,
         look: &Look<S, K>,
         leap: &Leap<S, K>,
+        clear: Mask<S, K>,
         arrival: &mut Arrival<S, K>,
     ) {
         let step = leap.step;
@@ -159,7 +160,8 @@ impl<S: Simd, F: Flight<S, K>, const K: usize> Search<S, F, K> {
         let turned = self.flight.rate().abs().mul_add(step, -LAST);
         let visible = self.bound.mul_add(step * step, -INVISIBLE);
         // Excesses, none of which may exceed 0: masks are dearer than numbers.
-        let last = look.gap.rate.lt(0.0) & late.max(turned).max(visible).le(0.0) & !arrival.done;
+        let invisible = late.max(turned).max(visible).le(0.0);
+        let last = look.gap.rate.lt(0.0) & invisible & clear & !arrival.done;
         let there = look.attitude.turned(self.flight.rate() * step);
         let attitude = &mut arrival.attitude;
         arrival.time = last.select(end, arrival.time);
@@ -168,10 +170,74 @@ impl<S: Simd, F: Flight<S, K>, const K: usize> Search<S, F, K> {
         arrival.done = arrival.done | last;
     }
 
-    /// Where the next pass looks after one at `time`; lanes that are done stay and find the same again.
+    /// Up to when a pass that looked at `time` rules out a contact.
     #[inline(always)]
-    pub fn next(&self, time: Pack<S, K>, leap: &Leap<S, K>, arrival: &Arrival<S, K>) -> Pack<S, K> {
-        arrival.done.select(time, self.skip(time + leap.step))
+    pub fn certain(&self, time: Pack<S, K>, leap: &Leap<S, K>) -> Pack<S, K> {
+        // However short a step is, time goes on.
+        self.skip(time + leap.step.max(f64::EPSILON * time))
+    }
+
+    /// Where the next pass looks: just before the contact to which the expansions lead, or where it is `certain` that there is
+    /// none before.
+    #[inline(always)]
+    pub fn aim(
+        &self,
+        certain: Pack<S, K>,
+        leap: &Leap<S, K>,
+        residue: &Residue<S, K>,
+        arrival: &Arrival<S, K>,
+        hull: &impl Hull,
+    ) -> Pack<S, K> {
+        let rate = residue.rate;
+        // Seen from the contact the gap opens backwards for at least 2|f′|/M.
+        let beyond = (0.5 * self.bound).mul_add(arrival.time - certain, rate);
+        // Half as far from the contact as is near: a pass from there ends the search, and sees more of the gap than rounding.
+        let turning = self.flight.rate().abs() * hull.sharpness();
+        let margin = (0.5 * NEAR) * rate / turning.mul_add(-rate, self.sway);
+        let aim = (arrival.time + margin).max(certain);
+        let led = (self.flight.rate() * leap.ahead).abs().le(FAR);
+        (led & beyond.le(0.0) & rate.lt(0.0)).select(aim, certain)
+    }
+
+    /// Whether no part can have touched between the time up to which that is `certain` and the `time` that is looked at.
+    ///
+    /// Backwards, too, f″ ≥ −M: s before it was seen to be f and f′ the gap was at least f − f′s − Ms²/2, which is concave, and so
+    /// positive where it is so at both ends.
+    #[inline(always)]
+    pub fn is_clear<H: Hull>(
+        &self,
+        certain: Pack<S, K>,
+        time: Pack<S, K>,
+        look: &Look<S, K>,
+        hull: &H,
+    ) -> Mask<S, K> {
+        let since = time - certain;
+        let part = &look.gap.part;
+        let least = self.least_gap(since, time, look, part, hull);
+        let least = if H::TWO {
+            least.min(self.least_gap(since, time, look, &hull.part(!part.one), hull))
+        } else {
+            least
+        };
+        !certain.lt(time) | (0.0 * since).lt(least)
+    }
+
+    /// A bound on the gap of a part for as long as `since` before `time`.
+    #[inline(always)]
+    fn least_gap(
+        &self,
+        since: Pack<S, K>,
+        time: Pack<S, K>,
+        look: &Look<S, K>,
+        part: &Part<S, K>,
+        hull: &impl Hull,
+    ) -> Pack<S, K> {
+        let swing = self.flight.swing(look.attitude);
+        let width = hull.gap(part, swing.tilt, self.flight.lift_at(time)); // (2)
+        let climb = self.flight.climb_at(time);
+        let rate = hull.lever(part, swing.tilt).mul_add(swing.rate, climb);
+        let fallen = since.mul_add(0.5 * self.bound, rate);
+        since.mul_add(-fallen, width).min(width)
     }
 
     /// Whether the gap falls to its only zero just behind `step`.

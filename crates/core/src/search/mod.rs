@@ -8,7 +8,9 @@
 //! touched on that last way, which no lower bound covers, is checked afterwards. At a grazing contact certified steps go on until
 //! nothing of the gap can be left.
 //!
-//! All lanes take the same step at the same time and wait for the slowest search; few need a second pass.
+//! All lanes take the same step at the same time and wait for the slowest search; few need a second pass. A further pass looks just
+//! before the contact to which the expansions of the last one lead. Whether none was passed on the way is checked there: f″ ≥ −M
+//! bounds the gap backwards as it does forwards. Where that is not enough, the pass is made again from where the last step ended.
 
 mod arrival;
 mod gap;
@@ -19,6 +21,8 @@ pub(crate) use gap::{Departure, Look, Search};
 /// A contact is near if the step turns the axis by at most this angle, over the sharpness of the hull, and the gap bends away
 /// from its tangent by at most about this part of it.
 const NEAR: f64 = 0.125;
+/// Beyond this angle the expansions say nothing of where the contact may be.
+const FAR: f64 = 0.5;
 /// It is located if the correction at the zero of the expansion is at most this part of the step, 2⁻¹⁸. Relative to the step the
 /// next correction is twice the cube of that.
 const SMALL: f64 = 1.0 / 262_144.0;

@@ -5,7 +5,7 @@ use super::axis::{Axis, ROUND};
 use super::backlog::{Backlog, LENGTH};
 use super::moments::Sums;
 use super::places::{all_sites, nowhere, sites, whole};
-use super::recent::{Extremes, FRACTION_QUANTA, Half, LARGEST, QUANTA, Recent, words};
+use super::recent::{Extremes, Half, LARGEST, Recent, fraction_quanta, quanta, words};
 use super::tally::{Bins, By, CREATES_ENERGY, Gains, Tally, WHAT};
 use crate::Error;
 use crate::engine::StopReason;
@@ -147,12 +147,10 @@ impl<'a> Counter<'a> {
     }
 
     /// Sums a value that is too far off for [`Recent`].
-    #[cold]
     #[inline(never)]
     fn sum_large(&mut self, row: usize, restitution: f64, fraction: f64) {
-        let quanta = (restitution - self.tally.origin) * QUANTA;
-        self.tally.sums[row].add(quanta.round_ties_even() as i64);
-        self.tally.fractions[row] += (fraction * FRACTION_QUANTA).round_ties_even() as u128;
+        self.tally.sums[row].add(quanta(restitution - self.tally.origin));
+        self.tally.fractions[row] += fraction_quanta(fraction) as u128;
         self.rows[row].extremes.add(restitution);
     }
 }

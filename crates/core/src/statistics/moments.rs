@@ -115,10 +115,30 @@ impl Sums {
     pub const LARGEST: f64 = 8_589_934_592.0; // 2³³
 
     /// Adds an offset of any size below [`Sums::LARGEST`], in quanta.
-    #[cold]
     pub(super) fn add(&mut self, q: i64) {
         let sign = (q >> 63) as u64;
         let size = q.unsigned_abs();
+        if size < 1 << 32 {
+            let square = size * size;
+            let [third, fourth] = [size, square].map(|x| u128::from(square) * u128::from(x));
+            let third = if sign == 0 {
+                third
+            } else {
+                third.wrapping_neg()
+            };
+            self.first.add([q as u64], sign);
+            self.second.add([square], 0);
+            self.third.add(words(third), sign);
+            self.fourth.add(words(fourth), 0);
+        } else {
+            self.add_wide(q, size);
+        }
+    }
+
+    /// The same for one whose square is wider than a word.
+    #[cold]
+    fn add_wide(&mut self, q: i64, size: u64) {
+        let sign = (q >> 63) as u64;
         let square = u128::from(size) * u128::from(size);
         let (low, high) = (square as u64, (square >> 64) as u64);
         self.first.add([q as u64], sign);

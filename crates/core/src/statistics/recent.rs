@@ -48,6 +48,32 @@ pub(super) fn words<S: Simd, const K: usize>(
     ]
 }
 
+/// An offset of ε from its origin, in quanta.
+#[inline(always)]
+pub(super) fn quanta(offset: f64) -> i64 {
+    let q = offset * QUANTA; // exact
+    if q.abs() < FEW {
+        counted(q)
+    } else {
+        q.round_ties_even() as i64
+    }
+}
+
+/// E_rot/E_tot in its quanta.
+#[inline(always)]
+pub(super) fn fraction_quanta(fraction: f64) -> i64 {
+    counted(fraction * FRACTION_QUANTA)
+}
+
+/// Below this a number that [`ROUND`] is added to is rounded to a whole one.
+const FEW: f64 = 1_125_899_906_842_624.0; // 2⁵⁰
+
+/// A number below [`FEW`], rounded to a whole one.
+#[inline(always)]
+fn counted(x: f64) -> i64 {
+    (x + ROUND).to_bits() as i64 - ROUND.to_bits() as i64
+}
+
 /// Sums over up to [`MOST`] values.
 #[derive(Clone, Copy)]
 #[repr(align(64))]
