@@ -83,9 +83,9 @@ macro_rules! columns {
             pub stop_reason: Vec<i8>,
             /// θ at release in rad, per particle.
             pub release_angle: Vec<f64>,
-            /// Height of the centre of mass at release in m, per particle; of none if all were let go from one.
+            /// Height of the centre of mass at release in m, per particle; of none if all were released from one.
             pub release_height: Vec<f64>,
-            /// Azimuth of the axis at release in rad, per particle; of none if all were let go at rest.
+            /// Azimuth of the axis at release in rad, per particle; of none if all were released at rest.
             pub release_azimuth: Vec<f64>,
             /// Angular velocity at release in rad/s, likewise.
             pub release_spin: Vec<[f64; 3]>,
@@ -111,7 +111,7 @@ macro_rules! columns {
                 })
             }
 
-            /// Keeps the first particles only. Memory that nobody wrote to is never touched.
+            /// Keeps the first particles only. Memory that was not written to is never touched.
             pub(crate) fn truncate(&mut self, particles: usize) {
                 $(self.$name.truncate(particles * self.columns);)*
                 self.settled.truncate(particles);
@@ -352,7 +352,7 @@ impl Records {
     }
 }
 
-/// The variables of a particle. The last ones are recorded of those that are not let go at rest over a level plane.
+/// The variables of a particle. The last ones are recorded of those that are not released at rest over a level plane.
 pub const PER_PARTICLE: [Variable; 6] = [
     Variable {
         name: "impacts",

@@ -5,13 +5,13 @@ use crate::engine::{NoConvergence, Release, SingleImpact, StopReason, trajectory
 use crate::flight::State;
 use crate::run::{Plan, Run, Scales};
 
-/// A particle of a run, ready to be let go.
+/// A particle of a run, ready to be released.
 pub struct Followed<'a> {
     plan: Plan<'a>,
     particle: usize,
     /// The units of what is seen, in SI.
     pub scales: Scales,
-    /// How it is let go, in the core's units.
+    /// How it is released, in the core's units.
     pub release: State,
 }
 

@@ -17,7 +17,7 @@
 //! | Â(t)·(0, 0, 1) | [`State::axis`], from sphere 2 to sphere 1 |
 //! | L/2, J_xx, J_zz | [`Body::half_separation`], [`Body::transverse`], [`Body::axial`] |
 //! | r_c, v_c | `arm`, `slip` in [`collision`] |
-//! | ε^n, ε^t | [`Normal`], [`TangentialRestitution`] |
+//! | ε_n, ε_t | [`Normal`], [`TangentialRestitution`] |
 //!
 //! # From the equation to the code
 //! | equation | file |

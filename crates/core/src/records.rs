@@ -58,7 +58,7 @@ impl Records {
         self.particle = kept.into_iter().map(|row| (first + row) as i64).collect();
     }
 
-    /// Adds how the particles, which are those from `first` on, were let go, where that is more than an angle.
+    /// Adds how the particles, which are those from `first` on, were released, where that is more than an angle.
     pub(crate) fn add_release(&mut self, plan: &Plan<'_>, first: usize) -> Result<(), Error> {
         let particle = |row: usize, this: &Self| {
             let known = this.particle.get(row);

@@ -21,7 +21,7 @@ pub struct Monitor {
     attend: Option<Box<Attend>>,
 }
 
-/// What looks after signals and progress where the work has no thread of its own.
+/// What handles signals and progress where the work has no thread of its own.
 type Attend = dyn Fn(&Monitor) + Send + Sync;
 
 impl Monitor {

@@ -32,9 +32,9 @@ pub enum When {
     NormalVaries,
     /// Where the full state at each impact is asked for.
     StateAsked,
-    /// Where the particles are let go from random heights.
+    /// Where the particles are released from random heights.
     HeightVaries,
-    /// Where the particles are not let go at rest over a level plane.
+    /// Where the particles are not released at rest over a level plane.
     InSpace,
 }
 

@@ -84,7 +84,7 @@ proptest! {
         }
     }
 
-    /// (17) for any length, also beyond touching spheres, where the paper stops; ε^t does not matter, as nothing slips. The
+    /// (17) for any length, also beyond touching spheres, where the paper stops; ε_t does not matter, as nothing slips. The
     /// energy follows: ΔE = P·(v_c + v_c′)/2 with P_n = (1 + ε)v gives 1 − (1 − ε_n)(1 + ε).
     #[test]
     fn the_first_impact_obeys_equation_17(

@@ -61,7 +61,7 @@ proptest! {
         prop_assert!(error <= 16.0 * f64::EPSILON * scale, "{error:e} of {scale:e}");
     }
 
-    /// Energy cannot grow where v′ᵀK⁻¹v′ ≤ vᵀK⁻¹v for every v: with ε^t = −ε^n, when all of v_c is scaled; for a sphere,
+    /// Energy cannot grow where v′ᵀK⁻¹v′ ≤ vᵀK⁻¹v for every v: with ε_t = −ε_n, when all of v_c is scaled; for a sphere,
     /// whose K is diagonal; and otherwise as long as κ² ≤ (1 − ε_n²)(1 − ε_t²)/(1 + ε_n ε_t)², κ² = K_nu²/(K_nn K_uu).
     #[test]
     fn energy_does_not_grow_where_the_law_cannot_do_work(
@@ -82,7 +82,7 @@ proptest! {
 }
 
 /// The criterion is sharp: just beyond it there is a contact velocity, the eigenvector of v′ᵀK⁻¹v′ − vᵀK⁻¹v, for which energy
-/// grows. With ε^t = 1 that is so for every body that is not a sphere: the paper's law is not a frictionless one.
+/// grows. With ε_t = 1 that is so for every body that is not a sphere: the paper's law is not a frictionless one.
 #[test]
 fn energy_grows_just_beyond_that_criterion() {
     use restitution_core::{State, Vector};

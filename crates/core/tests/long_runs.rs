@@ -69,7 +69,7 @@ fn a_million_impacts_are_in_order_and_above_the_plane() {
     assert!(deepest <= 1e-12, "{deepest:e}");
 }
 
-/// Where the law cannot do work — spheres, or ε^t = −ε^n for any body — a hundred thousand impacts never gain energy, from one
+/// Where the law cannot do work — spheres, or ε_t = −ε_n for any body — a hundred thousand impacts never gain energy, from one
 /// impact to the next: what is lost in the impact is not given back in the flight.
 #[test]
 fn energy_never_grows_where_it_cannot() {
@@ -109,7 +109,7 @@ fn energy_never_grows_where_it_cannot() {
     }
 }
 
-/// With ε^n = 1 and ε^t = −1 the contact velocity is reversed and no energy lost: the whole energy is the same after
+/// With ε_n = 1 and ε_t = −1 the contact velocity is reversed and no energy lost: the whole energy is the same after
 /// ten thousand impacts, up to roundings. They do not quite average out: about a sixth of an ulp an impact is gained at
 /// L/R = 3, however closely the contact is located (the last step at most 2⁻¹¹ or 2⁻¹⁶ of the flight time).
 #[test]

@@ -43,7 +43,7 @@ fn bodies() -> [Solid; 4] {
     ]
 }
 
-/// The state that a particle of a run is let go with, from what the records say of it.
+/// The state that a particle of a run is released with, from what the records say of it.
 fn released(run: &Run<'_>, records: &Records, particle: usize) -> State {
     let scales = Scales::new(run.body.unit, run.gravity * run.incline.cos()).unwrap();
     let angle = records.release_angle[particle];
@@ -59,7 +59,7 @@ fn released(run: &Run<'_>, records: &Records, particle: usize) -> State {
     )
 }
 
-/// The records say how each particle was let go: from there a particle by itself has the same first impact. The angles in them are
+/// The records say how each particle was released: from there a particle by itself has the same first impact. The angles in them are
 /// good to a rounding or two, of up to 300 rad/s times 0.2 s of turning and a lever of a few R.
 #[test]
 fn the_records_tell_the_release() {

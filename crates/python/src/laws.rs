@@ -40,7 +40,7 @@ impl Material {
         }
     }
 
-    /// ε^n as the engine computes it, at speeds in m/s.
+    /// ε_n as the engine computes it, at speeds in m/s.
     fn at<'py>(
         &self,
         py: Python<'py>,

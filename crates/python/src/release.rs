@@ -1,4 +1,4 @@
-//! How particles are let go: laws by name, or arrays.
+//! How particles are released: laws by name, or arrays.
 
 use crate::errors::{python_error, unless};
 use numpy::{PyReadonlyArray1, PyReadonlyArray2, PyUntypedArrayMethods};

@@ -1,4 +1,4 @@
-//! The one door for long work: releases the GIL, lets Ctrl-C through, reports progress, turns panics into exceptions.
+//! All long work goes through here: it releases the GIL, lets Ctrl-C through, reports progress, turns panics into exceptions.
 
 use crate::errors::python_error;
 use pyo3::exceptions::{PyKeyboardInterrupt, PyRuntimeError};
@@ -10,7 +10,7 @@ use std::sync::{Arc, Mutex};
 use std::thread;
 use std::time::{Duration, Instant};
 
-/// How often signals are looked at and progress is told.
+/// How often signals are checked and progress is reported.
 const TICK: Duration = Duration::from_millis(50);
 
 /// Runs `work` on a thread of its own, or here where the system gives none; `progress`, if any, is called with the number of
@@ -57,7 +57,7 @@ pub fn run<T: Send>(
     })
 }
 
-/// Runs `work` on this thread, which looks after signals and progress between impacts.
+/// Runs `work` on this thread, which handles signals and progress between impacts.
 fn run_here<T>(
     progress: Option<Py<PyAny>>,
     work: impl FnOnce(&Monitor) -> Result<T, Error>,
@@ -79,7 +79,7 @@ fn run_here<T>(
     ended(result, interrupt)
 }
 
-/// What the caller is told of work that has ended, perhaps because of a signal.
+/// What the caller gets to know of work that has ended, perhaps because of a signal.
 fn ended<T>(
     result: thread::Result<Result<T, Error>>,
     interrupt: Option<PyErr>,

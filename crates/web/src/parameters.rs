@@ -12,7 +12,7 @@ pub const COUNT: usize = 28;
 pub struct Parameters(pub [f64; COUNT]);
 
 impl Parameters {
-    /// The run, if body and law are possible. The rest is checked when it is let go.
+    /// The run, if body and law are possible. The rest is checked when it is released.
     pub fn run(&self) -> Result<Run<'_>, Error> {
         let p = &self.0;
         Ok(Run {

@@ -1,7 +1,7 @@
 //! What a law needs to know of a contact, and what it answers.
 //!
 //! In the frame of **n**, of **u**, the horizontal direction of the axis, and of **w** = **n** × **u**, the matrix
-//! K = I/m + [**r**_c]ᵀĴ⁻¹[**r**_c], which turns an impulse into the change of contact velocity (10), falls apart into a
+//! K = I/m + [**r**_c]ᵀĴ⁻¹[**r**_c], which turns an impulse into the change of contact velocity (10), separates into a
 //! 2×2 block {**n**, **u**} and a single entry for **w**. A law sees the contact velocity and K, and nothing of the body.
 
 use crate::simd::Pack;

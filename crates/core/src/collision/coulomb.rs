@@ -52,7 +52,7 @@ pub struct Coulomb<'a> {
 }
 
 impl<'a> Coulomb<'a> {
-    /// ε^n in [0, 1] or a function of the normal contact speed, μ ≥ 0.
+    /// ε_n in [0, 1] or a function of the normal contact speed, μ ≥ 0.
     pub fn new(
         normal: impl Into<Normal<'a>>,
         friction: f64,

@@ -4,7 +4,7 @@ use super::{Contacts, Normal, Responses};
 use crate::Error;
 use pulp::Simd;
 
-/// An impulse along the plane normal alone: P_n = (1 + ε^n)|v_c^n|/K_nn, so that v_c^n′ = −ε^n v_c^n.
+/// An impulse along the plane normal alone: P_n = (1 + ε_n)|v_c^n|/K_nn, so that v_c^n′ = −ε_n v_c^n.
 ///
 /// It conserves the horizontal velocity of the centre of mass and the angular momentum about **n**. The energy falls by
 /// (1 − ε_n²)(v_c^n)²/(2 K_nn): it cannot grow. The hypotheses of Newton, Poisson and Stronge are one here.
@@ -14,7 +14,7 @@ pub struct Frictionless<'a> {
 }
 
 impl<'a> Frictionless<'a> {
-    /// ε^n in [0, 1] or a function of the normal contact speed.
+    /// ε_n in [0, 1] or a function of the normal contact speed.
     pub fn new(normal: impl Into<Normal<'a>>) -> Result<Self, Error> {
         Ok(Self {
             normal: normal.into().checked()?,

@@ -76,7 +76,7 @@ impl<'a> Law<'a> {
         }
     }
 
-    /// The paper's law with a constant ε^n, if it is that.
+    /// The paper's law with a constant ε_n, if it is that.
     pub(crate) fn steady(&self) -> Option<Steady<'a>> {
         match self {
             Self::TangentialRestitution(law) => law.steady(),

@@ -1,7 +1,7 @@
 //! WHAT: the instantaneous change of motion at an impact, (6)–(8), (11). One file a law.
 //!
 //! In the frame of **n**, of **u**, the horizontal direction of the axis, and of **w** = **n** × **u**, the matrix
-//! K = I/m + [**r**_c]ᵀĴ⁻¹[**r**_c], which turns an impulse into the change of contact velocity (10), falls apart into a
+//! K = I/m + [**r**_c]ᵀĴ⁻¹[**r**_c], which turns an impulse into the change of contact velocity (10), separates into a
 //! 2×2 block {**n**, **u**} and a single entry for **w**. A formula is written once, over any number of contacts side by side
 //! ([`Contacts`]); what it has to say of **w** is left out where all motion is in the plane of **n** and **u**.
 

@@ -7,7 +7,7 @@ use pulp::Simd;
 
 /// Normal and tangential restitution of the contact velocity, (9).
 ///
-/// With ε^t = 1 it conserves the tangential contact velocity. For a body that is not a sphere this takes a tangential impulse,
+/// With ε_t = 1 it conserves the tangential contact velocity. For a body that is not a sphere this takes a tangential impulse,
 /// which can do positive work, so that kinetic energy can grow, and which may lie outside every friction cone. The law is not a
 /// frictionless one.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -17,7 +17,7 @@ pub struct TangentialRestitution<'a> {
 }
 
 impl<'a> TangentialRestitution<'a> {
-    /// ε^n in [0, 1] or a function of the normal contact speed, ε^t in [−1, 1].
+    /// ε_n in [0, 1] or a function of the normal contact speed, ε_t in [−1, 1].
     pub fn new(normal: impl Into<Normal<'a>>, tangential: f64) -> Result<Self, Error> {
         let normal = normal.into().checked()?;
         Error::unless(
@@ -29,12 +29,12 @@ impl<'a> TangentialRestitution<'a> {
         Ok(Self { normal, tangential })
     }
 
-    /// ε^t.
+    /// ε_t.
     pub fn tangential(&self) -> f64 {
         self.tangential
     }
 
-    /// The law with its ε^n, if that is constant.
+    /// The law with its ε_n, if that is constant.
     pub(super) fn steady(&self) -> Option<Steady<'a>> {
         let Normal::Constant(normal) = self.normal else {
             return None;
@@ -51,7 +51,7 @@ impl<'a> TangentialRestitution<'a> {
         self.with::<S, K, SPACE>(-restitution, -(restitution + 1.0), contact)
     }
 
-    /// The response with this −ε^n and −(1 + ε^n).
+    /// The response with this −ε_n and −(1 + ε_n).
     #[inline(always)]
     fn with<S: Simd, const K: usize, const SPACE: bool>(
         &self,
@@ -77,7 +77,7 @@ impl<'a> TangentialRestitution<'a> {
     }
 }
 
-/// The law with a constant ε^n, to be written out in the bounce loop of the lanes: the paper's runs are of this kind.
+/// The law with a constant ε_n, to be written out in the bounce loop of the lanes: the paper's runs are of this kind.
 pub(crate) struct Steady<'a> {
     law: TangentialRestitution<'a>,
     normal: f64,

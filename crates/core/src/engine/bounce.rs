@@ -12,7 +12,7 @@ use std::ops::Range;
 
 /// Bounces the `particles` of a release, at most as many as N groups hold. Calls `go_on` before every impact.
 ///
-/// How a group gets from one impact to the next is up to the `legs`; here it is told, and ended.
+/// How a group gets from one impact to the next is up to the `legs`; here it is reported, and ended.
 #[inline(always)]
 pub(crate) fn bounce<S: Simd, T: Turn, const N: usize>(
     simd: S,

@@ -24,7 +24,7 @@ pub(crate) const GROUPS: usize = 12;
 /// Most lanes of a vector.
 const LANES: usize = 8;
 
-/// How particles are let go.
+/// How particles are released.
 pub(crate) trait Release {
     /// The state of a particle at its release.
     fn start(&self, particle: usize) -> State;

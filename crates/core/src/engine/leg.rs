@@ -145,7 +145,7 @@ pub(super) fn find<S: Simd, T: Turn>(
     Ok(())
 }
 
-/// Computes sine and cosine of the angle where the groups look first.
+/// Computes sine and cosine of the angle at the first step of each group.
 #[inline(always)]
 fn turn<S: Simd, T: Turn>(groups: &mut [Group<S, T>], sink: &mut impl Meanwhile) {
     let mut chunks = groups.chunks_exact_mut(WIDE);

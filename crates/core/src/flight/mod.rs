@@ -119,7 +119,7 @@ pub(crate) trait Flight<S: Simd, const K: usize>: Copy {
     fn swing(&self, attitude: Attitude<S, K>) -> Swing<S, K>;
     /// The same at the start.
     fn beginning(&self) -> Swing<S, K>;
-    /// The state at `time`. Its lift is that of the start: where the body lands, the hull knows it better.
+    /// The state at `time`. Its lift is that of the start: where the body lands, the hull gives it more exactly.
     fn state(&self, time: Pack<S, K>, attitude: Attitude<S, K>) -> Self::State;
     /// Ends here: the place of the start is taken by the `state` at the end, with the lift at which the body touches.
     fn end(&mut self, state: Self::State, lift: Pack<S, K>);

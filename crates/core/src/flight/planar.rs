@@ -5,7 +5,7 @@ use crate::body::{Body, Swing};
 use crate::simd::Pack;
 use pulp::Simd;
 
-/// Position and motion. Nothing about a flight has to be worked out in advance, so that its start stands for it.
+/// Position and motion. Nothing has to be computed in advance, so that the start represents the flight.
 #[derive(Clone, Copy)]
 pub(crate) struct States<S: Simd, const K: usize> {
     pub lift: Pack<S, K>,

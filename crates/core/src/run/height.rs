@@ -1,4 +1,4 @@
-//! Initial conditions: how high a particle is let go.
+//! Initial conditions: how high a particle is released.
 
 use crate::Error;
 use crate::random::uniform;

@@ -1,4 +1,4 @@
-//! A run, in SI units, and how its particles are let go.
+//! A run, in SI units, and how its particles are released.
 
 mod block;
 mod height;
@@ -49,7 +49,7 @@ pub struct Run<'a> {
 }
 
 impl Run<'_> {
-    /// What the sums of ε are taken about: ε^n at the normal speed that a fall from the release has on the plane; of random
+    /// What the sums of ε are taken about: ε_n at the normal speed that a fall from the release has on the plane; of random
     /// heights the one in the middle.
     pub fn origin(&self) -> f64 {
         let drop = self.release_height.middle() - self.body.unit;
@@ -58,7 +58,7 @@ impl Run<'_> {
         self.law.normal().at(start.mul_add(start, gained).sqrt())
     }
 
-    /// Whether all particles are let go at rest, over a level plane. All directions along the plane are then alike, and each
+    /// Whether all particles are released at rest, over a level plane. All directions in the plane are then equivalent, and each
     /// particle stays in the vertical plane of its axis.
     pub(crate) fn is_at_rest(&self) -> bool {
         self.spin.is_none() && self.velocity == Vector::default() && self.incline == 0.0

@@ -1,4 +1,4 @@
-//! Initial conditions: how the symmetry axis lies when a particle is let go.
+//! Initial conditions: how the symmetry axis lies when a particle is released.
 
 use crate::Error;
 use crate::random::uniform;
@@ -11,7 +11,7 @@ use std::f64::consts::{PI, TAU};
 pub enum Orientation<'a> {
     /// θ uniform in [0, π), as the paper has it above (18).
     UniformAngle,
-    /// All directions of the axis alike: cos θ uniform in [−1, 1].
+    /// Isotropic: cos θ uniform in [−1, 1].
     Isotropic,
     /// One angle θ for each particle.
     Given(&'a [f64]),

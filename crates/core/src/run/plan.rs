@@ -126,7 +126,7 @@ impl<'a> Plan<'a> {
 }
 
 impl Release for Plan<'_> {
-    /// How a particle is let go. With no spin the direction of the tilt is of no consequence, and the axis is put into the x–z
+    /// How a particle is released. without spin the direction of the tilt does not matter, and the axis is put into the x–z
     /// plane.
     #[inline(always)]
     fn start(&self, particle: usize) -> State {

@@ -1,4 +1,4 @@
-//! Initial conditions: how a particle spins when it is let go.
+//! Initial conditions: how a particle spins when it is released.
 
 use crate::Error;
 use crate::flight::Vector;
@@ -17,7 +17,7 @@ pub enum Spin<'a> {
     Random {
         /// Least |**ω**|.
         low: f64,
-        /// Largest |**ω**|; `low` if all are to be alike.
+        /// Largest |**ω**|; `low` if it is the same for all.
         high: f64,
         /// Law of the direction.
         about: About,
@@ -33,11 +33,11 @@ pub enum Spin<'a> {
 /// The law of the direction of a random spin.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum About {
-    /// All directions alike.
+    /// Isotropic.
     Isotropic,
-    /// All directions along the plane alike.
+    /// Uniform over the directions in the plane.
     Horizontal,
-    /// All directions across the body's symmetry axis alike, so that it tumbles and **ω** stays constant in flight.
+    /// Uniform over the directions perpendicular to the symmetry axis, so that it tumbles and **ω** stays constant in flight.
     Across,
 }
 

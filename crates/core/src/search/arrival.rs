@@ -40,7 +40,7 @@ pub(crate) struct Arrival<S: Simd, const K: usize> {
 }
 
 impl<S: Simd, const K: usize> Leap<S, K> {
-    /// Before the first look.
+    /// Before the first evaluation.
     #[inline(always)]
     pub fn none(simd: S) -> Self {
         let zero = Pack::splat(simd, 0.0);
@@ -53,7 +53,7 @@ impl<S: Simd, const K: usize> Leap<S, K> {
 }
 
 impl<S: Simd, const K: usize> Residue<S, K> {
-    /// Before the first look.
+    /// Before the first evaluation.
     #[inline(always)]
     pub fn none(simd: S) -> Self {
         let zero = Pack::splat(simd, 0.0);
@@ -67,7 +67,7 @@ impl<S: Simd, const K: usize> Residue<S, K> {
 }
 
 impl<S: Simd, const K: usize> Arrival<S, K> {
-    /// Before the first look.
+    /// Before the first evaluation.
     #[inline(always)]
     pub fn none(simd: S) -> Self {
         Self {
@@ -90,7 +90,7 @@ impl<S: Simd, F: Flight<S, K>, const K: usize> Search<S, F, K> {
         }
     }
 
-    /// What is left of the gap that was looked at at `time`.
+    /// What is left of the gap that was evaluated at `time`.
     #[inline(always)]
     pub fn residue(
         &self,

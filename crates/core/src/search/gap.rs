@@ -49,7 +49,7 @@ pub(crate) struct Look<S: Simd, const K: usize> {
 }
 
 impl<S: Simd, const K: usize> Look<S, K> {
-    /// Before the first look.
+    /// Before the first evaluation.
     #[inline(always)]
     pub fn nothing(part: Part<S, K>) -> Self {
         let simd = part.lever.simd();

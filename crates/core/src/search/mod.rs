@@ -1,4 +1,4 @@
-//! WHEN: the first contact of a body with the plane, (2), which nothing can make it miss.
+//! WHEN: the first contact of a body with the plane (2), found for certain.
 //!
 //! The gap f under either part of a hull obeys f″ ≥ −M throughout a flight, M = 1 + (L/2)AΩ² for a dumbbell, or another bound for
 //! another hull. A step to the first zero of the lower bound f + f′τ − Mτ²/2 can therefore not pass a contact; such steps converge

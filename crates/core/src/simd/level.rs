@@ -1,4 +1,4 @@
-//! Which vector instructions to use: found out when the program runs, or told.
+//! Which vector instructions to use: detected when the program runs, or given.
 
 use crate::Error;
 #[cfg(not(all(target_arch = "wasm32", target_feature = "simd128")))]

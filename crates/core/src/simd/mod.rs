@@ -1,4 +1,4 @@
-//! Vectors of doubles, one particle a lane, and the functions of analysis over them. Nothing here knows of physics.
+//! Vectors of doubles, one particle a lane, and the functions of analysis over them. Independent of the physics.
 //!
 //! Every operation is the IEEE 754 one in every lane, so that a formula written once over a [`Pack`] gives the same bits at every SIMD
 //! level. A pack of one lane ([`one`]) is the scalar.

@@ -27,7 +27,7 @@ pub(super) struct Cells {
 struct Cell {
     /// The lowest edge that is not in an earlier cell.
     edge: f64,
-    /// Number of edges in earlier cells, plus [`ROUND`].
+    /// Number of edges in earlier cells, plus [`ROUND`]; with a minus sign where several edges are in this one.
     number: f64,
 }
 
@@ -126,13 +126,17 @@ impl Cells {
             if crowd <= 1 || count >= most {
                 let mut edges = edges.to_vec();
                 edges.push(f64::INFINITY);
-                let of = |&number: &u32| Cell {
-                    edge: edges[number as usize],
-                    number: f64::from(number) + ROUND,
+                let of = |pair: &[u32]| {
+                    let number = f64::from(pair[0]) + ROUND;
+                    let several = pair[1] - pair[0] > 1;
+                    Cell {
+                        edge: edges[pair[0] as usize],
+                        number: if several { -number } else { number },
+                    }
                 };
                 return Self {
                     scale,
-                    cells: before[..count].iter().map(of).collect(),
+                    cells: before.windows(2).map(of).collect(),
                     last: (count - 1) as f64,
                     crowded: (crowd > 1).then_some(edges),
                 };
@@ -185,8 +189,12 @@ impl<S: Simd, const K: usize> WithSimd for Locate<'_, S, K> {
             edge.as_mut_slice()[lane] = cell.edge;
             number.as_mut_slice()[lane] = cell.number;
         }
+        let several = number;
+        let number = several.abs();
         let mut bins = edge.le(x).select(number + 1.0, number);
-        if let Some(edges) = crowded {
+        if let Some(edges) = crowded
+            && several.lt(0.0).any()
+        {
             Cells::compare(edges, x.as_slice(), bins.as_mut_slice());
         }
         bins

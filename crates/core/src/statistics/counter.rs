@@ -17,7 +17,7 @@ use pulp::Simd;
 
 /// Counts impacts, by way of narrow integers that are emptied before they can overflow. Where an impact belongs is computed for
 /// all lanes side by side and put in a queue; the queue is counted lane by lane, while other arithmetic waits for its results.
-/// Lanes that hold no impact, or none that can be summed there, go to a site or a row of their own that nobody reads, so that all
+/// Lanes that hold no impact, or none that can be summed there, go to a site or a row of their own that is not read, so that all
 /// lanes do the same.
 pub(crate) struct Counter<'a> {
     tally: Tally,

@@ -17,7 +17,7 @@ pub(crate) use counts::Counts;
 pub use moments::{Moments, Sums};
 pub use tally::{Bins, By, CREATES_ENERGY, Gains, Grid, Tally};
 
-/// Makes a [`Tally`] of the impacts that it is told of.
+/// Makes a [`Tally`] of the impacts that it receives.
 pub(crate) trait Tallying: crate::engine::Sink {
     /// The tally.
     fn finish(self) -> Tally;

@@ -10,7 +10,7 @@ pub(super) fn whole(x: f64) -> usize {
     x.to_bits() as u32 as usize
 }
 
-/// The last place, which nobody reads, plus [`ROUND`].
+/// The last place, which is not read, plus [`ROUND`].
 #[inline(always)]
 pub(super) fn nowhere<T>(places: &[T]) -> f64 {
     (places.len() - 1) as f64 + ROUND
@@ -26,7 +26,7 @@ pub(super) fn sites<S: Simd, const K: usize>(
     start.mul_add(axis.stride, column)
 }
 
-/// The same where there may be impacts that are not defined, in the last column, or none, at a site that nobody reads.
+/// The same where there may be impacts that are not defined, in the last column, or none, at a site that is not read.
 #[inline(always)]
 pub(super) fn all_sites<S: Simd, const K: usize>(
     (axis, counts): (&Axis, &[u32]),

@@ -11,7 +11,7 @@ pub const CREATES_ENERGY: f64 = 1.0 + 1e-12;
 
 /// What the memory is for.
 pub(super) const WHAT: &str = "velocity_bins or impacts, times restitution_bins and fraction_bins";
-/// Sites that are looked at together: in fine grids most are empty, and memory that is only read takes no room.
+/// Sites that are examined together: in fine grids most are empty, and memory that is only read takes no room.
 const PART: usize = 512;
 
 /// What the rows of the grids stand for.
@@ -64,7 +64,7 @@ pub struct Tally {
     pub restitution: Grid,
     /// Impacts by row and bin of E_rot/E_tot; the last column as above. Without columns if only ε was asked for.
     pub fraction: Grid,
-    /// What ε is measured from in the sums: ε^n, so that nearly round bodies lose no digits.
+    /// What ε is measured from in the sums: ε_n, so that nearly round bodies lose no digits.
     pub(super) origin: f64,
     /// Sums of ε − origin by row; none if only counts were asked for.
     pub(super) sums: Vec<Sums>,

@@ -117,7 +117,7 @@ pub fn elongation() -> impl Strategy<Value = f64> {
     ]
 }
 
-/// ε^n and ε^t, with the ends of their ranges.
+/// ε_n and ε_t, with the ends of their ranges.
 pub fn coefficients() -> impl Strategy<Value = (f64, f64)> {
     let normal = prop_oneof![1 => Just(1.0), 1 => Just(0.0), 6 => 0.0..1.0_f64];
     let tangential = prop_oneof![

@@ -31,7 +31,7 @@ pub const NAMES: [&str; 7] = [
     "angle",
 ];
 
-/// How the particles of a run are let go: all with the same velocity from the same height.
+/// How the particles of a run are released: all with the same velocity from the same height.
 #[derive(Debug, Clone)]
 pub enum Start {
     /// Polar angle, azimuth and spin of each.
@@ -128,7 +128,7 @@ impl Case {
             .unwrap_or_else(|error| panic!("{error}: {self:#?}"))
     }
 
-    /// How a particle is let go, where that is not given as the product recorded it.
+    /// How a particle is released, where that is not given as the product recorded it.
     pub fn release(&self, records: &Records, particle: usize) -> Release {
         let (angle, azimuth, spin) = match &self.start {
             Start::Each(list) => {

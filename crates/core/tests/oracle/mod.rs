@@ -38,7 +38,7 @@ pub struct World {
     pub minimum_speed: f64,
 }
 
-/// How a particle is let go.
+/// How a particle is released.
 #[derive(Debug, Clone, Copy)]
 pub struct Release {
     pub height: f64,

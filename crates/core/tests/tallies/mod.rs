@@ -84,8 +84,8 @@ pub fn bits(tally: &Tally, rows: usize) -> Vec<u64> {
 }
 
 /// A run whose coefficients are as large as they come: a level body, let go so that both spheres come down together. After
-/// the first of the two impacts the centre of mass is nearly at rest, for ε^n = (L/2)²/(J_xx + R²) entirely; the second
-/// impact then has ε → ∞. `off` is the departure from that ε^n, `angles` those from level.
+/// the first of the two impacts the centre of mass is nearly at rest, for ε_n = (L/2)²/(J_xx + R²) entirely; the second
+/// impact then has ε → ∞. `off` is the departure from that ε_n, `angles` those from level.
 pub fn nearly_at_rest(elongation: f64, off: f64, angles: &[f64]) -> Run<'_> {
     let body = dumbbell(elongation);
     let normal = body.half_separation.powi(2) / (body.transverse + 1.0) + off;

@@ -62,7 +62,7 @@ pub struct Ball {
     pub radius: f64,
 }
 
-/// The part of a hull whose gap is looked at, in each lane.
+/// The part of a hull whose gap is evaluated, in each lane.
 #[derive(Clone, Copy)]
 pub(crate) struct Part<S: Simd, const K: usize> {
     /// Whether it is sphere 1; of no meaning where only one part can touch.

@@ -12,7 +12,7 @@ use crate::Error;
 use crate::simd::Pack;
 use pulp::{Scalar, Simd, WithSimd};
 
-/// ε^n, in [0, 1].
+/// ε_n, in [0, 1].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Normal<'a> {
     /// The same at every speed.

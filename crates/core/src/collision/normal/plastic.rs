@@ -5,7 +5,7 @@ use crate::Error;
 use crate::simd::Pack;
 use pulp::Simd;
 
-/// ε^n(v) = √(6√3/5) √(1 − x²/6) (x/(x + 2√(6/5 − x²/5)))^{1/4}, x = v_y/v; 1 up to the yield speed v_y, and ∝ v^{−1/4} far
+/// ε_n(v) = √(6√3/5) √(1 − x²/6) (x/(x + 2√(6/5 − x²/5)))^{1/4}, x = v_y/v; 1 up to the yield speed v_y, and ∝ v^{−1/4} far
 /// beyond it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Plastic {

@@ -4,7 +4,7 @@ use crate::Error;
 use crate::simd::Pack;
 use pulp::Simd;
 
-/// ε^n(v) by linear interpolation between points, and constant beyond the first and the last.
+/// ε_n(v) by linear interpolation between points, and constant beyond the first and the last.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Tabulated<'a> {
     speeds: &'a [f64],

@@ -7,7 +7,7 @@ use crate::simd::elementary::{fifth_root, polynomial};
 use pulp::Simd;
 use std::f64::consts::PI;
 
-/// A viscoelastic sphere on a rigid plane, ε^n(v) as the Padé approximant [3/6] in v* = β^{1/2}v^{1/10}.
+/// A viscoelastic sphere on a rigid plane, ε_n(v) as the Padé approximant [3/6] in v* = β^{1/2}v^{1/10}.
 ///
 /// The force at a compression ξ is ρ(ξ^{3/2} + (3/2) A ξ^{1/2} dξ/dt), with Hertz's ρ = (4/3) √R Y/(1 − ν²) for a sphere on
 /// a rigid plane, and the contact ends where it would turn to attraction. With k = ρ/m, β = (3/2) A k^{2/5}.
@@ -17,7 +17,7 @@ pub struct Viscoelastic {
     scale: f64,
 }
 
-/// Coefficients of v*⁰, v*¹, ... in the numerator of ε^n(v*).
+/// Coefficients of v*⁰, v*¹, ... in the numerator of ε_n(v*).
 pub const PADE_ABOVE: [f64; 4] = [1.0, 1.072_32, 0.574_198, 0.141_552];
 /// The same in its denominator.
 pub const PADE_BELOW: [f64; 7] = [

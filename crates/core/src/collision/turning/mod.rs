@@ -28,7 +28,7 @@ const VANISHED: f64 = 1.0 / 18_014_398_509_481_984.0; // 2⁻⁵⁴
 /// Panels after which the slip is taken to have vanished.
 const MOST_PANELS: usize = 1000;
 
-/// A contact, and what Coulomb's law knows of it.
+/// A contact, and what of it enters Coulomb's law.
 #[derive(Clone, Copy)]
 pub(crate) struct Slipping<S: Simd, const K: usize> {
     /// −v_c^n ≥ 0.
