@@ -49,6 +49,6 @@ def run(angles: Floats, seconds: float, step: float, stiffness: float) -> Motion
 
     def advance(_: int) -> Floats:
         mujoco.mj_step(model, data)
-        return data.qvel[2::6]
+        return np.asarray(data.qvel[2::6])
 
     return record(advance, angles.size, seconds, step)
