@@ -2,9 +2,12 @@
 
 import json
 import math
+import re
 import shutil
 import subprocess
+from itertools import product
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -163,3 +166,34 @@ def test_heights_beyond_the_digits_of_a_double(law: rs.TangentialRestitution, he
         rs.simulate(body, law, spin=[0.0, height, 0.0])
     with pytest.raises(ValueError, match=r"^incline = .*: must be at most pi/2"):
         rs.simulate(body, law, incline=math.pi / 2 - 1e-12)
+
+
+LAWS = (
+    rs.TangentialRestitution(normal=1.0),
+    rs.TangentialRestitution(normal=0.9, tangential=0.5),
+    rs.Coulomb(normal=0.95, friction=0.3),
+)
+
+
+def test_the_check_of_records_holds_for_any_run(body: rs.Dumbbell) -> None:
+    """The page's own: it knows how many digits late times and great heights have, and still finds harm."""
+    page = (Path(__file__).parents[1] / "docs/records.md").read_text(encoding="utf-8")
+    names: dict[str, Any] = {}
+    exec(re.findall(r"^```python\n(.*?)^```$", page, re.DOTALL | re.MULTILINE)[0], names)
+    misfit = names["largest_misfit"]
+    data = names["data"]
+    assert misfit(data, names["body"]) < 1
+    for name in ("time", "impact_velocity", "rebound_velocity"):
+        factor = xr.ones_like(data[name])
+        factor[3, 5] += 1e-12
+        assert misfit(data.assign({name: data[name] * factor}), names["body"]) > 1
+    long = rs.simulate(body, LAWS[0], particles=1, impacts=10**6)
+    assert long.time.max() > 1e5
+    assert misfit(long, body) < 1
+    for law, separation, height, gravity in product(
+        LAWS, (3e-5, 3e-3, 0.3), (3.0, 1e3, 1e6), (1e-8, 9.81, 1e3)
+    ):
+        slim = rs.Dumbbell(radius=3e-3, separation=separation)
+        data = rs.simulate(slim, law, particles=30, impacts=200, release_height=height, gravity=gravity)
+        if data.impacts.max() > 1:
+            assert misfit(data, slim, gravity) < 1, (law, separation, height, gravity)
