@@ -76,7 +76,6 @@ RUN = [
         ("spin", value, SPIN)
         for value in (1.0, "fast", True, [1, 2], [1, 2, "3"], np.zeros((4, 2)), [[1, 2]])
     ),
-    ("spin", np.zeros((7, 3)), "must be one per particle, and particles = "),
     *(("velocity", value, VELOCITY) for value in (1.0, "up", [1, 2], [1, 2, None], [[1, 2, 3]])),
     *(("velocity", [0, 0, value], VELOCITY) for value in NOT_FINITE),
 ]
@@ -155,10 +154,12 @@ def test_angles(body: rs.Dumbbell, law: rs.TangentialRestitution) -> None:
     assert refused([0.1, math.nan, 0.3]) == f"orientation[1] = nan: {ANGLE}"
     assert refused(np.array([0.1, 0.2, -np.inf])) == f"orientation[2] = -inf: {ANGLE}"
     assert refused([2.0**20 + 1, 0.2, 0.3]) == f"orientation[0] = 1048577.0: {ANGLE}"
-    expected = "orientation = an array of {} angles: must be one angle per particle, and particles = 3"
+    expected = "orientation has {} angles: must have one for each of particles = 3"
     assert refused([0.1, 0.2]) == expected.format(2)
     assert refused([]) == expected.format(0)
     assert refused([[0.1, 0.2]]) == expected.format(1)
+    told = message(lambda: rs.simulate(body, law, particles=3, spin=np.zeros((7, 3))))
+    assert told == "spin has 7 of them: must have one for each of particles = 3"
 
 
 def test_a_tilted_body_may_start_lower(body: rs.Dumbbell, law: rs.TangentialRestitution) -> None:

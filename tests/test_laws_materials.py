@@ -162,13 +162,13 @@ def test_the_engine_needs_no_power_function() -> None:
             STEEL | {"dissipation": -1.0},
             "dissipation = -1.0: must be a finite number >= 0 (s)",
         ),
-        (rs.Viscoelastic, STEEL | {"radius": 1e-300}, "young_modulus = 210000000000.0: must be such that"),
+        (rs.Viscoelastic, STEEL | {"radius": 1e-300}, "young_modulus = 210000000000.0, poisson_ratio = "),
         (rs.Plastic, {"yield_speed": 0}, "yield_speed = 0: must be a finite number > 0 (m/s)"),
         (rs.Tabulated, {"v": [], "e": []}, "v = []: must be a 1-D array of at least one number"),
         (rs.Tabulated, {"v": [[0.1]], "e": [1]}, "v = [[0.1]]: must be a 1-D array"),
         (rs.Tabulated, {"v": [0.1, math.nan], "e": [1, 1]}, "v[1] = nan: must be a finite number >= 0 (m/s)"),
         (rs.Tabulated, {"v": [0.1, 0.1], "e": [1, 1]}, "v[1] = 0.1: must be greater than v[0] = 0.1"),
-        (rs.Tabulated, {"v": [0.1, 0.2], "e": [1]}, "e = an array of 1 numbers: must be one for each of"),
+        (rs.Tabulated, {"v": [0.1, 0.2], "e": [1]}, "v, e: 2 speeds and 1 coefficients; must be as many"),
         (rs.Tabulated, {"v": [0.1], "e": [1.1]}, "e[0] = 1.1: must be a real number in [0, 1]"),
         (
             rs.Frictionless,
@@ -281,7 +281,7 @@ def test_a_law_takes_any_function_of_the_speed() -> None:
         ),
         (
             lambda: rs.Tabulated.from_function(lambda v: 0.5 + 0.4 * math.sin(1e5 * v)),
-            "normal needs more than 100,000 points for 1e-06",
+            "function needs more than 100,000 points for 1e-06",
         ),
     ],
 )

@@ -165,7 +165,7 @@ def test_noise_and_speech_like_noise_hold_no_series() -> None:
     for swell in (0.0, 1.0):
         slow = np.interp(np.arange(6 * 44100), np.arange(0, 6 * 44100, 4410), rng.standard_normal(60))
         noise = 0.05 * rng.standard_normal(6 * 44100) * np.exp(swell * slow)
-        with pytest.raises(ValueError, match=r"^the array: no (impact|series of impacts) is heard"):
+        with pytest.raises(ValueError, match=r"^source: no (impact|series of impacts) is heard"):
             rs.sound.impacts(noise, 44100)
 
 
@@ -174,7 +174,7 @@ def test_one_impact_is_told() -> None:
     samples = 1e-3 * rng.standard_normal(44100)
     samples[20000:20400] += rng.standard_normal(400) * np.exp(-np.arange(400) / 60)
     with pytest.raises(
-        ValueError, match=r"^the array: one impact is heard, at 0.45 s; at least three are needed"
+        ValueError, match=r"^source: one impact is heard, at 0.45 s; at least three are needed"
     ):
         rs.sound.impacts(samples, 44100)
 
@@ -182,11 +182,11 @@ def test_one_impact_is_told() -> None:
 @pytest.mark.parametrize(
     ("source", "rate", "message"),
     [
-        (np.zeros(44100), 44100, "the array: silence; every sample has the same value"),
-        (np.ones(100), 44100, "the array: 0.00227 s of sound; must be at least 0.1 s"),
+        (np.zeros(44100), 44100, "source: silence; every sample has the same value"),
+        (np.ones(100), 44100, "source: 0.00227 s of sound; must be at least 0.1 s"),
         (np.ones(44100), None, "rate: missing; must be the samples per second of the array (Hz)"),
-        (np.ones(44100), 0, "rate = 0.0: must be a number in [2000, 1e+06] (Hz)"),
-        (np.full(44100, np.nan), 44100, "the array: samples that are NaN or infinite; must be finite"),
+        (np.ones(44100), 0, "rate = 0: must be a number in [2000, 1e+06] (Hz)"),
+        (np.full(44100, np.nan), 44100, "source: samples that are NaN or infinite; must be finite"),
         (["a"], 44100, "source = ['a']: must be a path, or samples of shape (n,) or (n, channels)"),
     ],
 )

@@ -1,19 +1,21 @@
 """Numbers from outside, checked in one place: real, unmasked, without units; the error names the argument."""
 
 import math
-from collections.abc import Callable, Collection
+import sys
+from collections.abc import Callable, Collection, Iterable
 from operator import index
 from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
-from restitution._parameters import ParameterError, _plain_number, wrong
+from restitution._parameters import ParameterError, Problem, _plain_number, wrong
 
 FloatArray = npt.NDArray[np.float64]
 
 _DEEPEST = 32
 """Lists in lists that are looked into; no table of ours has more than two."""
+_MOST_DIMENSIONS = 32
 _UNITS = ("to_value", "dimensionality")
 """Attributes that identify the quantities of astropy, unyt and pint, whose units NumPy drops silently."""
 
@@ -71,7 +73,7 @@ def real(name: str, value: Any, allowed: str, good: Callable[[float], bool] = ma
     """Take one number for which `good` holds."""
     number = float(reals(name, value, allowed, dimensions=(0,), finite=False))
     if not good(number):
-        raise ParameterError(wrong(name, number, allowed))
+        raise ParameterError(wrong(name, value, allowed))
     return number
 
 
@@ -86,6 +88,34 @@ def whole(name: str, value: Any, least: int, most: int | None = None) -> int:
     if isinstance(plain, bool) or number < least or (most is not None and number > most):
         raise ParameterError(wrong(name, value, allowed))
     return number
+
+
+def shape(name: str, value: Any) -> tuple[int, ...]:
+    """Take the shape of an array: a whole number, or a tuple of them."""
+    try:
+        lengths = tuple(index(length) for length in (value if isinstance(value, Iterable) else (value,)))
+    except Exception:  # whatever the object raises
+        lengths = (-1,)
+    if isinstance(value, bool) or min(lengths, default=0) < 0:
+        raise ParameterError(wrong(name, value, "a whole number >= 0 or a tuple of them"))
+    if len(lengths) > _MOST_DIMENSIONS or max(lengths, default=0) > sys.maxsize:
+        raise ParameterError(wrong(name, value, f"at most {_MOST_DIMENSIONS} lengths of at most 2**63 - 1"))
+    return lengths
+
+
+def function(name: str, value: Any) -> Callable[[float], float]:
+    """Take a function of one number; what it raises, or gives that is no number, names it."""
+    if not callable(value):
+        raise ParameterError(wrong(name, value, "a function of one number"))
+
+    def at(x: float) -> float:
+        try:
+            return float(value(x))
+        except Exception as error:
+            text = f" gave {type(error).__name__}: {error} at {x!r}: must give a number"
+            raise ParameterError(Problem(name, text)) from error
+
+    return at
 
 
 def flag(name: str, value: Any) -> bool:

@@ -1,6 +1,8 @@
 """One validation for the Python call and the TOML file: frozen parameter sets with readable errors."""
 
+import math
 from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
 from difflib import get_close_matches
 from reprlib import Repr
@@ -43,6 +45,17 @@ def wrong(name: str, value: Any, allowed: str) -> Problem:
     return Problem(name, f" = {shown(value)}: must be {allowed}")
 
 
+@contextmanager
+def in_terms_of(**given: Any) -> Iterator[None]:
+    """Name the arguments where something that follows from them is wrong."""
+    try:
+        yield
+    except ParameterError as error:
+        words = ", ".join(f"{name} = {shown(value)}" for name, value in given.items())
+        first, _, rest = words.partition(" = ")
+        raise ParameterError(*(Problem(first, f" = {rest}: gives {one}") for one in error.problems)) from None
+
+
 def unknown(name: str, taker: str, allowed: Iterable[str], prefix: str = "") -> Problem:
     """Say that `taker` knows no such name, which it does know, and which was meant."""
     names = list(allowed)
@@ -78,7 +91,10 @@ def _plain_number(value: Any) -> Any:
         return value
     if np.ma.is_masked(value):
         return value
-    return float(value) if value.dtype.kind == "f" else value.item()
+    if value.dtype.kind != "f":
+        return value.item()
+    number = float(value)
+    return value if math.isinf(number) and np.isfinite(value) else number  # of extended precision
 
 
 def _number_itself(value: Any) -> int | float:

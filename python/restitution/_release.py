@@ -75,7 +75,11 @@ def _velocity(value: Any) -> tuple[float, ...]:
 
 def _rate(value: Any) -> float | tuple[float, float]:
     pair = isinstance(value, list | tuple) and len(value) == 2
-    rates = _array("rate", [_plain_number(part) for part in (value if pair else [value])], _RATES, 1)
+    try:
+        parts = [_plain_number(part) for part in (value if pair else [value])]
+        rates = _array("rate", parts, _RATES, 1)
+    except ParameterError:
+        raise ParameterError(wrong("rate", value, _RATES)) from None
     if not 0.0 <= rates[0] <= rates[-1] < math.inf:
         raise ParameterError(wrong("rate", value, _RATES))
     return (float(rates[0]), float(rates[1])) if pair else float(rates[0])

@@ -79,9 +79,8 @@ class Run(Parameters):
     def _nothing_below_the_plane(self) -> "Run":
         angles = self.angles
         if angles is not None and angles.size != self.particles:
-            given = f"an array of {angles.size} angles"
-            allowed = f"one angle per particle, and particles = {self.particles}"
-            raise ParameterError(Problem("orientation", f" = {given}: must be {allowed}"))
+            text = f" has {angles.size} angles: must have one for each of particles = {self.particles}"
+            raise ParameterError(Problem("orientation", text))
         solid = self.body.solid
         least = self.heights[0]
         if solid.clears(least):
@@ -131,9 +130,8 @@ class Run(Parameters):
     def _one_spin_per_particle(self) -> "Run":
         spins = self.spins
         if spins is not None and len(spins) != self.particles:
-            given = f"an array of {len(spins)} angular velocities"
-            allowed = f"one per particle, and particles = {self.particles}"
-            raise ParameterError(Problem("spin", f" = {given}: must be {allowed}"))
+            text = f" has {len(spins)} of them: must have one for each of particles = {self.particles}"
+            raise ParameterError(Problem("spin", text))
         return self
 
     @property

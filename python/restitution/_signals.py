@@ -40,6 +40,17 @@ def ending() -> Iterator[list[int]]:
 
 
 @contextmanager
+def leaving() -> Iterator[None]:
+    """Leave at once at a signal that ends a process: before a command begins, and after it has ended."""
+
+    def leave(number: int, _: Any) -> None:
+        raise SystemExit(128 + number)
+
+    with _handled(leave):
+        yield
+
+
+@contextmanager
 def put_off(tell: Callable[[], None]) -> Iterator[list[int]]:
     """Let the block end before a signal counts, which is put into the list; a second one ends the block."""
     late: list[int] = []

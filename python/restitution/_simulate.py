@@ -158,7 +158,7 @@ def simulate(
 
 def checked_record(record: object) -> Record:
     """Refuse what is neither "impacts" nor "state"."""
-    if record == "impacts" or record == "state":
+    if isinstance(record, str) and record in get_args(Record):
         return "state" if record == "state" else "impacts"
     raise ParameterError(wrong("record", record, " or ".join(map(repr, get_args(Record)))))
 

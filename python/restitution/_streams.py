@@ -41,6 +41,9 @@ def _put(line: str, name: str) -> None:
         setattr(sys, name, None)  # or what is left in it would be an error at the end of the process
         with suppress(OSError, ValueError, AttributeError):
             _null(stream.fileno())
+    except OSError as error:  # as of a disk that is full
+        setattr(sys, name, None)
+        raise OSError(error.errno, error.strerror, "standard output") from None
 
 
 def open_missing() -> None:

@@ -7,13 +7,14 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import numpy.typing as npt
 
-from restitution._arrays import FloatArray, check_each, reals
+from restitution._arrays import FloatArray, check_each, reals, whole
 from restitution._parameters import ParameterError, Problem, wrong
 
 if TYPE_CHECKING:
     import xarray as xr
 
 _NEEDED = ("time", "position", "axis", "velocity_after", "angular_velocity_after", "release_angle")
+_SETTINGS = ("gravity", "incline", "velocity", "axial_inertia", "transverse_inertia")
 _ABOUT = {
     "position": ("position of the centre of mass; the release is over the origin, z = 0 the plane", "m"),
     "velocity": ("velocity of the centre of mass", "m s-1"),
@@ -78,12 +79,13 @@ def trajectory(data: xr.Dataset, particle: int, times: npt.ArrayLike) -> xr.Data
     """
     import xarray as xr
 
-    if not isinstance(data, xr.Dataset) or any(name not in data for name in _NEEDED):
-        lacking = [] if not isinstance(data, xr.Dataset) else [name for name in _NEEDED if name not in data]
-        text = f" lacks {', '.join(lacking)}" if lacking else f" is of type {type(data).__name__}"
-        raise ParameterError(
-            Problem("data", f'{text}: must be from restitution.simulate(..., record="state")')
-        )
+    instead = 'from restitution.simulate(..., record="state")'
+    if not isinstance(data, xr.Dataset):
+        raise ParameterError(wrong("data", data, instead))
+    lacking = [name for name in _NEEDED if name not in data]
+    lacking = lacking or [name for name in _SETTINGS if name not in data.attrs]
+    if lacking:
+        raise ParameterError(Problem("data", f" lacks {', '.join(lacking)}: must be {instead}"))
     one = _particle(data, particle)
     asked = reals("times", times, "times in s, one or several", dimensions=(0, 1), finite=False)
     when = np.atleast_1d(asked)
@@ -124,9 +126,13 @@ def trajectory(data: xr.Dataset, particle: int, times: npt.ArrayLike) -> xr.Data
 
 def _particle(data: xr.Dataset, particle: int) -> xr.Dataset:
     numbers = data["particle"].to_numpy()
-    at = np.flatnonzero(numbers == particle) if np.ndim(particle) == 0 else np.empty(0)
-    if isinstance(particle, bool) or at.size != 1:
-        raise ParameterError(wrong("particle", particle, f"one of {numbers[0]} to {numbers[-1]}"))
+    allowed = f"one of {numbers[0]} to {numbers[-1]}" if numbers.size else "one that `data` has"
+    try:
+        at = np.flatnonzero(numbers == whole("particle", particle, 0))
+    except ParameterError:
+        at = np.empty(0, dtype=np.int64)
+    if at.size != 1:
+        raise ParameterError(wrong("particle", particle, allowed))
     return data.isel(particle=int(at[0]))
 
 

@@ -1,159 +1,62 @@
-"""What `test_contract` attacks besides: experiments, figures, files and studies. The value is as there."""
+"""Calls about experiments, studies, recordings and pages; as in `calls`."""
 
-import tempfile
-from collections.abc import Callable
 from functools import cache
 from pathlib import Path
 from typing import Any
+from unittest.mock import patch
 
 import numpy as np
 
 import restitution as rs
-from restitution import bodies, budget, explorer, figures, fit, flight, sound, study
+from reference.calls import Call, folder, good, of, some
+from restitution import budget, explorer, flight, inference, laws_figure, listen, paper, sound, study
+from restitution._run import Run
+from restitution.listen._analysis import Setting
 
-Attacked = tuple[Callable[..., Any], Callable[[], dict[str, Any]], tuple[str, ...]]
+ENOUGH = "the attack has come far enough"
+
+
+def _leave(*_: Any, **__: Any) -> None:
+    raise ValueError(f"arguments: {ENOUGH}")
+
+
+def _redraw(**given: Any) -> Any:
+    """Call up to where the work would begin, which takes minutes."""
+    with patch("restitution.paper._redraw.simulate_all", _leave):
+        return paper.redraw(**given)
+
+
+def _laws(**given: Any) -> Any:
+    """Likewise."""
+    with patch("restitution.laws_figure._measure.compare", _leave):
+        return laws_figure.write(**given)
 
 
 @cache
-def folder() -> Path:
-    """Give a folder with one small file of each kind that is read."""
-    path = Path(tempfile.mkdtemp())
-    (path / "times.csv").write_text("time (s)\n0\n0.4\n0.78\n1.141\n", encoding="ascii")
+def recording() -> Path:
+    import soundfile
+
+    path = folder() / "ball.wav"
+    soundfile.write(path, samples(), 8000)
     return path
 
 
+def samples() -> Any:
+    """Make the sound of a ball with ε = 0.9 that is heard eight times."""
+    rate, times = 8000, np.cumsum(0.3 * 0.9 ** np.arange(8))
+    found = np.random.default_rng(1).normal(0.0, 1e-4, int(rate * (times[-1] + 0.3)))
+    for k, time in enumerate(times):
+        at, n = int(time * rate), np.arange(400)
+        found[at : at + 400] += 0.9 ** (k + 1) * np.exp(-n / 40) * np.sin(1.9 * n)
+    return 0.9 * found
+
+
 @cache
-def good() -> dict[str, Any]:
-    body, law = rs.Dumbbell(radius=3e-3, separation=3e-3), rs.TangentialRestitution(normal=0.9)
-    data = rs.simulate(body, law, particles=200, impacts=20)
-    times = np.cumsum([0.0, *(0.4 * 0.95**n for n in range(12))])
-    measured = flight.restitution(times, 1e-4, drop_height=0.22)
-    laplace = fit.laplace(data, velocity=(0.5, 0.9))
-    found = rs.reduce(data, np.linspace(0.1, 1.2, 12), np.linspace(-1, 3, 101))
-    return {
-        "body": body,
-        "law": law,
-        "data": data,
-        "times": times,
-        "measured": measured,
-        "law_fit": flight.fit(measured),
-        "fit": laplace,
-        "found": found,
-        "slopes": fit.slopes(data, np.linspace(0.2, 1.0, 6), resamples=2),
-    }
+def heard() -> listen.Analysis:
+    return listen.analyse(recording(), Setting(diameter=0.02))
 
 
-WINDOW = (0.5, 0.9)
-MEASURING: dict[str, Attacked] = {
-    "LoadedSphere": (
-        rs.LoadedSphere,
-        lambda: {"radius": 0.01, "density": 1000.0, "load": 1e-3, "offset": 2e-3},
-        (),
-    ),
-    "Frictionless": (rs.Frictionless, lambda: {"normal": 0.5}, ()),
-    "Viscoelastic": (
-        rs.Viscoelastic,
-        lambda: {
-            "young_modulus": 1e9,
-            "poisson_ratio": 0.3,
-            "dissipation": 1e-6,
-            "density": 1e3,
-            "radius": 1e-3,
-        },
-        (),
-    ),
-    "Spheroid.from_length_width": (
-        rs.Spheroid.from_length_width,
-        lambda: {"length": 2.0, "width": 1.0},
-        ("density",),
-    ),
-    "from_roundness": (
-        bodies.from_roundness,
-        lambda: {"diameter": 0.04, "out_of_roundness": 1e-4},
-        ("form", "lobes", "density"),
-    ),
-    "ball_grade": (bodies.ball_grade, lambda: {"grade": 10}, ()),
-    "flight.Drag": (flight.Drag, lambda: {"terminal_velocity": 9.0, "uncertainty": 0.1}, ()),
-    "flight.Drag.of_sphere": (
-        flight.Drag.of_sphere,
-        lambda: {"diameter": 0.04, "mass": 2.7e-3},
-        ("coefficient", "coefficient_uncertainty", "air_density", "gravity"),
-    ),
-    "flight.restitution": (
-        flight.restitution,
-        lambda: {"times": good()["times"], "uncertainty": 1e-4},
-        ("gravity", "gravity_uncertainty", "drop_height", "drop_height_uncertainty", "drag"),
-    ),
-    "flight.fit": (flight.fit, lambda: {"data": good()["measured"], "law": "constant"}, ("scatter",)),
-    "flight.compare": (lambda fits: flight.compare(fits), lambda: {"fits": good()["law_fit"]}, ()),
-    "flight.clock": (flight.clock, lambda: {"data": good()["data"]}, ()),
-    "flight.figure": (flight.figure, lambda: {"data": good()["measured"]}, ()),
-    "flight.read": (
-        flight.read,
-        lambda: {"file": folder() / "times.csv"},
-        ("format", "unit", "uncertainty"),
-    ),
-    "LawFit.error": (lambda **k: good()["law_fit"].error(**k), lambda: {"speed": 0.5}, ()),
-    "sound.impacts": (
-        sound.impacts,
-        lambda: {"source": np.sin(np.arange(3000.0) ** 1.5), "rate": 8000.0},
-        (),
-    ),
-    "error_budget": (
-        budget.error_budget,
-        lambda: {"body": rs.Dumbbell(radius=0.02, separation=0.0), "law": good()["law"], "drop": 0.3},
-        ("impacts", "timing", "gravity", "gravity_uncertainty", "drop_uncertainty", "tilt", "spin", "drag"),
-    ),
-    "fit.logistic": (fit.logistic, lambda: {"samples": good()["data"], "velocity": WINDOW}, ()),
-    "fit.student_t": (fit.student_t, lambda: {"samples": good()["data"], "velocity": WINDOW}, ()),
-    "fit.asymmetric_power": (
-        fit.asymmetric_power,
-        lambda: {"samples": good()["data"], "velocity": WINDOW},
-        ("location",),
-    ),
-    "fit.cusp_mixture": (
-        fit.cusp_mixture,
-        lambda: {"samples": good()["data"], "location": 0.9, "velocity": WINDOW},
-        (),
-    ),
-    "Fit.pdf": (lambda **k: good()["fit"].pdf(**k), lambda: {"x": 0.9}, ()),
-    "Fit.cdf": (lambda **k: good()["fit"].cdf(**k), lambda: {"x": 0.9}, ()),
-    "Fit.rvs": (lambda **k: good()["fit"].rvs(**k), lambda: {"size": 3, "seed": 1}, ()),
-    "Slopes.fails_below": (
-        lambda **k: good()["slopes"].fails_below(**k),
-        lambda: {"distance": 0.03, "high": 1.0},
-        (),
-    ),
-    "figures.map": (figures.map, lambda: {"found": good()["found"]}, ("of",)),
-    "figures.densities": (
-        figures.densities,
-        lambda: {"found": good()["found"], "velocities": [0.55, 0.75]},
-        (),
-    ),
-    "figures.scatter": (figures.scatter, lambda: {"found": good()["found"]}, ()),
-    "figures.moments": (figures.moments, lambda: {"found": good()["found"]}, ()),
-    "figures.trajectory": (figures.trajectory, lambda: {"data": good()["data"]}, ("particle", "impacts")),
-    "figures.save": (
-        lambda name: figures.save(figures.moments(good()["found"]), name),
-        lambda: {"name": folder() / "figure.png"},
-        (),
-    ),
-    "explorer.serve": (
-        lambda port: explorer.serve(port=port, browse=False, tell=_leave),
-        lambda: {"port": 0},
-        (),
-    ),
-    "study_of": (study.study_of, lambda: {"source": _study()}, ()),
-    "study.status": (study.status, lambda: {"out": folder() / "none.zarr"}, ()),
-    "sweep": (rs.sweep, lambda: {"study": _study(), "out": folder() / "study.zarr"}, ("shard", "threads")),
-}
-
-
-def _leave(_: str) -> None:
-    raise ValueError("port: this is far enough")
-
-
-def _study() -> dict[str, Any]:
+def study_tables() -> dict[str, Any]:
     return {
         "body": good()["body"],
         "law": good()["law"],
@@ -164,3 +67,122 @@ def _study() -> dict[str, Any]:
         },
         "sweep": {"law.normal": [0.9]},
     }
+
+
+@cache
+def store() -> Path:
+    """Run a study of one point, from which something can be learned."""
+    path = folder() / "done.zarr"
+    bins = {
+        "velocity_bins": {"from": 0.5, "to": 0.9, "bins": 3},
+        "restitution_bins": {"from": -1, "to": 3, "bins": 90},
+    }
+    tables = study_tables() | {"run": {"particles": 3000, "impacts": 12}, "statistics": bins}
+    rs.sweep(tables, path, threads=1)
+    return path
+
+
+def _budgeted() -> dict[str, Any]:
+    return {"body": rs.Dumbbell(radius=0.02, separation=0.0), "law": good()["law"], "drop": 0.3} | {
+        "particles": 50,
+        "impacts": 5,
+    }
+
+
+@cache
+def results() -> dict[str, Any]:
+    law = rs.Frictionless(normal=0.95)
+    return {
+        "budget": budget.error_budget(**_budgeted()),
+        "required": budget.required_roundness(
+            1e-3, diameter=6e-3, law=law, drop=0.1, impacts=5, particles=50
+        ),
+    }
+
+
+def _result(thing: str, /, **others: Any) -> Any:
+    return lambda: {"self": results()[thing]} | others
+
+
+def _ball() -> dict[str, Any]:
+    law = rs.Frictionless(normal=0.93)
+    ball = rs.from_roundness(6e-3, 6e-5)
+    run = rs.simulate(ball, law, particles=1, impacts=14, release_height=0.103, threads=1)
+    data = flight.restitution(run.time.values[0], 1e-5, drop_height=0.1)
+    small = {"particles": 100, "draws": 100, "elongation": (1e-2, 3e-2)}
+    return {"data": data, "law": law, "diameter": 6e-3, **small}
+
+
+CALLS: dict[str, Call] = {
+    "flight.Drag": (flight.Drag, lambda: {"terminal_velocity": 9.0, "uncertainty": 0.1}),
+    "flight.Drag.of_sphere": (flight.Drag.of_sphere, lambda: {"diameter": 0.04, "mass": 2.7e-3}),
+    "flight.restitution": (flight.restitution, some("times", uncertainty=1e-4)),
+    "flight.fit": (flight.fit, lambda: {"data": good()["measured"], "law": "constant"}),
+    "flight.compare": (lambda fits: flight.compare(fits), lambda: {"fits": good()["law_fit"]}),
+    "flight.clock": (flight.clock, some("data")),
+    "flight.figure": (
+        lambda data, fits: flight.figure(data, fits),
+        lambda: {"data": good()["measured"], "fits": good()["law_fit"]},
+    ),
+    "flight.read": (flight.read, lambda: {"file": folder() / "times.csv"}),
+    "flight.LawFit.error": (flight.LawFit.error, of("law_fit", speed=0.5)),
+    "sound.impacts": (
+        sound.impacts,
+        lambda: {"source": samples(), "rate": 8000.0},
+    ),
+    "error_budget": (budget.error_budget, _budgeted),
+    "ErrorBudget.table": (budget.ErrorBudget.table, _result("budget")),
+    "ErrorBudget.figure": (budget.ErrorBudget.figure, _result("budget")),
+    "required_roundness": (
+        budget.required_roundness,
+        lambda: {
+            "precision": 1e-3,
+            "diameter": 6e-3,
+            "law": rs.Frictionless(normal=0.95),
+            "drop": 0.1,
+            "impacts": 5,
+            "particles": 50,
+        },
+    ),
+    "RequiredRoundness.allowed": (
+        budget.RequiredRoundness.allowed,
+        _result("required", precision=1e-3, quantity="mean"),
+    ),
+    "RequiredRoundness.table": (budget.RequiredRoundness.table, _result("required")),
+    "RequiredRoundness.figure": (budget.RequiredRoundness.figure, _result("required")),
+    "posterior": (inference.posterior, _ball),
+    "explore": (explorer.explore, some("data")),
+    "explorer.link": (explorer.link, lambda: {"run": Run(body=good()["body"], law=good()["law"])}),
+    "explorer.page": (explorer.page, dict),
+    "explorer.serve": (explorer.serve, lambda: {"port": 0, "browse": False, "tell": _leave}),
+    "listen.analyse": (listen.analyse, lambda: {"file": recording(), "setting": Setting(diameter=0.02)}),
+    "listen.write": (
+        listen.write,
+        lambda: (
+            {"file": recording(), "out": Path("page.html"), "setting": Setting(diameter=0.02)}
+            | {"replace": True}
+        ),
+    ),
+    "listen.Analysis.csv": (listen.Analysis.csv, lambda: {"self": heard()}),
+    "listen.Analysis.dataset": (listen.Analysis.dataset, lambda: {"self": heard()}),
+    "listen.Series.sentence": (
+        listen.Series.sentence,
+        lambda: {"self": heard().series[0], "setting": Setting(diameter=0.02)},
+    ),
+    "laws_figure.write": (_laws, lambda: {"out": Path("laws"), "impacts": 20_000, "seed": 1}),
+    "paper.redraw": (
+        _redraw,
+        lambda: {"out": Path("paper"), "impacts": 400_000, "seed": 1, "progress": False},
+    ),
+    "study.study_of": (study.study_of, lambda: {"source": study_tables()}),
+    "study.Study.run": (study.Study.run, lambda: {"self": study.study_of(study_tables()), "point": 0}),
+    "study.estimate": (study.estimate, lambda: {"study": study.study_of(study_tables()), "threads": 1}),
+    "study.status": (study.status, lambda: {"out": store()}),
+    "study.open_store": (study.open_store, lambda: {"path": store()}),
+    "study.learned": (
+        lambda out, normal: study.learned(out, normal=normal),
+        lambda: {"out": store(), "normal": 0.9},
+    ),
+    "study.merge": (study.merge, lambda: {"out": store(), "parts": []}),
+    "sweep": (rs.sweep, lambda: {"study": study_tables(), "out": Path("study.zarr")}),
+}

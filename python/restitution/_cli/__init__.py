@@ -8,7 +8,8 @@ import typer
 from restitution import _sweep_cli
 from restitution._cli import _explore, _fit, _listen, _pages, _runs, _template
 from restitution._cli._common import BAD_INPUT, FAILED, INTERRUPTED, WARNED
-from restitution._streams import open_missing, say
+from restitution._signals import leaving
+from restitution._streams import open_missing, say, tell
 
 __all__ = ["BAD_INPUT", "FAILED", "INTERRUPTED", "WARNED", "app", "main"]
 
@@ -29,7 +30,12 @@ app = typer.Typer(
 def main() -> None:
     """Run the command line."""
     open_missing()
-    app(prog_name="restitution")
+    with leaving():
+        try:
+            app(prog_name="restitution")
+        except OSError as error:  # of standard output, as where the disk is full
+            tell(f"error: {error.filename or 'standard output'}: {error.strerror}")
+            raise SystemExit(FAILED) from None
 
 
 def _version(wanted: bool) -> None:

@@ -62,7 +62,7 @@ def errors_in_a_line() -> Iterator[None]:
             fail(f"{error.filename}: {error.strerror}; --overwrite replaces it", FAILED)
         except OSError as error:
             fail(f"{error.filename}: {error.strerror}" if error.filename else str(error), FAILED)
-        except (RuntimeError, MemoryError) as error:  # NumericalError is a RuntimeError
+        except (RuntimeError, MemoryError, ImportError) as error:  # NumericalError is a RuntimeError
             fail(str(error) or "out of memory", FAILED)
         except Kept as kept:
             raise typer.Exit(128 + (came + kept.late)[-1]) from None

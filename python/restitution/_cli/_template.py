@@ -1,6 +1,6 @@
 """`restitution template`: a commented TOML file with all parameters of a run."""
 
-import typer
+from restitution._streams import say
 
 TEMPLATE = """\
 # What restitution simulate, statistics, compare and distribution read. SI units throughout: m, kg, s, rad.
@@ -72,4 +72,4 @@ restitution_range = [-1.0, 3.0]
 
 def template() -> None:
     """Print a commented RUN.toml with all bodies, laws and options, to be edited."""
-    typer.echo(TEMPLATE, nl=False)
+    say(TEMPLATE.removesuffix("\n"))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from abc import ABC, abstractmethod
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -11,9 +12,10 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from restitution._arrays import generator as _generator
-from restitution._arrays import reals
+from restitution._arrays import reals, shape, whole
 from restitution._display import table, value
-from restitution._parameters import ParameterError, wrong
+from restitution._parameters import ParameterError, TooLargeError, wrong
+from restitution._resources import available_memory
 from restitution.analytic._orientation import Floats, OrientationName
 from restitution.bodies import BODIES, Body
 from restitution.laws import LAWS, Law
@@ -169,7 +171,12 @@ class FirstImpact(ABC):
 
     def rvs(self, size: int | tuple[int, ...] | None = None, random_state: RandomState = None) -> Values:
         """Draw independent ε; the same ``random_state`` (seed or generator's state) gives the same ones."""
-        return self.ppf(generator(random_state).random(size))
+        lengths = None if size is None else shape("size", size)
+        available = available_memory()
+        if lengths is not None and 3 * 8 * math.prod(lengths) > available:
+            allowed = f"at most {available // 24:.4g} draws, which this process can hold"
+            raise TooLargeError(wrong("size", size, allowed))
+        return self.ppf(generator(random_state).random(lengths))
 
     def var(self) -> float:
         """Variance of ε."""
@@ -183,15 +190,13 @@ class FirstImpact(ABC):
             "s": lambda: self._standardised(3),
             "k": lambda: self._standardised(4) - 3.0,
         }
-        if not set(moments) <= set(make):
+        if not isinstance(moments, str) or not set(moments) <= set(make):
             raise ParameterError(wrong("moments", moments, "letters of 'mvsk'"))
         return tuple(make[letter]() for letter in moments)
 
     def moment(self, order: int) -> float:
         """Mean of ε to the power ``order`` (a whole number >= 0)."""
-        if isinstance(order, bool) or not isinstance(order, int | np.integer) or order < 0:
-            raise ParameterError(wrong("order", order, "a whole number >= 0"))
-        return self._raw(int(order))
+        return self._raw(whole("order", order, 0, 1000))
 
     def median(self) -> float:
         """Median of ε."""
@@ -199,7 +204,7 @@ class FirstImpact(ABC):
 
     def interval(self, confidence: ArrayLike) -> tuple[Values, Values]:
         """Both ends of the range that leaves out equal probability on either side."""
-        tail = 0.5 * (1.0 - probability(confidence))
+        tail = 0.5 * (1.0 - probability(confidence, "confidence"))
         return self.ppf(tail), self.isf(tail)
 
 
@@ -223,9 +228,9 @@ def floats(x: ArrayLike, name: str = "x") -> Floats:
     return reals(name, x, "a number or an array of numbers", finite=False)
 
 
-def probability(q: ArrayLike) -> Floats:
+def probability(q: ArrayLike, name: str = "q") -> Floats:
     """Take probabilities of any shape; nan outside [0, 1]."""
-    value = floats(q, "q")
+    value = floats(q, name)
     return np.where((value >= 0.0) & (value <= 1.0), value, np.nan)
 
 

@@ -6,6 +6,7 @@ import numpy as np
 import numpy.typing as npt
 import xarray as xr
 
+from restitution._arrays import whole
 from restitution._bins import centres, checked_edges
 from restitution._parameters import ParameterError, Problem, wrong
 from restitution._release import RandomHeight
@@ -85,14 +86,15 @@ def near_round(
         raise ParameterError(
             wrong("law", law, "TangentialRestitution or Frictionless, with a number for normal")
         )
-    if not isinstance(angles, int) or isinstance(angles, bool) or not 1 <= angles <= 10**7:
-        raise ParameterError(wrong("angles", angles, "a whole number in [1, 10000000]"))
+    angles = whole("angles", angles, 1, 10**7)
     if isinstance(release_height, RandomHeight):
         raise ParameterError(wrong("release_height", release_height, "a number, the same for all"))
     run = Run(body=body, law=law, release_height=release_height, gravity=gravity)
     slowest = _SLOW * float(np.sqrt(gravity * body.radii[0]))
     if law.normal == 1.0:
         raise ParameterError(Problem("normal", " = 1.0: must be < 1; the impacts would never end"))
+    if not (slowest > 0.0 and np.isfinite(slowest) and np.isfinite(2 * gravity * release_height)):
+        raise ParameterError(wrong("gravity", gravity, "such that speeds neither overflow nor underflow"))
     velocity, epsilon = _impacts(run, min(slowest, edges[-1]), angles)
     return _by_velocity(velocity, epsilon, edges, slowest)
 

@@ -5,7 +5,7 @@ from typing import Annotated, Self
 from pydantic import Field
 
 from restitution import _core
-from restitution._parameters import Number
+from restitution._parameters import Number, in_terms_of
 from restitution.bodies._body import Body
 from restitution.bodies._length_width import LengthWidth
 from restitution.bodies._pair import PositivePair, both
@@ -73,7 +73,8 @@ class Dumbbell(Body):
         0.1
         """
         size = LengthWidth(length=length, width=width).elongated()
-        return cls(radius=0.5 * size.width, separation=size.length - size.width, density=density)
+        with in_terms_of(length=length, width=width, density=density):
+            return cls(radius=0.5 * size.width, separation=size.length - size.width, density=density)
 
     @property
     def radii(self) -> tuple[float, float]:

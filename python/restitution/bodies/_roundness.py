@@ -6,7 +6,16 @@ from typing import Annotated, Literal, TypeAlias, get_args
 
 from pydantic import Field
 
-from restitution._parameters import Allowed, Number, ParameterError, Parameters, Whole, wrong
+from restitution._parameters import (
+    Allowed,
+    Number,
+    ParameterError,
+    Parameters,
+    Whole,
+    in_terms_of,
+    shown,
+    wrong,
+)
 from restitution.bodies._body import Body
 from restitution.bodies._dumbbell import Dumbbell
 from restitution.bodies._loaded_sphere import LoadedSphere
@@ -101,8 +110,13 @@ def from_roundness(
     t = asked.out_of_roundness * (asked.lobes / 2.0)
     if t > _MOST * asked.diameter:
         most = 2.0 * _MOST * asked.diameter / asked.lobes
-        allowed = f"in [0, {most:g}], nearly round (m)"
+        allowed = f"in [0, {most:g}], nearly round for diameter = {shown(diameter)} (m)"
         raise ParameterError(wrong("out_of_roundness", out_of_roundness, allowed))
+    with in_terms_of(diameter=diameter, out_of_roundness=out_of_roundness, density=density):
+        return _body(asked, t)
+
+
+def _body(asked: _Asked, t: float) -> Body:
     long, short = 0.5 * (asked.diameter + t), 0.5 * (asked.diameter - t)
     match asked.form:
         case "lobed":

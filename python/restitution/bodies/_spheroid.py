@@ -5,7 +5,7 @@ from typing import Annotated, Self
 from pydantic import Field
 
 from restitution import _core
-from restitution._parameters import Number, ParameterError, wrong
+from restitution._parameters import Number, ParameterError, in_terms_of, wrong
 from restitution.bodies._body import Body
 from restitution.bodies._length_width import LengthWidth
 
@@ -63,8 +63,9 @@ class Spheroid(Body):
         size = LengthWidth(length=length, width=width)
         if not 1e-3 <= size.length / size.width <= 1e3:
             allowed = f"between 1/1000 and 1000 times width = {size.width!r} (m)"
-            raise ParameterError(wrong("length", size.length, allowed))
-        return cls(equatorial=0.5 * size.width, polar=0.5 * size.length, density=density)
+            raise ParameterError(wrong("length", length, allowed))
+        with in_terms_of(length=length, width=width, density=density):
+            return cls(equatorial=0.5 * size.width, polar=0.5 * size.length, density=density)
 
     @property
     def elongation(self) -> float:

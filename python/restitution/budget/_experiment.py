@@ -2,11 +2,11 @@
 
 import math
 from dataclasses import dataclass
-from typing import Annotated
+from typing import Annotated, Self
 
 import numpy as np
 import numpy.typing as npt
-from pydantic import Field
+from pydantic import Field, model_validator
 from scipy.optimize import least_squares
 
 from restitution._parameters import Number, ParameterError, Parameters, Whole, wrong
@@ -20,6 +20,9 @@ from restitution.laws._materials import Material
 
 Array = npt.NDArray[np.float64]
 
+_LEAST = 1e-30
+"""Of g, in m/s²: with `LARGEST` it keeps speeds from over- and underflow."""
+
 
 class Setting(Parameters):
     """How the ball is dropped, and how well everything is known."""
@@ -27,13 +30,21 @@ class Setting(Parameters):
     drop: Annotated[Number, Field(gt=0, description="m")]
     impacts: Annotated[Whole, Field(ge=3)]
     timing: Annotated[Number, Field(ge=0, le=LARGEST, description="s")] = 0.0
-    gravity: Annotated[Number, Field(gt=0, description="m/s²")] = 9.81
+    gravity: Annotated[Number, Field(ge=_LEAST, le=LARGEST, description="m/s²")] = 9.81
     gravity_uncertainty: Annotated[Number, Field(ge=0, le=LARGEST, description="m/s²")] = 0.0
     drop_uncertainty: Annotated[Number, Field(ge=0, le=LARGEST, description="m")] = 0.0
     tilt: Annotated[Number, Field(ge=0, lt=0.5, description="rad")] = 0.0
     spin: Annotated[Number, Field(ge=0, description="rad/s")] = 0.0
     particles: Annotated[Whole, Field(ge=50)] = 1000
     seed: Annotated[Whole, Field(ge=0, lt=2**63)] = 1
+
+    @model_validator(mode="after")
+    def _known_to_a_factor(self) -> Self:
+        for name in ("gravity", "drop"):
+            error, value = getattr(self, f"{name}_uncertainty"), getattr(self, name)
+            if error > value:
+                raise ParameterError(wrong(f"{name}_uncertainty", error, f"at most {name} = {value!r}"))
+        return self
 
 
 def mean_radius(body: Body) -> float:

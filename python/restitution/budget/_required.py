@@ -23,7 +23,7 @@ _ROUNDEST, _LEAST_ROUND, _STEPS = 1e-6, 0.03, 19
 
 class _Asked(Parameters):
     precision: Annotated[Number, Field(gt=0, lt=1)]
-    diameter: Annotated[Number, Field(gt=0, description="m")]
+    diameter: Annotated[Number, Field(gt=0, le=1e6, description="m")]
     quantity: Annotated[Literal["single", "mean", "fit"], Allowed("'single', 'mean' or 'fit'")]
 
 

@@ -6,6 +6,7 @@ import numpy as np
 import xarray as xr
 from matplotlib.figure import Figure
 
+from restitution._arrays import real
 from restitution._content import Content
 from restitution._parameters import ParameterError, wrong
 from restitution.bodies import GRADES
@@ -179,9 +180,8 @@ class RequiredRoundness(Content):
         ValueError
             If the precision is not above 0, or there is no such quantity.
         """
-        if not precision > 0.0:
-            raise ParameterError(wrong("precision", precision, "a number > 0, an error of ε over ε"))
-        if quantity not in ("single", "mean", "fit"):
+        precision = real("precision", precision, "a number > 0, an error of ε over ε", lambda x: x > 0.0)
+        if not isinstance(quantity, str) or quantity not in ("single", "mean", "fit"):
             raise ParameterError(wrong("quantity", quantity, '"single", "mean" or "fit"'))
         error, deviation = self.data[quantity].values, self.data.out_of_roundness.values
         above = np.flatnonzero(error > precision)

@@ -8,7 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from restitution._energy import reported_elsewhere
-from restitution._parameters import ParameterError, Problem
+from restitution._parameters import ParameterError, Problem, in_terms_of
 from restitution._release import RandomSpin
 from restitution._simulate import simulate
 from restitution.bodies import Body
@@ -166,18 +166,19 @@ def simulated(experiment: Experiment, body: Body, *, spin: bool, tilt: bool) -> 
     setting = experiment.setting
     angle = setting.tilt if tilt else 0.0
     n = setting.impacts
-    run = simulate(
-        body,
-        experiment.law,
-        particles=setting.particles,
-        impacts=n + 1,
-        # Heights of fall are measured along the vertical, distances from the plane along its normal.
-        release_height=mean_radius(body) + setting.drop * math.cos(angle),
-        gravity=setting.gravity,
-        spin=RandomSpin(rate=setting.spin) if spin else None,
-        incline=angle,
-        seed=setting.seed,
-    )
+    with in_terms_of(drop=setting.drop, gravity=setting.gravity, spin=setting.spin):
+        run = simulate(
+            body,
+            experiment.law,
+            particles=setting.particles,
+            impacts=n + 1,
+            # Heights of fall are measured along the vertical, distances from the plane along its normal.
+            release_height=mean_radius(body) + setting.drop * math.cos(angle),
+            gravity=setting.gravity,
+            spin=RandomSpin(rate=setting.spin) if spin else None,
+            incline=angle,
+            seed=setting.seed,
+        )
     g = setting.gravity
     heard = np.empty((setting.particles, n + 1))
     heard[:, 0] = math.sqrt(2.0 * g * setting.drop)
@@ -186,8 +187,8 @@ def simulated(experiment: Experiment, body: Body, *, spin: bool, tilt: bool) -> 
     if kept.mean() < _LEAST_KEPT:
         counts = 100.0 * kept.mean()
         text = (
-            f" = {n}: only {counts:.0f} % of such balls bounce so often with resolved flights; "
-            "must be fewer, or the body rounder"
+            f" = {n}, drop = {setting.drop:g}: only {counts:.0f} % of such balls bounce so often with "
+            "resolved flights; must be fewer, or the body rounder"
         )
         raise ParameterError(Problem("impacts", text))
     heard[~kept] = np.nan

@@ -3,16 +3,15 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable
+from collections.abc import Callable
 from functools import cached_property
-from operator import index
 from typing import Any, Literal, TypeAlias
 
 import numpy as np
 import numpy.typing as npt
 import xarray as xr
 
-from restitution._arrays import reals
+from restitution._arrays import check_each, flag, function, real, reals, shape, whole
 from restitution._parameters import ParameterError, TooLargeError, _plain_number, wrong
 from restitution._resources import available_memory
 from restitution.distribution import _store
@@ -129,10 +128,9 @@ class TabulatedDistribution:
 
     def moment(self, order: int, v: npt.ArrayLike, given: npt.ArrayLike | None = None) -> Values:
         """Mean of ε to the power ``order`` (a whole number >= 0)."""
-        if isinstance(order, bool) or not isinstance(order, int | np.integer) or order < 0:
-            raise ParameterError(wrong("order", order, "a whole number >= 0"))
+        order = whole("order", order, 0, 1000)
         table, speeds, z = self._at(v, given)
-        return table.expectation(lambda x: x ** int(order), speeds, z, -np.inf, np.inf, int(order))[()]
+        return table.expectation(lambda x: x**order, speeds, z, -np.inf, np.inf, order)[()]
 
     def expect(
         self,
@@ -159,10 +157,11 @@ class TabulatedDistribution:
             Divide by the probability of [lb, ub].
         """
         table, speeds, z = self._at(v, given)
-        low, high = (-np.inf if lb is None else float(lb)), (np.inf if ub is None else float(ub))
-        function = (lambda x: x) if func is None else np.vectorize(func, otypes=[np.float64])
-        found = table.expectation(function, speeds, z, low, high, 15)
-        if conditional:
+        low = -np.inf if lb is None else real("lb", lb, "a number or None", lambda x: x == x)
+        high = np.inf if ub is None else real("ub", ub, "a number or None", lambda x: x == x)
+        of_one = (lambda x: x) if func is None else np.vectorize(function("func", func), otypes=[np.float64])
+        found = table.expectation(of_one, speeds, z, low, high, 15)
+        if flag("conditional", conditional):
             found = found / (self.cdf(high, v, given) - self.cdf(low, v, given))
         return found[()]
 
@@ -197,14 +196,14 @@ class TabulatedDistribution:
         """
         table, speeds, z = self._at(v, given)
         own = np.broadcast_shapes(speeds.shape, z.shape)
-        shape = own if size is None else _shape(size)
-        if shape != own and not _reaches(own, shape):
+        wanted = own if size is None else shape("size", size)
+        if wanted != own and not _reaches(own, wanted):
             raise ParameterError(wrong("size", size, f"a shape that {own} broadcasts to"))
         available = available_memory()
-        if 8 * math.prod(shape) > available:
+        if 8 * math.prod(wanted) > available:
             allowed = f"at most {available // 8:.4g} draws, which this process can hold"
             raise TooLargeError(wrong("size", size, allowed))
-        return table.draw(speeds, z, shape, _seed(random_state), threads)[()]
+        return table.draw(speeds, z, wanted, _seed(random_state), threads)[()]
 
     @cached_property
     def _table(self) -> Table:
@@ -254,11 +253,13 @@ class TabulatedDistribution:
         high = np.maximum(most[left], most[left + 1])
         unseen = ((z < low) | (z > high)) & ~np.isnan(speeds)
         if np.any(unseen):
+            at = tuple(int(i) for i in np.argwhere(unseen)[0])
+            name = f"given[{', '.join(map(str, at))}]" if z.ndim and z.shape == unseen.shape else "given"
             z, speeds, low, high = (
                 np.broadcast_to(part, unseen.shape)[unseen] for part in (z, speeds, low, high)
             )
             seen = f"in [{low[0]:.6g}, {high[0]:.6g}], what was seen of {self.given} at {speeds[0]:.4g} m/s"
-            raise ParameterError(wrong("given", float(z[0]), f"{seen}; clamped() takes any"))
+            raise ParameterError(wrong(name, float(z[0]), f"{seen}; clamped() takes any"))
 
     @property
     def _clamps(self) -> bool:
@@ -266,8 +267,7 @@ class TabulatedDistribution:
 
     @staticmethod
     def _refuse(name: str, values: Floats, bad: npt.NDArray[np.bool_], allowed: str) -> None:
-        if np.any(bad):
-            raise ParameterError(wrong(name, float(values[bad].flat[0]), allowed))
+        check_each(name, values, ~bad, allowed)
 
 
 def _log(values: Values) -> Values:
@@ -278,16 +278,6 @@ def _log(values: Values) -> Values:
 def numbers(name: str, values: npt.ArrayLike) -> Floats:
     """Give real numbers as an array; nan is one."""
     return reals(name, values, "a number or an array of numbers", finite=False)
-
-
-def _shape(size: Any) -> tuple[int, ...]:
-    try:
-        shape = tuple(index(length) for length in (size if isinstance(size, Iterable) else (size,)))
-    except Exception:  # whatever the object raises
-        shape = (-1,)
-    if isinstance(size, bool) or min(shape, default=0) < 0:
-        raise ParameterError(wrong("size", size, "a whole number >= 0 or a tuple of them"))
-    return shape
 
 
 def _reaches(shape: tuple[int, ...], larger: tuple[int, ...]) -> bool:

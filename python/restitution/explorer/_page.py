@@ -6,6 +6,7 @@ from urllib.parse import urlencode
 
 import numpy as np
 
+from restitution._parameters import ParameterError, wrong
 from restitution._release import RandomHeight, RandomSpin
 from restitution._run import Run
 from restitution.bodies import Dumbbell, Spherocylinder, Spheroid
@@ -52,6 +53,8 @@ def link(run: Run) -> str:
     ValueError
         If the page cannot show the run; the message says what of it.
     """
+    if not isinstance(run, Run):
+        raise ParameterError(wrong("run", run, "a run, as of a TOML file"))
     # Every value is written, for a default of the package may change, and a link shall stay.
     values: dict[str, Any] = {
         **_body(run),

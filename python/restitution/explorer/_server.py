@@ -4,7 +4,8 @@ import webbrowser
 from collections.abc import Callable
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 
-from restitution._arrays import whole
+from restitution._arrays import flag, whole
+from restitution._parameters import ParameterError, wrong
 from restitution.explorer._page import page
 
 
@@ -33,7 +34,11 @@ def serve(
     OSError
         If the port is taken.
     """
-    port = whole("port", port, 0, 65535)
+    port, browse = whole("port", port, 0, 65535), flag("browse", browse)
+    if not isinstance(fragment, str):
+        raise ParameterError(wrong("fragment", fragment, "text, as from restitution.explorer.link"))
+    if not callable(tell):
+        raise ParameterError(wrong("tell", tell, "a function of one text"))
     content = page().encode()
 
     class Handler(BaseHTTPRequestHandler):

@@ -3,6 +3,7 @@
 from typing import TYPE_CHECKING, Any
 
 from restitution._arrays import whole
+from restitution._parameters import ParameterError, wrong
 from restitution._run import Run
 from restitution.explorer._page import NUMBERS, link, page
 
@@ -76,8 +77,12 @@ def explore(data: "xr.Dataset", *, height: int = 900) -> Any:
 
 def _run_of(data: "xr.Dataset") -> Run:
     """Make the run again from the attributes of its Dataset."""
+    import xarray as xr
+
     from restitution import bodies, laws
 
+    if not isinstance(data, xr.Dataset):
+        raise ParameterError(wrong("data", data, "a Dataset from restitution.simulate"))
     attributes = dict(data.attrs)
     try:
         body_type = getattr(bodies, str(attributes["body"]))

@@ -13,6 +13,11 @@ from matplotlib.colors import LogNorm
 from matplotlib.figure import Figure
 from matplotlib.ticker import FixedLocator, NullFormatter, StrMethodFormatter
 
+from restitution._arrays import check_each, reals, whole
+from restitution._bins import increasing_edges
+from restitution._parameters import ParameterError, Problem, wrong
+from restitution.figures._check import colours, column, panel
+from restitution.figures._check import figure as checked_figure
 from restitution.figures._style import COLORMAP, styled
 
 FloatArray = npt.NDArray[np.float64]
@@ -59,7 +64,18 @@ def population(
     >>> mesh = figures.population(axes, edges, edges, np.array([[1, 0], [10, 100]]))
     >>> figures.population_bar(figure, mesh, axes)
     """
-    top = int(count.max()) if largest is None else largest
+    panel("axes", axes)
+    x_edges, y_edges = increasing_edges(x_edges, "x_edges"), increasing_edges(y_edges, "y_edges")
+    sites = (x_edges.size - 1, y_edges.size - 1)
+    allowed = f"whole numbers >= 0, of shape {sites}"
+    numbers = reals("count", count, allowed, dimensions=(2,))
+    if numbers.shape != sites:
+        text = f": {sites[0]} and {sites[1]} bins, and count has shape {numbers.shape}"
+        raise ParameterError(Problem("x_edges, y_edges, count", text))
+    if not np.all((numbers >= 0) & (numbers == np.rint(numbers))):
+        raise ParameterError(wrong("count", count, allowed))
+    count = numbers.astype(np.int64)
+    top = int(count.max()) if largest is None else whole("largest", largest, 1, 2**53)
     if not count.any():
         raise ValueError(f"count: all {count.size} sites are empty, there is nothing to draw")
     share = np.ma.masked_equal(count.T, 0) / top
@@ -86,7 +102,9 @@ def population_bar(figure: Figure, mesh: QuadMesh, axes: Axes) -> None:
     >>> figure.axes[1].get_ylabel()
     'population / largest population'
     """
-    bar = figure.colorbar(mesh, ax=axes, pad=0.02, aspect=30)
+    bar = checked_figure("figure", figure).colorbar(
+        colours("mesh", mesh), ax=panel("axes", axes), pad=0.02, aspect=30
+    )
     bar.set_label("population / largest population")
 
 
@@ -117,6 +135,12 @@ def histogram(axes: Axes, edges: FloatArray, density: FloatArray, error: FloatAr
     >>> figure, [[axes]] = figures.panels(figures.COLUMN, 2.5)
     >>> figures.histogram(axes, edges, scale * count, scale * np.sqrt(count), label="drawn")
     """
+    panel("axes", axes)
+    density = column("density", density)
+    edges, error = (
+        column("edges", edges, density.size + 1, "density"),
+        column("error", error, density.size, "density"),
+    )
     filled = density > 0
     centres = 0.5 * (edges[:-1] + edges[1:])
     # A bar down to zero, as that of a single count, would run off a logarithmic axis.
@@ -142,8 +166,11 @@ def line(axes: Axes, x: FloatArray, y: FloatArray, error: FloatArray | None = No
     >>> figure, [[axes]] = figures.panels(figures.COLUMN, 2.5)
     >>> figures.line(axes, v, 0.98 - 0.02 * v, np.full(10, 0.005), label="measured")
     """
-    (drawn,) = axes.plot(x, y, **style)
+    x = column("x", x)
+    y = column("y", y, x.size, "x")
+    (drawn,) = panel("axes", axes).plot(x, y, **style)
     if error is not None:
+        error = column("error", error, x.size, "x")
         axes.fill_between(x, y - error, y + error, color=drawn.get_color(), alpha=0.3, linewidth=0)
 
 
@@ -158,7 +185,9 @@ def plain_log(axes: Axes, ticks: Sequence[float]) -> None:
     >>> axes.get_xscale()
     'log'
     """
-    axes.set_xscale("log")
-    axes.xaxis.set_major_locator(FixedLocator(ticks))
+    places = column("ticks", ticks)
+    check_each("ticks", places, (places > 0) & np.isfinite(places), "finite and > 0")
+    panel("axes", axes).set_xscale("log")
+    axes.xaxis.set_major_locator(FixedLocator(places.tolist()))
     axes.xaxis.set_major_formatter(StrMethodFormatter("{x:g}"))
     axes.xaxis.set_minor_formatter(NullFormatter())

@@ -11,7 +11,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from restitution._arrays import reals, whole
-from restitution._parameters import ParameterError, wrong
+from restitution._parameters import ParameterError, Problem, wrong
 from restitution.figures._panels import line, population, population_bar
 from restitution.figures._style import COLORS, COLUMN, MARKERS, PAGE, letter, panels, styled
 
@@ -94,11 +94,15 @@ def densities(found: xr.Dataset | FluctuatingRestitution, velocities: npt.ArrayL
     if not 1 <= speeds.size <= len(COLORS):
         raise ParameterError(wrong("velocities", velocities, allowed))
     figure, [[axes]] = panels(COLUMN, 2.7)
+    many = np.ndim(velocities) > 0
     for k, v in enumerate(speeds):
         if isinstance(found, xr.Dataset):
-            edges, density, name = _bin_density(found, float(v))
+            edges, density, name = _bin_density(found, f"velocities[{k}]" if many else "velocities", float(v))
         else:
-            low, high = found.support(float(v))
+            try:
+                low, high = found.support(float(v))
+            except ParameterError as error:
+                raise ParameterError(*(Problem(f"velocities[{k}]", p.text) for p in error.problems)) from None
             edges = np.linspace(low, high, 401)
             density = np.diff(found.cdf(edges, float(v))) / np.diff(edges)
             name = f"{v:g} m/s"
@@ -270,6 +274,9 @@ def _lines(found: xr.Dataset | Mapping[str, xr.Dataset]) -> dict[str, xr.Dataset
     if isinstance(found, xr.DataArray) or not isinstance(found, Mapping) or not found:
         raise ParameterError(wrong("found", found, "a Dataset of restitution.statistics, or several"))
     if not isinstance(found, xr.Dataset):
+        for name, one in found.items():
+            if not isinstance(one, xr.Dataset):
+                raise ParameterError(wrong(f"found[{name!r}]", one, "a Dataset of restitution.statistics"))
         return {str(name): one for name, one in found.items()}
     if "body" not in found.dims:
         return {"": found}
@@ -283,13 +290,13 @@ def _lines(found: xr.Dataset | Mapping[str, xr.Dataset]) -> dict[str, xr.Dataset
     return lines
 
 
-def _bin_density(found: xr.Dataset, v: float) -> tuple[Any, Any, str]:
+def _bin_density(found: xr.Dataset, name: str, v: float) -> tuple[Any, Any, str]:
     """Give edges and density of the velocity bin that holds v, and the bin in words."""
     _require("found", found, "restitution_count", "velocity_edges", "restitution_edges", "number")
     ends = found["velocity_edges"].to_numpy()
     row = int(np.searchsorted(ends, v, side="right")) - 1
     if not 0 <= row < ends.size - 1:
-        raise ParameterError(wrong("velocities", v, f"in [{ends[0]:g}, {ends[-1]:g}) m/s, the velocity bins"))
+        raise ParameterError(wrong(name, v, f"in [{ends[0]:g}, {ends[-1]:g}) m/s, the velocity bins"))
     here = found.isel(velocity=row)
     edges = found["restitution_edges"].to_numpy()
     with np.errstate(invalid="ignore", divide="ignore"):

@@ -12,7 +12,12 @@ from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
+from restitution._arrays import flag, real, whole
 from restitution._files import path_from, whole_files
+from restitution._parameters import ParameterError, wrong
+from restitution.figures._check import figure as checked_figure
+from restitution.figures._check import panel
+from restitution.figures._check import text as checked_text
 
 COLUMN = 3.4
 """Width of one column in a Physical Review journal, in inches."""
@@ -89,6 +94,8 @@ def styled(function: Callable[P, T]) -> Callable[P, T]:
     >>> family()
     ['STIXGeneral']
     """
+    if not callable(function):
+        raise ParameterError(wrong("function", function, "a function that draws"))
 
     @wraps(function)
     def wrapper(*args: P.args, **kwargs: P.kwargs) -> T:
@@ -122,6 +129,12 @@ def panels(
     >>> from restitution import figures
     >>> figure, [[left, right]] = figures.panels(figures.PAGE, 2.5, columns=2, sharey=True)
     """
+    size = "a size in inches, in [0.1, 100]"
+    width, height = (
+        real(name, value, size, lambda x: 0.1 <= x <= 100.0)
+        for name, value in (("width", width), ("height", height))
+    )
+    rows, columns = whole("rows", rows, 1, 100), whole("columns", columns, 1, 100)
     figure = _Displayed(figsize=(width, height), layout="constrained")
     FigureCanvasAgg(figure)
     axes: list[list[Axes]] = figure.subplots(rows, columns, squeeze=False, **shared).tolist()
@@ -138,8 +151,8 @@ def letter(axes: Axes, text: str, *, left: bool = True) -> None:
     >>> figures.letter(left, "(a)")
     >>> figures.letter(right, "(b)", left=False)
     """
-    x, side = (0.03, "left") if left else (0.97, "right")
-    axes.text(x, 0.96, text, transform=axes.transAxes, ha=side, va="top")
+    x, side = (0.03, "left") if flag("left", left) else (0.97, "right")
+    panel("axes", axes).text(x, 0.96, checked_text("text", text), transform=axes.transAxes, ha=side, va="top")
 
 
 @styled
@@ -173,6 +186,9 @@ def save(figure: Figure, name: str | Path, title: str = "", caption: str = "") -
     ['empty.png', 'empty.pdf']
     """
     path = path_from("name", name)
+    checked_figure("figure", figure)
+    checked_text("title", title)
+    checked_text("caption", caption)
     single = path.suffix.lower() in _METADATA
     paths = (path,) if single else tuple(path.with_name(path.name + suffix) for suffix in (".png", ".pdf"))
     with whole_files(paths, replace=True) as drafts:

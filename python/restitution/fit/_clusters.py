@@ -11,7 +11,7 @@ import xarray as xr
 from numpy.typing import ArrayLike, NDArray
 
 from restitution._arrays import check_each, reals
-from restitution._parameters import ParameterError, shown, wrong
+from restitution._parameters import ParameterError, Problem, shown, wrong
 from restitution.fit._counts import Counts, pooled
 from restitution.fit._result import Array, Fit, finite_samples
 from restitution.fit._source import Parts, Window, counted, no_window, recorded
@@ -126,7 +126,7 @@ def clustered(samples: Parts, clusters: ArrayLike | None, velocity: Window | Non
         values, labels = recorded(samples, velocity)
         x = finite_samples(values)
     else:
-        no_window(velocity)
+        no_window(samples, velocity)
         x = finite_samples(cast(ArrayLike, samples))
         labels = np.arange(x.size) if clusters is None else _labels(clusters)
     if labels.shape != x.shape:
@@ -167,7 +167,13 @@ def fitted_by(family: Callable[[Any], Fit], samples: Array | Counts) -> Fit:
     """Fit, if `family` does that."""
     if not callable(family):
         raise ParameterError(wrong("family", family, "a function from samples to a Fit"))
-    fit = family(samples)
+    try:
+        fit = family(samples)
+    except ValueError:  # of ours, or that of a family for the samples that it cannot take
+        raise
+    except Exception as error:
+        text = f" = {shown(family)} gave {type(error).__name__}: {error}: must be a function to a Fit"
+        raise ParameterError(Problem("family", text)) from error
     if not isinstance(fit, Fit):
         raise ParameterError(
             wrong("family", family, f"a function from samples to a Fit; it gave {shown(fit)}")

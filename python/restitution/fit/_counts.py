@@ -119,6 +119,9 @@ class Counts(Content):
 
     def logshare(self, distribution: Any) -> Array:
         """Logarithm of the probability of each bin, the open ones first and last, shape (bins + 2,)."""
+        if not all(callable(getattr(distribution, name, None)) for name in ("cdf", "sf")):
+            allowed = "a distribution, with methods cdf and sf"
+            raise ParameterError(wrong("distribution", distribution, allowed))
         below, above = distribution.cdf(self.edges), distribution.sf(self.edges)
         # Differences of the smaller of both, where nothing cancels.
         inner = np.where(below[1:] < 0.5, np.diff(below), -np.diff(above))
@@ -131,7 +134,9 @@ class Counts(Content):
 
     def quantile(self, q: Array | list[float]) -> Array:
         """Quantiles, linear inside the bins, at the outermost edges for the open ones; shape of `q`."""
-        return np.asarray(np.interp(q, self.cumulative(), self.edges))
+        return np.asarray(
+            np.interp(reals("q", q, "probabilities", finite=False), self.cumulative(), self.edges)
+        )
 
 
 def pooled(parts: Sequence[Counts]) -> Counts:

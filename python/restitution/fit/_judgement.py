@@ -130,7 +130,7 @@ def goodness(
     random = generator("seed", seed)
     if clusters is not None or not _is_plain(samples):
         return _clustered_goodness(family, clustered(samples, clusters, velocity), resamples, random)
-    no_window(velocity)
+    no_window(samples, velocity)
     x = finite_samples(samples)  # type: ignore[arg-type]
     fit = fitted_by(family, x)
     observed = distances(fit, x)

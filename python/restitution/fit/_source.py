@@ -46,7 +46,7 @@ def taken(samples: Samples, velocity: Window | None, location: float | None = No
         if "restitution_count" in samples:
             return counted(samples, velocity)
         return finite_samples(recorded(samples, velocity)[0], location)
-    no_window(velocity)
+    no_window(samples, velocity)
     return samples if isinstance(samples, Counts) else finite_samples(samples, location)
 
 
@@ -91,10 +91,10 @@ def recorded(data: xr.Dataset, velocity: Window | None) -> tuple[Array, NDArray[
     return restitution[particle, impact], particle
 
 
-def no_window(velocity: Window | None) -> None:
+def no_window(samples: object, velocity: Window | None) -> None:
     """Refuse an impact velocity of samples that have none."""
     if velocity is not None:
-        text = f" = {shown(velocity)}: is for a Dataset; other samples have no impact velocity"
+        text = f" = {shown(velocity)}: is for a Dataset, and samples = {shown(samples)}: is none"
         raise ParameterError(Problem("velocity", text))
 
 

@@ -48,6 +48,9 @@ def figure(data: xr.Dataset | Iterable[xr.Dataset], *fits: LawFit) -> Figure:
         raise ParameterError(
             wrong("data", data, "a Dataset of flight.restitution with at least one coefficient")
         )
+    for fit in fits:
+        if not isinstance(fit, LawFit):
+            raise ParameterError(wrong("fits", fit, "fits, as flight.fit returns them"))
     figure, [[axes]] = panels(COLUMN, 2.6)
     speeds = np.concatenate(
         [one.impact_velocity.values[rows] for one, rows in zip(series, known, strict=True)]

@@ -3,7 +3,7 @@
 import math
 from collections.abc import Iterable, Sequence
 from importlib.metadata import version
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import Annotated, Any
 
 import numpy as np
 import numpy.typing as npt
@@ -11,15 +11,13 @@ import xarray as xr
 from pydantic import Field
 
 from restitution import flight
-from restitution._parameters import Number, ParameterError, Parameters, Whole, wrong
+from restitution._arrays import reals
+from restitution._parameters import Number, ParameterError, Parameters, Whole, in_terms_of, wrong
 from restitution.bodies._roundness import Form
 from restitution.inference._family import Family
 from restitution.inference._series import Series
 from restitution.inference._table import Table, table
 from restitution.laws._law import Law
-
-if TYPE_CHECKING:
-    pass
 
 Array = npt.NDArray[np.float64]
 
@@ -33,10 +31,10 @@ _TOLD = 3.3
 class Setting(Parameters):
     """What an inference needs besides the times."""
 
-    diameter: Annotated[Number, Field(gt=0, description="m")]
+    diameter: Annotated[Number, Field(gt=0, le=1e6, description="m")]
     lobes: Annotated[Whole, Field(ge=2)]
     particles: Annotated[Whole, Field(ge=100)]
-    draws: Annotated[Whole, Field(ge=100)]
+    draws: Annotated[Whole, Field(ge=100, le=10**8)]
     seed: Annotated[Whole, Field(ge=0, lt=2**32)]
 
 
@@ -121,12 +119,13 @@ def posterior(
     low, high = _pair("elongation", elongation, least=0.0, strictly=True)
     family = Family(law, setting.diameter, form, setting.lobes)
     family.check_friction(friction)
-    family.body(high)
+    with in_terms_of(elongation=elongation, diameter=diameter):
+        family.body(high)
     frictions: Sequence[float | None] = [None]
     if friction is not None:
         bottom, top = _pair("friction", friction, least=0.0, strictly=False)
         frictions = [float(mu) for mu in bottom + (top - bottom) * np.linspace(0.0, 1.0, _FRICTIONS) ** 2]
-    every = [data] if isinstance(data, xr.Dataset) else list(data)
+    every = _several(data)
     if not every or not all(isinstance(one, xr.Dataset) and "restitution" in one for one in every):
         raise ParameterError(wrong("data", data, "a Dataset of flight.restitution, or several"))
     first = flight.fit(every, family.of_speed.name, scatter="fit")
@@ -136,6 +135,15 @@ def posterior(
     found = table(series, family, nodes, frictions, setting.particles, setting.seed)
     chain, log = _sampled(emcee, found, setting)
     return _tree(from_dict, family, setting, found, chain, log, series)
+
+
+def _several(data: Any) -> list[xr.Dataset]:
+    if isinstance(data, xr.Dataset):
+        return [data]
+    try:
+        return list(data)
+    except Exception:  # whatever the object raises
+        raise ParameterError(wrong("data", data, "a Dataset of flight.restitution, or several")) from None
 
 
 def _packages() -> tuple[Any, Any]:
@@ -151,10 +159,10 @@ def _packages() -> tuple[Any, Any]:
 
 def _pair(name: str, value: object, *, least: float, strictly: bool) -> tuple[float, float]:
     allowed = f"a pair (low, high) with {least:g} {'<' if strictly else '<='} low < high"
-    try:
-        low, high = (float(part) for part in value)  # type: ignore[attr-defined]
-    except (TypeError, ValueError):
-        raise ParameterError(wrong(name, value, allowed)) from None
+    ends = reals(name, value, allowed, dimensions=(1,), finite=False)
+    if ends.shape != (2,):
+        raise ParameterError(wrong(name, value, allowed))
+    low, high = ends.tolist()
     if not ((least < low if strictly else least <= low) and low < high < math.inf):
         raise ParameterError(wrong(name, value, allowed))
     return low, high

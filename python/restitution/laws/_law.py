@@ -8,7 +8,7 @@ from pydantic import BeforeValidator, Field, TypeAdapter, ValidationError, model
 
 from restitution import _core
 from restitution._parameters import Allowed, Number, ParameterError, Parameters, wrong
-from restitution.laws._materials import Material, Plastic, Tabulated, Viscoelastic
+from restitution.laws._materials import Material, Plastic, Tabulated, Viscoelastic, tabulated
 
 _NORMAL = "a real number in [0, 1] or a Viscoelastic, Plastic, Tabulated or function of the speed"
 _number = TypeAdapter(Annotated[Number, Field(ge=0, le=1)])
@@ -18,7 +18,7 @@ def _normal(value: Any) -> Any:
     if isinstance(value, Material):
         return value
     if callable(value) and not isinstance(value, type):
-        return Tabulated.from_function(value)
+        return tabulated("normal", value)
     try:
         return _number.validate_python(value)
     except ValidationError:

@@ -1,5 +1,6 @@
 """Materials: the normal coefficient of restitution as a function of the normal contact speed."""
 
+import math
 from abc import abstractmethod
 from collections.abc import Callable
 from functools import cached_property
@@ -10,8 +11,8 @@ import numpy.typing as npt
 from pydantic import BeforeValidator, Field, model_validator
 
 from restitution import _core
-from restitution._arrays import reals
-from restitution._parameters import Allowed, Number, ParameterError, Parameters, Problem, wrong
+from restitution._arrays import real, reals
+from restitution._parameters import Allowed, Number, ParameterError, Parameters, Problem, shown, wrong
 
 Floats = npt.NDArray[np.float64]
 
@@ -88,7 +89,12 @@ class Viscoelastic(Material):
 
     @model_validator(mode="after")
     def _is_possible(self) -> Self:
-        _ = self.compiled
+        try:
+            _ = self.compiled
+        except _core.MagnitudeError as error:
+            given = ", ".join(f"{name} = {shown(value)}" for name, value in self.model_dump().items())
+            first, _, rest = given.partition(" = ")
+            raise ParameterError(Problem(first, f" = {rest}: must be {error.allowed}")) from None
         return self
 
     @property
@@ -175,8 +181,8 @@ class Tabulated(Material):
                 allowed = f"greater than v[{i - 1}] = {self.v[i - 1]}"
                 raise ParameterError(wrong(f"v[{i}]", self.v[i], allowed))
         if len(self.e) != len(self.v):
-            given = f" = an array of {len(self.e)} numbers"
-            raise ParameterError(Problem("e", f"{given}: must be one for each of the {len(self.v)} speeds"))
+            text = f": {len(self.v)} speeds and {len(self.e)} coefficients; must be as many"
+            raise ParameterError(Problem("v, e", text))
         return self
 
     @classmethod
@@ -211,7 +217,7 @@ class Tabulated(Material):
         >>> round(float(measured(0.5)), 6), len(measured.v)
         (0.93333, 810)
         """
-        return cls(**dict(zip("ve", _tabulated(function, fastest, tolerance), strict=True)))
+        return cls(**dict(zip("ve", _points("function", function, fastest, tolerance), strict=True)))
 
     def _compile(self) -> _core.Material:
         return _core.tabulated(self.v, self.e)
@@ -222,21 +228,20 @@ _NARROWEST = 1e-9
 """Of an interval, over its speed."""
 
 
-def _is_in(value: Any, low: float, high: float) -> bool:
-    number = isinstance(value, int | float | np.number) and not isinstance(value, bool)
-    return number and bool(low <= value <= high)
+def tabulated(name: str, function: Callable[[float], float]) -> Tabulated:
+    """Tabulate a function that was given by another name."""
+    v, e = _points(name, function, 100.0, 1e-6)
+    return Tabulated(v=tuple(v), e=tuple(e))
 
 
-def _tabulated(
-    function: Callable[[float], float], fastest: float, tolerance: float
+def _points(
+    name: str, function: Callable[[float], float], fastest: float, tolerance: float
 ) -> tuple[list[float], list[float]]:
     """Give speeds, and the function there; see `Tabulated.from_function`."""
     if not callable(function):
-        raise ParameterError(wrong("function", function, "a function of the speed"))
-    if not _is_in(fastest, 5e-324, float(np.finfo(np.float64).max)):
-        raise ParameterError(wrong("fastest", fastest, "a finite number > 0 (m/s)"))
-    if not _is_in(tolerance, 1e-12, 0.1):
-        raise ParameterError(wrong("tolerance", tolerance, "a number in [1e-12, 0.1]"))
+        raise ParameterError(wrong(name, function, "a function of the speed"))
+    fastest = real("fastest", fastest, "a finite number > 0 (m/s)", lambda x: 0.0 < x < math.inf)
+    tolerance = real("tolerance", tolerance, "a number in [1e-12, 0.1]", lambda x: 1e-12 <= x <= 0.1)
 
     def at(speed: float) -> float:
         try:
@@ -244,10 +249,10 @@ def _tabulated(
             number = float(value)
         except Exception as error:
             text = f" gave {type(error).__name__}: {error} at {speed!r} m/s: must give ε_n in [0, 1]"
-            raise ParameterError(Problem("normal", text)) from error
+            raise ParameterError(Problem(name, text)) from error
         if not 0.0 <= number <= 1.0:
             text = f" gave {value!r} at {speed!r} m/s: must give ε_n in [0, 1] up to {fastest!r} m/s; "
-            raise ParameterError(Problem("normal", text + "Tabulated.from_function takes a lower `fastest`"))
+            raise ParameterError(Problem(name, text + "Tabulated.from_function takes a lower `fastest`"))
         return number
 
     speeds, values = [0.0], [at(0.0)]
@@ -268,5 +273,5 @@ def _tabulated(
             waiting.pop()
         if len(speeds) > _MOST_POINTS:
             text = f" needs more than {_MOST_POINTS:,} points for {tolerance!r}: must be smoother"
-            raise ParameterError(Problem("normal", text + ", or have a greater tolerance"))
+            raise ParameterError(Problem(name, text + ", or have a greater tolerance"))
     return speeds, values

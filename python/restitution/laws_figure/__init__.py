@@ -43,9 +43,11 @@ def write(
     OSError
         If `out` cannot be written to, or holds anything and is not to be overwritten; before the work begins.
     """
+    from restitution._arrays import flag
     from restitution._dataset import save
-    from restitution._files import check_folder, whole_folder
+    from restitution._files import check_folder, path_from, whole_folder
 
+    out, overwrite = path_from("out", out), flag("overwrite", overwrite)
     names = [f"laws.{kind}" for kind in ("png", "pdf", "nc", "txt", "md")]
     check_folder(out, replace=overwrite)
     with whole_folder(out, replace=overwrite, names=names) as folder:

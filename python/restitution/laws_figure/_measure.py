@@ -7,6 +7,7 @@ import numpy as np
 import numpy.typing as npt
 import xarray as xr
 
+from restitution._arrays import whole
 from restitution._compare import compare
 from restitution._energy import reported_elsewhere
 from restitution._resources import progress_bar
@@ -82,11 +83,9 @@ def measure(impacts: int, seed: int, *, threads: int | None = None, progress: bo
     ValueError
         If there would not be a particle in every batch.
     """
+    impacts = whole("impacts", impacts, BATCHES * _MEAN_IMPACTS, 2**53)
+    seed = whole("seed", seed, 0, 2**63 - 1)
     particles = ceil(impacts / (_MEAN_IMPACTS * BATCHES))
-    if impacts < BATCHES * _MEAN_IMPACTS:
-        raise ValueError(f"impacts = {impacts}: must be at least {BATCHES * _MEAN_IMPACTS}")
-    if not 0 <= seed < 2**63:
-        raise ValueError(f"seed = {seed}: must be in [0, 2**63)")
     seeds = np.random.SeedSequence(seed).generate_state(BATCHES, np.uint64)
     found = []
     with (

@@ -13,7 +13,8 @@ import xarray as xr
 from pydantic import Field
 
 from restitution import flight
-from restitution._parameters import Number, ParameterError, Parameters, Problem
+from restitution._files import path_from
+from restitution._parameters import Number, ParameterError, Parameters, Problem, wrong
 from restitution._words import with_error
 from restitution.flight._times import DOUBLED, FLAGS, MISSED
 from restitution.listen._shape import Shape, shape
@@ -92,6 +93,7 @@ class Series:
 
     def sentence(self, setting: Setting) -> str:
         """Say in a sentence what was measured, as a paper would."""
+        checked(setting)
         flags = self.heard.flag.values
         known = np.isfinite(self.data.restitution.values)
         speeds = self.data.impact_velocity.values[known]
@@ -218,10 +220,18 @@ def analyse(file: Path, setting: Setting) -> Analysis:
     OSError
         If the file cannot be read.
     """
+    file = path_from("file", file)
     heard = impacts(file)
+    checked(setting)
     series = tuple(_series(heard, int(number), setting) for number in np.unique(heard.series))
     _check_drop(series[0], setting)
     return Analysis(file.name, setting, heard, series, tuple(_warnings(heard, series)))
+
+
+def checked(setting: object) -> None:
+    """Refuse what is no setting."""
+    if not isinstance(setting, Setting):
+        raise ParameterError(wrong("setting", setting, "a Setting"))
 
 
 def _series(heard: xr.Dataset, number: int, setting: Setting) -> Series:

@@ -9,12 +9,13 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from restitution import flight
+from restitution._arrays import flag
 from restitution._dataset import put
-from restitution._files import check, check_apart, whole_files
+from restitution._files import check, check_apart, path_from, whole_files
 from restitution._parameters import ParameterError, wrong
 from restitution._words import with_error
 from restitution.flight._times import DOUBLED, FLAGS
-from restitution.listen._analysis import Analysis, Series, Setting, analyse
+from restitution.listen._analysis import Analysis, Series, Setting, analyse, checked
 from restitution.listen._figures import close_ups, drawn_shape, waveform
 from restitution.listen._shape import Shape
 from restitution.paper._report._html import image, paragraph, prose, section, table, text
@@ -33,8 +34,10 @@ def write(file: Path, out: Path, setting: Setting, *, replace: bool = False) -> 
     OSError
         If a file cannot be read or written.
     """
+    file, out, replace = path_from("file", file), path_from("out", out), flag("replace", replace)
     if out.suffix.lower() not in (".html", ".htm"):
         raise ParameterError(wrong("out", str(out), "a file that ends with .html"))
+    checked(setting)
     beside = {suffix: out.with_suffix(suffix) for suffix in (".csv", ".nc")}
     paths = [*beside.values(), out]
     check_apart([file], paths)

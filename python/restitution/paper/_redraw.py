@@ -4,13 +4,14 @@ import os
 from contextlib import suppress
 from pathlib import Path
 
-from restitution._files import check_folder, whole_folder
-from restitution._resources import bar
+from restitution._arrays import flag, whole
+from restitution._files import check_folder, path_from, whole_folder
+from restitution._resources import bar, checked_threads
 from restitution.explorer import page
 from restitution.paper._claims import judge
 from restitution.paper._figures import FIGURES, draw_all
 from restitution.paper._report import write_report
-from restitution.paper._runs import check_impacts, simulate_all
+from restitution.paper._runs import simulate_all
 from restitution.paper._settings import Settings
 
 PAGES = ("report.html", "explorer.html")
@@ -59,8 +60,11 @@ def redraw(
         anything is computed.
     """
     settings = Settings()
-    check_impacts(settings, impacts)
-    folder = Path(out)
+    impacts = whole("impacts", impacts, settings.least_impacts, 2**53)
+    seed = whole("seed", seed, 0, 2**64 - 1)
+    checked_threads(threads)
+    overwrite, progress = flag("overwrite", overwrite), flag("progress", progress)
+    folder = path_from("out", out)
     stages = bar(show=progress, total=4, desc="paper", unit="stage")
     check_folder(folder, replace=overwrite)
     names = [f"{figure.name}.{kind}" for figure in FIGURES for kind in ("png", "pdf", "nc", "txt")]

@@ -106,7 +106,7 @@ def impacts(source: str | PathLike[str] | npt.ArrayLike, rate: float | None = No
     [0.4, 0.36, 0.324, 0.292]
     """
     samples, own = load(source, rate)
-    name = Path(source).name if isinstance(source, str | PathLike) else "the array"
+    name = Path(source).name if isinstance(source, str | PathLike) else "source"
     channel, tracks, loudest = _tracks(samples, own)
     if not tracks:
         share = clipped_share(samples)

@@ -41,7 +41,7 @@ def load(source: str | PathLike[str] | npt.ArrayLike, rate: float | None) -> tup
         if rate is not None and rate != own:
             raise ParameterError(wrong("rate", given, f"left out, or {own:g}, which {name} says it has (Hz)"))
     else:
-        name = "the array"
+        name = "source"
         if rate is None:
             raise ParameterError(
                 Problem("rate", ": missing; must be the samples per second of the array (Hz)")

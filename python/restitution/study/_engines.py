@@ -7,6 +7,7 @@ from contextlib import contextmanager, suppress
 from typing import Any
 
 from restitution import _core
+from restitution._parameters import ParameterError, wrong
 from restitution._resources import checked_threads
 
 
@@ -67,7 +68,7 @@ def engine(client: Any, threads: int | None) -> Iterator[Engine]:
     if threads is not None:
         raise ValueError(f"threads = {threads!r}: is for this machine; with a client its workers decide")
     if not hasattr(client, "get_executor"):
-        raise ValueError(f"client = {client!r}: must be a dask.distributed.Client or None")
+        raise ParameterError(wrong("client", client, "a dask.distributed.Client or None"))
     executor = client.get_executor(pure=False)
     try:
         yield Engine(executor, lambda: sum(client.nthreads().values()), None)

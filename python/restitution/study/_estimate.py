@@ -5,6 +5,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from restitution._arrays import whole
+from restitution._parameters import ParameterError, wrong
 from restitution.study._point import count, evaluate, point_of, with_template
 from restitution.study._study import Study
 
@@ -100,7 +102,10 @@ def estimate(study: Study, threads: int, points: int | None = None) -> Estimate:
     >>> rs.study.estimate(rs.study.study_of(study), threads=2).points
     2
     """
-    points = study.design.points if points is None else points
+    if not isinstance(study, Study):
+        raise ParameterError(wrong("study", study, "a Study, as from study_of"))
+    threads = whole("threads", threads, 1)
+    points = study.design.points if points is None else whole("points", points, 0, study.design.points)
     chosen = np.unique(np.linspace(0, study.design.points - 1, min(_POINTS, study.design.points)).astype(int))
     costs, amounts, words = [], [], 0
     _pilot(study, 0)  # the first one loads what all need
@@ -117,7 +122,7 @@ def estimate(study: Study, threads: int, points: int | None = None) -> Estimate:
         particles=particles,
         seconds=points * float(np.mean(np.array(costs) * np.array(amounts))),
         task_seconds=float(np.mean(costs)) * effort.particles / effort.block_tasks,
-        threads=max(1, threads),
+        threads=threads,
         store=int(points * blocks * effort.batches * words * 8),
         most=effort.blocks / max(1.0, blocks),
     )

@@ -5,7 +5,9 @@ from pathlib import Path
 import numpy as np
 import xarray as xr
 
+from restitution._arrays import real, whole
 from restitution._dataset import attributes
+from restitution._files import path_from
 from restitution._parameters import ParameterError, Problem
 from restitution.distribution import FluctuatingRestitution
 from restitution.study._status import open_store, study_in
@@ -56,7 +58,7 @@ def learned(out: str | Path, **values: float) -> FluctuatingRestitution:
     >>> bool(0.9 < dist.mean(0.5) < 1.0)
     True
     """
-    path = Path(out)
+    path = path_from("out", out)
     study, data = study_in(path), open_store(path)
     design = study.design
     needed = set(design.dims) - {_POOLED}
@@ -66,7 +68,11 @@ def learned(out: str | Path, **values: float) -> FluctuatingRestitution:
         )
     if "restitution_count" not in data:
         raise ParameterError(Problem("out", f" = {str(out)!r}: must be the store of a study with statistics"))
-    place = {name: _nearest(data, name, values[name]) for name in design.dims if name in values}
+    place = {
+        name: _nearest(data, name, real(name, values[name], "a finite number"))
+        for name in design.dims
+        if name in values
+    }
     chosen = data.isel(place).load()
     if not bool((chosen["status"] == 1).all()):
         raise ParameterError(Problem("values", f" = {values}: must be those of a finished point"))
@@ -84,7 +90,7 @@ def learned(out: str | Path, **values: float) -> FluctuatingRestitution:
 def _nearest(data: xr.Dataset, name: str, value: float) -> int:
     index = data.indexes.get(name)
     if index is None:
-        return int(value)
+        return whole(name, int(value) if value.is_integer() else value, 0, data.sizes[name] - 1)
     return int(index.get_indexer([value], method="nearest")[0])
 
 

@@ -5,7 +5,7 @@ from pathlib import Path
 from typing import Any
 
 from restitution._files import path_from
-from restitution._parameters import ParameterError, Problem
+from restitution._parameters import ParameterError, Problem, shown, wrong
 from restitution.study._drive import Driver
 from restitution.study._engines import engine
 from restitution.study._status import Status, status, study_in
@@ -60,9 +60,11 @@ def merge(
     2
     """
     need_zarr()
-    path, others = path_from("out", out), [path_from("parts", part) for part in parts]
+    if isinstance(parts, str | bytes) or not isinstance(parts, Sequence):
+        raise ParameterError(wrong("parts", parts, "a list of paths"))
+    path, others = path_from("out", out), [path_from(f"parts[{i}]", part) for i, part in enumerate(parts)]
     if not path.exists() and not others:
-        raise ParameterError(Problem("out", f" = {str(path)!r}: there is no such store, and no parts for it"))
+        raise ParameterError(Problem("out", f" = {shown(out)}: there is no such store, and no parts for it"))
     wanted = study_of(study if study is not None else study_in(path if path.exists() else others[0]))
     for part in others:
         check(part, wanted)

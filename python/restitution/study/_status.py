@@ -104,6 +104,8 @@ def open_store(path: Path) -> xr.Dataset:
     >>> rs.study.open_store(out)["mean_restitution"].dims
     ('normal', 'velocity')
     """
+    path = path_from("path", path)
+    identity(path)
     found: xr.Dataset = xr.open_zarr(path, chunks=None)
     return found
 

@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from restitution._arrays import whole
 from restitution._bins import edges_from
 from restitution._files import path_from
 from restitution._parameters import ParameterError, Parameters, Problem, unknown, wrong
@@ -87,7 +88,7 @@ class Study:
         ValueError
             If its parameters do not go together.
         """
-        values = self.design.values(point)
+        values = self.design.values(whole("point", point, 0, self.design.points - 1))
         try:
             return _changed(self.base, values)
         except ParameterError as error:

@@ -1,6 +1,5 @@
 """`sweep`: a study from its file to its results."""
 
-import sys
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
@@ -8,8 +7,11 @@ from typing import Any
 
 import xarray as xr
 
+from restitution._arrays import flag
 from restitution._files import path_from
 from restitution._parameters import ParameterError, wrong
+from restitution._resources import bar as bar_of
+from restitution._streams import tell as say
 from restitution.study._drive import Driver, Progress
 from restitution.study._engines import engine
 from restitution.study._estimate import estimate
@@ -86,6 +88,7 @@ def sweep(
     ('separation', 'normal', 'velocity')
     """
     need_zarr()
+    progress = flag("progress", progress)
     wanted = study_of(study)
     points = _shard(shard, wanted.design.points)
     path = path_from("out", out)
@@ -93,7 +96,7 @@ def sweep(
         check(path, wanted)
     with engine(client, threads) as work:
         if progress:
-            print(estimate(wanted, work.room // 2 - 1, len(points)), file=sys.stderr)
+            say(str(estimate(wanted, max(1, work.room // 2 - 1), len(points))))
         store, template = opened(path, wanted)
         with _bar(len(points) * wanted.effort.block_tasks, show=progress) as tell:
             driver = Driver(wanted, store, work, template, points, tell=tell)
@@ -123,9 +126,7 @@ def _bar(total: int, *, show: bool) -> Iterator[Any]:
     if not show:
         yield None
         return
-    from tqdm import tqdm
-
-    with tqdm(total=total, desc="sweep", unit=" tasks", file=sys.stderr, smoothing=0.05) as bar:
+    with bar_of(show=True, total=total, desc="sweep", unit=" tasks", smoothing=0.05) as bar:
 
         def tell(progress: Progress) -> None:
             bar.total = progress.tasks

@@ -1,0 +1,48 @@
+"""What the pieces of figures are given, checked: panels, and arrays that fit together."""
+
+from typing import Any
+
+from matplotlib.axes import Axes
+from matplotlib.cm import ScalarMappable
+from matplotlib.figure import Figure
+
+from restitution._arrays import FloatArray, reals
+from restitution._parameters import ParameterError, Problem, wrong
+
+
+def panel(name: str, value: Any) -> Axes:
+    """Take a panel."""
+    if not isinstance(value, Axes):
+        raise ParameterError(wrong(name, value, "a panel, matplotlib.axes.Axes"))
+    return value
+
+
+def figure(name: str, value: Any) -> Figure:
+    """Take a figure."""
+    if not isinstance(value, Figure):
+        raise ParameterError(wrong(name, value, "a matplotlib.figure.Figure"))
+    return value
+
+
+def colours(name: str, value: Any) -> ScalarMappable:
+    """Take what a colour bar is for."""
+    if not isinstance(value, ScalarMappable) or value.get_array() is None:
+        raise ParameterError(wrong(name, value, "what `population` returns"))
+    return value
+
+
+def text(name: str, value: Any) -> str:
+    """Take words."""
+    if not isinstance(value, str):
+        raise ParameterError(wrong(name, value, "text"))
+    return value
+
+
+def column(name: str, value: Any, length: int | None = None, like: str = "") -> FloatArray:
+    """Take a 1-D array of real numbers, NaN and infinities among them, of a length that another one sets."""
+    allowed = "a 1-D array of real numbers"
+    found = reals(name, value, allowed, dimensions=(1,), finite=False)
+    if length is not None and found.size != length:
+        text = f": {name} has {found.size} numbers, and must have {length} beside {like}"
+        raise ParameterError(Problem(f"{like}, {name}", text))
+    return found

@@ -1,0 +1,140 @@
+"""Calls of public functions, right as they stand: the contract's tests attack one argument at a time."""
+
+import tempfile
+from collections.abc import Callable
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+import restitution as rs
+from restitution import analytic, bodies, figures, fit, flight
+
+Call = tuple[Callable[..., Any], Callable[[], dict[str, Any]]]
+"""A public function, class or method, and what it is given; of a method with ``self``."""
+
+WINDOW = (0.5, 0.9)
+
+
+@cache
+def folder() -> Path:
+    """Give a folder with one small file of each kind that is read."""
+    path = Path(tempfile.mkdtemp(prefix="calls-"))
+    (path / "times.csv").write_text("time (s)\n0\n0.4\n0.78\n1.141\n", encoding="ascii")
+    good()["dist"].save(path / "dist.nc")
+    return path
+
+
+@cache
+def good() -> dict[str, Any]:
+    """What functions are given where they are not attacked; small, and of one thread."""
+    body, law = rs.Dumbbell(radius=3e-3, separation=3e-3), rs.TangentialRestitution(normal=0.9)
+    data = rs.simulate(body, law, particles=200, impacts=40, threads=1, record="state")
+    velocity, restitution = np.linspace(0.1, 1.2, 12), np.linspace(-1, 3, 101)
+    many = rs.simulate(body, law, particles=1000, impacts=20, threads=1)
+    learned = rs.reduce(many, [0.7, 0.8, 0.9, 1.0], restitution)
+    laplace = fit.laplace(data, velocity=WINDOW)
+    times = np.cumsum([0.0, *(0.4 * 0.95**n for n in range(12))])
+    measured = flight.restitution(times, 1e-4, drop_height=0.22)
+    figure, [[axes]] = figures.panels(3.0, 2.0)
+    found = rs.reduce(data, velocity, restitution)
+    return {
+        "body": body,
+        "law": law,
+        "data": data,
+        "found": found,
+        "velocity_bins": velocity,
+        "restitution_bins": restitution,
+        "learned": learned,
+        "dist": rs.FluctuatingRestitution.from_statistics(learned),
+        "given": rs.FluctuatingRestitution.learn(
+            body,
+            law,
+            particles=2000,
+            impacts=40,
+            velocities=(0.4, 0.7),
+            given="rotational_fraction",
+            threads=1,
+        ),
+        "first": analytic.first_impact(body, law),
+        "fit": laplace,
+        "counts": fit.Counts.at(found, 0.65),
+        "bootstrap": fit.bootstrap(fit.laplace, data, velocity=WINDOW, resamples=3),
+        "slopes": fit.slopes(data, np.linspace(0.2, 1.0, 6), resamples=2),
+        "times": times,
+        "measured": measured,
+        "law_fit": flight.fit(measured),
+        "figure": figure,
+        "axes": axes,
+    }
+
+
+def some(*names: str, **others: Any) -> Callable[[], dict[str, Any]]:
+    """Give good values by their names, and others."""
+    return lambda: {name: good()[name] for name in names} | others
+
+
+def of(thing: str, /, **others: Any) -> Callable[[], dict[str, Any]]:
+    """Give a good object as ``self``."""
+    return lambda: {"self": good()[thing]} | others
+
+
+RUN = {"particles": 3, "impacts": 3}
+BINS = ("velocity_bins", "restitution_bins")
+
+CALLS: dict[str, Call] = {
+    "Dumbbell": (rs.Dumbbell, lambda: {"radius": 1.0, "separation": 1.0, "density": 1.0}),
+    "Dumbbell.from_length_width": (rs.Dumbbell.from_length_width, lambda: {"length": 2.0, "width": 1.0}),
+    "LoadedSphere": (
+        rs.LoadedSphere,
+        lambda: {"radius": 0.01, "density": 1000.0, "load": 1e-3, "offset": 2e-3},
+    ),
+    "Spherocylinder": (rs.Spherocylinder, lambda: {"radius": 1.0, "separation": 2.0, "density": 1.0}),
+    "Spheroid": (rs.Spheroid, lambda: {"equatorial": 1.0, "polar": 2.0, "density": 1.0}),
+    "Spheroid.from_length_width": (rs.Spheroid.from_length_width, lambda: {"length": 2.0, "width": 1.0}),
+    "ball_grade": (bodies.ball_grade, lambda: {"grade": 10}),
+    "from_roundness": (bodies.from_roundness, lambda: {"diameter": 0.04, "out_of_roundness": 1e-4}),
+    "TangentialRestitution": (rs.TangentialRestitution, lambda: {"normal": 0.5, "tangential": 0.5}),
+    "Frictionless": (rs.Frictionless, lambda: {"normal": 0.5}),
+    "Coulomb": (rs.Coulomb, lambda: {"normal": 0.5, "friction": 0.5, "hypothesis": "newton"}),
+    "ChatterjeeRuina": (rs.ChatterjeeRuina, lambda: {"normal": 0.5, "tangential": 0.5, "friction": 0.5}),
+    "Viscoelastic": (
+        rs.Viscoelastic,
+        lambda: {
+            "young_modulus": 1e9,
+            "poisson_ratio": 0.3,
+            "dissipation": 1e-6,
+            "density": 1e3,
+            "radius": 1e-3,
+        },
+    ),
+    "Plastic": (rs.Plastic, lambda: {"yield_speed": 0.1}),
+    "Tabulated": (rs.Tabulated, lambda: {"v": [0.1, 0.2], "e": [0.9, 0.8]}),
+    "Tabulated.from_function": (
+        rs.Tabulated.from_function,
+        lambda: {"function": lambda v: 1.0 / (1.0 + v), "fastest": 1.0},
+    ),
+    "RandomSpin": (rs.RandomSpin, lambda: {"rate": 1.0, "axis": "across"}),
+    "RandomHeight": (rs.RandomHeight, lambda: {"lowest": 0.05, "highest": 0.06}),
+    "build_info": (rs.build_info, dict),
+    "simulate": (rs.simulate, some("body", "law", **RUN)),
+    "statistics": (rs.statistics, some("body", "law", *BINS, **RUN)),
+    "reduce": (rs.reduce, some("data", *BINS)),
+    "compare": (
+        rs.compare,
+        lambda: some(*BINS, particles=2, impacts=2)() | {"bodies": [good()["body"]], "laws": [good()["law"]]},
+    ),
+    "trajectory": (rs.trajectory, some("data", particle=3, times=[0.0, 0.1])),
+    "analytic.first_impact": (analytic.first_impact, some("body", "law", orientation="isotropic")),
+    "analytic.negative_threshold": (analytic.negative_threshold, some("body", "law")),
+    "analytic.near_round": (
+        analytic.near_round,
+        lambda: {
+            "body": rs.Dumbbell(radius=3e-3, separation=3e-5),
+            "law": good()["law"],
+            "velocity_bins": [0.3, 0.5, 0.7],
+            "angles": 100,
+        },
+    ),
+}

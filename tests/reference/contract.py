@@ -1,0 +1,141 @@
+"""The contract of every public function: our error, which names the argument, or a right answer, in time."""
+
+import importlib
+import inspect
+import pkgutil
+import re
+import time
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from types import ModuleType
+from typing import Any
+
+import numpy as np
+
+import restitution as rs
+from reference import calls, measuring, methods
+from reference.hostile import VALUES
+from restitution._parameters import shown
+
+SLOW = 30.0
+"""Seconds that no call of these sizes may take, on a busy machine either."""
+
+CALLS: dict[str, calls.Call] = calls.CALLS | methods.CALLS | measuring.CALLS
+"""Every public function, class and method that takes anything, with what it is given."""
+
+RESULTS = {
+    "ErrorBudget",
+    "RequiredRoundness",
+    "analytic.FirstImpact",
+    *(f"fit.{name}" for name in ("Bootstrap", "Comparison", "Fit", "Goodness", "PowerLaw", "Slopes")),
+    "flight.LawFit",
+    "listen.Analysis",
+    "listen.Series",
+    *(f"study.{name}" for name in ("Estimate", "Status", "Study")),
+    "bodies.Body",
+    "laws.Law",
+}
+"""Classes that nobody makes but the functions that return them, or that are bases of others."""
+WORKINGS = {
+    *(f"laws_figure.{name}" for name in ("bound", "coupling", "growth", "measure", "table")),
+    "distribution.image",
+    "distribution.image_format",
+}
+"""What a command alone calls, with what it has checked."""
+
+
+def public() -> Iterator[tuple[str, Callable[..., Any]]]:
+    """Yield each public function, class and method once, by the shortest name that it has."""
+    seen: set[int] = set()
+    homes = [name for _, name, _ in pkgutil.iter_modules(rs.__path__) if not name.startswith("_")]
+    for home in ("", *homes):
+        module = importlib.import_module(f"restitution.{home}") if home else rs
+        for name in getattr(module, "__all__", ()):
+            thing = getattr(module, name)
+            if id(thing) in seen or isinstance(thing, ModuleType) or not callable(thing):
+                continue
+            seen.add(id(thing))
+            full = f"{home}.{name}" if home else name
+            if not isinstance(thing, type):
+                yield full, thing
+            elif not issubclass(thing, BaseException):
+                if full not in RESULTS:
+                    yield full, thing
+                yield from _methods(full, thing)
+
+
+def _methods(home: str, kind: type) -> Iterator[tuple[str, Callable[..., Any]]]:
+    for name in dir(kind):
+        method = getattr(kind, name)
+        ours = getattr(method, "__module__", None) or ""
+        if not name.startswith("_") and callable(method) and ours.startswith("restitution"):
+            yield f"{home}.{name}", method
+
+
+def arguments(name: str) -> list[str]:
+    """Give what can be attacked: what the signature has, and what is given besides."""
+    function, make = CALLS[name]
+    kinds = (inspect.Parameter.VAR_KEYWORD, inspect.Parameter.VAR_POSITIONAL)
+    taken = {key for key, one in inspect.signature(function).parameters.items() if one.kind not in kinds}
+    return sorted((taken | set(make())) - {"self"})
+
+
+_PLACE = r"(?:\[[\d, ]*\]|\.\w+)*"
+_AFTER = r"(?= = |: | has | holds | goes | lacks | gave |, \w+(?:: |, )| \* )"
+"""What follows the name of an argument, of several, or of an element of it."""
+
+FITTING: dict[str, str] = {
+    "Spheroid.equatorial": "polar",
+    "fit.Counts.edges": "count",
+    "study.study_of.source": "study",
+    "study.merge.study": "sweep",
+    "flight.restitution.times": "uncertainty",
+}
+"""Where an argument is right in itself, the other that no longer fits it may be the one that is named."""
+
+
+def attack(name: str, argument: str, value: str) -> str | None:
+    """Call with one hostile argument; say what is wrong with what happens, if anything is."""
+    function, make = CALLS[name]
+    bad = VALUES[value]()
+    given = make() | {argument: bad}
+    started = time.perf_counter()
+    try:
+        function(**given)
+    except ValueError as error:
+        found = judged(name, str(error), argument, bad)
+    except OSError as error:  # of a file, which it names
+        found = None if error.filename is not None else f"names no file: {error}"
+    except Exception as error:
+        found = f"{type(error).__name__}: {error}"
+    else:
+        found = None
+    seconds = time.perf_counter() - started
+    return found if seconds < SLOW else f"took {seconds:.0f} s"
+
+
+def judged(name: str, text: str, argument: str, bad: Any) -> str | None:
+    """Say what is wrong with the words of an error, if anything is."""
+    if measuring.ENOUGH in text:
+        return None
+    if len(text) > 2000:
+        return f"goes on and on: {text[:200]}"
+    if isinstance(bad, str | Path) and text.startswith(f"{bad}: "):
+        return None  # of a file, which it names
+    names = [argument, *FITTING.get(f"{name}.{argument}", "").split()]
+    if not any(re.search(rf"(?<![\w.]){re.escape(one)}{_PLACE}{_AFTER}", text) for one in names):
+        return f"does not name {argument}: {text}"
+    for line in text.splitlines():
+        value = line.removeprefix(f"{argument} = ")
+        if value != line and not value.startswith(shown(bad)) and not _same_number(value, bad):
+            return f"shows another value than {shown(bad)}: {text}"
+    return None
+
+
+def _same_number(text: str, bad: Any) -> bool:
+    """Whether a number is shown that is equal, if written otherwise."""
+    try:
+        plain = isinstance(bad, int | float | np.integer | np.floating) and not isinstance(bad, bool)
+        return plain and float(re.split(r"[:;,] ", text)[0]) == float(bad)
+    except (ValueError, OverflowError):
+        return False
