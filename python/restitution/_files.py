@@ -104,8 +104,11 @@ def whole_files(paths: Sequence[Path], *, replace: bool = False) -> Iterator[lis
     except OSError as error:
         _discard(drafts)
         for path, *ours in zip(paths, drafts, targets, strict=False):
-            if str(error.filename) in map(str, ours) or (error.filename is None and len(paths) == 1):
+            if str(error.filename) in map(str, ours):
                 raise OSError(error.errno, error.strerror or str(error), str(path)) from error
+        if error.filename is None:
+            names = ", ".join(map(str, paths))
+            raise OSError(error.errno, error.strerror or str(error), names) from error
         raise
     except BaseException:
         _discard(drafts)

@@ -53,7 +53,8 @@ def in_terms_of(**given: Any) -> Iterator[None]:
     except ParameterError as error:
         words = ", ".join(f"{name} = {shown(value)}" for name, value in given.items())
         first, _, rest = words.partition(" = ")
-        raise ParameterError(*(Problem(first, f" = {rest}: gives {one}") for one in error.problems)) from None
+        kind = type(error)  # too large stays too large
+        raise kind(*(Problem(first, f" = {rest}: gives {one}") for one in error.problems)) from None
 
 
 def unknown(name: str, taker: str, allowed: Iterable[str], prefix: str = "") -> Problem:

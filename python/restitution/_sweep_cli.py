@@ -1,6 +1,7 @@
 """The commands `restitution sweep STUDY.toml` and `restitution sweep merge`."""
 
 import sys
+from contextlib import suppress
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -123,7 +124,8 @@ def run(
         except ImportError as error:
             raise RuntimeError(str(error)) from None
         except KeyboardInterrupt:
-            tell(f"{out}: {status_of(out)}; the same command continues")
+            with suppress(ValueError, OSError):  # it may not be there yet
+                tell(f"{out}: {status_of(out)}; the same command continues")
             raise
         say(f"{out}: {status_of(out)}")
 

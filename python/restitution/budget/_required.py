@@ -8,7 +8,7 @@ import numpy as np
 import xarray as xr
 from pydantic import Field
 
-from restitution._parameters import Allowed, Number, ParameterError, Parameters, wrong
+from restitution._parameters import Allowed, Number, ParameterError, Parameters, TooLargeError, wrong
 from restitution.bodies import from_roundness
 from restitution.bodies._roundness import Form
 from restitution.budget._error_budget import weights
@@ -95,6 +95,8 @@ def required_roundness(
         body = from_roundness(asked.diameter, asked.diameter * share, form=form, lobes=lobes)
         try:
             alone = shape(experiment, body)
+        except TooLargeError:
+            raise
         except ParameterError:
             if not rows:
                 raise

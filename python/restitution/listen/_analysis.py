@@ -3,7 +3,6 @@
 import csv
 import io
 import math
-from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated, Literal
@@ -14,7 +13,7 @@ from pydantic import Field
 
 from restitution import flight
 from restitution._files import path_from
-from restitution._parameters import Number, ParameterError, Parameters, Problem, wrong
+from restitution._parameters import Number, ParameterError, Parameters, Problem, TooLargeError, wrong
 from restitution._words import with_error
 from restitution.flight._times import DOUBLED, FLAGS, MISSED
 from restitution.listen._shape import Shape, shape
@@ -267,8 +266,12 @@ def _fitted(data: xr.Dataset, scatter: float | Literal["fit"]) -> list[flight.La
     """Fit all laws that the number and errors of the coefficients allow."""
     fits = []
     for law in _LAWS:
-        with suppress(ParameterError):
+        try:
             fits.append(flight.fit(data, law, scatter=scatter))
+        except TooLargeError:
+            raise
+        except ParameterError:  # too few coefficients for this one
+            continue
     return fits
 
 

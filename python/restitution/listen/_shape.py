@@ -7,7 +7,7 @@ import numpy.typing as npt
 import xarray as xr
 
 from restitution import flight
-from restitution._parameters import ParameterError
+from restitution._parameters import ParameterError, TooLargeError
 from restitution.bodies import from_roundness
 from restitution.budget import ErrorBudget, error_budget
 from restitution.flight._drag import Drag
@@ -65,6 +65,8 @@ def shape(
         try:
             draws = posterior(data, law, diameter=diameter, particles=_PARTICLES)
             verdict = str(draws.attrs["verdict"])
+        except TooLargeError:
+            raise
         except ParameterError as error:
             verdict = f"No shape is inferred: {error}."
     t, assumed = _roundness(out_of_roundness, draws, diameter)
@@ -84,6 +86,8 @@ def shape(
             drag=drag,
             drag_corrected=drag is not None,
         )
+    except TooLargeError:
+        raise
     except ParameterError as error:
         return Shape(law, draws, verdict, None, f"No budget of errors: {error}.")
     return Shape(law, draws, verdict, budget, assumed)

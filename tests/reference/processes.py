@@ -1,0 +1,337 @@
+"""Functions and commands in hostile environments: what must hold of a process that calls them."""
+
+import contextlib
+import json
+import os
+import random
+import select
+import shutil
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+import traceback
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import matplotlib.figure
+import numpy as np
+import xarray as xr
+
+from reference import measuring
+from reference.contract import CALLS, SLOW
+from reference.environments import ENVIRONMENTS, Environment, become_ordinary, full_disk
+
+RUN = """
+body = { shape = "dumbbell", radius = 3e-3, separation = 3e-3 }
+law = { type = "tangential-restitution", normal = 0.9 }
+[run]
+particles = PARTICLES
+impacts = 20
+[statistics]
+velocity_bins = 12
+velocity_range = [0.0, 1.2]
+restitution_bins = 40
+restitution_range = [-1.0, 3.0]
+[distribution]
+velocities = [0.4, 0.7]
+"""
+STUDY = RUN.partition("[distribution]")[0] + '[sweep]\n"law.normal" = [0.8, 0.9]\n'
+
+COMMANDS: dict[str, tuple[str, str]] = {
+    # name: the words, and the files that they write
+    "template": ("template", ""),
+    "version": ("--version", ""),
+    "help": ("simulate --help", ""),
+    "simulate": ("simulate run.toml --out run.nc", "run.nc"),
+    "statistics": ("statistics run.toml --out counts.nc", "counts.nc"),
+    "compare": ("compare run.toml --out compared.nc", "compared.nc"),
+    "distribution": (
+        "distribution learn.toml --out dist.nc --header dist.h --fortran dist.f90 --figure dist.png",
+        "dist.nc dist.h dist.f90 dist.png",
+    ),
+    "fit": ("fit data.nc --velocity 0.5 0.9 --resamples 5", ""),
+    "listen": ("listen ball.wav --diameter 0.02 --out ball.html", "ball.html ball.csv ball.nc"),
+    "laws": ("laws --out laws --impacts 19680", "laws"),
+    "paper": ("paper --out paper --impacts 400000", "paper"),
+    "explore": ("explore run.toml --no-browser", ""),
+    "sweep": ("sweep study.toml --out study.zarr", "study.zarr"),
+    "sweep merge": ("sweep merge --out done.zarr", ""),
+    "sweep status": ("sweep --status study.toml --out done.zarr", ""),
+}
+"""Every command, small. `explore` ends by a signal alone."""
+LONG = {"paper"}
+"""Commands that take minutes, which only `make hostile` runs."""
+ENDLESS = {"explore"}
+STATUSES = (0, 1, 2, 3)
+_START = "import os; from restitution._cli import main; os.write(BEGUN, b'.'); os.close(BEGUN); main()"
+
+
+@dataclass
+class Ended:
+    """How a process ended."""
+
+    status: int
+    said: str
+    seconds: float
+
+
+@cache
+def inputs() -> Path:
+    """Give a folder with what commands read."""
+    folder = Path(tempfile.mkdtemp(prefix="inputs-"))
+    (folder / "run.toml").write_text(RUN.replace("PARTICLES", "3000"), encoding="utf-8")
+    (folder / "learn.toml").write_text(RUN.replace("PARTICLES", "3000"), encoding="utf-8")
+    (folder / "study.toml").write_text(STUDY.replace("PARTICLES", "256"), encoding="utf-8")
+    CALLS["simulate"][0](**CALLS["simulate"][1]() | {"particles": 300}).to_netcdf(folder / "data.nc")
+    shutil.copy(measuring.recording(), folder / "ball.wav")
+    shutil.copytree(measuring.store(), folder / "done.zarr")
+    return folder
+
+
+@contextlib.contextmanager
+def place(environment: str) -> Iterator[Path | None]:
+    """Make an empty folder to work in, full where the disk is to be; None where that cannot be made."""
+    top = Path(tempfile.mkdtemp(prefix="place-"))
+    top.chmod(0o755)
+    folder = top / "work"
+    folder.mkdir()
+    folder.chmod(0o777)
+    try:
+        with contextlib.ExitStack() as stack:
+            if environment == "a full disk" and not stack.enter_context(full_disk(folder)):
+                yield None
+                return
+            yield folder
+    finally:
+        folder.chmod(0o777)
+        shutil.rmtree(top, ignore_errors=True)
+
+
+def address_space() -> int:
+    """Give the address space of this process, in bytes."""
+    return int(Path("/proc/self/statm").read_text(encoding="ascii").split()[0]) * os.sysconf("SC_PAGESIZE")
+
+
+@cache
+def imported() -> int:
+    """Address space of a process that has imported what commands import."""
+    code = "import xarray, netCDF4, scipy.stats, matplotlib.figure, restitution._cli, typer, tqdm\n"
+    code += "print(open('/proc/self/statm').read().split()[0])"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    return int(done.stdout) * os.sysconf("SC_PAGESIZE")
+
+
+def forked(act: Callable[[int], object], environment: Environment, delay: float) -> Ended:
+    """Run `act` in a process of its own, which says when it has begun, and send it its signals."""
+    begun, say = os.pipe()
+    heard, speak = os.pipe()
+    started = time.monotonic()
+    child = os.fork()
+    if child == 0:
+        try:
+            os.close(begun)
+            os.close(heard)
+            os.set_inheritable(say, True)
+            os.dup2(os.open(os.devnull, os.O_RDONLY), 0)
+            os.dup2(speak, 1)
+            os.dup2(speak, 2)
+            os.close(speak)
+            act(say)
+        except BaseException:
+            with contextlib.suppress(BaseException):
+                traceback.print_exc()
+                sys.stderr.flush()
+        finally:
+            os._exit(99)
+    os.close(say)
+    os.close(speak)
+    os.set_blocking(heard, False)
+    said = b""
+    select.select([begun], [], [], SLOW)
+    os.close(begun)
+    for number in environment.signals:
+        time.sleep(delay)
+        if os.waitid(os.P_PID, child, os.WEXITED | os.WNOHANG | os.WNOWAIT) is None:
+            os.kill(child, number)
+    while True:
+        done, status = os.waitpid(child, os.WNOHANG)
+        with contextlib.suppress(BlockingIOError):
+            said += os.read(heard, 100_000)
+        seconds = time.monotonic() - started
+        if done:
+            code = os.waitstatus_to_exitcode(status)
+            os.close(heard)
+            return Ended(code, said.decode("utf-8", errors="replace"), seconds)
+        if seconds > 4 * SLOW:
+            os.kill(child, signal.SIGKILL)
+            os.waitpid(child, 0)
+            os.close(heard)
+            return Ended(-signal.SIGKILL, "hung", seconds)
+        time.sleep(0.005)
+
+
+def command(name: str, surroundings: str, draw: random.Random) -> str | None:
+    """Run a command in an environment; say what is wrong with what happens, if anything is."""
+    environment = ENVIRONMENTS[surroundings]
+    words, files = COMMANDS[name]
+    base = imported()
+    if name in ENDLESS and not environment.signals:
+        environment = Environment(**(vars(environment) | {"signals": (signal.SIGINT,)}))
+    with place(surroundings) as folder:
+        if folder is None:
+            return None
+        before = _filled(folder, words)
+        environment.prepare(folder)
+
+        def act(say: int) -> None:
+            os.chdir(folder)
+            if environment.ordinary:
+                become_ordinary()
+            environment.enter(base)
+            if os.environ.get("PATH") is None:
+                os.environ["PATH"] = "/usr/bin:/bin"
+            code = _START.replace("BEGUN", str(say))
+            os.execv(sys.executable, [sys.executable, "-c", code, *words.split()])
+
+        ended = forked(act, environment, draw.uniform(0.0, 1.5))
+        found = _judged(ended, environment, {*map(int, environment.signals)})
+        after = {file.name for file in folder.iterdir()}
+        if found is None:
+            found = _left(ended, before, after, set(files.split()), 1 in environment.lost)
+        return found and f"{found}; status {ended.status}: {ended.said[-1500:]}"
+
+
+def _filled(folder: Path, words: str) -> set[str]:
+    """Put what a command reads into the folder; where the disk is full, a link does."""
+    for word in words.split():
+        source = inputs() / word
+        if source.is_file():
+            (folder / word).symlink_to(source)
+        elif source.is_dir():
+            with contextlib.suppress(OSError, shutil.Error):
+                shutil.copytree(source, folder / word)
+            for file in (folder / word).rglob("*"):
+                file.chmod(0o777 if file.is_dir() else 0o666)
+    return {file.name for file in folder.iterdir()}
+
+
+def _judged(ended: Ended, environment: Environment, signals: set[int]) -> str | None:
+    if ended.said == "hung" or ended.seconds > 4 * SLOW:
+        return f"took {ended.seconds:.0f} s"
+    if ended.status not in {*STATUSES, *(128 + number for number in signals)}:
+        return "ends otherwise"
+    if "Traceback" in ended.said:
+        return "shows a traceback"
+    # Help that nobody reads ends as other programs' does.
+    if ended.status in (1, 2) and not {1, 2} & set(environment.lost) and "rror" not in ended.said:
+        return "does not say why"
+    return None
+
+
+def _left(ended: Ended, before: set[str], after: set[str], files: set[str], mute: bool) -> str | None:
+    if strange := after - before - files:
+        return f"leaves {', '.join(sorted(strange))}"
+    if ended.status in (0, 3) and not files <= after:
+        return f"writes no {', '.join(sorted(files - after))}"
+    kept = files & (after - before)
+    # What could not be said of files that are there is an error; a study keeps what was computed.
+    if ended.status in (1, 2) and kept and not mute and not kept & {"study.zarr"}:
+        return f"fails, and writes {', '.join(sorted(kept))}"
+    return None
+
+
+def call(name: str, surroundings: str, draw: random.Random) -> str | None:
+    """Call a function in an environment; say what is wrong with what happens, if anything is."""
+    environment = ENVIRONMENTS[surroundings]
+    if set(environment.signals) - {signal.SIGINT}:
+        return None  # what these do to a program is its own
+    function, given, expected = reference(name)
+    with place(surroundings) as folder:
+        if folder is None:
+            return None
+        environment.prepare(folder)
+        answer, tell = os.pipe()
+
+        def act(say: int) -> None:
+            os.close(answer)
+            os.chdir(folder)
+            if environment.ordinary:
+                become_ordinary()
+            environment.enter(address_space())
+            os.write(say, b".")
+            found = _outcome(function, given, expected, environment)
+            os.write(tell, json.dumps(found).encode())
+            os._exit(0)
+
+        ended = forked(act, environment, draw.uniform(0.0, 0.05))
+        os.close(tell)
+        told = os.read(answer, 10_000)
+        os.close(answer)
+        left = [file.name for file in folder.iterdir() if file.name.endswith(".part")]
+        if ended.said == "hung":
+            return f"hangs: {ended.seconds:.0f} s"
+        if not told:
+            stopped = bool(environment.signals) and "KeyboardInterrupt" in ended.said
+            return None if stopped else f"ends with status {ended.status}: {ended.said[-1500:]}"
+        found: str | None = json.loads(told)
+        return found or (f"leaves {left}" if left else None)
+
+
+def _outcome(
+    function: Callable[..., Any], given: dict[str, Any], expected: Any, environment: Environment
+) -> str | None:
+    try:
+        found = function(**given)
+    except KeyboardInterrupt:
+        return None if environment.signals else "KeyboardInterrupt"
+    except MemoryError:
+        return None
+    except OSError as error:
+        named = error.filename is not None or error.errno is None
+        return None if named else f"names no file: {type(error).__name__}: {error}"
+    except (ValueError, RuntimeError) as error:
+        good = measuring.ENOUGH in str(error) or str(error).startswith("threads = ")
+        return None if good else f"{type(error).__name__}: {error}"
+    except Exception:
+        return traceback.format_exc()[-1200:]
+    return None if same(found, expected) else f"gives {found!r:.300} instead of {expected!r:.300}"
+
+
+@cache
+def reference(name: str) -> tuple[Callable[..., Any], dict[str, Any], Any]:
+    """Give a function, its arguments, and what it returns undisturbed; all that it imports is then there."""
+    function, make = CALLS[name]
+    with contextlib.chdir(tempfile.mkdtemp(prefix="reference-")):
+        try:
+            expected = function(**make())
+        except ValueError:
+            expected = None
+    return function, make(), expected
+
+
+def same(found: Any, expected: Any) -> bool:
+    """Whether two results are equal, as far as such results can be compared."""
+    if isinstance(found, xr.DataTree):  # which tells when it was made
+        return all(
+            node.dataset.drop_attrs().identical(expected[path].dataset.drop_attrs())
+            for path, node in found.subtree_with_keys
+        )
+    if isinstance(found, xr.Dataset | xr.DataArray):
+        return bool(found.identical(expected))
+    if isinstance(found, np.ndarray | np.generic | float | int | str | bytes):
+        return bool(np.array_equal(found, expected, equal_nan=isinstance(found, np.ndarray | float)))
+    if isinstance(found, dict):
+        return set(found) == set(expected)  # of build_info, which tells how many cores there are
+    if isinstance(found, tuple | list):
+        return len(found) == len(expected) and all(map(same, found, expected))
+    if "Explorer" in type(found).__name__:  # a class that is made by each call
+        return type(found).__name__ == type(expected).__name__
+    kind: Any = type(found)
+    if isinstance(found, matplotlib.figure.Figure) or kind.__eq__ is object.__eq__:
+        return type(found) is type(expected)
+    return bool(found == expected)

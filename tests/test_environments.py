@@ -1,0 +1,73 @@
+"""Commands and functions where something is missing: a part, drawn with a fixed seed, of `make hostile`."""
+
+import os
+import signal
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from reference.environments import ENVIRONMENTS
+from reference.processes import COMMANDS
+from restitution._cli import app
+
+HERE = Path(__file__).parent
+
+
+def test_commands_and_functions_in_hostile_environments() -> None:
+    """Our error, or a right result, within a time; never an abort or a hang, and nothing is left behind."""
+    words = [sys.executable, str(HERE / "environments.py"), "--calls", "24", "--commands", "3"]
+    env = os.environ | {"OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1"}
+    done = subprocess.run(words, capture_output=True, text=True, check=False, timeout=900, env=env)
+    assert done.stdout.splitlines()[-1:] == ["27 trials, 0 break the contract"], done.stdout + done.stderr
+
+
+def test_every_command_is_tried() -> None:
+    """What is called by its name, and what groups hold."""
+    names = {command.callback.__name__ for command in app.registered_commands if command.callback}
+    names |= {group.name or "" for group in app.registered_groups}
+    assert names <= {name.split()[0] for name in COMMANDS}
+    sent = {number for one in ENVIRONMENTS.values() for number in one.signals}
+    assert sent == {signal.SIGINT, signal.SIGTERM, signal.SIGHUP}
+
+
+LONG = """
+body = { shape = "dumbbell", radius = 3e-3, separation = 3e-4 }
+law = { type = "tangential-restitution", normal = 0.98 }
+[run]
+particles = 100000000
+[statistics]
+velocity_bins = 12
+velocity_range = [0.0, 1.2]
+restitution_bins = 40
+restitution_range = [-1.0, 3.0]
+"""
+ENDED = {
+    # the words, the signal, and what may be there afterwards
+    "statistics": ("statistics run.toml --out counts.nc", signal.SIGTERM, {"counts.nc"}),
+    "compare": ("compare run.toml --out counts.nc", signal.SIGHUP, {"counts.nc"}),
+    "distribution": ("distribution run.toml --out dist.nc --header dist.h", signal.SIGINT, set()),
+    "laws": ("laws --out laws --impacts 100000000", signal.SIGTERM, set()),
+    "paper": ("paper --out paper", signal.SIGHUP, set()),
+    "sweep": ("sweep study.toml --out study.zarr", signal.SIGTERM, {"study.zarr"}),
+    "explore": ("explore run.toml --no-browser", signal.SIGHUP, set()),
+}
+
+
+@pytest.mark.parametrize("name", list(ENDED))
+def test_a_signal_ends_a_command(name: str, tmp_path: Path) -> None:
+    """In the midst of work that would take hours: the status names the signal, and no draft is left."""
+    words, number, files = ENDED[name]
+    (tmp_path / "run.toml").write_text(LONG, encoding="utf-8")
+    study = LONG.replace("100000000", "1000000") + '[sweep]\n"law.normal" = [0.8, 0.9]\n'
+    (tmp_path / "study.toml").write_text(study, encoding="utf-8")
+    # The signal comes at the first step of the work, whatever this machine takes to get there.
+    code = f"import os, signal, sys; sys.path.insert(0, {str(HERE)!r})\n"
+    code += f"from reference.signals import arm\narm({int(number)}, {name!r})\n"
+    code += "from restitution._cli import main; main()"
+    words = [sys.executable, "-c", code, *words.split()]
+    done = subprocess.run(words, cwd=tmp_path, capture_output=True, text=True, check=False, timeout=120)
+    assert (done.returncode, "Traceback" in done.stderr) == (128 + number, False), done.stderr
+    there = {file.name for file in tmp_path.iterdir()} - {"run.toml", "study.toml"}
+    assert there <= files
