@@ -58,7 +58,7 @@ ENDED = {
 @pytest.mark.parametrize("name", list(ENDED))
 def test_a_signal_ends_a_command(name: str, tmp_path: Path) -> None:
     """In the midst of work that would take hours: the status names the signal, and no draft is left."""
-    words, number, files = ENDED[name]
+    line, number, files = ENDED[name]
     (tmp_path / "run.toml").write_text(LONG, encoding="utf-8")
     study = LONG.replace("100000000", "1000000") + '[sweep]\n"law.normal" = [0.8, 0.9]\n'
     (tmp_path / "study.toml").write_text(study, encoding="utf-8")
@@ -66,7 +66,7 @@ def test_a_signal_ends_a_command(name: str, tmp_path: Path) -> None:
     code = f"import os, signal, sys; sys.path.insert(0, {str(HERE)!r})\n"
     code += f"from reference.signals import arm\narm({int(number)}, {name!r})\n"
     code += "from restitution._cli import main; main()"
-    words = [sys.executable, "-c", code, *words.split()]
+    words = [sys.executable, "-c", code, *line.split()]
     done = subprocess.run(words, cwd=tmp_path, capture_output=True, text=True, check=False, timeout=120)
     assert (done.returncode, "Traceback" in done.stderr) == (128 + number, False), done.stderr
     there = {file.name for file in tmp_path.iterdir()} - {"run.toml", "study.toml"}
