@@ -21,13 +21,19 @@ def arm(number: int, name: str) -> None:
     _core.Tally = _Sending(_core.Tally, number)  # type: ignore[assignment,misc]
 
 
+_sent = threading.Event()
+"""One signal only: a second one would find nothing to catch it at the end of the process."""
+
+
 def _sending(function: Callable[..., Any], number: int) -> Callable[..., Any]:
     def sending(*args: Any, **how: Any) -> Any:
         def send() -> None:
             time.sleep(0.1)
             os.kill(os.getpid(), number)
 
-        threading.Thread(target=send, daemon=True).start()
+        if not _sent.is_set():
+            _sent.set()
+            threading.Thread(target=send, daemon=True).start()
         return function(*args, **how)
 
     return sending

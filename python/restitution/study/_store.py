@@ -12,6 +12,7 @@ import json
 import math
 import os
 import shutil
+import signal
 import warnings
 from collections.abc import Iterator, Mapping
 from pathlib import Path
@@ -23,6 +24,7 @@ import xarray as xr
 
 from restitution._dataset import version_here
 from restitution._files import draft_folder
+from restitution._signals import put_off
 from restitution.study._axes import Design
 from restitution.study._physics import fingerprint
 from restitution.study._point import Words
@@ -244,21 +246,30 @@ def create_or_open(path: Path, study: Study, words: int) -> tuple[Store, bool]:
     """
     made = False
     if not path.exists():
-        path.parent.mkdir(parents=True, exist_ok=True)
-        draft = draft_folder(path)
-        try:
-            _create(draft, study, words)
-            draft.chmod(0o777 & ~_umask())
-            try:
-                os.rename(draft, path)
-                made = True
-            except OSError:
-                if not path.exists():
-                    raise
-        finally:
-            shutil.rmtree(draft, ignore_errors=True)
+        # Zarr writes on a thread of its own, which goes on where a signal has ended this one.
+        with put_off(lambda: None) as late:
+            made = _make(path, study, words)
+        for number in late:
+            signal.raise_signal(number)
     check(path, study)
     return Store(path, study.digest), not made
+
+
+def _make(path: Path, study: Study, words: int) -> bool:
+    """Put a new store in its place, unless another has taken it meanwhile."""
+    path.parent.mkdir(parents=True, exist_ok=True)
+    draft = draft_folder(path)
+    try:
+        _create(draft, study, words)
+        draft.chmod(0o777 & ~_umask())
+        os.rename(draft, path)
+    except OSError:
+        if not path.exists():
+            raise
+        return False
+    finally:
+        shutil.rmtree(draft, ignore_errors=True)
+    return True
 
 
 def check(path: Path, study: Study) -> None:
