@@ -40,12 +40,12 @@ def test_first_impacts_are_the_closed_form() -> None:
 
 
 def test_the_files_are_what_the_engine_gives(tmp_path: Path) -> None:
-    """Trajectories to the digits printed; statistics from a fifth of the bodies, other seeds, 4.5 errors."""
+    """Trajectories within their stated error; statistics from a fifth of the bodies, other seeds, 4.5 errors."""
     data = reference.trajectories()
     found = problem.read("trajectories")
     for name in ("time", "impact_velocity", "restitution", "angle"):
         exact = data[f"trajectory_{name}"].values.ravel()
-        np.testing.assert_allclose(found[f"trajectory_{name}"], exact, rtol=1e-12, atol=1e-13)
+        np.testing.assert_allclose(found[f"trajectory_{name}"], exact, rtol=1e-9)
     whole = xr.load_dataset(problem.REFERENCE / "dumbbell.nc")
     assert whole.attrs["version"] == reference.VERSION
     statistics = problem.read("statistics")

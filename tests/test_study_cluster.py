@@ -112,7 +112,7 @@ def test_workers_and_the_scheduler_are_killed(whole: dict[str, str], tmp_path: P
         os.kill(scheduler.pid, signal.SIGKILL)
         code, _, error = finished(driver, 120)
         assert code == 1, error
-        assert "the same command goes on" in error
+        assert "the same command continues" in error
     assert 5 <= len(chunks(store)) < 12
     (tmp_path / "scheduler.json").unlink()
     with cluster(tmp_path, 1) as (address, _, _):

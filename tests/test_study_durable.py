@@ -1,4 +1,4 @@
-"""Whatever happens to a study, the same command goes on, and ends with the bits of an undisturbed one."""
+"""Whatever happens to a study, the same command continues, and ends with the bits of an undisturbed one."""
 
 import os
 import resource
@@ -63,7 +63,7 @@ def test_ctrl_c_leaves_a_store_that_can_be_read(whole: dict[str, str], tmp_path:
     process.send_signal(signal.SIGINT)
     code, _, error = finished(process, 60)
     assert code == 130, error
-    assert "the same command goes on" in error
+    assert "the same command continues" in error
     found = xr.open_zarr(store, chunks=None)
     done = int((found["status"] == 1).sum())
     assert 1 <= done < 12

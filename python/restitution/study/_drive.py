@@ -23,7 +23,7 @@ from restitution.study._work import End, Ended, Stopped, Task, digest_of, end_po
 
 Tell = Callable[["Progress"], None]
 
-_GOES_ON = "what is finished is in the store, and the same command goes on"
+_CONTINUES = "what is finished is in the store, and the same command continues"
 _SHARE = 20
 """What is found is written out so seldom that it takes a twentieth of the time."""
 
@@ -143,7 +143,7 @@ class Driver:
             try:
                 future = self._submit(job)
             except RuntimeError as error:  # of a client whose scheduler is gone
-                raise RuntimeError(f"{error}; {_GOES_ON}") from None
+                raise RuntimeError(f"{error}; {_CONTINUES}") from None
             self._under_way[future] = opened, job
         return bool(self._under_way)
 
@@ -185,7 +185,7 @@ class Driver:
         try:
             result = future.result()
         except (CancelledError, Stopped):
-            raise RuntimeError(f"the tasks were given up; {_GOES_ON}") from None
+            raise RuntimeError(f"the tasks were given up; {_CONTINUES}") from None
         except ValueError as error:
             here = ", ".join(
                 f"{k} = {v:.6g}" for k, v in self.study.design.values(opened.point.number).items()

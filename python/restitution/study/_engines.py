@@ -75,7 +75,7 @@ def engine(client: Any, threads: int | None) -> Iterator[Engine]:
     except Exception as error:
         if client.status == "running":
             raise
-        text = "the scheduler is gone; what is finished is in the store, and the same command goes on"
+        text = "the scheduler is gone; what is finished is in the store, and the same command continues"
         raise RuntimeError(text) from error
     finally:
         with suppress(Exception):  # of a client that is closed
