@@ -35,10 +35,10 @@ lint: $(STAMP)
 	$(BIN)/ruff format --check
 	$(BIN)/mypy
 
-test: lint  ## every check: Rust format, clippy, Rust tests, ruff, mypy, pytest, the explorer
+test: lint  ## every check: Rust format, clippy, Rust tests, ruff, mypy, the explorer, pytest
 	cargo test --workspace --locked
-	$(BIN)/python -m pytest
 	$(MAKE) test-web
+	$(BIN)/python -m pytest
 
 # The kept module must be of these sources: built anew here, it would pass where everybody else gets the old one.
 test-web: $(STAMP) web/node_modules/.package-lock.json  ## the explorer: types, its engine beside the native one, the page in a real browser

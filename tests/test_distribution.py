@@ -270,7 +270,7 @@ def test_bad_input_is_named(arguments: dict[str, Any], message: str) -> None:
 
 def test_speeds_beyond_are_an_error_unless_clamped(learned: FluctuatingRestitution) -> None:
     with pytest.raises(
-        ValueError, match=r"v = 0.9: must be in \[0.05, 0.8\] m/s, the speeds that were learned"
+        ValueError, match=r"v\[1\] = 0.9: must be in \[0.05, 0.8\] m/s, the speeds that were learned"
     ):
         learned.cdf(1.0, [0.1, 0.9])
     with pytest.raises(ValueError, match=r"v = 0.01: must be in"):
@@ -288,9 +288,9 @@ def test_speeds_beyond_are_an_error_unless_clamped(learned: FluctuatingRestituti
 
 
 def test_conditions_outside_are_named(conditional: FluctuatingRestitution) -> None:
-    with pytest.raises(ValueError, match=r"given = 1.5: must be in \[0, 1\], rotational_fraction"):
+    with pytest.raises(ValueError, match=r"given\[1\] = 1.5: must be in \[0, 1\], rotational_fraction"):
         conditional.pdf(1.0, 0.4, given=[0.1, 1.5])
-    with pytest.raises(ValueError, match=r"given = 0.9: must be in \[.*\], what was seen of rotational_fr"):
+    with pytest.raises(ValueError, match=r"given\[1\] = 0.9: must be in \[.*\], what was seen of rotational_fr"):
         conditional.pdf(1.0, 0.4, given=[0.1, 0.9])
     assert "nodes, ks_distance up to 0.0" in repr(conditional)
 
@@ -306,7 +306,7 @@ def test_odd_arguments_are_named(learned: FluctuatingRestitution) -> None:
         with pytest.raises(ValueError, match=r"x = .*: must be a number"):
             learned.cdf(odd, 0.3)
     # v12·n has a sign; the speed has none.
-    with pytest.raises(ValueError, match=r"v = -0.3: must be a speed, >= 0 m/s"):
+    with pytest.raises(ValueError, match=r"v\[1\] = -0.3: must be a speed, >= 0 m/s"):
         clamped.rvs([0.3, -0.3])
     for odd in (-1, (2, -3), 2.5, "a", (2.5,), True):
         with pytest.raises(ValueError, match=r"size = .*: must be a whole number >= 0 or a tuple of them"):

@@ -40,7 +40,7 @@ def test_first_impacts_are_the_closed_form() -> None:
 
 
 def test_the_files_are_what_the_engine_gives(tmp_path: Path) -> None:
-    """Trajectories within their stated error; statistics from a fifth of the bodies, other seeds, 4.5 errors."""
+    """Trajectories within the stated error; statistics of a fifth of the bodies, other seeds, 4.5 errors."""
     data = reference.trajectories()
     found = problem.read("trajectories")
     for name in ("time", "impact_velocity", "restitution", "angle"):

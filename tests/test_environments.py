@@ -4,6 +4,7 @@ import os
 import signal
 import subprocess
 import sys
+from importlib.resources import files
 from pathlib import Path
 
 import pytest
@@ -13,8 +14,11 @@ from reference.processes import COMMANDS
 from restitution._cli import app
 
 HERE = Path(__file__).parent
+BUILT = files("restitution.explorer").joinpath("explorer.html").is_file()
+needs_the_explorer = pytest.mark.skipif(not BUILT, reason="the explorer is not built: make web")
 
 
+@needs_the_explorer
 def test_commands_and_functions_in_hostile_environments() -> None:
     """Our error, or a right result, within a time; never an abort or a hang, and nothing is left behind."""
     words = [sys.executable, str(HERE / "environments.py"), "--calls", "24", "--commands", "3"]
@@ -55,7 +59,9 @@ ENDED = {
 }
 
 
-@pytest.mark.parametrize("name", list(ENDED))
+@pytest.mark.parametrize(
+    "name", [pytest.param(name, marks=[needs_the_explorer] * (name == "explore")) for name in ENDED]
+)
 def test_a_signal_ends_a_command(name: str, tmp_path: Path) -> None:
     """In the midst of work that would take hours: the status names the signal, and no draft is left."""
     line, number, files = ENDED[name]
