@@ -139,12 +139,17 @@ class Timed:
 
 
 def particles_for(job: Timed, seconds: float, least: int) -> int:
-    """How many particles take about that long."""
+    """How many particles take about that long; what a call costs besides them must not count."""
     job.run(least, 0)
-    start = perf_counter()
-    job.run(least, 1)
-    took = perf_counter() - start
-    return min(max(least, math.ceil(least * seconds / took)), MOST)
+    particles = least
+    while particles < MOST:
+        start = perf_counter()
+        job.run(particles, 1)
+        took = perf_counter() - start
+        if took > 0.5 * seconds:
+            return min(max(least, math.ceil(particles * seconds / took)), MOST)
+        particles *= 4
+    return MOST
 
 
 def measured(jobs: Sequence[Timed], rounds: int, seconds: float = SECONDS, least: int = LEAST) -> Array:
