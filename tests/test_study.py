@@ -242,7 +242,7 @@ def test_the_store_of_another_study_is_refused_with_what_differs(
     assert result.exit_code == 2
     assert "run.seed: 7 in the store, 8 here" in result.stderr
     assert "sweep.body.separation: [0.0001, 0.0003, 0.002] in the store" in result.stderr
-    monkeypatch.setattr("restitution.study._store.fingerprint", lambda: {"version": "9.9", "runs": "0"})
+    monkeypatch.setattr("restitution.study._identity.fingerprint", lambda: {"version": "9.9", "runs": "0"})
     with pytest.raises(Refused, match=r'install that version.*\n.*physics.runs: .*\n.*"9.9" here'):
         sweep(written(tmp_path), store)
     with pytest.raises(Refused, match="is not the store of a study"):

@@ -243,10 +243,15 @@ def _discard(drafts: Sequence[Path]) -> None:
 
 def _finish(draft: Path, mode: int) -> None:
     """Give a draft the permissions of any new file, and bring it to the disk."""
+    permit(draft, mode)
+    _flush(draft)
+
+
+def permit(draft: Path, mode: int) -> None:
+    """Give a draft the permissions of any new file or, with a mode of 0o777, folder."""
     mask = os.umask(0)
     os.umask(mask)
     draft.chmod(mode & ~mask)
-    _flush(draft)
 
 
 def _flush(path: Path) -> None:

@@ -8,8 +8,9 @@ from restitution._files import path_from
 from restitution._parameters import ParameterError, Problem, shown, wrong
 from restitution.study._drive import Driver
 from restitution.study._engines import engine
+from restitution.study._identity import check
 from restitution.study._status import Status, status, study_in
-from restitution.study._store import Store, check, need_zarr
+from restitution.study._store import Store, need_zarr
 from restitution.study._study import Study, study_of
 from restitution.study._sweep import opened
 

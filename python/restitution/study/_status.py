@@ -7,7 +7,8 @@ import numpy as np
 import xarray as xr
 
 from restitution._files import path_from
-from restitution.study._store import Store, identity, need_zarr
+from restitution.study._identity import identity
+from restitution.study._store import Store, need_zarr
 from restitution.study._study import Study, study_of
 
 

@@ -8,7 +8,6 @@ Everything else in the store follows from these rows.
 
 import contextlib
 import hashlib
-import json
 import math
 import os
 import shutil
@@ -23,46 +22,19 @@ import numpy.typing as npt
 import xarray as xr
 
 from restitution._dataset import version_here
-from restitution._files import draft_folder
+from restitution._files import draft_folder, permit
 from restitution._signals import put_off
 from restitution.study._axes import Design
-from restitution.study._physics import fingerprint
+from restitution.study._identity import attribute, check
 from restitution.study._point import Words
 from restitution.study._study import Study
 
-_IDENTITY = "restitution_study"
 _DIGEST = 4
 """Words of a digest."""
 _LARGE = 4096
 """Numbers of a variable at a point from which on each point has a chunk of its own."""
 _CHUNK = 4_000_000
 """Bytes of a chunk of the other variables, at most where the shape allows it."""
-
-
-class Refused(ValueError):
-    """A store that belongs to something else.
-
-    Examples
-    --------
-    >>> import tempfile
-    >>> import restitution as rs
-    >>> study = {
-    ...     "body": rs.Dumbbell(radius=3e-3, separation=3e-4),
-    ...     "law": rs.TangentialRestitution(normal=0.98),
-    ...     "run": {"particles": 32, "impacts": 50},
-    ...     "statistics": {"velocity_bins": {"from": 0.0, "to": 1.1, "bins": 11},
-    ...                    "restitution_bins": {"from": -1.0, "to": 3.0, "bins": 40}},
-    ...     "sweep": {"law.normal": [0.9, 0.98]},
-    ... }
-    >>> out = tempfile.mkdtemp() + "/study.zarr"
-    >>> found = rs.sweep(study, out=out)
-    >>> study["run"] = {"particles": 64, "impacts": 50}
-    >>> try:
-    ...     rs.sweep(study, out=out)
-    ... except rs.study.Refused as error:
-    ...     print("another study")
-    another study
-    """
 
 
 def need_zarr() -> None:
@@ -261,7 +233,7 @@ def _make(path: Path, study: Study, words: int) -> bool:
     draft = draft_folder(path)
     try:
         _create(draft, study, words)
-        draft.chmod(0o777 & ~_umask())
+        permit(draft, 0o777)
         os.rename(draft, path)
     except OSError:
         if not path.exists():
@@ -270,45 +242,6 @@ def _make(path: Path, study: Study, words: int) -> bool:
     finally:
         shutil.rmtree(draft, ignore_errors=True)
     return True
-
-
-def check(path: Path, study: Study) -> None:
-    """Refuse a store that does not belong to a study, and say what differs."""
-    found = identity(path)
-    wanted = _identity(study)
-    differences = list(_differences(found, wanted))
-    if not differences:
-        return
-    most = 12
-    lines = [f"  {name}: {there} in the store, {here} here" for name, there, here in differences[:most]]
-    if len(differences) > most:
-        lines.append(f"  and {len(differences) - most} more")
-    physics = any(name.startswith("physics") for name, _, _ in differences)
-    advice = (
-        "install that version to go on with it, or write to a new store"
-        if physics
-        else "write to a new store"
-    )
-    raise Refused(f"{path}: is the store of another study; {advice}. What differs:\n" + "\n".join(lines))
-
-
-def identity(path: Path) -> dict[str, Any]:
-    """Read what a store says that it is."""
-    try:
-        text = (path / "zarr.json").read_text(encoding="utf-8")
-        found = json.loads(json.loads(text)["attributes"][_IDENTITY])
-    except (OSError, ValueError, KeyError, TypeError):
-        raise Refused(
-            f"{path}: is not the store of a study, or its zarr.json is damaged; give another path"
-        ) from None
-    if not isinstance(found, dict):
-        raise Refused(f"{path}: is not the store of a study; give another path")
-    return found
-
-
-def _identity(study: Study) -> dict[str, Any]:
-    plain: dict[str, Any] = json.loads(json.dumps({"physics": fingerprint(), **study.identity}))
-    return plain
 
 
 def _create(path: Path, study: Study, words: int) -> None:
@@ -320,7 +253,7 @@ def _create(path: Path, study: Study, words: int) -> None:
         "Conventions": "CF-1.11",
         "source": f"restitution {version_here()}",
         "references": "A. Glielmo, N. Gunkelmann, T. Pöschel, Phys. Rev. E 90, 052204 (2014)",
-        _IDENTITY: json.dumps(_identity(study)),  # as text, which netCDF takes too
+        **attribute(study),
     }
     group = zarr.create_group(str(path), zarr_format=3, attributes=about)
     for axis in design.axes:
@@ -382,19 +315,6 @@ def _units(study: Study, parameter: str) -> dict[str, str]:
     return {"units": known[unit]} if unit in known else {}
 
 
-def _differences(there: Any, here: Any, name: str = "") -> Iterator[tuple[str, str, str]]:
-    if isinstance(there, Mapping) and isinstance(here, Mapping):
-        for key in sorted(set(there) | set(here)):
-            yield from _differences(there.get(key), here.get(key), f"{name}.{key}" if name else key)
-    elif there != here:
-        yield name, _short(there), _short(here)
-
-
-def _short(value: Any) -> str:
-    text = "nothing" if value is None else json.dumps(value)
-    return text if len(text) <= 60 else f"{text[:40]} … {text[-12:]}"
-
-
 def _is_common(name: str, variable: Any) -> bool:
     """Whether a variable is the same at every point: edges of bins."""
     return name.endswith("_edges") and variable.dims == (f"{name[:-1]}",)
@@ -424,9 +344,3 @@ def _plain(attrs: Mapping[Any, Any]) -> dict[str, Any]:
     return {
         str(key): value.tolist() if isinstance(value, np.ndarray) else value for key, value in attrs.items()
     }
-
-
-def _umask() -> int:
-    mask = os.umask(0)
-    os.umask(mask)
-    return mask
