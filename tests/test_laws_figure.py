@@ -77,12 +77,12 @@ def test_the_table_of_bounds() -> None:
     """κ², the range of ε_t that is safe, and λ, from the formulas, to the digits of the page."""
     normal = 0.98
     for elongation, (name, largest, safe, growth) in zip(
-        ELONGATIONS, rows(PAGE, "| L/R | largest κ²"), strict=True
+        ELONGATIONS, rows(PAGE, r"| $L/R$ | largest $\kappa^2$"), strict=True
     ):
         body = rs.Dumbbell(radius=1.0, separation=elongation)
         kappa2 = float(coupling(body, np.linspace(0, np.pi / 2, 20_001)).max())
         assert float(name) == elongation
-        assert float(largest.replace("·10⁻⁵", "e-5")) == pytest.approx(kappa2, rel=1e-3)
+        assert float(largest.strip("$").replace(r" \cdot 10^{-5}", "e-5")) == pytest.approx(kappa2, rel=1e-3)
         assert float(growth) == pytest.approx(bound(body, normal, 1.0), abs=6e-5)
         low, high = (float(x.replace("−", "-")) for x in safe.strip("[]").split(", "))
         assert max(bound(body, normal, low), bound(body, normal, high)) == 1
