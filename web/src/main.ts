@@ -77,6 +77,17 @@ function begin(pool: Pool): void {
     if (!explorer.done) document.documentElement.dataset.state = "busy";
   }
 
+  let found = 0;
+  const kinds = part<HTMLSelectElement>("kind");
+  for (const [kind, name] of Object.entries(KINDS)) kinds.add(new Option(name, kind));
+
+  /** "Next one" goes on from what is replayed: at a stop of the tour, from its impact. */
+  function replayed(kind?: Kind): Kind | undefined {
+    found = 0;
+    if (kind) kinds.value = kind;
+    return kind;
+  }
+
   function tour(): void {
     const { stop } = explorer.state;
     part("tour").hidden = !stop;
@@ -89,13 +100,14 @@ function begin(pool: Pool): void {
   }
 
   function visit(stop: number): void {
-    explorer.go(at(stop, explorer.state), !calm, TOUR[stop - 1].kind);
+    explorer.go(at(stop, explorer.state), !calm, replayed(TOUR[stop - 1].kind));
     part("tour-title").focus();
   }
 
   function load(): void {
     const { state, problems } = fromHash(location.hash);
-    explorer.go(state, !calm && state.impact === 0, state.impact === 0 && state.stop ? TOUR[state.stop - 1].kind : undefined);
+    const kind = state.impact === 0 && state.stop ? TOUR[state.stop - 1].kind : undefined;
+    explorer.go(state, !calm && state.impact === 0, replayed(kind));
     explorer.problem(problems.length ? `This link asks for what cannot be:\n${problems.join("\n")}` : "");
   }
 
@@ -127,9 +139,7 @@ function begin(pool: Pool): void {
     void explorer.replay(undefined, explorer.player.clock.playing);
     refresh();
   });
-  let found = 0;
-  const kinds = part<HTMLSelectElement>("kind");
-  for (const [kind, name] of Object.entries(KINDS)) kinds.add(new Option(name, kind));
+  onChange("kind", () => replayed());
   onClick("find", () => explorer.find(kinds.value as Kind, (found = 0), !calm));
   onClick("find-next", () => explorer.find(kinds.value as Kind, ++found, !calm));
   onChange("range", (range) => view({ range: range as State["range"] }));

@@ -27,7 +27,7 @@ export const TOUR: readonly Stop[] = [
   },
   {
     title: "ε > 1: rotation gives back",
-    text: "At many impacts the body leaves faster than it came. Watch the bars: rotation, charged by earlier impacts, goes into translation. The impact with the largest ε among fast ones is replayed.",
+    text: "At many impacts the body leaves faster than it came. Watch the bars: rotation, charged by earlier impacts, goes into translation. Of the impacts faster than a tenth of the fall the one with the largest ε is replayed.",
     a: {},
     kind: "superelastic",
   },

@@ -212,6 +212,7 @@ test("the tour has ten stops, by keys, and each is a link", async () => {
     await page.waitForFunction((n) => document.getElementById("tour-number").textContent === `Stop ${n} of 10`, stop);
     assert.equal(await page.evaluate(() => document.activeElement.id), "tour-title");
     assert.match(await hashOf(page), new RegExp(`stop=${stop}$`));
+    if (stop === 3) assert.equal(await page.locator("#kind").inputValue(), "superelastic"); // where "Next one" goes on
     if (stop < 10) await page.locator("#tour-next").press("Enter");
   }
   await page.locator("#tour-end").click();
