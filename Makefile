@@ -57,7 +57,7 @@ web/node_modules/.package-lock.json: web/package.json web/package-lock.json
 	touch $@
 
 # With fewer impacts than `make paper`: the verdicts rest on the recorded ones, which are as many.
-build/extra/paper/report.html: $(STAMP)
+build/extra/paper/report.html: $(STAMP) | web
 	$(BIN)/restitution paper --overwrite --quiet --impacts 4000000 --out $(@D)
 
 docs: $(STAMP) web build/extra/paper/report.html  ## the site, into build/site: no warning, every line of code run, every link followed
