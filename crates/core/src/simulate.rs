@@ -93,12 +93,19 @@ impl Run<'_> {
             Error::unless(self.impacts <= rows, "impacts", self.impacts, allowed)?;
         }
         let origin = self.origin();
+        let even = bins.are_even();
         let tallies = match &bins.fraction {
+            Some(fractions) if even => Self::tallies(&plan, part, means, monitor, || {
+                Counter::<true>::new(bins, fractions, &plan, origin)
+            }),
             Some(fractions) => Self::tallies(&plan, part, means, monitor, || {
-                Counter::new(bins, fractions, &plan, origin)
+                Counter::<false>::new(bins, fractions, &plan, origin)
+            }),
+            None if even => Self::tallies(&plan, part, means, monitor, || {
+                Counts::<true>::new(bins, &plan, origin)
             }),
             None => Self::tallies(&plan, part, means, monitor, || {
-                Counts::new(bins, &plan, origin)
+                Counts::<false>::new(bins, &plan, origin)
             }),
         };
         let mut tallies = tallies?.into_iter();

@@ -307,8 +307,7 @@ impl<S: Simd, T: Turn> Group<S, T> {
     /// Starts the next flight.
     #[inline(always)]
     pub fn start(&mut self, slope: f64, hull: &impl Hull) {
-        let flight = FlightOf::<S, T>::new(self.before().moving(self.after), slope);
-        self.search = Search::new(flight, self.search.departure, hull);
+        self.search.depart(self.after, slope, hull);
     }
 
     /// Ends the active lanes in `which`. Rare.

@@ -119,6 +119,8 @@ pub(crate) trait Flight<S: Simd, const K: usize>: Copy {
     fn swing(&self, attitude: Attitude<S, K>) -> Swing<S, K>;
     /// The same at the start.
     fn beginning(&self) -> Swing<S, K>;
+    /// Starts anew from where it starts, with another motion.
+    fn depart(&mut self, motion: <Self::State as States<S, K>>::Motion, slope: f64);
     /// The state at `time`. Its lift is that of the start: where the body lands, the hull gives it more exactly.
     fn state(&self, time: Pack<S, K>, attitude: Attitude<S, K>) -> Self::State;
     /// Ends here: the place of the start is taken by the `state` at the end, with the lift at which the body touches.

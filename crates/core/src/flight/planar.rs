@@ -118,6 +118,11 @@ impl<S: Simd, const K: usize> Flight<S, K> for States<S, K> {
     }
 
     #[inline(always)]
+    fn depart(&mut self, motion: Motion<S, K>, _: f64) {
+        self.motion = motion;
+    }
+
+    #[inline(always)]
     fn start(&self) -> &Self {
         self
     }

@@ -254,6 +254,17 @@ impl<S: Simd, const K: usize> Flight<S, K> for Motions<S, K> {
     }
 
     #[inline(always)]
+    fn depart(&mut self, motion: Motion<S, K>, slope: f64) {
+        *self = Self::new(
+            States {
+                motion,
+                ..self.start
+            },
+            slope,
+        );
+    }
+
+    #[inline(always)]
     fn start(&self) -> &States<S, K> {
         &self.start
     }

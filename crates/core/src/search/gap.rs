@@ -87,6 +87,35 @@ impl<S: Simd, F: Flight<S, K>, const K: usize> Search<S, F, K> {
     /// Of a flight that starts so.
     #[inline(always)]
     pub fn new(flight: F, departure: Departure<S, K>, hull: &impl Hull) -> Self {
+        let zero = Pack::splat(flight.rate().simd(), 0.0);
+        let mut search = Self {
+            flight,
+            departure,
+            sway: zero,
+            bound: zero,
+            up: zero,
+            down: zero,
+        };
+        search.survey(hull);
+        search
+    }
+
+    /// Goes on to the flight that starts where the last has ended.
+    #[inline(always)]
+    pub fn depart(
+        &mut self,
+        motion: <F::State as States<S, K>>::Motion,
+        slope: f64,
+        hull: &impl Hull,
+    ) {
+        self.flight.depart(motion, slope);
+        self.survey(hull);
+    }
+
+    /// Finds out what bounds the gap.
+    #[inline(always)]
+    fn survey(&mut self, hull: &impl Hull) {
+        let flight = &self.flight;
         let start = flight.start();
         let (lift, climb) = (start.lift(), start.climb());
         let reach = flight.reach();
@@ -94,14 +123,10 @@ impl<S: Simd, F: Flight<S, K>, const K: usize> Search<S, F, K> {
         let above = climb.mul_add(climb, 2.0 * (lift - hull.ceiling(reach)));
         let root = above.sqrt();
         let reaches = !above.le(0.0);
-        Self {
-            flight,
-            departure,
-            sway,
-            bound: 1.0 + sway,
-            up: reaches.select(climb - root, f64::INFINITY),
-            down: reaches.select(climb + root, f64::INFINITY),
-        }
+        self.sway = sway;
+        self.bound = 1.0 + sway;
+        self.up = reaches.select(climb - root, f64::INFINITY);
+        self.down = reaches.select(climb + root, f64::INFINITY);
     }
 
     /// The departure of a release: a part may be on the plane, at rest or on its way up. One that is on its way down meets the

@@ -77,10 +77,16 @@ impl Axis {
         self.beyond
     }
 
+    /// Whether the bins are of one width.
+    pub(super) fn is_even(&self) -> bool {
+        self.cells.is_none()
+    }
+
     /// Numbers of the bins of N quantities on an axis each, plus [`ROUND`]: 0 below, 1 to n inside, n + 1 above. NaN may be
-    /// anywhere.
+    /// anywhere. EVEN: the bins of every axis are of one width. The search among others, even if it is skipped, takes the registers
+    /// of the bounce loop, which is therefore compiled with and without it.
     #[inline(always)]
-    pub(super) fn locate<S: Simd, const K: usize, const N: usize>(
+    pub(super) fn locate<S: Simd, const K: usize, const N: usize, const EVEN: bool>(
         axes: [&Self; N],
         x: [Pack<S, K>; N],
     ) -> [Pack<S, K>; N] {
@@ -97,9 +103,11 @@ impl Axis {
                 bins[i] = axes[i].decided(x[i], places[i], bins[i]);
             }
         }
-        for i in 0..N {
-            if let Some(cells) = &axes[i].cells {
-                bins[i] = cells.locate(x[i]);
+        if !EVEN {
+            for i in 0..N {
+                if let Some(cells) = &axes[i].cells {
+                    bins[i] = cells.locate(x[i]);
+                }
             }
         }
         bins

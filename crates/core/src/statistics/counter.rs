@@ -19,7 +19,7 @@ use pulp::Simd;
 /// all lanes side by side and put in a queue; the queue is counted lane by lane, while other arithmetic waits for its results.
 /// Lanes that hold no impact, or none that can be summed there, go to a site or a row of their own that is not read, so that all
 /// lanes do the same.
-pub(crate) struct Counter<'a> {
+pub(crate) struct Counter<'a, const EVEN: bool> {
     tally: Tally,
     by: &'a By,
     columns: &'a Axis,
@@ -84,7 +84,7 @@ fn empty_row(tally: &mut Tally, row: &mut Row, number: usize) {
     }
 }
 
-impl<'a> Counter<'a> {
+impl<'a, const EVEN: bool> Counter<'a, EVEN> {
     /// `fractions` are those of the bins.
     pub fn new(
         bins: &'a Bins,
@@ -155,7 +155,7 @@ impl<'a> Counter<'a> {
     }
 }
 
-impl Meanwhile for Counter<'_> {
+impl<const EVEN: bool> Meanwhile for Counter<'_, EVEN> {
     #[inline(always)]
     fn meanwhile(&mut self) {
         if let Some(i) = self.backlog.next() {
@@ -164,7 +164,7 @@ impl Meanwhile for Counter<'_> {
     }
 }
 
-impl Sink for Counter<'_> {
+impl<const EVEN: bool> Sink for Counter<'_, EVEN> {
     fn begin(&mut self, _: usize) {}
 
     #[inline(always)]
@@ -182,7 +182,7 @@ impl Sink for Counter<'_> {
         let (row, column, fraction_column) = match self.by {
             By::Velocity(axis) => {
                 let velocity = impact.fall * self.plan.scales.speed;
-                let located = Axis::locate(
+                let located = Axis::locate::<S, K, _, EVEN>(
                     [axis, columns, fractions],
                     [velocity, restitution, fraction],
                 );
@@ -190,7 +190,7 @@ impl Sink for Counter<'_> {
             }
             By::Number(_) => {
                 let row = Pack::splat(simd, number as f64 + ROUND);
-                let located = Axis::locate([columns, fractions], [restitution, fraction]);
+                let located = Axis::locate::<S, K, _, EVEN>([columns, fractions], [restitution, fraction]);
                 (row, located[0], located[1])
             }
         };
@@ -239,7 +239,7 @@ impl Sink for Counter<'_> {
     }
 }
 
-impl Tallying for Counter<'_> {
+impl<const EVEN: bool> Tallying for Counter<'_, EVEN> {
     fn finish(mut self) -> Tally {
         self.count();
         self.empty();

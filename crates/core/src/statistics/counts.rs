@@ -15,7 +15,7 @@ use crate::simd::Pack;
 use pulp::Simd;
 
 /// Counts impacts in the grid of ε and keeps the ledger of energy, as [`super::Counter`] does, and nothing else.
-pub(crate) struct Counts<'a> {
+pub(crate) struct Counts<'a, const EVEN: bool> {
     tally: Tally,
     bins: &'a Bins,
     plan: &'a Plan<'a>,
@@ -25,7 +25,7 @@ pub(crate) struct Counts<'a> {
     queue: [f64; LENGTH],
 }
 
-impl<'a> Counts<'a> {
+impl<'a, const EVEN: bool> Counts<'a, EVEN> {
     pub fn new(bins: &'a Bins, plan: &'a Plan<'a>, origin: f64) -> Result<Self, Error> {
         let tally = Tally::new(bins, origin)?;
         Ok(Self {
@@ -60,7 +60,7 @@ impl<'a> Counts<'a> {
     }
 }
 
-impl Meanwhile for Counts<'_> {
+impl<const EVEN: bool> Meanwhile for Counts<'_, EVEN> {
     #[inline(always)]
     fn meanwhile(&mut self) {
         if let Some(i) = self.backlog.next() {
@@ -69,7 +69,7 @@ impl Meanwhile for Counts<'_> {
     }
 }
 
-impl Sink for Counts<'_> {
+impl<const EVEN: bool> Sink for Counts<'_, EVEN> {
     fn begin(&mut self, _: usize) {}
 
     #[inline(always)]
@@ -83,11 +83,11 @@ impl Sink for Counts<'_> {
         let (row, column) = match &self.bins.by {
             By::Velocity(axis) => {
                 let velocity = impact.fall * self.plan.scales.speed;
-                let [row, column] = Axis::locate([axis, columns], [velocity, restitution]);
+                let [row, column] = Axis::locate::<S, K, _, EVEN>([axis, columns], [velocity, restitution]);
                 (row, column)
             }
             By::Number(_) => {
-                let [column] = Axis::locate([columns], [restitution]);
+                let [column] = Axis::locate::<S, K, _, EVEN>([columns], [restitution]);
                 (
                     Pack::splat(impact.fall.simd(), number as f64 + ROUND),
                     column,
@@ -119,7 +119,7 @@ impl Sink for Counts<'_> {
     }
 }
 
-impl Tallying for Counts<'_> {
+impl<const EVEN: bool> Tallying for Counts<'_, EVEN> {
     fn finish(mut self) -> Tally {
         self.count();
         self.empty();

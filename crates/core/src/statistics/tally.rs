@@ -43,6 +43,15 @@ impl Bins {
         }
     }
 
+    /// Whether the bins of every axis are of one width.
+    pub(crate) fn are_even(&self) -> bool {
+        let rows = match &self.by {
+            By::Velocity(axis) => axis.is_even(),
+            By::Number(_) => true,
+        };
+        rows && self.restitution.is_even() && self.fraction.as_ref().is_none_or(Axis::is_even)
+    }
+
     /// Checks that 32 bits are enough to number the sites of each grid and one more.
     pub(crate) fn check(&self) -> Result<(), Error> {
         let check = |name: &'static str, axis: &Axis| {
