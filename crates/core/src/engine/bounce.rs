@@ -1,13 +1,13 @@
 //! The bounce loop: next contact, motion until then, impact, again and again, for groups of particles that take turns.
 
 use super::end::{Limits, StopReason};
-use super::group::{Release, Stuck};
+use super::group::{Group, Release, Stuck};
 use super::impact::Sink;
 use super::leg::Legs;
 use super::strike::Turn;
 use crate::body::Body;
 use crate::simd::Pack;
-use pulp::Simd;
+use pulp::{Simd, WithSimd};
 use std::ops::Range;
 
 /// Bounces the `particles` of a release, at most as many as N groups hold. Calls `go_on` before every impact.
@@ -33,11 +33,13 @@ pub(crate) fn bounce<S: Simd, T: Turn, const N: usize>(
             break StopReason::Interrupted;
         }
         legs.fly(simd, groups, number, sink)?;
-        let mut active = false;
-        for group in groups.iter_mut() {
-            group.tell(body, limits, number, sink);
-            active |= group.active.any();
-        }
+        let active = simd.vectorize(Tell {
+            groups: &mut *groups,
+            body,
+            limits,
+            number,
+            sink: &mut *sink,
+        });
         number += 1;
         if !active {
             break StopReason::ImpactsReached;
@@ -48,4 +50,28 @@ pub(crate) fn bounce<S: Simd, T: Turn, const N: usize>(
         group.close(sink);
     }
     Ok(())
+}
+
+/// Tells the sink of an impact of all groups, and whether any particle goes on. Compiled apart: the rare ways through the sinks
+/// would take the registers of the other stages.
+struct Tell<'a, S: Simd, T: Turn, K> {
+    groups: &'a mut [Group<S, T>],
+    body: &'a Body,
+    limits: Limits,
+    number: usize,
+    sink: &'a mut K,
+}
+
+impl<S: Simd, T: Turn, K: Sink> WithSimd for Tell<'_, S, T, K> {
+    type Output = bool;
+
+    #[inline(always)]
+    fn with_simd<U: Simd>(self, _: U) -> Self::Output {
+        let mut active = false;
+        for group in self.groups.iter_mut() {
+            group.tell(self.body, self.limits, self.number, self.sink);
+            active |= group.active.any();
+        }
+        active
+    }
 }

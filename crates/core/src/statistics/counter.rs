@@ -190,7 +190,8 @@ impl<const EVEN: bool> Sink for Counter<'_, EVEN> {
             }
             By::Number(_) => {
                 let row = Pack::splat(simd, number as f64 + ROUND);
-                let located = Axis::locate::<S, K, _, EVEN>([columns, fractions], [restitution, fraction]);
+                let located =
+                    Axis::locate::<S, K, _, EVEN>([columns, fractions], [restitution, fraction]);
                 (row, located[0], located[1])
             }
         };

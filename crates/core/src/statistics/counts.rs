@@ -83,7 +83,8 @@ impl<const EVEN: bool> Sink for Counts<'_, EVEN> {
         let (row, column) = match &self.bins.by {
             By::Velocity(axis) => {
                 let velocity = impact.fall * self.plan.scales.speed;
-                let [row, column] = Axis::locate::<S, K, _, EVEN>([axis, columns], [velocity, restitution]);
+                let [row, column] =
+                    Axis::locate::<S, K, _, EVEN>([axis, columns], [velocity, restitution]);
                 (row, column)
             }
             By::Number(_) => {
