@@ -95,7 +95,7 @@ def statistics(
         ``mean_restitution_error`` and so on; and ``particles_ended`` (stop_reason), the number of particles
         by stop reason. Over all impacts, in the bins or not, the attributes ``energy_created_impacts``,
         ``energy_created_share`` and ``largest_energy_ratio``, as from `simulate`. The moments rest on exact
-        sums of ε - ε_n rounded to 2⁻²⁴ ≈ 6e-8.
+        sums of ε - ε_n rounded to 2⁻²⁴ ≈ 6e-8, or to 2⁻²⁰ ≈ 1e-6 where it exceeds 2.
 
     Raises
     ------
@@ -230,7 +230,7 @@ def _check_memory(run: Run, edges: Edges, threads: int) -> None:
     rows = run.impacts if velocity is None else velocity.size + 1
     columns = sum(own.size + 2 for name, own in edges.items() if name != "velocity" and own is not None)
     copies = (threads or _core.build_info()["threads"]) + 1
-    needed, available = copies * rows * (12 * columns + 400), available_memory()
+    needed, available = copies * rows * (12 * columns + 600), available_memory()
     if needed > available:
         text = (
             f": {rows:,} rows of {columns:,} sites in {copies} copies take {needed / 1e9:.3g} GB: must be "

@@ -24,6 +24,13 @@ struct Expected {
     stops: [u64; 5],
 }
 
+/// The multiple of 2⁻²⁴ that stands for an offset: the next one, or beyond 2 the next multiple of 2⁻²⁰.
+fn quanta(offset: f64) -> i128 {
+    let coarse = if offset.abs() <= 2.0 { 1.0 } else { 16.0 };
+    let whole = (offset * 2.0_f64.powi(24) / coarse).round_ties_even();
+    coarse as i128 * whole as i128
+}
+
 /// lo ≤ x < hi by binary search: 0 below, n + 1 above.
 fn bin(edges: &[f64], x: f64) -> usize {
     edges.partition_point(|&edge| edge <= x)
@@ -65,8 +72,7 @@ impl Expected {
                         bin(&edges.restitution, value),
                         bin(&edges.fraction, fraction),
                     ];
-                    let offset = (value - run.origin()) * 2.0_f64.powi(24);
-                    expected.quanta[row].push(offset.round_ties_even() as i128);
+                    expected.quanta[row].push(quanta(value - run.origin()));
                     expected.values[row].push(value);
                     expected.fractions[row] +=
                         (fraction * 2.0_f64.powi(42)).round_ties_even() as u128;

@@ -5,7 +5,9 @@ use super::axis::{Axis, ROUND};
 use super::backlog::{Backlog, LENGTH};
 use super::moments::Sums;
 use super::places::{all_sites, nowhere, sites, whole};
-use super::recent::{Extremes, Half, LARGEST, Recent, fraction_quanta, quanta, words};
+use super::recent::{
+    COARSE, Extremes, Half, LARGEST, QUANTA, Recent, fraction_quanta, quanta, words,
+};
 use super::tally::{Bins, By, CREATES_ENERGY, Gains, Tally, WHAT};
 use crate::Error;
 use crate::engine::StopReason;
@@ -27,6 +29,7 @@ pub(crate) struct Counter<'a, const EVEN: bool> {
     plan: &'a Plan<'a>,
     restitution: Vec<u32>,
     fraction: Vec<u32>,
+    /// One for each row, one for the large values of each, and one that is not read.
     rows: Vec<Row>,
     backlog: Backlog,
     queue: Queue,
@@ -76,9 +79,15 @@ fn put<S: Simd, const K: usize>(queue: &mut [[f64; 4]], packs: [Pack<S, K>; 4]) 
 #[inline(never)]
 fn empty_row(tally: &mut Tally, row: &mut Row, number: usize) {
     let row = std::mem::replace(row, Row::EMPTY);
+    let rows = tally.sums.len();
+    let (number, unit) = if number < rows {
+        (number, 1)
+    } else {
+        (number - rows, COARSE)
+    };
     if let Some(sums) = tally.sums.get_mut(number) {
         let totals = row.sums.totals();
-        sums.absorb(&totals, &row.extremes);
+        sums.absorb(&totals, unit, &row.extremes);
         tally.fractions[number] += u128::from(totals.fractions);
         tally.gains[number].merge(row.gains);
     }
@@ -100,7 +109,7 @@ impl<'a, const EVEN: bool> Counter<'a, EVEN> {
             plan,
             restitution: zeros(WHAT, tally.restitution.counts().len() + 1)?,
             fraction: zeros(WHAT, tally.fraction.counts().len() + 1)?,
-            rows: filled(WHAT, Row::EMPTY, tally.sums.len() + 1)?,
+            rows: filled(WHAT, Row::EMPTY, 2 * tally.sums.len() + 1)?,
             backlog: Backlog::default(),
             queue: Queue {
                 places: [[0.0; 4]; LENGTH],
@@ -114,8 +123,8 @@ impl<'a, const EVEN: bool> Counter<'a, EVEN> {
     fn empty(&mut self) {
         self.tally.restitution.absorb(&mut self.restitution);
         self.tally.fraction.absorb(&mut self.fraction);
-        for row in 0..self.tally.sums.len() {
-            empty_row(&mut self.tally, &mut self.rows[row], row);
+        for (number, row) in self.rows.iter_mut().enumerate() {
+            empty_row(&mut self.tally, row, number);
         }
     }
 
@@ -199,7 +208,7 @@ impl<const EVEN: bool> Sink for Counter<'_, EVEN> {
         let start = row - ROUND;
         let mut site = sites(columns, start, column);
         let mut fraction_site = sites(fractions, start, fraction_column);
-        let mut plain_row = row;
+        let (mut summed_row, mut unit) = (row, Pack::splat(simd, QUANTA));
         let plain = impact.active & offset.abs().le(LARGEST) & fraction.le(1.0);
         if !plain.all() {
             let defined = restitution.abs().lt(Sums::LARGEST) & fraction.le(1.0);
@@ -208,17 +217,20 @@ impl<const EVEN: bool> Sink for Counter<'_, EVEN> {
             site = all_sites(grid, start, column, defined, active);
             let grid = (fractions, &self.fraction[..]);
             fraction_site = all_sites(grid, start, fraction_column, defined, active);
-            plain_row = plain.select(row, nowhere(&self.rows));
-            (active & defined & !plain).each(|lane| {
+            let large = offset.abs().le(COARSE as f64 * LARGEST) & active & fraction.le(1.0);
+            let coarse_row = large.select(row + self.tally.sums.len() as f64, nowhere(&self.rows));
+            summed_row = plain.select(row, coarse_row);
+            unit = plain.select(QUANTA, QUANTA / COARSE as f64);
+            (active & defined & !large).each(|lane| {
                 let (restitution, fraction) =
                     (restitution.as_slice()[lane], fraction.as_slice()[lane]);
                 self.sum_large(whole(row.as_slice()[lane]), restitution, fraction);
             });
         }
         let queue = &mut self.queue;
-        let places = [site, fraction_site, plain_row, restitution];
+        let places = [site, fraction_site, summed_row, restitution];
         put(&mut queue.places[lanes.clone()], places);
-        let [low, high] = words(offset, fraction);
+        let [low, high] = words(offset, unit, fraction);
         put(&mut queue.low[lanes.clone()], low);
         put(&mut queue.high[lanes], high);
         let (before, after) = (impact.energy_before, impact.energy_after);

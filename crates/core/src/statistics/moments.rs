@@ -1,6 +1,6 @@
 //! Moments as exact integer sums of a rounded quantity.
 //!
-//! Each value is rounded to a multiple of 2⁻²⁴ ≈ 6·10⁻⁸ once; its powers are then summed without any further rounding,
+//! Each value is rounded once, to a multiple of 2⁻²⁴ ≈ 6·10⁻⁸ of its offset from the origin, or of 2⁻²⁰ beyond an offset of 2; its powers are then summed without any further rounding,
 //! in integers wide enough for 2⁶⁴ values. Sums of sums are sums: merging is associative and commutative to the last bit.
 
 use super::recent::{Extremes, QUANTA, Totals};
@@ -157,15 +157,16 @@ impl Sums {
         self.fourth.add(shifted(product(high, high), 2), 0);
     }
 
-    /// Adds what is recent.
-    pub(super) fn absorb(&mut self, recent: &Totals, extremes: &Extremes) {
-        let sign = |negative: bool| if negative { u64::MAX } else { 0 };
-        self.first
-            .add([recent.first as u64], sign(recent.first < 0));
-        self.second.add([recent.second], 0);
-        self.third
-            .add(words(recent.third as u128), sign(recent.third < 0));
-        self.fourth.add(words(recent.fourth as u128), 0);
+    /// Adds what is recent, in units of so many quanta.
+    pub(super) fn absorb(&mut self, recent: &Totals, unit: i64, extremes: &Extremes) {
+        let power = |sum: i128, power: u32| {
+            let sum = Wide(words(sum as u128)).widened();
+            (0..power).fold(sum, |product, _| product.times(unit))
+        };
+        self.first.add(power(recent.first.into(), 1).0, 0);
+        self.second.add(power(recent.second.into(), 2).0, 0);
+        self.third.add(power(recent.third, 3).0, 0);
+        self.fourth.add(power(recent.fourth, 4).0, 0);
         self.minimum = self.minimum.min(extremes.minimum);
         self.maximum = self.maximum.max(extremes.maximum);
     }

@@ -10,8 +10,11 @@ use pulp::Simd;
 
 /// Quanta in a unit of ε.
 pub(super) const QUANTA: f64 = 16_777_216.0; // 2²⁴
-/// Largest offset of a value: its q has at most 25 bits, and its powers have at most 50, 75 and 100.
+/// Largest offset of a value that is counted in quanta: its q has at most 25 bits, and its powers have at most 50, 75 and 100.
 pub(super) const LARGEST: f64 = 2.0;
+/// Larger offsets are rounded to so many quanta, and those up to so many times the largest are summed like the others, in sums
+/// of their own.
+pub(super) const COARSE: i64 = 16;
 /// Quanta of E_rot/E_tot.
 pub(super) const FRACTION_QUANTA: f64 = 4_398_046_511_104.0; // 2⁴²
 /// So many values fit into a sum: a word adds at most 2⁵⁰ for each.
@@ -24,13 +27,14 @@ const QUARTIC: f64 = 1_125_899_906_842_624.0; // 2⁵⁰
 /// Half of what a value adds: q, q², q³ high and low; q⁴ high and low, E_rot/E_tot, and, as a plain binary 1, the value itself.
 pub(super) type Half = [f64; 4];
 
-/// Both halves for an offset of ε from its origin, and E_rot/E_tot.
+/// Both halves for an offset of ε from its origin, of which `quanta` make a unit, and E_rot/E_tot.
 #[inline(always)]
 pub(super) fn words<S: Simd, const K: usize>(
     offset: Pack<S, K>,
+    quanta: Pack<S, K>,
     fraction: Pack<S, K>,
 ) -> [[Pack<S, K>; 4]; 2] {
-    let first = offset.mul_add(QUANTA, ROUND);
+    let first = offset.mul_add(quanta, ROUND);
     let q = first - ROUND;
     let square = q * q;
     let cube = square.mul_add(q, CUBIC * ROUND);
@@ -48,15 +52,16 @@ pub(super) fn words<S: Simd, const K: usize>(
     ]
 }
 
-/// An offset of ε from its origin, in quanta.
+/// An offset of ε from its origin that is too large to be summed like the others, in quanta.
 #[inline(always)]
 pub(super) fn quanta(offset: f64) -> i64 {
-    let q = offset * QUANTA; // exact
-    if q.abs() < FEW {
-        counted(q)
-    } else {
-        q.round_ties_even() as i64
-    }
+    let q = offset * (QUANTA / COARSE as f64); // exact
+    COARSE
+        * if q.abs() < FEW {
+            counted(q)
+        } else {
+            q.round_ties_even() as i64
+        }
 }
 
 /// E_rot/E_tot in its quanta.
