@@ -242,7 +242,7 @@ columns! {
         unit: Some("1"),
         symbol: Some("ε_n"),
         when: When::NormalVaries
-    } = |impact, plan| plan.law.normal().apart(impact.approach);
+    } = |impact, plan| plan.law.normal.apart(impact.approach);
 
     /// E_rot/E_tot before the impact (12).
     rotational_fraction: f64 {
@@ -319,7 +319,7 @@ impl Columns {
     pub fn usual(law: &Law<'_>, state: bool) -> Self {
         let recorded = PER_IMPACT.iter().filter(|about| match about.when {
             When::Always => true,
-            When::NormalVaries => !matches!(law.normal(), Normal::Constant(_)),
+            When::NormalVaries => !matches!(law.normal, Normal::Constant(_)),
             When::StateAsked => state,
             When::HeightVaries | When::InSpace => false,
         });

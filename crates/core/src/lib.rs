@@ -54,8 +54,8 @@ pub use body::{
     Body, Dumbbell, LoadedSphere, Shape, Solid, Sphere, Spherocylinder, Spheroid, Surface,
 };
 pub use collision::{
-    ChatterjeeRuina, Coulomb, Frictionless, Hypothesis, Law, Normal, Plastic, Points, Tabulated,
-    TangentialRestitution, Viscoelastic,
+    ChatterjeeRuina, Coulomb, Frictionless, Hypothesis, Law, Normal, Plastic, Points, Rule,
+    Tabulated, TangentialRestitution, Viscoelastic,
 };
 pub use columns::{Columns, PER_IMPACT, PER_PARTICLE, Records};
 pub use engine::{

@@ -10,8 +10,8 @@ mod common;
 use common::*;
 use restitution_core::statistics::{Axis, Bins, By, Grid, Tally};
 use restitution_core::{
-    ChatterjeeRuina, Coulomb, Dumbbell, Frictionless, Hypothesis, Level, Means, Monitor, Normal,
-    Orientation, Plastic, Records, Run, Tabulated, TangentialRestitution, Viscoelastic,
+    ChatterjeeRuina, Coulomb, Dumbbell, Frictionless, Hypothesis, Law, Level, Means, Monitor,
+    Normal, Orientation, Plastic, Records, Run, Tabulated, TangentialRestitution, Viscoelastic,
 };
 use std::collections::BTreeMap;
 
@@ -110,7 +110,7 @@ fn coulomb(elongation: f64, normal: Normal<'static>, hypothesis: Hypothesis) -> 
         impacts: 200,
         ..paper(
             elongation,
-            Coulomb::new(normal, 0.25, hypothesis).unwrap().into(),
+            Law::new(normal, Coulomb::new(0.25, hypothesis).unwrap()).unwrap(),
         )
     }
 }
@@ -180,7 +180,7 @@ fn jobs(angles: &[f64]) -> Vec<(&'static str, Run<'_>)> {
             Run {
                 particles: 400,
                 impacts: 200,
-                ..paper(0.1, Frictionless::new(0.98).unwrap().into())
+                ..paper(0.1, Law::new(0.98, Frictionless).unwrap())
             },
         ),
         (
@@ -200,7 +200,10 @@ fn jobs(angles: &[f64]) -> Vec<(&'static str, Run<'_>)> {
             Run {
                 particles: 300,
                 impacts: 200,
-                ..paper(0.3, ChatterjeeRuina::new(0.9, -0.3, 0.2).unwrap().into())
+                ..paper(
+                    0.3,
+                    Law::new(0.9, ChatterjeeRuina::new(-0.3, 0.2).unwrap()).unwrap(),
+                )
             },
         ),
         (
@@ -210,7 +213,7 @@ fn jobs(angles: &[f64]) -> Vec<(&'static str, Run<'_>)> {
                 impacts: 200,
                 ..paper(
                     0.1,
-                    TangentialRestitution::new(glass(), 1.0).unwrap().into(),
+                    Law::new(glass(), TangentialRestitution::new(1.0).unwrap()).unwrap(),
                 )
             },
         ),

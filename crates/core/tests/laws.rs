@@ -5,7 +5,7 @@ mod contacts;
 
 use contacts::*;
 use restitution_core::collision::{Components, Contact, Response};
-use restitution_core::{Hypothesis, Law, TangentialRestitution};
+use restitution_core::{Hypothesis, Law, Rule, TangentialRestitution};
 
 const CONTACTS: usize = 20_000;
 
@@ -29,9 +29,7 @@ fn laws(random: &mut Random) -> Vec<Law<'static>> {
     let mut laws = vec![
         frictionless(normal),
         chatterjee_ruina(normal, tangential, friction),
-        TangentialRestitution::new(normal, tangential)
-            .unwrap()
-            .into(),
+        Law::new(normal, TangentialRestitution::new(tangential).unwrap()).unwrap(),
     ];
     laws.extend(HYPOTHESES.map(|hypothesis| coulomb(normal, friction, hypothesis)));
     laws
@@ -50,8 +48,8 @@ fn every_response_is_that_of_an_impact() {
                 "{law:?} {contact:?} {response:?} {left}"
             );
             assert!(response.separation_speed >= 0.0);
-            let pushes =
-                matches!(law, Law::TangentialRestitution(_)) || response.impulse.normal >= 0.0;
+            let pushes = matches!(law.rule, Rule::TangentialRestitution(_))
+                || response.impulse.normal >= 0.0;
             assert!(pushes, "{law:?} {contact:?} {response:?}");
         }
     });

@@ -72,9 +72,8 @@ fn the_other_laws_can_make_energy() {
     });
     let papers = growing(6, |random| {
         let tangential = random.between(-1.0, 1.0);
-        TangentialRestitution::new(random.coefficient(), tangential)
-            .unwrap()
-            .into()
+        let rule = TangentialRestitution::new(tangential).unwrap();
+        Law::new(random.coefficient(), rule).unwrap()
     });
     println!("Newton {newton:?}, paper {papers:?}");
     assert!(newton.0 > 0 && papers.0 > 0);

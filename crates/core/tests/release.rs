@@ -103,9 +103,9 @@ fn the_records_tell_the_release() {
 /// and a flight down the incline adds slope × time to the velocity. Rounding adds up over the impacts.
 #[test]
 fn what_a_frictionless_plane_conserves() {
-    let law = Frictionless::new(1.0).unwrap();
+    let law = Law::new(1.0, Frictionless).unwrap();
     for body in bodies() {
-        let run = thrown(body, law.into());
+        let run = thrown(body, law);
         let records = simulate(&run);
         let slope = 0.4;
         for particle in 0..run.particles {
@@ -238,7 +238,7 @@ fn an_impact_at_the_release() {
             release_height: height.into(),
             spin,
             velocity,
-            ..paper(2.0, Frictionless::new(0.5).unwrap().into())
+            ..paper(2.0, Law::new(0.5, Frictionless).unwrap())
         };
         let records = simulate(&run);
         // π/2 is not level to the last bit: the sphere that comes down is 10⁻¹⁶ R up.
@@ -296,12 +296,12 @@ fn from_the_plane() {
 /// normal motion.
 #[test]
 fn an_incline_weakens_gravity() {
-    let frictionless = Frictionless::new(0.8).unwrap();
+    let frictionless = Law::new(0.8, Frictionless).unwrap();
     let run = Run {
         spin: TUMBLING,
         incline: 0.7,
         impacts: 5,
-        ..paper(1.0, frictionless.into())
+        ..paper(1.0, frictionless)
     };
     let level = Run {
         gravity: run.gravity * run.incline.cos(),

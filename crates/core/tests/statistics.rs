@@ -31,11 +31,7 @@ static PIECES: LazyLock<Vec<Tally>> = LazyLock::new(|| {
 
 /// An empty tally that goes with [`PIECES`].
 fn nothing(law: &Law<'_>) -> Tally {
-    Tally::new(
-        &Edges::coarse().bins(By::Number(ROWS)),
-        law.normal().at(1.0),
-    )
-    .unwrap()
+    Tally::new(&Edges::coarse().bins(By::Number(ROWS)), law.normal.at(1.0)).unwrap()
 }
 
 /// The pieces cover what merging has to cope with: sums beyond 128 bits, and impacts without a place.

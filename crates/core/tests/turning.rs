@@ -39,7 +39,7 @@ fn compare(text: &str) {
             arm_along: x[5],
             across: x[6],
         };
-        let law: Law<'_> = Coulomb::new(x[8], x[7], hypothesis).unwrap().into();
+        let law = Law::new(x[8], Coulomb::new(x[7], hypothesis).unwrap()).unwrap();
         let found = law.respond(&contact).impulse;
         let off = [
             found.normal - x[9],

@@ -5,7 +5,7 @@ use numpy::{IntoPyArray, PyArray1, PyReadonlyArray1};
 use pyo3::prelude::*;
 use restitution_core::collision::{Components, Contact, MOST_FRICTION, PADE_ABOVE, PADE_BELOW};
 use restitution_core::{
-    ChatterjeeRuina, Coulomb, Error, Frictionless, Hypothesis, Normal, Plastic, Points,
+    ChatterjeeRuina, Coulomb, Error, Frictionless, Hypothesis, Normal, Plastic, Points, Rule,
     TangentialRestitution, Viscoelastic,
 };
 use std::sync::Arc;
@@ -96,14 +96,16 @@ enum Given<'py> {
 #[pyclass(frozen, module = "restitution._core")]
 pub struct Law {
     coefficient: Arc<Coefficient>,
-    /// With a constant in the place of the coefficient.
-    rule: restitution_core::Law<'static>,
+    rule: Rule,
 }
 
 impl Law {
     /// The law as the core takes it.
     pub fn law(&self) -> restitution_core::Law<'_> {
-        self.rule.with_normal(self.coefficient.normal())
+        restitution_core::Law {
+            normal: self.coefficient.normal(),
+            rule: self.rule,
+        }
     }
 }
 
@@ -132,42 +134,37 @@ impl Law {
 
 type Triple = (f64, f64, f64);
 
-/// A law of `rule`, which is given a constant in the place of a material.
-fn law<L: Into<restitution_core::Law<'static>>>(
-    normal: Given<'_>,
-    rule: impl FnOnce(Normal<'static>) -> Result<L, Error>,
-) -> PyResult<Law> {
-    let (constant, coefficient) = match normal {
-        Given::Constant(value) => (value, Arc::new(Coefficient::Closed(value.into()))),
-        Given::Material(material) => (1.0, Arc::clone(&material.0)),
+fn law(normal: Given<'_>, rule: Result<impl Into<Rule>, Error>) -> PyResult<Law> {
+    let rule = rule.map_err(python_error)?.into();
+    let coefficient = match normal {
+        Given::Constant(value) => {
+            let law = restitution_core::Law::new(value, rule).map_err(python_error)?;
+            Arc::new(Coefficient::Closed(law.normal))
+        }
+        Given::Material(material) => Arc::clone(&material.0),
     };
-    let rule = rule(constant.into()).map_err(python_error)?.into();
     Ok(Law { coefficient, rule })
 }
 
 #[pyfunction]
 fn tangential_restitution(normal: Given<'_>, tangential: f64) -> PyResult<Law> {
-    law(normal, |normal| {
-        TangentialRestitution::new(normal, tangential)
-    })
+    law(normal, TangentialRestitution::new(tangential))
 }
 
 #[pyfunction]
 fn frictionless(normal: Given<'_>) -> PyResult<Law> {
-    law(normal, Frictionless::new)
+    law(normal, Ok(Frictionless))
 }
 
 #[pyfunction]
 fn coulomb(normal: Given<'_>, friction: f64, hypothesis: &str) -> PyResult<Law> {
     let hypothesis = Hypothesis::named(hypothesis).map_err(python_error)?;
-    law(normal, |normal| Coulomb::new(normal, friction, hypothesis))
+    law(normal, Coulomb::new(friction, hypothesis))
 }
 
 #[pyfunction]
 fn chatterjee_ruina(normal: Given<'_>, tangential: f64, friction: f64) -> PyResult<Law> {
-    law(normal, |normal| {
-        ChatterjeeRuina::new(normal, tangential, friction)
-    })
+    law(normal, ChatterjeeRuina::new(tangential, friction))
 }
 
 pub fn add_to(module: &Bound<'_, PyModule>) -> PyResult<()> {

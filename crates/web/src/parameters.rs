@@ -2,7 +2,7 @@
 
 use restitution_core::{
     ChatterjeeRuina, Coulomb, Dumbbell, Error, Frictionless, Hypothesis, Law, LoadedSphere,
-    Orientation, Run, Solid, Spherocylinder, Spheroid, Spin, TangentialRestitution, Vector,
+    Orientation, Rule, Run, Solid, Spherocylinder, Spheroid, Spin, TangentialRestitution, Vector,
 };
 
 /// Number of parameters.
@@ -50,11 +50,10 @@ impl Parameters {
     fn law(&self) -> Result<Law<'static>, Error> {
         let [law, normal, tangential, friction, hypothesis] =
             std::array::from_fn(|i| self.0[4 + i]);
-        Ok(match law as u32 {
-            0 => TangentialRestitution::new(normal, tangential)?.into(),
-            1 => Frictionless::new(normal)?.into(),
+        let rule: Rule = match law as u32 {
+            0 => TangentialRestitution::new(tangential)?.into(),
+            1 => Frictionless.into(),
             2 => Coulomb::new(
-                normal,
                 friction,
                 match hypothesis as u32 {
                     0 => Hypothesis::Stronge,
@@ -63,7 +62,8 @@ impl Parameters {
                 },
             )?
             .into(),
-            _ => ChatterjeeRuina::new(normal, tangential, friction)?.into(),
-        })
+            _ => ChatterjeeRuina::new(tangential, friction)?.into(),
+        };
+        Law::new(normal, rule)
     }
 }

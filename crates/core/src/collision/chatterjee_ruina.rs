@@ -1,7 +1,7 @@
 //! The law of A. Chatterjee and A. Ruina, *A new algebraic rigid-body collision law based on impulse space considerations*,
 //! J. Appl. Mech. **65**, 939 (1998).
 
-use super::{Contacts, Normal, Responses};
+use super::{Contacts, Responses};
 use crate::Error;
 use crate::simd::Pack;
 use pulp::Simd;
@@ -13,20 +13,14 @@ use pulp::Simd;
 /// (1 − e²)|P_I|² + κ(2 − κ)|P_II − P_I|², halved, with |P|² = PᵀKP: as 0 ≤ κ ≤ 1 + e_t ≤ 2 it cannot grow. Without friction
 /// (μ = 0) or for e_t = −1 this is [`super::Frictionless`].
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct ChatterjeeRuina<'a> {
-    pub(super) normal: Normal<'a>,
-    pub(super) tangential: f64,
-    pub(super) friction: f64,
+pub struct ChatterjeeRuina {
+    tangential: f64,
+    friction: f64,
 }
 
-impl<'a> ChatterjeeRuina<'a> {
-    /// e in [0, 1] or a function of the normal contact speed, e_t in [−1, 1], μ ≥ 0.
-    pub fn new(
-        normal: impl Into<Normal<'a>>,
-        tangential: f64,
-        friction: f64,
-    ) -> Result<Self, Error> {
-        let normal = normal.into().checked()?;
+impl ChatterjeeRuina {
+    /// e_t in [−1, 1], μ ≥ 0.
+    pub fn new(tangential: f64, friction: f64) -> Result<Self, Error> {
         Error::unless(
             (-1.0..=1.0).contains(&tangential),
             "tangential",
@@ -35,7 +29,6 @@ impl<'a> ChatterjeeRuina<'a> {
         )?;
         super::coulomb::check_friction(friction)?;
         Ok(Self {
-            normal,
             tangential,
             friction,
         })
@@ -45,9 +38,9 @@ impl<'a> ChatterjeeRuina<'a> {
     pub(super) fn respond<S: Simd, const K: usize, const SPACE: bool>(
         &self,
         contact: &Contacts<S, K>,
+        restitution: Pack<S, K>,
     ) -> Responses<S, K> {
         let speed = contact.approach_speed();
-        let restitution = self.normal.in_lanes(speed);
         let zero = Pack::splat(speed.simd(), 0.0);
 
         let frictionless = speed / contact.normal_response(); // P_I

@@ -6,7 +6,7 @@
 //! plane the contact velocity is then linear in p on either side of the one impulse p_s at which the slip vanishes.
 
 use super::turning::{Slipping, turning};
-use super::{Contacts, Normal, Responses};
+use super::{Contacts, Responses};
 use crate::Error;
 use crate::simd::Pack;
 use pulp::Simd;
@@ -45,23 +45,16 @@ impl Hypothesis {
 /// It respects the friction cone |P_t| ≤ μ P_n; friction itself always dissipates. Without friction (μ = 0) it is
 /// [`super::Frictionless`] under each hypothesis.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Coulomb<'a> {
-    pub(super) normal: Normal<'a>,
-    pub(super) friction: f64,
-    pub(super) hypothesis: Hypothesis,
+pub struct Coulomb {
+    friction: f64,
+    hypothesis: Hypothesis,
 }
 
-impl<'a> Coulomb<'a> {
-    /// ε_n in [0, 1] or a function of the normal contact speed, μ ≥ 0.
-    pub fn new(
-        normal: impl Into<Normal<'a>>,
-        friction: f64,
-        hypothesis: Hypothesis,
-    ) -> Result<Self, Error> {
-        let normal = normal.into().checked()?;
+impl Coulomb {
+    /// μ ≥ 0.
+    pub fn new(friction: f64, hypothesis: Hypothesis) -> Result<Self, Error> {
         check_friction(friction)?;
         Ok(Self {
-            normal,
             friction,
             hypothesis,
         })
@@ -71,22 +64,22 @@ impl<'a> Coulomb<'a> {
     pub(super) fn respond<S: Simd, const K: usize, const SPACE: bool>(
         &self,
         contact: &Contacts<S, K>,
+        restitution: Pack<S, K>,
     ) -> Responses<S, K> {
-        let straight = self.in_plane(contact);
+        let straight = self.in_plane(contact, restitution);
         let turns = !contact.slip_across.eq(0.0);
         if !SPACE || self.friction == 0.0 || !turns.any() {
             return straight;
         }
-        let speed = contact.approach_speed();
         let slipping = Slipping {
-            speed,
+            speed: contact.approach_speed(),
             along: contact.slip_along,
             across: contact.slip_across,
             nn: contact.normal_response(),
             nu: contact.coupling(),
             uu: contact.along_response(),
             ww: contact.across_response(),
-            restitution: self.normal.in_lanes(speed),
+            restitution,
         };
         let answer = turning(&slipping, self.friction, self.hypothesis);
         Responses {
@@ -98,9 +91,12 @@ impl<'a> Coulomb<'a> {
     }
 
     #[inline(always)]
-    fn in_plane<S: Simd, const K: usize>(&self, contact: &Contacts<S, K>) -> Responses<S, K> {
+    fn in_plane<S: Simd, const K: usize>(
+        &self,
+        contact: &Contacts<S, K>,
+        restitution: Pack<S, K>,
+    ) -> Responses<S, K> {
         let speed = contact.approach_speed();
-        let restitution = self.normal.in_lanes(speed);
         let path = Path::new(contact, self.friction);
         let (normal, separation_speed) = path.end(speed, restitution, self.hypothesis);
         Responses {

@@ -4,62 +4,45 @@ use super::{
     ChatterjeeRuina, Components, Contact, Contacts, Coulomb, Frictionless, Normal, Response,
     Responses, TangentialRestitution, tangential::Steady,
 };
+use crate::Error;
 use pulp::{Simd, WithSimd};
 
 /// A collision law: what an impact does. Its normal coefficient may borrow a table.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Law<'a> {
+pub struct Law<'a> {
+    /// ε_n.
+    pub normal: Normal<'a>,
+    /// All else.
+    pub rule: Rule,
+}
+
+/// What a law makes of a contact and a normal coefficient.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Rule {
     /// The paper's.
-    TangentialRestitution(TangentialRestitution<'a>),
+    TangentialRestitution(TangentialRestitution),
     /// Impulse along the plane normal alone.
-    Frictionless(Frictionless<'a>),
+    Frictionless(Frictionless),
     /// Dry friction.
-    Coulomb(Coulomb<'a>),
+    Coulomb(Coulomb),
     /// A bilinear law within the friction cone.
-    ChatterjeeRuina(ChatterjeeRuina<'a>),
+    ChatterjeeRuina(ChatterjeeRuina),
 }
 
 impl<'a> Law<'a> {
-    /// The normal coefficient.
-    pub fn normal(&self) -> Normal<'a> {
-        match self {
-            Self::TangentialRestitution(law) => law.normal,
-            Self::Frictionless(law) => law.normal,
-            Self::Coulomb(law) => law.normal,
-            Self::ChatterjeeRuina(law) => law.normal,
-        }
+    /// Of ε_n in [0, 1], or a function of the normal contact speed, and a rule.
+    pub fn new(normal: impl Into<Normal<'a>>, rule: impl Into<Rule>) -> Result<Self, Error> {
+        Ok(Self {
+            normal: normal.into().checked()?,
+            rule: rule.into(),
+        })
     }
 
     /// The law for speeds in this `unit`, in m/s, instead of m/s.
     pub fn scaled(&self, unit: f64) -> Self {
-        self.with_normal(self.normal().scaled(unit))
-    }
-
-    /// The law with another normal coefficient, which has been checked.
-    pub fn with_normal<'b>(&self, normal: Normal<'b>) -> Law<'b> {
-        match *self {
-            Self::TangentialRestitution(TangentialRestitution { tangential, .. }) => {
-                Law::TangentialRestitution(TangentialRestitution { normal, tangential })
-            }
-            Self::Frictionless(_) => Law::Frictionless(Frictionless { normal }),
-            Self::Coulomb(Coulomb {
-                friction,
-                hypothesis,
-                ..
-            }) => Law::Coulomb(Coulomb {
-                normal,
-                friction,
-                hypothesis,
-            }),
-            Self::ChatterjeeRuina(ChatterjeeRuina {
-                tangential,
-                friction,
-                ..
-            }) => Law::ChatterjeeRuina(ChatterjeeRuina {
-                normal,
-                tangential,
-                friction,
-            }),
+        Self {
+            normal: self.normal.scaled(unit),
+            rule: self.rule,
         }
     }
 
@@ -77,9 +60,11 @@ impl<'a> Law<'a> {
     }
 
     /// The paper's law with a constant ε_n, if it is that.
-    pub(crate) fn steady(&self) -> Option<Steady<'a>> {
-        match self {
-            Self::TangentialRestitution(law) => law.steady(),
+    pub(crate) fn steady(&self) -> Option<Steady> {
+        match (self.rule, self.normal) {
+            (Rule::TangentialRestitution(rule), Normal::Constant(normal)) => {
+                Some(Steady { normal, rule })
+            }
             _ => None,
         }
     }
@@ -117,35 +102,37 @@ impl<S: Simd, const K: usize, const SPACE: bool> WithSimd for Choice<'_, '_, S, 
 
     #[inline(always)]
     fn with_simd<T: Simd>(self, _: T) -> Self::Output {
-        match self.law {
-            Law::TangentialRestitution(law) => law.respond::<S, K, SPACE>(self.contact),
-            Law::Frictionless(law) => law.respond::<S, K, SPACE>(self.contact),
-            Law::Coulomb(law) => law.respond::<S, K, SPACE>(self.contact),
-            Law::ChatterjeeRuina(law) => law.respond::<S, K, SPACE>(self.contact),
+        let Self { law, contact } = self;
+        let normal = law.normal.in_lanes(contact.approach_speed());
+        match &law.rule {
+            Rule::TangentialRestitution(rule) => rule.respond::<S, K, SPACE>(contact, normal),
+            Rule::Frictionless(rule) => rule.respond(contact, normal),
+            Rule::Coulomb(rule) => rule.respond::<S, K, SPACE>(contact, normal),
+            Rule::ChatterjeeRuina(rule) => rule.respond::<S, K, SPACE>(contact, normal),
         }
     }
 }
 
-impl<'a> From<TangentialRestitution<'a>> for Law<'a> {
-    fn from(law: TangentialRestitution<'a>) -> Self {
-        Self::TangentialRestitution(law)
+impl From<TangentialRestitution> for Rule {
+    fn from(rule: TangentialRestitution) -> Self {
+        Self::TangentialRestitution(rule)
     }
 }
 
-impl<'a> From<Frictionless<'a>> for Law<'a> {
-    fn from(law: Frictionless<'a>) -> Self {
-        Self::Frictionless(law)
+impl From<Frictionless> for Rule {
+    fn from(rule: Frictionless) -> Self {
+        Self::Frictionless(rule)
     }
 }
 
-impl<'a> From<Coulomb<'a>> for Law<'a> {
-    fn from(law: Coulomb<'a>) -> Self {
-        Self::Coulomb(law)
+impl From<Coulomb> for Rule {
+    fn from(rule: Coulomb) -> Self {
+        Self::Coulomb(rule)
     }
 }
 
-impl<'a> From<ChatterjeeRuina<'a>> for Law<'a> {
-    fn from(law: ChatterjeeRuina<'a>) -> Self {
-        Self::ChatterjeeRuina(law)
+impl From<ChatterjeeRuina> for Rule {
+    fn from(rule: ChatterjeeRuina) -> Self {
+        Self::ChatterjeeRuina(rule)
     }
 }

@@ -18,8 +18,8 @@ pub use chatterjee_ruina::ChatterjeeRuina;
 pub(crate) use contact::{Contacts, Responses};
 pub use coulomb::{Coulomb, Hypothesis, MOST_FRICTION};
 pub use frictionless::Frictionless;
-pub use law::Law;
 pub(crate) use law::Respond;
+pub use law::{Law, Rule};
 pub use normal::{Normal, PADE_ABOVE, PADE_BELOW, Plastic, Points, Tabulated, Viscoelastic};
 pub use tangential::TangentialRestitution;
 

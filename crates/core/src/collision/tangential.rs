@@ -1,6 +1,6 @@
 //! The paper's law, (9): both components of the contact velocity change by a fixed factor.
 
-use super::{Contacts, Normal, Respond, Responses};
+use super::{Contacts, Respond, Responses};
 use crate::Error;
 use crate::simd::{Operand, Pack};
 use pulp::Simd;
@@ -11,22 +11,20 @@ use pulp::Simd;
 /// which can do positive work, so that kinetic energy can grow, and which may lie outside every friction cone. The law is not a
 /// frictionless one.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct TangentialRestitution<'a> {
-    pub(super) normal: Normal<'a>,
-    pub(super) tangential: f64,
+pub struct TangentialRestitution {
+    tangential: f64,
 }
 
-impl<'a> TangentialRestitution<'a> {
-    /// ε_n in [0, 1] or a function of the normal contact speed, ε_t in [−1, 1].
-    pub fn new(normal: impl Into<Normal<'a>>, tangential: f64) -> Result<Self, Error> {
-        let normal = normal.into().checked()?;
+impl TangentialRestitution {
+    /// ε_t in [−1, 1].
+    pub fn new(tangential: f64) -> Result<Self, Error> {
         Error::unless(
             (-1.0..=1.0).contains(&tangential),
             "tangential",
             tangential,
             "in [-1, 1]",
         )?;
-        Ok(Self { normal, tangential })
+        Ok(Self { tangential })
     }
 
     /// ε_t.
@@ -34,21 +32,13 @@ impl<'a> TangentialRestitution<'a> {
         self.tangential
     }
 
-    /// The law with its ε_n, if that is constant.
-    pub(super) fn steady(&self) -> Option<Steady<'a>> {
-        let Normal::Constant(normal) = self.normal else {
-            return None;
-        };
-        Some(Steady { law: *self, normal })
-    }
-
     #[inline(always)]
     pub(super) fn respond<S: Simd, const K: usize, const SPACE: bool>(
         &self,
         contact: &Contacts<S, K>,
+        normal: Pack<S, K>,
     ) -> Responses<S, K> {
-        let restitution = self.normal.in_lanes(contact.approach_speed());
-        self.with::<S, K, SPACE>(-restitution, -(restitution + 1.0), contact)
+        self.with::<S, K, SPACE>(-normal, -(normal + 1.0), contact)
     }
 
     /// The response with this −ε_n and −(1 + ε_n).
@@ -78,18 +68,18 @@ impl<'a> TangentialRestitution<'a> {
 }
 
 /// The law with a constant ε_n, to be written out in the bounce loop of the lanes: the paper's runs are of this kind.
-pub(crate) struct Steady<'a> {
-    law: TangentialRestitution<'a>,
-    normal: f64,
+pub(crate) struct Steady {
+    pub(super) normal: f64,
+    pub(super) rule: TangentialRestitution,
 }
 
-impl Respond for Steady<'_> {
+impl Respond for Steady {
     #[inline(always)]
     fn respond<S: Simd, const K: usize, const SPACE: bool>(
         &self,
         contact: &Contacts<S, K>,
     ) -> Responses<S, K> {
-        self.law
+        self.rule
             .with::<S, K, SPACE>(-self.normal, -(1.0 + self.normal), contact)
     }
 }

@@ -55,7 +55,7 @@ impl Run<'_> {
         let drop = self.release_height.middle() - self.body.unit;
         let gained = 2.0 * self.gravity * sincos(self.incline).1 * drop.max(0.0);
         let start = self.velocity.z;
-        self.law.normal().at(start.mul_add(start, gained).sqrt())
+        self.law.normal.at(start.mul_add(start, gained).sqrt())
     }
 
     /// Whether all particles are released at rest, over a level plane. All directions in the plane are then equivalent, and each

@@ -5,8 +5,8 @@ use proptest::prelude::*;
 use proptest::test_runner::{Config, RngSeed};
 use restitution_core::{
     Body, ChatterjeeRuina, Coulomb, Dumbbell, Frictionless, Hypothesis, Law, Level, Means, Monitor,
-    Normal, Orientation, Plastic, Records, Run, Shape, Spin, Tabulated, TangentialRestitution,
-    Vector, Viscoelastic,
+    Normal, Orientation, Plastic, Records, Rule, Run, Shape, Spin, Tabulated,
+    TangentialRestitution, Vector, Viscoelastic,
 };
 use std::f64::consts::PI;
 
@@ -26,9 +26,7 @@ pub fn dumbbell(elongation: f64) -> Body {
 }
 
 pub fn law(normal: f64, tangential: f64) -> Law<'static> {
-    TangentialRestitution::new(normal, tangential)
-        .unwrap()
-        .into()
+    Law::new(normal, TangentialRestitution::new(tangential).unwrap()).unwrap()
 }
 
 /// An ensemble like the paper's: radius 3 mm, dropped from 60 mm.
@@ -150,15 +148,14 @@ pub fn every_law((normal, tangential): (f64, f64)) -> impl Strategy<Value = Law<
         Hypothesis::Newton,
     ]);
     (self::normal(normal), friction, hypothesis, 0..7).prop_map(
-        move |(normal, friction, hypothesis, kind)| match kind {
-            0 | 1 => TangentialRestitution::new(normal, tangential)
-                .unwrap()
-                .into(),
-            2 => Frictionless::new(normal).unwrap().into(),
-            3 => ChatterjeeRuina::new(normal, tangential, friction)
-                .unwrap()
-                .into(),
-            _ => Coulomb::new(normal, friction, hypothesis).unwrap().into(),
+        move |(normal, friction, hypothesis, kind)| {
+            let rule: Rule = match kind {
+                0 | 1 => TangentialRestitution::new(tangential).unwrap().into(),
+                2 => Frictionless.into(),
+                3 => ChatterjeeRuina::new(tangential, friction).unwrap().into(),
+                _ => Coulomb::new(friction, hypothesis).unwrap().into(),
+            };
+            Law::new(normal, rule).unwrap()
         },
     )
 }

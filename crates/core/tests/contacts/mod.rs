@@ -96,17 +96,16 @@ impl Random {
 }
 
 pub fn coulomb(normal: f64, friction: f64, hypothesis: Hypothesis) -> Law<'static> {
-    Coulomb::new(normal, friction, hypothesis).unwrap().into()
+    Law::new(normal, Coulomb::new(friction, hypothesis).unwrap()).unwrap()
 }
 
 pub fn frictionless(normal: f64) -> Law<'static> {
-    Frictionless::new(normal).unwrap().into()
+    Law::new(normal, Frictionless).unwrap()
 }
 
 pub fn chatterjee_ruina(normal: f64, tangential: f64, friction: f64) -> Law<'static> {
-    ChatterjeeRuina::new(normal, tangential, friction)
-        .unwrap()
-        .into()
+    let rule = ChatterjeeRuina::new(tangential, friction).unwrap();
+    Law::new(normal, rule).unwrap()
 }
 
 /// Contact velocity after the impact.

@@ -27,23 +27,21 @@ pub enum Rule {
 impl Rule {
     /// The law that the engine is given.
     pub fn law(&self, normal: &Restitution) -> Law<'static> {
-        let normal = normal.normal();
-        match *self {
-            Self::Tangential { tangential } => TangentialRestitution::new(normal, tangential)
-                .unwrap()
-                .into(),
-            Self::Frictionless => Frictionless::new(normal).unwrap().into(),
+        let rule: restitution_core::Rule = match *self {
+            Self::Tangential { tangential } => {
+                TangentialRestitution::new(tangential).unwrap().into()
+            }
+            Self::Frictionless => Frictionless.into(),
             Self::Coulomb {
                 friction,
                 hypothesis,
-            } => Coulomb::new(normal, friction, hypothesis).unwrap().into(),
+            } => Coulomb::new(friction, hypothesis).unwrap().into(),
             Self::ChatterjeeRuina {
                 tangential,
                 friction,
-            } => ChatterjeeRuina::new(normal, tangential, friction)
-                .unwrap()
-                .into(),
-        }
+            } => ChatterjeeRuina::new(tangential, friction).unwrap().into(),
+        };
+        Law::new(normal.normal(), rule).unwrap()
     }
 }
 

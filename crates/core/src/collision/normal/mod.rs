@@ -63,7 +63,7 @@ impl Normal<'_> {
     }
 
     /// The coefficient, if it is one.
-    pub fn checked(self) -> Result<Self, Error> {
+    pub(super) fn checked(self) -> Result<Self, Error> {
         if let Self::Constant(value) = self {
             Error::unless((0.0..=1.0).contains(&value), "normal", value, "in [0, 1]")?;
         }
