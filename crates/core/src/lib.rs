@@ -40,6 +40,7 @@ mod error;
 mod flight;
 mod follow;
 mod memory;
+mod particles;
 mod random;
 mod records;
 mod run;
@@ -57,7 +58,7 @@ pub use collision::{
     ChatterjeeRuina, Coulomb, Frictionless, Hypothesis, Law, Normal, Plastic, Points, Rule,
     Tabulated, TangentialRestitution, Viscoelastic,
 };
-pub use columns::{Columns, PER_IMPACT, PER_PARTICLE, Records};
+pub use columns::{Columns, PER_IMPACT, Records};
 pub use engine::{
     COLLAPSE_RUN, Departure, Landing, Limits, NoConvergence, SingleImpact, StopReason, collide,
     first_contact, trajectory,
@@ -65,6 +66,7 @@ pub use engine::{
 pub use error::{Error, Value};
 pub use flight::{State, Vector};
 pub use follow::Followed;
+pub use particles::PER_PARTICLE;
 pub use run::{About, Height, Orientation, Run, Scales, Spin};
 pub use simd::{Level, elementary};
 pub use threads::{Means, Monitor, default_threads};

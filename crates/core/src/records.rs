@@ -131,6 +131,8 @@ impl Meanwhile for Table<'_> {
 }
 
 impl Sink for Table<'_> {
+    const TOGETHER: bool = false;
+
     fn begin(&mut self, first: usize) {
         self.first = first;
     }

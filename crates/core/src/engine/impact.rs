@@ -59,6 +59,9 @@ pub(crate) trait Meanwhile {
 
 /// Takes what happens to the particles of a release.
 pub(crate) trait Sink: Meanwhile {
+    /// Whether bounce loops are compiled for it. What writes records waits for memory, and gains nothing from them.
+    const TOGETHER: bool;
+
     /// From now on number 0 of the release is particle `first` of the block.
     fn begin(&mut self, first: usize);
     /// Impact `number`, counted from 0, has happened to the particles of the release from `first` on, one in each lane.

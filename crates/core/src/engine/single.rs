@@ -157,6 +157,8 @@ impl<F> Meanwhile for Told<'_, F> {
 }
 
 impl<F: FnMut(&SingleImpact) -> bool> Sink for Told<'_, F> {
+    const TOGETHER: bool = false;
+
     fn begin(&mut self, _: usize) {}
 
     fn impact<S: Simd, const K: usize>(&mut self, _: usize, _: usize, impact: &Impact<S, K>) {

@@ -51,25 +51,28 @@ impl<T: Sink> WithSimd for Block<'_, T> {
         if !plan.at_rest {
             return self.run::<S, Spatial>(simd, &Apart { body, law, slope });
         }
-        let Surface::EqualPair(hull) = &body.hull else {
-            return self.run::<S, Planar>(simd, &Apart { body, law, slope });
-        };
-        if let Some(law) = &plan.law.steady() {
-            let legs = Together {
-                body,
-                hull,
-                law,
-                slope,
-            };
-            self.run::<S, Planar>(simd, &legs)
-        } else {
-            let legs = Together {
-                body,
-                hull,
-                law,
-                slope,
-            };
-            self.run::<S, Planar>(simd, &legs)
+        match &body.hull {
+            Surface::EqualPair(hull) if T::TOGETHER => match &plan.law.steady() {
+                Some(law) => self.run::<S, Planar>(
+                    simd,
+                    &Together {
+                        body,
+                        hull,
+                        law,
+                        slope,
+                    },
+                ),
+                None => self.run::<S, Planar>(
+                    simd,
+                    &Together {
+                        body,
+                        hull,
+                        law,
+                        slope,
+                    },
+                ),
+            },
+            _ => self.run::<S, Planar>(simd, &Apart { body, law, slope }),
         }
     }
 }

@@ -101,13 +101,12 @@ impl<S: Simd, F: Flight<S, K>, const K: usize> Search<S, F, K> {
     ) -> Residue<S, K> {
         let time = time + leap.ahead;
         let attitude = look.attitude.turned(self.flight.rate() * leap.ahead);
-        let (part, swing) = (&look.gap.part, self.flight.swing(attitude));
-        let climb = self.flight.climb_at(time);
+        let (width, rate) = self.moment(time, attitude).opening(&look.gap.part, hull);
         Residue {
             time,
             attitude,
-            width: hull.gap(part, swing.tilt, self.flight.lift_at(time)), // (2)
-            rate: hull.lever(part, swing.tilt).mul_add(swing.rate, climb),
+            width,
+            rate,
         }
     }
 
@@ -232,10 +231,7 @@ impl<S: Simd, F: Flight<S, K>, const K: usize> Search<S, F, K> {
         part: &Part<S, K>,
         hull: &impl Hull,
     ) -> Pack<S, K> {
-        let swing = self.flight.swing(look.attitude);
-        let width = hull.gap(part, swing.tilt, self.flight.lift_at(time)); // (2)
-        let climb = self.flight.climb_at(time);
-        let rate = hull.lever(part, swing.tilt).mul_add(swing.rate, climb);
+        let (width, rate) = self.moment(time, look.attitude).opening(part, hull);
         let fallen = since.mul_add(0.5 * self.bound, rate);
         since.mul_add(-fallen, width).min(width)
     }

@@ -18,11 +18,23 @@ pub(crate) struct Departure<S: Simd, const K: usize> {
 
 /// Where a flight is at one time.
 #[derive(Clone, Copy)]
-struct Moment<S: Simd, const K: usize> {
+pub(super) struct Moment<S: Simd, const K: usize> {
     time: Pack<S, K>,
     lift: Pack<S, K>,
     climb: Pack<S, K>,
     swing: Swing<S, K>,
+}
+
+impl<S: Simd, const K: usize> Moment<S, K> {
+    /// The gap f under a part of the hull (2), negative where they overlap, and f′.
+    #[inline(always)]
+    pub(super) fn opening(&self, part: &Part<S, K>, hull: &impl Hull) -> (Pack<S, K>, Pack<S, K>) {
+        let Swing { tilt, rate, .. } = self.swing;
+        (
+            hull.gap(part, tilt, self.lift), // (2)
+            hull.lever(part, tilt).mul_add(rate, self.climb),
+        )
+    }
 }
 
 /// The gap under a part of the hull.
@@ -212,12 +224,7 @@ impl<S: Simd, F: Flight<S, K>, const K: usize> Search<S, F, K> {
     ) -> Look<S, K> {
         let never = !self.angle(time).abs().le(RANGE);
         let attitude = self.flight.attitude(turned);
-        let moment = Moment {
-            time,
-            lift: self.flight.lift_at(time),
-            climb: self.flight.climb_at(time),
-            swing: self.flight.swing(attitude),
-        };
+        let moment = self.moment(time, attitude);
         let part = hull.nearer(moment.lift, moment.climb, &moment.swing, self.bound);
         let mut gap = self.gap(&moment, part, hull);
         // Does it touch and not approach, or is this the start? One comparison, because masks are dearer than numbers.
@@ -246,14 +253,24 @@ impl<S: Simd, F: Flight<S, K>, const K: usize> Search<S, F, K> {
     /// The gap under a part.
     #[inline(always)]
     fn gap(&self, moment: &Moment<S, K>, part: Part<S, K>, hull: &impl Hull) -> Gap<S, K> {
-        let Swing { tilt, rate, .. } = moment.swing;
-        let width = hull.gap(&part, tilt, moment.lift).max(0.0); // (2)
-        let rate = hull.lever(&part, tilt).mul_add(rate, moment.climb);
+        let (width, rate) = moment.opening(&part, hull);
+        let width = width.max(0.0);
         Gap {
             part,
             width,
             rate,
             root: self.root(width, rate),
+        }
+    }
+
+    /// Where the flight is at `time`, with this attitude.
+    #[inline(always)]
+    pub(super) fn moment(&self, time: Pack<S, K>, attitude: Attitude<S, K>) -> Moment<S, K> {
+        Moment {
+            time,
+            lift: self.flight.lift_at(time),
+            climb: self.flight.climb_at(time),
+            swing: self.flight.swing(attitude),
         }
     }
 

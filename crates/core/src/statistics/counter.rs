@@ -174,6 +174,8 @@ impl<const EVEN: bool> Meanwhile for Counter<'_, EVEN> {
 }
 
 impl<const EVEN: bool> Sink for Counter<'_, EVEN> {
+    const TOGETHER: bool = true;
+
     fn begin(&mut self, _: usize) {}
 
     #[inline(always)]

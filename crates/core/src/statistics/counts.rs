@@ -70,6 +70,8 @@ impl<const EVEN: bool> Meanwhile for Counts<'_, EVEN> {
 }
 
 impl<const EVEN: bool> Sink for Counts<'_, EVEN> {
+    const TOGETHER: bool = true;
+
     fn begin(&mut self, _: usize) {}
 
     #[inline(always)]
