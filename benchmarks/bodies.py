@@ -27,7 +27,9 @@ WORK = Work()
 R = WORK.radius
 PAPER = rs.TangentialRestitution(normal=WORK.normal, tangential=WORK.tangential)
 DUMBBELL = rs.Dumbbell(radius=R, separation=WORK.separation)
-UNEQUAL = rs.Dumbbell(radius=(R, 0.8 * R), separation=R)
+UNEQUAL = rs.Dumbbell(radius=(R, 0.95 * R), separation=WORK.separation)
+LONG = rs.Dumbbell(radius=(R, 0.8 * R), separation=R)  # as an equal one it would have L/R = 1
+LONG_EQUAL = rs.Dumbbell(radius=R, separation=R)
 LOADED = rs.LoadedSphere(radius=R, density=2500.0, load=2e-3, offset=0.5 * R)
 CAPSULE = rs.Spherocylinder(radius=R, separation=WORK.separation)
 THROWN: dict[str, Any] = {
@@ -100,11 +102,14 @@ ROWS = (
         bins={"velocity_bins": LOGARITHMIC, "restitution_bins": DENSE},
     ),
     Row("unequal pair at rest", 1.3, UNEQUAL, PAPER, REST),
+    Row("equal dumbbell, L/R = 1, at rest", 1.3, LONG_EQUAL, PAPER, REST),
+    Row("unequal pair, L/R = 1, at rest", 1.3, LONG, PAPER, REST),
     Row("loaded sphere at rest", 1.3, LOADED, PAPER, REST),
     Row("spherocylinder at rest", 1.3, CAPSULE, PAPER, REST),
     *(Row(f"spheroid {aspect:g} at rest", 3.0, spheroid(aspect), PAPER, REST) for aspect in (1.05, 2.0, 0.5)),
     Row("equal dumbbell thrown", 2.5, DUMBBELL, PAPER, THROWN),
     Row("unequal pair thrown", 2.5, UNEQUAL, PAPER, THROWN),
+    Row("unequal pair, L/R = 1, thrown", 2.5, LONG, PAPER, THROWN),
     Row("loaded sphere thrown", 2.5, LOADED, PAPER, THROWN),
     Row("spherocylinder thrown", 2.5, CAPSULE, PAPER, THROWN),
     *(
