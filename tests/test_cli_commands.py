@@ -4,16 +4,18 @@ import re
 import subprocess
 import sys
 import tomllib
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
+import typer
 import xarray as xr
 
 import restitution as rs
 from reference.command import SMALL, invoke, load
-from restitution._cli import BAD_INPUT, FAILED, WARNED
+from restitution._cli import BAD_INPUT, FAILED, WARNED, app
 from restitution._cli._template import TEMPLATE
 from restitution._toml import read, read_all
 
@@ -197,3 +199,19 @@ def test_it_is_a_module_and_completes_itself() -> None:
             [sys.executable, "-m", "restitution", *words], capture_output=True, text=True, check=True
         )
         assert expected in done.stdout
+
+
+def leaves(command: Any, path: tuple[str, ...] = ()) -> Iterator[tuple[tuple[str, ...], Any]]:
+    """Yield every command with the words that call it."""
+    for name, one in getattr(command, "commands", {}).items():
+        yield (*path, name), one
+        yield from leaves(one, (*path, name))
+
+
+def test_every_command_can_be_quiet_and_shows_flags_without_a_type() -> None:
+    """All but the template, whose output is all that it does; a flag takes no value, and none is shown."""
+    for words, command in leaves(typer.main.get_command(app)):
+        shown = invoke(*words, "--help").stdout
+        assert "bool" not in shown, words
+        if words != ("template",) and not hasattr(command, "commands"):
+            assert "--quiet" in shown, words

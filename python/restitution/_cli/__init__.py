@@ -5,15 +5,15 @@ from typing import Annotated
 
 import typer
 
-from restitution import _sweep_cli
-from restitution._cli import _explore, _fit, _listen, _pages, _runs, _template
-from restitution._cli._common import BAD_INPUT, FAILED, INTERRUPTED, WARNED
+from restitution._cli import _explore, _fit, _listen, _pages, _runs, _sweep, _template
+from restitution._cli._common import BAD_INPUT, FAILED, INTERRUPTED, WARNED, Command, Group
 from restitution._signals import leaving
 from restitution._streams import open_missing, say, tell
 
 __all__ = ["BAD_INPUT", "FAILED", "INTERRUPTED", "WARNED", "app", "main"]
 
 app = typer.Typer(
+    cls=Group,
     help="The coefficient of restitution as a distribution, not a number: "
     "non-spherical bodies bouncing on a plane.",
     epilog="Examples: [bold]restitution template > run.toml[/bold], "
@@ -68,5 +68,5 @@ _EXAMPLES: dict[Callable[..., None], str] = {
     _explore.explore: "restitution explore run.toml",
 }
 for command, example in _EXAMPLES.items():
-    app.command(epilog=f"Example: [bold]{example}[/bold]")(command)
-app.add_typer(_sweep_cli.app, name="sweep")
+    app.command(cls=Command, epilog=f"Example: [bold]{example}[/bold]")(command)
+app.add_typer(_sweep.app, name="sweep")

@@ -4,9 +4,10 @@ import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Annotated, NoReturn
+from typing import Annotated, Any, NoReturn
 
 import typer
+from typer.core import TyperCommand, TyperGroup
 
 from restitution._signals import ending
 from restitution._streams import is_terminal, tell
@@ -38,11 +39,28 @@ Threads = Annotated[
 ]
 Quiet = Annotated[
     bool,
-    typer.Option(
-        "--quiet", "-q", metavar="", help="Show no progress and no summary; errors and warnings remain."
-    ),
+    typer.Option("--quiet", "-q", help="Show no progress and no summary; errors and warnings remain."),
 ]
-Overwrite = Annotated[bool, typer.Option("--overwrite", metavar="", help="Replace files that exist.")]
+Overwrite = Annotated[bool, typer.Option("--overwrite", help="Replace files that exist.")]
+
+
+class _Flags:
+    """Shows flags in the help without a type: they take no value."""
+
+    def get_params(self, ctx: Any) -> list[Any]:
+        params: list[Any] = super().get_params(ctx)  # type: ignore[misc]
+        for param in params:
+            if getattr(param, "is_flag", False):
+                param.metavar = ""
+        return params
+
+
+class Command(_Flags, TyperCommand):
+    """A command."""
+
+
+class Group(_Flags, TyperGroup):
+    """A group of commands."""
 
 
 def progress(quiet: bool) -> bool:

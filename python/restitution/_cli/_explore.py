@@ -5,16 +5,17 @@ from typing import Annotated
 
 import typer
 
-from restitution._cli._common import errors_in_a_line
+from restitution._cli._common import Quiet, errors_in_a_line
 from restitution._streams import say
 
 
 def explore(
     run: Annotated[
-        Path | None, typer.Argument(metavar="[RUN.toml]", help="Parameters, as for [bold]simulate[/bold].")
+        Path | None, typer.Argument(metavar="RUN.toml", help="Parameters, as for [bold]simulate[/bold].")
     ] = None,
     port: Annotated[int, typer.Option(metavar="N", help="Port on this machine; 0 takes a free one.")] = 0,
     browser: Annotated[bool, typer.Option(help="Open the browser.")] = True,
+    quiet: Quiet = False,
 ) -> None:
     """Show the bouncing body in the browser, with its restitution impact by impact.
 
@@ -29,4 +30,4 @@ def explore(
             from restitution._toml import read
 
             fragment = link(read(run))
-        serve(fragment, port=port, browse=browser, tell=say)
+        serve(fragment, port=port, browse=browser, tell=(lambda _: None) if quiet else say)

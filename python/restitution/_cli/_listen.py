@@ -5,7 +5,7 @@ from typing import Annotated
 
 import typer
 
-from restitution._cli._common import Overwrite, errors_in_a_line
+from restitution._cli._common import Overwrite, Quiet, errors_in_a_line
 from restitution._streams import say, tell
 
 
@@ -29,6 +29,7 @@ def listen(
         float | None, typer.Option(metavar="T", help="Out-of-roundness of the ball, m, where it is measured.")
     ] = None,
     overwrite: Overwrite = False,
+    quiet: Quiet = False,
 ) -> None:
     """Find the impacts of a bouncing ball in a recording, and evaluate them.
 
@@ -54,6 +55,7 @@ def listen(
         analysis = write(file, out, setting, replace=overwrite)
         for warning in analysis.warnings:
             tell(f"note: {warning}")
-        for series in analysis.series:
-            say(series.sentence(setting))
-        say(str(out))
+        if not quiet:
+            for series in analysis.series:
+                say(series.sentence(setting))
+            say(str(out))

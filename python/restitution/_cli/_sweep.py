@@ -1,17 +1,16 @@
 """The commands `restitution sweep STUDY.toml` and `restitution sweep merge`."""
 
-import sys
 from contextlib import suppress
 from pathlib import Path
 from typing import Annotated, Any
 
 import typer
-from typer.core import TyperGroup
 
-from restitution._streams import is_terminal, say, tell
+from restitution._cli._common import Command, Group, Quiet, Threads, errors_in_a_line, progress
+from restitution._streams import say, tell
 
 
-class _RunUnlessNamed(TyperGroup):
+class _RunUnlessNamed(Group):
     """A group that takes a study where others take the name of a command."""
 
     def parse_args(self, ctx: Any, args: list[str]) -> list[str]:
@@ -34,20 +33,12 @@ app = typer.Typer(
 Out = Annotated[
     Path, typer.Option("--out", "-o", metavar="STORE", help="The Zarr store; created if it does not exist.")
 ]
-Threads = Annotated[
-    int | None,
-    typer.Option(
-        "--threads",
-        "-j",
-        metavar="N",
-        help="Number of threads; one for each core if not given. Never changes the result.",
-    ),
-]
 
 
 @app.command(
+    cls=Command,
     epilog="Example: [bold]restitution sweep study.toml --out study.zarr[/bold]; in Python then "
-    "[bold]xarray.open_zarr('study.zarr')[/bold]."
+    "[bold]xarray.open_zarr('study.zarr')[/bold].",
 )
 def run(
     study: Annotated[
@@ -74,6 +65,7 @@ def run(
     status: Annotated[
         bool, typer.Option("--status", help="Show how much of the store is done, and exit.")
     ] = False,
+    quiet: Quiet = False,
 ) -> None:
     r"""Run a study, or resume it.
 
@@ -95,8 +87,6 @@ def run(
     \[effort]                         # may be left out
     until = { std = 0.01 }            # add particles up to this standard error
     """
-    from restitution._cli._common import errors_in_a_line
-
     with errors_in_a_line():
         from restitution.study import estimate, study_of, sweep
         from restitution.study import status as status_of
@@ -112,7 +102,7 @@ def run(
             say(str(estimate(study_of(study), number)))
             return
         part = None if shard is None else _shard(shard)
-        options: dict[str, Any] = {"threads": threads, "shard": part, "progress": is_terminal(sys.stderr)}
+        options: dict[str, Any] = {"threads": threads, "shard": part, "progress": progress(quiet)}
         try:
             if scheduler is None:
                 sweep(study, out, **options)
@@ -127,33 +117,33 @@ def run(
             with suppress(ValueError, OSError):  # it may not be there yet
                 tell(f"{out}: {status_of(out)}; the same command continues")
             raise
-        say(f"{out}: {status_of(out)}")
+        if not quiet:
+            say(f"{out}: {status_of(out)}")
 
 
-@app.command(epilog="Example: [bold]restitution sweep merge --out study.zarr part*.zarr[/bold].")
+@app.command(cls=Command, epilog="Example: [bold]restitution sweep merge --out study.zarr part*.zarr[/bold].")
 def merge(
     out: Out,
     parts: Annotated[
         list[Path] | None,
-        typer.Argument(
-            metavar="PART...", help="Stores of the same study; none, if all shards wrote to STORE."
-        ),
+        typer.Argument(metavar="PART", help="Stores of the same study; none, if all shards wrote to STORE."),
     ] = None,
     threads: Threads = None,
+    quiet: Quiet = False,
 ) -> None:
     """Put the shards of a study together.
 
     What is damaged or missing is left out and reported; the command that made the
     shards, without --shard, computes it.
     """
-    from restitution._cli._common import errors_in_a_line
-
     with errors_in_a_line():
         from restitution.study import merge as merge_stores
 
         found = merge_stores(out, parts or [], threads=threads)
-        say(f"{out}: {found}")
-    if found.finished < found.points:
+        complete = found.finished == found.points
+        if not (quiet and complete):
+            say(f"{out}: {found}")
+    if not complete:
         raise typer.Exit(1)
 
 
