@@ -8,6 +8,7 @@ import pytest
 import xarray as xr
 
 import restitution as rs
+from restitution import SimulationInterrupted
 
 BODIES = {
     "short": rs.Dumbbell(radius=3e-3, separation=3e-4),
@@ -84,6 +85,28 @@ def test_rows_by_number() -> None:
     """Without velocity bins the rows are the numbers of the impacts, as in `statistics`."""
     found = rs.compare(BODIES, LAWS[1:2], **(RUN | {"velocity_bins": None}))
     assert found["restitution_count"].dims == ("body", "law", "impact", "restitution")
+
+
+def test_an_interruption_keeps_what_was_finished(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Ctrl-C in the first batch of the second run, which has no standard errors yet: the first is whole."""
+    runs: list[Any] = [rs.statistics(BODIES["short"], LAWS[1], **RUN), SimulationInterrupted]
+    begun = rs.statistics(BODIES["short"], LAWS[2], **(RUN | {"batches": 1}))
+
+    def next_one(*_: Any, **__: Any) -> xr.Dataset:
+        run = runs.pop(0)
+        if isinstance(run, xr.Dataset):
+            return run
+        raise run(begun)
+
+    monkeypatch.setattr("restitution._compare.statistics", next_one)
+    with pytest.raises(SimulationInterrupted) as stop:
+        rs.compare({"short": BODIES["short"]}, LAWS[1:3], **RUN)
+    kept = stop.value.data
+    assert kept.finished.to_numpy().tolist() == [[True, False]]
+    alone = rs.statistics(BODIES["short"], LAWS[1], **RUN)
+    for name in ("restitution_count", "mean_restitution_error"):
+        np.testing.assert_array_equal(kept[name][0, 0], alone[name])
+    assert np.isnan(kept.mean_restitution_error[0, 1]).all()
 
 
 @pytest.mark.parametrize(

@@ -318,3 +318,22 @@ def test_standard_errors_match_repeated_simulations() -> None:
     mean, deviations, mean_error, deviation_error = np.array(found).T
     assert scatter_over_error(mean, mean_error) == pytest.approx(1, abs=0.23)
     assert scatter_over_error(deviations, deviation_error) == pytest.approx(1, abs=0.23)
+
+
+def test_errors_that_are_not_there_say_why() -> None:
+    """Statistics and `reduce` tell in an attribute how standard errors were found, or why there are none."""
+    body, law = rs.Dumbbell(radius=3e-3, separation=3e-4), rs.Frictionless(normal=0.9)
+    bins: dict[str, Any] = {"velocity_bins": [0.0, 1.2], "restitution_bins": [-1.0, 3.0]}
+    how: dict[str, Any] = {"particles": 40, "impacts": 4}
+    for more, reason in (
+        ({}, "jackknife over 16 batches of particles"),
+        ({"particles": 31}, "none: 31 particles are fewer than two for each of 16 batches"),
+        ({"batches": 1}, "none: a single batch was asked for"),
+        ({"counts_only": True}, "none: counts_only leaves the moments out"),
+    ):
+        found = rs.statistics(body, law, **(how | bins | more))
+        assert found.attrs["standard_errors"] == reason
+        assert ("mean_restitution_error" in found) == (reason[:4] != "none")
+    data = rs.simulate(body, law, **(how | {"particles": 31}))
+    assert rs.reduce(data, **bins).attrs["standard_errors"].startswith("none: 31 particles")
+    assert rs.reduce(data, **bins, batches=8).attrs["standard_errors"].startswith("jackknife over 8")

@@ -29,6 +29,17 @@ def batches_of(particles: int, batches: int) -> list[tuple[int, int]]:
     return list(pairwise(ends))
 
 
+def origin(found: int, particles: int, batches: int) -> str:
+    """Say how standard errors over so many batches were found, or why there are none."""
+    if found > 1:
+        return f"jackknife over {found} batches of particles"
+    if batches == 1:
+        return "none: a single batch was asked for"
+    if particles < 2 * batches:
+        return f"none: {particles} particles are fewer than two for each of {batches} batches"
+    return "none: interrupted before the second batch"
+
+
 def standard_errors(parts: Sequence[dict[str, FloatArray]]) -> dict[str, Any]:
     """Give the standard errors of the moments in each row, by the jackknife over batches of particles.
 

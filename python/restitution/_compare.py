@@ -106,8 +106,9 @@ def _finished(
     runs: list[xr.Dataset], begun: xr.Dataset, bodies: Mapping[str, Body], laws: Mapping[str, Law]
 ) -> xr.Dataset:
     """Put the finished runs side by side, with nothing in the places of the others."""
-    empty = xr.zeros_like(begun)
-    for name, variable in begun.data_vars.items():
+    example = runs[0] if runs else begun  # what had only begun may lack standard errors
+    empty = xr.zeros_like(example)
+    for name, variable in example.data_vars.items():
         if str(name).endswith("_edges"):
             empty[name] = variable
         elif variable.dtype.kind == "f":

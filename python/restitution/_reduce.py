@@ -15,7 +15,7 @@ import numpy.typing as npt
 import xarray as xr
 
 from restitution._arrays import whole
-from restitution._batches import BATCHES, batches_of
+from restitution._batches import BATCHES, batches_of, origin
 from restitution._batches import standard_errors as standard_errors_of
 from restitution._bins import (
     FRACTION_BINS,
@@ -51,7 +51,8 @@ def reduce(
     velocity_bins, restitution_bins, fraction_bins, velocity_range, restitution_range, fraction_range
         As in `restitution.statistics`.
     batches : int
-        Batches of particles whose scatter gives the standard errors of the moments, as there.
+        Batches of particles whose scatter gives the standard errors of the moments, as there; the attribute
+        ``standard_errors`` says how they were found, or why there are none.
 
     Returns
     -------
@@ -130,7 +131,8 @@ def reduce(
         }
     found = by_velocity(counts, moments, velocity_edges, columns, more)
     content = "statistics of restitution in bins of impact velocity, bins lo <= x < hi"
-    return found.assign_attrs(data.attrs, content=content)
+    how = origin(len(parts), data.sizes["particle"], batches)
+    return found.assign_attrs(data.attrs, content=content, standard_errors=how)
 
 
 def standard_errors(data: xr.Dataset, velocity_bins: npt.ArrayLike, *, block: int = 1024) -> xr.Dataset:

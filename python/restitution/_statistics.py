@@ -12,7 +12,7 @@ import xarray as xr
 
 from restitution import _core
 from restitution._arrays import flag
-from restitution._batches import BATCHES, batches_of, standard_errors
+from restitution._batches import BATCHES, batches_of, origin, standard_errors
 from restitution._bins import FRACTION_BINS, assemble, by_velocity, checked_edges, edges_from
 from restitution._core import STOP_REASONS
 from restitution._dataset import attributes
@@ -84,7 +84,8 @@ def statistics(
         is what p(ε | v) is made of, and the energy. It takes a quarter less time.
     batches : int
         Batches of particles whose scatter gives the standard errors of the moments; 1 leaves the errors out
-        and saves some milliseconds a batch. With fewer than two particles a batch there are no errors.
+        and saves some milliseconds a batch. With fewer than two particles a batch there are no errors. The
+        attribute ``standard_errors`` says how they were found, or why there are none.
     progress : bool
         Show a progress bar on standard error.
 
@@ -138,6 +139,8 @@ def statistics(
         found = found.assign(
             {name: (row, values, attrs) for name, (values, attrs) in standard_errors(rows).items()}
         )
+    why = "none: counts_only leaves the moments out" if counts_only else None
+    found.attrs["standard_errors"] = why or origin(len(rows), run.particles, batches)
     if interrupted:
         raise SimulationInterrupted(found.assign_attrs(incomplete="interrupted by the user"))
     warn(found)
