@@ -82,6 +82,12 @@ def test_parameters_have_names() -> None:
         rs.Dumbbell(3e-3, 3e-4)  # type: ignore[call-arg]
     with pytest.raises(TypeError, match=r"Coulomb\(0.9\): .* as in Coulomb\(normal=0.9\)"):
         rs.Coulomb(0.9, friction=0.3)  # type: ignore[call-arg]
+    assert rs.RandomHeight(0.05, 0.07) == rs.RandomHeight(lowest=0.05, highest=0.07)
+    for values, named in (((0.05,), {"lowest": 0.04}), ((0.05, 0.06, 0.07), {})):
+        with pytest.raises(TypeError, match=r"RandomHeight\(0.05, .*\): must be RandomHeight\(lowest"):
+            rs.RandomHeight(*values, **named)
+    with pytest.raises(ValueError, match="highest: missing; must be a finite number > 0 "):
+        rs.RandomHeight(0.05)  # type: ignore[call-arg]
     with pytest.raises(
         ValueError, match=r"radius = array\(\[1., 2., 3.\]\): must be a finite number > 0 \(or one"
     ):

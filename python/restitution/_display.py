@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 else:
     ModelMetaclass = type(BaseModel)
 
-_HIDDEN = frozenset(dir(BaseModel)) | {"model_config", "parameters", "attributes", "solid"}
+_HIDDEN = frozenset(dir(BaseModel)) | {"model_config", "parameters", "attributes", "solid", "by_place"}
 """Internals of pydantic and of the core: they work, but are not listed."""
 
 
@@ -39,16 +39,19 @@ class _Words(str):
         return str(self)
 
 
-def signature(cls: type[BaseModel]) -> inspect.Signature:
-    """Give the fields of a class as its keyword arguments, with annotations that can be read."""
+def signature(cls: type[BaseModel], by_place: tuple[str, ...]) -> inspect.Signature:
+    """Give the fields of a class as its arguments, with annotations that can be read.
+
+    They are keyword arguments, but for those in `by_place`.
+    """
+    keyword, positional = inspect.Parameter.KEYWORD_ONLY, inspect.Parameter.POSITIONAL_OR_KEYWORD
     parameters = []
     for name, field in cls.model_fields.items():
         kind = field.annotation
         text = kind.__name__ if isinstance(kind, type) else re.sub(r"\w+\.", "", str(kind))
         default = inspect.Parameter.empty if field.is_required() else field.default
-        parameters.append(
-            inspect.Parameter(name, inspect.Parameter.KEYWORD_ONLY, default=default, annotation=_Words(text))
-        )
+        place = positional if name in by_place else keyword
+        parameters.append(inspect.Parameter(name, place, default=default, annotation=_Words(text)))
     return inspect.Signature(parameters)
 
 

@@ -125,19 +125,20 @@ class Parameters(BaseModel, metaclass=_display.Listed):
     ValueError
         Naming each argument that is wrong, its value, and what is allowed.
     TypeError
-        If parameters are given without their names.
+        If parameters are given without their names, but for those in `by_place`.
     """
+
+    by_place: ClassVar[tuple[str, ...]] = ()
+    """Fields that may be given without their names, in this order: the two ends of a range, and no others."""
 
     model_config: ClassVar[ConfigDict] = ConfigDict(frozen=True, extra="forbid", arbitrary_types_allowed=True)
 
     def __init__(self, *values: Any, **named: Any) -> None:
         if values:
-            fields = [name for name in type(self).model_fields if name not in named]
-            meant = zip(fields, values, strict=False)
-            example = ", ".join(f"{name}={shown(value)}" for name, value in meant)
-            given = ", ".join(map(shown, values))
-            kind = type(self).__name__
-            raise TypeError(f"{kind}({given}): parameters are given by name, as in {kind}({example})")
+            placed = dict(zip(self.by_place, values, strict=False))
+            if len(values) > len(placed) or placed.keys() & named:
+                raise TypeError(_misplaced(type(self), values, named))
+            named |= placed
         try:
             super().__init__(**named)
         except ValidationError as error:
@@ -161,7 +162,7 @@ class Parameters(BaseModel, metaclass=_display.Listed):
 
     @classmethod
     def __pydantic_init_subclass__(cls, **options: Any) -> None:
-        cls.__signature__ = _display.signature(cls)
+        cls.__signature__ = _display.signature(cls, cls.by_place)
 
     def __setattr__(self, name: str, value: Any) -> None:
         raise AttributeError(f"{name}: {self!r} cannot be changed; make another")
@@ -189,6 +190,17 @@ class Parameters(BaseModel, metaclass=_display.Listed):
                     yield f"{name}.{key}", text
             else:
                 yield name, _display.value(value, field.description)
+
+
+def _misplaced(kind: type[Parameters], values: tuple[Any, ...], named: dict[str, Any]) -> str:
+    """Say how values without names should have been given."""
+    given = ", ".join(map(shown, values))
+    if kind.by_place:
+        given += "".join(f", {name}={shown(value)}" for name, value in named.items())
+        return f"{kind.__name__}({given}): must be {kind.__name__}({', '.join(kind.by_place)})"
+    meant = zip([name for name in kind.model_fields if name not in named], values, strict=False)
+    example = ", ".join(f"{name}={shown(value)}" for name, value in meant)
+    return f"{kind.__name__}({given}): parameters are given by name, as in {kind.__name__}({example})"
 
 
 def _problems(model: type[BaseModel], error: ValidationError) -> Iterator[Problem]:

@@ -1,7 +1,7 @@
 """How particles are released: the height, axis, spin and velocity of a run, checked."""
 
 import math
-from typing import Annotated, Any, Literal, Self, TypeAlias, get_args
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal, Self, TypeAlias, get_args
 
 import numpy as np
 import numpy.typing as npt
@@ -90,7 +90,7 @@ class RandomHeight(Parameters):
 
     Its density is (1 + cos πs)/(highest - lowest) with s from -1 at the lowest to 1 at the highest height: a
     raised cosine, `scipy.stats.cosine`, which with its slope vanishes at both ends. Particles that fall from
-    one height have few separate speeds at their first impacts; from these they have all, without steps.
+    one height have few separate speeds at their first impacts; here their speeds are distributed smoothly.
 
     Parameters
     ----------
@@ -101,13 +101,19 @@ class RandomHeight(Parameters):
     --------
     >>> import restitution as rs
     >>> body, law = rs.Dumbbell(radius=3e-3, separation=3e-4), rs.Frictionless(normal=0.9)
-    >>> data = rs.simulate(body, law, release_height=rs.RandomHeight(lowest=0.05, highest=0.07), particles=4)
+    >>> data = rs.simulate(body, law, release_height=rs.RandomHeight(0.05, 0.07), particles=4)
     >>> bool(((data.release_height > 0.05) & (data.release_height < 0.07)).all())
     True
     """
 
+    by_place: ClassVar[tuple[str, ...]] = ("lowest", "highest")
+
     lowest: Annotated[Number, Field(gt=0, description="m")]
     highest: Annotated[Number, Field(gt=0, description="m")]
+
+    if TYPE_CHECKING:  # or type checkers would take the fields for keyword arguments
+
+        def __init__(self, lowest: float, highest: float) -> None: ...
 
     @model_validator(mode="after")
     def _in_order(self) -> Self:
