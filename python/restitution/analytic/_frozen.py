@@ -82,7 +82,7 @@ class FirstImpact(ABC):
     def probability_above_normal(self) -> float:
         """P(ε > ε_n), ε_n at the speed of the impact.
 
-        0 but for Chatterjee and Ruina's law with e_t > e: under all others the lever arm only takes away.
+        0 but for Chatterjee and Ruina's law with e_t > e: under all others rotation only lowers ε.
         """
         return 0.0
 

@@ -65,20 +65,20 @@ def from_roundness(
     """Make a body that stands for a nearly round ball.
 
     The out-of-roundness t is the radial one, "deviation from spherical form" in ISO 3290: the largest
-    distance between the surface and the sphere around it. At a contact the normal passes the centre of mass
-    at a distance, the lever arm, and its mean square over all orientations decides what the shape does:
-    t²/2 for two lobes, for a flattened ball, for a dumbbell and for a centre of mass off by t alike, and
-    n²t²/8 for n lobes.
+    distance between the surface and the circumscribed sphere. At a contact the normal passes the centre of
+    mass at a distance, the lever arm; its mean square over all orientations determines the effect of the
+    shape: t²/2 for two lobes, for a flattened ball, for a dumbbell and for a centre of mass off by t alike,
+    and n²t²/8 for n lobes.
 
     Parameters
     ----------
     diameter : float
         Mean of the largest and the smallest diameter, in m; > 0.
     out_of_roundness : float
-        t in m; from 0 to a tenth of the diameter. Callipers see diameters: of a ball with two lobes they
+        t in m; from 0 to a tenth of the diameter. Callipers measure diameters: of a ball with two lobes they
         differ by 2 t, of one with an odd number of lobes not at all.
     form : {"lobed", "flattened", "dumbbell", "off-centre"}
-        What is wrong with the ball. "lobed": a prolate `Spheroid`; for more than two lobes that with the
+        Kind of deviation from a sphere. "lobed": a prolate `Spheroid`; for more than two lobes that with the
         same mean square of the lever arm, n t/2 for t. "flattened": an oblate `Spheroid`. "dumbbell": the
         paper's body, with a ridge-free surface but for its waist. "off-centre": a round ball whose centre of
         mass is t off its centre, by a load at its surface, as by a bubble on the other side.

@@ -61,7 +61,7 @@ def required_roundness(
     quantity : {"single", "mean", "fit"}
         One coefficient (root mean square over the run), the mean over the run, or the fitted ε_n(v).
     form, lobes
-        What is wrong with the ball, as in `restitution.from_roundness`.
+        Kind of deviation from a sphere, as in `restitution.from_roundness`.
     gravity : float
         In m/s², > 0.
     particles, seed : int

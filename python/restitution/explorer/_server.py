@@ -23,7 +23,7 @@ def serve(
     browse : bool
         Open the browser.
     tell : callable
-        Hears the address once the page is there.
+        Called with the address once the page is served.
 
     Raises
     ------

@@ -16,8 +16,8 @@ def dependence(data: xr.Dataset, velocity_bins: ArrayLike, *, lags: int = 5) -> 
     """Measure how successive impacts of a particle depend on each other, in bins of the impact velocity.
 
     The paper ascribes the end of the exponential form at low speed to correlated impacts; this measures
-    them. Of each ε its rank u among those of the same velocity bin is looked at, so that what changes with v
-    alone does not count as correlation.
+    them. Each ε is replaced by its rank u among those of the same velocity bin, so that a change with v alone
+    does not count as correlation.
 
     Parameters
     ----------

@@ -69,7 +69,7 @@ def posterior(
     diameter : float
         In m, > 0.
     form, lobes
-        What is wrong with the ball, as in `restitution.from_roundness`; L = 2t.
+        Kind of deviation from a sphere, as in `restitution.from_roundness`; L = 2t.
     elongation : (float, float)
         Prior: ln(L/R) is uniform between these, 0 < low < high.
     friction : (float, float), optional

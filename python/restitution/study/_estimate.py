@@ -22,7 +22,7 @@ class Estimate:
     Attributes
     ----------
     points, tasks : int
-        Points, and tasks without which no point can end.
+        Points, and the least number of tasks.
     particles : float
         Particles of all points; with `until`, as many as the scatter in the pilot asks for.
     seconds : float

@@ -21,8 +21,8 @@ class Status:
     points, finished : int
         Points of the study, and those whose results are there.
     tasks, there : int
-        Tasks without which no point can end, and tasks that are there; among them those that were added for
-        the standard error that is asked for.
+        The least number of tasks, and tasks that are there; among them those that were added for the
+        standard error that is asked for.
 
     Examples
     --------

@@ -34,9 +34,9 @@ def sweep(
     """Run a study: a run whose parameters are varied, and what is measured at every point.
 
     Every task, a point and a range of its particles, is in the store as soon as it is done. The same call
-    goes on where one before was stopped, by whatever it was; tasks that are missing or damaged are computed
-    again. The end has the bits of an undisturbed study, whatever the engine, the number of workers and the
-    order in which they finish. Several calls may work on one store at a time.
+    resumes a study that was stopped, for whatever reason; tasks that are missing or damaged are computed
+    again. The result has the same bits as that of an uninterrupted study, whatever the engine, the number of
+    workers and the order in which they finish. Several calls may work on one store at a time.
 
     Parameters
     ----------
@@ -51,7 +51,7 @@ def sweep(
     threads : int, optional
         Number of threads of this machine; one per core by default. Never changes the result.
     shard : (int, int), optional
-        (3, 64) does the third of 64 parts of the points, without a scheduler; `merge` joins them.
+        (3, 64) computes the third of 64 parts of the points, without a scheduler; `merge` joins them.
     progress : bool
         Show an estimate of the cost and a progress bar on standard error.
 
