@@ -71,7 +71,7 @@ RUN = [
     ("orientation", [0.1, 1j], ORIENTATION),
     ("orientation", np.zeros((40, 40)), ORIENTATION),
     ("orientation", np.zeros((40, 2, 1)), ORIENTATION),
-    *real("incline", (-0.1, math.pi / 2, 90), "must be a real number in [0, 1.5707963267948966)"),
+    *real("incline", (-0.1, math.pi / 2, 90), "must be a real number in [0, π/2)"),
     *(
         ("spin", value, SPIN)
         for value in (1.0, "fast", True, [1, 2], [1, 2, "3"], np.zeros((4, 2)), [[1, 2]])

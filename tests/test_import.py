@@ -34,7 +34,7 @@ def test_public_names() -> None:
     assert {*rs.__all__, "__version__"} == set(dir(rs))
     for name in rs.__all__:
         assert inspect.getdoc(getattr(rs, name))
-    with pytest.raises(AttributeError, match="'restitution' has no attribute 'simulat'"):
+    with pytest.raises(AttributeError, match="has no attribute 'simulat'; did you mean simulate"):
         _ = rs.simulat
 
 

@@ -128,7 +128,10 @@ def __getattr__(name: str) -> Any:
     elif name in __all__:
         value = import_module(f"restitution.{name}")
     else:
-        raise AttributeError(f"module 'restitution' has no attribute {name!r}")
+        from difflib import get_close_matches
+
+        meant = "".join(f"; did you mean {close}?" for close in get_close_matches(name, __all__, n=1))
+        raise AttributeError(f"module 'restitution' has no attribute {name!r}{meant}")
     globals()[name] = value
     return value
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import inspect
 import warnings
 from collections.abc import Iterable, Mapping
 from itertools import product
@@ -82,6 +83,10 @@ def compare(
     >>> found["mean_restitution"].dims, found["law"].values.tolist()
     (('body', 'law', 'velocity'), ['Frictionless', 'Coulomb'])
     """
+    try:
+        inspect.signature(statistics).bind(None, None, **run)
+    except TypeError as error:
+        raise TypeError(f"compare(): {error}") from None
     solids = _named("bodies", bodies, Body)
     rules = _named("laws", laws, Law)
     pairs = list(product(solids, rules))

@@ -249,6 +249,8 @@ def _interval(bounds: dict[str, float]) -> str:
 
 
 def _bound(value: float) -> str:
-    """Write large powers of two as such."""
+    """Write large powers of two as such, and a right angle."""
+    if value == math.pi / 2:
+        return "π/2"
     power = int(value).bit_length() - 1
     return f"2**{power}" if power >= 20 and value == 2**power else f"{value}"
