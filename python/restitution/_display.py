@@ -13,7 +13,8 @@ if TYPE_CHECKING:
 else:
     ModelMetaclass = type(BaseModel)
 
-_HIDDEN = frozenset(dir(BaseModel)) | {"model_config", "parameters", "attributes", "solid", "by_place"}
+_OURS = {"model_config", "parameters", "attributes", "solid", "compiled", "by_place"}
+_HIDDEN = frozenset(dir(BaseModel)) | _OURS
 """Internals of pydantic and of the core: they work, but are not listed."""
 
 
