@@ -129,6 +129,7 @@ def test_errors_that_are_not_known_say_why(learned: FluctuatingRestitution) -> N
     for error in (dist.mean_error, dist.var_error, dist.std_error):
         with pytest.raises(ValueError, match="not known; the distribution was made from counts"):
             error(0.3)
+    assert dist.data.attrs["standard_errors"].startswith("none: counts do not say which particle")
 
 
 def test_a_condition_that_was_not_seen_is_refused_or_clamped(learned: FluctuatingRestitution) -> None:

@@ -30,9 +30,11 @@ def from_statistics(statistics: xr.Dataset) -> xr.Dataset:
     edges = statistics["restitution_edges"].to_numpy()
     extremes = [statistics[name].to_numpy() for name in ("minimum", "maximum")]
     histograms = [_histogram(counts[row], edges, *(float(e[row]) for e in extremes)) for row in rows]
-    attrs = {key: value for key, value in statistics.attrs.items() if key != "content"}
-    title = "Distribution of the coefficient of restitution at given impact velocity"
-    return of_histograms(velocity[rows], histograms, number[rows], {**attrs, "title": title})
+    attrs = {key: value for key, value in statistics.attrs.items() if key != "content"} | {
+        "title": "Distribution of the coefficient of restitution at given impact velocity",
+        "standard_errors": "none: counts do not say which particle an impact belongs to",
+    }
+    return of_histograms(velocity[rows], histograms, number[rows], attrs)
 
 
 def quantiles(statistics: xr.Dataset, levels: Floats) -> Floats:
