@@ -286,7 +286,7 @@ def simulations(runs: Runs) -> str:
 def reproduce(runs: Runs) -> str:
     """Give the command that makes this report."""
     command = f"restitution paper --out paper --impacts {runs.counted.asked} --seed {runs.seed}"
-    return f"<pre><code>{html.text(command)}</code></pre>\n" + html.paragraph(
+    return f'<pre tabindex="0"><code>{html.text(command)}</code></pre>\n' + html.paragraph(
         f"with {source(runs)}. The same version and seed give the same numbers on any number of threads. "
         "Beside this file are each figure as PNG and PDF, its caption, and the data drawn as netCDF."
     )
