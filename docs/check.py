@@ -35,6 +35,7 @@ class Page(HTMLParser):
 
 def inside(site: Path) -> tuple[list[str], set[str]]:
     """Dead links, and links to other hosts."""
+    site = site.resolve()
     pages = {path: Page(path) for path in site.rglob("*.html") if "_static" not in path.parts}
     dead, others = [], set()
     for path, page in pages.items():
@@ -45,9 +46,9 @@ def inside(site: Path) -> tuple[list[str], set[str]]:
             if parts.scheme or parts.netloc:
                 others.add(link)
                 continue
-            target = (path.parent / unquote(parts.path)).resolve() if parts.path else path.resolve()
+            target = (path.parent / unquote(parts.path)).resolve() if parts.path else path
             target = target / "index.html" if target.is_dir() else target
-            known = next((other for there, other in pages.items() if there.resolve() == target), None)
+            known = pages.get(target)
             anchor = unquote(parts.fragment)
             state = target.name == "explorer.html" or not anchor  # there the fragment is a state
             if not target.exists() or not (state or known is None or anchor in known.anchors):
