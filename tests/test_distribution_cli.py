@@ -5,6 +5,7 @@ import signal
 import subprocess
 import sys
 import time
+import warnings
 from pathlib import Path
 from typing import Any
 
@@ -14,7 +15,7 @@ import xarray as xr
 
 import restitution as rs
 from reference.command import invoke
-from restitution._cli import BAD_INPUT, FAILED, INTERRUPTED
+from restitution._cli import BAD_INPUT, FAILED, INTERRUPTED, WARNED
 
 RUN = """
 [body]
@@ -68,6 +69,24 @@ def test_files_give_what_the_call_gives(run: Path) -> None:
     assert result.stdout.splitlines() == expected.summary().splitlines()
     worst = float(expected.data.ks_distance.max())
     assert f"distance to fresh impacts: {worst:.4f} at most" in result.stdout
+
+
+def test_a_file_may_list_heights_of_release(run: Path) -> None:
+    """As `learn` takes them: in equal parts from each."""
+    heights = [0.05, 0.055, 0.06]
+    run.write_text(f"{RUN}\n[distribution]\nrelease_height = {heights}\nvelocities = [0.2, 0.5]\n")
+    out = run.with_name("dist.nc")
+    result = invoke("distribution", run, "--out", out, "--quiet")
+    assert result.exit_code in (0, WARNED), result.stderr
+    body, law = rs.Dumbbell(radius=3e-3, separation=3e-3), rs.TangentialRestitution(normal=0.9)
+    how: dict[str, Any] = {"particles": 3000, "impacts": 50, "seed": 3, "velocities": (0.2, 0.5)}
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", rs.DistanceWarning)
+        called = rs.FluctuatingRestitution.learn(body, law, **how, release_height=heights)
+    xr.testing.assert_identical(rs.FluctuatingRestitution.load(out).data, called.data)
+    run.write_text(f"{RUN}\n[distribution]\nrelease_height = [0.05, -1]\n")
+    refused = invoke("distribution", run, "--out", out, "--overwrite")
+    assert (refused.exit_code, "release_height" in refused.stderr) == (BAD_INPUT, True)
 
 
 def test_nothing_is_replaced_unasked_and_nothing_begun_in_vain(run: Path, tmp_path: Path) -> None:

@@ -37,7 +37,7 @@ _COUNTING = (
     "fraction_range",
     "counts_only",
 )
-_LEARNING = ("velocities", "given")
+_LEARNING = ("velocities", "given", "release_height")
 
 P = TypeVar("P", bound=Parameters)
 
