@@ -42,11 +42,22 @@ pub(crate) trait Legs<S: Simd, T: Turn> {
 /// Hull and law are written out in the bounce loop, and the sink counts in between, while the stages have the multipliers
 /// busy: for what is simulated most.
 pub(crate) struct Together<'a, H, L> {
-    pub body: &'a Body,
-    pub hull: &'a H,
-    pub law: &'a L,
-    /// tan α of the incline.
-    pub slope: f64,
+    body: &'a Body,
+    hull: &'a H,
+    law: &'a L,
+    slope: f64,
+}
+
+impl<'a, H, L> Together<'a, H, L> {
+    /// Over an incline of this slope, tan α.
+    pub fn new(body: &'a Body, hull: &'a H, law: &'a L, slope: f64) -> Self {
+        Self {
+            body,
+            hull,
+            law,
+            slope,
+        }
+    }
 }
 
 /// Every hull and law, compiled once for all sinks.
@@ -167,13 +178,7 @@ fn turn<S: Simd, T: Turn>(groups: &mut [Group<S, T>], sink: &mut impl Meanwhile)
 
 impl<'a, 'b> Apart<'a, 'b> {
     fn with<H>(&self, hull: &'a H) -> Together<'a, H, Law<'b>> {
-        let Self { body, law, slope } = *self;
-        Together {
-            body,
-            hull,
-            law,
-            slope,
-        }
+        Together::new(self.body, hull, self.law, self.slope)
     }
 
     fn surface(&self) -> &'a Surface {

@@ -53,24 +53,8 @@ impl<T: Sink> WithSimd for Block<'_, T> {
         }
         match &body.hull {
             Surface::EqualPair(hull) if T::TOGETHER => match &plan.law.steady() {
-                Some(law) => self.run::<S, Planar>(
-                    simd,
-                    &Together {
-                        body,
-                        hull,
-                        law,
-                        slope,
-                    },
-                ),
-                None => self.run::<S, Planar>(
-                    simd,
-                    &Together {
-                        body,
-                        hull,
-                        law,
-                        slope,
-                    },
-                ),
+                Some(law) => self.run::<S, Planar>(simd, &Together::new(body, hull, law, slope)),
+                None => self.run::<S, Planar>(simd, &Together::new(body, hull, law, slope)),
             },
             _ => self.run::<S, Planar>(simd, &Apart { body, law, slope }),
         }
