@@ -1,5 +1,6 @@
 """What a distribution is learned from: an ensemble of particles, simulated block by block."""
 
+import math
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from typing import NamedTuple
@@ -84,11 +85,14 @@ class Ensemble:
                 runs.append((k, whole + (piece < left)))
         return [[run for run in runs[i::number] if run[1] > 0] for i in range(number)]
 
-    def blocks(self, stream: int, tell: Callable[[int], None] | None = None) -> Iterator[Impacts]:
+    def blocks(
+        self, stream: int, tell: Callable[[int], None] | None = None, *, share: float = 1.0
+    ) -> Iterator[Impacts]:
         """Simulate and yield what each batch has of a round.
 
         The seed of run k of a round is hashed from seed, stream, round and k. Particles are dealt out to the
-        batches one by one, from run to run going on where the last one stopped.
+        batches one by one, from run to run going on where the last one stopped. Of a smaller `share` are the
+        first particles of every run, so that all heights are among them.
         """
         names = ("impact_velocity", "restitution", "rotational_fraction")
         shuffled = np.random.default_rng(np.random.SeedSequence(self.run.seed, spawn_key=(stream,)))
@@ -100,15 +104,16 @@ class Ensemble:
             for k, (height, particles) in enumerate(runs):
                 hashed = np.random.SeedSequence(self.run.seed, spawn_key=(stream, number, k))
                 seed = int(hashed.generate_state(1, np.uint64)[0])
-                part = self.run.of(rows[begun : begun + particles])
+                some = math.ceil(share * particles)
+                part = self.run.of(rows[begun : begun + some])
                 begun += particles
                 changed = {"release_height": self.heights[height], "seed": seed}
                 data = simulate_run(part.model_copy(update=changed), threads=self.threads)
                 columns = [data[name].to_numpy() for name in names]
-                for row in range(min(BATCHES, particles)):
+                for row in range(min(BATCHES, some)):
                     batch = dealt[(first + row) % BATCHES]
                     batch.append([column[row::BATCHES] for column in columns])
-                first += particles
+                first += some
             for i, batch in enumerate(dealt):
                 if batch:
                     velocity, restitution, fraction = map(np.concatenate, zip(*batch, strict=True))

@@ -128,7 +128,7 @@ class FluctuatingRestitution(EstimatedDistribution):
         Raises
         ------
         ValueError
-            If a parameter is out of range, or speeds were hardly ever met.
+            If a parameter is out of range, or there are too few impacts at some of the speeds.
 
         Warns
         -----
@@ -254,8 +254,8 @@ class FluctuatingRestitution(EstimatedDistribution):
         -------
         xarray.Dataset
             Over the intervals between the nodes: ``ks_distance``, an upper bound, by at most 1/4096, of the
-            Kolmogorov–Smirnov distance of u = F(ε | v) from uniform; ``ks_scatter``, what the impacts' own
-            scatter makes of it, by bootstrap over particles; and ``impacts``.
+            Kolmogorov–Smirnov distance of u = F(ε | v) from uniform; ``ks_scatter``, the part of it that
+            is due to the scatter of these impacts, by bootstrap over particles; and ``impacts``.
         """
         names = ("impact_velocity", "restitution")
         check = Check(self._table)
@@ -275,7 +275,7 @@ class FluctuatingRestitution(EstimatedDistribution):
     def memory(self, data: xr.Dataset, lags: int = 5) -> xr.Dataset:
         """Measure how successive impacts of a particle depend on each other, and what the condition explains.
 
-        If ε were drawn anew at every impact, u = F(ε | v) would be independent from impact to impact. With a
+        If ε were independent at every impact, u = F(ε | v) would be independent from impact to impact. With a
         condition that explains all of the dependence F(ε | v, z) is.
 
         Parameters
@@ -289,8 +289,8 @@ class FluctuatingRestitution(EstimatedDistribution):
         -------
         xarray.Dataset
             Over ``distribution`` ("p(ε | v)" and, if there is a condition, "p(ε | v, z)") and ``lag``:
-            the autocorrelation ``level`` of u, and ``spread`` of |u - 1/2|, which shows whether wide follows
-            wide; each with its standard error over particles.
+            the autocorrelation ``level`` of u, and ``spread`` of |u - 1/2|, which shows whether large
+            deviations follow large ones; each with its standard error over particles.
         """
         names = ("impact_velocity", "restitution", "rotational_fraction")
         lags = whole("lags", lags, 1, 10_000)

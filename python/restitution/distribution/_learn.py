@@ -82,15 +82,23 @@ def checked_speeds(velocities: npt.ArrayLike | None, run: Run) -> Floats:
 
 
 def _pilot(ensemble: Ensemble, nodes: Floats) -> tuple[list[Impacts], float]:
-    """Simulate the first blocks, enough to place nodes and bins; also return how much larger the whole is."""
-    pilot, particles, impacts = [], 0, 0
-    for block in ensemble.blocks(LEARNING):
-        pilot.append(block)
-        particles += block.velocity.shape[0]
-        impacts += int(np.count_nonzero((block.velocity >= nodes[0]) & (block.velocity < nodes[-1])))
-        if impacts >= _PILOT:
-            break
-    return pilot, ensemble.run.particles / particles
+    """Simulate part of the ensemble, and return how many times larger the whole is.
+
+    The part has particles from every height of release: where the energy that is lost at an impact hardly
+    varies, each height contributes impacts of its own at each node, and bins that were placed without them
+    would hold several times their share.
+    """
+    run = ensemble.run
+    share = min(1.0, _PILOT / (run.particles * run.impacts))
+    while True:
+        pilot, particles, impacts = [], 0, 0
+        for block in ensemble.blocks(LEARNING, share=share):
+            pilot.append(block)
+            particles += block.velocity.shape[0]
+            impacts += int(np.count_nonzero((block.velocity >= nodes[0]) & (block.velocity < nodes[-1])))
+        if share == 1.0 or impacts >= _PILOT / 2:
+            return pilot, run.particles / particles
+        share = min(1.0, share * _PILOT / max(impacts, 1))
 
 
 def _count(
