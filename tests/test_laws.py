@@ -159,7 +159,7 @@ def test_statistics_count_what_simulate_records(body: rs.Dumbbell, law: Law) -> 
         body, law, velocity_bins=None, restitution_bins=np.linspace(-1, 2, 301), threads=2, **size
     )
     # Values are rounded to 2⁻²⁴ or, more than 2 from an ε_n in [0, 1], to 2⁻²⁰; the means are rounded, too.
-    half = xr.where(abs(data.restitution) > 1.0, 2.0**-21, 2.0**-25) + 1e-15 * abs(data.restitution)
+    half = np.where(abs(data.restitution) > 1.0, 2.0**-21, 2.0**-25) + 1e-15 * abs(data.restitution)
     off = abs(counted["mean_restitution"] - data.restitution.mean("particle"))
     assert (off <= half.mean("particle")).all()
 
