@@ -71,17 +71,24 @@ impl Coulomb {
         if !SPACE || self.friction == 0.0 || !turns.any() {
             return straight;
         }
-        let slipping = Slipping {
-            speed: contact.approach_speed(),
-            along: contact.slip_along,
-            across: contact.slip_across,
-            nn: contact.normal_response(),
-            nu: contact.coupling(),
-            uu: contact.along_response(),
-            ww: contact.across_response(),
-            restitution,
-        };
-        let answer = turning(&slipping, self.friction, self.hypothesis);
+        let mut answer = straight;
+        for k in 0..K {
+            let slipping = Slipping {
+                speed: contact.approach_speed().part(k),
+                along: contact.slip_along.part(k),
+                across: contact.slip_across.part(k),
+                nn: contact.normal_response().part(k),
+                nu: contact.coupling().part(k),
+                uu: contact.along_response().part(k),
+                ww: contact.across_response().part(k),
+                restitution: restitution.part(k),
+            };
+            let found = turning(&slipping, self.friction, self.hypothesis);
+            answer.normal.set_part(k, &found.normal);
+            answer.along.set_part(k, &found.along);
+            answer.across.set_part(k, &found.across);
+            answer.separation_speed.set_part(k, &found.separation_speed);
+        }
         Responses {
             normal: turns.select(answer.normal, straight.normal),
             along: turns.select(answer.along, straight.along),

@@ -205,6 +205,17 @@ impl<S: Simd, const K: usize> Pack<S, K> {
     }
 }
 
+impl<S: Simd> Pack<S, 1> {
+    /// The same vector N times.
+    #[inline(always)]
+    pub fn repeat<const N: usize>(self) -> Pack<S, N> {
+        Pack {
+            simd: self.simd,
+            vectors: [self.vectors[0]; N],
+        }
+    }
+}
+
 impl<S: Simd, const K: usize> Mask<S, K> {
     /// The SIMD level.
     #[inline(always)]

@@ -6,25 +6,30 @@
 //!
 //! dy/dθ = −2y(ρ₊ + ρ₋y), d ln A/dθ = −λ − κy, ρ± = K_nu ± μ(K_ww − K_uu), λ = μK_uu − K_nu, κ = μK_ww − ρ₋:
 //!
-//! 1/y is an exponential function of θ, and A is one of ∫(λ + κy) dθ. What is left are quadratures of functions that are
-//! analytic next to the path ([`Panel`](panel::Panel)), and where the slip vanishes in a given direction, a power series
-//! ([`Stop`](stop::Stop)). Wherever the slip has come to rest the rest of the impact is a straight line in p.
+//! 1/y is an exponential function of θ, ∫y dθ a logarithm, and A the exponential function of −∫(λ + κy) dθ. What is left are
+//! quadratures of functions that are analytic next to the path ([`panel`]), and where the slip vanishes in a given direction, a
+//! power series ([`Stop`](stop::Stop)). The ends of compression and restitution follow from power series about a point next to
+//! them ([`Near`](near::Near)). Wherever the slip has come to rest the rest of the impact is a straight line in p.
 
+mod near;
 mod nodes;
 mod panel;
-mod polynomial;
+mod rates;
+mod series;
+mod step;
 mod stop;
-mod values;
-mod within;
 
 use super::Hypothesis;
 use crate::simd::{Mask, Pack};
-use panel::Panel;
 use pulp::Simd;
+use rates::Rates;
+use step::beyond;
 use stop::Stop;
 
 /// Slip at which it counts as vanished, relative to the contact velocity; the impulse is of the order of that.
 const VANISHED: f64 = 1.0 / 18_014_398_509_481_984.0; // 2⁻⁵⁴
+/// Least y of a slip that comes round to be looked at from the other side.
+const ROUND: f64 = 1.0 / 64.0;
 /// Panels after which the slip is taken to have vanished.
 const MOST_PANELS: usize = 1000;
 
@@ -53,77 +58,17 @@ pub(crate) struct Answer<S: Simd, const K: usize> {
     pub separation_speed: Pack<S, K>,
 }
 
-/// K in the plane of **n** and the direction **u** along which the slip is positive, times μ where friction is.
-#[derive(Clone, Copy)]
-struct Rates<S: Simd, const K: usize> {
-    friction: f64,
-    nn: Pack<S, K>,
-    nu: Pack<S, K>,
-    uu: Pack<S, K>,
-    ww: Pack<S, K>,
-    /// K_nn − K_nu²/K_uu.
-    sticking: Pack<S, K>,
-    /// μK_ww.
-    brake: Pack<S, K>,
-    /// ρ₊, ρ₋, λ, κ.
-    plus: Pack<S, K>,
-    minus: Pack<S, K>,
-    decay: Pack<S, K>,
-    kappa: Pack<S, K>,
-}
-
-impl<S: Simd, const K: usize> Rates<S, K> {
-    #[inline(always)]
-    fn new(contact: &Slipping<S, K>, friction: f64) -> Self {
-        let Slipping { nn, nu, uu, ww, .. } = *contact;
-        let square = nu * nu;
-        let lost = nu.mul_add(nu, -square);
-        let determinant = nn.mul_add(uu, -square) - lost;
-        let mut rates = Self {
-            friction,
-            nn,
-            nu,
-            uu,
-            ww,
-            sticking: determinant / uu,
-            brake: ww * friction,
-            plus: nu,
-            minus: nu,
-            decay: nu,
-            kappa: nu,
-        };
-        rates.turn(nu);
-        rates
-    }
-
-    /// Takes **u** so that this is K_nu.
-    #[inline(always)]
-    fn turn(&mut self, nu: Pack<S, K>) {
-        let (a, b) = (self.uu * self.friction, self.brake);
-        self.nu = nu;
-        self.plus = nu + (b - a);
-        self.minus = nu - (b - a);
-        self.decay = a - nu;
-        self.kappa = b - self.minus;
-    }
-
-    /// dv_c^n/dp times 1 + y.
-    #[inline(always)]
-    fn slope(&self, y: Pack<S, K>) -> Pack<S, K> {
-        let jam = self.nu * self.friction;
-        (self.nn + jam).mul_add(y, self.nn - jam)
-    }
-}
-
 /// Where the impacts have come to.
 #[derive(Clone, Copy)]
 struct Course<S: Simd, const K: usize> {
-    /// Slip u ≥ 0 and w ≥ 0, |**s**|, A, y.
+    /// Slip u and w ≥ 0, |**s**|, A, y.
     u: Pack<S, K>,
     w: Pack<S, K>,
     slip: Pack<S, K>,
     a: Pack<S, K>,
     y: Pack<S, K>,
+    /// ±1: whether **u** is that of the contact.
+    mirror: Pack<S, K>,
     /// v_c^n.
     v: Pack<S, K>,
     /// Impulse so far.
@@ -141,8 +86,8 @@ struct Course<S: Simd, const K: usize> {
     taken: Pack<S, K>,
     due: Pack<S, K>,
     over: Mask<S, K>,
-    /// Whether something happens on the panel that was tried.
-    careful: Mask<S, K>,
+    /// Most by which to go on: a longer step was too long.
+    limit: Pack<S, K>,
 }
 
 /// What ends the restitution.
@@ -180,6 +125,7 @@ impl<S: Simd, const K: usize> Course<S, K> {
             slip: mask.select(a.slip, b.slip),
             a: mask.select(a.a, b.a),
             y: mask.select(a.y, b.y),
+            mirror: mask.select(a.mirror, b.mirror),
             v: mask.select(a.v, b.v),
             normal: mask.select(a.normal, b.normal),
             along: mask.select(a.along, b.along),
@@ -191,7 +137,7 @@ impl<S: Simd, const K: usize> Course<S, K> {
             taken: mask.select(a.taken, b.taken),
             due: mask.select(a.due, b.due),
             over: mask & a.over | !mask & b.over,
-            careful: mask & a.careful | !mask & b.careful,
+            limit: mask.select(a.limit, b.limit),
         }
     }
 
@@ -199,11 +145,30 @@ impl<S: Simd, const K: usize> Course<S, K> {
     #[inline(always)]
     fn direction(&mut self) {
         self.slip = self.u.mul_add(self.u, self.w * self.w).sqrt();
-        let sum = self.slip + self.u;
+        let sum = self.slip + self.u.abs();
         let tangent = self.w / sum;
-        self.a = 0.5 * sum;
-        self.y = sum.eq(0.0).select(0.0, tangent * tangent);
+        let square = sum.eq(0.0).select(0.0, tangent * tangent);
+        let back = self.u.lt(0.0);
+        self.a = 0.5 * sum * back.select(square, 1.0);
+        self.y = back.select(1.0 / square, square);
         self.w = self.w.le(self.slip * VANISHED).select(0.0, self.w);
+    }
+
+    /// Turns **u** round in the lanes of the mask.
+    #[inline(always)]
+    fn turn_round(&mut self, mask: Mask<S, K>, rates: &mut Rates<S, K>) {
+        self.u = mask.select(-self.u, self.u);
+        self.along = mask.select(-self.along, self.along);
+        self.mirror = mask.select(-self.mirror, self.mirror);
+        rates.turn(mask.select(-rates.nu, rates.nu));
+    }
+
+    /// Whether it has gone beyond the next event.
+    #[inline(always)]
+    fn is_late(&self, goal: &Goal<S, K>) -> Mask<S, K> {
+        let zero = Pack::splat(self.v.simd(), 0.0);
+        let done = self.v.lt(0.0) | goal.missing(self).le(0.0);
+        self.compressing & zero.le(self.v) | !self.compressing & done
     }
 
     /// Ends the compression, of the lanes in the mask, where v_c^n = 0.
@@ -260,11 +225,11 @@ impl<S: Simd, const K: usize> Course<S, K> {
 
 /// The impulse of contacts that slip in any direction, μ > 0.
 #[inline(always)]
-pub(crate) fn turning<S: Simd, const K: usize>(
-    contact: &Slipping<S, K>,
+pub(crate) fn turning<S: Simd>(
+    contact: &Slipping<S, 1>,
     friction: f64,
     hypothesis: Hypothesis,
-) -> Answer<S, K> {
+) -> Answer<S, 1> {
     let simd = contact.speed.simd();
     let zero = Pack::splat(simd, 0.0);
     let (along, across) = (contact.along, contact.across);
@@ -289,6 +254,7 @@ pub(crate) fn turning<S: Simd, const K: usize>(
         slip: zero,
         a: zero,
         y: zero,
+        mirror: zero + 1.0,
         v: -contact.speed * unit,
         normal: zero,
         along: zero,
@@ -300,21 +266,28 @@ pub(crate) fn turning<S: Simd, const K: usize>(
         taken: zero,
         due: zero,
         over: !strikes,
-        careful: Mask::splat(simd, false),
+        limit: zero + f64::INFINITY,
     };
     // By symmetry such a slip does not turn.
     let aside = along.eq(0.0) & contact.nu.eq(0.0);
-    let mut mirror = Pack::splat(simd, 1.0);
     for number in 0..=MOST_PANELS {
         // **u** along the slip, or the way that K_nu drives it.
         let back = course.u.lt(0.0) | course.u.eq(0.0) & rates.nu.lt(0.0);
-        course.u = course.u.abs();
-        course.along = back.select(-course.along, course.along);
-        mirror = back.select(-mirror, mirror);
-        rates.turn(back.select(-rates.nu, rates.nu));
+        course.turn_round(back, &mut rates);
         course.direction();
+        // Or against it, where it comes round and is nearer to the direction to which it turns: y then falls.
+        let ahead = rates.plus.lt(0.0) & (rates.minus * course.y).le(rates.plus);
+        let comes = ahead & !course.y.lt(ROUND);
+        if comes.any() {
+            course.turn_round(comes, &mut rates);
+            course.direction();
+        }
 
-        let vanished = course.slip.le(VANISHED) | Mask::splat(simd, number == MOST_PANELS);
+        // What is left is a straight line in p where the slip has vanished, or goes on along **u** for ever.
+        let straight = course.w.le(VANISHED) & rates.decay.le(0.0) & course.y.lt(1.0);
+        let straight = straight & !course.is_late(&goal);
+        let vanished =
+            course.slip.le(VANISHED) | straight | Mask::splat(simd, number == MOST_PANELS);
         let stop = Stop::new(&rates, &course);
         let candidates = (stop.reached | vanished) & !course.over;
         if candidates.any() {
@@ -329,13 +302,25 @@ pub(crate) fn turning<S: Simd, const K: usize>(
         if course.over.all() {
             break;
         }
-        let panel = Panel::new(&rates, &course, &goal);
-        let next = panel.pass(&rates, &goal, &course);
+        let wanted = step::events(&rates, &goal, &mut course);
+        if course.over.all() {
+            break;
+        }
+        course.direction();
+        let length = wanted
+            .min(course.limit)
+            .min(panel::longest(&rates, &course));
+        let mut next = panel::pass(&rates, &goal, &course, length);
+        let (back, limit) = beyond(&rates, &goal, &course, &next, length);
+        next.limit = zero + f64::INFINITY;
+        let mut again = course;
+        again.limit = limit;
+        let next = Course::choose(back, &again, &next);
         course = Course::choose(course.over, &course, &next);
     }
     Answer {
         normal: course.normal * scale,
-        along: aside.select(0.0, course.along * mirror * scale),
+        along: aside.select(0.0, course.along * course.mirror * scale),
         across: across.lt(0.0).select(-course.across, course.across) * scale,
         separation_speed: course.v.max(0.0) * scale,
     }
