@@ -22,7 +22,7 @@ def main(wanted: list[str]) -> int:
         for argument in arguments(name):
             for value in VALUES:
                 calls += 1
-                found = attack(name, argument, value)
+                found = attack(name, argument, VALUES[value]())
                 if found is not None:
                     failures += 1
                     print(f"{name}({argument} = {value}): {found}", flush=True)

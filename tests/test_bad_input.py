@@ -369,8 +369,9 @@ def test_a_file_without_its_tables(tmp_path: Path, text: str, expected: list[str
         (b"[run]\nseed = 1e", "not a TOML file: "),
         (b"# \xff", "not a TOML file: 'utf-8' codec can't decode"),
         (b"\x89HDF\r\n", "not a TOML file: "),
+        (b"a = " + 5000 * b"[", "not a TOML file of ours: tables or lists nested too deeply"),
     ],
-    ids=["bracket", "twice", "number", "encoding", "netCDF"],
+    ids=["bracket", "twice", "number", "encoding", "netCDF", "nested"],
 )
 def test_a_file_that_is_not_toml(tmp_path: Path, content: bytes, expected: str) -> None:
     path = tmp_path / "run.toml"

@@ -14,42 +14,18 @@ import pytest
 import xarray as xr
 
 import restitution as rs
-from reference.command import COMMAND, invoke, load, small
+from reference.command import AMONG_TESTS, COMMAND, LONG, invoke, load, small
 from restitution._cli import INTERRUPTED
 from restitution._core import STOP_REASONS
 from restitution._toml import read
 
-LONG = """
-[body]
-shape = "dumbbell"
-radius = 3e-3
-separation = 3e-4
-[law]
-type = "tangential-restitution"
-normal = 0.98
-[run]
-impacts = 20
-particles = """
-
-
 # The command, with a Ctrl-C as soon as some particles have finished and others have not.
 PRESSING = """
 import signal
-from restitution import _core
+from reference.signals import watched
 from restitution._cli import main
 
-engine = _core.simulate
-
-
-def simulate(run, threads, progress, **columns):
-    def press(finished):
-        if 0 < finished < run["particles"]:
-            signal.raise_signal(signal.SIGINT)
-
-    return engine(run, threads, press, **columns)
-
-
-_core.simulate = simulate
+watched(lambda finished, all: 0 < finished < all and signal.raise_signal(signal.SIGINT))
 main()
 """
 
@@ -64,7 +40,7 @@ def test_ctrl_c_keeps_what_was_finished(tmp_path: Path) -> None:
     words = ["simulate", str(parameters), "--out", str(out), "--overwrite", "--threads", "1"]
     for particles in (400_000, 800_000, 1_600_000):  # until this machine takes long enough to be interrupted
         parameters.write_text(f"{LONG}{particles}", encoding="utf-8")
-        command = [sys.executable, "-c", PRESSING, *words]
+        command = [sys.executable, "-c", AMONG_TESTS + PRESSING, *words]
         done = subprocess.run(command, capture_output=True, text=True, check=False)
         if done.returncode != 0:
             break

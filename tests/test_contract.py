@@ -68,4 +68,4 @@ def test_a_hostile_argument(elsewhere: None, name: str, data: st.DataObject) -> 
         return
     argument = data.draw(st.sampled_from(arguments(name)))
     value = data.draw(st.sampled_from(list(VALUES)))
-    assert attack(name, argument, value) is None
+    assert attack(name, argument, VALUES[value]()) is None

@@ -1,10 +1,5 @@
 """`restitution distribution`: the results of the call, files whole or not at all, the accuracy told."""
 
-import os
-import signal
-import subprocess
-import sys
-import time
 import warnings
 from pathlib import Path
 from typing import Any
@@ -15,7 +10,7 @@ import xarray as xr
 
 import restitution as rs
 from reference.command import invoke
-from restitution._cli import BAD_INPUT, FAILED, INTERRUPTED, WARNED
+from restitution._cli import BAD_INPUT, FAILED, WARNED
 
 RUN = """
 [body]
@@ -109,19 +104,6 @@ def test_nothing_is_replaced_unasked_and_nothing_begun_in_vain(run: Path, tmp_pa
     result = invoke("distribution", run, "--out", out, "--header", header, "--overwrite")
     assert result.exit_code == 0
     assert header.read_text(encoding="utf-8") != "mine"
-
-
-def test_ctrl_c_writes_nothing(run: Path) -> None:
-    run.write_text(RUN.replace("3000", "100_000_000"), encoding="utf-8")
-    out = run.with_name("dist.nc")
-    program = "from restitution._cli import main; main()"
-    command = [sys.executable, "-c", program, "distribution", str(run), "--out", str(out)]
-    with subprocess.Popen(command, stderr=subprocess.PIPE, text=True) as process:
-        time.sleep(6.0)
-        os.kill(process.pid, signal.SIGINT)
-        assert process.communicate(timeout=10.0)[1] == "interrupted\n"
-    assert process.returncode == INTERRUPTED
-    assert list(out.parent.iterdir()) == [run]
 
 
 def test_the_figure_is_for_counts_too(tmp_path: Path) -> None:

@@ -11,26 +11,13 @@ from pathlib import Path
 import pytest
 
 import restitution as rs
-from reference.command import COMMAND, load
-
-LONG = """
-[body]
-shape = "dumbbell"
-radius = 3e-3
-separation = 3e-4
-[law]
-type = "tangential-restitution"
-normal = 0.98
-[run]
-particles = 3000000
-impacts = 20
-"""
+from reference.command import AMONG_TESTS, COMMAND, LONG, SMALL, load
 
 
 @pytest.fixture
 def long(tmp_path: Path) -> Path:
     path = tmp_path / "long.toml"
-    path.write_text(LONG, encoding="utf-8")
+    path.write_text(f"{LONG}3000000", encoding="utf-8")
     return path
 
 
@@ -50,18 +37,12 @@ def wait_for(pattern: str, folder: Path) -> None:
 
 # The command, which tells by a file when the engine is at work.
 TELLING = """
-import pathlib, sys
-from restitution import _core
+import pathlib
+from reference.signals import watched
 from restitution._cli import main
 
-engine = _core.simulate
 marker = sys.argv.pop()
-def simulate(run, threads, progress, **columns):
-    def tell(finished):
-        if finished:
-            pathlib.Path(marker).touch()
-    return engine(run, threads, tell, **columns)
-_core.simulate = simulate
+watched(lambda finished, _: finished and pathlib.Path(marker).touch())
 main()
 """
 
@@ -71,7 +52,9 @@ def test_a_signal_ends_a_run_as_ctrl_c_does(long: Path, tmp_path: Path, number: 
     """The impacts so far are written, nothing else is left, and the exit status names the signal."""
     out = tmp_path / "run.nc"
     words = ["simulate", str(long), "--out", str(out), "--threads", "1", str(tmp_path / "begun")]
-    process = subprocess.Popen([sys.executable, "-c", TELLING, *words], stderr=subprocess.PIPE, text=True)
+    process = subprocess.Popen(
+        [sys.executable, "-c", AMONG_TESTS + TELLING, *words], stderr=subprocess.PIPE, text=True
+    )
     wait_for("begun", tmp_path)
     process.send_signal(number)
     _, told = process.communicate(timeout=60)
@@ -137,8 +120,6 @@ def test_progress_without_a_standard_error(
 
 def test_two_runs_to_one_name(tmp_path: Path) -> None:
     """One of them gets it, the others are told; the file is whole and that of one run."""
-    from reference.command import SMALL
-
     for seed in range(3):
         text = re.sub("seed = .*", f"seed = {seed}", SMALL)
         (tmp_path / f"{seed}.toml").write_text(text, encoding="utf-8")

@@ -9,8 +9,9 @@ from pathlib import Path
 
 import pytest
 
+from reference.command import AMONG_TESTS
 from reference.environments import ENVIRONMENTS
-from reference.processes import COMMANDS
+from reference.processes import COMMANDS, RUN, STUDY, inputs
 from restitution._cli import app
 
 HERE = Path(__file__).parent
@@ -36,17 +37,8 @@ def test_every_command_is_tried() -> None:
     assert sent == {signal.SIGINT, signal.SIGTERM, signal.SIGHUP}
 
 
-LONG = """
-body = { shape = "dumbbell", radius = 3e-3, separation = 3e-4 }
-law = { type = "tangential-restitution", normal = 0.98 }
-[run]
-particles = 100000000
-[statistics]
-velocity_bins = 12
-velocity_range = [0.0, 1.2]
-restitution_bins = 40
-restitution_range = [-1.0, 3.0]
-"""
+HOURS = "100000000"
+"""Particles."""
 ENDED = {
     # the words, the signal, and what may be there afterwards
     "statistics": ("statistics run.toml --out counts.nc", signal.SIGTERM, {"counts.nc"}),
@@ -55,6 +47,9 @@ ENDED = {
     "laws": ("laws --out laws --impacts 100000000", signal.SIGTERM, set()),
     "paper": ("paper --out paper", signal.SIGHUP, set()),
     "sweep": ("sweep study.toml --out study.zarr", signal.SIGTERM, {"study.zarr"}),
+    "fit": ("fit data.nc --velocity 0.5 0.9 --resamples 1000000", signal.SIGTERM, set()),
+    "listen": ("listen ball.wav --diameter 0.02 --out ball.html", signal.SIGHUP, set()),
+    "template": ("template", signal.SIGTERM, set()),
     "explore": ("explore run.toml --no-browser", signal.SIGHUP, set()),
 }
 
@@ -65,17 +60,15 @@ ENDED = {
 def test_a_signal_ends_a_command(name: str, tmp_path: Path) -> None:
     """In the midst of work that would take hours: the status names the signal, and no draft is left."""
     line, number, files = ENDED[name]
-    (tmp_path / "run.toml").write_text(LONG, encoding="utf-8")
-    # Tasks that were begun are finished: short ones, and many of them.
-    study = LONG.replace("100000000", "20000")
-    study += '[sweep]\n"law.normal" = { from = 0.5, to = 0.9, points = 400 }\n'
-    (tmp_path / "study.toml").write_text(study, encoding="utf-8")
+    (tmp_path / "run.toml").write_text(RUN.replace("PARTICLES", HOURS), encoding="utf-8")
+    (tmp_path / "study.toml").write_text(STUDY.replace("PARTICLES", HOURS), encoding="utf-8")
+    for read in {"data.nc", "ball.wav"} & set(line.split()):
+        (tmp_path / read).symlink_to(inputs() / read)
+    before = set(tmp_path.iterdir())
     # The signal comes at the first step of the work, whatever this machine takes to get there.
-    code = f"import os, signal, sys; sys.path.insert(0, {str(HERE)!r})\n"
-    code += f"from reference.signals import arm\narm({int(number)}, {name!r})\n"
+    code = f"{AMONG_TESTS}from reference.signals import arm\narm({int(number)}, {name!r})\n"
     code += "from restitution._cli import main; main()"
     words = [sys.executable, "-c", code, *line.split()]
     done = subprocess.run(words, cwd=tmp_path, capture_output=True, text=True, check=False, timeout=120)
     assert (done.returncode, "Traceback" in done.stderr) == (128 + number, False), done.stderr
-    there = {file.name for file in tmp_path.iterdir()} - {"run.toml", "study.toml"}
-    assert there <= files
+    assert {file.name for file in set(tmp_path.iterdir()) - before} <= files

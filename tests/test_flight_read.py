@@ -190,12 +190,17 @@ def test_errors_name_the_place(tmp_path: Path, text: str, message: str) -> None:
     assert str(error.value).startswith(message)
 
 
-def test_what_is_no_table_is_refused(tmp_path: Path) -> None:
+def test_what_is_no_table_is_refused(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     path = tmp_path / "a.bin"
     path.write_bytes(bytes(range(256)) * 4)
     with pytest.raises(ValueError, match=r"^a.bin: not a text file"):
         rs.flight.read(path)
-    for name, content in (("b.xlsx", b"PK\x03\x04 broken"), ("c.xls", b"\xd0\xcf\x11\xe0 broken")):
+    for name, content in (
+        ("b.xlsx", b"PK\x03\x04 broken"),
+        ("c.xls", b"\xd0\xcf\x11\xe0 broken"),
+        ("d.xls", bytes.fromhex("d0cf11e0a1b11ae1") + bytes(600)),
+    ):
         (tmp_path / name).write_bytes(content)
         with pytest.raises(ValueError, match=rf"^{name}: .*damaged"):
             rs.flight.read(tmp_path / name)
+    assert capsys.readouterr() == ("", "")

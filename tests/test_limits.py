@@ -10,7 +10,7 @@ from typing import Any
 import pytest
 
 import restitution as rs
-from reference.command import SMALL
+from reference.command import AMONG_TESTS, SMALL
 from restitution._resources import available_memory
 
 SETUP = """
@@ -34,7 +34,7 @@ def told(call, *args, **options):
 
 def run(code: str, **environment: str) -> list[Any]:
     """Run code in a process of its own; give what it printed, line by line."""
-    command = [sys.executable, "-c", SETUP + code]
+    command = [sys.executable, "-c", AMONG_TESTS + SETUP + code]
     env = os.environ | environment
     done = subprocess.run(command, capture_output=True, text=True, check=False, timeout=120, env=env)
     assert (done.returncode, done.stderr) == (0, "")
@@ -155,13 +155,12 @@ def test_few_particles_need_few_threads() -> None:
     [most] = run("""
 import pathlib
 most = 0
-def watch(_):
+def watch(*_):
     global most
     most = max(most, len(list(pathlib.Path("/proc/self/task").iterdir())))
-from restitution import _core, _simulate
+from reference.signals import watched
 before = len(list(pathlib.Path("/proc/self/task").iterdir()))
-old = _core.simulate
-_core.simulate = lambda run, threads, tell, **columns: old(run, threads, watch, **columns)
+watched(watch)
 rs.simulate(body, law, particles=5, threads=1024)
 print(most - before)
 """)

@@ -65,6 +65,16 @@ def attributes(run: Run, title: str) -> dict[str, Any]:
     }
 
 
+def load(path: Path) -> xr.Dataset:
+    """Read a netCDF file; an OSError that names it if it cannot be read."""
+    try:
+        return xr.load_dataset(path, engine="netcdf4")
+    except (OSError, MemoryError):
+        raise
+    except Exception as error:  # of netCDF, which raises many kinds for a damaged file
+        raise OSError(errno.EIO, f"cannot be read as netCDF: {error}", str(path)) from error
+
+
 def save(data: xr.Dataset, path: Path, *, replace: bool = False) -> None:
     """Write a netCDF file whole or not at all."""
     with whole_file(path, replace=replace) as draft:

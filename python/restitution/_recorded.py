@@ -51,7 +51,7 @@ def counted(name: str, data: Any) -> xr.Dataset:
     ------
     ParameterError
         If `data` is not a Dataset, lacks a variable, has one of other dimensions, edges that do not
-        increase or do not fit, or counts that are not whole numbers >= 0.
+        increase or do not fit, or counts that are not whole numbers in [0, 2**53].
     """
     if not isinstance(data, xr.Dataset):
         raise ParameterError(wrong(name, data, "a Dataset as from restitution.statistics"))
@@ -72,7 +72,8 @@ def counted(name: str, data: Any) -> xr.Dataset:
                 text = f" has {variable.size} edges: must be one more than the {bins} bins"
                 raise ParameterError(Problem(f"{name}.{each}", text))
         else:
-            allowed = "whole numbers >= 0"
+            allowed = "whole numbers in [0, 2**53]"
             counts = reals(f"{name}.{each}", variable.to_numpy(), allowed)
-            check_each(f"{name}.{each}", counts, (counts >= 0) & (counts == np.rint(counts)), allowed)
+            whole = (counts >= 0) & (counts <= 2**53) & (counts == np.rint(counts))
+            check_each(f"{name}.{each}", counts, whole, allowed)
     return data.transpose("velocity", ..., "restitution", missing_dims="ignore")

@@ -110,6 +110,8 @@ def tables_in(path: Path) -> dict[str, Any]:
             return tomllib.load(file)
         except ValueError as error:  # wrong syntax, or not UTF-8
             raise ValueError(f"{path}: not a TOML file: {error}") from None
+        except RecursionError:
+            raise ValueError(f"{path}: not a TOML file of ours: tables or lists nested too deeply") from None
 
 
 def run_of(tables: dict[str, Any], source: str) -> Run:

@@ -10,6 +10,8 @@ import restitution as rs
 from restitution._cli import app
 
 COMMAND = [sys.executable, "-c", "from restitution._cli import main; main()"]
+AMONG_TESTS = f"import sys; sys.path.insert(0, {str(Path(__file__).parents[1])!r})\n"
+"""How a program begins that imports from here."""
 
 SMALL = """
 [body]
@@ -32,6 +34,19 @@ orientation = "isotropic"
 minimum_speed = 0.1
 seed = 18446744073709551615
 """
+
+LONG = """
+[body]
+shape = "dumbbell"
+radius = 3e-3
+separation = 3e-4
+[law]
+type = "tangential-restitution"
+normal = 0.98
+[run]
+impacts = 20
+particles = """
+"""A run that takes as long as the number that follows says."""
 
 
 def invoke(*words: object) -> Result:

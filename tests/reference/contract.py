@@ -14,7 +14,6 @@ import numpy as np
 
 import restitution as rs
 from reference import calls, measuring, methods
-from reference.hostile import VALUES
 from restitution._parameters import shown
 
 SLOW = 30.0
@@ -94,10 +93,9 @@ FITTING: dict[str, str] = {
 """Where an argument is right in itself, the other that no longer fits it may be the one that is named."""
 
 
-def attack(name: str, argument: str, value: str) -> str | None:
+def attack(name: str, argument: str, bad: Any) -> str | None:
     """Call with one hostile argument; say what is wrong with what happens, if anything is."""
     function, make = CALLS[name]
-    bad = VALUES[value]()
     given = make() | {argument: bad}
     started = time.perf_counter()
     try:

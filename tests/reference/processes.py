@@ -133,6 +133,7 @@ def forked(act: Callable[[int], object], environment: Environment, delay: float)
     started = time.monotonic()
     child = os.fork()
     if child == 0:
+        code = 128 + signal.SIGINT  # of a KeyboardInterrupt, wherever a second one comes
         try:
             os.close(begun)
             os.close(heard)
@@ -142,12 +143,13 @@ def forked(act: Callable[[int], object], environment: Environment, delay: float)
             os.dup2(speak, 2)
             os.close(speak)
             act(say)
-        except BaseException:
-            with contextlib.suppress(BaseException):
+        except Exception:
+            code = 99
+            with contextlib.suppress(Exception):
                 traceback.print_exc()
                 sys.stderr.flush()
         finally:
-            os._exit(99)
+            os._exit(code)
     os.close(say)
     os.close(speak)
     os.set_blocking(heard, False)
@@ -276,7 +278,7 @@ def call(name: str, surroundings: str, draw: random.Random) -> str | None:
         if ended.said == "hung":
             return f"hangs: {ended.seconds:.0f} s"
         if not told:
-            stopped = bool(environment.signals) and "KeyboardInterrupt" in ended.said
+            stopped = bool(environment.signals) and ended.status == 128 + signal.SIGINT
             return None if stopped else f"ends with status {ended.status}: {ended.said[-1500:]}"
         found: str | None = json.loads(told)
         return found or (f"leaves {left}" if left else None)

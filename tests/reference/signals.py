@@ -1,18 +1,28 @@
 """A signal that comes when a command has begun its work, and not before."""
 
 import os
+import pkgutil
 import threading
 import time
 from collections.abc import Callable
 from typing import Any
 
+_FIRST = {
+    "explore": ("http.server", "ThreadingHTTPServer.serve_forever"),
+    "fit": ("xarray", "load_dataset"),
+    "listen": ("soundfile", "read"),
+    "template": ("restitution._cli._template", "say"),
+}
+"""Where the work of a command begins that has the core do nothing."""
+
 
 def arm(number: int, name: str) -> None:
-    """Send this process a signal once it computes; of `explore`, once it serves."""
-    if name == "explore":
-        from http.server import ThreadingHTTPServer as Server
-
-        Server.serve_forever = _sending(Server.serve_forever, number)  # type: ignore[method-assign]
+    """Send this process a signal once a command is at work."""
+    if name in _FIRST:
+        module, _, attribute = ".".join(_FIRST[name]).rpartition(".")
+        home = pkgutil.resolve_name(module)
+        delay = 0.0 if name == "template" else 0.1  # what ends at once is hit as it begins
+        setattr(home, attribute, _sending(getattr(home, attribute), number, delay))
         return
     from restitution import _core
 
@@ -21,19 +31,37 @@ def arm(number: int, name: str) -> None:
     _core.Tally = _Sending(_core.Tally, number)  # type: ignore[assignment,misc]
 
 
+def watched(tell: Callable[[int, int], object]) -> None:
+    """Have the engine tell how many particles are finished, of how many, instead of showing its progress."""
+    from restitution import _core
+
+    engine = _core.simulate
+
+    def simulate(run: Any, threads: Any, _: Any, **columns: Any) -> Any:
+        def progress(finished: int) -> None:
+            tell(finished, run["particles"])
+
+        return engine(run, threads, progress, **columns)
+
+    _core.simulate = simulate  # type: ignore[assignment]
+
+
 _sent = threading.Event()
 """One signal only: a second one would find nothing to catch it at the end of the process."""
 
 
-def _sending(function: Callable[..., Any], number: int) -> Callable[..., Any]:
+def _sending(function: Callable[..., Any], number: int, delay: float = 0.1) -> Callable[..., Any]:
     def sending(*args: Any, **how: Any) -> Any:
         def send() -> None:
-            time.sleep(0.1)
+            time.sleep(delay)
             os.kill(os.getpid(), number)
 
         if not _sent.is_set():
             _sent.set()
-            threading.Thread(target=send, daemon=True).start()
+            if delay:
+                threading.Thread(target=send, daemon=True).start()
+            else:
+                send()
         return function(*args, **how)
 
     return sending

@@ -38,14 +38,13 @@ def fit(
     belongs to, and give the parameters alone.
     """
     with errors_in_a_line():
-        import xarray as xr
-
         from restitution import fit as fits
+        from restitution._dataset import load
         from restitution._parameters import ParameterError, wrong
 
         if family not in _FAMILIES:
             raise ParameterError(wrong("family", family, " or ".join(_FAMILIES)))
-        impacts = xr.load_dataset(data, engine="netcdf4")
+        impacts = load(data)
         function = getattr(fits, family.replace("-", "_"))
         how: dict[str, Any] = {"velocity": velocity, "resamples": resamples, "seed": seed}
         if "restitution_count" in impacts:

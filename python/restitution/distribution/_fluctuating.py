@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import errno
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
@@ -11,10 +10,10 @@ import numpy.typing as npt
 import xarray as xr
 
 from restitution._arrays import flag, reals, whole
-from restitution._dataset import save
+from restitution._dataset import load, save
 from restitution._display import table, value
 from restitution._files import path_from, write
-from restitution._parameters import ParameterError, wrong
+from restitution._parameters import ParameterError, Problem, wrong
 from restitution._recorded import records
 from restitution._release import RandomHeight, RandomSpin
 from restitution._resources import checked_threads
@@ -190,13 +189,11 @@ class FluctuatingRestitution(EstimatedDistribution):
     def load(cls, path: str | Path) -> FluctuatingRestitution:
         """Read a distribution that `save` wrote."""
         path = path_from("path", path)
+        data = unsealed(load(path), str(path))
         try:
-            data = xr.load_dataset(path, engine="netcdf4")
-        except OSError:
-            raise
-        except Exception as error:  # of netCDF, which raises many kinds for a damaged file
-            raise OSError(errno.EIO, f"cannot be read as netCDF: {error}", str(path)) from error
-        return cls(unsealed(data, str(path)))
+            return cls(data)
+        except ValueError as error:
+            raise ParameterError(Problem(str(path), f": {error}")) from error
 
     def save(self, path: str | Path, *, replace: bool = False) -> None:
         """Write a netCDF file, whole or not at all; an existing one only with ``replace``."""

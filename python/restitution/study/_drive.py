@@ -5,9 +5,10 @@ import random
 import time
 from collections import deque
 from collections.abc import Callable, Iterator, Sequence
-from concurrent.futures import FIRST_COMPLETED, CancelledError, Future, wait
-from contextlib import contextmanager
+from concurrent.futures import CancelledError, Future
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass, field
+from queue import Empty, SimpleQueue
 from typing import Any
 
 import numpy as np
@@ -97,6 +98,7 @@ class Driver:
         self.table = Table(study.design, store)
         self._ready: deque[tuple[_Open, Task | End]] = deque()
         self._under_way: dict[Future[Any], tuple[_Open, Task | End]] = {}
+        self._ended: SimpleQueue[Future[Any]] = SimpleQueue()
 
     def run(self, *, writes: bool) -> None:
         """Do all that is to be done; `writes` says whether results are gathered, or left to a merge."""
@@ -106,7 +108,7 @@ class Driver:
             pause = 0.0
             try:
                 while self._fill(waiting):
-                    done, _ = wait(self._under_way, timeout=1.0, return_when=FIRST_COMPLETED)
+                    done = self._wait()
                     for future in done:
                         opened, job = self._under_way.pop(future)
                         self._take(opened, job, future)
@@ -129,6 +131,19 @@ class Driver:
             if writes:
                 self.table.write()
 
+    def _wait(self) -> "list[Future[Any]]":
+        """Give what has ended since; nothing after a second.
+
+        `concurrent.futures.wait` takes a lock of each future, and a signal between two of them leaves it
+        locked: the worker then waits for ever, and who stops the workers for the worker.
+        """
+        found: list[Future[Any]] = []
+        with suppress(Empty):
+            found.append(self._ended.get(timeout=1.0))
+            while True:
+                found.append(self._ended.get_nowait())
+        return found
+
     def _fill(self, waiting: Iterator[int]) -> bool:
         """Submit as many tasks as there is room for; return whether any is running."""
         room = self.engine.room
@@ -145,6 +160,7 @@ class Driver:
             except RuntimeError as error:  # of a client whose scheduler is gone
                 raise RuntimeError(f"{error}; {_CONTINUES}") from None
             self._under_way[future] = opened, job
+            future.add_done_callback(self._ended.put)
         return bool(self._under_way)
 
     def _submit(self, job: Task | End) -> "Future[Any]":

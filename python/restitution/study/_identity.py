@@ -2,9 +2,11 @@
 
 import json
 from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
+from restitution._parameters import ParameterError
 from restitution.study._physics import fingerprint
 from restitution.study._study import Study
 
@@ -43,6 +45,19 @@ def attribute(study: Study) -> dict[str, str]:
     return {_NAME: json.dumps(_wanted(study))}
 
 
+@contextmanager
+def readable(path: Path) -> Iterator[None]:
+    """Name the store if it cannot be read: a damaged one makes Zarr and its decoders raise anything."""
+    try:
+        yield
+    except (Refused, ParameterError, MemoryError):
+        raise
+    except Exception as error:
+        if isinstance(error, OSError) and error.errno is not None:  # of the system, and not of Zarr
+            raise
+        raise Refused(f"{path}: is damaged ({type(error).__name__}: {error})") from error
+
+
 def check(path: Path, study: Study) -> None:
     """Refuse a store that does not belong to a study, and say what differs."""
     found = identity(path)
@@ -68,7 +83,7 @@ def identity(path: Path) -> dict[str, Any]:
     try:
         text = (path / "zarr.json").read_text(encoding="utf-8")
         found = json.loads(json.loads(text)["attributes"][_NAME])
-    except (OSError, ValueError, KeyError, TypeError):
+    except (OSError, ValueError, LookupError, TypeError, RecursionError):
         raise Refused(
             f"{path}: is not the store of a study, or its zarr.json is damaged; give another path"
         ) from None

@@ -10,6 +10,7 @@ from restitution._dataset import attributes
 from restitution._files import path_from
 from restitution._parameters import ParameterError, Problem
 from restitution.distribution import FluctuatingRestitution
+from restitution.study._identity import Refused, readable
 from restitution.study._status import open_store, study_in
 
 _POOLED = "release_height"
@@ -73,7 +74,8 @@ def learned(out: str | Path, **values: float) -> FluctuatingRestitution:
         for name in design.dims
         if name in values
     }
-    chosen = data.isel(place).load()
+    with readable(path):
+        chosen = data.isel(place).load()
     if not bool((chosen["status"] == 1).all()):
         raise ParameterError(Problem("values", f" = {values}: must be those of a finished point"))
     at = [place.get(name, 0) for name in design.dims]
@@ -84,7 +86,10 @@ def learned(out: str | Path, **values: float) -> FluctuatingRestitution:
         attrs[_POOLED] = chosen[_POOLED].to_numpy()
         chosen = _pooled(chosen)
     chosen.attrs = attrs
-    return FluctuatingRestitution.from_statistics(chosen)
+    try:
+        return FluctuatingRestitution.from_statistics(chosen)
+    except ValueError as error:
+        raise Refused(f"{path}: nothing can be learned from it: {error}") from error
 
 
 def _nearest(data: xr.Dataset, name: str, value: float) -> int:

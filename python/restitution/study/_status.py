@@ -7,7 +7,7 @@ import numpy as np
 import xarray as xr
 
 from restitution._files import path_from
-from restitution.study._identity import identity
+from restitution.study._identity import identity, readable
 from restitution.study._store import Store, need_zarr
 from restitution.study._study import Study, study_of
 
@@ -77,12 +77,14 @@ def status(out: str | Path) -> Status:
     """
     need_zarr()
     path = path_from("out", out)
-    batches = int(identity(path)["effort"]["batches"])
-    store = Store(path, b"")
-    points = int(store.words.shape[0])
-    there = sum(len(store.there(point)) for point in range(points))
-    finished = int(np.count_nonzero(np.asarray(store.group["status"][...]) == 1))
-    return Status(points, finished, points * batches // store.task_batches, there)
+    found = identity(path)
+    with readable(path):
+        batches = int(found["effort"]["batches"])
+        store = Store(path, b"")
+        points = int(store.words.shape[0])
+        there = sum(len(store.there(point)) for point in range(points))
+        finished = int(np.count_nonzero(np.asarray(store.group["status"][...]) == 1))
+        return Status(points, finished, points * batches // store.task_batches, there)
 
 
 def open_store(path: Path) -> xr.Dataset:
@@ -107,20 +109,23 @@ def open_store(path: Path) -> xr.Dataset:
     """
     path = path_from("path", path)
     identity(path)
-    found: xr.Dataset = xr.open_zarr(path, chunks=None)
+    with readable(path):
+        found: xr.Dataset = xr.open_zarr(path, chunks=None)
     return found
 
 
 def study_in(path: Path) -> Study:
     """Read a study back from its store."""
-    found = {key: value for key, value in identity(path).items() if key != "physics"}
-    if "measure" in found:
-        found["measure"] = {key: found["measure"][key] for key in ("function", "of")}
-    effort = dict(found["effort"])
-    if not effort["until"]:
-        del effort["most_particles"]
-    if effort["velocities"] is None:
-        del effort["velocities"]
+    whole = identity(path)
+    with readable(path):
+        found = {key: value for key, value in whole.items() if key != "physics"}
+        if "measure" in found:
+            found["measure"] = {key: found["measure"][key] for key in ("function", "of")}
+        effort = dict(found["effort"])
+        if not effort["until"]:
+            del effort["most_particles"]
+        if effort["velocities"] is None:
+            del effort["velocities"]
     try:
         return study_of({**found, "effort": effort})
     except ValueError as error:

@@ -13,9 +13,10 @@ import os
 import shutil
 import signal
 import warnings
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
+from functools import wraps
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar, cast
 
 import numpy as np
 import numpy.typing as npt
@@ -25,10 +26,11 @@ from restitution._dataset import version_here
 from restitution._files import draft_folder, permit
 from restitution._signals import put_off
 from restitution.study._axes import Design
-from restitution.study._identity import attribute, check
+from restitution.study._identity import attribute, check, readable
 from restitution.study._point import Words
 from restitution.study._study import Study
 
+F = TypeVar("F", bound=Callable[..., Any])
 _DIGEST = 4
 """Words of a digest."""
 _LARGE = 4096
@@ -49,6 +51,17 @@ def need_zarr() -> None:
         )
 
 
+def _naming(method: F) -> F:
+    """Name the store in the error of a method, whatever Zarr raises."""
+
+    @wraps(method)
+    def named(store: "Store", *args: Any) -> Any:
+        with readable(store.path):
+            return method(store, *args)
+
+    return cast(F, named)
+
+
 class Store:
     """A store that is open.
 
@@ -64,11 +77,12 @@ class Store:
         import zarr
 
         self.path, self.study = path, study
-        self.group: Any = zarr.open_group(str(path), mode="r+", zarr_format=3, use_consolidated=False)
         self._ensured: set[str] = set()
-        words: Any = self.group["tasks/words"]
-        self.words = words
-        self.task_batches = int(words.chunks[1])
+        with readable(path):
+            self.group: Any = zarr.open_group(str(path), mode="r+", zarr_format=3, use_consolidated=False)
+            words: Any = self.group["tasks/words"]
+            self.words = words
+            self.task_batches = int(words.chunks[1])
 
     def valid(self, point: int, first: int, count: int) -> npt.NDArray[np.bool_]:
         """Return which batches of a point are there, undamaged."""
@@ -90,6 +104,7 @@ class Store:
                 good[i] = rows[i, -_DIGEST:].tobytes() == self._digest(point, first + i, rows[i, :-_DIGEST])
         return rows[:, :-_DIGEST], good, rows[:, -_DIGEST:].tobytes()
 
+    @_naming
     def write(self, point: int, first: int, rows: Words) -> None:
         """Commit the rows of a task, in one step."""
         signed = [
@@ -112,6 +127,7 @@ class Store:
         digest.update(np.ascontiguousarray(row).data)
         return digest.digest()
 
+    @_naming
     def ensure(self, found: xr.Dataset, design: Design) -> None:
         """Make the arrays of the results, if they are not there, from what was found at a point."""
         for name, variable in found.variables.items():
@@ -138,6 +154,7 @@ class Store:
                 if not own:
                     array[...] = variable.to_numpy()
 
+    @_naming
     def restore(self, found: xr.Dataset, design: Design) -> None:
         """Write what is the same at every point again, where it is not what it should be."""
         wanted = {axis.name: np.array(axis.values, dtype=np.float64) for axis in design.axes}
@@ -154,6 +171,7 @@ class Store:
             if not same:
                 self.group[name][...] = values
 
+    @_naming
     def write_large(self, found: xr.Dataset, place: tuple[int, ...]) -> None:
         """Write the variables that have a chunk for each point."""
         for name in large(found):
@@ -168,6 +186,7 @@ class Store:
         except Exception:
             return None
 
+    @_naming
     def large_arrays(self, design: Design) -> list[str]:
         """Name the arrays that have a chunk for each point."""
         own = len(design.shape)
@@ -177,6 +196,7 @@ class Store:
             if array.shape[:own] == design.shape and math.prod(array.shape[own:]) >= _LARGE
         )
 
+    @_naming
     def consolidate(self) -> None:
         """Put the metadata of all arrays in one place, so that the store opens at once."""
         import zarr

@@ -140,7 +140,7 @@ def _xls(file: str, content: bytes) -> Iterator[Table]:
         import xlrd
     except ImportError:
         raise _missing(file, "xlrd") from None
-    book = xlrd.open_workbook(file_contents=content)
+    book = xlrd.open_workbook(file_contents=content, logfile=io.StringIO())  # it prints what it finds odd
     for sheet in book.sheets():
         values = [[sheet.cell_value(i, j) for j in range(sheet.ncols)] for i in range(sheet.nrows)]
         yield _sheet(file, sheet.name, values)

@@ -1,0 +1,315 @@
+"""Changes of the core that no test notices.
+
+`cargo mutants` lists the changes: an operator, a sign, the value of a function. Instead of a build for each,
+those of some files are compiled together into one copy of the core, each behind the number that the
+environment variable MUTANT has; a test program then takes seconds to judge one. Left out is what does not
+compile: a type without a default value, or a constant, which cannot look at a variable.
+"""
+
+import argparse
+import collections
+import json
+import os
+import random
+import re
+import shutil
+import subprocess
+import time
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import tree_sitter_rust
+from tree_sitter import Language, Node, Parser
+
+ROOT = Path(__file__).resolve().parents[1]
+WORK = ROOT / "target" / "mutants"
+HOME = WORK / "core" / "crates" / "core"
+LIVES = "LIVES"
+SWITCH = """
+#[doc(hidden)]
+mod mutant {
+    use std::sync::atomic::{AtomicU32, Ordering};
+    static NUMBER: AtomicU32 = AtomicU32::new(0);
+    #[inline(always)]
+    pub fn number() -> u32 {
+        NUMBER.load(Ordering::Relaxed)
+    }
+    extern "C" fn read() {
+        let number = std::env::var("MUTANT").ok().and_then(|text| text.parse().ok());
+        NUMBER.store(number.unwrap_or(0), Ordering::Relaxed);
+    }
+    // Before anything else runs, so that no look at the number needs a check.
+    #[used]
+    #[unsafe(link_section = ".init_array")]
+    static READ: extern "C" fn() = read;
+}
+"""
+SLOWER = 3
+"""A test program may take so many times longer than without a change."""
+
+
+@dataclass(frozen=True)
+class Mutant:
+    """A change: its number, what `cargo mutants` says of it, and the bytes of the file that it is about."""
+
+    number: int
+    name: str
+    file: str
+    genre: str
+    replacement: str
+    start: int
+    end: int
+
+
+def listed() -> list[Mutant]:
+    """Give every change that `cargo mutants` knows of the core, in its order."""
+    words = ["cargo", "mutants", "--list", "--json", "--package", "restitution-core"]
+    found = json.loads(subprocess.run(words, cwd=ROOT, capture_output=True, check=True).stdout)
+    lines = {
+        file: (ROOT / file).read_text(encoding="utf-8").splitlines(keepends=True)
+        for file in {m["file"] for m in found}
+    }
+
+    def place(file: str, at: dict[str, int]) -> int:
+        before = "".join(lines[file][: at["line"] - 1]) + lines[file][at["line"] - 1][: at["column"] - 1]
+        return len(before.encode())
+
+    return [
+        Mutant(
+            number,
+            one["name"],
+            one["file"],
+            one["genre"],
+            one["replacement"],
+            place(one["file"], one["span"]["start"]),
+            place(one["file"], one["span"]["end"]),
+        )
+        for number, one in enumerate(found, 1)
+    ]
+
+
+class Switched:
+    """A source file with changes behind switches."""
+
+    def __init__(self, text: bytes, mutants: list[Mutant]) -> None:
+        self._text = text
+        self._at: dict[int, list[Mutant]] = collections.defaultdict(list)
+        self.placed: set[int] = set()
+        tree = Parser(Language(tree_sitter_rust.language())).parse(text)
+        for mutant in mutants:
+            node = self._node(tree.root_node, mutant)
+            if node is not None and b") -> impl " not in self._source(node).partition(b"{")[0]:
+                self._at[node.id].append(mutant)
+                self.placed.add(mutant.number)
+        self.text = self._rendered(tree.root_node)
+
+    def _node(self, root: Node, mutant: Mutant) -> Node | None:
+        """Give the expression, or the body of the function, that a change is about."""
+        found = root.descendant_for_byte_range(mutant.start, mutant.end)
+        kinds = {
+            "BinaryOperator": ("binary_expression", "compound_assignment_expr"),
+            "UnaryOperator": ("unary_expression",),
+            "FnValue": ("function_item",),
+        }.get(mutant.genre, ())
+        while found is not None and found.type not in kinds:
+            found = found.parent
+        return found
+
+    def _source(self, node: Node) -> bytes:
+        return self._text[node.start_byte : node.end_byte]
+
+    def _rendered(self, node: Node) -> bytes:
+        """The text of a node, with the switches in it."""
+        mutants = self._at.get(node.id, [])
+        plain = self._children(node)
+        if not mutants:
+            return plain
+        names = b" ".join(b"%d" % one.number for one in mutants)
+        if node.type == "function_item":
+            body = node.child_by_field_name("body")
+            assert body is not None
+            head = self._children(node, until=body)
+            early = b"".join(
+                b"if crate::mutant::number() == %d { return %s; }"
+                % (one.number, self._marked(one, one.replacement.encode()))
+                for one in mutants
+            )
+            return head + b"{ " + early + self._rendered(body)[1:]
+        arms = b"".join(
+            b"%d => { %s } " % (one.number, self._marked(one, self._changed(node, one))) for one in mutants
+        )
+        whole = b"match crate::mutant::number() { %s _ => { %s } }" % (arms, plain)
+        if node.type != "compound_assignment_expr":
+            whole = b"(" + whole + b")"
+        return b"/*[%s*/" % names + whole + b"/*]*/"
+
+    def _children(self, node: Node, until: Node | None = None) -> bytes:
+        parts, at = [], node.start_byte
+        for child in node.children:
+            if until is not None and child.start_byte >= until.start_byte:
+                break
+            parts += [self._text[at : child.start_byte], self._rendered(child)]
+            at = child.end_byte
+        return b"".join(parts) + self._text[at : node.end_byte if until is None else until.start_byte]
+
+    def _changed(self, node: Node, one: Mutant) -> bytes:
+        before, after = self._text[node.start_byte : one.start], self._text[one.end : node.end_byte]
+        return before + one.replacement.encode() + after
+
+    @staticmethod
+    def _marked(one: Mutant, text: bytes) -> bytes:
+        return b"/*[%d*/" % one.number + text + b"/*]*/"
+
+
+def compile_all(mutants: list[Mutant]) -> tuple[list[Path], list[Mutant]]:
+    """Give the test programs, and the changes that they hold."""
+    sources = WORK / "core"
+    shutil.rmtree(sources, ignore_errors=True)
+    shutil.copytree(ROOT / "crates" / "core", sources / "crates" / "core")
+    shutil.copy(ROOT / "Cargo.lock", sources)
+    plan = (ROOT / "Cargo.toml").read_text(encoding="utf-8")
+    plan = re.sub(r"members = .*", 'members = ["crates/core"]', plan)
+    plan = plan.replace('opt-level = 2\ndebug = "line-tables-only"', "opt-level = 1\ndebug = false")
+    (sources / "Cargo.toml").write_text(plan, encoding="utf-8")
+    # Inlined everywhere, every change would be compiled a hundred times.
+    for path in (sources / "crates/core/src").rglob("*.rs"):
+        path.write_bytes(_plain(path.read_bytes()))
+    kept = {one.number: one for one in mutants}
+    by_file: dict[str, list[Mutant]] = collections.defaultdict(list)
+    for one in mutants:
+        by_file[one.file].append(one)
+    while True:
+        for file, ours in by_file.items():
+            switched = Switched((ROOT / file).read_bytes(), [one for one in ours if one.number in kept])
+            for one in ours:
+                if one.number in kept and one.number not in switched.placed:
+                    del kept[one.number]
+            text = switched.text
+            (sources / file).write_bytes(_plain(text))
+        lib = (ROOT / "crates/core/src/lib.rs").read_bytes()
+        (sources / "crates/core/src/lib.rs").write_bytes(_plain(lib) + SWITCH.encode())
+        refused = set(_refused(sources))
+        print(f"{len(kept)} changes, {len(refused & set(kept))} of them do not compile", flush=True)
+        if not refused & set(kept):
+            break
+        for number in refused:
+            kept.pop(number, None)
+    words = [
+        "cargo",
+        "test",
+        "--no-run",
+        "--offline",
+        "--message-format=json",
+        "--package",
+        "restitution-core",
+    ]
+    built = subprocess.run(words, cwd=sources, stdout=subprocess.PIPE, check=True, env=_environment())
+    told = map(json.loads, built.stdout.splitlines())
+    return [Path(one["executable"]) for one in told if one.get("executable")], list(kept.values())
+
+
+def _plain(text: bytes) -> bytes:
+    """Without what would make the build long: inlining, and all SIMD levels but one."""
+    text = text.replace(b"#[inline(always)]", b"#[inline]").replace(b"#![forbid(unsafe_code)]", b"")
+    return re.sub(rb"V[34]::try_new\(\)\.map\(.*?work\)\),", b"None,", text)
+
+
+def _environment() -> dict[str, str]:
+    return os.environ | {"CARGO_TARGET_DIR": str(WORK / "build"), "RUSTFLAGS": "-Awarnings"}
+
+
+def _refused(sources: Path) -> Iterator[int]:
+    """Give the numbers of the changes in which the compiler finds errors."""
+    words = [
+        "cargo",
+        "check",
+        "--lib",
+        "--profile",
+        "test",
+        "--offline",
+        "--message-format=json",
+        "--package",
+        "restitution-core",
+    ]
+    done = subprocess.run(words, cwd=sources, capture_output=True, check=False, env=_environment())
+    errors = 0
+    for line in done.stdout.splitlines():
+        told = json.loads(line)
+        message = told.get("message") or {}
+        if told["reason"] != "compiler-message" or message["level"] != "error":
+            continue
+        errors += 1
+        numbers = [
+            number for span in message["spans"] for number in _around(sources / span["file_name"], span)
+        ]
+        yield from numbers
+        if not numbers and message["spans"]:
+            print(message["rendered"], flush=True)
+    if done.returncode and not errors:
+        raise RuntimeError(done.stderr.decode())
+
+
+def _around(file: Path, span: dict[str, Any]) -> list[int]:
+    """Give the numbers of the innermost switch or arm of one around a place."""
+    text = file.read_bytes()[: span["byte_start"]]
+    depth = 0
+    for mark in reversed(list(re.finditer(rb"/\*\[([\d ]+)\*/|/\*\]\*/", text))):
+        if mark[1] is None:
+            depth += 1
+        elif depth:
+            depth -= 1
+        else:
+            return [int(number) for number in mark[1].split()]
+    return []
+
+
+def timed_alone(program: Path) -> float:
+    """Run a test program without a change, with which it must pass; give the seconds that it takes."""
+    started = time.monotonic()
+    subprocess.run([program, "-q"], cwd=HOME, stdout=subprocess.DEVNULL, check=True)
+    return time.monotonic() - started
+
+
+def judge(programs: list[tuple[float, Path]], number: int) -> str:
+    """Say which test program notices a change, or that none does."""
+    env = os.environ | {"MUTANT": str(number), "RUSTC_BOOTSTRAP": "1"}  # the latter for --fail-fast
+    quiet: dict[str, Any] = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}
+    for seconds, program in programs:
+        words = [program, "-q", "-Zunstable-options", "--fail-fast"]
+        name = program.stem.rpartition("-")[0]
+        try:
+            done = subprocess.run(
+                words, cwd=HOME, env=env, check=False, timeout=SLOWER * seconds + 5, **quiet
+            )
+        except subprocess.TimeoutExpired:
+            return f"{name}, which goes on for ever"
+        if done.returncode != 0:
+            return name
+    return LIVES
+
+
+def main() -> None:
+    """Try a part of the changes; tell which test program noticed each, or that it lives."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--shard", default="0/1", help="0/8 takes every eighth change")
+    parser.add_argument("files", nargs="*", help="words of the paths of the files that are changed")
+    asked = parser.parse_args()
+    wanted = [one for one in listed() if not asked.files or any(word in one.file for word in asked.files)]
+    programs, chosen = compile_all(wanted)
+    first, _, count = asked.shard.partition("/")
+    random.Random(1).shuffle(chosen)
+    chosen = chosen[int(first) :: int(count)]
+    timed = sorted((timed_alone(program), program) for program in programs)
+    lives = 0
+    with (WORK / "outcomes.txt").open("w", encoding="utf-8") as out:
+        for one in chosen:
+            found = judge(timed, one.number)
+            lives += found == LIVES
+            print(f"{found}\t{one.name}", file=out, flush=True)
+    print(f"{lives} of {len(chosen)} changes live, of {len(wanted)} in all: {WORK / 'outcomes.txt'}")
+
+
+if __name__ == "__main__":
+    main()
