@@ -63,6 +63,23 @@ fn the_pieces_are_as_different_as_they_should_be() {
     assert!(0 < creating && creating < PIECES.len());
 }
 
+/// What goes to NumPy is what was counted, in grids of several parts too, some of them empty.
+#[test]
+fn counts_are_copied_as_they_are() {
+    let fine = Edges::coarse().bins(By::Number(ROWS));
+    for tally in PIECES.iter().chain([&Tally::new(&fine, 0.98).unwrap()]) {
+        for grid in [&tally.restitution, &tally.fraction] {
+            let copied: Vec<_> = grid.to_counts().unwrap();
+            assert!(
+                copied
+                    .iter()
+                    .map(|&count| count as u64)
+                    .eq(grid.counts().iter().copied())
+            );
+        }
+    }
+}
+
 proptest! {
     #![proptest_config(cases(200))]
 

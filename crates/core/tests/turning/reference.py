@@ -96,6 +96,14 @@ def solve(v, u, w, J, n, a, ww, mu, e, hyp):
             return p - (1 + e) * pc
         return W - due
 
+    def compressed():
+        # The end of a compression; the work of the restitution that follows is due.
+        nonlocal vn, W, bal, taken, due, pc, comp
+        bal += W
+        taken = max(taken, -bal)
+        due = e * e * taken - (taken + bal)
+        vn, W, pc, comp = mpf(0), mpf(0), p, False
+
     guard = 0
     while True:
         guard += 1
@@ -109,13 +117,7 @@ def solve(v, u, w, J, n, a, ww, mu, e, hyp):
                 d = -vn / m
                 W += vn * d / 2
                 p += d
-                vn = mpf(0)
-                bal += W
-                W = mpf(0)
-                taken = max(taken, -bal)
-                due = e * e * taken - (taken + bal)
-                pc = p
-                comp = False
+                compressed()
             if hyp == "newton":
                 vf = max(vn, e * v)
             elif hyp == "poisson":
@@ -175,13 +177,7 @@ def solve(v, u, w, J, n, a, ww, mu, e, hyp):
         if f == "o":
             return p, pu, pw, vn
         if f == "c":
-            vn = mpf(0)
-            bal += W
-            W = mpf(0)
-            taken = max(taken, -bal)
-            due = e * e * taken - (taken + bal)
-            pc = p
-            comp = False
+            compressed()
         if f == "a":
             vn = mpf(0)
             comp = True
