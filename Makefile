@@ -87,8 +87,8 @@ hostile: $(STAMP)  ## every public function with every hostile value, harmed fil
 audit:  ## known weaknesses of dependencies; says of each check whether it ran
 	sh tests/audit.sh
 
-mutants: $(STAMP)  ## do the tests notice changes of the core and the package? SHARD=0/64 takes a part
-	sh tests/mutants.sh $(SHARD)
+mutants: $(STAMP)  ## do the tests notice changes of the core and the package? SHARD=0/64 takes a part, FILES=statistics some files
+	sh tests/mutants.sh $(SHARD) $(FILES)
 
 test-arm:  ## the digests on AArch64, under qemu-user; installs nothing and says what it needs
 	sh crates/core/tests/arm.sh

@@ -166,6 +166,7 @@ class Switched:
 def compile_all(mutants: list[Mutant]) -> tuple[list[Path], list[Mutant]]:
     """Give the test programs, and the changes that they hold."""
     sources = WORK / "core"
+    WORK.mkdir(parents=True, exist_ok=True)
     shutil.rmtree(sources, ignore_errors=True)
     shutil.copytree(ROOT / "crates" / "core", sources / "crates" / "core")
     shutil.copy(ROOT / "Cargo.lock", sources)
@@ -277,7 +278,7 @@ def judge(programs: list[tuple[float, Path]], number: int) -> str:
     env = os.environ | {"MUTANT": str(number), "RUSTC_BOOTSTRAP": "1"}  # the latter for --fail-fast
     quiet: dict[str, Any] = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}
     for seconds, program in programs:
-        words = [program, "-q", "-Zunstable-options", "--fail-fast"]
+        words = [str(program), "-q", "-Zunstable-options", "--fail-fast"]
         name = program.stem.rpartition("-")[0]
         try:
             done = subprocess.run(
@@ -291,24 +292,27 @@ def judge(programs: list[tuple[float, Path]], number: int) -> str:
 
 
 def main() -> None:
-    """Try a part of the changes; tell which test program noticed each, or that it lives."""
+    """Try a part of the changes, folder by folder; tell what noticed each, or that it lives."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--shard", default="0/1", help="0/8 takes every eighth change")
     parser.add_argument("files", nargs="*", help="words of the paths of the files that are changed")
     asked = parser.parse_args()
     wanted = [one for one in listed() if not asked.files or any(word in one.file for word in asked.files)]
-    programs, chosen = compile_all(wanted)
+    random.Random(1).shuffle(wanted)
     first, _, count = asked.shard.partition("/")
-    random.Random(1).shuffle(chosen)
-    chosen = chosen[int(first) :: int(count)]
-    timed = sorted((timed_alone(program), program) for program in programs)
-    lives = 0
+    chosen = wanted[int(first) :: int(count)]
+    lives = tried = 0
+    # More changes in one build would take the compiler longer than two builds.
+    groups = sorted({Path(one.file).parts[3] for one in chosen})
     with (WORK / "outcomes.txt").open("w", encoding="utf-8") as out:
-        for one in chosen:
-            found = judge(timed, one.number)
-            lives += found == LIVES
-            print(f"{found}\t{one.name}", file=out, flush=True)
-    print(f"{lives} of {len(chosen)} changes live, of {len(wanted)} in all: {WORK / 'outcomes.txt'}")
+        for group in groups:
+            programs, mutants = compile_all([one for one in chosen if Path(one.file).parts[3] == group])
+            timed = sorted((timed_alone(program), program) for program in programs)
+            for one in mutants:
+                found = judge(timed, one.number)
+                tried, lives = tried + 1, lives + (found == LIVES)
+                print(f"{found}\t{one.name}", file=out, flush=True)
+    print(f"{tried} of {len(wanted)} changes tried, {lives} live: {WORK / 'outcomes.txt'}")
 
 
 if __name__ == "__main__":

@@ -1,15 +1,18 @@
-# Mutation: each tool changes the sources one place at a time and tells which changes no test noticed. A tool that is not here says so.
-# The first argument is the part of the core's mutants to try, as 0/256.
+# Mutation: the sources are changed one place at a time, to see which changes no test notices; tests/mutants.md explains those that
+# live. The first argument is the part of the core's changes to try, as 0/256, the others are words of the paths of its files.
+# A tool that is not here says so.
 shard=${1:-0/256}
-if command -v cargo-mutants >/dev/null 2>&1; then
-    cargo mutants --package restitution-core --shard "$shard" --timeout 300 --output target/mutants || true
-    echo "core: shard $shard is done, survivors are in target/mutants/mutants.out/missed.txt"
+[ $# -gt 0 ] && shift
+if command -v cargo-mutants >/dev/null 2>&1 && .venv/bin/python -c "import tree_sitter_rust" 2>/dev/null; then
+    .venv/bin/python tests/mutants.py --shard "$shard" "$@"
 else
-    echo "core: did not run, cargo-mutants is not installed"
+    echo "core: did not run; it takes cargo-mutants (cargo install --locked cargo-mutants), and tree-sitter and tree-sitter-rust (pip)"
 fi
 if .venv/bin/python -c "import mutmut" 2>/dev/null; then
-    .venv/bin/python -m mutmut run "restitution._arrays*" "restitution._files*" "restitution._recorded*" "restitution._reduce*" || true
-    .venv/bin/python -m mutmut results
+    # In a copy, whose package has the place that mutmut looks in.
+    copy=target/mutants/package
+    rm -rf $copy && mkdir -p $copy && cp -r tests pyproject.toml README.md $copy && cp -r python $copy/src
+    (cd $copy && ../../../.venv/bin/python -m mutmut run; ../../../.venv/bin/python -m mutmut results)
 else
-    echo "package: did not run, mutmut is not installed"
+    echo "package: did not run; it takes mutmut (pip)"
 fi

@@ -2,11 +2,14 @@
 
 import errno
 import os
+import re
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
 
-from restitution._files import check, whole_file, whole_folder, write
+from restitution import _files
+from restitution._files import check, draft_folder, whole_file, whole_folder, write
 
 
 def names(folder: Path) -> set[str]:
@@ -159,3 +162,91 @@ def test_a_symbolic_link_stays_one(tmp_path: Path) -> None:
     write(tmp_path / "link", b"through")
     assert (tmp_path / "link").is_symlink()
     assert (tmp_path / "file").read_bytes() == b"through"
+
+
+@pytest.mark.parametrize(
+    ("make", "number", "text"),
+    [
+        (lambda folder: folder / os.fsdecode(b"\xff.nc"), errno.EILSEQ, "the name is not UTF-8"),
+        (lambda folder: folder / "circle", errno.EINVAL, "no name of a file: Symlink loop"),
+        (lambda folder: folder / "folder", errno.EINVAL, "not a file that can be written"),
+        (lambda folder: folder / "there", errno.EEXIST, "exists already"),
+    ],
+    ids=["bytes", "circle", "folder", "there"],
+)
+def test_a_refusal_has_number_words_and_name(
+    tmp_path: Path, make: Callable[[Path], Path], number: int, text: str
+) -> None:
+    (tmp_path / "circle").symlink_to(tmp_path / "circle")
+    (tmp_path / "folder").mkdir()
+    (tmp_path / "there").touch()
+    path = make(tmp_path)
+    with pytest.raises(OSError, match=re.escape(text)) as error:
+        check(path, replace=False)
+    assert (error.value.errno, error.value.filename) == (number, str(path))
+    assert str(error.value.strerror).startswith(text)
+
+
+def test_a_folder_that_is_not_there_is_named(tmp_path: Path) -> None:
+    with pytest.raises(FileNotFoundError) as error:
+        check(tmp_path / "none" / "run.nc", replace=True)
+    assert (error.value.filename, error.value.strerror) == (str(tmp_path / "none"), os.strerror(errno.ENOENT))
+
+
+def test_write_replaces_only_if_asked(tmp_path: Path) -> None:
+    path = tmp_path / "dist.h"
+    write(path, "old")
+    with pytest.raises(FileExistsError):
+        write(path, "new")
+    assert path.read_text() == "old"
+    write(path, b"new", replace=True)
+    assert path.read_text() == "new"
+
+
+def test_a_draft_of_a_folder_is_known_as_one(tmp_path: Path) -> None:
+    """By its name and its place, so that the next process removes what a dead one left."""
+    draft = draft_folder(tmp_path / "study.zarr")
+    assert draft.parent == tmp_path
+    name = re.fullmatch(rf"\.study\.zarr\.([0-9a-f]{{8}})-{os.getpid()}\.\w+\.part", draft.name)
+    assert name
+    dead = tmp_path / f".study.zarr.{name[1]}-{2**22 + 1}.left.part"  # no process has such a number
+    dead.mkdir()
+    (dead / "zarr.json").touch()
+    other = draft_folder(tmp_path / "study.zarr")
+    assert names(tmp_path) == {draft.name, other.name}
+
+
+def test_files_that_are_replaced_are_kept_until_all_are_there(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Beside their places, in folders that are known as drafts; pages come after all they show."""
+    order: list[str] = []
+    there: list[str] = []
+
+    def put(draft: Path, target: Path, replace: bool) -> None:
+        order.append(target.name)
+        there.extend(names(tmp_path) - {draft.parent.name})
+        os.replace(draft, target)
+
+    for name in ("a.html", "b.csv", "c.html"):
+        (tmp_path / name).write_text("old")
+    monkeypatch.setattr(_files, "_put", put)
+    with whole_folder(tmp_path, replace=True) as draft:
+        for name in ("a.html", "b.csv", "c.html"):
+            (draft / name).write_text("new")
+    assert (order[0], set(order[1:])) == ("b.csv", {"a.html", "c.html"})
+    kept = {name for name in there if name.startswith(".b.csv.")}
+    assert kept
+    assert all(f"-{os.getpid()}." in name and name.endswith(".part") for name in kept)
+    assert names(tmp_path) == {"a.html", "b.csv", "c.html"}
+
+
+def test_a_folder_that_was_made_stays_if_something_was_put_there(tmp_path: Path) -> None:
+    def troubled() -> None:
+        with whole_folder(tmp_path / "above" / "laws"):
+            (tmp_path / "above" / "theirs").touch()
+            raise RuntimeError("trouble")
+
+    with pytest.raises(RuntimeError, match="trouble"):
+        troubled()
+    assert names(tmp_path / "above") == {"theirs"}
