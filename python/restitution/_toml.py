@@ -40,6 +40,7 @@ _COUNTING = (
 _LEARNING = ("velocities", "given", "release_height")
 
 P = TypeVar("P", bound=Parameters)
+_NESTED = re.compile(rb"(?:[\[{]\s*){100}")
 
 
 def read(path: Path) -> Run:
@@ -105,13 +106,13 @@ def read_all(path: Path, *, single: bool = False) -> Asked:
 
 def tables_in(path: Path) -> dict[str, Any]:
     """Read the tables of a TOML file."""
-    with path.open("rb") as file:
-        try:
-            return tomllib.load(file)
-        except ValueError as error:  # wrong syntax, or not UTF-8
-            raise ValueError(f"{path}: not a TOML file: {error}") from None
-        except RecursionError:
-            raise ValueError(f"{path}: not a TOML file of ours: tables or lists nested too deeply") from None
+    content = path.read_bytes()
+    try:
+        if _NESTED.search(content):  # which the parser recurses into
+            raise ValueError("lists or tables nested too deeply")
+        return tomllib.loads(content.decode())
+    except (ValueError, RecursionError) as error:  # wrong syntax, or not UTF-8
+        raise ValueError(f"{path}: not a TOML file: {error}") from None
 
 
 def run_of(tables: dict[str, Any], source: str) -> Run:
