@@ -7,6 +7,7 @@ import pytest
 import xarray as xr
 
 import restitution as rs
+from reference import measuring
 from reference.command import invoke
 from reference.studies import bits, written
 from restitution.study import Refused, estimate, merge, status, study_of, sweep
@@ -318,3 +319,13 @@ def test_the_cost_is_foretold(tmp_path: Path) -> None:
     found = estimate(adaptive, 1)
     assert found.particles > plain.particles == 128
     assert "particles are added" in str(found)
+
+
+def test_studies_compare_and_hash_by_what_they_are() -> None:
+    tables = measuring.study_tables()
+    one, same = study_of(tables), study_of(tables)
+    other = study_of(tables | {"sweep": {"law.normal": [0.8]}})
+    assert one == same
+    assert hash(one) == hash(same)
+    assert one != other
+    assert one != "study"

@@ -33,7 +33,7 @@ _OF = ("statistics", "simulate")
 _TABLES = ("body", "law", "run", "sweep", "statistics", "learn", "fit", "measure", "first_impact", "effort")
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Study:
     """What a study is. Two studies with the same `identity` have the same results, to the bit.
 
@@ -119,6 +119,12 @@ class Study:
     def digest(self) -> bytes:
         """SHA-256 of `identity`."""
         return hashlib.sha256(json.dumps(self.identity, sort_keys=True).encode()).digest()
+
+    def __eq__(self, other: object) -> bool:
+        return self.digest == other.digest if isinstance(other, Study) else NotImplemented
+
+    def __hash__(self) -> int:
+        return hash(self.digest)
 
 
 def study_of(source: Any) -> Study:
