@@ -6,7 +6,7 @@
 use super::axis::ROUND;
 use super::places::whole;
 use crate::simd::Pack;
-use pulp::{Scalar, Simd, WithSimd};
+use pulp::{Scalar, Simd};
 
 /// Most cells, unless there are more edges: what a nearby cache holds.
 const MOST: usize = 1 << 14;
@@ -145,43 +145,17 @@ impl Cells {
         }
     }
 
-    /// Numbers of the bins, plus [`ROUND`]: 0 below, 1 to n inside, n + 1 above. NaN may be anywhere. A call: written out in the
-    /// loop of uniform bins it would crowd that.
+    /// Numbers of the bins, plus [`ROUND`]: 0 below, 1 to n inside, n + 1 above. NaN may be anywhere.
     #[inline(always)]
     pub fn locate<S: Simd, const K: usize>(&self, x: Pack<S, K>) -> Pack<S, K> {
-        x.simd().vectorize(Locate { cells: self, x })
-    }
-
-    /// The bins where a cell may have several edges.
-    #[cold]
-    #[inline(never)]
-    fn compare(edges: &[f64], x: &[f64], bins: &mut [f64]) {
-        for (bin, &x) in bins.iter_mut().zip(x) {
-            let more = edges[whole(*bin)..].iter().take_while(|&&edge| edge <= x);
-            *bin += more.count() as f64;
-        }
-    }
-}
-
-/// Numbers to be located, to be compiled for each SIMD level.
-struct Locate<'a, S: Simd, const K: usize> {
-    cells: &'a Cells,
-    x: Pack<S, K>,
-}
-
-impl<S: Simd, const K: usize> WithSimd for Locate<'_, S, K> {
-    type Output = Pack<S, K>;
-
-    #[inline(always)]
-    fn with_simd<U: Simd>(self, _: U) -> Pack<S, K> {
-        let Cells {
+        let Self {
             scale,
             cells,
             last,
             crowded,
-        } = self.cells;
+        } = self;
         // Infinity is beyond the last edge, but not beyond the one that nothing reaches.
-        let x = self.x.min(f64::MAX);
+        let x = x.min(f64::MAX);
         let places = scale.cells(x, *last);
         let (mut edge, mut number) = (x, x);
         for lane in 0..Pack::<S, K>::WIDTH {
@@ -195,9 +169,19 @@ impl<S: Simd, const K: usize> WithSimd for Locate<'_, S, K> {
         if let Some(edges) = crowded
             && several.lt(0.0).any()
         {
-            Cells::compare(edges, x.as_slice(), bins.as_mut_slice());
+            Self::compare(edges, x.as_slice(), bins.as_mut_slice());
         }
         bins
+    }
+
+    /// The bins where a cell may have several edges.
+    #[cold]
+    #[inline(never)]
+    fn compare(edges: &[f64], x: &[f64], bins: &mut [f64]) {
+        for (bin, &x) in bins.iter_mut().zip(x) {
+            let more = edges[whole(*bin)..].iter().take_while(|&&edge| edge <= x);
+            *bin += more.count() as f64;
+        }
     }
 }
 
