@@ -10,8 +10,9 @@ mod common;
 use common::*;
 use restitution_core::statistics::{Axis, Bins, By, Grid, Tally};
 use restitution_core::{
-    ChatterjeeRuina, Coulomb, Dumbbell, Frictionless, Hypothesis, Law, Level, Means, Monitor,
-    Normal, Orientation, Plastic, Records, Run, Tabulated, TangentialRestitution, Viscoelastic,
+    About, ChatterjeeRuina, Coulomb, Dumbbell, Frictionless, Hypothesis, Law, Level, LoadedSphere,
+    Means, Monitor, Normal, Orientation, Plastic, Records, Rule, Run, Solid, Spherocylinder,
+    Spheroid, Spin, Tabulated, TangentialRestitution, Vector, Viscoelastic,
 };
 use std::collections::BTreeMap;
 
@@ -238,6 +239,70 @@ fn jobs(angles: &[f64]) -> Vec<(&'static str, Run<'_>)> {
     ]
 }
 
+/// Every body under every law, dropped and thrown.
+fn kinds() -> Vec<(String, Run<'static>)> {
+    let r = 3e-3;
+    let bodies: [(&str, Solid); 7] = [
+        ("sphere", Dumbbell::new(r, 0.0, 2500.0).unwrap().into()),
+        ("dumbbell", Dumbbell::new(r, r, 2500.0).unwrap().into()),
+        (
+            "unequal",
+            Dumbbell::unequal([r, 0.7 * r], 1.5 * r, [2500.0, 1200.0])
+                .unwrap()
+                .into(),
+        ),
+        (
+            "loaded",
+            LoadedSphere::new(r, 2500.0, 1e-4, 0.4 * r).unwrap().into(),
+        ),
+        (
+            "capsule",
+            Spherocylinder::new(r, 0.8 * r, 2500.0).unwrap().into(),
+        ),
+        ("oblate", Spheroid::new(r, 0.6 * r, 2500.0).unwrap().into()),
+        ("prolate", Spheroid::new(r, 1.8 * r, 2500.0).unwrap().into()),
+    ];
+    let coulomb = |hypothesis| Rule::from(Coulomb::new(0.3, hypothesis).unwrap());
+    let rules: [(&str, Rule); 6] = [
+        ("paper", TangentialRestitution::new(0.8).unwrap().into()),
+        ("frictionless", Frictionless.into()),
+        ("stronge", coulomb(Hypothesis::Stronge)),
+        ("poisson", coulomb(Hypothesis::Poisson)),
+        ("newton", coulomb(Hypothesis::Newton)),
+        ("bilinear", ChatterjeeRuina::new(-0.3, 0.2).unwrap().into()),
+    ];
+    let mut kinds = Vec::new();
+    for (i, (body, solid)) in bodies.into_iter().enumerate() {
+        for (j, (name, rule)) in rules.into_iter().enumerate() {
+            let normal = if (i + j) % 3 == 0 {
+                glass()
+            } else {
+                0.9.into()
+            };
+            let dropped = Run {
+                body: solid,
+                particles: 100,
+                impacts: 40,
+                ..paper(0.1, Law::new(normal, rule).unwrap())
+            };
+            let thrown = Run {
+                orientation: Orientation::Isotropic,
+                spin: Spin::Random {
+                    low: 5.0,
+                    high: 60.0,
+                    about: About::Isotropic,
+                },
+                velocity: Vector::new(0.1, -0.2, 0.3),
+                incline: 0.1,
+                ..dropped
+            };
+            kinds.push((format!("{body}-{name}-dropped"), dropped));
+            kinds.push((format!("{body}-{name}-thrown"), thrown));
+        }
+    }
+    kinds
+}
+
 /// lo, lo + width, ...
 fn edges(low: f64, width: f64, bins: usize) -> Axis {
     let edges: Vec<f64> = (0..=bins).map(|i| low + width * i as f64).collect();
@@ -323,7 +388,9 @@ fn the_bits_are_those_that_are_written_down() {
     let angles = angles();
     let mut found = BTreeMap::new();
     let mut impacts = 0;
-    for (name, run) in jobs(&angles) {
+    let jobs = jobs(&angles).into_iter();
+    let jobs = jobs.map(|(name, run)| (name.to_owned(), run));
+    for (name, run) in jobs.chain(kinds()) {
         let one = Means {
             threads: 1,
             level: Level::Scalar,
