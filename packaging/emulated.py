@@ -56,7 +56,8 @@ def run(wheel: Path, machine: str, program: str, folder: Path) -> str:
         "HOME": str(folder),
         "LC_ALL": "C.UTF-8",
     }
-    python = [f"qemu-{machine}", "-L", str(root), str(root / "usr" / "bin" / f"python{PYTHON}")]
+    qemu = shutil.which(f"qemu-{machine}") or f"qemu-{machine}"
+    python = [qemu, "-L", str(root), str(root / "usr" / "bin" / f"python{PYTHON}")]
     return subprocess.check_output(
         [*python, "-c", program], cwd=folder, env={**environment, "PATH": "/usr/bin"}, text=True
     ).strip()

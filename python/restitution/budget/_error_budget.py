@@ -51,7 +51,7 @@ def error_budget(
     drop : float
         Height of the fall to the first impact, in m, > 0.
     impacts : int
-        Number n of coefficients, >= 3: one impact more is heard.
+        Number n of coefficients, from 3 to 1000: one impact more is heard.
     timing : float
         Standard error of each time, in s, >= 0.
     gravity, gravity_uncertainty : float

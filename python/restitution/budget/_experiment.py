@@ -22,13 +22,15 @@ Array = npt.NDArray[np.float64]
 
 _LEAST = 1e-30
 """Of g, in m/s²: with `LARGEST` it keeps speeds from over- and underflow."""
+_MOST = 1000
+"""Of coefficients, which have a covariance each with each: so many that no ball reaches them."""
 
 
 class Setting(Parameters):
     """How the ball is dropped, and how well everything is known."""
 
     drop: Annotated[Number, Field(gt=0, description="m")]
-    impacts: Annotated[Whole, Field(ge=3)]
+    impacts: Annotated[Whole, Field(ge=3, le=_MOST)]
     timing: Annotated[Number, Field(ge=0, le=LARGEST, description="s")] = 0.0
     gravity: Annotated[Number, Field(ge=_LEAST, le=LARGEST, description="m/s²")] = 9.81
     gravity_uncertainty: Annotated[Number, Field(ge=0, le=LARGEST, description="m/s²")] = 0.0

@@ -57,7 +57,7 @@ def required_roundness(
     drop : float
         Height of the fall to the first impact, in m, > 0.
     impacts : int
-        Number of coefficients, >= 3.
+        Number of coefficients, from 3 to 1000.
     quantity : {"single", "mean", "fit"}
         One coefficient (root mean square over the run), the mean over the run, or the fitted ε_n(v).
     form, lobes
