@@ -4,6 +4,7 @@ import importlib
 import inspect
 import pkgutil
 import re
+import signal
 import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
@@ -93,13 +94,25 @@ FITTING: dict[str, str] = {
 """Where an argument is right in itself, the other that no longer fits it may be the one that is named."""
 
 
+class Late(BaseException):
+    """Puts an end to a call that goes on, before it takes all memory."""
+
+
+def _late(*_: object) -> None:
+    raise Late
+
+
 def attack(name: str, argument: str, bad: Any) -> str | None:
     """Call with one hostile argument; say what is wrong with what happens, if anything is."""
     function, make = CALLS[name]
     given = make() | {argument: bad}
     started = time.perf_counter()
+    before = signal.signal(signal.SIGALRM, _late)
+    signal.setitimer(signal.ITIMER_REAL, 2.0 * SLOW)
     try:
         function(**given)
+    except Late:
+        found = None
     except ValueError as error:
         found = judged(name, str(error), argument, bad)
     except OSError as error:  # of a file, which it names
@@ -108,6 +121,9 @@ def attack(name: str, argument: str, bad: Any) -> str | None:
         found = f"{type(error).__name__}: {error}"
     else:
         found = None
+    finally:
+        signal.setitimer(signal.ITIMER_REAL, 0.0)
+        signal.signal(signal.SIGALRM, before)
     seconds = time.perf_counter() - started
     return found if seconds < SLOW else f"took {seconds:.0f} s"
 
