@@ -128,8 +128,8 @@ def sentence(found: Calibration) -> str:
     below = found.truth[:, 1] < found.limit
     return (
         f"{len(found.rank)} experiments. The shape was determined in {100 * found.told.mean():.0f} % of "
-        f"all, in {100 * found.told[small].mean():.0f} % where L/R < 0.008, and in "
-        f"{100 * found.told[~small].mean():.0f} % above. Where it was not determined, L/R was below the "
+        f"all, in {100 * found.told[small].mean():.0f} % where $L/R < 0.008$, and in "
+        f"{100 * found.told[~small].mean():.0f} % above. Where it was not determined, $L/R$ was below the "
         f"upper limit in {100 * below[~found.told].mean():.0f} %.\n"
     )
 

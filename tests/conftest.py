@@ -1,5 +1,6 @@
 """What all tests share."""
 
+import signal
 from pathlib import Path
 
 import matplotlib
@@ -10,6 +11,10 @@ import restitution as rs
 from reference.command import SMALL
 
 matplotlib.use("Agg")
+
+# Programs inherit what is ignored: in the background of a shell it is Ctrl-C, under nohup the hangup.
+signal.signal(signal.SIGINT, signal.default_int_handler)
+signal.signal(signal.SIGHUP, signal.SIG_DFL)
 
 # The same examples in every run, however busy the machine: a test that fails once fails always.
 settings.register_profile("repeatable", derandomize=True, deadline=None, database=None)
