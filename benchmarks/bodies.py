@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 import restitution as rs
-from benchmarks.work import Array, Work
+from benchmarks.work import Array, Grid, Work
 
 SECONDS = 0.4
 LEAST = 100  # particles
@@ -74,9 +74,7 @@ class Row:
             return 2 * particles * WORK.impacts if dist is not None else 0
         lattice = {"velocity_bins": WORK.lattice.velocity, "restitution_bins": WORK.lattice.restitution}
         bins: dict[str, Any] = lattice | self.bins
-        found = rs.statistics(self.body, self.law, **bins, **common)
-        beside = ("number", "undefined", "velocity_underflow", "velocity_overflow")
-        return sum(int(found[name].sum()) for name in beside)
+        return Grid.of(rs.statistics(self.body, self.law, **bins, **common)).impacts
 
 
 LEARNED = (0.1, 0.4)  # m/s

@@ -99,8 +99,7 @@ class Spinning:
             velocity_bins=lattice.velocity,
             restitution_bins=lattice.restitution,
         )
-        beside = ("number", "undefined", "velocity_underflow", "velocity_overflow")
-        return Grid(found["restitution_count"].to_numpy(), sum(int(found[name].sum()) for name in beside))
+        return Grid.of(found)
 
     def first(self, released: Released, keep: int) -> Array:
         """v and ε of the engine's first impacts, (particle, impact, 2)."""

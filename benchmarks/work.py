@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from typing import Any, Generic, TypeVar
 
 import numpy as np
+import xarray as xr
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
@@ -42,6 +43,12 @@ class Grid:
 
     count: Counts
     impacts: int
+
+    @classmethod
+    def of(cls, found: xr.Dataset) -> "Grid":
+        """From what `restitution.statistics` returns."""
+        numbers = ("number", "undefined", "velocity_underflow", "velocity_overflow")
+        return cls(found["restitution_count"].to_numpy(), sum(int(found[name].sum()) for name in numbers))
 
 
 @dataclass(frozen=True)

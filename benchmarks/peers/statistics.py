@@ -45,8 +45,7 @@ def run(work: Work, angles: Array, threads: int, level: str, counts_only: bool) 
             counts_only=counts_only,
             batches=1,  # its peers give no standard errors either
         )
-    beside = ("number", "undefined", "velocity_underflow", "velocity_overflow")
-    return Grid(found["restitution_count"].to_numpy(), sum(int(found[name].sum()) for name in beside))
+    return Grid.of(found)
 
 
 def rows() -> list[Peer[Grid]]:

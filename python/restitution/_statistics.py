@@ -228,7 +228,7 @@ def dataset_of(run: Run, edges: Edges, tally: _core.Tally) -> xr.Dataset:
 
 
 def _check_memory(run: Run, edges: Edges, threads: int) -> None:
-    """Refuse grids that this process cannot hold: 12 bytes a site and 400 a row, a thread, and the total."""
+    """Refuse grids that this process cannot hold: 12 bytes a site and 600 a row, a thread, and the total."""
     velocity = edges["velocity"]
     rows = run.impacts if velocity is None else velocity.size + 1
     columns = sum(own.size + 2 for name, own in edges.items() if name != "velocity" and own is not None)
