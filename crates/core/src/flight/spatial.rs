@@ -255,13 +255,7 @@ impl<S: Simd, const K: usize> Flight<S, K> for Motions<S, K> {
 
     #[inline(always)]
     fn depart(&mut self, motion: Motion<S, K>, slope: f64) {
-        *self = Self::new(
-            States {
-                motion,
-                ..self.start
-            },
-            slope,
-        );
+        *self = Self::new(super::States::moving(self.start, motion), slope);
     }
 
     #[inline(always)]

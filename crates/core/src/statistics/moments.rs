@@ -1,7 +1,8 @@
 //! Moments as exact integer sums of a rounded quantity.
 //!
-//! Each value is rounded once, to a multiple of 2⁻²⁴ ≈ 6·10⁻⁸ of its offset from the origin, or of 2⁻²⁰ beyond an offset of 2; its powers are then summed without any further rounding,
-//! in integers wide enough for 2⁶⁴ values. Sums of sums are sums: merging is associative and commutative to the last bit.
+//! The offset of each value from the origin is rounded once, to a multiple of 2⁻²⁴ ≈ 6·10⁻⁸, or beyond 2 of 2⁻²⁰; its powers are
+//! then summed without any further rounding, in integers wide enough for 2⁶⁴ values. Sums of sums are sums: merging is
+//! associative and commutative to the last bit.
 
 use super::recent::{Extremes, QUANTA, Totals};
 use super::words::float;
