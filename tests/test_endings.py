@@ -176,3 +176,31 @@ def test_one_output_twice(parameters: Path) -> None:
         1,
         f"error: {out}: is to be written twice: give another name to write to\n",
     )
+
+
+LOSING = """
+import os, signal, time, typer
+from restitution._cli._common import errors_in_a_line
+
+class Losing:
+    def __del__(self):
+        os.kill(os.getpid(), signal.SIGTERM)
+
+def work():
+    with errors_in_a_line():
+        Losing()
+        try:
+            os.kill(os.getpid(), signal.SIGTERM)
+        except BaseException:
+            pass  # as libraries do
+        time.sleep(60)
+
+typer.run(work)
+"""
+
+
+def test_a_signal_is_not_lost() -> None:
+    """What it raises is dropped by Python in `__del__`, and by libraries; it comes again, in silence."""
+    command = [sys.executable, "-c", LOSING]
+    done = subprocess.run(command, capture_output=True, text=True, check=False, timeout=30)
+    assert (done.returncode, done.stderr) == (128 + signal.SIGTERM, "interrupted\n")

@@ -99,7 +99,7 @@ def compare(
             try:
                 runs.append(statistics(solids[body], rules[law], **run))
             except SimulationInterrupted as stop:
-                raise SimulationInterrupted(_finished(runs, stop.data, solids, rules)) from None
+                raise SimulationInterrupted(_finished(runs, stop.data, solids, rules)) from stop
             if tell is not None:
                 tell(done)
     found = _side_by_side(runs, solids, rules)

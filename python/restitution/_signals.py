@@ -1,10 +1,15 @@
 """What ends a command: SIGTERM and SIGHUP, as Ctrl-C; what is finished is kept, and no draft stays."""
 
+import _thread
 import signal
+import sys
 import threading
+import time
+import weakref
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
-from typing import Any
+from contextlib import contextmanager, suppress
+from functools import partial
+from typing import Any, NoReturn
 
 _ENDING = [getattr(signal, name) for name in ("SIGINT", "SIGTERM", "SIGHUP") if hasattr(signal, name)]
 
@@ -26,6 +31,55 @@ def _handled(handler: Callable[[int, Any], None]) -> Iterator[None]:
             signal.signal(number, previous[number])
 
 
+class _Interrupted(KeyboardInterrupt):
+    """Unlike the one of Python, it can be watched."""
+
+
+class _Leaving(SystemExit):
+    """Likewise."""
+
+
+@contextmanager
+def _thrown(kind: type[BaseException]) -> Iterator[Callable[..., NoReturn]]:
+    """Give a function that raises an exception of this kind in a handler of signals, and not in vain.
+
+    Python drops what is raised in `__del__` and in callbacks, and libraries drop errors that they believe
+    to be their own. So each exception is watched: when none is left and the block still goes on, the signal
+    is sent again. Who catches one and goes on, as to write what is finished, keeps it.
+    """
+    alive: set[weakref.ref[BaseException]] = set()
+    over = False
+
+    def throw(number: int, *args: object) -> NoReturn:
+        sys.unraisablehook = lambda _: None  # of objects that are half made: the process is about to end
+        error = kind(*args)
+        alive.add(weakref.ref(error, partial(lost, number)))
+        try:
+            raise error
+        finally:
+            del error  # its traceback has this frame
+
+    def lost(number: int, one: "weakref.ref[BaseException]") -> None:
+        alive.discard(one)
+        if not alive and not over:
+            with suppress(RuntimeError):  # where the system gives no thread
+                _thread.start_new_thread(send, (number,))
+
+    def send(number: int) -> None:
+        time.sleep(0.01)  # whatever drops exceptions here has ended
+        if over:
+            return
+        if hasattr(signal, "pthread_kill"):
+            signal.pthread_kill(threading.main_thread().ident or 0, number)
+        else:
+            signal.raise_signal(number)
+
+    try:
+        yield throw
+    finally:
+        over = True
+
+
 @contextmanager
 def ending() -> Iterator[list[int]]:
     """Raise a KeyboardInterrupt in the block for each signal that ends a process; yields those that came."""
@@ -33,9 +87,9 @@ def ending() -> Iterator[list[int]]:
 
     def end(number: int, _: Any) -> None:
         came.append(number)
-        raise KeyboardInterrupt
+        throw(number)
 
-    with _handled(end):
+    with _thrown(_Interrupted) as throw, _handled(end):
         yield came
 
 
@@ -44,9 +98,9 @@ def leaving() -> Iterator[None]:
     """Leave at once at a signal that ends a process: before a command begins, and after it has ended."""
 
     def leave(number: int, _: Any) -> None:
-        raise SystemExit(128 + number)
+        throw(number, 128 + number)
 
-    with _handled(leave):
+    with _thrown(_Leaving) as throw, _handled(leave):
         yield
 
 
@@ -58,8 +112,8 @@ def put_off(tell: Callable[[], None]) -> Iterator[list[int]]:
     def wait(number: int, _: Any) -> None:
         late.append(number)
         if len(late) > 1:
-            raise KeyboardInterrupt
+            throw(number)
         tell()
 
-    with _handled(wait):
+    with _thrown(_Interrupted) as throw, _handled(wait):
         yield late

@@ -180,5 +180,5 @@ def simulate_run(
     if state:
         data = with_positions(data)
     if interrupted:
-        raise SimulationInterrupted(data)
+        raise SimulationInterrupted(data) from interrupted
     return data

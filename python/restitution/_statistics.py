@@ -142,7 +142,7 @@ def statistics(
     why = "none: counts_only leaves the moments out" if counts_only else None
     found.attrs["standard_errors"] = why or origin(len(rows), run.particles, batches)
     if interrupted:
-        raise SimulationInterrupted(found.assign_attrs(incomplete="interrupted by the user"))
+        raise SimulationInterrupted(found.assign_attrs(incomplete="interrupted by the user")) from interrupted
     warn(found)
     return found
 
@@ -153,8 +153,8 @@ def _counted(
     threads: int,
     parts: list[tuple[int, int]],
     tell: Callable[[int], None] | None,
-) -> tuple[_core.Tally, list[dict[str, Any]], bool]:
-    """Count batch by batch; give the sum, the moments of every batch, and whether Ctrl-C ended it early."""
+) -> tuple[_core.Tally, list[dict[str, Any]], KeyboardInterrupt | None]:
+    """Count batch by batch; give the sum, the moments of every batch, and what Ctrl-C raised, if it came."""
     total: _core.Tally | None = None
     rows: list[dict[str, Any]] = []
     for first, last in parts:

@@ -14,7 +14,7 @@ pub struct Mixture(restitution_core::distribution::Mixture);
 type Array<'py> = PyReadonlyArray1<'py, f64>;
 
 /// Values and whether they are cut short by Ctrl-C.
-type Filled<'py> = (Bound<'py, PyArray1<f64>>, bool);
+type Filled<'py> = (Bound<'py, PyArray1<f64>>, Option<PyErr>);
 
 /// A function of the table at each of some points.
 type Function = fn(
@@ -48,7 +48,7 @@ impl Mixture {
         let (out, interrupted) = if size <= BLOCK {
             // A code that asks for one value at a time shall not wait for threads to start.
             let out = py.detach(|| compute(&Monitor::default()));
-            (out.map_err(python_error)?, false)
+            (out.map_err(python_error)?, None)
         } else {
             watch::run(py, None, compute)?
         };

@@ -27,7 +27,7 @@ fn columns(law: &Law, state: bool) -> Vec<&'static str> {
 }
 
 /// Runs the particles from `part[0]` to before `part[1]` of the ensemble, or all, and records the variables of these names,
-/// or those that are usual under its law; returns them by name and whether the run was cut short by Ctrl-C.
+/// or those that are usual under its law; returns them by name and the `KeyboardInterrupt` that cut the run short, if any.
 #[pyfunction]
 #[pyo3(signature = (run, threads, progress, part=None, columns=None))]
 fn simulate<'py>(
@@ -37,7 +37,7 @@ fn simulate<'py>(
     progress: Option<Bound<'py, PyAny>>,
     part: Option<(usize, usize)>,
     columns: Option<Vec<String>>,
-) -> PyResult<(Bound<'py, PyDict>, bool)> {
+) -> PyResult<(Bound<'py, PyDict>, Option<PyErr>)> {
     let run = run.run()?;
     let means = means(threads)?;
     let columns = match columns {

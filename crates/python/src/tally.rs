@@ -144,7 +144,7 @@ fn statistics<'py>(
     threads: usize,
     progress: Option<Bound<'py, PyAny>>,
     part: Option<(usize, usize)>,
-) -> PyResult<(Tally, bool)> {
+) -> PyResult<(Tally, Option<PyErr>)> {
     let run = run.run()?;
     let means = means(threads)?;
     let bins = edges.bins(run.impacts)?;

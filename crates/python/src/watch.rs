@@ -14,12 +14,12 @@ use std::time::{Duration, Instant};
 const TICK: Duration = Duration::from_millis(50);
 
 /// Runs `work` on a thread of its own, or here where the system gives none; `progress`, if any, is called with the number of
-/// finished particles. Returns what `work` returned and whether Ctrl-C made it stop early.
+/// finished particles. Returns what `work` returned, and the `KeyboardInterrupt` that made it stop early, if any.
 pub fn run<T: Send>(
     py: Python<'_>,
     progress: Option<Bound<'_, PyAny>>,
     work: impl FnOnce(&Monitor) -> Result<T, Error> + Send,
-) -> PyResult<(T, bool)> {
+) -> PyResult<(T, Option<PyErr>)> {
     let monitor = Monitor::default();
     let progress = progress.map(Bound::unbind);
     let work = Mutex::new(Some(work));
@@ -61,7 +61,7 @@ pub fn run<T: Send>(
 fn run_here<T>(
     progress: Option<Py<PyAny>>,
     work: impl FnOnce(&Monitor) -> Result<T, Error>,
-) -> PyResult<(T, bool)> {
+) -> PyResult<(T, Option<PyErr>)> {
     let interrupt = Arc::new(Mutex::new((Instant::now(), None)));
     let state = interrupt.clone();
     let monitor = Monitor::attended(move |monitor| {
@@ -83,7 +83,7 @@ fn run_here<T>(
 fn ended<T>(
     result: thread::Result<Result<T, Error>>,
     interrupt: Option<PyErr>,
-) -> PyResult<(T, bool)> {
+) -> PyResult<(T, Option<PyErr>)> {
     let result = result.map_err(|panic| {
         let message = panic
             .downcast_ref::<String>()
@@ -94,9 +94,8 @@ fn ended<T>(
     })?;
     let result = result.map_err(python_error)?;
     match interrupt {
-        None => Ok((result, false)),
-        Some(error) if is_keyboard_interrupt(&error) => Ok((result, true)),
-        Some(error) => Err(error),
+        Some(error) if !is_keyboard_interrupt(&error) => Err(error),
+        interrupt => Ok((result, interrupt)),
     }
 }
 

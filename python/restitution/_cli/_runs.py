@@ -48,7 +48,7 @@ def simulate(
     Python xarray.open_dataset reads it. Ctrl-C ends the run early; the impacts so
     far are written all the same, and the attribute "incomplete" of the file says so.
     """
-    interrupted = False
+    interrupted: KeyboardInterrupt | None = None  # kept: what is caught has not been lost
     with errors_in_a_line():
         from restitution._dataset import save
         from restitution._files import check, check_apart
@@ -65,14 +65,14 @@ def simulate(
                 parameters, threads=threads, progress=progress(quiet), record=checked_record(record)
             )
         except SimulationInterrupted as stop:
-            data, interrupted = stop.data, True
+            data, interrupted = stop.data, stop
             tell("interrupted; writing the impacts so far")
         with put_off(press_again) as late:
             save(data, out, replace=overwrite)
         for line in _summary(data) if not quiet else ():
             say(line)
         if interrupted or late:
-            raise Kept(late)
+            raise Kept(late) from interrupted
 
 
 def statistics(
@@ -238,20 +238,20 @@ def _counted(count: Any, run: Path, out: Path, *, overwrite: bool, quiet: bool) 
 
     check_apart([run], [out])
     check(out, replace=overwrite)
-    interrupted = False
+    interrupted: KeyboardInterrupt | None = None  # kept: what is caught has not been lost
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # the summary says what they would
         try:
             found = count()
         except SimulationInterrupted as stop:
-            found, interrupted = stop.data, True
+            found, interrupted = stop.data, stop
             tell("interrupted; writing what was counted so far")
     with put_off(press_again) as late:
         save(found, out, replace=overwrite)
     for line in _counts(found) if not quiet else ():
         say(line)
     if interrupted or late:
-        raise Kept(late)
+        raise Kept(late) from interrupted
 
 
 def _counts(found: "xr.Dataset") -> Iterator[str]:

@@ -15,7 +15,7 @@ Floats = npt.NDArray[np.float64]
 Ints = npt.NDArray[np.int64]
 
 _ANY: Floats = np.zeros(1)
-_Function = Callable[[Floats, Floats, Floats, int], tuple[Floats, bool]]
+_Function = Callable[[Floats, Floats, Floats, int], tuple[Floats, KeyboardInterrupt | None]]
 
 
 @dataclass(frozen=True)
@@ -97,7 +97,7 @@ class Table:
         function: _Function = getattr(self._mixture, what)
         found, interrupted = function(points, _flat(values[1], shape), _flat(values[2], shape), 0)
         if interrupted:
-            raise KeyboardInterrupt
+            raise KeyboardInterrupt from interrupted
         return found.reshape(shape)
 
     def draw(
@@ -109,7 +109,7 @@ class Table:
             _flat(v, shape), _flat(z, shape), size, seed, checked_threads(threads)
         )
         if interrupted:
-            raise KeyboardInterrupt
+            raise KeyboardInterrupt from interrupted
         return found.reshape(shape)
 
     def weights(self, v: Floats) -> tuple[Ints, Floats]:

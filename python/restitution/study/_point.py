@@ -91,7 +91,7 @@ def count(point: Point, part: tuple[int, int], tell: Tell | None = None) -> Word
     if point.edges is not None:
         tally, interrupted = _core.statistics(_parameters(point.run, part), point.edges, 1, tell, part)
         if interrupted:
-            raise KeyboardInterrupt
+            raise KeyboardInterrupt from interrupted
         words.append(tally.words())
     if point.records:
         found = _measured(point, _recorded(point, part, tell))
@@ -149,7 +149,7 @@ def _parameters(run: Run, part: tuple[int, int]) -> dict[str, Any]:
 def _recorded(point: Point, part: tuple[int, int], tell: Tell | None) -> xr.Dataset:
     table, interrupted = _core.simulate(_parameters(point.run, part), 1, tell, part)
     if interrupted:
-        raise KeyboardInterrupt
+        raise KeyboardInterrupt from interrupted
     return dataset(point.run.model_copy(update={"particles": part[1] - part[0]}), table)
 
 
