@@ -5,7 +5,7 @@ mod tallies;
 
 use common::*;
 use proptest::prelude::*;
-use restitution_core::statistics::{By, Tally};
+use restitution_core::statistics::{Bins, By, Tally};
 use restitution_core::{Law, Level, Means, Monitor, Orientation, Run};
 use std::sync::LazyLock;
 use tallies::*;
@@ -61,6 +61,46 @@ fn the_pieces_are_as_different_as_they_should_be() {
     let gains = |tally: &Tally| tally.gains.iter().map(|row| row.count).sum::<u64>();
     let creating = PIECES.iter().filter(|piece| gains(piece) > 0).count();
     assert!(0 < creating && creating < PIECES.len());
+}
+
+/// Grids add up place by place where they are full, too.
+#[test]
+fn full_grids_merge() {
+    let bins = Bins {
+        by: By::Velocity(axis(&[0.0, 1e3])),
+        restitution: axis(&edges(0.9, 1.06, 1400)),
+        fraction: None,
+    };
+    let part = |seed| {
+        let run = Run {
+            particles: 4000,
+            impacts: 400,
+            orientation: Orientation::Isotropic,
+            seed,
+            ..paper(0.1, law(0.98, 1.0))
+        };
+        let means = Means {
+            threads: 1,
+            level: Level::best(),
+        };
+        run.statistics(&bins, means, &Monitor::default()).unwrap()
+    };
+    let (first, second) = (part(1), part(2));
+    let full = |counts: &[u64]| {
+        counts
+            .chunks(512)
+            .any(|part| part.iter().all(|&count| count > 0))
+    };
+    assert!(full(second.restitution.counts()));
+    let mut total = first.clone();
+    total.merge(&second);
+    let each = first.restitution.counts().iter();
+    let sums: Vec<_> = each
+        .zip(second.restitution.counts())
+        .map(|(a, b)| a + b)
+        .collect();
+    assert_eq!(total.restitution.counts(), sums);
+    assert_eq!(total.restitution.columns(), 1403);
 }
 
 /// What goes to NumPy is what was counted, in grids of several parts too, some of them empty.

@@ -56,3 +56,25 @@ impl Backlog {
         full
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Between two emptyings no counter has more impacts than it has room for, even if all are in one bin.
+    #[test]
+    fn narrow_counters_are_emptied_in_time() {
+        let mut backlog = Backlog::default();
+        let mut since = 0_u64;
+        let mut emptied = 0;
+        while emptied < 2 {
+            backlog.take(LENGTH);
+            since += LENGTH as u64;
+            assert!(since <= u64::from(u32::MAX));
+            if backlog.restart() {
+                assert!(since > u64::from(MOST));
+                (since, emptied) = (0, emptied + 1);
+            }
+        }
+    }
+}

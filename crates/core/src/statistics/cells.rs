@@ -222,6 +222,15 @@ mod tests {
         }
     }
 
+    /// Bins of one width, on either side of 0: no cell has several edges.
+    #[test]
+    fn even_bins_are_found_at_once() {
+        for low in [-1.0, 0.0, 0.5] {
+            let edges: Vec<_> = (0..401).map(|i| low + 0.01 * f64::from(i)).collect();
+            assert_eq!(Cells::new(&edges).crowded, None);
+        }
+    }
+
     /// Logarithmic bins over six decades, and with a bin from 0 before them: no cell has several edges.
     #[test]
     fn logarithmic_bins_are_found_at_once() {
