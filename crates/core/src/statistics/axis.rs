@@ -82,11 +82,40 @@ impl Axis {
         self.cells.is_none()
     }
 
-    /// Numbers of the bins of N quantities on an axis each, plus [`ROUND`]: 0 below, 1 to n inside, n + 1 above. NaN may be
-    /// anywhere. EVEN: the bins of every axis are of one width. The search among others, even if it is skipped, takes the registers
-    /// of the bounce loop, which is therefore compiled with and without it.
+    /// Numbers of the bins of up to three quantities on an axis each, plus [`ROUND`]: 0 below, 1 to n inside, n + 1 above. NaN may
+    /// be anywhere. EVEN: the bins of every axis are of one width. The search among others, even if it is skipped, takes the
+    /// registers of the bounce loop, which is therefore compiled with and without it.
     #[inline(always)]
     pub(super) fn locate<S: Simd, const K: usize, const N: usize, const EVEN: bool>(
+        axes: [&Self; N],
+        x: [Pack<S, K>; N],
+    ) -> [Pack<S, K>; N] {
+        if EVEN {
+            return Self::locate_even(axes, x);
+        }
+        let mut bins = x;
+        // No loop: it would keep its packs in memory.
+        bins[0] = axes[0].locate_one(x[0]);
+        if N > 1 {
+            bins[1] = axes[1].locate_one(x[1]);
+        }
+        if N > 2 {
+            bins[2] = axes[2].locate_one(x[2]);
+        }
+        bins
+    }
+
+    #[inline(always)]
+    fn locate_one<S: Simd, const K: usize>(&self, x: Pack<S, K>) -> Pack<S, K> {
+        match &self.cells {
+            Some(cells) => cells.locate(x),
+            None => Self::locate_even([self], [x])[0],
+        }
+    }
+
+    /// Where all bins of an axis are of one width: one look for all axes at whether a number is near an edge.
+    #[inline(always)]
+    fn locate_even<S: Simd, const K: usize, const N: usize>(
         axes: [&Self; N],
         x: [Pack<S, K>; N],
     ) -> [Pack<S, K>; N] {
@@ -101,13 +130,6 @@ impl Axis {
         if !most.lt(0.5 - NEAR).all() {
             for i in 0..N {
                 bins[i] = axes[i].decided(x[i], places[i], bins[i]);
-            }
-        }
-        if !EVEN {
-            for i in 0..N {
-                if let Some(cells) = &axes[i].cells {
-                    bins[i] = cells.locate(x[i]);
-                }
             }
         }
         bins

@@ -36,8 +36,15 @@ struct Cell {
 enum Scale {
     /// Into equal intervals from the lowest to the highest edge.
     Linear { low: f64, density: f64 },
-    /// Into parts of an octave, as logarithmic bins want them: by the bits of a number as they are, which ascend with it.
-    Octaves { low: i64, shift: u32 },
+    /// On either side of a centre into parts of an octave of the distance from it, as logarithmic bins want them, and bins that
+    /// are dense somewhere: by the bits of distance and `least` added up, which ascend with it. Cell number `middle` begins at the
+    /// centre.
+    Octaves {
+        centre: f64,
+        least: f64,
+        shift: u32,
+        middle: i64,
+    },
 }
 
 impl Scale {
@@ -46,14 +53,44 @@ impl Scale {
     fn cells<S: Simd, const K: usize>(self, x: Pack<S, K>, last: f64) -> Pack<S, K> {
         match self {
             Self::Linear { low, density } => ((x - low) * density).max(0.0).min(last) + ROUND,
-            Self::Octaves { low, shift } => {
-                let (mut cells, last) = (x, last as i64);
-                for x in cells.as_mut_slice() {
-                    let above = ascending(*x).saturating_sub(low).max(0);
-                    *x = f64::from_bits((above >> shift).min(last) as u64);
+            Self::Octaves {
+                centre,
+                least,
+                shift,
+                middle,
+            } => {
+                let from_centre = x - centre;
+                let (mut cells, last) = (from_centre.abs() + least, last as i64);
+                let from_centre = from_centre.as_slice();
+                for (cell, from_centre) in cells.as_mut_slice().iter_mut().zip(from_centre) {
+                    let away = ((cell.to_bits() - least.to_bits()) >> shift) as i64;
+                    let cells = if *from_centre < 0.0 { !away } else { away };
+                    *cell = f64::from_bits((middle + cells).clamp(0, last) as u64);
                 }
                 cells
             }
+        }
+    }
+
+    /// At most so many cells in octaves about the densest of the edges.
+    fn octaves(edges: &[f64], cells: usize) -> Self {
+        let width = |i: &usize| edges[i + 1] - edges[*i];
+        let bins = 0..edges.len() - 1;
+        let densest = bins.min_by(|i, k| width(i).total_cmp(&width(k)));
+        let densest = densest.expect("there are two edges");
+        let (centre, least) = (edges[densest], width(&densest));
+        let away = |edge: f64| ((edge - centre).abs() + least).to_bits() - least.to_bits();
+        // Below the second edge there is one bin, however many octaves it has: logarithmic bins may begin at 0.
+        let below = (densest > 1).then(|| away(edges[1]));
+        let above = away(edges[edges.len() - 1]);
+        let middle = |shift| 1 + below.map_or(0, |below| 1 + (below >> shift));
+        let fits = |shift: &u32| middle(*shift) + (above >> *shift) < cells as u64;
+        let shift = (0..u64::BITS).find(fits).expect("one octave for all");
+        Self::Octaves {
+            centre,
+            least,
+            shift,
+            middle: middle(shift) as i64,
         }
     }
 
@@ -88,35 +125,17 @@ fn crowd(before: &[u32]) -> u32 {
     each.max().unwrap_or(0)
 }
 
-/// A whole number that ascends with x.
-#[inline(always)]
-fn ascending(x: f64) -> i64 {
-    let bits = (x + 0.0).to_bits() as i64; // one zero
-    bits ^ (((bits >> 63) as u64) >> 1) as i64
-}
-
 impl Cells {
     /// Of increasing, finite edges: as few cells as keep them apart, if that is possible.
     pub fn new(edges: &[f64]) -> Self {
         let (low, high) = (edges[0], edges[edges.len() - 1]);
-        // Below the second edge there is one bin, however many octaves it has: logarithmic bins may begin at 0.
-        let (first, last) = (ascending(edges[1]), ascending(high));
-        let octaves = u64::BITS - (last.wrapping_sub(first) as u64).leading_zeros();
         let mut count = edges.len().next_power_of_two();
         let most = MOST.max(count);
         loop {
             let density = count as f64 / (high - low);
-            let shift = (octaves + 1).saturating_sub(count.trailing_zeros());
-            let before_second = first.saturating_sub(1 << shift);
-            let found = [
-                Scale::Linear { low, density },
-                Scale::Octaves {
-                    low: before_second,
-                    shift,
-                },
-            ]
-            .map(|scale| (scale, scale.before(edges, count)))
-            .map(|(scale, before)| (crowd(&before), scale, before));
+            let found = [Scale::Linear { low, density }, Scale::octaves(edges, count)]
+                .map(|scale| (scale, scale.before(edges, count)))
+                .map(|(scale, before)| (crowd(&before), scale, before));
             let [equal, logarithmic] = found;
             let (crowd, scale, before) = if logarithmic.0 < equal.0 {
                 logarithmic
@@ -227,6 +246,17 @@ mod tests {
     fn even_bins_are_found_at_once() {
         for low in [-1.0, 0.0, 0.5] {
             let edges: Vec<_> = (0..401).map(|i| low + 0.01 * f64::from(i)).collect();
+            assert_eq!(Cells::new(&edges).crowded, None);
+        }
+    }
+
+    /// Bins that are dense in the midst of others, as ε is about ε_n: no cell has several edges.
+    #[test]
+    fn dense_bins_are_found_at_once() {
+        for power in [3, 5] {
+            let edges: Vec<_> = (0..121)
+                .map(|i| 0.98 + (f64::from(i) / 60.0 - 1.0).powi(power))
+                .collect();
             assert_eq!(Cells::new(&edges).crowded, None);
         }
     }
