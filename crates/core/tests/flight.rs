@@ -37,6 +37,28 @@ proptest! {
     }
 }
 
+proptest! {
+    #![proptest_config(cases(2000))]
+
+    /// Energy of the rotation, from the spin about the axis and across it, the whole kinetic energy, and the angle of the axis with
+    /// the normal by the platform's function. The spin about the axis is a sum that may cancel, but for rounding.
+    #[test]
+    fn what_a_state_says_of_itself((body, _, state) in motion()) {
+        let spin = state.spin(&body);
+        let about = spin.dot(state.axis);
+        let across = spin - state.axis * about;
+        let rotation = 0.5 * (body.axial * about * about + body.transverse * across.dot(across));
+        let slender = body.transverse / body.axial;
+        let rounding = 16.0 * f64::EPSILON * slender * body.transverse * spin.dot(spin);
+        prop_assert!((state.rotational_energy(&body) - rotation).abs() <= rounding);
+        let kinetic = 0.5 * state.velocity.dot(state.velocity) + rotation;
+        prop_assert!((state.kinetic_energy(&body) - kinetic).abs() <= rounding + 8.0 * f64::EPSILON * kinetic);
+
+        let angle = state.axis.horizontal().atan2(state.axis.z);
+        prop_assert!((state.angle() - angle).abs() <= 4.0 * f64::EPSILON);
+    }
+}
+
 /// The axis and the angular velocity in the laboratory frame.
 #[derive(Clone, Copy)]
 struct Top {

@@ -1,0 +1,89 @@
+//! One particle of a run, followed by itself.
+
+mod common;
+mod scalar;
+
+use common::*;
+use restitution_core::{
+    About, Followed, LoadedSphere, Orientation, Run, Solid, Sphere, Spheroid, Spin, Vector,
+};
+use scalar::Observed;
+
+fn bodies() -> [Solid; 3] {
+    [
+        paper(2.0, law(1.0, 1.0)).body,
+        LoadedSphere::new(3e-3, 2500.0, 1e-4, 2e-3).unwrap().into(),
+        Spheroid::new(3e-3, 5e-3, 2500.0).unwrap().into(),
+    ]
+}
+
+/// At rest, or with one of spin, throw and incline.
+fn releases(body: Solid) -> [Run<'static>; 6] {
+    let rest = Run {
+        body,
+        particles: 9,
+        impacts: 12,
+        orientation: Orientation::Isotropic,
+        ..paper(0.0, law(0.6, 0.3))
+    };
+    let spin = |about| Spin::Random {
+        low: 10.0,
+        high: 90.0,
+        about,
+    };
+    let thrown = |velocity| Run { velocity, ..rest };
+    [
+        rest,
+        Run {
+            spin: spin(About::Isotropic),
+            ..rest
+        },
+        Run {
+            orientation: Orientation::UniformAngle,
+            spin: spin(About::Across),
+            ..rest
+        },
+        thrown(Vector::new(0.0, 0.2, 0.4)),
+        thrown(Vector::new(0.0, 0.0, -0.4)),
+        Run {
+            incline: 0.3,
+            ..rest
+        },
+    ]
+}
+
+/// Its impacts are those that the particle has in the run, and it ends as there, to the last bit: it moves in a plane exactly
+/// where the run does.
+#[test]
+fn a_followed_particle_has_the_impacts_of_its_run() {
+    for run in bodies().into_iter().flat_map(releases) {
+        let records = simulate(&run);
+        for particle in 0..run.particles {
+            let followed = Followed::new(&run, particle).unwrap();
+            let scales = &followed.scales;
+            let first = particle * run.impacts;
+            let mut number = 0;
+            let reason = followed.bounce(|impact| {
+                let i = first + number;
+                number += 1;
+                assert_eq!(records.time[i], scales.time * impact.time);
+                let fall = scales.speed * impact.impact_velocity();
+                assert_eq!(records.impact_velocity[i], fall);
+                assert_eq!(records.restitution[i], impact.restitution());
+                let touched = if impact.sphere == Sphere::One { 1 } else { 2 };
+                assert_eq!(records.contact[i], touched);
+                true
+            });
+            assert_eq!(records.impacts[particle], number as i64);
+            assert_eq!(records.stop_reason[particle], reason.unwrap() as i8);
+        }
+    }
+}
+
+/// There is no particle beyond those of the run.
+#[test]
+fn a_particle_that_the_run_has_not_is_refused() {
+    let run = paper(1.0, law(0.6, 0.3));
+    assert!(Followed::new(&run, run.particles - 1).is_ok());
+    assert!(Followed::new(&run, run.particles).is_err());
+}
