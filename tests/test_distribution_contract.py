@@ -164,6 +164,8 @@ def test_a_sphere_is_a_point_mass() -> None:
 
 
 def test_the_summary_is_text(learned: FluctuatingRestitution) -> None:
-    lines = learned.summary().splitlines()
+    summary = learned.summary()
+    assert repr(summary) == str(summary)  # what a notebook shows
+    lines = summary.splitlines()
     assert lines[2] == "also given E_rot/E_tot before the impact (Eq. 12)"
     assert lines[-1].startswith("Kolmogorov-Smirnov distance to fresh impacts")

@@ -2,6 +2,7 @@
 
 import inspect
 import pydoc
+import re
 import textwrap
 from collections.abc import Callable
 from typing import Any
@@ -58,8 +59,18 @@ def test_an_object_says_what_it_is(one: Any) -> None:
         assert f">{name}<" in html
         assert name in dir(one)
     assert html.count("<tr>") == html.count("</tr>") > 0
+    assert "validation" not in str(type(one).__init__.__doc__)  # which Jupyter shows at one?
     assert not [name for name in dir(one) if name.startswith(("model_", "_", "parse_", "json", "dict"))]
     assert len(html) < 4000
+
+
+@pytest.mark.parametrize("one", OBJECTS, ids=lambda one: type(one).__name__)
+def test_numbers_have_the_units_that_the_docstring_says(one: Any) -> None:
+    """In the table of a notebook, and beside the numbers in which bodies or laws differ in `compare`."""
+    for name, about in re.findall(r"^    (\w+) : .*\n((?:        .*\n)+)", type(one).__doc__ or "", re.M):
+        unit = re.search(r"\bin (m|kg|kg/m³|m/s|rad/s)[;,.]", " ".join(about.split()))
+        if unit and "array" not in about:
+            assert re.search(rf">{name}</th>[^/]*>[^<]* {unit[1]}</td>", one._repr_html_()), name
 
 
 @pytest.mark.parametrize("one", OBJECTS, ids=lambda one: type(one).__name__)

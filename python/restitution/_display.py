@@ -31,8 +31,8 @@ class Listed(ModelMetaclass):
         return public_names(cls)
 
 
-class _Words(str):
-    """An annotation that is shown as it reads."""
+class Text(str):
+    """A text that a notebook and the interpreter show as it reads, without quotes."""
 
     __slots__ = ()
 
@@ -52,7 +52,7 @@ def signature(cls: type[BaseModel], by_place: tuple[str, ...]) -> inspect.Signat
         text = kind.__name__ if isinstance(kind, type) else re.sub(r"\w+\.", "", str(kind))
         default = inspect.Parameter.empty if field.is_required() else field.default
         place = positional if name in by_place else keyword
-        parameters.append(inspect.Parameter(name, place, default=default, annotation=_Words(text)))
+        parameters.append(inspect.Parameter(name, place, default=default, annotation=Text(text)))
     return inspect.Signature(parameters)
 
 

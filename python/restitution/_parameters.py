@@ -134,6 +134,7 @@ class Parameters(BaseModel, metaclass=_display.Listed):
     model_config: ClassVar[ConfigDict] = ConfigDict(frozen=True, extra="forbid", arbitrary_types_allowed=True)
 
     def __init__(self, *values: Any, **named: Any) -> None:
+        """Check the parameters, and keep them for good."""
         if values:
             placed = dict(zip(self.by_place, values, strict=False))
             if len(values) > len(placed) or placed.keys() & named:

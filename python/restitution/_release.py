@@ -149,7 +149,9 @@ class RandomSpin(Parameters):
     RandomSpin(rate=(0.0, 100.0), axis='across')
     """
 
-    rate: Annotated[float | tuple[float, float], Allowed(_RATES), BeforeValidator(_rate)]
+    rate: Annotated[
+        float | tuple[float, float], Allowed(_RATES), BeforeValidator(_rate), Field(description="rad/s")
+    ]
     axis: Annotated[Axis, Allowed(_AXES)] = "isotropic"
 
     @model_validator(mode="after")

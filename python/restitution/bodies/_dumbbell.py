@@ -40,9 +40,9 @@ class Dumbbell(Body):
     0.0001
     """
 
-    radius: PositivePair
+    radius: Annotated[PositivePair, Field(description="m")]
     separation: Annotated[Number, Field(ge=0, description="m")]
-    density: PositivePair = 2500.0
+    density: Annotated[PositivePair, Field(description="kg/m³")] = 2500.0
 
     def _compile(self) -> _core.Solid:
         """Make the body: mass and inertia by (A3), (A5) with L⁵/160 for L⁵/180, and (A8)."""

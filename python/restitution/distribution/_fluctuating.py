@@ -11,7 +11,7 @@ import xarray as xr
 
 from restitution._arrays import flag, reals, whole
 from restitution._dataset import load, save
-from restitution._display import table, value
+from restitution._display import Text, table, value
 from restitution._files import path_from, write
 from restitution._parameters import ParameterError, Problem, wrong
 from restitution._recorded import records
@@ -303,7 +303,7 @@ class FluctuatingRestitution(EstimatedDistribution):
         return correlations(levels, lags)
 
     def summary(self) -> str:
-        """Summarise in a few lines what was learned and how well."""
+        """Summarise in a few lines what was learned and how well; a notebook shows the text as it reads."""
         low, high = self.velocities
         lines = [f"{float(self.data['impacts'].sum()):.0f} impacts at {low:.4g} to {high:.4g} m/s"]
         lines += [f"{self.data.sizes['node']} histograms, {self.data.sizes['edge']} edges"]
@@ -317,7 +317,7 @@ class FluctuatingRestitution(EstimatedDistribution):
                 f"{float(self.data['ks_distance'][worst]):.4f} at most, at {speed:.4g} m/s, "
                 f"of which their own scatter explains {scatter:.4f}"
             ]
-        return "\n".join(lines)
+        return Text("\n".join(lines))
 
     def _repr_html_(self) -> str:
         attrs, (low, high) = self.data.attrs, self.velocities
