@@ -1,5 +1,6 @@
 /** The page comes to life: what people do, and what it does to the explorer. */
 
+import "./language"; // before the charts, which look at it as they load
 import { changed, Controls } from "./controls";
 import { Pool } from "./engine/pool";
 import { Explorer, type ChartName } from "./explorer";

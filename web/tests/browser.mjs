@@ -26,8 +26,10 @@ function bundledLibraries() {
 }
 
 export async function launch() {
+  // In the C locale a browser says that its language is en-US@posix: the page must do with that, too.
+  const locale = { ...process.env, LC_ALL: "C" };
   const system = ["/usr/bin/chromium", "/usr/bin/chromium-browser"].find(existsSync);
-  if (system) return chromium.launch({ executablePath: system, args });
+  if (system) return chromium.launch({ executablePath: system, args, env: locale });
   if (process.arch !== "x64") throw new Error(`no browser for ${process.arch}: install Debian's chromium`);
   const whole = join(UNPACKED, "whole");
   if (!existsSync(whole)) rmSync(UNPACKED, { recursive: true, force: true });
@@ -42,7 +44,7 @@ export async function launch() {
   if (temporary === undefined) delete process.env.TMPDIR;
   else process.env.TMPDIR = temporary;
   const fonts = existsSync("/etc/fonts") ? {} : { FONTCONFIG_PATH: join(UNPACKED, "fonts") };
-  const environments = [() => ({ ...process.env, ...fonts }), () => ({ ...process.env, ...fonts, LD_LIBRARY_PATH: bundledLibraries() })];
+  const environments = [() => ({ ...locale, ...fonts }), () => ({ ...locale, ...fonts, LD_LIBRARY_PATH: bundledLibraries() })];
   let missing;
   for (const env of environments) {
     try {

@@ -26,7 +26,6 @@ async function open(hash, { width = 1400, height = 1000, scheme = "light", motio
     viewport: { width, height },
     colorScheme: scheme,
     reducedMotion: motion,
-    locale: "en-GB", // a locale like C.UTF-8 is none to a page
     acceptDownloads: true,
   });
   // A machine that is busy otherwise is slow, not wrong.

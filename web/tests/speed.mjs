@@ -9,7 +9,7 @@ const median = (values) => [...values].sort((a, b) => a - b)[Math.floor(values.l
 const browser = await launch();
 
 async function open(hash, motion) {
-  const context = await browser.newContext({ viewport: { width: 1400, height: 1000 }, reducedMotion: motion, locale: "en-GB" });
+  const context = await browser.newContext({ viewport: { width: 1400, height: 1000 }, reducedMotion: motion });
   const page = await context.newPage();
   await page.addInitScript(() => {
     window.seen = { frames: [], work: [] };
