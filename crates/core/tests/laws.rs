@@ -35,6 +35,34 @@ fn laws(random: &mut Random) -> Vec<Law<'static>> {
     laws
 }
 
+/// K turns the impulse that was solved for a change of the contact velocity into that change (10), in every direction.
+#[test]
+fn an_impulse_makes_the_change_that_it_is_for() {
+    each_contact(6, |random, contact| {
+        let mut part = || random.between(-2.0, 2.0);
+        let wanted = Components {
+            normal: part(),
+            along: part(),
+            across: part(),
+        };
+        let impulse = contact.impulse(wanted);
+        let made = contact.change(impulse);
+        let response = Response {
+            impulse,
+            separation_speed: 0.0,
+        };
+        let off = Components {
+            normal: made.normal - wanted.normal,
+            along: made.along - wanted.along,
+            across: made.across - wanted.across,
+        };
+        assert!(
+            size(off) <= 32.0 * rounding(contact, &response),
+            "{contact:?} {impulse:?} {off:?}"
+        );
+    });
+}
+
 /// Nothing breaks, the plane pushes, and the separation speed is the normal velocity that the impulse leaves behind.
 #[test]
 fn every_response_is_that_of_an_impact() {

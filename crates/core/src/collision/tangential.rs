@@ -27,11 +27,6 @@ impl TangentialRestitution {
         Ok(Self { tangential })
     }
 
-    /// ε_t.
-    pub fn tangential(&self) -> f64 {
-        self.tangential
-    }
-
     #[inline(always)]
     pub(super) fn respond<S: Simd, const K: usize, const SPACE: bool>(
         &self,
