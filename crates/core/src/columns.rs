@@ -1,5 +1,5 @@
-//! The recorded variables, a row each. A further one of each impact is a further row of [`columns!`]: storage, blanks, the
-//! choice for a run, the binding and the Dataset follow.
+//! The recorded variables of an impact, a row each. A new one is a new row of [`columns!`]: storage, blanks, the choice for a
+//! run, the binding and the Dataset follow from it.
 
 use crate::engine::{Impact, StopReason};
 use crate::memory::{filled, zeros};
@@ -11,10 +11,10 @@ use crate::{Error, Law, Normal, Value};
 use pulp::Simd;
 use std::ops::Range;
 
-/// What the memory is for.
+/// The parameters that the size of the table follows from.
 pub(crate) const ROOM: &str = "particles * impacts";
 
-/// A row is `name: type { what is known } = |impact, plan| the value`.
+/// A row is `name: type { metadata } = |impact, plan| value`.
 macro_rules! columns {
     ($($(#[$doc:meta])* $name:ident: $kind:ty { $($about:tt)* } = |$impact:ident, $plan:ident| $value:expr;)*) => {
         /// The variables of an impact.
@@ -29,10 +29,13 @@ macro_rules! columns {
         }
 
         impl Columns {
-            /// None.
+            /// No variable.
             pub const NONE: Self = Self { $($name: false),* };
 
-            /// Those of these names.
+            /// The variables with these names.
+            ///
+            /// # Errors
+            /// [`Error::Parameter`] for a name that is not in [`PER_IMPACT`].
             pub fn named<'a>(names: impl IntoIterator<Item = &'a str>) -> Result<Self, Error> {
                 let mut chosen = Self::NONE;
                 for name in names {
@@ -51,28 +54,28 @@ macro_rules! columns {
                 Ok(chosen)
             }
 
-            /// Their names.
+            /// The names of the chosen variables, in the order of [`PER_IMPACT`].
             pub fn names(&self) -> Vec<&'static str> {
                 let chosen = [$(self.$name),*].into_iter().zip(PER_IMPACT);
                 chosen.filter(|(chosen, _)| *chosen).map(|(_, about)| about.name).collect()
             }
 
-            /// Memory that an impact takes.
+            /// Memory for one impact, in bytes.
             pub fn bytes(&self) -> usize {
                 0 $(+ if self.$name { size_of::<$kind>() } else { 0 })*
             }
         }
 
         /// Every impact of a run, in SI units. Tables are row-major of shape (particle, impact), with NaN (0 in flags)
-        /// where there was no impact, and empty where they were not asked for; the rest has one entry a particle.
+        /// where there was no impact; those that were not chosen are empty. The other fields have one entry per particle.
         #[derive(Debug, Clone)]
         pub struct Records {
             pub(crate) columns: usize,
             chosen: Columns,
-            /// Columns that hold impacts: all, or, of a run that was cut short, as many as the longest row. What is beyond has
-            /// no meaning.
+            /// Number of columns that hold impacts: all, or the length of the longest row if the run was cancelled. Columns beyond
+            /// it are undefined.
             pub reached: usize,
-            /// Numbers of the particles whose rows these are, where some between them had to be left out; else none.
+            /// Numbers of the particles of the rows, where some particles had to be left out; otherwise empty.
             pub particle: Vec<i64>,
             /// Whether a row is blank where there was no impact.
             pub(crate) settled: Vec<bool>,
@@ -83,16 +86,16 @@ macro_rules! columns {
             pub stop_reason: Vec<i8>,
             /// θ at release in rad, per particle.
             pub release_angle: Vec<f64>,
-            /// Height of the centre of mass at release in m, per particle; of none if all were released from one.
+            /// Height of the centre of mass at release in m, per particle; empty if all were released from the same height.
             pub release_height: Vec<f64>,
-            /// Azimuth of the axis at release in rad, per particle; of none if all were released at rest.
+            /// Azimuth of the axis at release in rad, per particle; empty if all were released at rest over a level plane.
             pub release_azimuth: Vec<f64>,
             /// Angular velocity at release in rad/s, likewise.
             pub release_spin: Vec<[f64; 3]>,
         }
 
         impl Records {
-            /// Zeros, which cost nothing yet: rows are written, and blanked where no impact happened, by those who fill them.
+            /// A table of zeros, whose pages are not touched yet: whoever fills a row blanks its end.
             pub(crate) fn new(particles: usize, impacts: usize, chosen: &Columns) -> Result<Self, Error> {
                 let size = |chosen| if chosen { particles * impacts } else { 0 };
                 Ok(Self {
@@ -111,7 +114,7 @@ macro_rules! columns {
                 })
             }
 
-            /// Keeps the first particles only. Memory that was not written to is never touched.
+            /// Keeps the first `particles` rows, without touching memory that was not written to.
             pub(crate) fn truncate(&mut self, particles: usize) {
                 $(self.$name.truncate(particles * self.columns);)*
                 self.settled.truncate(particles);
@@ -120,7 +123,7 @@ macro_rules! columns {
                 self.release_angle.truncate(particles);
             }
 
-            /// Moves what was recorded of a particle up to another row.
+            /// Moves the row of a particle up to row `place`.
             pub(crate) fn move_up(&mut self, row: usize, place: usize) {
                 let (start, impacts) = (row * self.columns, self.impacts[row] as usize);
                 $(if !self.$name.is_empty() {
@@ -144,7 +147,7 @@ macro_rules! columns {
                 }
             }
 
-            /// What was recorded of each impact, with what is known of it.
+            /// The recorded variables of the impacts with their values, which are moved out.
             pub fn per_impact(&mut self) -> Vec<(Variable, Values)> {
                 let columns = [$(<$kind>::values(std::mem::take(&mut self.$name))),*];
                 let chosen = [$(self.chosen.$name),*];
@@ -164,7 +167,7 @@ macro_rules! columns {
         }
 
         impl<'a> Block<'a> {
-            /// Takes the first rows away, at most as many as there are.
+            /// Splits off the first `particles` rows, or all if there are fewer.
             pub fn split(&mut self, particles: usize) -> Block<'a> {
                 let particles = particles.min(self.impacts.len());
                 let cells = particles * self.columns;
@@ -200,7 +203,7 @@ macro_rules! columns {
                 })*
             }
 
-            /// Marks these impacts of a particle as never happened.
+            /// Fills these cells of a row with the value for no impact.
             pub fn blank(&mut self, row: usize, impacts: Range<usize>) {
                 let start = row * self.columns;
                 let cells = start + impacts.start..start + impacts.end;
@@ -315,7 +318,7 @@ columns! {
 }
 
 impl Columns {
-    /// Those that are recorded under a law unless they are chosen by name, with the full state at each impact or without.
+    /// The variables that are recorded under a law by default, with the full state at each impact if `state`.
     pub fn usual(law: &Law<'_>, state: bool) -> Self {
         let recorded = PER_IMPACT.iter().filter(|about| match about.when {
             When::Always => true,
@@ -327,7 +330,7 @@ impl Columns {
     }
 }
 
-/// Takes the first cells of a slice away; none of an empty one.
+/// Splits off the first cells of a slice; of an empty slice, none.
 fn first<'a, T>(slice: &mut &'a mut [T], cells: usize) -> &'a mut [T] {
     let whole = std::mem::take(slice);
     let (first, rest) = whole.split_at_mut(cells.min(whole.len()));

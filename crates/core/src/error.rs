@@ -1,8 +1,8 @@
-//! What can go wrong: a parameter outside its range, or numerical trouble in one particle.
+//! Errors: a parameter outside its range, missing memory or threads, or numerical trouble in one particle.
 
 use std::fmt;
 
-/// Every failure of the core. Whoever words an error anew finds name, value and what is allowed in its fields.
+/// Every error of the core. The fields hold name, value and allowed range, so that a binding can word the message itself.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum Error {
     /// A parameter is outside the range that it is defined on.
@@ -15,7 +15,7 @@ pub enum Error {
         /// What is allowed.
         allowed: String,
     },
-    /// Each parameter is in its range, but what follows from all of them is beyond floating-point numbers.
+    /// Each parameter is in its range, but a quantity derived from all of them overflows or underflows.
     #[error("{name} = {value}: must be {allowed}")]
     Magnitude {
         /// Name of the parameter that sets the scale.
@@ -25,33 +25,33 @@ pub enum Error {
         /// What is allowed.
         allowed: &'static str,
     },
-    /// A SIMD level that does not exist, or not here.
+    /// A SIMD level that does not exist, or that this machine does not have.
     #[error("RESTITUTION_SIMD = {name}: {problem}; must be one of {allowed}")]
     Level {
         /// The name given.
         name: String,
         /// What is allowed.
         allowed: String,
-        /// What is wrong with it.
+        /// The reason for the refusal.
         problem: &'static str,
     },
-    /// The operating system gave no threads.
+    /// The operating system refused to start threads.
     #[error("threads = {asked}: the system gives no more threads ({problem}); one needs none")]
     Threads {
         /// How many were asked for.
         asked: usize,
-        /// What the system says.
+        /// The system's message.
         problem: String,
     },
-    /// The process cannot have the memory.
+    /// The memory could not be allocated.
     #[error("{what}: {:.3} GB more are needed, which this process cannot have", *bytes as f64 / 1e9)]
     Memory {
-        /// What for, in terms of the parameters.
+        /// The parameters that the size follows from.
         what: &'static str,
-        /// How much was asked for.
+        /// The size, in bytes.
         bytes: usize,
     },
-    /// The contact search of one particle did not come to an end.
+    /// The contact search of one particle did not converge.
     #[error(
         "particle {particle} (seed {seed}): the contact search did not converge in flight {flight}; \
          this state is a defect of the program, please report it"
@@ -66,12 +66,12 @@ pub enum Error {
     },
 }
 
-/// The value of a parameter that is refused.
+/// The value of a parameter that was refused.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Value {
     /// A real number.
     Number(f64),
-    /// How many there are of something.
+    /// A number of objects, such as particles.
     Count(usize),
     /// A name.
     Name(String),
@@ -100,7 +100,7 @@ impl From<usize> for Value {
 }
 
 impl Error {
-    /// There is no memory for `length` values.
+    /// The error for `length` values that could not be allocated.
     pub(crate) fn out_of_memory<T>(what: &'static str, length: usize) -> Self {
         let bytes = length.saturating_mul(size_of::<T>());
         Self::Memory { what, bytes }
@@ -142,7 +142,7 @@ impl Error {
         }
     }
 
-    /// What is called `value` in a list of names, else an error that lists them.
+    /// The entry of `known` that has the name `value`, else an error that lists all names.
     pub(crate) fn chosen<T: Copy>(
         name: &'static str,
         value: &str,

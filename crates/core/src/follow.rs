@@ -1,4 +1,4 @@
-//! One particle of a run, followed impact by impact: for those who draw its motion.
+//! One particle of a run, followed impact by impact, for a drawing of its motion.
 
 use crate::Error;
 use crate::engine::{NoConvergence, Release, SingleImpact, StopReason, trajectory};
@@ -9,14 +9,17 @@ use crate::run::{Plan, Run, Scales};
 pub struct Followed<'a> {
     plan: Plan<'a>,
     particle: usize,
-    /// The units of what is seen, in SI.
+    /// The core's units of length, time and speed, in SI units.
     pub scales: Scales,
-    /// How it is released, in the core's units.
+    /// The state at release, in the core's units.
     pub release: State,
 }
 
 impl<'a> Followed<'a> {
-    /// The particle of this number, with the random numbers that it has in [`Run::simulate`].
+    /// Particle number `particle`, with the random numbers that it has in [`Run::simulate`].
+    ///
+    /// # Errors
+    /// [`Error::Parameter`] or [`Error::Magnitude`] for a parameter of the run out of range, or a particle that it does not have.
     pub fn new(run: &'a Run<'a>, particle: usize) -> Result<Self, Error> {
         let plan = Plan::new(run)?;
         let allowed = "less than the number of particles";
@@ -29,8 +32,11 @@ impl<'a> Followed<'a> {
         })
     }
 
-    /// Bounces it to its end. `record` sees every impact, in the core's units, and says whether to go on. The impacts are
-    /// those of [`Run::simulate`] to the last bit.
+    /// Simulates the particle until it stops. `record` is called with every impact, in the core's units, and returns whether to
+    /// continue. The impacts have the same bits as in [`Run::simulate`].
+    ///
+    /// # Errors
+    /// [`Error::Numerical`] if a contact search does not converge.
     pub fn bounce(
         &self,
         mut record: impl FnMut(&SingleImpact) -> bool,

@@ -4,9 +4,10 @@
 //! particles*, Phys. Rev. E **90**, 052204 (2014). Equation numbers in this crate are that paper's.
 //!
 //! # Units
-//! Inside the core lengths are measured in the sphere radius R (of the larger sphere; the longer semi-axis of a spheroid), times in √(R/g) and masses in the body's mass m.
-//! Gravity is then 1 and a run depends on L/R, the release height over R, the law and nothing else; [`Scales`]
-//! converts. Only [`Shape`]s, [`Solid`] and [`Scales`] know SI units.
+//! Inside the core lengths are measured in the sphere radius R (of the larger sphere; the longer semi-axis of a spheroid),
+//! times in √(R/g) and masses in the body's mass m. Gravity is then 1, and the motion of a dumbbell that is released from
+//! rest depends on L/R, on the release height over R and on the law alone. SI units occur in the public parameters
+//! ([`Shape`]s, [`Solid`], [`Law`], [`Run`]) and in the recorded tables; [`Scales`] converts.
 //!
 //! # Notation
 //! | paper | here |
@@ -29,6 +30,8 @@
 //! | (9), (10) | `collision/tangential.rs` |
 //! | (18) | `run/orientation.rs` |
 //! | (A1)–(A8) | `body/dumbbell.rs` |
+//!
+//! The first impact in closed form, (13)–(22), is in the Python package, `analytic/`.
 #![forbid(unsafe_code)]
 
 mod body;

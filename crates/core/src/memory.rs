@@ -1,15 +1,15 @@
-//! Memory whose size is the caller's choice: it is had, or there is an error, and never an abort.
+//! Allocations whose size the caller chooses: a failure is returned as an error and never aborts the process.
 
 use crate::Error;
 use bytemuck_alloc::Zeroable;
 use bytemuck_alloc::allocation::try_zeroed_vec;
 
-/// Zeros, which cost nothing before they are written to. `what` is for the error.
+/// A vector of zeros; the system provides pages only when they are written to. `what` is for the error.
 pub(crate) fn zeros<T: Zeroable>(what: &'static str, length: usize) -> Result<Vec<T>, Error> {
     try_zeroed_vec(length).map_err(|()| Error::out_of_memory::<T>(what, length))
 }
 
-/// So many times the same value.
+/// A vector of `length` copies of `value`.
 pub(crate) fn filled<T: Clone>(
     what: &'static str,
     value: T,
@@ -20,7 +20,7 @@ pub(crate) fn filled<T: Clone>(
     Ok(vector)
 }
 
-/// Room for so many values.
+/// An empty vector with room for `length` values.
 pub(crate) fn empty<T>(what: &'static str, length: usize) -> Result<Vec<T>, Error> {
     let mut vector = Vec::new();
     match vector.try_reserve_exact(length) {

@@ -4,7 +4,7 @@ use crate::columns::Records;
 use crate::engine::StopReason;
 use crate::variable::{Values, Variable, When};
 
-/// The variables of a particle. The last ones are recorded of those that are not released at rest over a level plane.
+/// The variables of a particle; [`Variable::when`] says in which runs each is recorded.
 pub const PER_PARTICLE: [Variable; 6] = [
     Variable {
         name: "impacts",
@@ -55,7 +55,7 @@ impl Records {
         self.impacts.len()
     }
 
-    /// What was recorded of each particle, with what is known of it; vectors have three numbers a particle.
+    /// The recorded variables of the particles with their values, which are moved out; a vector has three numbers per particle.
     pub fn per_particle(&mut self) -> Vec<(Variable, Values)> {
         use std::mem::take;
         let flattened = take(&mut self.release_spin).into_flattened();

@@ -1,4 +1,6 @@
-//! Random numbers that depend on (seed, particle, draw) alone, so that no schedule can change them.
+//! Counter-based random numbers: functions of (seed, particle, draw) alone, and thus independent of the order of evaluation.
+//!
+//! J. K. Salmon, M. A. Moraes, R. O. Dror and D. E. Shaw, *Parallel random numbers: as easy as 1, 2, 3*, Proc. SC11 (2011).
 
 use rand_philox::philox4x32_10;
 
@@ -10,8 +12,8 @@ pub fn uniform(seed: u64, particle: u64, draw: u32) -> f64 {
     unit(a, b)
 }
 
-/// Two uniform numbers in [0, 1) with 53 random bits each, for draw `index` of a sampler: counter = (index, 0, 1), which no
-/// particle has.
+/// Two uniform numbers in [0, 1) with 53 random bits each, for draw `index` of a sampler: counter = (index, 0, 1), whose last
+/// word is 0 for particles.
 pub fn pair(seed: u64, index: u64) -> (f64, f64) {
     let (low, high) = halves(index);
     let key = halves(seed);

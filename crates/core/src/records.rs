@@ -9,15 +9,15 @@ use crate::simd::elementary::angle;
 use crate::threads::Monitor;
 use pulp::Simd;
 
-/// Cells that are blanked after a run was cut short, at most: some tenths of a second.
+/// Largest number of cells that are blanked after a cancellation, which takes some tenths of a second.
 const MOST_BLANKED: usize = 1 << 22;
-/// Cells that are blanked between two looks at whether to end.
+/// Number of cells that are blanked between two checks for a cancellation.
 const STRIDE: usize = 1 << 16;
 
 impl Records {
-    /// Ends a run that was cut short, in no time however long the rows are: the columns end with the longest row, and where
-    /// the rest of the others would take long to blank, those that were cut short are left out. The first row is that of the
-    /// particle `first`.
+    /// Completes the table of a cancelled run quickly, however long the rows are: the columns end with the longest row, and where
+    /// blanking the rest would take long, the particles that were interrupted are left out. The first row is that of the particle
+    /// `first`.
     pub(crate) fn settle(&mut self, first: usize) {
         self.reached = self.longest();
         if self.missing() > MOST_BLANKED {
@@ -37,7 +37,7 @@ impl Records {
         self.impacts.iter().max().map_or(0, |&most| most as usize)
     }
 
-    /// Cells that would have to be blanked.
+    /// Number of cells that would have to be blanked.
     fn missing(&self) -> usize {
         let open = self.settled.iter().zip(&self.impacts);
         let open = open.filter(|(settled, _)| !**settled);
@@ -45,7 +45,7 @@ impl Records {
             .sum()
     }
 
-    /// Keeps the rows of the particles that finished, and their numbers.
+    /// Keeps the rows of the particles that finished, and records their numbers.
     fn leave_out_cut_short(&mut self, first: usize) {
         let cut_short = |&row: &usize| self.stop_reason[row] == StopReason::Interrupted as i8;
         let kept: Vec<usize> = (0..self.particles())
@@ -58,7 +58,7 @@ impl Records {
         self.particle = kept.into_iter().map(|row| (first + row) as i64).collect();
     }
 
-    /// Adds how the particles, which are those from `first` on, were released, where that is more than an angle.
+    /// Adds the release of the particles from `first` on, where more than the angle varies.
     pub(crate) fn add_release(&mut self, plan: &Plan<'_>, first: usize) -> Result<(), Error> {
         let particle = |row: usize, this: &Self| {
             let known = this.particle.get(row);
@@ -86,7 +86,7 @@ impl Records {
     }
 }
 
-/// Takes the impacts of a block of particles into its rows.
+/// The sink that records the impacts of a block of particles in its rows.
 pub(crate) struct Table<'a> {
     block: Block<'a>,
     plan: &'a Plan<'a>,
@@ -108,7 +108,7 @@ impl<'a> Table<'a> {
         }
     }
 
-    /// Marks the impacts after the last of each particle as never happened, unless the run is cut short meanwhile.
+    /// Blanks the cells after the last impact of each particle, unless the run is cancelled meanwhile.
     pub fn finish(mut self, monitor: &Monitor) {
         let end = self.block.columns;
         for row in 0..self.block.impacts.len() {

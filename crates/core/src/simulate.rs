@@ -1,4 +1,4 @@
-//! Many particles, on all cores, each alone: the result cannot depend on the schedule.
+//! All particles of a run, on all cores. Particles do not interact, so that the result does not depend on the schedule.
 
 use crate::Error;
 use crate::columns::{Columns, Records};
@@ -11,7 +11,11 @@ use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 impl Run<'_> {
-    /// Runs every particle and keeps every impact. A run that is cancelled returns the particles that were begun.
+    /// Simulates every particle and records every impact, in SI units. A cancelled run returns the particles that were begun.
+    ///
+    /// # Errors
+    /// [`Error::Parameter`] or [`Error::Magnitude`] for a parameter out of range, [`Error::Memory`], [`Error::Threads`], and
+    /// [`Error::Numerical`] if a contact search does not converge.
     pub fn simulate(&self, means: Means, monitor: &Monitor) -> Result<Records, Error> {
         self.simulate_part(0..self.particles, means, monitor)
     }
@@ -26,7 +30,7 @@ impl Run<'_> {
         self.simulate_columns(part, &Columns::usual(&self.law, false), means, monitor)
     }
 
-    /// As [`Run::simulate_part`], with these variables of each impact.
+    /// As [`Run::simulate_part`], recording the variables in `columns`.
     pub fn simulate_columns(
         &self,
         part: Range<usize>,
@@ -45,7 +49,7 @@ impl Run<'_> {
         let mut records = Records::new(part.len(), self.impacts, columns)?;
         let started = AtomicUsize::new(part.start);
         let rows = Mutex::new(records.block());
-        // Blocks go in order to whichever thread is free, so that a run that is cancelled leaves a table of those begun.
+        // Free threads take blocks in order, so that the particles begun before a cancellation are contiguous.
         let ended = means.each_thread(part.len().div_ceil(BLOCK), || {
             while !monitor.is_cancelled() {
                 let mut rows = rows.lock().expect("no thread panics while it takes rows");
@@ -72,12 +76,15 @@ impl Run<'_> {
         Ok(records)
     }
 
-    /// Runs every particle and keeps the statistics of the impacts only, in memory that does not grow with the run.
+    /// Simulates every particle and keeps only the statistics of the impacts, in memory that does not grow with the run.
+    ///
+    /// # Errors
+    /// As [`Run::simulate`], and [`Error::Parameter`] for bins that do not fit the run.
     pub fn statistics(&self, bins: &Bins, means: Means, monitor: &Monitor) -> Result<Tally, Error> {
         self.statistics_of_part(0..self.particles, bins, means, monitor)
     }
 
-    /// As [`Run::statistics`], for some of the particles of the run. Tallies of its parts merge to that of the run.
+    /// As [`Run::statistics`], for some of the particles of the run. The tallies of all parts merge to the tally of the run.
     pub fn statistics_of_part(
         &self,
         part: Range<usize>,
@@ -116,8 +123,8 @@ impl Run<'_> {
         Ok(total)
     }
 
-    /// The tallies of all threads. Blocks go to whichever thread is free; the sums are whole numbers, whose order is of no
-    /// consequence.
+    /// The tallies of all threads. Which thread takes which block does not matter, because integer sums do not depend on the
+    /// order.
     fn tallies<T: Tallying>(
         plan: &Plan<'_>,
         part: Range<usize>,

@@ -1,19 +1,19 @@
-//! On how many threads a run is computed, and what can be seen and done from outside meanwhile. The result does not depend on it.
+//! Threads of a run, its progress and its cancellation. The result does not depend on them.
 
 use crate::Error;
 use crate::simd::Level;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
-/// How to compute a run; the result does not depend on it.
+/// Threads and vector instructions of a run; the result does not depend on them.
 #[derive(Debug, Clone, Copy)]
 pub struct Means {
-    /// Number of threads; 0 means one a core.
+    /// Number of threads; 0 means one for each core.
     pub threads: usize,
-    /// The vector instructions.
+    /// Level of the vector instructions.
     pub level: Level,
 }
 
-/// Seen and touched from outside while a run is under way.
+/// Progress and cancellation of a run, shared with the thread that started it.
 #[derive(Default)]
 pub struct Monitor {
     cancelled: AtomicBool,
@@ -21,11 +21,11 @@ pub struct Monitor {
     attend: Option<Box<Attend>>,
 }
 
-/// What handles signals and progress where the work has no thread of its own.
+/// Handles signals and progress where the work has no thread of its own.
 type Attend = dyn Fn(&Monitor) + Send + Sync;
 
 impl Monitor {
-    /// One for work that has no thread of its own: `attend` is called after every few impacts.
+    /// A monitor for work that has no thread of its own: `attend` is called after every few impacts.
     pub fn attended(attend: impl Fn(&Self) + Send + Sync + 'static) -> Self {
         Self {
             attend: Some(Box::new(attend)),
@@ -33,12 +33,12 @@ impl Monitor {
         }
     }
 
-    /// Asks the run to end; every particle stops within an impact.
+    /// Asks the run to end; every particle stops at its next impact at the latest.
     pub fn cancel(&self) {
         self.cancelled.store(true, Ordering::Relaxed);
     }
 
-    /// Number of particles that are done.
+    /// Number of particles that are finished.
     pub fn finished(&self) -> u64 {
         self.finished.load(Ordering::Relaxed)
     }
@@ -56,14 +56,14 @@ impl Monitor {
     }
 }
 
-/// Number of threads where none is asked for: one for each core that the process may use, whatever its environment says.
+/// The default number of threads: one for each core that the process may use. Environment variables are not read.
 pub fn default_threads() -> usize {
     std::thread::available_parallelism().map_or(1, usize::from)
 }
 
 impl Means {
-    /// Has every thread do the same `work`, on no more threads than there are blocks of it; the results, thread by thread.
-    /// One thread is the caller's own.
+    /// Runs `work` on every thread, on no more threads than there are blocks, and returns one result for each thread. A single
+    /// thread is the caller's own.
     #[cfg(feature = "threads")]
     pub(crate) fn each_thread<R: Send>(
         &self,
@@ -88,7 +88,7 @@ impl Means {
         Ok(pool.broadcast(|_| work()))
     }
 
-    /// Does `work` on the one thread that there is.
+    /// Runs `work` on the caller's thread.
     #[cfg(not(feature = "threads"))]
     pub(crate) fn each_thread<R>(
         &self,

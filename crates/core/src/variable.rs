@@ -1,45 +1,45 @@
-//! What is known of a recorded variable, and how its values are kept.
+//! Metadata of a recorded variable, and the storage of its values.
 
 use crate::flight::Vectors;
 use crate::simd::Pack;
 use pulp::Simd;
 
-/// What is known of a recorded variable.
+/// Metadata of a recorded variable.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Variable {
     /// Its name.
     pub name: &'static str,
-    /// What it is.
+    /// Its description.
     pub text: &'static str,
-    /// Its unit; "1" of a ratio, none of a count or a name.
+    /// Its unit; "1" for a ratio, none for a count or a name.
     pub unit: Option<&'static str>,
-    /// How the field writes it.
+    /// Its usual symbol.
     pub symbol: Option<&'static str>,
-    /// What its numbers 0, 1, ... stand for, if for names.
+    /// The names that its numbers 0, 1, ... stand for; empty if they stand for themselves.
     pub meanings: &'static [&'static str],
     /// Whether it is a vector, with components along x, y and z.
     pub vector: bool,
-    /// In which runs it is recorded, unless its columns are chosen by name.
+    /// The runs in which it is recorded, unless columns are chosen by name.
     pub when: When,
 }
 
-/// In which runs a variable is recorded.
+/// The runs in which a variable is recorded.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum When {
-    /// In every one.
+    /// All runs.
     Always,
-    /// Where the normal coefficient depends on the speed.
+    /// Runs whose normal coefficient depends on the speed.
     NormalVaries,
-    /// Where the full state at each impact is asked for.
+    /// Runs that record the full state at each impact.
     StateAsked,
-    /// Where the particles are released from random heights.
+    /// Runs whose particles are released from random heights.
     HeightVaries,
-    /// Where the particles are not released at rest over a level plane.
+    /// Runs whose particles are not released at rest over a level plane.
     InSpace,
 }
 
 impl Variable {
-    /// One of which nothing is known, to be filled in.
+    /// A variable without metadata, to be filled in.
     pub const PLAIN: Self = Self {
         name: "",
         text: "",
@@ -72,13 +72,13 @@ impl Values {
     }
 }
 
-/// What a column is made of.
+/// A type of the elements of a column.
 pub(crate) trait Stored: Copy + Default {
-    /// Where there was no impact.
+    /// The value where there was no impact.
     const NONE: Self;
     /// [`Variable::vector`].
     const VECTOR: bool = false;
-    /// What the bounce loop has of it, one value in each lane.
+    /// Its form in the bounce loop, one value in each lane.
     type Lanes<S: Simd, const K: usize>;
 
     fn lane<S: Simd, const K: usize>(lanes: &Self::Lanes<S, K>, lane: usize) -> Self;

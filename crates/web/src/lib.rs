@@ -1,7 +1,7 @@
-//! The thin binding for the browser: a run as a row of numbers in, tables of numbers out. No physics, no threads, no unsafe
-//! block; only the names by which the page calls are exported.
+//! The binding for the browser: it takes a run as a row of numbers and returns tables of numbers. It contains no physics, no threads
+//! and no unsafe block; only the functions that the page calls are exported.
 //!
-//! The page writes [`parameters::COUNT`] numbers at [`run_parameters`], calls [`simulate`] or [`follow`], and reads the table
+//! The page writes `parameters::COUNT` numbers at [`run_parameters`], calls [`simulate`] or [`follow`], and reads the table
 //! at [`table`], of as many numbers as the call returned. A call that fails returns −1, and [`message`] says why.
 #![deny(unsafe_code)]
 
@@ -14,7 +14,7 @@ use restitution_core::Error;
 use std::cell::RefCell;
 use std::sync::atomic::{AtomicU64, Ordering};
 
-/// Where the page writes the parameters: the bits of `f64`.
+/// The parameters, as the bits of `f64`, written by the page.
 static PARAMETERS: [AtomicU64; parameters::COUNT] =
     [const { AtomicU64::new(0) }; parameters::COUNT];
 
@@ -23,7 +23,7 @@ thread_local! {
     static MESSAGE: RefCell<String> = const { RefCell::new(String::new()) };
 }
 
-/// Runs `work` on the parameters and keeps the table it makes; returns the number of its entries.
+/// Runs `work` on the parameters and keeps the table that it makes. Returns the number of its entries, or −1 after an error.
 fn keep(work: impl FnOnce(&Parameters) -> Result<Vec<f64>, Error>) -> f64 {
     let numbers = std::array::from_fn(|i| f64::from_bits(PARAMETERS[i].load(Ordering::Relaxed)));
     match work(&Parameters(numbers)) {
@@ -46,14 +46,14 @@ pub extern "C" fn run_parameters() -> *const AtomicU64 {
     PARAMETERS.as_ptr()
 }
 
-/// Bounces `count` particles of the run from number `first` on; the table is that of [`records::simulate`].
+/// Simulates `count` particles of the run from number `first` on; the table is that of `records::simulate`.
 #[allow(unsafe_code)]
 #[unsafe(no_mangle)]
 pub extern "C" fn simulate(first: usize, count: usize) -> f64 {
     keep(|parameters| records::simulate(&parameters.run()?, first, count))
 }
 
-/// Follows one particle through space; the table is that of [`path::follow`].
+/// Follows one particle in three dimensions; the table is that of `path::follow`.
 #[allow(unsafe_code)]
 #[unsafe(no_mangle)]
 pub extern "C" fn follow(particle: usize) -> f64 {
@@ -67,14 +67,14 @@ pub extern "C" fn table() -> *const f64 {
     TABLE.with_borrow(Vec::as_ptr)
 }
 
-/// Address of what the last call that failed has to say, in UTF-8.
+/// Address of the error message of the last call that failed, in UTF-8.
 #[allow(unsafe_code)]
 #[unsafe(no_mangle)]
 pub extern "C" fn message() -> *const u8 {
     MESSAGE.with_borrow(|text| text.as_ptr())
 }
 
-/// Its length in bytes.
+/// Length of that message in bytes.
 #[allow(unsafe_code)]
 #[unsafe(no_mangle)]
 pub extern "C" fn message_length() -> usize {

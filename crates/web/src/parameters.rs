@@ -1,4 +1,4 @@
-//! A run as the page writes it down: a row of numbers, in SI units.
+//! The parameters of a run as a row of numbers, in SI units, written by the page.
 
 use restitution_core::{
     ChatterjeeRuina, Coulomb, Dumbbell, Error, Frictionless, Hypothesis, Law, LoadedSphere,
@@ -8,11 +8,11 @@ use restitution_core::{
 /// Number of parameters.
 pub const COUNT: usize = 28;
 
-/// The parameters, at the places that `web/src/engine/layout.ts` names.
+/// The parameters, in the order of `web/src/engine/layout.ts`.
 pub struct Parameters(pub [f64; COUNT]);
 
 impl Parameters {
-    /// The run, if body and law are possible. The rest is checked when it is released.
+    /// The run, if the parameters of body and law are valid. The others are checked when the run starts.
     pub fn run(&self) -> Result<Run<'_>, Error> {
         let p = &self.0;
         Ok(Run {
@@ -31,7 +31,7 @@ impl Parameters {
             velocity: Vector::new(p[19], p[20], p[21]),
             incline: p[22],
             minimum_speed: p[23],
-            // Two halves, for a double holds 53 bits.
+            // Two halves, because a double holds integers of 53 bits only.
             seed: (p[24] as u64) << 32 | p[25] as u64,
         })
     }

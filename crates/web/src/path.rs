@@ -1,9 +1,10 @@
-//! One particle through space: where each flight starts. Between, the motion is in closed form, and the page draws it.
+//! The states at the start of each flight of one particle, from which the page draws the motion in closed form.
 
 use restitution_core::{Error, Followed, Run, Scales, Sphere, State};
 
-/// Numbers a flight: start time; height of the centre of mass; velocity (3); axis (3); Λ/J_xx (3); ω along the axis less that of
-/// Λ/J_xx, the rate at which the body rolls about its axis; energy of rotation over the mass; which sphere touched, 0 at release.
+/// Number of columns, one row per flight: start time; height of the centre of mass; velocity (3); axis (3); Λ/J_xx (3); the component
+/// of ω − Λ/J_xx along the axis, the rate at which the body rolls about its axis; rotational energy divided by the mass; the sphere
+/// that touched, 0 at release.
 pub const COLUMNS: usize = 14;
 
 /// The flights, row by row; the first starts at the release. SI units.

@@ -3,8 +3,8 @@
 use restitution_core::{Error, Level, Means, Monitor, Run};
 
 /// Eight columns of shape (count, impacts): time, impact velocity, rebound velocity, restitution, rotational fraction, energy
-/// ratio, angle, contact; NaN, or 0 in the last, where there was no impact. Then three numbers a particle: how many impacts,
-/// why it ended, and its angle at release.
+/// ratio, angle, contact; NaN, or 0 in the last, where there was no impact. Then three numbers per particle: number of impacts,
+/// stop reason, and angle at release.
 pub fn simulate(run: &Run<'_>, first: usize, count: usize) -> Result<Vec<f64>, Error> {
     let means = Means {
         threads: 1,

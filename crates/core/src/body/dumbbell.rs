@@ -10,9 +10,10 @@ use std::f64::consts::PI;
 
 /// Two spheres whose centres are `separation` apart, in SI units. The axis points from sphere 2 to sphere 1.
 ///
-/// Where the spheres overlap the body is their union, cut at the plane of their intersection; each side has its sphere's
-/// density. Where they do not, it is two full spheres on a massless rod, and where one contains the other it is that one alone.
-/// Mass and inertia are continuous where these cases meet. Equal spheres of different density with no distance are two halves.
+/// If the spheres overlap, the body is their union, divided at the plane of their intersection; each side has the density of its
+/// sphere. If they do not, it is two full spheres on a massless rod, and if one contains the other, it is that sphere alone. Mass
+/// and inertia are continuous from case to case. Spheres of equal radius and different density at zero separation are two
+/// hemispheres.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Dumbbell {
     radius: [f64; 2],
@@ -21,12 +22,16 @@ pub struct Dumbbell {
 }
 
 impl Dumbbell {
-    /// Equal spheres. Checks that all three are finite, `radius` and `density` positive, `separation` not negative.
+    /// Equal spheres of `radius` (m) and `density` (kg/m³), their centres `separation` (m) apart.
+    ///
+    /// # Errors
+    /// Unless all three are finite, `radius` and `density` positive, and `separation` not negative; and if mass or inertia
+    /// overflows or underflows.
     pub fn new(radius: f64, separation: f64, density: f64) -> Result<Self, Error> {
         Self::unequal([radius; 2], separation, [density; 2])
     }
 
-    /// Sphere 1 and sphere 2, each with its radius and density.
+    /// Spheres 1 and 2, each with its own radius (m) and density (kg/m³). Errors as for [`Dumbbell::new`].
     pub fn unequal(radius: [f64; 2], separation: f64, density: [f64; 2]) -> Result<Self, Error> {
         for radius in radius {
             check_length("radius", radius)?;
@@ -53,7 +58,8 @@ impl Dumbbell {
         self.radius.map(|radius| radius / self.unit())
     }
 
-    /// Both sides of unequal spheres, in units of R and of the density of sphere 1; the origin is the centre of sphere 1.
+    /// Mass, centre and inertia of unequal spheres, in units of R and of the density of sphere 1; the origin is the centre of
+    /// sphere 1.
     fn whole(&self) -> Part {
         let l = self.elongation();
         let [one, two] = self.radii();
@@ -64,7 +70,7 @@ impl Dumbbell {
         if two > one && two - one >= l {
             return Part::sphere(two, density).upside_down(-l);
         }
-        // Height of a side above the plane of intersection.
+        // Height of a spherical segment above the plane of intersection.
         let height = |own: f64, other: f64| {
             let difference = own - other;
             let lean = if difference == 0.0 {
@@ -100,7 +106,7 @@ impl Dumbbell {
         if l < 2.0 {
             8.0 / 15.0 + 3.0 / 4.0 * l + l.powi(2) / 3.0 + l.powi(3) / 24.0 + l.powi(5) / 960.0 // (A8)
         } else {
-            16.0 / 15.0 + 2.0 / 3.0 * l.powi(2) // two spheres, Steiner's theorem
+            16.0 / 15.0 + 2.0 / 3.0 * l.powi(2) // two spheres, parallel axis theorem
         }
     }
 
@@ -108,7 +114,7 @@ impl Dumbbell {
     fn axial_factor(&self) -> f64 {
         let l = self.elongation();
         if l < 2.0 {
-            // (A5); its last term is printed as L⁵/180, but the integral gives L⁵/160, and so does L = 2R.
+            // (A5). The last term is printed as L⁵/180, but the integral is L⁵/160; only then is J_zz at L = 2R that of two spheres.
             8.0 / 15.0 + l / 2.0 - l.powi(3) / 12.0 + l.powi(5) / 160.0
         } else {
             16.0 / 15.0 // two spheres
@@ -117,7 +123,7 @@ impl Dumbbell {
 }
 
 impl Shape for Dumbbell {
-    /// The radius of the larger sphere: roundings are small beside it.
+    /// The radius of the larger sphere, relative to which rounding errors of positions are small.
     fn unit(&self) -> f64 {
         self.radius[0].max(self.radius[1])
     }
@@ -197,7 +203,7 @@ impl Shape for Dumbbell {
 mod tests {
     use super::*;
 
-    /// ∫ over the slices of the upper half, (A3), (A5), (A6), by Gauss–Legendre: exact for these polynomials.
+    /// The integrals over slices of the upper half, (A3), (A5), (A6), by Gauss–Legendre quadrature, exact for these polynomials.
     fn by_quadrature(l: f64) -> [f64; 3] {
         // Five nodes integrate degree 9 exactly; the integrands have degree 4.
         let nodes = [

@@ -1,4 +1,4 @@
-//! A sphere with a point mass inside: round, and yet no sphere.
+//! A sphere with a point mass inside: it is round, but its centre of mass is not its centre.
 
 use super::inertia::Part;
 use super::{
@@ -16,7 +16,11 @@ pub struct LoadedSphere {
 }
 
 impl LoadedSphere {
-    /// Checks that `radius` and `density` are positive, `load` (kg) is not negative, and `offset` (m) in [0, `radius`].
+    /// A sphere of `radius` (m) and `density` (kg/m³) with a point mass `load` (kg) at the distance `offset` (m) from its centre.
+    ///
+    /// # Errors
+    /// Unless `radius` and `density` are positive, `load` is not negative and `offset` is in [0, `radius`]; and if mass or
+    /// inertia overflows or underflows.
     pub fn new(radius: f64, density: f64, load: f64, offset: f64) -> Result<Self, Error> {
         check_length("radius", radius)?;
         check_density(density)?;
@@ -33,7 +37,7 @@ impl LoadedSphere {
         representable(body, "radius")
     }
 
-    /// Sphere and load.
+    /// Mass, centre and inertia of sphere and load.
     fn whole(&self) -> Part {
         Part::sphere(self.radius, self.density).and(Part::point(self.load, self.offset))
     }

@@ -1,7 +1,7 @@
-//! Bodies of revolution: what the motion needs to know of one, and one file a shape.
+//! Bodies of revolution: the properties on which the motion depends, and one file per shape.
 //!
-//! A further shape is a file with its parameters in SI units that implements [`Shape`]. Its hull is made of balls or is
-//! smooth; what either has to tell is in [`Hull`].
+//! A new shape is a file with its parameters in SI units that implements [`Shape`]. Its hull consists of balls or is smooth;
+//! [`Hull`] lists what it has to provide.
 
 mod dumbbell;
 mod hull;
@@ -19,16 +19,16 @@ pub use spheroid::Spheroid;
 
 use crate::Error;
 
-/// A body of revolution in the core's units (lengths in R, masses in m): all that the motion depends on.
+/// A body of revolution in the core's units (lengths in R, masses in m).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Body {
-    /// What can touch the plane.
+    /// The surface that can touch the plane.
     pub hull: Surface,
-    /// Half the distance between the centres of the two spheres, L/(2R); 0 if there is only one, or none.
+    /// Half the distance between the centres of the two spheres, L/(2R); 0 if the hull is a single sphere or smooth.
     pub half_separation: f64,
-    /// J_xx/(mR²), about the centre of mass.
+    /// Moment of inertia J_xx/(mR²) across the symmetry axis, about the centre of mass.
     pub transverse: f64,
-    /// J_zz/(mR²).
+    /// Moment of inertia J_zz/(mR²) about the symmetry axis.
     pub axial: f64,
 }
 
@@ -38,11 +38,12 @@ pub trait Shape {
     fn unit(&self) -> f64;
     /// Mass m, in kg.
     fn mass(&self) -> f64;
-    /// Moment of inertia J_xx about any axis through the centre of mass and across the symmetry axis, in kg m².
+    /// Moment of inertia J_xx about any axis through the centre of mass perpendicular to the symmetry axis, in kg m².
     fn transverse_inertia(&self) -> f64;
     /// Moment of inertia J_zz about the symmetry axis, in kg m².
     fn axial_inertia(&self) -> f64;
-    /// Place of the centre of mass on the axis, in m, from the middle of the shape: of its two centres, or of its one.
+    /// Position of the centre of mass on the axis, in m, relative to the middle of the shape: the midpoint of the centres of its
+    /// two spheres, or the centre of a single one.
     fn centre_of_mass(&self) -> f64 {
         0.0
     }
@@ -50,7 +51,7 @@ pub trait Shape {
     fn scaled(&self) -> Body;
 }
 
-/// What a run needs to know of any shape.
+/// The properties of any shape, as a run uses them.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Solid {
     /// The core's unit of length R, in m.
@@ -61,7 +62,7 @@ pub struct Solid {
     pub transverse_inertia: f64,
     /// Moment of inertia J_zz about the symmetry axis, in kg m².
     pub axial_inertia: f64,
-    /// Place of the centre of mass on the axis, in m, from the middle of the shape.
+    /// Position of the centre of mass on the axis, in m, relative to the middle of the shape ([`Shape::centre_of_mass`]).
     pub centre_of_mass: f64,
     /// The body in the core's units.
     pub scaled: Body,
@@ -81,26 +82,26 @@ impl<S: Shape> From<S> for Solid {
 }
 
 impl Solid {
-    /// Least height of the centre of mass, in m, at which nothing is below the plane when the axis leans by an angle of this
-    /// cosine. A height below it by a few roundings will do.
+    /// Smallest height of the centre of mass, in m, at which no part of the body is below the plane, for an axis at an angle to the
+    /// plane normal with this cosine. It is rounded; compare heights with it by [`Solid::clears`].
     pub fn lowest(&self, cosine: f64) -> f64 {
         self.unit * self.scaled.hull.support(cosine)
     }
 
-    /// Whether a `height` of the centre of mass, in m, is as large as one of these. A body put down on the plane may be off by
-    /// the rounding of its height.
+    /// Whether a `height` of the centre of mass is at least `lowest` up to rounding, both in m, so that a body may be placed on the
+    /// plane.
     pub fn clears(height: f64, lowest: f64) -> bool {
         height >= lowest * (1.0 - 4.0 * f64::EPSILON)
     }
 
-    /// The largest of these heights over all angles.
+    /// The largest value of [`Solid::lowest`] over all angles, in m.
     pub fn farthest(&self) -> f64 {
         self.unit * self.scaled.hull.farthest()
     }
 }
 
-/// The shape, if neither its mass nor its inertia nor what follows from them is beyond floating-point numbers; else an error
-/// that names its unit of length.
+/// The shape, unless its mass, its inertia or their ratio overflows or underflows: then an error that names `name`, the
+/// parameter that sets its size.
 fn representable<S: Shape>(shape: S, name: &'static str) -> Result<S, Error> {
     let body = shape.scaled();
     let all = [
@@ -119,10 +120,10 @@ fn representable<S: Shape>(shape: S, name: &'static str) -> Result<S, Error> {
     Ok(shape)
 }
 
-/// L/R below which a dumbbell is a sphere: far below the last digit of anything that is computed.
+/// L/R below which a dumbbell is treated as a sphere: far too small to change any digit of the motion.
 const NEGLIGIBLE: f64 = 1e-75;
 
-/// L/R, or 0 where no digit of the motion could show it, lest its powers underflow.
+/// L/R, or 0 if it is below [`NEGLIGIBLE`], so that its powers do not underflow.
 fn seen(elongation: f64) -> f64 {
     if elongation < NEGLIGIBLE {
         0.0

@@ -1,4 +1,4 @@
-//! A cylinder with hemispherical caps: it touches like a dumbbell, and is heavier in the middle.
+//! A cylinder with hemispherical caps: its contact is that of a dumbbell, but it has more mass in the middle.
 
 use super::{
     Body, EqualPair, Shape, Surface, check_density, check_distance, check_length, representable,
@@ -16,7 +16,11 @@ pub struct Spherocylinder {
 }
 
 impl Spherocylinder {
-    /// Checks that all three are finite, `radius` and `density` positive, `separation` not negative.
+    /// A spherocylinder of `radius` (m) and `density` (kg/m³), the centres of its caps `separation` (m) apart.
+    ///
+    /// # Errors
+    /// Unless all three are finite, `radius` and `density` positive, and `separation` not negative; and if mass or inertia
+    /// overflows or underflows.
     pub fn new(radius: f64, separation: f64, density: f64) -> Result<Self, Error> {
         check_length("radius", radius)?;
         check_distance("separation", separation)?;
@@ -39,7 +43,7 @@ impl Spherocylinder {
         4.0 / 3.0 + self.elongation()
     }
 
-    /// J_xx/(πρR⁵): the cylinder L(1/4 + L²/12), and hemispheres whose own centres are L/2 + 3/8 away.
+    /// J_xx/(πρR⁵), L in R: the cylinder gives L(1/4 + L²/12), the hemispheres have their centres of mass at ±(L/2 + 3/8).
     fn transverse_factor(&self) -> f64 {
         let l = self.elongation();
         8.0 / 15.0 + l * (3.0 / 4.0 + l * (1.0 / 3.0 + l / 12.0))

@@ -4,7 +4,7 @@ use super::{Body, Ellipsoid, Shape, Surface, check_density, check_length, repres
 use crate::Error;
 use std::f64::consts::PI;
 
-/// Needles longer and discs flatter than this lose more than 10⁻¹² of the contact to rounding.
+/// Largest ratio of the semi-axes; beyond it the relative rounding error of the contact exceeds 10⁻¹².
 const MOST_ASPHERICAL: f64 = 1000.0;
 
 /// A homogeneous ellipsoid of revolution, in SI units. The core's unit of length is the longer semi-axis.
@@ -16,7 +16,11 @@ pub struct Spheroid {
 }
 
 impl Spheroid {
-    /// From the semi-axes across and along the axis of revolution, both positive, their ratio between 1/1000 and 1000.
+    /// A spheroid with the semi-axes `equatorial` and `polar` (m), across and along the axis of revolution, and `density` (kg/m³).
+    ///
+    /// # Errors
+    /// Unless all three are positive and the ratio of the semi-axes is between 1/1000 and 1000; and if mass or inertia overflows
+    /// or underflows.
     pub fn new(equatorial: f64, polar: f64, density: f64) -> Result<Self, Error> {
         check_length("equatorial", equatorial)?;
         check_length("polar", polar)?;
@@ -36,7 +40,7 @@ impl Spheroid {
         representable(body, "equatorial")
     }
 
-    /// Semi-axes a and c in the core's unit.
+    /// Semi-axes a (equatorial) and c (polar) in the core's unit of length.
     fn axes(&self) -> (f64, f64) {
         (self.equatorial / self.unit(), self.polar / self.unit())
     }

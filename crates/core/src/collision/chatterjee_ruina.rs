@@ -6,12 +6,13 @@ use crate::Error;
 use crate::simd::Pack;
 use pulp::Simd;
 
-/// P = (1 + e) P_I + κ (P_II − P_I), with P_I the impulse of a frictionless and P_II that of a sticking plastic impact, and
-/// κ = 1 + e_t or, where that lies outside the friction cone |P_t| ≤ μ P_n, the κ at which P lies on it.
+/// **P** = (1 + e) **P**_I + κ (**P**_II − **P**_I), with e = ε_n, **P**_I the impulse of a perfectly plastic impact without
+/// friction, **P**_II that of a perfectly plastic impact that sticks, and κ = 1 + e_t or, where that lies outside the friction cone
+/// |P_t| ≤ μ P_n, the κ for which **P** lies on the cone.
 ///
-/// P_I and P_II − P_I are orthogonal with respect to the kinetic energy, so that it falls by
-/// (1 − e²)|P_I|² + κ(2 − κ)|P_II − P_I|², halved, with |P|² = PᵀKP: as 0 ≤ κ ≤ 1 + e_t ≤ 2 it cannot grow. Without friction
-/// (μ = 0) or for e_t = −1 this is [`super::Frictionless`].
+/// **P**_I and **P**_II − **P**_I are orthogonal with respect to the kinetic energy, which therefore decreases by
+/// [(1 − e²)|**P**_I|² + κ(2 − κ)|**P**_II − **P**_I|²]/2 with |**P**|² = **P**ᵀK**P**. Since 0 ≤ κ ≤ 1 + e_t ≤ 2, it cannot grow.
+/// Without friction (μ = 0) or for e_t = −1 the law is [`super::Frictionless`].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ChatterjeeRuina {
     tangential: f64,
@@ -19,7 +20,10 @@ pub struct ChatterjeeRuina {
 }
 
 impl ChatterjeeRuina {
-    /// e_t in [−1, 1], μ ≥ 0.
+    /// The law with the tangential coefficient e_t and the coefficient of friction μ.
+    ///
+    /// # Errors
+    /// [`Error::Parameter`] for e_t outside [−1, 1] or μ outside [0, 10¹⁰⁰].
     pub fn new(tangential: f64, friction: f64) -> Result<Self, Error> {
         Error::unless(
             (-1.0..=1.0).contains(&tangential),
@@ -44,7 +48,7 @@ impl ChatterjeeRuina {
         let zero = Pack::splat(speed.simd(), 0.0);
 
         let frictionless = speed / contact.normal_response(); // P_I
-        let left = contact.coupling().mul_add(frictionless, contact.slip_along); // slip after P_I
+        let left = contact.coupling().mul_add(frictionless, contact.slip_along); // tangential contact velocity after P_I
         let (normal, along) = contact.impulse(zero, -left); // P_II − P_I
         let (across, tangential) = if SPACE {
             let across = -contact.slip_across / contact.across_response();
@@ -61,7 +65,7 @@ impl ChatterjeeRuina {
             normal: share.mul_add(normal, most),
             along: share * along,
             across: share * across,
-            separation_speed: restitution * speed, // P_II − P_I leaves the normal velocity alone
+            separation_speed: restitution * speed, // P_II − P_I does not change the normal contact velocity
         }
     }
 }

@@ -1,8 +1,5 @@
-//! What a law needs to know of a contact, and what it answers.
-//!
-//! In the frame of **n**, of **u**, the horizontal direction of the axis, and of **w** = **n** × **u**, the matrix
-//! K = I/m + [**r**_c]ᵀĴ⁻¹[**r**_c], which turns an impulse into the change of contact velocity (10), separates into a
-//! 2×2 block {**n**, **u**} and a single entry for **w**. A law sees the contact velocity and K, and nothing of the body.
+//! Contacts as a law sees them, and the impulses that it returns, in all lanes. A law depends on the contact velocity and the
+//! matrix K (see [`super`]), and not on the body otherwise.
 
 use crate::simd::Pack;
 use pulp::Simd;
@@ -13,38 +10,38 @@ pub(crate) struct Contacts<S: Simd, const K: usize> {
     /// Velocity **v**_c of the point of contact (7), (8); `slip_normal` ≤ 0.
     pub slip_normal: Pack<S, K>,
     pub slip_along: Pack<S, K>,
-    /// 0 in the plane.
+    /// 0 in planar motion.
     pub slip_across: Pack<S, K>,
     /// J_xx.
     pub(super) inertia: f64,
     /// **r**_c along **n** and **u**.
     pub(super) arm_normal: Pack<S, K>,
     pub(super) arm_along: Pack<S, K>,
-    /// K_ww; of no meaning in the plane.
+    /// K_ww; not used in planar motion.
     pub(super) across: Pack<S, K>,
 }
 
-/// What a law answers in each lane.
+/// The outcome of a law in each lane.
 #[derive(Clone, Copy)]
 pub(crate) struct Responses<S: Simd, const K: usize> {
-    /// Impulse P on the particle.
+    /// Components of the impulse **P** on the particle along **n**, **u** and **w** (10).
     pub normal: Pack<S, K>,
     pub along: Pack<S, K>,
-    /// 0 in the plane.
+    /// 0 in planar motion.
     pub across: Pack<S, K>,
     /// Normal velocity of the point of contact after the impact, ≥ 0.
     pub separation_speed: Pack<S, K>,
 }
 
 impl<S: Simd, const K: usize> Contacts<S, K> {
-    /// A contact that slips in the vertical plane of the axis only. `inertia` is J_xx, `arm` is **r**_c along **n** and **u**.
+    /// A contact whose velocity is in the vertical plane of the axis. `inertia` is J_xx, `arm` is **r**_c along **n** and **u**.
     #[inline(always)]
     pub fn in_plane(slip: [Pack<S, K>; 2], inertia: f64, arm: [Pack<S, K>; 2]) -> Self {
         let zero = Pack::splat(slip[0].simd(), 0.0);
         Self::in_space([slip[0], slip[1], zero], inertia, arm, zero)
     }
 
-    /// A contact that slips in any direction along the plane, with `across` = K_ww.
+    /// A contact whose velocity has any direction, with `across` = K_ww.
     #[inline(always)]
     pub fn in_space(
         [slip_normal, slip_along, slip_across]: [Pack<S, K>; 3],
@@ -63,7 +60,7 @@ impl<S: Simd, const K: usize> Contacts<S, K> {
         }
     }
 
-    /// −v_c^n ≥ 0.
+    /// The speed of approach, −v_c^n ≥ 0.
     #[inline(always)]
     pub fn approach_speed(&self) -> Pack<S, K> {
         self.slip_normal.abs()
@@ -107,7 +104,7 @@ impl<S: Simd, const K: usize> Contacts<S, K> {
         self.across
     }
 
-    /// K_nn − K_nu²/K_uu, what a normal impulse changes where the contact sticks.
+    /// K_nn − K_nu²/K_uu: change of the normal contact velocity per normal impulse while the contact sticks.
     #[inline(always)]
     pub fn sticking_response(&self) -> Pack<S, K> {
         let nn = self.arm_normal.mul_add(self.arm_normal, self.inertia);

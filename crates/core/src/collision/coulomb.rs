@@ -1,9 +1,10 @@
-//! Dry friction: C. A. Coulomb's law during the impact, and three hypotheses on its end.
+//! Coulomb friction during the impact, with three hypotheses on when the impact ends.
 //!
-//! The impact is followed in the normal impulse p (E. J. Routh, 1860; Y. Wang and M. T. Mason, J. Appl. Mech. **59**, 635
-//! (1992)). While the contact slips, friction is μ against the slip; where the slip has come to rest the contact sticks if
-//! |K_nu| ≤ μ K_uu, and otherwise slips on the way that K_nu drives it. Both are dP_u/dp = −K_nu/K_uu, limited to ±μ. In the
-//! plane the contact velocity is then linear in p on either side of the one impulse p_s at which the slip vanishes.
+//! The independent variable is the accumulated normal impulse p (E. J. Routh, 1860; Y. Wang and M. T. Mason, J. Appl. Mech. **59**,
+//! 635 (1992)). While the contact slips, the tangential impulse per normal impulse is μ, opposite to the slip velocity. Once the
+//! slip velocity vanishes, the contact sticks if |K_nu| ≤ μ K_uu, and otherwise slips in the direction in which K_nu drives it. In
+//! both cases dP_u/dp = −K_nu/K_uu, limited to ±μ. In planar motion the contact velocity is therefore linear in p on either side
+//! of the impulse p_s at which the slip velocity vanishes.
 
 use super::turning::{Slipping, turning};
 use super::{Contacts, Responses};
@@ -11,30 +12,34 @@ use crate::Error;
 use crate::simd::Pack;
 use pulp::Simd;
 
-/// When the restitution that follows the compression is over. The three agree as long as the slip neither stops nor turns.
+/// The condition that ends the phase of restitution, after that of compression. The three hypotheses agree as long as the slip
+/// velocity neither vanishes nor changes its direction.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Hypothesis {
-    /// W. J. Stronge, Proc. R. Soc. Lond. A **431**, 169 (1990): the normal force gives back ε_n² of the work that it took.
-    /// Energy cannot grow, for friction takes, too.
+    /// W. J. Stronge, Proc. R. Soc. Lond. A **431**, 169 (1990): the normal force returns the fraction ε_n² of the work that was
+    /// done against it in the compression. The energy cannot grow, because friction dissipates as well.
     Stronge,
-    /// S. D. Poisson: the normal impulse of restitution is ε_n times that of compression. The normal force may give back
-    /// more than it took, but not more than friction takes: with T the kinetic energy, dT/dp = v_c^n − μ|**s**| ≤ 0 at the
-    /// end of the compression, and its slope, the K-square of the direction of the impulse, never grows, so that the sum of
-    /// both sides of that end is negative.
+    /// S. D. Poisson: the normal impulse of restitution is ε_n times that of compression. The normal force may return more work
+    /// than was done against it, but no more than friction dissipates: with T the kinetic energy and **s** the slip velocity,
+    /// dT/dp = v_c^n − μ|**s**| ≤ 0 at the end of the compression. Its derivative, **q**ᵀK**q** with **q** = d**P**/dp, never
+    /// increases with p, so that the gain of T after that point cannot exceed the loss before it.
     Poisson,
-    /// I. Newton: v_c^n′ = −ε_n v_c^n. Energy can grow where the slip stops or reverses.
+    /// I. Newton: v_c^n′ = −ε_n v_c^n. The energy can grow where the slip stops or reverses.
     Newton,
 }
 
 impl Hypothesis {
-    /// Every hypothesis, by name.
+    /// All hypotheses with their names.
     pub const NAMED: [(&'static str, Self); 3] = [
         ("stronge", Self::Stronge),
         ("poisson", Self::Poisson),
         ("newton", Self::Newton),
     ];
 
-    /// The hypothesis of that name.
+    /// The hypothesis with this name.
+    ///
+    /// # Errors
+    /// [`Error::Parameter`] for an unknown name.
     pub fn named(name: &str) -> Result<Self, Error> {
         Error::chosen("hypothesis", name, &Self::NAMED)
     }
@@ -42,7 +47,7 @@ impl Hypothesis {
 
 /// Coulomb friction with coefficient μ.
 ///
-/// It respects the friction cone |P_t| ≤ μ P_n; friction itself always dissipates. Without friction (μ = 0) it is
+/// The impulse lies within the friction cone |P_t| ≤ μ P_n, and friction always dissipates. Without friction (μ = 0) the law is
 /// [`super::Frictionless`] under each hypothesis.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Coulomb {
@@ -51,7 +56,10 @@ pub struct Coulomb {
 }
 
 impl Coulomb {
-    /// μ ≥ 0.
+    /// The law with the coefficient of friction μ and a hypothesis.
+    ///
+    /// # Errors
+    /// [`Error::Parameter`] for μ outside [0, 10¹⁰⁰].
     pub fn new(friction: f64, hypothesis: Hypothesis) -> Result<Self, Error> {
         check_friction(friction)?;
         Ok(Self {
@@ -115,7 +123,7 @@ impl Coulomb {
     }
 }
 
-/// Beyond this the products below could overflow; nothing that is finite slips any longer anyway.
+/// Largest μ; beyond it products of μ could overflow, and every contact sticks long before.
 pub const MOST_FRICTION: f64 = 1e100;
 
 pub(super) fn check_friction(friction: f64) -> Result<(), Error> {
@@ -127,14 +135,14 @@ pub(super) fn check_friction(friction: f64) -> Result<(), Error> {
     )
 }
 
-/// The contact velocity as a function of the normal impulse p: two straight lines that meet at `stop`.
+/// The contact velocity as a function of the normal impulse p: piecewise linear, with a kink at `stop`.
 struct Path<S: Simd, const K: usize> {
-    /// Impulse p_s at which the slip vanishes; infinite if it never does.
+    /// Impulse p_s at which the slip velocity vanishes; infinite if it never does.
     stop: Pack<S, K>,
-    /// dv_c^n/dp before and after. The first may be negative: the contact jams, and sticks before it can separate.
+    /// dv_c^n/dp before and after p_s. The first may be negative (jamming): the contact then sticks before it separates.
     first: Pack<S, K>,
     second: Pack<S, K>,
-    /// dP_u/dp before and after.
+    /// dP_u/dp before and after p_s.
     first_friction: Pack<S, K>,
     second_friction: Pack<S, K>,
 }
@@ -148,7 +156,7 @@ impl<S: Simd, const K: usize> Path<S, K> {
         let coupling = contact.coupling();
 
         let backward = contact.slip_along.lt(0.0);
-        let ahead = backward.select(-coupling, coupling); // K_nu, u taken along the slip
+        let ahead = backward.select(-coupling, coupling); // K_nu, with u in the direction of the slip velocity
         let braking = uu.mul_add(friction, -ahead); // −d|slip|/dp
         let stop = zero.lt(braking).select(slip / braking, f64::INFINITY);
         let sticks = coupling.abs().le(uu * friction);
@@ -174,12 +182,12 @@ impl<S: Simd, const K: usize> Path<S, K> {
     ) -> (Pack<S, K>, Pack<S, K>) {
         let rebound = restitution * speed;
         let turn = self.stop.mul_add(self.first, -speed); // normal velocity at p_s
-        let early = turn.le(0.0); // the slip vanishes during the compression
+        let early = turn.le(0.0); // the slip velocity vanishes during the compression
         let depth = -turn;
         let further = depth / self.second;
         let compression = early.select(self.stop + further, speed / self.first);
 
-        // Where the slip outlasts the restitution all three hypotheses end it at v_c^n′ = −ε_n v_c^n.
+        // Where the contact slips to the end of the impact, all three hypotheses give v_c^n′ = −ε_n v_c^n.
         let plain = !early & rebound.le(turn);
         let steady = restitution.mul_add(compression, compression);
         let (impulse, separation) = match hypothesis {
@@ -198,10 +206,10 @@ impl<S: Simd, const K: usize> Path<S, K> {
                 ),
             ),
             Hypothesis::Stronge => {
-                // Twice the work that the normal force takes in the compression, trapezium by trapezium.
+                // Twice the work done against the normal force in the compression: the area of two trapezia.
                 let work = self.stop.mul_add(speed + depth, depth * further);
                 let from_stick = restitution * (self.second * work).sqrt();
-                // Twice the work that is left to be given back after p_s, times dv_c^n/dp before it.
+                // Twice the work that is still to be returned after p_s, times dv_c^n/dp before p_s.
                 let left = (rebound - turn) * (rebound + turn);
                 let from_slip = turn.mul_add(turn, self.second / self.first * left).sqrt();
                 (
@@ -219,7 +227,7 @@ impl<S: Simd, const K: usize> Path<S, K> {
         )
     }
 
-    /// Tangential impulse that comes with a normal impulse.
+    /// Tangential impulse P_u at a normal impulse p.
     #[inline(always)]
     fn friction(&self, normal: Pack<S, K>) -> Pack<S, K> {
         let slipping = normal.min(self.stop);

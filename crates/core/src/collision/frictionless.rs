@@ -1,13 +1,13 @@
-//! The law without friction: P ∥ **n**.
+//! The law without friction: **P** ∥ **n**.
 
 use super::{Contacts, Responses};
 use crate::simd::Pack;
 use pulp::Simd;
 
-/// An impulse along the plane normal alone: P_n = (1 + ε_n)|v_c^n|/K_nn, so that v_c^n′ = −ε_n v_c^n.
+/// An impulse along the plane normal only: P_n = (1 + ε_n)|v_c^n|/K_nn, so that v_c^n′ = −ε_n v_c^n.
 ///
-/// It conserves the horizontal velocity of the centre of mass and the angular momentum about **n**. The energy falls by
-/// (1 − ε_n²)(v_c^n)²/(2 K_nn): it cannot grow. The hypotheses of Newton, Poisson and Stronge are one here.
+/// It conserves the horizontal velocity of the centre of mass and the angular momentum about **n**. The kinetic energy decreases
+/// by (1 − ε_n²)(v_c^n)²/(2 K_nn) ≥ 0. The hypotheses of Newton, Poisson and Stronge agree.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Frictionless;
 

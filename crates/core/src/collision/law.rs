@@ -7,30 +7,33 @@ use super::{
 use crate::Error;
 use pulp::{Simd, WithSimd};
 
-/// A collision law: what an impact does. Its normal coefficient may borrow a table.
+/// A collision law: a normal coefficient, which may borrow a table, and a rule for the impulse.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Law<'a> {
-    /// ε_n.
+    /// The normal coefficient ε_n.
     pub normal: Normal<'a>,
-    /// All else.
+    /// The impulse that follows from a contact and ε_n.
     pub rule: Rule,
 }
 
-/// What a law makes of a contact and a normal coefficient.
+/// The rule by which the impulse follows from a contact and a normal coefficient.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Rule {
-    /// The paper's.
+    /// The paper's law (9).
     TangentialRestitution(TangentialRestitution),
-    /// Impulse along the plane normal alone.
+    /// An impulse along the plane normal only.
     Frictionless(Frictionless),
-    /// Dry friction.
+    /// Coulomb friction.
     Coulomb(Coulomb),
-    /// A bilinear law within the friction cone.
+    /// The law of Chatterjee and Ruina, within the friction cone.
     ChatterjeeRuina(ChatterjeeRuina),
 }
 
 impl<'a> Law<'a> {
-    /// Of ε_n in [0, 1], or a function of the normal contact speed, and a rule.
+    /// The law with ε_n, a constant in [0, 1] or a function of the normal contact speed, and a rule.
+    ///
+    /// # Errors
+    /// [`Error::Parameter`] for a constant ε_n outside [0, 1].
     pub fn new(normal: impl Into<Normal<'a>>, rule: impl Into<Rule>) -> Result<Self, Error> {
         Ok(Self {
             normal: normal.into().checked()?,
@@ -38,7 +41,7 @@ impl<'a> Law<'a> {
         })
     }
 
-    /// The law for speeds in this `unit`, in m/s, instead of m/s.
+    /// The same law for speeds that are given in multiples of `unit` (in m/s) instead of m/s.
     pub fn scaled(&self, unit: f64) -> Self {
         Self {
             normal: self.normal.scaled(unit),
@@ -46,7 +49,7 @@ impl<'a> Law<'a> {
         }
     }
 
-    /// The response to a contact.
+    /// The impulse of a contact, and its normal velocity after the impact.
     pub fn respond(&self, contact: &Contact) -> Response {
         let found = Respond::respond::<_, 1, true>(self, &contact.in_lane());
         Response {
@@ -59,7 +62,7 @@ impl<'a> Law<'a> {
         }
     }
 
-    /// The paper's law with a constant ε_n, if it is that.
+    /// The law as [`Steady`], if it is the paper's with a constant ε_n.
     pub(crate) fn steady(&self) -> Option<Steady> {
         match (self.rule, self.normal) {
             (Rule::TangentialRestitution(rule), Normal::Constant(normal)) => {
@@ -70,9 +73,9 @@ impl<'a> Law<'a> {
     }
 }
 
-/// A law as the bounce loop takes it.
+/// A law in the form that the bounce loop uses.
 pub(crate) trait Respond {
-    /// The responses to contacts. Unless in `SPACE`, nothing slips across the plane of the axis.
+    /// The responses to contacts. Without `SPACE` the contact velocity has no component along **w**.
     fn respond<S: Simd, const K: usize, const SPACE: bool>(
         &self,
         contact: &Contacts<S, K>,
@@ -80,7 +83,7 @@ pub(crate) trait Respond {
 }
 
 impl Respond for Law<'_> {
-    /// A call that chooses the law: written out in the bounce loop, all of them would crowd it.
+    /// Chooses the law in a function of its own: inlined, all laws together would use up the registers of the bounce loop.
     #[inline(always)]
     fn respond<S: Simd, const K: usize, const SPACE: bool>(
         &self,
@@ -91,7 +94,7 @@ impl Respond for Law<'_> {
     }
 }
 
-/// A law and the contacts that it is to answer, to be compiled for each SIMD level.
+/// A law and the contacts that it is applied to, compiled for each SIMD level.
 struct Choice<'a, 'b, S: Simd, const K: usize, const SPACE: bool> {
     law: &'a Law<'b>,
     contact: &'a Contacts<S, K>,

@@ -1,9 +1,9 @@
-//! WHAT: the instantaneous change of motion at an impact, (6)–(8), (11). One file a law.
+//! The impulse of an impact, (9), (10): the contact as a law sees it, and one file per law.
 //!
 //! In the frame of **n**, of **u**, the horizontal direction of the axis, and of **w** = **n** × **u**, the matrix
-//! K = I/m + [**r**_c]ᵀĴ⁻¹[**r**_c], which turns an impulse into the change of contact velocity (10), separates into a
-//! 2×2 block {**n**, **u**} and a single entry for **w**. A formula is written once, over any number of contacts side by side
-//! ([`Contacts`]); what it has to say of **w** is left out where all motion is in the plane of **n** and **u**.
+//! K = I/m + \[**r**_c\]ᵀĴ⁻¹\[**r**_c\], which turns an impulse into the change of contact velocity (10), separates into a
+//! 2×2 block {**n**, **u**} and a single entry for **w**. Each formula is written once, for any number of contacts side by side
+//! (`Contacts`); terms along **w** are omitted where all motion is in the plane of **n** and **u**.
 
 mod chatterjee_ruina;
 mod contact;
@@ -37,12 +37,12 @@ pub struct Components {
     pub across: f64,
 }
 
-/// What a law needs to know of a contact, in the core's units.
+/// A contact as a law sees it, in the core's units.
 #[derive(Debug, Clone, Copy)]
 pub struct Contact {
     /// Velocity **v**_c of the point of contact (7), (8); `normal` ≤ 0.
     pub slip: Components,
-    /// J_xx.
+    /// Moment of inertia J_xx across the symmetry axis.
     pub inertia: f64,
     /// **r**_c along **n**.
     pub arm_normal: f64,
@@ -84,10 +84,10 @@ impl Contact {
     }
 }
 
-/// What a law answers.
+/// The outcome of a collision law, in the core's units.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Response {
-    /// Impulse P on the particle.
+    /// Impulse **P** on the particle (10).
     pub impulse: Components,
     /// Normal velocity of the point of contact after the impact, ≥ 0.
     pub separation_speed: f64,

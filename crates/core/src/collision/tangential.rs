@@ -7,16 +7,19 @@ use pulp::Simd;
 
 /// Normal and tangential restitution of the contact velocity, (9).
 ///
-/// With ε_t = 1 it conserves the tangential contact velocity. For a body that is not a sphere this takes a tangential impulse,
-/// which can do positive work, so that kinetic energy can grow, and which may lie outside every friction cone. The law is not a
-/// frictionless one.
+/// With ε_t = 1 it conserves the tangential contact velocity, which is not the absence of friction: for a non-spherical body it
+/// requires a tangential impulse. That impulse can do positive work, so that the kinetic energy can grow, and it may lie outside
+/// the friction cone of any coefficient of friction.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct TangentialRestitution {
     tangential: f64,
 }
 
 impl TangentialRestitution {
-    /// ε_t in [−1, 1].
+    /// The law with ε_t in [−1, 1].
+    ///
+    /// # Errors
+    /// [`Error::Parameter`] for ε_t outside [−1, 1].
     pub fn new(tangential: f64) -> Result<Self, Error> {
         Error::unless(
             (-1.0..=1.0).contains(&tangential),
@@ -36,7 +39,7 @@ impl TangentialRestitution {
         self.with::<S, K, SPACE>(-normal, -(normal + 1.0), contact)
     }
 
-    /// The response with this −ε_n and −(1 + ε_n).
+    /// The response for `rebound` = −ε_n and `change` = −(1 + ε_n).
     #[inline(always)]
     fn with<S: Simd, const K: usize, const SPACE: bool>(
         &self,
@@ -62,7 +65,7 @@ impl TangentialRestitution {
     }
 }
 
-/// The law with a constant ε_n, to be written out in the bounce loop of the lanes: the paper's runs are of this kind.
+/// The law with a constant ε_n, inlined in the bounce loop, because the paper's runs use it.
 pub(crate) struct Steady {
     pub(super) normal: f64,
     pub(super) rule: TangentialRestitution,

@@ -1,15 +1,15 @@
-//! Draws from the table by composition: a node, a condition, and a quantile of that histogram.
+//! Random draws from the table by composition: first a node and a condition, then a quantile of that histogram.
 
 use super::mixture::place;
 use super::{At, Mixture, in_blocks};
 use crate::random::pair;
 use crate::{Error, Means, Monitor};
 
-/// A histogram with a short cut into it.
+/// A histogram with a guide table for its inverse distribution function.
 struct Inverse<'a> {
     edges: &'a [f64],
     cumulative: &'a [f64],
-    /// For each of equal steps of probability, the last bin that starts at or below it; none for few draws.
+    /// The last bin that starts at or below each of equally spaced probabilities; empty for few draws.
     guide: Vec<u32>,
 }
 
@@ -49,7 +49,8 @@ impl<'a> Inverse<'a> {
     }
 }
 
-/// Chooses the left one of two, or the right one that has the weight; what is left of `u` is again uniform on [0, 1).
+/// Chooses the right one of two neighbours with probability `weight`, else the left one, and returns a rescaled `u`, again uniform on
+/// [0, 1).
 #[inline]
 fn choose(u: f64, (left, weight): (usize, f64)) -> (usize, f64) {
     if u < weight {
@@ -71,7 +72,7 @@ impl Mixture {
         monitor: &Monitor,
     ) -> Result<(), Error> {
         let layout = &self.layout;
-        // The short cuts cost a search for every edge: draws of a time step do without.
+        // Guide tables cost a search for every edge, which does not pay for few draws.
         let many = out.len() > layout.edges.len();
         let components = if many { layout.conditions.len() } else { 0 };
         let inverses: Vec<_> = (0..components)

@@ -1,18 +1,18 @@
-//! The distribution as a table: mixtures of neighbouring nodes, each node a histogram with bins of any width.
+//! The distribution as a table: mixtures of the histograms of neighbouring nodes, with bins of any width.
 
 use super::{Values, in_blocks};
 use crate::{Error, Means, Monitor};
 
-/// The table, in ragged arrays. A node is a speed; it has one component, or one for each of its conditions.
+/// The table, in ragged arrays. A node is an impact velocity; it has one component, or one for each of its conditions.
 #[derive(Debug, Clone)]
 pub struct Layout {
-    /// Speeds of the nodes, increasing, at least two.
+    /// Impact velocities of the nodes in m/s, increasing, at least two.
     pub speeds: Vec<f64>,
-    /// Where the components of each node start, and one number more.
+    /// Index of the first component of each node, and finally the number of components.
     pub first: Vec<i64>,
     /// Condition of each component, increasing within a node.
     pub conditions: Vec<f64>,
-    /// Where the edges of each component start, and one number more.
+    /// Index of the first edge of each component, and finally the number of edges.
     pub start: Vec<i64>,
     /// Edges of the bins of ε, increasing within a component, at least two.
     pub edges: Vec<f64>,
@@ -20,14 +20,14 @@ pub struct Layout {
     pub cumulative: Vec<f64>,
 }
 
-/// p(ε | v, z) = Σ w_k(v, z) p_k(ε): the weights of the nodes next to v, and in each of the conditions next to z, are linear
-/// and add up to 1. Beyond the first and last node, or condition, that one counts alone.
+/// p(ε | v, z) = Σ w_k(v, z) p_k(ε): linear interpolation between the nodes next to v, and for each of them between the conditions
+/// next to z; the weights add up to 1. Beyond the first or last node or condition, that one alone is used.
 #[derive(Debug)]
 pub struct Mixture {
     pub(super) layout: Layout,
 }
 
-/// The components that count, with their weights: two nodes of up to two conditions.
+/// The components with nonzero weight: those of up to two conditions at each of two nodes.
 pub(super) struct Parts {
     list: [(usize, f64); 4],
     length: usize,
@@ -39,7 +39,7 @@ impl Parts {
     }
 }
 
-/// The place of `x` among increasing `points`: the left one of two neighbours and the weight of the right one.
+/// The position of `x` among increasing `points`: the index of its left neighbour, and the weight of its right neighbour.
 pub(super) fn place(points: &[f64], x: f64) -> (usize, f64) {
     if points.len() == 1 {
         return (0, 0.0);
@@ -51,7 +51,10 @@ pub(super) fn place(points: &[f64], x: f64) -> (usize, f64) {
 }
 
 impl Mixture {
-    /// Checks the table.
+    /// The distribution with this table.
+    ///
+    /// # Errors
+    /// [`Error::Parameter`] if the table is inconsistent or its values are not increasing.
     pub fn new(layout: Layout) -> Result<Self, Error> {
         let rises = |x: &[f64]| x.windows(2).all(|pair| pair[0] < pair[1]);
         let ranges = |start: &[i64], size: usize, least: i64| {
@@ -91,12 +94,12 @@ impl Mixture {
         Ok(Self { layout })
     }
 
-    /// Components of a node.
+    /// Indices of the components of a node.
     pub(super) fn components(&self, node: usize) -> std::ops::Range<usize> {
         self.layout.first[node] as usize..self.layout.first[node + 1] as usize
     }
 
-    /// Edges and probabilities below them.
+    /// Edges of a component, and the probability below each.
     pub(super) fn histogram(&self, component: usize) -> (&[f64], &[f64]) {
         let start = &self.layout.start[component..component + 2];
         let range = start[0] as usize..start[1] as usize;
@@ -151,7 +154,7 @@ impl Mixture {
             sum += weight * below;
             certain &= below == 1.0;
         }
-        if certain { 1.0 } else { sum.min(1.0) } // the weights add up to 1 but for rounding
+        if certain { 1.0 } else { sum.min(1.0) } // the weights add up to 1 only up to rounding
     }
 
     fn density(&self, parts: &Parts, x: f64) -> f64 {
@@ -167,8 +170,8 @@ impl Mixture {
         sum.sum()
     }
 
-    /// The least ε up to which the probability is q or more: between two neighbouring edges of all parts the distribution
-    /// function is a straight line, and a binary search in each part finds them.
+    /// The smallest ε at which the distribution function reaches q. It is linear between neighbouring edges of all parts, which a
+    /// binary search in each part finds.
     fn quantile(&self, parts: &Parts, q: f64) -> f64 {
         let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
         for (component, _) in parts.iter() {
@@ -197,7 +200,7 @@ impl Mixture {
         }
     }
 
-    /// Probability of a restitution up to each `x`.
+    /// Cumulative distribution function at each `x`.
     pub fn cdf(
         &self,
         x: Values,
@@ -221,7 +224,7 @@ impl Mixture {
         self.each(x, at, out, means, monitor, Self::density)
     }
 
-    /// Restitution below which each probability `q` lies; NaN unless 0 ≤ q ≤ 1.
+    /// Quantile for each probability `q`; NaN unless 0 ≤ q ≤ 1.
     pub fn ppf(
         &self,
         q: Values,
@@ -265,11 +268,11 @@ impl Mixture {
     }
 }
 
-/// Where to look.
+/// The conditions under which the distribution is evaluated.
 #[derive(Debug, Clone, Copy)]
 pub struct At<'a> {
-    /// Impact velocity.
+    /// Impact velocity, in m/s.
     pub speed: Values<'a>,
-    /// Condition; any number where the nodes have one component.
+    /// Condition; ignored where the nodes have one component.
     pub condition: Values<'a>,
 }

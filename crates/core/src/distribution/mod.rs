@@ -8,15 +8,18 @@ pub use mixture::{At, Layout, Mixture};
 use crate::{Error, Means, Monitor};
 use std::sync::Mutex;
 
-/// Values that a thread takes at a time; no more than these are computed by the caller's own.
+/// Number of values that a thread computes at a time; up to this many are computed on the caller's thread.
 pub const BLOCK: usize = 1 << 14;
 
-/// One value for all, or a value for each.
+/// One value for all elements, or one for each.
 #[derive(Debug, Clone, Copy)]
 pub struct Values<'a>(&'a [f64]);
 
 impl<'a> Values<'a> {
-    /// A slice of one value, or of `length` values.
+    /// From a slice of one value, or of `length` values; `name` is for the error.
+    ///
+    /// # Errors
+    /// [`Error::Parameter`] for any other number of values.
     pub fn new(values: &'a [f64], name: &'static str, length: usize) -> Result<Self, Error> {
         let allowed = "one value, or as many as are asked for";
         let size = values.len();
@@ -29,12 +32,12 @@ impl<'a> Values<'a> {
     }
 }
 
-/// Room for so many values.
+/// A vector of `size` zeros, or [`Error::Memory`].
 pub fn values(size: usize) -> Result<Vec<f64>, Error> {
     crate::memory::zeros("size", size)
 }
 
-/// Fills `out` block by block, with `fill(first, block)`; whatever the threads, the same.
+/// Fills `out` block by block with `fill(first, block)`. The result does not depend on the number of threads.
 fn in_blocks(
     out: &mut [f64],
     means: Means,

@@ -1,4 +1,4 @@
-//! The bounce loop: next contact, motion until then, impact, again and again, for groups of particles that take turns.
+//! The bounce loop: flight to the next contact, impact, and again, for several groups of particles in alternation.
 
 use super::end::{Limits, StopReason};
 use super::group::{Group, Release, Stuck};
@@ -10,9 +10,9 @@ use crate::simd::Pack;
 use pulp::{Simd, WithSimd};
 use std::ops::Range;
 
-/// Bounces the `particles` of a release, at most as many as N groups hold. Calls `go_on` before every impact.
+/// Simulates the `particles` of a release, at most as many as N groups hold. Calls `go_on` before every impact.
 ///
-/// How a group gets from one impact to the next is up to the `legs`; here it is reported, and ended.
+/// `legs` takes the groups from one impact to the next; this function passes the impacts on and ends the trajectories.
 #[inline(always)]
 pub(crate) fn bounce<S: Simd, T: Turn, const N: usize>(
     simd: S,
@@ -52,8 +52,8 @@ pub(crate) fn bounce<S: Simd, T: Turn, const N: usize>(
     Ok(())
 }
 
-/// Tells the sink of an impact of all groups, and whether any particle goes on. Compiled apart: the rare ways through the sinks
-/// would take the registers of the other stages.
+/// Hands an impact of all groups to the sink, and returns whether any particle continues. Compiled separately, because the rare
+/// branches of the sinks would take registers from the other stages.
 struct Tell<'a, S: Simd, T: Turn, K> {
     groups: &'a mut [Group<S, T>],
     body: &'a Body,

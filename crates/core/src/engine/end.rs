@@ -5,20 +5,19 @@
 pub enum StopReason {
     /// The number of impacts asked for was reached.
     ImpactsReached,
-    /// √(2 E_kin/m) after an impact fell below the threshold asked for.
+    /// √(2 E_kin/m) after an impact fell below [`Limits::minimum_speed`].
     SpeedBelowThreshold,
-    /// Impacts accumulate: [`COLLAPSE_RUN`] flights in a row too low to be resolved, or a contact that is never left. The
-    /// body may still rock or roll; what it does in lasting contact the model of instantaneous impacts cannot say.
+    /// Impacts accumulate (inelastic collapse): [`COLLAPSE_RUN`] flights in a row that are too low to be resolved, or a contact that
+    /// is never left. The body may still rock or roll, but the model of instantaneous impacts does not describe lasting contact.
     Collapse,
-    /// The next landing is beyond what can be followed: the axis would turn by more than
-    /// [`crate::elementary::RANGE`] rad.
+    /// The axis would turn by more than [`crate::elementary::RANGE`] rad before the next impact, beyond the range of sine and cosine.
     NeverLands,
     /// The run was cancelled.
     Interrupted,
 }
 
 impl StopReason {
-    /// The names of all, in the order of their numbers.
+    /// The names of all reasons, in the order of their numbers.
     pub const NAMES: [&'static str; 5] = [
         "impacts_reached",
         "speed_below_threshold",
@@ -31,13 +30,13 @@ impl StopReason {
 /// When to stop.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Limits {
-    /// Most impacts.
+    /// Largest number of impacts.
     pub impacts: usize,
-    /// Stop below this √(2 E_kin/m), in √(gR); 0 never does.
+    /// Value of √(2 E_kin/m) below which a particle stops, in √(gR); with 0 none does.
     pub minimum_speed: f64,
 }
 
-/// A flight counts as unresolved when no gap can have exceeded 2⁻⁴³ R in it: M T²/8 < 2⁻⁴³, M ≥ |f″|.
+/// M T² below which a flight of duration T counts as unresolved: no gap can then have exceeded M T²/8 = 2⁻⁴³ R, since M ≥ −f″.
 pub(super) const UNRESOLVED: f64 = 8.0 / 8_796_093_022_208.0;
-/// This many unresolved flights in a row are a collapse.
+/// Number of unresolved flights in a row that counts as a collapse.
 pub const COLLAPSE_RUN: u32 = 16;

@@ -1,4 +1,4 @@
-//! As many particles as a vector has lanes, and the stages of an impact.
+//! A group of particles, as many as a vector has lanes, and the stages from one impact to the next.
 
 use super::end::{COLLAPSE_RUN, Limits, StopReason, UNRESOLVED};
 use super::impact::{Impact, Sink};
@@ -11,58 +11,57 @@ use crate::simd::{Mask, Pack};
 use pulp::Simd;
 use std::ops::Range;
 
-/// A flight of a group that turns in the way T.
+/// The flight of a group with planar or spatial motion T.
 type FlightOf<S, T> = <T as Turn>::Flight<S, 1>;
-/// Its state.
+/// The state of a group.
 pub(crate) type StateOf<S, T> = <FlightOf<S, T> as Flight<S, 1>>::State;
-/// What an impact changes of it.
+/// Velocity and angular momentum of a group, which an impact changes.
 type MotionOf<S, T> = <StateOf<S, T> as States<S, 1>>::Motion;
 
-/// Groups that take turns: enough for the arithmetic units to be busy, few enough for the fastest cache.
+/// Number of groups that alternate: enough to keep the arithmetic units busy, few enough for the first-level cache.
 pub(crate) const GROUPS: usize = 12;
 
-/// Most lanes of a vector.
+/// Largest number of lanes of a vector.
 const LANES: usize = 8;
 
-/// How particles are released.
+/// The initial conditions of particles.
 pub(crate) trait Release {
     /// The state of a particle at its release.
     fn start(&self, particle: usize) -> State;
 }
 
-/// Where the contact search did not end.
+/// The particle whose contact search did not converge.
 #[derive(Debug)]
 pub(crate) struct Stuck {
     pub lane: usize,
     pub impacts: usize,
 }
 
-/// A contact.
+/// A contact that was located, in each lane.
 pub(crate) struct Found<S: Simd, T: Turn> {
     /// Flight time.
     pub time: Pack<S, 1>,
     /// The state just before the impact.
     pub state: StateOf<S, T>,
-    /// ±1: the sphere that touches.
+    /// +1 or −1: sphere 1 or 2 touches.
     pub sphere: Pack<S, 1>,
 }
 
-/// As many particles as a vector has lanes. Aligned, and with it the stack, to a line of the cache, which a vector must not
-/// straddle.
+/// As many particles as a vector has lanes. Aligned to a cache line, so that no vector straddles two lines.
 #[derive(Clone, Copy)]
 #[repr(align(64))]
 pub(crate) struct Group<S: Simd, T: Turn> {
-    /// The search from the start of the flight, which gives way to the state before the impact.
+    /// The search along the flight. The start of the flight is later replaced by the state before the impact.
     search: Search<S, FlightOf<S, T>, 1>,
-    /// Where the search looks, and sine and cosine there.
+    /// The time of the evaluation, with sine and cosine of the angle turned through by then.
     pub time: Pack<S, 1>,
     pub turned: (Pack<S, 1>, Pack<S, 1>),
-    /// What it sees there, and where that leads.
+    /// The gap there, and the results of the stages that follow.
     look: Look<S, 1>,
     leap: Leap<S, 1>,
     residue: Residue<S, 1>,
     arrival: Arrival<S, 1>,
-    /// Up to when it is certain that nothing has touched, and the lanes in which that is still so where the search looks.
+    /// The time up to which a contact is ruled out, and the lanes in which it is ruled out up to the evaluation as well.
     certain: Pack<S, 1>,
     clear: Mask<S, 1>,
     /// The motion after the impact.
@@ -73,17 +72,17 @@ pub(crate) struct Group<S: Simd, T: Turn> {
     clock: Pack<S, 1>,
     /// Unresolved flights in a row.
     unresolved: Pack<S, 1>,
-    /// Which lanes hold a particle still.
+    /// The lanes whose particle has not stopped.
     pub active: Mask<S, 1>,
-    /// Number of lane 0, and how many lanes were occupied.
+    /// Number of the particle in lane 0, and number of particles.
     first: usize,
     particles: usize,
-    /// After how many impacts, and why, the particles ended that have.
+    /// Number of impacts and stop reason of the particles that have stopped.
     ends: [(usize, StopReason); LANES],
 }
 
 impl<S: Simd, T: Turn> Group<S, T> {
-    /// A group without particles, which looks at a body at rest.
+    /// A group without particles; its lanes hold a body at rest.
     #[inline(always)]
     pub fn empty(simd: S, hull: &impl Hull) -> Self {
         let zero = Pack::splat(simd, 0.0);
@@ -114,7 +113,7 @@ impl<S: Simd, T: Turn> Group<S, T> {
         }
     }
 
-    /// Takes `particles` of a release, at most as many as there are lanes. To the sink they are numbered from `first` on.
+    /// Puts `particles` of a release into the lanes, at most as many as there are. The sink knows them by numbers from `first` on.
     #[inline(always)]
     pub fn occupy(
         &mut self,
@@ -141,12 +140,12 @@ impl<S: Simd, T: Turn> Group<S, T> {
         *self.search.flight.start()
     }
 
-    /// Starts as after an impact.
+    /// Replaces the departure of the release by that of an impact.
     pub fn depart_from(&mut self, departure: Departure<S, 1>) {
         self.search.departure = departure;
     }
 
-    /// The contact that was found; else why there is none.
+    /// The contact of lane 0, or the stop reason if there is none.
     pub fn found(&self) -> Result<Found<S, T>, StopReason> {
         if self.active.any() {
             Ok(Found {
@@ -159,13 +158,13 @@ impl<S: Simd, T: Turn> Group<S, T> {
         }
     }
 
-    /// The angle of which sine and cosine are wanted.
+    /// The angle turned through at the time of the evaluation.
     #[inline(always)]
     pub fn angle(&self) -> Pack<S, 1> {
         self.search.angle(self.time)
     }
 
-    /// Finds where the search looks first.
+    /// Determines the time of the first evaluation, and ends the particles that rest.
     #[inline(always)]
     pub fn depart(&mut self, number: usize, hull: &impl Hull) {
         let still = self.search.departure.speed.le(0.0);
@@ -198,7 +197,7 @@ impl<S: Simd, T: Turn> Group<S, T> {
             .arrival(&self.look, &self.leap, &self.residue, hull);
     }
 
-    /// Whether a particle has not arrived after the first pass of the search: rare, but for spinning smooth hulls.
+    /// Whether the contact of some particle is not located yet: rare after the first pass, except for spinning smooth hulls.
     #[inline(always)]
     pub fn is_waiting(&self) -> bool {
         (self.active & !self.arrival.done).any()
@@ -210,7 +209,7 @@ impl<S: Simd, T: Turn> Group<S, T> {
         self.end(self.look.never, number, StopReason::NeverLands);
     }
 
-    /// Has the lanes arrive whose step leaves nothing of the gap that can be seen.
+    /// Ends the search in the lanes whose certified step leaves a gap below the resolution.
     #[inline(always)]
     pub fn graze(&mut self) {
         let Self {
@@ -224,7 +223,7 @@ impl<S: Simd, T: Turn> Group<S, T> {
         self.search.graze(*time, look, leap, *clear, arrival);
     }
 
-    /// Finds where the next pass looks. Lanes that are done stay and find the same again.
+    /// Determines the time of the next evaluation. Lanes that are done keep theirs and repeat the same result.
     #[inline(always)]
     pub fn go_on(&mut self, hull: &impl Hull) {
         let (clear, done) = (self.clear, self.arrival.done);
@@ -238,7 +237,7 @@ impl<S: Simd, T: Turn> Group<S, T> {
         self.certain = done.select(self.time, certain);
     }
 
-    /// Finds out which lanes can have missed no contact on the way to where they look. The others have not arrived.
+    /// Determines the lanes in which no contact can have been missed before the evaluation. The others are not done.
     #[inline(always)]
     pub fn clear(&mut self, hull: &impl Hull) {
         self.clear = self
@@ -247,7 +246,7 @@ impl<S: Simd, T: Turn> Group<S, T> {
         self.arrival.done = self.arrival.done & self.clear;
     }
 
-    /// Comes down on the plane.
+    /// Replaces the start of the flight by the state at the contact.
     #[inline(always)]
     pub fn land(&mut self, hull: &impl Hull) {
         let Arrival { time, attitude, .. } = self.arrival;
@@ -267,7 +266,7 @@ impl<S: Simd, T: Turn> Group<S, T> {
         self.search.departure.speed = struck.separation;
     }
 
-    /// Tells the sink, and ends the particles for which that was the last impact.
+    /// Hands the impact to the sink, and ends the particles for which it was the last.
     #[inline(always)]
     pub fn tell(&mut self, body: &Body, limits: Limits, number: usize, sink: &mut impl Sink) {
         let before = self.before();
@@ -310,7 +309,7 @@ impl<S: Simd, T: Turn> Group<S, T> {
         self.search.depart(self.after, slope, hull);
     }
 
-    /// Ends the active lanes in `which`. Rare.
+    /// Ends the active lanes in `which`.
     #[inline(always)]
     pub fn end(&mut self, which: Mask<S, 1>, impacts: usize, reason: StopReason) {
         let ending = which & self.active;
@@ -320,14 +319,14 @@ impl<S: Simd, T: Turn> Group<S, T> {
         }
     }
 
-    /// Tells the sink how the particles ended.
+    /// Hands number of impacts and stop reason of every particle to the sink.
     pub fn close(&self, sink: &mut impl Sink) {
         for (lane, &(impacts, reason)) in self.ends[..self.particles].iter().enumerate() {
             sink.end(self.first + lane, impacts, reason);
         }
     }
 
-    /// Which particle has not arrived.
+    /// The first particle whose contact is not located.
     #[cold]
     pub fn stuck(&self, impacts: usize) -> Stuck {
         let mut first = None;

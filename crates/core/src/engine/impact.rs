@@ -1,33 +1,33 @@
-//! What the bounce loop tells of, and to whom.
+//! An impact as the bounce loop reports it, and the trait of its receivers.
 
 use super::StopReason;
 use crate::flight::SpatialStates;
 use crate::simd::{Mask, Pack};
 use pulp::Simd;
 
-/// One impact in each lane.
+/// One impact in each lane, in the core's units.
 pub(crate) struct Impact<S: Simd, const K: usize> {
     /// Time since release.
     pub time: Pack<S, K>,
-    /// v_G^n before, positive when falling, and the normal velocity of the centre of mass after, positive when rising.
+    /// Normal velocity of the centre of mass before the impact, v_G^n, positive when falling, and after it, positive when rising.
     pub fall: Pack<S, K>,
     pub rise: Pack<S, K>,
-    /// Kinetic energy of the rotation before.
+    /// Kinetic energy of the rotation before the impact.
     pub rotation: Pack<S, K>,
-    /// Kinetic energies before and after.
+    /// Total kinetic energies before and after the impact.
     pub energy_before: Pack<S, K>,
     pub energy_after: Pack<S, K>,
-    /// Of the angle between the axis and the plane normal, up to the sign of the sine.
+    /// Sine, up to its sign, and cosine of the angle between the axis and the plane normal.
     pub sine: Pack<S, K>,
     pub cosine: Pack<S, K>,
-    /// ±1: the sphere that touched.
+    /// +1 or −1: sphere 1 or 2 touched.
     pub sphere: Pack<S, K>,
     /// Speed at which the point of contact approached the plane, −v_c^n.
     pub approach: Pack<S, K>,
-    /// The states before and after.
+    /// The states before and after the impact.
     pub before: SpatialStates<S, K>,
     pub after: SpatialStates<S, K>,
-    /// The lanes in which there is an impact.
+    /// The lanes that have an impact.
     pub active: Mask<S, K>,
 }
 
@@ -44,33 +44,34 @@ impl<S: Simd, const K: usize> Impact<S, K> {
         self.rotation / self.energy_before // (12)
     }
 
-    /// Kinetic energy after the impact over that before.
+    /// Total kinetic energy after the impact divided by that before.
     #[inline(always)]
     pub fn energy_ratio(&self) -> Pack<S, K> {
         self.energy_after / self.energy_before
     }
 }
 
-/// Has something to do while other arithmetic waits for its results.
+/// Work that can be interleaved with the bounce loop while its arithmetic waits for results.
 pub(crate) trait Meanwhile {
-    /// Does a little of what has piled up.
+    /// Does a small part of the pending work.
     fn meanwhile(&mut self);
 }
 
-/// Takes what happens to the particles of a release.
+/// A receiver of impacts, which records or counts them.
 pub(crate) trait Sink: Meanwhile {
-    /// Whether bounce loops are compiled for it. What writes records waits for memory, and gains nothing from them.
+    /// Whether bounce loops are compiled for this sink ([`super::Together`]). Sinks that write records are limited by memory and
+    /// gain nothing from it.
     const TOGETHER: bool;
 
-    /// From now on number 0 of the release is particle `first` of the block.
+    /// Announces a release whose particle 0 is particle `first` of the block.
     fn begin(&mut self, first: usize);
-    /// Impact `number`, counted from 0, has happened to the particles of the release from `first` on, one in each lane.
+    /// Receives impact `number`, counted from 0, of the particles of the release from `first` on, one in each lane.
     fn impact<S: Simd, const K: usize>(
         &mut self,
         number: usize,
         first: usize,
         impact: &Impact<S, K>,
     );
-    /// Particle `lane` of the release has ended after `impacts` impacts.
+    /// Receives the end of particle `lane` of the release, after `impacts` impacts.
     fn end(&mut self, lane: usize, impacts: usize, reason: StopReason);
 }

@@ -1,8 +1,8 @@
 //! From one impact to the next.
 //!
-//! A leg is cut into stages, and each goes through all groups before the next begins. What a stage needs is then long
-//! known when its turn comes, and the same stage of several groups is under way at once, as many as the processor can
-//! look ahead; one stage after another for one group would be a single chain, with the arithmetic units waiting most of the time.
+//! A leg, the flight to the next impact and the impact itself, is divided into stages. Each stage is carried out for all groups
+//! before the next begins: its operands are then available, and the processor executes the same stage of several groups in
+//! parallel. All stages of one group in a row would be a single chain of dependent operations.
 
 use super::group::{Group, Release, Stuck};
 use super::impact::Meanwhile;
@@ -19,9 +19,9 @@ use std::ops::Range;
 /// Vectors whose sines and cosines are computed side by side, with nothing else in the registers.
 const WIDE: usize = 6;
 
-/// Takes groups of particles from one impact to the next.
+/// The motion of groups of particles from one impact to the next.
 pub(crate) trait Legs<S: Simd, T: Turn> {
-    /// The particles of a release, in groups.
+    /// The groups with the particles of a release.
     fn groups<const N: usize>(
         &self,
         simd: S,
@@ -29,7 +29,7 @@ pub(crate) trait Legs<S: Simd, T: Turn> {
         particles: Range<usize>,
     ) -> [Group<S, T>; N];
 
-    /// Flies to impact `number` and through it.
+    /// Moves all groups through their flight to impact `number` and through that impact.
     fn fly(
         &self,
         simd: S,
@@ -39,8 +39,8 @@ pub(crate) trait Legs<S: Simd, T: Turn> {
     ) -> Result<(), Stuck>;
 }
 
-/// Hull and law are written out in the bounce loop, and the sink counts in between, while the stages have the multipliers
-/// busy: for what is simulated most.
+/// Legs with hull and law inlined in the bounce loop, and the work of the sink interleaved with the stages; used for the most common
+/// runs.
 pub(crate) struct Together<'a, H, L> {
     body: &'a Body,
     hull: &'a H,
@@ -49,7 +49,7 @@ pub(crate) struct Together<'a, H, L> {
 }
 
 impl<'a, H, L> Together<'a, H, L> {
-    /// Over an incline of this slope, tan α.
+    /// Legs over a plane that descends along x with this slope, tan α.
     pub fn new(body: &'a Body, hull: &'a H, law: &'a L, slope: f64) -> Self {
         Self {
             body,
@@ -60,11 +60,11 @@ impl<'a, H, L> Together<'a, H, L> {
     }
 }
 
-/// Every hull and law, compiled once for all sinks.
+/// Legs for every hull and law, compiled once for all sinks.
 pub(crate) struct Apart<'a, 'b> {
     pub body: &'a Body,
     pub law: &'a Law<'b>,
-    /// tan α of the incline.
+    /// tan α, α the inclination of the plane.
     pub slope: f64,
 }
 
@@ -113,7 +113,7 @@ impl<S: Simd, T: Turn, H: Hull, L: Respond> Legs<S, T> for Together<'_, H, L> {
     }
 }
 
-/// The flights of all groups up to their contacts.
+/// Locates the next contact of all groups.
 #[inline(always)]
 pub(super) fn find<S: Simd, T: Turn>(
     groups: &mut [Group<S, T>],
@@ -156,7 +156,7 @@ pub(super) fn find<S: Simd, T: Turn>(
     Ok(())
 }
 
-/// Computes sine and cosine of the angle at the first step of each group.
+/// Computes sine and cosine of the angle turned through at the first evaluation of each group.
 #[inline(always)]
 fn turn<S: Simd, T: Turn>(groups: &mut [Group<S, T>], sink: &mut impl Meanwhile) {
     let mut chunks = groups.chunks_exact_mut(WIDE);
@@ -219,7 +219,7 @@ impl<S: Simd, T: Turn> Legs<S, T> for Apart<'_, '_> {
     }
 }
 
-/// [`Legs::groups`], to be compiled apart.
+/// [`Legs::groups`], compiled separately for each SIMD level.
 struct Occupy<'a, S: Simd, T: Turn, L, R, const N: usize> {
     legs: L,
     release: &'a R,
@@ -239,7 +239,7 @@ impl<S: Simd, T: Turn, L: Legs<S, T>, R: Release, const N: usize> WithSimd
     }
 }
 
-/// [`Legs::fly`], to be compiled apart.
+/// [`Legs::fly`], compiled separately for each SIMD level.
 struct Fly<'a, S: Simd, T: Turn, L> {
     legs: L,
     groups: &'a mut [Group<S, T>],
@@ -256,7 +256,7 @@ impl<S: Simd, T: Turn, L: Legs<S, T>> WithSimd for Fly<'_, S, T, L> {
     }
 }
 
-/// Has nothing to do.
+/// No work to interleave.
 pub(super) struct Idle;
 
 impl Meanwhile for Idle {

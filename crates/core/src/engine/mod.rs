@@ -1,5 +1,5 @@
-//! The bounce loop, the paper's steps 1–7: next contact, motion until then, impact, for as many particles at once as there are
-//! lanes, however they turn and whatever hull they have.
+//! The bounce loop, steps 1–7 of Sec. III of the paper: next contact, motion until then, impact, for as many particles at once as
+//! there are lanes, for planar and spatial motion and every hull.
 
 mod bounce;
 mod end;

@@ -1,4 +1,4 @@
-//! More passes of the search, for the groups that need them.
+//! Further passes of the contact search, for the groups that need them.
 
 use super::group::{GROUPS, Group, Stuck};
 use super::strike::Turn;
@@ -7,22 +7,22 @@ use crate::search::MOST_STEPS;
 use crate::simd::elementary::sincos_in_lanes;
 use pulp::{Simd, WithSimd};
 
-/// Searches on until every particle has arrived, for all groups at once, stage after stage as in the first pass. Compiled apart:
-/// written out in every loop it would crowd it.
+/// Repeats the passes until every contact is located, for all groups together, stage by stage as in the first pass. Compiled
+/// separately: inlined, it would use up the registers of every bounce loop.
 pub(super) struct SearchOn<'a, S: Simd, T: Turn, H> {
     pub groups: &'a mut [Group<S, T>],
     pub hull: &'a H,
     pub number: usize,
 }
 
-/// Numbers of the groups that wait.
+/// Numbers of the groups whose contacts are not all located.
 struct Waiting {
     numbers: [u8; GROUPS],
     count: usize,
 }
 
 impl Waiting {
-    /// Of all groups.
+    /// The waiting ones among all groups.
     #[inline(always)]
     fn new<S: Simd, T: Turn>(groups: &[Group<S, T>]) -> Self {
         let mut all = Self {
@@ -33,7 +33,7 @@ impl Waiting {
         all
     }
 
-    /// Of those that still wait.
+    /// Drops the groups that no longer wait.
     #[inline(always)]
     fn retain<S: Simd, T: Turn>(&mut self, groups: &[Group<S, T>]) {
         let mut count = 0;

@@ -1,5 +1,5 @@
-//! One particle at a time: the engine over a single lane, with plain numbers outside. For whoever wants to see one flight, one
-//! impact, or the states of one trajectory.
+//! One particle at a time: the engine over a single lane, with scalars as arguments and results, for a single flight, a single
+//! impact, or the states of a trajectory.
 
 use super::bounce::bounce;
 use super::end::{Limits, StopReason};
@@ -15,56 +15,60 @@ use crate::simd::one;
 use pulp::{Scalar, Simd};
 use std::cell::Cell;
 
-/// How a flight starts.
+/// The start of a flight.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Departure {
-    /// As a release does: a part of the body may be on the plane, at rest or on its way up.
+    /// A release; a part of the body may be on the plane, at rest or moving up.
     Free,
-    /// With a part of the body on the plane, its lowest point leaving at `speed` ≥ 0.
+    /// An impact: a part of the body is on the plane, and its point of contact leaves at `speed` ≥ 0.
     Touching {
         /// The sphere on the plane.
         sphere: Sphere,
-        /// Normal speed of the point of contact.
+        /// Normal speed of the point of contact, in √(gR).
         speed: f64,
     },
 }
 
-/// How a flight ends.
+/// The end of a flight.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Landing {
-    /// The body meets the plane.
+    /// The body touches the plane.
     Impact {
-        /// Flight time.
+        /// Flight time, in √(R/g).
         time: f64,
         /// The state just before the impact.
         state: State,
         /// The sphere that touches.
         sphere: Sphere,
     },
-    /// The sphere on the plane does not leave it: no relative motion, and gravity holds it down.
+    /// The sphere on the plane does not leave it: its point of contact has no normal velocity and is not accelerated upwards.
     Resting,
-    /// No contact within the flight times in which the axis can be followed.
+    /// No contact before the axis has turned by [`crate::elementary::RANGE`] rad.
     Never,
 }
 
-/// The search did not end. It always should; the caller reports which particle this was.
+/// The contact search did not converge, which is a defect of the program.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct NoConvergence;
 
 /// One impact of one particle.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SingleImpact {
-    /// Time since release.
+    /// Time since release, in √(R/g).
     pub time: f64,
-    /// The state just before.
+    /// The state just before the impact.
     pub before: State,
-    /// The state just after.
+    /// The state just after the impact.
     pub after: State,
     /// The sphere that touched.
     pub sphere: Sphere,
 }
 
-/// First contact of the flight that starts so, over a plane that falls along x with this slope, tan α.
+/// First contact of the flight from `start`, over a plane that descends along x with this slope, tan α. Times are in √(R/g), lengths
+/// in R.
+///
+/// # Errors
+/// [`NoConvergence`] if the search does not converge.
 pub fn first_contact(
     start: &State,
     slope: f64,
@@ -96,7 +100,8 @@ pub fn first_contact(
     })
 }
 
-/// The state after the impact of `sphere`, and the speed at which the point of contact leaves the plane.
+/// The state after the impact of `sphere`, and the speed, in √(gR), at which the point of contact leaves the plane. A law that
+/// depends on the speed must be scaled to √(gR) ([`Law::scaled`]).
 pub fn collide(body: &Body, law: &Law<'_>, before: &State, sphere: Sphere) -> (State, f64) {
     with_hull!(&body.hull, hull => {
         let state = before.in_lane();
@@ -107,9 +112,12 @@ pub fn collide(body: &Body, law: &Law<'_>, before: &State, sphere: Sphere) -> (S
     })
 }
 
-/// Bounces a particle until a limit is reached; `record` sees every impact and says whether to go on. The plane falls along
-/// x with the given slope, tan α. The impacts are those that the particle has in a run, to the last bit: from rest it moves in a
-/// plane.
+/// Simulates a particle until a limit is reached; `record` is called with every impact and returns whether to continue. The plane
+/// descends along x with the given slope, tan α. The impacts have the same bits as in a run, because a release from rest is treated
+/// as planar motion here as well.
+///
+/// # Errors
+/// [`NoConvergence`] if a contact search does not converge.
 pub fn trajectory(
     body: &Body,
     law: &Law<'_>,
@@ -145,7 +153,7 @@ impl Release for Single {
     }
 }
 
-/// Hands the impacts on.
+/// The sink that hands the impacts to `record`.
 struct Told<'a, F> {
     record: F,
     go_on: &'a Cell<bool>,

@@ -1,4 +1,4 @@
-//! The impact of a body: its contact as a law sees it, (6)–(8), and its motion afterwards, (11).
+//! The impact of a body: the contact that a law is applied to, (6)–(8), and the motion afterwards, (11).
 
 use crate::body::{Body, Hull, Part};
 use crate::collision::{Contacts, Respond};
@@ -9,17 +9,17 @@ use crate::flight::{
 use crate::simd::Pack;
 use pulp::Simd;
 
-/// A way to turn.
+/// Planar or spatial motion.
 pub(crate) trait Turn: Copy {
-    /// A flight of as many particles as there are lanes.
+    /// The flight of as many particles as there are lanes.
     type Flight<S: Simd, const K: usize>: Flight<S, K, State: Strike<S, K>>;
 }
 
-/// In a vertical plane.
+/// Motion in a vertical plane.
 #[derive(Clone, Copy)]
 pub(crate) struct Planar;
 
-/// In any way.
+/// Motion in three dimensions.
 #[derive(Clone, Copy)]
 pub(crate) struct Spatial;
 
@@ -31,7 +31,7 @@ impl Turn for Spatial {
     type Flight<S: Simd, const K: usize> = SpatialFlight<S, K>;
 }
 
-/// A ball of the hull at the contact: its lever and its radius.
+/// The sphere that touches like the hull at the contact: its lever s and its radius ϱ.
 #[derive(Clone, Copy)]
 pub(crate) struct Touch<S: Simd, const K: usize> {
     pub lever: Pack<S, K>,
@@ -39,7 +39,7 @@ pub(crate) struct Touch<S: Simd, const K: usize> {
 }
 
 impl<S: Simd, const K: usize> Touch<S, K> {
-    /// Of a part of a hull at this tilt.
+    /// That of a part of a hull at this e_z.
     #[inline(always)]
     pub fn of(hull: &impl Hull, part: &Part<S, K>, tilt: Pack<S, K>) -> Self {
         Self {
@@ -49,16 +49,16 @@ impl<S: Simd, const K: usize> Touch<S, K> {
     }
 }
 
-/// What an impact did.
+/// The result of an impact.
 pub(crate) struct Struck<M, S: Simd, const K: usize> {
-    /// The motion after it.
+    /// The motion after the impact.
     pub motion: M,
-    /// Speeds at which the point of contact approached the plane and leaves it.
+    /// Normal speeds of the point of contact: of approach before, of separation after the impact.
     pub approach: Pack<S, K>,
     pub separation: Pack<S, K>,
 }
 
-/// What can strike the plane.
+/// States to which an impact can be applied.
 pub(crate) trait Strike<S: Simd, const K: usize>: States<S, K> {
     /// The impact of the part of the hull at the contact.
     fn strike(
@@ -82,7 +82,7 @@ impl<S: Simd, const K: usize> Strike<S, K> for PlanarStates<S, K> {
         let arm_x = self.sine * lever; // r_c (6)
         let arm_z = self.cosine.mul_add(lever, -radius); // r_c (6)
         let slip = [
-            (climb - spin * arm_x).min(0.0), // v_c (7); a grazing contact may have turned around within the last step
+            (climb - spin * arm_x).min(0.0), // v_c (7); at a grazing contact it may have changed sign within the last step
             glide + spin * arm_z,            // v_c (7)
         ];
         let contact = Contacts::in_plane(slip, j, [arm_z, arm_x]);
@@ -101,7 +101,8 @@ impl<S: Simd, const K: usize> Strike<S, K> for PlanarStates<S, K> {
     }
 }
 
-/// Below this sine of the tilt its square underflows: an upright axis has no horizontal direction, and none is needed.
+/// Sine of the angle between axis and normal below which its square underflows. The axis then has no horizontal direction, and any
+/// **u** will do.
 const UPRIGHT: f64 = 1e-150;
 
 impl<S: Simd, const K: usize> Strike<S, K> for SpatialStates<S, K> {
@@ -131,14 +132,14 @@ impl<S: Simd, const K: usize> Strike<S, K> for SpatialStates<S, K> {
         let along_x = upright.select(1.0, axis.x * inverse);
         let along_y = upright.select(0.0, axis.y * inverse);
 
-        // What of r_c × w lies across the axis, and along it.
+        // Components of r_c × w perpendicular to the axis and along it, which give K_ww.
         let (twist, roll) = (radius * axis.z - lever, radius * sine);
         let across = (twist * twist).mul_add(
             1.0 / body.transverse,
             (roll * roll).mul_add(1.0 / body.axial, 1.0),
         );
         let slip = [
-            (velocity.z + turning.z).min(0.0), // a grazing contact may have turned around within the last step
+            (velocity.z + turning.z).min(0.0), // at a grazing contact it may have changed sign within the last step
             x.mul_add(along_x, y * along_y),
             y.mul_add(along_x, -(x * along_y)),
         ];

@@ -1,12 +1,12 @@
-//! MOTION: the free flight between two impacts, (3)–(5).
+//! The free flight between two impacts, (3)–(5).
 //!
 //! The centre of mass follows a parabola (5). The axis of a body of revolution turns at a constant rate about the fixed
 //! angular momentum **Λ**. The paper's (3) turns it about **ω**, which is the same only while **ω** is perpendicular to the
 //! axis; in general **ω** itself precesses, but the axis moves as in (3) with **Λ**/J_xx in the place of **ω**.
 //!
-//! A body turns in a vertical plane ([`PlanarStates`]), to which every release from rest leads, or in any way
-//! ([`SpatialFlight`]). The search for a contact sees no difference, for in both the vertical component of the axis is
-//! e_z = c + A cos(Ωt + φ): one sine and cosine serve it.
+//! The motion is planar ([`PlanarStates`]) after every release from rest over a level plane, otherwise spatial
+//! ([`SpatialFlight`]). The contact search is the same for both, because the vertical component of the axis is always
+//! e_z = c + A cos(Ωt + φ): it needs one sine and one cosine.
 
 mod planar;
 mod spatial;
@@ -25,8 +25,8 @@ use crate::simd::Pack;
 use crate::simd::elementary::moderate_sincos_in_lanes;
 use pulp::Simd;
 
-/// A point of the unit circle that goes round as the body turns: the axis itself in the plane, in space the angle turned
-/// through since the start of the flight.
+/// Sine and cosine of the angle that describes the rotation: in planar motion that between the axis and the plane normal, in space
+/// the angle Ωt turned through since the start of the flight.
 #[derive(Clone, Copy)]
 pub(crate) struct Attitude<S: Simd, const K: usize> {
     pub sine: Pack<S, K>,
@@ -34,7 +34,7 @@ pub(crate) struct Attitude<S: Simd, const K: usize> {
 }
 
 impl<S: Simd, const K: usize> Attitude<S, K> {
-    /// Before anything is known of it.
+    /// A placeholder before the first evaluation.
     #[inline(always)]
     pub fn none(simd: S) -> Self {
         let zero = Pack::splat(simd, 0.0);
@@ -44,7 +44,7 @@ impl<S: Simd, const K: usize> Attitude<S, K> {
         }
     }
 
-    /// The attitude after another turn through an angle with this sine and cosine (3).
+    /// The attitude after a further rotation by the angle with this sine and cosine (3).
     #[inline(always)]
     pub fn after(self, sin: Pack<S, K>, cos: Pack<S, K>) -> Self {
         Self {
@@ -53,42 +53,42 @@ impl<S: Simd, const K: usize> Attitude<S, K> {
         }
     }
 
-    /// The attitude a moderate `angle` later: exact in double precision for angles up to 0.15.
+    /// The attitude after a further rotation by a moderate `angle`: accurate to double precision for angles up to 0.15.
     #[inline(always)]
     pub fn turned(self, angle: Pack<S, K>) -> Self {
         let (sin, cos) = moderate_sincos_in_lanes(angle);
         self.after(sin, cos)
     }
 
-    /// The attitude a small `angle` later: exact in double precision for angles up to 2⁻¹⁸.
+    /// The attitude after a further rotation by a small `angle`: accurate to double precision for angles up to 2⁻¹⁸.
     #[inline(always)]
     pub fn advanced(self, angle: Pack<S, K>) -> Self {
         self.after(angle, (angle * angle).mul_add(-0.5, 1.0))
     }
 }
 
-/// Position and motion, in each lane. The horizontal position is left out: the plane looks the same everywhere.
+/// Position and motion in each lane. The horizontal position is omitted, because the motion does not depend on it.
 pub(crate) trait States<S: Simd, const K: usize>: Copy {
-    /// What an impact changes: velocity and angular momentum.
+    /// Velocity and angular momentum, which an impact changes.
     type Motion: Copy;
 
-    /// A body at rest and upright, this high above the hull's level, in every lane.
+    /// A body at rest with a vertical axis, this high above the hull's level, in every lane.
     fn resting(simd: S, lift: f64) -> Self;
-    /// Puts a particle into a lane.
+    /// Puts the state of a particle into a lane.
     fn put(&mut self, lane: usize, start: &State);
     /// Height of the centre of mass above the hull's level.
     fn lift(&self) -> Pack<S, K>;
     /// Vertical velocity of the centre of mass.
     fn climb(&self) -> Pack<S, K>;
-    /// Sine, ≥ 0 or of either sign, of the angle between the axis and the plane normal.
+    /// Sine of the angle between the axis and the plane normal: signed in planar motion, ≥ 0 in space.
     fn sine(&self) -> Pack<S, K>;
-    /// Its cosine, e_z.
+    /// Cosine of that angle, e_z.
     fn tilt(&self) -> Pack<S, K>;
-    /// The motion.
+    /// Velocity and angular momentum.
     fn motion(&self) -> Self::Motion;
-    /// The same place with another motion.
+    /// The same position with another motion.
     fn moving(self, motion: Self::Motion) -> Self;
-    /// The same in space.
+    /// The same state with three-dimensional vectors.
     fn in_space(&self) -> SpatialStates<S, K>;
     /// Kinetic energy of the rotation, in m g R.
     fn rotational_energy(&self, body: &Body) -> Pack<S, K>;
@@ -101,11 +101,11 @@ pub(crate) trait Flight<S: Simd, const K: usize>: Copy {
     /// Position and motion.
     type State: States<S, K>;
 
-    /// The flight that follows from `start`, over a plane that falls along x with this slope, tan α.
+    /// The flight from `start`, over a plane that descends along x with this slope, tan α.
     fn new(start: Self::State, slope: f64) -> Self;
-    /// Where it starts.
+    /// The state at its start.
     fn start(&self) -> &Self::State;
-    /// Rate Ω of the rotation, up to its sign.
+    /// Angular velocity Ω of the axis, up to its sign.
     fn rate(&self) -> Pack<S, K>;
     /// Ω².
     fn square(&self) -> Pack<S, K>;
@@ -113,17 +113,17 @@ pub(crate) trait Flight<S: Simd, const K: usize>: Copy {
     fn amplitude(&self) -> Pack<S, K>;
     /// A bound on |e_z|, |c| + A, for any flight time.
     fn reach(&self) -> Pack<S, K>;
-    /// The attitude when the body has turned through Ωt, of which sine and cosine are given.
+    /// The attitude after a rotation by Ωt, of which sine and cosine are given.
     fn attitude(&self, turned: (Pack<S, K>, Pack<S, K>)) -> Attitude<S, K>;
-    /// How e_z moves at an attitude (3).
+    /// e_z and its time derivatives at an attitude (3).
     fn swing(&self, attitude: Attitude<S, K>) -> Swing<S, K>;
-    /// The same at the start.
+    /// e_z and its time derivatives at the start.
     fn beginning(&self) -> Swing<S, K>;
-    /// Starts anew from where it starts, with another motion.
+    /// Replaces the flight by one that starts at the same position with another motion.
     fn depart(&mut self, motion: <Self::State as States<S, K>>::Motion, slope: f64);
-    /// The state at `time`. Its lift is that of the start: where the body lands, the hull gives it more exactly.
+    /// The state at `time`. Its lift is left at that of the start, because at a contact the hull gives it more accurately.
     fn state(&self, time: Pack<S, K>, attitude: Attitude<S, K>) -> Self::State;
-    /// Ends here: the place of the start is taken by the `state` at the end, with the lift at which the body touches.
+    /// Ends the flight: `state`, with the `lift` at which the body touches, replaces the start.
     fn end(&mut self, state: Self::State, lift: Pack<S, K>);
 
     /// Height of the centre of mass above the hull's level at `time` (5).

@@ -5,7 +5,7 @@ use crate::body::{Body, Swing};
 use crate::simd::Pack;
 use pulp::Simd;
 
-/// Position and motion. Nothing has to be computed in advance, so that the start represents the flight.
+/// Position and motion. They also represent the flight that starts from them, since nothing needs to be computed in advance.
 #[derive(Clone, Copy)]
 pub(crate) struct States<S: Simd, const K: usize> {
     pub lift: Pack<S, K>,
@@ -111,7 +111,7 @@ impl<S: Simd, const K: usize> super::States<S, K> for States<S, K> {
 impl<S: Simd, const K: usize> Flight<S, K> for States<S, K> {
     type State = Self;
 
-    /// A plane that falls along x would lead out of the vertical plane of the axis: the slope is 0.
+    /// The slope is 0: over an incline the motion is spatial, because gravity has a component outside the plane of the axis.
     #[inline(always)]
     fn new(start: Self, _: f64) -> Self {
         start

@@ -1,4 +1,4 @@
-//! Motion in space.
+//! Motion in three dimensions.
 //!
 //! With **p** = **Λ**/J_xx and Ω = |**p**| the axis is **e**(t) = **k** + (**e** − **k**) cos Ωt + (**p** × **e**)/Ω sin Ωt,
 //! where **k** = **p**(**p**·**e**)/Ω² and **e** is the axis at the start (3).
@@ -65,7 +65,7 @@ impl<S: Simd, const K: usize> Vectors<S, K> {
         }
     }
 
-    /// What is in a lane.
+    /// The vector in a lane.
     #[inline(always)]
     pub fn lane(&self, lane: usize) -> super::Vector {
         super::Vector {
@@ -100,7 +100,7 @@ pub(crate) struct Motion<S: Simd, const K: usize> {
 }
 
 impl<S: Simd, const K: usize> States<S, K> {
-    /// What is in a lane.
+    /// The state in a lane.
     #[inline(always)]
     pub fn lane(&self, lane: usize) -> State {
         State {
@@ -189,7 +189,7 @@ impl<S: Simd, const K: usize> super::States<S, K> for States<S, K> {
         *self
     }
 
-    /// **ω**·**Λ**/2.
+    /// **ω**·**Λ**/2, the rotational part of (12).
     #[inline(always)]
     fn rotational_energy(&self, body: &Body) -> Pack<S, K> {
         let precession = self.motion.precession;
@@ -203,7 +203,7 @@ impl<S: Simd, const K: usize> super::States<S, K> for States<S, K> {
     }
 }
 
-/// A flight: the state that it starts from, and what follows from it.
+/// A flight: the state at its start, and the constants of its rotation.
 #[derive(Clone, Copy)]
 pub(crate) struct Motions<S: Simd, const K: usize> {
     start: States<S, K>,
@@ -211,7 +211,7 @@ pub(crate) struct Motions<S: Simd, const K: usize> {
     /// Ω and Ω².
     rate: Pack<S, K>,
     square: Pack<S, K>,
-    /// **p**·**e**/Ω² and 1/Ω; 0 where nothing turns in any time.
+    /// **p**·**e**/Ω² and 1/Ω; 0 for a body that does not rotate.
     share: Pack<S, K>,
     inverse: Pack<S, K>,
     /// e_z is `centre + cosine cos φ + sine sin φ`, φ = Ωt (3).
@@ -221,7 +221,7 @@ pub(crate) struct Motions<S: Simd, const K: usize> {
     amplitude: Pack<S, K>,
 }
 
-/// Squares of rates below this count as no rotation.
+/// Ω² below which a body is treated as not rotating.
 const SLOWEST: f64 = 1e-300;
 
 impl<S: Simd, const K: usize> Flight<S, K> for Motions<S, K> {
@@ -249,7 +249,7 @@ impl<S: Simd, const K: usize> Flight<S, K> for Motions<S, K> {
             centre,
             cosine,
             sine,
-            amplitude: (amplitude * (1.0 + 4.0 * f64::EPSILON)).min(1.0), // with room for rounding
+            amplitude: (amplitude * (1.0 + 4.0 * f64::EPSILON)).min(1.0), // an upper bound in spite of rounding
         }
     }
 
@@ -291,7 +291,7 @@ impl<S: Simd, const K: usize> Flight<S, K> for Motions<S, K> {
     #[inline(always)]
     fn swing(&self, Attitude { sine, cosine }: Attitude<S, K>) -> Swing<S, K> {
         let turning = self.cosine.mul_add(cosine, self.sine * sine); // (3)
-        let leading = self.sine.mul_add(cosine, -(self.cosine * sine)); // a quarter turn on
+        let leading = self.sine.mul_add(cosine, -(self.cosine * sine)); // a quarter of a turn later
         Swing {
             tilt: turning + self.centre,
             rate: self.rate * leading,

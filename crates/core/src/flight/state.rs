@@ -5,24 +5,25 @@ use crate::body::{Body, Sphere};
 use crate::simd::{elementary, one};
 use pulp::Scalar;
 
-/// Position and motion of one particle: at its release, or just before or after an impact. The horizontal position is left out: the plane looks the same everywhere.
+/// Position and motion of one particle at its release, or just before or after an impact, in the core's units. The horizontal
+/// position is omitted, because the motion does not depend on it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct State {
-    /// Height of the centre of mass above the hull's level, at which both spheres of a dumbbell lie on the plane: above R for
-    /// equal ones. Kept in this form because at a contact it is then ∓(L/2)e_z, and the gap of the touching sphere vanishes to
-    /// the last bit.
+    /// Height of the centre of mass minus the hull's level, which is the height at which both spheres of a dumbbell lie on the
+    /// plane: R for equal spheres. At a contact the lift is ∓(L/2)e_z, so that the gap of the touching sphere is exactly 0.
     pub lift: f64,
     /// Velocity of the centre of mass, v_G.
     pub velocity: Vector,
     /// Unit vector of the symmetry axis, from sphere 2 to sphere 1.
     pub axis: Vector,
-    /// **Λ**/J_xx, **Λ** the angular momentum: the axis turns about it at the rate |**Λ**|/J_xx. It equals **ω**
-    /// as long as **ω** is perpendicular to the axis.
+    /// **Λ**/J_xx with **Λ** the angular momentum: the axis turns about it at the rate |**Λ**|/J_xx. It equals **ω** if **ω** is
+    /// perpendicular to the axis.
     pub precession: Vector,
 }
 
 impl State {
-    /// From the height of the centre of mass above the plane and the angular velocity **ω**.
+    /// The state with this height of the centre of mass above the plane, velocity, axis and angular velocity **ω**, in the core's
+    /// units.
     #[inline(always)]
     pub fn with_spin(
         body: &Body,
@@ -40,7 +41,7 @@ impl State {
         }
     }
 
-    /// Whether nothing moves, with the axis in the x–z plane, in which the motion then stays.
+    /// Whether the body is at rest with its axis in the x–z plane. The motion from such a state stays in that plane.
     pub(crate) fn is_at_rest(&self) -> bool {
         let rest = Vector::default();
         self.velocity == rest && self.precession == rest && self.axis.y == 0.0
@@ -61,12 +62,12 @@ impl State {
         self.in_lane().kinetic_energy(body).as_slice()[0]
     }
 
-    /// Angle between the symmetry axis and the plane normal, in [0, π].
+    /// Angle θ between the symmetry axis and the plane normal, in [0, π] rad.
     pub fn angle(&self) -> f64 {
         elementary::angle(self.in_lane().sine().as_slice()[0], self.axis.z)
     }
 
-    /// Gaps between the plane and spheres 1 and 2; twice that of the body if only one part of it can touch.
+    /// Gaps between the plane and spheres 1 and 2, in R; two equal values if only one part of the body can touch.
     pub fn gaps(&self, body: &Body) -> [f64; 2] {
         Sphere::BOTH.map(|sphere| body.hull.gap(sphere, self.axis.z, self.lift)) // (2)
     }

@@ -1,16 +1,16 @@
 //! Vectors in the frame whose z axis is the plane normal **n**.
 //!
-//! Products are summed with fused multiply-adds in a fixed order. A motion that starts in the x–z plane has y
-//! components that are exactly 0 and stays there exactly.
+//! Products are summed with fused multiply-adds in a fixed order, so that results are reproducible, and components that are
+//! exactly 0, as in a motion in the x–z plane, remain exactly 0.
 
 use std::ops::{Add, Div, Mul, Sub};
 
 /// A vector (x, y, z); z is along the plane normal.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Vector {
-    /// Horizontal component.
+    /// Component along the plane, down the slope if it is inclined.
     pub x: f64,
-    /// The other horizontal component.
+    /// Component along the plane, perpendicular to x.
     pub y: f64,
     /// Component along the plane normal.
     pub z: f64,
@@ -41,7 +41,7 @@ impl Vector {
         self.dot(self).sqrt()
     }
 
-    /// Length of the horizontal part.
+    /// Length of the component along the plane.
     pub fn horizontal(self) -> f64 {
         self.x.mul_add(self.x, self.y * self.y).sqrt()
     }

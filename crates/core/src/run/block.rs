@@ -1,4 +1,4 @@
-//! A block of particles: put into the lanes of the engine that suits how they turn, their hull and their law.
+//! A block of particles, and the choice of the bounce loop for their motion, hull and law.
 
 use super::Plan;
 use crate::Error;
@@ -9,11 +9,11 @@ use crate::threads::Monitor;
 use pulp::{Simd, WithSimd};
 use std::ops::Range;
 
-/// Particles in a block: enough for the threads' bookkeeping not to be seen, few enough for all threads to stay busy.
+/// Number of particles in a block: large enough that scheduling costs nothing, small enough that all threads stay busy.
 pub(crate) const BLOCK: usize = 96;
 
 impl Plan<'_> {
-    /// Bounces a range of particles and tells `sink`.
+    /// Simulates a range of particles and hands their impacts to `sink`.
     pub fn bounce(
         &self,
         particles: Range<usize>,
@@ -33,7 +33,7 @@ impl Plan<'_> {
     }
 }
 
-/// The particles of a block, to be compiled for each SIMD level.
+/// The particles of a block, compiled for each SIMD level.
 struct Block<'a, T> {
     plan: &'a Plan<'a>,
     particles: Range<usize>,

@@ -1,19 +1,19 @@
-//! Initial conditions: how high a particle is released.
+//! Initial conditions: the height of release.
 
 use crate::Error;
 use crate::random::uniform;
 use crate::simd::elementary::sincos;
 use std::f64::consts::TAU;
 
-/// The law of the height of the centre of mass at release.
+/// The distribution of the height of the centre of mass over the plane at release, in m.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Height {
-    /// The same for every particle.
+    /// The same height for every particle.
     Fixed(f64),
-    /// At random, with the density (1 − cos 2πs)/(highest − lowest), s being 0 at the lowest and 1 at the highest: a raised
-    /// cosine, which with its slope vanishes at both ends.
+    /// Random heights with the density (1 − cos 2πs)/(highest − lowest), where s rises from 0 at the lowest to 1 at the highest: a
+    /// raised cosine, which vanishes at both ends together with its slope.
     Random {
-        /// Least height.
+        /// Smallest height.
         lowest: f64,
         /// Largest height.
         highest: f64,
@@ -25,7 +25,7 @@ const PLACE: u32 = 5;
 const MIRRORED: u32 = 6;
 
 impl Height {
-    /// That of a particle.
+    /// The height of a particle.
     #[inline(always)]
     pub fn draw(&self, seed: u64, particle: u64) -> f64 {
         match *self {
@@ -36,7 +36,7 @@ impl Height {
         }
     }
 
-    /// In another unit of length.
+    /// The same distribution in another unit of length.
     pub(super) fn scaled(&self, unit: f64) -> Self {
         match *self {
             Self::Fixed(height) => Self::Fixed(height / unit),
@@ -47,7 +47,7 @@ impl Height {
         }
     }
 
-    /// The least of all.
+    /// The smallest possible height.
     pub fn lowest(&self) -> f64 {
         match *self {
             Self::Fixed(height) => height,
@@ -55,7 +55,7 @@ impl Height {
         }
     }
 
-    /// Mean and median of all.
+    /// Mean and median of the heights.
     pub fn middle(&self) -> f64 {
         match *self {
             Self::Fixed(height) => height,
@@ -63,7 +63,7 @@ impl Height {
         }
     }
 
-    /// Whether the least is not above the greatest, and that finite.
+    /// Checks that the heights are finite and in order.
     pub(super) fn check(&self) -> Result<(), Error> {
         match *self {
             Self::Fixed(_) => Ok(()),
@@ -82,8 +82,8 @@ impl From<f64> for Height {
     }
 }
 
-/// In [0, 1), with the density 1 − cos 2πs. Of any s and its mirror image s ± 1/2 the densities add to 2, so that a uniform
-/// number is taken as it is with the probability (1 − cos 2πs)/2, and as its mirror image else.
+/// A random number s in [0, 1) with the density 1 − cos 2πs. The densities at s and at s ± 1/2 add up to 2, so that a uniform number
+/// s is kept with probability (1 − cos 2πs)/2, and otherwise shifted by 1/2.
 #[inline(never)]
 fn raised_cosine(seed: u64, particle: u64) -> f64 {
     let s = uniform(seed, particle, PLACE);

@@ -1,4 +1,4 @@
-//! A run, in SI units, and how its particles are released.
+//! A run, in SI units, and the initial conditions of its particles.
 
 mod block;
 mod height;
@@ -28,29 +28,29 @@ pub struct Run<'a> {
     pub law: Law<'a>,
     /// Number of particles.
     pub particles: usize,
-    /// Most impacts of a particle.
+    /// Largest number of impacts of a particle.
     pub impacts: usize,
-    /// Law of the height of the centre of mass over the plane at release, along the plane normal, in m.
+    /// Distribution of the height of the centre of mass over the plane at release, along the plane normal, in m.
     pub release_height: Height,
     /// Acceleration of gravity, in m/s².
     pub gravity: f64,
-    /// Law of the symmetry axis at release.
+    /// Distribution of the symmetry axis at release.
     pub orientation: Orientation<'a>,
-    /// Law of the angular velocity at release.
+    /// Distribution of the angular velocity at release, in rad/s.
     pub spin: Spin<'a>,
     /// Velocity of the centre of mass at release, in m/s.
     pub velocity: Vector,
-    /// Angle α in [0, π/2) by which the plane is inclined, falling along x: in its frame gravity is g(sin α, 0, −cos α).
+    /// Inclination α of the plane in [0, π/2) rad, descending along x: in its frame gravity is g(sin α, 0, −cos α).
     pub incline: f64,
-    /// A particle ends when √(2 E_kin/m) falls below this after an impact, in m/s; 0 never does.
+    /// Value of √(2 E_kin/m) after an impact, in m/s, below which a particle stops; with 0 none does.
     pub minimum_speed: f64,
     /// Seed of the random numbers.
     pub seed: u64,
 }
 
 impl Run<'_> {
-    /// What the sums of ε are taken about: ε_n at the normal speed that a fall from the release has on the plane; of random
-    /// heights the one in the middle.
+    /// The origin about which moments of ε are summed: ε_n at the normal speed of the first impact; for random heights, of a release
+    /// from the middle one.
     pub fn origin(&self) -> f64 {
         let drop = self.release_height.middle() - self.body.unit;
         let gained = 2.0 * self.gravity * sincos(self.incline).1 * drop.max(0.0);
@@ -58,8 +58,8 @@ impl Run<'_> {
         self.law.normal.at(start.mul_add(start, gained).sqrt())
     }
 
-    /// Whether all particles are released at rest, over a level plane. All directions in the plane are then equivalent, and each
-    /// particle stays in the vertical plane of its axis.
+    /// Whether all particles are released at rest over a level plane. All directions in the plane are then equivalent, and each
+    /// particle remains in the vertical plane of its axis.
     pub(crate) fn is_at_rest(&self) -> bool {
         self.spin.is_none() && self.velocity == Vector::default() && self.incline == 0.0
     }

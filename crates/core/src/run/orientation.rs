@@ -1,37 +1,40 @@
-//! Initial conditions: how the symmetry axis lies when a particle is released.
+//! Initial conditions: the symmetry axis at release.
 
 use crate::Error;
 use crate::random::uniform;
 use crate::simd::elementary::{RANGE, sincos};
 use std::f64::consts::{PI, TAU};
 
-/// The law of the angle θ between the symmetry axis and the plane normal at release, and of its azimuth φ: the axis is
-/// (sin θ cos φ, sin θ sin φ, cos θ).
+/// The distribution of the angle θ between the symmetry axis and the plane normal at release, and of the azimuth φ of the axis, in
+/// rad: the axis is (sin θ cos φ, sin θ sin φ, cos θ).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Orientation<'a> {
-    /// θ uniform in [0, π), as the paper has it above (18).
+    /// θ uniform in [0, π), as the paper assumes above (18).
     UniformAngle,
     /// Isotropic: cos θ uniform in [−1, 1].
     Isotropic,
-    /// One angle θ for each particle.
+    /// One angle θ for each particle, in rad.
     Given(&'a [f64]),
-    /// θ and φ for each particle.
+    /// θ and φ for each particle, in rad.
     Directions(&'a [[f64; 2]]),
 }
 
 impl Orientation<'_> {
-    /// The laws that have a name.
+    /// The distributions that have a name.
     pub const NAMED: [(&'static str, Self); 2] = [
         ("uniform-angle", Self::UniformAngle),
         ("isotropic", Self::Isotropic),
     ];
 
-    /// The law of that name.
+    /// The distribution with this name.
+    ///
+    /// # Errors
+    /// [`Error::Parameter`] for an unknown name.
     pub fn named(name: &str) -> Result<Self, Error> {
         Error::chosen("orientation", name, &Self::NAMED)
     }
 
-    /// (sin θ, cos θ) of a particle. Inlined, with all it calls, to be compiled for the SIMD level of its caller.
+    /// (sin θ, cos θ) of a particle. Inlined with everything it calls, so that it is compiled for the SIMD level of its caller.
     #[inline(always)]
     pub fn draw(&self, seed: u64, particle: u64) -> (f64, f64) {
         match self {
@@ -45,8 +48,8 @@ impl Orientation<'_> {
         }
     }
 
-    /// Azimuth φ of a particle: uniform in [0, 2π) unless it is given. It is of consequence only where spin, velocity or
-    /// gravity single out a direction along the plane; were it always 0 there, the ensemble would be of a chosen few.
+    /// Azimuth φ of a particle in rad, uniform in [0, 2π) unless it is given. It matters only where spin, velocity or gravity single
+    /// out a direction in the plane; the ensemble must then contain all azimuths.
     pub fn azimuth(&self, seed: u64, particle: u64) -> f64 {
         match self {
             Self::Directions(angles) => angles[particle as usize][1],
@@ -54,7 +57,7 @@ impl Orientation<'_> {
         }
     }
 
-    /// Whether given angles are one a particle and in the range of sine and cosine.
+    /// Checks that there is an angle for each particle, in the range of sine and cosine.
     pub(crate) fn check(&self, particles: usize) -> Result<(), Error> {
         let angles = match self {
             Self::UniformAngle | Self::Isotropic => return Ok(()),

@@ -1,4 +1,4 @@
-//! A run that has been checked, in the core's units: what the bounce loop starts from.
+//! A run that has been checked, in the core's units, ready for the bounce loop.
 
 use super::{Height, Orientation, Run, Scales};
 use crate::Error;
@@ -25,7 +25,7 @@ pub(crate) struct Plan<'a> {
     pub at_rest: bool,
 }
 
-/// Most of any component of spin and velocity: their squares shall not overflow.
+/// Largest magnitude of a component of spin or velocity, in the core's units, so that squares do not overflow.
 const FASTEST: f64 = 1e100;
 
 impl<'a> Plan<'a> {
@@ -100,7 +100,7 @@ impl<'a> Plan<'a> {
         self.height.draw(self.run.seed, particle as u64)
     }
 
-    /// The same in m.
+    /// Height of the centre of mass at release, in m.
     pub fn release_height(&self, particle: usize) -> f64 {
         self.run.release_height.draw(self.run.seed, particle as u64)
     }
@@ -116,7 +116,7 @@ impl<'a> Plan<'a> {
         (azimuth, spin)
     }
 
-    /// When a particle stops.
+    /// The limits at which a particle stops.
     pub fn limits(&self) -> Limits {
         Limits {
             impacts: self.run.impacts,
@@ -126,8 +126,7 @@ impl<'a> Plan<'a> {
 }
 
 impl Release for Plan<'_> {
-    /// How a particle is released. without spin the direction of the tilt does not matter, and the axis is put into the x–z
-    /// plane.
+    /// The state of a particle at release. At rest over a level plane the azimuth does not matter, and the axis is in the x–z plane.
     #[inline(always)]
     fn start(&self, particle: usize) -> State {
         let (sine, cosine) = self.release(particle);

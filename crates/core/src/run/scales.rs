@@ -1,4 +1,4 @@
-//! Between SI units and the core's: lengths in R, times in √(R/g).
+//! Conversion between SI units and the core's: lengths in R, times in √(R/g).
 
 use crate::Error;
 
@@ -14,7 +14,10 @@ pub struct Scales {
 }
 
 impl Scales {
-    /// The scales of a sphere radius (m) and an acceleration of gravity (m/s²).
+    /// The scales for a sphere radius (m) and an acceleration of gravity normal to the plane (m/s²).
+    ///
+    /// # Errors
+    /// Unless gravity is finite and > 0, and if R/g or gR overflows or underflows.
     pub fn new(radius: f64, gravity: f64) -> Result<Self, Error> {
         let allowed = "finite and > 0 (m/s^2)";
         let positive = gravity.is_finite() && gravity > 0.0;

@@ -1,4 +1,4 @@
-//! Initial conditions: how a particle spins when it is released.
+//! Initial conditions: the angular velocity at release.
 
 use crate::Error;
 use crate::flight::Vector;
@@ -6,50 +6,53 @@ use crate::random::uniform;
 use crate::simd::elementary::{ln, sincos};
 use std::f64::consts::TAU;
 
-/// The law of the angular velocity **ω** at release, in rad/s.
+/// The distribution of the angular velocity **ω** at release, in rad/s.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Spin<'a> {
-    /// The same for every particle.
+    /// The same **ω** for every particle.
     Fixed(Vector),
-    /// One for each particle.
+    /// One **ω** for each particle.
     Given(&'a [[f64; 3]]),
-    /// At random: |**ω**| is uniform from `low` to `high`, and independent of the direction.
+    /// Random: |**ω**| is uniform from `low` to `high`, and independent of the direction.
     Random {
-        /// Least |**ω**|.
+        /// Smallest |**ω**|.
         low: f64,
-        /// Largest |**ω**|; `low` if it is the same for all.
+        /// Largest |**ω**|; equal to `low` if all particles spin equally fast.
         high: f64,
-        /// Law of the direction.
+        /// Distribution of the direction.
         about: About,
     },
-    /// Maxwell's distribution, ∝ exp(−E_rot/T): the components along the axis and across it are Gaussian, with the same mean
-    /// energy each.
+    /// Maxwell distribution, ∝ exp(−E_rot/T): the components of **ω** along the axis and perpendicular to it are Gaussian, with the
+    /// same mean energy for each of the three degrees of freedom.
     Thermal {
         /// √⟨ω²⟩.
         rate: f64,
     },
 }
 
-/// The law of the direction of a random spin.
+/// The distribution of the direction of a random spin.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum About {
     /// Isotropic.
     Isotropic,
     /// Uniform over the directions in the plane.
     Horizontal,
-    /// Uniform over the directions perpendicular to the symmetry axis, so that it tumbles and **ω** stays constant in flight.
+    /// Uniform over the directions perpendicular to the symmetry axis: the body tumbles, and **ω** is constant in flight.
     Across,
 }
 
 impl About {
-    /// Every law of the direction, by name.
+    /// All distributions of the direction with their names.
     pub const NAMED: [(&'static str, Self); 3] = [
         ("isotropic", Self::Isotropic),
         ("horizontal", Self::Horizontal),
         ("across", Self::Across),
     ];
 
-    /// The law of that name.
+    /// The distribution with this name.
+    ///
+    /// # Errors
+    /// [`Error::Parameter`] for an unknown name.
     pub fn named(name: &str) -> Result<Self, Error> {
         Error::chosen("axis", name, &Self::NAMED)
     }
@@ -75,8 +78,8 @@ impl Spin<'_> {
         }
     }
 
-    /// **ω** of a particle whose symmetry axis has the polar angle and the azimuth of these sines and cosines, and whose moment
-    /// of inertia across it is `ratio` times that about it.
+    /// **ω** of a particle, in rad/s. The tuples are sine and cosine of the polar angle and of the azimuth of its symmetry axis;
+    /// `ratio` is J_xx/J_zz.
     pub fn draw(
         &self,
         seed: u64,
@@ -84,7 +87,7 @@ impl Spin<'_> {
         ((sine, cosine), (y, x)): ((f64, f64), (f64, f64)),
         ratio: f64,
     ) -> Vector {
-        // Two directions across the axis: in its vertical plane, and horizontal.
+        // Two directions perpendicular to the axis: in its vertical plane, and horizontal.
         let tilted = Vector::new(cosine * x, cosine * y, -sine);
         let level = Vector::new(-y, x, 0.0);
         match *self {
@@ -127,7 +130,7 @@ impl Spin<'_> {
         }
     }
 
-    /// Whether all numbers are finite and there is a spin for each particle.
+    /// Checks that all components are at most `most` and that there is a spin for each particle.
     pub(crate) fn check(&self, particles: usize, most: f64) -> Result<(), Error> {
         let all = |spin: [f64; 3]| {
             spin.into_iter().try_for_each(|x| {

@@ -1,4 +1,4 @@
-//! The end of the search: from the last certified step to the contact. See [`super`] for why it is the right one.
+//! The end of the search: from the last certified step to the contact. [`super`] explains why this is the first contact.
 
 use super::gap::{Gap, Look, Search};
 use super::{FAR, INVISIBLE, LAST, NEAR, SMALL};
@@ -7,18 +7,18 @@ use crate::flight::{Attitude, Flight};
 use crate::simd::{Mask, Pack};
 use pulp::Simd;
 
-/// The next steps of the search.
+/// The two next steps of the search.
 #[derive(Clone, Copy)]
 #[repr(align(64))]
 pub(crate) struct Leap<S: Simd, const K: usize> {
-    /// The certified one.
+    /// The certified step.
     step: Pack<S, K>,
-    /// To the zero of an expansion, good where the contact is near.
+    /// The step to the zero of an expansion, accurate where the contact is near.
     ahead: Pack<S, K>,
     near: Mask<S, K>,
 }
 
-/// What an expansion has left of the gap.
+/// The gap that remains at the zero of an expansion.
 #[derive(Clone, Copy)]
 #[repr(align(64))]
 pub(crate) struct Residue<S: Simd, const K: usize> {
@@ -28,14 +28,14 @@ pub(crate) struct Residue<S: Simd, const K: usize> {
     rate: Pack<S, K>,
 }
 
-/// Where a pass of the search leads.
+/// The result of a pass of the search.
 #[derive(Clone, Copy)]
 #[repr(align(64))]
 pub(crate) struct Arrival<S: Simd, const K: usize> {
     /// Time and attitude of the contact.
     pub time: Pack<S, K>,
     pub attitude: Attitude<S, K>,
-    /// The lanes in which they are right, or that never land.
+    /// The lanes in which the contact is located, or that never land.
     pub done: Mask<S, K>,
 }
 
@@ -79,7 +79,7 @@ impl<S: Simd, const K: usize> Arrival<S, K> {
 }
 
 impl<S: Simd, F: Flight<S, K>, const K: usize> Search<S, F, K> {
-    /// The next steps, from what is to be seen.
+    /// The next steps, from the gap as evaluated.
     #[inline(always)]
     pub fn leap(&self, look: &Look<S, K>, hull: &impl Hull) -> Leap<S, K> {
         let step = self.certified(&look.gap);
@@ -90,7 +90,7 @@ impl<S: Simd, F: Flight<S, K>, const K: usize> Search<S, F, K> {
         }
     }
 
-    /// What is left of the gap that was evaluated at `time`.
+    /// The gap that remains after the step to the zero of the expansion, from an evaluation at `time`.
     #[inline(always)]
     pub fn residue(
         &self,
@@ -110,7 +110,7 @@ impl<S: Simd, F: Flight<S, K>, const K: usize> Search<S, F, K> {
         }
     }
 
-    /// The contact, where it is near and the other part does not touch before.
+    /// The contact, valid where it is near and the other part cannot have touched before.
     #[inline(always)]
     pub fn arrival<H: Hull>(
         &self,
@@ -120,7 +120,7 @@ impl<S: Simd, F: Flight<S, K>, const K: usize> Search<S, F, K> {
         hull: &H,
     ) -> Arrival<S, K> {
         let part = &look.gap.part;
-        // What is left goes in a step of third order.
+        // A step of third order closes the remaining gap.
         let inverse = -1.0 / residue.rate;
         let newton = residue.width * inverse;
         let curvature = hull.bend(part, &self.flight.swing(residue.attitude), -1.0); // f″
@@ -129,8 +129,7 @@ impl<S: Simd, F: Flight<S, K>, const K: usize> Search<S, F, K> {
 
         let mut found = leap.near & newton.abs().le(SMALL * leap.step);
         if H::TWO {
-            // Where the other part touched after `step`, its gap cannot have become larger since than gravity and rotation open
-            // it.
+            // If the other part had touched after `step`, its gap could have grown since by at most ½S·since².
             let since = (leap.ahead - leap.step) + rest;
             let tilt = self.flight.swing(attitude).tilt;
             let other = hull.gap(&hull.part(!part.one), tilt, hull.lift(part, tilt));
@@ -143,7 +142,7 @@ impl<S: Simd, F: Flight<S, K>, const K: usize> Search<S, F, K> {
         }
     }
 
-    /// Has the lanes arrive, of those that are `clear`, whose step from `time` leaves nothing of the gap that can be seen.
+    /// Ends the search in those of the `clear` lanes whose certified step from `time` leaves a gap below the resolution.
     #[inline(always)]
     pub fn graze(
         &self,
@@ -158,7 +157,7 @@ impl<S: Simd, F: Flight<S, K>, const K: usize> Search<S, F, K> {
         let late = end.mul_add(-LAST, step);
         let turned = self.flight.rate().abs().mul_add(step, -LAST);
         let visible = self.bound.mul_add(step * step, -INVISIBLE);
-        // Excesses, none of which may exceed 0: masks are dearer than numbers.
+        // The largest excess must be ≤ 0: one comparison, because operations on masks are slower than those on numbers.
         let invisible = late.max(turned).max(visible).le(0.0);
         let last = look.gap.rate.lt(0.0) & invisible & clear & !arrival.done;
         let there = look.attitude.turned(self.flight.rate() * step);
@@ -169,15 +168,15 @@ impl<S: Simd, F: Flight<S, K>, const K: usize> Search<S, F, K> {
         arrival.done = arrival.done | last;
     }
 
-    /// Up to when a pass that looked at `time` rules out a contact.
+    /// The time up to which a pass that evaluated the gap at `time` rules out a contact.
     #[inline(always)]
     pub fn certain(&self, time: Pack<S, K>, leap: &Leap<S, K>) -> Pack<S, K> {
-        // However short a step is, time goes on.
+        // The time must increase by at least one rounding unit, however short the step.
         self.skip(time + leap.step.max(f64::EPSILON * time))
     }
 
-    /// Where the next pass looks: just before the contact to which the expansions lead, or where it is `certain` that there is
-    /// none before.
+    /// The time of the next evaluation: just before the contact that the expansions predict, or else `certain`, up to which a
+    /// contact is ruled out.
     #[inline(always)]
     pub fn aim(
         &self,
@@ -188,9 +187,9 @@ impl<S: Simd, F: Flight<S, K>, const K: usize> Search<S, F, K> {
         hull: &impl Hull,
     ) -> Pack<S, K> {
         let rate = residue.rate;
-        // Seen from the contact the gap opens backwards for at least 2|f′|/M.
+        // Backwards in time from the contact, the gap stays open for at least 2|f′|/M.
         let beyond = (0.5 * self.bound).mul_add(arrival.time - certain, rate);
-        // Half as far from the contact as is near: a pass from there ends the search, and sees more of the gap than rounding.
+        // At half the distance that counts as near, a pass ends the search, and the gap is larger than its rounding error.
         let turning = self.flight.rate().abs() * hull.sharpness();
         let margin = (0.5 * NEAR) * rate / turning.mul_add(-rate, self.sway);
         let aim = (arrival.time + margin).max(certain);
@@ -198,10 +197,10 @@ impl<S: Simd, F: Flight<S, K>, const K: usize> Search<S, F, K> {
         (led & beyond.le(0.0) & rate.lt(0.0)).select(aim, certain)
     }
 
-    /// Whether no part can have touched between the time up to which that is `certain` and the `time` that is looked at.
+    /// Whether no part can have touched between `certain`, up to which a contact is ruled out, and the `time` of the evaluation.
     ///
-    /// Backwards, too, f″ ≥ −M: s before it was seen to be f and f′ the gap was at least f − f′s − Ms²/2, which is concave, and so
-    /// positive where it is so at both ends.
+    /// The bound f″ ≥ −M holds backwards in time as well: a time s before the evaluation of f and f′ the gap was at least
+    /// f − f′s − Ms²/2, which is concave in s, and therefore positive in between if it is positive at both ends.
     #[inline(always)]
     pub fn is_clear<H: Hull>(
         &self,
@@ -221,7 +220,7 @@ impl<S: Simd, F: Flight<S, K>, const K: usize> Search<S, F, K> {
         !certain.lt(time) | (0.0 * since).lt(least)
     }
 
-    /// A bound on the gap of a part for as long as `since` before `time`.
+    /// A lower bound on the gap of a part during the interval of length `since` before `time`.
     #[inline(always)]
     fn least_gap(
         &self,
@@ -236,7 +235,7 @@ impl<S: Simd, F: Flight<S, K>, const K: usize> Search<S, F, K> {
         since.mul_add(-fallen, width).min(width)
     }
 
-    /// Whether the gap falls to its only zero just behind `step`.
+    /// Whether the only zero of the gap is just after `step`.
     #[inline(always)]
     fn is_near(&self, gap: &Gap<S, K>, step: Pack<S, K>, hull: &impl Hull) -> Mask<S, K> {
         let turned = self
@@ -248,13 +247,13 @@ impl<S: Simd, F: Flight<S, K>, const K: usize> Search<S, F, K> {
         gap.rate.lt(0.0) & turned.max(bent).le(0.0)
     }
 
-    /// A step to the zero of the gap's fourth-order expansion, of third order behind `step`.
+    /// The step to the zero of the fourth-order expansion of the gap, found by a step of third order from the end of `step`.
     #[inline(always)]
     fn expanded(&self, look: &Look<S, K>, step: Pack<S, K>, hull: &impl Hull) -> Pack<S, K> {
         let swing = self.flight.swing(look.attitude);
         let [second, third, fourth] = hull.bends(&look.gap.part, &swing); // f″ without gravity, f‴, f⁗
-        let slack = second + self.sway; // f″ + M, what the lower bound leaves out
-        // What is left of the gap after the step, and how fast it closes there.
+        let slack = second + self.sway; // f″ + M, which the lower bound neglects
+        // The gap after the step, and the speed at which it closes there.
         let bend = (step * fourth).mul_add(1.0 / 12.0, third * (1.0 / 3.0));
         let left = 0.5 * (step * step) * step.mul_add(bend, slack);
         let speed = step.mul_add(-step.mul_add(0.5 * third, slack), look.gap.root);

@@ -1,4 +1,4 @@
-//! What the search sees of a flight at a moment, and how far it can safely step from there.
+//! The gap at a time of the flight, and the step from there that cannot pass a contact.
 
 use super::{SHORTEST, TOUCHING};
 use crate::body::{Hull, Part, Swing};
@@ -7,16 +7,16 @@ use crate::simd::elementary::RANGE;
 use crate::simd::{Mask, Pack};
 use pulp::Simd;
 
-/// What the last impact left behind.
+/// The contact from which the flight starts.
 #[derive(Clone, Copy)]
 pub(crate) struct Departure<S: Simd, const K: usize> {
-    /// ±1: sphere 1 or 2 is on the plane; 0: no part of the body is.
+    /// +1 or −1: sphere 1 or 2 is on the plane; 0: no part of the body is.
     pub sphere: Pack<S, K>,
-    /// The normal speed at which its lowest point leaves.
+    /// The normal speed at which the point of contact leaves the plane.
     pub speed: Pack<S, K>,
 }
 
-/// Where a flight is at one time.
+/// Height, axis and their time derivatives at one time of the flight.
 #[derive(Clone, Copy)]
 pub(super) struct Moment<S: Simd, const K: usize> {
     time: Pack<S, K>,
@@ -49,14 +49,14 @@ pub(crate) struct Gap<S: Simd, const K: usize> {
     pub root: Pack<S, K>,
 }
 
-/// What a pass of the search sees: the gap that may close first.
+/// The evaluation of a pass of the search: the gap that may close first.
 #[derive(Clone, Copy)]
 #[repr(align(64))]
 pub(crate) struct Look<S: Simd, const K: usize> {
     pub attitude: Attitude<S, K>,
-    /// The gap.
+    /// The gap that may close first.
     pub gap: Gap<S, K>,
-    /// The lanes that never land while the axis can be followed.
+    /// The lanes that do not land before the angle turned through exceeds [`RANGE`].
     pub never: Mask<S, K>,
 }
 
@@ -79,14 +79,14 @@ impl<S: Simd, const K: usize> Look<S, K> {
     }
 }
 
-/// What the search needs to know of a flight.
+/// A flight and the bounds on its gap that the search uses.
 #[derive(Clone, Copy)]
 #[repr(align(64))]
 pub(crate) struct Search<S: Simd, F, const K: usize> {
     pub flight: F,
-    /// How the flight starts.
+    /// The contact from which the flight starts.
     pub departure: Departure<S, K>,
-    /// What the rotation can contribute to f″: (L/2)AΩ² for a dumbbell.
+    /// S, the bound on the contribution of rotation to f″: (L/2)AΩ² for a dumbbell.
     pub sway: Pack<S, K>,
     /// M, the bound on −f″.
     pub bound: Pack<S, K>,
@@ -96,7 +96,7 @@ pub(crate) struct Search<S: Simd, F, const K: usize> {
 }
 
 impl<S: Simd, F: Flight<S, K>, const K: usize> Search<S, F, K> {
-    /// Of a flight that starts so.
+    /// The search along a flight that starts from this departure.
     #[inline(always)]
     pub fn new(flight: F, departure: Departure<S, K>, hull: &impl Hull) -> Self {
         let zero = Pack::splat(flight.rate().simd(), 0.0);
@@ -112,7 +112,7 @@ impl<S: Simd, F: Flight<S, K>, const K: usize> Search<S, F, K> {
         search
     }
 
-    /// Goes on to the flight that starts where the last has ended.
+    /// Continues with the flight that starts where the last one ended.
     #[inline(always)]
     pub fn depart(
         &mut self,
@@ -124,7 +124,7 @@ impl<S: Simd, F: Flight<S, K>, const K: usize> Search<S, F, K> {
         self.survey(hull);
     }
 
-    /// Finds out what bounds the gap.
+    /// Computes the bounds on the gap.
     #[inline(always)]
     fn survey(&mut self, hull: &impl Hull) {
         let flight = &self.flight;
@@ -141,8 +141,8 @@ impl<S: Simd, F: Flight<S, K>, const K: usize> Search<S, F, K> {
         self.down = reaches.select(climb + root, f64::INFINITY);
     }
 
-    /// The departure of a release: a part may be on the plane, at rest or on its way up. One that is on its way down meets the
-    /// plane at once, and is left to the search.
+    /// The search along a flight from a release: a part may be on the plane, at rest or moving up. A part on the plane that moves
+    /// down is left to the search, which finds its contact at time 0.
     #[inline(always)]
     pub fn released(flight: F, hull: &impl Hull) -> Self {
         let simd = flight.rate().simd();
@@ -165,7 +165,7 @@ impl<S: Simd, F: Flight<S, K>, const K: usize> Search<S, F, K> {
         search
     }
 
-    /// Lanes whose part on the plane, left with no speed, stays there: f″ ≤ 0, and the other is not coming down on it too.
+    /// Lanes whose part on the plane has no normal speed and stays there: f″ ≤ 0, and the other part is not about to touch as well.
     #[inline(always)]
     pub fn rests<H: Hull>(&self, hull: &H) -> Mask<S, K> {
         let moment = self.beginning();
@@ -180,7 +180,7 @@ impl<S: Simd, F: Flight<S, K>, const K: usize> Search<S, F, K> {
         }
     }
 
-    /// Where the first pass looks. Both parts count: the one on the plane is just leaving it.
+    /// The time of the first evaluation, certified for both parts, of which one may be leaving the plane.
     #[inline(always)]
     pub fn departed<H: Hull>(&self, hull: &H) -> Pack<S, K> {
         let moment = self.beginning();
@@ -195,7 +195,7 @@ impl<S: Simd, F: Flight<S, K>, const K: usize> Search<S, F, K> {
                 self.certified(&one)
             }
         } else {
-            // The root of a gap that is zero is its rate.
+            // For a gap of 0, √(f′² + 2Mf) is f′.
             let leaves = (2.0 * self.departure.speed).max(SHORTEST) / self.bound;
             if H::TWO {
                 let other = self.gap(&moment, hull.part(on.lt(0.0)), hull);
@@ -204,17 +204,17 @@ impl<S: Simd, F: Flight<S, K>, const K: usize> Search<S, F, K> {
                 leaves
             }
         };
-        // A contact at the start itself is seen again in the first pass.
+        // The first pass evaluates a contact at the start itself again.
         step.eq(0.0).select(0.0, self.skip(step))
     }
 
-    /// What the body has turned through at `time`: φ = Ωt.
+    /// The angle that the body has turned through at `time`, Ωt.
     #[inline(always)]
     pub fn angle(&self, time: Pack<S, K>) -> Pack<S, K> {
         self.flight.rate() * time
     }
 
-    /// What is to be seen at `time`, with sine and cosine of the angle there.
+    /// The gap that may close first, evaluated at `time`; `turned` is sine and cosine of the angle turned through.
     #[inline(always)]
     pub fn look<H: Hull>(
         &self,
@@ -227,7 +227,7 @@ impl<S: Simd, F: Flight<S, K>, const K: usize> Search<S, F, K> {
         let moment = self.moment(time, attitude);
         let part = hull.nearer(moment.lift, moment.climb, &moment.swing, self.bound);
         let mut gap = self.gap(&moment, part, hull);
-        // Does it touch and not approach, or is this the start? One comparison, because masks are dearer than numbers.
+        // A part that touches but does not approach, or the start: one comparison, because operations on masks are slower.
         let leaving = (gap.width - TOUCHING).max(-gap.rate);
         if leaving.min(time).le(0.0).any() {
             gap = self.careful(&moment, gap, hull);
@@ -250,7 +250,7 @@ impl<S: Simd, F: Flight<S, K>, const K: usize> Search<S, F, K> {
         }
     }
 
-    /// The gap under a part.
+    /// The gap of a part.
     #[inline(always)]
     fn gap(&self, moment: &Moment<S, K>, part: Part<S, K>, hull: &impl Hull) -> Gap<S, K> {
         let (width, rate) = moment.opening(&part, hull);
@@ -263,7 +263,7 @@ impl<S: Simd, F: Flight<S, K>, const K: usize> Search<S, F, K> {
         }
     }
 
-    /// Where the flight is at `time`, with this attitude.
+    /// Height, axis and their derivatives at `time`, with this attitude.
     #[inline(always)]
     pub(super) fn moment(&self, time: Pack<S, K>, attitude: Attitude<S, K>) -> Moment<S, K> {
         Moment {
@@ -279,8 +279,8 @@ impl<S: Simd, F: Flight<S, K>, const K: usize> Search<S, F, K> {
         rate.mul_add(rate, 2.0 * self.bound * width).sqrt()
     }
 
-    /// The gap that may close first where the nearer one is not enough: at the start the part on the plane is known exactly, and a
-    /// part that touches and leaves may come back later than the other comes down.
+    /// The gap that may close first in the cases that [`Hull::nearer`] does not decide: at the start the part on the plane is known
+    /// exactly, and a part that touches and leaves may return later than the other comes down.
     #[inline(always)]
     fn careful<H: Hull>(&self, moment: &Moment<S, K>, nearer: Gap<S, K>, hull: &H) -> Gap<S, K> {
         let gap = self.exact(moment, nearer, hull);
@@ -321,8 +321,8 @@ impl<S: Simd, F: Flight<S, K>, const K: usize> Search<S, F, K> {
         }
     }
 
-    /// First zero τ ≥ 0 of f + f′τ − Mτ²/2: no contact can come earlier. Of the two forms of the same root the one that does not
-    /// subtract.
+    /// The first zero τ ≥ 0 of f + f′τ − Mτ²/2, before which there is no contact, in that of the two forms of the root in which no
+    /// digits cancel.
     #[inline(always)]
     pub fn certified(&self, gap: &Gap<S, K>) -> Pack<S, K> {
         let approaching = gap.rate.lt(0.0);
@@ -332,7 +332,7 @@ impl<S: Simd, F: Flight<S, K>, const K: usize> Search<S, F, K> {
         numerator / denominator
     }
 
-    /// Past the time that the centre of mass spends out of reach.
+    /// The given time, or, if the centre of mass is then higher than the hull can reach, the time at which it comes back down.
     #[inline(always)]
     pub fn skip(&self, time: Pack<S, K>) -> Pack<S, K> {
         self.up.le(time).select(time.max(self.down), time)

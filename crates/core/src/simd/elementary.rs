@@ -1,16 +1,16 @@
 //! Sine, cosine, the angle of a unit vector and the fifth root without the platform's mathematics library, so that every
 //! machine computes the same bits.
 //!
-//! The argument of sine and cosine is reduced to |r| ≤ π/4 by subtracting a multiple of π/2 held in two constants; then
-//! two minimax polynomials (relative error 2⁻⁵⁸ for the sine, absolute error 2⁻⁶⁴ for the cosine) are summed with fused
-//! multiply-adds. The error stays below 1.5 ulp for |x| ≤ [`RANGE`] (1.48 in three million trials),
-//! or next to a multiple kπ/2 below 1.5·10⁻³³k, what the two constants leave of it.
+//! The argument of sine and cosine is reduced to |r| ≤ π/4 by subtracting a multiple of π/2, which is represented by two constants;
+//! then two minimax polynomials (relative error 2⁻⁵⁸ for the sine, absolute error 2⁻⁶⁴ for the cosine) are evaluated with fused
+//! multiply-adds. The error is below 1.5 ulp for |x| ≤ [`RANGE`] (1.48 in three million trials), or, next to a multiple kπ/2, below
+//! 1.5·10⁻³³k, the error of the two constants.
 
 use super::{Pack, one};
 use pulp::Simd;
 use std::f64::consts::{FRAC_1_SQRT_2, FRAC_2_PI, FRAC_PI_2, FRAC_PI_4, LN_2, PI};
 
-/// Largest |x| that sine and cosine are made for.
+/// Largest |x|, in rad, for which sine and cosine are accurate.
 pub const RANGE: f64 = 1_048_576.0;
 
 const TWO_OVER_PI: f64 = FRAC_2_PI;
@@ -78,13 +78,13 @@ pub fn sincos(x: f64) -> (f64, f64) {
 #[inline(always)]
 pub(crate) fn sincos_in_lanes<S: Simd, const K: usize>(x: Pack<S, K>) -> (Pack<S, K>, Pack<S, K>) {
     let shifted = x.mul_add(TWO_OVER_PI, ROUND);
-    let turns = ROUND - shifted; // minus the quarter turns, a whole number
+    let turns = ROUND - shifted; // minus the number of quarter turns, an integer
     let r = turns.mul_add(HALF_PI_LOW, turns.mul_add(HALF_PI_HIGH, x));
 
     let r2 = r * r;
     let sine = (r * r2).mul_add(polynomial(SINE, r2), r);
     let most = r2.mul_add(-0.5, 1.0);
-    let lost = r2.mul_add(-0.5, 1.0 - most); // by rounding `most`
+    let lost = r2.mul_add(-0.5, 1.0 - most); // rounding error of `most`
     let cosine = most + (r2 * r2).mul_add(polynomial(COSINE, r2), lost);
 
     // Quarter turn 1: (c, −s), 2: (−s, −c), 3: (−c, s).
@@ -117,7 +117,7 @@ pub(crate) fn angle_in_lanes<S: Simd, const K: usize>(
     cosine: Pack<S, K>,
 ) -> Pack<S, K> {
     let (s, c) = (sine.abs(), cosine.abs());
-    // From the nearer of the z axis and the horizontal the angle is φ ≤ π/4; above π/8 it is π/4 minus the rest.
+    // φ ≤ π/4 is the angle to the nearer one of the z axis and the horizontal; above π/8, π/4 − φ is computed instead.
     let level = c.lt(s);
     let (near, far) = (level.select(c, s), level.select(s, c));
     let wide = !near.le(SINE_PI_8);
@@ -161,7 +161,7 @@ const EXPONENTIAL: [f64; 16] = [
     7.760_406_418_336_239e-13,
 ];
 
-/// eˣ − 1 in every lane, for |x| ≤ 32, to within its own rounding where x is small: (1 + y)² − 1 = y(y + 2), five times.
+/// eˣ − 1 in every lane, for |x| ≤ 32, from y = e^{x/32} − 1 by (1 + y)² − 1 = y(y + 2) five times; accurate for small x as well.
 #[inline(always)]
 pub(crate) fn exp_m1_in_lanes<S: Simd, const K: usize>(x: Pack<S, K>) -> Pack<S, K> {
     let part = 0.03125 * x;
@@ -174,7 +174,7 @@ pub(crate) fn exp_m1_in_lanes<S: Simd, const K: usize>(x: Pack<S, K>) -> Pack<S,
     y
 }
 
-/// eˣ in every lane, for |x| ≤ 32, to within a few roundings, or 32 where it is below 1/e.
+/// eˣ in every lane, for |x| ≤ 32, to within a few rounding errors, or 32 where eˣ is below 1/e.
 #[inline(always)]
 pub(crate) fn exp_in_lanes<S: Simd, const K: usize>(x: Pack<S, K>) -> Pack<S, K> {
     let mut small = polynomial(EXPONENTIAL, 0.03125 * x);
@@ -186,8 +186,8 @@ pub(crate) fn exp_in_lanes<S: Simd, const K: usize>(x: Pack<S, K>) -> Pack<S, K>
 
 /// ln x of a positive number that is not subnormal, to within 2 ulp of the larger of its two parts.
 ///
-/// x = 2^k m with m in [√½, √2): ln m = 2 artanh s, s = (m − 1)/(m + 1), as its series, of which the first term left out is below
-/// 10⁻¹⁷ of the sum.
+/// x = 2^k m with m in [√½, √2): ln m = 2 artanh s with s = (m − 1)/(m + 1), by the series of artanh; the first neglected term is
+/// below 10⁻¹⁷ of the sum.
 pub(crate) fn ln(x: f64) -> f64 {
     let shifted = x.to_bits().wrapping_sub(FRAC_1_SQRT_2.to_bits());
     let exponent = (shifted as i64 >> 52) as f64;
@@ -203,8 +203,9 @@ pub(crate) fn ln(x: f64) -> f64 {
 
 /// The fifth root of a positive number that is not subnormal, or of 0. The error stays below 1 ulp.
 ///
-/// A fifth of the exponent, taken in the binary representation, is right to 3.4 %; each of Halley's steps cubes twice that
-/// error and Newton's last one, whose residual is rounded once, leaves the rounding of the result.
+/// The first guess, a fifth of the exponent in the binary representation, has an error of 3.4 %. Each step of Halley's method cubes
+/// the error and doubles it; a final step of Newton's method, whose residual is rounded once, leaves only the rounding error of the
+/// result.
 #[inline(always)]
 pub fn fifth_root(x: f64) -> f64 {
     if x == 0.0 {
@@ -219,7 +220,7 @@ pub fn fifth_root(x: f64) -> f64 {
     y - fourth.mul_add(y, -x) / (5.0 * fourth)
 }
 
-/// Four fifths of the bits of 1, less what centres the error of the first guess.
+/// Four fifths of the bits of 1, minus an offset that makes the error of the first guess symmetric.
 const FIFTH_OF_BIAS: u64 = 0x3325_ce66_6666_6666;
 
 #[cfg(test)]

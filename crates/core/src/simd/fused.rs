@@ -1,11 +1,11 @@
-//! a·b + c rounded once, in every lane, on a machine without an instruction for it (WebAssembly).
+//! a·b + c rounded once, in every lane, on machines without an instruction for it (WebAssembly).
 //!
-//! Error-free transformations: the product and its rounding error (Dekker 1971), then the sum of these two and c as three numbers
-//! of falling magnitude. The plain sum of the two smaller ones, added to the largest, is the result unless that sum was rounded to a
-//! number that lies half-way between two results, which is what S. Boldo and G. Melquiond, IEEE Trans. Comput. 57 (2008) 462
-//! round to odd for. Half-way points have three significant bits at most here, so that one look at the last bits of the sum tells
-//! when the result is certain. Where it is not, and where a step may have over- or underflowed, the (slow) function of the
-//! standard library computes the lane.
+//! Error-free transformations give the product and its rounding error (T. J. Dekker, Numer. Math. **18**, 224 (1971)), and then the
+//! sum of these two and c as three numbers of decreasing magnitude. The rounded sum of the two smaller ones, added to the largest, is
+//! the result unless that sum was rounded to a point half-way between two results; S. Boldo and G. Melquiond, IEEE Trans. Comput.
+//! **57**, 462 (2008), round to odd for this reason. Half-way points have at most three significant bits here, so that the last bits
+//! of the sum show whether the result is certain. Where it is not, and where a step may have over- or underflowed, the (slow)
+//! function of the standard library computes the lane.
 
 use pulp::Simd;
 #[cfg(target_arch = "wasm32")]
@@ -15,7 +15,7 @@ use pulp::bytemuck::{cast_slice, cast_slice_mut};
 use std::arch::wasm32::v128;
 use std::slice::from_mut;
 
-/// Products below it may have a rounding error that is no double; a product of 0 is among them, and exact.
+/// Bound below which the rounding error of a product may not be representable. A product of 0 is below it, although it is exact.
 const SMALLEST: f64 = f64::from_bits((1023 - 900) << 52);
 /// In the binary representation: half a unit of the upper half of a number, and the bits of that half.
 const HALF: u64 = 1 << 26;
@@ -34,8 +34,8 @@ pub(super) fn mul_add<S: Simd>(simd: S, a: S::f64s, b: S::f64s, c: S::f64s) -> S
     }
 }
 
-/// [`composed`] as a function that is called, with its arguments in registers: written out wherever a formula needs it, it would
-/// make the module many times as large.
+/// [`composed`] as a function that is not inlined, with its arguments in registers: inlined in every formula, it would make the
+/// module many times as large.
 #[cfg(target_arch = "wasm32")]
 #[inline(never)]
 #[allow(improper_ctypes_definitions)] // only Rust calls it; by this convention vectors stay in registers
@@ -43,7 +43,7 @@ extern "C" fn called<S: Simd>(simd: S, a: v128, b: v128, c: v128) -> v128 {
     cast(composed::<S>(simd, cast(a), cast(b), cast(c)))
 }
 
-/// a·b + c, rounded once, from operations that every machine has.
+/// a·b + c, rounded once, by operations that every machine has.
 #[inline(always)]
 fn composed<S: Simd>(simd: S, a: S::f64s, b: S::f64s, c: S::f64s) -> S::f64s {
     let (sum, doubt) = quick(simd, a, b, c);
@@ -54,10 +54,9 @@ fn composed<S: Simd>(simd: S, a: S::f64s, b: S::f64s, c: S::f64s) -> S::f64s {
     }
 }
 
-/// a·b + c and in which lanes it may be another number.
+/// a·b + c, and the lanes in which it may be wrong.
 ///
-/// Rounding errors are subtracted, not added: the difference of two zeros of either sign that arises is then +0, and taking it away
-/// keeps the sign of a zero.
+/// Rounding errors are subtracted, not added: where they vanish their difference is +0, and subtracting it keeps the sign of a zero.
 #[inline(always)]
 fn quick<S: Simd>(simd: S, a: S::f64s, b: S::f64s, c: S::f64s) -> (S::f64s, S::m64s) {
     let (product, lost) = product(simd, a, b);
@@ -70,13 +69,13 @@ fn quick<S: Simd>(simd: S, a: S::f64s, b: S::f64s, c: S::f64s) -> (S::f64s, S::m
     let half_way = simd.equal_u64s(last, simd.splat_u64s(0));
     let rounded = simd.not_m64s(simd.equal_f64s(lower, simd.splat_f64s(0.0)));
     let tiny = simd.less_than_f64s(simd.abs_f64s(product), simd.splat_f64s(SMALLEST));
-    // What overflowed is infinite or NaN from there to the end.
+    // After an overflow the result is infinite or NaN.
     let finite = simd.less_than_f64s(simd.abs_f64s(result), simd.splat_f64s(f64::INFINITY));
     let doubt = simd.or_m64s(simd.and_m64s(half_way, rounded), tiny);
     (result, simd.or_m64s(doubt, simd.not_m64s(finite)))
 }
 
-/// a·b rounded, and that less a·b.
+/// a·b rounded, and its rounding error: the rounded minus the exact product.
 #[inline(always)]
 fn product<S: Simd>(simd: S, a: S::f64s, b: S::f64s) -> (S::f64s, S::f64s) {
     let [(a1, a2), (b1, b2)] = [halves(simd, a), halves(simd, b)];
@@ -95,7 +94,7 @@ fn halves<S: Simd>(simd: S, x: S::f64s) -> (S::f64s, S::f64s) {
     (upper, simd.sub_f64s(x, upper))
 }
 
-/// a + b rounded, and that less a + b (Knuth).
+/// a + b rounded, and its rounding error, likewise (D. E. Knuth).
 #[inline(always)]
 fn sum<S: Simd>(simd: S, a: S::f64s, b: S::f64s) -> (S::f64s, S::f64s) {
     let sum = simd.add_f64s(a, b);
@@ -104,7 +103,7 @@ fn sum<S: Simd>(simd: S, a: S::f64s, b: S::f64s) -> (S::f64s, S::f64s) {
     (sum, simd.add_f64s(from_a, simd.sub_f64s(part, b)))
 }
 
-/// a − b rounded, and that less a − b.
+/// a − b rounded, and its rounding error, likewise.
 #[inline(always)]
 fn difference<S: Simd>(simd: S, a: S::f64s, b: S::f64s) -> (S::f64s, S::f64s) {
     let difference = simd.sub_f64s(a, b);
@@ -113,7 +112,7 @@ fn difference<S: Simd>(simd: S, a: S::f64s, b: S::f64s) -> (S::f64s, S::f64s) {
     (difference, simd.add_f64s(from_a, simd.add_f64s(part, b)))
 }
 
-/// a·b + c in every lane, one lane after the other.
+/// a·b + c in every lane, by the function of the standard library.
 #[cold]
 #[inline(never)]
 fn by_library<S: Simd>(a: S::f64s, b: S::f64s, mut c: S::f64s) -> S::f64s {

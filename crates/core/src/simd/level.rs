@@ -1,4 +1,4 @@
-//! Which vector instructions to use: detected when the program runs, or given.
+//! The level of vector instructions: detected at run time, or given.
 
 use crate::Error;
 #[cfg(not(all(target_arch = "wasm32", target_feature = "simd128")))]
@@ -8,7 +8,7 @@ use pulp::{Simd, WithSimd};
 /// A SIMD level. All of them give the same bits.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Level {
-    /// One double at a time, on any machine but where WebAssembly has vectors.
+    /// One double at a time, on any machine except WebAssembly with vectors.
     Scalar,
     /// Two doubles at a time, on WebAssembly.
     Simd128,
@@ -21,7 +21,7 @@ pub enum Level {
 }
 
 impl Level {
-    /// Every level, slowest first.
+    /// All levels, slowest first.
     pub const ALL: [Self; 5] = [
         Self::Scalar,
         Self::Simd128,
@@ -48,7 +48,10 @@ impl Level {
         }
     }
 
-    /// The level of that name, if this machine has it.
+    /// The level with this name.
+    ///
+    /// # Errors
+    /// [`Error::Level`] for an unknown name, or a level that this machine does not have.
     pub fn named(name: &str) -> Result<Self, Error> {
         let list = |levels: Vec<Self>| {
             levels
@@ -117,7 +120,7 @@ impl Level {
         }
     }
 
-    // A scalar level beside it would double the module.
+    // A scalar level as well would double the size of the module.
     #[cfg(all(target_arch = "wasm32", target_feature = "simd128"))]
     fn try_run<W: WithSimd>(self, work: W) -> Option<W::Output> {
         use pulp::wasm::Simd128;

@@ -1,9 +1,9 @@
-//! K vectors of doubles that are computed with side by side, one particle a lane.
+//! K vectors of doubles that are processed together, with one particle per lane.
 //!
-//! Every operation is the IEEE 754 one in every lane, so that a formula gives the same bits whatever the width. More
-//! than one vector at a time keeps the processor busy while it waits for the results of the first.
+//! Every operation follows IEEE 754 in every lane, so that a formula gives the same bits for every width. With several vectors the
+//! processor can work on the others while it waits for the result of one.
 //!
-//! The loops over the vectors are plain ones because closures are not compiled for the SIMD level of their caller.
+//! Loops over the vectors are written without closures, because closures are not compiled for the SIMD level of their caller.
 
 use pulp::Simd;
 use std::ops::{Add, BitAnd, BitOr, BitXor, Div, Mul, Neg, Not, Sub};
@@ -22,7 +22,7 @@ pub struct Mask<S: Simd, const K: usize> {
     masks: [S::m64s; K],
 }
 
-/// What can stand in a formula beside a [`Pack`]: another one, or a number for all lanes.
+/// An operand of a [`Pack`]: another pack, or one number for all lanes.
 pub trait Operand<S: Simd, const K: usize> {
     /// The operand in every lane.
     fn in_lanes(self, simd: S) -> Pack<S, K>;
@@ -127,7 +127,8 @@ impl<S: Simd, const K: usize> Pack<S, K> {
         self.vectors[first..first + H].copy_from_slice(&part.vectors);
     }
 
-    /// The lanes of four packs as records of four, in an order of their own, which is the same for all packs.
+    /// Transposes four packs into records of four numbers, one for each lane. The order of the lanes is not that of the packs, but
+    /// always the same.
     #[inline(always)]
     pub fn records(fields: [Self; 4]) -> [[S::f64s; 4]; K] {
         let simd = fields[0].simd;
@@ -235,7 +236,7 @@ impl<S: Simd, const K: usize> Mask<S, K> {
         Self { masks, ..self }
     }
 
-    /// Lane by lane one or the other.
+    /// `if_true` in the lanes that are true, else `if_false`.
     #[inline(always)]
     pub fn select(self, if_true: impl Operand<S, K>, if_false: impl Operand<S, K>) -> Pack<S, K> {
         let (m, simd) = (self.masks, self.simd);

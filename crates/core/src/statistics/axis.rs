@@ -1,36 +1,39 @@
-//! An axis of half-open bins, lo ≤ x < hi, compared with the very edges that were given.
+//! An axis of half-open bins, lo ≤ x < hi, in which x is compared with exactly the edges that were given.
 
 use super::cells::Cells;
 use crate::Error;
 use crate::simd::Pack;
 use pulp::Simd;
 
-/// Largest departure of an edge from uniform spacing, in bin widths.
+/// Largest deviation of an edge from uniform spacing, in bin widths, for bins that count as uniform.
 const UNIFORM: f64 = 1e-7;
 /// Within this distance of an edge, in bin widths, the edge itself decides; it must exceed [`UNIFORM`] and rounding.
 const NEAR: f64 = 1e-6;
 /// 1.5 · 2⁵²: adding it to |x| < 2⁵¹ rounds to the nearest integer, which then stands in the low bits.
 pub(super) const ROUND: f64 = 6_755_399_441_055_744.0;
 
-/// Bins between edges, with one for what is below and one for what is above.
+/// Bins between edges, with one more below and one more above.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Axis {
     edges: Vec<f64>,
-    /// The lowest edge and the number of edges, at hand in the hot loop; 0 where the edges are not uniform.
+    /// The lowest edge and the number of edges, as the inner loop needs them; 0 where the edges are not uniform.
     low: f64,
     last: f64,
-    /// The number of the bin after the last, where what has no bin is counted.
+    /// The number of an additional bin, which counts undefined values.
     beyond: f64,
-    /// What the number of a site grows by from row to row of a grid: the bins and one more.
+    /// Difference of the numbers of a site in neighbouring rows of a grid: the number of bins plus one.
     pub(super) stride: f64,
     /// Bins per unit; 0 where the edges are not uniform.
     density: f64,
-    /// Where the edges are not uniform, how to find the bin.
+    /// The table that finds the bin where the edges are not uniform.
     cells: Option<Cells>,
 }
 
 impl Axis {
-    /// Checks that there are at least two edges, finite and increasing; `name` is for the error.
+    /// The axis with these edges; `name` is for the error.
+    ///
+    /// # Errors
+    /// [`Error::Parameter`] unless there are at least two edges, finite and increasing.
     pub fn new(name: &'static str, edges: &[f64]) -> Result<Self, Error> {
         let bins = edges.len().saturating_sub(1);
         Error::unless(bins > 0, name, edges.len(), "at least two edges")?;
@@ -66,25 +69,25 @@ impl Axis {
         })
     }
 
-    /// Number of bins, those below and above included.
+    /// Number of bins, including those below and above.
     pub(super) fn bins(&self) -> usize {
         self.edges.len() + 1
     }
 
-    /// The bin after the last, where what has no bin is counted.
+    /// The additional bin, which counts undefined values.
     #[inline(always)]
     pub(super) fn beyond(&self) -> f64 {
         self.beyond
     }
 
-    /// Whether the bins are of one width.
+    /// Whether all bins have the same width.
     pub(super) fn is_even(&self) -> bool {
         self.cells.is_none()
     }
 
-    /// Numbers of the bins of up to three quantities on an axis each, plus [`ROUND`]: 0 below, 1 to n inside, n + 1 above. NaN may
-    /// be anywhere. EVEN: the bins of every axis are of one width. The search among others, even if it is skipped, takes the
-    /// registers of the bounce loop, which is therefore compiled with and without it.
+    /// Numbers of the bins of up to three quantities on an axis each, plus [`ROUND`]: 0 below, 1 to n inside, n + 1 above; any for
+    /// NaN. EVEN: all bins of every axis have the same width. The search among other bins uses registers of the bounce loop even
+    /// where it is skipped, so that the loop is compiled with and without it.
     #[inline(always)]
     pub(super) fn locate<S: Simd, const K: usize, const N: usize, const EVEN: bool>(
         axes: [&Self; N],
@@ -94,7 +97,7 @@ impl Axis {
             return Self::locate_even(axes, x);
         }
         let mut bins = x;
-        // No loop: it would keep its packs in memory.
+        // Not a loop, which would keep its packs in memory.
         bins[0] = axes[0].locate_one(x[0]);
         if N > 1 {
             bins[1] = axes[1].locate_one(x[1]);
@@ -113,7 +116,7 @@ impl Axis {
         }
     }
 
-    /// Where all bins of an axis are of one width: one look for all axes at whether a number is near an edge.
+    /// The same for bins of equal width: a single test for all axes decides whether any number is near an edge.
     #[inline(always)]
     fn locate_even<S: Simd, const K: usize, const N: usize>(
         axes: [&Self; N],
@@ -135,7 +138,7 @@ impl Axis {
         bins
     }
 
-    /// Where `x` is, in bin widths: whole numbers are in the middle of the bins.
+    /// Position of `x` in bin widths; integers are the centres of the bins.
     #[inline(always)]
     fn place<S: Simd, const K: usize>(&self, x: Pack<S, K>) -> Pack<S, K> {
         (x - self.low)
@@ -144,7 +147,7 @@ impl Axis {
             .min(self.last)
     }
 
-    /// The bins where the edges decide in the lanes that are near one.
+    /// The bins, with the lanes that are near an edge decided by comparison with the edge.
     #[inline(always)]
     fn decided<S: Simd, const K: usize>(
         &self,
@@ -152,7 +155,7 @@ impl Axis {
         place: Pack<S, K>,
         bin: Pack<S, K>,
     ) -> Pack<S, K> {
-        // Lanes are in memory here only, where hardly anything ever comes.
+        // Lanes are accessed one by one only here, which is rarely reached.
         let far = off(place, bin).lt(0.5 - NEAR);
         let (x, place) = (far.select(0.0, x), far.select(0.0, place));
         let mut decided = place;
@@ -175,7 +178,7 @@ impl Axis {
     }
 }
 
-/// How far a place is from the middle of its bin.
+/// Distance of a position from the centre of its bin.
 #[inline(always)]
 fn off<S: Simd, const K: usize>(place: Pack<S, K>, bin: Pack<S, K>) -> Pack<S, K> {
     (place - (bin - ROUND)).abs()

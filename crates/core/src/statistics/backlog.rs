@@ -1,18 +1,18 @@
-//! Impacts that wait to be counted.
+//! The queue of impacts that are still to be counted.
 
 use std::ops::Range;
 
-/// Room for so many.
+/// Length of the queue.
 pub(super) const LENGTH: usize = 96;
-/// So many impacts are counted before narrow counters are emptied, which no counter of 32 bits can then have overflowed.
+/// Number of impacts after which the narrow counters are emptied: no counter of 32 bits can overflow before.
 const MOST: u32 = u32::MAX - LENGTH as u32;
 
-/// How far a queue of [`LENGTH`] is filled, and how far it has been counted.
+/// The positions up to which a queue of [`LENGTH`] is filled and counted.
 #[derive(Default)]
 pub(super) struct Backlog {
     length: usize,
     counted: usize,
-    /// Impacts counted since the last emptying.
+    /// Number of impacts counted since the narrow counters were last emptied.
     recent: u32,
 }
 
@@ -23,7 +23,7 @@ impl Backlog {
         self.length + width <= LENGTH
     }
 
-    /// The places of `width` more, for which there is room.
+    /// Reserves the next `width` positions, for which there must be room.
     #[inline(always)]
     pub fn take(&mut self, width: usize) -> Range<usize> {
         let first = self.length;
@@ -31,7 +31,7 @@ impl Backlog {
         first..self.length
     }
 
-    /// The next to be counted, if there is one.
+    /// The next position to be counted, if there is one.
     #[inline(always)]
     pub fn next(&mut self) -> Option<usize> {
         let next = self.counted;
@@ -43,7 +43,7 @@ impl Backlog {
         }
     }
 
-    /// Starts anew when all are counted, and tells whether the narrow counters must be emptied.
+    /// Resets the queue after all its impacts were counted, and returns whether the narrow counters must be emptied.
     #[inline(always)]
     pub fn restart(&mut self) -> bool {
         self.recent += self.length as u32;

@@ -1,14 +1,14 @@
-//! Bins of any widths: a table of narrow cells says between which few edges a number lies, and the edges decide.
+//! Bins of arbitrary widths: a table of narrow cells gives the few edges next to a number, and comparison with them decides.
 //!
-//! Cells are found by a rounded formula. It never decreases with x, so that an edge in an earlier cell is below x and one in a
-//! later cell above it, however it is rounded: those in the same cell alone need be compared.
+//! The cell of x is computed by a formula that is monotonic in x in spite of rounding. Edges in an earlier cell are therefore below
+//! x and edges in a later cell above it; only edges in the same cell have to be compared.
 
 use super::axis::ROUND;
 use super::places::whole;
 use crate::simd::Pack;
 use pulp::{Scalar, Simd};
 
-/// Most cells, unless there are more edges: what a nearby cache holds.
+/// Largest number of cells, unless there are more edges: the table then fits into a cache.
 const MOST: usize = 1 << 14;
 
 /// Cells over the edges of an axis.
@@ -18,11 +18,11 @@ pub(super) struct Cells {
     cells: Vec<Cell>,
     /// Number of the last cell.
     last: f64,
-    /// The edges, and one that nothing reaches, if some cell has several.
+    /// If some cell has several edges: all edges and an infinite one.
     crowded: Option<Vec<f64>>,
 }
 
-/// What is known of a cell.
+/// A cell of the table.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Cell {
     /// The lowest edge that is not in an earlier cell.
@@ -31,14 +31,14 @@ struct Cell {
     number: f64,
 }
 
-/// How cells divide the numbers.
+/// The division of the real line into cells.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Scale {
-    /// Into equal intervals from the lowest to the highest edge.
+    /// Equal intervals from the lowest to the highest edge.
     Linear { low: f64, density: f64 },
-    /// On either side of a centre into parts of an octave of the distance from it, as logarithmic bins want them, and bins that
-    /// are dense somewhere: by the bits of distance and `least` added up, which ascend with it. Cell number `middle` begins at the
-    /// centre.
+    /// On either side of a centre, fractions of octaves of the distance from it, which suit logarithmic bins and bins that are dense
+    /// in one place. The cell follows from the bits of distance + `least`, which increase with the distance. Cell number `middle`
+    /// begins at the centre.
     Octaves {
         centre: f64,
         least: f64,
@@ -48,7 +48,7 @@ enum Scale {
 }
 
 impl Scale {
-    /// The cells of numbers, from 0 to `last`; of NaN any.
+    /// The cells of numbers, from 0 to `last`; any for NaN.
     #[inline(always)]
     fn cells<S: Simd, const K: usize>(self, x: Pack<S, K>, last: f64) -> Pack<S, K> {
         match self {
@@ -72,7 +72,7 @@ impl Scale {
         }
     }
 
-    /// At most so many cells in octaves about the densest of the edges.
+    /// At most `cells` cells in octaves about the narrowest bin.
     fn octaves(edges: &[f64], cells: usize) -> Self {
         let width = |i: &usize| edges[i + 1] - edges[*i];
         let bins = 0..edges.len() - 1;
@@ -80,7 +80,7 @@ impl Scale {
         let densest = densest.expect("there are two edges");
         let (centre, least) = (edges[densest], width(&densest));
         let away = |edge: f64| ((edge - centre).abs() + least).to_bits() - least.to_bits();
-        // Below the second edge there is one bin, however many octaves it has: logarithmic bins may begin at 0.
+        // Below the second edge there is a single bin, and no cells are needed: logarithmic bins may begin at 0.
         let below = (densest > 1).then(|| away(edges[1]));
         let above = away(edges[edges.len() - 1]);
         let middle = |shift| 1 + below.map_or(0, |below| 1 + (below >> shift));
@@ -100,7 +100,7 @@ impl Scale {
         index(self.cells(x, (cells - 1) as f64).as_slice()[0], cells)
     }
 
-    /// Number of edges in the cells before each of so many.
+    /// Number of edges in all cells before each of the `cells` cells.
     fn before(self, edges: &[f64], cells: usize) -> Vec<u32> {
         let mut before = vec![0; cells + 1];
         for &edge in edges {
@@ -113,20 +113,20 @@ impl Scale {
     }
 }
 
-/// A cell as an index, however the number of it was made.
+/// The number of a cell as an index, clamped to the table.
 #[inline(always)]
 fn index(cell: f64, cells: usize) -> usize {
     whole(cell).min(cells - 1)
 }
 
-/// Most edges in a cell.
+/// Largest number of edges in a cell.
 fn crowd(before: &[u32]) -> u32 {
     let each = before.windows(2).map(|pair| pair[1] - pair[0]);
     each.max().unwrap_or(0)
 }
 
 impl Cells {
-    /// Of increasing, finite edges: as few cells as keep them apart, if that is possible.
+    /// The table for increasing, finite edges: with as few cells as put every edge into a cell of its own, if that is possible.
     pub fn new(edges: &[f64]) -> Self {
         let (low, high) = (edges[0], edges[edges.len() - 1]);
         let mut count = edges.len().next_power_of_two();
@@ -164,7 +164,7 @@ impl Cells {
         }
     }
 
-    /// Numbers of the bins, plus [`ROUND`]: 0 below, 1 to n inside, n + 1 above. NaN may be anywhere.
+    /// Numbers of the bins, plus [`ROUND`]: 0 below, 1 to n inside, n + 1 above; any for NaN.
     #[inline(always)]
     pub fn locate<S: Simd, const K: usize>(&self, x: Pack<S, K>) -> Pack<S, K> {
         let Self {
@@ -173,7 +173,7 @@ impl Cells {
             last,
             crowded,
         } = self;
-        // Infinity is beyond the last edge, but not beyond the one that nothing reaches.
+        // Infinity must be above the last edge, but below the infinite one.
         let x = x.min(f64::MAX);
         let places = scale.cells(x, *last);
         let (mut edge, mut number) = (x, x);
@@ -193,7 +193,7 @@ impl Cells {
         bins
     }
 
-    /// The bins where a cell may have several edges.
+    /// The bins of numbers in cells that may have several edges.
     #[cold]
     #[inline(never)]
     fn compare(edges: &[f64], x: &[f64], bins: &mut [f64]) {
@@ -241,7 +241,7 @@ mod tests {
         }
     }
 
-    /// Bins of one width, on either side of 0: no cell has several edges.
+    /// Bins of equal width, on either side of 0: no cell has several edges.
     #[test]
     fn even_bins_are_found_at_once() {
         for low in [-1.0, 0.0, 0.5] {

@@ -1,4 +1,4 @@
-//! Counts impacts into a [`Tally`].
+//! The sink that counts impacts and sums moments for a [`Tally`].
 
 use super::Tallying;
 use super::axis::{Axis, ROUND};
@@ -17,10 +17,9 @@ use crate::run::Plan;
 use crate::simd::Pack;
 use pulp::Simd;
 
-/// Counts impacts, by way of narrow integers that are emptied before they can overflow. Where an impact belongs is computed for
-/// all lanes side by side and put in a queue; the queue is counted lane by lane, while other arithmetic waits for its results.
-/// Lanes that hold no impact, or none that can be summed there, go to a site or a row of their own that is not read, so that all
-/// lanes do the same.
+/// Counts impacts in narrow integers, which are emptied before they can overflow. The bins of an impact are computed in all lanes at
+/// once and queued; the queue is counted lane by lane while other arithmetic waits for its results. Lanes without an impact, or with
+/// one that cannot be summed there, are counted in an additional site or row that is never read, so that no branch is needed.
 pub(crate) struct Counter<'a, const EVEN: bool> {
     tally: Tally,
     by: &'a By,
@@ -29,25 +28,25 @@ pub(crate) struct Counter<'a, const EVEN: bool> {
     plan: &'a Plan<'a>,
     restitution: Vec<u32>,
     fraction: Vec<u32>,
-    /// One for each row, one for the large values of each, and one that is not read.
+    /// One for each row, one for the large values of each row, and one that is never read.
     rows: Vec<Row>,
     backlog: Backlog,
     queue: Queue,
 }
 
-/// Impacts to be counted, lane by lane. Whole numbers have [`ROUND`] added to them.
+/// Impacts to be counted. Integers have [`ROUND`] added to them.
 #[repr(align(64))]
 struct Queue {
     places: [Place; LENGTH],
-    /// What they add to the sums, in halves.
+    /// Contributions to the sums, in halves.
     low: [Half; LENGTH],
     high: [Half; LENGTH],
 }
 
-/// Where an impact is counted: indices into the grids of ε and of E_rot/E_tot, and the row. Its last number is ε.
+/// The place at which an impact is counted: indices into the grids of ε and of E_rot/E_tot, and the row; the last number is ε.
 type Place = [f64; 4];
 
-/// What is recent in a row.
+/// The sums of a row since they were last moved to the tally.
 #[derive(Clone, Copy)]
 #[repr(align(64))]
 struct Row {
@@ -67,14 +66,14 @@ impl Row {
     };
 }
 
-/// Makes the lanes of four packs records of four numbers.
+/// Transposes four packs into one record of four numbers for each lane.
 #[inline(always)]
 fn put<S: Simd, const K: usize>(queue: &mut [[f64; 4]], packs: [Pack<S, K>; 4]) {
     let records = Pack::records(packs);
     queue.copy_from_slice(pulp::bytemuck::cast_slice(&records));
 }
 
-/// Moves what is recent in a row to the tally.
+/// Moves the recent sums of a row to the tally.
 #[cold]
 #[inline(never)]
 fn empty_row(tally: &mut Tally, row: &mut Row, number: usize) {
@@ -94,7 +93,7 @@ fn empty_row(tally: &mut Tally, row: &mut Row, number: usize) {
 }
 
 impl<'a, const EVEN: bool> Counter<'a, EVEN> {
-    /// `fractions` are those of the bins.
+    /// A counter without impacts; `fractions` is the axis of E_rot/E_tot in `bins`.
     pub fn new(
         bins: &'a Bins,
         fractions: &'a Axis,
@@ -128,7 +127,7 @@ impl<'a, const EVEN: bool> Counter<'a, EVEN> {
         }
     }
 
-    /// Counts what is in the queue.
+    /// Counts all impacts in the queue.
     #[inline(always)]
     fn count(&mut self) {
         while let Some(i) = self.backlog.next() {
@@ -155,7 +154,7 @@ impl<'a, const EVEN: bool> Counter<'a, EVEN> {
         }
     }
 
-    /// Sums a value that is too far off for [`Recent`].
+    /// Sums a value that is too far from the origin for [`Recent`].
     #[inline(never)]
     fn sum_large(&mut self, row: usize, restitution: f64, fraction: f64) {
         self.tally.sums[row].add(quanta(restitution - self.tally.origin));

@@ -1,4 +1,4 @@
-//! Counts impacts by row and ε alone.
+//! The sink that counts impacts by row and ε, without moments.
 
 use super::Tallying;
 use super::axis::{Axis, ROUND};
@@ -14,14 +14,14 @@ use crate::run::Plan;
 use crate::simd::Pack;
 use pulp::Simd;
 
-/// Counts impacts in the grid of ε and keeps the ledger of energy, as [`super::Counter`] does, and nothing else.
+/// Counts impacts in the grid of ε, and those that create energy, as [`super::Counter`] does, and nothing else.
 pub(crate) struct Counts<'a, const EVEN: bool> {
     tally: Tally,
     bins: &'a Bins,
     plan: &'a Plan<'a>,
     restitution: Vec<u32>,
     backlog: Backlog,
-    /// Where impacts are to be counted, with [`ROUND`] added.
+    /// The sites at which impacts are to be counted, with [`ROUND`] added.
     queue: [f64; LENGTH],
 }
 
@@ -38,7 +38,7 @@ impl<'a, const EVEN: bool> Counts<'a, EVEN> {
         })
     }
 
-    /// Counts what is in the queue.
+    /// Counts all impacts in the queue.
     #[inline(always)]
     fn count(&mut self) {
         while let Some(i) = self.backlog.next() {

@@ -1,4 +1,4 @@
-//! Statistics that merge exactly: integer counts and integer sums, so that no order of adding can change them.
+//! Statistics that merge exactly: integer counts and integer sums, which do not depend on the order of addition.
 
 mod axis;
 mod backlog;
@@ -17,8 +17,8 @@ pub(crate) use counts::Counts;
 pub use moments::{Moments, Sums};
 pub use tally::{Bins, By, CREATES_ENERGY, Gains, Grid, Tally};
 
-/// Makes a [`Tally`] of the impacts that it receives.
+/// A sink that makes a [`Tally`] of the impacts that it receives.
 pub(crate) trait Tallying: crate::engine::Sink {
-    /// The tally.
+    /// The tally of all impacts received.
     fn finish(self) -> Tally;
 }

@@ -1,8 +1,8 @@
 //! Moments as exact integer sums of a rounded quantity.
 //!
-//! The offset of each value from the origin is rounded once, to a multiple of 2⁻²⁴ ≈ 6·10⁻⁸, or beyond 2 of 2⁻²⁰; its powers are
-//! then summed without any further rounding, in integers wide enough for 2⁶⁴ values. Sums of sums are sums: merging is
-//! associative and commutative to the last bit.
+//! The offset of each value from the origin is rounded once, to a multiple of 2⁻²⁴ ≈ 6·10⁻⁸, or of 2⁻²⁰ if it exceeds 2; its powers
+//! are then summed without further rounding, in integers wide enough for 2⁶⁴ values. Merging is therefore associative and commutative
+//! to the last bit.
 
 use super::recent::{Extremes, QUANTA, Totals};
 use super::words::float;
@@ -27,7 +27,7 @@ impl<const N: usize> Wide<N> {
         }
     }
 
-    /// The same number in six words.
+    /// The same number with six words.
     fn widened(self) -> Wide<6> {
         let mut wide = Wide::ZERO;
         let negative = self.0[N - 1] >> 63 == 1;
@@ -46,10 +46,10 @@ impl<const N: usize> Wide<N> {
         self
     }
 
-    /// The product with a factor that leaves it within N words.
+    /// The product with a factor, which must fit into N words.
     fn times(self, factor: i64) -> Self {
         let mut carry = 0_u64;
-        // Modulo 2^(64 N) the product of two's complements is that of the numbers.
+        // Modulo 2^(64 N) the product of the two's complements is the two's complement of the product.
         let product = Self(self.0.map(|word| {
             let sum = u128::from(word) * u128::from(factor.unsigned_abs()) + u128::from(carry);
             carry = (sum >> 64) as u64;
@@ -73,7 +73,7 @@ impl<const N: usize> Wide<N> {
     }
 }
 
-/// Σq, Σq², Σq³, Σq⁴ and the extremes of values in one bin, q the offset of the value from an origin, in quanta.
+/// Σq, Σq², Σq³, Σq⁴ and the extremes of the values in one bin, where q is the offset of a value from an origin, in quanta of 2⁻²⁴.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Sums {
     first: Wide<2>,
@@ -102,7 +102,7 @@ pub struct Moments {
 }
 
 impl Sums {
-    /// Of no values.
+    /// The sums of no values.
     pub const EMPTY: Self = Self {
         first: Wide::ZERO,
         second: Wide::ZERO,
@@ -112,10 +112,10 @@ impl Sums {
         maximum: f64::NEG_INFINITY,
     };
 
-    /// Largest magnitude that can be added.
+    /// Upper bound on the magnitude of an offset that can be added.
     pub const LARGEST: f64 = 8_589_934_592.0; // 2³³
 
-    /// Adds an offset of any size below [`Sums::LARGEST`], in quanta.
+    /// Adds an offset, in quanta, of any size below [`Sums::LARGEST`].
     pub(super) fn add(&mut self, q: i64) {
         let sign = (q >> 63) as u64;
         let size = q.unsigned_abs();
@@ -136,7 +136,7 @@ impl Sums {
         }
     }
 
-    /// The same for one whose square is wider than a word.
+    /// The same for an offset whose square does not fit into one word.
     #[cold]
     fn add_wide(&mut self, q: i64, size: u64) {
         let sign = (q >> 63) as u64;
@@ -158,7 +158,7 @@ impl Sums {
         self.fourth.add(shifted(product(high, high), 2), 0);
     }
 
-    /// Adds what is recent, in units of so many quanta.
+    /// Adds recent sums, whose offsets are in multiples of `unit` quanta.
     pub(super) fn absorb(&mut self, recent: &Totals, unit: i64, extremes: &Extremes) {
         let power = |sum: i128, power: u32| {
             let sum = Wide(words(sum as u128)).widened();
@@ -172,7 +172,7 @@ impl Sums {
         self.maximum = self.maximum.max(extremes.maximum);
     }
 
-    /// Adds the values of another bin.
+    /// Adds the sums of another set of values.
     pub fn merge(&mut self, other: &Self) {
         self.first.add(other.first.0, 0);
         self.second.add(other.second.0, 0);
@@ -182,7 +182,7 @@ impl Sums {
         self.maximum = self.maximum.max(other.maximum);
     }
 
-    /// Shows every word to `visit`, which may change it.
+    /// Calls `visit` with every word, which it may change.
     pub(super) fn words(&mut self, visit: &mut impl FnMut(&mut u64)) {
         self.first.0.iter_mut().for_each(&mut *visit);
         self.second.0.iter_mut().for_each(&mut *visit);
@@ -193,11 +193,11 @@ impl Sums {
         }
     }
 
-    /// Moments of `number` values whose offsets were taken from `origin`; NaN where there are none.
+    /// Moments of `number` values whose offsets are relative to `origin`; NaN where there are none.
     pub fn moments(&self, number: u64, origin: f64) -> Moments {
         const UNIT: f64 = 1.0 / QUANTA;
         let n = number as f64;
-        // Exact sums of powers about the whole number of quanta next to the mean, so that nothing cancels afterwards.
+        // Exact sums of powers about the multiple of a quantum next to the mean, so that no digits cancel afterwards.
         let centre = (self.first.to_f64() / n).round_ties_even() as i64;
         let count = Wide([number, 0]).widened();
         let sums = [
@@ -224,7 +224,7 @@ impl Sums {
         let b = UNIT.powi(2) * (second.to_f64() / n);
         let c = UNIT.powi(3) * (third.to_f64() / n);
         let d = UNIT.powi(4) * (fourth.to_f64() / n);
-        // Central moments; the mean is less than a quantum away.
+        // Central moments; the mean is less than one quantum away.
         let variance = (b - a * a).max(0.0);
         let third = c - a * (3.0 * b - 2.0 * a * a);
         let fourth = d - a * (4.0 * c - a * (6.0 * b - 3.0 * a * a));

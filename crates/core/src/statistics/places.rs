@@ -1,22 +1,22 @@
-//! Where impacts are counted: whole numbers in the low bits of doubles, with [`ROUND`] added to them.
+//! The sites of a grid at which impacts are counted: integers in the low bits of doubles, to which [`ROUND`] was added.
 
 use super::axis::{Axis, ROUND};
 use crate::simd::{Mask, Pack};
 use pulp::Simd;
 
-/// The whole number in the low bits of `x`, to which [`ROUND`] was added. All are below 2³², see [`super::Bins::check`].
+/// The integer in the low bits of `x`, to which [`ROUND`] was added. It is below 2³², see [`super::Bins::check`].
 #[inline(always)]
 pub(super) fn whole(x: f64) -> usize {
     x.to_bits() as u32 as usize
 }
 
-/// The last place, which is not read, plus [`ROUND`].
+/// The last site, which is never read, plus [`ROUND`].
 #[inline(always)]
 pub(super) fn nowhere<T>(places: &[T]) -> f64 {
     (places.len() - 1) as f64 + ROUND
 }
 
-/// Numbers in a grid: `column` of the row that is `start` rows from the first.
+/// Numbers of the sites in `column` of row number `start`.
 #[inline(always)]
 pub(super) fn sites<S: Simd, const K: usize>(
     axis: &Axis,
@@ -26,7 +26,8 @@ pub(super) fn sites<S: Simd, const K: usize>(
     start.mul_add(axis.stride, column)
 }
 
-/// The same where there may be impacts that are not defined, in the last column, or none, at a site that is not read.
+/// The same where values may be undefined, which are counted in the last column, or a lane may have no impact, which is counted at a
+/// site that is never read.
 #[inline(always)]
 pub(super) fn all_sites<S: Simd, const K: usize>(
     (axis, counts): (&Axis, &[u32]),

@@ -1,33 +1,34 @@
-//! What the hot loop adds to: the sums of a limited number of values, in words of 64 bits.
+//! Sums of a limited number of values in words of 64 bits, to which the inner loop adds.
 //!
-//! A whole number k that is added to 1.5·2⁵², or to a multiple of it, stands in the low bits of the result. Such bits are
-//! added as they are, modulo 2⁶⁴, and what the 1.5·2⁵² contribute is taken off when the sums are read. Powers that have too many
-//! digits for one word are in two parts, which a fused multiply-add separates without an error.
+//! An integer k that is added to 1.5·2⁵², or to that times a power of two, appears in the low bits of the result. These bits are
+//! added as they are, modulo 2⁶⁴, and the contribution of 1.5·2⁵² is subtracted when the sums are read. Powers with too many digits
+//! for one word are split into two parts, which a fused multiply-add separates exactly.
 
 use super::axis::ROUND;
 use crate::simd::Pack;
 use pulp::Simd;
 
-/// Quanta in a unit of ε.
+/// Number of quanta in a unit of ε.
 pub(super) const QUANTA: f64 = 16_777_216.0; // 2²⁴
-/// Largest offset of a value that is counted in quanta: its q has at most 25 bits, and its powers have at most 50, 75 and 100.
+/// Largest offset that is rounded to single quanta: q has at most 25 bits, and its powers have at most 50, 75 and 100.
 pub(super) const LARGEST: f64 = 2.0;
-/// Larger offsets are rounded to so many quanta, and those up to so many times the largest are summed like the others, in sums
-/// of their own.
+/// Number of quanta to which larger offsets are rounded. Offsets up to this many times [`LARGEST`] are summed in the same way, in
+/// separate sums.
 pub(super) const COARSE: i64 = 16;
-/// Quanta of E_rot/E_tot.
+/// Number of quanta in a unit of E_rot/E_tot.
 pub(super) const FRACTION_QUANTA: f64 = 4_398_046_511_104.0; // 2⁴²
-/// So many values fit into a sum: a word adds at most 2⁵⁰ for each.
+/// Largest number of values in a sum, to each word of which a value adds at most 2⁵⁰.
 pub(super) const MOST: u64 = 4096;
 
 /// Units of the high parts of q³ and q⁴.
 const CUBIC: f64 = 33_554_432.0; // 2²⁵
 const QUARTIC: f64 = 1_125_899_906_842_624.0; // 2⁵⁰
 
-/// Half of what a value adds: q, q², q³ high and low; q⁴ high and low, E_rot/E_tot, and, as a plain binary 1, the value itself.
+/// Half of the contributions of a value: q, q², q³ high and low; or q⁴ high and low, E_rot/E_tot, and a binary 1 that counts the
+/// value.
 pub(super) type Half = [f64; 4];
 
-/// Both halves for an offset of ε from its origin, of which `quanta` make a unit, and E_rot/E_tot.
+/// Both halves for an offset of ε from its origin, with `quanta` quanta in a unit, and for E_rot/E_tot.
 #[inline(always)]
 pub(super) fn words<S: Simd, const K: usize>(
     offset: Pack<S, K>,
@@ -52,7 +53,7 @@ pub(super) fn words<S: Simd, const K: usize>(
     ]
 }
 
-/// An offset of ε from its origin that is too large to be summed like the others, in quanta.
+/// An offset of ε from its origin, in quanta, that is too large to be summed like the others.
 #[inline(always)]
 pub(super) fn quanta(offset: f64) -> i64 {
     let q = offset * (QUANTA / COARSE as f64); // exact
@@ -70,10 +71,10 @@ pub(super) fn fraction_quanta(fraction: f64) -> i64 {
     counted(fraction * FRACTION_QUANTA)
 }
 
-/// Below this a number that [`ROUND`] is added to is rounded to a whole one.
+/// Bound below which adding [`ROUND`] rounds a number to an integer.
 const FEW: f64 = 1_125_899_906_842_624.0; // 2⁵⁰
 
-/// A number below [`FEW`], rounded to a whole one.
+/// A number below [`FEW`], rounded to an integer.
 #[inline(always)]
 fn counted(x: f64) -> i64 {
     (x + ROUND).to_bits() as i64 - ROUND.to_bits() as i64
@@ -98,10 +99,10 @@ pub(super) struct Totals {
 impl Recent {
     pub const EMPTY: Self = Self([0; 8]);
 
-    /// Adds what a value adds, and tells whether that was the last for which there is room.
+    /// Adds the contributions of a value, and returns whether it was the last for which there is room.
     #[inline(always)]
     pub fn add(&mut self, low: &Half, high: &Half) -> bool {
-        // All words are read before any is written, so that a vector or two can hold them.
+        // All words are read before any is written, so that they can be added as vectors.
         let sums: [u64; 8] = std::array::from_fn(|i| {
             self.0[i].wrapping_add(if i < 4 { low[i] } else { high[i - 4] }.to_bits())
         });
@@ -142,7 +143,7 @@ impl Extremes {
         maximum: f64::NEG_INFINITY,
     };
 
-    /// Stores only what is new, which is rare.
+    /// Updates the extremes. They are written only when they change, which is rare.
     #[inline(always)]
     pub fn add(&mut self, value: f64) {
         if value < self.minimum {

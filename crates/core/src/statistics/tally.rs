@@ -1,4 +1,4 @@
-//! What `statistics` keeps of a run: grids of counts and sums, of a size that the bins alone decide.
+//! The statistics of a run: grids of counts, and sums, whose size depends on the bins alone.
 
 use super::axis::Axis;
 use super::moments::{Moments, Sums};
@@ -6,31 +6,32 @@ use super::recent::FRACTION_QUANTA;
 use crate::Error;
 use crate::memory::{filled, zeros};
 
-/// An impact creates energy where it multiplies the kinetic energy by more than this. Rounding makes a few 10⁻¹⁵ of it.
+/// Energy ratio above which an impact counts as creating kinetic energy. Rounding errors of the ratio are a few 10⁻¹⁵.
 pub const CREATES_ENERGY: f64 = 1.0 + 1e-12;
 
-/// What the memory is for.
+/// The parameters that the size of a tally follows from.
 pub(super) const WHAT: &str = "velocity_bins or impacts, times restitution_bins and fraction_bins";
-/// Sites that are examined together: in fine grids most are empty, and memory that is only read takes no room.
+/// Number of sites that are examined together when grids are merged: most sites of a fine grid are empty, and pages that are never
+/// written to take no memory.
 const PART: usize = 512;
 
-/// What the rows of the grids stand for.
+/// The quantity by which the rows of the grids are divided.
 #[derive(Debug, Clone, PartialEq)]
 pub enum By {
     /// Bins of the impact velocity, in m/s.
     Velocity(Axis),
-    /// The number of the impact, from the first to this many.
+    /// The number of the impact, from the first up to this one.
     Number(usize),
 }
 
-/// The bins.
+/// Rows and columns of the grids.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Bins {
-    /// Rows.
+    /// Rows of both grids.
     pub by: By,
     /// Columns of the grid of ε.
     pub restitution: Axis,
-    /// Columns of the grid of E_rot/E_tot. Without them impacts are counted by row and ε, and nothing is summed.
+    /// Columns of the grid of E_rot/E_tot. Without them impacts are only counted, by row and ε, and no moments are summed.
     pub fraction: Option<Axis>,
 }
 
@@ -43,7 +44,7 @@ impl Bins {
         }
     }
 
-    /// Whether the bins of every axis are of one width.
+    /// Whether all bins of every axis have the same width.
     pub(crate) fn are_even(&self) -> bool {
         let rows = match &self.by {
             By::Velocity(axis) => axis.is_even(),
@@ -52,7 +53,7 @@ impl Bins {
         rows && self.restitution.is_even() && self.fraction.as_ref().is_none_or(Axis::is_even)
     }
 
-    /// Checks that 32 bits are enough to number the sites of each grid and one more.
+    /// Checks that the sites of each grid, and one more, can be numbered with 32 bits.
     pub(crate) fn check(&self) -> Result<(), Error> {
         let check = |name: &'static str, axis: &Axis| {
             let sites = self.rows().saturating_mul(axis.bins() + 1);
@@ -69,33 +70,33 @@ impl Bins {
 /// Counts and sums of the impacts of any number of particles. Tallies with the same bins merge exactly.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Tally {
-    /// Impacts by row and bin of ε; the last column counts those whose ε is not finite or at least 2³³.
+    /// Impacts by row and bin of ε; the last column counts those for which ε is not finite or |ε| is at least 2³³.
     pub restitution: Grid,
-    /// Impacts by row and bin of E_rot/E_tot; the last column as above. Without columns if only ε was asked for.
+    /// Impacts by row and bin of E_rot/E_tot; the last column as above. It has no columns if [`Bins::fraction`] is `None`.
     pub fraction: Grid,
-    /// What ε is measured from in the sums: ε_n, so that nearly round bodies lose no digits.
+    /// Origin of ε in the sums: ε_n, so that no digits are lost for nearly round bodies.
     pub(super) origin: f64,
-    /// Sums of ε − origin by row; none if only counts were asked for.
+    /// Sums of ε − origin by row; empty if impacts are only counted.
     pub(super) sums: Vec<Sums>,
-    /// Σ E_rot/E_tot by row, in units of 2⁻⁴², likewise.
+    /// Σ E_rot/E_tot by row, in units of 2⁻⁴²; empty if impacts are only counted.
     pub(super) fractions: Vec<u128>,
     /// Impacts that create energy, by row.
     pub gains: Vec<Gains>,
-    /// Number of particles by [`StopReason`].
+    /// Number of particles by [`crate::StopReason`].
     pub stops: [u64; 5],
 }
 
-/// The impacts by which kinetic energy grew by more than [`CREATES_ENERGY`].
+/// The impacts whose energy ratio exceeds [`CREATES_ENERGY`].
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Gains {
     /// Their number.
     pub count: u64,
-    /// Their largest factor; 0 without any.
+    /// Their largest energy ratio; 0 if there are none.
     pub largest: f64,
 }
 
 impl Gains {
-    /// Adds one impact, or none with a factor of 0. Stores a new largest factor only, which is rare.
+    /// Adds an impact (`count` = 1), or none (`count` = 0, `factor` = 0). The largest factor is written only when it changes.
     #[inline(always)]
     pub(super) fn add(&mut self, count: u64, factor: f64) {
         self.count += count;
@@ -110,7 +111,7 @@ impl Gains {
     }
 }
 
-/// Counts in rows and columns.
+/// A grid of counts.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Grid {
     columns: usize,
@@ -123,7 +124,7 @@ impl Grid {
         Ok(Self { columns, counts })
     }
 
-    /// A copy of the counts, row by row, as the numbers that NumPy counts with.
+    /// A copy of the counts, row by row, as signed integers for NumPy.
     pub fn to_counts(&self) -> Result<Vec<i64>, Error> {
         let mut copy = zeros(WHAT, self.counts.len())?;
         let parts = copy.chunks_mut(PART).zip(self.counts.chunks(PART));
@@ -133,7 +134,7 @@ impl Grid {
         Ok(copy)
     }
 
-    /// Number of columns: one below the bins, the bins, one above, one for what has no place.
+    /// Number of columns: one below the bins, the bins, one above, and one for undefined values.
     pub fn columns(&self) -> usize {
         self.columns
     }
@@ -163,7 +164,7 @@ impl Grid {
 }
 
 impl Tally {
-    /// Of nothing; moments will be taken about `origin` first.
+    /// A tally of no impacts, whose sums are relative to `origin`.
     pub fn new(bins: &Bins, origin: f64) -> Result<Self, Error> {
         let rows = bins.rows();
         let summed = bins.fraction.as_ref().map_or(0, |_| rows);
@@ -179,7 +180,7 @@ impl Tally {
         })
     }
 
-    /// Adds what another tally with the same bins and origin has.
+    /// Adds another tally, which must have the same bins and origin.
     pub fn merge(&mut self, other: &Self) {
         self.restitution.merge(&other.restitution);
         self.fraction.merge(&other.fraction);
@@ -197,7 +198,7 @@ impl Tally {
         }
     }
 
-    /// Number of impacts of a row whose ε is defined.
+    /// Number of impacts in a row for which ε is defined.
     pub fn number(&self, row: usize) -> u64 {
         let columns = self.restitution.columns;
         self.restitution.counts[row * columns..][..columns - 1]
@@ -205,13 +206,13 @@ impl Tally {
             .sum()
     }
 
-    /// Moments of ε in a row, if they were asked for.
+    /// Moments of ε in a row; `None` if impacts are only counted.
     pub fn moments(&self, row: usize) -> Option<Moments> {
         let sums = self.sums.get(row)?;
         Some(sums.moments(self.number(row), self.origin))
     }
 
-    /// Mean of E_rot/E_tot in a row, if it was asked for; NaN where there are none.
+    /// Mean of E_rot/E_tot in a row, NaN without impacts; `None` if impacts are only counted.
     pub fn mean_fraction(&self, row: usize) -> Option<f64> {
         let sum = *self.fractions.get(row)?;
         Some(sum as f64 / FRACTION_QUANTA / self.number(row) as f64)

@@ -1,20 +1,22 @@
-//! A tally as a list of whole numbers. Parts of a run that were counted at different times or places are kept in this form and
-//! merge to the bits of the whole.
+//! A tally as a list of integers. Parts of a run that were counted at different times or places are stored in this form, and merge to
+//! the same bits as the whole run.
 
 use super::tally::{Bins, Tally};
 use crate::Error;
 
 impl Tally {
-    /// Every number that the tally holds, in an order that the bins alone decide: the origin, the grids, the sums, the ledger of
-    /// energy, the particles by stop reason.
+    /// All numbers of the tally, in an order that depends on the bins alone: origin, grids, sums, created energy, particles by stop
+    /// reason.
     pub fn to_words(&self) -> Vec<u64> {
         let mut words = Vec::new();
         self.clone().visit(&mut |word| words.push(*word));
         words
     }
 
-    /// The tally with these bins that had these words. Words of another number of rows or columns are refused, and so are those of
-    /// sums that were taken about another origin.
+    /// The tally with these bins from its words.
+    ///
+    /// # Errors
+    /// [`Error::Parameter`] for words that belong to another number of rows or columns, or to sums about another origin.
     pub fn from_words(bins: &Bins, origin: f64, words: &[u64]) -> Result<Self, Error> {
         let mut tally = Self::new(bins, origin)?;
         let mut needed = 0_usize;
@@ -33,7 +35,7 @@ impl Tally {
         Ok(tally)
     }
 
-    /// Shows every word to `visit`, which may change it.
+    /// Calls `visit` with every word, which it may change.
     fn visit(&mut self, visit: &mut impl FnMut(&mut u64)) {
         float(&mut self.origin, visit);
         self.restitution.counts.iter_mut().for_each(&mut *visit);
@@ -55,7 +57,7 @@ impl Tally {
     }
 }
 
-/// Shows the bits of a number.
+/// Calls `visit` with the bits of a number.
 pub(super) fn float(number: &mut f64, visit: &mut impl FnMut(&mut u64)) {
     let mut bits = number.to_bits();
     visit(&mut bits);

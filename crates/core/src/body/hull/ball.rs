@@ -5,16 +5,16 @@ use super::balls::Balls;
 use crate::simd::{Mask, Pack};
 use pulp::Simd;
 
-/// One sphere, under the name of that sphere of the body which it is.
+/// One sphere, recorded as sphere 1 or 2 of the body.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Single {
     ball: Ball,
-    /// ±1.
+    /// +1 for sphere 1, −1 for sphere 2.
     name: f64,
 }
 
 impl Single {
-    /// Sphere 1 if `first`, else sphere 2.
+    /// The hull `ball`, recorded as sphere 1 if `first`, else as sphere 2.
     pub(in crate::body) fn new(ball: Ball, first: bool) -> Self {
         Self {
             ball,

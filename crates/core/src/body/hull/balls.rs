@@ -1,24 +1,24 @@
-//! Hulls of balls: two spheres on the axis, or one.
+//! Hulls that consist of one or two spheres on the axis.
 
 use super::{Hull, Part, Swing};
 use crate::simd::{Mask, Pack};
 use pulp::Simd;
 
-/// What distinguishes hulls of balls, whose gaps are linear in e_z.
+/// The parameters of a hull of spheres, whose gaps are linear in e_z.
 pub(super) trait Balls: Copy {
-    /// Whether there are two.
+    /// Whether the hull has two spheres.
     const TWO: bool;
     /// The levers s of spheres 1 and 2.
     fn levers(&self) -> [f64; 2];
-    /// e_z less that at which both spheres touch: negative where sphere 1 is the lower one.
+    /// e_z minus its value where both spheres touch: negative where sphere 1 is the lower one.
     fn lean<S: Simd, const K: usize>(&self, tilt: Pack<S, K>) -> Pack<S, K>;
-    /// Height of the centre of mass at which lift is 0.
+    /// Height of the centre of mass at which the lift is 0.
     fn level(&self) -> f64;
-    /// Lift above which nothing can touch while |e_z| ≤ `reach`.
+    /// Lift above which no part can touch while |e_z| ≤ `reach`.
     fn ceiling<S: Simd, const K: usize>(&self, reach: Pack<S, K>) -> Pack<S, K>;
-    /// The radius of a sphere.
+    /// The radius of sphere 1 where `one`, else of sphere 2.
     fn radius<S: Simd, const K: usize>(&self, one: Mask<S, K>) -> Pack<S, K>;
-    /// ±1 for sphere 1 or 2.
+    /// +1 or −1 for a contact of sphere 1 or 2.
     fn name<S: Simd, const K: usize>(&self, one: Mask<S, K>) -> Pack<S, K>;
 }
 
@@ -53,8 +53,8 @@ impl<B: Balls> Hull for B {
         }
     }
 
-    /// Both lower bounds have the same curvature, so that they cross only when the axis, turning at its present rate, leans to
-    /// neither sphere: up to then it is the lower sphere's that counts, afterwards the other's.
+    /// The lower bounds of both gaps have the same curvature. They cross only when the axis, turning at its present rate, reaches
+    /// the e_z at which both spheres touch: until then the lower sphere's bound is the smaller one, afterwards the other's.
     #[inline(always)]
     fn nearer<S: Simd, const K: usize>(
         &self,
@@ -67,12 +67,12 @@ impl<B: Balls> Hull for B {
             return self.part(Mask::splat(lift.simd(), true));
         }
         let (lean, rate) = (self.lean(swing.tilt), swing.rate);
-        // lift + climb t − Mt²/2 at t = −lean/rate, times rate²: both gaps there.
+        // Both lower bounds at that time, lift + climb t − Mt²/2 with t = −lean/rate, times rate².
         let level = rate.mul_add(
             lift.mul_add(rate, -(climb * lean)),
             -(0.5 * bound * (lean * lean)),
         );
-        // If both spheres are in the air then, the one that is going down is or will be the lower one.
+        // If both bounds are positive there, the sphere that the rotation moves down is the one whose bound reaches 0 first.
         let swings = Pack::splat(lift.simd(), 0.0).le(level);
         self.part(swings.select(rate, lean).lt(0.0))
     }
@@ -127,7 +127,7 @@ impl<B: Balls> Hull for B {
     }
 }
 
-/// The second to fourth derivatives of a gap that is linear in e_z.
+/// The second to fourth time derivatives of −h for a gap that is linear in e_z.
 #[inline(always)]
 fn linear_bends<S: Simd, const K: usize>(
     lever: Pack<S, K>,

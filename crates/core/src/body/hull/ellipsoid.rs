@@ -1,16 +1,17 @@
-//! The hull of a spheroid: semi-axes a across and c along the symmetry axis, around the centre of mass.
+//! The hull of a spheroid: semi-axes a across and c along the symmetry axis, with the centre of mass at its centre.
 //!
-//! h² = a² + De_z² with D = c² − a². While e_z = k + A cos φ, φ = Ωt, is the vertical component of a unit vector,
+//! The support function is h² = a² + De_z² with D = c² − a². While e_z = k + A cos φ, φ = Ωt, is the vertical component of a unit
+//! vector,
 //!
 //! d²h/dt² = De_z e_z″/h + Da²e_z′²/h³,
 //!
-//! and this is at most |D|AEΩ²/h_min, where E = |k| + A ≤ 1 and h_min is the least h for |e_z| ≤ E:
+//! and this is at most |D|AEΩ²/h_min, where E = |k| + A ≤ 1 and h_min is the smallest h for |e_z| ≤ E:
 //!
 //! * D > 0, h_min = a: e_z e_z″ = −AΩ²(k cos φ + A cos²φ) ≤ A|k|Ω² and e_z′² ≤ A²Ω², with h ≥ a.
 //! * D < 0, h_min = h(E): the second term is negative, |e_z″| ≤ AΩ², and |e_z|/h grows with |e_z|.
 //!
-//! It is no less than minus that either, as a test makes sure. The derivatives follow from hh′ = De_z e_z′ by Leibniz's rule:
-//! with (n) for the n-th derivative, h h⁽ⁿ⁾ = D(e_z²/2)⁽ⁿ⁾ − Σ of the products of lower ones.
+//! A test checks that |d²h/dt²| has the same bound. The derivatives follow from hh′ = De_z e_z′ by Leibniz's rule: with (n) for the
+//! n-th time derivative, h h⁽ⁿ⁾ = D(e_z²/2)⁽ⁿ⁾ minus products of lower derivatives of h.
 
 use super::{Hull, Part, Swing};
 use crate::simd::{Mask, Pack};
@@ -19,16 +20,16 @@ use pulp::Simd;
 /// An ellipsoid of revolution.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Ellipsoid {
-    /// a.
+    /// Semi-axis a across the symmetry axis.
     equatorial: f64,
     /// D = c² − a².
     excess: f64,
-    /// max(a/c, c/a): h is analytic in Ωt as far as this allows.
+    /// max(a/c, c/a), [`Hull::sharpness`]: the larger it is, the smaller the radius of convergence of h in Ωt.
     sharpness: f64,
 }
 
 impl Ellipsoid {
-    /// From the semi-axes across and along the axis of revolution.
+    /// The hull with these semi-axes across and along the axis of revolution, in the core's unit of length.
     pub(in crate::body) fn new(equatorial: f64, polar: f64) -> Self {
         Self {
             equatorial,
@@ -37,7 +38,7 @@ impl Ellipsoid {
         }
     }
 
-    /// h. Of the two forms the one that loses no digits: c² − D(1 − e_z²) = a²(1 − e_z²) + c²e_z².
+    /// h, from h² = a²(1 − e_z²) + c²e_z²: a sum of positive terms, in which no digits cancel.
     #[inline(always)]
     fn support<S: Simd, const K: usize>(&self, tilt: Pack<S, K>) -> Pack<S, K> {
         let a2 = self.equatorial * self.equatorial;
@@ -46,13 +47,13 @@ impl Ellipsoid {
         (tilt * tilt).mul_add(along, across).sqrt()
     }
 
-    /// 1/h.
+    /// The inverse of the support function, 1/h.
     #[inline(always)]
     fn inverse<S: Simd, const K: usize>(&self, tilt: Pack<S, K>) -> Pack<S, K> {
         1.0 / self.support(tilt)
     }
 
-    /// h − a = De_z²/(h + a).
+    /// h − a, as De_z²/(h + a), which does not subtract nearly equal numbers.
     #[inline(always)]
     fn rise<S: Simd, const K: usize>(&self, tilt: Pack<S, K>) -> Pack<S, K> {
         self.excess * (tilt * tilt) / (self.equatorial + self.support(tilt))

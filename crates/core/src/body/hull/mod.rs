@@ -1,11 +1,11 @@
-//! What of a body can touch the plane, and how its gap to the plane follows from the axis.
+//! The part of a body that can touch the plane, and its gap to the plane as a function of the axis.
 //!
-//! A convex body whose axis has the vertical component e_z stands on the plane when its centre of mass is h(e_z) high: its
-//! support function. The gap is f = z − h. For a body of revolution the point of contact is
-//! **r**_c = s**e** − ϱ**n** with s = −h′ and ϱ = h − h′e_z: it touches like a ball of radius ϱ around the point of the axis
-//! at s. For a sphere on the axis both are constant, and the gap is linear in e_z.
+//! A convex body whose axis has the vertical component e_z touches the plane when the height of its centre of mass is h(e_z), its
+//! support function. The gap is f = z − h. For a body of revolution the vector from the centre of mass to the point of contact is
+//! **r**_c = s**e** − ϱ**n** (6) with s = −h′ and ϱ = h − h′e_z, where h′ = dh/de_z: it touches like a sphere of radius ϱ whose
+//! centre is on the axis at s. For a sphere on the axis both are constant, and the gap is linear in e_z.
 //!
-//! Heights are kept relative to a level at which a contact has few digits to lose: [`Hull::level`].
+//! Heights are relative to a level, [`Hull::level`], so that the rounding error at a contact is small.
 
 mod ball;
 mod balls;
@@ -19,20 +19,20 @@ pub use pair::{EqualPair, Pair};
 use crate::simd::{Mask, Pack, one};
 use pulp::{Scalar, Simd};
 
-/// One of the two spheres of a hull; of a smooth hull one of its halves.
+/// The end of the body that touches: one of two spheres, or one half of a smooth hull.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Sphere {
-    /// The one to which the axis points.
+    /// The end to which the axis points.
     One,
-    /// The other one.
+    /// The opposite end.
     Two,
 }
 
 impl Sphere {
-    /// Both, in order.
+    /// Both ends, in order.
     pub const BOTH: [Self; 2] = [Self::One, Self::Two];
 
-    /// The other one.
+    /// The opposite end.
     pub fn other(self) -> Self {
         match self {
             Self::One => Self::Two,
@@ -53,26 +53,26 @@ impl Sphere {
     }
 }
 
-/// A sphere around a point of the axis.
+/// A sphere whose centre is on the axis, in the core's unit of length.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Ball {
-    /// Its place on the axis: signed distance s from the centre of mass.
+    /// Position of its centre on the axis: signed distance s from the centre of mass.
     pub offset: f64,
-    /// Its radius ϱ.
+    /// Radius ϱ.
     pub radius: f64,
 }
 
 /// The part of a hull whose gap is evaluated, in each lane.
 #[derive(Clone, Copy)]
 pub(crate) struct Part<S: Simd, const K: usize> {
-    /// Whether it is sphere 1; of no meaning where only one part can touch.
+    /// Whether it is sphere 1; ignored where only one part can touch.
     pub one: Mask<S, K>,
-    /// The lever s of a sphere; of no meaning for a smooth hull, where it depends on the tilt.
+    /// The lever s of a sphere; ignored for a smooth hull, where it depends on the tilt.
     pub lever: Pack<S, K>,
 }
 
-/// How the vertical component of the axis, e_z, moves at a moment. It turns as c + A cos Ωt, so that every second derivative
-/// is −Ω² times the last.
+/// The vertical component of the axis, e_z, and its time derivatives. Since e_z = c + A cos(Ωt + φ), each derivative from the third
+/// on is −Ω² times the one two orders below.
 #[derive(Clone, Copy)]
 pub(crate) struct Swing<S: Simd, const K: usize> {
     /// e_z.
@@ -85,31 +85,30 @@ pub(crate) struct Swing<S: Simd, const K: usize> {
     pub square: Pack<S, K>,
 }
 
-/// What can touch the plane. The search for a contact, the landing and the impact know of a hull what stands here, and
-/// nothing else.
+/// The surface that can touch the plane. The contact search, the landing and the impact use no other property of it.
 pub(crate) trait Hull: Copy {
-    /// Whether either of two parts may touch first.
+    /// Whether it has two parts, either of which may touch first.
     const TWO: bool;
 
-    /// Height of the centre of mass at which lift is 0.
+    /// Height of the centre of mass at which the lift is 0.
     fn level(&self) -> f64;
 
-    /// How much faster than e_z itself its support function may vary: an axis that turns by much less than the inverse of this
-    /// leaves h close to its Taylor expansion. At least 1.
+    /// Factor ≥ 1 by which the support function h may vary faster than e_z: while the axis turns by an angle much smaller than its
+    /// inverse, the Taylor expansion of h converges quickly.
     fn sharpness(&self) -> f64;
 
-    /// Lift above which nothing can touch while |e_z| ≤ `reach`.
+    /// Lift above which no part can touch while |e_z| ≤ `reach`.
     fn ceiling<S: Simd, const K: usize>(&self, reach: Pack<S, K>) -> Pack<S, K>;
 
-    /// A bound on |d²h/dt²|/Ω² where e_z turns as c + A cos Ωt: what rotation can contribute to the acceleration of a gap.
+    /// A bound on |d²h/dt²|/Ω² for e_z = c + A cos(Ωt + φ): the contribution of rotation to the second derivative of a gap.
     /// `amplitude` is A, `reach` is |c| + A.
     fn sway<S: Simd, const K: usize>(&self, amplitude: Pack<S, K>, reach: Pack<S, K>)
     -> Pack<S, K>;
 
-    /// Sphere 1 or 2; the whole hull if there is only one part.
+    /// Sphere 1 where `one`, else sphere 2; the whole hull if it has only one part.
     fn part<S: Simd, const K: usize>(&self, one: Mask<S, K>) -> Part<S, K>;
 
-    /// The part whose gap may close first. `bound` is M, the curvature of both lower bounds.
+    /// The part whose gap has the lower bound that reaches 0 first. `bound` is M: f″ ≥ −M for the gap f of either part.
     fn nearer<S: Simd, const K: usize>(
         &self,
         lift: Pack<S, K>,
@@ -118,7 +117,7 @@ pub(crate) trait Hull: Copy {
         bound: Pack<S, K>,
     ) -> Part<S, K>;
 
-    /// The gap of a part, (2).
+    /// The gap f between a part and the plane, (2), negative where they overlap.
     fn gap<S: Simd, const K: usize>(
         &self,
         part: &Part<S, K>,
@@ -129,10 +128,10 @@ pub(crate) trait Hull: Copy {
     /// Lift at which a part touches.
     fn lift<S: Simd, const K: usize>(&self, part: &Part<S, K>, tilt: Pack<S, K>) -> Pack<S, K>;
 
-    /// The lever s = −h′.
+    /// The lever s = −dh/de_z.
     fn lever<S: Simd, const K: usize>(&self, part: &Part<S, K>, tilt: Pack<S, K>) -> Pack<S, K>;
 
-    /// The radius ϱ = h − h′e_z.
+    /// The radius ϱ = h − e_z dh/de_z of the sphere that touches like this part.
     fn radius<S: Simd, const K: usize>(&self, part: &Part<S, K>, tilt: Pack<S, K>) -> Pack<S, K>;
 
     /// −d²h/dt² + `addend`.
@@ -150,12 +149,12 @@ pub(crate) trait Hull: Copy {
         swing: &Swing<S, K>,
     ) -> [Pack<S, K>; 3];
 
-    /// The name under which a contact is known, ±1 for sphere 1 or 2; of a smooth hull the half that touches, 1 on the side to
-    /// which the axis points.
+    /// The end that a contact is recorded under, +1 or −1 for sphere 1 or 2; for a smooth hull, +1 if the half touches to which
+    /// the axis points.
     fn name<S: Simd, const K: usize>(&self, part: &Part<S, K>, tilt: Pack<S, K>) -> Pack<S, K>;
 }
 
-/// The hull of a body, one of those that there are.
+/// The hull of a body.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Surface {
     /// Two equal spheres with the centre of mass between them.
@@ -164,11 +163,11 @@ pub enum Surface {
     Pair(Pair),
     /// One sphere, whose centre need not be the centre of mass.
     Single(Single),
-    /// An ellipsoid of revolution around the centre of mass.
+    /// An ellipsoid of revolution centred at the centre of mass.
     Ellipsoid(Ellipsoid),
 }
 
-/// Does the same for whatever hull a [`Surface`] has.
+/// Evaluates an expression with the hull of a [`Surface`], whichever it is.
 macro_rules! with_hull {
     ($surface:expr, $hull:ident => $result:expr) => {
         match $surface {
@@ -182,12 +181,12 @@ macro_rules! with_hull {
 pub(crate) use with_hull;
 
 impl Surface {
-    /// Height of the centre of mass at which lift is 0.
+    /// Height of the centre of mass at which the lift is 0.
     pub fn level(&self) -> f64 {
         with_hull!(self, hull => hull.level())
     }
 
-    /// The support function h: height of the centre of mass when the body stands on the plane.
+    /// The support function h: height of the centre of mass when the body touches the plane, at e_z = `tilt`.
     pub fn support(&self, tilt: f64) -> f64 {
         let [one, two] = Sphere::BOTH.map(|sphere| self.lift(sphere, tilt));
         self.level() + one.max(two)
@@ -198,7 +197,7 @@ impl Surface {
         with_hull!(self, hull => hull.level() + hull.ceiling(one(1.0)).as_slice()[0])
     }
 
-    /// The gap of a sphere, (2), at this e_z and lift; of the whole body if there is only one part that can touch.
+    /// The gap between a sphere and the plane, (2), at this e_z and lift; that of the whole body if only one part can touch.
     pub fn gap(&self, sphere: Sphere, tilt: f64, lift: f64) -> f64 {
         with_hull!(self, hull => hull.gap(&named(hull, sphere), one(tilt), one(lift)).as_slice()[0])
     }
@@ -213,12 +212,12 @@ impl Surface {
         with_hull!(self, hull => hull.lever(&named(hull, sphere), one(tilt)).as_slice()[0])
     }
 
-    /// The name under which a contact is known.
+    /// The end that a contact is recorded under.
     pub fn name(&self, sphere: Sphere, tilt: f64) -> Sphere {
         with_hull!(self, hull => Sphere::of(hull.name(&named(hull, sphere), one(tilt)).as_slice()[0]))
     }
 
-    /// The bound on |d²h/dt²|/Ω² where e_z turns with this amplitude, up to this |e_z|.
+    /// The bound on |d²h/dt²|/Ω² for this amplitude A of e_z and this largest |e_z|.
     pub fn sway(&self, amplitude: f64, reach: f64) -> f64 {
         with_hull!(self, hull => hull.sway(one(amplitude), one(reach)).as_slice()[0])
     }

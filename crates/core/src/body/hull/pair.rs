@@ -5,8 +5,8 @@ use super::balls::Balls;
 use crate::simd::{Mask, Pack};
 use pulp::Simd;
 
-/// Spheres 1 and 2, whose centres are on the axis. Both touch the plane at once when e_z is `tilt`: at that height of the
-/// centre of mass, `level`, lift is 0, and the gaps are lift + s(e_z − tilt).
+/// Spheres 1 and 2, whose centres are on the axis. Both touch the plane at once when e_z is `tilt` and the height of the centre of
+/// mass is `level`. The lift is the height above that level, and the gaps are lift + s(e_z − tilt), (2).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Pair {
     balls: [Ball; 2],
@@ -16,7 +16,7 @@ pub struct Pair {
 }
 
 impl Pair {
-    /// Spheres whose centres are `separation` apart, neither of which contains the other.
+    /// Two spheres, neither of which contains the other, with centres `separation` apart.
     pub(in crate::body) fn new(balls: [Ball; 2], separation: f64) -> Self {
         let [one, two] = balls;
         let tilt = (one.radius - two.radius) / separation;
@@ -28,7 +28,7 @@ impl Pair {
     }
 }
 
-/// Spheres of radius 1 at ±`lever`: the [`Pair`] with ℓ = 0, for which half of the arithmetic is nothing.
+/// Spheres of radius 1 at ±`lever`: the [`Pair`] with ℓ = 0, kept apart because half of the arithmetic then drops out.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct EqualPair {
     lever: f64,

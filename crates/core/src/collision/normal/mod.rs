@@ -12,21 +12,21 @@ use crate::Error;
 use crate::simd::Pack;
 use pulp::{Scalar, Simd, WithSimd};
 
-/// ε_n, in [0, 1].
+/// The normal coefficient of restitution ε_n, in [0, 1].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Normal<'a> {
-    /// The same at every speed.
+    /// A constant.
     Constant(f64),
-    /// Of viscoelastic spheres.
+    /// That of viscoelastic spheres.
     Viscoelastic(Viscoelastic),
-    /// Of elastic-plastic spheres.
+    /// That of elastic–perfectly plastic spheres.
     Plastic(Plastic),
-    /// As measured.
+    /// Interpolated in a table, for example of measured values.
     Tabulated(Tabulated<'a>),
 }
 
 impl Normal<'_> {
-    /// The coefficient at a speed ≥ 0, in m/s or, once scaled, in the core's unit.
+    /// The coefficient at a speed ≥ 0, in m/s, or in the core's unit of speed if it was scaled.
     pub fn at(&self, speed: f64) -> f64 {
         self.in_lanes(Pack::<_, 1>::splat(Scalar::new(), speed))
             .as_slice()[0]
@@ -43,7 +43,7 @@ impl Normal<'_> {
         }
     }
 
-    /// [`Self::in_lanes`] as a call: written out in the bounce loop, all of them would crowd it.
+    /// [`Self::in_lanes`] in a function of its own: inlined, all coefficients together would use up the registers of the bounce loop.
     #[inline(always)]
     pub(crate) fn apart<S: Simd, const K: usize>(&self, speed: Pack<S, K>) -> Pack<S, K> {
         speed.simd().vectorize(Coefficients {
@@ -52,7 +52,7 @@ impl Normal<'_> {
         })
     }
 
-    /// The coefficient for speeds in this `unit`, in m/s, instead of m/s.
+    /// The same coefficient for speeds that are given in multiples of `unit` (in m/s) instead of m/s.
     pub(super) fn scaled(&self, unit: f64) -> Self {
         match self {
             Self::Constant(_) => *self,
@@ -62,7 +62,7 @@ impl Normal<'_> {
         }
     }
 
-    /// The coefficient, if it is one.
+    /// The coefficient itself, or an error for a constant outside [0, 1].
     pub(super) fn checked(self) -> Result<Self, Error> {
         if let Self::Constant(value) = self {
             Error::unless((0.0..=1.0).contains(&value), "normal", value, "in [0, 1]")?;
@@ -71,7 +71,7 @@ impl Normal<'_> {
     }
 }
 
-/// A coefficient and the speeds at which it is wanted, to be compiled for each SIMD level.
+/// A coefficient and the speeds at which it is evaluated, compiled for each SIMD level.
 struct Coefficients<'a, 'b, S: Simd, const K: usize> {
     normal: &'a Normal<'b>,
     speed: Pack<S, K>,

@@ -1,5 +1,5 @@
-//! C. Thornton, *Coefficient of restitution for collinear collisions of elastic-perfectly plastic spheres*, J. Appl. Mech.
-//! **64**, 383 (1997).
+//! ε_n of elastic–perfectly plastic spheres: C. Thornton, *Coefficient of restitution for collinear collisions of
+//! elastic-perfectly plastic spheres*, J. Appl. Mech. **64**, 383 (1997).
 
 use crate::Error;
 use crate::simd::Pack;
@@ -13,7 +13,10 @@ pub struct Plastic {
 }
 
 impl Plastic {
-    /// The speed v_y in m/s, finite and > 0, below which the spheres stay elastic.
+    /// The coefficient for a yield speed v_y, in m/s, below which the spheres remain elastic.
+    ///
+    /// # Errors
+    /// [`Error::Parameter`] unless v_y is finite and > 0.
     pub fn new(yield_speed: f64) -> Result<Self, Error> {
         Error::unless(
             yield_speed.is_finite() && yield_speed > 0.0,

@@ -1,4 +1,4 @@
-//! A coefficient as it was measured.
+//! A normal coefficient that is interpolated in a table, for example of measured values.
 
 use crate::Error;
 use crate::simd::Pack;
@@ -9,11 +9,11 @@ use pulp::Simd;
 pub struct Tabulated<'a> {
     speeds: &'a [f64],
     values: &'a [f64],
-    /// What the speeds asked for are measured in, in m/s.
+    /// Unit of the speeds at which the coefficient is evaluated, in m/s.
     unit: f64,
 }
 
-/// The points of a [`Tabulated`] coefficient, kept and checked once.
+/// The points of a [`Tabulated`] coefficient, owned, and checked when they are made.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Points {
     speeds: Vec<f64>,
@@ -21,13 +21,13 @@ pub struct Points {
 }
 
 impl Points {
-    /// As [`Tabulated::new`].
+    /// The points; parameters and errors as for [`Tabulated::new`].
     pub fn new(speeds: Vec<f64>, values: Vec<f64>) -> Result<Self, Error> {
         Tabulated::new(&speeds, &values)?;
         Ok(Self { speeds, values })
     }
 
-    /// The coefficient that they are of.
+    /// The coefficient through these points.
     pub fn coefficient(&self) -> Tabulated<'_> {
         Tabulated {
             speeds: &self.speeds,
@@ -38,7 +38,11 @@ impl Points {
 }
 
 impl<'a> Tabulated<'a> {
-    /// At least one point: speeds in m/s, finite, ≥ 0 and increasing, and as many coefficients in [0, 1].
+    /// The coefficient with the given values at the given speeds, in m/s.
+    ///
+    /// # Errors
+    /// [`Error::Parameter`] unless there is at least one speed, the speeds are finite, ≥ 0 and increasing, and there are as many
+    /// values, all in [0, 1].
     pub fn new(speeds: &'a [f64], values: &'a [f64]) -> Result<Self, Error> {
         Error::unless(!speeds.is_empty(), "v", 0.0, "at least one speed (m/s)")?;
         let mut last = None;
@@ -76,7 +80,7 @@ impl<'a> Tabulated<'a> {
         lanes
     }
 
-    /// Also for NaN, which a lane that has ended may hold.
+    /// Linear interpolation. NaN, which a lane without a particle may hold, must not panic.
     fn interpolated(&self, speed: f64) -> f64 {
         let (v, e) = (self.speeds, self.values);
         let next = v.partition_point(|&x| x <= speed);

@@ -1,5 +1,5 @@
-//! P. Müller and T. Pöschel, *Collision of viscoelastic spheres: Compact expressions for the coefficient of normal
-//! restitution*, Phys. Rev. E **84**, 021302 (2011).
+//! ε_n of viscoelastic spheres: P. Müller and T. Pöschel, *Collision of viscoelastic spheres: Compact expressions for the
+//! coefficient of normal restitution*, Phys. Rev. E **84**, 021302 (2011).
 
 use crate::Error;
 use crate::simd::Pack;
@@ -9,24 +9,28 @@ use std::f64::consts::PI;
 
 /// A viscoelastic sphere on a rigid plane, ε_n(v) as the Padé approximant [3/6] in v* = β^{1/2}v^{1/10}.
 ///
-/// The force at a compression ξ is ρ(ξ^{3/2} + (3/2) A ξ^{1/2} dξ/dt), with Hertz's ρ = (4/3) √R Y/(1 − ν²) for a sphere on
-/// a rigid plane, and the contact ends where it would turn to attraction. With k = ρ/m, β = (3/2) A k^{2/5}.
+/// The force at a compression ξ is ρ(ξ^{3/2} + (3/2) A ξ^{1/2} dξ/dt), with ρ = (4/3) √R Y/(1 − ν²) of Hertz for a sphere on a
+/// rigid plane. The contact ends where the force would become attractive. With k = ρ/m, β = (3/2) A k^{2/5}.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Viscoelastic {
-    /// β^{1/2}, in (s/m)^{1/10} or, once scaled, in the core's unit.
+    /// β^{1/2}, in (s/m)^{1/10}, or in the core's units if it was scaled.
     scale: f64,
 }
 
 /// Coefficients of v*⁰, v*¹, ... in the numerator of ε_n(v*).
 pub const PADE_ABOVE: [f64; 4] = [1.0, 1.072_32, 0.574_198, 0.141_552];
-/// The same in its denominator.
+/// Coefficients of v*⁰, v*¹, ... in the denominator of ε_n(v*).
 pub const PADE_BELOW: [f64; 7] = [
     1.0, 1.072_32, 1.727_65, 1.378_42, 1.194_49, 0.467_273, 0.235_585,
 ];
 
 impl Viscoelastic {
-    /// Young's modulus Y in Pa, Poisson's ratio ν in (−1, ½], the dissipative constant A in s, density in kg/m³ and radius R
-    /// in m of the sphere.
+    /// The coefficient from Young's modulus Y (Pa), Poisson's ratio ν, the dissipative constant A (s), and density (kg/m³) and
+    /// radius R (m) of the sphere.
+    ///
+    /// # Errors
+    /// [`Error::Parameter`] unless all are finite, Y, density and R > 0, ν in (−1, ½] and A ≥ 0; [`Error::Magnitude`] if the ratio
+    /// of stiffness and mass overflows or underflows.
     pub fn new(
         young_modulus: f64,
         poisson_ratio: f64,
@@ -77,7 +81,7 @@ impl Viscoelastic {
         Ok(Self { scale })
     }
 
-    /// β, in (s/m)^{1/5}.
+    /// The parameter β, in (s/m)^{1/5}.
     pub fn beta(&self) -> f64 {
         self.scale * self.scale
     }
@@ -99,5 +103,5 @@ impl Viscoelastic {
     }
 }
 
-/// The sixth power of this times 10³⁰·⁸, the tenth root of the largest speed, is still finite.
+/// Largest β^{1/2}. The largest v* is this times 10³⁰·⁸, the tenth root of the largest double; its sixth power is still finite.
 const LARGEST: f64 = 1e20;
