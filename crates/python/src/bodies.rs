@@ -1,4 +1,4 @@
-//! Bodies: made from the parameters of a shape, in SI units, and handed to a run as they are.
+//! Bodies, made from the parameters of a shape in SI units.
 
 use crate::errors::python_error;
 use numpy::PyReadonlyArray1;
@@ -29,13 +29,13 @@ impl Solid {
         self.0.axial_inertia
     }
 
-    /// Place of the centre of mass on the axis, from the middle of the shape, in m.
+    /// Position of the centre of mass on the axis, relative to the middle of the shape, in m.
     #[getter]
     fn centre_of_mass(&self) -> f64 {
         self.0.centre_of_mass
     }
 
-    /// Least height of the centre of mass, in m, with nothing below the plane whichever of `cosines` is cos θ.
+    /// Smallest height of the centre of mass, in m, at which no part is below the plane for any cos θ in `cosines`.
     fn lowest(&self, cosines: PyReadonlyArray1<'_, f64>) -> PyResult<f64> {
         let heights = cosines
             .as_slice()?
@@ -44,8 +44,8 @@ impl Solid {
         Ok(heights.fold(0.0, f64::max))
     }
 
-    /// Whether nothing is below the plane at a height of the centre of mass, in m, whichever of `cosines` is cos θ, or whatever
-    /// that is.
+    /// Whether no part is below the plane at a height of the centre of mass, in m, for any cos θ in `cosines`, or at any angle if
+    /// these are not given.
     #[pyo3(signature = (height, cosines=None))]
     fn clears(&self, height: f64, cosines: Option<PyReadonlyArray1<'_, f64>>) -> PyResult<bool> {
         let lowest = match cosines {
@@ -55,7 +55,7 @@ impl Solid {
         Ok(restitution_core::Solid::clears(height, lowest))
     }
 
-    /// The largest of these heights over all angles.
+    /// Smallest height of the centre of mass, in m, at which no part is below the plane at any angle.
     fn farthest(&self) -> f64 {
         self.0.farthest()
     }

@@ -13,10 +13,10 @@ pub struct Mixture(restitution_core::distribution::Mixture);
 
 type Array<'py> = PyReadonlyArray1<'py, f64>;
 
-/// Values and whether they are cut short by Ctrl-C.
+/// Values, and the `KeyboardInterrupt` that cut them short, if any.
 type Filled<'py> = (Bound<'py, PyArray1<f64>>, Option<PyErr>);
 
-/// A function of the table at each of some points.
+/// A function of the table that is evaluated at many points.
 type Function = fn(
     &restitution_core::distribution::Mixture,
     Values<'_>,
@@ -46,7 +46,7 @@ impl Mixture {
             Ok(out)
         };
         let (out, interrupted) = if size <= BLOCK {
-            // A code that asks for one value at a time shall not wait for threads to start.
+            // A program that asks for one value at a time must not wait for threads to start.
             let out = py.detach(|| compute(&Monitor::default()));
             (out.map_err(python_error)?, None)
         } else {
@@ -101,7 +101,7 @@ impl Mixture {
         mixture.map(Self).map_err(python_error)
     }
 
-    /// Probability of a restitution up to x, at impact velocities v under conditions z; both have the size of x, or 1.
+    /// Cumulative distribution function at x, for impact velocities v in m/s and conditions z, of the size of x or of size 1.
     fn cdf<'py>(
         &self,
         py: Python<'py>,
@@ -114,7 +114,7 @@ impl Mixture {
         self.value(py, function, &x, (&v, &z), threads)
     }
 
-    /// Density at x, likewise.
+    /// Probability density at x, likewise.
     fn pdf<'py>(
         &self,
         py: Python<'py>,
@@ -127,7 +127,7 @@ impl Mixture {
         self.value(py, function, &x, (&v, &z), threads)
     }
 
-    /// Quantile of x, likewise.
+    /// Quantiles of the probabilities x, likewise.
     fn ppf<'py>(
         &self,
         py: Python<'py>,
@@ -140,7 +140,7 @@ impl Mixture {
         self.value(py, function, &x, (&v, &z), threads)
     }
 
-    /// Draws `size` restitutions at impact velocities v under conditions z.
+    /// Draws `size` coefficients of restitution at impact velocities v in m/s under conditions z.
     fn draw<'py>(
         &self,
         py: Python<'py>,

@@ -1,4 +1,4 @@
-//! The core's errors as exceptions, whose attributes are their fields.
+//! The core's errors as Python exceptions, with their fields as attributes.
 
 use pyo3::create_exception;
 use pyo3::exceptions::{PyMemoryError, PyRuntimeError, PyValueError};
@@ -76,7 +76,7 @@ fn with_fields(error: PyErr, name: &str, value: Value, allowed: &str) -> PyErr {
     }
 }
 
-/// `Ok` if an array that came from Python holds `holds`, else the error.
+/// `Ok` if the condition `holds` for an array from Python, else the error.
 pub fn unless(holds: bool, name: &'static str, value: usize, allowed: &str) -> PyResult<()> {
     if holds {
         return Ok(());

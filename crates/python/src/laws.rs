@@ -1,4 +1,4 @@
-//! Normal coefficients and laws, checked when they are made; and single contacts, for tests and for a look at a law alone.
+//! Normal coefficients and laws, checked when they are made, and their response to single contacts.
 
 use crate::errors::python_error;
 use numpy::{IntoPyArray, PyArray1, PyReadonlyArray1};
@@ -10,7 +10,7 @@ use restitution_core::{
 };
 use std::sync::Arc;
 
-/// A normal coefficient with whatever it needs.
+/// A normal coefficient, with the table that it owns.
 enum Coefficient {
     Closed(Normal<'static>),
     Measured(Points),
@@ -85,7 +85,7 @@ fn tabulated(v: Vec<f64>, e: Vec<f64>) -> PyResult<Material> {
     Ok(Material(Arc::new(Coefficient::Measured(points))))
 }
 
-/// A number, or a material.
+/// A constant normal coefficient, or a material.
 #[derive(FromPyObject)]
 enum Given<'py> {
     Constant(f64),
@@ -100,7 +100,7 @@ pub struct Law {
 }
 
 impl Law {
-    /// The law as the core takes it.
+    /// The law in the core's form.
     pub fn law(&self) -> restitution_core::Law<'_> {
         restitution_core::Law {
             normal: self.coefficient.normal(),
@@ -111,9 +111,9 @@ impl Law {
 
 #[pymethods]
 impl Law {
-    /// The impulse that the law answers a contact with, over m, and the normal velocity of the contact afterwards. Vectors
-    /// are along n, u and w; `slip` is the contact velocity in m/s, `arm` leads from the centre of mass to the contact along
-    /// n and u, `inertia` is J_xx/m in the square of its unit, and `across` is the entry of m K for w.
+    /// The impulse of a contact divided by m, in m/s, and the normal velocity of the contact afterwards. Vectors have components
+    /// along n, u and w. `slip` is the contact velocity in m/s, `arm` the vector from the centre of mass to the contact along n and u
+    /// in m, `inertia` is J_xx/m in m², and `across` is the entry of m K for w.
     fn respond(&self, slip: Triple, arm: (f64, f64), inertia: f64, across: f64) -> (Triple, f64) {
         let (normal, along, w) = slip;
         let response = self.law().respond(&Contact {

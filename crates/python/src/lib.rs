@@ -1,4 +1,4 @@
-//! The thin binding: parameters in, NumPy arrays out. No physics here.
+//! The Python binding: it takes parameters and returns NumPy arrays, and contains no physics.
 
 mod bodies;
 mod distribution;
@@ -27,10 +27,10 @@ fn level() -> PyResult<Level> {
     }
 }
 
-/// A row is `name: what comes from Python = |given| what the core takes`; the names are those of [`Run`].
+/// A row is `name: type in Python = |given| value for the core`; the names are those of [`Run`].
 macro_rules! parameters {
     ($($name:ident: $kind:ty = |$given:ident| $core:expr;)*) => {
-        /// The parameters of a run, as the items of a dictionary.
+        /// The parameters of a run, from the items of a dictionary.
         #[derive(FromPyObject)]
         #[pyo3(from_item_all)]
         struct Parameters<'py> {
@@ -61,7 +61,7 @@ parameters! {
     seed: u64 = |given| *given;
 }
 
-/// The particles from the first to before the last of the pair, or all.
+/// The particles in the half-open range of the pair, or all.
 fn range(part: Option<(usize, usize)>, particles: usize) -> Range<usize> {
     part.map_or(0..particles, |(first, end)| first..end)
 }
@@ -73,7 +73,7 @@ fn means(threads: usize) -> PyResult<Means> {
     })
 }
 
-/// The version, the SIMD level in use, the levels of this machine, and the number of threads used where none is given.
+/// The version, the SIMD level in use, the levels of this machine, and the default number of threads.
 ///
 /// Examples
 /// --------
@@ -92,7 +92,7 @@ fn build_info(py: Python<'_>) -> PyResult<Bound<'_, PyDict>> {
     Ok(info)
 }
 
-/// Hands a row-major table over to NumPy without copying it.
+/// Passes a row-major table to NumPy without a copy.
 fn set<T: Element>(
     py: Python<'_>,
     table: &Bound<'_, PyDict>,

@@ -1,4 +1,4 @@
-//! Impacts recorded: each variable as xarray takes it, with its dimensions, its values and its attributes.
+//! Recorded impacts: each variable with the dimensions, values and attributes that xarray takes.
 
 use crate::errors::python_error;
 use crate::laws::Law;
@@ -8,7 +8,7 @@ use pyo3::prelude::*;
 use pyo3::types::{PyDict, PySlice, PyTuple};
 use restitution_core::{Columns, Values, Variable};
 
-/// Of the rows that are there, where some between them had to be left out.
+/// The numbers of the recorded particles, for runs in which some had to be left out.
 const NUMBER: Variable = Variable {
     name: "particle",
     text: "number of the particle, from 0",
@@ -19,15 +19,15 @@ fn named(columns: &[String]) -> PyResult<Columns> {
     Columns::named(columns.iter().map(String::as_str)).map_err(python_error)
 }
 
-/// The names of what is recorded of an impact under a law, with its full state or without.
+/// The names of the variables of an impact that are recorded under a law, with the full state if `state`.
 #[pyfunction]
 #[pyo3(signature = (law, state=false))]
 fn columns(law: &Law, state: bool) -> Vec<&'static str> {
     Columns::usual(&law.law(), state).names()
 }
 
-/// Runs the particles from `part[0]` to before `part[1]` of the ensemble, or all, and records the variables of these names,
-/// or those that are usual under its law; returns them by name and the `KeyboardInterrupt` that cut the run short, if any.
+/// Simulates the particles from `part[0]` up to, not including, `part[1]`, or all, and records the variables in `columns`, or those
+/// that are usual under the law. Returns them by name, and the `KeyboardInterrupt` that cut the run short, if any.
 #[pyfunction]
 #[pyo3(signature = (run, threads, progress, part=None, columns=None))]
 fn simulate<'py>(
@@ -68,13 +68,13 @@ fn simulate<'py>(
     Ok((table, interrupted))
 }
 
-/// Memory that an impact takes with the variables of these names.
+/// Memory for one impact with these variables, in bytes.
 #[pyfunction]
 fn bytes_per_impact(columns: Vec<String>) -> PyResult<usize> {
     Ok(named(&columns)?.bytes())
 }
 
-/// Dimensions, values and attributes, named as the CF conventions have them.
+/// Dimensions, values and attributes, named according to the CF conventions.
 fn variable<'py>(
     py: Python<'py>,
     about: &Variable,
@@ -107,7 +107,7 @@ fn variable<'py>(
     Ok((PyTuple::new(py, names)?, values, attributes))
 }
 
-/// Hands a row-major table over to NumPy without copying it.
+/// Passes a row-major table to NumPy without a copy.
 fn shaped<T: Element>(
     py: Python<'_>,
     values: Vec<T>,

@@ -1,11 +1,11 @@
-//! How particles are released: laws by name, or arrays.
+//! Initial conditions of the particles: distributions by name, or arrays.
 
 use crate::errors::{python_error, unless};
 use numpy::{PyReadonlyArray1, PyReadonlyArray2, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 use restitution_core::{About, Height, Orientation, Spin, Vector};
 
-/// The name of a law, an array of angles θ, or one of rows (θ, φ).
+/// The name of a distribution, an array of angles θ, or one of rows (θ, φ); in rad.
 #[derive(FromPyObject)]
 pub enum Axes<'py> {
     Name(String),
@@ -32,7 +32,7 @@ impl Axes<'_> {
     }
 }
 
-/// One height, or the least and the largest of random ones; in m.
+/// One height, or the smallest and the largest of random ones; in m.
 #[derive(FromPyObject)]
 pub enum Heights {
     Fixed(f64),
@@ -52,7 +52,7 @@ impl Heights {
     }
 }
 
-/// One angular velocity, an array of them, or the parameters of a random one; in rad/s.
+/// One angular velocity, one for each particle, or the parameters of a random one; in rad/s.
 #[derive(FromPyObject)]
 pub enum Spins<'py> {
     Fixed([f64; 3]),

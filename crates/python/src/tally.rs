@@ -1,4 +1,4 @@
-//! Counts and sums of a run or a part of it, which merge to the bits of the whole.
+//! Counts and sums of a run or a part of it; those of all parts merge to the same bits as the whole run.
 
 use crate::errors::python_error;
 use crate::{Parameters, means, range, set, watch};
@@ -9,7 +9,7 @@ use pyo3::types::PyDict;
 use restitution_core::statistics as core;
 use restitution_core::statistics::{Axis, Bins, By, Moments};
 
-/// The edges of the bins. Rows are bins of the impact velocity, or, without edges, the numbers of the impacts.
+/// The edges of the bins. Rows are bins of the impact velocity, or, if these have no edges, the numbers of the impacts.
 #[derive(FromPyObject)]
 #[pyo3(from_item_all)]
 struct Edges<'py> {
@@ -38,7 +38,7 @@ impl Edges<'_> {
     }
 }
 
-/// What the impacts of some particles of a run add up to.
+/// Counts and sums of the impacts of some particles of a run.
 #[pyclass(frozen, module = "restitution._core")]
 struct Tally {
     bins: Bins,
@@ -48,7 +48,7 @@ struct Tally {
 
 #[pymethods]
 impl Tally {
-    /// The tally of a run with these bins that had these words.
+    /// The tally of a run with these bins, from its words.
     #[staticmethod]
     fn read(
         run: Parameters<'_>,
@@ -65,12 +65,12 @@ impl Tally {
         })
     }
 
-    /// Every number of the tally.
+    /// All numbers of the tally.
     fn words<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<u64>> {
         self.tally.to_words().into_pyarray(py)
     }
 
-    /// The tally of what this one and others counted.
+    /// The sum of this tally and others.
     fn merged(&self, others: Vec<PyRef<'_, Self>>) -> PyResult<Self> {
         let mut total = core::Tally::new(&self.bins, self.origin).map_err(python_error)?;
         total.merge(&self.tally);
@@ -108,10 +108,10 @@ impl Tally {
         Ok(table)
     }
 
-    /// The number of impacts in each row whose ε is defined, and their moments by name.
+    /// The number of impacts with a defined ε in each row, and their moments by name.
     fn moments<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let tally = &self.tally;
-        // Row by row: a fine grid is large, and one row of it is still at hand when it is looked at again.
+        // Row by row, because a fine grid does not fit into the cache, but one of its rows does.
         let (mut numbers, mut moments, mut fractions) = (vec![], vec![], vec![]);
         for row in 0..self.bins.rows() {
             numbers.push(tally.number(row) as i64);
@@ -133,8 +133,8 @@ impl Tally {
     }
 }
 
-/// Runs the particles from `part[0]` to before `part[1]` of the ensemble, or all, and counts their impacts. Returns the tally and
-/// whether the run was cut short by Ctrl-C.
+/// Simulates the particles from `part[0]` up to, not including, `part[1]`, or all, and counts their impacts. Returns the tally, and
+/// the `KeyboardInterrupt` that cut the run short, if any.
 #[pyfunction]
 #[pyo3(signature = (run, edges, threads, progress, part=None))]
 fn statistics<'py>(

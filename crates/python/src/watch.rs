@@ -1,4 +1,4 @@
-//! All long work goes through here: it releases the GIL, lets Ctrl-C through, reports progress, turns panics into exceptions.
+//! Long computations: the GIL is released, Ctrl-C is handled, progress is reported, and panics become exceptions.
 
 use crate::errors::python_error;
 use pyo3::exceptions::{PyKeyboardInterrupt, PyRuntimeError};
@@ -10,11 +10,11 @@ use std::sync::{Arc, Mutex};
 use std::thread;
 use std::time::{Duration, Instant};
 
-/// How often signals are checked and progress is reported.
+/// Time between checks for signals and reports of progress.
 const TICK: Duration = Duration::from_millis(50);
 
-/// Runs `work` on a thread of its own, or here where the system gives none; `progress`, if any, is called with the number of
-/// finished particles. Returns what `work` returned, and the `KeyboardInterrupt` that made it stop early, if any.
+/// Runs `work` on a thread of its own, or on this one if the system starts none; `progress`, if any, is called with the number of
+/// finished particles. Returns the result of `work`, and the `KeyboardInterrupt` that made it stop early, if any.
 pub fn run<T: Send>(
     py: Python<'_>,
     progress: Option<Bound<'_, PyAny>>,
@@ -34,7 +34,7 @@ pub fn run<T: Send>(
             let spawned = thread::Builder::new().spawn_scoped(scope, || {
                 let sender = sender; // dropped with this thread, whatever happens
                 let result = taken()(monitor);
-                // The receiver outlives this thread; a failure to send has no one to tell.
+                // The receiver outlives this thread; there is nobody to report a failure to.
                 let _ = sender.send(());
                 result
             });
@@ -57,7 +57,7 @@ pub fn run<T: Send>(
     })
 }
 
-/// Runs `work` on this thread, which handles signals and progress between impacts.
+/// Runs `work` on this thread, handling signals and progress between impacts.
 fn run_here<T>(
     progress: Option<Py<PyAny>>,
     work: impl FnOnce(&Monitor) -> Result<T, Error>,
@@ -79,7 +79,7 @@ fn run_here<T>(
     ended(result, interrupt)
 }
 
-/// What the caller gets to know of work that has ended, perhaps because of a signal.
+/// The result of work that has ended, perhaps because of a signal.
 fn ended<T>(
     result: thread::Result<Result<T, Error>>,
     interrupt: Option<PyErr>,
