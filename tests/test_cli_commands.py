@@ -67,6 +67,21 @@ def test_statistics_are_those_of_the_call(study: Path) -> None:
     assert load(out).velocity.to_numpy() == pytest.approx([0.1, 0.3])
 
 
+@pytest.mark.parametrize("command", ["statistics", "compare"])
+def test_missing_bins_are_an_error_of_one_line(study: Path, command: str) -> None:
+    """A file made for `simulate` has no bins: the error says where they belong."""
+    bare = study.with_name("bare.toml")
+    bare.write_text(study.read_text(encoding="utf-8").replace(BINS, ""), encoding="utf-8")
+    out = study.with_name("counts.nc")
+    result = invoke(command, bare, "-o", out, "--velocity-bins", 4)
+    assert result.exit_code == BAD_INPUT
+    assert result.stderr == (
+        f"error: {bare}: restitution_bins: missing; must be in a table [statistics], "
+        "as restitution template prints it, or given as --restitution-bins with a range\n"
+    )
+    assert not out.exists()
+
+
 def test_states_are_recorded_for_who_asks(study: Path) -> None:
     """What `rs.trajectory` needs; another word is refused with the two that are known."""
     out = study.with_name("state.nc")

@@ -235,10 +235,7 @@ def test_every_law_can_be_written_down(tmp_path: Path, name: str) -> None:
         ),
         (
             'type = "frictionless"',
-            [
-                "law.normal: missing; must be a real number in [0, 1] or a Viscoelastic, Plastic, Tabulated "
-                "or function of the speed"
-            ],
+            ["law.normal: missing; must be a real number in [0, 1] or a table [law.normal]"],
         ),
     ],
     ids=["unknown material", "bad material", "no coefficient"],

@@ -19,10 +19,10 @@ def records(name: str, data: Any, *names: str) -> tuple[FloatArray, ...]:
         If `data` is not a Dataset, lacks a variable, or has one of other dimensions or of no real numbers.
     """
     if not isinstance(data, xr.Dataset):
-        raise ParameterError(wrong(name, data, "a Dataset as from restitution.simulate"))
+        raise ParameterError(wrong(name, data, "a Dataset from restitution.simulate"))
     missing = [each for each in names if each not in data]
     if missing:
-        text = f" lacks {', '.join(missing)}: must be a Dataset as from restitution.simulate"
+        text = f" lacks {', '.join(missing)}: must be a Dataset from restitution.simulate"
         raise ParameterError(Problem(name, text))
     found = []
     for each in names:
@@ -54,10 +54,10 @@ def counted(name: str, data: Any) -> xr.Dataset:
         increase or do not fit, or counts that are not whole numbers in [0, 2**53].
     """
     if not isinstance(data, xr.Dataset):
-        raise ParameterError(wrong(name, data, "a Dataset as from restitution.statistics"))
+        raise ParameterError(wrong(name, data, "a Dataset from restitution.statistics or reduce"))
     missing = [each for each in _COUNTED if each not in data]
     if missing:
-        text = f" lacks {', '.join(missing)}: must be a Dataset as from restitution.statistics, by velocity"
+        text = f" lacks {', '.join(missing)}: must be from restitution.statistics or reduce, by velocity"
         raise ParameterError(Problem(name, text))
     for each, dimensions in _COUNTED.items():
         variable = data[each]

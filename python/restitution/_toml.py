@@ -13,6 +13,7 @@ from restitution import bodies, laws
 from restitution._parameters import ParameterError, Parameters, Problem, unknown, wrong
 from restitution._release import RandomHeight, RandomSpin
 from restitution._run import Run
+from restitution.laws._law import NORMAL
 
 
 def _by_name(kinds: Iterable[type[Parameters]]) -> dict[str, type[Parameters]]:
@@ -37,6 +38,7 @@ _COUNTING = (
     "fraction_range",
     "counts_only",
 )
+_NORMAL = "a real number in [0, 1] or a table [law.normal]"  # as a file has it, instead of laws.NORMAL
 _LEARNING = ("velocities", "given", "release_height")
 
 P = TypeVar("P", bound=Parameters)
@@ -238,7 +240,11 @@ class _Reader:
             return kind(**{key: value for key, value in (values | good).items() if key not in bad})
         except ParameterError as error:
             # A part that is missing has been reported already.
-            found = (Problem(f"{name}.{key}", text) for key, text in error.problems if key not in bad)
+            found = (
+                Problem(f"{name}.{key}", text.replace(NORMAL, _NORMAL))
+                for key, text in error.problems
+                if key not in bad
+            )
             self.problems.extend(found)
             return None
 

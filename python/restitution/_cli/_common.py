@@ -20,13 +20,18 @@ Other signals that end a command give 128 + their number.
 
 RunFile = Annotated[
     Path,
-    typer.Argument(metavar="RUN.toml", help="The parameters; [bold]restitution template[/bold] has all."),
+    typer.Argument(
+        metavar="RUN.toml",
+        help="Parameters of the run; [bold]restitution template[/bold] prints them.",
+    ),
 ]
 Out = Annotated[
-    Path, typer.Option("--out", "-o", metavar="FILE", help="The netCDF file to write, whole or not at all.")
+    Path,
+    typer.Option("--out", "-o", metavar="FILE", help="The netCDF file to write, completely or not at all."),
 ]
 Folder = Annotated[
-    Path, typer.Option("--out", "-o", metavar="DIR", help="The directory to write to, all or nothing.")
+    Path,
+    typer.Option("--out", "-o", metavar="DIR", help="The directory to write, completely or not at all."),
 ]
 Threads = Annotated[
     int | None,
@@ -34,7 +39,7 @@ Threads = Annotated[
         "--threads",
         "-j",
         metavar="N",
-        help="Number of threads; one for each core if not given. Never changes the result.",
+        help="Number of threads; if not given, one for each core. The result does not depend on it.",
     ),
 ]
 Quiet = Annotated[

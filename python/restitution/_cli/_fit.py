@@ -13,12 +13,13 @@ _FAMILIES = ("asymmetric-laplace", "laplace", "gaussian", "logistic", "student-t
 
 
 def fit(
-    data: Annotated[
-        Path, typer.Argument(metavar="DATA.nc", help="What simulate, statistics or reduce have given.")
-    ],
+    data: Annotated[Path, typer.Argument(metavar="DATA.nc", help="A file from simulate or statistics.")],
     velocity: Annotated[
         tuple[float, float],
-        typer.Option(metavar="LOW HIGH", help="Impact velocities, m/s; of statistics, edges of their bins."),
+        typer.Option(
+            metavar="LOW HIGH",
+            help="Window of impact velocity, m/s; in counts, edges of bins.",
+        ),
     ],
     family: Annotated[
         str, typer.Option(metavar="FAMILY", help=f"The density: {', '.join(_FAMILIES)}.")
@@ -26,16 +27,16 @@ def fit(
     resamples: Annotated[
         int, typer.Option(metavar="N", help="Number of resamples of the particles, for errors and p-values.")
     ] = 199,
-    seed: Annotated[int, typer.Option(metavar="S", help="Seed of these draws.")] = 1,
+    seed: Annotated[int, typer.Option(metavar="S", help="Seed of the resampling.")] = 1,
     quiet: Quiet = False,
 ) -> None:
-    """Fit a density to the restitution at an impact velocity.
+    """Fit a density to the restitution at given impact velocity.
 
     Prints the parameters with their standard errors, and whether the density
     fits: the Kolmogorov-Smirnov and the Anderson-Darling distance with their
-    p-values. Errors and p-values come from resampled particles, because the impacts of
-    one particle are correlated; counts do not say which particle an impact
-    belongs to, and give the parameters alone.
+    p-values. Errors and p-values come from resampled particles, because the
+    impacts of one particle are correlated. A file from statistics does not say
+    which particle an impact belongs to; it gives the parameters alone.
     """
     with errors_in_a_line():
         from restitution import fit as fits

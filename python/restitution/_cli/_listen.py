@@ -14,19 +14,20 @@ def listen(
     diameter: Annotated[float, typer.Option(metavar="D", help="Diameter of the ball, m.")],
     out: Annotated[
         Path,
-        typer.Option(metavar="PAGE.html", help="The page to write; PAGE.csv and PAGE.nc stand beside it."),
+        typer.Option(metavar="PAGE.html", help="The page to write, with PAGE.csv and PAGE.nc beside it."),
     ],
     mass: Annotated[
-        float | None, typer.Option(metavar="M", help="Mass of the ball, kg: accounts for air drag.")
+        float | None, typer.Option(metavar="M", help="Mass of the ball, kg, for a correction of air drag.")
     ] = None,
     drop: Annotated[
-        float | None, typer.Option(metavar="H", help="Fall from rest to the first impact heard, m.")
+        float | None,
+        typer.Option(metavar="H", help="Fall from rest to the first impact heard, m."),
     ] = None,
     drop_error: Annotated[float, typer.Option(metavar="S", help="Standard error of the drop, m.")] = 0.0,
     gravity: Annotated[float, typer.Option(metavar="G", help="Acceleration of gravity, m/s2.")] = 9.81,
-    gravity_error: Annotated[float, typer.Option(metavar="S", help="Standard error of it, m/s2.")] = 0.0,
+    gravity_error: Annotated[float, typer.Option(metavar="S", help="Standard error of gravity, m/s2.")] = 0.0,
     out_of_roundness: Annotated[
-        float | None, typer.Option(metavar="T", help="Out-of-roundness of the ball, m, where it is measured.")
+        float | None, typer.Option(metavar="T", help="Out-of-roundness of the ball, m, if it was measured.")
     ] = None,
     overwrite: Overwrite = False,
     quiet: Quiet = False,

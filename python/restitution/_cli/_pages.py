@@ -11,7 +11,11 @@ from restitution._streams import say
 def paper(
     out: Folder,
     impacts: Annotated[
-        int, typer.Option(metavar="N", help="Impacts in each of Figs. 2-7; at least 400000, as in the paper.")
+        int,
+        typer.Option(
+            metavar="N",
+            help="Impacts for each figure and each curve of Fig. 6; at least 400000, as in the paper.",
+        ),
     ] = 100_000_000,
     seed: Annotated[int, typer.Option(metavar="S", help="Seed of the random numbers, in [0, 2**64).")] = 1,
     threads: Threads = None,
@@ -44,7 +48,7 @@ def laws(
     overwrite: Overwrite = False,
     quiet: Quiet = False,
 ) -> None:
-    """Show what the collision law does to the result.
+    """Compare what six collision laws make of the same bodies.
 
     Drops dumbbells of L/R = 0.01, 0.1, 0.5 and 2 under six laws, and writes one
     figure (PNG, PDF), its caption, its data (netCDF) and its table (Markdown):

@@ -25,12 +25,13 @@ from restitution._streams import say, tell
 if TYPE_CHECKING:
     import xarray as xr
 
-Bins = Annotated[int | None, typer.Option(metavar="N", help="Number of bins; of the file if not given.")]
+Bins = Annotated[int | None, typer.Option(metavar="N", help="Number of bins; if not given, as in RUN.toml.")]
 Record = Annotated[
-    str, typer.Option(metavar="WHAT", help="impacts; or state: also position, axis and velocities.")
+    str, typer.Option(metavar="WHAT", help='"impacts", or "state": also position, axis and velocities.')
 ]
 Span = Annotated[
-    tuple[float, float] | None, typer.Option(metavar="LOW HIGH", help="Range of these bins; likewise.")
+    tuple[float, float] | None,
+    typer.Option(metavar="LOW HIGH", help="Range of these bins; if not given, as in RUN.toml."),
 ]
 
 
@@ -46,7 +47,7 @@ def simulate(
 
     The file holds what restitution.simulate returns for the same parameters; in
     Python xarray.open_dataset reads it. Ctrl-C ends the run early; the impacts so
-    far are written all the same, and the attribute "incomplete" of the file says so.
+    far are written, and the attribute "incomplete" of the file says so.
     """
     interrupted: KeyboardInterrupt | None = None  # kept: what is caught has not been lost
     with errors_in_a_line():
@@ -86,11 +87,11 @@ def statistics(
     overwrite: Overwrite = False,
     quiet: Quiet = False,
 ) -> None:
-    r"""Count impacts by velocity and restitution, as many as you like.
+    r"""Count impacts by velocity and restitution, in memory that does not grow.
 
-    The file holds what restitution.statistics returns: counts, moments and energy.
-    The bins are those of the table \[statistics] of RUN.toml, or of the options.
-    Ctrl-C ends the run early; what was counted is written all the same.
+    The file holds what restitution.statistics returns: counts, moments and
+    energy. The bins are those of the table \[statistics] of RUN.toml, or of the
+    options. Ctrl-C ends the run early; what was counted until then is written.
     """
     given = _given(locals())
     with errors_in_a_line():
@@ -98,7 +99,7 @@ def statistics(
         from restitution._toml import read_all
 
         study = read_all(run, single=True)
-        how = study.statistics | given
+        how = _bins(run, study.statistics | given)
         (body,), (law,) = study.bodies.values(), study.laws.values()
         _counted(
             lambda: rs.statistics(body, law, **study.run, **how, threads=threads, progress=progress(quiet)),
@@ -123,8 +124,9 @@ def compare(
     r"""Count the impacts of several bodies under several laws.
 
     RUN.toml has a table [\[body]] for each body and a table [\[law]] for each law,
-    which may have a key "name". The file holds what restitution.compare returns.
-    Ctrl-C ends the work early; combinations that were finished are written.
+    each with a key "name" if you like, and a table \[statistics] with the bins.
+    The file holds what restitution.compare returns. Ctrl-C ends the work early;
+    combinations that were finished are written.
     """
     given = _given(locals())
     with errors_in_a_line():
@@ -132,7 +134,7 @@ def compare(
         from restitution._toml import read_all
 
         study = read_all(run)
-        how = study.run | study.statistics | given
+        how = study.run | _bins(run, study.statistics | given)
         _counted(
             lambda: rs.compare(study.bodies, study.laws, **how, threads=threads, progress=progress(quiet)),
             run,
@@ -156,13 +158,14 @@ def distribution(
         tuple[float, float] | None,
         typer.Option(
             metavar="LOW HIGH",
-            help="Speeds to learn, m/s; 0.04 to 0.4 of the release velocity if not given.",
+            help="Impact velocities, m/s; if not given, 0.04 to 0.4 of the first one.",
         ),
     ] = None,
     given: Annotated[
         str | None,
         typer.Option(
-            metavar="CONDITION", help='Also learn it given "rotational_fraction" or "previous" restitution.'
+            metavar="CONDITION",
+            help='Learn it given "rotational_fraction", or the "previous" restitution.',
         ),
     ] = None,
     threads: Threads = None,
@@ -172,10 +175,10 @@ def distribution(
     """Learn the distribution of the coefficient of restitution at given impact velocity.
 
     The file holds what restitution.FluctuatingRestitution.learn returns for the
-    same parameters. The distance of the distribution from impacts that it was not
-    learned from is measured and printed; where it is larger than their scatter
-    explains, that is a warning, and the exit status is 3. Ctrl-C ends the work, and
-    nothing is written.
+    same parameters. The distance of the distribution from fresh impacts is
+    measured and printed; where it is larger than their statistical scatter
+    explains, a warning says so, and the exit status is 3. Ctrl-C ends the work,
+    and nothing is written.
     """
     with errors_in_a_line():
         from restitution._dataset import put
@@ -228,6 +231,18 @@ _OPTIONS = (
 def _given(options: dict[str, Any]) -> dict[str, Any]:
     """Give those options that were used."""
     return {name: options[name] for name in _OPTIONS if options.get(name) is not None}
+
+
+def _bins(run: Path, how: dict[str, Any]) -> dict[str, Any]:
+    """Give the arguments of a count, or say which bins neither the file nor the options have."""
+    missing = [name for name in ("velocity_bins", "restitution_bins") if name not in how]
+    if missing:
+        options = ", ".join(f"--{name.replace('_', '-')}" for name in missing)
+        raise ValueError(
+            f"{run}: {' and '.join(missing)}: missing; must be in a table [statistics], "
+            f"as restitution template prints it, or given as {options} with a range"
+        )
+    return how
 
 
 def _counted(count: Any, run: Path, out: Path, *, overwrite: bool, quiet: bool) -> None:

@@ -117,8 +117,8 @@ class FluctuatingRestitution(EstimatedDistribution):
             As in `restitution.simulate`; by default the speed from which no learned impact velocity is
             reached.
         velocities : array_like, optional
-            The least and the greatest speed to learn, in m/s, or all nodes. From 0.04 to 0.4 of the release
-            velocity by default, in nodes that lie as close as the number of impacts allows.
+            The least and the greatest impact velocity to learn, in m/s, or all nodes. By default from 0.04 to
+            0.4 of the velocity of the first impact, in nodes as close as the number of impacts allows.
         given : {"rotational_fraction", "previous"}, optional
             Also learn p(ε | v, z) with z the rotational share of the kinetic energy before the impact
             (Eq. 12), or the quantile level, `cdf`, of the particle's previous ε at its own impact velocity:

@@ -10,7 +10,7 @@ from restitution import _core
 from restitution._parameters import Allowed, Number, ParameterError, Parameters, wrong
 from restitution.laws._materials import Material, Plastic, Tabulated, Viscoelastic, tabulated
 
-_NORMAL = "a real number in [0, 1] or a Viscoelastic, Plastic, Tabulated or function of the speed"
+NORMAL = "a real number in [0, 1], a Viscoelastic, Plastic or Tabulated, or a function of the speed"
 _number = TypeAdapter(Annotated[Number, Field(ge=0, le=1)])
 
 
@@ -22,11 +22,11 @@ def _normal(value: Any) -> Any:
     try:
         return _number.validate_python(value)
     except ValidationError:
-        raise ParameterError(wrong("normal", value, _NORMAL)) from None
+        raise ParameterError(wrong("normal", value, NORMAL)) from None
 
 
 NormalCoefficient = Annotated[
-    float | Viscoelastic | Plastic | Tabulated, BeforeValidator(_normal), Allowed(_NORMAL)
+    float | Viscoelastic | Plastic | Tabulated, BeforeValidator(_normal), Allowed(NORMAL)
 ]
 """ε_n: a number, or a function of the speed."""
 
