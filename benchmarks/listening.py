@@ -154,8 +154,8 @@ def row(condition: Condition, heard: Heard) -> str:
     numbers = ["–"] * 3
     if heard.errors.size:
         off = np.abs(heard.errors) * 1e6
-        numbers = [f"{value:.2g}" for value in (np.median(off), np.quantile(off, 0.9))]
-        numbers.append(f"{1e6 * np.median(heard.claimed):.2g}")
+        values = (np.median(off), np.quantile(off, 0.9), 1e6 * np.median(heard.claimed))
+        numbers = [f"{float(f'{value:.2g}'):g}" for value in values]  # 520 rather than 5.2e+02
     cells = [condition.name, str(heard.true), str(heard.missed), str(heard.false), *numbers]
     return f"| {' | '.join(cells)} |"
 

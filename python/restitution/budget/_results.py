@@ -247,4 +247,4 @@ def _length(value: float, diameter: float) -> str:
         return "none"
     if np.isinf(value):
         return "any"
-    return f"{1e6 * value:.2g} µm ({100.0 * value / diameter:.2g} %)"
+    return f"{float(f'{1e6 * value:.2g}'):g} µm ({100.0 * value / diameter:.2g} %)"
