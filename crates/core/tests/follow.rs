@@ -17,8 +17,11 @@ fn bodies() -> [Solid; 3] {
     ]
 }
 
+/// The axis in the x–z plane, which spin or velocity may leave.
+const IN_THE_PLANE: [[f64; 2]; 9] = [[1.0, 0.0]; 9];
+
 /// At rest, or with one of spin, throw and incline.
-fn releases(body: Solid) -> [Run<'static>; 6] {
+fn releases(body: Solid) -> [Run<'static>; 7] {
     let rest = Run {
         body,
         particles: 9,
@@ -39,9 +42,13 @@ fn releases(body: Solid) -> [Run<'static>; 6] {
             ..rest
         },
         Run {
-            orientation: Orientation::UniformAngle,
+            orientation: Orientation::Directions(&IN_THE_PLANE),
             spin: spin(About::Across),
             ..rest
+        },
+        Run {
+            orientation: Orientation::Directions(&IN_THE_PLANE),
+            ..thrown(Vector::new(0.0, 0.2, 0.4))
         },
         thrown(Vector::new(0.0, 0.2, 0.4)),
         thrown(Vector::new(0.0, 0.0, -0.4)),
