@@ -163,10 +163,9 @@ class Switched:
         return b"/*[%d*/" % one.number + text + b"/*]*/"
 
 
-def compile_all(mutants: list[Mutant]) -> tuple[list[Path], list[Mutant]]:
-    """Give the test programs, and the changes that they hold."""
+def compile_all(mutants: list[Mutant], tests: list[str]) -> tuple[list[Path], list[Mutant]]:
+    """Give those test programs, all if none is named, and the changes that they hold."""
     sources = WORK / "core"
-    WORK.mkdir(parents=True, exist_ok=True)
     shutil.rmtree(sources, ignore_errors=True)
     shutil.copytree(ROOT / "crates" / "core", sources / "crates" / "core")
     shutil.copy(ROOT / "Cargo.lock", sources)
@@ -205,6 +204,7 @@ def compile_all(mutants: list[Mutant]) -> tuple[list[Path], list[Mutant]]:
         "--message-format=json",
         "--package",
         "restitution-core",
+        *(word for test in tests for word in ("--test", test)),
     ]
     built = subprocess.run(words, cwd=sources, stdout=subprocess.PIPE, check=True, env=_environment())
     told = map(json.loads, built.stdout.splitlines())
@@ -275,7 +275,8 @@ def timed_alone(program: Path) -> float:
 
 def judge(programs: list[tuple[float, Path]], number: int) -> str:
     """Say which test program notices a change, or that none does."""
-    env = os.environ | {"MUTANT": str(number), "RUSTC_BOOTSTRAP": "1"}  # the latter for --fail-fast
+    env = os.environ | {"MUTANT": str(number), "PROPTEST_MAX_SHRINK_ITERS": "0"}
+    env["RUSTC_BOOTSTRAP"] = "1"  # for --fail-fast
     quiet: dict[str, Any] = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}
     for seconds, program in programs:
         words = [str(program), "-q", "-Zunstable-options", "--fail-fast"]
@@ -295,6 +296,7 @@ def main() -> None:
     """Try a part of the changes, folder by folder; tell what noticed each, or that it lives."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--shard", default="0/1", help="0/8 takes every eighth change")
+    parser.add_argument("--tests", default="", help="which of crates/core/tests to ask, as flight,turning")
     parser.add_argument("files", nargs="*", help="words of the paths of the files that are changed")
     asked = parser.parse_args()
     wanted = [one for one in listed() if not asked.files or any(word in one.file for word in asked.files)]
@@ -304,10 +306,19 @@ def main() -> None:
     lives = tried = 0
     # More changes in one build would take the compiler longer than two builds.
     groups = sorted({Path(one.file).parts[3] for one in chosen})
+    WORK.mkdir(parents=True, exist_ok=True)
     with (WORK / "outcomes.txt").open("w", encoding="utf-8") as out:
         for group in groups:
-            programs, mutants = compile_all([one for one in chosen if Path(one.file).parts[3] == group])
-            timed = sorted((timed_alone(program), program) for program in programs)
+            ours = [one for one in chosen if Path(one.file).parts[3] == group]
+            programs, mutants = compile_all(ours, [test for test in asked.tests.split(",") if test])
+            # The digests last: they tell that bits have changed, not which of the two is wrong.
+            timed = sorted(
+                ((timed_alone(program), program) for program in programs),
+                key=lambda one: (one[1].name.startswith("digest-"), one[0]),
+            )
+            print(
+                group, *(f"{program.stem.rpartition('-')[0]} {seconds:.1f} s" for seconds, program in timed)
+            )
             for one in mutants:
                 found = judge(timed, one.number)
                 tried, lives = tried + 1, lives + (found == LIVES)
