@@ -1,6 +1,7 @@
 //! Contacts as a law sees them, and the impulses that it returns, in all lanes. A law depends on the contact velocity and the
 //! matrix K (see [`super`]), and not on the body otherwise.
 
+use super::turning::Slipping;
 use crate::simd::Pack;
 use pulp::Simd;
 
@@ -33,6 +34,39 @@ pub(crate) struct Responses<S: Simd, const K: usize> {
     pub separation_speed: Pack<S, K>,
 }
 
+/// Responses of which some take long, and are not known yet.
+#[derive(Clone, Copy)]
+pub(crate) struct Late<S: Simd> {
+    pub response: Responses<S, 1>,
+    /// 1 in the lanes in which it is not known, else 0.
+    pub open: Pack<S, 1>,
+    pub(super) slipping: Slipping<S, 1>,
+}
+
+impl<S: Simd> Late<S> {
+    /// Responses of no contact.
+    #[inline(always)]
+    pub fn nothing(simd: S) -> Self {
+        let zero = Pack::splat(simd, 0.0);
+        Self {
+            response: Responses {
+                normal: zero,
+                along: zero,
+                across: zero,
+                separation_speed: zero,
+            },
+            open: zero,
+            slipping: Slipping::nothing(simd),
+        }
+    }
+
+    /// −v_c^n of the contacts.
+    #[inline(always)]
+    pub fn approach(&self) -> Pack<S, 1> {
+        self.slipping.speed
+    }
+}
+
 impl<S: Simd, const K: usize> Contacts<S, K> {
     /// A contact whose velocity is in the vertical plane of the axis. `inertia` is J_xx, `arm` is **r**_c along **n** and **u**.
     #[inline(always)]
@@ -57,6 +91,20 @@ impl<S: Simd, const K: usize> Contacts<S, K> {
             arm_normal,
             arm_along,
             across,
+        }
+    }
+
+    /// Vector k of them.
+    #[inline(always)]
+    pub fn part(&self, k: usize) -> Contacts<S, 1> {
+        Contacts {
+            slip_normal: self.slip_normal.part(k),
+            slip_along: self.slip_along.part(k),
+            slip_across: self.slip_across.part(k),
+            inertia: self.inertia,
+            arm_normal: self.arm_normal.part(k),
+            arm_along: self.arm_along.part(k),
+            across: self.across.part(k),
         }
     }
 

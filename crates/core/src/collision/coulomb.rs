@@ -6,8 +6,8 @@
 //! both cases dP_u/dp = −K_nu/K_uu, limited to ±μ. In planar motion the contact velocity is therefore linear in p on either side
 //! of the impulse p_s at which the slip velocity vanishes.
 
-use super::turning::{Slipping, turning};
-use super::{Contacts, Responses};
+use super::turning::{self, Slipping};
+use super::{Contacts, Late, Responses};
 use crate::Error;
 use crate::simd::Pack;
 use pulp::Simd;
@@ -68,41 +68,69 @@ impl Coulomb {
         })
     }
 
+    /// μ.
+    pub(super) fn friction(&self) -> f64 {
+        self.friction
+    }
+
     #[inline(always)]
     pub(super) fn respond<S: Simd, const K: usize, const SPACE: bool>(
         &self,
         contact: &Contacts<S, K>,
         restitution: Pack<S, K>,
     ) -> Responses<S, K> {
-        let straight = self.in_plane(contact, restitution);
-        let turns = !contact.slip_across.eq(0.0);
-        if !SPACE || self.friction == 0.0 || !turns.any() {
-            return straight;
+        let mut answer = self.in_plane(contact, restitution);
+        if !SPACE || self.friction == 0.0 || contact.slip_across.eq(0.0).all() {
+            return answer;
         }
-        let mut answer = straight;
         for k in 0..K {
-            let slipping = Slipping {
-                speed: contact.approach_speed().part(k),
-                along: contact.slip_along.part(k),
-                across: contact.slip_across.part(k),
-                nn: contact.normal_response().part(k),
-                nu: contact.coupling().part(k),
-                uu: contact.along_response().part(k),
-                ww: contact.across_response().part(k),
-                restitution: restitution.part(k),
-            };
-            let found = turning(&slipping, self.friction, self.hypothesis);
+            let mut late = [self.begin(&contact.part(k), restitution.part(k))];
+            self.finish(&mut late);
+            let found = late[0].response;
             answer.normal.set_part(k, &found.normal);
             answer.along.set_part(k, &found.along);
             answer.across.set_part(k, &found.across);
             answer.separation_speed.set_part(k, &found.separation_speed);
         }
-        Responses {
-            normal: turns.select(answer.normal, straight.normal),
-            along: turns.select(answer.along, straight.along),
-            across: turns.select(answer.across, straight.across),
-            separation_speed: turns.select(answer.separation_speed, straight.separation_speed),
+        answer
+    }
+
+    /// The responses that do not take long, in space, μ > 0.
+    #[inline(always)]
+    pub(super) fn begin<S: Simd>(
+        &self,
+        contact: &Contacts<S, 1>,
+        restitution: Pack<S, 1>,
+    ) -> Late<S> {
+        let straight = self.in_plane(contact, restitution);
+        let turns = !contact.slip_across.eq(0.0);
+        let slipping = Slipping {
+            speed: contact.approach_speed(),
+            along: contact.slip_along,
+            across: contact.slip_across,
+            nn: contact.normal_response(),
+            nu: contact.coupling(),
+            uu: contact.along_response(),
+            ww: contact.across_response(),
+            restitution,
+        };
+        let (found, open) = turning::begin(&slipping, self.friction, self.hypothesis);
+        Late {
+            response: Responses {
+                normal: turns.select(found.normal, straight.normal),
+                along: turns.select(found.along, straight.along),
+                across: turns.select(found.across, straight.across),
+                separation_speed: turns.select(found.separation_speed, straight.separation_speed),
+            },
+            open: (open & turns).select(1.0, 0.0),
+            slipping,
         }
+    }
+
+    /// Finds the responses that take long.
+    #[inline(always)]
+    pub(super) fn finish<S: Simd>(&self, late: &mut [Late<S>]) {
+        turning::finish(late, self.friction, self.hypothesis);
     }
 
     #[inline(always)]

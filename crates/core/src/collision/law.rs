@@ -1,7 +1,7 @@
 //! The choice of a law.
 
 use super::{
-    ChatterjeeRuina, Components, Contact, Contacts, Coulomb, Frictionless, Normal, Response,
+    ChatterjeeRuina, Components, Contact, Contacts, Coulomb, Frictionless, Late, Normal, Response,
     Responses, TangentialRestitution, tangential::Steady,
 };
 use crate::Error;
@@ -80,6 +80,51 @@ pub(crate) trait Respond {
         &self,
         contact: &Contacts<S, K>,
     ) -> Responses<S, K>;
+
+    /// The law in two steps, if in space some responses take much longer than others.
+    fn takes_long(&self) -> Option<Gradual<'_>>;
+}
+
+/// A law whose responses may take long, in two steps.
+#[derive(Clone, Copy)]
+pub(crate) struct Gradual<'a> {
+    normal: &'a Normal<'a>,
+    rule: &'a Coulomb,
+}
+
+impl Gradual<'_> {
+    /// The responses that do not take long.
+    #[inline(always)]
+    pub fn begin<S: Simd>(&self, contact: &Contacts<S, 1>) -> Late<S> {
+        let simd = contact.slip_normal.simd();
+        simd.vectorize(Begin {
+            law: *self,
+            contact,
+        })
+    }
+
+    /// The others, of as many vectors as there are.
+    #[inline(always)]
+    pub fn finish<S: Simd>(&self, late: &mut [Late<S>]) {
+        self.rule.finish(late);
+    }
+}
+
+/// [`Gradual::begin`], to be compiled once for all hulls.
+struct Begin<'a, S: Simd> {
+    law: Gradual<'a>,
+    contact: &'a Contacts<S, 1>,
+}
+
+impl<S: Simd> WithSimd for Begin<'_, S> {
+    type Output = Late<S>;
+
+    #[inline(always)]
+    fn with_simd<T: Simd>(self, _: T) -> Late<S> {
+        let Self { law, contact } = self;
+        let normal = law.normal.in_lanes(contact.approach_speed());
+        law.rule.begin(contact, normal)
+    }
 }
 
 impl Respond for Law<'_> {
@@ -91,6 +136,17 @@ impl Respond for Law<'_> {
     ) -> Responses<S, K> {
         let simd = contact.slip_normal.simd();
         simd.vectorize(Choice::<S, K, SPACE> { law: self, contact })
+    }
+
+    #[inline(always)]
+    fn takes_long(&self) -> Option<Gradual<'_>> {
+        match &self.rule {
+            Rule::Coulomb(rule) if rule.friction() > 0.0 => Some(Gradual {
+                normal: &self.normal,
+                rule,
+            }),
+            _ => None,
+        }
     }
 }
 

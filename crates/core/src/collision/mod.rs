@@ -15,10 +15,10 @@ mod tangential;
 mod turning;
 
 pub use chatterjee_ruina::ChatterjeeRuina;
-pub(crate) use contact::{Contacts, Responses};
+pub(crate) use contact::{Contacts, Late, Responses};
 pub use coulomb::{Coulomb, Hypothesis, MOST_FRICTION};
 pub use frictionless::Frictionless;
-pub(crate) use law::Respond;
+pub(crate) use law::{Gradual, Respond};
 pub use law::{Law, Rule};
 pub use normal::{Normal, PADE_ABOVE, PADE_BELOW, Plastic, Points, Tabulated, Viscoelastic};
 pub use tangential::TangentialRestitution;

@@ -1,6 +1,6 @@
 //! The paper's law, (9): both components of the contact velocity change by a fixed factor.
 
-use super::{Contacts, Respond, Responses};
+use super::{Contacts, Gradual, Respond, Responses};
 use crate::Error;
 use crate::simd::{Operand, Pack};
 use pulp::Simd;
@@ -79,5 +79,10 @@ impl Respond for Steady {
     ) -> Responses<S, K> {
         self.rule
             .with::<S, K, SPACE>(-self.normal, -(1.0 + self.normal), contact)
+    }
+
+    #[inline(always)]
+    fn takes_long(&self) -> Option<Gradual<'_>> {
+        None
     }
 }

@@ -4,7 +4,7 @@ use super::end::{COLLAPSE_RUN, Limits, StopReason, UNRESOLVED};
 use super::impact::{Impact, Sink};
 use super::strike::{Strike, Touch, Turn};
 use crate::body::{Body, Hull};
-use crate::collision::Respond;
+use crate::collision::{Contacts, Respond, Responses};
 use crate::flight::{Flight, State, States};
 use crate::search::{Arrival, Departure, Leap, Look, Residue, Search};
 use crate::simd::{Mask, Pack};
@@ -264,6 +264,28 @@ impl<S: Simd, T: Turn> Group<S, T> {
         self.after = struck.motion;
         self.approach = struck.approach;
         self.search.departure.speed = struck.separation;
+    }
+
+    /// The contact as a law sees it.
+    #[inline(always)]
+    pub fn contact(&self, body: &Body, hull: &impl Hull) -> Contacts<S, 1> {
+        let touch = Touch::of(hull, &self.look.gap.part, self.before().tilt());
+        self.before().contact(body, touch)
+    }
+
+    /// Applies what a law answered.
+    #[inline(always)]
+    pub fn respond(
+        &mut self,
+        body: &Body,
+        hull: &impl Hull,
+        approach: Pack<S, 1>,
+        response: &Responses<S, 1>,
+    ) {
+        let touch = Touch::of(hull, &self.look.gap.part, self.before().tilt());
+        self.after = self.before().respond(body, touch, response);
+        self.approach = approach;
+        self.search.departure.speed = response.separation_speed;
     }
 
     /// Hands the impact to the sink, and ends the particles for which it was the last.

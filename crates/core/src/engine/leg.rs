@@ -4,6 +4,7 @@
 //! before the next begins: its operands are then available, and the processor executes the same stage of several groups in
 //! parallel. All stages of one group in a row would be a single chain of dependent operations.
 
+use super::gradual::Collide;
 use super::group::{Group, Release, Stuck};
 use super::impact::Meanwhile;
 use super::passes::SearchOn;
@@ -104,6 +105,18 @@ impl<S: Simd, T: Turn, H: Hull, L: Respond> Legs<S, T> for Together<'_, H, L> {
             }
         }
         find::<S, T>(groups, hull, number, sink)?;
+        if T::SPACE
+            && let Some(law) = law.takes_long()
+        {
+            let simd = groups[0].active.simd();
+            simd.vectorize(Collide {
+                groups,
+                body,
+                hull,
+                law,
+            });
+            return Ok(());
+        }
         for group in groups.iter_mut() {
             group.land(hull);
             group.collide(body, hull, law);

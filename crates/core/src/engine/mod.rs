@@ -3,6 +3,7 @@
 
 mod bounce;
 mod end;
+mod gradual;
 mod group;
 mod impact;
 mod leg;

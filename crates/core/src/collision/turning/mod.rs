@@ -7,13 +7,14 @@
 //! dy/dθ = −2y(ρ₊ + ρ₋y), d ln A/dθ = −λ − κy, ρ± = K_nu ± μ(K_ww − K_uu), λ = μK_uu − K_nu, κ = μK_ww − ρ₋:
 //!
 //! 1/y is an exponential function of θ, ∫y dθ a logarithm, and A the exponential function of −∫(λ + κy) dθ. What is left are
-//! quadratures of functions that are analytic next to the path ([`panel`]), and where the slip vanishes in a given direction, a
-//! power series ([`Stop`](stop::Stop)). The ends of compression and restitution follow from power series about a point next to
+//! quadratures of functions that are analytic next to the path ([`panel`]), and where the slip vanishes, a continued fraction
+//! ([`Stop`](stop::Stop)). The ends of compression and restitution follow from power series about a point next to
 //! them ([`Near`](near::Near)). Wherever the slip has come to rest the rest of the impact is a straight line in p.
 
 mod near;
 mod nodes;
 mod panel;
+mod queue;
 mod rates;
 mod series;
 mod step;
@@ -22,6 +23,7 @@ mod stop;
 use super::Hypothesis;
 use crate::simd::{Mask, Pack};
 use pulp::Simd;
+pub(super) use queue::finish;
 use rates::Rates;
 use step::beyond;
 use stop::Stop;
@@ -31,7 +33,7 @@ const VANISHED: f64 = 1.0 / 18_014_398_509_481_984.0; // 2⁻⁵⁴
 /// Least y of a slip that comes round to be looked at from the other side.
 const ROUND: f64 = 1.0 / 64.0;
 /// Panels after which the slip is taken to have vanished.
-const MOST_PANELS: usize = 1000;
+const MOST_PANELS: f64 = 1000.0;
 
 /// A contact, and what of it enters Coulomb's law.
 #[derive(Clone, Copy)]
@@ -102,6 +104,17 @@ struct Goal<S: Simd, const K: usize> {
 }
 
 impl<S: Simd, const K: usize> Goal<S, K> {
+    /// Lane by lane one or the other, of the same law.
+    #[inline(always)]
+    fn choose(mask: Mask<S, K>, a: &Self, b: &Self) -> Self {
+        Self {
+            hypothesis: a.hypothesis,
+            restitution: mask.select(a.restitution, b.restitution),
+            approach: mask.select(a.approach, b.approach),
+            rebound: mask.select(a.rebound, b.rebound),
+        }
+    }
+
     /// What is missing of the restitution: < 0 once it is over.
     #[inline(always)]
     fn missing(&self, at: &Course<S, K>) -> Pack<S, K> {
@@ -223,105 +236,157 @@ impl<S: Simd, const K: usize> Course<S, K> {
     }
 }
 
-/// The impulse of contacts that slip in any direction, μ > 0.
-#[inline(always)]
-pub(crate) fn turning<S: Simd>(
-    contact: &Slipping<S, 1>,
-    friction: f64,
-    hypothesis: Hypothesis,
-) -> Answer<S, 1> {
-    let simd = contact.speed.simd();
-    let zero = Pack::splat(simd, 0.0);
-    let (along, across) = (contact.along, contact.across);
-    let size = contact.speed + (along.abs() + across.abs());
-    let scale = size.eq(0.0).select(1.0, size);
-    let unit = 1.0 / scale;
+/// Impacts under way, one in each lane.
+#[derive(Clone, Copy)]
+struct Impacts<S: Simd> {
+    rates: Rates<S, 1>,
+    goal: Goal<S, 1>,
+    course: Course<S, 1>,
+    /// Panels so far.
+    panels: Pack<S, 1>,
+    /// What the velocities are measured in.
+    scale: Pack<S, 1>,
+    /// By symmetry such a slip does not turn.
+    aside: Mask<S, 1>,
+    /// On which side **w** is.
+    left: Mask<S, 1>,
+}
 
-    // Lanes without a particle may hold anything, and no end.
-    let responses = contact.nn + (contact.uu + contact.ww);
-    let strikes = zero.le(contact.speed) & (size + responses).lt(f64::INFINITY) & !across.eq(0.0);
+impl<S: Simd> Impacts<S> {
+    #[inline(always)]
+    fn new(contact: &Slipping<S, 1>, friction: f64, hypothesis: Hypothesis) -> Self {
+        let simd = contact.speed.simd();
+        let zero = Pack::splat(simd, 0.0);
+        let (along, across) = (contact.along, contact.across);
+        let size = contact.speed + (along.abs() + across.abs());
+        let scale = size.eq(0.0).select(1.0, size);
+        let unit = 1.0 / scale;
 
-    let mut rates = Rates::new(contact, friction);
-    let goal = Goal {
-        hypothesis,
-        restitution: contact.restitution,
-        approach: contact.speed * unit,
-        rebound: contact.restitution * contact.speed * unit,
-    };
-    let mut course = Course {
-        u: along * unit,
-        w: across.abs() * unit,
-        slip: zero,
-        a: zero,
-        y: zero,
-        mirror: zero + 1.0,
-        v: -contact.speed * unit,
-        normal: zero,
-        along: zero,
-        across: zero,
-        work: zero,
-        compressing: Mask::splat(simd, true),
-        compression: zero,
-        balance: zero,
-        taken: zero,
-        due: zero,
-        over: !strikes,
-        limit: zero + f64::INFINITY,
-    };
-    // By symmetry such a slip does not turn.
-    let aside = along.eq(0.0) & contact.nu.eq(0.0);
-    for number in 0..=MOST_PANELS {
+        // Lanes without a particle may hold anything, and no end.
+        let responses = contact.nn + (contact.uu + contact.ww);
+        let strikes =
+            zero.le(contact.speed) & (size + responses).lt(f64::INFINITY) & !across.eq(0.0);
+        let course = Course {
+            u: along * unit,
+            w: across.abs() * unit,
+            slip: zero,
+            a: zero,
+            y: zero,
+            mirror: zero + 1.0,
+            v: -contact.speed * unit,
+            normal: zero,
+            along: zero,
+            across: zero,
+            work: zero,
+            compressing: Mask::splat(simd, true),
+            compression: zero,
+            balance: zero,
+            taken: zero,
+            due: zero,
+            over: !strikes,
+            limit: zero + f64::INFINITY,
+        };
+        Self {
+            rates: Rates::new(contact, friction),
+            goal: Goal {
+                hypothesis,
+                restitution: contact.restitution,
+                approach: contact.speed * unit,
+                rebound: contact.restitution * contact.speed * unit,
+            },
+            course,
+            panels: zero,
+            scale,
+            aside: along.eq(0.0) & contact.nu.eq(0.0),
+            left: across.lt(0.0),
+        }
+    }
+
+    /// Ends the impacts whose slip vanishes before anything else happens.
+    #[inline(always)]
+    fn stop(&mut self) {
+        let Self {
+            rates,
+            goal,
+            course,
+            panels,
+            ..
+        } = self;
         // **u** along the slip, or the way that K_nu drives it.
         let back = course.u.lt(0.0) | course.u.eq(0.0) & rates.nu.lt(0.0);
-        course.turn_round(back, &mut rates);
+        course.turn_round(back, rates);
         course.direction();
         // Or against it, where it comes round and is nearer to the direction to which it turns: y then falls.
         let ahead = rates.plus.lt(0.0) & (rates.minus * course.y).le(rates.plus);
         let comes = ahead & !course.y.lt(ROUND);
         if comes.any() {
-            course.turn_round(comes, &mut rates);
+            course.turn_round(comes, rates);
             course.direction();
         }
 
         // What is left is a straight line in p where the slip has vanished, or goes on along **u** for ever.
         let straight = course.w.le(VANISHED) & rates.decay.le(0.0) & course.y.lt(1.0);
-        let straight = straight & !course.is_late(&goal);
-        let vanished =
-            course.slip.le(VANISHED) | straight | Mask::splat(simd, number == MOST_PANELS);
-        let stop = Stop::new(&rates, &course);
+        let straight = straight & !course.is_late(goal);
+        let vanished = course.slip.le(VANISHED) | straight | !panels.lt(MOST_PANELS);
+        let stop = Stop::new(rates, course);
         let candidates = (stop.reached | vanished) & !course.over;
         if candidates.any() {
-            let mut stopped = course;
-            let stops = stop.pass(&rates, &goal, &mut stopped) | vanished;
+            let mut stopped = *course;
+            let stops = stop.pass(rates, goal, &mut stopped) | vanished;
             let last = stops & candidates;
-            let mut end = Course::choose(vanished, &course, &stopped);
-            end.finish(&rates, &goal);
-            end.over = Mask::splat(simd, true);
-            course = Course::choose(last, &end, &course);
+            let mut end = Course::choose(vanished, course, &stopped);
+            end.finish(rates, goal);
+            end.over = Mask::splat(panels.simd(), true);
+            *course = Course::choose(last, &end, course);
         }
+    }
+
+    /// Goes through the events that are near, and on by a panel.
+    #[inline(always)]
+    fn advance(&mut self) {
+        let Self {
+            rates,
+            goal,
+            course,
+            ..
+        } = self;
+        let wanted = step::events(rates, goal, course);
         if course.over.all() {
-            break;
-        }
-        let wanted = step::events(&rates, &goal, &mut course);
-        if course.over.all() {
-            break;
+            return;
         }
         course.direction();
-        let length = wanted
-            .min(course.limit)
-            .min(panel::longest(&rates, &course));
-        let mut next = panel::pass(&rates, &goal, &course, length);
-        let (back, limit) = beyond(&rates, &goal, &course, &next, length);
-        next.limit = zero + f64::INFINITY;
-        let mut again = course;
+        let length = wanted.min(course.limit).min(panel::longest(rates, course));
+        let mut next = panel::pass(rates, goal, course, length);
+        let (back, limit) = beyond(rates, goal, course, &next, length);
+        next.limit = Pack::splat(limit.simd(), f64::INFINITY);
+        let mut again = *course;
         again.limit = limit;
         let next = Course::choose(back, &again, &next);
-        course = Course::choose(course.over, &course, &next);
+        *course = Course::choose(course.over, course, &next);
+        self.panels = self.panels + 1.0;
     }
-    Answer {
-        normal: course.normal * scale,
-        along: aside.select(0.0, course.along * course.mirror * scale),
-        across: across.lt(0.0).select(-course.across, course.across) * scale,
-        separation_speed: course.v.max(0.0) * scale,
+
+    /// What came of them.
+    #[inline(always)]
+    fn answer(&self) -> Answer<S, 1> {
+        let (course, scale) = (&self.course, self.scale);
+        Answer {
+            normal: course.normal * scale,
+            along: self.aside.select(0.0, course.along * course.mirror * scale),
+            across: self.left.select(-course.across, course.across) * scale,
+            separation_speed: course.v.max(0.0) * scale,
+        }
     }
+}
+
+/// The impulse of contacts that slip in any direction, μ > 0, unless it takes long: the lanes in which it is not known yet.
+#[inline(always)]
+pub(crate) fn begin<S: Simd>(
+    contact: &Slipping<S, 1>,
+    friction: f64,
+    hypothesis: Hypothesis,
+) -> (Answer<S, 1>, Mask<S, 1>) {
+    let mut impacts = Impacts::new(contact, friction, hypothesis);
+    impacts.stop();
+    (impacts.answer(), !impacts.course.over)
 }

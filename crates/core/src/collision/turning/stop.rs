@@ -1,35 +1,102 @@
-//! Where the slip vanishes: the impulse until then as a power series about the direction in which it does.
+//! Where the slip vanishes: the impulse until then as a continued fraction.
 //!
-//! The direction tends to y* = 0 where ρ₊ > 0, else to y* = −ρ₊/ρ₋. The impulse that is left is p = A H(y), and
-//! Q = ∫ u dp = A² G(y), which gives the work. From the equations of the slip, with D = y − y*, σ = |ρ₊|, λ* = λ + κy*,
+//! With **u** taken the right way the direction tends to a fixed one, y → y*: to y* = 0 where ρ₊ ≥ 0, else to y* = −ρ₊/ρ₋. With
+//! D = y − y*, σ = |ρ₊| and λ* = λ + κy*
 //!
-//! 2D(σ + ρ₋D)H′ + (λ* + κD)H = (1 + y)², 2D(σ + ρ₋D)G′ + 2(λ* + κD)G = (1 − y)(1 + y)².
+//! dD/dθ = −2D(σ + ρ₋D), d ln A/dθ = −λ* − κD,
 //!
-//! In χ = D/(σ + ρ₋D) the singularities of H/(1 + ρ₋D/σ) and G/(1 + ρ₋D/σ)² are at 1/ρ₋, that is at the other fixed direction, and ∞, and
-//! their coefficients follow from one another, c_k = (n_k + (β₀ + β₁k) c_{k−1})/(e₀ + 2σk), n_k = 0 for k > 3.
+//! and the integrals ∫A Dʲ dθ over the rest of the way are hypergeometric functions of −ρ₋D/σ; ∫A dθ, for one, is
+//! (A/λ*) ₂F₁(κ/2ρ₋, 1; λ*/2σ + 1; −ρ₋D/σ). C. F. Gauss's continued fraction of it, multiplied by its denominators so that none
+//! can vanish, consists of
+//!
+//! G_k = λ* + 2σk, N_k = G_k N_{k+1} + n_{k+1} N_{k+2}, n_{2m} = 2mD(λ*ρ₋ − κσ + 2mσρ₋), n_{2m+1} = D(κ + 2mρ₋)(λ* + 2mσ).
+//!
+//! With M = N₁ + κDN₂ and by d(ADʲ)/dθ, which relates these integrals to one another,
+//!
+//! ∫A dθ = A N₁/(λ*M), ∫AD dθ = A D N₂/M, ∫AD² dθ = A D²G₁(N₃ + κDN₄)/M,
+//! ∫AD³ dθ = A D³G₁G₂(N₄ + D(κ + 2ρ₋)(N₅ + κDN₆))/M.
+//!
+//! The impulse is ∫A(1 + y)² dθ. With A², 2λ* and 2κ for A, λ* and κ they give ∫u dp, and with it the work.
 
 use super::{Course, Goal, Rates};
 use crate::collision::Hypothesis;
 use crate::simd::{Mask, Pack};
 use pulp::Simd;
 
-/// Largest |ρ₋χ| for which the series are used.
-const REACH: f64 = 0.35;
-/// Their terms: REACH to this power is below 2⁻⁵².
-const TERMS: usize = 36;
+/// Pairs of levels of the fraction.
+const PAIRS: usize = 12;
+/// Most that the impulse may change, as a share of it, if the fraction is cut off instead of closed: it is then five to fifty times as
+/// far off.
+const SETTLED: f64 = 1.0 / 281_474_976_710_656.0; // 2⁻⁴⁸
 /// Share by which a direction may turn until the slip vanishes and yet count as constant.
 const STRAIGHT: f64 = 2.0 * f64::EPSILON;
 
 /// The way of a slip that vanishes.
 pub(super) struct Stop<S: Simd, const K: usize> {
-    /// Whether the series converge fast enough.
+    /// Whether the slip vanishes, unless the impact is over before.
     pub reached: Mask<S, K>,
-    /// y*, D, χ, σ, λ* and 1/(1 − ρ₋χ).
+    /// Whether **u** is taken the other way.
+    back: Mask<S, K>,
+    /// A, y*, D.
+    a: Pack<S, K>,
     limit: Pack<S, K>,
-    chi: Pack<S, K>,
+    distance: Pack<S, K>,
+    /// 1/G₁, and times that ρ₋, σ, λ*, κ.
+    unit: Pack<S, K>,
+    minus: Pack<S, K>,
     sigma: Pack<S, K>,
     decay: Pack<S, K>,
-    stretch: Pack<S, K>,
+    kappa: Pack<S, K>,
+}
+
+/// N₁ to N₆ with a common factor.
+struct Levels<S: Simd, const K: usize>([Pack<S, K>; 6]);
+
+/// What the fraction is made of: λ*, κ, 2σ, 2ρ₋, D, and D(λ*ρ₋ − κσ) and 2Dσρ₋.
+struct Terms<S: Simd, const K: usize> {
+    decay: Pack<S, K>,
+    kappa: Pack<S, K>,
+    twice: Pack<S, K>,
+    bend: Pack<S, K>,
+    distance: Pack<S, K>,
+    mixed: Pack<S, K>,
+    curl: Pack<S, K>,
+}
+
+impl<S: Simd, const K: usize> Terms<S, K> {
+    #[inline(always)]
+    fn new(stop: &Stop<S, K>, order: f64) -> Self {
+        let d = stop.distance;
+        let (decay, kappa) = (stop.decay * order, stop.kappa * order);
+        let twice = 2.0 * stop.sigma;
+        Self {
+            decay,
+            kappa,
+            twice,
+            bend: 2.0 * stop.minus,
+            distance: d,
+            mixed: (decay * stop.minus - kappa * stop.sigma) * d,
+            curl: twice * stop.minus * d,
+        }
+    }
+
+    /// G_k.
+    #[inline(always)]
+    fn ground(&self, k: f64) -> Pack<S, K> {
+        self.twice.mul_add(k, self.decay)
+    }
+
+    /// n_{2m}.
+    #[inline(always)]
+    fn even(&self, m: f64) -> Pack<S, K> {
+        self.curl.mul_add(m, self.mixed) * (2.0 * m)
+    }
+
+    /// n_{2m+1}.
+    #[inline(always)]
+    fn odd(&self, m: f64) -> Pack<S, K> {
+        self.bend.mul_add(m, self.kappa) * self.distance * self.ground(m)
+    }
 }
 
 impl<S: Simd, const K: usize> Stop<S, K> {
@@ -41,62 +108,95 @@ impl<S: Simd, const K: usize> Stop<S, K> {
         // A direction that is left must be the right one from the start.
         let weight = zero.lt(gamma).select(y, 1.0);
         let straight = (gamma.abs() * weight).le(rates.kappa.mul_add(y, rates.decay) * STRAIGHT);
-        let forward = zero.lt(rates.plus) & zero.lt(gamma);
         let aside = rates.plus.lt(0.0) & zero.le(rates.nu);
-        let limit = straight.select(y, aside.select(-rates.plus / rates.minus, 0.0));
-        let sigma = rates.plus.abs();
-        let distance = straight.select(0.0, y - limit);
-        let sum = rates.minus.mul_add(distance, sigma);
-        let chi = straight.select(0.0, distance / sum);
-        let decay = rates.kappa.mul_add(limit, rates.decay);
-        // What a term of the series is over the one before lies between that of the third and ρ₋χ.
-        let bend = rates.minus * (decay - sigma) - rates.brake * sigma;
-        let converges = (chi * rates.minus).abs().le(REACH)
-            & quick(rates.minus, bend, chi, sigma, decay, 1.0)
-            & quick(rates.minus, bend, chi, sigma, decay, 2.0);
-        let reached = zero.lt(decay) & (straight | (forward | aside) & converges);
+        let forward = zero.le(rates.plus) & zero.lt(gamma);
+        let back = !(straight | aside | forward);
+        let plus = back.select(-rates.minus, rates.plus);
+        let minus = back.select(-rates.plus, rates.minus);
+        let kappa = rates.brake - minus;
+        let decay = back.select(rates.nu.mul_add(2.0, rates.decay), rates.decay);
+        let y = back.select(1.0 / y, y);
+        let limit = plus.lt(0.0).select(-plus / minus, 0.0);
+        let limit = straight.select(y, limit);
+        let sigma = plus.abs();
+        let decay = kappa.mul_add(limit, decay);
+        let unit = 1.0 / sigma.mul_add(2.0, decay);
         Self {
-            reached,
+            reached: zero.lt(decay),
+            back,
+            a: back.select(at.a * at.y, at.a),
             limit,
-            chi,
-            sigma,
-            decay,
-            stretch: straight.select(1.0, sum / sigma),
+            distance: y - limit,
+            unit,
+            minus: minus * unit,
+            sigma: sigma * unit,
+            decay: decay * unit,
+            kappa: kappa * unit,
         }
     }
 
-    /// Σ c_k χᵏ, for e₀ = `order` λ*.
+    /// The fraction for A to the power of `order`: closed as if it went on without change, and cut off.
     #[inline(always)]
-    fn series(&self, rates: &Rates<S, K>, order: f64, start: [Pack<S, K>; 4]) -> Pack<S, K> {
-        let chi = self.chi;
-        let scale = 1.0 / self.sigma.mul_add((2 * TERMS) as f64, self.decay * order);
-        let (constant, step) = (self.decay * order * scale, 2.0 * self.sigma * scale);
-        // β₀ + β₁k, times χ.
-        let slope = rates.minus * step * chi;
-        let first = (rates.minus * (self.decay - self.sigma) - rates.brake * self.sigma)
-            * (scale * order)
-            * chi
-            - slope;
-        let mut below = Pack::splat(chi.simd(), 1.0);
-        let mut above = below;
-        for k in (4..TERMS).rev() {
-            let e = step.mul_add(k as f64, constant);
-            let b = slope.mul_add(k as f64, first);
-            below = e * below;
-            above = b.mul_add(above, below);
+    fn levels(&self, order: f64) -> [Levels<S, K>; 2] {
+        let terms = Terms::new(self, order);
+        let top = (PAIRS + 1) as f64;
+        let (g, n, o) = (
+            terms.ground(2.0 * top - 1.0),
+            terms.even(top),
+            terms.odd(top),
+        );
+        // t = g + n/(g + o/t).
+        let square = g * g;
+        let half = square + (n - o);
+        let root = half.mul_add(half, 4.0 * square * o).max(0.0).sqrt();
+        let one = Pack::splat(g.simd(), 1.0);
+        let mut found = [Levels([one; 6]), Levels([one; 6])];
+        let mut pairs = [(half + root, 2.0 * g), (g, one)];
+        for m in (1..=PAIRS).rev() {
+            let (n, o) = (terms.even(m as f64), terms.odd(m as f64));
+            let (low, high) = (
+                terms.ground((2 * m - 1) as f64),
+                terms.ground((2 * m) as f64),
+            );
+            for i in 0..2 {
+                let second = high.mul_add(pairs[i].0, o * pairs[i].1);
+                let first = low.mul_add(second, n * pairs[i].0);
+                pairs[i] = (first, second);
+                if m <= 3 {
+                    found[i].0[2 * m - 1] = second;
+                    found[i].0[2 * m - 2] = first;
+                }
+            }
         }
-        // r_k = above/below = 1 + b_k r_{k+1}/e_k, and the sum of n_i χⁱ r_{i+1}/e_i on one denominator.
-        let mut sum = Pack::splat(chi.simd(), 0.0);
-        for k in (0..4).rev() {
-            let e = step.mul_add(k as f64, constant);
-            let b = slope.mul_add(k as f64, first);
-            // sum/below stands for the terms i > k, over χ^{k+1}.
-            let term = start[k] * above;
-            sum = (chi * e).mul_add(sum, term);
-            below = e * below;
-            above = b.mul_add(above, below);
-        }
-        sum * scale / below
+        found
+    }
+
+    /// ∫(1 + y)² A dθ from the levels for A, over A/G₁, as a fraction.
+    #[inline(always)]
+    fn impulse(&self, Levels(n): &Levels<S, K>) -> (Pack<S, K>, Pack<S, K>) {
+        let (d, q) = (self.distance, 1.0 + self.limit);
+        let pull = self.kappa * d;
+        let whole = pull.mul_add(n[1], n[0]) * self.decay;
+        let outer = (2.0 * q).mul_add(n[1], d * pull.mul_add(n[3], n[2]));
+        ((q * q).mul_add(n[0], outer * (d * self.decay)), whole)
+    }
+
+    /// ∫(1 − y)(1 + y)² A² dθ from the levels for A², over A²/G₁, as a fraction.
+    #[inline(always)]
+    fn moment(&self, Levels(n): &Levels<S, K>) -> (Pack<S, K>, Pack<S, K>) {
+        let (d, q) = (self.distance, 1.0 + self.limit);
+        let (decay, pull) = (2.0 * self.decay, 2.0 * self.kappa * d);
+        let whole = pull.mul_add(n[1], n[0]) * decay;
+        let first = self.sigma.mul_add(2.0, decay);
+        let second = self.sigma.mul_add(4.0, decay);
+        let tilt = (2.0 * d).mul_add(self.minus, pull);
+        let square = pull.mul_add(n[3], n[2]) * first;
+        let cube = pull.mul_add(n[5], n[4]).mul_add(tilt, n[3]) * (first * second);
+        // (1 − y)(1 + y)² = (s − D)(q + D)².
+        let s = 1.0 - self.limit;
+        let inner = (s - 2.0 * q).mul_add(square, -(d * cube));
+        let outer = (q * (2.0 * s - q)).mul_add(n[1], d * inner);
+        ((s * (q * q)).mul_add(n[0], outer * (d * decay)), whole)
     }
 
     /// Goes to where the slip vanishes, if nothing happens before: of which lanes that is true.
@@ -111,30 +211,30 @@ impl<S: Simd, const K: usize> Stop<S, K> {
         if !(self.reached & !at.over).any() {
             return self.reached & zero.lt(zero);
         }
-        let q = 1.0 + self.limit;
-        let r = (-rates.minus).mul_add(q, self.sigma);
-        // (1 + y)(1 − ρ₋χ) = q + rχ.
-        let impulse =
-            at.a * self.stretch * self.series(rates, 1.0, [q * q, 2.0 * q * r, r * r, zero]);
+        let scale = self.a * self.unit;
+        let [closed, open] = self.levels(1.0);
+        let ((impulse, whole), (crude, cut)) = (self.impulse(&closed), self.impulse(&open));
+        let off = (impulse * cut - crude * whole).abs() * scale;
+        let impulse = scale * impulse / whole;
+        let mut settled = off.le((impulse + at.normal) * (whole * cut).abs() * SETTLED);
         let along = -impulse.mul_add(rates.nu, at.u) / rates.uu;
         let v = rates.nn.mul_add(impulse, rates.nu.mul_add(along, at.v));
         if goal.hypothesis == Hypothesis::Stronge {
-            // (1 − y)(1 − ρ₋χ) = s − tχ.
-            let s = 1.0 - self.limit;
-            let t = rates.minus.mul_add(s, self.sigma);
-            let start = [
-                s * (q * q),
-                (2.0 * s * r - t * q) * q,
-                (s * r - 2.0 * t * q) * r,
-                -t * (r * r),
-            ];
-            let side = at.a * self.stretch;
-            let moment = side * side * self.series(rates, 2.0, start);
+            let scale = self.a * scale;
+            let [closed, open] = self.levels(2.0);
+            let ((moment, whole), (crude, cut)) = (self.moment(&closed), self.moment(&open));
+            let off = (moment * cut - crude * whole).abs() * scale;
+            settled = settled & off.le(at.slip * impulse * (whole * cut).abs() * SETTLED);
+            let moment = scale * moment / whole;
+            let moment = self.back.select(-moment, moment);
             let mean = (0.5 * rates.sticking).mul_add(impulse, at.v);
             let share = (-at.u).mul_add(impulse, moment) * rates.nu / rates.uu;
             at.work = at.work + mean.mul_add(impulse, share);
         }
-        let (now, then) = (rates.slope(at.y), rates.slope(self.limit));
+        let jam = rates.nu * rates.friction;
+        let jam = self.back.select(-jam, jam);
+        let now = rates.slope(at.y);
+        let then = (rates.nn + jam).mul_add(self.limit, rates.nn - jam);
         let crest = zero.lt(now) & then.lt(0.0);
         let dip = now.lt(0.0) & zero.lt(then);
         at.normal = at.normal + impulse;
@@ -143,20 +243,6 @@ impl<S: Simd, const K: usize> Stop<S, K> {
         at.v = v;
         let compressing = at.compressing & v.lt(0.0);
         let restoring = !at.compressing & zero.le(v) & zero.lt(goal.missing(at)) & !dip;
-        self.reached & (compressing | restoring) & !crest
+        self.reached & settled & (compressing | restoring) & !crest
     }
-}
-
-/// Whether the third term is small beside the second.
-#[inline(always)]
-fn quick<S: Simd, const K: usize>(
-    minus: Pack<S, K>,
-    bend: Pack<S, K>,
-    chi: Pack<S, K>,
-    sigma: Pack<S, K>,
-    decay: Pack<S, K>,
-    order: f64,
-) -> Mask<S, K> {
-    let above = (4.0 * sigma).mul_add(minus, bend * order) * chi;
-    above.abs().le(sigma.mul_add(6.0, decay * order) * REACH)
 }

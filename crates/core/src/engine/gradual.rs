@@ -1,0 +1,48 @@
+//! Impacts under a law whose responses may take long: those that do are found for all groups together.
+
+use super::group::{GROUPS, Group};
+use super::strike::Turn;
+use crate::body::{Body, Hull};
+use crate::collision::{Gradual, Late};
+use pulp::{Simd, WithSimd};
+
+/// The impacts of all groups. Compiled apart, for it is long.
+pub(super) struct Collide<'a, S: Simd, T: Turn, H> {
+    pub groups: &'a mut [Group<S, T>],
+    pub body: &'a Body,
+    pub hull: &'a H,
+    pub law: Gradual<'a>,
+}
+
+impl<S: Simd, T: Turn, H: Hull> WithSimd for Collide<'_, S, T, H> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<U: Simd>(self, _: U) {
+        let Self {
+            groups,
+            body,
+            hull,
+            law,
+        } = self;
+        let mut waiting = [0; GROUPS];
+        let mut late = [Late::nothing(groups[0].active.simd()); GROUPS];
+        let mut count = 0;
+        for (i, group) in groups.iter_mut().enumerate() {
+            group.land(hull);
+            let contact = group.contact(body, hull);
+            let answer = law.begin(&contact);
+            group.respond(body, hull, contact.approach_speed(), &answer.response);
+            if answer.open.eq(1.0).any() {
+                (waiting[count], late[count]) = (i, answer);
+                count += 1;
+            }
+        }
+        if count > 0 {
+            law.finish(&mut late[..count]);
+            for (&i, late) in waiting[..count].iter().zip(&late) {
+                groups[i].respond(body, hull, late.approach(), &late.response);
+            }
+        }
+    }
+}
