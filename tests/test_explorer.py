@@ -4,7 +4,6 @@ import hashlib
 import json
 import sys
 import threading
-import tomllib
 import urllib.error
 import urllib.request
 from pathlib import Path
@@ -163,8 +162,3 @@ def test_without_the_page_the_error_says_what_to_do(monkeypatch: pytest.MonkeyPa
     monkeypatch.setattr(_page, "files", lambda _: tmp_path)
     with pytest.raises(FileNotFoundError, match="make web"):
         _page.page()
-
-
-def test_versions_agree() -> None:
-    version = tomllib.loads((ROOT / "Cargo.toml").read_text())["workspace"]["package"]["version"]
-    assert f'"version": "{version}"' in (ROOT / "web/package.json").read_text()
