@@ -35,7 +35,7 @@ CAPSULE = rs.Spherocylinder(radius=R, separation=WORK.separation)
 THROWN: dict[str, Any] = {
     "orientation": "isotropic",
     "spin": rs.RandomSpin(rate=(10.0, 90.0)),
-    "velocity": (0.2, 0.1, 0.0),
+    "release_velocity": (0.2, 0.1, 0.0),
     "incline": 0.1,
 }
 REST: dict[str, Any] = {}

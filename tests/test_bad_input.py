@@ -76,8 +76,8 @@ RUN = [
         ("spin", value, SPIN)
         for value in (1.0, "fast", True, [1, 2], [1, 2, "3"], np.zeros((4, 2)), [[1, 2]])
     ),
-    *(("velocity", value, VELOCITY) for value in (1.0, "up", [1, 2], [1, 2, None], [[1, 2, 3]])),
-    *(("velocity", [0, 0, value], VELOCITY) for value in NOT_FINITE),
+    *(("release_velocity", value, VELOCITY) for value in (1.0, "up", [1, 2], [1, 2, None], [[1, 2, 3]])),
+    *(("release_velocity", [0, 0, value], VELOCITY) for value in NOT_FINITE),
 ]
 THREADS_CASES = [
     ("threads", value, THREADS) for value in (0, -1, 1025, 10**30, 1.5, True, "2", [1], math.nan)
@@ -238,8 +238,8 @@ def test_absurd_scales(body: rs.Dumbbell, law: rs.TangentialRestitution) -> None
     assert message(lambda: rs.simulate(body, law, spin=[0, 1e200, 0])).startswith(
         "spin = 1e+200: must be at most"
     )
-    assert message(lambda: rs.simulate(body, law, velocity=[0, 0, 1e200])).startswith(
-        "velocity = 1e+200: must be at most"
+    assert message(lambda: rs.simulate(body, law, release_velocity=[0, 0, 1e200])).startswith(
+        "release_velocity = 1e+200: must be at most"
     )
     assert "must be such that R/g and gR" in message(lambda: rs.simulate(body, law, gravity=1e-320))
 
@@ -319,8 +319,8 @@ def test_a_file_with_much_wrong(tmp_path: Path) -> None:
         "law": {"type": '"friction"', "normal": "0.98"},
         "run": {"particle": "3", "body": "1", "seed": "-1"},
     }
-    takes = "[run] takes particles, impacts, release_height, gravity, orientation, spin, velocity, incline, "
-    takes += "minimum_speed, seed"
+    takes = "[run] takes particles, impacts, release_height, gravity, orientation, spin, release_velocity, "
+    takes += "incline, minimum_speed, seed"
     lines = refused(write(tmp_path / "run.toml", tables))
     assert [re.sub(r" \(.*\)$", "", line) for line in lines] == [  # without units and such
         "boddy: unknown; did you mean body? the file takes body, law, run, statistics, distribution",

@@ -17,7 +17,7 @@ GLASS = rs.Viscoelastic(young_modulus=6e10, poisson_ratio=0.22, dissipation=1e-5
 BODY = rs.Dumbbell(radius=3e-3, separation=1.5e-3)
 IN_SPACE: dict[str, Any] = {
     "spin": rs.RandomSpin(rate=(0.0, 300.0)),
-    "velocity": (0.1, -0.2, 0.0),
+    "release_velocity": (0.1, -0.2, 0.0),
     "orientation": "isotropic",
 }
 EPS = float(np.finfo(np.float64).eps)

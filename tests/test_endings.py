@@ -178,6 +178,13 @@ def test_one_output_twice(parameters: Path) -> None:
     )
 
 
+def test_a_stream_that_lacks_a_letter(capfd: pytest.CaptureFixture[str]) -> None:
+    """In the C locale, µ: what was written to files stays written, and the line is said."""
+    words = [sys.executable, "-c", "from restitution._streams import say, tell; say('1 µs'); tell('2 µs')"]
+    subprocess.run(words, check=True, env=os.environ | {"PYTHONIOENCODING": "ascii:strict"})
+    assert capfd.readouterr() == ("1 \\xb5s\n", "2 \\xb5s\n")
+
+
 LOSING = """
 import os, signal, time, typer
 from restitution._cli._common import errors_in_a_line

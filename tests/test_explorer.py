@@ -46,7 +46,7 @@ def test_a_link_holds_every_parameter_of_a_run() -> None:
         gravity=1.62,
         orientation="isotropic",
         spin=(0.0, 3.0, -4.0),
-        velocity=(0.5, 0.0, -0.1),
+        release_velocity=(0.5, 0.0, -0.1),
         incline=0.1,
         minimum_speed=0.01,
         seed=2**53 - 1,

@@ -93,7 +93,7 @@ def test_minus_four(name: str) -> None:
     found = released(
         law,
         release_height=lift * (1.0 + 1e-15),
-        velocity=[0.0, 0.0, rise],
+        release_velocity=[0.0, 0.0, rise],
         orientation=[[angle, 0.0]],
         spin=[0, spin, 0],
     )

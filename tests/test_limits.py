@@ -2,6 +2,7 @@
 
 import json
 import os
+import re
 import subprocess
 import sys
 from pathlib import Path
@@ -65,6 +66,18 @@ told(rs.simulate, body, law, particles=100, impacts=100)
     assert failed[1].startswith("particles * impacts: 8.000 GB more are needed")
     assert bins_failed[1].startswith("velocity_bins or impacts, times restitution_bins and fraction_bins: ")
     assert done == again == ["done", ""]
+
+
+def test_listen_says_what_it_takes_before_its_libraries_are_there(tmp_path: Path) -> None:
+    """OpenBLAS, which SciPy brings along, tries for ever to get its buffers."""
+    code = "import resource; resource.setrlimit(resource.RLIMIT_DATA, (1 << 28, 1 << 28))\n"
+    code += "from restitution._cli import main; main()"
+    words = [sys.executable, "-c", code, "listen", "ball.wav", "--diameter", "0.02", "--out", "ball.html"]
+    done = subprocess.run(words, cwd=tmp_path, capture_output=True, text=True, check=False, timeout=60)
+    assert done.returncode == 1
+    assert re.fullmatch(
+        r"error: listen: takes 500 MB of memory, and this process can have \d+ MB\n", done.stderr
+    )
 
 
 def test_draws_that_no_memory_holds() -> None:

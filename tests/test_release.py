@@ -84,7 +84,7 @@ def test_spins_across_the_axis() -> None:
 def test_the_azimuth_is_drawn_unless_it_is_given() -> None:
     """θ is that of a run from rest with the same seed; φ, uniform, is independent of it."""
     law = rs.Frictionless(normal=0.9)
-    moving = rs.simulate(BODY, law, particles=5000, impacts=1, velocity=(0.1, 0.0, 0.0))
+    moving = rs.simulate(BODY, law, particles=5000, impacts=1, release_velocity=(0.1, 0.0, 0.0))
     rest = rs.simulate(BODY, law, particles=5000, impacts=1)
     assert (moving.release_angle == rest.release_angle).all()
     assert "release_azimuth" not in rest
@@ -114,7 +114,9 @@ def test_zeros_are_what_is_not_given() -> None:
     """No spin, no velocity, no incline: the bits of a run from rest, and nothing more in the Dataset."""
     law = rs.TangentialRestitution(normal=0.9)
     rest = rs.simulate(BODY, law, particles=50, impacts=20)
-    zeros = rs.simulate(BODY, law, particles=50, impacts=20, spin=[0, 0, 0], velocity=(0, 0, 0), incline=0)
+    zeros = rs.simulate(
+        BODY, law, particles=50, impacts=20, spin=[0, 0, 0], release_velocity=(0, 0, 0), incline=0
+    )
     xr.testing.assert_identical(rest, zeros)
     still = rs.simulate(BODY, law, particles=50, impacts=20, spin=np.zeros((50, 3)))
     xr.testing.assert_equal(rest, still)
@@ -125,7 +127,7 @@ def test_statistics_count_the_impacts_of_simulate() -> None:
         "particles": 100,
         "impacts": 20,
         "spin": rs.RandomSpin(rate=(0, 200)),
-        "velocity": (0.1, 0, -0.3),
+        "release_velocity": (0.1, 0, -0.3),
     }
     law = rs.Coulomb(normal=0.8, friction=0.2)
     bins: dict[str, Any] = {
@@ -221,7 +223,7 @@ normal = 0.9
 [run]
 particles = 3
 impacts = 2
-velocity = [0.1, 0, -0.2]
+release_velocity = [0.1, 0, -0.2]
 incline = 0.25
 """
 
@@ -242,14 +244,14 @@ def test_files(text: str, spin: Any, tmp_path: Path) -> None:
     run = read(path)
     law = rs.Frictionless(normal=0.9)
     assert run == Run(
-        body=BODY, law=law, particles=3, impacts=2, velocity=(0.1, 0.0, -0.2), incline=0.25, spin=spin
+        body=BODY, law=law, particles=3, impacts=2, release_velocity=(0.1, 0.0, -0.2), incline=0.25, spin=spin
     )
     data = rs.simulate(
         BODY,
         law,
         particles=3,
         impacts=2,
-        velocity=run.velocity,
+        release_velocity=run.release_velocity,
         incline=run.incline,
         spin=spin,
     )

@@ -60,7 +60,7 @@ def test_newton_euler_equations(
         gravity=GRAVITY,
         orientation=[[angle, azimuth]],
         spin=spin,
-        velocity=velocity,
+        release_velocity=velocity,
         incline=incline,
     ).isel(particle=0)
     mine = np.stack([found[name].values for name in initial_value.Impact._fields], axis=1)

@@ -57,7 +57,7 @@ def test_oblique_impact_of_a_sphere(kind: str, friction: float) -> None:
             particles=1,
             impacts=2,
             release_height=height,
-            velocity=velocity,
+            release_velocity=velocity,
             spin=spin,
         ).isel(particle=0)
         fall = np.sqrt(velocity[2] ** 2 + 2.0 * GRAVITY * (height - radius))
@@ -123,7 +123,7 @@ def test_energy_over_a_frictionless_elastic_plane() -> None:
         rs.Frictionless(normal=1.0),
         particles=300,
         impacts=40,
-        velocity=velocity,
+        release_velocity=velocity,
         spin=rs.RandomSpin(rate=(0.0, 400.0)),
     )
     height = 3e-3 + 2e-3 * np.abs(np.cos(data.angle))
@@ -156,7 +156,7 @@ def test_every_azimuth_is_alike() -> None:
     about = np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
     for law in (rs.Coulomb(normal=0.8, friction=0.2), rs.TangentialRestitution(normal=0.8, tangential=0.3)):
         one, other = (
-            rs.simulate(BODY, law, particles=particles, impacts=4, orientation=o, spin=w, velocity=v)
+            rs.simulate(BODY, law, particles=particles, impacts=4, orientation=o, spin=w, release_velocity=v)
             for o, w, v in (
                 (rows, spins, velocity),
                 (rows + np.array([0.0, turn]), spins @ about.T, about @ velocity),

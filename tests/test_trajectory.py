@@ -19,7 +19,7 @@ RUNS: dict[str, dict[str, Any]] = {
     "at rest": {},
     "thrown": {
         "spin": rs.RandomSpin(rate=(0.0, 300.0)),
-        "velocity": (0.1, -0.2, 0.1),
+        "release_velocity": (0.1, -0.2, 0.1),
         "orientation": "isotropic",
         "incline": 0.2,
         "release_height": rs.RandomHeight(lowest=0.03, highest=0.06),

@@ -67,9 +67,9 @@ def _spin(value: Any) -> Any:
 
 
 def _velocity(value: Any) -> tuple[float, ...]:
-    velocity = _array("velocity", (0.0, 0.0, 0.0) if value is None else value, _VELOCITIES, 1)
+    velocity = _array("release_velocity", (0.0, 0.0, 0.0) if value is None else value, _VELOCITIES, 1)
     if velocity.shape != (3,) or not np.isfinite(velocity).all():
-        raise ParameterError(wrong("velocity", value, _VELOCITIES))
+        raise ParameterError(wrong("release_velocity", value, _VELOCITIES))
     return tuple(velocity.tolist())
 
 

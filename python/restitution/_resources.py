@@ -119,6 +119,20 @@ def check_memory(impacts: int, bytes_per_impact: int) -> None:
         raise TooLargeError(Problem("particles * impacts", f" = {impacts:.4g}: must be {allowed}"))
 
 
+def check_room(what: str, needed: int) -> None:
+    """Refuse work whose libraries do not fit into memory: OpenBLAS tries for ever to get its buffers.
+
+    Raises
+    ------
+    MemoryError
+        Naming the work, what it takes, and what there is.
+    """
+    available = available_memory()
+    if needed > available:
+        took, has = (f"{size / 1e6:.0f} MB" for size in (needed, available))
+        raise MemoryError(f"{what}: takes {took} of memory, and this process can have {has}")
+
+
 @contextmanager
 def progress_bar(what: str, total: int, unit: str, *, show: bool) -> Iterator[Callable[[int], None] | None]:
     """Show a bar on standard error; yields what takes the amount done, or None where none is shown.

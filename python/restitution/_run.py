@@ -44,7 +44,7 @@ class Run(Parameters):
         or given in rad. The azimuth φ of the axis is uniform in [0, 2π), or given beside θ.
     spin : tuple of three floats, array of float, shape (particles, 3), or RandomSpin
         Angular velocity at release, in rad/s; the same for all, one each, or drawn at random.
-    velocity : tuple of three floats
+    release_velocity : tuple of three floats
         Velocity of the centre of mass at release, in m/s.
     incline : float
         Angle in [0, π/2) by which the plane is inclined, in rad. In its frame gravity is
@@ -63,7 +63,7 @@ class Run(Parameters):
     gravity: Annotated[Number, Field(gt=0, description="m/s²")] = 9.81
     orientation: OrientationOfRun = "uniform-angle"
     spin: SpinOfRun = (0.0, 0.0, 0.0)
-    velocity: VelocityOfRun = (0.0, 0.0, 0.0)
+    release_velocity: VelocityOfRun = (0.0, 0.0, 0.0)
     incline: Annotated[Number, Field(ge=0, lt=math.pi / 2, description="rad")] = 0.0
     minimum_speed: Annotated[Number, Field(ge=0, description="m/s; 0 never stops a particle")] = 0.0
     seed: Annotated[Whole, Field(ge=0, lt=2**64)] = 1
@@ -108,10 +108,10 @@ class Run(Parameters):
             )
             raise ParameterError(wrong("incline", self.incline, allowed))
         fastest = math.sqrt(_BEYOND) * math.sqrt(falling) * math.sqrt(least)
-        for component in self.velocity:
+        for component in self.release_velocity:
             if abs(component) > fastest:
                 of = "the square of what a fall from the body's own height gives"
-                raise ParameterError(self._beyond("velocity", component, fastest, "m/s", of))
+                raise ParameterError(self._beyond("release_velocity", component, fastest, "m/s", of))
         most = math.sqrt(_BEYOND) * math.sqrt(falling) / math.sqrt(solid.farthest())
         spins = self.spin.rates if isinstance(self.spin, RandomSpin) else self.spin
         spin = float(np.max(np.abs(spins), initial=0.0))
@@ -165,7 +165,7 @@ class Run(Parameters):
     def fall_speed(self, drop: float) -> float:
         """Give the normal velocity in m/s after the centre of mass has come nearer by `drop`, in m."""
         fall = 2.0 * self.gravity * math.cos(self.incline) * drop
-        return math.sqrt(fall + self.velocity[2] ** 2)
+        return math.sqrt(fall + self.release_velocity[2] ** 2)
 
     def parameters(self) -> dict[str, Any]:
         """Name every parameter as the core does, compiled where the core knows it as an object of its own."""

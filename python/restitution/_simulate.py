@@ -57,7 +57,7 @@ def simulate(
     gravity: float = 9.81,
     orientation: Literal["uniform-angle", "isotropic"] | npt.ArrayLike = "uniform-angle",
     spin: npt.ArrayLike | RandomSpin | None = None,
-    velocity: npt.ArrayLike | None = None,
+    release_velocity: npt.ArrayLike | None = None,
     incline: float = 0.0,
     minimum_speed: float = 0.0,
     seed: int = 1,
@@ -85,7 +85,7 @@ def simulate(
         isotropic, or given in rad. Its azimuth φ is uniform in [0, 2π), or given beside θ.
     spin : array of float, shape (3,) or (particles, 3), or RandomSpin, optional
         Angular velocity ω at release, in rad/s: the same for all, one each, or drawn at random.
-    velocity : array of float, shape (3,), optional
+    release_velocity : array of float, shape (3,), optional
         Velocity of the centre of mass at release, in m/s. It may point up or down.
     incline : float
         Angle α by which the plane is inclined, in rad, in [0, π/2): gravity is g (sin α, 0, -cos α). Every
@@ -109,7 +109,7 @@ def simulate(
         NaN where the impact never happened) and ``contact`` (which sphere touched, or which half of a
         spheroid); where ε_n depends on the speed also ``microscopic``, its value at the speed of the
         contact. Over particles: ``impacts``, ``stop_reason``, ``release_angle``; where heights are
-        drawn also ``release_height``; with spin, velocity or
+        drawn also ``release_height``; with spin, release velocity or
         incline also ``release_azimuth`` and, over (particle, component), ``release_spin``. With
         ``record="state"`` also, over (particle, impact, component), ``position`` and ``axis`` at the impact,
         which both stay through it, ``velocity_before``, ``velocity_after``, ``angular_velocity_before`` and

@@ -43,7 +43,7 @@ def statistics(
     gravity: float = 9.81,
     orientation: Literal["uniform-angle", "isotropic"] | npt.ArrayLike = "uniform-angle",
     spin: npt.ArrayLike | RandomSpin | None = None,
-    velocity: npt.ArrayLike | None = None,
+    release_velocity: npt.ArrayLike | None = None,
     incline: float = 0.0,
     minimum_speed: float = 0.0,
     seed: int = 1,
@@ -66,7 +66,7 @@ def statistics(
 
     Parameters
     ----------
-    body, law, particles, impacts, release_height, gravity, orientation, spin, velocity, incline
+    body, law, particles, impacts, release_height, gravity, orientation, spin, release_velocity, incline
         As in `restitution.simulate`.
     minimum_speed, seed, threads
         Likewise.

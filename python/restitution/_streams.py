@@ -35,7 +35,7 @@ def _put(line: str, name: str) -> None:
     if not writable(stream):
         return
     try:
-        stream.write(line + "\n")
+        stream.write(_encodable(line, stream) + "\n")
         stream.flush()
     except BrokenPipeError:
         setattr(sys, name, None)  # or what is left in it would be an error at the end of the process
@@ -44,6 +44,12 @@ def _put(line: str, name: str) -> None:
     except OSError as error:  # as of a disk that is full
         setattr(sys, name, None)
         raise OSError(error.errno, error.strerror, "standard output") from None
+
+
+def _encodable(line: str, stream: Any) -> str:
+    """Escape what the stream has no letter for, as µ in ASCII."""
+    encoding = getattr(stream, "encoding", None) or "utf-8"
+    return line.encode(encoding, "backslashreplace").decode(encoding)
 
 
 def open_missing() -> None:

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     import xarray as xr
 
 _NEEDED = ("time", "position", "axis", "velocity_after", "angular_velocity_after", "release_angle")
-_SETTINGS = ("gravity", "incline", "velocity", "axial_inertia", "transverse_inertia")
+_SETTINGS = ("gravity", "incline", "release_velocity", "axial_inertia", "transverse_inertia")
 _ABOUT = {
     "position": ("position of the centre of mass; the release is over the origin, z = 0 the plane", "m"),
     "velocity": ("velocity of the centre of mass", "m s-1"),
@@ -32,7 +32,7 @@ def with_positions(data: xr.Dataset) -> xr.Dataset:
     pull = _gravity(data)
     for i in range(2):
         start = np.empty(time.shape)
-        start[:, :1], start[:, 1:] = data.attrs["velocity"][i], after[:, :-1, i]
+        start[:, :1], start[:, 1:] = data.attrs["release_velocity"][i], after[:, :-1, i]
         np.cumsum(duration * (start + 0.5 * pull[i] * duration), axis=1, out=position[..., i])
     about, unit = _ABOUT["position"]
     attrs = {"long_name": f"{about}; at the impact", "units": unit}
@@ -150,7 +150,7 @@ def _begin(one: xr.Dataset, impacts: int) -> dict[str, FloatArray]:
     released = {
         "time": 0.0,
         "position": [0.0, 0.0, height],
-        "velocity": one.attrs["velocity"],
+        "velocity": one.attrs["release_velocity"],
         "axis": [level * np.cos(azimuth), level * np.sin(azimuth), np.cos(angle)],
         "angular_velocity": one["release_spin"].to_numpy() if "release_spin" in one else np.zeros(3),
     }

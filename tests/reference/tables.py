@@ -10,7 +10,7 @@ from reference.contract import CALLS, attack
 from reference.processes import same
 
 ARGUMENTS: tuple[tuple[str, str], ...] = (
-    *(("simulate", name) for name in ("orientation", "spin", "velocity", "release_height")),
+    *(("simulate", name) for name in ("orientation", "spin", "release_velocity", "release_height")),
     *(
         ("statistics", name)
         for name in ("velocity_bins", "restitution_bins", "fraction_bins", "orientation", "spin")

@@ -34,7 +34,10 @@ fn releases(body: Solid) -> [Run<'static>; 7] {
         high: 90.0,
         about,
     };
-    let thrown = |velocity| Run { velocity, ..rest };
+    let thrown = |velocity| Run {
+        release_velocity: velocity,
+        ..rest
+    };
     [
         rest,
         Run {

@@ -63,7 +63,7 @@ impl Case {
             orientation,
             minimum_speed: self.minimum_speed * (self.gravity * self.radius).sqrt(),
             spin: Spin::NONE,
-            velocity: Vector::default(),
+            release_velocity: Vector::default(),
             incline: 0.0,
             seed: self.seed,
         }

@@ -28,7 +28,7 @@ fn thrown(body: Solid, law: Law<'_>) -> Run<'_> {
             high: 300.0,
             about: About::Isotropic,
         },
-        velocity: Vector::new(0.3, -0.2, 0.4),
+        release_velocity: Vector::new(0.3, -0.2, 0.4),
         incline: 0.3,
         ..paper(0.0, law)
     }
@@ -53,7 +53,7 @@ fn released(run: &Run<'_>, records: &Records, particle: usize) -> State {
     State::with_spin(
         &run.body.scaled,
         run.release_height.middle() / scales.length,
-        run.velocity / scales.speed,
+        run.release_velocity / scales.speed,
         Vector::new(level.x, level.y, angle.cos()),
         Vector::new(x, y, z) * scales.time,
     )
@@ -237,7 +237,7 @@ fn an_impact_at_the_release() {
             orientation: Orientation::Directions(orientation),
             release_height: height.into(),
             spin,
-            velocity,
+            release_velocity: velocity,
             ..paper(2.0, Law::new(0.5, Frictionless).unwrap())
         };
         let records = simulate(&run);
@@ -271,7 +271,7 @@ fn from_the_plane() {
     let velocity = Vector::new(0.0, 0.0, 0.7);
     let up = simulate(&Run {
         release_height: release_height.into(),
-        velocity,
+        release_velocity: velocity,
         ..run
     });
     assert!((up.time[0] / (2.0 * 0.7 / run.gravity) - 1.0).abs() < 1e-14);
@@ -284,7 +284,7 @@ fn from_the_plane() {
         let stays = simulate(&Run {
             release_height: release_height.into(),
             spin,
-            velocity,
+            release_velocity: velocity,
             ..run
         });
         assert_eq!(stays.impacts[0], 0);

@@ -55,7 +55,7 @@ parameters! {
     gravity: f64 = |given| *given;
     orientation: release::Axes<'py> = |given| given.law()?;
     spin: release::Spins<'py> = |given| given.law()?;
-    velocity: [f64; 3] = |given| Vector::new(given[0], given[1], given[2]);
+    release_velocity: [f64; 3] = |given| Vector::new(given[0], given[1], given[2]);
     incline: f64 = |given| *given;
     minimum_speed: f64 = |given| *given;
     seed: u64 = |given| *given;

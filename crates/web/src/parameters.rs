@@ -28,7 +28,7 @@ impl Parameters {
                 _ => Orientation::Given(&p[15..16]),
             },
             spin: Spin::Fixed(Vector::new(p[16], p[17], p[18])),
-            velocity: Vector::new(p[19], p[20], p[21]),
+            release_velocity: Vector::new(p[19], p[20], p[21]),
             incline: p[22],
             minimum_speed: p[23],
             // Two halves, because a double holds integers of 53 bits only.

@@ -8,6 +8,9 @@ import typer
 from restitution._cli._common import Overwrite, Quiet, errors_in_a_line
 from restitution._streams import say, tell
 
+_ROOM = 500_000_000
+"""Bytes that the libraries and the analysis of a minute of sound take."""
+
 
 def listen(
     file: Annotated[Path, typer.Argument(metavar="FILE", help="The recording: WAV, FLAC, OGG, MP3 or AIFF.")],
@@ -41,6 +44,9 @@ def listen(
     covariance (netCDF).
     """
     with errors_in_a_line():
+        from restitution._resources import check_room
+
+        check_room("listen", _ROOM)  # before the libraries are there
         from restitution.listen import write
         from restitution.listen._analysis import Setting
 

@@ -84,7 +84,7 @@ class FluctuatingRestitution(EstimatedDistribution):
         gravity: float = 9.81,
         orientation: Literal["uniform-angle", "isotropic"] | npt.ArrayLike = "uniform-angle",
         spin: npt.ArrayLike | RandomSpin | None = None,
-        velocity: npt.ArrayLike | None = None,
+        release_velocity: npt.ArrayLike | None = None,
         incline: float = 0.0,
         minimum_speed: float | None = None,
         seed: int = 1,
@@ -100,7 +100,7 @@ class FluctuatingRestitution(EstimatedDistribution):
 
         Parameters
         ----------
-        body, law, particles, gravity, orientation, spin, velocity, incline, seed, threads, progress
+        body, law, particles, gravity, orientation, spin, release_velocity, incline, seed, threads, progress
             As in `restitution.simulate`. Orientations or spins of each particle are dealt out to the heights
             at random; if nothing is random, no fresh ensemble can be drawn, and this is an error.
         impacts : int, optional

@@ -114,7 +114,9 @@ def _motion(run: Run) -> dict[str, Any]:
     if isinstance(run.spin, RandomSpin) or run.spins is not None:
         raise _cannot("spin", "of each particle its own", "the same for all")
     x, y, z = run.spin
-    along, across, up = run.velocity
+    along, across, up = run.release_velocity
     if x or across:
-        raise _cannot("spin and velocity", (run.spin, run.velocity), "(0, y, z) and (x, 0, z)")
+        raise _cannot(
+            "spin and release_velocity", (run.spin, run.release_velocity), "(0, y, z) and (x, 0, z)"
+        )
     return {"spin_y": y, "spin_z": z, "velocity_x": along, "velocity_z": up}

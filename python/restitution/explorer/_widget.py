@@ -104,7 +104,7 @@ def _run_of(data: "xr.Dataset") -> Run:
             impacts=int(attributes["impacts"]),
             orientation=orientation,
             spin=tuple(map(float, spin)),
-            velocity=tuple(map(float, attributes["velocity"])),
+            release_velocity=tuple(map(float, attributes["release_velocity"])),
             seed=int(attributes["seed"]),
         )
     except (KeyError, AttributeError) as error:

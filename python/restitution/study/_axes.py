@@ -21,7 +21,7 @@ _MOST_POINTS = 10_000_000
 
 # Dimensions and variables that results have of their own.
 _TAKEN = [
-    "velocity",
+    "release_velocity",
     "restitution",
     "fraction",
     "impact",

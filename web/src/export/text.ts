@@ -31,7 +31,7 @@ function run(s: Setup): [string, string][] {
     ["gravity", float(s.gravity)],
     ["orientation", s.orientation === "given" ? `[${float(s.angle)}]` : quoted(s.orientation)],
     ["spin", `[0.0, ${float(s.spin_y)}, ${float(s.spin_z)}]`],
-    ["velocity", `[${float(s.velocity_x)}, 0.0, ${float(s.velocity_z)}]`],
+    ["release_velocity", `[${float(s.velocity_x)}, 0.0, ${float(s.velocity_z)}]`],
     ["incline", float(s.incline)],
     ["minimum_speed", float(s.minimum_speed)],
     ["seed", String(s.seed)],

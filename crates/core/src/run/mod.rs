@@ -39,7 +39,7 @@ pub struct Run<'a> {
     /// Distribution of the angular velocity at release, in rad/s.
     pub spin: Spin<'a>,
     /// Velocity of the centre of mass at release, in m/s.
-    pub velocity: Vector,
+    pub release_velocity: Vector,
     /// Inclination α of the plane in [0, π/2) rad, descending along x: in its frame gravity is g(sin α, 0, −cos α).
     pub incline: f64,
     /// Value of √(2 E_kin/m) after an impact, in m/s, below which a particle stops; with 0 none does.
@@ -54,13 +54,13 @@ impl Run<'_> {
     pub fn origin(&self) -> f64 {
         let drop = self.release_height.middle() - self.body.unit;
         let gained = 2.0 * self.gravity * sincos(self.incline).1 * drop.max(0.0);
-        let start = self.velocity.z;
+        let start = self.release_velocity.z;
         self.law.normal.at(start.mul_add(start, gained).sqrt())
     }
 
     /// Whether all particles are released at rest over a level plane. All directions in the plane are then equivalent, and each
     /// particle remains in the vertical plane of its axis.
     pub(crate) fn is_at_rest(&self) -> bool {
-        self.spin.is_none() && self.velocity == Vector::default() && self.incline == 0.0
+        self.spin.is_none() && self.release_velocity == Vector::default() && self.incline == 0.0
     }
 }

@@ -52,11 +52,16 @@ impl<'a> Plan<'a> {
         let (sine, cosine) = sincos(incline);
         let scales = Scales::new(run.body.unit, run.gravity * cosine)?;
         run.spin.check(run.particles, FASTEST / scales.time)?;
-        let velocity = run.velocity;
+        let velocity = run.release_velocity;
         for component in [velocity.x, velocity.y, velocity.z] {
             let allowed = "finite, at most 1e100 sqrt(gR) (m/s) either way";
             let most = FASTEST * scales.speed;
-            Error::unless(component.abs() <= most, "velocity", component, allowed)?;
+            Error::unless(
+                component.abs() <= most,
+                "release_velocity",
+                component,
+                allowed,
+            )?;
         }
         let plan = Self {
             run,

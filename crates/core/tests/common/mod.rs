@@ -44,7 +44,7 @@ pub fn paper(elongation: f64, law: Law<'_>) -> Run<'_> {
         orientation: Orientation::UniformAngle,
         minimum_speed: 0.0,
         spin: Spin::NONE,
-        velocity: Vector::default(),
+        release_velocity: Vector::default(),
         incline: 0.0,
         seed: 2014,
     }

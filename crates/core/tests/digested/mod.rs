@@ -220,7 +220,7 @@ pub fn kinds() -> Vec<(String, Run<'static>)> {
                     high: 60.0,
                     about: About::Isotropic,
                 },
-                velocity: Vector::new(0.1, -0.2, 0.3),
+                release_velocity: Vector::new(0.1, -0.2, 0.3),
                 incline: 0.1,
                 ..dropped
             };

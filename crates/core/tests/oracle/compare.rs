@@ -115,7 +115,7 @@ impl Case {
             gravity: *gravity,
             orientation,
             spin,
-            velocity: Vector::new(x, y, z),
+            release_velocity: Vector::new(x, y, z),
             incline: *incline,
             minimum_speed: *minimum_speed,
             seed: self.seed,
