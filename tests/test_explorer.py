@@ -97,7 +97,7 @@ def test_large_runs_are_shown_in_part() -> None:
         ({"law": rs.Frictionless(normal=rs.Plastic(yield_speed=0.1))}, "law.normal = Plastic"),
         ({"orientation": [0.1, 0.2], "particles": 2}, "orientation = an array"),
         ({"spin": rs.RandomSpin(rate=10.0)}, "spin"),
-        ({"spin": (1.0, 0.0, 0.0)}, "spin and velocity"),
+        ({"spin": (1.0, 0.0, 0.0)}, "spin and release_velocity"),
         ({"seed": 2**60}, "seed"),
     ],
 )

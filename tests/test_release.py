@@ -140,7 +140,7 @@ def test_statistics_count_the_impacts_of_simulate() -> None:
     np.testing.assert_allclose(counted["mean_restitution"], reduced["mean_restitution"], rtol=1e-6)
     both = rs.compare([BODY], [law, rs.Frictionless(normal=0.8)], **run, **bins)
     np.testing.assert_array_equal(both["restitution_count"][0, 0], counted["restitution_count"])
-    np.testing.assert_array_equal(both.attrs["velocity"], [0.1, 0.0, -0.3])
+    np.testing.assert_array_equal(both.attrs["release_velocity"], [0.1, 0.0, -0.3])
     assert both.attrs["spin_axis"] == "isotropic"
 
 
@@ -259,7 +259,7 @@ def test_files(text: str, spin: Any, tmp_path: Path) -> None:
     again = xr.load_dataset(tmp_path / "run.nc")
     assert again.identical(data)
     assert again.attrs["incline"] == 0.25
-    np.testing.assert_array_equal(again.attrs["velocity"], [0.1, 0.0, -0.2])
+    np.testing.assert_array_equal(again.attrs["release_velocity"], [0.1, 0.0, -0.2])
     assert again.release_spin.dims == ("particle", "component")
     assert list(again.component.values) == ["x", "y", "z"]
 

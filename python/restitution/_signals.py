@@ -48,9 +48,12 @@ def _thrown(kind: type[BaseException]) -> Iterator[Callable[..., NoReturn]]:
     is sent again. Who catches one and goes on, as to write what is finished, keeps it.
     """
     alive: set[weakref.ref[BaseException]] = set()
+    thrown = 0
     over = False
 
     def throw(number: int, *args: object) -> NoReturn:
+        nonlocal thrown
+        thrown += 1
         sys.unraisablehook = lambda _: None  # of objects that are half made: the process is about to end
         error = kind(*args)
         alive.add(weakref.ref(error, partial(lost, number)))
@@ -63,11 +66,11 @@ def _thrown(kind: type[BaseException]) -> Iterator[Callable[..., NoReturn]]:
         alive.discard(one)
         if not alive and not over:
             with suppress(RuntimeError):  # where the system gives no thread
-                _thread.start_new_thread(send, (number,))
+                _thread.start_new_thread(send, (number, thrown))
 
-    def send(number: int) -> None:
+    def send(number: int, last: int) -> None:
         time.sleep(0.01)  # whatever drops exceptions here has ended
-        if over:
+        if over or thrown > last:  # another signal has come meanwhile
             return
         if hasattr(signal, "pthread_kill"):
             signal.pthread_kill(threading.main_thread().ident or 0, number)

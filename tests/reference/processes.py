@@ -226,7 +226,9 @@ def _filled(folder: Path, words: str) -> set[str]:
 def _judged(ended: Ended, environment: Environment, signals: set[int]) -> str | None:
     if ended.said == "hung" or ended.seconds > 4 * SLOW:
         return f"took {ended.seconds:.0f} s"
-    if ended.status not in {*STATUSES, *(128 + number for number in signals)}:
+    # A second signal may meet a process that has ended its work, and handles signals no more.
+    second = {-number for number in environment.signals[1:]}
+    if ended.status not in {*STATUSES, *(128 + number for number in signals), *second}:
         return "ends otherwise"
     if "Traceback" in ended.said:
         return "shows a traceback"
