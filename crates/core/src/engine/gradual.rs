@@ -32,10 +32,11 @@ impl<S: Simd, T: Turn, H: Hull> WithSimd for Collide<'_, S, T, H> {
             group.land(hull);
             let contact = group.contact(body, hull);
             let answer = law.begin(&contact);
-            group.respond(body, hull, contact.approach_speed(), &answer.response);
             if answer.open.eq(1.0).any() {
                 (waiting[count], late[count]) = (i, answer);
                 count += 1;
+            } else {
+                group.respond(body, hull, answer.approach(), &answer.response);
             }
         }
         if count > 0 {
