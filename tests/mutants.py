@@ -12,9 +12,11 @@ import json
 import os
 import random
 import re
+import resource
 import shutil
+import signal
 import subprocess
-import time
+import threading
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
@@ -24,7 +26,8 @@ import tree_sitter_rust
 from tree_sitter import Language, Node, Parser
 
 ROOT = Path(__file__).resolve().parents[1]
-WORK = ROOT / "target" / "mutants"
+# Campaigns that run side by side have a folder each.
+WORK = Path(os.environ.get("MUTANTS_FOLDER", ROOT / "target" / "mutants"))
 HOME = WORK / "core" / "crates" / "core"
 LIVES = "LIVES"
 SWITCH = """
@@ -47,7 +50,11 @@ mod mutant {
 }
 """
 SLOWER = 3
-"""A test program may take so many times longer than without a change."""
+"""A test program may take so many times more of the processor's time than without a change."""
+ASLEEP = 3600.0
+"""Seconds by the clock after which a test program is taken to wait for ever."""
+MOST = 6 << 30
+"""Bytes that a test program may have, since a change can make it ask for more and more."""
 
 
 @dataclass(frozen=True)
@@ -266,30 +273,48 @@ def _around(file: Path, span: dict[str, Any]) -> list[int]:
     return []
 
 
+def ran(program: Path, number: int, limit: float) -> tuple[int, float]:
+    """Run a test program with a change, 0 for none; give its exit status and the processor's seconds."""
+    env = os.environ | {"MUTANT": str(number), "PROPTEST_MAX_SHRINK_ITERS": "0"}
+    env["RUSTC_BOOTSTRAP"] = "1"  # for --fail-fast
+    words = [str(program), "-q", "-Zunstable-options", "--fail-fast"]
+    quiet: dict[str, Any] = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}
+    child = subprocess.Popen(words, cwd=HOME, env=env, **quiet)
+    # Its own time: the clock's goes on where the machine is busy or the campaign stopped.
+    resource.prlimit(child.pid, resource.RLIMIT_CPU, (round(limit), round(limit) + 1))
+    resource.prlimit(child.pid, resource.RLIMIT_AS, (MOST, MOST))
+    alarm = threading.Timer(ASLEEP, child.kill)
+    alarm.start()
+    _, status, used = os.wait4(child.pid, 0)
+    alarm.cancel()
+    child.returncode = os.waitstatus_to_exitcode(status)
+    return child.returncode, used.ru_utime + used.ru_stime
+
+
 def timed_alone(program: Path) -> float:
-    """Run a test program without a change, with which it must pass; give the seconds that it takes."""
-    started = time.monotonic()
-    subprocess.run([program, "-q"], cwd=HOME, stdout=subprocess.DEVNULL, check=True)
-    return time.monotonic() - started
+    """Run a test program without a change, with which it must pass; give its seconds."""
+    status, seconds = ran(program, 0, ASLEEP)
+    if status:
+        raise RuntimeError(f"{program} fails without any change: {status}")
+    return seconds
 
 
 def judge(programs: list[tuple[float, Path]], number: int) -> str:
     """Say which test program notices a change, or that none does."""
-    env = os.environ | {"MUTANT": str(number), "PROPTEST_MAX_SHRINK_ITERS": "0"}
-    env["RUSTC_BOOTSTRAP"] = "1"  # for --fail-fast
-    quiet: dict[str, Any] = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}
     for seconds, program in programs:
-        words = [str(program), "-q", "-Zunstable-options", "--fail-fast"]
+        status, _ = ran(program, number, SLOWER * seconds + 5)
         name = program.stem.rpartition("-")[0]
-        try:
-            done = subprocess.run(
-                words, cwd=HOME, env=env, check=False, timeout=SLOWER * seconds + 5, **quiet
-            )
-        except subprocess.TimeoutExpired:
+        if status in (-signal.SIGXCPU, -signal.SIGKILL):
             return f"{name}, which goes on for ever"
-        if done.returncode != 0:
+        if status != 0:
             return name
     return LIVES
+
+
+def before(outcomes: Path) -> dict[str, str]:
+    """Give what noticed the changes that were tried before, by their names."""
+    lines = outcomes.read_text(encoding="utf-8").splitlines() if outcomes.exists() else []
+    return {name: found for found, _, name in (line.partition("\t") for line in lines)}
 
 
 def main() -> None:
@@ -298,16 +323,21 @@ def main() -> None:
     parser.add_argument("--shard", default="0/1", help="0/8 takes every eighth change")
     parser.add_argument("--tests", default="", help="which of crates/core/tests to ask, as flight,turning")
     parser.add_argument("files", nargs="*", help="words of the paths of the files that are changed")
+    parser.add_argument("--go-on", action="store_true", help="keep outcomes.txt, and try what it lacks")
     asked = parser.parse_args()
     wanted = [one for one in listed() if not asked.files or any(word in one.file for word in asked.files)]
     random.Random(1).shuffle(wanted)
     first, _, count = asked.shard.partition("/")
     chosen = wanted[int(first) :: int(count)]
-    lives = tried = 0
+    WORK.mkdir(parents=True, exist_ok=True)
+    outcomes = WORK / "outcomes.txt"
+    if not asked.go_on:
+        outcomes.unlink(missing_ok=True)
+    known = before(outcomes)
+    chosen = [one for one in chosen if one.name not in known]
     # More changes in one build would take the compiler longer than two builds.
     groups = sorted({Path(one.file).parts[3] for one in chosen})
-    WORK.mkdir(parents=True, exist_ok=True)
-    with (WORK / "outcomes.txt").open("w", encoding="utf-8") as out:
+    with outcomes.open("a", encoding="utf-8") as out:
         for group in groups:
             ours = [one for one in chosen if Path(one.file).parts[3] == group]
             programs, mutants = compile_all(ours, [test for test in asked.tests.split(",") if test])
@@ -320,10 +350,10 @@ def main() -> None:
                 group, *(f"{program.stem.rpartition('-')[0]} {seconds:.1f} s" for seconds, program in timed)
             )
             for one in mutants:
-                found = judge(timed, one.number)
-                tried, lives = tried + 1, lives + (found == LIVES)
-                print(f"{found}\t{one.name}", file=out, flush=True)
-    print(f"{tried} of {len(wanted)} changes tried, {lives} live: {WORK / 'outcomes.txt'}")
+                print(f"{judge(timed, one.number)}\t{one.name}", file=out, flush=True)
+    tried = before(outcomes)
+    lives = sum(found == LIVES for found in tried.values())
+    print(f"{len(tried)} of {len(wanted)} changes tried, {lives} live: {outcomes}")
 
 
 if __name__ == "__main__":
