@@ -170,7 +170,7 @@ class Switched:
         return b"/*[%d*/" % one.number + text + b"/*]*/"
 
 
-def compile_all(mutants: list[Mutant], tests: list[str]) -> tuple[list[Path], list[Mutant]]:
+def compile_all(mutants: list[Mutant], tests: list[str], vectors: bool) -> tuple[list[Path], list[Mutant]]:
     """Give those test programs, all if none is named, and the changes that they hold."""
     sources = WORK / "core"
     shutil.rmtree(sources, ignore_errors=True)
@@ -182,7 +182,7 @@ def compile_all(mutants: list[Mutant], tests: list[str]) -> tuple[list[Path], li
     (sources / "Cargo.toml").write_text(plan, encoding="utf-8")
     # Inlined everywhere, every change would be compiled a hundred times.
     for path in (sources / "crates/core/src").rglob("*.rs"):
-        path.write_bytes(_plain(path.read_bytes()))
+        path.write_bytes(_plain(path.read_bytes(), vectors))
     kept = {one.number: one for one in mutants}
     by_file: dict[str, list[Mutant]] = collections.defaultdict(list)
     for one in mutants:
@@ -194,9 +194,9 @@ def compile_all(mutants: list[Mutant], tests: list[str]) -> tuple[list[Path], li
                 if one.number in kept and one.number not in switched.placed:
                     del kept[one.number]
             text = switched.text
-            (sources / file).write_bytes(_plain(text))
+            (sources / file).write_bytes(_plain(text, vectors))
         lib = (ROOT / "crates/core/src/lib.rs").read_bytes()
-        (sources / "crates/core/src/lib.rs").write_bytes(_plain(lib) + SWITCH.encode())
+        (sources / "crates/core/src/lib.rs").write_bytes(_plain(lib, vectors) + SWITCH.encode())
         refused = set(_refused(sources))
         print(f"{len(kept)} changes, {len(refused & set(kept))} of them do not compile", flush=True)
         if not refused & set(kept):
@@ -211,17 +211,17 @@ def compile_all(mutants: list[Mutant], tests: list[str]) -> tuple[list[Path], li
         "--message-format=json",
         "--package",
         "restitution-core",
-        *(word for test in tests for word in ("--test", test)),
+        *(word for test in tests for word in (["--lib"] if test == "lib" else ["--test", test])),
     ]
     built = subprocess.run(words, cwd=sources, stdout=subprocess.PIPE, check=True, env=_environment())
     told = map(json.loads, built.stdout.splitlines())
     return [Path(one["executable"]) for one in told if one.get("executable")], list(kept.values())
 
 
-def _plain(text: bytes) -> bytes:
-    """Without what would make the build long: inlining, and all SIMD levels but one."""
+def _plain(text: bytes, vectors: bool) -> bytes:
+    """Without what would make the build long: inlining, and, unless they are asked for, vectors."""
     text = text.replace(b"#[inline(always)]", b"#[inline]").replace(b"#![forbid(unsafe_code)]", b"")
-    return re.sub(rb"V[34]::try_new\(\)\.map\(.*?work\)\),", b"None,", text)
+    return text if vectors else re.sub(rb"V[34]::try_new\(\)\.map\(.*?work\)\),", b"None,", text)
 
 
 def _environment() -> dict[str, str]:
@@ -321,8 +321,9 @@ def main() -> None:
     """Try a part of the changes, folder by folder; tell what noticed each, or that it lives."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--shard", default="0/1", help="0/8 takes every eighth change")
-    parser.add_argument("--tests", default="", help="which of crates/core/tests to ask, as flight,turning")
+    parser.add_argument("--tests", default="", help="which of crates/core/tests to ask, as lib,flight")
     parser.add_argument("files", nargs="*", help="words of the paths of the files that are changed")
+    parser.add_argument("--vectors", action="store_true", help="at every SIMD level, not one lane by one")
     parser.add_argument("--go-on", action="store_true", help="keep outcomes.txt, and try what it lacks")
     asked = parser.parse_args()
     wanted = [one for one in listed() if not asked.files or any(word in one.file for word in asked.files)]
@@ -340,7 +341,8 @@ def main() -> None:
     with outcomes.open("a", encoding="utf-8") as out:
         for group in groups:
             ours = [one for one in chosen if Path(one.file).parts[3] == group]
-            programs, mutants = compile_all(ours, [test for test in asked.tests.split(",") if test])
+            tests = [test for test in asked.tests.split(",") if test]
+            programs, mutants = compile_all(ours, tests, asked.vectors)
             # The digests last: they tell that bits have changed, not which of the two is wrong.
             timed = sorted(
                 ((timed_alone(program), program) for program in programs),

@@ -226,3 +226,6 @@ impl Surface {
 fn named(hull: &impl Hull, sphere: Sphere) -> Part<Scalar, 1> {
     hull.part(Mask::splat(Scalar::new(), sphere == Sphere::One))
 }
+
+#[cfg(test)]
+mod derivatives;

@@ -1,0 +1,141 @@
+//! What a hull says of its support function h, beside h itself: differences in e_z and in time.
+
+use super::{Ball, Ellipsoid, EqualPair, Hull, Pair, Single, Sphere, Surface, Swing, named};
+use crate::simd::one;
+use pulp::Scalar;
+
+/// Every kind of hull: pairs with the larger sphere on either side, and spheroids that are long, flat and round.
+fn surfaces() -> [Surface; 8] {
+    let ball = |offset, radius| Ball { offset, radius };
+    [
+        Surface::EqualPair(EqualPair::new(0.7)),
+        Surface::Pair(Pair::new([ball(0.3, 1.0), ball(-0.6, 0.5)], 0.9)),
+        Surface::Pair(Pair::new([ball(1.1, 0.4), ball(-0.2, 1.0)], 1.3)),
+        Surface::Single(Single::new(ball(-0.4, 1.0), true)),
+        Surface::Single(Single::new(ball(0.6, 1.0), false)),
+        Surface::Ellipsoid(Ellipsoid::new(0.6, 1.0)),
+        Surface::Ellipsoid(Ellipsoid::new(1.0, 0.7)),
+        Surface::Ellipsoid(Ellipsoid::new(1.0, 1.0)),
+    ]
+}
+
+/// e_z = c + A cos(Ωt + φ), as in a flight.
+struct Nod {
+    middle: f64,
+    amplitude: f64,
+    rate: f64,
+    phase: f64,
+}
+
+const NODS: [Nod; 3] = [
+    Nod {
+        middle: 0.2,
+        amplitude: 0.6,
+        rate: 1.3,
+        phase: 0.4,
+    },
+    Nod {
+        middle: -0.5,
+        amplitude: 0.3,
+        rate: -0.8,
+        phase: 2.0,
+    },
+    Nod {
+        middle: 0.0,
+        amplitude: 0.9,
+        rate: 2.1,
+        phase: -1.1,
+    },
+];
+
+impl Nod {
+    fn tilt(&self, time: f64) -> f64 {
+        self.middle + self.amplitude * self.rate.mul_add(time, self.phase).cos()
+    }
+
+    /// At time 0.
+    fn swing(&self) -> Swing<Scalar, 1> {
+        let (sin, cos) = self.phase.sin_cos();
+        Swing {
+            tilt: one(self.tilt(0.0)),
+            rate: one(-self.amplitude * self.rate * sin),
+            acceleration: one(-self.amplitude * self.rate * self.rate * cos),
+            square: one(self.rate * self.rate),
+        }
+    }
+}
+
+/// The first to fourth derivative at 0, from differences over δ and 2δ: wrong by terms of order δ⁴ and δ², and by rounding over δ⁴.
+fn derivatives(f: impl Fn(f64) -> f64) -> [f64; 4] {
+    let step = 0.01;
+    let even = |x: f64| 0.5 * (f(x) + f(-x)) - f(0.0);
+    let odd = |x: f64| 0.5 * (f(x) - f(-x));
+    let (a, b) = (even(step), even(2.0 * step));
+    let (u, v) = (odd(step), odd(2.0 * step));
+    [
+        (8.0 * u - v) / (6.0 * step),
+        (16.0 * a - b) / (6.0 * step * step),
+        (v - 2.0 * u) / step.powi(3),
+        2.0 * (b - 4.0 * a) / step.powi(4),
+    ]
+}
+
+fn close(found: f64, expected: f64, digits: i32) {
+    let room = 10.0_f64.powi(-digits) * (1.0 + expected.abs());
+    assert!(
+        (found - expected).abs() < room,
+        "{found} instead of {expected}"
+    );
+}
+
+/// The gap above a part is the lift minus h; s = −dh/de_z; and with all its derivatives in time, by which a step to the contact is
+/// proposed.
+#[test]
+fn what_a_hull_tells_of_its_derivatives() {
+    for (surface, nod) in surfaces()
+        .iter()
+        .flat_map(|s| NODS.iter().map(move |n| (s, n)))
+    {
+        for sphere in Sphere::BOTH {
+            let height = |tilt| surface.lift(sphere, tilt);
+            let here = nod.tilt(0.0);
+            close(surface.gap(sphere, here, 0.3), 0.3 - height(here), 14);
+            let slope = derivatives(|step| height(here + step))[0];
+            close(surface.lever(sphere, here), -slope, 7);
+            let [_, second, third, fourth] = derivatives(|time| height(nod.tilt(time)));
+            with_hull!(surface, hull => {
+                let (part, swing) = (named(hull, sphere), nod.swing());
+                let [a, b, c] = hull.bends(&part, &swing).map(|pack| pack.as_slice()[0]);
+                close(a, -second, 6);
+                close(b, -third, 3);
+                close(c, -fourth, 2);
+                close(hull.bend(&part, &swing, -1.0).as_slice()[0], -1.0 - second, 6);
+                let radius = hull.radius(&part, one(here)).as_slice()[0];
+                close(radius, hull.level() + height(here) - here * slope, 7);
+            });
+        }
+    }
+}
+
+/// No part reaches above the ceiling, and some part reaches it; the curvature of h stays within the sway.
+#[test]
+fn what_bounds_a_hull() {
+    for surface in surfaces() {
+        for nod in &NODS {
+            let reach = nod.middle.abs() + nod.amplitude;
+            let heights = |tilt| Sphere::BOTH.map(|sphere| surface.lift(sphere, tilt));
+            let all = (-100..=100).flat_map(|i| heights(reach * f64::from(i) / 100.0));
+            let ceiling = with_hull!(surface, hull => hull.ceiling(one(reach)).as_slice()[0]);
+            close(ceiling, all.fold(f64::NEG_INFINITY, f64::max), 14);
+            let bound = surface.sway(nod.amplitude, reach) * nod.rate * nod.rate;
+            for (sphere, i) in Sphere::BOTH
+                .iter()
+                .flat_map(|s| (0..100).map(move |i| (s, i)))
+            {
+                let later = f64::from(i) / nod.rate / 15.0;
+                let height = |time| surface.lift(*sphere, nod.tilt(later + time));
+                assert!(derivatives(height)[1].abs() <= bound + 1e-6);
+            }
+        }
+    }
+}
