@@ -221,6 +221,8 @@ def test_what_cannot_be_budgeted_is_refused(change: dict[str, object], message: 
         ({"precision": 0.0}, r"^precision = 0.0"),
         ({"quantity": "all"}, r"^quantity = 'all'"),
         ({"law": 1}, "^law"),
+        ({"lobes": "two"}, r"^lobes = 'two'"),
+        ({"lobes": 0}, r"^lobes = 0"),
     ],
 )
 def test_what_no_roundness_gives_is_refused(change: dict[str, object], message: str) -> None:

@@ -87,6 +87,8 @@ def required_roundness(
     asked = _Asked(precision=precision, diameter=diameter, quantity=quantity)
     if not isinstance(law, Law):
         raise ParameterError(wrong("law", law, "a law such as Frictionless(normal=0.9)"))
+    # The errors of what makes the balls come first.
+    from_roundness(asked.diameter, asked.diameter * _ROUNDEST, form=form, lobes=lobes)
     setting = Setting(drop=drop, impacts=impacts, gravity=gravity, particles=particles, seed=seed)
     experiment = Experiment.of(law, setting)
     deviations: list[float] = []
