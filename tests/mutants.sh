@@ -8,11 +8,8 @@ if command -v cargo-mutants >/dev/null 2>&1 && .venv/bin/python -c "import tree_
 else
     echo "core: did not run; it takes cargo-mutants (cargo install --locked cargo-mutants), and tree-sitter and tree-sitter-rust (pip)"
 fi
-if .venv/bin/python -c "import mutmut" 2>/dev/null; then
-    # In a copy, whose package has the place that mutmut looks in.
-    copy=target/mutants/package
-    rm -rf $copy && mkdir -p $copy && cp -r tests pyproject.toml README.md $copy && cp -r python $copy/src
-    (cd $copy && ../../../.venv/bin/python -m mutmut run; ../../../.venv/bin/python -m mutmut results)
+if .venv/bin/python -c "import mutmut.mutation.file_mutation" 2>/dev/null; then
+    .venv/bin/python tests/mutants_package.py "$@"
 else
     echo "package: did not run; it takes mutmut (pip)"
 fi
