@@ -212,6 +212,27 @@ def test_a_wrong_call_is_a_type_error(body: rs.Dumbbell, law: rs.TangentialResti
         rs.simulate(body, law, particle=10)  # type: ignore[call-arg]
     with pytest.raises(TypeError, match="positional"):
         rs.simulate(body, law, 10)  # type: ignore[call-arg]
+    with pytest.raises(TypeError, match="'velocity_bins' and 'restitution_bins'"):
+        rs.compare([body], [law])
+    with pytest.raises(TypeError, match=r"argument: 'restitution_bins'$"):
+        rs.compare([body], [law], velocity_bins=[0.0, 1.0])
+    with pytest.raises(TypeError, match="'particle'"):
+        rs.compare([body], [law], velocity_bins=[0.0, 1.0], restitution_bins=[0.0, 1.0], particle=10)
+
+
+def test_all_ranges_that_are_wrong_are_named(body: rs.Dumbbell, law: rs.TangentialRestitution) -> None:
+    """In one error, as all parameters of a body are; a range without bins is not passed over."""
+    told = r"velocity_range: missing; velocity_bins = 20 needs a range \(low, high\)\n"
+    told += r"restitution_range = \(3.0, -1.0\): must be \(low, high\) with low < high"
+    bins = {"velocity_bins": 20, "restitution_bins": 30, "restitution_range": (3.0, -1.0)}
+    with pytest.raises(ValueError, match=f"^{told}$"):
+        rs.statistics(body, law, **bins)  # type: ignore[arg-type]
+    with pytest.raises(ValueError, match=f"^{told}$"):
+        rs.reduce(rs.simulate(body, law, particles=2, impacts=2), **bins)  # type: ignore[arg-type]
+    with pytest.raises(
+        ValueError, match=r"velocity_range = \(0, 1\): must be left out: velocity_bins is None"
+    ):
+        rs.statistics(body, law, velocity_bins=None, velocity_range=(0, 1), restitution_bins=[0.0, 1.0])
 
 
 @pytest.mark.parametrize(

@@ -3,8 +3,12 @@
 import errno
 import os
 import re
+import shutil
+import signal
+import time
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -201,6 +205,33 @@ def test_write_replaces_only_if_asked(tmp_path: Path) -> None:
     assert path.read_text() == "old"
     write(path, b"new", replace=True)
     assert path.read_text() == "new"
+
+
+@pytest.mark.parametrize("folder", [False, True])
+def test_a_second_signal_leaves_no_draft(
+    folder: bool, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """It comes while the drafts are removed, after a first one, and counts when they are gone."""
+    handler = signal.signal(signal.SIGINT, signal.default_int_handler)
+    remove: Any = shutil.rmtree if folder else Path.unlink
+
+    def removed(*what: Any, **how: Any) -> None:
+        os.kill(os.getpid(), signal.SIGINT)
+        time.sleep(0.01)
+        remove(*what, **how)
+
+    def work() -> None:
+        with (whole_folder if folder else whole_file)(tmp_path / "new"):
+            os.kill(os.getpid(), signal.SIGINT)
+            time.sleep(1.0)
+
+    monkeypatch.setattr(shutil if folder else Path, "rmtree" if folder else "unlink", removed)
+    try:
+        with pytest.raises(KeyboardInterrupt):
+            work()
+    finally:
+        signal.signal(signal.SIGINT, handler)
+    assert names(tmp_path) == set()
 
 
 def test_a_draft_of_a_folder_is_known_as_one(tmp_path: Path) -> None:

@@ -50,12 +50,13 @@ def increasing_edges(bins: npt.ArrayLike, name: str) -> FloatArray:
     return edges
 
 
-def edges_from(bins: npt.ArrayLike, span: npt.ArrayLike | None, name: str) -> npt.ArrayLike:
+def edges_from(bins: npt.ArrayLike | None, span: npt.ArrayLike | None, name: str) -> npt.ArrayLike | None:
     """Give the edges of bins that are a number with a range, as `numpy.histogram` takes them; else `bins`."""
     kind = name.removesuffix("_bins")
     if isinstance(bins, bool) or not isinstance(bins, int | np.integer):
         if span is not None:
-            raise ParameterError(wrong(f"{kind}_range", span, f"left out: {name} are edges, not a number"))
+            what = "is None" if bins is None else "are edges, not a number"
+            raise ParameterError(wrong(f"{kind}_range", span, f"left out: {name} {what}"))
         return bins
     if span is None:
         raise ParameterError(
@@ -69,8 +70,18 @@ def edges_from(bins: npt.ArrayLike, span: npt.ArrayLike | None, name: str) -> np
     return np.linspace(ends[0], ends[1], int(bins) + 1)
 
 
-def checked_edges(bins: npt.ArrayLike, name: str, span: npt.ArrayLike | None = None) -> FloatArray:
-    return increasing_edges(edges_from(bins, span, name), name)
+def all_edges_from(**asked: tuple[npt.ArrayLike | None, npt.ArrayLike | None]) -> list[Any]:
+    """Give `edges_from` for bins and ranges by the names of the bins; one error has all that is wrong."""
+    found: list[Any] = []
+    problems: list[Problem] = []
+    for name, (bins, span) in asked.items():
+        try:
+            found.append(edges_from(bins, span, name))
+        except ParameterError as error:
+            problems.extend(error.problems)
+    if problems:
+        raise ParameterError(*problems)
+    return found
 
 
 def centres(edges: FloatArray) -> FloatArray:

@@ -21,6 +21,9 @@ from restitution.laws import Law
 
 T = TypeVar("T", bound=Parameters)
 
+_NEEDED = ("velocity_bins", "restitution_bins")
+"""Arguments that have no default."""
+
 _PER_RUN = {
     "all_impacts": "impacts of the run, in the bins or not",
     "energy_created_impacts": "of these, impacts that multiplied the kinetic energy by more than 1 + 1e-12",
@@ -61,6 +64,8 @@ def compare(
 
     Raises
     ------
+    TypeError
+        If ``velocity_bins`` or ``restitution_bins`` is missing, or an argument is unknown.
     ValueError
         Naming the argument that is wrong.
     SimulationInterrupted
@@ -84,9 +89,11 @@ def compare(
     (('body', 'law', 'velocity'), ['Frictionless', 'Coulomb'])
     """
     try:
-        inspect.signature(statistics).bind(None, None, **run)
+        inspect.signature(statistics).bind(None, None, **dict.fromkeys(_NEEDED) | run)
     except TypeError as error:
         raise TypeError(f"compare(): {error}") from None
+    if missing := [name for name in _NEEDED if name not in run]:
+        raise TypeError(f"compare(): missing a required argument: {' and '.join(map(repr, missing))}")
     solids = _named("bodies", bodies, Body)
     rules = _named("laws", laws, Law)
     pairs = list(product(solids, rules))

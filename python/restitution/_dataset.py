@@ -13,6 +13,7 @@ import xarray as xr
 from restitution._core import STOP_REASONS
 from restitution._energy import ledger_of
 from restitution._files import whole_file
+from restitution._reading import check_regular
 from restitution._run import Run
 
 
@@ -67,10 +68,13 @@ def attributes(run: Run, title: str) -> dict[str, Any]:
 
 def load(path: Path) -> xr.Dataset:
     """Read a netCDF file; an OSError that names it if it cannot be read."""
+    check_regular(path)
     try:
         return xr.load_dataset(path, engine="netcdf4")
-    except (OSError, MemoryError):
+    except MemoryError:
         raise
+    except OSError as error:  # of netCDF, which names the file in full, or not at all
+        raise OSError(error.errno or errno.EIO, error.strerror or str(error), str(path)) from error
     except Exception as error:  # of netCDF, which raises many kinds for a damaged file
         raise OSError(errno.EIO, f"cannot be read as netCDF: {error}", str(path)) from error
 

@@ -20,6 +20,7 @@ from pathlib import Path
 from typing import Any
 
 from restitution._parameters import ParameterError, wrong
+from restitution._signals import undisturbed
 
 
 def path_from(name: str, value: Any) -> Path:
@@ -35,7 +36,7 @@ def path_from(name: str, value: Any) -> Path:
 
 def check(path: Path, *, replace: bool) -> None:
     """Find out before the work begins whether a file can be written; raises the OSError if it cannot."""
-    target = _target(path)
+    target = followed(path)
     _refuse_existing(path, target, replace)
     _draft_of(path, target).unlink()
 
@@ -54,9 +55,9 @@ def check_folder(path: Path, *, replace: bool) -> None:
 
 def check_apart(inputs: Sequence[Path], outputs: Sequence[Path]) -> None:
     """Refuse a file that is to be written twice, or over what is read; raises an OSError."""
-    seen = {_target(path): "is what is read" for path in inputs}
+    seen = {followed(path): "is what is read" for path in inputs}
     for path in outputs:
-        target = _target(path)
+        target = followed(path)
         if target in seen:
             raise OSError(errno.EINVAL, f"{seen[target]}: give another name to write to", str(path))
         seen[target] = "is to be written twice"
@@ -88,7 +89,7 @@ def whole_files(paths: Sequence[Path], *, replace: bool = False) -> Iterator[lis
 
     As `whole_file`.
     """
-    targets = [_target(path) for path in paths]
+    targets = [followed(path) for path in paths]
     for path, target in zip(paths, targets, strict=True):
         _refuse_existing(path, target, replace)
     drafts: list[Path] = []
@@ -102,7 +103,8 @@ def whole_files(paths: Sequence[Path], *, replace: bool = False) -> Iterator[lis
         for folder in {target.parent for target in targets}:
             _flush(folder)
     except OSError as error:
-        _discard(drafts)
+        with undisturbed():
+            _discard(drafts)
         for path, *ours in zip(paths, drafts, targets, strict=False):
             if str(error.filename) in map(str, ours):
                 raise OSError(error.errno, error.strerror or str(error), str(path)) from error
@@ -111,7 +113,8 @@ def whole_files(paths: Sequence[Path], *, replace: bool = False) -> Iterator[lis
             raise OSError(error.errno, error.strerror or str(error), names) from error
         raise
     except BaseException:
-        _discard(drafts)
+        with undisturbed():
+            _discard(drafts)
         raise
 
 
@@ -142,7 +145,7 @@ def whole_folder(path: Path, *, replace: bool = False, names: Collection[str] = 
     OSError
         If the folder cannot be made or written to, or something is in the way; before the block runs.
     """
-    target = _target(path)
+    target = followed(path)
     for name in names:
         _refuse_existing(path / name, target / name, replace)
     above = [folder for folder in reversed(target.parents) if not folder.exists()]
@@ -167,18 +170,21 @@ def whole_folder(path: Path, *, replace: bool = False, names: Collection[str] = 
             os.rename(draft, target)
         _flush(place)
     except BaseException:
-        shutil.rmtree(draft, ignore_errors=True)
-        _remove(above)
+        with undisturbed():
+            shutil.rmtree(draft, ignore_errors=True)
+            _remove(above)
         raise
 
 
-def _target(path: Path) -> Path:
+def followed(path: Path) -> Path:
     """Follow links to where a file is to be; raises an OSError for a name that no file of ours can have."""
     try:
         os.fsencode(path).decode("utf-8")
         return path.resolve()
     except UnicodeDecodeError:
         raise OSError(errno.EILSEQ, "the name is not UTF-8", str(path)) from None
+    except FileNotFoundError:
+        raise FileNotFoundError(errno.ENOENT, "the working folder is no more", str(path)) from None
     except (ValueError, RuntimeError) as error:  # a null character; links in a circle
         raise OSError(errno.EINVAL, f"no name of a file: {error}", str(path)) from None
 

@@ -16,13 +16,14 @@ from restitution import _display
 
 
 class Problem(NamedTuple):
-    """What is wrong with one parameter; the name and the text after it make a sentence."""
+    """What is wrong with one parameter; the name, the text after it and what is allowed make a sentence."""
 
     name: str
     text: str
+    allowed: str = ""
 
     def __str__(self) -> str:
-        return self.name + self.text
+        return self.name + self.text + self.allowed
 
 
 class ParameterError(ValueError):
@@ -42,7 +43,7 @@ class TooLargeError(ParameterError, MemoryError):
 
 def wrong(name: str, value: Any, allowed: str) -> Problem:
     """Say that a value is not one of those that are allowed."""
-    return Problem(name, f" = {shown(value)}: must be {allowed}")
+    return Problem(name, f" = {shown(value)}: must be ", allowed)
 
 
 @contextmanager
@@ -209,7 +210,7 @@ def _problems(model: type[BaseModel], error: ValidationError) -> Iterator[Proble
         name = ".".join(str(part) for part in problem["loc"])
         match problem["type"]:
             case "missing":
-                yield Problem(name, f": missing; must be {_allowed(model, name)}")
+                yield Problem(name, ": missing; must be ", _allowed(model, name))
             case "extra_forbidden":
                 yield unknown(name, model.__name__, model.model_fields)
             case "value_error":

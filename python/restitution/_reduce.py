@@ -22,9 +22,10 @@ from restitution._bins import (
     LARGEST,
     FloatArray,
     IntArray,
+    all_edges_from,
     by_velocity,
     centres,
-    checked_edges,
+    increasing_edges,
 )
 from restitution._core import CREATES_ENERGY
 from restitution._energy import by_row
@@ -91,10 +92,15 @@ def reduce(
     >>> int(found["number"].sum() + found["velocity_overflow"])
     5000
     """
-    velocity_edges = checked_edges(velocity_bins, "velocity_bins", velocity_range)
+    velocity, restitution, fraction = all_edges_from(
+        velocity_bins=(velocity_bins, velocity_range),
+        restitution_bins=(restitution_bins, restitution_range),
+        fraction_bins=(fraction_bins, fraction_range),
+    )
+    velocity_edges = increasing_edges(velocity, "velocity_bins")
     columns = {
-        "restitution": checked_edges(restitution_bins, "restitution_bins", restitution_range),
-        "fraction": checked_edges(fraction_bins, "fraction_bins", fraction_range),
+        "restitution": increasing_edges(restitution, "restitution_bins"),
+        "fraction": increasing_edges(fraction, "fraction_bins"),
     }
     parts = batches_of(data.sizes.get("particle", 0) if isinstance(data, xr.Dataset) else 0, batches)
     names = ("impact_velocity", "restitution", "rotational_fraction", "energy_ratio")
@@ -160,7 +166,7 @@ def standard_errors(data: xr.Dataset, velocity_bins: npt.ArrayLike, *, block: in
         ``deviation_standard_error`` (NaN where fewer than two particles contribute; the last also where
         the variance is 0) and ``particles`` (m).
     """
-    edges = checked_edges(velocity_bins, "velocity_bins")
+    edges = increasing_edges(velocity_bins, "velocity_bins")
     nv = edges.size - 1
     block = whole("block", block, 1)
     names = ("impact_velocity", "restitution", "rotational_fraction")

@@ -13,7 +13,7 @@ import xarray as xr
 from restitution import _core
 from restitution._arrays import flag
 from restitution._batches import BATCHES, batches_of, origin, standard_errors
-from restitution._bins import FRACTION_BINS, assemble, by_velocity, checked_edges, edges_from
+from restitution._bins import FRACTION_BINS, all_edges_from, assemble, by_velocity, increasing_edges
 from restitution._core import STOP_REASONS
 from restitution._dataset import attributes
 from restitution._energy import by_row, ledger, warn
@@ -123,11 +123,12 @@ def statistics(
     """
     run = Run.called(locals())
     counts_only = flag("counts_only", counts_only)
-    edges = edges_of(
-        None if velocity_bins is None else edges_from(velocity_bins, velocity_range, "velocity_bins"),
-        edges_from(restitution_bins, restitution_range, "restitution_bins"),
-        None if counts_only else edges_from(fraction_bins, fraction_range, "fraction_bins"),
+    velocity, restitution, fraction = all_edges_from(
+        velocity_bins=(velocity_bins, velocity_range),
+        restitution_bins=(restitution_bins, restitution_range),
+        fraction_bins=(fraction_bins, fraction_range),
     )
+    edges = edges_of(velocity, restitution, None if counts_only else fraction)
     number = checked_threads(threads)
     parts = batches_of(run.particles, 1 if counts_only else batches)
     _check_memory(run, edges, number)
@@ -187,9 +188,9 @@ def edges_of(
 ) -> Edges:
     """Check the bins and name them as the core does."""
     return {
-        "velocity": None if velocity_bins is None else checked_edges(velocity_bins, "velocity_bins"),
-        "restitution": checked_edges(restitution_bins, "restitution_bins"),
-        "fraction": None if fraction_bins is None else checked_edges(fraction_bins, "fraction_bins"),
+        "velocity": None if velocity_bins is None else increasing_edges(velocity_bins, "velocity_bins"),
+        "restitution": increasing_edges(restitution_bins, "restitution_bins"),
+        "fraction": None if fraction_bins is None else increasing_edges(fraction_bins, "fraction_bins"),
     }
 
 

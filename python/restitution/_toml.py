@@ -11,9 +11,9 @@ import numpy as np
 
 from restitution import bodies, laws
 from restitution._parameters import ParameterError, Parameters, Problem, unknown, wrong
+from restitution._reading import content
 from restitution._release import RandomHeight, RandomSpin
 from restitution._run import Run
-from restitution.laws._law import NORMAL
 
 
 def _by_name(kinds: Iterable[type[Parameters]]) -> dict[str, type[Parameters]]:
@@ -38,7 +38,8 @@ _COUNTING = (
     "fraction_range",
     "counts_only",
 )
-_NORMAL = "a real number in [0, 1] or a table [law.normal]"  # as a file has it, instead of laws.NORMAL
+_ALLOWED = {"normal": "a real number in [0, 1] or a table [law.normal]"}
+"""What a file may hold for a parameter, where a call may give objects."""
 _LEARNING = ("velocities", "given", "release_height")
 
 P = TypeVar("P", bound=Parameters)
@@ -108,11 +109,11 @@ def read_all(path: Path, *, single: bool = False) -> Asked:
 
 def tables_in(path: Path) -> dict[str, Any]:
     """Read the tables of a TOML file."""
-    content = path.read_bytes()
+    text = content(path)
     try:
-        if _NESTED.search(content):  # which the parser recurses into
+        if _NESTED.search(text):  # which the parser recurses into
             raise ValueError("lists or tables nested too deeply")
-        return tomllib.loads(content.decode())
+        return tomllib.loads(text.decode())
     except (ValueError, RecursionError) as error:  # wrong syntax, or not UTF-8
         raise ValueError(f"{path}: not a TOML file: {error}") from None
 
@@ -148,6 +149,10 @@ def _plain(value: Any) -> Any:
     if isinstance(value, np.ndarray):
         return value.tolist()
     return list(value) if isinstance(value, tuple) else value
+
+
+def _allowed_in_a_file(problem: Problem) -> str:
+    return problem.allowed and _ALLOWED.get(problem.name, problem.allowed)
 
 
 class _Reader:
@@ -241,9 +246,9 @@ class _Reader:
         except ParameterError as error:
             # A part that is missing has been reported already.
             found = (
-                Problem(f"{name}.{key}", text.replace(NORMAL, _NORMAL))
-                for key, text in error.problems
-                if key not in bad
+                problem._replace(name=f"{name}.{problem.name}", allowed=_allowed_in_a_file(problem))
+                for problem in error.problems
+                if problem.name not in bad
             )
             self.problems.extend(found)
             return None

@@ -141,7 +141,8 @@ def judged(name: str, text: str, argument: str, bad: Any) -> str | None:
         return f"does not name {argument}: {text}"
     for line in text.splitlines():
         value = line.removeprefix(f"{argument} = ")
-        if value != line and not value.startswith(shown(bad)) and not _same_number(value, bad):
+        alike = (shown(bad), shown(str(bad))) if isinstance(bad, Path) else (shown(bad),)
+        if value != line and not value.startswith(alike) and not _same_number(value, bad):
             return f"shows another value than {shown(bad)}: {text}"
     return None
 

@@ -124,6 +124,14 @@ def _gone(_: int) -> None:
         os.environ[name] = str(Path.cwd().parent / "gone")
 
 
+def _gone_folder(_: int) -> None:
+    """The folder that the process works in is no more."""
+    folder = Path.cwd().parent / "removed"
+    folder.mkdir()
+    os.chdir(folder)
+    folder.rmdir()
+
+
 def _private(_: int) -> None:
     os.umask(0o777)
 
@@ -170,6 +178,7 @@ ENVIRONMENTS: dict[str, Environment] = {
     "a strange terminal": variables(TERM="none-such", COLUMNS="1", LINES="x"),
     "one core": Environment(_one_core),
     "a private umask": Environment(_private),
+    "a folder that is gone": Environment(_gone_folder, writes=False),
 }
 """By name."""
 

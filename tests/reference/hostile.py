@@ -99,5 +99,9 @@ VALUES: dict[str, Callable[[], Any]] = {
     "function": lambda: len,
     "class": lambda: int,
     "path": lambda: Path("none"),
+    "name of a table": lambda: "hostile.csv",
+    "dash": lambda: "-",
+    "what has no end": lambda: "/dev/zero",
+    "what takes all": lambda: Path("/dev/null"),
 }
 """By name, what makes the value: some can be used only once."""

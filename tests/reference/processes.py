@@ -226,9 +226,9 @@ def _filled(folder: Path, words: str) -> set[str]:
 def _judged(ended: Ended, environment: Environment, signals: set[int]) -> str | None:
     if ended.said == "hung" or ended.seconds > 4 * SLOW:
         return f"took {ended.seconds:.0f} s"
-    # A second signal may meet a process that has ended its work, and handles signals no more.
-    second = {-number for number in environment.signals[1:]}
-    if ended.status not in {*STATUSES, *(128 + number for number in signals), *second}:
+    # A signal may meet a process that has ended its work and handles signals no more; a shell gives the same.
+    killed = {-number for number in environment.signals}
+    if ended.status not in {*STATUSES, *(128 + number for number in signals), *killed}:
         return "ends otherwise"
     if "Traceback" in ended.said:
         return "shows a traceback"

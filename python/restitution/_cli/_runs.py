@@ -53,6 +53,7 @@ def simulate(
     with errors_in_a_line():
         from restitution._dataset import save
         from restitution._files import check, check_apart
+        from restitution._formats import NETCDF, check_name
         from restitution._resources import checked_threads
         from restitution._simulate import SimulationInterrupted, checked_record, simulate_run
         from restitution._toml import read
@@ -60,6 +61,7 @@ def simulate(
         parameters = read(run)
         checked_threads(threads)
         check_apart([run], [out])
+        check_name("out", out, NETCDF)
         check(out, replace=overwrite)
         try:
             data = simulate_run(
@@ -183,6 +185,7 @@ def distribution(
     with errors_in_a_line():
         from restitution._dataset import put
         from restitution._files import check, check_apart, whole_files
+        from restitution._formats import HEADER, MODULE, NETCDF, check_name
         from restitution._resources import checked_threads
         from restitution._toml import read_all
         from restitution.distribution import FluctuatingRestitution, _c, _fortran, image, image_format
@@ -194,6 +197,10 @@ def distribution(
             image_format(figure)
         paths = [path for path in (out, header, fortran, figure) if path is not None]
         check_apart([run], paths)
+        named = {"out": (out, NETCDF), "header": (header, HEADER), "fortran": (fortran, MODULE)}
+        for option, (path, kind) in named.items():
+            if path is not None:
+                check_name(option, path, kind)
         for path in paths:
             check(path, replace=overwrite)
         how = study.run | study.distribution | _given({"velocities": velocities, "given": given})
@@ -249,9 +256,11 @@ def _counted(count: Any, run: Path, out: Path, *, overwrite: bool, quiet: bool) 
     """Count, write what was counted, and say what it is."""
     from restitution._dataset import save
     from restitution._files import check, check_apart
+    from restitution._formats import NETCDF, check_name
     from restitution._simulate import SimulationInterrupted
 
     check_apart([run], [out])
+    check_name("out", out, NETCDF)
     check(out, replace=overwrite)
     interrupted: KeyboardInterrupt | None = None  # kept: what is caught has not been lost
     with warnings.catch_warnings():

@@ -7,7 +7,7 @@ import numpy.typing as npt
 import xarray as xr
 
 from restitution._arrays import whole
-from restitution._bins import centres, checked_edges
+from restitution._bins import centres, increasing_edges
 from restitution._parameters import ParameterError, Problem, wrong
 from restitution._release import RandomHeight
 from restitution._run import Run
@@ -76,7 +76,7 @@ def near_round(
     >>> round(float(found["std_restitution"].sel(velocity=0.35, method="nearest")), 3)
     0.006
     """
-    edges = checked_edges(velocity_bins, "velocity_bins")
+    edges = increasing_edges(velocity_bins, "velocity_bins")
     if not isinstance(body, Dumbbell) or not body.is_equal:
         raise ParameterError(wrong("body", body, "a Dumbbell with equal spheres"))
     if body.elongation > _ROUND:

@@ -13,6 +13,7 @@ from restitution._arrays import flag, reals, whole
 from restitution._dataset import load, save
 from restitution._display import Text, table, value
 from restitution._files import path_from, write
+from restitution._formats import HEADER, MODULE, NETCDF, path_for
 from restitution._parameters import ParameterError, Problem, wrong
 from restitution._recorded import records
 from restitution._release import RandomHeight, RandomSpin
@@ -197,7 +198,7 @@ class FluctuatingRestitution(EstimatedDistribution):
 
     def save(self, path: str | Path, *, replace: bool = False) -> None:
         """Write a netCDF file, whole or not at all; an existing one only with ``replace``."""
-        save(sealed(self.data), path_from("path", path), replace=flag("replace", replace))
+        save(sealed(self.data), path_for("path", path, NETCDF), replace=flag("replace", replace))
 
     def clamped(self) -> FluctuatingRestitution:
         """Give the same distribution, with speeds and conditions beyond the learned taken as the nearest."""
@@ -217,18 +218,16 @@ class FluctuatingRestitution(EstimatedDistribution):
         name : str
             What all names in the header start with.
         """
-        write(
-            path_from("path", path), header(self.data, name).encode("ascii"), replace=flag("replace", replace)
-        )
+        path = path_for("path", path, HEADER)
+        write(path, header(self.data, name).encode("ascii"), replace=flag("replace", replace))
 
     def to_fortran(self, path: str | Path, *, name: str = "restitution", replace: bool = False) -> None:
         """Write a Fortran 2008 module with the table and the elemental ``restitution_sample(v, u1, u2)``.
 
         As `to_c`; `name` is also that of the module.
         """
-        write(
-            path_from("path", path), module(self.data, name).encode("ascii"), replace=flag("replace", replace)
-        )
+        path = path_for("path", path, MODULE)
+        write(path, module(self.data, name).encode("ascii"), replace=flag("replace", replace))
 
     def figure(self) -> Figure:
         """Draw quantiles over v, densities with confidence bands, σ(ε) and the distance to fresh impacts.

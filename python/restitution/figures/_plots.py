@@ -11,7 +11,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from restitution._arrays import reals, whole
-from restitution._parameters import ParameterError, Problem, wrong
+from restitution._parameters import ParameterError, wrong
 from restitution.figures._panels import line, population, population_bar
 from restitution.figures._style import COLORS, COLUMN, MARKERS, PAGE, letter, panels, styled
 
@@ -102,7 +102,7 @@ def densities(found: xr.Dataset | FluctuatingRestitution, velocities: npt.ArrayL
             try:
                 low, high = found.support(float(v))
             except ParameterError as error:
-                raise ParameterError(*(Problem(f"velocities[{k}]", p.text) for p in error.problems)) from None
+                raise ParameterError(*(p._replace(name=f"velocities[{k}]") for p in error.problems)) from None
             edges = np.linspace(low, high, 401)
             density = np.diff(found.cdf(edges, float(v))) / np.diff(edges)
             name = f"{v:g} m/s"

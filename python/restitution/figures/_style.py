@@ -13,7 +13,8 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
 from restitution._arrays import flag, real, whole
-from restitution._files import path_from, whole_files
+from restitution._files import whole_files
+from restitution._formats import IMAGE, path_for
 from restitution._parameters import ParameterError, wrong
 from restitution.figures._check import figure as checked_figure
 from restitution.figures._check import panel
@@ -185,7 +186,7 @@ def save(figure: Figure, name: str | Path, title: str = "", caption: str = "") -
     >>> [path.name for path in figures.save(figure, tempfile.mkdtemp() + "/empty", title="Nothing")]
     ['empty.png', 'empty.pdf']
     """
-    path = path_from("name", name)
+    path = path_for("name", name, IMAGE)
     checked_figure("figure", figure)
     checked_text("title", title)
     checked_text("caption", caption)

@@ -45,9 +45,10 @@ def write(
     """
     from restitution._arrays import flag
     from restitution._dataset import save
-    from restitution._files import check_folder, path_from, whole_folder
+    from restitution._files import check_folder, whole_folder
+    from restitution._formats import FOLDER, path_for
 
-    out, overwrite = path_from("out", out), flag("overwrite", overwrite)
+    out, overwrite = path_for("out", out, FOLDER), flag("overwrite", overwrite)
     names = [f"laws.{kind}" for kind in ("png", "pdf", "nc", "txt", "md")]
     check_folder(out, replace=overwrite)
     with whole_folder(out, replace=overwrite, names=names) as folder:

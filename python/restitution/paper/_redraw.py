@@ -5,7 +5,8 @@ from contextlib import suppress
 from pathlib import Path
 
 from restitution._arrays import flag, whole
-from restitution._files import check_folder, path_from, whole_folder
+from restitution._files import check_folder, whole_folder
+from restitution._formats import FOLDER, path_for
 from restitution._resources import bar, checked_threads
 from restitution.explorer import page
 from restitution.paper._claims import judge
@@ -64,7 +65,7 @@ def redraw(
     seed = whole("seed", seed, 0, 2**64 - 1)
     checked_threads(threads)
     overwrite, progress = flag("overwrite", overwrite), flag("progress", progress)
-    folder = path_from("out", out)
+    folder = path_for("out", out, FOLDER)
     stages = bar(show=progress, total=4, desc="paper", unit="stage")
     check_folder(folder, replace=overwrite)
     names = [f"{figure.name}.{kind}" for figure in FIGURES for kind in ("png", "pdf", "nc", "txt")]

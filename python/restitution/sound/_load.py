@@ -10,6 +10,7 @@ import numpy.typing as npt
 from restitution._arrays import real, reals
 from restitution._files import path_from
 from restitution._parameters import ParameterError, Problem, wrong
+from restitution._reading import check_regular
 
 Array = npt.NDArray[np.float64]
 
@@ -36,7 +37,7 @@ def load(source: str | PathLike[str] | npt.ArrayLike, rate: float | None) -> tup
         rate = real("rate", rate, allowed, lambda one: LOWEST_RATE <= one <= HIGHEST_RATE)
     if isinstance(source, str | PathLike):
         path = path_from("source", source)
-        name = path.name
+        name = str(path)
         samples, own = _file(path)
         if rate is not None and rate != own:
             raise ParameterError(wrong("rate", given, f"left out, or {own:g}, which {name} says it has (Hz)"))
@@ -62,18 +63,19 @@ def load(source: str | PathLike[str] | npt.ArrayLike, rate: float | None) -> tup
 
 
 def _file(path: Path) -> tuple[Array, float]:
+    check_regular(path)
     path.open("rb").close()  # an OSError that names the file, if it cannot be read
     try:
         import soundfile
     except ImportError:
         message = ": reading sound files needs soundfile: pip install 'restitution[measure]'"
-        raise ParameterError(Problem(path.name, message)) from None
+        raise ParameterError(Problem(str(path), message)) from None
     try:
         samples, rate = soundfile.read(path, dtype="float64", always_2d=True)
     except (soundfile.LibsndfileError, RuntimeError) as error:
         reason = str(error).partition(": ")[2].strip() or str(error)
         raise ParameterError(
-            Problem(path.name, f": not a sound file that can be read (WAV, FLAC, OGG, MP3, AIFF): {reason}")
+            Problem(str(path), f": not a sound file that can be read (WAV, FLAC, OGG, MP3, AIFF): {reason}")
         ) from None
     return np.asarray(samples, dtype=np.float64), float(rate)
 

@@ -35,7 +35,12 @@ class Engine:
     def submit(self, function: Callable[..., Any], *arguments: Any, stoppable: bool = False) -> "Future[Any]":
         """Have a function called."""
         more = (self._stop,) if stoppable and self._stop is not None else ()
-        return self._executor.submit(function, *arguments, *more)
+        try:
+            return self._executor.submit(function, *arguments, *more)
+        except RuntimeError as error:
+            if "new thread" not in str(error):
+                raise
+            raise RuntimeError(f"threads = {self._width()}: the system gives no thread") from error
 
     def stop(self) -> None:
         """Ask running calls to stop."""

@@ -1,5 +1,6 @@
 """Whose store it is: the study and the version of the physics that it was made for, as the store says."""
 
+import errno
 import json
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
@@ -7,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from restitution._parameters import ParameterError
+from restitution._reading import content
 from restitution.study._physics import fingerprint
 from restitution.study._study import Study
 
@@ -46,10 +48,22 @@ def attribute(study: Study) -> dict[str, str]:
 
 
 @contextmanager
+def threads_for(path: Path) -> Iterator[None]:
+    """Name the store where the system gives no thread, of which Zarr needs some to read or write anything."""
+    try:
+        yield
+    except RuntimeError as error:
+        if "new thread" not in str(error):
+            raise
+        raise OSError(errno.EAGAIN, "the system gives no thread to work on it", str(path)) from error
+
+
+@contextmanager
 def readable(path: Path) -> Iterator[None]:
     """Name the store if it cannot be read: a damaged one makes Zarr and its decoders raise anything."""
     try:
-        yield
+        with threads_for(path):
+            yield
     except (Refused, ParameterError, MemoryError):
         raise
     except Exception as error:
@@ -81,8 +95,10 @@ def check(path: Path, study: Study) -> None:
 def identity(path: Path) -> dict[str, Any]:
     """Read what a store says that it is."""
     try:
-        text = (path / "zarr.json").read_text(encoding="utf-8")
+        text = content(path / "zarr.json").decode()
         found = json.loads(json.loads(text)["attributes"][_NAME])
+    except PermissionError:
+        raise
     except (OSError, ValueError, LookupError, TypeError, RecursionError):
         raise Refused(
             f"{path}: is not the store of a study, or its zarr.json is damaged; give another path"

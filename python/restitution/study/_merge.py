@@ -5,6 +5,7 @@ from pathlib import Path
 from typing import Any
 
 from restitution._files import path_from
+from restitution._formats import ZARR, check_name
 from restitution._parameters import ParameterError, Problem, shown, wrong
 from restitution.study._drive import Driver
 from restitution.study._engines import engine
@@ -60,12 +61,14 @@ def merge(
     >>> rs.study.merge(folder + "/both.zarr", parts).finished
     2
     """
-    need_zarr()
     if isinstance(parts, str | bytes) or not isinstance(parts, Sequence):
         raise ParameterError(wrong("parts", parts, "a list of paths"))
     path, others = path_from("out", out), [path_from(f"parts[{i}]", part) for i, part in enumerate(parts)]
+    need_zarr(path)
     if not path.exists() and not others:
         raise ParameterError(Problem("out", f" = {shown(out)}: there is no such store, and no parts for it"))
+    if not path.exists():
+        check_name("out", path, ZARR)
     wanted = study_of(study if study is not None else study_in(path if path.exists() else others[0]))
     for part in others:
         check(part, wanted)

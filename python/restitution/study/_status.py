@@ -75,8 +75,8 @@ def status(out: str | Path) -> Status:
     >>> rs.study.status(out).there  # of 2 tasks
     1
     """
-    need_zarr()
     path = path_from("out", out)
+    need_zarr(path)
     found = identity(path)
     with readable(path):
         batches = int(found["effort"]["batches"])
@@ -108,6 +108,7 @@ def open_store(path: Path) -> xr.Dataset:
     ('normal', 'velocity')
     """
     path = path_from("path", path)
+    need_zarr(path)
     identity(path)
     with readable(path):
         found: xr.Dataset = xr.open_zarr(path, chunks=None)

@@ -11,7 +11,7 @@ import hashlib
 import math
 import os
 import shutil
-import signal
+import threading
 import warnings
 from collections.abc import Callable, Iterator, Mapping
 from functools import wraps
@@ -23,10 +23,11 @@ import numpy.typing as npt
 import xarray as xr
 
 from restitution._dataset import version_here
-from restitution._files import draft_folder, permit
-from restitution._signals import put_off
+from restitution._files import draft_folder, followed, permit
+from restitution._resources import check_room
+from restitution._signals import undisturbed
 from restitution.study._axes import Design
-from restitution.study._identity import attribute, check, readable
+from restitution.study._identity import attribute, check, readable, threads_for
 from restitution.study._point import Words
 from restitution.study._study import Study
 
@@ -39,8 +40,17 @@ _CHUNK = 4_000_000
 """Bytes of a chunk of the other variables, at most where the shape allows it."""
 
 
-def need_zarr() -> None:
-    """Say what to install."""
+_ROOM = 100_000_000
+"""Bytes that Zarr takes, with its threads: one that starts where memory ends is waited for without end."""
+
+
+def need_zarr(path: Path) -> None:
+    """Say what to install; refuse a store where there is no room for Zarr, or no thread."""
+    check_room("a study", _ROOM)
+    with threads_for(path):  # before Zarr fails to start its own, which it then cannot end either
+        thread = threading.Thread(target=bool)
+        thread.start()
+        thread.join()
     try:
         import zarr
     except ImportError:
@@ -239,28 +249,30 @@ def create_or_open(path: Path, study: Study, words: int) -> tuple[Store, bool]:
     made = False
     if not path.exists():
         # Zarr writes on a thread of its own, which goes on where a signal has ended this one.
-        with put_off(lambda: None) as late:
+        with undisturbed():
             made = _make(path, study, words)
-        for number in late:
-            signal.raise_signal(number)
     check(path, study)
     return Store(path, study.digest), not made
 
 
 def _make(path: Path, study: Study, words: int) -> bool:
     """Put a new store in its place, unless another has taken it meanwhile."""
-    path.parent.mkdir(parents=True, exist_ok=True)
-    draft = draft_folder(path)
+    target = followed(path)
+    drafts: list[Path] = []
     try:
-        _create(draft, study, words)
-        permit(draft, 0o777)
-        os.rename(draft, path)
-    except OSError:
+        target.parent.mkdir(parents=True, exist_ok=True)
+        drafts.append(draft_folder(target))
+        with threads_for(path):
+            _create(drafts[0], study, words)
+        permit(drafts[0], 0o777)
+        os.rename(drafts[0], target)
+    except OSError as error:
         if not path.exists():
-            raise
+            raise OSError(error.errno, error.strerror or str(error), str(path)) from error
         return False
     finally:
-        shutil.rmtree(draft, ignore_errors=True)
+        for draft in drafts:
+            shutil.rmtree(draft, ignore_errors=True)
     return True
 
 

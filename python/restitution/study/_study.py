@@ -93,8 +93,7 @@ class Study:
             return _changed(self.base, values)
         except ParameterError as error:
             here = ", ".join(f"{key} = {value!r}" for key, value in values.items())
-            texts = (Problem(name, text) for name, text in error.problems)
-            raise ParameterError(*(Problem(f"at {here}: ", str(text)) for text in texts)) from None
+            raise ParameterError(*(Problem(f"at {here}: ", str(one)) for one in error.problems)) from None
 
     @cached_property
     def identity(self) -> dict[str, Any]:

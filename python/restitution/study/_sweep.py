@@ -9,6 +9,7 @@ import xarray as xr
 
 from restitution._arrays import flag
 from restitution._files import path_from
+from restitution._formats import ZARR, check_name
 from restitution._parameters import ParameterError, wrong
 from restitution._resources import bar as bar_of
 from restitution._streams import tell as say
@@ -88,13 +89,15 @@ def sweep(
     >>> found["std_restitution"].dims
     ('separation', 'normal', 'velocity')
     """
-    need_zarr()
     progress = flag("progress", progress)
     wanted = study_of(study)
     points = _shard(shard, wanted.design.points)
     path = path_from("out", out)
+    need_zarr(path)
     if path.exists():
         check(path, wanted)
+    else:
+        check_name("out", path, ZARR)
     with engine(client, threads) as work:
         if progress:
             say(str(estimate(wanted, max(1, work.room // 2 - 1), len(points))))

@@ -82,7 +82,7 @@ def read(
             # Among the tables of one export, that of all events is the longest.
             times, table = max(candidates, key=lambda candidate: len(candidate[0].times))
             return _dataset(path, name, table, times, uncertainty)
-    raise ParameterError(Problem(path.name, f": no times of impacts; {_contents(found, format)}"))
+    raise ParameterError(Problem(str(path), f": no times of impacts; {_contents(found, format)}"))
 
 
 def _contents(found: list[Table], format: str | None) -> str:
@@ -114,7 +114,7 @@ def _dataset(path: Path, format: str, table: Table, found: Found, uncertainty: f
             raise table.error(row, column, f"an uncertainty of {error:g} s: must be finite and >= 0")
     times, errors = np.array(found.times), np.array(found.errors)
     if np.count_nonzero(~np.isnan(times)) < 2:
-        raise ParameterError(Problem(path.name, f": {len(times)} times of impacts; must have at least two"))
+        raise ParameterError(Problem(str(path), f": {len(times)} times of impacts; must have at least two"))
     missed = np.isnan(times)
     errors = np.where(np.isnan(errors), uncertainty or 0.0, errors)
     errors[missed] = np.nan

@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from restitution._parameters import ParameterError, Problem, shown
+from restitution._reading import MOST, content
 
 _DECIMAL_COMMA = re.compile(r"[+-]?\d*,\d+([eE][+-]?\d+)?$")
 
@@ -84,21 +85,21 @@ def tables(path: Path) -> list[Table]:
     OSError
         If the file cannot be read.
     """
-    content = path.read_bytes()
-    if content.startswith((b"\xd0\xcf\x11\xe0", b"PK")):
-        packed = _zipped if content.startswith(b"PK") else _xls
+    held = content(path)
+    if held.startswith((b"\xd0\xcf\x11\xe0", b"PK")):
+        packed = _zipped if held.startswith(b"PK") else _xls
         try:
-            found = list(packed(path.name, content))
+            found = list(packed(str(path), held))
         except ParameterError:
             raise
         except Exception as error:  # what these libraries raise on damaged files is anything
             raise ParameterError(
-                Problem(path.name, f": a damaged spreadsheet or archive ({error})")
+                Problem(str(path), f": a damaged spreadsheet or archive ({error})")
             ) from error
     else:
-        found = [_text(path.name, "", content)]
+        found = [_text(str(path), "", held)]
     if not any(table.rows for table in found):
-        raise ParameterError(Problem(path.name, ": empty; must be a table with times of impacts"))
+        raise ParameterError(Problem(str(path), ": empty; must be a table with times of impacts"))
     return [table for table in found if table.rows]
 
 
@@ -150,6 +151,8 @@ def _zipped(file: str, content: bytes) -> Iterator[Table]:
     """Take a spreadsheet of the newer kind, or what phyphox packs: a text file for each of its tables."""
     with zipfile.ZipFile(io.BytesIO(content)) as archive:
         names = archive.namelist()
+        if sum(one.file_size for one in archive.infolist()) > MOST:
+            raise ParameterError(Problem(file, f": unpacks to more than {MOST >> 20} MiB"))
         if "[Content_Types].xml" not in names:
             for name in names:
                 if name.lower().endswith((".csv", ".txt")) and not name.startswith("meta/"):
