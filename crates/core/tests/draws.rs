@@ -1,6 +1,9 @@
 //! What particles are released with, beside the distributions that are promised: 20 000 draws of each.
 
-use restitution_core::{About, Height, Orientation, Spin, Vector};
+mod common;
+
+use common::*;
+use restitution_core::{About, Height, Orientation, Run, Spin, Vector};
 use std::f64::consts::{PI, TAU};
 
 const DRAWS: u64 = 20_000;
@@ -12,6 +15,7 @@ fn assert_uniform(numbers: impl Iterator<Item = f64>) {
     let mut all: Vec<f64> = numbers.collect();
     all.sort_by(f64::total_cmp);
     let n = all.len() as f64;
+    assert!(all.iter().all(|x| (0.0..=1.0).contains(x)));
     let distances = all.iter().enumerate().map(|(i, x)| {
         let (below, up_to) = (i as f64 / n, (i + 1) as f64 / n);
         (x - below).abs().max((x - up_to).abs())
@@ -52,6 +56,22 @@ fn heights_have_a_raised_cosine() {
     assert_eq!(Height::Fixed(0.3).draw(SEED, 7), 0.3);
     assert_eq!(height.lowest(), lowest);
     assert!((height.middle() - 0.035).abs() < 1e-17);
+}
+
+/// A sphere let go at rest reaches the plane with √(2g(h − R)), h in m as it was drawn.
+#[test]
+fn a_sphere_falls_from_the_height_that_is_drawn() {
+    let (lowest, highest) = (0.02, 0.05);
+    let run = Run {
+        release_height: Height::Random { lowest, highest },
+        ..paper(0.0, law(0.9, 1.0))
+    };
+    let records = simulate(&run);
+    for i in 0..run.particles {
+        let drop = run.release_height.draw(run.seed, i as u64) - run.body.unit;
+        let speed = (2.0 * run.gravity * drop).sqrt();
+        assert!((records.impact_velocity[i * run.impacts] / speed - 1.0).abs() < 1e-14);
+    }
 }
 
 #[test]
