@@ -162,6 +162,46 @@ fn thermal_spins_have_equal_energy_in_each_direction() {
     assert_gaussian(components.iter().map(|c| (c[2], c[0])));
 }
 
+/// The same of a run, by what its records say of axis and spin: m⟨ω²⟩ is shared out by the body's own moments of inertia.
+#[test]
+fn the_thermal_spin_of_a_run_knows_the_moments_of_inertia() {
+    let rate = 30.0_f64;
+    let angles = vec![[1.2, 0.7]; 5000];
+    let run = Run {
+        particles: angles.len(),
+        impacts: 1,
+        orientation: Orientation::Directions(&angles),
+        spin: Spin::Thermal { rate },
+        ..paper(2.0, law(0.9, 1.0))
+    };
+    let records = simulate(&run);
+    let along = Vector::new(
+        1.2_f64.sin() * 0.7_f64.cos(),
+        1.2_f64.sin() * 0.7_f64.sin(),
+        1.2_f64.cos(),
+    );
+    let level = Vector::new(-0.7_f64.sin(), 0.7_f64.cos(), 0.0);
+    let third = along.cross(level);
+    // J_xx⟨ω_x²⟩ = J_zz⟨ω_z²⟩ and 2⟨ω_x²⟩ + ⟨ω_z²⟩ = rate².
+    let (jxx, jzz) = (run.body.transverse_inertia, run.body.axial_inertia);
+    let across = rate * (jzz / (2.0 * jzz + jxx)).sqrt();
+    let lengthwise = across * (jxx / jzz).sqrt();
+    let components: Vec<_> = records
+        .release_spin
+        .iter()
+        .map(|&[x, y, z]| {
+            let spin = Vector::new(x, y, z);
+            [
+                spin.dot(along) / lengthwise,
+                spin.dot(level) / across,
+                spin.dot(third) / across,
+            ]
+        })
+        .collect();
+    assert_gaussian(components.iter().map(|c| (c[0], c[1])));
+    assert_gaussian(components.iter().map(|c| (c[1], c[2])));
+}
+
 #[test]
 fn given_spins_are_those() {
     let (angles, _) = axis(1);
