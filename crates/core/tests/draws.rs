@@ -68,7 +68,9 @@ fn a_sphere_falls_from_the_height_that_is_drawn() {
     };
     let records = simulate(&run);
     for i in 0..run.particles {
-        let drop = run.release_height.draw(run.seed, i as u64) - run.body.unit;
+        let height = run.release_height.draw(run.seed, i as u64);
+        assert_eq!(records.release_height[i], height);
+        let drop = height - run.body.unit;
         let speed = (2.0 * run.gravity * drop).sqrt();
         assert!((records.impact_velocity[i * run.impacts] / speed - 1.0).abs() < 1e-14);
     }

@@ -5,8 +5,9 @@ mod scalar;
 
 use common::*;
 use restitution_core::{
-    About, Frictionless, Law, Level, Limits, LoadedSphere, Means, Monitor, Orientation, Records,
-    Run, Scales, SingleImpact, Solid, Spheroid, Spin, State, StopReason, Vector, trajectory,
+    About, Frictionless, Law, Level, Limits, LoadedSphere, Means, Monitor, Orientation, Plastic,
+    Records, Run, Scales, SingleImpact, Solid, Spheroid, Spin, State, StopReason, Vector,
+    trajectory,
 };
 use scalar::Observed;
 
@@ -311,5 +312,26 @@ fn an_incline_weakens_gravity() {
     let (a, b) = (simulate(&run), simulate(&level));
     for (a, b) in a.time.iter().zip(&b.time) {
         assert!((a / b - 1.0).abs() < 1e-9, "{a} {b}");
+    }
+}
+
+/// Moments of ε are summed about ε_n at the normal speed of the first impact, which is that of a sphere: it gains 2g cos α times the
+/// way to the plane, whatever it is thrown with along it.
+#[test]
+fn the_origin_of_moments_is_the_first_restitution_of_a_sphere() {
+    let fading = Law::new(Plastic::new(0.3).unwrap(), Frictionless).unwrap();
+    for (velocity, incline) in [(Vector::default(), 0.0), (Vector::new(0.5, 0.2, -0.7), 0.6)] {
+        let run = Run {
+            particles: 1,
+            impacts: 1,
+            release_velocity: velocity,
+            incline,
+            ..paper(0.0, fading)
+        };
+        let records = simulate(&run);
+        assert!((run.origin() - records.restitution[0]).abs() < 1e-14);
+        let drop = run.release_height.middle() - run.body.unit;
+        let square = velocity.z * velocity.z + 2.0 * run.gravity * incline.cos() * drop;
+        assert!((records.impact_velocity[0] / square.sqrt() - 1.0).abs() < 1e-13);
     }
 }
