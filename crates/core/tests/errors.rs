@@ -5,9 +5,9 @@ mod common;
 use common::*;
 use restitution_core::statistics::{Axis, Bins, By};
 use restitution_core::{
-    About, ChatterjeeRuina, Coulomb, Dumbbell, Error, Frictionless, Hypothesis, Law, Level,
-    LoadedSphere, Means, Monitor, Orientation, Plastic, Run, Spherocylinder, Spheroid, Tabulated,
-    TangentialRestitution, Viscoelastic,
+    About, ChatterjeeRuina, Coulomb, Dumbbell, Error, Frictionless, Height, Hypothesis, Law, Level,
+    LoadedSphere, Means, Monitor, Orientation, Plastic, Run, Spherocylinder, Spheroid, Spin,
+    Tabulated, TangentialRestitution, Vector, Viscoelastic,
 };
 
 /// The name of the parameter that is wrong; its value must be in the message, too.
@@ -275,6 +275,66 @@ fn angles() {
         })),
         "release_height"
     );
+}
+
+/// Random heights and spins, on both sides of their limits: 10¹⁰⁰ √(g/R), a tenth of it for the mean of a distribution that has no end.
+#[test]
+fn releases() {
+    let run = || paper(0.1, law(0.9, 1.0));
+    let of = |run: Run<'_>| culprit(&error_of(&run));
+    let lowest = 0.05;
+    for highest in [0.04, f64::INFINITY, f64::NAN] {
+        let release_height = Height::Random { lowest, highest };
+        let run = Run {
+            release_height,
+            ..run()
+        };
+        assert_eq!(of(run), "release_height");
+    }
+    let most = 1e100 * (run().gravity / run().body.unit).sqrt();
+    let about = About::Isotropic;
+    let fixed = |x| Spin::Fixed(Vector::new(0.0, x, 0.0));
+    let random = |low, high| Spin::Random { low, high, about };
+    let thermal = |rate| Spin::Thermal { rate };
+    for (spin, name) in [
+        (fixed(1.001 * most), "spin"),
+        (fixed(-1.001 * most), "spin"),
+        (fixed(f64::NAN), "spin"),
+        (Spin::Given(&[[1.0; 3]; 99]), "number of spins"),
+        (Spin::Given(&[[f64::NAN; 3]; 100]), "spin"),
+        (random(-1.0, 1.0), "rate"),
+        (random(2.0, 1.0), "rate"),
+        (random(0.0, 1.001 * most), "rate"),
+        (thermal(-1.0), "rate"),
+        (thermal(0.1001 * most), "rate"),
+        (thermal(f64::NAN), "rate"),
+    ] {
+        assert_eq!(of(Run { spin, ..run() }), name, "{spin:?}");
+    }
+    for spin in [
+        fixed(0.999 * most),
+        random(1.0, 0.999 * most),
+        thermal(0.0999 * most),
+    ] {
+        simulate(&Run { spin, ..run() });
+    }
+    for velocity in [-1.001, 1.001, f64::NAN] {
+        let most = 1e100 * (run().gravity * run().body.unit).sqrt();
+        for release_velocity in [
+            Vector::new(velocity * most, 0.0, 0.0),
+            Vector::new(0.0, velocity * most, 0.0),
+            Vector::new(0.0, 0.0, velocity * most),
+        ] {
+            let run = Run {
+                release_velocity,
+                ..run()
+            };
+            assert_eq!(of(run), "release_velocity");
+        }
+    }
+    for incline in [-1e-9, std::f64::consts::FRAC_PI_2, f64::NAN] {
+        assert_eq!(of(Run { incline, ..run() }), "incline");
+    }
 }
 
 #[test]

@@ -97,12 +97,12 @@ fn dumbbells() {
         .iter()
         .flat_map(|r| densities.iter().map(move |d| (*r, *d)));
     for (radius, density) in pairs {
-        for separation in [0.002, 0.012, 0.03, 0.049, 0.05, 0.06, 0.11] {
+        for separation in [0.0, 0.002, 0.012, 0.03, 0.049, 0.05, 0.06, 0.11] {
             let centre = [0.5 * separation, -0.5 * separation];
             let [one, two] = radius;
             let (top, bottom) = (centre[0] + one, centre[1] - two);
             let (low, high) = (centre[1] + two, centre[0] - one);
-            let (ends, cut) = if (one - two).abs() >= separation {
+            let (ends, cut) = if one != two && (one - two).abs() >= separation {
                 let (own, cut) = if one > two {
                     (0, f64::MIN)
                 } else {
@@ -115,8 +115,8 @@ fn dumbbells() {
             } else if low <= high {
                 (vec![bottom, low, high, top], 0.5 * (low + high))
             } else {
-                // Both spheres have the same slice.
-                let cut = (two * two - one * one) / (2.0 * separation);
+                // Both spheres have the same slice; two hemispheres of one sphere in the middle.
+                let cut = (two * two - one * one) / (2.0 * separation.max(1e-300));
                 (vec![bottom, cut, top], cut)
             };
             let slice = |z: f64| {
