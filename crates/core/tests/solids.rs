@@ -132,6 +132,12 @@ fn dumbbells() {
                 moments,
             );
             assert_eq!(solid.unit, one.max(two));
+            let apart = if ends.len() == 2 {
+                0.0
+            } else {
+                0.5 * separation
+            };
+            assert!((solid.scaled.half_separation - apart / solid.unit).abs() < 1e-15);
             let places = [0, 1].map(|i| (centre[i] - moments[1], radius[i]));
             check_outline(&solid, |cosine| reach(&places, cosine));
         }
