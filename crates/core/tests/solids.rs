@@ -197,3 +197,14 @@ fn a_height_clears_the_plane_from_the_lowest_on() {
     assert!(Solid::clears(lowest * (1.0 - f64::EPSILON), lowest));
     assert!(!Solid::clears(lowest * (1.0 - 8.0 * f64::EPSILON), lowest));
 }
+
+/// Spheres whose distance no digit of the motion knows, and whose square is no number, are one sphere.
+#[test]
+fn spheres_that_are_hardly_apart_are_one() {
+    let sphere = Dumbbell::new(1.0, 0.0, 1.0).unwrap().scaled();
+    for separation in [1e-80, 1e-160, 1e-300, 5e-324] {
+        let near = Dumbbell::new(1.0, separation, 1.0).unwrap().scaled();
+        let short = Spherocylinder::new(1.0, separation, 1.0).unwrap().scaled();
+        assert_eq!((near, short), (sphere, sphere));
+    }
+}
