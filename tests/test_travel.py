@@ -2,7 +2,9 @@
 
 import copy
 import pickle
+from collections.abc import Callable
 from concurrent.futures import ProcessPoolExecutor
+from dataclasses import fields, is_dataclass
 from functools import cache
 from multiprocessing import get_context
 from typing import Any
@@ -12,6 +14,7 @@ import pytest
 
 import restitution as rs
 from restitution import fit
+from restitution._parameters import Parameters
 from restitution.analytic import first_impact
 from restitution.fit import Counts
 
@@ -115,3 +118,59 @@ def test_exceptions_travel(body: rs.Dumbbell, law: rs.TangentialRestitution) -> 
     assert "impacts so far" in str(stop)
     trouble = pickle.loads(pickle.dumps(rs.NumericalError("particle 3")))
     assert (type(trouble), str(trouble)) == (rs.NumericalError, "particle 3")
+
+
+def of_another_version(thing: Any, change: Callable[[dict[str, Any]], object]) -> Any:
+    """Make it anew of a state in which fields have been changed, as a pickle of another version has them."""
+    made, arguments, state = thing.__reduce_ex__(pickle.HIGHEST_PROTOCOL)[:3]
+    state = pickle.loads(pickle.dumps(state))
+    change(state.get("__dict__", state))
+    again = made(*arguments)
+    again.__setstate__(state)
+    return again
+
+
+def without(field: str) -> Callable[[dict[str, Any]], object]:
+    return lambda state: state.pop(field)
+
+
+def fields_of(thing: Any) -> list[str]:
+    kind = type(thing)
+    if isinstance(thing, Parameters):
+        return list(kind.model_fields)
+    return [one.name for one in fields(kind)] if is_dataclass(kind) else ["data"]
+
+
+@pytest.mark.parametrize("name", list(objects()))
+def test_a_pickle_of_another_version(name: str) -> None:
+    """With a field more or less: an error that names it, or what the default makes of one that is missing."""
+    thing = objects()[name]
+    with pytest.raises(ValueError, match=r"another|pickled by another version"):
+        of_another_version(thing, lambda state: state.update(another=1))
+    for field in fields_of(thing):
+        default = type(thing).model_fields[field] if isinstance(thing, Parameters) else None
+        if default is None or default.is_required():
+            with pytest.raises(ValueError, match=field):
+                of_another_version(thing, without(field))
+            continue
+        again = of_another_version(thing, without(field))
+        assert getattr(again, field) == default.default
+    assert of_another_version(thing, lambda _: None) == thing
+
+
+@pytest.mark.parametrize(
+    ("name", "field", "bad", "told"),
+    [
+        ("Dumbbell", "radius", -1.0, "radius"),
+        ("TangentialRestitution", "normal", float("nan"), "normal = nan"),
+        ("Tabulated", "e", (2.0, 0.8), "e"),
+        ("Counts", "count", np.array([-1.0]), "count"),
+        ("FluctuatingRestitution", "data", 1, "data = 1"),
+    ],
+)
+def test_a_pickle_whose_numbers_are_not_allowed(name: str, field: str, bad: Any, told: str) -> None:
+    """As of a version with other bounds: it is checked as when it is made."""
+    found: dict[str, Any] = {type(one).__name__: one for one in objects().values()}
+    found["Tabulated"] = rs.Tabulated(v=[0.1, 0.2], e=[0.9, 0.8])
+    with pytest.raises(ValueError, match=told):
+        of_another_version(found[name], lambda state: state.update({field: bad}))

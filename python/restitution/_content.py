@@ -2,11 +2,15 @@
 
 from collections.abc import Mapping
 from dataclasses import fields
+from functools import cached_property
+from inspect import getattr_static
 from types import MappingProxyType
 from typing import Any
 
 import numpy as np
 import xarray as xr
+
+from restitution._parameters import ParameterError, Problem
 
 
 class Content:
@@ -26,11 +30,23 @@ class Content:
         return self.__dict__ | views
 
     def __setstate__(self, state: dict[str, Any]) -> None:
+        check_state(self, state)
         views = {name: MappingProxyType(v) for name, v in state.items() if isinstance(v, dict)}
         self.__dict__.update(state | views)
+        if again := getattr(self, "__post_init__", None):
+            again()
 
     def _compared(self) -> dict[str, Any]:
         return {one.name: getattr(self, one.name) for one in fields(self) if one.compare}  # type: ignore[arg-type]
+
+
+def check_state(thing: Any, state: Mapping[str, Any]) -> None:
+    """Refuse what a pickle of a dataclass holds if the class had other fields in the version that made it."""
+    kind = type(thing)
+    kept = {name for name in state if isinstance(getattr_static(kind, name, None), cached_property)}
+    if other := {one.name for one in fields(kind)} ^ (state.keys() - kept):
+        text = f": pickled by another version, whose {kind.__name__} differs in {', '.join(sorted(other))}"
+        raise ParameterError(Problem(kind.__name__, f"{text}; make it again"))
 
 
 def same(one: Any, other: Any) -> bool:

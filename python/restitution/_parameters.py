@@ -154,9 +154,13 @@ class Parameters(BaseModel, metaclass=_display.Listed):
     def __getstate__(self) -> dict[Any, Any]:
         return super().__getstate__() | {"__dict__": self._fields()}
 
+    def __setstate__(self, state: dict[Any, Any]) -> None:
+        """Check what a pickle holds: it may be of another version, which had other fields or other bounds."""
+        super().__setstate__(type(self)(**state["__dict__"]).__getstate__())
+
     def __copy__(self) -> Self:
         copied = type(self).__new__(type(self))
-        copied.__setstate__(self.__getstate__())
+        super(Parameters, copied).__setstate__(self.__getstate__())
         return copied
 
     def __deepcopy__(self, memo: dict[int, Any] | None = None) -> Self:

@@ -13,6 +13,7 @@ from numpy.typing import ArrayLike
 
 from restitution._arrays import generator as _generator
 from restitution._arrays import reals, shape, whole
+from restitution._content import check_state
 from restitution._display import table, value
 from restitution._parameters import ParameterError, TooLargeError, wrong
 from restitution._resources import available_memory
@@ -50,6 +51,10 @@ class FirstImpact(ABC):
     body: Body
     law: Law
     orientation: OrientationName
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        check_state(self, state)
+        self.__dict__.update(state)
 
     def _repr_html_(self) -> str:
         low, high = self.support()
