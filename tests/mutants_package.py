@@ -28,6 +28,10 @@ WORK = ROOT / "target" / "mutants" / "package"
 TESTS = {
     "_files.py": ("test_files.py", "test_believed.py"),
     "_signals.py": ("test_signals.py",),
+    "study/_identity.py": ("test_study_merge.py",),
+    "study/_merge.py": ("test_study_merge.py",),
+    "study/_status.py": ("test_study_merge.py",),
+    "study/_store.py": ("test_study_store.py",),
     "distribution/_store.py": ("test_believed.py", "test_distribution_contract.py"),
 }
 """What reads and writes files or handles signals, and the tests that are about it."""

@@ -8,6 +8,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
+import restitution as rs
 from reference.command import COMMAND
 
 SMALL_STUDY = """
@@ -34,6 +35,19 @@ restitution_bins = {{ from = -1.0, to = 3.0, bins = 40 }}
 [effort]
 batches = 4
 """
+
+TINY: dict[str, Any] = {
+    "body": rs.Dumbbell(radius=3e-3, separation=3e-4),
+    "law": rs.TangentialRestitution(normal=0.98),
+    "run": {"particles": 16, "impacts": 20, "seed": 7, "release_height": 0.05},
+    "sweep": {"body.separation": [1e-4, 2e-3], "law.normal": [0.9, 0.95, 0.98]},
+    "statistics": {
+        "velocity_bins": {"from": 0.0, "to": 1.1, "bins": 5},
+        "restitution_bins": {"from": -1.0, "to": 3.0, "bins": 8},
+    },
+    "effort": {"batches": 4},
+}
+"""A study of six points, for its store alone."""
 
 
 def written(folder: Path, *, impacts: int = 60, normals: int = 2) -> Path:

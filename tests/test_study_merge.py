@@ -1,0 +1,204 @@
+"""Whose a store is, what it says of itself, and what a merge of stores takes."""
+
+import json
+import shutil
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from reference.studies import TINY, bits
+from restitution.study import Refused, merge, status, study_of, sweep
+from restitution.study._effort import Effort
+from restitution.study._identity import attribute, check, identity, readable, threads_for
+from restitution.study._status import open_store, study_in
+from restitution.study._study import Study
+
+
+@pytest.fixture(autouse=True, scope="module")
+def small_tasks() -> Any:
+    """Two batches to a task, so that a point has two of them."""
+    whole = Effort.task_batches
+    Effort.task_batches = property(lambda _: 2)  # type: ignore[assignment]
+    yield
+    Effort.task_batches = whole  # type: ignore[method-assign]
+
+
+@pytest.fixture(scope="module")
+def study() -> Study:
+    return study_of(TINY)
+
+
+@pytest.fixture(scope="module")
+def done(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    path = tmp_path_factory.mktemp("done") / "done.zarr"
+    sweep(TINY, path, threads=1)
+    return path
+
+
+def test_whose_a_store_is(done: Path, study: Study) -> None:
+    check(done, study)
+    assert identity(done) == json.loads(attribute(study)["restitution_study"])
+    assert study_in(done) == study
+    with pytest.raises(Refused) as raised:
+        check(done, study_of(TINY | {"run": TINY["run"] | {"seed": 8, "impacts": 21}}))
+    told = str(raised.value).splitlines()
+    assert told[0] == f"{done}: is the store of another study; write to a new store. What differs:"
+    assert [line.strip() for line in told[1:]] == [
+        "run.impacts: 20 in the store, 21 here",
+        "run.seed: 7 in the store, 8 here",
+    ]
+
+
+def changed(done: Path, tmp_path: Path, change: Any) -> Path:
+    """Copy the store and change what it says that it is."""
+    path = tmp_path / "changed.zarr"
+    shutil.copytree(done, path)
+    file = path / "zarr.json"
+    meta = json.loads(file.read_text())
+    own = json.loads(meta["attributes"]["restitution_study"])
+    own = change(own) or own
+    meta["attributes"]["restitution_study"] = json.dumps(own)
+    file.write_text(json.dumps(meta))
+    return path
+
+
+def test_a_store_of_another_physics(done: Path, study: Study, tmp_path: Path) -> None:
+    """Says so; what is long is cut, and what is much is counted."""
+    path = changed(
+        done, tmp_path, lambda own: own["physics"].update({f"p{i:02}": "x" * 70 for i in range(14)})
+    )
+    with pytest.raises(Refused) as raised:
+        check(path, study)
+    told = str(raised.value).splitlines()
+    assert "install that version to go on with it, or write to a new store" in told[0]
+    assert told[1] == f'  physics.p00: "{"x" * 39} … {"x" * 11}" in the store, nothing here'
+    assert len(told) == 14
+    assert told[-1] == "  and 2 more"
+
+
+@pytest.mark.parametrize(
+    "content", [b"{}", b"[]", b"\xff", b"", b'{"attributes": {"restitution_study": "[1]"}}']
+)
+def test_what_is_no_store(content: bytes, tmp_path: Path, study: Study) -> None:
+    (tmp_path / "zarr.json").write_bytes(content)
+    for action in (
+        lambda: identity(tmp_path),
+        lambda: status(tmp_path),
+        lambda: open_store(tmp_path),
+        lambda: study_in(tmp_path),
+        lambda: sweep(TINY, tmp_path),
+        lambda: merge(tmp_path),
+    ):
+        with pytest.raises(Refused, match=r"is not the store of a study.*; give another path"):
+            action()
+
+
+def test_a_store_that_may_not_be_read_is_not_called_damaged(
+    done: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def refuse(path: Path) -> bytes:
+        raise PermissionError(13, "Permission denied", str(path))
+
+    monkeypatch.setattr("restitution.study._identity.content", refuse)
+    with pytest.raises(PermissionError):
+        identity(done)
+
+
+def test_a_study_that_cannot_be_made_again(done: Path, tmp_path: Path) -> None:
+    path = changed(done, tmp_path, lambda own: own["run"].update(impacts=-1))
+    with pytest.raises(ValueError, match=r"changed\.zarr: its study cannot be made again: .*impacts"):
+        study_in(path)
+
+
+@pytest.mark.parametrize(
+    ("error", "told"),
+    [
+        (KeyError("tasks"), r"store: is damaged \(KeyError: 'tasks'\)"),
+        (OSError("of Zarr"), r"store: is damaged \(OSError: of Zarr\)"),
+        (OSError(5, "of the system"), "of the system"),
+        (Refused("already"), "^already$"),
+        (MemoryError("much"), "^much$"),
+        (RuntimeError("can't start new thread"), "the system gives no thread to work on it"),
+        (RuntimeError("other"), r"store: is damaged \(RuntimeError: other\)"),
+    ],
+)
+def test_errors_of_a_store_name_it(error: Exception, told: str) -> None:
+    """Of the system they stay what they are."""
+    kind = Refused if "damaged" in told else OSError if isinstance(error, RuntimeError) else type(error)
+    with pytest.raises(kind, match=told) as raised, readable(Path("store")):
+        raise error
+    if isinstance(error, RuntimeError) and kind is OSError:
+        assert isinstance(raised.value, OSError)
+        assert raised.value.filename == "store"
+
+
+def test_other_errors_are_not_of_threads() -> None:
+    with pytest.raises(RuntimeError, match="other"), threads_for(Path("store")):
+        raise RuntimeError("other")
+
+
+def test_the_status_counts_what_is_there(done: Path, tmp_path: Path) -> None:
+    found = status(done)
+    assert (found.points, found.finished, found.tasks, found.there) == (6, 6, 12, 12)
+    assert str(found) == "6 of 6 points finished (100 %); 12 tasks done, 12 at least"
+    part = tmp_path / "part.zarr"
+    sweep(TINY, part, shard=(2, 4), threads=1)
+    found = status(str(part))
+    assert (found.points, found.finished, found.tasks, found.there) == (6, 0, 12, 4)
+    merge(part)
+    assert str(status(part)) == "2 of 6 points finished (33 %); 4 tasks done, 12 at least"
+    with pytest.raises(Refused, match=r"none\.zarr: is not the store"):
+        status(tmp_path / "none.zarr")
+
+
+def test_a_merge_takes_what_is_undamaged(done: Path, study: Study, tmp_path: Path) -> None:
+    """From any of the parts, which stay as they are; what is there already is not written again."""
+    parts = [tmp_path / f"{i}.zarr" for i in (1, 2)]
+    for i, part in enumerate(parts, start=1):
+        sweep(TINY, part, shard=(i, 2), threads=1)
+    words = Path("tasks") / "words" / "c"
+    spoilt = parts[0] / words / "0" / "1" / "0"
+    whole = spoilt.read_bytes()
+    spoilt.write_bytes(whole[:-7])
+    before = [bits(part) for part in parts]
+    found = merge(tmp_path / "all.zarr", list(map(str, parts)), threads=1)
+    assert (found.points, found.finished, found.there) == (6, 5, 11)
+    assert [bits(part) for part in parts] == before
+    kept = tmp_path / "all.zarr" / words / "1" / "0" / "0"
+    at = kept.stat().st_mtime_ns
+    spoilt.write_bytes(whole)
+    (tmp_path / "all.zarr" / words / "2" / "1" / "0").write_bytes(b"spoilt")
+    found = merge(tmp_path / "all.zarr", parts, study=TINY)
+    assert (found.finished, found.there) == (6, 12)
+    assert kept.stat().st_mtime_ns == at
+    assert bits(tmp_path / "all.zarr") == bits(done)
+
+
+@pytest.mark.parametrize(
+    ("out", "parts", "told"),
+    [
+        ("none.zarr", [], r"^out = 'none\.zarr': there is no such store, and no parts for it"),
+        ("none.zarr", "one.zarr", r"^parts = 'one\.zarr': must be a list of paths"),
+        ("none.zarr", 3, r"^parts = 3: must be a list of paths"),
+        ("none.zarr", [3], r"^parts\[0\] = 3: must be the path"),
+        ("none.zarr", ["none"], "none: is not the store of a study"),
+        ("none.csv", ["done"], r"^out = 'none\.csv': must be the name of a Zarr store"),
+    ],
+)
+def test_what_cannot_be_merged(
+    out: str, parts: Any, told: str, done: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    with pytest.raises(ValueError, match=told):
+        merge(out, [str(done)] if parts == ["done"] else parts)
+    assert not list(tmp_path.iterdir())
+
+
+def test_parts_of_another_study_are_refused(done: Path, tmp_path: Path) -> None:
+    other = tmp_path / "other.zarr"
+    sweep(TINY | {"run": TINY["run"] | {"seed": 8}}, other, shard=(1, 6), threads=1)
+    for out in (tmp_path / "all.zarr", done):
+        with pytest.raises(Refused, match=r"other\.zarr: is the store of another study"):
+            merge(out, [done, other])
+    assert not (tmp_path / "all.zarr").exists()

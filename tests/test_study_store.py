@@ -1,0 +1,282 @@
+"""The store of a study, by itself: what is written, and what is read back."""
+
+import os
+import shutil
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+import xarray as xr
+import zarr
+
+from reference.studies import TINY
+from restitution.study import _store, merge, status, study_of, sweep
+from restitution.study._effort import Effort
+from restitution.study._status import open_store
+from restitution.study._store import Store, create_or_open, need_zarr
+from restitution.study._study import Study
+
+WORDS = 5
+
+
+@pytest.fixture(autouse=True, scope="module")
+def small_tasks() -> Any:
+    """Two batches to a task, so that a point has two of them."""
+    whole = Effort.task_batches
+    Effort.task_batches = property(lambda _: 2)  # type: ignore[assignment]
+    yield
+    Effort.task_batches = whole  # type: ignore[method-assign]
+
+
+@pytest.fixture(scope="module")
+def study() -> Study:
+    return study_of(TINY)
+
+
+@pytest.fixture(scope="module")
+def done(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    path = tmp_path_factory.mktemp("done") / "done.zarr"
+    sweep(TINY, path, threads=1)
+    return path
+
+
+@pytest.fixture
+def store(study: Study, tmp_path: Path) -> Store:
+    return create_or_open(tmp_path / "new.zarr", study, WORDS)[0]
+
+
+def rows(number: int = 2) -> Any:
+    return np.arange(number * WORDS, dtype=np.uint64).reshape(number, WORDS)
+
+
+def test_a_new_store(study: Study, tmp_path: Path) -> None:
+    """Its axes, with their units; no point is finished, no task is there, and no draft beside it."""
+    path = tmp_path / "a" / "b" / "new.zarr"
+    made, existed = create_or_open(path, study, WORDS)
+    assert (existed, made.path, made.study, made.task_batches) == (False, path, study.digest, 2)
+    assert [file.name for file in path.parent.iterdir()] == ["new.zarr"]
+    (tmp_path / "fresh").mkdir()
+    assert path.stat().st_mode == (tmp_path / "fresh").stat().st_mode
+    found = xr.open_zarr(path, chunks=None)
+    assert found["separation"].values.tolist() == [1e-4, 2e-3]
+    assert found["separation"].attrs == {"long_name": "body.separation", "units": "m"}
+    assert found["normal"].attrs == {"long_name": "law.normal"}
+    assert (found["status"].dims, found["status"].shape) == (("separation", "normal"), (2, 3))
+    assert not found["status"].any()
+    assert found["status"].attrs["flag_meanings"] == "unfinished finished"
+    assert found["status"].attrs["flag_values"] == [0, 1]
+    assert found.attrs["source"].startswith("restitution ")
+    assert found.attrs["Conventions"] == "CF-1.11"
+    assert found.attrs["title"].startswith("Parameter study")
+    assert "Phys. Rev. E" in found.attrs["references"]
+    assert made.words.shape == (6, 4, WORDS + 4)
+    assert made.words.chunks == (1, 2, WORDS + 4)
+    assert made.words.dtype == np.uint64
+    assert made.words.metadata.dimension_names == ("point", "batch", "word")
+    again, existed = create_or_open(path, study, WORDS)
+    assert (existed, again.path) == (True, path)
+
+
+def test_a_design_without_a_grid(tmp_path: Path) -> None:
+    """Its parameters are coordinates of the points."""
+    axes = {"body.separation": {"from": 1e-4, "to": 1e-3}, "law.normal": {"from": 0.8, "to": 0.9}}
+    found = sweep(
+        TINY | {"sweep": axes | {"design": "sobol", "points": 2}}, tmp_path / "points.zarr", threads=1
+    )
+    assert found["separation"].dims == found["normal"].dims == ("point",)
+    assert found["mean_restitution"].dims == ("point", "velocity")
+    assert {"separation", "normal"} <= set(found["mean_restitution"].coords)
+
+
+def test_rows_come_back_with_their_digests(store: Store) -> None:
+    assert store.there(1) == set()
+    store.write(1, 2, rows())
+    assert store.there(1) == {1}
+    assert store.valid(1, 0, 4).tolist() == [False, False, True, True]
+    found, good, digests = store.read(1, 2, 2)
+    assert np.array_equal(found, rows())
+    assert found.dtype == np.uint64
+    assert good.all()
+    assert len(digests) == 2 * 32
+    assert digests[:32] != digests[32:]
+    store.write(1, 0, rows())
+    assert store.there(1) == {0, 1}
+    assert store.valid(1, 0, 4).all()
+    assert not store.valid(0, 0, 4).any()
+    assert store.read(1, 0, 2)[2] != digests, "the same words of another batch have another digest"
+
+
+@pytest.mark.parametrize("chunk", [b"", b"\0" * 40, None])
+def test_a_chunk_that_cannot_be_read_is_damaged(store: Store, chunk: bytes | None) -> None:
+    """Others of the point are not; and the digest is that of the study, the point and the batch."""
+    for first in (0, 2):
+        store.write(2, first, rows())
+    file = store.path / "tasks" / "words" / "c" / "2" / "0" / "0"
+    if chunk is None:
+        file.unlink()
+    else:
+        file.write_bytes(chunk)
+    assert store.valid(2, 0, 4).tolist() == [False, False, True, True]
+    other = Store(store.path, b"another study")
+    assert not other.valid(2, 0, 4).any()
+
+
+def test_what_is_no_task_is_passed_over(store: Store) -> None:
+    """Folders that Zarr or a file system puts there."""
+    store.write(0, 0, rows())
+    (store.path / "tasks" / "words" / "c" / "0" / ".nfs01").mkdir()
+    assert store.there(0) == {0}
+
+
+@pytest.mark.parametrize("method", ["words", "results", "large"])
+def test_what_may_not_be_read_is_not_taken_as_damaged(
+    store: Store, method: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Else it would be computed again, and overwritten."""
+
+    class Forbidden:
+        shape = (1, 1, 1)
+
+        def __getitem__(self, _: object) -> None:
+            raise PermissionError(13, "Permission denied", "chunk")
+
+    if method == "words":
+        monkeypatch.setattr(store, "words", Forbidden())
+        with pytest.raises(PermissionError):
+            store.read(0, 0, 2)
+        return
+    monkeypatch.setattr(store, "group", {"large": Forbidden(), "separation": Forbidden()})
+    design = study_of(TINY).design
+    read = (
+        partial(store.read_large, ["large"], (0,))
+        if method == "large"
+        else partial(store.restore, xr.Dataset(), design)
+    )
+    with pytest.raises(PermissionError):
+        read()
+
+
+def found_at_a_point() -> xr.Dataset:
+    return xr.Dataset(
+        {
+            "mean": (("velocity",), [0.5, 0.6], {"units": "1", "flag_values": np.array([1, 2])}),
+            "count": (("velocity",), np.array([3, 4])),
+            "grid": (("velocity", "cell"), np.arange(2.0 * 2048).reshape(2, 2048)),
+            "velocity_edges": (("velocity_edge",), [0.0, 1.0, 2.0], {"units": "m s-1"}),
+        },
+        {"velocity": (("velocity",), [0.5, 1.5], {"units": "m s-1"})},
+    )
+
+
+def test_results_have_a_place_for_every_point(store: Store, study: Study) -> None:
+    """Large ones a chunk each; what all points share stands once."""
+    found = found_at_a_point()
+    assert _store.large(found) == ["grid"]
+    assert _store.small(found) == ["count", "mean"]
+    assert _store.common(found) == ["velocity_edges"]
+    for _ in range(2):
+        store.ensure(found, study.design)
+    mean, count, grid = (store.group[name] for name in ("mean", "count", "grid"))
+    assert (mean.shape, mean.chunks) == ((2, 3, 2), (2, 3, 2))
+    assert mean.metadata.dimension_names == ("separation", "normal", "velocity")
+    assert dict(mean.attrs) == {"units": "1", "flag_values": [1, 2]}
+    assert np.isnan(mean[...]).all()
+    assert count[...].tolist() == [[[0, 0]] * 3] * 2
+    assert (grid.shape, grid.chunks) == ((2, 3, 2, 2048), (1, 1, 2, 2048))
+    assert store.group["velocity_edges"][...].tolist() == [0.0, 1.0, 2.0]
+    assert store.group["velocity"].metadata.dimension_names == ("velocity",)
+    assert dict(store.group["velocity"].attrs) == {"units": "m s-1"}
+    store.write_large(found, (1, 2))
+    again = store.read_large(["grid"], (1, 2))
+    assert again is not None
+    assert np.array_equal(again["grid"], found["grid"].to_numpy())
+    assert store.read_large(["none"], (1, 2)) is None
+    assert store.large_arrays(study.design) == ["grid"]
+
+
+def test_what_all_points_share_is_restored(store: Store, study: Study) -> None:
+    """Where it is not what it should be, and is left alone where it is."""
+    found = found_at_a_point()
+    store.ensure(found, study.design)
+    store.group["velocity_edges"][0] = -1.0
+    (store.path / "separation" / "c" / "0").write_bytes(b"spoilt")
+    before = (store.path / "velocity" / "c" / "0").stat().st_mtime_ns
+    store.restore(found, study.design)
+    assert store.group["velocity_edges"][...].tolist() == [0.0, 1.0, 2.0]
+    assert store.group["separation"][...].tolist() == [1e-4, 2e-3]
+    assert (store.path / "velocity" / "c" / "0").stat().st_mtime_ns == before
+
+
+def test_chunks_hold_many_points_up_to_four_megabytes(study: Study) -> None:
+    variable = xr.Variable(("velocity",), np.zeros(4000))
+    assert _store._chunks(study.design, variable) == (2, 3, 4000)
+    wide = study_of(TINY | {"sweep": {"law.normal": {"from": 0.1, "to": 0.9, "points": 300}}}).design
+    assert _store._chunks(wide, variable) == (125, 4000)
+    tall = {"body.separation": [1e-4, 2e-3], "law.normal": {"from": 0.1, "to": 0.9, "points": 100}}
+    assert _store._chunks(study_of(TINY | {"sweep": tall}).design, variable) == (1, 100, 4000)
+    assert _store._chunks(wide, xr.Variable(("cell",), np.zeros(4096))) == (1, 4096)
+
+
+def test_what_zarr_needs(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The library in its version, room, and a thread."""
+    need_zarr(Path("store"))
+    with monkeypatch.context() as patched:
+        patched.setattr(zarr, "__version__", "2.18.3")
+        with pytest.raises(ImportError, match=r"need zarr 3, here is 2\.18\.3: pip install"):
+            need_zarr(Path("store"))
+    with monkeypatch.context() as patched:
+        patched.setitem(__import__("sys").modules, "zarr", None)
+        with pytest.raises(ImportError, match=r"need zarr: pip install 'restitution\[sweep\]'"):
+            need_zarr(Path("store"))
+    with monkeypatch.context() as patched:
+        patched.setattr("restitution._resources.available_memory", lambda: 99_999_999)
+        with pytest.raises(MemoryError, match=r"a study: takes 100 MB of memory"):
+            need_zarr(Path("store"))
+
+    def none(_: object) -> None:
+        raise RuntimeError("can't start new thread")
+
+    monkeypatch.setattr("threading.Thread.start", none)
+    for action in (
+        lambda: need_zarr(Path("store")),
+        lambda: status("store"),
+        lambda: open_store(Path("store")),
+        lambda: merge("store", ["store"]),
+        lambda: sweep(TINY, "store"),
+    ):
+        with pytest.raises(OSError, match="the system gives no thread") as raised:
+            action()
+        assert raised.value.filename == "store"
+
+
+def test_a_store_that_appears_meanwhile(
+    done: Path, study: Study, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """As that of another driver: it is taken, and no draft is left."""
+    rename = os.rename
+    path = tmp_path / "new.zarr"
+
+    def late(source: Path, target: Path) -> None:
+        shutil.copytree(done, path)
+        rename(source, target)
+
+    monkeypatch.setattr(os, "rename", late)
+    store, existed = create_or_open(path, study, WORDS)
+    assert existed
+    assert store.there(0) == {0, 1}
+    assert [file.name for file in tmp_path.iterdir()] == ["new.zarr"]
+
+
+def test_a_store_that_cannot_take_its_place(
+    study: Study, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def refuse(*_: object) -> None:
+        raise OSError(28, "No space left on device", "draft")
+
+    monkeypatch.setattr(os, "rename", refuse)
+    with pytest.raises(OSError, match="No space left") as raised:
+        create_or_open(tmp_path / "new.zarr", study, WORDS)
+    assert (raised.value.errno, raised.value.filename) == (28, str(tmp_path / "new.zarr"))
+    assert not list(tmp_path.iterdir())
