@@ -4,7 +4,7 @@
 use crate::engine::{Impact, StopReason};
 use crate::memory::{filled, zeros};
 use crate::run::Plan;
-use crate::simd::Pack;
+use crate::simd::LANES;
 use crate::simd::elementary::angle_in_lanes;
 use crate::variable::{Stored, Values, Variable, When};
 use crate::{Error, Law, Normal, Value};
@@ -181,24 +181,27 @@ macro_rules! columns {
                 }
             }
 
-            /// Writes impact `number` of the particles from `row` on, one in each lane.
+            /// Writes an impact of the particle in each active lane; row 0 is that of the particle `first`.
             #[inline(always)]
             pub fn record<S: Simd, const K: usize>(
                 &mut self,
-                number: usize,
-                row: usize,
+                first: usize,
                 impact: &Impact<S, K>,
                 plan: &Plan<'_>,
             ) {
-                let active = impact.active.select(1.0, 0.0_f64);
+                // Lanes and cells, of which the lanes that have no impact are left out.
+                let mut cells = [(0, 0); LANES];
+                let mut count = 0;
+                impact.active.each(|lane| {
+                    let row = impact.particle.as_slice()[lane] as usize - first;
+                    cells[count] = (lane, row * self.columns + impact.number.as_slice()[lane] as usize);
+                    count += 1;
+                });
                 $(if !self.$name.is_empty() {
                     let ($impact, $plan) = (impact, plan);
                     let values: <$kind as Stored>::Lanes<S, K> = $value;
-                    for lane in 0..Pack::<S, K>::WIDTH {
-                        if active.as_slice()[lane] != 0.0 {
-                            let cell = (row + lane) * self.columns + number;
-                            self.$name[cell] = <$kind as Stored>::lane(&values, lane);
-                        }
+                    for &(lane, cell) in &cells[..count] {
+                        self.$name[cell] = <$kind as Stored>::lane(&values, lane);
                     }
                 })*
             }

@@ -90,7 +90,7 @@ impl Records {
 pub(crate) struct Table<'a> {
     block: Block<'a>,
     plan: &'a Plan<'a>,
-    /// The row of the particle in lane 0.
+    /// The particle of row 0.
     first: usize,
 }
 
@@ -104,7 +104,7 @@ impl<'a> Table<'a> {
         Self {
             block,
             plan,
-            first: 0,
+            first: particle,
         }
     }
 
@@ -127,29 +127,21 @@ impl<'a> Table<'a> {
 }
 
 impl Meanwhile for Table<'_> {
-    fn meanwhile(&mut self) {}
+    fn meanwhile(&mut self, _: usize) {}
 }
 
 impl Sink for Table<'_> {
     const TOGETHER: bool = false;
 
-    fn begin(&mut self, first: usize) {
-        self.first = first;
-    }
+    fn begin(&mut self) {}
 
     #[inline(always)]
-    fn impact<S: Simd, const K: usize>(
-        &mut self,
-        number: usize,
-        first: usize,
-        impact: &Impact<S, K>,
-    ) {
-        let row = self.first + first;
-        self.block.record(number, row, impact, self.plan);
+    fn impact<S: Simd, const K: usize>(&mut self, _: usize, impact: &Impact<S, K>) {
+        self.block.record(self.first, impact, self.plan);
     }
 
-    fn end(&mut self, lane: usize, impacts: usize, reason: StopReason) {
-        let row = self.first + lane;
+    fn end(&mut self, particle: usize, impacts: usize, reason: StopReason) {
+        let row = particle - self.first;
         self.block.impacts[row] = impacts as i64;
         self.block.stop_reason[row] = reason as i8;
     }

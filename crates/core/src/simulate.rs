@@ -3,7 +3,7 @@
 use crate::Error;
 use crate::columns::{Columns, Records};
 use crate::records::Table;
-use crate::run::{BLOCK, Plan, Run};
+use crate::run::{BLOCK, Plan, Run, share};
 use crate::statistics::{Bins, By, Counter, Counts, Tally, Tallying};
 use crate::threads::{Means, Monitor};
 use std::ops::Range;
@@ -50,7 +50,7 @@ impl Run<'_> {
         let started = AtomicUsize::new(part.start);
         let rows = Mutex::new(records.block());
         // Free threads take blocks in order, so that the particles begun before a cancellation are contiguous.
-        let ended = means.each_thread(part.len().div_ceil(BLOCK), || {
+        let ended = means.each_thread(part.len().div_ceil(BLOCK), |_| {
             while !monitor.is_cancelled() {
                 let mut rows = rows.lock().expect("no thread panics while it takes rows");
                 let block = rows.split(BLOCK);
@@ -133,16 +133,18 @@ impl Run<'_> {
         counter: impl Fn() -> Result<T, Error> + Sync,
     ) -> Result<Vec<Result<Tally, Error>>, Error> {
         let next = AtomicUsize::new(part.start);
-        means.each_thread(part.len().div_ceil(BLOCK), || {
+        means.each_thread(part.len().div_ceil(BLOCK), |threads| {
             let mut counter = counter()?;
-            loop {
-                let first = next.fetch_add(BLOCK, Ordering::Relaxed);
-                if first >= part.end || monitor.is_cancelled() {
-                    return Ok(counter.finish());
-                }
-                let particles = first..part.end.min(first + BLOCK);
+            while !monitor.is_cancelled() {
+                let next = next.fetch_update(Ordering::Relaxed, Ordering::Relaxed, |first| {
+                    let left = part.end - first;
+                    (left > 0).then(|| first + share(left, threads))
+                });
+                let Ok(first) = next else { break };
+                let particles = first..first + share(part.end - first, threads);
                 plan.bounce(particles, means.level, monitor, &mut counter)?;
             }
+            Ok(counter.finish())
         })
     }
 

@@ -62,13 +62,13 @@ pub fn default_threads() -> usize {
 }
 
 impl Means {
-    /// Runs `work` on every thread, on no more threads than there are blocks, and returns one result for each thread. A single
-    /// thread is the caller's own.
+    /// Runs `work` on every thread, with the number of threads, which is not larger than that of blocks, and returns one result for
+    /// each thread. A single thread is the caller's own.
     #[cfg(feature = "threads")]
     pub(crate) fn each_thread<R: Send>(
         &self,
         blocks: usize,
-        work: impl Fn() -> R + Sync,
+        work: impl Fn(usize) -> R + Sync,
     ) -> Result<Vec<R>, Error> {
         let wanted = match self.threads {
             0 => default_threads(),
@@ -76,7 +76,7 @@ impl Means {
         };
         let threads = wanted.min(blocks).max(1);
         if threads == 1 {
-            return Ok(vec![work()]);
+            return Ok(vec![work(1)]);
         }
         let pool = rayon::ThreadPoolBuilder::new()
             .num_threads(threads)
@@ -85,7 +85,7 @@ impl Means {
                 asked: threads,
                 problem: error.to_string(),
             })?;
-        Ok(pool.broadcast(|_| work()))
+        Ok(pool.broadcast(|_| work(threads)))
     }
 
     /// Runs `work` on the caller's thread.
@@ -93,8 +93,8 @@ impl Means {
     pub(crate) fn each_thread<R>(
         &self,
         _blocks: usize,
-        work: impl Fn() -> R,
+        work: impl Fn(usize) -> R,
     ) -> Result<Vec<R>, Error> {
-        Ok(vec![work()])
+        Ok(vec![work(1)])
     }
 }

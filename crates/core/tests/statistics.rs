@@ -6,7 +6,8 @@ mod tallies;
 use common::*;
 use proptest::prelude::*;
 use restitution_core::statistics::{Bins, By, Tally};
-use restitution_core::{Law, Level, Means, Monitor, Orientation, Run};
+use restitution_core::{Law, Level, Means, Monitor, Orientation, Run, Spheroid, Spin, Vector};
+use std::collections::BTreeSet;
 use std::sync::LazyLock;
 use tallies::*;
 
@@ -242,4 +243,49 @@ fn long_runs_are_emptied_in_time() {
         total.merge(&statistics(&run(portion), &bins, Level::best(), 1));
     }
     assert_eq!(total, whole);
+}
+
+/// A lane takes the next particle where its own has ended, and sits out the impacts of the others while its search goes on. Of particles
+/// that live for different times every impact and every end is counted once: as many have an impact of some number as have a recorded
+/// one.
+#[test]
+fn every_impact_and_every_end_is_counted_once() {
+    for (aspect, thrown) in [(2.0, false), (2.0, true), (0.5, true)] {
+        let mut run = Run {
+            body: Spheroid::new(3e-3, aspect * 3e-3, 2500.0).unwrap().into(),
+            particles: 1300,
+            impacts: 40,
+            minimum_speed: 0.4,
+            ..paper(0.0, law(0.9, 0.5))
+        };
+        if thrown {
+            run.release_velocity = Vector::new(0.3, 0.1, -0.2);
+            run.spin = Spin::Fixed(Vector::new(300.0, -200.0, 100.0));
+            run.incline = 0.05;
+        }
+        let records = simulate(&run);
+        let lives: BTreeSet<i64> = records.impacts.iter().copied().collect();
+        assert!(lives.len() > 10 && lives.contains(&40), "{lives:?}");
+        let bins = Edges::coarse().bins(By::Number(run.impacts));
+        for level in Level::available() {
+            for threads in [1, 2] {
+                let tally = statistics(&run, &bins, level, threads);
+                let columns = tally.restitution.columns();
+                for (number, counts) in tally.restitution.counts().chunks(columns).enumerate() {
+                    let reached = |&&impacts: &&i64| impacts > number as i64;
+                    let expected = records.impacts.iter().filter(reached).count();
+                    assert_eq!(
+                        counts.iter().sum::<u64>(),
+                        expected as u64,
+                        "{number} {level:?}"
+                    );
+                }
+                for (reason, &count) in tally.stops.iter().enumerate() {
+                    let ended = |&&stop: &&i8| stop as usize == reason;
+                    let expected = records.stop_reason.iter().filter(ended).count();
+                    assert_eq!(count, expected as u64, "{reason} {level:?}");
+                }
+            }
+        }
+    }
 }

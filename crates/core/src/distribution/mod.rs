@@ -55,7 +55,7 @@ fn in_blocks(
     }
     let number = out.len().div_ceil(BLOCK);
     let blocks = Mutex::new(out.chunks_mut(BLOCK).enumerate());
-    means.each_thread(number, || {
+    means.each_thread(number, |_| {
         loop {
             let next = blocks.lock().expect("nobody panics who holds it").next();
             let Some(block) = next else { break };

@@ -30,8 +30,9 @@ impl<S: Simd, T: Turn, H: Hull> WithSimd for Collide<'_, S, T, H> {
         let mut count = 0;
         for (i, group) in groups.iter_mut().enumerate() {
             group.land(hull);
-            let contact = group.contact(body, hull);
-            let answer = law.begin(&contact);
+            let (contact, landing) = group.contact(body, hull);
+            let mut answer = law.begin(&contact);
+            answer.open = landing.select(answer.open, 0.0);
             if answer.open.eq(1.0).any() {
                 (waiting[count], late[count]) = (i, answer);
                 count += 1;

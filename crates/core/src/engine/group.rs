@@ -1,13 +1,14 @@
 //! A group of particles, as many as a vector has lanes, and the stages from one impact to the next.
 
-use super::end::{COLLAPSE_RUN, Limits, StopReason, UNRESOLVED};
-use super::impact::{Impact, Sink};
+mod tell;
+
+use super::end::StopReason;
 use super::strike::{Strike, Touch, Turn};
 use crate::body::{Body, Hull};
 use crate::collision::{Contacts, Respond, Responses};
 use crate::flight::{Flight, State, States};
 use crate::search::{Arrival, Departure, Leap, Look, Residue, Search};
-use crate::simd::{Mask, Pack};
+use crate::simd::{LANES, Mask, Pack};
 use pulp::Simd;
 use std::ops::Range;
 
@@ -18,22 +19,19 @@ pub(crate) type StateOf<S, T> = <FlightOf<S, T> as Flight<S, 1>>::State;
 /// Velocity and angular momentum of a group, which an impact changes.
 type MotionOf<S, T> = <StateOf<S, T> as States<S, 1>>::Motion;
 
-/// Number of groups that alternate: enough to keep the arithmetic units busy, few enough for the first-level cache.
-pub(crate) const GROUPS: usize = 12;
-
-/// Largest number of lanes of a vector.
-const LANES: usize = 8;
+/// Number of groups that alternate: enough to keep the arithmetic units busy, few enough to leave room in the first-level cache.
+pub(crate) const GROUPS: usize = 6;
 
 /// The initial conditions of particles.
 pub(crate) trait Release {
-    /// The state of a particle at its release.
+    /// The state of a particle of the run at its release.
     fn start(&self, particle: usize) -> State;
 }
 
 /// The particle whose contact search did not converge.
 #[derive(Debug)]
 pub(crate) struct Stuck {
-    pub lane: usize,
+    pub particle: usize,
     pub impacts: usize,
 }
 
@@ -47,7 +45,8 @@ pub(crate) struct Found<S: Simd, T: Turn> {
     pub sphere: Pack<S, 1>,
 }
 
-/// As many particles as a vector has lanes. Aligned to a cache line, so that no vector straddles two lines.
+/// As many particles as a vector has lanes, each in a flight of its own: a lane whose contact is not located yet sits out the impacts
+/// of the others. Aligned to a cache line, so that no vector straddles two lines.
 #[derive(Clone, Copy)]
 #[repr(align(64))]
 pub(crate) struct Group<S: Simd, T: Turn> {
@@ -64,6 +63,10 @@ pub(crate) struct Group<S: Simd, T: Turn> {
     /// The time up to which a contact is ruled out, and the lanes in which it is ruled out up to the evaluation as well.
     certain: Pack<S, 1>,
     clear: Mask<S, 1>,
+    /// The lanes whose contact is not located by the passes so far, the number of these passes, and whether there are such lanes.
+    waiting: Mask<S, 1>,
+    passes: Pack<S, 1>,
+    pub is_behind: bool,
     /// The motion after the impact.
     after: MotionOf<S, T>,
     /// Speed at which the point of contact approached the plane.
@@ -72,13 +75,20 @@ pub(crate) struct Group<S: Simd, T: Turn> {
     clock: Pack<S, 1>,
     /// Unresolved flights in a row.
     unresolved: Pack<S, 1>,
+    /// Number of the particle in the run.
+    particle: Pack<S, 1>,
+    /// Number of rounds so far, each of which has an impact in the lanes that do not wait.
+    rounds: f64,
+    /// Number of rounds in which the particle of the lane had none: those before its release, and those in which it waited.
+    idle: Pack<S, 1>,
+    /// The first round after which a particle may have all its impacts.
+    due: f64,
     /// The lanes whose particle has not stopped.
     pub active: Mask<S, 1>,
-    /// Number of the particle in lane 0, and number of particles.
-    first: usize,
-    particles: usize,
-    /// Number of impacts and stop reason of the particles that have stopped.
-    ends: [(usize, StopReason); LANES],
+    /// The lanes whose particle has stopped, which the sink does not know yet, and why.
+    ended: Mask<S, 1>,
+    has_ended: bool,
+    reasons: [StopReason; LANES],
 }
 
 impl<S: Simd, T: Turn> Group<S, T> {
@@ -100,38 +110,57 @@ impl<S: Simd, T: Turn> Group<S, T> {
             arrival: Arrival::none(simd),
             certain: zero,
             clear: Mask::splat(simd, true),
+            waiting: Mask::splat(simd, false),
+            passes: zero,
+            is_behind: false,
             time: zero,
             turned: (zero, zero),
             after: state.motion(),
             approach: zero,
             clock: zero,
             unresolved: zero,
+            particle: zero,
+            rounds: 0.0,
+            idle: zero,
+            due: 0.0,
             active: Mask::splat(simd, false),
-            first: 0,
-            particles: 0,
-            ends: [(0, StopReason::Interrupted); LANES],
+            ended: Mask::splat(simd, false),
+            has_ended: false,
+            reasons: [StopReason::Interrupted; LANES],
         }
     }
 
-    /// Puts `particles` of a release into the lanes, at most as many as there are. The sink knows them by numbers from `first` on.
+    /// Puts the next particles of a release into the lanes that are free, as long as there are any.
     #[inline(always)]
     pub fn occupy(
         &mut self,
-        first: usize,
-        particles: Range<usize>,
         release: &impl Release,
+        particles: &mut Range<usize>,
         slope: f64,
         hull: &impl Hull,
     ) {
-        let mut state = self.before();
-        let mut occupied = 0.0 * self.clock;
-        (self.first, self.particles) = (first, particles.len());
-        for (lane, particle) in particles.enumerate() {
-            state.put(lane, &release.start(particle));
-            occupied.as_mut_slice()[lane] = 1.0;
-        }
-        self.active = occupied.eq(1.0);
-        self.search = Search::released(FlightOf::<S, T>::new(state, slope), hull);
+        let mut state = self.before().moving(self.after);
+        let mut fresh = 0.0 * self.particle;
+        (!self.active).each(|lane| {
+            if let Some(particle) = particles.next() {
+                state.put(lane, &release.start(particle));
+                self.particle.as_mut_slice()[lane] = particle as f64;
+                fresh.as_mut_slice()[lane] = 1.0;
+            }
+        });
+        let fresh = fresh.eq(1.0);
+        self.active = self.active | fresh;
+        self.waiting = self.waiting & !fresh;
+        self.clock = fresh.select(0.0, self.clock);
+        self.unresolved = fresh.select(0.0, self.unresolved);
+        self.idle = fresh.select(self.rounds, self.idle);
+        self.due = self.rounds;
+        let released = Search::released(FlightOf::<S, T>::new(state, slope), hull).departure;
+        let departure = &mut self.search.departure;
+        departure.sphere = fresh.select(released.sphere, departure.sphere);
+        departure.speed = fresh.select(released.speed, departure.speed);
+        self.search.flight.end(state, state.lift());
+        self.after = state.motion();
     }
 
     /// The state before the impact, or at the start of the flight.
@@ -154,7 +183,7 @@ impl<S: Simd, T: Turn> Group<S, T> {
                 sphere: self.search.departure.sphere,
             })
         } else {
-            Err(self.ends[0].1)
+            Err(self.reasons[0])
         }
     }
 
@@ -164,15 +193,21 @@ impl<S: Simd, T: Turn> Group<S, T> {
         self.search.angle(self.time)
     }
 
-    /// Determines the time of the first evaluation, and ends the particles that rest.
+    /// Determines the time of the first evaluation of the flights that begin, and ends the particles that rest.
     #[inline(always)]
-    pub fn depart(&mut self, number: usize, hull: &impl Hull) {
+    pub fn depart(&mut self, hull: &impl Hull) {
         let still = self.search.departure.speed.le(0.0);
         if still.any() {
             let rests = still & self.search.rests(hull);
-            self.end(rests, number, StopReason::Collapse);
+            self.end(rests, StopReason::Collapse);
         }
-        self.time = self.search.departed(hull);
+        let first = self.search.departed(hull);
+        if self.is_behind {
+            self.time = self.waiting.select(self.time, first);
+            self.certain = self.waiting.select(self.certain, first);
+        } else {
+            self.time = first;
+        }
     }
 
     #[inline(always)]
@@ -203,15 +238,30 @@ impl<S: Simd, T: Turn> Group<S, T> {
         (self.active & !self.arrival.done).any()
     }
 
+    /// 1 in each lane that waits, otherwise 0.
+    #[inline(always)]
+    pub fn behind(&self) -> Pack<S, 1> {
+        self.waiting.select(1.0, 0.0)
+    }
+
+    /// The lanes that have an impact.
+    #[inline(always)]
+    fn landing(&self) -> Mask<S, 1> {
+        self.active & !self.waiting
+    }
+
     /// Ends the particles that never land.
     #[inline(always)]
-    pub fn end_those_that_never_land(&mut self, number: usize) {
-        self.end(self.look.never, number, StopReason::NeverLands);
+    pub fn end_those_that_never_land(&mut self) {
+        self.end(self.look.never, StopReason::NeverLands);
     }
 
     /// Ends the search in the lanes whose certified step leaves a gap below the resolution.
     #[inline(always)]
     pub fn graze(&mut self) {
+        if !(self.is_behind || self.is_waiting()) {
+            return;
+        }
         let Self {
             time,
             look,
@@ -223,7 +273,7 @@ impl<S: Simd, T: Turn> Group<S, T> {
         self.search.graze(*time, look, leap, *clear, arrival);
     }
 
-    /// Determines the time of the next evaluation. Lanes that are done keep theirs and repeat the same result.
+    /// Determines the lanes that go on, and the time of their next evaluation. The others keep theirs and repeat the same result.
     #[inline(always)]
     pub fn go_on(&mut self, hull: &impl Hull) {
         let (clear, done) = (self.clear, self.arrival.done);
@@ -235,15 +285,22 @@ impl<S: Simd, T: Turn> Group<S, T> {
         let next = clear.select(aim, certain);
         self.time = done.select(self.time, next);
         self.certain = done.select(self.time, certain);
+        self.passes = self.waiting.select(self.passes, 0.0) + 1.0;
+        self.waiting = self.active & !done;
+        self.is_behind = self.waiting.any();
     }
 
     /// Determines the lanes in which no contact can have been missed before the evaluation. The others are not done.
     #[inline(always)]
     pub fn clear(&mut self, hull: &impl Hull) {
-        self.clear = self
-            .search
-            .is_clear(self.certain, self.time, &self.look, hull);
-        self.arrival.done = self.arrival.done & self.clear;
+        if self.is_behind {
+            self.clear = self
+                .search
+                .is_clear(self.certain, self.time, &self.look, hull);
+            self.arrival.done = self.arrival.done & self.clear;
+        } else {
+            self.clear = Mask::splat(self.time.simd(), true);
+        }
     }
 
     /// Replaces the start of the flight by the state at the contact.
@@ -252,8 +309,20 @@ impl<S: Simd, T: Turn> Group<S, T> {
         let Arrival { time, attitude, .. } = self.arrival;
         let state = self.search.flight.state(time, attitude);
         let (part, tilt) = (&self.look.gap.part, state.tilt());
-        self.search.departure.sphere = hull.name(part, tilt);
-        self.search.flight.end(state, hull.lift(part, tilt)); // (2)
+        let (sphere, lift) = (hull.name(part, tilt), hull.lift(part, tilt)); // (2)
+        let departure = &mut self.search.departure;
+        if self.is_behind {
+            let before = self.search.flight.start();
+            let (state, lift) = (
+                state.or(self.waiting, before),
+                self.waiting.select(before.lift(), lift),
+            );
+            self.search.flight.end(state, lift);
+            departure.sphere = self.waiting.select(departure.sphere, sphere);
+        } else {
+            self.search.flight.end(state, lift);
+            departure.sphere = sphere;
+        }
     }
 
     /// Applies the collision law.
@@ -261,16 +330,29 @@ impl<S: Simd, T: Turn> Group<S, T> {
     pub fn collide(&mut self, body: &Body, hull: &impl Hull, law: &impl Respond) {
         let touch = Touch::of(hull, &self.look.gap.part, self.before().tilt());
         let struck = self.before().strike(body, law, touch);
-        self.after = struck.motion;
-        self.approach = struck.approach;
-        self.search.departure.speed = struck.separation;
+        self.leave(struck.motion, struck.approach, struck.separation);
     }
 
-    /// The contact as a law sees it.
+    /// Takes the motion after an impact, and the normal speeds of its contact.
     #[inline(always)]
-    pub fn contact(&self, body: &Body, hull: &impl Hull) -> Contacts<S, 1> {
+    fn leave(&mut self, after: MotionOf<S, T>, approach: Pack<S, 1>, separation: Pack<S, 1>) {
+        let departure = &mut self.search.departure;
+        self.approach = approach;
+        if self.is_behind {
+            let before = *self.search.flight.start();
+            self.after = before.moving(after).or(self.waiting, &before).motion();
+            departure.speed = self.waiting.select(departure.speed, separation);
+        } else {
+            self.after = after;
+            departure.speed = separation;
+        }
+    }
+
+    /// The contact as a law sees it, and the lanes that have one.
+    #[inline(always)]
+    pub fn contact(&self, body: &Body, hull: &impl Hull) -> (Contacts<S, 1>, Mask<S, 1>) {
         let touch = Touch::of(hull, &self.look.gap.part, self.before().tilt());
-        self.before().contact(body, touch)
+        (self.before().contact(body, touch), self.landing())
     }
 
     /// Applies what a law answered.
@@ -283,81 +365,13 @@ impl<S: Simd, T: Turn> Group<S, T> {
         response: &Responses<S, 1>,
     ) {
         let touch = Touch::of(hull, &self.look.gap.part, self.before().tilt());
-        self.after = self.before().respond(body, touch, response);
-        self.approach = approach;
-        self.search.departure.speed = response.separation_speed;
-    }
-
-    /// Hands the impact to the sink, and ends the particles for which it was the last.
-    #[inline(always)]
-    pub fn tell(&mut self, body: &Body, limits: Limits, number: usize, sink: &mut impl Sink) {
-        let before = self.before();
-        let after = before.moving(self.after);
-        self.clock = self.clock + self.arrival.time;
-        let energy_after = after.kinetic_energy(body);
-        let impact = Impact {
-            time: self.clock,
-            fall: -before.climb(),
-            rise: after.climb(),
-            rotation: before.rotational_energy(body),
-            energy_before: before.kinetic_energy(body),
-            energy_after,
-            sine: before.sine(),
-            cosine: before.tilt(),
-            sphere: self.search.departure.sphere,
-            approach: self.approach,
-            before: before.in_space(),
-            after: after.in_space(),
-            active: self.active,
-        };
-        sink.impact(number, self.first, &impact);
-        if limits.minimum_speed > 0.0 {
-            let slow = (2.0 * energy_after).lt(limits.minimum_speed * limits.minimum_speed);
-            self.end(slow, number + 1, StopReason::SpeedBelowThreshold);
-        }
-        let low = (self.search.bound * (self.arrival.time * self.arrival.time)).lt(UNRESOLVED);
-        if low.any() {
-            self.unresolved = low.select(self.unresolved + 1.0, 0.0);
-            let collapsed = self.unresolved.eq(f64::from(COLLAPSE_RUN));
-            self.end(collapsed, number + 1, StopReason::Collapse);
-        } else {
-            self.unresolved = Pack::splat(self.clock.simd(), 0.0);
-        }
+        let after = self.before().respond(body, touch, response);
+        self.leave(after, approach, response.separation_speed);
     }
 
     /// Starts the next flight.
     #[inline(always)]
     pub fn start(&mut self, slope: f64, hull: &impl Hull) {
         self.search.depart(self.after, slope, hull);
-    }
-
-    /// Ends the active lanes in `which`.
-    #[inline(always)]
-    pub fn end(&mut self, which: Mask<S, 1>, impacts: usize, reason: StopReason) {
-        let ending = which & self.active;
-        if ending.any() {
-            ending.each(|lane| self.ends[lane] = (impacts, reason));
-            self.active = self.active & !ending;
-        }
-    }
-
-    /// Hands number of impacts and stop reason of every particle to the sink.
-    pub fn close(&self, sink: &mut impl Sink) {
-        for (lane, &(impacts, reason)) in self.ends[..self.particles].iter().enumerate() {
-            sink.end(self.first + lane, impacts, reason);
-        }
-    }
-
-    /// The first particle whose contact is not located.
-    #[cold]
-    pub fn stuck(&self, impacts: usize) -> Stuck {
-        let mut first = None;
-        (self.active & !self.arrival.done).each(|lane| {
-            first.get_or_insert(self.first + lane);
-        });
-        Stuck {
-            lane: first.unwrap_or(self.first),
-            impacts,
-        }
     }
 }

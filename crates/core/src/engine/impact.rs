@@ -4,9 +4,14 @@ use super::StopReason;
 use crate::flight::SpatialStates;
 use crate::simd::{Mask, Pack};
 use pulp::Simd;
+use std::ops::Range;
 
 /// One impact in each lane, in the core's units.
 pub(crate) struct Impact<S: Simd, const K: usize> {
+    /// Number of the particle in the run.
+    pub particle: Pack<S, K>,
+    /// Number of the impact, counted from 0.
+    pub number: Pack<S, K>,
     /// Time since release.
     pub time: Pack<S, K>,
     /// Normal velocity of the centre of mass before the impact, v_G^n, positive when falling, and after it, positive when rising.
@@ -53,8 +58,8 @@ impl<S: Simd, const K: usize> Impact<S, K> {
 
 /// Work that can be interleaved with the bounce loop while its arithmetic waits for results.
 pub(crate) trait Meanwhile {
-    /// Does a small part of the pending work.
-    fn meanwhile(&mut self);
+    /// Works up the impact at a place: number of its group times number of lanes, plus lane.
+    fn meanwhile(&mut self, place: usize);
 }
 
 /// A receiver of impacts, which records or counts them.
@@ -63,15 +68,17 @@ pub(crate) trait Sink: Meanwhile {
     /// gain nothing from it.
     const TOGETHER: bool;
 
-    /// Announces a release whose particle 0 is particle `first` of the block.
-    fn begin(&mut self, first: usize);
-    /// Receives impact `number`, counted from 0, of the particles of the release from `first` on, one in each lane.
-    fn impact<S: Simd, const K: usize>(
-        &mut self,
-        number: usize,
-        first: usize,
-        impact: &Impact<S, K>,
-    );
-    /// Receives the end of particle `lane` of the release, after `impacts` impacts.
-    fn end(&mut self, lane: usize, impacts: usize, reason: StopReason);
+    /// Announces a release: at no place is there an impact to be worked up.
+    fn begin(&mut self);
+    /// Receives an impact in each active lane of a group. What is left to be done with it is done before the next one of this group:
+    /// meanwhile, or by [`Sink::settle`].
+    fn impact<S: Simd, const K: usize>(&mut self, group: usize, impact: &Impact<S, K>);
+    /// Works up the impacts at these places.
+    fn settle(&mut self, places: Range<usize>) {
+        for place in places {
+            self.meanwhile(place);
+        }
+    }
+    /// Receives the end of a particle after `impacts` impacts.
+    fn end(&mut self, particle: usize, impacts: usize, reason: StopReason);
 }

@@ -14,7 +14,6 @@ use crate::collision::{Law, Respond};
 use crate::simd::Pack;
 use crate::simd::elementary::sincos_in_lanes;
 use pulp::{Simd, WithSimd};
-use std::marker::PhantomData;
 use std::ops::Range;
 
 /// Vectors whose sines and cosines are computed side by side, with nothing else in the registers.
@@ -22,22 +21,22 @@ const WIDE: usize = 6;
 
 /// The motion of groups of particles from one impact to the next.
 pub(crate) trait Legs<S: Simd, T: Turn> {
-    /// The groups with the particles of a release.
-    fn groups<const N: usize>(
-        &self,
-        simd: S,
-        release: &impl Release,
-        particles: Range<usize>,
-    ) -> [Group<S, T>; N];
+    /// Whether the work of the sink is interleaved with that of [`Legs::fly`].
+    const TOGETHER: bool;
 
-    /// Moves all groups through their flight to impact `number` and through that impact.
-    fn fly(
+    /// Groups without particles.
+    fn groups<const N: usize>(&self, simd: S) -> [Group<S, T>; N];
+
+    /// Puts particles of a release into the lanes that are free, as long as there are any.
+    fn occupy(
         &self,
-        simd: S,
         groups: &mut [Group<S, T>],
-        number: usize,
-        sink: &mut impl Meanwhile,
-    ) -> Result<(), Stuck>;
+        release: &impl Release,
+        particles: &mut Range<usize>,
+    );
+
+    /// Moves all groups on until enough lanes have a contact, and through its impact.
+    fn fly(&self, groups: &mut [Group<S, T>], sink: &mut impl Meanwhile) -> Result<(), Stuck>;
 }
 
 /// Legs with hull and law inlined in the bounce loop, and the work of the sink interleaved with the stages; used for the most common
@@ -70,110 +69,130 @@ pub(crate) struct Apart<'a, 'b> {
 }
 
 impl<S: Simd, T: Turn, H: Hull, L: Respond> Legs<S, T> for Together<'_, H, L> {
+    const TOGETHER: bool = true;
+
     #[inline(always)]
-    fn groups<const N: usize>(
-        &self,
-        simd: S,
-        release: &impl Release,
-        particles: Range<usize>,
-    ) -> [Group<S, T>; N] {
-        let mut groups = [Group::empty(simd, self.hull); N];
-        let width = Pack::<S, 1>::WIDTH;
-        for (group, first) in groups.iter_mut().zip(particles.clone().step_by(width)) {
-            let count = width.min(particles.end - first);
-            let place = first - particles.start;
-            group.occupy(place, first..first + count, release, self.slope, self.hull);
-        }
-        groups
+    fn groups<const N: usize>(&self, simd: S) -> [Group<S, T>; N] {
+        [Group::empty(simd, self.hull); N]
     }
 
     #[inline(always)]
-    fn fly(
+    fn occupy(
         &self,
-        _: S,
         groups: &mut [Group<S, T>],
-        number: usize,
-        sink: &mut impl Meanwhile,
-    ) -> Result<(), Stuck> {
+        release: &impl Release,
+        particles: &mut Range<usize>,
+    ) {
+        let simd = groups[0].active.simd();
+        simd.vectorize(Occupy {
+            groups,
+            release,
+            particles,
+            slope: self.slope,
+            hull: self.hull,
+        });
+    }
+
+    #[inline(always)]
+    fn fly(&self, groups: &mut [Group<S, T>], sink: &mut impl Meanwhile) -> Result<(), Stuck> {
         let Self {
             body, hull, law, ..
         } = *self;
-        if number > 0 {
-            for group in groups.iter_mut() {
-                group.start(self.slope, hull);
-                sink.meanwhile();
-            }
+        for (i, group) in groups.iter_mut().enumerate() {
+            group.start(self.slope, hull);
+            work_up::<S>(sink, i, 0);
         }
-        find::<S, T>(groups, hull, number, sink)?;
+        find::<S, T>(groups, hull, sink)?;
         if T::SPACE
             && let Some(law) = law.takes_long()
         {
             let simd = groups[0].active.simd();
             simd.vectorize(Collide {
-                groups,
+                groups: &mut *groups,
                 body,
                 hull,
                 law,
             });
+            for i in 0..groups.len() {
+                work_up::<S>(sink, i, 7);
+            }
             return Ok(());
         }
-        for group in groups.iter_mut() {
+        for (i, group) in groups.iter_mut().enumerate() {
             group.land(hull);
             group.collide(body, hull, law);
-            sink.meanwhile();
+            work_up::<S>(sink, i, 7);
         }
         Ok(())
     }
 }
 
-/// Locates the next contact of all groups.
+/// Works up the impact of a lane of a group, if there is such a lane: eight stages have one lane each.
+#[inline(always)]
+fn work_up<S: Simd>(sink: &mut impl Meanwhile, group: usize, lane: usize) {
+    if lane < Pack::<S, 1>::WIDTH {
+        sink.meanwhile(group * Pack::<S, 1>::WIDTH + lane);
+    }
+}
+
+/// Searches for the next contact of all groups until few of their lanes still wait for one.
 #[inline(always)]
 pub(super) fn find<S: Simd, T: Turn>(
     groups: &mut [Group<S, T>],
     hull: &impl Hull,
-    number: usize,
     sink: &mut impl Meanwhile,
 ) -> Result<(), Stuck> {
-    for group in groups.iter_mut() {
-        group.depart(number, hull);
-        sink.meanwhile();
+    for (i, group) in groups.iter_mut().enumerate() {
+        group.depart(hull);
+        work_up::<S>(sink, i, 1);
     }
-    turn(groups, sink);
-    for group in groups.iter_mut() {
-        group.look(hull);
-        sink.meanwhile();
-    }
-    for group in groups.iter_mut() {
-        group.leap(hull);
-        sink.meanwhile();
-    }
-    for group in groups.iter_mut() {
-        group.residue(hull);
-        sink.meanwhile();
-    }
-    for group in groups.iter_mut() {
-        group.arrive(hull);
-        sink.meanwhile();
-    }
-    if groups.iter().any(Group::is_waiting) {
+    pass(groups, hull, sink);
+    let waits = groups
+        .iter()
+        .any(|group| group.is_behind || group.is_waiting());
+    if waits {
         let simd = groups[0].active.simd();
         simd.vectorize(SearchOn {
             groups: &mut *groups,
             hull,
-            number,
         })?;
     }
     for group in groups.iter_mut() {
-        group.end_those_that_never_land(number);
+        group.end_those_that_never_land();
     }
     Ok(())
 }
 
-/// Computes sine and cosine of the angle turned through at the first evaluation of each group.
+/// A pass of the search.
+#[inline(always)]
+pub(super) fn pass<S: Simd, T: Turn>(
+    groups: &mut [Group<S, T>],
+    hull: &impl Hull,
+    sink: &mut impl Meanwhile,
+) {
+    turn(groups, sink);
+    for (i, group) in groups.iter_mut().enumerate() {
+        group.look(hull);
+        work_up::<S>(sink, i, 3);
+    }
+    for (i, group) in groups.iter_mut().enumerate() {
+        group.leap(hull);
+        work_up::<S>(sink, i, 4);
+    }
+    for (i, group) in groups.iter_mut().enumerate() {
+        group.residue(hull);
+        work_up::<S>(sink, i, 5);
+    }
+    for (i, group) in groups.iter_mut().enumerate() {
+        group.arrive(hull);
+        work_up::<S>(sink, i, 6);
+    }
+}
+
+/// Computes sine and cosine of the angle turned through at the evaluation of each group.
 #[inline(always)]
 fn turn<S: Simd, T: Turn>(groups: &mut [Group<S, T>], sink: &mut impl Meanwhile) {
-    let mut chunks = groups.chunks_exact_mut(WIDE);
-    for chunk in &mut chunks {
+    for (first, chunk) in groups.chunks_mut(WIDE).enumerate() {
         let mut angle = Pack::<S, WIDE>::splat(chunk[0].time.simd(), 0.0);
         for (i, group) in chunk.iter().enumerate() {
             angle.set_part(i, &group.angle());
@@ -181,11 +200,8 @@ fn turn<S: Simd, T: Turn>(groups: &mut [Group<S, T>], sink: &mut impl Meanwhile)
         let (sin, cos) = sincos_in_lanes(angle);
         for (i, group) in chunk.iter_mut().enumerate() {
             group.turned = (sin.part(i), cos.part(i));
-            sink.meanwhile();
+            work_up::<S>(sink, WIDE * first + i, 2);
         }
-    }
-    for group in chunks.into_remainder() {
-        group.turned = sincos_in_lanes(group.angle());
     }
 }
 
@@ -200,55 +216,52 @@ impl<'a, 'b> Apart<'a, 'b> {
 }
 
 impl<S: Simd, T: Turn> Legs<S, T> for Apart<'_, '_> {
+    const TOGETHER: bool = false;
+
     #[inline(always)]
-    fn groups<const N: usize>(
-        &self,
-        simd: S,
-        release: &impl Release,
-        particles: Range<usize>,
-    ) -> [Group<S, T>; N] {
-        with_hull!(self.surface(), hull => simd.vectorize(Occupy {
-            legs: self.with(hull),
-            release,
-            particles,
-            simd,
-            turn: PhantomData,
-        }))
+    fn groups<const N: usize>(&self, simd: S) -> [Group<S, T>; N] {
+        with_hull!(self.surface(), hull => self.with(hull).groups(simd))
     }
 
     #[inline(always)]
-    fn fly(
+    fn occupy(
         &self,
-        simd: S,
         groups: &mut [Group<S, T>],
-        number: usize,
-        _: &mut impl Meanwhile,
-    ) -> Result<(), Stuck> {
+        release: &impl Release,
+        particles: &mut Range<usize>,
+    ) {
+        with_hull!(self.surface(), hull => self.with(hull).occupy(groups, release, particles));
+    }
+
+    #[inline(always)]
+    fn fly(&self, groups: &mut [Group<S, T>], _: &mut impl Meanwhile) -> Result<(), Stuck> {
+        let simd = groups[0].active.simd();
         with_hull!(self.surface(), hull => simd.vectorize(Fly {
             legs: self.with(hull),
             groups,
-            number,
         }))
     }
 }
 
-/// [`Legs::groups`], compiled separately for each SIMD level.
-struct Occupy<'a, S: Simd, T: Turn, L, R, const N: usize> {
-    legs: L,
+/// [`Legs::occupy`], compiled separately for each SIMD level.
+struct Occupy<'a, S: Simd, T: Turn, H, R> {
+    groups: &'a mut [Group<S, T>],
     release: &'a R,
-    particles: Range<usize>,
-    simd: S,
-    turn: PhantomData<[Group<S, T>; N]>,
+    particles: &'a mut Range<usize>,
+    slope: f64,
+    hull: &'a H,
 }
 
-impl<S: Simd, T: Turn, L: Legs<S, T>, R: Release, const N: usize> WithSimd
-    for Occupy<'_, S, T, L, R, N>
-{
-    type Output = [Group<S, T>; N];
+impl<S: Simd, T: Turn, H: Hull, R: Release> WithSimd for Occupy<'_, S, T, H, R> {
+    type Output = ();
 
     #[inline(always)]
-    fn with_simd<U: Simd>(self, _: U) -> Self::Output {
-        self.legs.groups(self.simd, self.release, self.particles)
+    fn with_simd<U: Simd>(self, _: U) {
+        for group in self.groups {
+            if !group.active.all() {
+                group.occupy(self.release, self.particles, self.slope, self.hull);
+            }
+        }
     }
 }
 
@@ -256,7 +269,6 @@ impl<S: Simd, T: Turn, L: Legs<S, T>, R: Release, const N: usize> WithSimd
 struct Fly<'a, S: Simd, T: Turn, L> {
     legs: L,
     groups: &'a mut [Group<S, T>],
-    number: usize,
 }
 
 impl<S: Simd, T: Turn, L: Legs<S, T>> WithSimd for Fly<'_, S, T, L> {
@@ -264,8 +276,7 @@ impl<S: Simd, T: Turn, L: Legs<S, T>> WithSimd for Fly<'_, S, T, L> {
 
     #[inline(always)]
     fn with_simd<U: Simd>(self, _: U) -> Self::Output {
-        let simd = self.groups[0].active.simd();
-        self.legs.fly(simd, self.groups, self.number, &mut Idle)
+        self.legs.fly(self.groups, &mut Idle)
     }
 }
 
@@ -274,5 +285,5 @@ pub(super) struct Idle;
 
 impl Meanwhile for Idle {
     #[inline(always)]
-    fn meanwhile(&mut self) {}
+    fn meanwhile(&mut self, _: usize) {}
 }

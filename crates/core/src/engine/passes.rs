@@ -1,54 +1,21 @@
-//! Further passes of the contact search, for the groups that need them.
+//! Further passes of the contact search.
 
-use super::group::{GROUPS, Group, Stuck};
+use super::group::{Group, Stuck};
+use super::leg::{Idle, pass};
 use super::strike::Turn;
 use crate::body::Hull;
-use crate::search::MOST_STEPS;
-use crate::simd::elementary::sincos_in_lanes;
+use crate::simd::Pack;
 use pulp::{Simd, WithSimd};
 
-/// Repeats the passes until every contact is located, for all groups together, stage by stage as in the first pass. Compiled
-/// separately: inlined, it would use up the registers of every bounce loop.
+/// Largest share of the lanes that sit out the impacts of the others: a further pass for fewer would take longer than the impacts
+/// that they miss.
+const SHARE: f64 = 0.25;
+
+/// Decides which lanes are done, and continues with passes of all groups, stage by stage as in the first one, until few lanes wait.
+/// Compiled separately: inlined, it would use up the registers of every bounce loop.
 pub(super) struct SearchOn<'a, S: Simd, T: Turn, H> {
     pub groups: &'a mut [Group<S, T>],
     pub hull: &'a H,
-    pub number: usize,
-}
-
-/// Numbers of the groups whose contacts are not all located.
-struct Waiting {
-    numbers: [u8; GROUPS],
-    count: usize,
-}
-
-impl Waiting {
-    /// The waiting ones among all groups.
-    #[inline(always)]
-    fn new<S: Simd, T: Turn>(groups: &[Group<S, T>]) -> Self {
-        let mut all = Self {
-            numbers: std::array::from_fn(|i| i as u8),
-            count: groups.len(),
-        };
-        all.retain(groups);
-        all
-    }
-
-    /// Drops the groups that no longer wait.
-    #[inline(always)]
-    fn retain<S: Simd, T: Turn>(&mut self, groups: &[Group<S, T>]) {
-        let mut count = 0;
-        for i in 0..self.count {
-            let number = self.numbers[i];
-            self.numbers[count] = number;
-            count += usize::from(groups[usize::from(number)].is_waiting());
-        }
-        self.count = count;
-    }
-
-    #[inline(always)]
-    fn each(&self) -> impl Iterator<Item = usize> {
-        self.numbers[..self.count].iter().map(|&i| usize::from(i))
-    }
 }
 
 impl<S: Simd, T: Turn, H: Hull> WithSimd for SearchOn<'_, S, T, H> {
@@ -56,41 +23,34 @@ impl<S: Simd, T: Turn, H: Hull> WithSimd for SearchOn<'_, S, T, H> {
 
     #[inline(always)]
     fn with_simd<U: Simd>(self, _: U) -> Self::Output {
-        let Self {
-            groups,
-            hull,
-            number,
-        } = self;
-        let mut waiting = Waiting::new(groups);
-        for _ in 0..MOST_STEPS {
-            for i in waiting.each() {
-                groups[i].graze();
+        let Self { groups, hull } = self;
+        loop {
+            for group in groups.iter_mut() {
+                group.clear(hull);
             }
-            waiting.retain(groups);
-            for i in waiting.each() {
-                groups[i].go_on(hull);
+            for group in groups.iter_mut() {
+                group.graze();
             }
-            for i in waiting.each() {
-                groups[i].turned = sincos_in_lanes(groups[i].angle());
+            for group in groups.iter_mut() {
+                if group.is_behind || group.is_waiting() {
+                    group.go_on(hull);
+                    group.stuck()?;
+                }
             }
-            for i in waiting.each() {
-                groups[i].look(hull);
-            }
-            for i in waiting.each() {
-                groups[i].leap(hull);
-            }
-            for i in waiting.each() {
-                groups[i].residue(hull);
-            }
-            for i in waiting.each() {
-                groups[i].arrive(hull);
-                groups[i].clear(hull);
-            }
-            waiting.retain(groups);
-            if waiting.count == 0 {
+            if are_few_behind(groups) {
                 return Ok(());
             }
+            pass(groups, hull, &mut Idle);
         }
-        Err(groups[usize::from(waiting.numbers[0])].stuck(number))
     }
+}
+
+#[inline(always)]
+fn are_few_behind<S: Simd, T: Turn>(groups: &[Group<S, T>]) -> bool {
+    let mut behind = groups[0].behind();
+    for group in &groups[1..] {
+        behind = behind + group.behind();
+    }
+    let lanes = groups.len() * Pack::<S, 1>::WIDTH;
+    behind.as_slice().iter().sum::<f64>() <= SHARE * lanes as f64
 }

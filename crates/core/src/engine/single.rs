@@ -78,14 +78,15 @@ pub fn first_contact(
     with_hull!(&body.hull, hull => {
         let simd = Scalar::new();
         let mut groups = [Group::<Scalar, Spatial>::empty(simd, hull)];
-        groups[0].occupy(0, 0..1, &Single(*start), slope, hull);
+        groups[0].occupy(&Single(*start), &mut (0..1), slope, hull);
         if let Departure::Touching { sphere, speed } = departure {
             groups[0].depart_from(search::Departure {
                 sphere: one(sphere.sign()),
                 speed: one(speed),
             });
         }
-        find::<Scalar, Spatial>(&mut groups, hull, 0, &mut Idle).map_err(|_| NoConvergence)?;
+        groups[0].start(slope, hull);
+        find::<Scalar, Spatial>(&mut groups, hull, &mut Idle).map_err(|_| NoConvergence)?;
         let [mut group] = groups;
         group.land(hull);
         Ok(match group.found() {
@@ -136,9 +137,9 @@ pub fn trajectory(
     let legs = Apart { body, law, slope };
     let release = (&Single(start), 0..1);
     if start.is_at_rest() && slope == 0.0 {
-        bounce::<_, Planar, 1>(simd, job, &legs, release, &mut told, || go_on.get())
+        bounce::<_, Planar, _, 1>(simd, job, &legs, release, &mut told, || go_on.get())
     } else {
-        bounce::<_, Spatial, 1>(simd, job, &legs, release, &mut told, || go_on.get())
+        bounce::<_, Spatial, _, 1>(simd, job, &legs, release, &mut told, || go_on.get())
     }
     .map_err(|_| NoConvergence)?;
     Ok(told.ended)
@@ -161,15 +162,15 @@ struct Told<'a, F> {
 }
 
 impl<F> Meanwhile for Told<'_, F> {
-    fn meanwhile(&mut self) {}
+    fn meanwhile(&mut self, _: usize) {}
 }
 
 impl<F: FnMut(&SingleImpact) -> bool> Sink for Told<'_, F> {
     const TOGETHER: bool = false;
 
-    fn begin(&mut self, _: usize) {}
+    fn begin(&mut self) {}
 
-    fn impact<S: Simd, const K: usize>(&mut self, _: usize, _: usize, impact: &Impact<S, K>) {
+    fn impact<S: Simd, const K: usize>(&mut self, _: usize, impact: &Impact<S, K>) {
         if !impact.active.any() {
             return;
         }

@@ -21,8 +21,8 @@ pub use state::State;
 pub use vector::Vector;
 
 use crate::body::{Body, Swing};
-use crate::simd::Pack;
 use crate::simd::elementary::moderate_sincos_in_lanes;
+use crate::simd::{Mask, Pack};
 use pulp::Simd;
 
 /// Sine and cosine of the angle that describes the rotation: in planar motion that between the axis and the plane normal, in space
@@ -86,6 +86,8 @@ pub(crate) trait States<S: Simd, const K: usize>: Copy {
     fn tilt(&self) -> Pack<S, K>;
     /// Velocity and angular momentum.
     fn motion(&self) -> Self::Motion;
+    /// The same states, but those of `other` in the lanes of the mask.
+    fn or(self, mask: Mask<S, K>, other: &Self) -> Self;
     /// The same position with another motion.
     fn moving(self, motion: Self::Motion) -> Self;
     /// The same state with three-dimensional vectors.

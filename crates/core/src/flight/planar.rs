@@ -2,7 +2,7 @@
 
 use super::{Attitude, Flight, SpatialMotion, SpatialStates, State, Vectors};
 use crate::body::{Body, Swing};
-use crate::simd::Pack;
+use crate::simd::{Mask, Pack};
 use pulp::Simd;
 
 /// Position and motion. They also represent the flight that starts from them, since nothing needs to be computed in advance.
@@ -73,6 +73,20 @@ impl<S: Simd, const K: usize> super::States<S, K> for States<S, K> {
     #[inline(always)]
     fn motion(&self) -> Motion<S, K> {
         self.motion
+    }
+
+    #[inline(always)]
+    fn or(self, mask: Mask<S, K>, other: &Self) -> Self {
+        Self {
+            lift: mask.select(other.lift, self.lift),
+            sine: mask.select(other.sine, self.sine),
+            cosine: mask.select(other.cosine, self.cosine),
+            motion: Motion {
+                glide: mask.select(other.motion.glide, self.motion.glide),
+                climb: mask.select(other.motion.climb, self.motion.climb),
+                spin: mask.select(other.motion.spin, self.motion.spin),
+            },
+        }
     }
 
     #[inline(always)]

@@ -5,7 +5,7 @@
 
 use super::{Attitude, Flight, State};
 use crate::body::{Body, Swing};
-use crate::simd::{Operand, Pack};
+use crate::simd::{Mask, Operand, Pack};
 use pulp::Simd;
 
 /// A vector (x, y, z) in each lane; z is along the plane normal.
@@ -62,6 +62,16 @@ impl<S: Simd, const K: usize> Vectors<S, K> {
             x: self.x - b.x,
             y: self.y - b.y,
             z: self.z - b.z,
+        }
+    }
+
+    /// The same vectors, but those of `other` in the lanes of the mask.
+    #[inline(always)]
+    fn or(self, mask: Mask<S, K>, other: Self) -> Self {
+        Self {
+            x: mask.select(other.x, self.x),
+            y: mask.select(other.y, self.y),
+            z: mask.select(other.z, self.z),
         }
     }
 
@@ -177,6 +187,19 @@ impl<S: Simd, const K: usize> super::States<S, K> for States<S, K> {
     #[inline(always)]
     fn motion(&self) -> Motion<S, K> {
         self.motion
+    }
+
+    #[inline(always)]
+    fn or(self, mask: Mask<S, K>, other: &Self) -> Self {
+        let (own, motion) = (self.motion, other.motion);
+        Self {
+            lift: mask.select(other.lift, self.lift),
+            axis: self.axis.or(mask, other.axis),
+            motion: Motion {
+                velocity: own.velocity.or(mask, motion.velocity),
+                precession: own.precession.or(mask, motion.precession),
+            },
+        }
     }
 
     #[inline(always)]

@@ -4,13 +4,20 @@ use super::Plan;
 use crate::Error;
 use crate::body::Surface;
 use crate::engine::{Apart, GROUPS, Legs, Planar, Sink, Spatial, Stuck, Together, Turn, bounce};
-use crate::simd::{Level, Pack};
+use crate::simd::Level;
 use crate::threads::Monitor;
 use pulp::{Simd, WithSimd};
 use std::ops::Range;
 
-/// Number of particles in a block: large enough that scheduling costs nothing, small enough that all threads stay busy.
+/// Smallest number of particles in a block: large enough that scheduling costs nothing, small enough that all threads stay busy.
 pub(crate) const BLOCK: usize = 96;
+/// Largest number of particles in a block, at whose end some lanes have none left.
+const LARGEST: usize = 960;
+
+/// Number of particles in the next block, of those that are left to some threads.
+pub(crate) fn share(left: usize, threads: usize) -> usize {
+    (left / (4 * threads)).clamp(BLOCK, LARGEST).min(left)
+}
 
 impl Plan<'_> {
     /// Simulates a range of particles and hands their impacts to `sink`.
@@ -48,21 +55,26 @@ impl<T: Sink> WithSimd for Block<'_, T> {
     fn with_simd<S: Simd>(self, simd: S) -> Self::Output {
         let plan = self.plan;
         let (body, law, slope) = (&plan.body, &plan.law, plan.slope);
-        if !plan.at_rest {
-            return self.run::<S, Spatial>(simd, &Apart { body, law, slope });
-        }
-        match &body.hull {
-            Surface::EqualPair(hull) if T::TOGETHER => match &plan.law.steady() {
+        // The paper's body and the one that takes longest have their own bounce loops where these are not held up by memory.
+        match (&body.hull, plan.at_rest) {
+            (Surface::EqualPair(hull), true) if T::TOGETHER => match &plan.law.steady() {
                 Some(law) => self.run::<S, Planar>(simd, &Together::new(body, hull, law, slope)),
                 None => self.run::<S, Planar>(simd, &Together::new(body, hull, law, slope)),
             },
-            _ => self.run::<S, Planar>(simd, &Apart { body, law, slope }),
+            (Surface::Ellipsoid(hull), true) if T::TOGETHER => match &plan.law.steady() {
+                Some(law) => self.run::<S, Planar>(simd, &Together::new(body, hull, law, slope)),
+                None => self.run::<S, Planar>(simd, &Together::new(body, hull, law, slope)),
+            },
+            (Surface::Ellipsoid(hull), false) if T::TOGETHER => {
+                self.run::<S, Spatial>(simd, &Together::new(body, hull, law, slope))
+            }
+            (_, true) => self.run::<S, Planar>(simd, &Apart { body, law, slope }),
+            (_, false) => self.run::<S, Spatial>(simd, &Apart { body, law, slope }),
         }
     }
 }
 
 impl<T: Sink> Block<'_, T> {
-    /// Runs the particles, as many at a time as the groups hold.
     #[inline(always)]
     fn run<S: Simd, K: Turn>(self, simd: S, legs: &impl Legs<S, K>) -> Result<(), Error> {
         let Self {
@@ -71,23 +83,18 @@ impl<T: Sink> Block<'_, T> {
             monitor,
             sink,
         } = self;
-        let width = GROUPS * Pack::<S, 1>::WIDTH;
-        for first in particles.clone().step_by(width) {
-            sink.begin(first - particles.start);
-            bounce::<S, K, GROUPS>(
-                simd,
-                (&plan.body, plan.limits()),
-                legs,
-                (plan, first..particles.end.min(first + width)),
-                sink,
-                || !monitor.is_cancelled(),
-            )
-            .map_err(|Stuck { lane, impacts }| Error::Numerical {
-                particle: (first + lane) as u64,
-                seed: plan.run.seed,
-                flight: impacts as u64,
-            })?;
-        }
-        Ok(())
+        bounce::<S, K, _, GROUPS>(
+            simd,
+            (&plan.body, plan.limits()),
+            legs,
+            (plan, particles),
+            sink,
+            || !monitor.is_cancelled(),
+        )
+        .map_err(|Stuck { particle, impacts }| Error::Numerical {
+            particle: particle as u64,
+            seed: plan.run.seed,
+            flight: impacts as u64,
+        })
     }
 }

@@ -7,7 +7,7 @@ mod plan;
 mod scales;
 mod spin;
 
-pub(crate) use block::BLOCK;
+pub(crate) use block::{BLOCK, share};
 pub use height::Height;
 pub use orientation::Orientation;
 pub(crate) use plan::Plan;

@@ -8,7 +8,7 @@
 //! No lower bound covers the time between the end of the step and that zero; whether the other part can have touched in that
 //! interval is checked afterwards. At a grazing contact certified steps are repeated until the gap is below the resolution.
 //!
-//! All lanes are evaluated together, and wait for the slowest search; few need a second pass. A further pass evaluates the gap just
+//! All lanes are evaluated together; those that need a further pass may sit out the impacts of the others meanwhile. A further pass evaluates the gap just
 //! before the contact predicted by the expansions of the previous pass. There it checks that no contact was passed, since f″ ≥ −M
 //! also bounds the gap backwards in time. Where this check fails, the pass is repeated from the end of the last certified step.
 

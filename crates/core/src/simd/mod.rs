@@ -10,7 +10,7 @@ mod level;
 mod pack;
 
 pub use level::Level;
-pub(crate) use pack::{Mask, Operand, Pack};
+pub(crate) use pack::{LANES, Mask, Operand, Pack};
 
 use pulp::Scalar;
 

@@ -8,6 +8,9 @@
 use pulp::Simd;
 use std::ops::{Add, BitAnd, BitOr, BitXor, Div, Mul, Neg, Not, Sub};
 
+/// Largest number of lanes of a vector.
+pub(crate) const LANES: usize = 8;
+
 /// K vectors of doubles.
 #[derive(Clone, Copy)]
 pub struct Pack<S: Simd, const K: usize> {

@@ -2,20 +2,23 @@
 
 use super::Tallying;
 use super::axis::{Axis, ROUND};
-use super::backlog::{Backlog, LENGTH};
 use super::moments::Sums;
-use super::places::{all_sites, nowhere, sites, whole};
+use super::narrow::Recently;
+use super::places::{all_sites, last, nowhere, sites, whole};
 use super::recent::{
     COARSE, Extremes, Half, LARGEST, QUANTA, Recent, fraction_quanta, quanta, words,
 };
-use super::tally::{Bins, By, CREATES_ENERGY, Gains, Tally, WHAT};
+use super::tally::{Bins, By, CREATES_ENERGY, Tally, WHAT};
 use crate::Error;
 use crate::engine::StopReason;
-use crate::engine::{Impact, Meanwhile, Sink};
+use crate::engine::{GROUPS, Impact, Meanwhile, Sink};
 use crate::memory::{filled, zeros};
 use crate::run::Plan;
-use crate::simd::Pack;
+use crate::simd::{LANES, Pack};
 use pulp::Simd;
+
+/// Length of the queue: a place for each lane of every group.
+const LENGTH: usize = GROUPS * LANES;
 
 /// Counts impacts in narrow integers, which are emptied before they can overflow. The bins of an impact are computed in all lanes at
 /// once and queued; the queue is counted lane by lane while other arithmetic waits for its results. Lanes without an impact, or with
@@ -28,9 +31,14 @@ pub(crate) struct Counter<'a, const EVEN: bool> {
     plan: &'a Plan<'a>,
     restitution: Vec<u32>,
     fraction: Vec<u32>,
-    /// One for each row, one for the large values of each row, and one that is never read.
-    rows: Vec<Row>,
-    backlog: Backlog,
+    /// Sums since they were last moved to the tally: one for each row, one for the large values of each row, and some that are never
+    /// read.
+    rows: Vec<Recent>,
+    /// Extremes of ε, likewise.
+    extremes: Vec<Extremes>,
+    /// The largest energy ratio above [`CREATES_ENERGY`], likewise.
+    largest: Vec<f64>,
+    recently: Recently,
     queue: Queue,
 }
 
@@ -46,26 +54,6 @@ struct Queue {
 /// The place at which an impact is counted: indices into the grids of ε and of E_rot/E_tot, and the row; the last number is ε.
 type Place = [f64; 4];
 
-/// The sums of a row since they were last moved to the tally.
-#[derive(Clone, Copy)]
-#[repr(align(64))]
-struct Row {
-    sums: Recent,
-    extremes: Extremes,
-    gains: Gains,
-}
-
-impl Row {
-    const EMPTY: Self = Self {
-        sums: Recent::EMPTY,
-        extremes: Extremes::EMPTY,
-        gains: Gains {
-            count: 0,
-            largest: 0.0,
-        },
-    };
-}
-
 /// Transposes four packs into one record of four numbers for each lane.
 #[inline(always)]
 fn put<S: Simd, const K: usize>(queue: &mut [[f64; 4]], packs: [Pack<S, K>; 4]) {
@@ -76,8 +64,8 @@ fn put<S: Simd, const K: usize>(queue: &mut [[f64; 4]], packs: [Pack<S, K>; 4]) 
 /// Moves the recent sums of a row to the tally.
 #[cold]
 #[inline(never)]
-fn empty_row(tally: &mut Tally, row: &mut Row, number: usize) {
-    let row = std::mem::replace(row, Row::EMPTY);
+fn empty_row(tally: &mut Tally, row: &mut Recent, number: usize) {
+    let row = std::mem::replace(row, Recent::EMPTY);
     let rows = tally.sums.len();
     let (number, unit) = if number < rows {
         (number, 1)
@@ -85,10 +73,10 @@ fn empty_row(tally: &mut Tally, row: &mut Row, number: usize) {
         (number - rows, COARSE)
     };
     if let Some(sums) = tally.sums.get_mut(number) {
-        let totals = row.sums.totals();
-        sums.absorb(&totals, unit, &row.extremes);
+        let totals = row.totals();
+        sums.absorb(&totals, unit);
         tally.fractions[number] += u128::from(totals.fractions);
-        tally.gains[number].merge(row.gains);
+        tally.gains[number].count += totals.gains;
     }
 }
 
@@ -106,10 +94,12 @@ impl<'a, const EVEN: bool> Counter<'a, EVEN> {
             columns: &bins.restitution,
             fractions,
             plan,
-            restitution: zeros(WHAT, tally.restitution.counts().len() + 1)?,
-            fraction: zeros(WHAT, tally.fraction.counts().len() + 1)?,
-            rows: filled(WHAT, Row::EMPTY, 2 * tally.sums.len() + 1)?,
-            backlog: Backlog::default(),
+            restitution: zeros(WHAT, tally.restitution.counts().len() + LANES)?,
+            fraction: zeros(WHAT, tally.fraction.counts().len() + LANES)?,
+            rows: filled(WHAT, Recent::EMPTY, 2 * tally.sums.len() + LANES)?,
+            extremes: filled(WHAT, Extremes::EMPTY, 2 * tally.sums.len() + LANES)?,
+            largest: zeros(WHAT, 2 * tally.sums.len() + LANES)?,
+            recently: Recently::default(),
             queue: Queue {
                 places: [[0.0; 4]; LENGTH],
                 low: [[0.0; 4]; LENGTH],
@@ -125,31 +115,26 @@ impl<'a, const EVEN: bool> Counter<'a, EVEN> {
         for (number, row) in self.rows.iter_mut().enumerate() {
             empty_row(&mut self.tally, row, number);
         }
-    }
-
-    /// Counts all impacts in the queue.
-    #[inline(always)]
-    fn count(&mut self) {
-        while let Some(i) = self.backlog.next() {
-            self.count_one(i);
+        let rows = self.tally.sums.len();
+        for (number, extremes) in self.extremes[..2 * rows].iter_mut().enumerate() {
+            self.tally.sums[number % rows].widen(&std::mem::replace(extremes, Extremes::EMPTY));
         }
-        if self.backlog.restart() {
-            self.empty();
+        for (gains, largest) in self.tally.gains.iter_mut().zip(&mut self.largest) {
+            gains.largest = gains.largest.max(std::mem::take(largest));
         }
     }
 
-    /// Counts number `i` in the queue.
+    /// Counts the impact at place `i` of the queue.
     #[inline(always)]
-    fn count_one(&mut self, i: usize) {
+    fn count(&mut self, i: usize) {
         let queue = &self.queue;
         let [site, fraction_site, number, value] = queue.places[i];
         self.restitution[whole(site)] += 1;
         self.fraction[whole(fraction_site)] += 1;
         let number = whole(number);
+        self.extremes[number].add(value);
         let row = &mut self.rows[number];
-        row.extremes.add(value);
-        let full = row.sums.add(&queue.low[i], &queue.high[i]);
-        if full {
+        if row.add(&queue.low[i], &queue.high[i]) {
             empty_row(&mut self.tally, row, number);
         }
     }
@@ -159,32 +144,37 @@ impl<'a, const EVEN: bool> Counter<'a, EVEN> {
     fn sum_large(&mut self, row: usize, restitution: f64, fraction: f64) {
         self.tally.sums[row].add(quanta(restitution - self.tally.origin));
         self.tally.fractions[row] += fraction_quanta(fraction) as u128;
-        self.rows[row].extremes.add(restitution);
+        self.extremes[row].add(restitution);
     }
 }
 
 impl<const EVEN: bool> Meanwhile for Counter<'_, EVEN> {
     #[inline(always)]
-    fn meanwhile(&mut self) {
-        if let Some(i) = self.backlog.next() {
-            self.count_one(i);
-        }
+    fn meanwhile(&mut self, place: usize) {
+        self.count(place);
     }
 }
 
 impl<const EVEN: bool> Sink for Counter<'_, EVEN> {
     const TOGETHER: bool = true;
 
-    fn begin(&mut self, _: usize) {}
+    fn begin(&mut self) {
+        let nowhere = [
+            last(&self.restitution),
+            last(&self.fraction),
+            last(&self.rows),
+            0.0,
+        ];
+        self.queue.places.fill(nowhere);
+    }
 
     #[inline(always)]
-    fn impact<S: Simd, const K: usize>(&mut self, number: usize, _: usize, impact: &Impact<S, K>) {
+    fn impact<S: Simd, const K: usize>(&mut self, group: usize, impact: &Impact<S, K>) {
         let width = Pack::<S, K>::WIDTH;
-        if !self.backlog.has_room(width) {
-            self.count();
+        if self.recently.add(width) {
+            self.empty();
         }
-        let lanes = self.backlog.take(width);
-
+        let lanes = group * width..(group + 1) * width;
         let simd = impact.time.simd();
         let restitution = impact.restitution();
         let fraction = impact.rotational_fraction();
@@ -199,12 +189,14 @@ impl<const EVEN: bool> Sink for Counter<'_, EVEN> {
                 (located[0], located[1], located[2])
             }
             By::Number(_) => {
-                let row = Pack::splat(simd, number as f64 + ROUND);
+                let row = impact.number + ROUND;
                 let located =
                     Axis::locate::<S, K, _, EVEN>([columns, fractions], [restitution, fraction]);
                 (row, located[0], located[1])
             }
         };
+        let (before, after) = (impact.energy_before, impact.energy_after);
+        let gaining = impact.active & (before * CREATES_ENERGY).lt(after);
         let offset = restitution - self.tally.origin;
         let start = row - ROUND;
         let mut site = sites(columns, start, column);
@@ -219,31 +211,37 @@ impl<const EVEN: bool> Sink for Counter<'_, EVEN> {
             let grid = (fractions, &self.fraction[..]);
             fraction_site = all_sites(grid, start, fraction_column, defined, active);
             let large = offset.abs().le(COARSE as f64 * LARGEST) & active & fraction.le(1.0);
-            let coarse_row = large.select(row + self.tally.sums.len() as f64, nowhere(&self.rows));
+            let coarse_row = large.select(
+                row + self.tally.sums.len() as f64,
+                nowhere(simd, &self.rows),
+            );
             summed_row = plain.select(row, coarse_row);
             unit = plain.select(QUANTA, QUANTA / COARSE as f64);
-            (active & defined & !large).each(|lane| {
+            let aside = active & !large;
+            (aside & defined).each(|lane| {
                 let (restitution, fraction) =
                     (restitution.as_slice()[lane], fraction.as_slice()[lane]);
                 self.sum_large(whole(row.as_slice()[lane]), restitution, fraction);
+            });
+            (aside & gaining).each(|lane| {
+                self.tally.gains[whole(row.as_slice()[lane])].count += 1;
             });
         }
         let queue = &mut self.queue;
         let places = [site, fraction_site, summed_row, restitution];
         put(&mut queue.places[lanes.clone()], places);
-        let [low, high] = words(offset, unit, fraction);
+        let [low, high] = words(offset, unit, fraction, gaining);
         put(&mut queue.low[lanes.clone()], low);
         put(&mut queue.high[lanes], high);
-        let (before, after) = (impact.energy_before, impact.energy_after);
-        let gaining = impact.active & (before * CREATES_ENERGY).lt(after);
         if gaining.any() {
-            let factor = gaining.select(after / before, 0.0);
-            let gain = gaining.select(1.0, 0.0);
-            let row = gaining.select(row, nowhere(&self.rows));
+            let ratio = gaining.select(impact.energy_ratio(), 0.0);
+            let row = gaining.select(row, nowhere(simd, &self.largest));
             for lane in 0..width {
-                let row = &mut self.rows[whole(row.as_slice()[lane])];
-                row.gains
-                    .add(gain.as_slice()[lane] as u64, factor.as_slice()[lane]);
+                let largest = &mut self.largest[whole(row.as_slice()[lane])];
+                let ratio = ratio.as_slice()[lane];
+                if ratio > *largest {
+                    *largest = ratio;
+                }
             }
         }
     }
@@ -255,7 +253,6 @@ impl<const EVEN: bool> Sink for Counter<'_, EVEN> {
 
 impl<const EVEN: bool> Tallying for Counter<'_, EVEN> {
     fn finish(mut self) -> Tally {
-        self.count();
         self.empty();
         self.tally
     }

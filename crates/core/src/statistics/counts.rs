@@ -2,17 +2,20 @@
 
 use super::Tallying;
 use super::axis::{Axis, ROUND};
-use super::backlog::{Backlog, LENGTH};
 use super::moments::Sums;
-use super::places::{all_sites, sites, whole};
+use super::narrow::Recently;
+use super::places::{all_sites, last, sites, whole};
 use super::tally::{Bins, By, CREATES_ENERGY, Tally, WHAT};
 use crate::Error;
 use crate::engine::StopReason;
-use crate::engine::{Impact, Meanwhile, Sink};
+use crate::engine::{GROUPS, Impact, Meanwhile, Sink};
 use crate::memory::zeros;
 use crate::run::Plan;
-use crate::simd::Pack;
+use crate::simd::{LANES, Pack};
 use pulp::Simd;
+
+/// Length of the queue: a place for each lane of every group.
+const LENGTH: usize = GROUPS * LANES;
 
 /// Counts impacts in the grid of ε, and those that create energy, as [`super::Counter`] does, and nothing else.
 pub(crate) struct Counts<'a, const EVEN: bool> {
@@ -20,7 +23,7 @@ pub(crate) struct Counts<'a, const EVEN: bool> {
     bins: &'a Bins,
     plan: &'a Plan<'a>,
     restitution: Vec<u32>,
-    backlog: Backlog,
+    recently: Recently,
     /// The sites at which impacts are to be counted, with [`ROUND`] added.
     queue: [f64; LENGTH],
 }
@@ -31,27 +34,16 @@ impl<'a, const EVEN: bool> Counts<'a, EVEN> {
         Ok(Self {
             bins,
             plan,
-            restitution: zeros(WHAT, tally.restitution.counts().len() + 1)?,
-            backlog: Backlog::default(),
+            restitution: zeros(WHAT, tally.restitution.counts().len() + LANES)?,
+            recently: Recently::default(),
             queue: [0.0; LENGTH],
             tally,
         })
     }
 
-    /// Counts all impacts in the queue.
+    /// Counts the impact at place `i` of the queue.
     #[inline(always)]
-    fn count(&mut self) {
-        while let Some(i) = self.backlog.next() {
-            self.count_one(i);
-        }
-        if self.backlog.restart() {
-            self.empty();
-        }
-    }
-
-    /// Counts number `i` in the queue.
-    #[inline(always)]
-    fn count_one(&mut self, i: usize) {
+    fn count(&mut self, i: usize) {
         self.restitution[whole(self.queue[i])] += 1;
     }
 
@@ -62,24 +54,25 @@ impl<'a, const EVEN: bool> Counts<'a, EVEN> {
 
 impl<const EVEN: bool> Meanwhile for Counts<'_, EVEN> {
     #[inline(always)]
-    fn meanwhile(&mut self) {
-        if let Some(i) = self.backlog.next() {
-            self.count_one(i);
-        }
+    fn meanwhile(&mut self, place: usize) {
+        self.count(place);
     }
 }
 
 impl<const EVEN: bool> Sink for Counts<'_, EVEN> {
     const TOGETHER: bool = true;
 
-    fn begin(&mut self, _: usize) {}
+    fn begin(&mut self) {
+        self.queue.fill(last(&self.restitution));
+    }
 
     #[inline(always)]
-    fn impact<S: Simd, const K: usize>(&mut self, number: usize, _: usize, impact: &Impact<S, K>) {
+    fn impact<S: Simd, const K: usize>(&mut self, group: usize, impact: &Impact<S, K>) {
         let width = Pack::<S, K>::WIDTH;
-        if !self.backlog.has_room(width) {
-            self.count();
+        if self.recently.add(width) {
+            self.empty();
         }
+        let lanes = group * width..(group + 1) * width;
         let restitution = impact.restitution();
         let columns = &self.bins.restitution;
         let (row, column) = match &self.bins.by {
@@ -91,10 +84,7 @@ impl<const EVEN: bool> Sink for Counts<'_, EVEN> {
             }
             By::Number(_) => {
                 let [column] = Axis::locate::<S, K, _, EVEN>([columns], [restitution]);
-                (
-                    Pack::splat(impact.fall.simd(), number as f64 + ROUND),
-                    column,
-                )
+                (impact.number + ROUND, column)
             }
         };
         let start = row - ROUND;
@@ -105,14 +95,14 @@ impl<const EVEN: bool> Sink for Counts<'_, EVEN> {
             let grid = (columns, &self.restitution[..]);
             all_sites(grid, start, column, defined, impact.active)
         };
-        self.queue[self.backlog.take(width)].copy_from_slice(site.as_slice());
+        self.queue[lanes].copy_from_slice(site.as_slice());
         let (before, after) = (impact.energy_before, impact.energy_after);
         let gaining = impact.active & (before * CREATES_ENERGY).lt(after);
         if gaining.any() {
             let factor = after / before;
             gaining.each(|lane| {
                 let row = whole(row.as_slice()[lane]);
-                self.tally.gains[row].add(1, factor.as_slice()[lane]);
+                self.tally.gains[row].add(factor.as_slice()[lane]);
             });
         }
     }
@@ -124,7 +114,6 @@ impl<const EVEN: bool> Sink for Counts<'_, EVEN> {
 
 impl<const EVEN: bool> Tallying for Counts<'_, EVEN> {
     fn finish(mut self) -> Tally {
-        self.count();
         self.empty();
         self.tally
     }

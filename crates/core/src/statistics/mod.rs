@@ -1,11 +1,11 @@
 //! Statistics that merge exactly: integer counts and integer sums, which do not depend on the order of addition.
 
 mod axis;
-mod backlog;
 mod cells;
 mod counter;
 mod counts;
 mod moments;
+mod narrow;
 mod places;
 mod recent;
 mod tally;

@@ -159,7 +159,7 @@ impl Sums {
     }
 
     /// Adds recent sums, whose offsets are in multiples of `unit` quanta.
-    pub(super) fn absorb(&mut self, recent: &Totals, unit: i64, extremes: &Extremes) {
+    pub(super) fn absorb(&mut self, recent: &Totals, unit: i64) {
         let power = |sum: i128, power: u32| {
             let sum = Wide(words(sum as u128)).widened();
             (0..power).fold(sum, |product, _| product.times(unit))
@@ -168,6 +168,10 @@ impl Sums {
         self.second.add(power(recent.second.into(), 2).0, 0);
         self.third.add(power(recent.third, 3).0, 0);
         self.fourth.add(power(recent.fourth, 4).0, 0);
+    }
+
+    /// Adds the extremes of recent values.
+    pub(super) fn widen(&mut self, extremes: &Extremes) {
         self.minimum = self.minimum.min(extremes.minimum);
         self.maximum = self.maximum.max(extremes.maximum);
     }

@@ -1,7 +1,7 @@
 //! The sites of a grid at which impacts are counted: integers in the low bits of doubles, to which [`ROUND`] was added.
 
 use super::axis::{Axis, ROUND};
-use crate::simd::{Mask, Pack};
+use crate::simd::{LANES, Mask, Pack};
 use pulp::Simd;
 
 /// The integer in the low bits of `x`, to which [`ROUND`] was added. It is below 2³², see [`super::Bins::check`].
@@ -10,9 +10,18 @@ pub(super) fn whole(x: f64) -> usize {
     x.to_bits() as u32 as usize
 }
 
-/// The last site, which is never read, plus [`ROUND`].
+/// The last sites, which are never read, plus [`ROUND`]: one for each lane, so that none waits for another.
 #[inline(always)]
-pub(super) fn nowhere<T>(places: &[T]) -> f64 {
+pub(super) fn nowhere<S: Simd, const K: usize, T>(simd: S, places: &[T]) -> Pack<S, K> {
+    let mut sites = Pack::splat(simd, last(places));
+    for (lane, site) in sites.as_mut_slice().iter_mut().enumerate() {
+        *site -= (lane % LANES) as f64;
+    }
+    sites
+}
+
+/// The last of them.
+pub(super) fn last<T>(places: &[T]) -> f64 {
     (places.len() - 1) as f64 + ROUND
 }
 
@@ -37,5 +46,5 @@ pub(super) fn all_sites<S: Simd, const K: usize>(
     active: Mask<S, K>,
 ) -> Pack<S, K> {
     let column = defined.select(column, axis.beyond() + ROUND);
-    active.select(sites(axis, start, column), nowhere(counts))
+    active.select(sites(axis, start, column), nowhere(start.simd(), counts))
 }

@@ -5,7 +5,7 @@
 //! for one word are split into two parts, which a fused multiply-add separates exactly.
 
 use super::axis::ROUND;
-use crate::simd::Pack;
+use crate::simd::{Mask, Pack};
 use pulp::Simd;
 
 /// Number of quanta in a unit of ε.
@@ -24,16 +24,21 @@ pub(super) const MOST: u64 = 4096;
 const CUBIC: f64 = 33_554_432.0; // 2²⁵
 const QUARTIC: f64 = 1_125_899_906_842_624.0; // 2⁵⁰
 
-/// Half of the contributions of a value: q, q², q³ high and low; or q⁴ high and low, E_rot/E_tot, and a binary 1 that counts the
-/// value.
+/// A binary 1 that counts a value with which energy was created.
+const GAIN: u64 = 1 << 32;
+
+/// Half of the contributions of a value: q, q², q³ high and low; or q⁴ high and low, E_rot/E_tot, and a binary number that counts
+/// the value, and from bit 32 on counts it if energy was created.
 pub(super) type Half = [f64; 4];
 
-/// Both halves for an offset of ε from its origin, with `quanta` quanta in a unit, and for E_rot/E_tot.
+/// Both halves for an offset of ε from its origin, with `quanta` quanta in a unit, for E_rot/E_tot, and for whether energy was
+/// created.
 #[inline(always)]
 pub(super) fn words<S: Simd, const K: usize>(
     offset: Pack<S, K>,
     quanta: Pack<S, K>,
     fraction: Pack<S, K>,
+    gaining: Mask<S, K>,
 ) -> [[Pack<S, K>; 4]; 2] {
     let first = offset.mul_add(quanta, ROUND);
     let q = first - ROUND;
@@ -48,7 +53,7 @@ pub(super) fn words<S: Simd, const K: usize>(
             fourth,
             rest_of_fourth + ROUND,
             fraction.mul_add(FRACTION_QUANTA, ROUND),
-            Pack::splat(offset.simd(), f64::from_bits(1)),
+            gaining.select(f64::from_bits(1 | GAIN), f64::from_bits(1)),
         ],
     ]
 }
@@ -94,6 +99,8 @@ pub(super) struct Totals {
     pub fourth: i128,
     /// Σ E_rot/E_tot.
     pub fractions: u64,
+    /// Number of values with which energy was created.
+    pub gains: u64,
 }
 
 impl Recent {
@@ -107,12 +114,12 @@ impl Recent {
             self.0[i].wrapping_add(if i < 4 { low[i] } else { high[i - 4] }.to_bits())
         });
         self.0 = sums;
-        sums[7] == MOST
+        sums[7] % GAIN == MOST
     }
 
     /// The sums.
     pub fn totals(&self) -> Totals {
-        let number = self.0[7];
+        let (number, gains) = (self.0[7] % GAIN, self.0[7] / GAIN);
         let sum = |word: usize, unit: f64| {
             let offset = (unit * ROUND).to_bits();
             self.0[word].wrapping_sub(offset.wrapping_mul(number)) as i64
@@ -126,6 +133,7 @@ impl Recent {
             third: joined(2, CUBIC),
             fourth: joined(4, QUARTIC),
             fractions: sum(6, 1.0) as u64,
+            gains,
         }
     }
 }

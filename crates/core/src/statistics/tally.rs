@@ -96,13 +96,12 @@ pub struct Gains {
 }
 
 impl Gains {
-    /// Adds an impact (`count` = 1), or none (`count` = 0, `factor` = 0). The largest factor is written only when it changes.
-    #[inline(always)]
-    pub(super) fn add(&mut self, count: u64, factor: f64) {
-        self.count += count;
-        if factor > self.largest {
-            self.largest = factor;
-        }
+    /// Adds an impact with this energy ratio.
+    pub(super) fn add(&mut self, ratio: f64) {
+        self.merge(Self {
+            count: 1,
+            largest: ratio,
+        });
     }
 
     pub(super) fn merge(&mut self, other: Self) {

@@ -3,11 +3,8 @@
 
 use super::{Course, Goal, Impacts, Rates, Slipping};
 use crate::collision::{Hypothesis, Late};
-use crate::simd::{Mask, Pack};
+use crate::simd::{LANES, Mask, Pack};
 use pulp::{Simd, WithSimd};
-
-/// Most lanes of a vector.
-const LANES: usize = 8;
 
 impl<S: Simd> Slipping<S, 1> {
     /// No contact.
