@@ -2,10 +2,12 @@
 
 import json
 import shutil
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 import pytest
+import zarr
 
 from reference.studies import TINY, bits
 from restitution.study import Refused, merge, status, study_of, sweep
@@ -202,3 +204,80 @@ def test_parts_of_another_study_are_refused(done: Path, tmp_path: Path) -> None:
         with pytest.raises(Refused, match=r"other\.zarr: is the store of another study"):
             merge(out, [done, other])
     assert not (tmp_path / "all.zarr").exists()
+
+
+WORDS = Path("tasks") / "words"
+
+
+def reshaped(name: Path | str, **to: Any) -> Callable[[Path], object]:
+    """Change what an array says of itself."""
+
+    def harm(store: Path) -> None:
+        file = store / name / "zarr.json"
+        file.write_text(json.dumps(json.loads(file.read_text()) | to))
+
+    return harm
+
+
+def filled(name: str, value: int) -> Callable[[Path], object]:
+    def harm(store: Path) -> None:
+        array: Any = zarr.open_group(str(store), mode="r+")[name]
+        array[...] = value
+
+    return harm
+
+
+HARMS: dict[str, tuple[Callable[[Path], object], str | None, str | None]] = {
+    # what is done to a store; what is then said by its status, and by a sweep that goes on with it
+    "many points": (reshaped(WORDS, shape=[10**12, 4, 602]), "of 1000000000000 points", "words is uint64 of"),
+    "no points": (reshaped(WORDS, shape=[0, 4, 602]), "tasks of 0 points, and the status of 6", "words is"),
+    "a point less": (
+        reshaped(WORDS, shape=[5, 4, 602]),
+        "tasks of 5 points",
+        "tasks/words is uint64 of shape",
+    ),
+    "few words": (reshaped(WORDS, shape=[6, 4, 3]), None, "tasks/words is uint64 of shape"),
+    "other words": (reshaped(WORDS, data_type="float64", fill_value=0.0), None, "tasks/words is float64"),
+    "no status": (lambda store: shutil.rmtree(store / "status"), "KeyError: 'status'", "KeyError: 'status'"),
+    "no axis": (lambda store: shutil.rmtree(store / "normal"), None, "KeyError: 'normal'"),
+    "much status": (reshaped("status", shape=[10**6, 10**6]), "status of 1000000000000", "status is uint8"),
+    "other results": (
+        reshaped("mean_restitution", data_type="int16", fill_value=0),
+        None,
+        "restitution is int16",
+    ),
+    "many results": (reshaped("mean_restitution", shape=[2, 3, 50]), None, "mean_restitution is float64"),
+    "particles without end": (filled("particles", 2**62), None, None),
+    "particles below none": (filled("particles", -5), None, None),
+    "folders of others": (lambda store: (store / WORDS / "c" / "0" / "\u00b2").mkdir(), None, None),
+    "points of others": (
+        lambda store: (store / WORDS / "c" / ("9" * 20) / "0").mkdir(parents=True),
+        None,
+        None,
+    ),
+}
+
+
+@pytest.mark.parametrize("name", list(HARMS))
+def test_a_store_whose_arrays_are_others(name: str, done: Path, tmp_path: Path) -> None:
+    """Is called damaged at once, and nothing is written to it; marks that are wrong are set right."""
+    harm, of_status, of_sweep = HARMS[name]
+    store = tmp_path / "harmed.zarr"
+    shutil.copytree(done, store)
+    harm(store)
+    if of_status is None:
+        assert status(store).points == 6
+    else:
+        with pytest.raises(Refused, match=rf"harmed\.zarr: is damaged \(.*{of_status}"):
+            status(store)
+    if of_sweep is None:
+        sweep(TINY, store, threads=1)
+        assert bits(store).items() >= bits(done).items()
+        return
+    before = bits(store)
+    with pytest.raises(ValueError, match=rf"harmed\.zarr: is damaged \(.*{of_sweep}"):
+        sweep(TINY, store, threads=1)
+    assert bits(store) == before
+    if "words" in of_sweep:
+        with pytest.raises(Refused, match=of_sweep):
+            merge(tmp_path / "all.zarr", [store])

@@ -16,6 +16,7 @@ import numpy.typing as npt
 import xarray as xr
 
 from restitution.study._axes import Design
+from restitution.study._effort import Effort
 from restitution.study._engines import Engine
 from restitution.study._point import Point, point_of
 from restitution.study._store import Store, small
@@ -172,7 +173,7 @@ class Driver:
     def _begin(self, number: int) -> None:
         opened = _Open(point_of(self.study, number, self.template))
         there = self.store.there(number)
-        known, blocks = self.table.known(number, self.study.effort.particles)
+        known, blocks = self.table.known(number, self.study.effort)
         if number == self.points[0]:  # is worked out again, to look at what all points have in common
             known = b""
         if known:
@@ -271,7 +272,7 @@ class Table:
                 continue
             self._values[name] = values.reshape(self.design.points, *array.shape[own:])
 
-    def known(self, point: int, block: int) -> tuple[bytes, int]:
+    def known(self, point: int, effort: Effort) -> tuple[bytes, int]:
         """Give the digest of a point that is finished, and its number of blocks."""
         values = self._values
         if (
@@ -279,8 +280,9 @@ class Table:
             or values["status"][point] != 1
         ):
             return b"", 1
-        blocks = int(values["particles"][point]) // block
-        return (values["digest"][point].tobytes(), blocks) if blocks >= 1 else (b"", 1)
+        blocks = int(values["particles"][point]) // effort.particles
+        good = 1 <= blocks <= effort.blocks
+        return (values["digest"][point].tobytes(), blocks) if good else (b"", 1)
 
     def digest(self, point: int) -> bytes:
         """Give the digest of what is known of a point."""

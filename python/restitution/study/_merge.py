@@ -10,6 +10,7 @@ from restitution._parameters import ParameterError, Problem, shown, wrong
 from restitution.study._drive import Driver
 from restitution.study._engines import engine
 from restitution.study._identity import check
+from restitution.study._layout import check_layout
 from restitution.study._status import Status, status, study_in
 from restitution.study._store import Store, need_zarr
 from restitution.study._study import Study, study_of
@@ -74,7 +75,9 @@ def merge(
         check(part, wanted)
     store, template = opened(path, wanted)
     for part in others:
-        _copy(Store(part, wanted.digest), store, wanted)
+        other = Store(part, wanted.digest)
+        check_layout(part, other.group, wanted, store.words.shape[2])
+        _copy(other, store, wanted)
     points = range(wanted.design.points)
     with engine(None, threads) as work:
         Driver(wanted, store, work, template, points, compute=False).run(writes=True)

@@ -1,5 +1,6 @@
 """The status of a study, read from its store."""
 
+import math
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -81,9 +82,11 @@ def status(out: str | Path) -> Status:
     with readable(path):
         batches = int(found["effort"]["batches"])
         store = Store(path, b"")
-        points = int(store.words.shape[0])
-        there = sum(len(store.there(point)) for point in range(points))
-        finished = int(np.count_nonzero(np.asarray(store.group["status"][...]) == 1))
+        points, marks = int(store.words.shape[0]), store.group["status"]
+        if points < 1 or math.prod(marks.shape) != points:
+            raise ValueError(f"tasks of {points} points, and the status of {math.prod(marks.shape)}")
+        there = sum(len(store.there(point)) for point in store.points_there())
+        finished = int(np.count_nonzero(np.asarray(marks[...]) == 1))
         return Status(points, finished, points * batches // store.task_batches, there)
 
 

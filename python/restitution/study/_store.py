@@ -28,6 +28,7 @@ from restitution._resources import check_room
 from restitution._signals import undisturbed
 from restitution.study._axes import Design
 from restitution.study._identity import attribute, check, readable, threads_for
+from restitution.study._layout import check_array, check_layout
 from restitution.study._point import Words
 from restitution.study._study import Study
 
@@ -94,6 +95,15 @@ class Store:
             self.words = words
             self.task_batches = int(words.chunks[1])
 
+    def points_there(self) -> list[int]:
+        """Name the points that have a chunk, of those that the study has."""
+        try:
+            names = os.listdir(self.path / "tasks" / "words" / "c")
+        except FileNotFoundError:
+            return []
+        numbers = (int(name) for name in names if name.isdecimal())
+        return [number for number in numbers if number < self.words.shape[0]]
+
     def valid(self, point: int, first: int, count: int) -> npt.NDArray[np.bool_]:
         """Return which batches of a point are there, undamaged."""
         return self.read(point, first, count)[1]
@@ -127,7 +137,7 @@ class Store:
         """Return which tasks of a point have a chunk, whatever is in it."""
         folder = self.path / "tasks" / "words" / "c" / str(point)
         try:
-            return {int(entry.name) for entry in os.scandir(folder) if entry.name.isdigit()}
+            return {int(entry.name) for entry in os.scandir(folder) if entry.name.isdecimal()}
         except FileNotFoundError:
             return set()
 
@@ -141,12 +151,15 @@ class Store:
     def ensure(self, found: xr.Dataset, design: Design) -> None:
         """Make the arrays of the results, if they are not there, from what was found at a point."""
         for name, variable in found.variables.items():
-            if name in self._ensured or str(name) in self.group:
-                self._ensured.add(str(name))
+            if name in self._ensured:
                 continue
             own = name in found.data_vars and not _is_common(str(name), variable)
             dims = (*design.dims, *map(str, variable.dims)) if own else tuple(map(str, variable.dims))
             shape = (*design.shape, *variable.shape) if own else variable.shape
+            if str(name) in self.group:
+                check_array(self.group, str(name), shape, variable.dtype, "same_kind")
+                self._ensured.add(str(name))
+                continue
             chunks = _chunks(design, variable) if own else shape
             with contextlib.suppress(FileExistsError, ValueError):  # another worker was faster
                 array = self.group.create_array(
@@ -252,7 +265,9 @@ def create_or_open(path: Path, study: Study, words: int) -> tuple[Store, bool]:
         with undisturbed():
             made = _make(path, study, words)
     check(path, study)
-    return Store(path, study.digest), not made
+    store = Store(path, study.digest)
+    check_layout(store.path, store.group, study, words + _DIGEST)
+    return store, not made
 
 
 def _make(path: Path, study: Study, words: int) -> bool:
