@@ -11,7 +11,7 @@ from typing import Any
 
 import pytest
 
-from restitution._signals import ending, leaving, put_off
+from restitution._signals import ending, leaving, put_off, undisturbed
 
 ALL = [signal.SIGINT, signal.SIGTERM, signal.SIGHUP]
 PATIENCE = 20.0
@@ -23,7 +23,7 @@ def handlers() -> list[Any]:
 
 
 @pytest.fixture(autouse=True)
-def undisturbed() -> Iterator[None]:
+def handlers_of_python() -> Iterator[None]:
     """Whatever the handlers are that pytest was started with, each is called here; all are put back."""
     hook = sys.unraisablehook
     before = [signal.signal(number, signal.default_int_handler) for number in ALL]
@@ -87,6 +87,21 @@ def test_a_second_signal_is_not_put_off() -> None:
     with pytest.raises(KeyboardInterrupt) as raised, put_off(lambda: told.append(None)) as late:
         struck(signal.SIGTERM, signal.SIGHUP)
     assert (raised.value.args, late, len(told)) == ((), [signal.SIGTERM, signal.SIGHUP], 1)
+
+
+def test_a_block_is_not_disturbed() -> None:
+    """The signal that came meanwhile counts when it has ended."""
+    done: list[str] = []
+
+    def work() -> None:
+        with undisturbed():
+            send(signal.SIGTERM)
+            done.append("block")
+        done.append("more")
+
+    with pytest.raises(KeyboardInterrupt):
+        work()
+    assert done == ["block"]
 
 
 BLOCKS: list[Callable[[], AbstractContextManager[Any]]] = [ending, leaving, lambda: put_off(lambda: None)]
