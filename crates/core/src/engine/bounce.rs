@@ -96,9 +96,9 @@ impl<S: Simd, T: Turn, K: Sink> WithSimd for Tell<'_, S, T, K> {
         let mut ended = false;
         for (i, group) in self.groups.iter_mut().enumerate() {
             ended |= group.tell(i, self.body, self.limits, self.sink);
-            if self.settle {
-                self.sink.settle(width * i..width * (i + 1));
-            }
+        }
+        if self.settle {
+            self.sink.settle(0..width * self.groups.len());
         }
         ended
     }

@@ -74,6 +74,7 @@ pub(crate) trait Sink: Meanwhile {
     /// meanwhile, or by [`Sink::settle`].
     fn impact<S: Simd, const K: usize>(&mut self, group: usize, impact: &Impact<S, K>);
     /// Works up the impacts at these places.
+    #[inline(always)]
     fn settle(&mut self, places: Range<usize>) {
         for place in places {
             self.meanwhile(place);

@@ -14,9 +14,16 @@ pub(crate) const BLOCK: usize = 96;
 /// Largest number of particles in a block, at whose end some lanes have none left.
 const LARGEST: usize = 960;
 
-/// Number of particles in the next block, of those that are left to some threads.
+/// Number of particles in the next block, of those that are left to some threads: a multiple of [`BLOCK`], so that no lane is idle where
+/// all particles live equally long.
 pub(crate) fn share(left: usize, threads: usize) -> usize {
-    (left / (4 * threads)).clamp(BLOCK, LARGEST).min(left)
+    // One thread has nobody to wait for it.
+    let most = if threads > 1 {
+        left / (3 * threads)
+    } else {
+        left
+    };
+    (most / BLOCK * BLOCK).clamp(BLOCK, LARGEST).min(left)
 }
 
 impl Plan<'_> {

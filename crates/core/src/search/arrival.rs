@@ -2,7 +2,7 @@
 
 use super::gap::{Gap, Look, Search};
 use super::{FAR, INVISIBLE, LAST, NEAR, SMALL};
-use crate::body::{Hull, Part};
+use crate::body::Hull;
 use crate::flight::{Attitude, Flight};
 use crate::simd::{Mask, Pack};
 use pulp::Simd;
@@ -160,6 +160,9 @@ impl<S: Simd, F: Flight<S, K>, const K: usize> Search<S, F, K> {
         // The largest excess must be ≤ 0: one comparison, because operations on masks are slower than those on numbers.
         let invisible = late.max(turned).max(visible).le(0.0);
         let last = look.gap.rate.lt(0.0) & invisible & clear & !arrival.done;
+        if !last.any() {
+            return;
+        }
         let there = look.attitude.turned(self.flight.rate() * step);
         let attitude = &mut arrival.attitude;
         arrival.time = last.select(end, arrival.time);
@@ -210,27 +213,20 @@ impl<S: Simd, F: Flight<S, K>, const K: usize> Search<S, F, K> {
         hull: &H,
     ) -> Mask<S, K> {
         let since = time - certain;
-        let part = &look.gap.part;
-        let least = self.least_gap(since, time, look, part, hull);
+        let least = self.least_gap(since, look.gap.width, look.gap.rate);
         let least = if H::TWO {
-            least.min(self.least_gap(since, time, look, &hull.part(!part.one), hull))
+            let other = hull.part(!look.gap.part.one);
+            let (width, rate) = self.moment(time, look.attitude).opening(&other, hull);
+            least.min(self.least_gap(since, width, rate))
         } else {
             least
         };
         !certain.lt(time) | (0.0 * since).lt(least)
     }
 
-    /// A lower bound on the gap of a part during the interval of length `since` before `time`.
+    /// A lower bound on the gap of a part during the interval of length `since` before its evaluation.
     #[inline(always)]
-    fn least_gap(
-        &self,
-        since: Pack<S, K>,
-        time: Pack<S, K>,
-        look: &Look<S, K>,
-        part: &Part<S, K>,
-        hull: &impl Hull,
-    ) -> Pack<S, K> {
-        let (width, rate) = self.moment(time, look.attitude).opening(part, hull);
+    fn least_gap(&self, since: Pack<S, K>, width: Pack<S, K>, rate: Pack<S, K>) -> Pack<S, K> {
         let fallen = since.mul_add(0.5 * self.bound, rate);
         since.mul_add(-fallen, width).min(width)
     }
