@@ -8,6 +8,7 @@ use super::strike::Turn;
 use crate::body::Body;
 use crate::simd::Pack;
 use pulp::{Simd, WithSimd};
+use std::hint::black_box;
 use std::ops::Range;
 
 /// Simulates the `particles` of a release, as many at a time as N groups have lanes. Calls `go_on` before every impact.
@@ -25,7 +26,9 @@ pub(crate) fn bounce<S: Simd, T: Turn, L: Legs<S, T>, const N: usize>(
     let mut groups = legs.groups::<N>(simd);
     let width = Pack::<S, 1>::WIDTH;
     let count = particles.len().div_ceil(width).min(N);
-    let mut groups = &mut groups[..count];
+    // Of a slice that it knows to be short the compiler would write out every stage for each group, which then do not fit into the
+    // instruction cache.
+    let mut groups = black_box(&mut groups[..count]);
     let mut ended = true;
     sink.begin();
     loop {
