@@ -167,6 +167,7 @@ impl<F> Meanwhile for Told<'_, F> {
 
 impl<F: FnMut(&SingleImpact) -> bool> Sink for Told<'_, F> {
     const TOGETHER: bool = false;
+    const COMMON: bool = false;
 
     fn begin(&mut self) {}
 

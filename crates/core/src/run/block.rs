@@ -62,21 +62,24 @@ impl<T: Sink> WithSimd for Block<'_, T> {
     fn with_simd<S: Simd>(self, simd: S) -> Self::Output {
         let plan = self.plan;
         let (body, law, slope) = (&plan.body, &plan.law, plan.slope);
-        // The paper's body and the one that takes longest have their own bounce loops where these are not held up by memory.
-        match (&body.hull, plan.at_rest) {
-            (Surface::EqualPair(hull), true) if T::TOGETHER => match &plan.law.steady() {
-                Some(law) => self.run::<S, Planar>(simd, &Together::new(body, hull, law, slope)),
-                None => self.run::<S, Planar>(simd, &Together::new(body, hull, law, slope)),
-            },
-            (Surface::Ellipsoid(hull), true) if T::TOGETHER => match &plan.law.steady() {
-                Some(law) => self.run::<S, Planar>(simd, &Together::new(body, hull, law, slope)),
-                None => self.run::<S, Planar>(simd, &Together::new(body, hull, law, slope)),
-            },
-            (Surface::Ellipsoid(hull), false) if T::TOGETHER => {
+        // The paper's body, and in the most common runs the one that takes longest, have bounce loops of their own where these are not
+        // held up by memory.
+        let steady = plan.law.steady();
+        match (&body.hull, plan.at_rest, &steady) {
+            (Surface::EqualPair(hull), true, Some(law)) if T::TOGETHER => {
+                self.run::<S, Planar>(simd, &Together::new(body, hull, law, slope))
+            }
+            (Surface::EqualPair(hull), true, None) if T::TOGETHER => {
+                self.run::<S, Planar>(simd, &Together::new(body, hull, law, slope))
+            }
+            (Surface::Ellipsoid(hull), true, Some(law)) if T::COMMON => {
+                self.run::<S, Planar>(simd, &Together::new(body, hull, law, slope))
+            }
+            (Surface::Ellipsoid(hull), false, _) if T::COMMON => {
                 self.run::<S, Spatial>(simd, &Together::new(body, hull, law, slope))
             }
-            (_, true) => self.run::<S, Planar>(simd, &Apart { body, law, slope }),
-            (_, false) => self.run::<S, Spatial>(simd, &Apart { body, law, slope }),
+            (_, true, _) => self.run::<S, Planar>(simd, &Apart { body, law, slope }),
+            (_, false, _) => self.run::<S, Spatial>(simd, &Apart { body, law, slope }),
         }
     }
 }

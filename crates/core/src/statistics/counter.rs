@@ -157,6 +157,7 @@ impl<const EVEN: bool> Meanwhile for Counter<'_, EVEN> {
 
 impl<const EVEN: bool> Sink for Counter<'_, EVEN> {
     const TOGETHER: bool = true;
+    const COMMON: bool = EVEN;
 
     fn begin(&mut self) {
         let nowhere = [

@@ -61,6 +61,7 @@ impl<const EVEN: bool> Meanwhile for Counts<'_, EVEN> {
 
 impl<const EVEN: bool> Sink for Counts<'_, EVEN> {
     const TOGETHER: bool = true;
+    const COMMON: bool = EVEN;
 
     fn begin(&mut self) {
         self.queue.fill(last(&self.restitution));
