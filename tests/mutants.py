@@ -219,13 +219,23 @@ def compile_all(mutants: list[Mutant], tests: list[str], vectors: bool) -> tuple
 
 
 def _plain(text: bytes, vectors: bool) -> bytes:
-    """Without what would make the build long: inlining, and, unless they are asked for, vectors."""
+    """Without what would make the build long: inlining, and, unless they are asked for, vectors.
+
+    Vectors are four doubles in a row, with any instructions: functions that are not inlined would not be
+    compiled for those of a level.
+    """
     text = text.replace(b"#[inline(always)]", b"#[inline]").replace(b"#![forbid(unsafe_code)]", b"")
-    return text if vectors else re.sub(rb"V[34]::try_new\(\)\.map\(.*?work\)\),", b"None,", text)
+    if vectors:
+        four = b"Some(Simd::vectorize(pulp::Scalar256b, work)),"
+        text = re.sub(rb"V3::try_new\(\)\.map\(.*?work\)\),", four, text)
+    return re.sub(rb"V[34]::try_new\(\)\.map\(.*?work\)\),", b"None,", text)
 
 
 def _environment() -> dict[str, str]:
-    return os.environ | {"CARGO_TARGET_DIR": str(WORK / "build"), "RUSTFLAGS": "-Awarnings"}
+    return os.environ | {
+        "CARGO_TARGET_DIR": str(WORK / "build"),
+        "RUSTFLAGS": "-Awarnings -Ctarget-cpu=native",
+    }
 
 
 def _refused(sources: Path) -> Iterator[int]:
@@ -323,7 +333,7 @@ def main() -> None:
     parser.add_argument("--shard", default="0/1", help="0/8 takes every eighth change")
     parser.add_argument("--tests", default="", help="which of crates/core/tests to ask, as lib,flight")
     parser.add_argument("files", nargs="*", help="words of the paths of the files that are changed")
-    parser.add_argument("--vectors", action="store_true", help="at every SIMD level, not one lane by one")
+    parser.add_argument("--vectors", action="store_true", help="four lanes as well as one")
     parser.add_argument("--go-on", action="store_true", help="keep outcomes.txt, and try what it lacks")
     asked = parser.parse_args()
     wanted = [one for one in listed() if not asked.files or any(word in one.file for word in asked.files)]

@@ -308,3 +308,53 @@ fn a_body_thrown_up_from_the_plane_flies() {
         }
     }
 }
+
+/// A sphere whose point of contact is left without speed stays, unless the rotation pulls it up faster than the body falls,
+/// (L/2)Ω² > 1: upright, the centre of mass then falls from rest, and the gaps are (L/2)(1 ∓ cos Ωt) − t²/2.
+#[test]
+fn a_contact_without_speed_is_left_if_the_rotation_lifts_it() {
+    for elongation in [0.3, 1.0, 3.5] {
+        let body = dumbbell(elongation);
+        let half = body.half_separation;
+        for (sphere, pull) in Sphere::BOTH
+            .map(|one| [0.5, 0.9, 1.1, 1.5, 20.0].map(|x| (one, x)))
+            .concat()
+        {
+            let axis = Vector::new(0.0, 0.0, -sphere.sign());
+            let rate = (pull / half).sqrt();
+            let spin = Vector::new(0.0, rate, 0.0);
+            let start = State::with_spin(&body, 1.0 + half, Vector::default(), axis, spin);
+            let found = landing(start, &body, Departure::Touching { sphere, speed: 0.0 });
+            if pull < 1.0 {
+                assert_eq!(found, Landing::Resting, "{sphere:?}, {pull}");
+                continue;
+            }
+            let Landing::Impact {
+                time, sphere: next, ..
+            } = found
+            else {
+                panic!("{found:?} instead of a flight, {sphere:?}, {pull}");
+            };
+            let least = |t: f64| half * (1.0 - (rate * t).cos().abs()) - 0.5 * t * t;
+            let mut late = 1e-3 / rate;
+            while least(late) > 0.0 {
+                late += 1e-3 / rate;
+            }
+            let mut early = late - 1e-3 / rate;
+            for _ in 0..60 {
+                let middle = 0.5 * (early + late);
+                if least(middle) > 0.0 {
+                    early = middle
+                } else {
+                    late = middle
+                }
+            }
+            assert!(
+                (time - late).abs() < 1e-12 * late,
+                "{time} instead of {late}"
+            );
+            let same = (rate * late).cos() > 0.0;
+            assert_eq!(next == sphere, same, "{sphere:?}, {pull}");
+        }
+    }
+}
