@@ -70,6 +70,15 @@ fn a_body_that_spins_too_fast_never_lands() {
     assert_eq!((impacts.len(), reason), (0, StopReason::NeverLands));
 }
 
+/// No impact is asked for, and none is told.
+#[test]
+fn a_trajectory_without_impacts_ends() {
+    let body = dumbbell(1.0);
+    let release = at_rest(&body, 20.0, 0.3);
+    let (impacts, reason) = trajectory(&body, &law(0.9, 1.0), release, 0);
+    assert_eq!((impacts.len(), reason), (0, StopReason::ImpactsReached));
+}
+
 /// A perfectly plastic sphere is hit once and stays.
 #[test]
 fn a_plastic_sphere_collapses_after_one_impact() {

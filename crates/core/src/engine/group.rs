@@ -232,10 +232,11 @@ impl<S: Simd, T: Turn> Group<S, T> {
             .arrival(&self.look, &self.leap, &self.residue, hull);
     }
 
-    /// Whether the contact of some particle is not located yet: rare after the first pass, except for spinning smooth hulls.
+    /// Whether the contact of some particle was not located before this pass, or is not by this one: rare after the first pass, except
+    /// for spinning smooth hulls.
     #[inline(always)]
-    pub fn is_waiting(&self) -> bool {
-        (self.active & !self.arrival.done).any()
+    pub fn takes_another_pass(&self) -> bool {
+        self.is_behind || (self.active & !self.arrival.done).any()
     }
 
     /// 1 in each lane that waits, otherwise 0.
@@ -259,7 +260,7 @@ impl<S: Simd, T: Turn> Group<S, T> {
     /// Ends the search in the lanes whose certified step leaves a gap below the resolution.
     #[inline(always)]
     pub fn graze(&mut self) {
-        if !(self.is_behind || self.is_waiting()) {
+        if !self.takes_another_pass() {
             return;
         }
         let Self {

@@ -147,10 +147,7 @@ pub(super) fn find<S: Simd, T: Turn>(
         work_up::<S>(sink, i, 1);
     }
     pass(groups, hull, sink);
-    let waits = groups
-        .iter()
-        .any(|group| group.is_behind || group.is_waiting());
-    if waits {
+    if groups.iter().any(Group::takes_another_pass) {
         let simd = groups[0].active.simd();
         simd.vectorize(SearchOn {
             groups: &mut *groups,

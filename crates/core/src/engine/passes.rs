@@ -32,7 +32,7 @@ impl<S: Simd, T: Turn, H: Hull> WithSimd for SearchOn<'_, S, T, H> {
                 group.graze();
             }
             for group in groups.iter_mut() {
-                if group.is_behind || group.is_waiting() {
+                if group.takes_another_pass() {
                     group.go_on(hull);
                     group.stuck()?;
                 }

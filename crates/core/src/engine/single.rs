@@ -127,6 +127,9 @@ pub fn trajectory(
     limits: Limits,
     record: impl FnMut(&SingleImpact) -> bool,
 ) -> Result<StopReason, NoConvergence> {
+    if limits.impacts == 0 {
+        return Ok(StopReason::ImpactsReached);
+    }
     let go_on = Cell::new(true);
     let mut told = Told {
         record,

@@ -100,10 +100,10 @@ impl<const EVEN: bool> Sink for Counts<'_, EVEN> {
         let (before, after) = (impact.energy_before, impact.energy_after);
         let gaining = impact.active & (before * CREATES_ENERGY).lt(after);
         if gaining.any() {
-            let factor = after / before;
+            let ratio = impact.energy_ratio();
             gaining.each(|lane| {
                 let row = whole(row.as_slice()[lane]);
-                self.tally.gains[row].add(factor.as_slice()[lane]);
+                self.tally.gains[row].add(ratio.as_slice()[lane]);
             });
         }
     }

@@ -125,17 +125,17 @@ impl<S: Simd, T: Turn> Group<S, T> {
         (particle, impacts)
     }
 
-    /// The first particle whose search takes too many passes.
+    /// An error if the search of some particle takes too many passes.
     #[inline(always)]
     pub fn stuck(&self) -> Result<(), Stuck> {
         let lost = !self.passes.lt(f64::from(MOST_STEPS));
         if lost.any() {
-            let mut first = Ok(());
+            let mut stuck = Ok(());
             lost.each(|lane| {
                 let (particle, impacts) = self.trajectory(lane);
-                first = Err(Stuck { particle, impacts });
+                stuck = Err(Stuck { particle, impacts });
             });
-            return first;
+            return stuck;
         }
         Ok(())
     }
