@@ -8,7 +8,7 @@ use crate::engine::strike::Turn;
 use crate::flight::States;
 use crate::search::MOST_STEPS;
 use crate::simd::{Mask, Pack};
-use pulp::Simd;
+use pulp::{Simd, WithSimd};
 
 impl<S: Simd, T: Turn> Group<S, T> {
     /// Hands the impact to the sink, and ends the particles for which it was the last; returns whether any has ended since the last
@@ -67,7 +67,11 @@ impl<S: Simd, T: Turn> Group<S, T> {
             self.unresolved = self.waiting.select(self.unresolved, 0.0);
         }
         if self.rounds >= self.due {
-            self.end_those_with_all_impacts(limits.impacts as f64);
+            let simd = self.clock.simd();
+            simd.vectorize(Due {
+                group: self,
+                most: limits.impacts as f64,
+            });
         }
         if self.has_ended {
             self.close(sink);
@@ -77,7 +81,7 @@ impl<S: Simd, T: Turn> Group<S, T> {
     }
 
     /// Ends the particles that have reached the largest number of impacts, and determines when the next one may.
-    #[cold]
+    #[inline(always)]
     fn end_those_with_all_impacts(&mut self, most: f64) {
         self.end(self.impacts().eq(most), StopReason::ImpactsReached);
         let idle = self.active.select(self.idle, f64::INFINITY);
@@ -138,5 +142,20 @@ impl<S: Simd, T: Turn> Group<S, T> {
             return stuck;
         }
         Ok(())
+    }
+}
+
+/// [`Group::end_those_with_all_impacts`], compiled separately for each SIMD level, because it is rare.
+struct Due<'a, S: Simd, T: Turn> {
+    group: &'a mut Group<S, T>,
+    most: f64,
+}
+
+impl<S: Simd, T: Turn> WithSimd for Due<'_, S, T> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<U: Simd>(self, _: U) {
+        self.group.end_those_with_all_impacts(self.most);
     }
 }
