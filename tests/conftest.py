@@ -1,6 +1,7 @@
 """What all tests share."""
 
 import signal
+from collections.abc import Iterator
 from pathlib import Path
 
 import matplotlib
@@ -9,6 +10,10 @@ from hypothesis import settings
 
 import restitution as rs
 from reference.command import SMALL
+from reference.studies import TINY
+from restitution.study import study_of, sweep
+from restitution.study._effort import Effort
+from restitution.study._study import Study
 
 matplotlib.use("Agg")
 
@@ -38,4 +43,27 @@ def parameters(tmp_path: Path) -> Path:
     """A file of parameters, none of which has its default value."""
     path = tmp_path / "run.toml"
     path.write_text(SMALL, encoding="utf-8")
+    return path
+
+
+@pytest.fixture(scope="module")
+def small_tasks() -> Iterator[None]:
+    """Two batches to a task, so that a point of the study of six points has two of them."""
+    whole = Effort.task_batches
+    Effort.task_batches = property(lambda _: 2)  # type: ignore[assignment]
+    yield
+    Effort.task_batches = whole  # type: ignore[method-assign]
+
+
+@pytest.fixture(scope="module")
+def tiny() -> Study:
+    """The study of six points."""
+    return study_of(TINY)
+
+
+@pytest.fixture(scope="module")
+def done(tmp_path_factory: pytest.TempPathFactory, small_tasks: None) -> Path:
+    """Its store, finished; to be left as it is."""
+    path = tmp_path_factory.mktemp("done") / "done.zarr"
+    sweep(TINY, path, threads=1)
     return path

@@ -11,37 +11,17 @@ import zarr
 
 from reference.studies import TINY, bits
 from restitution.study import Refused, merge, status, study_of, sweep
-from restitution.study._effort import Effort
 from restitution.study._identity import attribute, check, identity, readable, threads_for
 from restitution.study._status import open_store, study_in
 from restitution.study._study import Study
 
-
-@pytest.fixture(autouse=True, scope="module")
-def small_tasks() -> Any:
-    """Two batches to a task, so that a point has two of them."""
-    whole = Effort.task_batches
-    Effort.task_batches = property(lambda _: 2)  # type: ignore[assignment]
-    yield
-    Effort.task_batches = whole  # type: ignore[method-assign]
+pytestmark = pytest.mark.usefixtures("small_tasks")
 
 
-@pytest.fixture(scope="module")
-def study() -> Study:
-    return study_of(TINY)
-
-
-@pytest.fixture(scope="module")
-def done(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    path = tmp_path_factory.mktemp("done") / "done.zarr"
-    sweep(TINY, path, threads=1)
-    return path
-
-
-def test_whose_a_store_is(done: Path, study: Study) -> None:
-    check(done, study)
-    assert identity(done) == json.loads(attribute(study)["restitution_study"])
-    assert study_in(done) == study
+def test_whose_a_store_is(done: Path, tiny: Study) -> None:
+    check(done, tiny)
+    assert identity(done) == json.loads(attribute(tiny)["restitution_study"])
+    assert study_in(done) == tiny
     with pytest.raises(Refused) as raised:
         check(done, study_of(TINY | {"run": TINY["run"] | {"seed": 8, "impacts": 21}}))
     told = str(raised.value).splitlines()
@@ -65,13 +45,13 @@ def changed(done: Path, tmp_path: Path, change: Any) -> Path:
     return path
 
 
-def test_a_store_of_another_physics(done: Path, study: Study, tmp_path: Path) -> None:
+def test_a_store_of_another_physics(done: Path, tiny: Study, tmp_path: Path) -> None:
     """Says so; what is long is cut, and what is much is counted."""
     path = changed(
         done, tmp_path, lambda own: own["physics"].update({f"p{i:02}": "x" * 70 for i in range(14)})
     )
     with pytest.raises(Refused) as raised:
-        check(path, study)
+        check(path, tiny)
     told = str(raised.value).splitlines()
     assert "install that version to go on with it, or write to a new store" in told[0]
     assert told[1] == f'  physics.p00: "{"x" * 39} … {"x" * 11}" in the store, nothing here'
@@ -82,7 +62,7 @@ def test_a_store_of_another_physics(done: Path, study: Study, tmp_path: Path) ->
 @pytest.mark.parametrize(
     "content", [b"{}", b"[]", b"\xff", b"", b'{"attributes": {"restitution_study": "[1]"}}']
 )
-def test_what_is_no_store(content: bytes, tmp_path: Path, study: Study) -> None:
+def test_what_is_no_store(content: bytes, tmp_path: Path, tiny: Study) -> None:
     (tmp_path / "zarr.json").write_bytes(content)
     for action in (
         lambda: identity(tmp_path),
@@ -154,7 +134,7 @@ def test_the_status_counts_what_is_there(done: Path, tmp_path: Path) -> None:
         status(tmp_path / "none.zarr")
 
 
-def test_a_merge_takes_what_is_undamaged(done: Path, study: Study, tmp_path: Path) -> None:
+def test_a_merge_takes_what_is_undamaged(done: Path, tiny: Study, tmp_path: Path) -> None:
     """From any of the parts, which stay as they are; what is there already is not written again."""
     parts = [tmp_path / f"{i}.zarr" for i in (1, 2)]
     for i, part in enumerate(parts, start=1):

@@ -13,49 +13,31 @@ import zarr
 
 from reference.studies import TINY
 from restitution.study import _store, merge, status, study_of, sweep
-from restitution.study._effort import Effort
+from restitution.study._create import create_or_open
 from restitution.study._status import open_store
-from restitution.study._store import Store, create_or_open, need_zarr
+from restitution.study._store import Store, need_zarr
 from restitution.study._study import Study
 
 WORDS = 5
 
 
-@pytest.fixture(autouse=True, scope="module")
-def small_tasks() -> Any:
-    """Two batches to a task, so that a point has two of them."""
-    whole = Effort.task_batches
-    Effort.task_batches = property(lambda _: 2)  # type: ignore[assignment]
-    yield
-    Effort.task_batches = whole  # type: ignore[method-assign]
-
-
-@pytest.fixture(scope="module")
-def study() -> Study:
-    return study_of(TINY)
-
-
-@pytest.fixture(scope="module")
-def done(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    path = tmp_path_factory.mktemp("done") / "done.zarr"
-    sweep(TINY, path, threads=1)
-    return path
+pytestmark = pytest.mark.usefixtures("small_tasks")
 
 
 @pytest.fixture
-def store(study: Study, tmp_path: Path) -> Store:
-    return create_or_open(tmp_path / "new.zarr", study, WORDS)[0]
+def store(tiny: Study, tmp_path: Path) -> Store:
+    return create_or_open(tmp_path / "new.zarr", tiny, WORDS)[0]
 
 
 def rows(number: int = 2) -> Any:
     return np.arange(number * WORDS, dtype=np.uint64).reshape(number, WORDS)
 
 
-def test_a_new_store(study: Study, tmp_path: Path) -> None:
+def test_a_new_store(tiny: Study, tmp_path: Path) -> None:
     """Its axes, with their units; no point is finished, no task is there, and no draft beside it."""
     path = tmp_path / "a" / "b" / "new.zarr"
-    made, existed = create_or_open(path, study, WORDS)
-    assert (existed, made.path, made.study, made.task_batches) == (False, path, study.digest, 2)
+    made, existed = create_or_open(path, tiny, WORDS)
+    assert (existed, made.path, made.study, made.task_batches) == (False, path, tiny.digest, 2)
     assert [file.name for file in path.parent.iterdir()] == ["new.zarr"]
     (tmp_path / "fresh").mkdir()
     assert path.stat().st_mode == (tmp_path / "fresh").stat().st_mode
@@ -75,7 +57,7 @@ def test_a_new_store(study: Study, tmp_path: Path) -> None:
     assert made.words.chunks == (1, 2, WORDS + 4)
     assert made.words.dtype == np.uint64
     assert made.words.metadata.dimension_names == ("point", "batch", "word")
-    again, existed = create_or_open(path, study, WORDS)
+    again, existed = create_or_open(path, tiny, WORDS)
     assert (existed, again.path) == (True, path)
 
 
@@ -170,14 +152,14 @@ def found_at_a_point() -> xr.Dataset:
     )
 
 
-def test_results_have_a_place_for_every_point(store: Store, study: Study) -> None:
+def test_results_have_a_place_for_every_point(store: Store, tiny: Study) -> None:
     """Large ones a chunk each; what all points share stands once."""
     found = found_at_a_point()
     assert _store.large(found) == ["grid"]
     assert _store.small(found) == ["count", "mean"]
     assert _store.common(found) == ["velocity_edges"]
     for _ in range(2):
-        store.ensure(found, study.design)
+        store.ensure(found, tiny.design)
     mean, count, grid = (store.group[name] for name in ("mean", "count", "grid"))
     assert (mean.shape, mean.chunks) == ((2, 3, 2), (2, 3, 2))
     assert mean.metadata.dimension_names == ("separation", "normal", "velocity")
@@ -193,25 +175,25 @@ def test_results_have_a_place_for_every_point(store: Store, study: Study) -> Non
     assert again is not None
     assert np.array_equal(again["grid"], found["grid"].to_numpy())
     assert store.read_large(["none"], (1, 2)) is None
-    assert store.large_arrays(study.design) == ["grid"]
+    assert store.large_arrays(tiny.design) == ["grid"]
 
 
-def test_what_all_points_share_is_restored(store: Store, study: Study) -> None:
+def test_what_all_points_share_is_restored(store: Store, tiny: Study) -> None:
     """Where it is not what it should be, and is left alone where it is."""
     found = found_at_a_point()
-    store.ensure(found, study.design)
+    store.ensure(found, tiny.design)
     store.group["velocity_edges"][0] = -1.0
     (store.path / "separation" / "c" / "0").write_bytes(b"spoilt")
     before = (store.path / "velocity" / "c" / "0").stat().st_mtime_ns
-    store.restore(found, study.design)
+    store.restore(found, tiny.design)
     assert store.group["velocity_edges"][...].tolist() == [0.0, 1.0, 2.0]
     assert store.group["separation"][...].tolist() == [1e-4, 2e-3]
     assert (store.path / "velocity" / "c" / "0").stat().st_mtime_ns == before
 
 
-def test_chunks_hold_many_points_up_to_four_megabytes(study: Study) -> None:
+def test_chunks_hold_many_points_up_to_four_megabytes(tiny: Study) -> None:
     variable = xr.Variable(("velocity",), np.zeros(4000))
-    assert _store._chunks(study.design, variable) == (2, 3, 4000)
+    assert _store._chunks(tiny.design, variable) == (2, 3, 4000)
     wide = study_of(TINY | {"sweep": {"law.normal": {"from": 0.1, "to": 0.9, "points": 300}}}).design
     assert _store._chunks(wide, variable) == (125, 4000)
     tall = {"body.separation": [1e-4, 2e-3], "law.normal": {"from": 0.1, "to": 0.9, "points": 100}}
@@ -252,7 +234,7 @@ def test_what_zarr_needs(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def test_a_store_that_appears_meanwhile(
-    done: Path, study: Study, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    done: Path, tiny: Study, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """As that of another driver: it is taken, and no draft is left."""
     rename = os.rename
@@ -263,20 +245,20 @@ def test_a_store_that_appears_meanwhile(
         rename(source, target)
 
     monkeypatch.setattr(os, "rename", late)
-    store, existed = create_or_open(path, study, Store(done, b"").words.shape[2] - 4)
+    store, existed = create_or_open(path, tiny, Store(done, b"").words.shape[2] - 4)
     assert existed
     assert store.there(0) == {0, 1}
     assert [file.name for file in tmp_path.iterdir()] == ["new.zarr"]
 
 
 def test_a_store_that_cannot_take_its_place(
-    study: Study, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    tiny: Study, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     def refuse(*_: object) -> None:
         raise OSError(28, "No space left on device", "draft")
 
     monkeypatch.setattr(os, "rename", refuse)
     with pytest.raises(OSError, match="No space left") as raised:
-        create_or_open(tmp_path / "new.zarr", study, WORDS)
+        create_or_open(tmp_path / "new.zarr", tiny, WORDS)
     assert (raised.value.errno, raised.value.filename) == (28, str(tmp_path / "new.zarr"))
     assert not list(tmp_path.iterdir())

@@ -1,9 +1,10 @@
 """The driver of a study: which tasks are to be done, which points have ended, what the store shows."""
 
+import errno
 import os
 import random
 import time
-from collections import deque
+from collections import Counter, deque
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import CancelledError, Future
 from contextlib import contextmanager, suppress
@@ -26,6 +27,8 @@ from restitution.study._work import End, Ended, Stopped, Task, digest_of, end_po
 Tell = Callable[["Progress"], None]
 
 _CONTINUES = "what is finished is in the store, and the same command continues"
+_ATTEMPTS = 3
+"""So often a task is done that is read back damaged: what spoils it is the disk, or another program."""
 _SHARE = 20
 """What is found is written out so seldom that it takes a twentieth of the time."""
 
@@ -59,6 +62,7 @@ class _Open:
     blocks: int = 1
     waiting: set[int] = field(default_factory=set)
     done: set[int] = field(default_factory=set)
+    damaged: Counter[int] = field(default_factory=Counter)
 
 
 class Driver:
@@ -229,6 +233,12 @@ class Driver:
             self.progress.damaged += len(there & set(ended.damaged))
             self.progress.resumed -= len(opened.done & set(ended.damaged))
             opened.done -= set(ended.damaged)
+            opened.damaged.update(ended.damaged)
+            for task, times in opened.damaged.items():
+                if self.compute and times > _ATTEMPTS:
+                    file, found = self.store.fault(opened.point.number, task)
+                    text = f"written {_ATTEMPTS} times, and damaged when it was read back ({found})"
+                    raise OSError(errno.EIO, f"{text}; {_CONTINUES}", str(file))
             self._need(opened, set())
         elif not ended.enough:
             self.progress.tasks += opened.blocks * effort.block_tasks
@@ -253,10 +263,10 @@ class Table:
     def _read(self) -> None:
         """Take what the store shows; what cannot be read is worked out again."""
         own = len(self.design.shape)
-        group, shape = self.store.group, self.design.shape
+        shape = self.design.shape
         coordinates = {axis.name for axis in self.design.axes}
         big = set(self.store.large_arrays(self.design))
-        for name, array in group.arrays():
+        for name, array in self.store.arrays():
             if (
                 name in big
                 or name in coordinates

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from restitution._parameters import ParameterError
-from restitution._reading import content
+from restitution._reading import check_regular, content
 from restitution.study._physics import fingerprint
 from restitution.study._study import Study
 
@@ -95,6 +95,7 @@ def check(path: Path, study: Study) -> None:
 def identity(path: Path) -> dict[str, Any]:
     """Read what a store says that it is."""
     try:
+        check_regular(path / "zarr.json")
         text = content(path / "zarr.json").decode()
         found = json.loads(json.loads(text)["attributes"][_NAME])
     except PermissionError:

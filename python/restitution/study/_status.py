@@ -112,9 +112,11 @@ def open_store(path: Path) -> xr.Dataset:
     """
     path = path_from("path", path)
     need_zarr(path)
+    from restitution.study._folder import Folder
+
     identity(path)
     with readable(path):
-        found: xr.Dataset = xr.open_zarr(path, chunks=None)
+        found: xr.Dataset = xr.open_zarr(Folder(path, read_only=True), chunks=None)
     return found
 
 

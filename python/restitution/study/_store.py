@@ -10,7 +10,6 @@ import contextlib
 import hashlib
 import math
 import os
-import shutil
 import threading
 import warnings
 from collections.abc import Callable, Iterator, Mapping
@@ -22,18 +21,14 @@ import numpy as np
 import numpy.typing as npt
 import xarray as xr
 
-from restitution._dataset import version_here
-from restitution._files import draft_folder, followed, permit
 from restitution._resources import check_room
-from restitution._signals import undisturbed
 from restitution.study._axes import Design
-from restitution.study._identity import attribute, check, readable, threads_for
-from restitution.study._layout import check_array, check_layout
+from restitution.study._identity import readable, threads_for
+from restitution.study._layout import check_array
 from restitution.study._point import Words
-from restitution.study._study import Study
 
 F = TypeVar("F", bound=Callable[..., Any])
-_DIGEST = 4
+DIGEST = 4
 """Words of a digest."""
 _LARGE = 4096
 """Numbers of a variable at a point from which on each point has a chunk of its own."""
@@ -87,10 +82,14 @@ class Store:
     def __init__(self, path: Path, study: bytes) -> None:
         import zarr
 
+        from restitution.study._folder import Folder
+
         self.path, self.study = path, study
         self._ensured: set[str] = set()
+        self._arrays: dict[str, Any] = {}  # those that were seen; what they are does not change
         with readable(path):
-            self.group: Any = zarr.open_group(str(path), mode="r+", zarr_format=3, use_consolidated=False)
+            path.stat()  # Zarr would make a folder that is not there
+            self.group: Any = zarr.open_group(Folder(path), mode="r+", zarr_format=3, use_consolidated=False)
             words: Any = self.group["tasks/words"]
             self.words = words
             self.task_batches = int(words.chunks[1])
@@ -121,8 +120,21 @@ class Store:
             except Exception:  # a chunk that is cut or spoilt fails in any way that a decoder can
                 continue
             for i in range(part.start, min(part.stop, count)):
-                good[i] = rows[i, -_DIGEST:].tobytes() == self._digest(point, first + i, rows[i, :-_DIGEST])
-        return rows[:, :-_DIGEST], good, rows[:, -_DIGEST:].tobytes()
+                good[i] = rows[i, -DIGEST:].tobytes() == self._digest(point, first + i, rows[i, :-DIGEST])
+        return rows[:, :-DIGEST], good, rows[:, -DIGEST:].tobytes()
+
+    def fault(self, point: int, task: int) -> tuple[Path, str]:
+        """Name the file of a task's chunk, and say why it is not taken."""
+        first = task * self.task_batches
+        # The last part of the name is that of the words, which are never divided.
+        file = self.path / "tasks" / "words" / "c" / str(point) / str(task) / "0"
+        try:
+            self.words[point, first : first + self.task_batches]
+        except Exception as error:  # as in `read`
+            return file, f"{type(error).__name__}: {error}"
+        if not file.exists():
+            return file, "there is no such file"
+        return file, "its digest is not that of the numbers in it"
 
     @_naming
     def write(self, point: int, first: int, rows: Words) -> None:
@@ -143,7 +155,7 @@ class Store:
 
     def _digest(self, point: int, batch: int, row: Words) -> bytes:
         place = point.to_bytes(8, "little") + batch.to_bytes(8, "little")
-        digest = hashlib.blake2b(self.study + place, digest_size=8 * _DIGEST)
+        digest = hashlib.blake2b(self.study + place, digest_size=8 * DIGEST)
         digest.update(np.ascontiguousarray(row).data)
         return digest.digest()
 
@@ -171,7 +183,7 @@ class Store:
                     attributes={**_plain(variable.attrs), "coordinates": " ".join(_coordinates(design))}
                     if own and _coordinates(design)
                     else _plain(variable.attrs),
-                    compressors=_fast(variable.dtype.itemsize),
+                    compressors=fast(variable.dtype.itemsize),
                     fill_value=np.nan if variable.dtype.kind == "f" else 0,
                 )
                 if not own:
@@ -209,26 +221,38 @@ class Store:
         except Exception:
             return None
 
+    def arrays(self) -> Iterator[tuple[str, Any]]:
+        """Give the arrays and their names; what else is in the folder is passed over."""
+        import zarr
+
+        for name in sorted(os.listdir(self.path)):
+            if name not in self._arrays and (self.path / name / "zarr.json").is_file():
+                self._arrays[name] = self.group[name]
+            if isinstance(self._arrays.get(name), zarr.Array):
+                yield name, self._arrays[name]
+
     @_naming
     def large_arrays(self, design: Design) -> list[str]:
         """Name the arrays that have a chunk for each point."""
         own = len(design.shape)
-        return sorted(
+        return [
             name
-            for name, array in self.group.arrays()
+            for name, array in self.arrays()
             if array.shape[:own] == design.shape and math.prod(array.shape[own:]) >= _LARGE
-        )
+        ]
 
     @_naming
     def consolidate(self) -> None:
         """Put the metadata of all arrays in one place, so that the store opens at once."""
         import zarr
 
+        from restitution.study._folder import Folder
+
         with warnings.catch_warnings():
             warnings.simplefilter(
                 "ignore"
             )  # consolidation is not in the specification of format 3, and Xarray uses it
-            zarr.consolidate_metadata(str(self.path), zarr_format=3)
+            zarr.consolidate_metadata(Folder(self.path), zarr_format=3)
 
 
 def large(found: xr.Dataset) -> list[str]:
@@ -251,115 +275,11 @@ def _own(found: xr.Dataset) -> Iterator[tuple[str, xr.Variable]]:
     return ((str(name), v) for name, v in found.variables.items() if name not in found.coords)
 
 
-def create_or_open(path: Path, study: Study, words: int) -> tuple[Store, bool]:
-    """Open the store of a study, or create it; return whether it existed.
-
-    Raises
-    ------
-    Refused
-        If what is there is another study, another version of the physics, or no store; it says what differs.
-    """
-    made = False
-    if not path.exists():
-        # Zarr writes on a thread of its own, which goes on where a signal has ended this one.
-        with undisturbed():
-            made = _make(path, study, words)
-    check(path, study)
-    store = Store(path, study.digest)
-    check_layout(store.path, store.group, study, words + _DIGEST)
-    return store, not made
-
-
-def _make(path: Path, study: Study, words: int) -> bool:
-    """Put a new store in its place, unless another has taken it meanwhile."""
-    target = followed(path)
-    drafts: list[Path] = []
-    try:
-        target.parent.mkdir(parents=True, exist_ok=True)
-        drafts.append(draft_folder(target))
-        with threads_for(path):
-            _create(drafts[0], study, words)
-        permit(drafts[0], 0o777)
-        os.rename(drafts[0], target)
-    except OSError as error:
-        if not path.exists():
-            raise OSError(error.errno, error.strerror or str(error), str(path)) from error
-        return False
-    finally:
-        for draft in drafts:
-            shutil.rmtree(draft, ignore_errors=True)
-    return True
-
-
-def _create(path: Path, study: Study, words: int) -> None:
-    import zarr
-
-    effort, design = study.effort, study.design
-    about = {
-        "title": "Parameter study of the coefficient of restitution of bouncing aspherical bodies",
-        "Conventions": "CF-1.11",
-        "source": f"restitution {version_here()}",
-        "references": "A. Glielmo, N. Gunkelmann, T. Pöschel, Phys. Rev. E 90, 052204 (2014)",
-        **attribute(study),
-    }
-    group = zarr.create_group(str(path), zarr_format=3, attributes=about)
-    for axis in design.axes:
-        values = np.array(axis.values, dtype=np.float64)
-        dims = (axis.name,) if design.kind == "grid" else ("point",)
-        array = group.create_array(
-            axis.name,
-            shape=values.shape,
-            chunks=values.shape,
-            dtype=values.dtype,
-            dimension_names=dims,
-            attributes={"long_name": axis.parameter, **_units(study, axis.parameter)},
-            fill_value=np.nan,
-        )
-        array[...] = values
-    group.create_array(
-        "status",
-        shape=design.shape,
-        chunks=design.shape,
-        dtype=np.uint8,
-        dimension_names=design.dims,
-        attributes={
-            "long_name": "state of the point",
-            "flag_values": [0, 1],
-            "flag_meanings": "unfinished finished",
-        },
-        fill_value=0,
-    )[...] = 0
-    batches = effort.blocks * effort.batches
-    group.create_group("tasks").create_array(
-        "words",
-        shape=(design.points, batches, words + _DIGEST),
-        chunks=(1, effort.task_batches, words + _DIGEST),
-        dtype=np.uint64,
-        dimension_names=("point", "batch", "word"),
-        compressors=_fast(8),
-        attributes={"long_name": "what each batch of particles counted, and its digest"},
-        fill_value=0,
-    )
-    Store(path, study.digest).consolidate()
-
-
-def _fast(size: int) -> Any:
+def fast(size: int) -> Any:
     """Choose a compressor that costs next to nothing; most of what is stored are small numbers and zeros."""
     from zarr.codecs import BloscCodec
 
     return BloscCodec(cname="lz4", clevel=5, shuffle="shuffle", typesize=size)
-
-
-def _units(study: Study, parameter: str) -> dict[str, str]:
-    """Give the unit of a parameter, as its description has it."""
-    target: Any = study.base
-    *parts, last = parameter.split(".")
-    for part in parts:
-        target = target if part == "run" else getattr(target, part)
-    about = type(target).model_fields[last].description or ""
-    unit = about.rpartition(",")[2].strip()
-    known = {"m": "m", "m/s²": "m s-2", "rad": "rad", "m/s": "m s-1"}
-    return {"units": known[unit]} if unit in known else {}
 
 
 def _is_common(name: str, variable: Any) -> bool:

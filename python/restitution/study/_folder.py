@@ -1,0 +1,86 @@
+"""The folder of a store as Zarr sees it: only regular files are opened, and errors name the file."""
+
+import errno
+import os
+import stat
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+from zarr.abc.store import ByteRequest
+from zarr.core.buffer import Buffer, BufferPrototype
+from zarr.storage import LocalStore
+
+from restitution._reading import MOST
+from restitution._resources import available_memory
+
+
+class Folder(LocalStore):
+    """A `zarr.storage.LocalStore` that opens regular files only.
+
+    Of others Zarr would wait for the other end of a pipe, read a device without end, or take a folder for a
+    chunk that is all zeros.
+    """
+
+    async def get(
+        self,
+        key: str,
+        prototype: BufferPrototype | None = None,
+        byte_range: ByteRequest | None = None,
+    ) -> Buffer | None:
+        """Read a file; None where there is none."""
+        _check(self.root / key)
+        return await super().get(key, prototype, byte_range)
+
+    def get_sync(
+        self,
+        key: str,
+        *,
+        prototype: BufferPrototype | None = None,
+        byte_range: ByteRequest | None = None,
+    ) -> Buffer | None:
+        """Likewise, where Zarr has a thread for it already."""
+        _check(self.root / key)
+        return super().get_sync(key, prototype=prototype, byte_range=byte_range)
+
+    async def get_partial_values(
+        self, prototype: BufferPrototype, key_ranges: Iterable[tuple[str, ByteRequest | None]]
+    ) -> list[Buffer | None]:
+        """Read parts of files."""
+        wanted = list(key_ranges)
+        for key, _ in wanted:
+            _check(self.root / key)
+        return await super().get_partial_values(prototype, wanted)
+
+    async def set(self, key: str, value: Buffer) -> None:
+        """Write a file in one step."""
+        with _naming(self.root / key):
+            await super().set(key, value)
+
+    def set_sync(self, key: str, value: Buffer) -> None:
+        """Likewise, where Zarr has a thread for it already."""
+        with _naming(self.root / key):
+            super().set_sync(key, value)
+
+
+def _check(path: Path) -> None:
+    """Refuse what is not a regular file, or longer than memory; the OSError names it."""
+    try:
+        found = path.stat()
+    except (FileNotFoundError, NotADirectoryError):  # Zarr then knows that there is nothing
+        return
+    if stat.S_ISDIR(found.st_mode):
+        raise IsADirectoryError(errno.EISDIR, os.strerror(errno.EISDIR), str(path))
+    if not stat.S_ISREG(found.st_mode):
+        raise OSError(errno.EINVAL, "not a regular file", str(path))
+    if found.st_size > MOST and found.st_size > available_memory():
+        raise OSError(errno.EFBIG, "longer than this process has memory", str(path))
+
+
+@contextmanager
+def _naming(path: Path) -> Iterator[None]:
+    """Name the file in an error, and not the draft that was to take its place."""
+    try:
+        yield
+    except OSError as error:
+        raise OSError(error.errno, error.strerror or str(error), str(path)) from error
