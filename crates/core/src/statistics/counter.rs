@@ -16,6 +16,7 @@ use crate::memory::{filled, zeros};
 use crate::run::Plan;
 use crate::simd::{LANES, Pack};
 use pulp::Simd;
+use std::ops::{IndexMut, Range};
 
 /// Length of the queue: a place for each lane of every group.
 const LENGTH: usize = GROUPS * LANES;
@@ -49,6 +50,33 @@ struct Queue {
     /// Contributions to the sums, in halves.
     low: [Half; LENGTH],
     high: [Half; LENGTH],
+}
+
+impl Queue {
+    /// Counts the impact at place `i` in the grids, in the sums and extremes of its row, and, if there is no room left in the sums, in
+    /// the tally.
+    #[inline(always)]
+    fn count<G, R, E>(
+        &self,
+        i: usize,
+        (restitution, fraction): (&mut G, &mut G),
+        (rows, extremes): (&mut R, &mut E),
+        tally: &mut Tally,
+    ) where
+        G: IndexMut<usize, Output = u32> + ?Sized,
+        R: IndexMut<usize, Output = Recent> + ?Sized,
+        E: IndexMut<usize, Output = Extremes> + ?Sized,
+    {
+        let [site, fraction_site, number, value] = self.places[i];
+        restitution[whole(site)] += 1;
+        fraction[whole(fraction_site)] += 1;
+        let number = whole(number);
+        extremes[number].add(value);
+        let row = &mut rows[number];
+        if row.add(&self.low[i], &self.high[i]) {
+            empty_row(tally, row, number);
+        }
+    }
 }
 
 /// The place at which an impact is counted: indices into the grids of ε and of E_rot/E_tot, and the row; the last number is ε.
@@ -124,21 +152,6 @@ impl<'a, const EVEN: bool> Counter<'a, EVEN> {
         }
     }
 
-    /// Counts the impact at place `i` of the queue.
-    #[inline(always)]
-    fn count(&mut self, i: usize) {
-        let queue = &self.queue;
-        let [site, fraction_site, number, value] = queue.places[i];
-        self.restitution[whole(site)] += 1;
-        self.fraction[whole(fraction_site)] += 1;
-        let number = whole(number);
-        self.extremes[number].add(value);
-        let row = &mut self.rows[number];
-        if row.add(&queue.low[i], &queue.high[i]) {
-            empty_row(&mut self.tally, row, number);
-        }
-    }
-
     /// Sums a value that is too far from the origin for [`Recent`].
     #[inline(never)]
     fn sum_large(&mut self, row: usize, restitution: f64, fraction: f64) {
@@ -151,7 +164,11 @@ impl<'a, const EVEN: bool> Counter<'a, EVEN> {
 impl<const EVEN: bool> Meanwhile for Counter<'_, EVEN> {
     #[inline(always)]
     fn meanwhile(&mut self, place: usize) {
-        self.count(place);
+        let (grids, rows) = (
+            (&mut self.restitution, &mut self.fraction),
+            (&mut self.rows, &mut self.extremes),
+        );
+        self.queue.count(place, grids, rows, &mut self.tally);
     }
 }
 
@@ -244,6 +261,20 @@ impl<const EVEN: bool> Sink for Counter<'_, EVEN> {
                     *largest = ratio;
                 }
             }
+        }
+    }
+
+    #[inline(always)]
+    fn settle(&mut self, places: Range<usize>) {
+        // As vectors their addresses and lengths would be read again for every place.
+        let (restitution, fraction) = (&mut self.restitution[..], &mut self.fraction[..]);
+        let (rows, extremes) = (&mut self.rows[..], &mut self.extremes[..]);
+        for place in places {
+            let (grids, rows) = (
+                (&mut *restitution, &mut *fraction),
+                (&mut *rows, &mut *extremes),
+            );
+            self.queue.count(place, grids, rows, &mut self.tally);
         }
     }
 
