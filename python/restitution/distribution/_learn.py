@@ -1,6 +1,6 @@
 """From an ensemble to the Dataset of a learned distribution."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from typing import Literal, TypeAlias, get_args
 
 import numpy as np
@@ -56,7 +56,7 @@ def learn(ensemble: Ensemble, nodes: Floats, given: Given | None, progress: bool
                 z = condition(given, block, table)
                 return block.velocity.ravel(), block.restitution.ravel(), z.ravel()
 
-            groups = _condition_nodes([look(block) for block in pilot], nodes)
+            groups = _condition_nodes(map(look, pilot), nodes)
             conditional = _count(ensemble, pilot, scale, nodes, groups, look, advance)
         del pilot
         check = Check.of(table, ensemble.blocks(FRESH, advance))
@@ -112,7 +112,7 @@ def _count(
 ) -> Counter:
     edges = [
         _nodes.bins(restitution, scale, where)
-        for restitution, where in _at_nodes([look(block) for block in pilot], nodes, conditions)
+        for restitution, where in _at_nodes(map(look, pilot), nodes, conditions)
     ]
     counter = Counter(nodes, conditions, edges)
     for block in ensemble.blocks(LEARNING, advance):
@@ -120,11 +120,15 @@ def _count(
     return counter
 
 
-def _at_nodes(parts: list[Part], nodes: Floats, conditions: list[Floats]) -> Iterator[tuple[Floats, str]]:
+def _at_nodes(parts: Iterable[Part], nodes: Floats, conditions: list[Floats]) -> Iterator[tuple[Floats, str]]:
     """Yield the restitutions that count at each component, and how an error names the component."""
-    velocity, restitution, z = (np.concatenate(column) for column in zip(*parts, strict=True))
-    defined = np.isfinite(velocity) & np.isfinite(restitution) & np.isfinite(z)
-    velocity, restitution, z = velocity[defined], restitution[defined], z[defined]
+    inside = []
+    for velocity, restitution, z in parts:
+        between = (velocity >= nodes[0]) & (velocity < nodes[-1])
+        counted = between & np.isfinite(restitution) & np.isfinite(z)
+        inside.append((velocity[counted], restitution[counted], z[counted]))
+    velocity, restitution, z = map(np.concatenate, zip(*inside, strict=True))
+    del inside
     order = np.argsort(velocity)
     velocity, restitution, z = velocity[order], restitution[order], z[order]
     start = np.searchsorted(velocity, np.concatenate([nodes[:1], nodes[:-1]]), side="left")
@@ -138,8 +142,8 @@ def _at_nodes(parts: list[Part], nodes: Floats, conditions: list[Floats]) -> Ite
             yield restitution[near][chosen][np.broadcast_to(weight > 0, z[near][chosen].shape)], where
 
 
-def _condition_nodes(parts: list[Part], nodes: Floats) -> list[Floats]:
-    columns = [(velocity, z, np.zeros_like(z)) for velocity, _, z in parts]
+def _condition_nodes(parts: Iterable[Part], nodes: Floats) -> list[Floats]:
+    columns = ((velocity, z, np.zeros_like(z)) for velocity, _, z in parts)
     near = _at_nodes(columns, nodes, [np.zeros(1)] * nodes.size)
     return [_nodes.conditions(values) for values, _ in near]
 
