@@ -10,7 +10,7 @@ use oracle::compare::{Case, Seen, Start};
 use oracle::impact::Rule;
 use oracle::normal::Restitution;
 use oracle::solid::Shape;
-use restitution_core::{Level, Means, Monitor, Orientation, Run, Spin, StopReason};
+use restitution_core::{Coulomb, Law, Level, Means, Monitor, Orientation, Run, Spin, StopReason};
 
 /// Enough for a vector and a part of the next one at every level.
 const PARTICLES: usize = 11;
@@ -132,6 +132,31 @@ fn every_level_and_thread_count_gives_the_same_bits() {
         for threads in [1, 2, 7] {
             let same = all_bits(&reference) == all_bits(&at(level, threads));
             assert!(same, "{level:?}, {threads} threads");
+        }
+    }
+}
+
+/// Contacts whose slip turns take different numbers of steps, and wait for one another in the lanes: each has the bits that it has
+/// alone, whatever its neighbours do meanwhile. With friction that jams at many attitudes compressions come more than once.
+#[test]
+fn turning_contacts_have_the_same_bits_in_every_lane() {
+    for (hypothesis, elongation) in HYPOTHESES.into_iter().zip([3.5, 1.0, 2.0]) {
+        for friction in [0.3, 1.6] {
+            let law = Law::new(0.8, Coulomb::new(friction, hypothesis).unwrap()).unwrap();
+            let run = Run {
+                particles: 67,
+                impacts: 60,
+                spin: Spin::Thermal { rate: 100.0 },
+                ..paper(elongation, law)
+            };
+            let at = |level: Level| {
+                let means = Means { threads: 1, level };
+                all_bits(&run.simulate(means, &Monitor::default()).unwrap())
+            };
+            let alone = at(Level::Scalar);
+            for level in Level::available() {
+                assert!(alone == at(level), "{level:?}, {hypothesis:?}, {friction}");
+            }
         }
     }
 }
