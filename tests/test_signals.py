@@ -47,6 +47,13 @@ def struck(*numbers: int) -> None:
     pytest.fail("no signal came")
 
 
+def caught(number: int) -> KeyboardInterrupt:
+    """Be at work when a signal comes, and go on after it with what it raised."""
+    with pytest.raises(KeyboardInterrupt) as raised:
+        struck(number)
+    return raised.value
+
+
 @pytest.mark.parametrize("number", ALL)
 def test_a_signal_ends_the_block(number: int) -> None:
     with pytest.raises(KeyboardInterrupt) as raised, ending() as came:
@@ -57,12 +64,8 @@ def test_a_signal_ends_the_block(number: int) -> None:
 def test_each_signal_counts() -> None:
     """Who catches one and goes on can be sent another, and knows of both."""
     with ending() as came:
-        kept = []
-        for number in (signal.SIGTERM, signal.SIGINT):
-            try:
-                struck(number)
-            except KeyboardInterrupt as error:
-                kept.append(error)
+        kept = [caught(number) for number in (signal.SIGTERM, signal.SIGINT)]
+    assert len(kept) == 2
     assert came == [signal.SIGTERM, signal.SIGINT]
 
 
@@ -165,10 +168,7 @@ def test_a_signal_that_python_drops_comes_again(number: int, capfd: pytest.Captu
 def test_a_signal_that_is_caught_does_not_come_again() -> None:
     """While who caught it keeps it, however long the work after it takes."""
     with ending() as came:
-        try:
-            struck(signal.SIGTERM)
-        except KeyboardInterrupt as error:
-            kept = error
+        kept = caught(signal.SIGTERM)
         time.sleep(0.2)
     assert isinstance(kept, KeyboardInterrupt)
     assert came == [signal.SIGTERM]
@@ -178,10 +178,7 @@ def test_a_signal_that_was_lost_gives_way_to_another() -> None:
     """Which has come meanwhile, and is kept: the first is not sent once more."""
     with ending() as came:
         dropping(signal.SIGTERM)
-        try:
-            struck(signal.SIGHUP)
-        except KeyboardInterrupt as error:
-            kept = error
+        kept = caught(signal.SIGHUP)
         time.sleep(0.2)
     assert isinstance(kept, KeyboardInterrupt)
     assert came[0] == signal.SIGTERM
@@ -192,10 +189,7 @@ def test_a_signal_that_was_lost_gives_way_to_another() -> None:
 def test_a_signal_that_is_kept_stands_for_those_that_are_lost() -> None:
     """Who keeps one knows that the process is to end."""
     with ending() as came:
-        try:
-            struck(signal.SIGTERM)
-        except KeyboardInterrupt as error:
-            kept = error
+        kept = caught(signal.SIGTERM)
         dropping(signal.SIGHUP)
         time.sleep(0.2)
     assert isinstance(kept, KeyboardInterrupt)

@@ -1,6 +1,6 @@
 """Results that compare and hash by what they hold, with NaN equal to NaN, also after a journey by pickle."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Set
 from dataclasses import fields
 from functools import cached_property
 from inspect import getattr_static
@@ -44,7 +44,12 @@ def check_state(thing: Any, state: Mapping[str, Any]) -> None:
     """Refuse what a pickle of a dataclass holds if the class had other fields in the version that made it."""
     kind = type(thing)
     kept = {name for name in state if isinstance(getattr_static(kind, name, None), cached_property)}
-    if other := {one.name for one in fields(kind)} ^ (state.keys() - kept):
+    check_names(kind, {one.name for one in fields(kind)}, state.keys() - kept)
+
+
+def check_names(kind: type, wanted: Set[str], found: Set[str]) -> None:
+    """Refuse what a pickle holds if it is not what this version of a class keeps there."""
+    if other := wanted ^ found:
         text = f": pickled by another version, whose {kind.__name__} differs in {', '.join(sorted(other))}"
         raise ParameterError(Problem(kind.__name__, f"{text}; make it again"))
 

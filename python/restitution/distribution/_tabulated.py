@@ -12,7 +12,8 @@ import numpy.typing as npt
 import xarray as xr
 
 from restitution._arrays import check_each, flag, function, real, reals, shape, whole
-from restitution._parameters import ParameterError, Problem, TooLargeError, _plain_number, wrong
+from restitution._content import check_names
+from restitution._parameters import ParameterError, TooLargeError, _plain_number, wrong
 from restitution._resources import available_memory
 from restitution.distribution import _store
 from restitution.distribution._learn import Given
@@ -43,9 +44,7 @@ class TabulatedDistribution:
 
     def __setstate__(self, state: dict[str, Any]) -> None:
         """Check the data: they may be of another version."""
-        if other := {"data"} ^ state.keys():
-            text = f": pickled by another version, which differs in {', '.join(sorted(other))}; make it again"
-            raise ParameterError(Problem(type(self).__name__, text))
+        check_names(type(self), {"data"}, state.keys())
         _store.check(state["data"])
         self.data = state["data"]
 
