@@ -1,24 +1,32 @@
 """The store of a study, by itself: what is written, and what is read back."""
 
+import hashlib
 import os
+import re
 import shutil
+import struct
 from functools import partial
 from pathlib import Path
-from typing import Any
+from types import SimpleNamespace
+from typing import Any, cast
 
 import numpy as np
 import pytest
 import xarray as xr
 import zarr
 
+import restitution as rs
 from reference.studies import TINY
-from restitution.study import _store, merge, status, study_of, sweep
+from restitution.study import Refused, _create, _store, merge, status, study_of, sweep
+from restitution.study._axes import Design
 from restitution.study._create import create_or_open
 from restitution.study._status import open_store
 from restitution.study._store import Store, need_zarr
 from restitution.study._study import Study
 
 WORDS = 5
+AXES = ("separation", "normal")
+PAPER = "A. Glielmo, N. Gunkelmann, T. Pöschel, Phys. Rev. E 90, 052204 (2014)"
 
 
 pytestmark = pytest.mark.usefixtures("small_tasks")
@@ -44,18 +52,19 @@ def test_a_new_store(tiny: Study, tmp_path: Path) -> None:
     found = xr.open_zarr(path, chunks=None)
     assert found["separation"].values.tolist() == [1e-4, 2e-3]
     assert found["separation"].attrs == {"long_name": "body.separation", "units": "m"}
-    assert found["normal"].attrs == {"long_name": "law.normal"}
+    assert found["normal"].attrs == {"long_name": "law.normal", "units": "1"}
     assert (found["status"].dims, found["status"].shape) == (("separation", "normal"), (2, 3))
     assert not found["status"].any()
     assert found["status"].attrs["flag_meanings"] == "unfinished finished"
     assert found["status"].attrs["flag_values"] == [0, 1]
-    assert found.attrs["source"].startswith("restitution ")
+    assert found.attrs["source"] == f"restitution {rs.__version__}"
     assert found.attrs["Conventions"] == "CF-1.11"
     assert found.attrs["title"].startswith("Parameter study")
-    assert "Phys. Rev. E" in found.attrs["references"]
+    assert found.attrs["references"] == PAPER
     assert made.words.shape == (6, 4, WORDS + 4)
     assert made.words.chunks == (1, 2, WORDS + 4)
     assert made.words.dtype == np.uint64
+    assert made.points_there() == []
     assert made.words.metadata.dimension_names == ("point", "batch", "word")
     again, existed = create_or_open(path, tiny, WORDS)
     assert (existed, again.path) == (True, path)
@@ -80,6 +89,7 @@ def test_rows_come_back_with_their_digests(store: Store) -> None:
     found, good, digests = store.read(1, 2, 2)
     assert np.array_equal(found, rows())
     assert found.dtype == np.uint64
+    assert good.dtype == np.bool_
     assert good.all()
     assert len(digests) == 2 * 32
     assert digests[:32] != digests[32:]
@@ -88,6 +98,39 @@ def test_rows_come_back_with_their_digests(store: Store) -> None:
     assert store.valid(1, 0, 4).all()
     assert not store.valid(0, 0, 4).any()
     assert store.read(1, 0, 2)[2] != digests, "the same words of another batch have another digest"
+
+
+def test_a_digest_is_that_of_the_study_the_place_and_the_words(store: Store) -> None:
+    """As the format says, so that stores of before can be read: BLAKE2b of 32 bytes, numbers in 8 of them."""
+    store.write(3, 2, rows())
+    for i, row in enumerate(rows()):
+        place = struct.pack("<QQ", 3, 2 + i)
+        digest = hashlib.blake2b(store.study + place + row.tobytes(), digest_size=32).digest()
+        assert store.words[3, 2 + i].tobytes() == row.tobytes() + digest
+
+
+def test_what_is_there(store: Store) -> None:
+    """Points of the study that have a chunk; folders of others are passed over."""
+    for point in (0, 5):
+        store.write(point, 0, rows())
+    words = store.path / "tasks" / "words" / "c"
+    for name in ("6", "-1", "x", ".nfs01"):
+        (words / name).mkdir()
+    assert sorted(store.points_there()) == [0, 5]
+
+
+def test_why_a_chunk_is_not_taken(store: Store) -> None:
+    for point in (1, 2):
+        store.write(point, 2, rows())
+    file = store.path / "tasks" / "words" / "c" / "1" / "1" / "0"
+    file.write_bytes((words := file.parents[2] / "2" / "1" / "0").read_bytes())
+    assert store.fault(1, 1) == (file, "its digest is not that of the numbers in it")
+    words.write_bytes(b"cut")
+    named, told = store.fault(2, 1)
+    assert named == words
+    assert re.match(r"\w+: .", told)
+    assert "None" not in told
+    assert store.fault(1, 0) == (file.parents[1] / "0" / "0", "there is no such file")
 
 
 @pytest.mark.parametrize("chunk", [b"", b"\0" * 40, None])
@@ -147,6 +190,9 @@ def found_at_a_point() -> xr.Dataset:
             "count": (("velocity",), np.array([3, 4])),
             "grid": (("velocity", "cell"), np.arange(2.0 * 2048).reshape(2, 2048)),
             "velocity_edges": (("velocity_edge",), [0.0, 1.0, 2.0], {"units": "m s-1"}),
+            "wide_edges": (("velocity",), [1.0, 2.0]),
+            "cells": (("cell",), np.zeros(2048)),
+            "nothing": (("none", "one"), np.zeros((0, 1))),
         },
         {"velocity": (("velocity",), [0.5, 1.5], {"units": "m s-1"})},
     )
@@ -156,10 +202,12 @@ def test_results_have_a_place_for_every_point(store: Store, tiny: Study) -> None
     """Large ones a chunk each; what all points share stands once."""
     found = found_at_a_point()
     assert _store.large(found) == ["grid"]
-    assert _store.small(found) == ["count", "mean"]
+    assert _store.small(found) == ["cells", "count", "mean", "nothing", "wide_edges"]
     assert _store.common(found) == ["velocity_edges"]
+    store.ensure(found.drop_vars("count"), tiny.design)
     for _ in range(2):
         store.ensure(found, tiny.design)
+    assert store.group["nothing"].chunks == (2, 3, 1, 1)
     mean, count, grid = (store.group[name] for name in ("mean", "count", "grid"))
     assert (mean.shape, mean.chunks) == ((2, 3, 2), (2, 3, 2))
     assert mean.metadata.dimension_names == ("separation", "normal", "velocity")
@@ -176,6 +224,59 @@ def test_results_have_a_place_for_every_point(store: Store, tiny: Study) -> None
     assert np.array_equal(again["grid"], found["grid"].to_numpy())
     assert store.read_large(["none"], (1, 2)) is None
     assert store.large_arrays(tiny.design) == ["grid"]
+    assert [name for name, _ in store.arrays()] == sorted({*map(str, found.variables), *AXES, "status"})
+    store.consolidate()
+    assert set(xr.open_zarr(store.path, chunks=None).variables) == {*found.variables, *AXES, "status"}
+
+
+def test_results_of_another_kind_have_no_place(store: Store, tiny: Study) -> None:
+    """Numbers of less precision have; others would be cut, and the store is called damaged."""
+    shape = (*tiny.design.shape, 2)
+    store.group.create_array("mean", shape=shape, dtype=np.float32)
+    store.ensure(found_at_a_point(), tiny.design)
+    store.group.create_array("other", shape=shape, dtype=np.int16)
+    with pytest.raises(Refused, match=r"new\.zarr: is damaged .*other is int16 of shape .* instead of f"):
+        store.ensure(found_at_a_point().rename(mean="other"), tiny.design)
+
+
+def test_a_worker_that_was_faster(store: Store, tiny: Study, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Has made the array that another is about to make."""
+    found = found_at_a_point()[["mean"]]
+    Store(store.path, store.study).ensure(found, tiny.design)
+    monkeypatch.setattr(type(store.group), "__contains__", lambda *_: False)
+    store.ensure(found, tiny.design)
+    monkeypatch.undo()
+    assert store.group["mean"].shape == (2, 3, 2)
+
+
+def test_what_is_lost_is_not_taken_for_a_result(store: Store, tiny: Study) -> None:
+    """A chunk that vanished leaves points unfinished, and axes without values until they are restored."""
+    store.group["status"][...] = 1
+    for file in ("status/c/0/0", "separation/c/0"):
+        (store.path / file).unlink()
+    assert not store.group["status"][...].any()
+    assert np.isnan(store.group["separation"][...]).all()
+    store.restore(xr.Dataset(), tiny.design)
+    assert store.group["separation"][...].tolist() == [1e-4, 2e-3]
+    shutil.rmtree(store.path / "separation")
+    with pytest.raises(Refused, match="KeyError: 'separation'"):
+        store.restore(xr.Dataset(), tiny.design)
+
+
+@pytest.mark.parametrize(
+    ("parameter", "unit"),
+    [
+        ("run.release_height", "m"),
+        ("run.gravity", "m s-2"),
+        ("run.incline", "rad"),
+        ("run.minimum_speed", "m s-1"),
+        ("run.seed", "1"),
+        ("body.density", "kg m-3"),
+        ("law.normal", "1"),
+    ],
+)
+def test_axes_have_units(parameter: str, unit: str, tiny: Study) -> None:
+    assert _create._unit(tiny, parameter) == unit
 
 
 def test_what_all_points_share_is_restored(store: Store, tiny: Study) -> None:
@@ -199,6 +300,8 @@ def test_chunks_hold_many_points_up_to_four_megabytes(tiny: Study) -> None:
     tall = {"body.separation": [1e-4, 2e-3], "law.normal": {"from": 0.1, "to": 0.9, "points": 100}}
     assert _store._chunks(study_of(TINY | {"sweep": tall}).design, variable) == (1, 100, 4000)
     assert _store._chunks(wide, xr.Variable(("cell",), np.zeros(4096))) == (1, 4096)
+    many = cast(Design, SimpleNamespace(shape=(3_000_000,)))
+    assert _store._chunks(many, xr.Variable((), np.int8(1))) == (3_000_000,)
 
 
 def test_what_zarr_needs(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -261,4 +364,24 @@ def test_a_store_that_cannot_take_its_place(
     with pytest.raises(OSError, match="No space left") as raised:
         create_or_open(tmp_path / "new.zarr", tiny, WORDS)
     assert (raised.value.errno, raised.value.filename) == (28, str(tmp_path / "new.zarr"))
+    assert raised.value.strerror == "No space left on device"
+    assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.parametrize(
+    ("error", "told"),
+    [(RuntimeError("can't start new thread"), "the system gives no thread"), (OSError("of Zarr"), "of Zarr")],
+)
+def test_a_store_that_zarr_cannot_make(
+    error: Exception, told: str, tiny: Study, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Is named, and nothing is left of it."""
+
+    def refuse(*_: object) -> None:
+        raise error
+
+    monkeypatch.setattr(_create, "_create", refuse)
+    with pytest.raises(OSError, match=told) as raised:
+        create_or_open(tmp_path / "new.zarr", tiny, WORDS)
+    assert raised.value.filename == str(tmp_path / "new.zarr")
     assert not list(tmp_path.iterdir())

@@ -12,7 +12,7 @@ import numpy as np
 import xarray as xr
 
 from restitution._energy import LEDGER, WHY, EnergyWarning, factor, percent, reported_elsewhere
-from restitution._parameters import Parameters, shown
+from restitution._parameters import Parameters, shown, unit_of
 from restitution._resources import progress_bar
 from restitution._simulate import SimulationInterrupted
 from restitution._statistics import statistics
@@ -217,9 +217,9 @@ def _parameters(axis: str, objects: Iterable[Parameters]) -> dict[str, Any]:
     units: dict[str, str] = {}
     for one in objects:
         row: dict[str, Any] = {}
-        for name, field in type(one).model_fields.items():
+        for name in type(one).model_fields:
             value = getattr(one, name)
-            units.setdefault(name, field.description or "1")
+            units.setdefault(name, unit_of(type(one), name))
             if isinstance(value, tuple) and len(value) == 2:
                 row |= {f"{name}_1": value[0], f"{name}_2": value[1]}
             else:

@@ -242,6 +242,15 @@ def _allowed(model: type[BaseModel], name: str) -> str:
     return f"a {kind} number {_interval(bounds)}{about}"
 
 
+_UNITS = {"m/s": "m s-1", "m/s²": "m s-2", "rad/s": "rad s-1", "kg/m³": "kg m-3"}
+_UNITS |= {unit: unit for unit in ("m", "s", "rad", "kg", "Pa")}
+
+
+def unit_of(kind: type[BaseModel], name: str) -> str:
+    """Give the unit of a parameter as the CF conventions write it; "1" of pure numbers."""
+    return _UNITS.get((kind.model_fields[name].description or "").partition(";")[0], "1")
+
+
 _BOUNDS = ("gt", "ge", "lt", "le")
 
 

@@ -59,7 +59,7 @@ class Run(Parameters):
     law: Annotated[InstanceOf[Law], Allowed(LAWS)]
     particles: Annotated[Whole, Field(ge=1, lt=2**40, description="number of particles")] = 1000
     impacts: Annotated[Whole, Field(ge=1, lt=2**40, description="most impacts of a particle")] = 400
-    release_height: HeightOfRun = 0.06
+    release_height: Annotated[HeightOfRun, Field(description="m")] = 0.06
     gravity: Annotated[Number, Field(gt=0, description="m/s²")] = 9.81
     orientation: OrientationOfRun = "uniform-angle"
     spin: SpinOfRun = (0.0, 0.0, 0.0)

@@ -9,6 +9,7 @@ import numpy as np
 
 from restitution._dataset import version_here
 from restitution._files import draft_folder, followed, permit
+from restitution._parameters import unit_of
 from restitution._signals import undisturbed
 from restitution.study._identity import attribute, check, threads_for
 from restitution.study._layout import check_layout
@@ -77,7 +78,7 @@ def _create(path: Path, study: Study, words: int) -> None:
             chunks=values.shape,
             dtype=values.dtype,
             dimension_names=dims,
-            attributes={"long_name": axis.parameter, **_units(study, axis.parameter)},
+            attributes={"long_name": axis.parameter, "units": _unit(study, axis.parameter)},
             fill_value=np.nan,
         )
         array[...] = values
@@ -108,13 +109,10 @@ def _create(path: Path, study: Study, words: int) -> None:
     Store(path, study.digest).consolidate()
 
 
-def _units(study: Study, parameter: str) -> dict[str, str]:
+def _unit(study: Study, parameter: str) -> str:
     """Give the unit of a parameter, as its description has it."""
     target: Any = study.base
     *parts, last = parameter.split(".")
     for part in parts:
         target = target if part == "run" else getattr(target, part)
-    about = type(target).model_fields[last].description or ""
-    unit = about.rpartition(",")[2].strip()
-    known = {"m": "m", "m/s²": "m s-2", "rad": "rad", "m/s": "m s-1"}
-    return {"units": known[unit]} if unit in known else {}
+    return unit_of(type(target), last)

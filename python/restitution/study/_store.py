@@ -108,7 +108,7 @@ class Store:
         return self.read(point, first, count)[1]
 
     def read(self, point: int, first: int, count: int) -> tuple[Words, npt.NDArray[np.bool_], bytes]:
-        """Read rows of a point, return which are undamaged, and their digests."""
+        """Read rows of whole tasks of a point, return which are undamaged, and their digests."""
         width = self.words.shape[2]
         rows, good = np.zeros((count, width), np.uint64), np.zeros(count, np.bool_)
         for start in range(0, count, self.task_batches):
@@ -119,7 +119,7 @@ class Store:
                 raise
             except Exception:  # a chunk that is cut or spoilt fails in any way that a decoder can
                 continue
-            for i in range(part.start, min(part.stop, count)):
+            for i in range(part.start, part.stop):
                 good[i] = rows[i, -DIGEST:].tobytes() == self._digest(point, first + i, rows[i, :-DIGEST])
         return rows[:, :-DIGEST], good, rows[:, -DIGEST:].tobytes()
 
