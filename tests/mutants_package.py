@@ -2,41 +2,46 @@
 
 `mutmut` makes the changes; its own way of running them leaves out every function that is decorated, and what
 other processes do. Here each change is a file of its own, in a copy of the package that comes first in the
-path, and a process that was forked for it runs the tests that are about it.
+path, and `mutants_judge.py` runs the tests that are about it.
 """
 
 import argparse
 import difflib
+import json
 import os
 import random
-import resource
 import shutil
-import signal
 import sys
-import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
+from functools import partial
+from importlib import import_module
 from pathlib import Path
 
 import libcst
+import pytest
 from libcst.metadata import MetadataWrapper
 from mutmut.mutation.file_mutation import MutationVisitor
 from mutmut.mutation.mutators import mutation_operators
 from mutmut.mutation.pragma_handling import IgnoredCode
 
+from mutants_judge import Judge
+
 ROOT = Path(__file__).resolve().parents[1]
 WORK = ROOT / "target" / "mutants" / "package"
+OUTCOMES = WORK.with_suffix(".txt")
 TESTS = {
     "_files.py": ("test_files.py", "test_believed.py"),
     "_signals.py": ("test_signals.py",),
+    "study/_store.py": ("test_study_store.py",),
+    "study/_create.py": ("test_study_store.py",),
     "study/_identity.py": ("test_study_merge.py",),
+    "study/_layout.py": ("test_study_merge.py",),
     "study/_merge.py": ("test_study_merge.py",),
     "study/_status.py": ("test_study_merge.py",),
-    "study/_store.py": ("test_study_store.py",),
-    "distribution/_store.py": ("test_believed.py", "test_distribution_contract.py"),
+    "study/_folder.py": ("test_study_spoilt.py",),
+    "distribution/_store.py": ("test_distribution_store.py", "test_distribution_contract.py"),
 }
 """What reads and writes files or handles signals, and the tests that are about it."""
-PATIENCE = 10
-"""A test may take so many times longer than without a change, and a minute besides."""
 
 
 class _Changes(MutationVisitor):
@@ -51,47 +56,77 @@ class _Changes(MutationVisitor):
         return super()._skip_node_and_children(node)
 
 
-def changes(source: str) -> Iterator[str]:
-    """Yield the source with one change each."""
+def changes(source: str) -> Iterator[tuple[str, Callable[[], str]]]:
+    """Yield the function or method that a change is in, and what gives the source with it."""
     wrapper = MetadataWrapper(libcst.parse_module(source))
     visitor = _Changes()
     wrapper.visit(visitor)
+    names: dict[libcst.CSTNode | None, str] = {}
+    for node in wrapper.module.body:
+        inner = node.body.body if isinstance(node, libcst.ClassDef) else [node]
+        above = f"{node.name.value}." if isinstance(node, libcst.ClassDef) else ""
+        names |= {one: above + one.name.value for one in inner if isinstance(one, libcst.FunctionDef)}
     for one in visitor.mutations:
-        changed = wrapper.module.deep_replace(one.original_node, one.mutated_node)
-        assert isinstance(changed, libcst.Module)
-        yield changed.code
+        function = names.get(one.contained_by_top_level_function)
+        if function is not None:  # what is outside of functions is no behaviour
+            yield function, partial(_changed, wrapper.module, one.original_node, one.mutated_node)
 
 
-def notices(tests: tuple[str, ...], seconds: float) -> bool:
-    """Whether the tests fail, or do not end in time."""
-    child = os.fork()
-    if child == 0:
-        os.setpgid(0, 0)
-        null = os.open(os.devnull, os.O_RDWR)
-        for number in (0, 1, 2):
-            os.dup2(null, number)
-        resource.setrlimit(resource.RLIMIT_CPU, (int(seconds), int(seconds)))
-        import pytest
+def _changed(module: libcst.Module, old: libcst.CSTNode, new: libcst.CSTNode) -> str:
+    changed = module.deep_replace(old, new)
+    assert isinstance(changed, libcst.Module)
+    return str(changed.code)
 
-        os._exit(
-            int(pytest.main(["-x", "-q", "-p", "no:cacheprovider", *(f"tests/{test}" for test in tests)]))
-        )
-    until = time.monotonic() + 3 * seconds  # what sleeps takes no time of a core
-    while time.monotonic() < until:
-        done, status = os.waitpid(child, os.WNOHANG)
-        if done:
-            return status != 0
-        time.sleep(0.02)
-    os.killpg(child, signal.SIGKILL)
-    os.waitpid(child, 0)
-    return True
+
+def module_of(file: str) -> str:
+    """Name a module of the package by its path."""
+    return f"restitution.{file.removesuffix('.py').replace('/', '.')}"
+
+
+def difference(source: str, changed: str) -> str:
+    """Give the lines that differ, without their numbers."""
+    lines = difflib.unified_diff(source.splitlines(), changed.splitlines(), lineterm="", n=0)
+    return "\n".join(line for line in list(lines)[2:] if not line.startswith("@@"))
+
+
+def campaign(judge: Judge, names: list[str], asked: argparse.Namespace, known: dict[str, str]) -> int:
+    """Try the changes of files; return how many live."""
+    lived = 0
+    with OUTCOMES.open("a", encoding="utf-8") as outcomes:
+        for name in names:
+            file = WORK / "restitution" / name
+            source = file.read_text(encoding="utf-8")
+            module = import_module(module_of(name))
+            functions = [word.partition(":")[2] for word in asked.only]
+            every = [one for one in changes(source) if all(word in one[0] for word in functions)]
+            draw = len(every) if asked.draw is None else min(asked.draw, len(every))
+            chosen = random.Random(0).sample(every, draw)
+            alive = 0
+            for function, change in chosen:
+                changed = change()
+                what = difference(source, changed)
+                key = f"{name} {function}\n{what}"
+                found = known.get(key)
+                if not found:
+                    file.write_text(changed, encoding="utf-8")
+                    found = judge.noticed(module, function, changed)
+                    print(json.dumps([key, found]), file=outcomes, flush=True)
+                if not found:
+                    alive += 1
+                    print(f"{key}\n", file=sys.__stdout__, flush=True)
+            file.write_text(source, encoding="utf-8")
+            told = f"{name}: {len(chosen)} of {len(every)} changes tried, {alive} live"
+            print(told, file=sys.__stdout__, flush=True)
+            lived += alive
+    return lived
 
 
 def main() -> int:
     """Say which changes live."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--draw", type=int, help="so many of each file, drawn evenly")
-    parser.add_argument("only", nargs="*", help="words of paths")
+    parser.add_argument("--go-on", action="store_true", help="leave out what a test has noticed before")
+    parser.add_argument("only", nargs="*", help="words of paths, or _store.py:read for a function")
     asked = parser.parse_args()
     shutil.rmtree(WORK, ignore_errors=True)
     WORK.mkdir(parents=True)
@@ -99,38 +134,37 @@ def main() -> int:
     shutil.copytree(ROOT / "python" / "restitution", WORK / "restitution", ignore=ignore)
     shutil.copytree(ROOT / "tests", WORK / "tests", ignore=ignore)
     shutil.copy(ROOT / "pyproject.toml", WORK)
+    known: dict[str, str] = {}
+    if asked.go_on and OUTCOMES.exists():
+        known = dict(json.loads(line) for line in OUTCOMES.read_text(encoding="utf-8").splitlines())
+    elif OUTCOMES.exists():
+        OUTCOMES.unlink()
     os.chdir(WORK)
     os.environ |= {"PYTHONPATH": str(WORK), "PYTHONDONTWRITEBYTECODE": "1"}
     sys.path.insert(0, str(WORK))
     sys.dont_write_bytecode = True
-    import scipy.stats  # noqa: F401
-    import xarray  # noqa: F401
-
     lived = 0
-    for name, tests in TESTS.items():
-        if not all(word in name for word in asked.only):
+    for tests in dict.fromkeys(TESTS.values()):
+        names = [
+            name
+            for name, own in TESTS.items()
+            if own == tests and all(word.partition(":")[0] in name for word in asked.only)
+        ]
+        if not names:
             continue
-        file = WORK / "restitution" / name
-        source = file.read_text(encoding="utf-8")
-        started = time.monotonic()
-        if notices(tests, 600.0):
-            print(f"{name}: its tests fail without a change")
-            return 1
-        seconds = PATIENCE * (time.monotonic() - started) + 60
-        every = list(changes(source))
-        chosen = every if asked.draw is None else random.Random(0).sample(every, min(asked.draw, len(every)))
-        print(f"{name}: {len(chosen)} of {len(every)} changes", flush=True)
-        alive = 0
-        for changed in chosen:
-            file.write_text(changed, encoding="utf-8")
-            if not notices(tests, seconds):
-                alive += 1
-                lines = difflib.unified_diff(source.splitlines(), changed.splitlines(), lineterm="", n=0)
-                print("\n".join(list(lines)[2:]), flush=True)
-        file.write_text(source, encoding="utf-8")
-        print(f"{name}: {alive} live", flush=True)
-        lived += alive
-    return min(lived, 1)
+        counted: list[int] = []
+        child = os.fork()  # whose pytest can be loaded once
+        if child == 0:
+
+            def work(judge: Judge, names: list[str] = names, counted: list[int] = counted) -> None:
+                counted.append(campaign(judge, names, asked, known))
+
+            judge = Judge(list(map(module_of, names)), work)
+            options = ["-q", "-s", "-p", "no:cacheprovider", "--basetemp", str(WORK / "tmp")]
+            pytest.main([*options, *(f"tests/{test}" for test in tests)], plugins=[judge])
+            os._exit(min(counted[0], 1) if counted else 2)
+        lived = max(lived, os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]))
+    return lived
 
 
 if __name__ == "__main__":

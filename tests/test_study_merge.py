@@ -11,6 +11,7 @@ import zarr
 
 from reference.studies import TINY, bits
 from restitution.study import Refused, merge, status, study_of, sweep
+from restitution.study._create import create_or_open
 from restitution.study._identity import attribute, check, identity, readable, threads_for
 from restitution.study._status import open_store, study_in
 from restitution.study._study import Study
@@ -91,6 +92,22 @@ def test_a_study_that_cannot_be_made_again(done: Path, tmp_path: Path) -> None:
     path = changed(done, tmp_path, lambda own: own["run"].update(impacts=-1))
     with pytest.raises(ValueError, match=r"changed\.zarr: its study cannot be made again: .*impacts"):
         study_in(path)
+
+
+@pytest.mark.parametrize(
+    "more",
+    [
+        {"effort": {"batches": 4, "until": {"std": "1 %"}, "velocities": (0.1, 0.9), "most_particles": 64}},
+        {"effort": {"batches": 4, "until": {"mean": 0.1}}},
+        {"measure": {"function": "math:floor", "of": "statistics"}},
+    ],
+    ids=["until in a range", "until", "measure"],
+)
+def test_a_study_is_read_back_from_its_store(more: dict[str, Any], tmp_path: Path) -> None:
+    """With all that can be left out, and without."""
+    study = study_of(TINY | more)
+    create_or_open(tmp_path / "new.zarr", study, 5)
+    assert study_in(tmp_path / "new.zarr") == study
 
 
 @pytest.mark.parametrize(
@@ -217,6 +234,11 @@ HARMS: dict[str, tuple[Callable[[Path], object], str | None, str | None]] = {
         "tasks/words is uint64 of shape",
     ),
     "few words": (reshaped(WORDS, shape=[6, 4, 3]), None, "tasks/words is uint64 of shape"),
+    "other chunks": (
+        reshaped(WORDS, chunk_grid={"name": "regular", "configuration": {"chunk_shape": [1, 4, 602]}}),
+        None,
+        r"the chunks of tasks/words are \(1, 4, 602\)",
+    ),
     "other words": (reshaped(WORDS, data_type="float64", fill_value=0.0), None, "tasks/words is float64"),
     "no status": (lambda store: shutil.rmtree(store / "status"), "KeyError: 'status'", "KeyError: 'status'"),
     "no axis": (lambda store: shutil.rmtree(store / "normal"), None, "KeyError: 'normal'"),

@@ -1,5 +1,6 @@
 """Stores in which something else stands where a file was, and disks that spoil what is written."""
 
+import asyncio
 import errno
 import os
 import shutil
@@ -10,6 +11,9 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from zarr.abc.store import RangeByteRequest
+from zarr.core.buffer import default_buffer_prototype
+from zarr.storage import LocalStore
 
 from reference.studies import TINY, bits
 from restitution import _reading
@@ -126,6 +130,61 @@ def test_what_others_put_into_a_store(copy: Path, done: Path) -> None:
             (copy / name).unlink()
     shutil.rmtree(copy / "mine")
     assert bits(copy) == bits(done)
+
+
+NUMBERS = {"pipe": errno.EINVAL, "folder": errno.EISDIR, "circle": errno.ELOOP}
+
+
+@pytest.mark.skipif(not hasattr(LocalStore, "get_sync"), reason="Zarr of this version has fewer ways")
+@pytest.mark.parametrize("kind", NUMBERS)
+def test_every_way_to_read_a_file(kind: str, tmp_path: Path) -> None:
+    """All that Zarr has, whichever of them it takes in a version; what is not there is not there."""
+    folder, prototype = _folder.Folder(tmp_path), default_buffer_prototype()
+    part = [("file", RangeByteRequest(1, 3)), ("other", None)]
+    asyncio.run(folder.set("file", prototype.buffer.from_bytes(b"content")))
+    folder.set_sync("other", prototype.buffer.from_bytes(b"else"))
+    assert (tmp_path / "other").read_bytes() == b"else"
+    whole = asyncio.run(folder.get("file", prototype))
+    ranged = asyncio.run(folder.get("file", prototype, RangeByteRequest(1, 3)))
+    at_once = folder.get_sync("file", prototype=prototype)
+    ranged_at_once = folder.get_sync("file", prototype=prototype, byte_range=RangeByteRequest(1, 3))
+    parts = asyncio.run(folder.get_partial_values(prototype, part))
+    found = [whole, ranged, at_once, ranged_at_once, *parts]
+    told = [one.to_bytes() for one in found if one is not None]
+    assert told == [b"content", b"on", b"content", b"on", b"on", b"else"]
+    assert asyncio.run(folder.get("none")) is None
+    assert folder.get_sync("file/none") is None
+    instead(tmp_path / "file", kind)
+    for read in (
+        lambda: asyncio.run(folder.get("file")),
+        lambda: folder.get_sync("file"),
+        lambda: asyncio.run(folder.get_partial_values(prototype, part)),
+    ):
+        with pytest.raises(OSError, match=r"\[Errno \d+\] \w.*file") as raised:
+            read()
+        assert raised.value.filename == str(tmp_path / "file")
+        assert (
+            raised.value.errno == {"pipe": errno.EINVAL, "folder": errno.EISDIR, "circle": errno.ELOOP}[kind]
+        )
+
+
+def test_an_error_of_writing_names_the_file_and_not_its_draft(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    folder, content = _folder.Folder(tmp_path), default_buffer_prototype().buffer.from_bytes(b"content")
+
+    def refuse(error: OSError) -> None:
+        raise error
+
+    for error, told in (
+        (OSError(errno.EISDIR, "Is a directory", "draft"), "Is a directory"),
+        (OSError("of Zarr"), "of Zarr"),
+    ):
+        monkeypatch.setattr("zarr.storage._local._put", lambda *_, error=error, **__: refuse(error))
+        with pytest.raises(OSError, match=told) as raised:
+            asyncio.run(folder.set("file", content))
+        assert (raised.value.errno, raised.value.strerror) == (error.errno, told)
+        assert raised.value.filename == str(tmp_path / "file")
 
 
 def test_a_chunk_longer_than_memory(copy: Path, done: Path, monkeypatch: pytest.MonkeyPatch) -> None:
