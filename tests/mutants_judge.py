@@ -91,10 +91,15 @@ class Judge:
                 return item.nodeid, {}, {}
         return "", seconds, reached
 
+    def reaching(self, module: ModuleType, function: str) -> list[pytest.Item]:
+        """Give the tests that reach a function."""
+        place = str(module.__file__), function
+        return [item for item in self._items if place in self._reached[item.nodeid]]
+
     def noticed(self, module: ModuleType, function: str, changed: str) -> str:
         """Name the test that notices a change of a function; empty if none does."""
         place = str(module.__file__), function
-        items = [item for item in self._items if place in self._reached[item.nodeid]]
+        items = self.reaching(module, function)
         last = self._order.get(place)
         items.sort(key=lambda item: (item.nodeid != last, self._seconds[item.nodeid]))
         allowed = _PATIENCE * sum(self._seconds[item.nodeid] for item in items) + _SECONDS

@@ -81,7 +81,10 @@ NO_TABLE = r"^data: the speeds, {0}edges, {0}restitution_edge and {0}probability
             lambda data: data.drop_vars(["edges", "restitution_edge"]),
             "^data lacks edges, restitution_edge: give the Dataset of a FluctuatingRestitution$",
         ),
-        (lambda data: data.drop_vars("given_lowest"), "^data lacks given_lowest: give"),
+        (
+            lambda data: data.drop_vars("given_lowest"),
+            "^data lacks given_lowest: give the Dataset of a FluctuatingRestitution$",
+        ),
         (lambda data: data.drop_vars("given"), "^data lacks given: give"),
         (lambda data: data.drop_vars("given_probability_below"), "^data lacks given_probability_below: give"),
         (

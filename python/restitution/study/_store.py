@@ -257,12 +257,12 @@ class Store:
 
 def large(found: xr.Dataset) -> list[str]:
     """Name the variables that have a chunk for each point."""
-    return sorted(name for name, v in _own(found) if _is_large(name, v))
+    return sorted(name for name, v in _own(found) if _is_large(v))
 
 
 def small(found: xr.Dataset) -> list[str]:
     """Name the other variables that every point has."""
-    return sorted(name for name, v in _own(found) if not _is_large(name, v) and not _is_common(name, v))
+    return sorted(name for name, v in _own(found) if not _is_large(v) and not _is_common(name, v))
 
 
 def common(found: xr.Dataset) -> list[str]:
@@ -287,12 +287,12 @@ def _is_common(name: str, variable: Any) -> bool:
     return name.endswith("_edges") and variable.dims == (f"{name[:-1]}",)
 
 
-def _is_large(name: str, variable: Any) -> bool:
+def _is_large(variable: Any) -> bool:
     return bool(variable.size >= _LARGE)
 
 
 def _chunks(design: Design, variable: Any) -> tuple[int, ...]:
-    if variable.size >= _LARGE:
+    if _is_large(variable):
         return (*(1 for _ in design.shape), *variable.shape)
     room = max(1, _CHUNK // max(1, variable.size * variable.dtype.itemsize))
     sizes = []
