@@ -44,6 +44,8 @@ def test_histograms_follow_each_other(data: xr.Dataset) -> None:
     assert data["restitution_edge"].values.tolist() == [*EDGES[0], *EDGES[1]]
     assert data["probability_below"].values.tolist() == [*BELOW[0], *BELOW[1]]
     assert data["impacts"].values.tolist() == [40.0, 80.0]
+    assert data["velocity"].dims == data["impacts"].dims == data["edges"].dims == ("node",)
+    assert data["probability_below"].dims == ("edge",)
     units = {str(name): variable.attrs.get("units") for name, variable in data.variables.items()}
     assert units == {
         "velocity": "m s-1",

@@ -165,6 +165,13 @@ def test_a_signal_that_python_drops_comes_again(number: int, capfd: pytest.Captu
     assert capfd.readouterr() == ("", "")
 
 
+def test_a_signal_before_a_command_that_python_drops_comes_again() -> None:
+    """As the same signal, which the exit status tells."""
+    with pytest.raises(SystemExit) as raised, leaving():
+        dropped_and_asleep(signal.SIGHUP)
+    assert raised.value.code == 128 + signal.SIGHUP
+
+
 def test_a_signal_that_is_caught_does_not_come_again() -> None:
     """While who caught it keeps it, however long the work after it takes."""
     with ending() as came:
