@@ -13,7 +13,7 @@ from typing import Any
 import pytest
 
 from restitution import _files
-from restitution._files import check, draft_folder, whole_file, whole_folder, write
+from restitution._files import _prefix, check, draft_folder, whole_file, whole_folder, write
 
 
 def names(folder: Path) -> set[str]:
@@ -281,3 +281,28 @@ def test_a_folder_that_was_made_stays_if_something_was_put_there(tmp_path: Path)
     with pytest.raises(RuntimeError, match="trouble"):
         troubled()
     assert names(tmp_path / "above") == {"theirs"}
+
+
+@pytest.mark.parametrize("letter", ["n", "é"])
+def test_the_longest_names_have_room_for_a_draft(tmp_path: Path, letter: str) -> None:
+    """A draft's name is longer than that of its file, which may be as long as the file system allows."""
+    name = letter * (252 // len(letter.encode())) + ".nc"
+    check(tmp_path / name, replace=False)
+    left = tmp_path / f"{_prefix(name)}x.part".replace(f"-{os.getpid()}.", f"-{2**22 + 1}.")
+    left.touch()  # of a process that is no more
+    write(tmp_path / name, "all")
+    assert [file.name for file in tmp_path.iterdir()] == [name]
+    assert _prefix(name) != _prefix(name.replace(".nc", ".cn"))
+
+
+def test_permissions_of_new_files_are_not_touched(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Between two calls of umask a signal would leave every later file of the process open to all."""
+    monkeypatch.setattr("os.umask", lambda mask: pytest.fail("another thread would see it"))
+    write(tmp_path / "one", "all")
+    monkeypatch.undo()
+    before = os.umask(0o027)
+    try:
+        write(tmp_path / "two", "all")
+    finally:
+        assert os.umask(before) == 0o027
+    assert (tmp_path / "two").stat().st_mode & 0o777 == 0o640

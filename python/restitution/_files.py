@@ -17,10 +17,15 @@ from contextlib import ExitStack, contextmanager, suppress
 from functools import cache
 from hashlib import blake2b
 from pathlib import Path
+from threading import Lock
 from typing import Any
 
 from restitution._parameters import ParameterError, wrong
 from restitution._signals import undisturbed
+
+_MASKING = Lock()
+_LONGEST = 200
+"""Bytes of a name that a draft's contains as it is: most file systems allow 255 in all."""
 
 
 def path_from(name: str, value: Any) -> Path:
@@ -208,7 +213,15 @@ def _draft_of(path: Path, target: Path) -> Path:
 
 
 def _prefix(name: str) -> str:
-    return f".{name}.{_machine()}-{os.getpid()}."
+    return f".{_short(name)}.{_machine()}-{os.getpid()}."
+
+
+def _short(name: str) -> str:
+    """Shorten a name that leaves no room for what a draft's has besides, in the same way always."""
+    whole = os.fsencode(name)
+    if len(whole) <= _LONGEST:
+        return name
+    return whole[: _LONGEST // 2].decode("utf-8", "ignore") + "-" + blake2b(whole, digest_size=8).hexdigest()
 
 
 @cache
@@ -218,7 +231,7 @@ def _machine() -> str:
 
 def _remove_leftovers(name: str, folder: Path) -> None:
     """Remove drafts of this name whose process, on this machine, has ended."""
-    draft = re.compile(rf"\.{re.escape(name)}\.{_machine()}-(\d+)\.[^.]+\.part")
+    draft = re.compile(rf"\.{re.escape(_short(name))}\.{_machine()}-(\d+)\.[^.]+\.part")
     with suppress(OSError):  # a folder that is not there, or cannot be looked into
         for entry in os.scandir(folder):
             found = draft.fullmatch(entry.name)
@@ -255,9 +268,19 @@ def _finish(draft: Path, mode: int) -> None:
 
 def permit(draft: Path, mode: int) -> None:
     """Give a draft the permissions of any new file or, with a mode of 0o777, folder."""
-    mask = os.umask(0)
-    os.umask(mask)
-    draft.chmod(mode & ~mask)
+    draft.chmod(mode & ~_mask())
+
+
+def _mask() -> int:
+    """Read the permissions that new files lack: Linux tells; elsewhere they must be set to be known."""
+    with suppress(OSError):
+        for line in Path("/proc/self/status").read_text(encoding="ascii", errors="replace").splitlines():
+            if line.startswith("Umask:"):
+                return int(line.split()[1], 8)
+    with _MASKING, undisturbed():  # another thread or a signal between the two would leave it at 0 for good
+        mask = os.umask(0)
+        os.umask(mask)
+    return mask
 
 
 def _flush(path: Path) -> None:
