@@ -1,5 +1,7 @@
 """The one door for numbers: what NumPy would take for a number without a word is refused, by name."""
 
+from array import array
+from collections import UserList, deque
 from decimal import Decimal
 from fractions import Fraction
 from typing import Any
@@ -9,7 +11,9 @@ import pytest
 import xarray as xr
 
 import restitution as rs
-from restitution._arrays import real, reals, whole
+from restitution import flight
+from restitution._arrays import real, reals, shape, whole
+from restitution._bins import increasing_edges
 from restitution._recorded import counted, records
 
 
@@ -66,6 +70,14 @@ NO_REALS: list[Any] = [
     Failing(),
     nested(70),
     10**400,
+    [np.array(True), 2.0],
+    [np.array([True, False]), np.array([0.0, 1.0])],
+    [xr.DataArray(True), 2.0],
+    deque([True, 2.0]),
+    UserList([0.0, True]),
+    deque([np.ma.masked, 1.0]),
+    bytearray(b"01"),
+    memoryview(b"01"),
 ]
 
 
@@ -81,6 +93,8 @@ def test_what_is_no_array_of_reals(value: Any) -> None:
         [0, 1],
         (0.0, 1),
         range(2),
+        deque([0.0, 1.0]),
+        memoryview(array("d", [0.0, 1.0])),
         np.array([0.0, 1.0], dtype=">f8"),
         np.array([0, 1], dtype=np.uint8),
         np.array([0.0, 1.0], dtype=np.longdouble),
@@ -106,11 +120,41 @@ def test_the_element_that_is_not_finite_is_named() -> None:
     assert np.isinf(reals("bins", np.longdouble("1e400"), "edges", finite=False))
 
 
-@pytest.mark.parametrize("value", [True, np.True_, 1.0, "1", None, np.ma.masked, 1j, np.timedelta64(1, "ns")])
+@pytest.mark.parametrize(
+    "value",
+    [
+        True,
+        np.True_,
+        1.0,
+        "1",
+        None,
+        np.ma.masked,
+        np.ma.masked_array(3, mask=True),
+        1j,
+        np.timedelta64(1, "ns"),
+        np.datetime64(1, "s"),
+    ],
+)
 def test_what_is_no_whole_number(value: Any) -> None:
     with pytest.raises(ValueError, match=r"^lags = .*: must be a whole number >= 1"):
         whole("lags", value, 1)
     assert whole("lags", np.uint8(3), 1) == 3
+
+
+@pytest.mark.parametrize("size", [True, (True, 2), (2, np.ma.masked_array(3, mask=True)), "3", (1.0,), -1])
+def test_what_is_no_shape(size: Any) -> None:
+    with pytest.raises(ValueError, match=r"(?s)^size = .*: must be a whole number >= 0 or a tuple of them"):
+        shape("size", size)
+    assert shape("size", np.array([3, 0])) == (3, 0)
+
+
+def test_a_duration_is_no_number_of_bins(body: rs.Dumbbell, law: rs.TangentialRestitution) -> None:
+    """To NumPy its type is one of whole numbers."""
+    bins: Any = {"velocity_bins": np.timedelta64(10, "s"), "restitution_bins": [0.0, 1.0]}
+    spans: Any = ({}, {"velocity_range": (0.0, 1.0)})
+    for span in spans:
+        with pytest.raises(ValueError, match=r"^velocity_(range|bins) = "):
+            rs.statistics(body, law, particles=2, impacts=2, **bins, **span)
 
 
 def test_scalars_that_pydantic_would_convert() -> None:
@@ -121,6 +165,53 @@ def test_scalars_that_pydantic_would_convert() -> None:
         with pytest.raises(ValueError, match=r"^radius\[0\] = .*: must be a finite number > 0"):
             rs.Dumbbell(radius=(value, 1.0), separation=0.0)
     assert rs.Dumbbell(radius=np.float32(0.5), separation=np.longdouble(0.25)).separation == 0.25
+
+
+def in_units(data: xr.Dataset, name: str, units: str) -> xr.Dataset:
+    """The same numbers, said to be in other units."""
+    return data.assign({name: data[name].assign_attrs(units=units)})
+
+
+def test_units_of_labelled_arrays(body: rs.Dumbbell, law: rs.TangentialRestitution) -> None:
+    """Numbers that say that they have other units are not taken for SI; those that say nothing are."""
+    data = rs.simulate(body, law, particles=3, impacts=4)
+    edges = xr.DataArray([0.0, 0.5, 1.0], dims="edge")
+    plain = rs.reduce(data, edges, [-1.0, 0.0, 1.0])
+    for same in ("m s-1", "m/s", "m s⁻¹"):
+        assert rs.reduce(data, edges.assign_attrs(units=same), [-1.0, 0.0, 1.0]).identical(plain)
+    for name in plain.data_vars:
+        if str(name).endswith("_edges"):
+            increasing_edges(plain[name], str(name))
+    with pytest.raises(ValueError, match=r"^velocity_bins has units 'mm s-1': must be in m s-1"):
+        rs.reduce(data, edges.assign_attrs(units="mm s-1"), [-1.0, 0.0, 1.0])
+    with pytest.raises(ValueError, match=r"^restitution_bins has units 'm s-1': must be in 1"):
+        rs.reduce(data, edges, plain.velocity_edges)
+    heard = xr.Dataset({"time": ("impact", [0.0, 400.0, 780.0]), "uncertainty": ("impact", [0.1, 0.1, 0.1])})
+    with pytest.raises(ValueError, match=r"^times.time has units 'ms': must be in s"):
+        flight.restitution(in_units(heard, "time", "ms"))
+    assert flight.restitution(in_units(heard, "time", "s")).identical(flight.restitution(heard))
+
+
+@pytest.mark.parametrize("name", ["time", "uncertainty", "flag"])
+@pytest.mark.parametrize("kind", ["datetime64[ns]", "timedelta64[ns]", "U8", "complex", "bool", "object"])
+def test_a_dataset_of_times_has_numbers(name: str, kind: str) -> None:
+    """A duration of 0.4 s is no 4e8: xarray makes durations of files whose times have the unit "seconds"."""
+    heard = xr.Dataset(
+        {
+            "time": ("impact", [0.0, 4.0, 7.0]),
+            "uncertainty": ("impact", [1.0, 1.0, 1.0]),
+            "flag": ("impact", [0, 0, 0]),
+        }
+    )
+    flight.restitution(heard)
+    with pytest.raises(ValueError, match=rf"(?s)^times.{name} = .*: must be (numbers, in s|0 to 3)"):
+        flight.restitution(heard.assign({name: heard[name].astype(kind)}))
+    with pytest.raises(ValueError, match=rf"^times.*{name if name != 'time' else ''}.* has dimensions"):
+        flight.restitution(
+            heard.assign(
+                {name: (("other", "more")[: 1 + (name == "time")], [[1.0]] if name == "time" else [1.0])}
+            )
+        )
 
 
 def test_datasets_that_are_none(body: rs.Dumbbell, law: rs.TangentialRestitution) -> None:
@@ -135,6 +226,11 @@ def test_datasets_that_are_none(body: rs.Dumbbell, law: rs.TangentialRestitution
         (data.assign(restitution=data.restitution.astype(str)), "data.restitution = .*: must be real"),
         (data.assign(restitution=data.restitution > 0), "data.restitution = .*: must be real"),
         (data.assign(restitution=data.restitution + 0j), "data.restitution = .*: must be real"),
+        (
+            in_units(data, "impact_velocity", "mm s-1"),
+            "data.impact_velocity has units 'mm s-1': must be in m s-1",
+        ),
+        (in_units(data, "restitution", "%"), "data.restitution has units '%': must be in 1"),
     ):
         with pytest.raises(ValueError, match=f"(?s)^{message}"):
             records("data", harmed, "impact_velocity", "restitution")
@@ -151,6 +247,7 @@ def test_datasets_that_are_none(body: rs.Dumbbell, law: rs.TangentialRestitution
         ),
         (found.isel(velocity=0), "data.restitution_count has dimensions"),
         (found.assign(velocity_edges=-found.velocity_edges), "data.velocity_edges goes from -0.0 to -0.5"),
+        (in_units(found, "velocity_edges", "km/h"), "data.velocity_edges has units 'km/h': must be in m s-1"),
         (found.isel(velocity=slice(2)), "data.velocity_edges has 5 edges: must be one more than the 2"),
     ):
         with pytest.raises(ValueError, match=f"(?s)^{message}"):

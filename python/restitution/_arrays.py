@@ -2,20 +2,23 @@
 
 import math
 import sys
-from collections.abc import Callable, Collection, Iterable
+from collections import UserList, deque
+from collections.abc import Callable, Collection, Iterable, Mapping
 from operator import index
 from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
-from restitution._parameters import ParameterError, Problem, _plain_number, wrong
+from restitution._parameters import ParameterError, Problem, _plain_number, shown, wrong
 
 FloatArray = npt.NDArray[np.float64]
 
 _DEEPEST = 32
 """Lists in lists that are looked into; no table of ours has more than two."""
 _MOST_DIMENSIONS = 32
+_BYTES = ("B", "b", "c")
+"""Formats of a view of memory whose elements are bytes, as those of text that was read, not numbers."""
 _UNITS = ("to_value", "dimensionality")
 """Attributes that identify the quantities of astropy, unyt and pint, whose units NumPy drops silently."""
 
@@ -69,6 +72,46 @@ def reals(
     return numbers
 
 
+_SPELLINGS = {
+    "m s-1": {
+        "m s-1",
+        "m/s",
+        "m s^-1",
+        "m s**-1",
+        "m s⁻¹",
+        "m.s-1",
+        "m·s⁻¹",
+        "meter / second",
+        "metre / second",
+    },
+    "s": {"s", "sec", "second", "seconds"},
+    "1": {"1", "", "dimensionless"},
+}
+
+
+def check_units(name: str, value: Any, unit: str) -> None:
+    """Refuse an array whose attribute ``units``, as of xarray, is another; one without is taken to have ours.
+
+    Parameters
+    ----------
+    name : str
+        Of the argument, for the error.
+    value : Any
+        Anything; what has no attributes passes.
+    unit : {"m s-1", "s", "1"}
+        What its numbers must be in.
+
+    Raises
+    ------
+    ParameterError
+        With the units that it has.
+    """
+    attributes = getattr(value, "attrs", None)
+    said = attributes.get("units") if isinstance(attributes, Mapping) else None
+    if said is not None and str(said).strip() not in _SPELLINGS[unit]:
+        raise ParameterError(Problem(name, f" has units {shown(said)}: must be in {unit}"))
+
+
 def real(name: str, value: Any, allowed: str, good: Callable[[float], bool] = math.isfinite) -> float:
     """Take one number for which `good` holds."""
     number = float(reals(name, value, allowed, dimensions=(0,), finite=False))
@@ -85,7 +128,8 @@ def whole(name: str, value: Any, least: int, most: int | None = None) -> int:
         number = index(plain)
     except Exception:  # whatever the object raises
         raise ParameterError(wrong(name, value, allowed)) from None
-    if isinstance(plain, bool) or number < least or (most is not None and number > most):
+    stray = isinstance(plain, bool) or np.ma.is_masked(plain)
+    if stray or number < least or (most is not None and number > most):
         raise ParameterError(wrong(name, value, allowed))
     return number
 
@@ -93,10 +137,10 @@ def whole(name: str, value: Any, least: int, most: int | None = None) -> int:
 def shape(name: str, value: Any) -> tuple[int, ...]:
     """Take the shape of an array: a whole number, or a tuple of them."""
     try:
-        lengths = tuple(index(length) for length in (value if isinstance(value, Iterable) else (value,)))
+        lengths = tuple(whole(name, one, 0) for one in (value if isinstance(value, Iterable) else (value,)))
     except Exception:  # whatever the object raises
         lengths = (-1,)
-    if isinstance(value, bool) or min(lengths, default=0) < 0:
+    if min(lengths, default=0) < 0:
         raise ParameterError(wrong(name, value, "a whole number >= 0 or a tuple of them"))
     if len(lengths) > _MOST_DIMENSIONS or max(lengths, default=0) > sys.maxsize:
         raise ParameterError(wrong(name, value, f"at most {_MOST_DIMENSIONS} lengths of at most 2**63 - 1"))
@@ -148,7 +192,11 @@ def _stray(value: Any, depth: int) -> str | None:
     """Say what NumPy would silently convert to a number, or drop."""
     if isinstance(value, np.ma.MaskedArray):
         return "holds masked values" if np.ma.is_masked(value) else None
-    if isinstance(value, list | tuple):
+    if isinstance(value, bytes | bytearray) or (isinstance(value, memoryview) and value.format in _BYTES):
+        return "holds bytes"
+    if depth > 0 and getattr(getattr(value, "dtype", None), "kind", None) == "b":
+        return "holds True or False"
+    if isinstance(value, list | tuple | deque | UserList):
         if depth > _DEEPEST:
             return "is too deeply nested"
         kinds = set(map(type, value))

@@ -7,7 +7,7 @@ import numpy as np
 import numpy.typing as npt
 import xarray as xr
 
-from restitution._arrays import reals
+from restitution._arrays import check_units, reals
 from restitution._core import LARGEST_RESTITUTION
 from restitution._parameters import ParameterError, Problem, wrong
 
@@ -35,6 +35,9 @@ _MOMENTS = {
 
 
 def increasing_edges(bins: npt.ArrayLike, name: str) -> FloatArray:
+    for kind, unit in (("velocity", "m s-1"), ("restitution", "1"), ("fraction", "1")):
+        if kind in name:
+            check_units(name, bins, unit)
     edges = np.array(reals(name, bins, "a 1-D array of at least two finite edges", finite=False))
     if edges.ndim != 1 or edges.size < 2:
         raise ValueError(f"{name} has shape {edges.shape}: needs one dimension and at least two edges")
@@ -53,7 +56,8 @@ def increasing_edges(bins: npt.ArrayLike, name: str) -> FloatArray:
 def edges_from(bins: npt.ArrayLike | None, span: npt.ArrayLike | None, name: str) -> npt.ArrayLike | None:
     """Give the edges of bins that are a number with a range, as `numpy.histogram` takes them; else `bins`."""
     kind = name.removesuffix("_bins")
-    if isinstance(bins, bool) or not isinstance(bins, int | np.integer):
+    # To NumPy the type of a duration is one of whole numbers.
+    if isinstance(bins, bool | np.timedelta64) or not isinstance(bins, int | np.integer):
         if span is not None:
             what = "is None" if bins is None else "are edges, not a number"
             raise ParameterError(wrong(f"{kind}_range", span, f"left out: {name} {what}"))

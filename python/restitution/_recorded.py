@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from restitution._arrays import FloatArray, check_each, reals
+from restitution._arrays import FloatArray, check_each, check_units, reals
 from restitution._bins import increasing_edges
 from restitution._parameters import ParameterError, Problem, wrong
 
@@ -16,7 +16,8 @@ def records(name: str, data: Any, *names: str) -> tuple[FloatArray, ...]:
     Raises
     ------
     ParameterError
-        If `data` is not a Dataset, lacks a variable, or has one of other dimensions or of no real numbers.
+        If `data` is not a Dataset, lacks a variable, or has one of other dimensions, in other units or of
+        no real numbers.
     """
     if not isinstance(data, xr.Dataset):
         raise ParameterError(wrong(name, data, "a Dataset from restitution.simulate"))
@@ -30,6 +31,7 @@ def records(name: str, data: Any, *names: str) -> tuple[FloatArray, ...]:
         if set(variable.dims) != {"particle", "impact"}:
             text = f" has dimensions ({', '.join(map(str, variable.dims))}): must be (particle, impact)"
             raise ParameterError(Problem(f"{name}.{each}", text))
+        check_units(f"{name}.{each}", variable, "m s-1" if each.endswith("velocity") else "1")
         numbers = variable.transpose("particle", "impact").to_numpy()
         found.append(reals(f"{name}.{each}", numbers, "real numbers, NaN for none", finite=False))
     return tuple(found)
@@ -66,7 +68,7 @@ def counted(name: str, data: Any) -> xr.Dataset:
             text = f" has dimensions ({', '.join(map(str, variable.dims))}): must be ({needed})"
             raise ParameterError(Problem(f"{name}.{each}", text))
         if each.endswith("_edges"):
-            increasing_edges(variable.to_numpy(), f"{name}.{each}")
+            increasing_edges(variable, f"{name}.{each}")
             bins = data.sizes[each.removesuffix("_edges")]
             if variable.size != bins + 1:
                 text = f" has {variable.size} edges: must be one more than the {bins} bins"

@@ -1,5 +1,6 @@
 """One catalogue of hostile values: whatever once broke something, and its kin. It grows with every find."""
 
+from collections import deque
 from collections.abc import Callable
 from decimal import Decimal
 from fractions import Fraction
@@ -79,6 +80,11 @@ VALUES: dict[str, Callable[[], Any]] = {
     "None inside": lambda: [0.0, None],
     "ragged": lambda: [[0.0], [1.0, 2.0]],
     "two dimensions": lambda: np.zeros((2, 3)),
+    "bool array inside": lambda: [np.array(True), 2.0, 3.0],
+    "masked whole number": lambda: np.ma.masked_array(3, mask=True),
+    "queue of bools": lambda: deque([0.0, True, 2.0]),
+    "bytes to be changed": lambda: bytearray(b"012"),
+    "other units": lambda: xr.DataArray([0.5, 1.0], dims="x", attrs={"units": "furlong"}),
     "no dimension": lambda: np.array(0.5),
     "objects": lambda: np.array([0.0, 1.0], dtype=object),
     "structured": lambda: np.zeros(2, dtype=[("a", "f8")]),

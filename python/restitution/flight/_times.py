@@ -7,8 +7,8 @@ import numpy as np
 import numpy.typing as npt
 import xarray as xr
 
-from restitution._arrays import reals
-from restitution._parameters import ParameterError, Problem, shown, wrong
+from restitution._arrays import check_units, reals
+from restitution._parameters import ParameterError, Problem, wrong
 
 Array = npt.NDArray[np.float64]
 
@@ -99,16 +99,26 @@ def _of_dataset(data: xr.Dataset) -> tuple[Array, Array]:
                 "times", f": a Dataset of series {numbers}; take one, data.where(data.series == 0, drop=True)"
             )
         )
-    instants = data.time.values.astype(np.float64)
-    errors = data.uncertainty.values.astype(np.float64)
+    instants, errors = _column(data, "time", "numbers, in s"), _column(data, "uncertainty", "numbers, in s")
     if "flag" in data:
-        flags = data.flag.values
-        unknown = np.setdiff1d(flags[~np.isnan(flags.astype(np.float64))], range(len(FLAGS)))
+        allowed = f"0 to {len(FLAGS) - 1}: {', '.join(FLAGS)}"
+        flags = _column(data, "flag", allowed)
+        unknown = np.setdiff1d(flags[~np.isnan(flags)], range(len(FLAGS)))
         if unknown.size:
-            raise ParameterError(
-                wrong("times.flag", shown(unknown[0]), f"0 to {len(FLAGS) - 1}: {', '.join(FLAGS)}")
-            )
+            raise ParameterError(wrong("times.flag", float(unknown[0]), allowed))
         instants = np.where(flags == MISSED, np.nan, instants)
         kept = flags != DOUBLED
         instants, errors = instants[kept], errors[kept]
     return instants, errors
+
+
+def _column(data: xr.Dataset, name: str, allowed: str) -> Array:
+    """Take a variable that has a number for each time; dates and durations, which xarray reads, are none."""
+    numbers = reals(f"times.{name}", data[name].to_numpy(), allowed, finite=False)
+    if data[name].dims != data.time.dims:
+        dimensions = ", ".join(map(str, data[name].dims))
+        text = f" has dimensions ({dimensions}): must be those of time, ({data.time.dims[0]})"
+        raise ParameterError(Problem(f"times.{name}", text))
+    if name != "flag":
+        check_units(f"times.{name}", data[name], "s")
+    return numbers
