@@ -172,6 +172,13 @@ def test_a_signal_before_a_command_that_python_drops_comes_again() -> None:
     assert raised.value.code == 128 + signal.SIGHUP
 
 
+def test_a_second_signal_that_python_drops_comes_again() -> None:
+    with pytest.raises(KeyboardInterrupt), put_off(lambda: None) as late:
+        send(signal.SIGTERM)
+        dropped_and_asleep(signal.SIGHUP)
+    assert late == [signal.SIGTERM, signal.SIGHUP, signal.SIGHUP]
+
+
 def test_a_signal_that_is_caught_does_not_come_again() -> None:
     """While who caught it keeps it, however long the work after it takes."""
     with ending() as came:
