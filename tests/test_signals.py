@@ -149,7 +149,9 @@ def dropping(number: int) -> None:
     Losing()
 
 
-def dropped_and_asleep(number: int) -> None:
+def dropped_and_asleep(number: int, *before: int) -> None:
+    for other in before:
+        send(other)
     dropping(number)
     time.sleep(PATIENCE)  # in one piece, which a signal ends only if it is sent to this thread
 
@@ -174,8 +176,7 @@ def test_a_signal_before_a_command_that_python_drops_comes_again() -> None:
 
 def test_a_second_signal_that_python_drops_comes_again() -> None:
     with pytest.raises(KeyboardInterrupt), put_off(lambda: None) as late:
-        send(signal.SIGTERM)
-        dropped_and_asleep(signal.SIGHUP)
+        dropped_and_asleep(signal.SIGHUP, signal.SIGTERM)
     assert late == [signal.SIGTERM, signal.SIGHUP, signal.SIGHUP]
 
 
