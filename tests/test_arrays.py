@@ -252,3 +252,30 @@ def test_datasets_that_are_none(body: rs.Dumbbell, law: rs.TangentialRestitution
     ):
         with pytest.raises(ValueError, match=f"(?s)^{message}"):
             counted("data", harmed)
+
+
+@pytest.mark.parametrize("kind", ["datetime64[ns]", "timedelta64[ns]", "U8", "complex", "bool"])
+def test_states_and_measured_times_are_numbers(
+    kind: str, body: rs.Dumbbell, law: rs.TangentialRestitution
+) -> None:
+    """Neither the motion between impacts nor a law fitted to times takes dates, text or complex numbers."""
+    data = rs.simulate(body, law, particles=3, impacts=4, record="state")
+    for name in ("time", "position", "axis", "velocity_after", "angular_velocity_after", "release_angle"):
+        with pytest.raises(ValueError, match=rf"(?s)^data.{name} = .*: must be real numbers"):
+            rs.trajectory(data.assign({name: data[name].astype(kind)}), 1, 0.01)
+    measured = flight.restitution([0.0, 0.4001, 0.7800, 1.1411, 1.4841], 1e-4)
+    for name in ("time", "uncertainty"):
+        with pytest.raises(ValueError, match=rf"(?s)^data.{name} = .*: must be numbers, in s"):
+            flight.fit(measured.assign({name: measured[name].astype(kind)}))
+
+
+@pytest.mark.parametrize("value", [None, "1", 1j, True, [1.0, 2.0], np.datetime64("2020-01-01"), np.nan])
+def test_settings_of_a_trajectory_are_numbers(
+    value: Any, body: rs.Dumbbell, law: rs.TangentialRestitution
+) -> None:
+    data = rs.simulate(body, law, particles=3, impacts=4, record="state")
+    for name in ("gravity", "incline", "release_velocity", "axial_inertia", "release_height"):
+        with pytest.raises(ValueError, match=rf"(?s)^data.{name}.* = .*: must be (a|three) finite number"):
+            rs.trajectory(data.assign_attrs({name: value}), 1, 0.01)
+    with pytest.raises(ValueError, match=r"^data.transverse_inertia = 0: must be a finite number > 0"):
+        rs.trajectory(data.assign_attrs(transverse_inertia=0), 1, 0.01)

@@ -15,6 +15,8 @@ if TYPE_CHECKING:
 
 _NEEDED = ("time", "position", "axis", "velocity_after", "angular_velocity_after", "release_angle")
 _SETTINGS = ("gravity", "incline", "release_velocity", "axial_inertia", "transverse_inertia")
+_RELEASED = ("release_height", "release_azimuth", "release_spin")
+"""Of each particle, or of all as attributes, or neither where it is 0."""
 _ABOUT = {
     "position": ("position of the centre of mass; the release is over the origin, z = 0 the plane", "m"),
     "velocity": ("velocity of the centre of mass", "m s-1"),
@@ -66,7 +68,8 @@ def trajectory(data: xr.Dataset, particle: int, times: npt.ArrayLike) -> xr.Data
     Raises
     ------
     ValueError
-        If there are no states, no such particle, or times before the release or after the last impact.
+        If there are no states, or such as are no numbers, no such particle, or times before the release or
+        after the last impact.
 
     Examples
     --------
@@ -87,6 +90,7 @@ def trajectory(data: xr.Dataset, particle: int, times: npt.ArrayLike) -> xr.Data
     if lacking:
         raise ParameterError(Problem("data", f" lacks {', '.join(lacking)}: must be {instead}"))
     one = _particle(data, particle)
+    _check(one)
     asked = reals("times", times, "times in s, one or several", dimensions=(0, 1), finite=False)
     when = np.atleast_1d(asked)
     recorded = one["time"].to_numpy()
@@ -134,6 +138,23 @@ def _particle(data: xr.Dataset, particle: int) -> xr.Dataset:
     if at.size != 1:
         raise ParameterError(wrong("particle", particle, allowed))
     return data.isel(particle=int(at[0]))
+
+
+def _check(one: xr.Dataset) -> None:
+    """Refuse states and settings that are no numbers."""
+    for name in _NEEDED + _RELEASED:
+        if name in one:
+            reals(f"data.{name}", one[name].to_numpy(), "real numbers, NaN for none", finite=False)
+    for name in _SETTINGS + _RELEASED:
+        if name in one.attrs and not (name in _RELEASED and name in one):
+            lengths = (3,) if name == "release_velocity" else ()
+            allowed = "three finite numbers" if lengths else "a finite number"
+            if reals(f"data.{name}", one.attrs[name], allowed).shape != lengths:
+                raise ParameterError(wrong(f"data.{name}", one.attrs[name], allowed))
+    if not one.attrs["transverse_inertia"] > 0.0:
+        raise ParameterError(
+            wrong("data.transverse_inertia", one.attrs["transverse_inertia"], "a finite number > 0")
+        )
 
 
 def _gravity(data: xr.Dataset) -> tuple[float, float, float]:

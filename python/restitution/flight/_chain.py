@@ -6,6 +6,7 @@ import numpy as np
 import numpy.typing as npt
 import xarray as xr
 
+from restitution._arrays import reals
 from restitution.flight._drag import Drag, fall, speeds
 
 Array = npt.NDArray[np.float64]
@@ -100,7 +101,11 @@ def measured_of(data: xr.Dataset) -> Measured:
             terminal_velocity=attrs["terminal_velocity"], uncertainty=attrs["terminal_velocity_uncertainty"]
         )
     gravity = (attrs["gravity"], attrs["gravity_uncertainty"])
-    return measured(data.time.values, data.uncertainty.values, gravity, drop, drag)
+    times, errors = (
+        reals(f"data.{name}", data[name].to_numpy(), "numbers, in s", dimensions=(1,), finite=False)
+        for name in ("time", "uncertainty")
+    )
+    return measured(times, errors, gravity, drop, drag)
 
 
 def chain(given: Measured) -> Chain:
