@@ -84,7 +84,7 @@ def table(draw: Random) -> Any:
         values.flat[draw.randrange(values.size)] = draw.choice(_ODD)
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
-        made: Any = values.astype(kind)
+        made: Any = np.asarray(values.astype(kind))
     way = draw.randrange(8)
     if way == 0:
         made = np.asfortranarray(made)
