@@ -4,6 +4,7 @@ import warnings
 from pathlib import Path
 from typing import Any
 
+import matplotlib as mpl
 import numpy as np
 import pytest
 import xarray as xr
@@ -11,6 +12,7 @@ import xarray as xr
 import restitution as rs
 from reference.command import invoke
 from restitution._cli import BAD_INPUT, FAILED, WARNED
+from restitution.distribution._figure import image
 
 RUN = """
 [body]
@@ -115,6 +117,8 @@ def test_the_figure_is_for_counts_too(tmp_path: Path) -> None:
         restitution_bins=np.linspace(-1.0, 3.0, 401),
     )
     dist = rs.FluctuatingRestitution.from_statistics(counts)
+    with mpl.rc_context({"text.usetex": True}):  # as a user's settings may ask for: there is no LaTeX here
+        assert image(dist, "png").startswith(b"\x89PNG")
     for suffix, start in ((".pdf", b"%PDF"), (".svg", b"<?xml"), (".png", b"\x89PNG")):
         dist.figure().savefig(tmp_path / f"dist{suffix}")
         assert (tmp_path / f"dist{suffix}").read_bytes().startswith(start)

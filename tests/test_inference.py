@@ -152,6 +152,16 @@ def test_few_impacts_are_refused() -> None:
         quick(heard(0.01, law, 1, impacts=5), law)
 
 
+@pytest.mark.parametrize("name", ["restitution", "impact_velocity", "uncertainty", "restitution_covariance"])
+def test_what_was_measured_has_numbers(name: str) -> None:
+    """A duration has the bits of a whole number, which is not what was measured."""
+    law = rs.Frictionless(normal=0.93)
+    data = heard(0.05, law, 1)
+    data[name] = data[name].copy(data=data[name].values.astype("timedelta64[ns]"))
+    with pytest.raises(ValueError, match=rf"^(data|times)\.{name}"):
+        quick(data, law)
+
+
 def test_without_the_packages_it_is_said_what_to_install(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "emcee", None)
     law = rs.Frictionless(normal=0.93)

@@ -4,6 +4,7 @@ import re
 from html.parser import HTMLParser
 from pathlib import Path
 
+import matplotlib as mpl
 import numpy as np
 import pytest
 import soundfile
@@ -87,6 +88,13 @@ def test_beside_it_stand_all_numbers(report: tuple[Path, str]) -> None:
     again = rs.flight.read(out.with_suffix(".csv"))
     assert again.time.values == pytest.approx(data.time.values, abs=1e-8)
     assert again.uncertainty.values == pytest.approx(data.uncertainty.values, rel=1e-6)
+
+
+def test_pictures_need_no_latex(ball: Path, tmp_path: Path) -> None:
+    """Whatever the user's own settings of matplotlib ask for."""
+    with mpl.rc_context({"text.usetex": True}):
+        code, said = listen(ball, "--diameter", 0.02, "--out", tmp_path / "a.html")
+    assert code == 0, said
 
 
 def test_nothing_is_replaced_unless_asked(ball: Path, report: tuple[Path, str]) -> None:

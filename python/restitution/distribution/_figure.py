@@ -19,6 +19,7 @@ _RESTITUTION = r"coefficient of restitution $\varepsilon$"
 _TICKS = [scale * 10.0**power for power in range(-6, 4) for scale in (1, 2, 5)]
 
 
+@fg.styled
 def image(dist: EstimatedDistribution, suffix: str) -> bytes:
     """Draw and encode; without a date, so that the same distribution gives the same bytes."""
     dated = {"pdf": {"CreationDate": None}, "svg": {"Date": None}}

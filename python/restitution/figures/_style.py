@@ -33,6 +33,8 @@ COLORMAP = "viridis"
 """Perceptually uniform map for populations."""
 
 _STYLE: dict[Any, Any] = {
+    # The labels are written for mathtext, which needs no LaTeX.
+    "text.usetex": False,
     "font.family": "STIXGeneral",
     "mathtext.fontset": "stix",
     "font.size": 9.0,

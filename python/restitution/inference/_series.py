@@ -7,6 +7,7 @@ import numpy as np
 import numpy.typing as npt
 import xarray as xr
 
+from restitution._arrays import reals
 from restitution._energy import reported_elsewhere
 from restitution._parameters import ParameterError, Problem
 from restitution._simulate import simulate
@@ -77,16 +78,19 @@ class Series:
     @classmethod
     def of(cls, data: xr.Dataset, form: LawOfSpeed, reference: float, scatter: float) -> "Series":
         """Take a Dataset of `restitution.flight.restitution`."""
-        ratio, speed = data.restitution.values, data.impact_velocity.values
+        ratio, speed, errors, covariances = (
+            reals(f"data.{name}", data[name].to_numpy(), "numbers, NaN where unknown", finite=False)
+            for name in ("restitution", "impact_velocity", "uncertainty", "restitution_covariance")
+        )
         known = np.flatnonzero(np.isfinite(ratio))
         known = known[known > 0]
         if known.size < _FEWEST:
             text = f": {known.size} coefficients from times alone; must be at least {_FEWEST}"
             raise ParameterError(Problem("data", text))
-        errors = np.nan_to_num(data.uncertainty.values)
+        errors = np.nan_to_num(errors)
         if not np.any(errors > 0.0):
             raise ParameterError(Problem("data", ": times without errors; must have an uncertainty > 0"))
-        covariance = data.restitution_covariance.values[np.ix_(known, known)]
+        covariance = covariances[np.ix_(known, known)]
         covariance = covariance + 10.0 ** (np.round(4.0 * np.log10(max(scatter, 1e-12))) / 2.0) * np.eye(
             known.size
         )

@@ -14,6 +14,7 @@ from restitution._dataset import put
 from restitution._files import check, check_apart, path_from, whole_files
 from restitution._parameters import ParameterError, wrong
 from restitution._words import with_error
+from restitution.figures import styled
 from restitution.flight._times import DOUBLED, FLAGS
 from restitution.listen._analysis import Analysis, Series, Setting, analyse, checked
 from restitution.listen._figures import close_ups, drawn_shape, waveform
@@ -214,6 +215,7 @@ def _impacts(analysis: Analysis) -> str:
     return table(head, rows, caption="All impacts, with their standard errors", numbers=(3, 4, 5, 6))
 
 
+@styled
 def _picture(figure: Figure, caption: str) -> str:
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder, "figure.png")
