@@ -2,6 +2,7 @@
 
 import io
 
+import matplotlib as mpl
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
@@ -19,12 +20,12 @@ _RESTITUTION = r"coefficient of restitution $\varepsilon$"
 _TICKS = [scale * 10.0**power for power in range(-6, 4) for scale in (1, 2, 5)]
 
 
-@fg.styled
 def image(dist: EstimatedDistribution, suffix: str) -> bytes:
     """Draw and encode; without a date, so that the same distribution gives the same bytes."""
     dated = {"pdf": {"CreationDate": None}, "svg": {"Date": None}}
     content = io.BytesIO()
-    draw(dist).savefig(content, format=suffix, dpi=300, metadata=dated.get(suffix))
+    with mpl.rc_context({"text.usetex": False}):  # the labels of ticks are made only now
+        draw(dist).savefig(content, format=suffix, dpi=300, metadata=dated.get(suffix))
     return content.getvalue()
 
 
