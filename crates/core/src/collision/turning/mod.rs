@@ -19,6 +19,8 @@ mod rates;
 mod series;
 mod step;
 mod stop;
+#[cfg(test)]
+mod testing;
 
 use super::Hypothesis;
 use crate::simd::{Mask, Pack};

@@ -161,10 +161,7 @@ pub(super) fn longest<S: Simd, const K: usize>(
     let turn = y.lt(TINY).select(2.0 / LONG_TURN, turn);
     let turning = plain.select(0.0, rates.plus.abs() * turn);
     let braked = rates.brake.mul_add(y.max(1.0), rates.brake);
-    // Where the slip grows it may turn meanwhile; above y = 1 it is turned round.
-    let turns = rates.decay.lt(0.0) & rates.plus.lt(0.0);
-    let most = turns.select(y.max(1.0), y);
-    let growing = (rates.kappa.abs() * most).mul_add(SHARPER, rates.decay.abs());
+    let growing = (rates.kappa.abs() * y).mul_add(SHARPER, rates.decay.abs());
     let growing = growing * at.slip.le(FADED).select(0.5 / DECAY, 1.0 / DECAY);
     let braked = y.lt(TINY).select(0.0, braked * (1.0 / BRAKE));
     singular.min(1.0 / turning.max(growing).max(braked))
@@ -233,4 +230,50 @@ pub(super) fn arrive<S: Simd, const K: usize>(
     at.normal = at.normal + (x + z + 2.0 * y);
     at.along = at.along - (x - z) * rates.friction;
     at.across = at.across + lost / rates.ww;
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::testing::{Case, value};
+    use super::*;
+
+    /// The longest panel of a slip of this size and with this y, times μ, where μK_uu and μK_ww are `a` and `b`.
+    fn resolved(a: f64, b: f64, nu: f64, slip: f64, y: f64) -> f64 {
+        let friction = 0.1;
+        let case = Case {
+            friction,
+            nn: 1.0,
+            nu: nu * friction,
+            uu: a,
+            ww: b,
+            direction: 2.0 * y.sqrt().atan(),
+        };
+        let impacts = case.impacts(slip, 1.0 - slip, Hypothesis::Newton);
+        friction * value(longest(&impacts.rates, &impacts.course))
+    }
+
+    fn near(x: f64, y: f64) {
+        assert!((x - y).abs() < 1e-9 * y, "{x} {y}");
+    }
+
+    /// Where one of the functions alone limits it, it changes on the longest panel by as much as the rule says.
+    #[test]
+    fn a_panel_is_as_long_as_its_functions_are_resolved() {
+        // d ln A/dθ = −λ where y = 0.
+        near(resolved(1.0, 2.0, 0.3, 0.5, 0.0) * 0.7, 14.0);
+        near(resolved(1.0, 2.0, 1.7, 0.5, 0.0) * 0.7, 14.0);
+        near(resolved(1.0, 2.0, 0.3, 1e-7, 0.0) * 0.7, 28.0);
+        // d ln y/dθ = −2ρ₊ where ρ₋ = 0: with b = 2a and K_nu = a λ = 0, too, and κ = 2a.
+        near(resolved(1.0, 2.0, 1.0, 0.5, 1e-8) * 4.0, 30.0);
+        near(resolved(1.0, 2.0, 1.0, 0.5, 1e-3) * 4.0, 14.0);
+        near(resolved(1.0, 2.0, 1.0, 0.5, 0.1) * 4.0, 4.0);
+        // d ln w/dθ = −μK_ww(1 + y) where ρ₊ = κ = 0, at a slip so small that A may change more.
+        near(resolved(1.5, 1.0, 0.5, 1e-7, 1e-5) * 2.0, 32.0);
+        // κy beside λ, thrice, where the direction all but stays.
+        let (d, y) = (0.01, 0.1);
+        near(
+            resolved(1.0, 1.0 - d, -d, 0.5, y) * (1.0 + d + 3.0 * y * (1.0 - d)),
+            14.0,
+        );
+    }
 }

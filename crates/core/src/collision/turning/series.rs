@@ -77,3 +77,61 @@ pub(super) fn power<S: Simd, const K: usize>(x: Pack<S, K>) -> Pack<S, K> {
     let cube = x * x * x;
     (cube * cube * x).abs()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::simd::one;
+    use pulp::Scalar;
+
+    fn series(terms: [f64; ORDER]) -> Series<Scalar, 1> {
+        Series(terms.map(one))
+    }
+
+    fn value(x: Pack<Scalar, 1>) -> f64 {
+        x.as_slice()[0]
+    }
+
+    /// Polynomials of the sixth degree, whose slopes change by a fifth up to there.
+    #[test]
+    fn a_polynomial_takes_its_value_where_it_does() {
+        for (terms, x) in [
+            ([1.0, -0.2, 0.05, 0.02, -0.01, 0.01], 0.5),
+            ([1.5, 0.1, 0.1, 0.1, 0.1, 0.1], 0.5_f64),
+            ([-1.2, 0.1, 0.1, 0.0, 0.1, -0.1], -0.5),
+        ] {
+            let target: f64 = (0..ORDER).map(|k| terms[k] * x.powi(k as i32 + 1)).sum();
+            let slope: f64 = (0..ORDER)
+                .map(|k| (k + 1) as f64 * terms[k] * x.powi(k as i32))
+                .sum();
+            let path = series(terms);
+            assert!((value(path.at(one(x))) - target).abs() < 1e-15);
+            let root = path.reaches(one(target), one(0.0), one(terms[0]));
+            assert!((value(root.x) - x).abs() < 1e-12, "{}", value(root.x));
+            assert!((value(root.slope) - slope).abs() < 1e-4);
+            assert!(value(root.step).abs() < 1e-4);
+        }
+    }
+
+    /// Just beyond an extremum two roots are close together, and Newton's three steps must begin at the one that is ahead; for a
+    /// parabola the first guess is the root.
+    #[test]
+    fn a_root_beyond_an_extremum_is_the_one_ahead() {
+        let path = series([-1.0, 1.0, 0.0, 0.0, 0.0, 0.0]);
+        let lowest = one(0.5);
+        for ahead in [1e-4, 1e-3, 0.1] {
+            let target = path.at(lowest) + ahead * ahead;
+            let root = path.reaches(target, lowest, one(0.0));
+            assert!((value(root.x) - 0.5 - ahead).abs() < 1e-12, "{ahead}");
+            assert!(value(root.step).abs() < 1e-11);
+        }
+    }
+
+    #[test]
+    fn what_is_left_out_grows_with_the_seventh_power() {
+        let path = series([1.0, 2.0, 4.0, 8.0, -16.0, 32.0]);
+        assert_eq!(value(path.rest()), 48.0);
+        assert_eq!(value(power(one(2.0))), 128.0);
+        assert_eq!(value(power(one(-2.0))), 128.0);
+    }
+}

@@ -143,3 +143,184 @@ impl<S: Simd, const K: usize> Beyond<S, K> {
         parabola(self.early, self.off + self.value - self.early, self.value)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::testing::{Case, State, end_at, value};
+    use super::*;
+    use crate::collision::turning::panel;
+    use crate::simd::one;
+
+    const HYPOTHESES: [Hypothesis; 3] =
+        [Hypothesis::Stronge, Hypothesis::Poisson, Hypothesis::Newton];
+
+    /// Slips that turn either way; v_c^n is linear in p where K_nu = 0, and falls in the last, a jam.
+    const CASES: [Case; 5] = [
+        case(0.7, 1.5, 0.0, 2.0, 1.3, 0.8),
+        case(0.7, 1.5, 0.0, 2.0, 3.1, 1.5),
+        case(0.3, 1.5, 0.6, 2.0, 1.3, 0.9),
+        case(0.4, 1.7, -0.5, 1.3, 2.9, 1.2),
+        case(1.9, 1.1, 0.9, 1.4, 1.2, 0.2),
+    ];
+
+    const fn case(friction: f64, nn: f64, nu: f64, uu: f64, ww: f64, direction: f64) -> Case {
+        Case {
+            friction,
+            nn,
+            nu,
+            uu,
+            ww,
+            direction,
+        }
+    }
+
+    /// The event is x = Rθ away; the guess takes the velocity as linear in p and A(1 + y)² as exponential in θ: it is off by the order
+    /// of x², and by that of x where K_nu makes the velocity another function of p.
+    #[test]
+    fn the_next_event_is_guessed_where_it_is() {
+        for hypothesis in HYPOTHESES {
+            for case in CASES {
+                let impacts = case.impacts(0.8, 0.3, hypothesis);
+                let (rates, mut goal, mut at) = (impacts.rates, impacts.goal, impacts.course);
+                let x = 1e-3;
+                let theta = x / value(rates.pace(at.y));
+                let allowed = if case.nu == 0.0 { 10.0 * x } else { 10.0 } * x * theta;
+                let gained = State::of(&at).after(&rates, theta).v - value(at.v);
+
+                at.v = one(-gained);
+                let jam = gained < 0.0;
+                let found = value(guess(&rates, &goal, &at));
+                if jam {
+                    assert_eq!(found, f64::INFINITY, "{case:?}"); // v_c^n > 0 falls in no compression
+                } else {
+                    assert!((found - theta).abs() < allowed, "{found} {theta} {case:?}");
+                }
+
+                at.compressing = !at.compressing;
+                at.v = one(3.0 * gained.abs());
+                let there = State::of(&at).after(&rates, theta);
+                end_at(&mut goal, &mut at, &there);
+                let found = value(guess(&rates, &goal, &at));
+                if jam && hypothesis == Hypothesis::Newton {
+                    // Where v_c^n falls Newton's goal is not ahead, but the end of the jam, three times as far.
+                    assert!((found - 3.0 * theta).abs() < 9.0 * allowed, "{case:?}");
+                    continue;
+                }
+                assert!((found - theta).abs() < allowed, "{found} {theta} {case:?}");
+                if jam {
+                    // The jam ends before the restitution.
+                    at.v = one(0.5 * gained.abs());
+                    let found = value(guess(&rates, &goal, &at));
+                    assert!((found - 0.5 * theta).abs() < allowed, "{found} {case:?}");
+                }
+            }
+        }
+    }
+
+    /// v_c^n has an extremum where y = c: at the end of that way, which is known to second order, and not before.
+    #[test]
+    fn an_extremum_of_the_normal_velocity_is_not_passed() {
+        for (friction, nn, nu, uu, ww) in [
+            (1.9, 1.1, 0.9, 1.4, 1.2),
+            (1.5, 1.1, 0.9, 1.2, 2.4),
+            (2.6, 0.8, 0.7, 2.4, 1.1),
+        ] {
+            let c: f64 = (friction * nu - nn) / (friction * nu + nn);
+            for off in [1e-3, -1e-3, 1e-13, -1e-13] {
+                let direction = 2.0 * (c * (1.0 + off)).sqrt().atan();
+                let case = case(friction, nn, nu, uu, ww, direction);
+                let impacts = case.impacts(0.8, 0.3, Hypothesis::Newton);
+                let (rates, at) = (impacts.rates, impacts.course);
+                let found = value(crest(&rates, &at));
+                // d ln y/dθ = −2(ρ₊ + ρ₋y).
+                let turning = 2.0 * (value(rates.plus) + value(rates.minus) * c);
+                if (turning > 0.0) != (off > 0.0) {
+                    assert_eq!(found, f64::INFINITY, "{case:?}");
+                    continue;
+                }
+                let theta = off / turning;
+                let short = SHORT / value(rates.pace(at.y));
+                if off.abs() < 1e-10 {
+                    assert!((found - short).abs() < 1e-12 * short, "{found} {case:?}");
+                } else {
+                    assert!(
+                        (found - theta).abs() < 0.01 * theta,
+                        "{found} {theta} {case:?}"
+                    );
+                    // To the second order of the bound −ln(1 − t) ≥ 8(1 − q)/(1 + q) it is the extremum itself.
+                    let start = State::of(&at);
+                    let slope = |theta| {
+                        let y = start.after(&rates, theta).y();
+                        value(rates.slope(one(y)))
+                    };
+                    assert!(slope(0.99 * found) * slope(0.0) > 0.0);
+                    assert!(slope(1.01 * found) * slope(0.0) < 0.0);
+                }
+            }
+        }
+    }
+
+    /// A slip whose direction y = ½ stays and whose size all but does: v_c^n and p are nearly linear in θ, the work nearly a parabola.
+    fn steady(nn: f64) -> Case {
+        let (friction, uu, ww) = (0.5, 2.0, 0.1);
+        let nu = friction * (ww - uu) * (0.5 - 1.0) / (0.5 + 1.0);
+        case(friction, nn, nu, uu, ww, 2.0 * 0.5_f64.sqrt().atan())
+    }
+
+    /// Whether events that are behind the end of a way of Rθ = 2 count as far, and where they are said to be. The size of the slip
+    /// changes by 4 % on the way, and so does a parabola of what changes with it; its third order is a few hundredths of that.
+    fn behind(
+        (rates, goal): (&Rates<pulp::Scalar, 1>, &Goal<pulp::Scalar, 1>),
+        at: &Course<pulp::Scalar, 1>,
+        share: f64,
+    ) {
+        let length = 2.0 / value(rates.pace(at.y));
+        let end = panel::pass(rates, goal, at, one(length));
+        let (back, limit) = beyond(rates, goal, at, &end, one(length));
+        // Events that are up to x = 1/2 behind are left to the series.
+        assert_eq!(back.any(), share < 0.75, "{share}");
+        if back.any() {
+            let limit = value(limit) / length;
+            let share = share.max(1.0 / 64.0);
+            assert!((limit - share).abs() < 4e-3, "{limit} {share}");
+        }
+    }
+
+    #[test]
+    fn a_step_beyond_an_event_is_repeated_up_to_it() {
+        for share in [0.001, 0.2, 0.45, 0.6, 0.85, 0.95] {
+            for hypothesis in HYPOTHESES {
+                for nn in [1.5, 0.02] {
+                    let impacts = steady(nn).impacts(0.7, 0.3, hypothesis);
+                    let (rates, mut goal, mut at) = (impacts.rates, impacts.goal, impacts.course);
+                    let way = share * 2.0 / value(rates.pace(at.y));
+                    let gained = State::of(&at).after(&rates, way).v - value(at.v);
+                    assert_eq!(gained < 0.0, nn < 1.0); // a jam
+
+                    if gained > 0.0 {
+                        at.v = one(-gained);
+                        behind((&rates, &goal), &at, share);
+                    }
+                    at.compressing = !at.compressing;
+                    at.v = one(0.4);
+                    let there = State::of(&at).after(&rates, way);
+                    end_at(&mut goal, &mut at, &there);
+                    if gained > 0.0 || hypothesis != Hypothesis::Newton {
+                        behind((&rates, &goal), &at, share);
+                    }
+                    if gained < 0.0 {
+                        // The end of a jam, before that of the restitution or with it.
+                        at.v = one(-gained);
+                        let there = State::of(&at).after(&rates, way);
+                        end_at(&mut goal, &mut at, &there);
+                        behind((&rates, &goal), &at, share);
+                        goal.rebound = one(1.0);
+                        at.due = one(1.0);
+                        at.compression = one(1.0);
+                        behind((&rates, &goal), &at, share);
+                    }
+                }
+            }
+        }
+    }
+}
