@@ -4,7 +4,7 @@ mod common;
 
 use common::cases;
 use proptest::prelude::*;
-use restitution_core::distribution::{At, Layout, Mixture, Values};
+use restitution_core::distribution::{At, Layout, Mixture, Values, values};
 use restitution_core::{Error, Level, Means, Monitor};
 
 /// Histograms at increasing speeds, each with as many conditions as it has entries in `conditions`.
@@ -203,6 +203,81 @@ fn threads_and_number_do_not_show_in_the_draws() {
     assert_eq!(table.draw(&speeds[..10], &[0.3], 10, 1), one[..10]);
 }
 
+/// Few draws take their quantiles by a search, many by a guide: the same ones.
+#[test]
+fn few_draws_are_the_first_of_many() {
+    let table = example();
+    for (v, z) in [(0.1, 0.3), (0.2, 0.1), (0.25, 0.5), (0.4, 0.9)] {
+        let many = table.draw(&[v], &[z], 50, 1);
+        for few in [1, 4, 8, 9] {
+            assert_eq!(table.draw(&[v], &[z], few, 1), many[..few]);
+        }
+    }
+}
+
+/// Enough for many blocks; each is computed as if it were alone, from the arguments at its place.
+#[test]
+fn every_element_has_its_own_arguments() {
+    let table = example();
+    let size = 70_000;
+    let of = |low: f64, high: f64, period: usize| -> Vec<f64> {
+        let share = |i: usize| (i % period) as f64 / period as f64;
+        (0..size).map(|i| low + (high - low) * share(i)).collect()
+    };
+    let (x, v, z) = (of(0.01, 0.99, 997), of(0.05, 0.35, 1009), of(0.1, 0.7, 31));
+    let mixture = Mixture::new(table.layout()).unwrap();
+    let monitor = Monitor::default();
+    let values = Values::new(&x, "x", size).unwrap();
+    let mut out = [(); 3].map(|()| vec![0.0; size]);
+    let [cdf, pdf, ppf] = &mut out;
+    mixture
+        .cdf(values, at(&v, &z, size), cdf, on(2), &monitor)
+        .unwrap();
+    mixture
+        .pdf(values, at(&v, &z, size), pdf, on(2), &monitor)
+        .unwrap();
+    mixture
+        .ppf(values, at(&v, &z, size), ppf, on(2), &monitor)
+        .unwrap();
+    for i in (0..size).step_by(487) {
+        for (out, what) in out
+            .iter()
+            .zip([Question::Cdf, Question::Pdf, Question::Ppf])
+        {
+            assert_eq!(out[i], table.ask(what, &x[i..=i], v[i], z[i])[0], "{i}");
+        }
+    }
+
+    let draws = table.draw(&v, &z, size, 2);
+    for k in 0..5 {
+        let alone = table.draw(&v[k..=k], &z, size, 1);
+        let same = |i: usize| i % 1009 == k;
+        assert!((0..size).filter(|&i| same(i)).all(|i| draws[i] == alone[i]));
+        let alone = table.draw(&v, &z[k..=k], size, 1);
+        let same = |i: usize| i % 31 == k;
+        assert!((0..size).filter(|&i| same(i)).all(|i| draws[i] == alone[i]));
+    }
+}
+
+/// In an empty bin F does not rise: its quantile is where that level is reached first.
+#[test]
+fn a_quantile_is_the_least_number() {
+    let mut table = example();
+    table.edges[5..].copy_from_slice(&[0.0, 1.0, 2.0]);
+    table.start = vec![0, 5, 7, 10];
+    table.edges.splice(0..3, [-0.5, 0.5, 1.0, 1.5, 2.0]);
+    table.cumulative.splice(0..3, [0.0, 0.25, 0.25, 0.75, 1.0]);
+    let quantiles = table.ask(Question::Ppf, &[0.0, 0.25, 0.5, 0.75, 1.0], 0.1, 0.0);
+    assert_eq!(quantiles, [-0.5, 0.5, 1.25, 1.5, 2.0]);
+}
+
+#[test]
+fn values_are_zeros_to_be_filled() {
+    for size in [0, 1, 3] {
+        assert_eq!(values(size).unwrap(), vec![0.0; size]);
+    }
+}
+
 #[test]
 fn what_is_not_a_number_gives_none() {
     let table = example();
@@ -213,7 +288,15 @@ fn what_is_not_a_number_gives_none() {
             .iter()
             .all(|x| x.is_nan())
     );
-    assert!(table.ask(Question::Cdf, &[f64::NAN], 0.2, 0.3)[0].is_nan());
+    for what in [Question::Cdf, Question::Pdf, Question::Ppf] {
+        for (x, v, z) in [
+            (f64::NAN, 0.2, 0.3),
+            (0.5, f64::NAN, 0.3),
+            (0.5, 0.2, f64::NAN),
+        ] {
+            assert!(table.ask(what, &[x], v, z)[0].is_nan());
+        }
+    }
 }
 
 #[test]

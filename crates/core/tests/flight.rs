@@ -59,6 +59,23 @@ proptest! {
     }
 }
 
+proptest! {
+    #![proptest_config(cases(2000))]
+
+    /// A state has the angular velocity that it was given, about the axis as well as across it, and with it **Λ** = Ĵ**ω**.
+    #[test]
+    fn a_state_has_the_spin_that_it_was_given((body, _, _) in motion(), axis in direction(), w in direction(), rate in 0.01..30.0_f64) {
+        let spin = w * rate;
+        let state = State::with_spin(&body, 20.0, Vector::default(), axis, spin);
+        let slender = body.transverse / body.axial;
+        prop_assert!((state.spin(&body) - spin).norm() <= 8.0 * f64::EPSILON * slender * rate);
+        let about = spin.dot(axis);
+        let momentum = (spin - axis * about) * body.transverse + axis * (body.axial * about);
+        let off = (state.precession * body.transverse - momentum).norm();
+        prop_assert!(off <= 8.0 * f64::EPSILON * rate * (body.transverse + body.axial), "{off:e}");
+    }
+}
+
 /// The axis and the angular velocity in the laboratory frame.
 #[derive(Clone, Copy)]
 struct Top {
