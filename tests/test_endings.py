@@ -6,6 +6,7 @@ import signal
 import subprocess
 import sys
 import time
+import tomllib
 from pathlib import Path
 
 import pytest
@@ -211,3 +212,53 @@ def test_a_signal_is_not_lost() -> None:
     command = [sys.executable, "-c", LOSING]
     done = subprocess.run(command, capture_output=True, text=True, check=False, timeout=30)
     assert (done.returncode, done.stderr) == (128 + signal.SIGTERM, "interrupted\n")
+
+
+BROKEN = """
+import os, signal, typer
+from restitution._cli._common import errors_in_a_line
+
+def work():
+    with errors_in_a_line():
+        try:
+            os.kill(os.getpid(), signal.SIGHUP)
+        except BaseException as error:
+            kept = error
+            raise ImportError("initialization failed")
+
+typer.run(work)
+"""
+
+
+def test_a_signal_in_an_import() -> None:
+    """Of which a compiled library makes an error of its own: the command was interrupted all the same."""
+    command = [sys.executable, "-c", BROKEN]
+    done = subprocess.run(command, capture_output=True, text=True, check=False, timeout=30)
+    assert (done.returncode, done.stderr) == (128 + signal.SIGHUP, "interrupted\n")
+
+
+EARLY = """
+import os, signal, sys
+
+class Finder:
+    def find_spec(self, name, *_):
+        if name == "typer":
+            os.kill(os.getpid(), signal.SIGINT)
+
+sys.meta_path.insert(0, Finder())
+"""
+LATE = """
+import atexit, os, signal, sys
+
+atexit.register(os.kill, os.getpid(), signal.SIGINT)
+"""
+
+
+@pytest.mark.parametrize("when", [EARLY, LATE], ids=["early", "late"])
+def test_ctrl_c_in_the_first_and_the_last_moment(when: str) -> None:
+    """While the command line is imported, and when it has done its work: no traceback."""
+    code = when + "sys.argv = ['restitution', '--version']\nfrom restitution.__main__ import main\nmain()"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
+    assert (done.returncode, done.stderr) == (-signal.SIGINT, "")
+    settings = tomllib.loads((Path(__file__).parents[1] / "pyproject.toml").read_text(encoding="utf-8"))
+    assert settings["project"]["scripts"] == {"restitution": "restitution.__main__:main"}

@@ -79,19 +79,33 @@ def errors_in_a_line() -> Iterator[None]:
     with ending() as came:
         try:
             yield
-        except ValueError as error:
-            fail(str(error), BAD_INPUT)
-        except FileExistsError as error:
-            fail(f"{error.filename}: {error.strerror}; --overwrite replaces it", FAILED)
-        except OSError as error:
-            fail(f"{error.filename}: {error.strerror}" if error.filename else str(error), FAILED)
-        except (RuntimeError, MemoryError, ImportError) as error:  # NumericalError is a RuntimeError
-            fail(str(error) or "out of memory", FAILED)
         except Kept as kept:
             raise typer.Exit(128 + (came + kept.late)[-1]) from None
         except KeyboardInterrupt:
-            tell("interrupted")
-            raise typer.Exit(128 + came[-1] if came else INTERRUPTED) from None
+            _interrupted(came)
+        except Exception as error:
+            # Libraries that are interrupted while they are imported make errors of another kind of it.
+            if came and not isinstance(error, OSError | MemoryError):
+                _interrupted(came)
+            _failed(error)
+
+
+def _interrupted(came: list[int]) -> NoReturn:
+    tell("interrupted")
+    raise typer.Exit(128 + came[-1] if came else INTERRUPTED) from None
+
+
+def _failed(error: Exception) -> NoReturn:
+    match error:
+        case ValueError():
+            fail(str(error), BAD_INPUT)
+        case FileExistsError():
+            fail(f"{error.filename}: {error.strerror}; --overwrite replaces it", FAILED)
+        case OSError():
+            fail(f"{error.filename}: {error.strerror}" if error.filename else str(error), FAILED)
+        case RuntimeError() | MemoryError() | ImportError():  # NumericalError is a RuntimeError
+            fail(str(error) or "out of memory", FAILED)
+    raise error
 
 
 class Kept(KeyboardInterrupt):
