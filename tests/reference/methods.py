@@ -1,6 +1,7 @@
 """Calls of what other calls return, of fits and of figures; as in `calls`."""
 
 from collections.abc import Callable
+from functools import wraps
 from typing import Any
 
 import numpy as np
@@ -17,11 +18,21 @@ def _wave(x: Any) -> Any:
     return np.cos(x)
 
 
+def _own(kind: type, name: str) -> Callable[..., Any]:
+    """Give the method that an object has itself; that of an abstract class does nothing."""
+
+    @wraps(getattr(kind, name))
+    def method(self: Any, **given: Any) -> Any:
+        return getattr(self, name)(**given)
+
+    return method
+
+
 def _methods(home: str, kind: type, thing: str, names: dict[str, str], **more: Any) -> dict[str, Call]:
     """Methods that take what is in POINT, and the same besides."""
     return {
         f"{home}.{name}": (
-            getattr(kind, name),
+            _own(kind, name),
             of(thing, **({word: POINT[word] for word in words.split()} | more)),
         )
         for name, words in names.items()
@@ -38,9 +49,9 @@ _ERRORS |= {"var_error": ""}
 FIRST, LEARNED = analytic.FirstImpact, rs.FluctuatingRestitution
 CALLS: dict[str, Call] = {
     **_methods("analytic.FirstImpact", FIRST, "first", _FROZEN),
-    "analytic.FirstImpact.expect": (FIRST.expect, of("first", func=_wave)),
-    "analytic.FirstImpact.cos_theta": (FIRST.cos_theta, of("first", restitution=0.8)),
-    "analytic.FirstImpact.restitution": (FIRST.restitution, of("first", cos_theta=0.5)),
+    "analytic.FirstImpact.expect": (_own(FIRST, "expect"), of("first", func=_wave)),
+    "analytic.FirstImpact.cos_theta": (_own(FIRST, "cos_theta"), of("first", restitution=0.8)),
+    "analytic.FirstImpact.restitution": (_own(FIRST, "restitution"), of("first", cos_theta=0.5)),
     **_methods("FluctuatingRestitution", LEARNED, "dist", _FROZEN, v=0.8),
     **_methods("FluctuatingRestitution", LEARNED, "given", _ERRORS, v=0.5, given=0.1),
     "FluctuatingRestitution": (LEARNED, lambda: {"data": good()["dist"].data}),

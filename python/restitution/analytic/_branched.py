@@ -15,10 +15,9 @@ from scipy.integrate import quad
 from restitution.analytic._curve import Branch, Curve
 from restitution.analytic._frozen import (
     FirstImpact,
-    RandomState,
     Values,
+    cosine_of,
     floats,
-    generator,
     probability,
     scalar,
 )
@@ -66,7 +65,7 @@ class BranchedFirstImpact(FirstImpact):
         return self._support
 
     def restitution(self, cos_theta: ArrayLike) -> Values:
-        cosine = floats(cos_theta, "cos_theta")
+        cosine = cosine_of(cos_theta)
         cosine = np.where(np.abs(cosine) <= 1.0, cosine, np.nan)
         theta = np.arccos(np.abs(cosine) if self._curve.limit < np.pi else cosine)
         return scalar(self._curve.restitution(theta))
@@ -95,8 +94,7 @@ class BranchedFirstImpact(FirstImpact):
     def isf(self, q: ArrayLike) -> Values:
         return self._quantile(probability(q), above=True)
 
-    def rvs(self, size: int | tuple[int, ...] | None = None, random_state: RandomState = None) -> Values:
-        uniform = np.asarray(generator(random_state).random(size))
+    def _drawn(self, uniform: Floats) -> Values:
         return scalar(self._curve.restitution(self._tilt.quantile(uniform)))
 
     def mean(self) -> float:
@@ -105,29 +103,23 @@ class BranchedFirstImpact(FirstImpact):
     def std(self) -> float:
         return float(np.sqrt(self._central(2)))
 
-    def expect(
-        self,
-        func: Callable[[float], float] | None = None,
-        lb: float | None = None,
-        ub: float | None = None,
-        conditional: bool = False,
-        **options: Any,
-    ) -> float:
-        low, high = self.support()
-        ends = floats([low if lb is None else lb, high if ub is None else ub])
+    def _expected(
+        self, func: Callable[[float], float], low: float, high: float, options: dict[str, Any]
+    ) -> tuple[float, float]:
+        ends = np.array([low, high])
         total = part = 0.0
         for branch in self._curve.branches:
 
             def integrand(theta: float, branch: Branch = branch) -> float:
                 value = float(branch.piece.restitution(np.float64(theta)))
-                return float(self._tilt.density(theta)) * (value if func is None else func(value))
+                return float(self._tilt.density(theta)) * func(value)
 
             if ends[0] > max(branch.first, branch.last) or ends[1] < min(branch.first, branch.last):
                 continue
             start, stop = np.sort(self._curve.angle(branch, ends))
             total += quad(integrand, start, stop, **options)[0]
             part += self._tilt.between(start, stop)
-        return float(total / part if conditional else total)
+        return float(total), float(part)
 
     def entropy(self) -> float:
         """Differential entropy, -∫ p ln p dε, to 1e-7."""

@@ -11,8 +11,8 @@ from typing import Any, TypeAlias
 import numpy as np
 from numpy.typing import ArrayLike
 
+from restitution._arrays import flag, function, real, reals, shape, whole
 from restitution._arrays import generator as _generator
-from restitution._arrays import reals, shape, whole
 from restitution._content import check_state
 from restitution._display import table, value
 from restitution._parameters import ParameterError, TooLargeError, wrong
@@ -124,7 +124,6 @@ class FirstImpact(ABC):
     def std(self) -> float:
         """Square root of the variance of ε."""
 
-    @abstractmethod
     def expect(
         self,
         func: Callable[[float], float] | None = None,
@@ -142,10 +141,24 @@ class FirstImpact(ABC):
         lb, ub : float, optional
             Only ε in [lb, ub] count.
         conditional : bool
-            Divide by the probability of [lb, ub].
+            Divide by the probability of [lb, ub]; nan where that is 0.
         **options
             For `scipy.integrate.quad`.
         """
+        low, high = self.support()
+        low = low if lb is None else real("lb", lb, "a number or None", lambda x: x == x)
+        high = high if ub is None else real("ub", ub, "a number or None", lambda x: x == x)
+        divide = flag("conditional", conditional)
+        total, share = self._expected(_itself if func is None else function("func", func), low, high, options)
+        if not divide:
+            return total
+        return total / share if share else math.nan
+
+    @abstractmethod
+    def _expected(
+        self, func: Callable[[float], float], low: float, high: float, options: dict[str, Any]
+    ) -> tuple[float, float]:
+        """Integral of ``func(ε)`` over the ε in [low, high], and the probability of these."""
 
     @abstractmethod
     def entropy(self) -> float:
@@ -181,7 +194,11 @@ class FirstImpact(ABC):
         if lengths is not None and 3 * 8 * math.prod(lengths) > available:
             allowed = f"at most {available // 24:.4g} draws, which this process can hold"
             raise TooLargeError(wrong("size", size, allowed))
-        return self.ppf(generator(random_state).random(lengths))
+        return self._drawn(np.asarray(generator(random_state).random(lengths)))
+
+    def _drawn(self, uniform: Floats) -> Values:
+        """Give the ε that numbers from [0, 1) stand for."""
+        return self.ppf(uniform)
 
     def var(self) -> float:
         """Variance of ε."""
@@ -213,6 +230,10 @@ class FirstImpact(ABC):
         return self.ppf(tail), self.isf(tail)
 
 
+def _itself(x: float) -> float:
+    return x
+
+
 def check(body: Body, law: Law) -> None:
     """Refuse what is not a body or not a law."""
     if not isinstance(body, Body):
@@ -228,9 +249,14 @@ def generator(random_state: RandomState) -> np.random.Generator | np.random.Rand
     return np.random.default_rng() if random_state is None else _generator("random_state", random_state)
 
 
-def floats(x: ArrayLike, name: str = "x") -> Floats:
+def floats(x: ArrayLike, name: str = "x", unit: str | None = "1") -> Floats:
     """Take numbers of any shape."""
-    return reals(name, x, "a number or an array of numbers", finite=False)
+    return reals(name, x, "a number or an array of numbers", unit=unit, finite=False)
+
+
+def cosine_of(cos_theta: ArrayLike) -> Floats:
+    """Take cos θ, to which NumPy's cosine hands on the unit of the angle."""
+    return floats(cos_theta, "cos_theta", None)
 
 
 def probability(q: ArrayLike, name: str = "q") -> Floats:

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.integrate import quad
 
-from restitution.analytic._frozen import FirstImpact, Values, floats, probability, scalar
+from restitution.analytic._frozen import FirstImpact, Values, cosine_of, floats, probability, scalar
 from restitution.analytic._impact_from_rest import ImpactFromRest, impact_from_rest
 from restitution.analytic._orientation import ORIENTATIONS, Floats, Orientation, OrientationName
 from restitution.bodies import Dumbbell, Spherocylinder
@@ -61,7 +61,7 @@ class PairFirstImpact(FirstImpact):
 
         The contact is with the lower sphere, hence the same value at cos θ and -cos θ.
         """
-        cosine = np.abs(floats(cos_theta, "cos_theta"))
+        cosine = np.abs(cosine_of(cos_theta))
         cosine = np.where(cosine <= 1.0, cosine, np.nan)
         return scalar(self._impact.restitution(cosine, np.sqrt((1.0 - cosine) * (1.0 + cosine))))
 
@@ -108,23 +108,12 @@ class PairFirstImpact(FirstImpact):
         slope, _ = quad(integrand, 0.0, 1.0, epsabs=1e-12, epsrel=0.0, limit=100)
         return float(self._orientation.entropy + slope + np.log(self._impact.greatest_loss))
 
-    def expect(
-        self,
-        func: Callable[[float], float] | None = None,
-        lb: float | None = None,
-        ub: float | None = None,
-        conditional: bool = False,
-        **options: Any,
-    ) -> float:
-        low = 0.0 if lb is None else float(self.cdf(lb))
-        high = 1.0 if ub is None else float(self.cdf(ub))
-
-        def integrand(q: float) -> float:
-            restitution = float(self.ppf(q))
-            return restitution if func is None else func(restitution)
-
-        value, _ = quad(integrand, low, high, **options)
-        return float(value / (high - low) if conditional else value)
+    def _expected(
+        self, func: Callable[[float], float], low: float, high: float, options: dict[str, Any]
+    ) -> tuple[float, float]:
+        below, up_to = float(self.cdf(low)), float(self.cdf(high))
+        total, _ = quad(lambda q: func(float(self.ppf(q))), below, up_to, **options)
+        return float(total), up_to - below
 
     def _raw(self, order: int) -> float:
         q, weights = _gauss(self._impact.nodes(order))
