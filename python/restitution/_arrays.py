@@ -3,14 +3,15 @@
 import math
 import sys
 from collections import UserList, deque
-from collections.abc import Callable, Collection, Iterable, Mapping
+from collections.abc import Callable, Collection, Iterable
 from operator import index
 from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
-from restitution._parameters import ParameterError, Problem, _plain_number, shown, wrong
+from restitution._parameters import ParameterError, Problem, _plain_number, wrong
+from restitution._units import check_units
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -28,6 +29,7 @@ def reals(
     value: Any,
     allowed: str,
     *,
+    unit: str | None = "1",
     dimensions: Collection[int] | None = None,
     finite: bool = True,
 ) -> FloatArray:
@@ -42,6 +44,8 @@ def reals(
         strings, objects, masked values and quantities with units are refused, inside lists too.
     allowed : str
         What is allowed, in words.
+    unit : str, optional
+        What the numbers are in, for `check_units`; None where that does not matter.
     dimensions : collection of int, optional
         Numbers of dimensions that are allowed.
     finite : bool
@@ -55,6 +59,8 @@ def reals(
     reason = _stray(value, 0)
     if reason is not None:
         raise ParameterError(wrong(name, value, f"{allowed}; it {reason}"))
+    if unit is not None:
+        check_units(name, value, unit)
     try:
         found = np.asarray(value)
     except MemoryError:
@@ -72,49 +78,11 @@ def reals(
     return numbers
 
 
-_SPELLINGS = {
-    "m s-1": {
-        "m s-1",
-        "m/s",
-        "m s^-1",
-        "m s**-1",
-        "m s⁻¹",
-        "m.s-1",
-        "m·s⁻¹",
-        "meter / second",
-        "metre / second",
-    },
-    "s": {"s", "sec", "second", "seconds"},
-    "1": {"1", "", "dimensionless"},
-}
-
-
-def check_units(name: str, value: Any, unit: str) -> None:
-    """Refuse an array whose attribute ``units``, as of xarray, is another; one without is taken to have ours.
-
-    Parameters
-    ----------
-    name : str
-        Of the argument, for the error.
-    value : Any
-        Anything; what has no attributes passes.
-    unit : {"m s-1", "s", "1"}
-        What its numbers must be in.
-
-    Raises
-    ------
-    ParameterError
-        With the units that it has.
-    """
-    attributes = getattr(value, "attrs", None)
-    said = attributes.get("units") if isinstance(attributes, Mapping) else None
-    if said is not None and str(said).strip() not in _SPELLINGS[unit]:
-        raise ParameterError(Problem(name, f" has units {shown(said)}: must be in {unit}"))
-
-
-def real(name: str, value: Any, allowed: str, good: Callable[[float], bool] = math.isfinite) -> float:
-    """Take one number for which `good` holds."""
-    number = float(reals(name, value, allowed, dimensions=(0,), finite=False))
+def real(
+    name: str, value: Any, allowed: str, good: Callable[[float], bool] = math.isfinite, *, unit: str = "1"
+) -> float:
+    """Take one number, in this unit, for which `good` holds."""
+    number = float(reals(name, value, allowed, unit=unit, dimensions=(0,), finite=False))
     if not good(number):
         raise ParameterError(wrong(name, value, allowed))
     return number
@@ -123,6 +91,7 @@ def real(name: str, value: Any, allowed: str, good: Callable[[float], bool] = ma
 def whole(name: str, value: Any, least: int, most: int | None = None) -> int:
     """Take a whole number in [least, most]."""
     allowed = f"a whole number >= {least}" if most is None else f"a whole number in [{least}, {most}]"
+    check_units(name, value, "1")
     plain = _plain_number(value)
     try:
         number = index(plain)

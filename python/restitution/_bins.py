@@ -7,7 +7,7 @@ import numpy as np
 import numpy.typing as npt
 import xarray as xr
 
-from restitution._arrays import check_units, reals
+from restitution._arrays import reals
 from restitution._core import LARGEST_RESTITUTION
 from restitution._parameters import ParameterError, Problem, wrong
 
@@ -34,11 +34,16 @@ _MOMENTS = {
 }
 
 
+def _unit(name: str) -> str | None:
+    """Give the unit of bins by their name; None of the edges of a lattice that is drawn."""
+    if name in ("x_edges", "y_edges"):
+        return None
+    return "m s-1" if "velocity" in name else "1"
+
+
 def increasing_edges(bins: npt.ArrayLike, name: str) -> FloatArray:
-    for kind, unit in (("velocity", "m s-1"), ("restitution", "1"), ("fraction", "1")):
-        if kind in name:
-            check_units(name, bins, unit)
-    edges = np.array(reals(name, bins, "a 1-D array of at least two finite edges", finite=False))
+    allowed = "a 1-D array of at least two finite edges"
+    edges = np.array(reals(name, bins, allowed, unit=_unit(name), finite=False))
     if edges.ndim != 1 or edges.size < 2:
         raise ValueError(f"{name} has shape {edges.shape}: needs one dimension and at least two edges")
     if not np.all(np.isfinite(edges)):
@@ -66,7 +71,7 @@ def edges_from(bins: npt.ArrayLike | None, span: npt.ArrayLike | None, name: str
         raise ParameterError(
             Problem(f"{kind}_range", f": missing; {name} = {bins} needs a range (low, high)")
         )
-    ends = reals(f"{kind}_range", span, "(low, high) with low < high", dimensions=(1,))
+    ends = reals(f"{kind}_range", span, "(low, high) with low < high", unit=_unit(kind), dimensions=(1,))
     if ends.shape != (2,) or not ends[0] < ends[1]:
         raise ParameterError(wrong(f"{kind}_range", span, "(low, high) with low < high"))
     if not 1 <= bins <= _MOST_BINS:

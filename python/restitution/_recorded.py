@@ -5,9 +5,10 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from restitution._arrays import FloatArray, check_each, check_units, reals
+from restitution._arrays import FloatArray, check_each, reals
 from restitution._bins import increasing_edges
 from restitution._parameters import ParameterError, Problem, wrong
+from restitution._units import check_variables
 
 
 def records(name: str, data: Any, *names: str) -> tuple[FloatArray, ...]:
@@ -25,13 +26,13 @@ def records(name: str, data: Any, *names: str) -> tuple[FloatArray, ...]:
     if missing:
         text = f" lacks {', '.join(missing)}: must be a Dataset from restitution.simulate"
         raise ParameterError(Problem(name, text))
+    check_variables(name, data, *names)
     found = []
     for each in names:
         variable = data[each]
         if set(variable.dims) != {"particle", "impact"}:
             text = f" has dimensions ({', '.join(map(str, variable.dims))}): must be (particle, impact)"
             raise ParameterError(Problem(f"{name}.{each}", text))
-        check_units(f"{name}.{each}", variable, "m s-1" if each.endswith("velocity") else "1")
         numbers = variable.transpose("particle", "impact").to_numpy()
         found.append(reals(f"{name}.{each}", numbers, "real numbers, NaN for none", finite=False))
     return tuple(found)
@@ -61,6 +62,7 @@ def counted(name: str, data: Any) -> xr.Dataset:
     if missing:
         text = f" lacks {', '.join(missing)}: must be from restitution.statistics or reduce, by velocity"
         raise ParameterError(Problem(name, text))
+    check_variables(name, data, *_COUNTED)
     for each, dimensions in _COUNTED.items():
         variable = data[each]
         if set(variable.dims) != set(dimensions):

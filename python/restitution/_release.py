@@ -27,9 +27,9 @@ _AXES = " or ".join(f"'{axis}'" for axis in get_args(Axis))
 _height_of_all = TypeAdapter(Annotated[Number, Field(gt=0)])
 
 
-def _array(name: str, value: Any, allowed: str, *dimensions: int) -> FloatArray:
+def _array(name: str, value: Any, allowed: str, unit: str, *dimensions: int) -> FloatArray:
     """Take an array of real numbers, finite or not, and keep a read-only copy."""
-    array = np.array(reals(name, value, allowed, dimensions=dimensions, finite=False))
+    array = np.array(reals(name, value, allowed, unit=unit, dimensions=dimensions, finite=False))
     array.flags.writeable = False
     return array
 
@@ -37,7 +37,7 @@ def _array(name: str, value: Any, allowed: str, *dimensions: int) -> FloatArray:
 def _orientation(value: Any) -> Any:
     if isinstance(value, str) and value in get_args(Orientation):
         return value
-    angles = _array("orientation", value, _ORIENTATIONS, 1, 2)
+    angles = _array("orientation", value, _ORIENTATIONS, "rad", 1, 2)
     if angles.ndim == 2 and angles.shape[1] != 2:
         raise ParameterError(wrong("orientation", value, _ORIENTATIONS))
     near = np.abs(angles) <= _core.MOST_RADIANS
@@ -59,7 +59,7 @@ def _spin(value: Any) -> Any:
         value = (0.0, 0.0, 0.0)
     if isinstance(value, RandomSpin):
         return value
-    spins = _array("spin", value, _SPINS, 1, 2)
+    spins = _array("spin", value, _SPINS, "rad s-1", 1, 2)
     if spins.shape[-1] != 3:
         raise ParameterError(wrong("spin", value, _SPINS))
     check_each("spin", spins, np.isfinite(spins), "finite (rad/s)")
@@ -67,7 +67,8 @@ def _spin(value: Any) -> Any:
 
 
 def _velocity(value: Any) -> tuple[float, ...]:
-    velocity = _array("release_velocity", (0.0, 0.0, 0.0) if value is None else value, _VELOCITIES, 1)
+    given = (0.0, 0.0, 0.0) if value is None else value
+    velocity = _array("release_velocity", given, _VELOCITIES, "m s-1", 1)
     if velocity.shape != (3,) or not np.isfinite(velocity).all():
         raise ParameterError(wrong("release_velocity", value, _VELOCITIES))
     return tuple(velocity.tolist())
@@ -77,7 +78,7 @@ def _rate(value: Any) -> float | tuple[float, float]:
     pair = isinstance(value, list | tuple) and len(value) == 2
     try:
         parts = [_plain_number(part) for part in (value if pair else [value])]
-        rates = _array("rate", parts, _RATES, 1)
+        rates = _array("rate", parts, _RATES, "rad s-1", 1)
     except ParameterError:
         raise ParameterError(wrong("rate", value, _RATES)) from None
     if not 0.0 <= rates[0] <= rates[-1] < math.inf:

@@ -9,6 +9,7 @@ import numpy.typing as npt
 
 from restitution._arrays import FloatArray, check_each, reals, whole
 from restitution._parameters import ParameterError, Problem, wrong
+from restitution._units import check_variables
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -91,7 +92,7 @@ def trajectory(data: xr.Dataset, particle: int, times: npt.ArrayLike) -> xr.Data
         raise ParameterError(Problem("data", f" lacks {', '.join(lacking)}: must be {instead}"))
     one = _particle(data, particle)
     _check(one)
-    asked = reals("times", times, "times in s, one or several", dimensions=(0, 1), finite=False)
+    asked = reals("times", times, "times in s, one or several", unit="s", dimensions=(0, 1), finite=False)
     when = np.atleast_1d(asked)
     recorded = one["time"].to_numpy()
     happened = recorded[~np.isnan(recorded)]
@@ -142,6 +143,7 @@ def _particle(data: xr.Dataset, particle: int) -> xr.Dataset:
 
 def _check(one: xr.Dataset) -> None:
     """Refuse states and settings that are no numbers."""
+    check_variables("data", one, *_NEEDED, *_RELEASED)
     for name in _NEEDED + _RELEASED:
         if name in one:
             reals(f"data.{name}", one[name].to_numpy(), "real numbers, NaN for none", finite=False)

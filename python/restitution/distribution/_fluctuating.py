@@ -342,7 +342,7 @@ class FluctuatingRestitution(EstimatedDistribution):
 
 def _heights(release_height: npt.ArrayLike) -> list[float]:
     several = "a height or several, in m, or a RandomHeight"
-    heights = reals("release_height", release_height, several, dimensions=(0, 1), finite=False)
+    heights = reals("release_height", release_height, several, unit="m", dimensions=(0, 1), finite=False)
     if heights.size == 0:
         raise ParameterError(wrong("release_height", release_height, several))
     return [float(height) for height in heights.ravel()]

@@ -3,6 +3,7 @@
 import numpy as np
 import xarray as xr
 
+from restitution._units import check_variables
 from restitution.distribution._nodes import LEAST_IMPACTS, POINT
 from restitution.distribution._store import of_histograms, require
 from restitution.distribution._table import Floats, Histogram
@@ -13,6 +14,7 @@ def from_statistics(statistics: xr.Dataset) -> xr.Dataset:
     needed = ("restitution_count", "restitution_edges", "minimum", "maximum", "velocity")
     instead = "a result of restitution.statistics or restitution.reduce with velocity bins"
     require(statistics, "statistics", needed, instead)
+    check_variables("statistics", statistics, *needed, "restitution_underflow", "restitution_overflow")
     counts, number = _counts(statistics)
     velocity = statistics["velocity"].to_numpy()
     kept = np.flatnonzero((number >= LEAST_IMPACTS) & (velocity > 0))

@@ -73,7 +73,7 @@ def checked_speeds(velocities: npt.ArrayLike | None, run: Run) -> Floats:
     if velocities is None:
         return speeds(run)
     allowed = "the least and the greatest speed, or all nodes, finite, in m/s"
-    nodes = np.array(reals("velocities", velocities, allowed, dimensions=(1,), finite=False))
+    nodes = np.array(reals("velocities", velocities, allowed, unit="m s-1", dimensions=(1,), finite=False))
     if nodes.size < 2 or not np.all(np.isfinite(nodes)):
         raise ParameterError(wrong("velocities", velocities, allowed))
     if nodes[0] <= 0 or not np.all(np.diff(nodes) > 0):

@@ -9,6 +9,7 @@ import xarray as xr
 
 from restitution._arrays import reals
 from restitution._parameters import ParameterError, Problem, wrong
+from restitution._units import check_variables
 from restitution.distribution._check import Check
 from restitution.distribution._count import Counter
 from restitution.distribution._table import Floats, Histogram, Table
@@ -148,7 +149,9 @@ def check(data: xr.Dataset) -> None:
         )
         require(data, "data", names, "the Dataset of a FluctuatingRestitution")
         prefixes.append("given_")
-    for name in ("velocity", *(f"{prefix}{name}" for prefix in prefixes for name in _TABLE)):
+    used = ("velocity", *(f"{prefix}{name}" for prefix in prefixes for name in _TABLE))
+    check_variables("data", data, *used, "impacts")
+    for name in used:
         allowed = "finite numbers, as a FluctuatingRestitution has them"
         reals(f"data.{name}", data[name].to_numpy(), allowed, dimensions=(1,))
     for prefix in prefixes:

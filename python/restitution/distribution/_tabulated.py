@@ -233,7 +233,7 @@ class TabulatedDistribution:
 
     def _at(self, v: npt.ArrayLike, given: npt.ArrayLike | None) -> tuple[Table, Floats, Floats]:
         """Give the table to use, with speeds and conditions inside its range or clamped to it."""
-        speeds = numbers("v", v)
+        speeds = numbers("v", v, "m s-1")
         low, high = self.velocities
         if self._clamps:
             self._refuse("v", speeds, speeds < 0.0, "a speed, >= 0 m/s")
@@ -282,9 +282,9 @@ def _log(values: Values) -> Values:
         return np.log(values)
 
 
-def numbers(name: str, values: npt.ArrayLike) -> Floats:
+def numbers(name: str, values: npt.ArrayLike, unit: str = "1") -> Floats:
     """Give real numbers as an array; nan is one."""
-    return reals(name, values, "a number or an array of numbers", finite=False)
+    return reals(name, values, "a number or an array of numbers", unit=unit, finite=False)
 
 
 def _reaches(shape: tuple[int, ...], larger: tuple[int, ...]) -> bool:

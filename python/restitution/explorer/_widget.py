@@ -91,7 +91,7 @@ def _run_of(data: "xr.Dataset") -> Run:
         law = law_type(**{name: attributes[name] for name in law_type.model_fields})
         orientation = attributes["orientation"]
         if orientation == "given":
-            orientation = data["release_angle"].to_numpy()
+            orientation = data["release_angle"]
         spin = attributes["spin"]
         if isinstance(spin, str):
             raise ValueError(f"spin = {spin}: the explorer shows this only if it is the same for all")

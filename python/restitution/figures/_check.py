@@ -41,7 +41,7 @@ def text(name: str, value: Any) -> str:
 def column(name: str, value: Any, length: int | None = None, like: str = "") -> FloatArray:
     """Take a 1-D array of real numbers, NaN and infinities among them, of a length that another one sets."""
     allowed = "a 1-D array of real numbers"
-    found = reals(name, value, allowed, dimensions=(1,), finite=False)
+    found = reals(name, value, allowed, unit=None, dimensions=(1,), finite=False)
     if length is not None and found.size != length:
         text = f": {name} has {found.size} numbers, and must have {length} beside {like}"
         raise ParameterError(Problem(f"{like}, {name}", text))

@@ -12,6 +12,7 @@ from matplotlib.figure import Figure
 
 from restitution._arrays import reals, whole
 from restitution._parameters import ParameterError, wrong
+from restitution._units import check_variables
 from restitution.figures._panels import line, population, population_bar
 from restitution.figures._style import COLORS, COLUMN, MARKERS, PAGE, letter, panels, styled
 
@@ -90,7 +91,7 @@ def densities(found: xr.Dataset | FluctuatingRestitution, velocities: npt.ArrayL
             wrong("found", found, "a Dataset of restitution.statistics, or a FluctuatingRestitution")
         )
     allowed = f"1 to {len(COLORS)} speeds in m/s"
-    speeds = np.atleast_1d(reals("velocities", velocities, allowed, dimensions=(0, 1)))
+    speeds = np.atleast_1d(reals("velocities", velocities, allowed, unit="m s-1", dimensions=(0, 1)))
     if not 1 <= speeds.size <= len(COLORS):
         raise ParameterError(wrong("velocities", velocities, allowed))
     figure, [[axes]] = panels(COLUMN, 2.7)
@@ -216,6 +217,7 @@ def trajectory(data: xr.Dataset, particle: int = 0, impacts: int = 20) -> Figure
     _require(
         "data", data, "time", "impact_velocity", "rebound_velocity", "restitution", "rotational_fraction"
     )
+    check_variables("data", data, "release_height")
     particle = whole("particle", particle, 0, data.sizes["particle"] - 1)
     impacts = whole("impacts", impacts, 1)
     one = data.isel(particle=particle, impact=slice(0, impacts))
@@ -258,6 +260,7 @@ def _heights(
 def _moment(axes: Axes, found: xr.Dataset, name: str, **style: Any) -> None:
     """Draw a moment of the velocity bins that have enough impacts, and none at v = 0, where ε diverges."""
     _require("found", found, "variance", "number", "velocity_edges")
+    check_variables("found", found, name, f"{name}_error", "velocity")
     lower = xr.DataArray(found["velocity_edges"].to_numpy()[:-1], dims="velocity")
     enough = (found["number"] >= 100) & (lower > 0)
     values = np.sqrt(found["variance"]) if name == "deviation" else found[name]
@@ -311,3 +314,4 @@ def _require(name: str, data: object, *variables: str) -> None:
     lacking = [each for each in variables if each not in data]
     if lacking:
         raise ValueError(f"{name} lacks {', '.join(lacking)}: must be a Dataset as from {origin}")
+    check_variables(name, data, *variables)

@@ -90,7 +90,8 @@ class Counts(Content):
             If no velocity bin holds it.
         """
         statistics = counted("statistics", statistics)
-        velocity = real("velocity", velocity, "a speed in m/s, in one of the velocity bins")
+        speed = "a speed in m/s, in one of the velocity bins"
+        velocity = real("velocity", velocity, speed, unit="m s-1")
         edges = statistics["velocity_edges"].to_numpy()
         row = int(np.searchsorted(edges, velocity, side="right")) - 1
         if not 0 <= row < edges.size - 1:

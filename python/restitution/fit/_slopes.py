@@ -125,10 +125,11 @@ class Slopes(Content):
             raise ParameterError(wrong("side", side, "'above' or 'below'"))
         speed = "a speed in m/s"
         low, high = (
-            real(name, given, speed, lambda v: not isnan(v)) for name, given in (("low", low), ("high", high))
+            real(name, given, speed, lambda v: not isnan(v), unit="m s-1")
+            for name, given in (("low", low), ("high", high))
         )
         if release_speed is not None:
-            release_speed = real("release_speed", release_speed, "a finite speed in m/s")
+            release_speed = real("release_speed", release_speed, "a finite speed in m/s", unit="m s-1")
         v, y = self.table["velocity"].to_numpy(), self.table[side].to_numpy()
         chosen = (v >= low) & (v <= high) & (y > 0)
         if np.count_nonzero(chosen) < 3:
@@ -181,7 +182,7 @@ class Slopes(Content):
             whose density is not that of an ensemble but follows from the release.
         """
         distance = real("distance", distance, "a number", lambda d: not isnan(d))
-        high = real("high", high, "a speed in m/s", lambda v: not isnan(v))
+        high = real("high", high, "a speed in m/s", lambda v: not isnan(v), unit="m s-1")
         used = self.table["velocity"].to_numpy() <= high
         far = ~(self.table["ks_distance"].to_numpy()[used] <= distance)
         edges = self.table["velocity_edges"].to_numpy()

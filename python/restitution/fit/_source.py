@@ -101,7 +101,7 @@ def no_window(samples: object, velocity: Window | None) -> None:
 def window(velocity: Window) -> tuple[float, float]:
     """Check a window of impact velocity."""
     allowed = "a window (low, high) with low < high, in m/s"
-    ends = reals("velocity", velocity, allowed, dimensions=(1,), finite=False)
+    ends = reals("velocity", velocity, allowed, unit="m s-1", dimensions=(1,), finite=False)
     if ends.shape != (2,) or not ends[0] < ends[1]:
         raise ParameterError(wrong("velocity", velocity, allowed))
     return float(ends[0]), float(ends[1])

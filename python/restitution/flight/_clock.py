@@ -6,6 +6,7 @@ import numpy as np
 import xarray as xr
 
 from restitution._parameters import ParameterError, Problem, wrong
+from restitution._units import check_variables
 
 
 def clock(data: xr.Dataset) -> xr.Dataset:
@@ -46,6 +47,7 @@ def clock(data: xr.Dataset) -> xr.Dataset:
     missing = [name for name in ("time", "rebound_velocity") if name not in data]
     if missing or "gravity" not in data.attrs or "impact" not in data.dims:
         raise ParameterError(Problem("data", ": not a run; must be a Dataset that simulate returned"))
+    check_variables("data", data, "time")
     gravity = data.attrs["gravity"] * math.cos(data.attrs.get("incline", 0.0))
     flight = data.time.diff("impact").values
     velocity = np.full(data.time.shape, np.nan)

@@ -121,6 +121,6 @@ class LawFit(Content):
 
 def _speeds(speed: npt.ArrayLike) -> Array:
     allowed = "speeds > 0, in m/s"
-    v = reals("speed", speed, allowed)
+    v = reals("speed", speed, allowed, unit="m s-1")
     check_each("speed", v, v > 0.0, allowed)
     return v

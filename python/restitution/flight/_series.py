@@ -6,6 +6,7 @@ from typing import Any
 import xarray as xr
 
 from restitution._parameters import ParameterError, wrong
+from restitution._units import check_variables
 
 
 def series_of(data: Any, *needed: str) -> list[xr.Dataset]:
@@ -14,7 +15,7 @@ def series_of(data: Any, *needed: str) -> list[xr.Dataset]:
     Raises
     ------
     ParameterError
-        If one of them is none, lacks a variable that is needed, or there is none at all.
+        If one of them is none, lacks a variable that is needed or has it in other units, or there is none.
     """
     several = [data]
     if isinstance(data, Iterable) and not isinstance(data, xr.Dataset):
@@ -28,4 +29,6 @@ def series_of(data: Any, *needed: str) -> list[xr.Dataset]:
             several = []
     if not several:
         raise ParameterError(wrong("data", data, "a Dataset of flight.restitution, or several"))
+    for one in several:
+        check_variables("data", one, *needed)
     return several

@@ -7,8 +7,9 @@ import numpy as np
 import numpy.typing as npt
 import xarray as xr
 
-from restitution._arrays import check_units, reals
+from restitution._arrays import reals
 from restitution._parameters import ParameterError, Problem, wrong
+from restitution._units import check_variables
 
 Array = npt.NDArray[np.float64]
 
@@ -41,11 +42,11 @@ def checked(times: npt.ArrayLike | xr.Dataset, uncertainty: npt.ArrayLike | None
             raise ParameterError(wrong("uncertainty", uncertainty, "left out: the Dataset has its own"))
         instants, errors = _of_dataset(times)
     else:
-        instants = reals("times", times, "a 1-D array of times in s", dimensions=(1,), finite=False)
+        instants = reals("times", times, "a 1-D array of times in s", unit="s", dimensions=(1,), finite=False)
         errors = (
             np.zeros_like(instants)
             if uncertainty is None
-            else reals("uncertainty", uncertainty, "numbers, in s", finite=False)
+            else reals("uncertainty", uncertainty, "numbers, in s", unit="s", finite=False)
         )
         if errors.ndim == 0:
             errors = np.full(instants.shape, float(errors))
@@ -119,6 +120,5 @@ def _column(data: xr.Dataset, name: str, allowed: str) -> Array:
         dimensions = ", ".join(map(str, data[name].dims))
         text = f" has dimensions ({dimensions}): must be those of time, ({data.time.dims[0]})"
         raise ParameterError(Problem(f"times.{name}", text))
-    if name != "flag":
-        check_units(f"times.{name}", data[name], "s")
+    check_variables("times", data, name)
     return numbers

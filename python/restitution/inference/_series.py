@@ -11,6 +11,7 @@ from restitution._arrays import reals
 from restitution._energy import reported_elsewhere
 from restitution._parameters import ParameterError, Problem
 from restitution._simulate import simulate
+from restitution._units import check_variables
 from restitution.bodies import Body
 from restitution.budget._experiment import mean_radius
 from restitution.flight._laws import LawOfSpeed, by_parameters
@@ -78,9 +79,11 @@ class Series:
     @classmethod
     def of(cls, data: xr.Dataset, form: LawOfSpeed, reference: float, scatter: float) -> "Series":
         """Take a Dataset of `restitution.flight.restitution`."""
+        names = ("restitution", "impact_velocity", "uncertainty", "restitution_covariance")
+        check_variables("data", data, *names, "time")
         ratio, speed, errors, covariances = (
             reals(f"data.{name}", data[name].to_numpy(), "numbers, NaN where unknown", finite=False)
-            for name in ("restitution", "impact_velocity", "uncertainty", "restitution_covariance")
+            for name in names
         )
         known = np.flatnonzero(np.isfinite(ratio))
         known = known[known > 0]

@@ -34,7 +34,7 @@ class Material(Parameters):
         ndarray
             ε_n, of the shape of `speed`; nan for nan.
         """
-        v = np.abs(reals("speed", speed, "real numbers (m/s), or nan", finite=False))
+        v = np.abs(reals("speed", speed, "real numbers (m/s), or nan", unit="m s-1", finite=False))
         return np.where(np.isnan(v), np.nan, self.compiled.at(v.ravel()).reshape(v.shape))
 
     @abstractmethod
@@ -128,12 +128,12 @@ class Plastic(Material):
         return _core.plastic(self.yield_speed)
 
 
-def _numbers(name: str, good: Callable[[float], bool], allowed: str) -> BeforeValidator:
-    """Take a 1-D sequence of numbers, each of them good."""
+def _numbers(name: str, unit: str, good: Callable[[float], bool], allowed: str) -> BeforeValidator:
+    """Take a 1-D sequence of numbers in this unit, each of them good."""
 
     def check(value: Any) -> tuple[float, ...]:
         some = "a 1-D array of at least one number"
-        array = reals(name, value, some, dimensions=(1,), finite=False)
+        array = reals(name, value, some, unit=unit, dimensions=(1,), finite=False)
         if not array.size:
             raise ParameterError(wrong(name, value, some))
         numbers = tuple(map(float, array))
@@ -165,12 +165,12 @@ class Tabulated(Material):
 
     v: Annotated[
         tuple[float, ...],
-        _numbers("v", lambda x: 0.0 <= x < np.inf, "a finite number >= 0 (m/s)"),
+        _numbers("v", "m s-1", lambda x: 0.0 <= x < np.inf, "a finite number >= 0 (m/s)"),
         Allowed("a 1-D array of speeds in m/s"),
     ]
     e: Annotated[
         tuple[float, ...],
-        _numbers("e", lambda x: 0.0 <= x <= 1.0, "a real number in [0, 1]"),
+        _numbers("e", "1", lambda x: 0.0 <= x <= 1.0, "a real number in [0, 1]"),
         Allowed("a 1-D array of numbers in [0, 1]"),
     ]
 
@@ -240,7 +240,9 @@ def _points(
     """Give speeds, and the function there; see `Tabulated.from_function`."""
     if not callable(function):
         raise ParameterError(wrong(name, function, "a function of the speed"))
-    fastest = real("fastest", fastest, "a finite number > 0 (m/s)", lambda x: 0.0 < x < math.inf)
+    fastest = real(
+        "fastest", fastest, "a finite number > 0 (m/s)", lambda x: 0.0 < x < math.inf, unit="m s-1"
+    )
     tolerance = real("tolerance", tolerance, "a number in [1e-12, 0.1]", lambda x: 1e-12 <= x <= 0.1)
 
     def at(speed: float) -> float:

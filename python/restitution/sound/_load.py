@@ -34,7 +34,7 @@ def load(source: str | PathLike[str] | npt.ArrayLike, rate: float | None) -> tup
     given = rate
     if rate is not None:
         allowed = f"a number in [{LOWEST_RATE:g}, {HIGHEST_RATE:g}] (Hz)"
-        rate = real("rate", rate, allowed, lambda one: LOWEST_RATE <= one <= HIGHEST_RATE)
+        rate = real("rate", rate, allowed, lambda one: LOWEST_RATE <= one <= HIGHEST_RATE, unit="Hz")
     if isinstance(source, str | PathLike):
         path = path_from("source", source)
         name = str(path)
@@ -82,7 +82,7 @@ def _file(path: Path) -> tuple[Array, float]:
 
 def _array(source: Any) -> Array:
     """Take integers at their full scale, and floats as they are; shape (n,) or (n, channels)."""
-    numbers = reals("source", source, _SOURCE, dimensions=(1, 2), finite=False)
+    numbers = reals("source", source, _SOURCE, unit=None, dimensions=(1, 2), finite=False)
     array = np.asarray(source)
     scale = 1.0
     if array.dtype.kind in "iu":

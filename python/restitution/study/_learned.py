@@ -70,7 +70,7 @@ def learned(out: str | Path, **values: float) -> FluctuatingRestitution:
     if "restitution_count" not in data:
         raise ParameterError(Problem("out", f" = {str(out)!r}: must be the store of a study with statistics"))
     place = {
-        name: _nearest(data, name, real(name, values[name], "a finite number"))
+        name: _nearest(data, name, real(name, values[name], "a finite number", unit=_unit(data, name)))
         for name in design.dims
         if name in values
     }
@@ -97,6 +97,10 @@ def _nearest(data: xr.Dataset, name: str, value: float) -> int:
     if index is None:
         return whole(name, int(value) if value.is_integer() else value, 0, data.sizes[name] - 1)
     return int(index.get_indexer([value], method="nearest")[0])
+
+
+def _unit(data: xr.Dataset, name: str) -> str:
+    return str(data[name].attrs.get("units", "1"))
 
 
 def _pooled(points: xr.Dataset) -> xr.Dataset:

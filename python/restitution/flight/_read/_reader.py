@@ -72,7 +72,9 @@ def read(
         raise ParameterError(wrong("unit", unit, " or ".join(map(repr, UNITS))))
     if uncertainty is not None:
         allowed = "a finite number > 0 (s), or None"
-        uncertainty = real("uncertainty", uncertainty, allowed, lambda error: 0.0 < error < math.inf)
+        uncertainty = real(
+            "uncertainty", uncertainty, allowed, lambda error: 0.0 < error < math.inf, unit="s"
+        )
     path = path_from("file", file)
     found = tables(path)
     readers = FORMATS if format is None else {format: FORMATS[format]}
