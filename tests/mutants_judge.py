@@ -1,21 +1,23 @@
 """Whether tests notice a change: they are loaded once, and each change has a fork of the process with them.
 
 In the fork the functions that are there already get the code of the changed ones, so that nothing is imported
-again. Only tests that reached the changed function without a change are run, first the one that noticed the
-last change of it, then the fast ones, and the first failure ends it.
+again. Only tests that reached the changed function without a change are run, first those that noticed most
+changes of it, then one of each test function, the fast ones first, and the first failure ends it.
 """
 
 import ast
+import math
 import os
 import pickle
 import resource
 import signal
 import tempfile
 import time
-from collections import defaultdict
+from collections import Counter, defaultdict
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import suppress
 from importlib import import_module
+from itertools import accumulate
 from pathlib import Path
 from types import FunctionType, ModuleType
 from typing import Any
@@ -40,14 +42,18 @@ class Judge:
         Their names, whose functions are changed.
     campaign : callable
         Called with this judge when the tests are loaded.
+    enough : float
+        So many seconds of tests are asked about a change, and at least one test.
     """
 
-    def __init__(self, modules: Sequence[str], campaign: Callable[["Judge"], None]) -> None:
-        self._modules, self._campaign = modules, campaign
+    def __init__(
+        self, modules: Sequence[str], campaign: Callable[["Judge"], None], enough: float = math.inf
+    ) -> None:
+        self._modules, self._campaign, self._enough = modules, campaign, enough
         self._items: list[pytest.Item] = []
         self._seconds: dict[str, float] = {}
         self._reached: dict[str, set[tuple[str, str]]] = {}
-        self._order: dict[tuple[str, str], str] = {}
+        self._noticed: Counter[tuple[str, str, str]] = Counter()
         self._fixtures: dict[str, set[tuple[str, str]]] = defaultdict(set)
 
     def pytest_runtestloop(self, session: pytest.Session) -> bool:
@@ -99,14 +105,17 @@ class Judge:
     def noticed(self, module: ModuleType, function: str, changed: str) -> str:
         """Name the test that notices a change of a function; empty if none does."""
         place = str(module.__file__), function
-        items = self.reaching(module, function)
-        last = self._order.get(place)
-        items.sort(key=lambda item: (item.nodeid != last, self._seconds[item.nodeid]))
+        items = sorted(self.reaching(module, function), key=lambda item: self._seconds[item.nodeid])
+        first = {item.nodeid.partition("[")[0]: item for item in reversed(items)}.values()
+        items.sort(key=lambda item: (-self._noticed[*place, item.nodeid], item not in first))
+        ends = accumulate(self._seconds[item.nodeid] for item in items)
+        items = [
+            item for item, end in zip(items, ends, strict=True) if item is items[0] or end <= self._enough
+        ]
         allowed = _PATIENCE * sum(self._seconds[item.nodeid] for item in items) + _SECONDS
-        found = self._forked(lambda session: _run(session, items, module, changed), seconds=allowed)
-        if "::" in found:
-            self._order[place] = found
-        return str(found)
+        found = str(self._forked(lambda session: _run(session, items, module, changed), seconds=allowed))
+        self._noticed[*place, found] += 1
+        return found
 
     def _forked(self, work: Callable[[pytest.Session], Any], *given: Any, seconds: float) -> Any:
         """Give what is returned in a process of its own, or words of how that ended."""

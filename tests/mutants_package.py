@@ -8,6 +8,7 @@ path, and `mutants_judge.py` runs the tests that are about it.
 import argparse
 import difflib
 import json
+import math
 import os
 import random
 import shutil
@@ -40,8 +41,17 @@ TESTS = {
     "study/_status.py": ("test_study_merge.py",),
     "study/_folder.py": ("test_study_spoilt.py",),
     "distribution/_store.py": ("test_distribution_store.py",),
+    "distribution/_nodes.py": ("test_distribution.py",),
+    "distribution/_table.py": ("test_distribution.py", "test_distribution_store.py"),
+    "distribution/_check.py": ("test_distribution_learned.py",),
+    "_reading.py": ("test_given_files.py",),
+    "_formats.py": ("test_given_files.py",),
+    "_reduce.py": ("test_statistics.py",),
+    "_batches.py": ("test_statistics.py",),
+    "_energy.py": ("test_energy.py",),
+    "_compare.py": ("test_compare.py",),
 }
-"""What reads and writes files or handles signals, and the tests that are about it."""
+"""What reads and writes files, handles signals, or works out numbers, and the tests that are about it."""
 
 
 class _Changes(MutationVisitor):
@@ -57,7 +67,10 @@ class _Changes(MutationVisitor):
 
 
 def changes(source: str) -> Iterator[tuple[str, Callable[[], str]]]:
-    """Yield the function or method that a change is in, and what gives the source with it."""
+    """Yield the function or method that a change is in, and what gives the source with it.
+
+    What is outside of functions is no behaviour. Of words, a change of only the case of letters is left out.
+    """
     wrapper = MetadataWrapper(libcst.parse_module(source))
     visitor = _Changes()
     wrapper.visit(visitor)
@@ -68,8 +81,14 @@ def changes(source: str) -> Iterator[tuple[str, Callable[[], str]]]:
         names |= {one: above + one.name.value for one in inner if isinstance(one, libcst.FunctionDef)}
     for one in visitor.mutations:
         function = names.get(one.contained_by_top_level_function)
-        if function is not None:  # what is outside of functions is no behaviour
+        if function is not None and not _is_repeated(one.original_node, one.mutated_node):
             yield function, partial(_changed, wrapper.module, one.original_node, one.mutated_node)
+
+
+def _is_repeated(old: libcst.CSTNode, new: libcst.CSTNode) -> bool:
+    if isinstance(old, libcst.SimpleString) and isinstance(new, libcst.SimpleString):
+        return old.value.lower() == new.value.lower()
+    return False
 
 
 def _changed(module: libcst.Module, old: libcst.CSTNode, new: libcst.CSTNode) -> str:
@@ -128,6 +147,12 @@ def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--draw", type=int, help="so many of each file, drawn evenly")
     parser.add_argument("--go-on", action="store_true", help="leave out what a test has noticed before")
+    parser.add_argument(
+        "--enough",
+        type=float,
+        default=math.inf,
+        help="so many seconds of tests about a change; go on without",
+    )
     parser.add_argument("only", nargs="*", help="words of paths, or _store.py:read for a function")
     asked = parser.parse_args()
     shutil.rmtree(WORK, ignore_errors=True)
@@ -161,7 +186,7 @@ def main() -> int:
             def work(judge: Judge, names: list[str] = names, counted: list[int] = counted) -> None:
                 counted.append(campaign(judge, names, asked, known))
 
-            judge = Judge(list(map(module_of, names)), work)
+            judge = Judge(list(map(module_of, names)), work, asked.enough)
             options = ["-q", "-s", "-p", "no:cacheprovider", "--basetemp", str(WORK / "tmp")]
             pytest.main([*options, *(f"tests/{test}" for test in tests)], plugins=[judge])
             os._exit(min(counted[0], 1) if counted else 2)

@@ -12,6 +12,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import restitution as rs
+from restitution._batches import batches_of
 from restitution._reduce import reduce, standard_errors
 from restitution._statistics import statistics
 
@@ -268,6 +269,102 @@ def test_single_particle_has_no_standard_error() -> None:
     found = standard_errors(impacts([[0.1, 0.1]], [[0.5, 0.7]]), [0.0, 1.0, 2.0])
     assert np.isnan(found["mean_standard_error"]).all()
     np.testing.assert_array_equal(found["particles"], [1, 0])
+
+
+def test_standard_errors_of_clusters_in_several_bins() -> None:
+    """√(m/(m-1) Σ_i Ψ_i²)/number by loops, whatever the blocks, without what is out of the bins or no number."""
+    random = np.random.default_rng(6)
+    shape = (11, 9)
+    velocity, values = random.uniform(-0.2, 2.2, shape), random.normal(size=shape)
+    velocity[3, 2:] = np.nan
+    values[4, :3] = np.inf, 2.0**33, -np.inf
+    fraction = np.full(shape, 0.1)
+    fraction[5, 0] = np.nan
+    edges = [0.0, 0.5, 2.0]
+    data = impacts(velocity, values, fraction)
+    blocks = [standard_errors(data, edges, block=block) for block in (1, 4, 11, 100)]
+    for k, (low, high) in enumerate(pairwise(edges)):
+        good = (velocity >= low) & (velocity < high) & (np.abs(values) < 2.0**33) & np.isfinite(fraction)
+        pooled = values[good]
+        mean, variance = pooled.mean(), pooled.var()
+        clusters = [row[kept] for row, kept in zip(values, good, strict=True) if kept.any()]
+        m = len(clusters)
+        sums = np.array([[(row - mean).sum(), ((row - mean) ** 2 - variance).sum()] for row in clusters])
+        for_mean, for_variance = np.sqrt(m / (m - 1) * np.sum(sums**2, axis=0)) / pooled.size
+        for found in blocks:
+            assert int(found["particles"][k]) == m
+            assert float(found["mean_standard_error"][k]) == pytest.approx(for_mean, rel=1e-12)
+            assert float(found["variance_standard_error"][k]) == pytest.approx(for_variance, rel=1e-12)
+            deviation = for_variance / (2 * np.sqrt(variance))
+            assert float(found["deviation_standard_error"][k]) == pytest.approx(deviation, rel=1e-12)
+    for found in blocks:
+        assert found["velocity"].values.tolist() == [0.25, 1.25]
+        assert found["velocity"].attrs["units"] == "m s-1"
+        assert found.attrs == data.attrs
+        for name in ("mean", "variance", "deviation"):
+            assert f"{name} of restitution" in found[f"{name}_standard_error"].attrs["long_name"]
+        assert found["particles"].attrs["long_name"]
+
+
+def test_equal_values_have_no_error_of_their_deviation() -> None:
+    found = standard_errors(impacts(np.full((5, 2), 0.1), np.full((5, 2), 0.5)), [0.0, 1.0])
+    assert float(found["mean_standard_error"][0]) == float(found["variance_standard_error"][0]) == 0.0
+    assert np.isnan(found["deviation_standard_error"][0])
+
+
+def moments_of(values: npt.NDArray[np.float64], fraction: npt.NDArray[np.float64]) -> list[float]:
+    d = values - values.mean()
+    m2, m3, m4 = ((d**power).mean() for power in (2, 3, 4))
+    return [values.mean(), m2, m3 / m2**1.5, m4 / m2**2, fraction.mean()]
+
+
+def test_errors_of_moments_are_the_jackknife_over_batches() -> None:
+    """√((n-1)/n Σ_b (θ_(b) - θ̄)²) of moments that are worked out anew without each batch.
+
+    The second bin has impacts of two batches alone, the third of one, which leaves nothing to compare.
+    """
+    random = np.random.default_rng(8)
+    batches, each, number = 5, 8, 30
+    shape = (batches * each, number)
+    velocity = random.uniform(0.0, 1.0, shape)
+    velocity[: 2 * each, :4] = 1.5
+    velocity[-each:, :4] = 2.5
+    velocity[:, 4] = np.nan
+    velocity[:, 5] = 9.0
+    values, fraction = random.gamma(2.0, size=shape), random.uniform(0.1, 0.4, shape)
+    values[1::3, 6] = np.inf
+    edges = [0.0, 1.0, 2.0, 3.0]
+    found = reduce(impacts(velocity, values, fraction), edges, E_EDGES, batches=batches)
+    names = ("mean_restitution", "variance", "skewness", "kurtosis", "mean_fraction")
+    for k, (low, high) in enumerate(pairwise(edges)):
+        good = (velocity >= low) & (velocity < high) & np.isfinite(values)
+        batch = np.repeat(np.arange(batches), each)[:, None] + np.zeros(number, int)
+        left = [
+            moments_of(*(column[good & (batch != out)] for column in (values, fraction)))
+            for out in range(batches)
+            if (good & (batch != out)).any()
+        ]
+        for name, own in zip(names, np.array(left).T, strict=True):
+            error = found[f"{name}_error"]
+            assert f"error of {name} over 5 batches" in error.attrs["long_name"]
+            if k == 2:
+                assert np.isnan(error[k])
+            else:
+                expected = np.sqrt((batches - 1) / batches * np.sum((own - own.mean()) ** 2))
+                assert float(error[k]) == pytest.approx(expected, rel=1e-9), name
+
+
+@pytest.mark.parametrize("particles", [0, 1, 9, 10, 31, 32, 33, 100])
+@pytest.mark.parametrize("batches", [1, 5, 16])
+def test_batches_take_every_particle_once(particles: int, batches: int) -> None:
+    """In order, none of fewer than two, sizes that differ by one at most; a single one of few particles."""
+    found = batches_of(particles, batches)
+    assert len(found) == (batches if particles >= 2 * batches else 1)
+    assert [particle for first, end in found for particle in range(first, end)] == list(range(particles))
+    sizes = [end - first for first, end in found]
+    assert max(sizes) - min(sizes) <= 1
+    with pytest.raises(ValueError, match=r"^batches = 0: "):
+        batches_of(particles, 0)
 
 
 def scatter_over_error(estimates: npt.NDArray[np.float64], errors: npt.NDArray[np.float64]) -> float:

@@ -239,7 +239,11 @@ HARMS: dict[str, tuple[Callable[[Path], object], str | None, str | None]] = {
         None,
         r"the chunks of tasks/words are \(1, 4, 602\)",
     ),
-    "other words": (reshaped(WORDS, data_type="float64", fill_value=0.0), None, "tasks/words is float64"),
+    "other words": (
+        reshaped(WORDS, data_type="float64", fill_value=0.0),
+        None,
+        "words is float64 of shape .* instead of uint64",
+    ),
     "no status": (lambda store: shutil.rmtree(store / "status"), "KeyError: 'status'", "KeyError: 'status'"),
     "no axis": (lambda store: shutil.rmtree(store / "normal"), None, "KeyError: 'normal'"),
     "much status": (reshaped("status", shape=[10**6, 10**6]), "status of 1000000000000", "status is uint8"),

@@ -66,8 +66,15 @@ def test_a_new_store(tiny: Study, tmp_path: Path) -> None:
     assert made.words.dtype == np.uint64
     assert made.points_there() == []
     assert made.words.metadata.dimension_names == ("point", "batch", "word")
+    assert all(array.attrs["long_name"] for array in (made.words, *(array for _, array in made.arrays())))
     again, existed = create_or_open(path, tiny, WORDS)
     assert (existed, again.path) == (True, path)
+
+
+def test_the_format_of_a_store_is_not_that_of_the_settings(tiny: Study, tmp_path: Path) -> None:
+    with zarr.config.set({"default_zarr_format": 2}):
+        create_or_open(tmp_path / "new.zarr", tiny, WORDS)
+    assert zarr.open_group(tmp_path / "new.zarr", mode="r").metadata.zarr_format == 3
 
 
 def test_a_design_without_a_grid(tmp_path: Path) -> None:
