@@ -74,6 +74,63 @@ def test_it_warns_once_and_names_the_laws() -> None:
         rs.compare(BODIES, LAWS[1:3], **RUN)
 
 
+def test_the_warning_has_the_largest_share_and_factor(found: xr.Dataset) -> None:
+    """Of the impacts of one run, and not of all runs together."""
+    with pytest.warns(rs.EnergyWarning, match="up to") as caught:
+        rs.compare(BODIES, {"paper": LAWS[0], "newton": LAWS[3]}, **RUN)
+    kept = found.isel(law=[0, 3])
+    share, largest = float(kept.energy_created_share.max()), float(kept.largest_energy_ratio_of_all.max())
+    told = str(caught[0].message)
+    assert f"under paper, newton: in up to {100 * share:.3g} % of the impacts of a run" in told
+    assert f"by a factor of {largest:.6g}. The law does this" in told
+    assert caught[0].filename == __file__
+
+
+def test_parameters_that_differ_are_coordinates(found: xr.Dataset) -> None:
+    """Numbers with NaN, and words with nothing, where there are none; what is the same for all is no axis."""
+    assert found["separation"].dims == ("body",)
+    assert found["separation"].values.tolist() == [3e-4, 6e-3]
+    assert found["separation"].attrs == {"long_name": "separation of the body", "units": "m"}
+    assert found["friction"].dims == ("law",)
+    np.testing.assert_array_equal(found["friction"], [np.nan, np.nan, 0.3, 0.3])
+    assert found["friction"].attrs == {"long_name": "friction of the law", "units": "1"}
+    assert found["hypothesis"].values.tolist() == ["", "", "stronge", "newton"]
+    assert found["hypothesis"].attrs == {"long_name": "hypothesis of the law"}
+    assert not {"radius", "density", "normal"} & set(found.coords)
+    assert found.attrs["radius"] == 3e-3
+    assert found.attrs["normal"] == 0.98
+    assert found.attrs["title"].startswith("Statistics of the impacts of bodies")
+    assert all(found[name].attrs["long_name"] for name in found.data_vars if "edges" not in str(name))
+    assert found["velocity_edges"].dims == ("velocity_edge",)
+
+
+def test_parameters_that_are_pairs_or_laws() -> None:
+    """A pair is two coordinates with the unit of both, what is itself an object stands in words."""
+    bodies = [
+        rs.Dumbbell(radius=(3e-3, 2e-3), separation=3e-4),
+        rs.Dumbbell(radius=3e-3, separation=3e-4),
+        rs.Spheroid(equatorial=3e-3, polar=2e-3),
+    ]
+    steel = rs.Viscoelastic(young_modulus=1e9, poisson_ratio=0.3, dissipation=1e-6, density=1e3, radius=3e-3)
+    laws = [rs.Frictionless(normal=steel), rs.Frictionless(normal=0.9)]
+    found = rs.compare(bodies, laws, **(RUN | {"particles": 32, "impacts": 2}))
+    nan = np.nan
+    for name, values in {
+        "radius_1": [3e-3, nan, nan],
+        "radius_2": [2e-3, nan, nan],
+        "radius": [nan, 3e-3, nan],
+        "separation": [3e-4, 3e-4, nan],
+        "equatorial": [nan, nan, 3e-3],
+        "polar": [nan, nan, 2e-3],
+    }.items():
+        np.testing.assert_array_equal(found[name], values)
+        assert found[name].attrs == {"long_name": f"{name} of the body", "units": "m"}
+    assert "density" not in found.coords
+    assert found["normal"].values.tolist() == [repr(steel), "0.9"]
+    assert found["law"].values.tolist() == [f"Frictionless(normal = {steel!r})", "Frictionless(normal = 0.9)"]
+    assert found["body"].values[2] == "Spheroid"
+
+
 def test_it_can_be_written_and_read(found: xr.Dataset, tmp_path: Any) -> None:
     """A netCDF file gives back the same."""
     found.to_netcdf(tmp_path / "found.nc")
@@ -107,6 +164,31 @@ def test_an_interruption_keeps_what_was_finished(monkeypatch: pytest.MonkeyPatch
     for name in ("restitution_count", "mean_restitution_error"):
         np.testing.assert_array_equal(kept[name][0, 0], alone[name])
     assert np.isnan(kept.mean_restitution_error[0, 1]).all()
+    assert np.array_equal(kept.velocity_edges, alone.velocity_edges)
+    assert not kept.restitution_count[0, 1].any()
+    assert kept.all_impacts.values.tolist() == [[alone.attrs["all_impacts"], 0]]
+    assert kept.energy_created_impacts[0, 1] == kept.energy_created_share[0, 1] == 0
+    assert kept.largest_energy_ratio_of_all[0, 1] == 1
+    assert kept.attrs["incomplete"] == "interrupted: 1 of 2 combinations are finished"
+    assert kept.finished.dims == ("body", "law")
+    assert "whether" in kept.finished.attrs["long_name"]
+
+
+def test_an_interruption_of_the_first_run(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Leaves nothing but the shape of what would have been."""
+    begun = rs.statistics(BODIES["short"], LAWS[1], **(RUN | {"batches": 1}))
+
+    def stopped(*_: Any, **__: Any) -> xr.Dataset:
+        raise SimulationInterrupted(begun)
+
+    monkeypatch.setattr("restitution._compare.statistics", stopped)
+    with pytest.raises(SimulationInterrupted) as stop:
+        rs.compare(BODIES, LAWS[:3], **RUN)
+    kept = stop.value.data
+    assert kept.finished.shape == (2, 3)
+    assert not kept.finished.any()
+    assert not kept.all_impacts.any()
+    assert np.isnan(kept.mean_restitution).all()
 
 
 @pytest.mark.parametrize(
@@ -117,6 +199,10 @@ def test_an_interruption_keeps_what_was_finished(monkeypatch: pytest.MonkeyPatch
         (BODIES, ["frictionless"], "laws holds 'frictionless': must be objects of a Law"),
         (BODIES, {1: LAWS[0]}, "laws: 1 is not a name"),
         (BODIES, [LAWS[0], LAWS[0]], "laws: TangentialRestitution is there twice"),
+        (BODIES, [LAWS[1], LAWS[0], LAWS[0]], "laws: TangentialRestitution is there twice"),
+        ("short", LAWS, "^bodies = 'short': must be a dict or list of Body"),
+        (np.array(3.0), LAWS, "^bodies = .*3.*: must be a dict or list of Body"),
+        (BODIES, {"one": 3}, "^laws holds 3: must be objects of a Law"),
     ],
 )
 def test_bad_input_is_named(bodies: Any, laws: Any, reason: str) -> None:
@@ -126,6 +212,8 @@ def test_bad_input_is_named(bodies: Any, laws: Any, reason: str) -> None:
 
 def test_arguments_of_the_runs_are_checked_in_its_own_name() -> None:
     with pytest.raises(TypeError, match=r"compare\(\): missing a required .*'velocity_bins'"):
+        rs.compare(BODIES, LAWS, restitution_bins=RUN["restitution_bins"])
+    with pytest.raises(TypeError, match=r"argument: 'velocity_bins' and 'restitution_bins'$"):
         rs.compare(BODIES, LAWS)
     with pytest.raises(TypeError, match=r"compare\(\): got an unexpected keyword argument 'particle'"):
         rs.compare(BODIES, LAWS, **RUN, particle=3)

@@ -272,7 +272,7 @@ def test_single_particle_has_no_standard_error() -> None:
 
 
 def test_standard_errors_of_clusters_in_several_bins() -> None:
-    """√(m/(m-1) Σ_i Ψ_i²)/number by loops, whatever the blocks, without what is out of the bins or no number."""
+    """√(m/(m-1) Σ_i Ψ_i²)/number by loops, whatever the blocks, without what has no number or bin."""
     random = np.random.default_rng(6)
     shape = (11, 9)
     velocity, values = random.uniform(-0.2, 2.2, shape), random.normal(size=shape)
