@@ -8,7 +8,7 @@ import pytest
 import sympy as sp
 
 import restitution as rs
-from restitution._energy import factor, percent
+from restitution._energy import by_row, factor, ledger, ledger_of, percent, reported_elsewhere
 from restitution.laws import Law
 from restitution.laws_figure import bound, coupling, growth
 
@@ -163,7 +163,15 @@ def test_no_impact_exceeds_the_bound_at_its_angle(tangential: float) -> None:
 
 @pytest.mark.parametrize(
     ("share", "text"),
-    [(0.21, "21 %"), (1.0, "100 %"), (1.234e-4, "0.0123 %"), (3e-7, "0.00003 %"), (0.0, "0 %")],
+    [
+        (0.21, "21 %"),
+        (1.0, "100 %"),
+        (1.234e-4, "0.0123 %"),
+        (3e-7, "0.00003 %"),
+        (2e-8, "0.000002 %"),
+        (0.0, "0 %"),
+        (2e-9, "2e-07 %"),  # below what six decimal places can say
+    ],
 )
 def test_shares_read_well(share: float, text: str) -> None:
     """No exponent in a sentence."""
@@ -174,3 +182,38 @@ def test_a_factor_never_reads_as_one() -> None:
     """Gains of nearly round bodies are small, and are what the warning is about."""
     assert factor(2.7015346) == "2.70153"
     assert factor(1 + 5.6e-9) == "1 + 5.6e-09"
+    assert factor(1.001) == "1.001"
+    assert factor(1.0004) == "1 + 0.0004"
+
+
+def test_a_run_without_impacts_has_a_ledger() -> None:
+    """No share of nothing, and no factor."""
+    empty = {"all_impacts": 0, "energy_created_impacts": 0, "energy_created_share": 0.0}
+    assert ledger(0, 0, np.nan) == empty
+    assert ledger_of(np.full((2, 3), np.nan)) == empty
+    assert ledger_of(np.array([[0.5, np.nan], [1.0, 1 + 4e-12]])) == {
+        "all_impacts": 3,
+        "energy_created_impacts": 1,
+        "energy_created_share": 1 / 3,
+        "largest_energy_ratio": 1 + 4e-12,
+    }
+
+
+def test_energy_of_rows() -> None:
+    """A factor only where impacts created energy; both say what they are."""
+    found = by_row("velocity", np.array([0, 2, 1]), np.array([0.0, 3.0, 1.5]))
+    assert [found[name][0] for name in found] == ["velocity"] * 2
+    assert found["energy_created"][1].tolist() == [0, 2, 1]
+    np.testing.assert_array_equal(found["largest_energy_ratio"][1], [np.nan, 3.0, 1.5])
+    assert found["largest_energy_ratio"][2]["units"] == "1"
+    assert all(found[name][2]["long_name"] for name in found)
+
+
+def test_only_this_warning_is_reported_elsewhere() -> None:
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
+        with reported_elsewhere():
+            warnings.warn("energy", rs.EnergyWarning, stacklevel=1)
+            warnings.warn("another", UserWarning, stacklevel=1)
+        warnings.warn("afterwards", rs.EnergyWarning, stacklevel=1)
+    assert [str(one.message) for one in caught] == ["another", "afterwards"]

@@ -54,10 +54,20 @@ def test_a_store_of_another_physics(done: Path, tiny: Study, tmp_path: Path) -> 
     with pytest.raises(Refused) as raised:
         check(path, tiny)
     told = str(raised.value).splitlines()
-    assert "install that version to go on with it, or write to a new store" in told[0]
+    advice = "install that version to go on with it, or write to a new store"
+    assert told[0] == f"{path}: is the store of another study; {advice}. What differs:"
     assert told[1] == f'  physics.p00: "{"x" * 39} … {"x" * 11}" in the store, nothing here'
     assert len(told) == 14
     assert told[-1] == "  and 2 more"
+    shutil.rmtree(path)
+    path = changed(
+        done, tmp_path, lambda own: own["physics"].update({f"p{i:02}": "x" * (47 + i) for i in range(12)})
+    )
+    with pytest.raises(Refused) as raised:
+        check(path, tiny)
+    told = str(raised.value).splitlines()
+    assert told[-1] == f'  physics.p11: "{"x" * 58}" in the store, nothing here'
+    assert len(told) == 13
 
 
 @pytest.mark.parametrize(
