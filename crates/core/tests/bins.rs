@@ -262,6 +262,50 @@ fn counts_and_sums_what_simulate_records(run: &Run<'_>, level: Level) -> Result<
     Ok(())
 }
 
+/// Widths that grow from one end to the other, on any of the three axes beside uniform ones on the others: every impact is where a
+/// binary search puts it.
+#[test]
+fn bins_of_different_widths_hold_what_is_between_their_edges() {
+    let run = Run {
+        particles: 60,
+        impacts: 25,
+        ..paper(0.7, law(0.9, 0.5))
+    };
+    let records = simulate(&run);
+    let uniform = Edges::coarse();
+    let uneven = |edges: &[f64]| -> Vec<f64> {
+        let (low, high) = (edges[0], edges[edges.len() - 1]);
+        let share = |k: usize| k as f64 / (edges.len() - 1) as f64;
+        (0..edges.len())
+            .map(|k| (high - low).mul_add(share(k).powi(2), low))
+            .collect()
+    };
+    for which in 0..8 {
+        let mut edges = uniform.clone();
+        let axes = [
+            &mut edges.velocity,
+            &mut edges.restitution,
+            &mut edges.fraction,
+        ];
+        for (k, axis) in axes.into_iter().enumerate() {
+            if which >> k & 1 == 1 {
+                *axis = uneven(axis);
+            }
+        }
+        for level in Level::available() {
+            let by_velocity = Expected::by_velocity(&records, &run, &edges);
+            let by_number = Expected::by_number(&records, &run, &edges);
+            for (expected, by) in [
+                (by_velocity, By::Velocity(axis(&edges.velocity))),
+                (by_number, By::Number(run.impacts)),
+            ] {
+                let tally = statistics(&run, &edges.bins(by), level, 1);
+                expected.agrees(&tally, run.origin()).unwrap();
+            }
+        }
+    }
+}
+
 /// Bins of the number 0, which has two signs that are equal: the first impact of a body that does not spin has a rotational
 /// fraction of 0, and a plastic sphere has ε = 0.
 #[test]
