@@ -382,23 +382,3 @@ fn edges_are_checked() {
         assert!(Axis::new("edges", edges).is_err(), "{edges:?}");
     }
 }
-
-/// More sites than 32 bits can number are refused before any memory is taken for them.
-#[test]
-fn sites_that_have_no_number_are_refused() {
-    let bins = Bins {
-        by: By::Number(1 << 30),
-        restitution: axis(&[0.0, 1.0]), // four columns: the bin, one on either side, one for what has no place
-        fraction: None,
-    };
-    let run = Run {
-        particles: 1,
-        impacts: 1,
-        ..paper(0.1, law(0.98, 1.0))
-    };
-    let means = Means {
-        threads: 1,
-        level: Level::best(),
-    };
-    assert!(run.statistics(&bins, means, &Monitor::default()).is_err());
-}

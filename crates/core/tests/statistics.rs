@@ -6,7 +6,9 @@ mod tallies;
 use common::*;
 use proptest::prelude::*;
 use restitution_core::statistics::{Bins, By, Tally};
-use restitution_core::{Law, Level, Means, Monitor, Orientation, Run, Spheroid, Spin, Vector};
+use restitution_core::{
+    Error, Law, Level, Means, Monitor, Orientation, Run, Spheroid, Spin, Vector,
+};
 use std::collections::BTreeSet;
 use std::sync::LazyLock;
 use tallies::*;
@@ -288,4 +290,38 @@ fn every_impact_and_every_end_is_counted_once() {
             }
         }
     }
+}
+
+/// More sites than 32 bits can number are refused before any memory is taken for them.
+#[test]
+fn sites_that_have_no_number_are_refused() {
+    let bins = Bins {
+        by: By::Number(1 << 30),
+        restitution: axis(&[0.0, 1.0]), // four columns: the bin, one on either side, one for what has no place
+        fraction: None,
+    };
+    let run = Run {
+        particles: 1,
+        impacts: 1,
+        ..paper(0.1, law(0.98, 1.0))
+    };
+    let means = Means {
+        threads: 1,
+        level: Level::best(),
+    };
+    let refused = run.statistics(&bins, means, &Monitor::default());
+    assert!(matches!(refused, Err(Error::Parameter { .. })));
+}
+
+/// What was written down is what is read, whatever the words are: sums of E_rot/E_tot beyond 2⁶⁴ quanta have a second one.
+#[test]
+fn every_word_of_a_tally_is_kept() {
+    let bins = Edges::coarse().bins(By::Number(ROWS));
+    let empty = Tally::new(&bins, 0.98).unwrap().to_words();
+    let number = |i: usize| (i as u64 + 1).wrapping_mul(0x9e37_79b9_7f4a_7c15);
+    let words: Vec<u64> = (0..empty.len())
+        .map(|i| if i == 0 { empty[0] } else { number(i) })
+        .collect();
+    let tally = Tally::from_words(&bins, 0.98, &words).unwrap();
+    assert_eq!(tally.to_words(), words);
 }
