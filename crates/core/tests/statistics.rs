@@ -104,6 +104,8 @@ fn full_grids_merge() {
         .collect();
     assert_eq!(total.restitution.counts(), sums);
     assert_eq!(total.restitution.columns(), 1403);
+    let copied = total.restitution.to_counts().unwrap();
+    assert!(copied.iter().map(|&count| count as u64).eq(sums));
 }
 
 /// What goes to NumPy is what was counted, in grids of several parts too, some of them empty.

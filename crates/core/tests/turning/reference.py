@@ -2,7 +2,7 @@
 
 `python reference.py SEED NUMBER` prints a line an impact: hypothesis, contact, law and impulse. Those of
 random.txt have seed 1 and 110 contacts; those of reference.txt were picked because they are hard, the last
-19 because a change of one condition in the core makes another impulse of them.
+20 because a change of one condition in the core makes another impulse of them.
 """
 
 import random
