@@ -106,3 +106,90 @@ impl<S: Simd, T: Turn, K: Sink> WithSimd for Tell<'_, S, T, K> {
         ended
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use crate::engine::{GROUPS, Impact, Meanwhile, Sink, StopReason};
+    use crate::run::{Orientation, Plan, Run};
+    use crate::simd::{LANES, Level, Pack};
+    use crate::{Dumbbell, Law, Monitor, Spin, TangentialRestitution, Vector};
+    use pulp::Simd;
+    use std::ops::Range;
+
+    /// Cancels its own run after some impacts, and knows which of them were worked up.
+    struct Cancelling<'a> {
+        monitor: &'a Monitor,
+        most: usize,
+        impacts: usize,
+        done: usize,
+        waits: [bool; GROUPS * LANES],
+    }
+
+    impl Meanwhile for Cancelling<'_> {
+        fn meanwhile(&mut self, place: usize) {
+            self.done += usize::from(std::mem::take(&mut self.waits[place]));
+        }
+    }
+
+    impl Sink for Cancelling<'_> {
+        const TOGETHER: bool = true;
+        const COMMON: bool = false;
+
+        fn begin(&mut self) {}
+
+        fn impact<S: Simd, const K: usize>(&mut self, group: usize, impact: &Impact<S, K>) {
+            impact.active.each(|lane| {
+                let place = group * Pack::<S, K>::WIDTH + lane;
+                assert!(!self.waits[place], "an impact is lost");
+                self.waits[place] = true;
+                self.impacts += 1;
+            });
+            if self.impacts >= self.most {
+                self.monitor.cancel();
+            }
+        }
+
+        fn end(&mut self, _: usize, _: usize, _: StopReason) {}
+    }
+
+    /// Wherever a run is cancelled, and if it is not, every impact is worked up once: those of the last round, too.
+    #[test]
+    fn every_impact_is_worked_up() {
+        let tangential = TangentialRestitution::new(0.3).unwrap();
+        let run = Run {
+            body: Dumbbell::new(3e-3, 1.5e-3, 2500.0).unwrap().into(),
+            law: Law::new(0.9, tangential).unwrap(),
+            particles: 100,
+            impacts: 7,
+            orientation: Orientation::UniformAngle,
+            release_height: 0.06.into(),
+            release_velocity: Vector::default(),
+            spin: Spin::NONE,
+            gravity: 9.81,
+            incline: 0.0,
+            minimum_speed: 0.0,
+            seed: 1,
+        };
+        let plan = Plan::new(&run).unwrap();
+        for level in Level::available() {
+            for particles in [1, 5, 100] {
+                for most in [1, 3, 30, 150, 400, usize::MAX] {
+                    let monitor = Monitor::default();
+                    let mut sink = Cancelling {
+                        monitor: &monitor,
+                        most,
+                        impacts: 0,
+                        done: 0,
+                        waits: [false; GROUPS * LANES],
+                    };
+                    let range: Range<usize> = 0..particles;
+                    plan.bounce(range, level, &monitor, &mut sink).unwrap();
+                    assert_eq!(sink.done, sink.impacts, "{level:?}, {particles}, {most}");
+                    if most == usize::MAX {
+                        assert_eq!(sink.done, 7 * particles);
+                    }
+                }
+            }
+        }
+    }
+}

@@ -256,3 +256,44 @@ fn shifted(x: u128, places: usize) -> [u64; 4] {
     out[places + 1] = (x >> 64) as u64;
     out
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// One offset q beside its negative, and beside two zeros, of every size, and just where its square no longer fits into a word:
+    /// variances q² and 2q²/9, skewnesses 0 and ±1/√2, kurtoses 1 and 3/2.
+    #[test]
+    fn offsets_of_every_size_are_summed_alike() {
+        for size in [
+            1,
+            3,
+            (1 << 32) - 1,
+            1 << 32,
+            (1 << 32) + 1,
+            1 << 40,
+            1 << 56,
+        ] {
+            for q in [size, -size] {
+                let moments = |values: &[i64]| {
+                    let mut sums = Sums::EMPTY;
+                    values.iter().for_each(|&value| sums.add(value));
+                    sums.moments(values.len() as u64, 0.0)
+                };
+                let near = |found: f64, expected: f64| {
+                    assert!((found - expected).abs() <= 1e-13, "{found} {expected} {q}");
+                };
+                let square = (q as f64 / QUANTA).powi(2);
+                let pair = moments(&[q, -q]);
+                assert_eq!((pair.mean, pair.skewness), (0.0, 0.0));
+                near(pair.variance / square, 1.0);
+                near(pair.kurtosis, 1.0);
+                let alone = moments(&[q, 0, 0]);
+                near(alone.mean * QUANTA / q as f64, 1.0 / 3.0);
+                near(alone.variance / square, 2.0 / 9.0);
+                near(alone.skewness, q.signum() as f64 * 0.5_f64.sqrt());
+                near(alone.kurtosis, 1.5);
+            }
+        }
+    }
+}

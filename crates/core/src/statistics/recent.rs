@@ -162,3 +162,38 @@ impl Extremes {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::simd::one;
+
+    /// Sums of the largest values there are, of either sign, with energy created or not, are exact until there is no room left, and
+    /// that is told with the last value for which there is.
+    #[test]
+    fn sums_are_exact_as_long_as_there_is_room() {
+        for (offset, fraction, gaining) in [
+            (LARGEST, 1.0, true),
+            (-LARGEST, 1.0, false),
+            (-1.25, 0.5, true),
+        ] {
+            let gains = one(if gaining { 1.0 } else { 0.0 }).eq(1.0);
+            let halves = words(one(offset), one(QUANTA), one(fraction), gains);
+            let [low, high] = halves.map(|half| half.map(|word| word.as_slice()[0]));
+            let q = (offset * QUANTA) as i128;
+            let mut sums = Recent::EMPTY;
+            for number in 1..=MOST {
+                assert_eq!(sums.add(&low, &high), number == MOST, "{number}");
+                let count = i128::from(number);
+                let totals = sums.totals();
+                assert_eq!(i128::from(totals.first), count * q);
+                assert_eq!(i128::from(totals.second), count * q.pow(2));
+                assert_eq!(totals.third, count * q.pow(3));
+                assert_eq!(totals.fourth, count * q.pow(4));
+                let quanta = count * (fraction * FRACTION_QUANTA) as i128;
+                assert_eq!(i128::from(totals.fractions), quanta);
+                assert_eq!(totals.gains, if gaining { number } else { 0 });
+            }
+        }
+    }
+}

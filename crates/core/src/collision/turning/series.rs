@@ -132,6 +132,7 @@ mod tests {
         let path = series([1.0, 2.0, 4.0, 8.0, -16.0, 32.0]);
         assert_eq!(value(path.rest()), 48.0);
         assert_eq!(value(power(one(2.0))), 128.0);
+        assert_eq!(value(power(one(3.0))), 2187.0);
         assert_eq!(value(power(one(-2.0))), 128.0);
     }
 }

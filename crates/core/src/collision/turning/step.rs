@@ -260,6 +260,18 @@ mod tests {
         }
     }
 
+    /// Where friction cannot stop v_c^n from rising it has none.
+    #[test]
+    fn without_a_jam_there_is_no_extremum() {
+        for case in CASES {
+            if case.nn > (case.friction * case.nu).abs() {
+                let impacts = case.impacts(0.8, 0.3, Hypothesis::Newton);
+                let found = value(crest(&impacts.rates, &impacts.course));
+                assert_eq!(found, f64::INFINITY, "{case:?}");
+            }
+        }
+    }
+
     /// A slip whose direction y = ½ stays and whose size all but does: v_c^n and p are nearly linear in θ, the work nearly a parabola.
     fn steady(nn: f64) -> Case {
         let (friction, uu, ww) = (0.5, 2.0, 0.1);
