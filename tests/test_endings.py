@@ -262,3 +262,19 @@ def test_ctrl_c_in_the_first_and_the_last_moment(when: str) -> None:
     assert (done.returncode, done.stderr) == (-signal.SIGINT, "")
     settings = tomllib.loads((Path(__file__).parents[1] / "pyproject.toml").read_text(encoding="utf-8"))
     assert settings["project"]["scripts"] == {"restitution": "restitution.__main__:main"}
+
+
+@pytest.mark.parametrize(
+    ("name", "told"),
+    [
+        ("a\x1b]0;owned\x07\nerror: b", "a\\x1b]0;owned\\x07\\nerror: b: No such file or directory"),
+        ("n" * 100_000, "n" * 500 + " ... " + "n" * 480 + ": File name too long"),
+    ],
+    ids=["obeyed", "long"],
+)
+def test_a_name_that_is_told_stays_in_its_line(name: str, told: str, tmp_path: Path) -> None:
+    """And no terminal obeys it."""
+    done = subprocess.run(
+        [*COMMAND, "simulate", name, "--out", "run.nc"], capture_output=True, cwd=tmp_path, check=False
+    )
+    assert (done.returncode, done.stderr.decode()) == (1, f"error: {told}\n")

@@ -46,10 +46,14 @@ def _put(line: str, name: str) -> None:
         raise OSError(error.errno, error.strerror, "standard output") from None
 
 
+_CONTROLS = {code: f"\\x{code:02x}" for code in (*range(32), *range(127, 160)) if chr(code) not in "\n\t"}
+"""What a terminal would obey, as it may stand in the name of a file."""
+
+
 def _encodable(line: str, stream: Any) -> str:
-    """Escape what the stream has no letter for, as µ in ASCII."""
+    """Escape what the stream has no letter for, as µ in ASCII, and control characters."""
     encoding = getattr(stream, "encoding", None) or "utf-8"
-    return line.encode(encoding, "backslashreplace").decode(encoding)
+    return line.translate(_CONTROLS).encode(encoding, "backslashreplace").decode(encoding)
 
 
 def open_missing() -> None:

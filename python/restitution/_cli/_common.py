@@ -18,6 +18,9 @@ FAILED, BAD_INPUT, WARNED, INTERRUPTED = 1, 2, 3, 130
 Other signals that end a command give 128 + their number.
 """
 
+_LONGEST = 1000
+"""Letters of a line of an error, which the name of a file can make longer than a terminal holds."""
+
 RunFile = Annotated[
     Path,
     typer.Argument(
@@ -100,12 +103,17 @@ def _failed(error: Exception) -> NoReturn:
         case ValueError():
             fail(str(error), BAD_INPUT)
         case FileExistsError():
-            fail(f"{error.filename}: {error.strerror}; --overwrite replaces it", FAILED)
+            fail(f"{_named(error.filename)}: {error.strerror}; --overwrite replaces it", FAILED)
         case OSError():
-            fail(f"{error.filename}: {error.strerror}" if error.filename else str(error), FAILED)
+            fail(f"{_named(error.filename)}: {error.strerror}" if error.filename else str(error), FAILED)
         case RuntimeError() | MemoryError() | ImportError():  # NumericalError is a RuntimeError
             fail(str(error) or "out of memory", FAILED)
     raise error
+
+
+def _named(path: object) -> str:
+    """Write the name of a file in a line, also one that has several."""
+    return "\\n".join(str(path).splitlines())
 
 
 class Kept(KeyboardInterrupt):
@@ -124,5 +132,6 @@ def press_again() -> None:
 def fail(message: str, code: int) -> NoReturn:
     """Print the error and exit."""
     for line in message.splitlines():
-        tell(f"error: {line}")
+        long = len(line) > _LONGEST
+        tell(f"error: {line[: _LONGEST // 2]} ... {line[-_LONGEST // 2 :]}" if long else f"error: {line}")
     raise typer.Exit(code)
