@@ -44,21 +44,27 @@ def listen(
     covariance (netCDF).
     """
     with errors_in_a_line():
+        from restitution._parameters import ParameterError
         from restitution._resources import check_room
 
         check_room("listen", _ROOM)  # before the libraries are there
         from restitution.listen import write
         from restitution.listen._analysis import Setting
 
-        setting = Setting(
-            diameter=diameter,
-            mass=mass,
-            drop=drop,
-            drop_uncertainty=drop_error,
-            gravity=gravity,
-            gravity_uncertainty=gravity_error,
-            out_of_roundness=out_of_roundness,
-        )
+        try:
+            setting = Setting(
+                diameter=diameter,
+                mass=mass,
+                drop=drop,
+                drop_uncertainty=drop_error,
+                gravity=gravity,
+                gravity_uncertainty=gravity_error,
+                out_of_roundness=out_of_roundness,
+            )
+        except ParameterError as error:  # of the options' names
+            raise ParameterError(
+                *(one._replace(name=one.name.replace("uncertainty", "error")) for one in error.problems)
+            ) from None
         analysis = write(file, out, setting, replace=overwrite)
         for warning in analysis.warnings:
             tell(f"note: {warning}")

@@ -5,16 +5,25 @@ import io
 import math
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Annotated, Literal
+from typing import Annotated, Literal, Self
 
 import numpy as np
 import xarray as xr
-from pydantic import Field
+from pydantic import Field, model_validator
 
 from restitution import flight
 from restitution._files import path_from
-from restitution._parameters import Number, ParameterError, Parameters, Problem, TooLargeError, wrong
+from restitution._parameters import (
+    Allowed,
+    Number,
+    ParameterError,
+    Parameters,
+    Problem,
+    TooLargeError,
+    wrong,
+)
 from restitution._words import with_error
+from restitution.bodies import from_roundness
 from restitution.flight._times import DOUBLED, FLAGS, MISSED
 from restitution.listen._shape import Shape, shape
 from restitution.sound import impacts
@@ -26,6 +35,9 @@ _FEWEST_FOR_SCATTER = 6
 _EXPLAINED = 0.01
 """Where a law has this probability or more, errors of measurement explain all scatter."""
 _LAWS = ("constant", "power law", "viscoelastic", "plastic")
+
+
+_OR_NONE = Allowed("a finite number > 0 (SI units), or None")
 
 
 class Setting(Parameters):
@@ -46,12 +58,20 @@ class Setting(Parameters):
     """
 
     diameter: Annotated[Number, Field(gt=0, description="m")]
-    mass: Annotated[float | None, Field(gt=0, description="kg")] = None
-    drop: Annotated[float | None, Field(gt=0, description="m")] = None
+    mass: Annotated[Number | None, Field(gt=0, description="kg"), _OR_NONE] = None
+    drop: Annotated[Number | None, Field(gt=0, description="m"), _OR_NONE] = None
     drop_uncertainty: Annotated[Number, Field(ge=0, description="m")] = 0.0
     gravity: Annotated[Number, Field(gt=0, description="m/s²")] = 9.81
     gravity_uncertainty: Annotated[Number, Field(ge=0, description="m/s²")] = 0.0
-    out_of_roundness: Annotated[float | None, Field(ge=0, description="m")] = None
+    out_of_roundness: Annotated[
+        Number | None, Field(ge=0, description="m"), Allowed("a finite number >= 0 (m), or None")
+    ] = None
+
+    @model_validator(mode="after")
+    def _nearly_round(self) -> Self:
+        if self.out_of_roundness is not None:
+            from_roundness(self.diameter, self.out_of_roundness)
+        return self
 
     @property
     def drag(self) -> flight.Drag | None:
