@@ -12,6 +12,7 @@ from pathlib import Path
 import pytest
 
 from reference.studies import bits, chunks, finished, started, when, written
+from restitution._files import draft_of
 from restitution.study import status, sweep
 
 # Each batch takes 20 ms longer, so that there is a middle of the study to strike in.
@@ -51,6 +52,34 @@ def test_killed_drivers(whole: dict[str, str], tmp_path: Path) -> None:
     assert 7 <= len(there) < 12
     sweep(study, store)
     assert {path: path.stat().st_mtime_ns for path in there} == there
+    assert bits(store) == whole
+
+
+# Killed when the third file of the store itself is complete and has not yet taken its place.
+DYING = """
+import os
+from pathlib import Path
+replace, written = Path.replace, []
+def dying(draft, target):
+    if not any(part.endswith(".part") for part in draft.parent.parts):
+        written.append(draft)
+        if len(written) == 3:
+            os.kill(os.getpid(), 9)
+    return replace(draft, target)
+Path.replace = dying
+"""
+
+
+def test_what_a_killed_driver_left_is_removed(whole: dict[str, str], tmp_path: Path) -> None:
+    """By the next one on this machine; what another process is about to write stays."""
+    study, store = written(tmp_path, normals=4), tmp_path / "study.zarr"
+    assert finished(started(study, "--out", store, code=DYING))[0] == -signal.SIGKILL
+    assert len(list(store.rglob(".*.part"))) == 1
+    alive = draft_of(store / "zarr.json")
+    alive.touch()
+    sweep(study, store)
+    assert list(store.rglob(".*.part")) == [alive]
+    alive.unlink()
     assert bits(store) == whole
 
 

@@ -1,6 +1,7 @@
 """A run as an xarray Dataset, with the names, units and flags of the core; files."""
 
 import errno
+import os
 from functools import cache
 from importlib.metadata import version
 from pathlib import Path
@@ -89,5 +90,17 @@ def put(data: xr.Dataset, draft: Path) -> None:
     """Write a netCDF file."""
     try:
         data.to_netcdf(draft, engine="netcdf4")
-    except RuntimeError as error:  # of netCDF, which does not say where
+    except (RuntimeError, OSError) as error:  # of netCDF, which says neither where nor why
+        _ask_for_room(draft, data.nbytes)
         raise OSError(errno.EIO, f"cannot be written: {error}", str(draft)) from error
+
+
+def _ask_for_room(draft: Path, size: int) -> None:
+    """Raise the system's own error where the disk is full, or files may not be as large."""
+    if not hasattr(os, "posix_fallocate"):
+        return
+    try:
+        with draft.open("ab") as file:
+            os.posix_fallocate(file.fileno(), 0, size)
+    except OSError as error:
+        raise OSError(error.errno, error.strerror, str(draft)) from None

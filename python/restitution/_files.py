@@ -10,6 +10,7 @@ import errno
 import os
 import platform
 import re
+import secrets
 import shutil
 import tempfile
 from collections.abc import Collection, Iterator, Sequence
@@ -24,6 +25,8 @@ from restitution._parameters import ParameterError, wrong
 from restitution._signals import undisturbed
 
 _MASKING = Lock()
+_LEFT = re.compile(r"\..+\.([0-9a-f]{8})-(\d+)\.[^.]+\.part", re.DOTALL)
+"""The name of a draft, with its machine and its process."""
 _LONGEST = 200
 """Bytes of a name that a draft's contains as it is: most file systems allow 255 in all."""
 
@@ -50,6 +53,20 @@ def draft_folder(path: Path) -> Path:
     """Make an empty folder beside `path`, whose place it is to take, and remove what the dead left."""
     _remove_leftovers(path.name, path.parent)
     return Path(tempfile.mkdtemp(prefix=_prefix(path.name), suffix=".part", dir=path.parent))
+
+
+def draft_of(path: Path) -> Path:
+    """Name a draft beside `path`, which nothing has yet."""
+    return path.with_name(f"{_prefix(path.name)}{secrets.token_hex(8)}.part")
+
+
+def remove_all_leftovers(folder: Path) -> None:
+    """Remove what the dead left in a folder and in those below it, whatever its name was to be."""
+    for place, _, names in os.walk(folder):
+        for name in names:
+            found = _LEFT.fullmatch(name)
+            if found and found[1] == _machine() and not _is_alive(int(found[2])):
+                _discard([Path(place, name)])
 
 
 def check_folder(path: Path, *, replace: bool) -> None:

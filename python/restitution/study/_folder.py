@@ -1,5 +1,6 @@
 """The folder of a store as Zarr sees it: only regular files are opened, and errors name the file."""
 
+import asyncio
 import errno
 import os
 import stat
@@ -11,6 +12,7 @@ from zarr.abc.store import ByteRequest
 from zarr.core.buffer import Buffer, BufferPrototype
 from zarr.storage import LocalStore
 
+from restitution._files import draft_of
 from restitution._reading import MOST
 from restitution._resources import available_memory
 
@@ -54,13 +56,30 @@ class Folder(LocalStore):
 
     async def set(self, key: str, value: Buffer) -> None:
         """Write a file in one step."""
+        self._check_writable()
         with _naming(self.root / key):
-            await super().set(key, value)
+            await asyncio.to_thread(_write, self.root / key, value)
 
     def set_sync(self, key: str, value: Buffer) -> None:
         """Likewise, where Zarr has a thread for it already."""
+        self._check_writable()
         with _naming(self.root / key):
-            super().set_sync(key, value)
+            _write(self.root / key, value)
+
+
+def _write(path: Path, value: Buffer) -> None:
+    """Put a file in its place by a draft that names its process, unlike Zarr's own.
+
+    Of one that is killed it would stay for good.
+    """
+    path.parent.mkdir(parents=True, exist_ok=True)
+    draft = draft_of(path)
+    try:
+        draft.write_bytes(value.to_bytes())
+        draft.replace(path)
+    except BaseException:
+        draft.unlink(missing_ok=True)
+        raise
 
 
 def _check(path: Path) -> None:
