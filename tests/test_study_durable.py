@@ -179,6 +179,7 @@ def test_a_full_disk(whole: dict[str, str], tmp_path: Path) -> None:
         study, store = written(tmp_path, normals=4), disk / "study.zarr"
         code, _, error = finished(started(study, "--out", store))
         assert code == 1
+        assert error.startswith(f"error: {disk}")
         assert "No space left on device" in error
         assert len(error.splitlines()) <= 2
         assert len(chunks(store)) > 0

@@ -178,13 +178,27 @@ def test_an_error_of_writing_names_the_file_and_not_its_draft(
 
     for error, told in (
         (OSError(errno.EISDIR, "Is a directory", "draft"), "Is a directory"),
-        (OSError("of Zarr"), "of Zarr"),
+        (OSError("of nobody"), "of nobody"),
     ):
-        monkeypatch.setattr("zarr.storage._local._put", lambda *_, error=error, **__: refuse(error))
-        with pytest.raises(OSError, match=told) as raised:
-            asyncio.run(folder.set("file", content))
-        assert (raised.value.errno, raised.value.strerror) == (error.errno, told)
-        assert raised.value.filename == str(tmp_path / "file")
+        monkeypatch.setattr(_folder, "_write", lambda *_, error=error: refuse(error))
+        ways: list[Callable[[], Any]] = [
+            lambda: asyncio.run(folder.set("file", content)),
+            lambda: folder.set_sync("file", content),
+            lambda: asyncio.run(folder.set_if_not_exists("file", content)),
+        ]
+        for write in ways:
+            with pytest.raises(OSError, match=told) as raised:
+                write()
+            assert (raised.value.errno, raised.value.strerror) == (error.errno, told)
+            assert raised.value.filename == str(tmp_path / "file")
+
+
+def test_a_file_that_is_there_is_kept(tmp_path: Path) -> None:
+    """By what writes only if there is none; no draft stays."""
+    folder, buffer = _folder.Folder(tmp_path), default_buffer_prototype().buffer
+    for content in (b"first", b"second"):
+        asyncio.run(folder.set_if_not_exists("file", buffer.from_bytes(content)))
+    assert {path.name: path.read_bytes() for path in tmp_path.iterdir()} == {"file": b"first"}
 
 
 def test_a_chunk_longer_than_memory(copy: Path, done: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -314,12 +314,13 @@ def _put(draft: Path, target: Path, replace: bool) -> None:
         os.replace(draft, target)
         return
     try:
-        _claim(draft, target)
+        claim(draft, target)
     except FileExistsError:
         raise FileExistsError(errno.EEXIST, "exists already", str(target)) from None
 
 
-def _claim(draft: Path, target: Path) -> None:
+def claim(draft: Path, target: Path) -> None:
+    """Move a draft to a place that nothing has taken; raises a FileExistsError."""
     try:
         os.link(draft, target)
         draft.unlink()

@@ -4,15 +4,15 @@ import asyncio
 import errno
 import os
 import stat
-from collections.abc import Iterable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable, Iterable, Iterator
+from contextlib import contextmanager, suppress
 from pathlib import Path
 
 from zarr.abc.store import ByteRequest
 from zarr.core.buffer import Buffer, BufferPrototype
 from zarr.storage import LocalStore
 
-from restitution._files import draft_of
+from restitution._files import claim, draft_of
 from restitution._reading import MOST
 from restitution._resources import available_memory
 
@@ -66,8 +66,14 @@ class Folder(LocalStore):
         with _naming(self.root / key):
             _write(self.root / key, value)
 
+    async def set_if_not_exists(self, key: str, value: Buffer) -> None:
+        """Likewise, unless there is one."""
+        self._check_writable()
+        with _naming(self.root / key), suppress(FileExistsError):
+            await asyncio.to_thread(_write, self.root / key, value, claim)
 
-def _write(path: Path, value: Buffer) -> None:
+
+def _write(path: Path, value: Buffer, put: Callable[[Path, Path], object] = Path.replace) -> None:
     """Put a file in its place by a draft that names its process, unlike Zarr's own.
 
     Of one that is killed it would stay for good.
@@ -76,7 +82,7 @@ def _write(path: Path, value: Buffer) -> None:
     draft = draft_of(path)
     try:
         draft.write_bytes(value.to_bytes())
-        draft.replace(path)
+        put(draft, path)
     except BaseException:
         draft.unlink(missing_ok=True)
         raise
