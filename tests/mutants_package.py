@@ -50,6 +50,25 @@ TESTS = {
     "_batches.py": ("test_statistics.py",),
     "_energy.py": ("test_energy.py",),
     "_compare.py": ("test_compare.py",),
+    **dict.fromkeys(
+        (
+            "bodies/_body.py",
+            "bodies/_dumbbell.py",
+            "bodies/_loaded_sphere.py",
+            "bodies/_pair.py",
+            "bodies/_spheroid.py",
+        ),
+        ("test_bodies.py",),
+    ),
+    **dict.fromkeys(
+        (
+            "analytic/_first_impact.py",
+            "analytic/_orientation.py",
+            "analytic/_branched.py",
+            "analytic/_curve.py",
+        ),
+        ("test_analytic.py",),
+    ),
 }
 """What reads and writes files, handles signals, or works out numbers, and the tests that are about it."""
 

@@ -299,6 +299,7 @@ def test_standard_errors_of_clusters_in_several_bins() -> None:
             assert float(found["deviation_standard_error"][k]) == pytest.approx(deviation, rel=1e-12)
     for found in blocks:
         assert found["velocity"].values.tolist() == [0.25, 1.25]
+        assert found["velocity"].dims == ("velocity",)
         assert found["velocity"].attrs["units"] == "m s-1"
         assert found.attrs == data.attrs
         for name in ("mean", "variance", "deviation"):
