@@ -31,6 +31,8 @@ _SECONDS = 20
 _TICK = 0.01
 REACHED: set[tuple[str, str]] = set()
 """Files and functions that were called since it was last emptied."""
+KEPT: set[tuple[str, str]] = set()
+"""Functions whose results are kept: only the first test that needs one calls it."""
 
 
 class Judge:
@@ -95,7 +97,8 @@ class Judge:
             )
             if session.testsfailed:
                 return item.nodeid, {}, {}
-        return "", seconds, reached
+        kept = KEPT & set().union(*reached.values())
+        return "", seconds, {test: places | kept for test, places in reached.items()}
 
     def reaching(self, module: ModuleType, function: str) -> list[pytest.Item]:
         """Give the tests that reach a function."""
@@ -179,6 +182,8 @@ def _telling(module: ModuleType) -> str:
         for function in inner:
             if isinstance(function, ast.FunctionDef | ast.AsyncFunctionDef):
                 place = (str(module.__file__), above + function.name)
+                if any("cache" in ast.unparse(decorator) for decorator in function.decorator_list):
+                    KEPT.add(place)
                 tell = f"__import__('sys').modules['mutants_judge'].REACHED.add({place!r})"
                 for one in ast.walk(function):
                     if isinstance(one, ast.FunctionDef | ast.AsyncFunctionDef):

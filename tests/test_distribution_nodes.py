@@ -140,6 +140,7 @@ def test_distances_of_equal_values(uniform: Table) -> None:
         assert first == pytest.approx(max(u, 1 - u), abs=1 / 4096)
         assert first >= max(u, 1 - u) - 1e-15
         assert np.isnan(second)
+        assert check.scatter().shape == (2,)
         assert np.isnan(check.scatter()).all()
 
 

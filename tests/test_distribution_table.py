@@ -100,7 +100,7 @@ def test_moments_are_integrals(v: float, z: float, given: bool, conditional: Tab
     assert sum(float(weight) for weight, _ in table.parts(*at)) == pytest.approx(1.0, rel=1e-15)
 
 
-def test_many_places_at_once(conditional: Table) -> None:
+def test_many_places_at_once(conditional: Table, plain: Table) -> None:
     """Shapes are broadcast, and what is not a number gives none."""
     v, z = np.array([[0.6], [1.0], [3.0]]), np.array([0.1, 0.3, 0.5, 0.7])
     assert conditional.mean(v, z).shape == (3, 4)
@@ -114,6 +114,7 @@ def test_many_places_at_once(conditional: Table) -> None:
     for bad in ((np.nan, 0.1), (0.6, np.nan)):
         nowhere = conditional.expectation(np.square, np.array(bad[0]), np.array(bad[1]), 0.0, 1.0, 2)
         assert np.isnan(nowhere)
+    assert np.isnan(plain.expectation(np.square, np.array(0.6), np.array(np.nan), 0.0, 1.0, 2))
 
 
 @pytest.mark.parametrize("order", range(8))
@@ -146,6 +147,13 @@ def test_entropy_is_that_of_the_density(v: float, z: float, conditional: Table) 
     assert conditional.entropy(v, z) == pytest.approx(expected, rel=1e-13, abs=1e-15)
 
 
+def test_entropy_of_parts_that_lie_apart() -> None:
+    """Half on [0, 1] and half on [3, 5]: -∫ p ln p = ½ ln 2 + ½ ln 4, and nothing between them."""
+    apart = [Histogram(np.array(edges), np.array([0.0, 1.0])) for edges in ([0.0, 1.0], [3.0, 5.0])]
+    table = Table.of(np.array([1.0, 2.0]), apart)
+    assert table.entropy(1.5, 0.0) == pytest.approx(1.5 * np.log(2.0), rel=1e-14)
+
+
 def test_values(conditional: Table, plain: Table) -> None:
     """cdf and pdf by interpolation in each part, ppf is the inverse; arguments are broadcast."""
     x = np.linspace(-2.5, 4.5, 57)
@@ -172,6 +180,11 @@ def test_values(conditional: Table, plain: Table) -> None:
     assert grid.shape == (57, 3, 2)
     assert grid[30, 1, 1] == conditional.value("cdf", x[30], SPEEDS[1], 0.3)
     assert conditional.value("cdf", 0.5, 0.5, 0.1).shape == ()
+
+
+def test_whole_numbers_are_places_as_well(plain: Table) -> None:
+    np.testing.assert_array_equal(plain.value("cdf", [0, 1, 2], 1), plain.value("cdf", [0.0, 1.0, 2.0], 1.0))
+    assert plain.value("cdf", 1, 1) == plain.value("cdf", np.float32(1), np.float32(1))
 
 
 def test_draws_have_the_mean_of_their_place(conditional: Table) -> None:
