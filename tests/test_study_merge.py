@@ -151,6 +151,9 @@ def test_the_status_counts_what_is_there(done: Path, tmp_path: Path) -> None:
     found = status(done)
     assert (found.points, found.finished, found.tasks, found.there) == (6, 6, 12, 12)
     assert str(found) == "6 of 6 points finished (100 %); 12 tasks done, 12 at least"
+    opened = open_store(done)
+    assert opened["mean_restitution"].dims == ("separation", "normal", "velocity")
+    assert not opened.chunks, "read when it is needed, and by no library besides"
     part = tmp_path / "part.zarr"
     sweep(TINY, part, shard=(2, 4), threads=1)
     found = status(str(part))
@@ -159,6 +162,10 @@ def test_the_status_counts_what_is_there(done: Path, tmp_path: Path) -> None:
     assert str(status(part)) == "2 of 6 points finished (33 %); 4 tasks done, 12 at least"
     with pytest.raises(Refused, match=r"none\.zarr: is not the store"):
         status(tmp_path / "none.zarr")
+    with pytest.raises(ValueError, match=r"^out = 3: must be the path"):
+        status(3)  # type: ignore[arg-type]
+    with pytest.raises(ValueError, match=r"^path = 3: must be the path"):
+        open_store(3)  # type: ignore[arg-type]
 
 
 def test_a_merge_takes_what_is_undamaged(done: Path, tiny: Study, tmp_path: Path) -> None:
