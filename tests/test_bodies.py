@@ -208,3 +208,9 @@ def test_small_changes_of_shape_are_small() -> None:
         # ε_n − ε goes with the square of the distance of the normal from the centre of mass.
         assert 0 < losses[0] < 1e-5
         assert losses[1] == pytest.approx(losses[0] / 100, rel=0.1)
+
+
+def test_a_body_whose_mass_overflows_names_all_that_is_given() -> None:
+    told = r"^radius = 1e-200, separation = 1e\+100, density = 2500\.0: must be such that mass and inertia"
+    with pytest.raises(ValueError, match=told):
+        rs.Dumbbell(radius=1e-200, separation=1e100)
