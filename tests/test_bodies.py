@@ -214,3 +214,14 @@ def test_a_body_whose_mass_overflows_names_all_that_is_given() -> None:
     told = r"^radius = 1e-200, separation = 1e\+100, density = 2500\.0: must be such that mass and inertia"
     with pytest.raises(ValueError, match=told):
         rs.Dumbbell(radius=1e-200, separation=1e100)
+
+
+def test_spheres_are_equal_in_radius_and_density() -> None:
+    for radius, density, equal in (
+        ((3e-3, 3e-3), (2e3, 2e3), True),
+        ((3e-3, 3e-3), (2e3, 1e3), False),
+        ((3e-3, 2e-3), (2e3, 2e3), False),
+        (3e-3, (2e3, 2e3), True),
+        (3e-3, 2e3, True),
+    ):
+        assert rs.Dumbbell(radius=radius, separation=1e-3, density=density).is_equal is equal

@@ -61,12 +61,13 @@ def test_a_store_of_another_physics(done: Path, tiny: Study, tmp_path: Path) -> 
     assert told[-1] == "  and 2 more"
     shutil.rmtree(path)
     path = changed(
-        done, tmp_path, lambda own: own["physics"].update({f"p{i:02}": "x" * (47 + i) for i in range(12)})
+        done, tmp_path, lambda own: own["physics"].update({f"p{i:02}": "x" * (48 + i) for i in range(12)})
     )
     with pytest.raises(Refused) as raised:
         check(path, tiny)
     told = str(raised.value).splitlines()
-    assert told[-1] == f'  physics.p11: "{"x" * 58}" in the store, nothing here'
+    assert told[-2] == f'  physics.p10: "{"x" * 58}" in the store, nothing here'
+    assert told[-1] == f'  physics.p11: "{"x" * 39} … {"x" * 11}" in the store, nothing here'
     assert len(told) == 13
 
 
