@@ -1,7 +1,7 @@
 """Mass, centre and inertia of every shape by integrals over its slices, and limits that must coincide."""
 
 from collections.abc import Callable, Sequence
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 import pytest
@@ -225,3 +225,27 @@ def test_spheres_are_equal_in_radius_and_density() -> None:
         (3e-3, 2e3, True),
     ):
         assert rs.Dumbbell(radius=radius, separation=1e-3, density=density).is_equal is equal
+
+
+@pytest.mark.parametrize("pair", [(3e-3, 2e-3), [3e-3, 2e-3], np.array([3e-3, 2e-3])], ids=type)
+def test_a_pair_in_any_form(pair: Any) -> None:
+    assert rs.Dumbbell(radius=pair, separation=1e-3).radii == (3e-3, 2e-3)
+
+
+@pytest.mark.parametrize(
+    ("radius", "told"),
+    [
+        ("a", r"^radius = 'a': must be a finite number > 0 \(or one for each sphere\)$"),
+        (True, r"^radius = True: must be a finite number > 0 \(or"),
+        (0.0, r"^radius = 0\.0: must be a finite number > 0 \(or"),
+        (10**400, r"^radius = an integer of 1329 bits: must be a finite number > 0 \(or"),
+        ((1e-3, 2e-3, 3e-3), r"^radius = \(0\.001, 0\.002, 0\.003\): must be"),
+        ((3e-3, True), r"^radius\[1\] = True: must be a finite number > 0$"),
+        (("a", 3e-3), r"^radius\[0\] = 'a': must be a finite number > 0$"),
+        ((-1.0, np.inf), r"radius\[0\] = -1\.0: must be .*\n?.*radius\[1\] = inf: must be"),
+    ],
+)
+def test_what_is_no_pair(radius: Any, told: str) -> None:
+    """The argument, or which of the two, with its value and what is allowed."""
+    with pytest.raises(ValueError, match=told):
+        rs.Dumbbell(radius=radius, separation=1e-3)
