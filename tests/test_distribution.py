@@ -354,7 +354,7 @@ def test_what_came_to_harm_is_refused(conditional: FluctuatingRestitution, tmp_p
         whole.assign(edges=whole.edges + 1),
         whole.assign(edges=-whole.edges),
         whole.assign(probability_below=2 * whole.probability_below),
-        whole.assign(probability_below=whole.velocity),
+        whole.assign(probability_below=whole.velocity.drop_attrs()),
         whole.assign(given_edges=whole.given_edges + 1),
         whole.astype("float32"),
     ):

@@ -10,10 +10,10 @@ from scipy import stats
 import restitution as rs
 from reference.ensembles import BODY, LAW, TOUCHING, heights
 from restitution._run import Run
-from restitution.distribution import FluctuatingRestitution, _ensemble, _learn, _nodes
+from restitution.distribution import FluctuatingRestitution, _ensemble, _learn, _nodes, _pilot
 from restitution.distribution._check import Check
 from restitution.distribution._count import Counter
-from restitution.distribution._ensemble import FRESH, LEARNING, Ensemble
+from restitution.distribution._ensemble import FRESH, LEARNING, Ensemble, Impacts
 
 Floats = NDArray[np.float64]
 
@@ -83,15 +83,18 @@ def test_bins_are_placed_from_every_height(monkeypatch: pytest.MonkeyPatch) -> N
     share scatters by 0.18 of itself, and the limit is more than four times that.
     """
     monkeypatch.setattr(_ensemble, "_IMPACTS_PER_ROUND", 12_000)
-    monkeypatch.setattr(_learn, "_PILOT", 6000)
+    monkeypatch.setattr(_pilot, "IMPACTS", 6000)
     body, law = rs.Dumbbell(radius=3e-3, separation=3e-4), rs.TangentialRestitution(normal=0.4)
     run = Run(body=body, law=law, particles=24_000, impacts=20, minimum_speed=0.1, seed=1)
     heights = 6e-3 + 0.054 * np.geomspace(0.4, 2.5, 300)
     ensemble, nodes = Ensemble(run, tuple(heights.tolist())), np.geomspace(0.2, 0.4, 8)
-    pilot, scale = _learn._pilot(ensemble, nodes)
+    pilot = _pilot.Pilot.of(ensemble, nodes[0], nodes[-1])
+    scale = pilot.scale
     assert scale > 2.5
-    parts = [[_learn._unconditional(block) for block in of] for of in (pilot, ensemble.blocks(LEARNING))]
-    few, every = (list(_learn._at_nodes(part, nodes, [np.zeros(1)] * 8)) for part in parts)
+    samples = [
+        _pilot.Sample(blocks, nodes, lambda _: None) for blocks in (pilot.blocks(), ensemble.blocks(LEARNING))
+    ]
+    few, every = (list(_learn._at_nodes(sample, nodes, [np.zeros(1)] * 8)) for sample in samples)
     for (some, where), (restitution, _) in zip(few, every, strict=True):
         edges = np.concatenate([[-np.inf], _nodes.bins(some, scale, where), [np.inf]])
         shares = np.histogram(restitution, edges)[0] / restitution.size
@@ -158,8 +161,7 @@ def test_a_known_distribution_is_learned() -> None:
     nodes = np.geomspace(0.1, 0.2, 18)
     edges = [0.9 + 0.02 / node * stats.norm.ppf(np.arange(1, 100) / 100) for node in nodes]
     counter = Counter(nodes, [np.zeros(1)] * nodes.size, edges)
-    for batch, part in enumerate(np.array_split(np.arange(v.size), 20)):
-        counter.add(batch, v[part], e[part], np.zeros(part.size))
+    counter.add(Impacts(v.reshape(20, -1), e.reshape(20, -1), np.empty((0, 0))))
     assert counter.impacts().sum() == pytest.approx(v.size)
     for node, (histogram, _, error) in zip(nodes, counter.histograms(), strict=True):
         exact = stats.norm.cdf(histogram.edges, 0.9, 0.02 / node)

@@ -12,7 +12,7 @@ import xarray as xr
 import restitution as rs
 from restitution.distribution._check import Check, warn_of_distance
 from restitution.distribution._ensemble import Impacts
-from restitution.distribution._nodes import bins, conditions, speeds
+from restitution.distribution._nodes import Density, bins, conditions
 from restitution.distribution._table import Histogram, Table
 
 Floats = npt.NDArray[np.float64]
@@ -26,6 +26,13 @@ def impacts_in(each: list[int], copies: int = 1) -> Floats:
     """So many particles, each with impacts in one cell only, in the middle of it."""
     cell = np.repeat(np.arange(len(each)), each)
     return np.repeat(LOW * np.exp((cell + 0.5) * LENGTH / len(each))[:, None], copies, axis=1)
+
+
+def speeds(blocks: list[Floats], low: float, high: float, scale: float) -> Floats:
+    density = Density(low, high)
+    for block in blocks:
+        density.add(block)
+    return density.speeds(scale)
 
 
 def distance(particles: float, copies: int, scale: float) -> float:

@@ -212,7 +212,7 @@ def test_an_interruption_is_passed_on(plain: Table) -> None:
             return function
 
     table = Table.of(SPEEDS, PARTS[:3])
-    table.__dict__["_mixture"] = Interrupted()
+    table.__dict__["mixture"] = Interrupted()
     at: Any = np.array([1.0])
     actions: list[Callable[[], Any]] = [
         lambda: table.value("cdf", at, at),

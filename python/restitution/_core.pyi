@@ -14,7 +14,9 @@ __all__ = [
     "ORIENTATIONS",
     "PADE",
     "STOP_REASONS",
+    "Counter",
     "Law",
+    "Levels",
     "MagnitudeError",
     "Material",
     "Mixture",
@@ -130,6 +132,40 @@ class Mixture:
         seed: int,
         threads: int,
     ) -> tuple[npt.NDArray[np.float64], KeyboardInterrupt | None]: ...
+
+class Counter:
+    def __init__(
+        self,
+        speeds: npt.NDArray[np.float64],
+        first: npt.NDArray[np.int64],
+        conditions: npt.NDArray[np.float64],
+        start: npt.NDArray[np.int64],
+        edges: npt.NDArray[np.float64],
+        batches: int,
+    ) -> None: ...
+    def add(
+        self,
+        velocity: npt.NDArray[np.float64],
+        restitution: npt.NDArray[np.float64],
+        condition: npt.NDArray[np.float64] | None,
+        first: int,
+        threads: int,
+    ) -> KeyboardInterrupt | None: ...
+    def table(self) -> dict[str, npt.NDArray[np.float64]]: ...
+
+class Levels:
+    def __init__(self, nodes: int, batches: int) -> None: ...
+    def add(
+        self,
+        mixture: Mixture,
+        point: float,
+        velocity: npt.NDArray[np.float64],
+        restitution: npt.NDArray[np.float64],
+        first: int,
+        threads: int,
+    ) -> KeyboardInterrupt | None: ...
+    def fine(self) -> npt.NDArray[np.int64]: ...
+    def coarse(self) -> npt.NDArray[np.float64]: ...
 
 def dumbbell(radius: tuple[float, float], separation: float, density: tuple[float, float]) -> Solid: ...
 def loaded_sphere(radius: float, density: float, load: float, offset: float) -> Solid: ...

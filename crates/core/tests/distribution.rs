@@ -4,7 +4,7 @@ mod common;
 
 use common::cases;
 use proptest::prelude::*;
-use restitution_core::distribution::{At, Layout, Mixture, Values, values};
+use restitution_core::distribution::{At, Layout, Mixture, Nodes, Values, values};
 use restitution_core::{Error, Level, Means, Monitor};
 
 /// Histograms at increasing speeds, each with as many conditions as it has entries in `conditions`.
@@ -19,19 +19,22 @@ struct Table {
 }
 
 impl Table {
-    fn layout(&self) -> Layout {
-        Layout {
-            speeds: self.speeds.clone(),
-            first: self.first.clone(),
-            conditions: self.conditions.clone(),
+    fn nodes(&self) -> Result<Nodes, Error> {
+        let (speeds, first) = (self.speeds.clone(), self.first.clone());
+        Nodes::new(speeds, first, self.conditions.clone())
+    }
+
+    fn mixture(&self) -> Result<Mixture, Error> {
+        Mixture::new(Layout {
+            nodes: self.nodes()?,
             start: self.start.clone(),
             edges: self.edges.clone(),
             cumulative: self.cumulative.clone(),
-        }
+        })
     }
 
     fn ask(&self, what: Question, x: &[f64], v: f64, z: f64) -> Vec<f64> {
-        let mixture = Mixture::new(self.layout()).unwrap();
+        let mixture = self.mixture().unwrap();
         let mut out = vec![0.0; x.len()];
         let (v, z) = ([v], [z]);
         let at = at(&v, &z, x.len());
@@ -47,7 +50,7 @@ impl Table {
     }
 
     fn draw(&self, v: &[f64], z: &[f64], size: usize, threads: usize) -> Vec<f64> {
-        let mixture = Mixture::new(self.layout()).unwrap();
+        let mixture = self.mixture().unwrap();
         let mut out = vec![0.0; size];
         let monitor = Monitor::default();
         mixture
@@ -225,7 +228,7 @@ fn every_element_has_its_own_arguments() {
         (0..size).map(|i| low + (high - low) * share(i)).collect()
     };
     let (x, v, z) = (of(0.01, 0.99, 997), of(0.05, 0.35, 1009), of(0.1, 0.7, 31));
-    let mixture = Mixture::new(table.layout()).unwrap();
+    let mixture = table.mixture().unwrap();
     let monitor = Monitor::default();
     let values = Values::new(&x, "x", size).unwrap();
     let mut out = [(); 3].map(|()| vec![0.0; size]);
@@ -312,8 +315,14 @@ fn tables_that_are_no_distributions_are_refused() {
     for spoil in spoil {
         let mut table = example();
         spoil(&mut table);
-        let refused = Mixture::new(table.layout()).unwrap_err();
-        assert!(matches!(refused, Error::Parameter { name: "table", .. }));
+        let refused = table.mixture().unwrap_err();
+        assert!(matches!(
+            refused,
+            Error::Parameter {
+                name: "nodes" | "table",
+                ..
+            }
+        ));
     }
     assert!(Values::new(&[1.0, 2.0], "v", 3).is_err());
 }
@@ -325,7 +334,7 @@ fn cancelled_draws_end() {
     let monitor = Monitor::default();
     monitor.cancel();
     let mut out = vec![-7.0; 100];
-    let mixture = Mixture::new(table.layout()).unwrap();
+    let mixture = table.mixture().unwrap();
     mixture
         .rvs(at(&[0.2], &[0.3], 100), 1, &mut out, on(2), &monitor)
         .unwrap();

@@ -4,17 +4,27 @@ use crate::errors::python_error;
 use crate::{means, watch};
 use numpy::{IntoPyArray, PyArray1, PyReadonlyArray1};
 use pyo3::prelude::*;
-use restitution_core::distribution::{At, BLOCK, Layout, Values};
+use restitution_core::distribution::{At, BLOCK, Layout, Nodes, Values};
 use restitution_core::{Error, Means, Monitor};
 
 /// The table of a distribution.
 #[pyclass(frozen, module = "restitution._core")]
-pub struct Mixture(restitution_core::distribution::Mixture);
+pub struct Mixture(pub(crate) restitution_core::distribution::Mixture);
 
 type Array<'py> = PyReadonlyArray1<'py, f64>;
 
 /// Values, and the `KeyboardInterrupt` that cut them short, if any.
 type Filled<'py> = (Bound<'py, PyArray1<f64>>, Option<PyErr>);
+
+/// Speeds, the first component of each, and the conditions of the components.
+pub(crate) fn nodes(
+    speeds: &Array<'_>,
+    first: &PyReadonlyArray1<'_, i64>,
+    conditions: &Array<'_>,
+) -> PyResult<Nodes> {
+    let (speeds, first) = (speeds.as_slice()?.to_vec(), first.as_slice()?.to_vec());
+    Nodes::new(speeds, first, conditions.as_slice()?.to_vec()).map_err(python_error)
+}
 
 /// A function of the table that is evaluated at many points.
 type Function = fn(
@@ -90,9 +100,7 @@ impl Mixture {
         cumulative: Array<'_>,
     ) -> PyResult<Self> {
         let layout = Layout {
-            speeds: speeds.as_slice()?.to_vec(),
-            first: first.as_slice()?.to_vec(),
-            conditions: conditions.as_slice()?.to_vec(),
+            nodes: nodes(&speeds, &first, &conditions)?,
             start: start.as_slice()?.to_vec(),
             edges: edges.as_slice()?.to_vec(),
             cumulative: cumulative.as_slice()?.to_vec(),

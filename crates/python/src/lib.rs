@@ -1,6 +1,7 @@
 //! The Python binding: it takes parameters and returns NumPy arrays, and contains no physics.
 
 mod bodies;
+mod counts;
 mod distribution;
 mod errors;
 mod laws;
@@ -122,6 +123,7 @@ fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     bodies::add_to(module)?;
     laws::add_to(module)?;
     distribution::add_to(module)?;
+    counts::add_to(module)?;
     records::add_to(module)?;
     tally::add_to(module)?;
     module.add_function(wrap_pyfunction!(build_info, module)?)?;

@@ -6,15 +6,15 @@ from collections.abc import Iterable
 import numpy as np
 import xarray as xr
 
-from restitution.distribution._count import placed
+from restitution import _core
+from restitution._resources import checked_threads
 from restitution.distribution._ensemble import BATCHES, Impacts
 from restitution.distribution._nodes import POINT
 from restitution.distribution._table import Floats, Ints, Table
 
-_LEVELS = 4096
 _FAR, _TIMES = 0.05, 3.5
 """A distance beyond both, of fresh impacts and in terms of their scatter, triggers a warning."""
-_COARSE, _RESAMPLES, _SEED = 256, 64, 1
+_RESAMPLES, _SEED = 64, 1
 
 
 class Check:
@@ -27,36 +27,32 @@ class Check:
 
     def __init__(self, table: Table) -> None:
         self.table = table
-        self._random = np.random.default_rng(_SEED)
-        self._has_points = any(np.diff(part.edges).min() < POINT for part in table)
-        self.count: Ints = np.zeros((table.speeds.size - 1, _LEVELS), dtype=np.int64)
-        self._batches: Ints = np.zeros((BATCHES, table.speeds.size - 1, _COARSE), dtype=np.int64)
+        self._levels = _core.Levels(table.speeds.size, BATCHES)
 
     @classmethod
-    def of(cls, table: Table, blocks: Iterable[Impacts]) -> "Check":
+    def of(cls, table: Table, blocks: Iterable[Impacts], threads: int | None = None) -> "Check":
         """Compare a table with an ensemble."""
         check = cls(table)
         for block in blocks:
-            check.add(block.batch, block.velocity, block.restitution)
+            check.add(block, threads)
+            del block  # before the next one is simulated
         return check
 
-    def add(self, batch: int, velocity: Floats, restitution: Floats) -> None:
-        """Count impacts of a batch, which shares no particle with any other, by interval and u."""
-        number, inside = placed(self.table.speeds, velocity, restitution)
-        u = self._levels(restitution[inside], velocity[inside])
-        place = number[inside] * _LEVELS + np.minimum((u * _LEVELS).astype(np.int64), _LEVELS - 1)
-        count = np.bincount(place, minlength=self.count.size).reshape(self.count.shape)
-        self.count += count
-        self._batches[batch] += count.reshape(*count.shape[:1], _COARSE, -1).sum(axis=2)
+    def add(self, block: Impacts, threads: int | None = None) -> None:
+        """Count impacts by interval and u.
 
-    def _levels(self, restitution: Floats, velocity: Floats) -> Floats:
-        """F(ε | v); evenly between the levels on either side of ε where it is a point mass."""
-        u = self.table.value("cdf", restitution, velocity)
-        if self._has_points:
-            below, above = (self.table.value("cdf", restitution + side, velocity) for side in (-POINT, POINT))
-            even = self._random.random(u.size)
-            u = np.where(above - below > 0.5 / _LEVELS, below + even * (above - below), u)
-        return u
+        Where ε is a point mass, u is spread evenly between the levels on either side of it.
+        """
+        velocity, restitution = map(np.ascontiguousarray, (block.velocity, block.restitution))
+        number = checked_threads(threads)
+        interrupted = self._levels.add(self.table.mixture, POINT, velocity, restitution, block.first, number)
+        if interrupted:
+            raise KeyboardInterrupt from interrupted
+
+    @property
+    def count(self) -> Ints:
+        """Impacts in each interval and each of 4096 equal parts of [0, 1] that u is in."""
+        return self._levels.fine()
 
     def impacts(self) -> Ints:
         """Impacts in each interval."""
@@ -64,8 +60,10 @@ class Check:
 
     def distances(self) -> Floats:
         """Upper bounds: the distance at 4096 equidistant u, and 1/4096; NaN where there are no impacts."""
-        exact = np.arange(1, _LEVELS + 1) / _LEVELS
-        return np.asarray(np.max(np.abs(_shares(self.count) - exact), axis=1) + 1.0 / _LEVELS)
+        count = self.count
+        levels = count.shape[1]
+        exact = np.arange(1, levels + 1) / levels
+        return np.asarray(np.max(np.abs(_shares(count) - exact), axis=1) + 1.0 / levels)
 
     def scatter(self) -> Floats:
         """Estimate the part of the distances that is scatter of the impacts: the mean of a bootstrap.
@@ -73,9 +71,11 @@ class Check:
         Batches of particles are resampled, each a Poisson number of times of mean 1, and compared with
         all of them at 256 u. Independent impacts scatter by 0.87/√impacts. NaN for a single batch.
         """
-        filled = self._batches[self._batches.any(axis=(1, 2))]
+        batches = self._levels.coarse()
+        some = batches.any(axis=(1, 2))
+        filled = batches if some.all() else batches[some]
         if filled.shape[0] < 2:
-            return np.full(self.count.shape[0], np.nan)
+            return np.full(batches.shape[1], np.nan)
         found = _shares(filled.sum(axis=0))
         times = np.random.default_rng(_SEED).poisson(size=(_RESAMPLES, filled.shape[0]))
         distances = [np.abs(_shares(np.tensordot(row, filled, 1)) - found).max(axis=1) for row in times]
@@ -120,7 +120,7 @@ def warn_of_distance(data: xr.Dataset, *, stacklevel: int) -> None:
         )
 
 
-def _shares(count: Ints) -> Floats:
+def _shares(count: Ints | Floats) -> Floats:
     """Cumulate along the last axis, as shares; NaN where there are no impacts."""
     with np.errstate(invalid="ignore"):
         below = np.cumsum(count, axis=-1)

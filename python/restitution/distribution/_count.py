@@ -1,57 +1,14 @@
 """Impacts counted at the nodes: each is shared among its neighbours as the mixture will weight them."""
 
-from collections.abc import Iterator, Sequence
-from typing import TypeAlias
+from collections.abc import Iterable, Iterator, Sequence
+from functools import cached_property
 
 import numpy as np
-import numpy.typing as npt
 
-from restitution.distribution._ensemble import BATCHES
-from restitution.distribution._table import Floats, Histogram, Ints
-
-Chosen: TypeAlias = "slice | npt.NDArray[np.bool_]"
-
-
-def placed(nodes: Floats, velocity: Floats, *columns: Floats) -> tuple[Ints, npt.NDArray[np.bool_]]:
-    """Find between which two neighbouring nodes each impact lies, and whether it counts.
-
-    Those outside the nodes, and those with NaN in any column, do not.
-    """
-    number = np.searchsorted(nodes, velocity, side="right") - 1
-    inside = (number >= 0) & (number < nodes.size - 1)
-    for column in columns:
-        inside &= np.isfinite(column)
-    return number, inside
-
-
-def intervals(nodes: Floats, velocity: Floats, *columns: Floats) -> Iterator[tuple[int, tuple[Floats, ...]]]:
-    """Yield the impacts between each two neighbouring nodes that have any: the interval, weights, columns.
-
-    The weight is that of the upper node.
-    """
-    number, inside = placed(nodes, velocity, *columns)
-    number = number[inside].astype(np.int32)
-    order = np.argsort(number, kind="stable")
-    sorted_columns = [column[inside][order] for column in (velocity, *columns)]
-    ends = np.cumsum(np.bincount(number, minlength=nodes.size - 1))
-    for i, end in enumerate(ends):
-        start = 0 if i == 0 else int(ends[i - 1])
-        if end > start:
-            speed, *rest = (column[start:end] for column in sorted_columns)
-            yield i, ((speed - nodes[i]) / (nodes[i + 1] - nodes[i]), *rest)
-
-
-def shares(z: Floats, conditions: Floats) -> Iterator[tuple[int, Chosen, Floats]]:
-    """Yield for each condition the impacts that count there, and their weights."""
-    if conditions.size == 1:
-        yield 0, slice(None), np.ones(1)
-        return
-    below = np.clip(np.searchsorted(conditions, z, side="right") - 1, 0, conditions.size - 2)
-    part = np.clip((z - conditions[below]) / (conditions[below + 1] - conditions[below]), 0.0, 1.0)
-    for k in range(conditions.size):
-        lower, upper = below == k, below + 1 == k
-        chosen = lower | upper
-        yield k, chosen, np.where(lower, 1.0 - part, part)[chosen]
+from restitution import _core
+from restitution._resources import checked_threads
+from restitution.distribution._ensemble import BATCHES, Impacts, Look
+from restitution.distribution._table import Floats, Histogram, starts
 
 
 class Counter:
@@ -69,46 +26,47 @@ class Counter:
 
     def __init__(self, nodes: Floats, conditions: Sequence[Floats], edges: Sequence[Floats]) -> None:
         self.nodes, self.conditions, self.edges = nodes, conditions, edges
-        self.first = np.concatenate([[0], np.cumsum([group.size for group in conditions])])
-        self.start = np.concatenate([[0], np.cumsum([inner.size + 1 for inner in edges])])
-        size = int(self.start[-1])
-        self.count = np.zeros((BATCHES, size))
-        self.lowest, self.highest = np.full(len(edges), np.inf), np.full(len(edges), -np.inf)
-        self.seen = np.array([np.full(nodes.size, np.inf), np.full(nodes.size, -np.inf)])
-        # Σw, Σwx and Σwx², x being ε above one of the edges in the middle.
-        self._powers = np.zeros((3, BATCHES, len(edges)))
+        self.start = starts(inner.size + 1 for inner in edges)
+        self._counter = _core.Counter(
+            np.ascontiguousarray(nodes),
+            starts(group.size for group in conditions),
+            np.concatenate(conditions),
+            starts(inner.size for inner in edges),
+            np.concatenate(edges),
+            BATCHES,
+        )
 
-    def add(self, batch: int, velocity: Floats, restitution: Floats, z: Floats) -> None:
-        """Count impacts of a batch, which shares no particle with any other."""
-        for i, (weight, epsilon, condition) in intervals(self.nodes, velocity, restitution, z):
-            for node, share in ((i, 1.0 - weight), (i + 1, weight)):
-                self.seen[0, node] = min(self.seen[0, node], condition.min())
-                self.seen[1, node] = max(self.seen[1, node], condition.max())
-                for k, chosen, part in shares(condition, self.conditions[node]):
-                    component = int(self.first[node]) + k
-                    self._add_to(batch, component, epsilon[chosen], share[chosen] * part)
+    def add_all(self, blocks: Iterable[Impacts], look: Look, threads: int | None = None) -> None:
+        """Count the impacts of blocks with the conditions that `look` sees."""
+        for block in blocks:
+            self.add(block, look(block), threads)
+            del block  # before the next one is simulated
 
-    def _add_to(self, batch: int, component: int, epsilon: Floats, weight: Floats) -> None:
-        counted = weight > 0.0
-        if not counted.any():
-            return
-        epsilon, weight = epsilon[counted], weight[counted]
-        inner = self.edges[component]
-        place = np.searchsorted(inner, epsilon, side="right")
-        bins = slice(self.start[component], self.start[component + 1])
-        self.count[batch, bins] += np.bincount(place, weights=weight, minlength=inner.size + 1)
-        above = epsilon - inner[inner.size // 2]
-        self._powers[:, batch, component] += [np.sum(weight * above**power) for power in range(3)]
-        self.lowest[component] = min(self.lowest[component], epsilon.min())
-        self.highest[component] = max(self.highest[component], epsilon.max())
+    def add(self, block: Impacts, condition: Floats | None = None, threads: int | None = None) -> None:
+        """Count the impacts from the first node up to the last that have a restitution, and a condition."""
+        number = checked_threads(threads)
+        interrupted = self._counter.add(block.velocity, block.restitution, condition, block.first, number)
+        if interrupted:
+            raise KeyboardInterrupt from interrupted
+        self.__dict__.pop("_table", None)
+
+    @cached_property
+    def _table(self) -> dict[str, Floats]:
+        """What was counted: Σw of the bins, over batches; Σw, Σwx and Σwx², x above an edge in the middle."""
+        return self._counter.table()
+
+    @property
+    def seen(self) -> Floats:
+        """Least and greatest condition next to each node; shape (2, nodes)."""
+        return self._table["seen"]
 
     def impacts(self) -> Floats:
         """Weights added up at each component."""
-        return np.add.reduceat(self.count.sum(axis=0), self.start[:-1])
+        return np.add.reduceat(self._table["count"].sum(axis=0), self.start[:-1])
 
     def moment_errors(self) -> tuple[Floats, Floats]:
         """Give standard errors of mean and standard deviation at each component, as in `histograms`."""
-        n, first, second = self._powers
+        n, first, second = self._table["powers"]
         total, correction = n.sum(axis=0), self._correction()
         mean = first.sum(axis=0) / total
         variance = np.maximum(second.sum(axis=0) / total - mean**2, 0.0)
@@ -119,7 +77,7 @@ class Counter:
         return errors[0], np.where(spread, errors[1] / (2.0 * np.sqrt(np.where(spread, variance, 1.0))), 0.0)
 
     def _correction(self) -> float:
-        batches = np.count_nonzero(self.count.any(axis=1))
+        batches = np.count_nonzero(self._table["count"].any(axis=1))
         return batches / (batches - 1.0) if batches > 1 else np.nan
 
     def histograms(self) -> Iterator[tuple[Histogram, Floats, Floats]]:
@@ -131,7 +89,7 @@ class Counter:
         correction = self._correction()
         for component, inner in enumerate(self.edges):
             bins = slice(self.start[component], self.start[component + 1])
-            batches = self.count[:, bins]
+            batches = self._table["count"][:, bins]
             count, numbers = batches.sum(axis=0), batches.sum(axis=1, keepdims=True)
             total = count.sum()
             errors = []
@@ -142,8 +100,8 @@ class Counter:
             low, high = int(filled[0]), int(filled[-1]) + 1
             # The greatest may be the very edge that its bin starts at.
             lower = inner[low : high - 1]
-            edges = np.concatenate([[self.lowest[component]], lower])
-            top = max(self.highest[component], np.nextafter(edges[-1], np.inf))
+            edges = np.concatenate([[self._table["lowest"][component]], lower])
+            top = max(self._table["highest"][component], np.nextafter(edges[-1], np.inf))
             edges = np.append(edges, top)
             cumulative = np.concatenate([[0.0], np.minimum(np.cumsum(count)[low:high] / total, 1.0)])
             cumulative[-1] = 1.0

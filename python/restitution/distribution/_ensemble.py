@@ -3,14 +3,15 @@
 import math
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import Any, NamedTuple, TypeAlias
 
 import numpy as np
 
+from restitution import _core
 from restitution._parameters import ParameterError, Problem, wrong
 from restitution._release import RandomHeight, RandomSpin
+from restitution._resources import check_memory, checked_threads
 from restitution._run import Run
-from restitution._simulate import simulate_run
 from restitution.distribution._table import Floats
 
 LEARNING, FRESH = 0, 1
@@ -19,25 +20,32 @@ LEARNING, FRESH = 0, 1
 BATCHES = 32
 """Parts of the ensemble, each with equal shares of all heights, whose scatter gives the standard errors."""
 _IMPACTS_PER_ROUND = 4_000_000
+_IMPACTS_AT_A_TIME = 500_000
+"""As many are in memory, or those of one particle if it has more."""
 
 
 class Impacts(NamedTuple):
-    """The variables of some impacts of a batch; shape (particles, impacts), NaN where there was none.
+    """The variables of some impacts; shape (particles, impacts), NaN where there was none.
 
     Parameters
     ----------
     velocity : ndarray
         Impact velocity in m/s.
     restitution, fraction : ndarray
-        ε and E_rot/E_tot before the impact.
-    batch : int
-        Which one.
+        ε and E_rot/E_tot before the impact; the latter has no elements where nobody asked for it.
+    first : int
+        Number of the particle in the first row. Particle i belongs to batch i modulo `BATCHES`, and shares
+        impacts with no other.
     """
 
     velocity: Floats
     restitution: Floats
     fraction: Floats
-    batch: int = 0
+    first: int = 0
+
+
+Look: TypeAlias = Callable[[Impacts], Floats | None]
+"""Gives the condition of each impact, in the shape of the block, NaN where it has none; None without one."""
 
 
 @dataclass(frozen=True)
@@ -54,12 +62,15 @@ class Ensemble:
     heights : tuple of float, or of one RandomHeight
         Heights of release, in m.
     threads : int, optional
-        For the simulation.
+        For the simulation, and for what is done with the impacts.
+    fraction : bool
+        Whether E_rot/E_tot is asked for.
     """
 
     run: Run
     heights: tuple[float | RandomHeight, ...]
     threads: int | None = None
+    fraction: bool = False
 
     def __post_init__(self) -> None:
         spread = len(self.heights) > 1 or isinstance(self.heights[0], RandomHeight)
@@ -86,37 +97,65 @@ class Ensemble:
         return [[run for run in runs[i::number] if run[1] > 0] for i in range(number)]
 
     def blocks(
-        self, stream: int, tell: Callable[[int], None] | None = None, *, share: float = 1.0
+        self,
+        stream: int,
+        tell: Callable[[int], None] | None = None,
+        *,
+        share: float = 1.0,
     ) -> Iterator[Impacts]:
-        """Simulate and yield what each batch has of a round.
+        """Simulate and yield some impacts after the other.
 
-        The seed of run k of a round is hashed from seed, stream, round and k. Particles are dealt out to the
-        batches one by one, from run to run going on where the last one stopped. Of a smaller `share` are the
-        first particles of every run, so that all heights are among them.
+        The seed of run k of a round is hashed from seed, stream, round and k. Particles are numbered from
+        run to run of a round. Of a smaller `share` are the first particles of every run, so that all heights
+        are among them.
         """
-        names = ("impact_velocity", "restitution", "rotational_fraction")
+        names = ["impact_velocity", "restitution", *(["rotational_fraction"] if self.fraction else [])]
+        most = max(1, _IMPACTS_AT_A_TIME // self.run.impacts)
+        check_memory(min(most, self.run.particles) * self.run.impacts, _core.bytes_per_impact(names))
+        for runs in self._runs(stream, share):
+            first, waiting, held = 0, 0, []
+            for run in runs:
+                for start in range(0, run.particles, most):
+                    part = (start, min(start + most, run.particles))
+                    held.append(self._columns(run, part, names))
+                    waiting += part[1] - part[0]
+                    if waiting >= most:
+                        yield _block(held, first)
+                        if tell is not None:
+                            tell(waiting)
+                        first, waiting, held = first + waiting, 0, []
+            if held:
+                yield _block(held, first)
+                if tell is not None:
+                    tell(waiting)
+
+    def _runs(self, stream: int, share: float) -> Iterator[list[Run]]:
+        """Yield the runs of each round."""
+        given = self.run.angles is not None or self.run.spins is not None
         shuffled = np.random.default_rng(np.random.SeedSequence(self.run.seed, spawn_key=(stream,)))
-        rows = shuffled.permutation(self.run.particles)
+        rows = shuffled.permutation(self.run.particles) if given else None
         begun = 0
         for number, runs in enumerate(self.rounds()):
-            dealt: list[list[list[Floats]]] = [[] for _ in range(BATCHES)]
-            first = 0
+            found = []
             for k, (height, particles) in enumerate(runs):
                 hashed = np.random.SeedSequence(self.run.seed, spawn_key=(stream, number, k))
                 seed = int(hashed.generate_state(1, np.uint64)[0])
                 some = math.ceil(share * particles)
-                part = self.run.of(rows[begun : begun + some])
+                changed: dict[str, Any] = {"release_height": self.heights[height], "seed": seed}
+                part = self.run if rows is None else self.run.of(rows[begun : begun + some])
+                found.append(part.model_copy(update={**changed, "particles": some}))
                 begun += particles
-                changed = {"release_height": self.heights[height], "seed": seed}
-                data = simulate_run(part.model_copy(update=changed), threads=self.threads)
-                columns = [data[name].to_numpy() for name in names]
-                for row in range(min(BATCHES, some)):
-                    batch = dealt[(first + row) % BATCHES]
-                    batch.append([column[row::BATCHES] for column in columns])
-                first += some
-            for i, batch in enumerate(dealt):
-                if batch:
-                    velocity, restitution, fraction = map(np.concatenate, zip(*batch, strict=True))
-                    yield Impacts(velocity, restitution, fraction, i)
-            if tell is not None:
-                tell(sum(particles for _, particles in runs))
+            yield found
+
+    def _columns(self, run: Run, part: tuple[int, int], names: list[str]) -> list[Floats]:
+        table, interrupted = _core.simulate(
+            run.parameters(), checked_threads(self.threads), None, part=part, columns=names
+        )
+        if interrupted:
+            raise KeyboardInterrupt from interrupted
+        return [table[name][1] for name in names]
+
+
+def _block(held: list[list[Floats]], first: int) -> Impacts:
+    columns = [parts[0] if len(parts) == 1 else np.concatenate(parts) for parts in zip(*held, strict=True)]
+    return Impacts(columns[0], columns[1], columns[2] if len(columns) > 2 else np.empty((0, 0)), first)

@@ -23,7 +23,7 @@ from restitution.bodies import Body
 from restitution.distribution import _defaults as defaults
 from restitution.distribution._c import header
 from restitution.distribution._check import Check, warn_of_distance
-from restitution.distribution._ensemble import BATCHES, Ensemble, Impacts
+from restitution.distribution._ensemble import Ensemble, Impacts
 from restitution.distribution._errors import EstimatedDistribution
 from restitution.distribution._fortran import module
 from restitution.distribution._from_statistics import from_statistics
@@ -159,7 +159,9 @@ class FluctuatingRestitution(EstimatedDistribution):
             run = run.model_copy(update={"impacts": defaults.impacts(run, checked_threads(threads) or None)})
         one_asked = not isinstance(release_height, RandomHeight) and np.ndim(release_height) == 0
         spread = defaults.heights(run) if one_asked else tuple(one.release_height for one in runs)
-        ensemble = Ensemble(run, spread, threads)
+        ensemble = Ensemble(
+            run, spread, threads, fraction=isinstance(given, str) and given == "rotational_fraction"
+        )
         found = cls(learn(ensemble, nodes, given, progress))
         if one_asked:
             found.data.attrs["release_height_asked"] = run.release_height
@@ -253,11 +255,8 @@ class FluctuatingRestitution(EstimatedDistribution):
             Kolmogorov–Smirnov distance of u = F(ε | v) from uniform; ``ks_scatter``, the part of it that
             is due to the scatter of these impacts, by bootstrap over particles; and ``impacts``.
         """
-        names = ("impact_velocity", "restitution")
-        check = Check(self._table)
-        columns = records("data", data, *names)
-        for batch in range(BATCHES):
-            check.add(batch, *(column[batch::BATCHES] for column in columns))
+        velocity, restitution = records("data", data, "impact_velocity", "restitution")
+        check = Check.of(self._table, [Impacts(velocity, restitution, np.empty((0, 0)))])
         low, high = self._table.speeds[:-1], self._table.speeds[1:]
         return xr.Dataset(
             {

@@ -1,6 +1,6 @@
 """From an ensemble to the Dataset of a learned distribution."""
 
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Iterator
 from typing import Literal, TypeAlias, get_args
 
 import numpy as np
@@ -14,17 +14,14 @@ from restitution._resources import progress_bar
 from restitution._run import Run
 from restitution.distribution import _nodes
 from restitution.distribution._check import Check
-from restitution.distribution._count import Counter, shares
+from restitution.distribution._count import Counter
 from restitution.distribution._defaults import speeds
 from restitution.distribution._ensemble import FRESH, LEARNING, Ensemble, Impacts
+from restitution.distribution._pilot import Pilot, Sample
 from restitution.distribution._store import assemble
 from restitution.distribution._table import Floats, Table
 
 Given: TypeAlias = Literal["rotational_fraction", "previous"]
-Part: TypeAlias = tuple[Floats, Floats, Floats]
-"""Impact velocity, restitution and condition of single impacts."""
-
-_PILOT = 2_000_000
 
 
 def learn(ensemble: Ensemble, nodes: Floats, given: Given | None, progress: bool) -> xr.Dataset:
@@ -42,24 +39,30 @@ def learn(ensemble: Ensemble, nodes: Floats, given: Given | None, progress: bool
             if tell is not None:
                 tell(done)
 
-        pilot, scale = _pilot(ensemble, nodes)
+        pilot = Pilot.of(ensemble, nodes[0], nodes[-1])
         if nodes.size == 2:
-            nodes = _nodes.speeds([block.velocity for block in pilot], nodes[0], nodes[1], scale)
-        _enough(pilot, nodes, scale)
+            nodes = pilot.density.speeds(pilot.scale)
         everywhere = [np.zeros(1)] * nodes.size
-        counter = _count(ensemble, pilot, scale, nodes, everywhere, _unconditional, advance)
+        sample = Sample(pilot.blocks(), nodes, _unconditional)
+        _enough(sample, nodes, pilot.scale)
+        edges = _edges(sample, pilot.scale, nodes, everywhere)
+        del sample
+        counter = Counter(nodes, everywhere, edges)
+        counter.add_all(ensemble.blocks(LEARNING, advance), _unconditional, ensemble.threads)
         table = Table.of(nodes, [histogram for histogram, _, _ in counter.histograms()])
         conditional = None
         if given is not None:
 
-            def look(block: Impacts) -> Part:
-                z = condition(given, block, table)
-                return block.velocity.ravel(), block.restitution.ravel(), z.ravel()
+            def look(block: Impacts) -> Floats:
+                return condition(given, block, table, ensemble.threads)
 
-            groups = _condition_nodes(map(look, pilot), nodes)
-            conditional = _count(ensemble, pilot, scale, nodes, groups, look, advance)
-        del pilot
-        check = Check.of(table, ensemble.blocks(FRESH, advance))
+            sample = Sample(pilot.blocks(), nodes, look)
+            groups = [_nodes.conditions(z) for _, z in sample.near()]
+            edges = _edges(sample, pilot.scale, nodes, groups)
+            del sample
+            conditional = Counter(nodes, groups, edges)
+            conditional.add_all(ensemble.blocks(LEARNING, advance), look, ensemble.threads)
+        check = Check.of(table, ensemble.blocks(FRESH, advance), ensemble.threads)
     attrs = attributes(
         ensemble.run, "Distribution of the coefficient of restitution at given impact velocity"
     )
@@ -81,78 +84,31 @@ def checked_speeds(velocities: npt.ArrayLike | None, run: Run) -> Floats:
     return nodes
 
 
-def _pilot(ensemble: Ensemble, nodes: Floats) -> tuple[list[Impacts], float]:
-    """Simulate part of the ensemble, and return how many times larger the whole is.
-
-    The part has particles from every height of release: where the energy that is lost at an impact hardly
-    varies, each height contributes impacts of its own at each node, and bins that were placed without them
-    would hold several times their share.
-    """
-    run = ensemble.run
-    share = min(1.0, _PILOT / (run.particles * run.impacts))
-    while True:
-        pilot, particles, impacts = [], 0, 0
-        for block in ensemble.blocks(LEARNING, share=share):
-            pilot.append(block)
-            particles += block.velocity.shape[0]
-            impacts += int(np.count_nonzero((block.velocity >= nodes[0]) & (block.velocity < nodes[-1])))
-        if share == 1.0 or impacts >= _PILOT / 2:
-            return pilot, run.particles / particles
-        share = min(1.0, share * _PILOT / max(impacts, 1))
+def _edges(sample: Sample, scale: float, nodes: Floats, conditions: list[Floats]) -> list[Floats]:
+    """Place the inner edges of the bins of each component."""
+    found = _at_nodes(sample, nodes, conditions)
+    return [_nodes.bins(restitution, scale, where) for restitution, where in found]
 
 
-def _count(
-    ensemble: Ensemble,
-    pilot: list[Impacts],
-    scale: float,
-    nodes: Floats,
-    conditions: list[Floats],
-    look: Callable[[Impacts], Part],
-    advance: Callable[[int], None],
-) -> Counter:
-    edges = [
-        _nodes.bins(restitution, scale, where)
-        for restitution, where in _at_nodes(map(look, pilot), nodes, conditions)
-    ]
-    counter = Counter(nodes, conditions, edges)
-    for block in ensemble.blocks(LEARNING, advance):
-        counter.add(block.batch, *look(block))
-    return counter
-
-
-def _at_nodes(parts: Iterable[Part], nodes: Floats, conditions: list[Floats]) -> Iterator[tuple[Floats, str]]:
+def _at_nodes(sample: Sample, nodes: Floats, conditions: list[Floats]) -> Iterator[tuple[Floats, str]]:
     """Yield the restitutions that count at each component, and how an error names the component."""
-    inside = []
-    for velocity, restitution, z in parts:
-        between = (velocity >= nodes[0]) & (velocity < nodes[-1])
-        counted = between & np.isfinite(restitution) & np.isfinite(z)
-        inside.append((velocity[counted], restitution[counted], z[counted]))
-    velocity, restitution, z = map(np.concatenate, zip(*inside, strict=True))
-    del inside
-    order = np.argsort(velocity)
-    velocity, restitution, z = velocity[order], restitution[order], z[order]
-    start = np.searchsorted(velocity, np.concatenate([nodes[:1], nodes[:-1]]), side="left")
-    stop = np.searchsorted(velocity, np.concatenate([nodes[1:], nodes[-1:]]), side="left")
-    for i, group in enumerate(conditions):
-        near = slice(start[i], stop[i])
-        for k, chosen, weight in shares(z[near], group):
-            where = f"{nodes[i]:.4g} m/s"
-            if group.size > 1:
-                where += f" and condition {group[k]:.4g}"
-            yield restitution[near][chosen][np.broadcast_to(weight > 0, z[near][chosen].shape)], where
+    for speed, group, (restitution, z) in zip(nodes, conditions, sample.near(), strict=True):
+        where = f"{speed:.4g} m/s"
+        if group.size == 1:
+            yield restitution, where
+            continue
+        for k, condition in enumerate(group):
+            # An impact counts at the conditions next to its own; beyond them all, at the last one.
+            above = z > group[k - 1] if k > 0 else np.ones(z.size, dtype=bool)
+            below = z < group[k + 1] if k + 1 < group.size else np.ones(z.size, dtype=bool)
+            yield restitution[above & below], f"{where} and condition {condition:.4g}"
 
 
-def _condition_nodes(parts: Iterable[Part], nodes: Floats) -> list[Floats]:
-    columns = ((velocity, z, np.zeros_like(z)) for velocity, _, z in parts)
-    near = _at_nodes(columns, nodes, [np.zeros(1)] * nodes.size)
-    return [_nodes.conditions(values) for values, _ in near]
+def _unconditional(_: Impacts) -> None:
+    return None
 
 
-def _unconditional(block: Impacts) -> Part:
-    return block.velocity.ravel(), block.restitution.ravel(), np.zeros(block.velocity.size)
-
-
-def condition(given: Given, block: Impacts, table: Table) -> Floats:
+def condition(given: Given, block: Impacts, table: Table, threads: int | None = None) -> Floats:
     """Give z for each impact, in the shape of the block.
 
     The quantile level of the impact before is NaN for the first impact. Where that one was slower or faster
@@ -161,14 +117,13 @@ def condition(given: Given, block: Impacts, table: Table) -> Floats:
     if given == "rotational_fraction":
         return block.fraction
     z = np.full(block.velocity.shape, np.nan)
-    z[:, 1:] = table.value("cdf", block.restitution[:, :-1], block.velocity[:, :-1])
+    z[:, 1:] = table.value("cdf", block.restitution[:, :-1], block.velocity[:, :-1], threads=threads)
     return z
 
 
-def _enough(pilot: list[Impacts], nodes: Floats, scale: float) -> None:
+def _enough(sample: Sample, nodes: Floats, scale: float) -> None:
     """Refuse ranges with speeds that are hardly ever met."""
-    velocity = np.concatenate([block.velocity.ravel() for block in pilot])
-    impacts = scale * np.histogram(velocity[np.isfinite(velocity)], nodes)[0]
+    impacts = scale * sample.impacts()
     if impacts.min() < _nodes.LEAST_IMPACTS:
         at = int(np.argmin(impacts))
         found = f": {impacts[at]:.0f} impacts between {nodes[at]:.6g} and {nodes[at + 1]:.6g} m/s; "

@@ -1,7 +1,6 @@
 """Where the nodes are: speeds, conditions at each of them, and edges of bins that follow the data."""
 
 import math
-from collections.abc import Sequence
 
 import numpy as np
 
@@ -17,50 +16,67 @@ _BALANCE = 0.23
 _CONDITIONS = 8
 
 
-def speeds(blocks: Sequence[Floats], low: float, high: float, scale: float) -> Floats:
-    """Place nodes between low and high as close as the number of impacts is worth.
-
-    With h the distance of nodes in ln v and ρ the effective number of impacts per unit of ln v, the
-    statistical error of a node's distribution function is at most 0.5/√(1.5 ρ h), and the mixture is off by
-    about 0.2 h² F″. Their sum is least at h = 0.23 ρ^(-1/5) for F″ = 20, the largest second derivative with
-    respect to ln v that was seen.
+class Density:
+    """How impacts are distributed over a range of speeds, and how many of them tell something new.
 
     Parameters
     ----------
-    blocks : sequence of ndarray, shape (particles, impacts)
-        Impact velocities in m/s of part of the ensemble.
     low, high : float
-        Ends of the range.
-    scale : float
-        How many times larger the whole ensemble is.
-
-    Returns
-    -------
-    ndarray, shape (nodes,)
+        Ends of the range, in m/s.
     """
-    width = math.log(high / low) / _CELLS
-    effective, impacts = np.zeros((2, _CELLS)), np.zeros(_CELLS)
-    for velocity in blocks:
-        particle, column = np.nonzero((velocity >= low) & (velocity < high))
-        cell = np.minimum((np.log(velocity[particle, column] / low) / width).astype(np.int64), _CELLS - 1)
-        number = np.unique(particle * _CELLS + cell, return_counts=True)
+
+    def __init__(self, low: float, high: float) -> None:
+        self.low, self.high = low, high
+        self._width = math.log(high / low) / _CELLS
+        # Σc and Σc² over particles, c being the impacts of one particle in a cell of ln v.
+        self._sums = np.zeros((2, _CELLS))
+
+    def add(self, velocity: Floats) -> None:
+        """Count impacts with these velocities in m/s; shape (particles, impacts)."""
+        particle, column = np.nonzero((velocity >= self.low) & (velocity < self.high))
+        place = np.log(velocity[particle, column] / self.low) / self._width
+        cell = np.minimum(place.astype(np.int64), _CELLS - 1)
+        which, number = np.unique(particle * _CELLS + cell, return_counts=True)
         for power in (1, 2):
-            effective[power - 1] += np.bincount(
-                number[0] % _CELLS, weights=number[1] ** power, minlength=_CELLS
-            )
-    impacts = effective[0]
-    # Kish's effective number: impacts of one particle in one cell are taken for one and the same.
-    kish = np.divide(impacts**2, effective[1], out=np.zeros(_CELLS), where=impacts > 0)
-    widest = math.log(high / low) / _LEAST_INTERVALS
-    with np.errstate(divide="ignore"):
-        best = _BALANCE * (scale * kish / width) ** -0.2
-        needed = 2.0 * LEAST_IMPACTS / (scale * impacts / width)
-    spacing = np.clip(np.maximum(best, needed), 0.0, widest)
-    intervals = np.concatenate([[0.0], np.cumsum(width / spacing)])
-    points = np.linspace(0.0, intervals[-1], max(_LEAST_INTERVALS, math.floor(intervals[-1])) + 1)
-    nodes = low * np.exp(np.interp(points, intervals, width * np.arange(_CELLS + 1)))
-    nodes[0], nodes[-1] = low, high
-    return np.asarray(nodes)
+            weights = number**power
+            self._sums[power - 1] += np.bincount(which % _CELLS, weights=weights, minlength=_CELLS)
+
+    @property
+    def impacts(self) -> int:
+        """Number of impacts within the range."""
+        return int(self._sums[0].sum())
+
+    def speeds(self, scale: float) -> Floats:
+        """Place nodes as close as the number of impacts is worth.
+
+        With h the distance of nodes in ln v and ρ the effective number of impacts per unit of ln v, the
+        statistical error of a node's distribution function is at most 0.5/√(1.5 ρ h), and the mixture is off
+        by about 0.2 h² F″. Their sum is least at h = 0.23 ρ^(-1/5) for F″ = 20, the largest second derivative
+        with respect to ln v that was seen.
+
+        Parameters
+        ----------
+        scale : float
+            How many times larger the whole ensemble is than what was counted.
+
+        Returns
+        -------
+        ndarray, shape (nodes,)
+            In m/s; the ends of the range are the first and the last.
+        """
+        impacts, squares = self._sums
+        # Kish's effective number: impacts of one particle in one cell are taken for one and the same.
+        kish = np.divide(impacts**2, squares, out=np.zeros(_CELLS), where=impacts > 0)
+        widest = math.log(self.high / self.low) / _LEAST_INTERVALS
+        with np.errstate(divide="ignore"):
+            best = _BALANCE * (scale * kish / self._width) ** -0.2
+            needed = 2.0 * LEAST_IMPACTS / (scale * impacts / self._width)
+        spacing = np.clip(np.maximum(best, needed), 0.0, widest)
+        intervals = np.concatenate([[0.0], np.cumsum(self._width / spacing)])
+        points = np.linspace(0.0, intervals[-1], max(_LEAST_INTERVALS, math.floor(intervals[-1])) + 1)
+        nodes = self.low * np.exp(np.interp(points, intervals, self._width * np.arange(_CELLS + 1)))
+        nodes[0], nodes[-1] = self.low, self.high
+        return np.asarray(nodes)
 
 
 def conditions(values: Floats) -> Floats:

@@ -1,6 +1,6 @@
 """The table behind a learned distribution: histograms at nodes, and their mixtures."""
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, fields
 from functools import cached_property
 from typing import Any, Literal
@@ -65,9 +65,9 @@ class Table:
         groups = [_ANY for _ in speeds] if conditions is None else conditions
         return cls(
             speeds=speeds,
-            first=_starts(len(group) for group in groups),
+            first=starts(len(group) for group in groups),
             conditions=np.concatenate(list(groups)),
-            start=_starts(part.edges.size for part in histograms),
+            start=starts(part.edges.size for part in histograms),
             edges=np.concatenate([part.edges for part in histograms]),
             cumulative=np.concatenate([part.cumulative for part in histograms]),
         )
@@ -83,19 +83,26 @@ class Table:
         return {field.name: getattr(self, field.name) for field in fields(self)}
 
     @cached_property
-    def _mixture(self) -> _core.Mixture:
+    def mixture(self) -> _core.Mixture:
         """The table as the core knows it, checked once."""
         return _core.Mixture(*(np.ascontiguousarray(values) for values in self.__getstate__().values()))
 
     def value(
-        self, what: Literal["cdf", "pdf", "ppf"], x: npt.ArrayLike, v: npt.ArrayLike, z: npt.ArrayLike = 0.0
+        self,
+        what: Literal["cdf", "pdf", "ppf"],
+        x: npt.ArrayLike,
+        v: npt.ArrayLike,
+        z: npt.ArrayLike = 0.0,
+        threads: int | None = None,
     ) -> Floats:
         """Evaluate at x, v and z, broadcast against each other."""
         values = [np.asarray(value, dtype=np.float64) for value in (x, v, z)]
         shape = np.broadcast_shapes(*(value.shape for value in values))
         points = np.broadcast_to(values[0], shape).ravel()
-        function: _Function = getattr(self._mixture, what)
-        found, interrupted = function(points, _flat(values[1], shape), _flat(values[2], shape), 0)
+        function: _Function = getattr(self.mixture, what)
+        found, interrupted = function(
+            points, _flat(values[1], shape), _flat(values[2], shape), checked_threads(threads)
+        )
         if interrupted:
             raise KeyboardInterrupt from interrupted
         return found.reshape(shape)
@@ -105,7 +112,7 @@ class Table:
     ) -> Floats:
         """Draw as many as `shape` says, at v and z broadcast to it."""
         size = int(np.prod(shape, dtype=np.int64))
-        found, interrupted = self._mixture.draw(
+        found, interrupted = self.mixture.draw(
             _flat(v, shape), _flat(z, shape), size, seed, checked_threads(threads)
         )
         if interrupted:
@@ -203,7 +210,8 @@ class Table:
         yield above, share
 
 
-def _starts(sizes: Any) -> Ints:
+def starts(sizes: Iterable[int]) -> Ints:
+    """Give where ranges of these sizes start that follow each other, and finally where the last one ends."""
     return np.concatenate([[0], np.cumsum(list(sizes))]).astype(np.int64)
 
 

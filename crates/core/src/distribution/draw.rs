@@ -1,48 +1,34 @@
 //! Random draws from the table by composition: first a node and a condition, then a quantile of that histogram.
 
-use super::mixture::place;
+use super::guide::Guide;
 use super::{At, Mixture, in_blocks};
 use crate::random::pair;
 use crate::{Error, Means, Monitor};
 
-/// A histogram with a guide table for its inverse distribution function.
+/// A histogram, with a guide to its distribution function where there are many draws.
 struct Inverse<'a> {
     edges: &'a [f64],
     cumulative: &'a [f64],
-    /// The last bin that starts at or below each of equally spaced probabilities; empty for few draws.
-    guide: Vec<u32>,
+    guide: Option<Guide>,
 }
 
 impl<'a> Inverse<'a> {
     fn new((edges, cumulative): (&'a [f64], &'a [f64]), many: bool) -> Self {
-        let steps = if many {
-            edges.len().next_power_of_two()
-        } else {
-            0
-        };
-        let bin = |step| {
-            let q = step as f64 / steps as f64;
-            cumulative.partition_point(|&below| below <= q) as u32 - 1
-        };
         Self {
             edges,
             cumulative,
-            guide: (0..steps).map(bin).collect(),
+            guide: many.then(|| Guide::new(cumulative)),
         }
     }
 
     /// The quantile of u in [0, 1).
     #[inline]
     fn quantile(&self, u: f64) -> f64 {
-        let bin = if self.guide.is_empty() {
-            self.cumulative.partition_point(|&below| below <= u) - 1
-        } else {
-            let mut bin = self.guide[(u * self.guide.len() as f64) as usize] as usize;
-            while self.cumulative[bin + 1] <= u {
-                bin += 1;
-            }
-            bin
+        let reached = match &self.guide {
+            Some(guide) => guide.reached(self.cumulative, u),
+            None => self.cumulative.partition_point(|&below| below <= u),
         };
+        let bin = reached - 1;
         let slope = (self.edges[bin + 1] - self.edges[bin])
             / (self.cumulative[bin + 1] - self.cumulative[bin]);
         self.edges[bin] + (u - self.cumulative[bin]) * slope
@@ -71,10 +57,10 @@ impl Mixture {
         means: Means,
         monitor: &Monitor,
     ) -> Result<(), Error> {
-        let layout = &self.layout;
+        let (layout, nodes) = (&self.layout, &self.layout.nodes);
         // Guide tables cost a search for every edge, which does not pay for few draws.
         let many = out.len() > layout.edges.len();
-        let components = if many { layout.conditions.len() } else { 0 };
+        let components = if many { nodes.components() } else { 0 };
         let inverses: Vec<_> = (0..components)
             .map(|component| Inverse::new(self.histogram(component), true))
             .collect();
@@ -83,14 +69,12 @@ impl Mixture {
             for (i, out) in block.iter_mut().enumerate() {
                 let v = at.speed.at(first + i);
                 if v != speed {
-                    (speed, site) = (v, place(&layout.speeds, v));
+                    (speed, site) = (v, nodes.around(v));
                 }
                 let (u1, u2) = pair(seed, (first + i) as u64);
                 let (node, rest) = choose(u1, site);
-                let components = self.components(node);
                 let z = at.condition.at(first + i);
-                let condition = place(&layout.conditions[components.clone()], z);
-                let component = components.start + choose(rest, condition).0;
+                let component = choose(rest, nodes.given(node, z)).0;
                 *out = if v.is_nan() || z.is_nan() {
                     f64::NAN
                 } else if many {

@@ -1,17 +1,15 @@
 //! The distribution as a table: mixtures of the histograms of neighbouring nodes, with bins of any width.
 
+use super::guide::Guide;
+use super::nodes::{Nodes, Parts, divides, rises};
 use super::{Values, in_blocks};
 use crate::{Error, Means, Monitor};
 
-/// The table, in ragged arrays. A node is an impact velocity; it has one component, or one for each of its conditions.
-#[derive(Debug, Clone)]
+/// The table, in ragged arrays.
+#[derive(Debug)]
 pub struct Layout {
-    /// Impact velocities of the nodes in m/s, increasing, at least two.
-    pub speeds: Vec<f64>,
-    /// Index of the first component of each node, and finally the number of components.
-    pub first: Vec<i64>,
-    /// Condition of each component, increasing within a node.
-    pub conditions: Vec<f64>,
+    /// Where its components are.
+    pub nodes: Nodes,
     /// Index of the first edge of each component, and finally the number of edges.
     pub start: Vec<i64>,
     /// Edges of the bins of ε, increasing within a component, at least two.
@@ -25,29 +23,8 @@ pub struct Layout {
 #[derive(Debug)]
 pub struct Mixture {
     pub(super) layout: Layout,
-}
-
-/// The components with nonzero weight: those of up to two conditions at each of two nodes.
-pub(super) struct Parts {
-    list: [(usize, f64); 4],
-    length: usize,
-}
-
-impl Parts {
-    fn iter(&self) -> impl Iterator<Item = (usize, f64)> {
-        self.list[..self.length].iter().copied()
-    }
-}
-
-/// The position of `x` among increasing `points`: the index of its left neighbour, and the weight of its right neighbour.
-pub(super) fn place(points: &[f64], x: f64) -> (usize, f64) {
-    if points.len() == 1 {
-        return (0, 0.0);
-    }
-    let right = points.partition_point(|&point| point <= x);
-    let left = right.clamp(1, points.len() - 1) - 1;
-    let weight = (x - points[left]) / (points[left + 1] - points[left]);
-    (left, weight.clamp(0.0, 1.0))
+    /// One to the edges of each component.
+    guides: Vec<Guide>,
 }
 
 impl Mixture {
@@ -56,29 +33,14 @@ impl Mixture {
     /// # Errors
     /// [`Error::Parameter`] if the table is inconsistent or its values are not increasing.
     pub fn new(layout: Layout) -> Result<Self, Error> {
-        let rises = |x: &[f64]| x.windows(2).all(|pair| pair[0] < pair[1]);
-        let ranges = |start: &[i64], size: usize, least: i64| {
-            start.first() == Some(&0)
-                && start.last() == Some(&(size as i64))
-                && start.windows(2).all(|pair| pair[1] - pair[0] >= least)
-        };
         let Layout {
-            speeds,
-            first,
-            conditions,
+            nodes,
             start,
             edges,
             cumulative,
         } = &layout;
-        let sound = speeds.len() >= 2
-            && rises(speeds)
-            && first.len() == speeds.len() + 1
-            && ranges(first, conditions.len(), 1)
-            && first
-                .windows(2)
-                .all(|range| rises(&conditions[range[0] as usize..range[1] as usize]))
-            && start.len() == conditions.len() + 1
-            && ranges(start, edges.len(), 2)
+        let sound = start.len() == nodes.components() + 1
+            && divides(start, edges.len(), 2)
             && cumulative.len() == edges.len()
             && start.windows(2).all(|range| {
                 let range = range[0] as usize..range[1] as usize;
@@ -90,13 +52,12 @@ impl Mixture {
             });
         let allowed =
             "edges and cumulative probabilities that increase, from 0 to 1, for each node";
-        Error::unless(sound, "table", speeds.len(), allowed)?;
-        Ok(Self { layout })
-    }
-
-    /// Indices of the components of a node.
-    pub(super) fn components(&self, node: usize) -> std::ops::Range<usize> {
-        self.layout.first[node] as usize..self.layout.first[node + 1] as usize
+        Error::unless(sound, "table", nodes.number(), allowed)?;
+        let guides = start
+            .windows(2)
+            .map(|range| Guide::new(&edges[range[0] as usize..range[1] as usize]))
+            .collect();
+        Ok(Self { layout, guides })
     }
 
     /// Edges of a component, and the probability below each.
@@ -109,33 +70,22 @@ impl Mixture {
         )
     }
 
-    fn parts(&self, v: f64, z: f64) -> Parts {
-        let mut parts = Parts {
-            list: [(0, 0.0); 4],
-            length: 0,
-        };
-        let (left, right_share) = place(&self.layout.speeds, v);
-        for (node, share) in [(left, 1.0 - right_share), (left + 1, right_share)] {
-            let components = self.components(node);
-            let (below, above_share) = place(&self.layout.conditions[components.clone()], z);
-            for (component, part) in [(below, 1.0 - above_share), (below + 1, above_share)] {
-                if share * part > 0.0 {
-                    parts.list[parts.length] = (components.start + component, share * part);
-                    parts.length += 1;
-                }
-            }
-        }
-        parts
+    /// Whether a bin is narrower than `point`.
+    pub(super) fn has_points(&self, point: f64) -> bool {
+        let components = 0..self.layout.nodes.components();
+        let mut edges = components.map(|component| self.histogram(component).0);
+        edges.any(|edges| edges.windows(2).any(|pair| pair[1] - pair[0] < point))
     }
 
     /// The bin of a component that x lies in, with lo ≤ x < hi.
     fn bin(&self, component: usize, x: f64) -> Option<usize> {
         let edges = self.histogram(component).0;
-        let above = edges.partition_point(|&edge| edge <= x);
+        let above = self.guides[component].reached(edges, x);
         (0 < above && above < edges.len()).then(|| above - 1)
     }
 
-    fn below(&self, parts: &Parts, x: f64) -> f64 {
+    /// The distribution function at x of a mixture of these parts.
+    pub(super) fn below(&self, parts: &Parts, x: f64) -> f64 {
         let below = |component| {
             let (edges, cumulative) = self.histogram(component);
             match self.bin(component, x) {
@@ -251,6 +201,7 @@ impl Mixture {
         monitor: &Monitor,
         value: impl Fn(&Self, &Parts, f64) -> f64 + Sync,
     ) -> Result<(), Error> {
+        let nodes = &self.layout.nodes;
         in_blocks(out, means, monitor, |first, block| {
             for (i, out) in block.iter_mut().enumerate() {
                 let (x, v, z) = (
@@ -261,7 +212,7 @@ impl Mixture {
                 *out = if x.is_nan() || v.is_nan() || z.is_nan() {
                     f64::NAN
                 } else {
-                    value(self, &self.parts(v, z), x)
+                    value(self, &nodes.parts(nodes.around(v), z), x)
                 };
             }
         })

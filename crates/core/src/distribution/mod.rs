@@ -1,9 +1,18 @@
-//! A learned distribution p(ε | v): evaluated, inverted and drawn from, on all cores.
+//! A learned distribution p(ε | v): counted, evaluated, inverted and drawn from, on all cores.
 
+mod batches;
+mod counter;
 mod draw;
+mod guide;
+mod levels;
 mod mixture;
+mod nodes;
 
+pub use batches::Impacts;
+pub use counter::{Counter, Counts};
+pub use levels::{COARSE, FINE, Levels};
 pub use mixture::{At, Layout, Mixture};
+pub use nodes::Nodes;
 
 use crate::{Error, Means, Monitor};
 use std::sync::Mutex;

@@ -1,0 +1,163 @@
+//! Impacts counted for a learned distribution: tables of shape (particle, impact) in, counts out.
+
+use crate::distribution::{Mixture, nodes};
+use crate::errors::python_error;
+use crate::{means, watch};
+use numpy::ndarray::{ArrayD, IxDyn};
+use numpy::{Element, IntoPyArray, PyArrayDyn, PyReadonlyArray1, PyReadonlyArray2};
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+use restitution_core::Monitor;
+use restitution_core::distribution::{COARSE, FINE, Impacts};
+
+type Array<'py> = PyReadonlyArray1<'py, f64>;
+type Rows<'py> = PyReadonlyArray2<'py, f64>;
+
+/// The impacts in tables with a row for each particle, of which the first is that of the particle `first`.
+fn impacts<'a>(
+    velocity: &'a Rows<'_>,
+    restitution: &'a Rows<'_>,
+    condition: Option<&'a Rows<'_>>,
+    first: usize,
+) -> PyResult<Impacts<'a>> {
+    let columns = velocity.as_array().ncols();
+    let condition = condition.map(|rows| rows.as_slice()).transpose()?;
+    let (v, e) = (velocity.as_slice()?, restitution.as_slice()?);
+    Impacts::new(v, e, condition, columns, first).map_err(python_error)
+}
+
+fn shaped<'py, T: Element>(
+    py: Python<'py>,
+    shape: &[usize],
+    values: Vec<T>,
+) -> Bound<'py, PyArrayDyn<T>> {
+    let values = ArrayD::from_shape_vec(IxDyn(shape), values);
+    values
+        .expect("the core fills the whole table")
+        .into_pyarray(py)
+}
+
+/// Counts of the impacts at the components of a distribution.
+#[pyclass(module = "restitution._core")]
+struct Counter {
+    counter: restitution_core::distribution::Counter,
+    components: usize,
+    batches: usize,
+}
+
+#[pymethods]
+impl Counter {
+    /// No impacts, at nodes and conditions in ragged arrays as in `Mixture`; `edges` are inner ones, those of each component begin
+    /// at `start`.
+    #[new]
+    fn new(
+        speeds: Array<'_>,
+        first: PyReadonlyArray1<'_, i64>,
+        conditions: Array<'_>,
+        start: PyReadonlyArray1<'_, i64>,
+        edges: Array<'_>,
+        batches: usize,
+    ) -> PyResult<Self> {
+        let nodes = nodes(&speeds, &first, &conditions)?;
+        let components = conditions.as_slice()?.len();
+        let (start, edges) = (start.as_slice()?.to_vec(), edges.as_slice()?.to_vec());
+        let counter = restitution_core::distribution::Counter::new(nodes, start, edges, batches);
+        Ok(Self {
+            counter: counter.map_err(python_error)?,
+            components,
+            batches,
+        })
+    }
+
+    /// Counts impacts of the particles from `first` on, with NaN where there was none. Returns the `KeyboardInterrupt` that cut the
+    /// work short, if any.
+    fn add(
+        &mut self,
+        py: Python<'_>,
+        velocity: Rows<'_>,
+        restitution: Rows<'_>,
+        condition: Option<Rows<'_>>,
+        first: usize,
+        threads: usize,
+    ) -> PyResult<Option<PyErr>> {
+        let impacts = impacts(&velocity, &restitution, condition.as_ref(), first)?;
+        let (counter, means) = (&mut self.counter, means(threads)?);
+        let work = |monitor: &Monitor| counter.add(&impacts, means, monitor);
+        Ok(watch::run(py, None, work)?.1)
+    }
+
+    /// The counts by name.
+    fn table<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let counts = self.counter.counts().map_err(python_error)?;
+        let (components, batches) = (self.components, self.batches);
+        let bins = counts.count.len() / batches;
+        let speeds = counts.seen.len() / 2;
+        let table = PyDict::new(py);
+        table.set_item("count", shaped(py, &[batches, bins], counts.count))?;
+        let powers = shaped(py, &[3, batches, components], counts.powers);
+        table.set_item("powers", powers)?;
+        table.set_item("lowest", counts.lowest.into_pyarray(py))?;
+        table.set_item("highest", counts.highest.into_pyarray(py))?;
+        table.set_item("seen", shaped(py, &[2, speeds], counts.seen))?;
+        Ok(table)
+    }
+}
+
+/// Counts of the quantile levels of impacts under a distribution.
+#[pyclass(module = "restitution._core")]
+struct Levels {
+    levels: restitution_core::distribution::Levels,
+    intervals: usize,
+    batches: usize,
+}
+
+#[pymethods]
+impl Levels {
+    /// No levels, in the intervals between as many nodes.
+    #[new]
+    fn new(nodes: usize, batches: usize) -> PyResult<Self> {
+        let levels = restitution_core::distribution::Levels::new(nodes, batches);
+        Ok(Self {
+            levels: levels.map_err(python_error)?,
+            intervals: nodes - 1,
+            batches,
+        })
+    }
+
+    /// Counts impacts of the particles from `first` on, with NaN where there was none; restitutions that differ by less than `point`
+    /// are the same. Returns the `KeyboardInterrupt` that cut the work short, if any.
+    #[allow(clippy::too_many_arguments)]
+    fn add(
+        &mut self,
+        py: Python<'_>,
+        mixture: PyRef<'_, Mixture>,
+        point: f64,
+        velocity: Rows<'_>,
+        restitution: Rows<'_>,
+        first: usize,
+        threads: usize,
+    ) -> PyResult<Option<PyErr>> {
+        let impacts = impacts(&velocity, &restitution, None, first)?;
+        let (levels, mixture, means) = (&mut self.levels, &mixture.0, means(threads)?);
+        let work = |monitor: &Monitor| levels.add(mixture, point, &impacts, means, monitor);
+        Ok(watch::run(py, None, work)?.1)
+    }
+
+    /// The counts of all impacts, over intervals and levels.
+    fn fine<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArrayDyn<i64>>> {
+        let counts = self.levels.fine().map_err(python_error)?;
+        let counts = counts.into_iter().map(|count| count as i64).collect();
+        Ok(shaped(py, &[self.intervals, FINE], counts))
+    }
+
+    /// The counts of the batches, over batches, intervals and levels, as numbers that are resampled.
+    fn coarse<'py>(&self, py: Python<'py>) -> Bound<'py, PyArrayDyn<f64>> {
+        let counts = self.levels.coarse().map(|count| count as f64).collect();
+        shaped(py, &[self.batches, self.intervals, COARSE], counts)
+    }
+}
+
+pub fn add_to(module: &Bound<'_, PyModule>) -> PyResult<()> {
+    module.add_class::<Counter>()?;
+    module.add_class::<Levels>()
+}
