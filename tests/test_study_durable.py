@@ -74,7 +74,7 @@ def test_what_a_killed_driver_left_is_removed(whole: dict[str, str], tmp_path: P
     """By the next one on this machine; what another process is about to write stays."""
     study, store = written(tmp_path, normals=4), tmp_path / "study.zarr"
     assert finished(started(study, "--out", store, code=DYING))[0] == -signal.SIGKILL
-    assert len(list(store.rglob(".*.part"))) == 1
+    assert list(store.rglob(".*.part"))  # more than one where others were being written at the same time
     alive = draft_of(store / "zarr.json")
     alive.touch()
     sweep(study, store)
