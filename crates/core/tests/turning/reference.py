@@ -1,8 +1,9 @@
 """Impacts with turning slip to 28 digits: Taylor series of the equation of the slip in tau, dp = |s| dtau.
 
 `python reference.py SEED NUMBER` prints a line an impact: hypothesis, contact, law and impulse. Those of
-random.txt have seed 1 and 110 contacts; those of reference.txt were picked because they are hard, the last
-20 because a change of one condition in the core makes another impulse of them.
+random.txt have seed 1 and 110 contacts; those of reference.txt were picked because they are hard: the last 20
+because a change of one condition in the core makes another impulse of them, the seven before these because
+poles of the hodograph are near, or its fixed points.
 """
 
 import random

@@ -11,6 +11,7 @@
 //! ([`Stop`](stop::Stop)). The ends of compression and restitution follow from power series about a point next to
 //! them ([`Near`](near::Near)). Wherever the slip has come to rest the rest of the impact is a straight line in p.
 
+mod hodograph;
 mod near;
 mod nodes;
 mod panel;
@@ -24,6 +25,7 @@ mod testing;
 
 use super::Hypothesis;
 use crate::simd::{Mask, Pack};
+use hodograph::Hodograph;
 use pulp::Simd;
 pub(super) use queue::finish;
 use rates::Rates;
@@ -33,7 +35,7 @@ use stop::Stop;
 /// Slip at which it counts as vanished, relative to the contact velocity; the impulse is of the order of that.
 const VANISHED: f64 = 1.0 / 18_014_398_509_481_984.0; // 2⁻⁵⁴
 /// Least y of a slip that comes round to be looked at from the other side.
-const ROUND: f64 = 1.0 / 64.0;
+const ROUND: f64 = 1.0 / 4.0;
 /// Panels after which the slip is taken to have vanished.
 const MOST_PANELS: f64 = 1000.0;
 
@@ -357,8 +359,9 @@ impl<S: Simd> Impacts<S> {
             return;
         }
         course.direction();
-        let length = wanted.min(course.limit).min(panel::longest(rates, course));
-        let mut next = panel::pass(rates, goal, course, length);
+        let path = Hodograph::new(rates, course.y);
+        let length = wanted.min(course.limit).min(path.longest(rates, course));
+        let mut next = panel::pass((rates, &path), goal, course, length);
         let (back, limit) = beyond(rates, goal, course, &next, length);
         next.limit = Pack::splat(limit.simd(), f64::INFINITY);
         let mut again = *course;

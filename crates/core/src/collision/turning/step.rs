@@ -1,7 +1,7 @@
 //! How far to go on: to the next event, as far as one can tell from here, and back where that was too far.
 
+use super::hodograph::reach;
 use super::near::Near;
-use super::panel::reach;
 use super::series::parabola;
 use super::{Course, Goal, Rates};
 use crate::collision::Hypothesis;
@@ -57,7 +57,7 @@ fn crest<S: Simd, const K: usize>(rates: &Rates<S, K>, at: &Course<S, K>) -> Pac
     // There y = c, and y₀ − y = (ρ₊ + ρ₋y₀)ζ/(1 + ρ₋ζ).
     let c = (jam - rates.nn) / (jam + rates.nn);
     let zeta = now / (rates.nn + jam) / rates.minus.mul_add(c, rates.plus);
-    let certain = reach(rates, at.y, zeta).max(SHORT / rates.pace(at.y));
+    let certain = reach(rates.plus, at.y, zeta).max(SHORT / rates.pace(at.y));
     (zero.lt(at.y) & zero.lt(c) & zero.lt(zeta)).select(certain, f64::INFINITY)
 }
 
@@ -146,6 +146,7 @@ impl<S: Simd, const K: usize> Beyond<S, K> {
 
 #[cfg(test)]
 mod tests {
+    use super::super::hodograph::Hodograph;
     use super::super::testing::{Case, State, end_at, value};
     use super::*;
     use crate::collision::turning::panel;
@@ -287,7 +288,8 @@ mod tests {
         share: f64,
     ) {
         let length = 2.0 / value(rates.pace(at.y));
-        let end = panel::pass(rates, goal, at, one(length));
+        let path = Hodograph::new(rates, at.y);
+        let end = panel::pass((rates, &path), goal, at, one(length));
         let (back, limit) = beyond(rates, goal, at, &end, one(length));
         // Events that are up to x = 1/2 behind are left to the series.
         assert_eq!(back.any(), share < 0.75, "{share}");
