@@ -1,5 +1,6 @@
 """p(ε | v) as it is learned, held against fresh simulations, repetitions and a known distribution."""
 
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -9,6 +10,7 @@ from scipy import stats
 
 import restitution as rs
 from reference.ensembles import BODY, LAW, TOUCHING, heights
+from restitution import _core
 from restitution._run import Run
 from restitution.distribution import FluctuatingRestitution, _ensemble, _learn, _nodes, _pilot
 from restitution.distribution._check import Check
@@ -167,3 +169,36 @@ def test_a_known_distribution_is_learned() -> None:
         exact = stats.norm.cdf(histogram.edges, 0.9, 0.02 / node)
         assert np.abs(histogram.cumulative - exact)[1:-1].max() < 0.02
         assert 0.5 < error.max() / (0.5 / np.sqrt(24_000)) < 2
+
+
+def test_impacts_that_are_kept_count_as_those_that_are_simulated_again(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Of the part that places the bins all is kept, or some, or nothing: the same impacts are counted.
+
+    Batches then have other particles, so that standard errors differ by their own scatter. If all is kept,
+    no impact is simulated twice.
+    """
+    monkeypatch.setattr(_pilot, "IMPACTS", 30_000)
+    simulated = 0
+    simulate = _core.simulate
+
+    def counting(*args: Any, part: tuple[int, int], **kwargs: Any) -> Any:
+        nonlocal simulated
+        simulated += part[1] - part[0]
+        return simulate(*args, part=part, **kwargs)
+
+    monkeypatch.setattr(_core, "simulate", counting)
+    found, numbers = [], []
+    for held in (0, 40_000, 1_000_000):
+        monkeypatch.setattr(_pilot, "_HELD", held)
+        simulated = 0
+        learn = partial(FluctuatingRestitution.learn, TOUCHING, LAW, velocities=(0.3, 0.6), seed=3)
+        found.append(learn(particles=2000, impacts=100).data)
+        numbers.append(simulated)
+    first, second, third = found
+    for other in (second, third):
+        np.testing.assert_array_equal(other.velocity, first.velocity)
+        np.testing.assert_array_equal(other.restitution_edge, first.restitution_edge)
+        np.testing.assert_allclose(other.probability_below, first.probability_below, rtol=1e-12, atol=1e-15)
+    assert numbers[0] > numbers[1] > numbers[2] == 4000

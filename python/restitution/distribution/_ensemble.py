@@ -101,21 +101,21 @@ class Ensemble:
         stream: int,
         tell: Callable[[int], None] | None = None,
         *,
-        share: float = 1.0,
+        share: tuple[float, float] = (0.0, 1.0),
     ) -> Iterator[Impacts]:
         """Simulate and yield some impacts after the other.
 
         The seed of run k of a round is hashed from seed, stream, round and k. Particles are numbered from
-        run to run of a round. Of a smaller `share` are the first particles of every run, so that all heights
-        are among them.
+        run to run of a round. A `share` of the particles, from one part to another of every run, has all
+        heights among them.
         """
         names = ["impact_velocity", "restitution", *(["rotational_fraction"] if self.fraction else [])]
         most = max(1, _IMPACTS_AT_A_TIME // self.run.impacts)
         check_memory(min(most, self.run.particles) * self.run.impacts, _core.bytes_per_impact(names))
-        for runs in self._runs(stream, share):
+        for runs in self._runs(stream, share[1]):
             first, waiting, held = 0, 0, []
-            for run in runs:
-                for start in range(0, run.particles, most):
+            for run, particles in runs:
+                for start in range(math.ceil(share[0] * particles), run.particles, most):
                     part = (start, min(start + most, run.particles))
                     held.append(self._columns(run, part, names))
                     waiting += part[1] - part[0]
@@ -129,8 +129,8 @@ class Ensemble:
                 if tell is not None:
                     tell(waiting)
 
-    def _runs(self, stream: int, share: float) -> Iterator[list[Run]]:
-        """Yield the runs of each round."""
+    def _runs(self, stream: int, share: float) -> Iterator[list[tuple[Run, int]]]:
+        """Yield the runs of each round, up to that share, and the particles that the whole runs have."""
         given = self.run.angles is not None or self.run.spins is not None
         shuffled = np.random.default_rng(np.random.SeedSequence(self.run.seed, spawn_key=(stream,)))
         rows = shuffled.permutation(self.run.particles) if given else None
@@ -143,7 +143,7 @@ class Ensemble:
                 some = math.ceil(share * particles)
                 changed: dict[str, Any] = {"release_height": self.heights[height], "seed": seed}
                 part = self.run if rows is None else self.run.of(rows[begun : begun + some])
-                found.append(part.model_copy(update={**changed, "particles": some}))
+                found.append((part.model_copy(update={**changed, "particles": some}), particles))
                 begun += particles
             yield found
 

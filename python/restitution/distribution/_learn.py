@@ -16,7 +16,7 @@ from restitution.distribution import _nodes
 from restitution.distribution._check import Check
 from restitution.distribution._count import Counter
 from restitution.distribution._defaults import speeds
-from restitution.distribution._ensemble import FRESH, LEARNING, Ensemble, Impacts
+from restitution.distribution._ensemble import FRESH, Ensemble, Impacts
 from restitution.distribution._pilot import Pilot, Sample
 from restitution.distribution._store import assemble
 from restitution.distribution._table import Floats, Table
@@ -48,7 +48,7 @@ def learn(ensemble: Ensemble, nodes: Floats, given: Given | None, progress: bool
         edges = _edges(sample, pilot.scale, nodes, everywhere)
         del sample
         counter = Counter(nodes, everywhere, edges)
-        counter.add_all(ensemble.blocks(LEARNING, advance), _unconditional, ensemble.threads)
+        counter.add_all(pilot.whole(advance), _unconditional, ensemble.threads)
         table = Table.of(nodes, [histogram for histogram, _, _ in counter.histograms()])
         conditional = None
         if given is not None:
@@ -61,7 +61,7 @@ def learn(ensemble: Ensemble, nodes: Floats, given: Given | None, progress: bool
             edges = _edges(sample, pilot.scale, nodes, groups)
             del sample
             conditional = Counter(nodes, groups, edges)
-            conditional.add_all(ensemble.blocks(LEARNING, advance), look, ensemble.threads)
+            conditional.add_all(pilot.whole(advance), look, ensemble.threads)
         check = Check.of(table, ensemble.blocks(FRESH, advance), ensemble.threads)
     attrs = attributes(
         ensemble.run, "Distribution of the coefficient of restitution at given impact velocity"

@@ -1,6 +1,6 @@
 """Part of an ensemble, by which nodes and bins are placed before all of it is counted."""
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -13,6 +13,8 @@ _NONE: Floats = np.zeros(0)
 
 IMPACTS = 2_000_000
 """About as many are looked at, or all of a smaller ensemble."""
+_HELD = 2_500_000
+"""Most impacts that are kept instead of being simulated again: two numbers each, or three."""
 
 
 @dataclass(frozen=True)
@@ -32,30 +34,52 @@ class Pilot:
         How many times larger the whole is.
     density : Density
         Of the impacts over the range of speeds.
+    held : list of Impacts
+        Those that are kept.
+    kept : float
+        The share that these are.
     """
 
     ensemble: Ensemble
     share: float
     scale: float
     density: Density
+    held: list[Impacts]
+    kept: float
 
     @classmethod
     def of(cls, ensemble: Ensemble, low: float, high: float) -> "Pilot":
         """Choose the share that has `IMPACTS` between two speeds, if the ensemble has as many."""
         run = ensemble.run
-        share = min(1.0, IMPACTS / (run.particles * run.impacts))
+        density, particles = Density(low, high), 0
+        held: list[Impacts] = []
+        before, kept, share = 0.0, 0.0, min(1.0, IMPACTS / (run.particles * run.impacts))
         while True:
-            density, particles = Density(low, high), 0
-            for block in ensemble.blocks(LEARNING, share=share):
+            more = []
+            for block in ensemble.blocks(LEARNING, share=(before, share)):
                 particles += block.velocity.shape[0]
                 density.add(block.velocity)
+                if particles * run.impacts <= _HELD:
+                    more.append(block)
+            if particles * run.impacts <= _HELD:
+                held, kept = held + more, share
             if share == 1.0 or density.impacts >= IMPACTS / 2:
-                return cls(ensemble, share, run.particles / particles, density)
-            share = min(1.0, share * IMPACTS / max(density.impacts, 1))
+                return cls(ensemble, share, run.particles / particles, density, held, kept)
+            before, share = share, min(1.0, share * IMPACTS / max(density.impacts, 1))
 
     def blocks(self) -> Iterator[Impacts]:
-        """Simulate it again."""
-        return self.ensemble.blocks(LEARNING, share=self.share)
+        """Give what is kept, and simulate the rest again."""
+        yield from self.held
+        if self.kept < self.share:
+            yield from self.ensemble.blocks(LEARNING, share=(self.kept, self.share))
+
+    def whole(self, tell: Callable[[int], None]) -> Iterator[Impacts]:
+        """Give all impacts of the ensemble."""
+        for block in self.held:
+            yield block
+            tell(block.velocity.shape[0])
+        if self.kept < 1.0:
+            yield from self.ensemble.blocks(LEARNING, tell, share=(self.kept, 1.0))
 
 
 @dataclass(frozen=True)
