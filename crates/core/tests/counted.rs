@@ -146,7 +146,10 @@ proptest! {
         let found = [1, 2].map(|threads| {
             let mut levels = Levels::new(SPEEDS.len(), BATCHES).unwrap();
             levels.add(&mixture, 1e-9, &table, on(threads), &Monitor::default()).unwrap();
-            (levels.fine().unwrap(), levels.coarse().collect::<Vec<_>>())
+            assert!(levels.coarse(3).is_err() && levels.fine(3).is_err());
+            let fine = [0, 1, 2].map(|interval| levels.fine(interval).unwrap());
+            let coarse = [0, 1, 2].map(|interval| levels.coarse(interval).unwrap().collect::<Vec<_>>());
+            (fine.concat(), coarse.concat())
         });
         prop_assert_eq!(&found[0], &found[1]);
         let (fine, coarse) = &found[0];
@@ -167,7 +170,7 @@ proptest! {
             let share = |parts: usize| ((u[0] * parts as f64).floor() as usize).min(parts - 1);
             expected[interval * FINE + share(FINE)] += 1;
             let batch = (first + cell / columns_each) % BATCHES;
-            by_batch[(batch * 3 + interval) * COARSE + share(COARSE)] += 1;
+            by_batch[(interval * BATCHES + batch) * COARSE + share(COARSE)] += 1;
         }
         prop_assert_eq!(fine, &expected);
         prop_assert_eq!(coarse, &by_batch);

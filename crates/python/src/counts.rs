@@ -143,17 +143,22 @@ impl Levels {
         Ok(watch::run(py, None, work)?.1)
     }
 
-    /// The counts of all impacts, over intervals and levels.
-    fn fine<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArrayDyn<i64>>> {
-        let counts = self.levels.fine().map_err(python_error)?;
+    /// The counts of all impacts in an interval, over levels.
+    fn fine<'py>(&self, py: Python<'py>, interval: usize) -> PyResult<Bound<'py, PyArrayDyn<i64>>> {
+        let counts = self.levels.fine(interval).map_err(python_error)?;
         let counts = counts.into_iter().map(|count| count as i64).collect();
-        Ok(shaped(py, &[self.intervals, FINE], counts))
+        Ok(shaped(py, &[FINE], counts))
     }
 
-    /// The counts of the batches, over batches, intervals and levels, as numbers that are resampled.
-    fn coarse<'py>(&self, py: Python<'py>) -> Bound<'py, PyArrayDyn<f64>> {
-        let counts = self.levels.coarse().map(|count| count as f64).collect();
-        shaped(py, &[self.batches, self.intervals, COARSE], counts)
+    /// The counts of the batches in an interval, over batches and levels, as numbers that are resampled.
+    fn coarse<'py>(
+        &self,
+        py: Python<'py>,
+        interval: usize,
+    ) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
+        let counts = self.levels.coarse(interval).map_err(python_error)?;
+        let counts = counts.map(|count| count as f64).collect();
+        Ok(shaped(py, &[self.batches, COARSE], counts))
     }
 }
 

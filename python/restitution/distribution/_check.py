@@ -49,21 +49,26 @@ class Check:
         if interrupted:
             raise KeyboardInterrupt from interrupted
 
+    def count(self, interval: int) -> Ints:
+        """Impacts in an interval and each of 4096 equal parts of [0, 1] that u is in."""
+        return self._levels.fine(interval)
+
     @property
-    def count(self) -> Ints:
-        """Impacts in each interval and each of 4096 equal parts of [0, 1] that u is in."""
-        return self._levels.fine()
+    def _intervals(self) -> range:
+        return range(self.table.speeds.size - 1)
 
     def impacts(self) -> Ints:
         """Impacts in each interval."""
-        return np.asarray(self.count.sum(axis=1))
+        return np.array([self.count(interval).sum() for interval in self._intervals])
 
     def distances(self) -> Floats:
         """Upper bounds: the distance at 4096 equidistant u, and 1/4096; NaN where there are no impacts."""
-        count = self.count
-        levels = count.shape[1]
-        exact = np.arange(1, levels + 1) / levels
-        return np.asarray(np.max(np.abs(_shares(count) - exact), axis=1) + 1.0 / levels)
+        found = []
+        for interval in self._intervals:
+            count = self.count(interval)
+            exact = np.arange(1, count.size + 1) / count.size
+            found.append(np.max(np.abs(_shares(count) - exact)) + 1.0 / count.size)
+        return np.array(found)
 
     def scatter(self) -> Floats:
         """Estimate the part of the distances that is scatter of the impacts: the mean of a bootstrap.
@@ -71,17 +76,19 @@ class Check:
         Batches of particles are resampled, each a Poisson number of times of mean 1, and compared with
         all of them at 256 u. Independent impacts scatter by 0.87/√impacts. NaN for a single batch.
         """
-        batches = self._levels.coarse()
-        some = batches.any(axis=(1, 2))
-        filled = batches if some.all() else batches[some]
-        if filled.shape[0] < 2:
-            return np.full(batches.shape[1], np.nan)
-        found = _shares(filled.sum(axis=0))
-        times = np.random.default_rng(_SEED).poisson(size=(_RESAMPLES, filled.shape[0]))
-        distances = [np.abs(_shares(np.tensordot(row, filled, 1)) - found).max(axis=1) for row in times]
-        known = np.isfinite(distances)
-        with np.errstate(invalid="ignore"):
-            return np.asarray(np.where(known, distances, 0.0).sum(axis=0) / known.sum(axis=0))
+        seen = [self._levels.coarse(interval).any(axis=1) for interval in self._intervals]
+        some = np.any(seen, axis=0)
+        scatter = np.full(len(self._intervals), np.nan)
+        if np.count_nonzero(some) < 2:
+            return scatter
+        times = np.random.default_rng(_SEED).poisson(size=(_RESAMPLES, np.count_nonzero(some))).astype(float)
+        for interval in self._intervals:
+            batches = self._levels.coarse(interval)[some]
+            distances = np.abs(_shares(times @ batches) - _shares(batches.sum(axis=0))).max(axis=1)
+            known = distances[np.isfinite(distances)]
+            if known.size:
+                scatter[interval] = known.mean()
+        return scatter
 
 
 class DistanceWarning(UserWarning):

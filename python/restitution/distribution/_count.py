@@ -1,6 +1,7 @@
 """Impacts counted at the nodes: each is shared among its neighbours as the mixture will weight them."""
 
 from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
@@ -9,6 +10,35 @@ from restitution import _core
 from restitution._resources import checked_threads
 from restitution.distribution._ensemble import BATCHES, Impacts, Look
 from restitution.distribution._table import Floats, Histogram, starts
+
+
+@dataclass(frozen=True)
+class Counted:
+    """What was counted, without the batches.
+
+    Parameters
+    ----------
+    nodes, conditions
+        As in `Counter`.
+    histograms : list of Histogram
+        One for each component.
+    share_errors, below_errors : list of ndarray
+        Standard errors of the bins' shares and of `Histogram.cumulative`.
+    impacts, mean_errors, std_errors : ndarray, shape (components,)
+        Weights added up, and standard errors of the moments.
+    seen : ndarray, shape (2, nodes)
+        Least and greatest condition next to each node.
+    """
+
+    nodes: Floats
+    conditions: Sequence[Floats]
+    histograms: list[Histogram]
+    share_errors: list[Floats]
+    below_errors: list[Floats]
+    impacts: Floats
+    mean_errors: Floats
+    std_errors: Floats
+    seen: Floats
 
 
 class Counter:
@@ -55,10 +85,21 @@ class Counter:
         """What was counted: Σw of the bins, over batches; Σw, Σwx and Σwx², x above an edge in the middle."""
         return self._counter.table()
 
-    @property
-    def seen(self) -> Floats:
-        """Least and greatest condition next to each node; shape (2, nodes)."""
-        return self._table["seen"]
+    def counted(self) -> Counted:
+        """Give what is wanted of the counts, which take more memory than all else."""
+        histograms, shares, below = zip(*self.histograms(), strict=True)
+        mean, deviation = self.moment_errors()
+        return Counted(
+            self.nodes,
+            self.conditions,
+            list(histograms),
+            list(shares),
+            list(below),
+            self.impacts(),
+            mean,
+            deviation,
+            self._table["seen"],
+        )
 
     def impacts(self) -> Floats:
         """Weights added up at each component."""

@@ -20,7 +20,7 @@ LEARNING, FRESH = 0, 1
 BATCHES = 32
 """Parts of the ensemble, each with equal shares of all heights, whose scatter gives the standard errors."""
 _IMPACTS_PER_ROUND = 4_000_000
-_IMPACTS_AT_A_TIME = 500_000
+_IMPACTS_AT_A_TIME = 100_000
 """As many are in memory, or those of one particle if it has more."""
 
 

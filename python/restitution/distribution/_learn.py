@@ -48,8 +48,10 @@ def learn(ensemble: Ensemble, nodes: Floats, given: Given | None, progress: bool
         edges = _edges(sample, pilot.scale, nodes, everywhere)
         del sample
         counter = Counter(nodes, everywhere, edges)
-        counter.add_all(pilot.whole(advance), _unconditional, ensemble.threads)
-        table = Table.of(nodes, [histogram for histogram, _, _ in counter.histograms()])
+        counter.add_all(pilot.whole(advance, last=given is None), _unconditional, ensemble.threads)
+        counted = counter.counted()
+        del counter
+        table = Table.of(nodes, counted.histograms)
         conditional = None
         if given is not None:
 
@@ -60,15 +62,17 @@ def learn(ensemble: Ensemble, nodes: Floats, given: Given | None, progress: bool
             groups = [_nodes.conditions(z) for _, z in sample.near()]
             edges = _edges(sample, pilot.scale, nodes, groups)
             del sample
-            conditional = Counter(nodes, groups, edges)
-            conditional.add_all(pilot.whole(advance), look, ensemble.threads)
+            counter = Counter(nodes, groups, edges)
+            counter.add_all(pilot.whole(advance, last=True), look, ensemble.threads)
+            conditional = counter.counted()
+            del counter
         check = Check.of(table, ensemble.blocks(FRESH, advance), ensemble.threads)
     attrs = attributes(
         ensemble.run, "Distribution of the coefficient of restitution at given impact velocity"
     )
     if len(ensemble.heights) > 1:
         attrs["release_height"] = list(ensemble.heights)
-    return assemble(counter, conditional, given, check, attrs)
+    return assemble(counted, conditional, given, check, attrs)
 
 
 def checked_speeds(velocities: npt.ArrayLike | None, run: Run) -> Floats:

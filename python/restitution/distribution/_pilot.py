@@ -15,6 +15,8 @@ IMPACTS = 2_000_000
 """About as many are looked at, or all of a smaller ensemble."""
 _HELD = 2_500_000
 """Most impacts that are kept instead of being simulated again: two numbers each, or three."""
+_LARGE = 6_000_000
+"""Ensembles of so many keep none: it would save them little, and their tables take the memory."""
 
 
 @dataclass(frozen=True)
@@ -53,15 +55,16 @@ class Pilot:
         run = ensemble.run
         density, particles = Density(low, high), 0
         held: list[Impacts] = []
+        most = _HELD if run.particles * run.impacts <= _LARGE else 0
         before, kept, share = 0.0, 0.0, min(1.0, IMPACTS / (run.particles * run.impacts))
         while True:
             more = []
             for block in ensemble.blocks(LEARNING, share=(before, share)):
                 particles += block.velocity.shape[0]
                 density.add(block.velocity)
-                if particles * run.impacts <= _HELD:
+                if particles * run.impacts <= most:
                     more.append(block)
-            if particles * run.impacts <= _HELD:
+            if particles * run.impacts <= most:
                 held, kept = held + more, share
             if share == 1.0 or density.impacts >= IMPACTS / 2:
                 return cls(ensemble, share, run.particles / particles, density, held, kept)
@@ -73,11 +76,16 @@ class Pilot:
         if self.kept < self.share:
             yield from self.ensemble.blocks(LEARNING, share=(self.kept, self.share))
 
-    def whole(self, tell: Callable[[int], None]) -> Iterator[Impacts]:
-        """Give all impacts of the ensemble."""
-        for block in self.held:
+    def whole(self, tell: Callable[[int], None], *, last: bool) -> Iterator[Impacts]:
+        """Give all impacts of the ensemble; the `last` time nothing is kept any longer."""
+        held = self.held if last else self.held.copy()
+        held.reverse()
+        while held:
+            block = held.pop()
+            particles = block.velocity.shape[0]
             yield block
-            tell(block.velocity.shape[0])
+            del block
+            tell(particles)
         if self.kept < 1.0:
             yield from self.ensemble.blocks(LEARNING, tell, share=(self.kept, 1.0))
 

@@ -11,7 +11,7 @@ from restitution._arrays import reals
 from restitution._parameters import ParameterError, Problem, wrong
 from restitution._units import check_variables
 from restitution.distribution._check import Check
-from restitution.distribution._count import Counter
+from restitution.distribution._count import Counted
 from restitution.distribution._table import Floats, Histogram, Table
 
 _TABLE = ("edges", "restitution_edge", "probability_below")
@@ -22,7 +22,7 @@ GIVEN = {
 
 
 def assemble(
-    counter: Counter, conditional: Counter | None, given: str | None, check: Check, attrs: dict[str, Any]
+    counted: Counted, conditional: Counted | None, given: str | None, check: Check, attrs: dict[str, Any]
 ) -> xr.Dataset:
     """Lay a distribution out as a Dataset.
 
@@ -36,24 +36,22 @@ def assemble(
     ``ks_distance``, ``ks_scatter`` and ``fresh_impacts`` (interval) are how far a fresh ensemble is from this
     distribution between two nodes, and how far its own scatter alone takes it.
     """
-    parts = list(counter.histograms())
-    data = of_histograms(counter.nodes, [part for part, _, _ in parts], counter.impacts(), attrs)
-    data = data.assign(_errors(counter, "", "node"))
+    data = of_histograms(counted.nodes, counted.histograms, counted.impacts, attrs)
+    data = data.assign(_errors(counted, "", "node"))
     if conditional is not None and given is not None:
-        histograms = [part for part, _, _ in conditional.histograms()]
         sizes = [group.size for group in conditional.conditions]
         about = {"long_name": GIVEN[given], "units": "1"}
         data["given_components"] = ("node", sizes, {"long_name": "conditions of the node"})
         data["given"] = ("given_component", np.concatenate(conditional.conditions), about)
-        data["given_impacts"] = ("given_component", conditional.impacts(), {"units": "1"})
-        data = data.assign(_ragged(histograms, "given_")).assign(
+        data["given_impacts"] = ("given_component", conditional.impacts, {"units": "1"})
+        data = data.assign(_ragged(conditional.histograms, "given_")).assign(
             _errors(conditional, "given_", "given_component")
         )
         # A level of probability is met everywhere in [0, 1], however few impacts there were.
         seen = (
             conditional.seen
             if given == "rotational_fraction"
-            else np.tile([[0.0], [1.0]], counter.nodes.size)
+            else np.tile([[0.0], [1.0]], counted.nodes.size)
         )
         for name, values in zip(("lowest", "highest"), seen, strict=True):
             text = f"{name} condition that was seen at the node"
@@ -73,23 +71,21 @@ def assemble(
     return data
 
 
-def _errors(counter: Counter, prefix: str, component: str) -> dict[str, Any]:
-    parts = list(counter.histograms())
+def _errors(counted: Counted, prefix: str, component: str) -> dict[str, Any]:
     about = "standard error of {}; a batch of particles is a draw"
-    mean, deviation = counter.moment_errors()
     found = {
         "probability_error": (
             f"{prefix}edge",
-            np.concatenate([np.append(share, np.nan) for _, share, _ in parts]),
+            np.concatenate([np.append(share, np.nan) for share in counted.share_errors]),
             "the probability of the bin above the edge",
         ),
         "probability_below_error": (
             f"{prefix}edge",
-            np.concatenate([below for _, _, below in parts]),
+            np.concatenate(counted.below_errors),
             "probability_below",
         ),
-        "mean_error": (component, mean, "the mean"),
-        "std_error": (component, deviation, "the standard deviation"),
+        "mean_error": (component, counted.mean_errors, "the mean"),
+        "std_error": (component, counted.std_errors, "the standard deviation"),
     }
     return {
         f"{prefix}{name}": (dimension, values, {"long_name": about.format(text), "units": "1"})

@@ -5,6 +5,7 @@ use super::batches::{Impacts, STRIDE};
 use crate::memory::{empty, zeros};
 use crate::random::pair;
 use crate::{Error, Means, Monitor};
+use std::ops::Range;
 use std::sync::Mutex;
 
 /// Number of equal parts of [0, 1] in which the levels of all impacts are counted.
@@ -125,23 +126,36 @@ impl Levels {
         )
     }
 
-    /// The counts of all impacts, shape (interval, [`FINE`]).
+    /// The counts of all impacts in an interval, shape ([`FINE`],).
     ///
     /// # Errors
-    /// [`Error::Memory`].
-    pub fn fine(&self) -> Result<Vec<u64>, Error> {
-        let mut sum = zeros(ROOM, self.intervals * FINE)?;
+    /// [`Error::Parameter`] for an interval that there is not.
+    pub fn fine(&self, interval: usize) -> Result<Vec<u64>, Error> {
+        let levels = self.levels(interval, FINE)?;
+        let mut sum = vec![0; FINE];
         for counted in &*self.fine.lock().expect("nobody panics who holds it") {
-            for (sum, count) in sum.iter_mut().zip(counted) {
+            for (sum, count) in sum.iter_mut().zip(&counted[levels.clone()]) {
                 *sum += count;
             }
         }
         Ok(sum)
     }
 
-    /// The counts of the batches, shape (batch, interval, [`COARSE`]).
-    pub fn coarse(&self) -> impl Iterator<Item = u64> {
-        self.batches.iter().flat_map(|b| b.coarse.iter().copied())
+    /// The counts of the batches in an interval, shape (batch, [`COARSE`]).
+    ///
+    /// # Errors
+    /// As [`Levels::fine`].
+    pub fn coarse(&self, interval: usize) -> Result<impl Iterator<Item = u64>, Error> {
+        let levels = self.levels(interval, COARSE)?;
+        let batches = self.batches.iter();
+        Ok(batches.flat_map(move |b| b.coarse[levels.clone()].iter().copied()))
+    }
+
+    /// Where the levels of an interval are.
+    fn levels(&self, interval: usize, number: usize) -> Result<Range<usize>, Error> {
+        let allowed = "one of the intervals";
+        Error::unless(interval < self.intervals, "interval", interval, allowed)?;
+        Ok(interval * number..(interval + 1) * number)
     }
 }
 
