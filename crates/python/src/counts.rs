@@ -107,7 +107,6 @@ impl Counter {
 #[pyclass(module = "restitution._core")]
 struct Levels {
     levels: restitution_core::distribution::Levels,
-    intervals: usize,
     batches: usize,
 }
 
@@ -119,7 +118,6 @@ impl Levels {
         let levels = restitution_core::distribution::Levels::new(nodes, batches);
         Ok(Self {
             levels: levels.map_err(python_error)?,
-            intervals: nodes - 1,
             batches,
         })
     }
