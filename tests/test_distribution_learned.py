@@ -181,7 +181,7 @@ def test_impacts_that_are_kept_count_as_those_that_are_simulated_again(
     """
     monkeypatch.setattr(_pilot, "IMPACTS", 30_000)
     simulated = 0
-    simulate = _core.simulate
+    simulate: Any = _core.simulate
 
     def counting(*args: Any, part: tuple[int, int], **kwargs: Any) -> Any:
         nonlocal simulated

@@ -36,7 +36,7 @@ const TINY: f64 = 1.0 / 1_048_576.0; // 2⁻²⁰
 const NOTHING: f64 = 1.0 / 18_014_398_509_481_984.0; // 2⁻⁵⁴
 /// Most by which y grows on a panel, for beyond 1 it is looked at from the other side.
 const GROWN: f64 = 8.0;
-/// σ below which the direction does not turn by it.
+/// |σ| below which the direction does not turn by it, and |ρ₋D| below which it has no poles.
 const STEADY: f64 = 1e-200;
 /// Largest ratio of which a logarithm is bounded.
 const FAR: f64 = 1e30;
@@ -159,7 +159,8 @@ impl<S: Simd, const K: usize> Hodograph<S, K> {
         let real = aside.select(beside, on);
         let distance = aside.select(beside.mul_add(beside, away * away).sqrt(), on.abs());
         // |θ − θ_p| summed over both ends is ASIDE times the length.
-        distance.mul_add(ASIDE, -real) * (2.0 / (ASIDE * ASIDE - 1.0))
+        let length = distance.mul_add(ASIDE, -real) * (2.0 / (ASIDE * ASIDE - 1.0));
+        bend.abs().le(STEADY).select(f64::INFINITY, length)
     }
 
     /// The longest panel on which the functions are resolved.
