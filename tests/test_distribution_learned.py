@@ -181,14 +181,14 @@ def test_impacts_that_are_kept_count_as_those_that_are_simulated_again(
     """
     monkeypatch.setattr(_pilot, "IMPACTS", 30_000)
     simulated = 0
-    simulate: Any = _core.simulate
+    simulate: Any = _core.simulate_series
 
-    def counting(*args: Any, part: tuple[int, int], **kwargs: Any) -> Any:
+    def counting(runs: Any, *args: Any) -> Any:
         nonlocal simulated
-        simulated += part[1] - part[0]
-        return simulate(*args, part=part, **kwargs)
+        simulated += sum(part[1] - part[0] for _, part in runs)
+        return simulate(runs, *args)
 
-    monkeypatch.setattr(_core, "simulate", counting)
+    monkeypatch.setattr(_core, "simulate_series", counting)
     found, numbers = [], []
     for held in (0, 40_000, 1_000_000):
         monkeypatch.setattr(_pilot, "_HELD", held)

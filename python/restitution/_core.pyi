@@ -34,6 +34,7 @@ __all__ = [
     "loaded_sphere",
     "plastic",
     "simulate",
+    "simulate_series",
     "sincos",
     "spherocylinder",
     "spheroid",
@@ -187,6 +188,11 @@ def simulate(
     progress: Callable[[int], None] | None,
     part: tuple[int, int] | None = None,
     columns: Sequence[str] | None = None,
+) -> tuple[_Table, KeyboardInterrupt | None]: ...
+def simulate_series(
+    runs: Sequence[tuple[Mapping[str, Any], tuple[int, int]]],
+    threads: int,
+    columns: Sequence[str],
 ) -> tuple[_Table, KeyboardInterrupt | None]: ...
 def columns(law: Law, state: bool = False) -> list[str]: ...
 def bytes_per_impact(columns: Sequence[str]) -> int: ...

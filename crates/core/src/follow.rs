@@ -1,7 +1,7 @@
 //! One particle of a run, followed impact by impact, for a drawing of its motion.
 
 use crate::Error;
-use crate::engine::{NoConvergence, Release, SingleImpact, StopReason, trajectory};
+use crate::engine::{NoConvergence, SingleImpact, StopReason, trajectory};
 use crate::flight::State;
 use crate::run::{Plan, Run, Scales};
 
@@ -27,7 +27,7 @@ impl<'a> Followed<'a> {
         Ok(Self {
             particle,
             scales: plan.scales,
-            release: plan.start(particle),
+            release: plan.state(particle),
             plan,
         })
     }

@@ -72,5 +72,6 @@ pub use follow::Followed;
 pub use particles::PER_PARTICLE;
 pub use run::{About, Height, Orientation, Run, Scales, Spin};
 pub use simd::{Level, elementary};
+pub use simulate::simulate_series;
 pub use threads::{Means, Monitor, default_threads};
 pub use variable::{Values, Variable, When};

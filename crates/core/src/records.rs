@@ -4,7 +4,7 @@ use crate::Error;
 use crate::columns::{Block, ROOM, Records};
 use crate::engine::{Impact, Meanwhile, Sink, StopReason};
 use crate::memory::empty;
-use crate::run::{Height, Plan};
+use crate::run::{Height, Plan, Source};
 use crate::simd::elementary::angle;
 use crate::threads::Monitor;
 use pulp::Simd;
@@ -96,14 +96,15 @@ pub(crate) struct Table<'a> {
 
 impl<'a> Table<'a> {
     /// The rows of the particles from `particle` on.
-    pub fn new(block: Block<'a>, plan: &'a Plan<'a>, particle: usize) -> Self {
+    pub fn new(block: Block<'a>, source: &'a impl Source, particle: usize) -> Self {
         for (i, release_angle) in block.release_angle.iter_mut().enumerate() {
-            let (sine, cosine) = plan.release(particle + i);
+            let (plan, number) = source.origin(particle + i);
+            let (sine, cosine) = plan.release(number);
             *release_angle = angle(sine, cosine);
         }
         Self {
             block,
-            plan,
+            plan: source.plan(),
             first: particle,
         }
     }

@@ -3,7 +3,7 @@
 use crate::Error;
 use crate::columns::{Columns, Records};
 use crate::records::Table;
-use crate::run::{BLOCK, Plan, Run, share};
+use crate::run::{BLOCK, Plan, Run, Series, Source, bounce_block, even, share};
 use crate::statistics::{Bins, By, Counter, Counts, Tally, Tallying};
 use crate::threads::{Means, Monitor};
 use std::ops::Range;
@@ -39,39 +39,8 @@ impl Run<'_> {
         monitor: &Monitor,
     ) -> Result<Records, Error> {
         let plan = Plan::new(self)?;
-        self.check_part(&part)?;
-        Error::unless(
-            part.len().checked_mul(self.impacts).is_some(),
-            "particles",
-            part.len(),
-            "such that particles × impacts can be counted",
-        )?;
-        let mut records = Records::new(part.len(), self.impacts, columns)?;
-        let started = AtomicUsize::new(part.start);
-        let rows = Mutex::new(records.block());
-        // Free threads take blocks in order, so that the particles begun before a cancellation are contiguous.
-        let ended = means.each_thread(part.len().div_ceil(BLOCK), |_| {
-            while !monitor.is_cancelled() {
-                let mut rows = rows.lock().expect("no thread panics while it takes rows");
-                let block = rows.split(BLOCK);
-                let count = block.impacts.len();
-                let first = started.fetch_add(count, Ordering::Relaxed);
-                drop(rows);
-                if count == 0 {
-                    break;
-                }
-                let particles = first..first + count;
-                let mut table = Table::new(block, &plan, first);
-                plan.bounce(particles, means.level, monitor, &mut table)?;
-                table.finish(monitor);
-            }
-            Ok(())
-        })?;
-        ended.into_iter().collect::<Result<(), Error>>()?;
-        records.truncate(started.into_inner() - part.start);
-        if monitor.is_cancelled() {
-            records.settle(part.start);
-        }
+        plan.check_part(&part)?;
+        let mut records = recorded(&plan, part.clone(), |_| BLOCK, columns, means, monitor)?;
         records.add_release(&plan, part.start)?;
         Ok(records)
     }
@@ -93,7 +62,7 @@ impl Run<'_> {
         monitor: &Monitor,
     ) -> Result<Tally, Error> {
         let plan = Plan::new(self)?;
-        self.check_part(&part)?;
+        plan.check_part(&part)?;
         bins.check()?;
         if let By::Number(rows) = bins.by {
             let allowed = "at most the number of rows";
@@ -142,15 +111,73 @@ impl Run<'_> {
                 });
                 let Ok(first) = next else { break };
                 let particles = first..first + share(part.end - first, threads);
-                plan.bounce(particles, means.level, monitor, &mut counter)?;
+                bounce_block(plan, particles, means.level, monitor, &mut counter)?;
             }
             Ok(counter.finish())
         })
     }
+}
 
-    fn check_part(&self, part: &Range<usize>) -> Result<(), Error> {
-        let allowed = "at least one of the particles of the run, from the first to before the last";
-        let inside = part.start < part.end && part.end <= self.particles;
-        Error::unless(inside, "part", part.end as f64, allowed)
+/// Simulates parts of several runs, which may differ in seed, number of particles and release alone, as one: particles from all of them
+/// are in the lanes at the same time. Records the variables in `columns` of every impact, part after part, without heights, azimuths and
+/// spins at release. The impacts have the same bits as in [`Run::simulate`].
+///
+/// # Errors
+/// As [`Run::simulate`], and [`Error::Parameter`] for runs that differ in more.
+pub fn simulate_series(
+    runs: &[(Run<'_>, Range<usize>)],
+    columns: &Columns,
+    means: Means,
+    monitor: &Monitor,
+) -> Result<Records, Error> {
+    let series = Series::new(runs)?;
+    let particles = series.particles();
+    let block = |threads| even(particles, threads);
+    recorded(&series, 0..particles, block, columns, means, monitor)
+}
+
+/// The impacts of a range of particles, which threads take in blocks of as many as `block` says for their number.
+fn recorded(
+    source: &impl Source,
+    part: Range<usize>,
+    block: impl Fn(usize) -> usize + Sync,
+    columns: &Columns,
+    means: Means,
+    monitor: &Monitor,
+) -> Result<Records, Error> {
+    let impacts = source.plan().run.impacts;
+    Error::unless(
+        part.len().checked_mul(impacts).is_some(),
+        "particles",
+        part.len(),
+        "such that particles × impacts can be counted",
+    )?;
+    let mut records = Records::new(part.len(), impacts, columns)?;
+    let started = AtomicUsize::new(part.start);
+    let rows = Mutex::new(records.block());
+    // Free threads take blocks in order, so that the particles begun before a cancellation are contiguous.
+    let ended = means.each_thread(part.len().div_ceil(BLOCK), |threads| {
+        let size = block(threads);
+        while !monitor.is_cancelled() {
+            let mut rows = rows.lock().expect("no thread panics while it takes rows");
+            let block = rows.split(size);
+            let count = block.impacts.len();
+            let first = started.fetch_add(count, Ordering::Relaxed);
+            drop(rows);
+            if count == 0 {
+                break;
+            }
+            let particles = first..first + count;
+            let mut table = Table::new(block, source, first);
+            bounce_block(source, particles, means.level, monitor, &mut table)?;
+            table.finish(monitor);
+        }
+        Ok(())
+    })?;
+    ended.into_iter().collect::<Result<(), Error>>()?;
+    records.truncate(started.into_inner() - part.start);
+    if monitor.is_cancelled() {
+        records.settle(part.start);
     }
+    Ok(records)
 }

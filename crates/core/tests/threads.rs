@@ -3,7 +3,9 @@
 mod common;
 
 use common::*;
-use restitution_core::{Monitor, Records, Run};
+use restitution_core::{
+    Columns, Error, Level, Means, Monitor, Orientation, Records, Run, Spin, Vector, simulate_series,
+};
 
 /// Every column of the particles from `first` to `last`, as bits.
 fn bits(records: &Records, impacts: usize, particles: std::ops::Range<usize>) -> Vec<u64> {
@@ -81,6 +83,123 @@ fn impacts_are_independent_of_their_number() {
             );
         }
     }
+}
+
+fn series(
+    runs: &[(Run<'_>, std::ops::Range<usize>)],
+    threads: usize,
+    monitor: &Monitor,
+) -> Result<Records, Error> {
+    let level = Level::best();
+    let columns = Columns::usual(&runs[0].0.law, false);
+    simulate_series(runs, &columns, Means { threads, level }, monitor)
+}
+
+/// Parts of several runs simulated as one have the bits of each run by itself, one after the other.
+#[test]
+fn runs_side_by_side_are_those_one_by_one() {
+    for spin in [Spin::NONE, Spin::Given(&[[9.0, 1.0, 4.0]; 5])] {
+        let given = Run {
+            particles: 5,
+            orientation: Orientation::Given(&[0.3, 1.2, 2.2, 0.1, 3.0]),
+            spin,
+            ..uneven()
+        };
+        let low = Run {
+            release_height: 0.03.into(),
+            seed: 7,
+            particles: 5,
+            spin,
+            ..uneven()
+        };
+        let runs = [(low, 2..5), (given, 0..5), (low, 0..1)];
+        for threads in [1, 2, 5] {
+            let monitor = Monitor::default();
+            let together = series(&runs, threads, &monitor).unwrap();
+            assert_eq!(together.particles(), 9);
+            assert_eq!(monitor.finished(), 9);
+            let mut first = 0;
+            for (run, part) in &runs {
+                let alone = bits(&simulate(run), 150, part.clone());
+                let rows = first..first + part.len();
+                assert!(bits(&together, 150, rows) == alone, "{threads} threads");
+                first += part.len();
+            }
+        }
+    }
+}
+
+/// Many more particles than a block has are shared evenly.
+#[test]
+fn a_long_series_is_complete() {
+    let run = Run {
+        particles: 2100,
+        impacts: 9,
+        ..uneven()
+    };
+    let alone = bits(&simulate(&run), 9, 0..2100);
+    for threads in [1, 2, 3] {
+        let parts = [(run, 0..1), (run, 1..2000), (run, 2000..2100)];
+        let together = series(&parts, threads, &Monitor::default()).unwrap();
+        assert!(bits(&together, 9, 0..2100) == alone, "{threads} threads");
+    }
+}
+
+/// What all particles of a series share must be the same in all runs; a part lies in its run.
+#[test]
+fn runs_that_differ_are_no_series() {
+    let run = uneven();
+    let others = [
+        Run {
+            gravity: 9.8,
+            ..run
+        },
+        Run {
+            impacts: 149,
+            ..run
+        },
+        Run {
+            incline: 0.1,
+            ..run
+        },
+        Run {
+            minimum_speed: 0.2,
+            ..run
+        },
+        Run {
+            law: law(0.92, 0.5),
+            ..run
+        },
+        Run {
+            body: paper(0.6, run.law).body,
+            ..run
+        },
+        Run {
+            release_velocity: Vector {
+                x: 1.0,
+                y: 0.0,
+                z: 0.0,
+            },
+            ..run
+        },
+    ];
+    let refused = |runs: &[(Run<'_>, std::ops::Range<usize>)]| {
+        let columns = Columns::NONE;
+        let means = Means {
+            threads: 1,
+            level: Level::Scalar,
+        };
+        match simulate_series(runs, &columns, means, &Monitor::default()) {
+            Err(Error::Parameter { name, .. }) => name,
+            other => panic!("{other:?}"),
+        }
+    };
+    for other in others {
+        assert_eq!(refused(&[(run, 0..1), (other, 0..1)]), "runs");
+    }
+    assert_eq!(refused(&[]), "runs");
+    assert_eq!(refused(&[(run, 0..1), (run, 3..3)]), "part");
+    assert_eq!(refused(&[(run, 299..301)]), "part");
 }
 
 /// Another seed is another run.

@@ -6,7 +6,7 @@ use crate::{Parameters, means, range, watch};
 use numpy::{Element, IntoPyArray, PyArray1, PyArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PySlice, PyTuple};
-use restitution_core::{Columns, Values, Variable};
+use restitution_core::{Columns, Records, Values, Variable};
 
 /// The numbers of the recorded particles, for runs in which some had to be left out.
 const NUMBER: Variable = Variable {
@@ -45,9 +45,34 @@ fn simulate<'py>(
         None => Columns::usual(&run.law, false),
     };
     let part = range(part, run.particles);
-    let (mut records, interrupted) = watch::run(py, progress, |monitor| {
+    let (records, interrupted) = watch::run(py, progress, |monitor| {
         run.simulate_columns(part, &columns, means, monitor)
     })?;
+    Ok((table(py, records, run.impacts)?, interrupted))
+}
+
+/// Simulates several runs as one, of each the particles from the first number up to, not including, the second, and records the variables
+/// in `columns`. The runs may differ in seed, number of particles and release alone. Returns as `simulate`.
+#[pyfunction]
+fn simulate_series<'py>(
+    py: Python<'py>,
+    runs: Vec<(Parameters<'py>, (usize, usize))>,
+    threads: usize,
+    columns: Vec<String>,
+) -> PyResult<(Bound<'py, PyDict>, Option<PyErr>)> {
+    let parts = runs
+        .iter()
+        .map(|(run, part)| Ok((run.run()?, part.0..part.1)));
+    let parts: Vec<_> = parts.collect::<PyResult<_>>()?;
+    let (means, columns) = (means(threads)?, named(&columns)?);
+    let (records, interrupted) = watch::run(py, None, |monitor| {
+        restitution_core::simulate_series(&parts, &columns, means, monitor)
+    })?;
+    Ok((table(py, records, parts[0].0.impacts)?, interrupted))
+}
+
+/// The recorded variables by name.
+fn table(py: Python<'_>, mut records: Records, impacts: usize) -> PyResult<Bound<'_, PyDict>> {
     let (particles, reached) = (records.particles(), records.reached);
     let table = PyDict::new(py);
     if !records.particle.is_empty() {
@@ -56,7 +81,7 @@ fn simulate<'py>(
         table.set_item("particle", variable(py, &NUMBER, &dimensions, numbers)?)?;
     }
     for (about, values) in records.per_impact() {
-        let dimensions = [("particle", particles), ("impact", run.impacts)];
+        let dimensions = [("particle", particles), ("impact", impacts)];
         let (names, values, attributes) = variable(py, &about, &dimensions, values)?;
         let within = (PySlice::full(py), PySlice::new(py, 0, reached as isize, 1));
         table.set_item(about.name, (names, values.get_item(within)?, attributes))?;
@@ -65,7 +90,7 @@ fn simulate<'py>(
         let dimensions = [("particle", particles)];
         table.set_item(about.name, variable(py, &about, &dimensions, values)?)?;
     }
-    Ok((table, interrupted))
+    Ok(table)
 }
 
 /// Memory for one impact with these variables, in bytes.
@@ -120,5 +145,6 @@ fn shaped<T: Element>(
 pub fn add_to(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(columns, module)?)?;
     module.add_function(wrap_pyfunction!(simulate, module)?)?;
+    module.add_function(wrap_pyfunction!(simulate_series, module)?)?;
     module.add_function(wrap_pyfunction!(bytes_per_impact, module)?)
 }

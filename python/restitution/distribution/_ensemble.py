@@ -44,6 +44,9 @@ class Impacts(NamedTuple):
     first: int = 0
 
 
+_Part: TypeAlias = tuple[Run, tuple[int, int]]
+"""The particles of a run from one number up to, not including, another."""
+
 Look: TypeAlias = Callable[[Impacts], Floats | None]
 """Gives the condition of each impact, in the shape of the block, NaN where it has none; None without one."""
 
@@ -113,21 +116,15 @@ class Ensemble:
         most = max(1, _IMPACTS_AT_A_TIME // self.run.impacts)
         check_memory(min(most, self.run.particles) * self.run.impacts, _core.bytes_per_impact(names))
         for runs in self._runs(stream, share[1]):
-            first, waiting, held = 0, 0, []
-            for run, particles in runs:
-                for start in range(math.ceil(share[0] * particles), run.particles, most):
-                    part = (start, min(start + most, run.particles))
-                    held.append(self._columns(run, part, names))
-                    waiting += part[1] - part[0]
-                    if waiting >= most:
-                        yield _block(held, first)
-                        if tell is not None:
-                            tell(waiting)
-                        first, waiting, held = first + waiting, 0, []
-            if held:
-                yield _block(held, first)
+            first = 0
+            for parts in _gathered(runs, share[0], most):
+                block = self._simulated(parts, names, first)
+                particles = block.velocity.shape[0]
+                yield block
+                del block  # before the next one is simulated
                 if tell is not None:
-                    tell(waiting)
+                    tell(particles)
+                first += particles
 
     def _runs(self, stream: int, share: float) -> Iterator[list[tuple[Run, int]]]:
         """Yield the runs of each round, up to that share, and the particles that the whole runs have."""
@@ -147,15 +144,29 @@ class Ensemble:
                 begun += particles
             yield found
 
-    def _columns(self, run: Run, part: tuple[int, int], names: list[str]) -> list[Floats]:
-        table, interrupted = _core.simulate(
-            run.parameters(), checked_threads(self.threads), None, part=part, columns=names
-        )
+    def _simulated(self, parts: list[_Part], names: list[str], first: int) -> Impacts:
+        """Simulate parts of several runs side by side, whose particles are numbered from `first` on."""
+        runs = [(run.parameters(), part) for run, part in parts]
+        table, interrupted = _core.simulate_series(runs, checked_threads(self.threads), names)
         if interrupted:
             raise KeyboardInterrupt from interrupted
-        return [table[name][1] for name in names]
+        columns = [table[name][1] for name in names]
+        return Impacts(columns[0], columns[1], columns[2] if self.fraction else np.empty((0, 0)), first)
 
 
-def _block(held: list[list[Floats]], first: int) -> Impacts:
-    columns = [parts[0] if len(parts) == 1 else np.concatenate(parts) for parts in zip(*held, strict=True)]
-    return Impacts(columns[0], columns[1], columns[2] if len(columns) > 2 else np.empty((0, 0)), first)
+def _gathered(runs: list[tuple[Run, int]], begin: float, most: int) -> Iterator[list[_Part]]:
+    """Gather particles, in each run from that share of the whole run on, as many as `most` at a time."""
+    held: list[_Part] = []
+    room = most
+    for run, particles in runs:
+        start = math.ceil(begin * particles)
+        while start < run.particles:
+            end = min(start + room, run.particles)
+            held.append((run, (start, end)))
+            room -= end - start
+            start = end
+            if room == 0:
+                yield held
+                held, room = [], most
+    if held:
+        yield held

@@ -110,7 +110,7 @@ impl<S: Simd, T: Turn, K: Sink> WithSimd for Tell<'_, S, T, K> {
 #[cfg(test)]
 mod tests {
     use crate::engine::{GROUPS, Impact, Meanwhile, Sink, StopReason};
-    use crate::run::{Orientation, Plan, Run};
+    use crate::run::{Orientation, Plan, Run, bounce_block};
     use crate::simd::{LANES, Level, Pack};
     use crate::{Dumbbell, Law, Monitor, Spin, TangentialRestitution, Vector};
     use pulp::Simd;
@@ -183,7 +183,7 @@ mod tests {
                         waits: [false; GROUPS * LANES],
                     };
                     let range: Range<usize> = 0..particles;
-                    plan.bounce(range, level, &monitor, &mut sink).unwrap();
+                    bounce_block(&plan, range, level, &monitor, &mut sink).unwrap();
                     assert_eq!(sink.done, sink.impacts, "{level:?}, {particles}, {most}");
                     if most == usize::MAX {
                         assert_eq!(sink.done, 7 * particles);

@@ -1,6 +1,6 @@
 //! A block of particles, and the choice of the bounce loop for their motion, hull and law.
 
-use super::Plan;
+use super::Source;
 use crate::Error;
 use crate::body::Surface;
 use crate::engine::{Apart, GROUPS, Legs, Planar, Sink, Spatial, Stuck, Together, Turn, bounce};
@@ -26,41 +26,45 @@ pub(crate) fn share(left: usize, threads: usize) -> usize {
     (most / BLOCK * BLOCK).clamp(BLOCK, LARGEST).min(left)
 }
 
-impl Plan<'_> {
-    /// Simulates a range of particles and hands their impacts to `sink`.
-    pub fn bounce(
-        &self,
-        particles: Range<usize>,
-        level: Level,
-        monitor: &Monitor,
-        sink: &mut impl Sink,
-    ) -> Result<(), Error> {
-        let count = particles.len() as u64;
-        level.run(Block {
-            plan: self,
-            particles,
-            monitor,
-            sink,
-        })?;
-        monitor.add_finished(count);
-        Ok(())
-    }
+/// Number of particles in each of the blocks that some threads share evenly, all but the last.
+pub(crate) fn even(particles: usize, threads: usize) -> usize {
+    let blocks = particles.div_ceil(LARGEST).next_multiple_of(threads);
+    particles.div_ceil(blocks)
+}
+
+/// Simulates a range of particles and hands their impacts to `sink`.
+pub(crate) fn bounce_block(
+    source: &impl Source,
+    particles: Range<usize>,
+    level: Level,
+    monitor: &Monitor,
+    sink: &mut impl Sink,
+) -> Result<(), Error> {
+    let count = particles.len() as u64;
+    level.run(Block {
+        source,
+        particles,
+        monitor,
+        sink,
+    })?;
+    monitor.add_finished(count);
+    Ok(())
 }
 
 /// The particles of a block, compiled for each SIMD level.
-struct Block<'a, T> {
-    plan: &'a Plan<'a>,
+struct Block<'a, R, T> {
+    source: &'a R,
     particles: Range<usize>,
     monitor: &'a Monitor,
     sink: &'a mut T,
 }
 
-impl<T: Sink> WithSimd for Block<'_, T> {
+impl<R: Source, T: Sink> WithSimd for Block<'_, R, T> {
     type Output = Result<(), Error>;
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) -> Self::Output {
-        let plan = self.plan;
+        let plan = self.source.plan();
         let (body, law, slope) = (&plan.body, &plan.law, plan.slope);
         // The paper's body, and in the most common runs the one that takes longest, have bounce loops of their own where these are not
         // held up by memory.
@@ -84,27 +88,30 @@ impl<T: Sink> WithSimd for Block<'_, T> {
     }
 }
 
-impl<T: Sink> Block<'_, T> {
+impl<R: Source, T: Sink> Block<'_, R, T> {
     #[inline(always)]
     fn run<S: Simd, K: Turn>(self, simd: S, legs: &impl Legs<S, K>) -> Result<(), Error> {
         let Self {
-            plan,
+            source,
             particles,
             monitor,
             sink,
         } = self;
         bounce::<S, K, _, GROUPS>(
             simd,
-            (&plan.body, plan.limits()),
+            (&source.plan().body, source.plan().limits()),
             legs,
-            (plan, particles),
+            (source, particles),
             sink,
             || !monitor.is_cancelled(),
         )
-        .map_err(|Stuck { particle, impacts }| Error::Numerical {
-            particle: particle as u64,
-            seed: plan.run.seed,
-            flight: impacts as u64,
+        .map_err(|Stuck { particle, impacts }| {
+            let (plan, number) = source.origin(particle);
+            Error::Numerical {
+                particle: number as u64,
+                seed: plan.run.seed,
+                flight: impacts as u64,
+            }
         })
     }
 }

@@ -5,13 +5,15 @@ mod height;
 mod orientation;
 mod plan;
 mod scales;
+mod series;
 mod spin;
 
-pub(crate) use block::{BLOCK, share};
+pub(crate) use block::{BLOCK, bounce_block, even, share};
 pub use height::Height;
 pub use orientation::Orientation;
 pub(crate) use plan::Plan;
 pub use scales::Scales;
+pub(crate) use series::{Series, Source};
 pub use spin::{About, Spin};
 
 use crate::body::Solid;
@@ -62,5 +64,17 @@ impl Run<'_> {
     /// particle remains in the vertical plane of its axis.
     pub(crate) fn is_at_rest(&self) -> bool {
         self.spin.is_none() && self.release_velocity == Vector::default() && self.incline == 0.0
+    }
+
+    /// Whether another run differs in nothing but its seed, the number of its particles and how they are released, and moves in the
+    /// same way.
+    pub(crate) fn is_like(&self, other: &Self) -> bool {
+        self.body == other.body
+            && self.law == other.law
+            && self.impacts == other.impacts
+            && self.gravity == other.gravity
+            && self.incline == other.incline
+            && self.minimum_speed == other.minimum_speed
+            && self.is_at_rest() == other.is_at_rest()
     }
 }

@@ -4,10 +4,11 @@ use super::{Height, Orientation, Run, Scales};
 use crate::Error;
 use crate::body::{Body, Solid};
 use crate::collision::Law;
-use crate::engine::{Limits, Release};
+use crate::engine::Limits;
 use crate::flight::{State, Vector};
 use crate::simd::elementary::sincos;
 use std::f64::consts::FRAC_PI_2;
+use std::ops::Range;
 
 /// A run that has been checked, in the core's units.
 pub(crate) struct Plan<'a> {
@@ -128,12 +129,17 @@ impl<'a> Plan<'a> {
             minimum_speed: self.run.minimum_speed / self.scales.speed,
         }
     }
-}
 
-impl Release for Plan<'_> {
+    /// Whether the range has particles, all of them of the run.
+    pub fn check_part(&self, part: &Range<usize>) -> Result<(), Error> {
+        let allowed = "at least one of the particles of the run, from the first to before the last";
+        let inside = part.start < part.end && part.end <= self.run.particles;
+        Error::unless(inside, "part", part.end as f64, allowed)
+    }
+
     /// The state of a particle at release. At rest over a level plane the azimuth does not matter, and the axis is in the x–z plane.
     #[inline(always)]
-    fn start(&self, particle: usize) -> State {
+    pub fn state(&self, particle: usize) -> State {
         let (sine, cosine) = self.release(particle);
         let height = self.height(particle);
         if self.at_rest {
