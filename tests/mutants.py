@@ -107,7 +107,7 @@ class Switched:
         tree = Parser(Language(tree_sitter_rust.language())).parse(text)
         for mutant in mutants:
             node = self._node(tree.root_node, mutant)
-            if node is not None and b") -> impl " not in self._source(node).partition(b"{")[0]:
+            if node is not None and not self._is_opaque(node):
                 self._at[node.id].append(mutant)
                 self.placed.add(mutant.number)
         self.text = self._rendered(tree.root_node)
@@ -123,6 +123,11 @@ class Switched:
         while found is not None and found.type not in kinds:
             found = found.parent
         return found
+
+    def _is_opaque(self, node: Node) -> bool:
+        """Whether a function returns a type without a name, of which it can give no other value."""
+        returned = node.child_by_field_name("return_type")
+        return returned is not None and b"impl " in self._source(returned)
 
     def _source(self, node: Node) -> bytes:
         return self._text[node.start_byte : node.end_byte]
@@ -346,11 +351,15 @@ def main() -> None:
         outcomes.unlink(missing_ok=True)
     known = before(outcomes)
     chosen = [one for one in chosen if one.name not in known]
+
+    def folder(one: Mutant) -> str:
+        return str(Path(*Path(one.file).parts[3:-1][:1]))
+
     # More changes in one build would take the compiler longer than two builds.
-    groups = sorted({Path(one.file).parts[3] for one in chosen})
+    groups = sorted(set(map(folder, chosen)))
     with outcomes.open("a", encoding="utf-8") as out:
         for group in groups:
-            ours = [one for one in chosen if Path(one.file).parts[3] == group]
+            ours = [one for one in chosen if folder(one) == group]
             tests = [test for test in asked.tests.split(",") if test]
             programs, mutants = compile_all(ours, tests, asked.vectors)
             # The digests last: they tell that bits have changed, not which of the two is wrong.

@@ -177,6 +177,77 @@ proptest! {
     }
 }
 
+/// The same distribution at two nodes, at 1 m/s and at 2 m/s.
+fn alike(edges: &[f64], cumulative: &[f64]) -> Mixture {
+    let each = edges.len() as i64;
+    Mixture::new(Layout {
+        nodes: Nodes::new(vec![1.0, 2.0], vec![0, 1, 2], vec![0.0; 2]).unwrap(),
+        start: vec![0, each, 2 * each],
+        edges: edges.repeat(2),
+        cumulative: cumulative.repeat(2),
+    })
+    .unwrap()
+}
+
+/// The levels of impacts at 1 m/s with these ε, a row of as many in each batch: all of them, and batch by batch.
+fn levels(mixture: &Mixture, point: f64, e: &[f64]) -> (Vec<u64>, Vec<u64>) {
+    let mut levels = Levels::new(2, BATCHES).unwrap();
+    let v = vec![1.0; e.len()];
+    let impacts = Impacts::new(&v, e, None, e.len() / BATCHES, 0).unwrap();
+    levels
+        .add(mixture, point, &impacts, on(1), &Monitor::default())
+        .unwrap();
+    (levels.fine(0).unwrap(), levels.coarse(0).unwrap().collect())
+}
+
+/// Half of all impacts have one ε, but for rounding; a quarter lies below it: their levels are uniform from ¼ to ¾, and each batch has
+/// random numbers of its own. χ² of 128 cells is 127 ± 16; six of these are allowed.
+#[test]
+fn the_levels_of_a_point_mass_are_spread_evenly() {
+    let mixture = alike(&[0.0, 0.5, 0.5 + 1e-10, 1.0], &[0.0, 0.25, 0.75, 1.0]);
+    let each = 128 * 100;
+    let e: Vec<_> = (0..BATCHES * each)
+        .map(|i| 0.5 + 1e-10 * (i as f64 * 0.618_034).fract())
+        .collect();
+    let (fine, coarse) = levels(&mixture, 1e-9, &e);
+    let inside = FINE / 4..3 * FINE / 4;
+    assert_eq!(fine[inside].iter().sum::<u64>(), e.len() as u64);
+    let batches: Vec<_> = coarse.chunks(COARSE).collect();
+    for batch in &batches {
+        let cells = &batch[COARSE / 4..3 * COARSE / 4];
+        let squares = cells.iter().map(|&n| (n as f64 - 100.0).powi(2) / 100.0);
+        assert!((squares.sum::<f64>() - 127.0).abs() < 6.0 * 16.0);
+    }
+    assert!(batches[0] != batches[1] && batches[1] != batches[2] && batches[2] != batches[0]);
+}
+
+/// An impact at the lower end of one of the parts in which levels are counted. The levels on either side of it are apart by 3/8, 4/8 or 5/8
+/// of a part: up to half of one they are not spread; beyond it they are if any bin is narrower than a point, so that half of the impacts,
+/// to within five standard errors, are in the part below.
+#[test]
+fn levels_that_are_all_but_equal_are_not_spread() {
+    let point = 2.0_f64.powi(-10);
+    for (eighths, narrowest, spread) in [
+        (3.0, 0.25, false),
+        (4.0, 0.25, false),
+        (5.0, 0.25, true),
+        (5.0, 1.0, false),
+    ] {
+        let share = eighths / 64.0;
+        let edges = [0.0, 1.0, 1.0 + narrowest * point, 2.0];
+        let mixture = alike(&edges, &[0.0, share, 0.5, 1.0]);
+        let (fine, _) = levels(&mixture, point, &[0.5; 1200]);
+        let part = (0.5 * share * FINE as f64) as usize;
+        let (below, above) = (fine[part - 1], fine[part]);
+        assert_eq!(below + above, 1200);
+        if spread {
+            assert!((below as f64 - 600.0).abs() < 5.0 * 300.0_f64.sqrt());
+        } else {
+            assert_eq!(below, 0);
+        }
+    }
+}
+
 #[test]
 fn threads_do_not_show() {
     let (start, edges) = edges();
@@ -226,6 +297,19 @@ fn what_does_not_fit_together_is_refused() {
         Counter::new(nodes(), start.to_vec(), edges.to_vec(), batches)
     };
     assert_eq!(names(new(&start[1..], &edges, 1).unwrap_err()), "edges");
+    // Ranges that begin or end elsewhere, an empty one, and one that runs backwards.
+    let last = start.len() - 1;
+    for (place, index) in [
+        (0, 1),
+        (last, start[last] - 1),
+        (last, start[last] + 1),
+        (2, start[1]),
+        (2, start[1] - 1),
+    ] {
+        let mut other = start.clone();
+        other[place] = index;
+        assert_eq!(names(new(&other, &edges, 1).unwrap_err()), "edges");
+    }
     let mut reversed = edges.clone();
     reversed.reverse();
     assert_eq!(names(new(&start, &reversed, 1).unwrap_err()), "edges");
@@ -238,13 +322,7 @@ fn what_does_not_fit_together_is_refused() {
     assert_eq!(impacts(&three, &three, None, 0), "columns");
     assert_eq!(names(Levels::new(1, 1).unwrap_err()), "nodes");
     assert_eq!(names(Levels::new(2, 0).unwrap_err()), "batches");
-    let mixture = Mixture::new(Layout {
-        nodes: Nodes::new(vec![1.0, 2.0], vec![0, 1, 2], vec![0.0; 2]).unwrap(),
-        start: vec![0, 2, 4],
-        edges: vec![0.0, 1.0, 0.0, 1.0],
-        cumulative: vec![0.0, 1.0, 0.0, 1.0],
-    })
-    .unwrap();
+    let mixture = alike(&[0.0, 1.0], &[0.0, 1.0]);
     let table = Impacts::new(&two, &two, None, 1, 0).unwrap();
     let refused = Levels::new(3, 1)
         .unwrap()

@@ -47,3 +47,43 @@ impl Guide {
         start + points[start..end].partition_point(|&point| point <= x)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Points at equal distances, of which there are no more than cells: those of the middle three quarters lie in cells of two at most, the
+    /// others in the outermost cells.
+    #[test]
+    fn no_cell_in_the_middle_has_many_points() {
+        for number in [2_usize, 7, 8, 64, 100, 1000, 4097] {
+            for (first, step) in [(0.0, 1.0), (-3.0, 0.1), (7.0, 1e-3)] {
+                let points: Vec<_> = (0..number).map(|i| first + step * i as f64).collect();
+                let guide = Guide::new(&points);
+                let widths = guide.before.windows(2).map(|two| two[1] - two[0]);
+                let cells: Vec<_> = widths.map(|points| points as usize).collect();
+                assert_eq!(cells.iter().sum::<usize>(), number);
+                let last = cells.len() - 1;
+                assert!(cells[1..last].iter().all(|&points| points <= 2));
+                assert!(cells[0].max(cells[last]) <= number / 8 + 2);
+            }
+        }
+    }
+
+    /// As many as a count of all points has, at the points, between them and beyond them.
+    #[test]
+    fn every_point_that_is_reached_is_counted() {
+        for points in [
+            vec![0.3],
+            vec![-1.0, 5.0],
+            (0..50).map(|i| f64::from(i).powi(3)).collect(),
+        ] {
+            let between = points.windows(2).map(|two| 0.5 * (two[0] + two[1]));
+            let beyond = [f64::NEG_INFINITY, points[0] - 1.0, 1e9, f64::INFINITY];
+            for x in between.chain(beyond).chain(points.iter().copied()) {
+                let reached = points.iter().filter(|&&point| point <= x).count();
+                assert_eq!(Guide::new(&points).reached(&points, x), reached, "{x}");
+            }
+        }
+    }
+}
