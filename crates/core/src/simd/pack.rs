@@ -265,6 +265,20 @@ impl<S: Simd, const K: usize> Mask<S, K> {
         !(!self).any()
     }
 
+    /// Whether a lane is true.
+    #[inline(always)]
+    pub fn get(self, lane: usize) -> bool {
+        self.select(1.0, 0.0).as_slice()[lane] == 1.0
+    }
+
+    /// Sets a lane.
+    #[inline(always)]
+    pub fn set(&mut self, lane: usize, value: bool) {
+        let mut lanes = self.select(1.0, 0.0);
+        lanes.as_mut_slice()[lane] = f64::from(value);
+        *self = lanes.eq(1.0);
+    }
+
     /// Calls `f` with every lane that is true, in order.
     #[inline(always)]
     pub fn each(self, mut f: impl FnMut(usize)) {

@@ -12,6 +12,7 @@
 //! them ([`Near`](near::Near)). Wherever the slip has come to rest the rest of the impact is a straight line in p.
 
 mod hodograph;
+mod lanes;
 mod near;
 mod nodes;
 mod panel;
@@ -20,6 +21,7 @@ mod rates;
 mod series;
 mod step;
 mod stop;
+mod tail;
 #[cfg(test)]
 mod testing;
 
@@ -31,6 +33,7 @@ pub(super) use queue::finish;
 use rates::Rates;
 use step::beyond;
 use stop::Stop;
+use tail::Tail;
 
 /// Slip at which it counts as vanished, relative to the contact velocity; the impulse is of the order of that.
 const VANISHED: f64 = 1.0 / 18_014_398_509_481_984.0; // 2⁻⁵⁴
@@ -345,6 +348,34 @@ impl<S: Simd> Impacts<S> {
         }
     }
 
+    /// Contacts that are under way and whose slip hardly changes its direction any more.
+    #[inline(always)]
+    fn is_straight(&self) -> Mask<S, 1> {
+        let Self {
+            rates,
+            goal,
+            course,
+            ..
+        } = self;
+        Tail::new(rates, course.y).leads(rates, goal, course)
+    }
+
+    /// Goes through the events of those.
+    #[inline(always)]
+    fn follow(&mut self) {
+        let Self {
+            rates,
+            goal,
+            course,
+            ..
+        } = self;
+        let tail = Tail::new(rates, course.y);
+        let lanes = tail.leads(rates, goal, course);
+        if lanes.any() {
+            tail.pass(rates, goal, lanes, course);
+        }
+    }
+
     /// Goes through the events that are near, and on by a panel.
     #[inline(always)]
     fn advance(&mut self) {
@@ -369,6 +400,64 @@ impl<S: Simd> Impacts<S> {
         let next = Course::choose(back, &again, &next);
         *course = Course::choose(course.over, course, &next);
         self.panels = self.panels + 1.0;
+    }
+
+    /// All numbers of them.
+    #[inline(always)]
+    fn packs(&mut self) -> [&mut Pack<S, 1>; 31] {
+        let Self {
+            rates: r,
+            goal: g,
+            course: c,
+            panels,
+            scale,
+            ..
+        } = self;
+        [
+            &mut r.nn,
+            &mut r.nu,
+            &mut r.uu,
+            &mut r.ww,
+            &mut r.sticking,
+            &mut r.brake,
+            &mut r.plus,
+            &mut r.minus,
+            &mut r.decay,
+            &mut r.kappa,
+            &mut g.restitution,
+            &mut g.approach,
+            &mut g.rebound,
+            &mut c.u,
+            &mut c.w,
+            &mut c.slip,
+            &mut c.a,
+            &mut c.y,
+            &mut c.mirror,
+            &mut c.v,
+            &mut c.normal,
+            &mut c.along,
+            &mut c.across,
+            &mut c.work,
+            &mut c.compression,
+            &mut c.balance,
+            &mut c.taken,
+            &mut c.due,
+            &mut c.limit,
+            panels,
+            scale,
+        ]
+    }
+
+    /// All that is either so or not.
+    #[inline(always)]
+    fn masks(&mut self) -> [&mut Mask<S, 1>; 4] {
+        let course = &mut self.course;
+        [
+            &mut course.compressing,
+            &mut course.over,
+            &mut self.aside,
+            &mut self.left,
+        ]
     }
 
     /// What came of them.

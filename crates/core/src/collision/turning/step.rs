@@ -13,13 +13,37 @@ const NEAR: f64 = 3.0;
 /// Length over which v_c^n may have an extremum between its ends, times R.
 const SHORT: f64 = 1.0 / 1_048_576.0; // 2⁻²⁰
 
-/// How far the next event is, in θ, if the velocity is linear in p and A(1 + y)² exponential in θ; infinitely far if there is none.
+/// The way to the next event if the velocity is linear in p and A(1 + y)² exponential in θ; backwards where that is behind.
+pub(super) struct Way<S: Simd, const K: usize> {
+    /// In p and in θ.
+    pub impulse: Pack<S, K>,
+    pub length: Pack<S, K>,
+    /// v_c^n rises, or falls towards an end of the restitution.
+    leads: Mask<S, K>,
+    /// > 0 unless the slip would have vanished before.
+    pub fourth: Pack<S, K>,
+}
+
+/// How far the next event is, in θ; infinitely far if there is none.
 #[inline(always)]
 pub(super) fn guess<S: Simd, const K: usize>(
     rates: &Rates<S, K>,
     goal: &Goal<S, K>,
     at: &Course<S, K>,
 ) -> Pack<S, K> {
+    let way = way(rates, goal, at);
+    let zero = Pack::splat(at.v.simd(), 0.0);
+    let ahead = way.leads & zero.le(way.impulse) & zero.lt(way.fourth);
+    ahead.select(way.length, f64::INFINITY)
+}
+
+/// The way to the next event.
+#[inline(always)]
+pub(super) fn way<S: Simd, const K: usize>(
+    rates: &Rates<S, K>,
+    goal: &Goal<S, K>,
+    at: &Course<S, K>,
+) -> Way<S, K> {
     let whole = 1.0 + at.y;
     let stiff = rates.slope(at.y) / whole;
     let zero = Pack::splat(at.v.simd(), 0.0);
@@ -44,9 +68,12 @@ pub(super) fn guess<S: Simd, const K: usize>(
     let q = fourth.max(0.0).sqrt().sqrt();
     // ln(1 + t) = 8(q − 1)/(q + 1), nearly, with q⁴ = 1 + t.
     let theta = 8.0 * share / ((q + 1.0) * (q + 1.0) * q.mul_add(q, 1.0));
-    let rises = zero.lt(stiff) | !at.compressing;
-    let ahead = rises & zero.le(p) & zero.lt(fourth);
-    ahead.select(theta, f64::INFINITY)
+    Way {
+        impulse: p,
+        length: theta,
+        leads: zero.lt(stiff) | !at.compressing,
+        fourth,
+    }
 }
 
 /// How far it is certain, in θ, that v_c^n has no extremum, or all but none.
