@@ -34,6 +34,13 @@ fn halves(x: u64) -> (u32, u32) {
 mod tests {
     use super::*;
 
+    /// The first two words of the generator's authors for counter and key 0 (`kat_vectors` of Random123): the second one is the upper half.
+    #[test]
+    fn is_the_published_generator() {
+        let bits = 0xe169_c58d_6627_e8d5_u64 >> 11;
+        assert_eq!(uniform(0, 0, 0), bits as f64 / 2.0_f64.powi(53));
+    }
+
     /// 10⁵ numbers: mean and variance within five standard errors, neighbours in any argument uncorrelated.
     #[test]
     fn is_uniform_and_neighbours_are_independent() {

@@ -4,8 +4,12 @@ mod common;
 
 use common::*;
 use restitution_core::{
-    Columns, Error, Level, Means, Monitor, Orientation, Records, Run, Spin, Vector, simulate_series,
+    Columns, Error, Level, Means, Monitor, Orientation, Records, Run, Spin, Vector,
+    default_threads, simulate_series,
 };
+use std::collections::HashSet;
+use std::sync::{Arc, Mutex};
+use std::thread;
 
 /// Every column of the particles from `first` to `last`, as bits.
 fn bits(records: &Records, impacts: usize, particles: std::ops::Range<usize>) -> Vec<u64> {
@@ -228,4 +232,41 @@ fn progress_is_told() {
     let run = uneven();
     simulate_on(&run, 2, &monitor);
     assert_eq!(monitor.finished(), run.particles as u64);
+}
+
+/// On how many threads besides the caller's a run asks whether to go on.
+fn others(threads: usize, particles: usize) -> usize {
+    let seen = Arc::new(Mutex::new(HashSet::new()));
+    let told = Arc::clone(&seen);
+    let monitor = Monitor::attended(move |_| {
+        told.lock().unwrap().insert(thread::current().id());
+    });
+    let run = Run {
+        particles,
+        impacts: 1,
+        ..uneven()
+    };
+    simulate_on(&run, threads, &monitor);
+    let mut seen = seen.lock().unwrap();
+    seen.remove(&thread::current().id());
+    seen.len()
+}
+
+/// As many as were asked for, or one for each processor that the process may use, but no more than there are blocks, of 96 particles at
+/// least. A single thread is the caller's own.
+#[test]
+fn threads_are_as_many_as_were_asked_for() {
+    for (threads, particles, expected) in [
+        (1, 960, 0),
+        (2, 960, 2),
+        (5, 960, 5),
+        (5, 97, 2),
+        (5, 96, 0),
+    ] {
+        assert_eq!(others(threads, particles), expected);
+    }
+    let processors = thread::available_parallelism().unwrap().get();
+    assert_eq!(default_threads(), processors);
+    let expected = if processors > 1 { processors } else { 0 };
+    assert_eq!(others(0, 96 * processors), expected);
 }

@@ -115,3 +115,36 @@ impl<R: Source, T: Sink> Block<'_, R, T> {
         })
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The largest number of whole vectors up to a third of what each thread has left, of all that is left to a single one; 96 and 960 are
+    /// the least and the most.
+    #[test]
+    fn blocks_shrink_with_what_is_left() {
+        for threads in 1..9 {
+            for left in (1..2000).chain([10_000, 123_456]) {
+                let waits = if threads > 1 { 3 * threads } else { 1 };
+                let fits = |&size: &usize| size * waits <= left;
+                let largest = (1..=10).map(|blocks| 96 * blocks).filter(fits).next_back();
+                assert_eq!(share(left, threads), largest.unwrap_or(96).min(left));
+            }
+        }
+    }
+
+    /// The smallest blocks of which no more are needed than threads can share evenly, of 960 particles at most.
+    #[test]
+    fn threads_have_equally_many_blocks() {
+        for threads in 1..9 {
+            for particles in (1..3000).chain([10_000, 123_456]) {
+                let size = even(particles, threads);
+                let mut shared = (threads..).step_by(threads);
+                let blocks = shared.find(|blocks| 960 * blocks >= particles).unwrap();
+                assert!(size <= 960 && blocks * size >= particles);
+                assert!(blocks * (size - 1) < particles);
+            }
+        }
+    }
+}

@@ -221,6 +221,7 @@ mod tests {
     use super::super::Hypothesis;
     use super::super::testing::{Case, State, value};
     use super::*;
+    use crate::simd::one;
 
     const FRICTION: f64 = 0.1;
 
@@ -299,6 +300,81 @@ mod tests {
                 let share = sum / (1.6 * length);
                 assert!((0.999..1.5).contains(&share), "{share} {ratio} {case:?}");
                 met[usize::from(ratio < 0.0) + 2 * usize::from(real > 0.0)] += 1;
+            }
+        }
+        assert!(met.iter().all(|&times| times > 0), "{met:?}");
+    }
+
+    /// 2σθ is at least 8 tanh(x/8) where x = −ln(1 − t) is what it should be: undone, 1 − e^{−x} is t.
+    #[test]
+    fn a_way_is_bounded_by_a_hyperbolic_tangent() {
+        for sigma in [0.3, -0.3, 7.0, -7.0] {
+            for distance in [0.2, -0.2, 3.0, -3.0] {
+                for t in [1e-6, 0.3, 0.9, 0.99999, -1e-6, -0.5, -20.0, -1e5] {
+                    if t * sigma < 0.0 {
+                        continue; // ζ has the sign of D
+                    }
+                    let zeta = t * distance / sigma;
+                    let theta = value(reach(one(sigma), one(distance), one(zeta)));
+                    let way = 8.0 * (0.25 * sigma * theta).atanh();
+                    assert!(
+                        (-(-way).exp_m1() - t).abs()
+                            < 1e-13 * t.abs().max(1.0) * way.abs().max(1.0),
+                        "{t} {way}"
+                    );
+                }
+                let zeta = distance / sigma;
+                for beyond in [1.0, 1.1, 1e9] {
+                    let theta = reach(one(sigma), one(distance), one(beyond * zeta));
+                    assert_eq!(value(theta), f64::INFINITY);
+                }
+            }
+        }
+    }
+
+    /// As far as the series of artanh goes, |s| ≤ 0.45, and y has grown by no more than 8 as if its growth were exponential; where the way
+    /// to there is bounded by a hyperbolic tangent, that undone.
+    #[test]
+    fn a_panel_ends_where_the_series_does() {
+        let mut met = [0; 4];
+        for (a, b, nu) in [
+            (1.0, 1.3, 0.1),
+            (1.0, 1.3, -0.5),
+            (1.3, 1.0, 0.5),
+            (1.3, 1.0, -0.1),
+            (1.0, 3.0, 0.5),
+            (3.0, 1.0, -1.9),
+            (3.0, 1.0, 0.5),
+            (1.0, 3.0, -0.5),
+        ] {
+            for y in [0.01, 0.2, 0.45, 0.55, 0.9, 3.0] {
+                let case = case(a, b, nu, y);
+                let impacts = case.impacts(0.5, 0.5, Hypothesis::Newton);
+                let path = Hodograph::new(&impacts.rates, impacts.course.y);
+                let (sigma, distance) = (value(path.sigma), value(path.distance));
+                let used = |theta: f64| {
+                    let zeta = -distance * (-2.0 * sigma * theta).exp_m1() / sigma;
+                    let q = value(path.minus) * zeta;
+                    [
+                        q / (2.0 + q) / 0.45,
+                        q / (2.0 + q) / -0.45,
+                        -sigma * zeta / 8.0,
+                    ]
+                };
+                let end = value(path.steep());
+                let way = if end.is_finite() {
+                    4.0 * (0.25 * sigma * end).atanh() / sigma
+                } else {
+                    20.0 / sigma.abs()
+                };
+                let most = used(way).into_iter().fold(0.0, f64::max);
+                if end.is_finite() {
+                    assert!((most - 1.0).abs() < 1e-12, "{most} {case:?}");
+                    met[used(way).iter().position(|&share| share == most).unwrap()] += 1;
+                } else {
+                    assert!(most < 1.0, "{most} {case:?}");
+                    met[3] += 1;
+                }
             }
         }
         assert!(met.iter().all(|&times| times > 0), "{met:?}");
