@@ -128,7 +128,7 @@ mod tests {
             for left in (1..2000).chain([10_000, 123_456]) {
                 let waits = if threads > 1 { 3 * threads } else { 1 };
                 let fits = |&size: &usize| size * waits <= left;
-                let largest = (1..=10).map(|blocks| 96 * blocks).filter(fits).next_back();
+                let largest = (1..=10).map(|blocks| 96 * blocks).rfind(fits);
                 assert_eq!(share(left, threads), largest.unwrap_or(96).min(left));
             }
         }
