@@ -37,7 +37,7 @@ impl Case {
 }
 
 /// The slip of a contact and its normal motion, as they change with θ.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct State {
     pub u: f64,
     pub w: f64,
