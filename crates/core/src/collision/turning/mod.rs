@@ -9,7 +9,8 @@
 //! 1/y is an exponential function of θ, ∫y dθ a logarithm, and A the exponential function of −∫(λ + κy) dθ. What is left are
 //! quadratures of functions that are analytic next to the path ([`panel`]), and where the slip vanishes, a continued fraction
 //! ([`Stop`](stop::Stop)). The ends of compression and restitution follow from power series about a point next to
-//! them ([`Near`](near::Near)). Wherever the slip has come to rest the rest of the impact is a straight line in p.
+//! them ([`Near`](near::Near)), and where the direction hardly turns any more, from sums of exponential functions ([`Tail`]). Wherever
+//! the slip has come to rest the rest of the impact is a straight line in p.
 
 mod hodograph;
 mod lanes;
