@@ -28,3 +28,22 @@ pub(crate) fn empty<T>(what: &'static str, length: usize) -> Result<Vec<T>, Erro
         Err(_) => Err(Error::out_of_memory::<T>(what, length)),
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// There is room for all values before the first is written, or an error that says how much was asked for.
+    #[test]
+    fn there_is_room_or_an_error() {
+        let (what, bytes) = ("numbers", usize::MAX);
+        assert_eq!(
+            empty::<u64>(what, bytes),
+            Err(Error::Memory { what, bytes })
+        );
+        let room = empty::<u64>(what, 1000).unwrap();
+        assert!(room.is_empty() && room.capacity() >= 1000);
+        assert_eq!(filled(what, 7, 3), Ok(vec![7; 3]));
+        assert_eq!(zeros::<u64>(what, 3), Ok(vec![0; 3]));
+    }
+}
