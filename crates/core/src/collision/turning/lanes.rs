@@ -1,7 +1,7 @@
 //! Contacts under way, one in each lane, and the responses that wait for them.
 
 use super::queue::Waiting;
-use super::{Course, Goal, Impacts, Rates, Slipping};
+use super::{Impacts, Slipping};
 use crate::collision::{Hypothesis, Late};
 use crate::simd::{LANES, Mask, Pack};
 use pulp::{Simd, WithSimd};
@@ -53,16 +53,15 @@ impl<S: Simd> Impacts<S> {
         }
     }
 
-    /// Takes other impacts in the lanes of the mask.
+    /// Takes others in the lanes of the mask.
     #[inline(always)]
-    fn take(&mut self, mask: Mask<S, 1>, new: &Self) {
-        self.rates = Rates::choose(mask, &new.rates, &self.rates);
-        self.goal = Goal::choose(mask, &new.goal, &self.goal);
-        self.course = Course::choose(mask, &new.course, &self.course);
-        self.panels = mask.select(new.panels, self.panels);
-        self.scale = mask.select(new.scale, self.scale);
-        self.aside = mask & new.aside | !mask & self.aside;
-        self.left = mask & new.left | !mask & self.left;
+    fn take(&mut self, mask: Mask<S, 1>, others: &mut Self) {
+        for (to, from) in self.packs().into_iter().zip(others.packs()) {
+            *to = mask.select(*from, *to);
+        }
+        for (to, from) in self.masks().into_iter().zip(others.masks()) {
+            *to = mask & *from | !mask & *to;
+        }
     }
 }
 
@@ -112,8 +111,8 @@ impl<S: Simd> Lanes<S> {
             any = true;
         }
         if any {
-            let new = Impacts::new(&fresh, self.friction, self.hypothesis);
-            self.impacts.take(taken.eq(1.0), &new);
+            let mut new = Impacts::new(&fresh, self.friction, self.hypothesis);
+            self.impacts.take(taken.eq(1.0), &mut new);
         }
     }
 

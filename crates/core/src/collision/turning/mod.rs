@@ -112,17 +112,6 @@ struct Goal<S: Simd, const K: usize> {
 }
 
 impl<S: Simd, const K: usize> Goal<S, K> {
-    /// Lane by lane one or the other, of the same law.
-    #[inline(always)]
-    fn choose(mask: Mask<S, K>, a: &Self, b: &Self) -> Self {
-        Self {
-            hypothesis: a.hypothesis,
-            restitution: mask.select(a.restitution, b.restitution),
-            approach: mask.select(a.approach, b.approach),
-            rebound: mask.select(a.rebound, b.rebound),
-        }
-    }
-
     /// What is missing of the restitution: < 0 once it is over.
     #[inline(always)]
     fn missing(&self, at: &Course<S, K>) -> Pack<S, K> {

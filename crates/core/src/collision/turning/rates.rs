@@ -1,7 +1,7 @@
 //! The rates at which a slip changes.
 
 use super::Slipping;
-use crate::simd::{Mask, Pack};
+use crate::simd::Pack;
 use pulp::Simd;
 
 /// K in the plane of **n** and the direction **u** along which the slip is positive, times μ where friction is.
@@ -45,24 +45,6 @@ impl<S: Simd, const K: usize> Rates<S, K> {
         };
         rates.turn(nu);
         rates
-    }
-
-    /// Lane by lane one or the other, of the same law.
-    #[inline(always)]
-    pub fn choose(mask: Mask<S, K>, a: &Self, b: &Self) -> Self {
-        Self {
-            friction: a.friction,
-            nn: mask.select(a.nn, b.nn),
-            nu: mask.select(a.nu, b.nu),
-            uu: mask.select(a.uu, b.uu),
-            ww: mask.select(a.ww, b.ww),
-            sticking: mask.select(a.sticking, b.sticking),
-            brake: mask.select(a.brake, b.brake),
-            plus: mask.select(a.plus, b.plus),
-            minus: mask.select(a.minus, b.minus),
-            decay: mask.select(a.decay, b.decay),
-            kappa: mask.select(a.kappa, b.kappa),
-        }
     }
 
     /// Takes **u** so that this is K_nu.
