@@ -317,6 +317,30 @@ mod tests {
         }
     }
 
+    /// Beside Taylor's series in integers, units of 2⁻⁶²: up to π/4 the result is rounded once, and r² before it, which leaves a quarter
+    /// of the last place at most; roundings of the small second part leave less than 0.03 of it.
+    #[test]
+    fn small_angles_are_rounded_once() {
+        for k in (1_i128 << 51..7_074_237_752_028_440).step_by(200_000_000_003) {
+            let angle = k << 9;
+            let square = (angle * angle) >> 62;
+            let series = |first: i128| {
+                let terms = [0, 2, 4, 6, 8, 10, 12, 14, 16, 18, 20, 22, 24];
+                terms.iter().rev().fold(1_i128 << 62, |sum, n| {
+                    let n = first + n;
+                    (1 << 62) - ((square * sum) >> 62) / (n * (n + 1))
+                })
+            };
+            let (sine, cosine) = sincos(k as f64 * 2.0_f64.powi(-53));
+            for (found, exact) in [(cosine, series(1)), (sine, (angle * series(2)) >> 62)] {
+                let off = (found * 2.0_f64.powi(62)) as i128 - exact;
+                let last = f64::EPSILON * found.log2().floor().exp2();
+                let places = off as f64 * 2.0_f64.powi(-62) / last;
+                assert!(places.abs() < 0.78, "{k} {places}");
+            }
+        }
+    }
+
     #[test]
     fn is_exact_at_zero() {
         assert_eq!(fifth_root(0.0), 0.0);

@@ -137,3 +137,34 @@ impl Level {
         (self == Self::Scalar).then(|| Simd::vectorize(Scalar::new(), work))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// By its name every level of this machine is found, and of the others it is said which there are.
+    #[test]
+    fn levels_have_names() {
+        let names = ["scalar", "simd128", "neon", "avx2", "avx512"];
+        assert_eq!(Level::ALL.map(Level::name), names);
+        let here: Vec<_> = Level::available().map(Level::name).collect();
+        for (level, name) in Level::ALL.into_iter().zip(names) {
+            let expected = if here.contains(&name) {
+                Ok(level)
+            } else {
+                Err(Error::Level {
+                    name: name.into(),
+                    allowed: here.join(", "),
+                    problem: "this machine lacks it",
+                })
+            };
+            assert_eq!(Level::named(name), expected);
+        }
+        let unknown = Error::Level {
+            name: "Scalar".into(),
+            allowed: "scalar, simd128, neon, avx2, avx512".into(),
+            problem: "no such SIMD level",
+        };
+        assert_eq!(Level::named("Scalar"), Err(unknown));
+    }
+}
