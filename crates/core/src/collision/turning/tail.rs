@@ -174,8 +174,8 @@ impl<S: Simd, const K: usize> Tail<S, K> {
         let (e, turned) = ((1.0 + half) * (1.0 + half), -(half * (2.0 + half)));
         let lost = -exp_m1_in_lanes((-(self.decay * theta)).max(-LARGE).min(LARGE));
         let x = 1.0 - lost;
-        let one = Pack::splat(theta.simd(), 1.0);
-        let (mut size, mut power) = (0.0 * one, one);
+        let [zero, one] = [0.0, 1.0].map(|value| Pack::splat(theta.simd(), value));
+        let (mut size, mut power) = (zero, one);
         let (mut impulse, mut along, mut moment) = (size, size, size);
         // 1 − e^{−λ*θ}Eᵏ, and for A².
         let (mut first, mut second) = (lost, lost * (2.0 - lost));
@@ -345,7 +345,13 @@ mod tests {
 
     /// Slips whose direction is off the attracting one by this share of what the sums may have, as far as that is possible.
     fn slips(share: f64, hypothesis: Hypothesis) -> Vec<Impacts<Scalar>> {
-        let slip = |[friction, nn, nu, uu, ww]: [f64; 5]| {
+        slips_of(1.0, share, hypothesis)
+    }
+
+    /// Those of bodies of that mass.
+    fn slips_of(mass: f64, share: f64, hypothesis: Hypothesis) -> Vec<Impacts<Scalar>> {
+        let slip = |[friction, rest @ ..]: [f64; 5]| {
+            let [nn, nu, uu, ww] = rest.map(|k| k / mass);
             let tilt = friction * (ww - uu);
             let (plus, minus) = (nu + tilt, nu - tilt);
             let sigma = plus.abs();
@@ -424,18 +430,19 @@ mod tests {
         }
     }
 
-    /// The next event is where the slip has come to when v_c^n = 0, then the end of the restitution.
+    /// The next event is where the slip has come to when v_c^n = 0, then the end of the restitution; of bodies of any mass, and of no
+    /// contact that is not asked for.
     #[test]
     fn both_events_are_found() {
         for hypothesis in HYPOTHESES {
-            for share in [-0.9, 0.05, 0.9] {
-                for Impacts {
-                    rates,
-                    mut goal,
-                    mut course,
-                    ..
-                } in slips(share, hypothesis)
-                {
+            for (mass, share) in [(1.0, -0.9), (1024.0, 0.05), (1.0 / 1024.0, 0.9)] {
+                for impacts in slips_of(mass, share, hypothesis) {
+                    let Impacts {
+                        rates,
+                        mut goal,
+                        mut course,
+                        ..
+                    } = impacts;
                     let start = State::of(&course);
                     let way = 0.2 / value(rates.pace(course.y));
                     course.v = one(value(course.v) - start.after(&rates, way).v);
@@ -453,14 +460,24 @@ mod tests {
                             goal.restitution = one(square.sqrt());
                         }
                     }
-                    let tail = Tail::new(&rates, course.y);
-                    let lanes = tail.leads(&rates, &goal, &course);
-                    assert!(lanes.all());
-                    tail.pass(&rates, &goal, lanes, &mut course);
+                    let mut impacts = Impacts {
+                        rates,
+                        goal,
+                        course,
+                        ..impacts
+                    };
+                    assert!(impacts.is_straight().all());
+                    let nowhere = !impacts.is_straight();
+                    tail(&impacts).pass(&rates, &goal, nowhere, &mut course);
+                    assert_eq!(State::of(&course), start);
+                    assert!(course.compressing.all() && !course.over.any());
+
+                    impacts.follow();
+                    let course = impacts.course;
                     assert!(course.over.all());
-                    near(value(course.compression), turned.normal, 1e-13);
+                    near(value(course.compression), turned.normal, 1e-13 * mass);
                     near(value(course.v), end.v, 1e-12);
-                    near(value(course.normal), end.normal, 1e-12);
+                    near(value(course.normal), end.normal, 1e-12 * mass);
                     near(
                         value(course.across) * value(rates.ww),
                         end.w - start.w,
@@ -500,6 +517,11 @@ mod tests {
                 let rises = |y: f64| nu * (y - 1.0) > 0.0;
                 let both = rises(limit) && rises(value(impacts.course.y));
                 assert_eq!(leads(&|at| at.rates.nn = one(0.0)), both);
+                // v_c^n rises at one end of the way and falls at the other.
+                let between = 0.5 * (limit + value(impacts.course.y));
+                let jam = impacts.rates.friction * nu;
+                let nn = jam * (1.0 - between) / (1.0 + between);
+                assert!(!leads(&|at| at.rates.nn = one(nn)));
                 let stronge = hypothesis == Hypothesis::Stronge;
                 let slides = nu != 0.0;
                 assert_eq!(

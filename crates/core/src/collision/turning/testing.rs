@@ -19,8 +19,8 @@ pub(super) struct Case {
 
 impl Case {
     /// At a slip of size `slip` that is measured in units of the contact velocity, `normal` its part along **n**.
-    pub fn impacts(&self, slip: f64, normal: f64, hypothesis: Hypothesis) -> Impacts<Scalar> {
-        let contact = Slipping {
+    pub fn contact(&self, slip: f64, normal: f64) -> Slipping<Scalar, 1> {
+        Slipping {
             speed: one(normal),
             along: one(slip * self.direction.cos()),
             across: one(slip * self.direction.sin()),
@@ -29,7 +29,12 @@ impl Case {
             uu: one(self.uu),
             ww: one(self.ww),
             restitution: one(0.5),
-        };
+        }
+    }
+
+    /// The impact of [`Self::contact`].
+    pub fn impacts(&self, slip: f64, normal: f64, hypothesis: Hypothesis) -> Impacts<Scalar> {
+        let contact = self.contact(slip, normal);
         let mut impacts = Impacts::new(&contact, self.friction, hypothesis);
         impacts.course.direction();
         impacts
