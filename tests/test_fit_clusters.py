@@ -50,6 +50,13 @@ def test_intervals_cover_the_truth_as_often_as_they_say() -> None:
     assert np.all(np.mean(naive, axis=0) < 0.88 - allowed)
 
 
+def test_intervals_and_bands_are_of_95_percent_unless_said() -> None:
+    found = fit.bootstrap(fit.gaussian, np.random.default_rng(3).normal(size=50), resamples=20)
+    assert found.interval("mean") == found.interval("mean", 0.95) != found.interval("mean", 0.9)
+    for usual, said in zip(found.band([0.0, 1.0]), found.band([0.0, 1.0], 0.95), strict=True):
+        np.testing.assert_array_equal(usual, said)
+
+
 def _intervals(found: fit.Bootstrap) -> list[tuple[float, float, float]]:
     ends = {name: found.interval(name, 0.9) for name in ("above", "below")}
     return [(ends[name][0], truth, ends[name][1]) for name, truth in (("above", ABOVE), ("below", BELOW))]

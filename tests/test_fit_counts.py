@@ -41,6 +41,7 @@ def test_fine_bins_give_the_fit_of_the_samples(family: Family) -> None:
     samples = fit.bootstrap(family, x, resamples=8)
     counts = family(binned(x, np.linspace(0.6, 1.3, 1001)))
     assert counts.samples == x.size
+    assert counts.family == samples.fit.family
     assert counts.free_parameters == samples.fit.free_parameters
     for name, error in samples.standard_errors.items():
         # Eight resamples know an error to a quarter.
@@ -202,3 +203,25 @@ def test_the_exponent_may_have_its_cusp_fixed() -> None:
     assert found.free_parameters == 3
     assert found.loglikelihood <= fit.asymmetric_power(x).loglikelihood + 1e-6
     assert found.parameters["exponent"] == pytest.approx(1.0, abs=0.1)
+
+
+@pytest.mark.parametrize("family", [fit.asymmetric_laplace, fit.asymmetric_power])
+def test_what_is_given_is_no_free_parameter(family: Family) -> None:
+    """Of samples as of counts: AIC and BIC count what was fitted."""
+    x = flanks(np.random.default_rng(1).random(4000))
+    for samples in (x, binned(x, np.linspace(0.6, 1.3, 1001))):
+        free, fixed = family(samples), family(samples, location=CUSP)
+        assert free.free_parameters == len(free.parameters)
+        assert fixed.free_parameters == len(fixed.parameters) - 1
+        assert fixed.parameters["location"] == CUSP
+
+
+@pytest.mark.parametrize(("sharpness", "exponent"), [(0.25, 0.5), (50.0, 20.0)])
+def test_the_exponent_stays_within_its_bounds(sharpness: float, exponent: float) -> None:
+    """Where the density asks for a sharper cusp, or a flatter top, than k = 1/2 and 20."""
+    x = stats.gennorm(sharpness, loc=CUSP, scale=0.02).rvs(4000, random_state=1)
+    found = fit.asymmetric_power(x, location=CUSP)
+    low, high = np.quantile(x, [0.002, 0.998])
+    counts = fit.asymmetric_power(binned(x, np.linspace(low, high, 400)), location=CUSP)
+    assert found.parameters["exponent"] == pytest.approx(exponent, rel=1e-3)
+    assert counts.parameters["exponent"] == pytest.approx(exponent, rel=1e-12)
