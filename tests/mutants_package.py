@@ -44,6 +44,10 @@ TESTS = {
     "distribution/_nodes.py": ("test_distribution_nodes.py",),
     "distribution/_check.py": ("test_distribution_nodes.py",),
     "distribution/_table.py": ("test_distribution_table.py",),
+    "distribution/_ensemble.py": ("test_distribution_ensemble.py",),
+    "distribution/_pilot.py": ("test_distribution_ensemble.py",),
+    "distribution/_count.py": ("test_distribution_ensemble.py",),
+    "distribution/_learn.py": ("test_distribution_ensemble.py",),
     "_reading.py": ("test_given_files.py",),
     "_formats.py": ("test_given_files.py",),
     "_reduce.py": ("test_statistics.py",),
@@ -139,7 +143,7 @@ def campaign(judge: Judge, names: list[str], asked: argparse.Namespace, known: d
             asked_for = [one for one in changes(source) if all(word in one[0] for word in functions)]
             every = [one for one in asked_for if judge.reaching(module, one[0])]
             draw = len(every) if asked.draw is None else min(asked.draw, len(every))
-            chosen = random.Random(0).sample(every, draw)
+            chosen = random.Random(asked.seed).sample(every, draw)
             alive = 0
             for function, change in chosen:
                 changed = change()
@@ -165,6 +169,7 @@ def main() -> int:
     """Say which changes live."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--draw", type=int, help="so many of each file, drawn evenly")
+    parser.add_argument("--seed", type=int, default=0, help="another draw")
     parser.add_argument("--go-on", action="store_true", help="leave out what a test has noticed before")
     parser.add_argument(
         "--enough",
