@@ -1,9 +1,10 @@
 """Changes of the core that no test notices.
 
-`cargo mutants` lists the changes: an operator, a sign, the value of a function. Instead of a build for each,
-those of some files are compiled together into one copy of the core, each behind the number that the
-environment variable MUTANT has; a test program then takes seconds to judge one. Left out is what does not
-compile: a type without a default value, or a constant, which cannot look at a variable.
+`cargo mutants` lists the changes: an operator, a sign, the value of a function, a condition or an arm of a
+match, a field. Instead of a build for each, those of some files are compiled together into one copy of the
+core, each behind the number that the environment variable MUTANT has; a test program then takes seconds to
+judge one. A constant with changes is a function in that copy. Left out is what does not compile: a type
+without a default value, or the length of an array, which cannot look at a variable.
 """
 
 import argparse
@@ -26,6 +27,8 @@ import tree_sitter_rust
 from tree_sitter import Language, Node, Parser
 
 ROOT = Path(__file__).resolve().parents[1]
+CORE = ROOT / "crates" / "core" / "src"
+OUTSIDE = b"".join(path.read_bytes() for path in (ROOT / "crates/core/tests").rglob("*.rs"))
 # Campaigns that run side by side have a folder each.
 WORK = Path(os.environ.get("MUTANTS_FOLDER", ROOT / "target" / "mutants"))
 HOME = WORK / "core" / "crates" / "core"
@@ -53,6 +56,8 @@ SLOWER = 3
 """A test program may take so many times more of the processor's time than without a change."""
 ASLEEP = 3600.0
 """Seconds by the clock after which a test program is taken to wait for ever."""
+FEW = 200
+"""So many changes are compiled together, from whichever folders they are."""
 MOST = 6 << 30
 """Bytes that a test program may have, since a change can make it ask for more and more."""
 
@@ -100,26 +105,64 @@ def listed() -> list[Mutant]:
 class Switched:
     """A source file with changes behind switches."""
 
-    def __init__(self, text: bytes, mutants: list[Mutant]) -> None:
+    def __init__(
+        self, text: bytes, mutants: list[Mutant], elsewhere: dict[bytes, list[int]] | None = None
+    ) -> None:
         self._text = text
         self._at: dict[int, list[Mutant]] = collections.defaultdict(list)
         self.placed: set[int] = set()
+        self.constants: dict[bytes, list[int]] = collections.defaultdict(list)
+        """The names of the constants that are functions now, with the numbers of their changes."""
         tree = Parser(Language(tree_sitter_rust.language())).parse(text)
         for mutant in mutants:
             node = self._node(tree.root_node, mutant)
-            if node is not None and not self._is_opaque(node):
-                self._at[node.id].append(mutant)
-                self.placed.add(mutant.number)
+            if node is None or self._is_opaque(node):
+                continue
+            name = self._constant_around(tree.root_node, node)
+            if name is not None:
+                # Those that the test programs use as well remain constants, and so do tables of words.
+                if re.search(rb"\b%s\b" % name, OUTSIDE) or mutant.genre == "StructField":
+                    continue
+                self.constants[name].append(mutant.number)
+            self._at[node.id].append(mutant)
+            self.placed.add(mutant.number)
+        self._calls = {**self._imported(tree.root_node, elsewhere or {}), **self.constants}
         self.text = self._rendered(tree.root_node)
+
+    def _constant_around(self, root: Node, node: Node) -> bytes | None:
+        """Give the name of the constant in whose value an expression is."""
+        around: Node | None = node
+        while around is not None and around.type not in ("const_item", "function_item"):
+            around = around.parent
+        # That of a type may differ from one parameter of it to another.
+        if around is None or around.type == "function_item" or around.parent != root:
+            return None
+        name = around.child_by_field_name("name")
+        return None if name is None else self._source(name)
+
+    def _imported(self, root: Node, elsewhere: dict[bytes, list[int]]) -> dict[bytes, list[int]]:
+        """Give those of the constants of other files that this one uses by their names."""
+        uses = [self._source(node) for node in root.children if node.type == "use_declaration"]
+        return {
+            name: numbers
+            for name, numbers in elsewhere.items()
+            if any(re.search(rb"\b%s\b" % name, use) for use in uses)
+        }
 
     def _node(self, root: Node, mutant: Mutant) -> Node | None:
         """Give the expression, or the body of the function, that a change is about."""
-        found = root.descendant_for_byte_range(mutant.start, mutant.end)
+        # The comma after a field is not part of it.
+        end = mutant.start if mutant.genre == "StructField" else mutant.end
+        found = root.descendant_for_byte_range(mutant.start, end)
         kinds = {
             "BinaryOperator": ("binary_expression", "compound_assignment_expr"),
             "UnaryOperator": ("unary_expression",),
             "FnValue": ("function_item",),
+            "MatchArm": ("match_arm",),
+            "StructField": ("field_initializer", "shorthand_field_initializer"),
         }.get(mutant.genre, ())
+        if mutant.genre == "MatchArmGuard":
+            return found
         while found is not None and found.type not in kinds:
             found = found.parent
         return found
@@ -134,6 +177,10 @@ class Switched:
 
     def _rendered(self, node: Node) -> bytes:
         """The text of a node, with the switches in it."""
+        if node.type == "identifier" and self._source(node) in self._calls and not self._is_name(node):
+            return self._called(node)
+        if node.type == "const_item":
+            return self._constant(node)
         mutants = self._at.get(node.id, [])
         plain = self._children(node)
         if not mutants:
@@ -149,6 +196,10 @@ class Switched:
                 for one in mutants
             )
             return head + b"{ " + early + self._rendered(body)[1:]
+        if node.type == "match_arm":
+            return self._without_arm(node, mutants[0])
+        if node.type in ("field_initializer", "shorthand_field_initializer"):
+            return self._without_field(node, mutants[0])
         arms = b"".join(
             b"%d => { %s } " % (one.number, self._marked(one, self._changed(node, one))) for one in mutants
         )
@@ -156,6 +207,63 @@ class Switched:
         if node.type != "compound_assignment_expr":
             whole = b"(" + whole + b")"
         return b"/*[%s*/" % names + whole + b"/*]*/"
+
+    @staticmethod
+    def _is_name(node: Node) -> bool:
+        """Whether an identifier is imported, not used."""
+        around: Node | None = node
+        while around is not None and around.type != "use_declaration":
+            around = around.parent
+        return around is not None
+
+    def _called(self, node: Node) -> bytes:
+        name = self._source(node)
+        numbers = b" ".join(b"%d" % number for number in self._calls[name])
+        return b"/*[%s*/%s()/*]*/" % (numbers, name)
+
+    def _constant(self, node: Node) -> bytes:
+        """A constant with changes as a function, which can look at a variable."""
+        name, value = node.child_by_field_name("name"), node.child_by_field_name("value")
+        kind = node.child_by_field_name("type")
+        assert name is not None
+        assert kind is not None
+        numbers = self.constants.get(self._source(name))
+        if value is None or numbers is None:
+            return self._children(node)
+        seen = self._source(node.children[0]) if node.children[0].type == "visibility_modifier" else b""
+        words = seen, self._source(name), self._source(kind), self._rendered(value)
+        marks = b" ".join(b"%d" % number for number in numbers)
+        return b"/*[%s*/" % marks + b"%s fn %s() -> %s { %s }" % words + b"/*]*/"
+
+    def _without_arm(self, node: Node, one: Mutant) -> bytes:
+        """An arm that is left out behind its switch, by another guard."""
+        pattern = node.child_by_field_name("pattern")
+        assert pattern is not None
+        guard = pattern.child_by_field_name("condition")
+        bare = self._text[node.start_byte : pattern.end_byte]
+        also = b""
+        if guard is not None:
+            bare = self._text[node.start_byte : guard.start_byte].rstrip().removesuffix(b"if")
+            also = b" && (" + self._rendered(guard) + b")"
+        here = b"crate::mutant::number() != %d" % one.number
+        parts, at = [], pattern.end_byte
+        for child in node.children:
+            if child.start_byte >= pattern.end_byte:
+                parts += [self._text[at : child.start_byte], self._rendered(child)]
+                at = child.end_byte
+        return bare + b" if " + self._marked(one, here) + also + b" " + b"".join(parts)
+
+    def _without_field(self, node: Node, one: Mutant) -> bytes:
+        """A field that behind its switch is that of the structure from which the others come."""
+        assert node.parent is not None
+        bases = (other for other in node.parent.children if other.type == "base_field_initializer")
+        base = self._source(next(bases)).removeprefix(b"..")
+        value = node.child_by_field_name("value")
+        name = self._source(node.children[0])
+        given = name if value is None else self._rendered(value)
+        other = self._marked(one, b"(" + base + b")." + name)
+        text = b"match crate::mutant::number() { %d => %s, _ => %s }" % (one.number, other, given)
+        return b"/*[%d*/" % one.number + name + b": " + text + b"/*]*/"
 
     def _children(self, node: Node, until: Node | None = None) -> bytes:
         parts, at = [], node.start_byte
@@ -185,21 +293,23 @@ def compile_all(mutants: list[Mutant], tests: list[str], vectors: bool) -> tuple
     plan = re.sub(r"members = .*", 'members = ["crates/core"]', plan)
     plan = plan.replace('opt-level = 2\ndebug = "line-tables-only"', "opt-level = 1\ndebug = false")
     (sources / "Cargo.toml").write_text(plan, encoding="utf-8")
-    # Inlined everywhere, every change would be compiled a hundred times.
-    for path in (sources / "crates/core/src").rglob("*.rs"):
-        path.write_bytes(_plain(path.read_bytes(), vectors))
     kept = {one.number: one for one in mutants}
     by_file: dict[str, list[Mutant]] = collections.defaultdict(list)
     for one in mutants:
         by_file[one.file].append(one)
     while True:
-        for file, ours in by_file.items():
-            switched = Switched((ROOT / file).read_bytes(), [one for one in ours if one.number in kept])
-            for one in ours:
-                if one.number in kept and one.number not in switched.placed:
+        texts = {str(path.relative_to(ROOT)): path.read_bytes() for path in CORE.rglob("*.rs")}
+        ours = {file: [one for one in by_file[file] if one.number in kept] for file in texts}
+        constants: dict[bytes, list[int]] = collections.defaultdict(list)
+        for file, text in texts.items():
+            for name, numbers in Switched(text, ours[file]).constants.items():
+                constants[name] += numbers
+        for file, text in texts.items():
+            switched = Switched(text, ours[file], constants)
+            for one in ours[file]:
+                if one.number not in switched.placed:
                     del kept[one.number]
-            text = switched.text
-            (sources / file).write_bytes(_plain(text, vectors))
+            (sources / file).write_bytes(_plain(switched.text, vectors))
         lib = (ROOT / "crates/core/src/lib.rs").read_bytes()
         (sources / "crates/core/src/lib.rs").write_bytes(_plain(lib, vectors) + SWITCH.encode())
         refused = set(_refused(sources))
@@ -226,6 +336,8 @@ def compile_all(mutants: list[Mutant], tests: list[str], vectors: bool) -> tuple
 def _plain(text: bytes, vectors: bool) -> bytes:
     """Without what would make the build long: inlining, and, unless they are asked for, vectors.
 
+    Inlined everywhere, every change would be compiled a hundred times.
+
     Vectors are four doubles in a row, with any instructions: functions that are not inlined would not be
     compiled for those of a level.
     """
@@ -239,7 +351,7 @@ def _plain(text: bytes, vectors: bool) -> bytes:
 def _environment() -> dict[str, str]:
     return os.environ | {
         "CARGO_TARGET_DIR": str(WORK / "build"),
-        "RUSTFLAGS": "-Awarnings -Ctarget-cpu=native",
+        "RUSTFLAGS": "-Awarnings -Aarithmetic-overflow -Ctarget-cpu=native",
     }
 
 
@@ -352,8 +464,10 @@ def main() -> None:
     known = before(outcomes)
     chosen = [one for one in chosen if one.name not in known]
 
+    few = len(chosen) <= FEW
+
     def folder(one: Mutant) -> str:
-        return str(Path(*Path(one.file).parts[3:-1][:1]))
+        return "all" if few else str(Path(*Path(one.file).parts[3:-1][:1]))
 
     # More changes in one build would take the compiler longer than two builds.
     groups = sorted(set(map(folder, chosen)))
