@@ -1,6 +1,7 @@
 """Commands and functions where something is missing: a part, drawn with a fixed seed, of `make hostile`."""
 
 import os
+import random
 import signal
 import subprocess
 import sys
@@ -11,7 +12,7 @@ import pytest
 
 from reference.command import AMONG_TESTS
 from reference.environments import ENVIRONMENTS
-from reference.processes import COMMANDS, RUN, STUDY, inputs
+from reference.processes import COMMANDS, RUN, STUDY, command, inputs
 from restitution._cli import app
 
 HERE = Path(__file__).parent
@@ -35,6 +36,21 @@ def test_every_command_is_tried() -> None:
     assert names <= {name.split()[0] for name in COMMANDS}
     sent = {number for one in ENVIRONMENTS.values() for number in one.signals}
     assert sent == {signal.SIGINT, signal.SIGTERM, signal.SIGHUP}
+
+
+@pytest.mark.parametrize(
+    ("name", "surroundings"),
+    [
+        ("laws", "four files"),  # which figures take for their fonts
+        ("sweep status", "two files"),  # fewer than Zarr's loop takes
+        ("sweep", "six files"),
+        ("simulate", "two files"),
+        ("distribution", "ten files"),
+    ],
+)
+def test_few_open_files(name: str, surroundings: str) -> None:
+    """Their error names what cannot be opened; nothing is left, though listing a folder takes one."""
+    assert command(name, surroundings, random.Random(1)) is None
 
 
 HOURS = "100000000"

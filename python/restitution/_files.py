@@ -13,7 +13,7 @@ import re
 import secrets
 import shutil
 import tempfile
-from collections.abc import Collection, Iterator, Sequence
+from collections.abc import Collection, Iterable, Iterator, Sequence
 from contextlib import ExitStack, contextmanager, suppress
 from functools import cache
 from hashlib import blake2b
@@ -66,7 +66,7 @@ def remove_all_leftovers(folder: Path) -> None:
         for name in names:
             found = _LEFT.fullmatch(name)
             if found and found[1] == _machine() and not _is_alive(int(found[2])):
-                _discard([Path(place, name)])
+                discard([Path(place, name)])
 
 
 def check_folder(path: Path, *, replace: bool) -> None:
@@ -126,7 +126,7 @@ def whole_files(paths: Sequence[Path], *, replace: bool = False) -> Iterator[lis
             _flush(folder)
     except OSError as error:
         with undisturbed():
-            _discard(drafts)
+            discard(drafts)
         for path, *ours in zip(paths, drafts, targets, strict=False):
             if str(error.filename) in map(str, ours):
                 raise OSError(error.errno, error.strerror or str(error), str(path)) from error
@@ -136,7 +136,7 @@ def whole_files(paths: Sequence[Path], *, replace: bool = False) -> Iterator[lis
         raise
     except BaseException:
         with undisturbed():
-            _discard(drafts)
+            discard(drafts)
         raise
 
 
@@ -182,18 +182,18 @@ def whole_folder(path: Path, *, replace: bool = False, names: Collection[str] = 
         _remove(above)
         raise OSError(error.errno, f"out cannot be written to: {error.strerror}", str(path)) from None
     try:
-        yield draft
-        for file in draft.iterdir():
-            _finish(file, 0o666)
-        _finish(draft, 0o777)
-        if place == target or target.exists():
-            _move_up(draft, target, replace)
-        else:
-            os.rename(draft, target)
-        _flush(place)
+        with discarding(draft):
+            yield draft
+            for file in draft.iterdir():
+                _finish(file, 0o666)
+            _finish(draft, 0o777)
+            if place == target or target.exists():
+                _move_up(draft, target, replace)
+            else:
+                os.rename(draft, target)
+            _flush(place)
     except BaseException:
         with undisturbed():
-            shutil.rmtree(draft, ignore_errors=True)
             _remove(above)
         raise
 
@@ -253,7 +253,7 @@ def _remove_leftovers(name: str, folder: Path) -> None:
         for entry in os.scandir(folder):
             found = draft.fullmatch(entry.name)
             if found and not _is_alive(int(found[1])):
-                _discard([Path(entry.path)])
+                discard([Path(entry.path)])
 
 
 def _is_alive(process: int) -> bool:
@@ -268,13 +268,34 @@ def _is_alive(process: int) -> bool:
     return True
 
 
-def _discard(drafts: Sequence[Path]) -> None:
+def discard(drafts: Iterable[Path]) -> None:
+    """Remove drafts and all that is in them, as far as possible, with one open file at a time."""
     for draft in drafts:
-        if draft.is_dir():
-            shutil.rmtree(draft, ignore_errors=True)
-        else:
+        for folder, _, names in os.walk(draft, topdown=False):
+            for name in names:
+                with suppress(OSError):
+                    Path(folder, name).unlink()
             with suppress(OSError):
-                draft.unlink()
+                Path(folder).rmdir()
+        with suppress(OSError):  # a file
+            draft.unlink()
+
+
+@contextmanager
+def discarding(draft: Path) -> Iterator[None]:
+    """Discard a folder's draft if the block fails, whatever files it leaves open.
+
+    Those of fonts stay open with a figure that could not be drawn, and the process may have no more.
+    """
+    with ExitStack() as spare:
+        try:
+            spare.callback(os.close, os.open(os.devnull, os.O_RDONLY))
+            yield
+        except BaseException:
+            spare.close()
+            with undisturbed():
+                discard([draft])
+            raise
 
 
 def _finish(draft: Path, mode: int) -> None:
@@ -347,7 +368,7 @@ def _put_all(moves: Sequence[tuple[Path, Path]], replace: bool) -> None:
             for draft, target in moves:
                 if replace and target.exists() and len(moves) > 1:
                     folder = tempfile.mkdtemp(prefix=_prefix(target.name), suffix=".part", dir=target.parent)
-                    copies.callback(shutil.rmtree, folder, ignore_errors=True)
+                    copies.callback(discard, [Path(folder)])
                     _keep(target, Path(folder) / target.name)
                     old[target] = Path(folder) / target.name
                 _put(draft, target, replace)

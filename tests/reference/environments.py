@@ -59,10 +59,15 @@ def _soft(limit: int, most: int) -> Callable[[int], None]:
     return lambda _: resource.setrlimit(limit, (most, resource.getrlimit(limit)[1]))
 
 
-def _few_files(_: int) -> None:
-    """All that are open, and four more."""
-    most = max(int(name) for name in os.listdir("/proc/self/fd"))
-    resource.setrlimit(resource.RLIMIT_NOFILE, (most + 5, resource.getrlimit(resource.RLIMIT_NOFILE)[1]))
+def files(more: int) -> Environment:
+    """So many files besides those that are open."""
+
+    def enter(_: int) -> None:
+        hard = resource.getrlimit(resource.RLIMIT_NOFILE)[1]
+        free = [number for number in range(1000) if not os.path.lexists(f"/proc/self/fd/{number}")]
+        resource.setrlimit(resource.RLIMIT_NOFILE, (free[more - 1] + 1, hard))
+
+    return Environment(enter)
 
 
 def closed(*numbers: int) -> Environment:
@@ -148,7 +153,10 @@ ENVIRONMENTS: dict[str, Environment] = {
     "no threads": Environment(_soft(resource.RLIMIT_NPROC, 0), ordinary=True),
     "no large files": Environment(_soft(resource.RLIMIT_FSIZE, 256), writes=False),
     "no files at all": Environment(_soft(resource.RLIMIT_FSIZE, 0), writes=False),
-    "few files": Environment(_few_files),
+    "two files": files(2),
+    "four files": files(4),
+    "six files": files(6),
+    "ten files": files(10),
     "a full disk": Environment(writes=False),
     "a folder to read": Environment(prepare=lambda folder: folder.chmod(0o555), ordinary=True, writes=False),
     "no input": closed(0),

@@ -195,6 +195,9 @@ def command(name: str, surroundings: str, draw: random.Random) -> str | None:
             os.chdir(folder)
             if environment.ordinary:
                 become_ordinary()
+            # Of the files that the new program does not have none counts for it.
+            os.closerange(3, say)
+            os.closerange(say + 1, 1000)
             environment.enter(base)
             if os.environ.get("PATH") is None:
                 os.environ["PATH"] = "/usr/bin:/bin"

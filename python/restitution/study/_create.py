@@ -1,14 +1,13 @@
 """A new store of a study: its axes, the marks of its points and room for its tasks, in place in one step."""
 
 import os
-import shutil
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from restitution._dataset import version_here
-from restitution._files import draft_folder, followed, permit
+from restitution._files import discarding, draft_folder, followed, permit
 from restitution._parameters import unit_of
 from restitution._signals import undisturbed
 from restitution.study._identity import attribute, check, threads_for
@@ -39,21 +38,17 @@ def create_or_open(path: Path, study: Study, words: int) -> tuple[Store, bool]:
 def _make(path: Path, study: Study, words: int) -> bool:
     """Put a new store in its place, unless another has taken it meanwhile."""
     target = followed(path)
-    drafts: list[Path] = []
     try:
         target.parent.mkdir(parents=True, exist_ok=True)
-        drafts.append(draft_folder(target))
-        with threads_for(path):
-            _create(drafts[0], study, words)
-        permit(drafts[0], 0o777)
-        os.rename(drafts[0], target)
+        draft = draft_folder(target)
+        with discarding(draft), threads_for(path):
+            _create(draft, study, words)
+            permit(draft, 0o777)
+            os.rename(draft, target)
     except OSError as error:
         if not path.exists():
             raise OSError(error.errno, error.strerror or str(error), str(path)) from error
         return False
-    finally:
-        for draft in drafts:
-            shutil.rmtree(draft, ignore_errors=True)
     return True
 
 

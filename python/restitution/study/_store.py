@@ -40,9 +40,21 @@ _ROOM = 100_000_000
 """Bytes that Zarr takes, with its threads: one that starts where memory ends is waited for without end."""
 
 
+_FILES = 4
+"""Files that Zarr opens at least: three for its loop, of which it leaves pieces otherwise, and a chunk's."""
+
+
 def need_zarr(path: Path) -> None:
-    """Say what to install; refuse a store where there is no room for Zarr, or no thread."""
+    """Say what to install; refuse a store where there is no room for Zarr, no thread, or no file to open."""
     check_room("a study", _ROOM)
+    with contextlib.ExitStack() as files:
+        try:
+            for _ in range(_FILES):
+                files.callback(os.close, os.open(os.devnull, os.O_RDONLY))
+        except OSError as error:
+            raise OSError(
+                error.errno, f"a study takes {_FILES} open files: {error.strerror}", str(path)
+            ) from None
     with threads_for(path):  # before Zarr fails to start its own, which it then cannot end either
         thread = threading.Thread(target=bool)
         thread.start()
