@@ -28,6 +28,8 @@ _PATIENCE = 10
 """The tests may take so many times longer than without a change, and some seconds besides."""
 _SECONDS = 20
 """So long may a process do nothing: tests that wait for a signal that does not come do so by the clock."""
+_MEMORY = 8 << 30
+"""Bytes that the tests may take: a loop without an end may fill the memory before its time is over."""
 _TICK = 0.01
 REACHED: set[tuple[str, str]] = set()
 """Files and functions that were called since it was last emptied."""
@@ -129,6 +131,7 @@ class Judge:
                 null = os.open(os.devnull, os.O_RDWR)
                 for number in (0, 1, 2):
                     os.dup2(null, number)
+                resource.setrlimit(resource.RLIMIT_AS, (_MEMORY, resource.getrlimit(resource.RLIMIT_AS)[1]))
                 resource.setrlimit(resource.RLIMIT_CPU, (int(seconds) + 1, int(seconds) + 1))
                 pickle.dump(work(*(given or (self._items[0].session,))), told)
                 told.flush()

@@ -110,6 +110,39 @@ def test_what_is_no_distribution_is_refused(harm: Any, told: str, conditional: x
         _store.check(harm(conditional))
 
 
+@pytest.mark.parametrize(
+    ("name", "unit", "wanted"),
+    [
+        ("velocity", "km/h", "m s-1"),
+        ("impacts", "m", "1"),
+        ("edges", "m", "1"),
+        ("restitution_edge", "m", "1"),
+        ("given_probability_below", "m", "1"),
+    ],
+)
+def test_other_units_are_refused(name: str, unit: str, wanted: str, conditional: xr.Dataset) -> None:
+    """Whatever the Dataset has, the number of impacts as well, which no table needs."""
+    with pytest.raises(ValueError, match=rf"^data\.{name} .*{unit}.*{wanted}"):
+        _store.check(conditional.assign({name: conditional[name].assign_attrs(units=unit)}))
+    _store.check(conditional.drop_vars("impacts"))
+
+
+@pytest.mark.parametrize("name", ["edges", "restitution_edge", "given_probability_below"])
+def test_a_table_is_not_of_two_dimensions(name: str, conditional: xr.Dataset) -> None:
+    values = conditional[name].values
+    with pytest.raises(ParameterError, match=rf"^data\.{name} = .*: must be finite numbers"):
+        _store.check(conditional.drop_vars(name).assign({name: (("one", "other"), values[None])}))
+
+
+def test_an_attribute_of_another_name_breaks_the_seal(conditional: xr.Dataset) -> None:
+    """With the same values, in the same order."""
+    sealed = _store.sealed(conditional)
+    there = sealed["impacts"].attrs
+    renamed = {f"{name}s": value for name, value in there.items()}
+    with pytest.raises(ParameterError, match=r"is damaged"):
+        _store.unsealed(sealed.assign(impacts=sealed.impacts.drop_attrs().assign_attrs(renamed)), "d.nc")
+
+
 @pytest.mark.parametrize("thing", [None, 3, "file.nc", {}])
 def test_what_is_no_dataset_is_refused(thing: Any) -> None:
     with pytest.raises(ParameterError, match=r"^data = .*: must be the Dataset of a FluctuatingRestitution"):

@@ -2,6 +2,7 @@
 
 import errno
 import os
+import threading
 from pathlib import Path
 
 import pytest
@@ -36,6 +37,29 @@ def test_a_file_is_read_to_its_end_or_refused(tmp_path: Path, monkeypatch: pytes
     with pytest.raises(FileNotFoundError) as missing:
         content(tmp_path / "none")
     assert missing.value.filename == str(tmp_path / "none")
+
+
+def test_a_file_without_end_is_read_no_farther_than_needed(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The byte beyond the greatest length is enough to refuse it, while its writer goes on."""
+    monkeypatch.setattr(_reading, "MOST", 1000)
+    os.mkfifo(tmp_path / "pipe")
+    refused = threading.Event()
+    in_time = []
+
+    def write() -> None:
+        with (tmp_path / "pipe").open("wb", buffering=0) as pipe:
+            pipe.write(bytes(1001))
+            in_time.append(refused.wait(10.0))
+
+    writer = threading.Thread(target=write)
+    writer.start()
+    with pytest.raises(OSError, match="longer than 0 MiB"):
+        content(tmp_path / "pipe")
+    refused.set()
+    writer.join()
+    assert in_time == [True]
 
 
 def test_only_files_that_have_an_end_go_to_libraries(tmp_path: Path) -> None:
