@@ -55,6 +55,16 @@ def test_intervals_and_bands_are_of_95_percent_unless_said() -> None:
     assert found.interval("mean") == found.interval("mean", 0.95) != found.interval("mean", 0.9)
     for usual, said in zip(found.band([0.0, 1.0]), found.band([0.0, 1.0], 0.95), strict=True):
         np.testing.assert_array_equal(usual, said)
+        assert usual.shape == (2,)
+
+
+def test_numbers_of_particles_are_told_apart_however_large() -> None:
+    """As floating-point numbers these four would be one."""
+    numbers = 2**62 + np.arange(4)
+    found = fit.bootstrap(fit.gaussian, [1.0, 2.0, 4.0, 8.0], clusters=numbers, resamples=20)
+    assert found.clusters == 4
+    with pytest.raises(ValueError, match=r"^clusters\[0\] = .*must be whole numbers, one for each sample$"):
+        fit.bootstrap(fit.gaussian, [1.0, 2.0], clusters=[2.0**63, 0.0])
 
 
 def _intervals(found: fit.Bootstrap) -> list[tuple[float, float, float]]:
