@@ -307,9 +307,10 @@ def particles_of(blocks: Iterator[Impacts]) -> list[int]:
         (400, 2, [(0.0, 0.1)]),  # half as many in the range are enough
         # A tenth of them in the range: 40 were found of 400, ten times as many are looked at.
         (400, 10, [(0.0, 0.1), (0.1, 1.0)]),
+        (400, 4, [(0.0, 0.1), (0.1, 0.4)]),
     ],
 )
-@pytest.mark.parametrize("held", [0, 300, 10_000])
+@pytest.mark.parametrize("held", [0, 300, 400, 10_000])
 def test_the_pilot_has_enough_impacts(
     impacts: int, every: int, asked: list[tuple[float, float]], held: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -355,6 +356,7 @@ def test_a_sample_has_the_impacts_next_to_each_node(given: bool) -> None:
     v[0, 0, :4] = nodes
     e[1, 3, :5] = np.nan
     z[2, 4, :5] = np.nan
+    v[1] = v[1] % 0.5 + 1.0  # a block without any in the last intervals
     blocks = [Impacts(v[i], e[i], z[i]) for i in range(3)]
     sample = Sample(blocks, nodes, (lambda block: block.fraction) if given else (lambda _: None))
     counts = np.isfinite(e) & (np.isfinite(z) | (not given))
@@ -370,6 +372,17 @@ def test_a_sample_has_the_impacts_next_to_each_node(given: bool) -> None:
             np.testing.assert_array_equal(condition[np.argsort(restitution)], z[mask][order])
         else:
             assert condition.size == 0
+
+
+def test_a_sample_at_more_nodes_than_16_bits_can_number() -> None:
+    """Impacts in every thousandth of 70 000 intervals, given from the last to the first."""
+    nodes = np.linspace(1.0, 8.0, 70_001)
+    rows = np.arange(69_500, 0, -1000)
+    v, e = 0.5 * (nodes[rows] + nodes[rows + 1])[None], rows[None] / 70_000.0
+    sample = Sample([Impacts(v, e, EMPTY)], nodes, lambda _: None)
+    assert np.flatnonzero(sample.impacts()).tolist() == rows[::-1].tolist()
+    found = {node: values.tolist() for node, (values, _) in enumerate(sample.near()) if values.size}
+    assert found == {int(row) + side: [row / 70_000.0] for row in rows for side in (0, 1)}
 
 
 # What is learned
