@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+import xarray as xr
 from numpy.typing import NDArray
 
 import restitution as rs
@@ -16,6 +17,7 @@ from restitution import _core
 from restitution._parameters import ParameterError
 from restitution._run import Run
 from restitution.distribution import _ensemble, _learn, _pilot
+from restitution.distribution._check import Check
 from restitution.distribution._count import Counter
 from restitution.distribution._ensemble import BATCHES, FRESH, LEARNING, Ensemble, Impacts, _gathered
 from restitution.distribution._pilot import Pilot, Sample
@@ -197,15 +199,16 @@ def test_counts_and_their_errors_are_those_of_the_batches() -> None:
     # Halfway between the nodes, in every batch: the second node has a histogram too.
     counter.add_all(iter(blocks), lambda _: None)
     assert counter.impacts()[0] == np.isfinite(values).sum()
-    for number in (0, 5, 31):
-        counter.add(Impacts(np.full((1, 2), 1.5), np.array([[0.7, 0.9]]), EMPTY, number))
+    between = {0: [0.7, 0.9], 5: [0.6, 0.85], 31: [0.7, 0.7]}
+    for number, both in between.items():
+        counter.add(Impacts(np.full((1, 2), 1.5), np.array([both]), EMPTY, number))
     found = counter.counted()
     # A half of each of the last six: in ln v or v, both halves are one impact.
     assert found.impacts.sum() == pytest.approx(np.isfinite(values).sum() + 6)
     assert found.nodes is counter.nodes
     assert found.conditions is counter.conditions
     weights = [1.0, float(found.impacts[0] - np.isfinite(values).sum()) / 6]
-    x = np.concatenate([values[np.isfinite(values)], np.tile([0.7, 0.9], 3)])
+    x = np.concatenate([values[np.isfinite(values)], np.ravel(list(between.values()))])
     w = np.concatenate([np.full(x.size - 6, weights[0]), np.full(6, weights[1])])
     of = np.concatenate([np.repeat(batch, np.isfinite(values).sum(axis=1)), np.repeat([0, 5, 31], 2)])
     total, mean = w.sum(), np.sum(w * x) / w.sum()
@@ -217,6 +220,12 @@ def test_counts_and_their_errors_are_those_of_the_batches() -> None:
         return math.sqrt(1.5 * squares) / float(total)
 
     assert found.mean_errors[0] == pytest.approx(error(x - mean), rel=1e-6)
+    few, each = x[-6:], np.array(list(between.values()))
+    alone = math.sqrt(1.5 * np.sum(np.sum(each - few.mean(), axis=1) ** 2)) / 6
+    assert found.mean_errors[1] == pytest.approx(alone, rel=1e-6)
+    squares = np.sum((each - few.mean()) ** 2 - few.var(), axis=1)
+    alone = math.sqrt(1.5 * np.sum(squares**2)) / 6 / (2 * few.std())
+    assert found.std_errors[1] == pytest.approx(alone, rel=1e-6)
     expected = error((x - mean) ** 2 - variance) / (2 * math.sqrt(variance))
     assert found.std_errors[0] == pytest.approx(expected, rel=1e-6)
     histogram, shares, below = found.histograms[0], found.share_errors[0], found.below_errors[0]
@@ -269,6 +278,29 @@ def test_what_was_counted_is_told_anew_after_more(monkeypatch: pytest.MonkeyPatc
     with pytest.raises(KeyboardInterrupt) as raised:
         counter.add(block)
     assert raised.value.__cause__ is stopped
+
+
+def test_threads_are_those_that_were_asked_for() -> None:
+    """A number of threads that cannot be reaches the check from everything that takes one."""
+    even = Histogram(np.array([0.0, 1.0]), np.array([0.0, 1.0]))
+    table = Table.of(np.array([1.0, 2.0]), [even, even])
+    counter = Counter(np.array([1.0, 2.0]), [np.zeros(1)] * 2, [np.array([0.4, 0.6])] * 2)
+    block = Impacts(np.full((1, 4), 1.0), np.full((1, 4), 0.5), np.full((1, 4), 0.5))
+    run = Run(body=BODY, law=LAW, particles=4, impacts=5)
+    actions: list[Any] = [
+        lambda: counter.add_all([block], lambda _: None, 0),
+        lambda: counter.add(block, None, 0),
+        lambda: Check.of(table, [block], 0),
+        lambda: Check(table).add(block, 0),
+        lambda: table.value("cdf", 0.5, 1.5, threads=0),
+        lambda: table.draw(np.array(1.5), np.array(0.0), (3,), 1, 0),
+        lambda: _learn.condition("previous", block, table, 0),
+        lambda: next(Ensemble(run, (0.06,), 0).blocks(LEARNING)),
+        lambda: _learn.learn(Ensemble(run, (0.06,), 0), np.array([0.2, 0.5]), None, progress=False),
+    ]
+    for action in actions:
+        with pytest.raises(ParameterError, match=r"^threads = 0: must be a whole number in \[1, "):
+            action()
 
 
 # The part that places nodes and bins
@@ -389,16 +421,18 @@ def test_a_sample_at_more_nodes_than_16_bits_can_number() -> None:
 
 
 def test_the_condition_of_an_impact() -> None:
-    """That of the one before is its level in the table: for F = ε on [0, 1] it is ε; none for the first."""
-    even = Histogram(np.array([0.0, 1.0]), np.array([0.0, 1.0]))
-    table = Table.of(np.array([1.0, 2.0]), [even, even])
+    """That of the one before is its level at its own speed; none for the first.
+
+    F = ε at 1 m/s and ε/2 at 2 m/s: at 1.5 m/s 3ε/4. Slower or faster than all nodes, that at the nearest.
+    """
+    even, wide = (Histogram(np.array([0.0, end]), np.array([0.0, 1.0])) for end in (1.0, 2.0))
+    table = Table.of(np.array([1.0, 2.0]), [even, wide])
     block = Impacts(
-        np.array([[1.5, 0.5, 2.5, 1.2]]), np.array([[0.3, 0.6, 0.9, 0.1]]), np.array([[0.1, 0.2, 0.3, 0.4]])
+        np.array([[1.5, 0.5, 2.5, 1.2]]), np.array([[0.4, 0.6, 0.9, 0.1]]), np.array([[0.1, 0.2, 0.3, 0.4]])
     )
     assert _learn.condition("rotational_fraction", block, table) is block.fraction
-    np.testing.assert_allclose(
-        _learn.condition("previous", block, table), [[np.nan, 0.3, 0.6, 0.9]], rtol=1e-15
-    )
+    found = _learn.condition("previous", block, table)
+    np.testing.assert_allclose(found, [[np.nan, 0.3, 0.6, 0.45]], rtol=1e-15)
 
 
 def test_impacts_count_at_the_conditions_next_to_their_own() -> None:
@@ -444,6 +478,12 @@ def test_speeds_to_learn() -> None:
     for bad in ([0.1], [], [0.1, np.nan], [0.1, np.inf]):
         with pytest.raises(ParameterError, match=rf"^velocities = .*: must be {allowed}$"):
             _learn.checked_speeds(bad, run)
+    for strange in ("all", [[0.1, 0.2]], 0.1, [0.1, 1j]):
+        with pytest.raises(ParameterError, match=rf"^velocities\b.*: must be {allowed}"):
+            _learn.checked_speeds(strange, run)
+    for unit in ("km/h", "m", "1"):
+        with pytest.raises(ParameterError, match=rf"^velocities .*{unit}.*m s-1"):
+            _learn.checked_speeds(xr.DataArray([0.1, 0.2], attrs={"units": unit}), run)
     for bad in ([0.0, 0.1], [-0.1, 0.1], [0.1, 0.1], [0.2, 0.1]):
         with pytest.raises(ParameterError, match=r"^velocities = .*: must be > 0 and strictly increasing$"):
             _learn.checked_speeds(bad, run)
@@ -478,6 +518,8 @@ def test_progress_counts_every_particle_of_every_pass(given: Any, monkeypatch: p
     assert all(np.diff(told) > 0)
     assert list(data.attrs["release_height"]) == list(heights)
     assert data.attrs["title"] == "Distribution of the coefficient of restitution at given impact velocity"
+    assert data.attrs.get("given") == given
+    assert ("given_edges" in data) == (given is not None)
     # All impacts that lie between the nodes, simulated once more by themselves.
     count = sum(
         int(np.sum((block.velocity >= 0.2) & (block.velocity < 0.5) & np.isfinite(block.restitution)))
@@ -495,6 +537,12 @@ def test_progress_counts_every_particle_of_every_pass(given: Any, monkeypatch: p
     assert one.attrs["release_height"] == 0.06
     assert one.velocity.to_numpy().tolist() == [0.2, 0.3, 0.5]
     assert asked[-2] is False
+
+
+def test_too_few_impacts_end_the_learning() -> None:
+    """20 impacts cannot be 500 between two nodes."""
+    with pytest.raises(ParameterError, match=r"^velocities: \d+ impacts between 0\.\d+ and 0\.\d+ m/s; must"):
+        _learn.learn(ensemble_of(particles=4, impacts=5), np.array([0.2, 0.3, 0.5]), None, progress=False)
 
 
 @pytest.mark.parametrize("given", ["next", 1, ["previous"]])

@@ -77,6 +77,13 @@ def test_impacts_of_one_particle_in_several_cells_or_blocks() -> None:
     np.testing.assert_array_equal(speeds([one.T], LOW, HIGH, 30.0), speeds([one], LOW, HIGH, 30.0))
 
 
+def test_impacts_at_the_ends_of_the_range() -> None:
+    """At the least speed they are within it, at the greatest they are not."""
+    density = Density(LOW, HIGH)
+    density.add(np.array([[LOW, HIGH, np.nextafter(HIGH, 0.0), np.nextafter(LOW, 0.0)]]))
+    assert density.impacts == 2
+
+
 def test_nodes_where_there_are_no_impacts() -> None:
     """Eight intervals of equal ratio, whether none or only a few cells have any."""
     for block in (np.zeros((0, 3)), impacts_in([1] * 4)):
@@ -176,6 +183,8 @@ def test_the_scatter_of_two_batches() -> None:
     mean = float(np.sum(weight * away))
     error = math.sqrt(float(np.sum(weight * (away - mean) ** 2)) / (64 * (1 - math.exp(-2))))
     assert abs(found[0] - mean) < 5 * error
+    again = Check.of(table, [block(3, [0.25] * number), block(5, [0.75] * number)]).scatter()
+    np.testing.assert_array_equal(again, found)  # the resamples are always the same
     assert np.isnan(found[1:]).all()
 
 
