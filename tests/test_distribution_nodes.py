@@ -43,7 +43,16 @@ def distance(particles: float, copies: int, scale: float) -> float:
 
 @pytest.mark.parametrize(
     ("particles", "copies", "scale"),
-    [(3, 1, 1.0), (3, 1, 100.0), (3, 4, 100.0), (2, 1, 3000.0), (1, 1, 4.0), (1, 1, 40.0), (4, 1, 1e8)],
+    [
+        (3, 1, 1.0),
+        (3, 1, 100.0),
+        (3, 4, 100.0),
+        (2, 1, 3000.0),
+        (1, 1, 4.0),
+        (1, 1, 40.0),
+        (4, 1, 1e8),
+        (3, 20, 1.0),
+    ],
 )
 def test_nodes_are_as_close_as_impacts_are_worth(particles: int, copies: int, scale: float) -> None:
     """At equal distances in ln v where impacts are; several of a particle in one cell count as one."""
@@ -82,6 +91,25 @@ def test_impacts_at_the_ends_of_the_range() -> None:
     density = Density(LOW, HIGH)
     density.add(np.array([[LOW, HIGH, np.nextafter(HIGH, 0.0), np.nextafter(LOW, 0.0)]]))
     assert density.impacts == 2
+    last = [0] * (CELLS - 1) + [50]
+    top = np.full((50, 1), np.nextafter(HIGH, 0.0))
+    np.testing.assert_array_equal(
+        speeds([top], LOW, HIGH, 100.0), speeds([impacts_in(last)], LOW, HIGH, 100.0)
+    )
+
+
+def test_particles_with_unequal_numbers_of_impacts() -> None:
+    """One with 1 and one with 9 impacts in a cell are worth 10²/(1 + 9²) = 1.22 of equal ones (Kish)."""
+    centres = LOW * np.exp((np.arange(CELLS) + 0.5) * LENGTH / CELLS)
+    once, often = centres[:, None] * np.ones((1, 9)), centres[:, None] * np.ones((1, 9))
+    once[:, 1:] = np.nan
+    scale = 500.0
+    found = speeds([np.concatenate([once, often])], LOW, HIGH, scale)
+    number = math.floor(LENGTH / distance(100 / 82, 1, scale) + 1e-9)
+    # Ten impacts in each cell are enough for all intervals, so that these alone set the distance.
+    assert 1000 / (CELLS / LENGTH * scale * 10) < LENGTH / number
+    assert found.size == number + 1
+    np.testing.assert_allclose(np.diff(np.log(found)), LENGTH / number, rtol=1e-9)
 
 
 def test_nodes_where_there_are_no_impacts() -> None:

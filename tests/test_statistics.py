@@ -12,7 +12,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import restitution as rs
-from restitution._batches import batches_of
+from restitution._batches import batches_of, origin
 from restitution._reduce import reduce, standard_errors
 from restitution._statistics import statistics
 
@@ -353,6 +353,22 @@ def test_errors_of_moments_are_the_jackknife_over_batches() -> None:
             else:
                 expected = np.sqrt((batches - 1) / batches * np.sum((own - own.mean()) ** 2))
                 assert float(error[k]) == pytest.approx(expected, rel=1e-9), name
+
+
+@pytest.mark.parametrize(
+    ("found", "particles", "batches", "told"),
+    [
+        (16, 1000, 16, "jackknife over 16 batches of particles"),
+        (2, 4, 2, "jackknife over 2 batches of particles"),
+        (1, 1000, 1, "none: a single batch was asked for"),
+        (1, 1, 1, "none: a single batch was asked for"),
+        (1, 31, 16, "none: 31 particles are fewer than two for each of 16 batches"),
+        (1, 32, 16, "none: interrupted before the second batch"),
+        (0, 1000, 2, "none: interrupted before the second batch"),
+    ],
+)
+def test_where_standard_errors_come_from(found: int, particles: int, batches: int, told: str) -> None:
+    assert origin(found, particles, batches) == told
 
 
 @pytest.mark.parametrize("particles", [0, 1, 9, 10, 31, 32, 33, 100])
