@@ -430,6 +430,32 @@ mod tests {
         }
     }
 
+    /// ln w falls by μK_ww(θ + ∫y dθ), and ∫D dθ = ζ₀/2wσ ln((1 − wE)/(1 − w)), here with w for the bend.
+    #[test]
+    fn the_slip_across_is_braked() {
+        for share in [-0.999, 0.5, 0.999] {
+            for impacts in slips(share, Hypothesis::Newton) {
+                let tail = tail(&impacts);
+                let [sigma, zeta, bend] = [tail.sigma, tail.zeta, tail.bend].map(value);
+                for theta in [0.01 / sigma, 0.3 / sigma, 1.0 / sigma] {
+                    let e = (-2.0 * sigma * theta).exp();
+                    let mean = if bend == 0.0 {
+                        1.0 - e
+                    } else {
+                        ((-bend * e).ln_1p() - (-bend).ln_1p()) / bend
+                    };
+                    let whole = (1.0 + value(tail.limit)) * theta + zeta / (2.0 * sigma) * mean;
+                    let lost = tail.braked(&impacts.rates, one(1.0), one(theta));
+                    near(
+                        value(lost).ln_1p(),
+                        -value(impacts.rates.brake) * whole,
+                        1e-14,
+                    );
+                }
+            }
+        }
+    }
+
     /// The next event is where the slip has come to when v_c^n = 0, then the end of the restitution; of bodies of any mass, and of no
     /// contact that is not asked for.
     #[test]
