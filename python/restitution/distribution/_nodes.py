@@ -66,12 +66,12 @@ class Density:
         """
         impacts, squares = self._sums
         # Kish's effective number: impacts of one particle in one cell are taken for one and the same.
-        kish = np.divide(impacts**2, squares, out=np.zeros(_CELLS), where=impacts > 0)
+        kish = impacts**2 / np.maximum(squares, 1.0)  # 0 in empty cells
         widest = math.log(self.high / self.low) / _LEAST_INTERVALS
         with np.errstate(divide="ignore"):
             best = _BALANCE * (scale * kish / self._width) ** -0.2
             needed = 2.0 * LEAST_IMPACTS / (scale * impacts / self._width)
-        spacing = np.clip(np.maximum(best, needed), 0.0, widest)
+        spacing = np.minimum(np.maximum(best, needed), widest)
         intervals = np.concatenate([[0.0], np.cumsum(self._width / spacing)])
         points = np.linspace(0.0, intervals[-1], max(_LEAST_INTERVALS, math.floor(intervals[-1])) + 1)
         nodes = self.low * np.exp(np.interp(points, intervals, self._width * np.arange(_CELLS + 1)))
