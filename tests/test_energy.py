@@ -161,6 +161,13 @@ def test_no_impact_exceeds_the_bound_at_its_angle(tangential: float) -> None:
     assert (ratio[happened].max() > 1 + 1e-12) == (bound(body, 0.9, tangential) > 1)
 
 
+def test_a_gain_of_just_the_bound_is_rounding() -> None:
+    """Only what is above 1 + 1e-12 counts as created."""
+    bound = 1.0 + 1e-12
+    assert ledger_of(np.array([bound, np.nan, 0.5]))["energy_created_impacts"] == 0
+    assert ledger_of(np.array([np.nextafter(bound, 2.0), np.nan, 0.5]))["energy_created_impacts"] == 1
+
+
 @pytest.mark.parametrize(
     ("share", "text"),
     [
@@ -168,13 +175,16 @@ def test_no_impact_exceeds_the_bound_at_its_angle(tangential: float) -> None:
         (1.0, "100 %"),
         (1.234e-4, "0.0123 %"),
         (3e-7, "0.00003 %"),
+        (1.234e-7, "0.0000123 %"),
+        (9.876e-8, "0.00000988 %"),
+        (1e-8, "1e-06 %"),
         (2e-8, "0.000002 %"),
         (0.0, "0 %"),
-        (2e-9, "2e-07 %"),  # below what six decimal places can say
+        (2e-9, "2e-07 %"),  # nobody counts that many zeros
     ],
 )
 def test_shares_read_well(share: float, text: str) -> None:
-    """No exponent in a sentence."""
+    """Three digits, and no exponent in a sentence."""
     assert percent(share) == text
 
 

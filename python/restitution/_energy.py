@@ -3,6 +3,7 @@
 import warnings
 from collections.abc import Iterator
 from contextlib import contextmanager
+from decimal import Decimal
 from typing import Any
 
 import numpy as np
@@ -104,7 +105,7 @@ def warn(data: xr.Dataset, *, stacklevel: int = 2) -> None:
 def percent(share: float) -> str:
     """Write a share in percent with three digits, however small."""
     text = f"{100 * share:.3g}"
-    return f"{float(text):f}".rstrip("0").rstrip(".") + " %" if "e" in text and share > 1e-8 else f"{text} %"
+    return f"{Decimal(text):f} %" if share > 1e-8 else f"{text} %"
 
 
 def factor(largest: float) -> str:
