@@ -43,7 +43,7 @@ TESTS = {
     "distribution/_store.py": ("test_distribution_store.py", "test_distribution_errors.py"),
     "distribution/_errors.py": ("test_distribution_errors.py",),
     "distribution/_nodes.py": ("test_distribution_nodes.py",),
-    "distribution/_check.py": ("test_distribution_nodes.py",),
+    "distribution/_check.py": ("test_distribution_nodes.py", "test_distribution_ensemble.py"),
     "distribution/_table.py": ("test_distribution_table.py",),
     "distribution/_ensemble.py": ("test_distribution_ensemble.py",),
     "distribution/_pilot.py": ("test_distribution_ensemble.py",),

@@ -91,11 +91,11 @@ def test_impacts_at_the_ends_of_the_range() -> None:
     density = Density(LOW, HIGH)
     density.add(np.array([[LOW, HIGH, np.nextafter(HIGH, 0.0), np.nextafter(LOW, 0.0)]]))
     assert density.impacts == 2
-    last = [0] * (CELLS - 1) + [50]
-    top = np.full((50, 1), np.nextafter(HIGH, 0.0))
-    np.testing.assert_array_equal(
-        speeds([top], LOW, HIGH, 100.0), speeds([impacts_in(last)], LOW, HIGH, 100.0)
-    )
+    # Just below 1.4 the logarithm of the ratio to 0.1 is rounded to that of the end.
+    for low, high in ((LOW, HIGH), (0.1, 1.4)):
+        top, middle = np.nextafter(high, 0.0), high * (low / high) ** (0.5 / CELLS)
+        found = [speeds([np.full((50, 1), float(v))], low, high, 100.0) for v in (top, middle)]
+        np.testing.assert_array_equal(found[0], found[1])
 
 
 def test_particles_with_unequal_numbers_of_impacts() -> None:
