@@ -196,6 +196,7 @@ def test_a_merge_takes_what_is_undamaged(done: Path, tiny: Study, tmp_path: Path
     ("out", "parts", "told"),
     [
         ("none.zarr", [], r"^out = 'none\.zarr': there is no such store, and no parts for it"),
+        (3, [], r"^out = 3: must be the path"),
         ("none.zarr", "one.zarr", r"^parts = 'one\.zarr': must be a list of paths"),
         ("none.zarr", 3, r"^parts = 3: must be a list of paths"),
         ("none.zarr", [3], r"^parts\[0\] = 3: must be the path"),
@@ -204,7 +205,7 @@ def test_a_merge_takes_what_is_undamaged(done: Path, tiny: Study, tmp_path: Path
     ],
 )
 def test_what_cannot_be_merged(
-    out: str, parts: Any, told: str, done: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    out: Any, parts: Any, told: str, done: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.chdir(tmp_path)
     with pytest.raises(ValueError, match=told):
