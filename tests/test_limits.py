@@ -12,7 +12,8 @@ import pytest
 
 import restitution as rs
 from reference.command import AMONG_TESTS, SMALL
-from restitution._resources import available_memory
+from reference.processes import COMMANDS
+from restitution._memory import available_memory
 
 SETUP = """
 import json, os, resource, signal, sys, threading, time, warnings
@@ -78,6 +79,39 @@ def test_listen_says_what_it_takes_before_its_libraries_are_there(tmp_path: Path
     assert re.fullmatch(
         r"error: listen: takes 500 MB of memory, and this process can have \d+ MB\n", done.stderr
     )
+
+
+@pytest.mark.parametrize(
+    "name", ["simulate", "statistics", "compare", "distribution", "fit", "laws", "sweep"]
+)
+def test_a_command_says_what_address_space_it_takes(name: str, tmp_path: Path) -> None:
+    """Before its libraries are loaded, which fail in ways of their own where they have no room."""
+    code = "import resource; resource.setrlimit(resource.RLIMIT_AS, (3 << 27, 3 << 27))\n"
+    code += "from restitution._cli import main; main()"
+    words = [sys.executable, "-c", code, *COMMANDS[name][0].split()]
+    done = subprocess.run(words, cwd=tmp_path, capture_output=True, text=True, check=False, timeout=60)
+    assert done.returncode == 1
+    said = r"error: this command: takes 600 MB of address space, and this process can have \d+ MB\n"
+    assert re.fullmatch(said, done.stderr)
+    assert not list(tmp_path.iterdir())
+
+
+def test_a_file_that_no_memory_holds(tmp_path: Path) -> None:
+    """It is named, with what it takes, before it is read."""
+    found = run(f"""
+from restitution import _memory
+from restitution._dataset import load
+from pathlib import Path
+data = rs.simulate(body, law, particles=10, impacts=10)
+data.to_netcdf("{tmp_path}/run.nc")
+told(load, Path("{tmp_path}/run.nc"))
+_memory.available_memory = lambda: 4000
+told(load, Path("{tmp_path}/run.nc"))
+print(data.nbytes)
+""")
+    assert found[0] == ["done", ""]
+    took = f"takes {found[2] / 1e6:.0f} MB of memory, and this process can have 0 MB"
+    assert found[1] == ["MemoryError", f"{tmp_path}/run.nc: {took}"]
 
 
 def test_draws_that_no_memory_holds() -> None:

@@ -323,7 +323,7 @@ def test_what_zarr_needs(monkeypatch: pytest.MonkeyPatch) -> None:
         with pytest.raises(ImportError, match=r"need zarr: pip install 'restitution\[sweep\]'"):
             need_zarr(Path("store"))
     with monkeypatch.context() as patched:
-        patched.setattr("restitution._resources.available_memory", lambda: 99_999_999)
+        patched.setattr("restitution._memory.available_memory", lambda: 99_999_999)
         with pytest.raises(MemoryError, match=r"a study: takes 100 MB of memory"):
             need_zarr(Path("store"))
 

@@ -14,6 +14,7 @@ import xarray as xr
 from restitution._core import STOP_REASONS
 from restitution._energy import ledger_of
 from restitution._files import whole_file
+from restitution._memory import check_room
 from restitution._reading import check_regular
 from restitution._run import Run
 
@@ -71,7 +72,9 @@ def load(path: Path) -> xr.Dataset:
     """Read a netCDF file; an OSError that names it if it cannot be read."""
     check_regular(path)
     try:
-        return xr.load_dataset(path, engine="netcdf4")
+        with xr.open_dataset(path, engine="netcdf4") as data:
+            check_room(str(path), data.nbytes)
+            return data.load()
     except MemoryError:
         raise
     except OSError as error:  # of netCDF, which names the file in full, or not at all

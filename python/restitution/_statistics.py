@@ -17,9 +17,10 @@ from restitution._bins import FRACTION_BINS, all_edges_from, assemble, by_veloci
 from restitution._core import STOP_REASONS
 from restitution._dataset import attributes
 from restitution._energy import by_row, ledger, warn
+from restitution._memory import available_memory
 from restitution._parameters import Problem, TooLargeError
 from restitution._release import RandomHeight, RandomSpin
-from restitution._resources import available_memory, checked_threads, progress_bar
+from restitution._resources import checked_threads, progress_bar
 from restitution._run import Run
 from restitution._simulate import SimulationInterrupted
 from restitution.bodies import Body

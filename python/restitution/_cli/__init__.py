@@ -1,5 +1,6 @@
 """The command line; nothing heavy is imported before a command needs it, so that help comes at once."""
 
+import os
 from collections.abc import Callable
 from typing import Annotated
 
@@ -29,6 +30,8 @@ app = typer.Typer(
 
 def main() -> None:
     """Run the command line."""
+    # No command multiplies large matrices; OpenBLAS interrupts a process that it cannot make a thread in.
+    os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
     open_missing()
     with leaving():
         try:

@@ -3,12 +3,14 @@
 import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
+from importlib import import_module
 from pathlib import Path
 from typing import Annotated, Any, NoReturn
 
 import typer
 from typer.core import TyperCommand, TyperGroup
 
+from restitution._memory import check_address_space
 from restitution._signals import ending
 from restitution._streams import is_terminal, tell
 
@@ -20,6 +22,9 @@ Other signals that end a command give 128 + their number.
 
 _LONGEST = 1000
 """Letters of a line of an error, which the name of a file can make longer than a terminal holds."""
+
+_ROOM = 600_000_000
+"""Bytes of address space that the libraries of a command take at most, and what they load besides."""
 
 RunFile = Annotated[
     Path,
@@ -77,10 +82,17 @@ def progress(quiet: bool) -> bool:
 
 
 @contextmanager
-def errors_in_a_line() -> Iterator[None]:
-    """Show expected errors as one line each instead of a traceback; signals end the block likewise."""
+def errors_in_a_line(*libraries: str) -> Iterator[None]:
+    """Show expected errors as one line each instead of a traceback; signals end the block likewise.
+
+    The libraries are loaded first: the work would be lost if there were no room for what writes its result.
+    """
     with ending() as came:
         try:
+            if libraries:
+                check_address_space("this command", _ROOM)
+            for name in libraries:
+                import_module(name)
             yield
         except Kept as kept:
             raise typer.Exit(128 + (came + kept.late)[-1]) from None

@@ -22,7 +22,7 @@ def explore(
     Serves one page to this machine alone, until Ctrl-C. The engine runs in the
     page, and gives the same numbers as simulate, to the last bit.
     """
-    with errors_in_a_line():
+    with errors_in_a_line("xarray"):
         from restitution.explorer import link, serve
 
         fragment = ""

@@ -38,7 +38,7 @@ def fit(
     impacts of one particle are correlated. A file from statistics does not say
     which particle an impact belongs to; it gives the parameters alone.
     """
-    with errors_in_a_line():
+    with errors_in_a_line("netCDF4", "scipy.stats"):
         from restitution import fit as fits
         from restitution._dataset import load
         from restitution._parameters import ParameterError, wrong

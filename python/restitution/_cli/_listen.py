@@ -44,8 +44,8 @@ def listen(
     covariance (netCDF).
     """
     with errors_in_a_line():
+        from restitution._memory import check_room
         from restitution._parameters import ParameterError
-        from restitution._resources import check_room
 
         check_room("listen", _ROOM)  # before the libraries are there
         from restitution.listen import write

@@ -29,7 +29,7 @@ def paper(
     proof, and every claim of the paper with the measured number, its standard
     error and a verdict.
     """
-    with errors_in_a_line():
+    with errors_in_a_line("netCDF4", "scipy.stats", "matplotlib.figure"):
         from restitution.paper import redraw
 
         how = {"seed": seed, "threads": threads, "progress": progress(quiet)}
@@ -55,7 +55,7 @@ def laws(
     the density of the coefficient of restitution, its scatter, the rotational
     energy, and the impacts that create energy.
     """
-    with errors_in_a_line():
+    with errors_in_a_line("netCDF4", "scipy.stats", "matplotlib.figure"):
         from restitution._resources import checked_threads
         from restitution.laws_figure import write
 

@@ -50,7 +50,7 @@ def simulate(
     far are written, and the attribute "incomplete" of the file says so.
     """
     interrupted: KeyboardInterrupt | None = None  # kept: what is caught has not been lost
-    with errors_in_a_line():
+    with errors_in_a_line("netCDF4"):
         from restitution._dataset import save
         from restitution._files import check, check_apart
         from restitution._formats import NETCDF, check_name
@@ -96,7 +96,7 @@ def statistics(
     options. Ctrl-C ends the run early; what was counted until then is written.
     """
     given = _given(locals())
-    with errors_in_a_line():
+    with errors_in_a_line("netCDF4"):
         import restitution as rs
         from restitution._toml import read_all
 
@@ -131,7 +131,7 @@ def compare(
     combinations that were finished are written.
     """
     given = _given(locals())
-    with errors_in_a_line():
+    with errors_in_a_line("netCDF4"):
         import restitution as rs
         from restitution._toml import read_all
 
@@ -182,7 +182,7 @@ def distribution(
     explains, a warning says so, and the exit status is 3. Ctrl-C ends the work,
     and nothing is written.
     """
-    with errors_in_a_line():
+    with errors_in_a_line("netCDF4", "scipy.stats", "matplotlib.figure"):
         from restitution._dataset import put
         from restitution._files import check, check_apart, whole_files
         from restitution._formats import HEADER, MODULE, NETCDF, check_name

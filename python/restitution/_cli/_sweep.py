@@ -87,7 +87,7 @@ def run(
     \[effort]                         # may be left out
     until = { std = 0.01 }            # add particles up to this standard error
     """
-    with errors_in_a_line():
+    with errors_in_a_line("xarray"):
         from restitution.study import estimate, study_of, sweep
         from restitution.study import status as status_of
 
@@ -136,7 +136,7 @@ def merge(
     What is damaged or missing is left out and reported; the command that made the
     shards, without --shard, computes it.
     """
-    with errors_in_a_line():
+    with errors_in_a_line("xarray"):
         from restitution.study import merge as merge_stores
 
         found = merge_stores(out, parts or [], threads=threads)

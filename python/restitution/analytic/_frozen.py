@@ -15,8 +15,8 @@ from restitution._arrays import flag, function, real, reals, shape, whole
 from restitution._arrays import generator as _generator
 from restitution._content import check_state
 from restitution._display import table, value
+from restitution._memory import available_memory
 from restitution._parameters import ParameterError, TooLargeError, wrong
-from restitution._resources import available_memory
 from restitution.analytic._orientation import Floats, OrientationName
 from restitution.bodies import BODIES, Body
 from restitution.laws import LAWS, Law

@@ -13,8 +13,8 @@ import xarray as xr
 
 from restitution._arrays import check_each, flag, function, real, reals, shape, whole
 from restitution._content import check_names
+from restitution._memory import available_memory
 from restitution._parameters import ParameterError, TooLargeError, _plain_number, wrong
-from restitution._resources import available_memory
 from restitution.distribution import _store
 from restitution.distribution._learn import Given
 from restitution.distribution._table import Floats, Table

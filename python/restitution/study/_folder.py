@@ -13,8 +13,8 @@ from zarr.core.buffer import Buffer, BufferPrototype
 from zarr.storage import LocalStore
 
 from restitution._files import claim, draft_of
+from restitution._memory import available_memory
 from restitution._reading import MOST
-from restitution._resources import available_memory
 
 
 class Folder(LocalStore):
