@@ -140,6 +140,31 @@ def test_why_a_chunk_is_not_taken(store: Store) -> None:
     assert store.fault(1, 0) == (file.parents[1] / "0" / "0", "there is no such file")
 
 
+def test_rows_of_many_tasks(tmp_path: Path) -> None:
+    """Each stands at its place, from wherever they are read."""
+    study = study_of(TINY | {"effort": {"batches": 8}})
+    store = create_or_open(tmp_path / "new.zarr", study, WORDS)[0]
+    whole = rows(8)
+    for first in (0, 4, 6):
+        store.write(0, first, whole[first : first + 2])
+    found, good, _ = store.read(0, 2, 6)
+    assert good.tolist() == [False, False, True, True, True, True]
+    assert np.array_equal(found[2:], whole[4:])
+    assert store.valid(0, 0, 8).tolist() == [True, True, False, False, True, True, True, True]
+
+
+def test_what_is_no_store(tmp_path: Path) -> None:
+    """An empty folder stays one; a store of Zarr's other format is none of a study's."""
+    (empty := tmp_path / "empty").mkdir()
+    with pytest.raises(Refused, match=f"^{re.escape(str(empty))}: is damaged"):
+        Store(empty, b"")
+    assert not list(empty.iterdir())
+    group = zarr.open_group(old := tmp_path / "old", mode="w", zarr_format=2)
+    group.create_array("tasks/words", shape=(1, 2, 9), chunks=(1, 2, 9), dtype=np.uint64)
+    with pytest.raises(Refused, match=f"^{re.escape(str(old))}: is damaged"):
+        Store(old, b"")
+
+
 @pytest.mark.parametrize("chunk", [b"", b"\0" * 40, None])
 def test_a_chunk_that_cannot_be_read_is_damaged(store: Store, chunk: bytes | None) -> None:
     """Others of the point are not; and the digest is that of the study, the point and the batch."""
@@ -214,6 +239,7 @@ def test_results_have_a_place_for_every_point(store: Store, tiny: Study) -> None
     store.ensure(found.drop_vars("count"), tiny.design)
     for _ in range(2):
         store.ensure(found, tiny.design)
+        assert "count" in store.group
     assert store.group["nothing"].chunks == (2, 3, 1, 1)
     mean, count, grid = (store.group[name] for name in ("mean", "count", "grid"))
     assert (mean.shape, mean.chunks) == ((2, 3, 2), (2, 3, 2))
@@ -254,6 +280,18 @@ def test_a_worker_that_was_faster(store: Store, tiny: Study, monkeypatch: pytest
     store.ensure(found, tiny.design)
     monkeypatch.undo()
     assert store.group["mean"].shape == (2, 3, 2)
+
+
+def test_a_worker_that_makes_the_same_array(
+    store: Store, tiny: Study, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """At the same time, so that Zarr finds its files, is no error."""
+
+    def there(*_: object, **__: object) -> None:
+        raise FileExistsError(17, "File exists", "zarr.json")
+
+    monkeypatch.setattr(type(store.group), "create_array", there)
+    store.ensure(found_at_a_point()[["mean"]], tiny.design)
 
 
 def test_what_is_lost_is_not_taken_for_a_result(store: Store, tiny: Study) -> None:
@@ -306,26 +344,46 @@ def test_chunks_hold_many_points_up_to_four_megabytes(tiny: Study) -> None:
     assert _store._chunks(wide, variable) == (125, 4000)
     tall = {"body.separation": [1e-4, 2e-3], "law.normal": {"from": 0.1, "to": 0.9, "points": 100}}
     assert _store._chunks(study_of(TINY | {"sweep": tall}).design, variable) == (1, 100, 4000)
+    found = _store._chunks(wide, xr.Variable(("velocity",), np.zeros(3000)))
+    assert found == (166, 3000)
+    assert all(isinstance(size, int) for size in found)
     assert _store._chunks(wide, xr.Variable(("cell",), np.zeros(4096))) == (1, 4096)
     many = cast(Design, SimpleNamespace(shape=(3_000_000,)))
     assert _store._chunks(many, xr.Variable((), np.int8(1))) == (3_000_000,)
 
 
 def test_what_zarr_needs(monkeypatch: pytest.MonkeyPatch) -> None:
-    """The library in its version, room, and a thread."""
+    """The library in its version, room, files that may be open, and a thread."""
     need_zarr(Path("store"))
     with monkeypatch.context() as patched:
         patched.setattr(zarr, "__version__", "2.18.3")
-        with pytest.raises(ImportError, match=r"need zarr 3, here is 2\.18\.3: pip install"):
+        with pytest.raises(ImportError, match=r"^parameter studies need zarr 3, here is 2\.18\.3: pip install"):
             need_zarr(Path("store"))
     with monkeypatch.context() as patched:
         patched.setitem(__import__("sys").modules, "zarr", None)
-        with pytest.raises(ImportError, match=r"need zarr: pip install 'restitution\[sweep\]'"):
+        with pytest.raises(ImportError, match=r"^parameter studies need zarr: pip install 'restitution\[sweep\]'$"):
             need_zarr(Path("store"))
     with monkeypatch.context() as patched:
         patched.setattr("restitution._memory.available_memory", lambda: 99_999_999)
         with pytest.raises(MemoryError, match=r"a study: takes 100 MB of memory"):
             need_zarr(Path("store"))
+
+    with monkeypatch.context() as patched:
+        opened: list[int] = []
+
+        def three(*_: object) -> int:
+            if len(opened) == 3:
+                raise OSError(24, "Too many open files", os.devnull)
+            opened.append(os.dup(2))
+            return opened[-1]
+
+        patched.setattr(os, "open", three)
+        with pytest.raises(OSError, match="a study takes 4 open files: Too many open files") as raised:
+            need_zarr(Path("store"))
+    assert (raised.value.errno, raised.value.filename) == (24, "store")
+    for file in opened:
+        with pytest.raises(OSError, match="Bad file descriptor"):
+            os.fstat(file)
 
     def none(_: object) -> None:
         raise RuntimeError("can't start new thread")

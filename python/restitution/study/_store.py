@@ -306,7 +306,7 @@ def _is_large(variable: Any) -> bool:
 def _chunks(design: Design, variable: Any) -> tuple[int, ...]:
     if _is_large(variable):
         return (*(1 for _ in design.shape), *variable.shape)
-    room = max(1, _CHUNK // max(1, variable.size * variable.dtype.itemsize))
+    room = _CHUNK // max(1, variable.size * variable.dtype.itemsize)
     sizes = []
     for size in reversed(design.shape):
         sizes.append(min(size, room))
