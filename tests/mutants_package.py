@@ -30,6 +30,29 @@ from mutants_judge import Judge
 ROOT = Path(__file__).resolve().parents[1]
 WORK = ROOT / "target" / "mutants" / "package"
 OUTCOMES = WORK.with_suffix(".txt")
+BODIES = tuple(f"bodies/_{name}.py" for name in ("body", "dumbbell", "loaded_sphere", "pair", "spheroid"))
+FIRST_IMPACT = tuple(
+    f"analytic/_{name}.py"
+    for name in (
+        *("branched", "curve", "disc", "first_impact", "frozen", "hull", "impact_from_rest", "impulse"),
+        *("normal", "orientation", "pair", "panels", "threshold", "tilt"),
+    )
+)
+FIRST_IMPACT_TESTS = (
+    "test_analytic.py",
+    "test_analytic_manners.py",
+    "test_first_impact_derived.py",
+    "test_first_impact_manners.py",
+    "test_first_impact_panels.py",
+)
+LAWS = ("laws/_law.py", "laws/_materials.py")
+FITS = tuple(
+    f"fit/_{name}.py" for name in ("asymmetric", "bootstrap", "clusters", "counts", "families", "mixture")
+)
+FLIGHT = tuple(
+    f"flight/_{name}.py"
+    for name in ("chain", "clock", "drag", "fit", "law_fit", "laws", "restitution", "times")
+)
 TESTS = {
     "_files.py": ("test_files.py", "test_believed.py"),
     "_signals.py": ("test_signals.py",),
@@ -55,25 +78,14 @@ TESTS = {
     "_batches.py": ("test_statistics.py",),
     "_energy.py": ("test_energy.py",),
     "_compare.py": ("test_compare.py",),
+    **dict.fromkeys(BODIES, ("test_bodies.py",)),
+    **dict.fromkeys(FIRST_IMPACT, FIRST_IMPACT_TESTS),
+    "analytic/_near_round.py": ("test_near_round.py",),
+    **dict.fromkeys(LAWS, ("test_laws.py", "test_laws_materials.py")),
     **dict.fromkeys(
-        (
-            "bodies/_body.py",
-            "bodies/_dumbbell.py",
-            "bodies/_loaded_sphere.py",
-            "bodies/_pair.py",
-            "bodies/_spheroid.py",
-        ),
-        ("test_bodies.py",),
+        FITS, ("test_fit.py", "test_fit_clusters.py", "test_fit_counts.py", "test_fit_manners.py")
     ),
-    **dict.fromkeys(
-        (
-            "analytic/_first_impact.py",
-            "analytic/_orientation.py",
-            "analytic/_branched.py",
-            "analytic/_curve.py",
-        ),
-        ("test_analytic.py",),
-    ),
+    **dict.fromkeys(FLIGHT, ("test_flight.py", "test_flight_fit.py")),
 }
 """What reads and writes files, handles signals, or works out numbers, and the tests that are about it."""
 
