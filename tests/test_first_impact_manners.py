@@ -55,6 +55,28 @@ def test_quantiles_invert_the_distribution_function(distribution: FirstImpact, q
 
 
 @each
+def test_the_density_at_the_ends_is_its_limit(distribution: FirstImpact) -> None:
+    """Finite or not: it grows like 1/√|ε − end| at an extreme of ε(θ), unless sin θ vanishes there."""
+    ends = np.array(distribution.support())
+    inside = ends + np.array([1e-9, -1e-9]) * np.ptp(ends)
+    assert np.all(distribution.pdf(ends) >= (1.0 - 1e-6) * np.asarray(distribution.pdf(inside)))
+
+
+def test_the_density_where_two_branches_meet_is_that_of_one() -> None:
+    """Where friction begins to slide ε(θ) has a kink: the density jumps there, and is not counted twice."""
+    distribution = first_impact(
+        rs.Spheroid(equatorial=2e-2, polar=3e-2), rs.Coulomb(normal=0.9, friction=0.2)
+    )
+    branches = distribution._curve.branches  # type: ignore[attr-defined]
+    joints = {branch.last for branch in branches[:-1]} - set(distribution.support())
+    assert len(joints) == 2
+    for joint in joints:
+        below, at, above = distribution.pdf([joint - 1e-9, joint, joint + 1e-9])
+        assert abs(below - above) > 0.1 * below
+        assert min(abs(at - below), abs(at - above)) < 1e-6 * at
+
+
+@each
 def test_the_ends(distribution: FirstImpact) -> None:
     low, high = distribution.support()
     assert distribution.ppf(0.0) == distribution.isf(1.0) == low

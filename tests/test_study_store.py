@@ -357,11 +357,15 @@ def test_what_zarr_needs(monkeypatch: pytest.MonkeyPatch) -> None:
     need_zarr(Path("store"))
     with monkeypatch.context() as patched:
         patched.setattr(zarr, "__version__", "2.18.3")
-        with pytest.raises(ImportError, match=r"^parameter studies need zarr 3, here is 2\.18\.3: pip install"):
+        with pytest.raises(
+            ImportError, match=r"^parameter studies need zarr 3, here is 2\.18\.3: pip install"
+        ):
             need_zarr(Path("store"))
     with monkeypatch.context() as patched:
         patched.setitem(__import__("sys").modules, "zarr", None)
-        with pytest.raises(ImportError, match=r"^parameter studies need zarr: pip install 'restitution\[sweep\]'$"):
+        with pytest.raises(
+            ImportError, match=r"^parameter studies need zarr: pip install 'restitution\[sweep\]'$"
+        ):
             need_zarr(Path("store"))
     with monkeypatch.context() as patched:
         patched.setattr("restitution._memory.available_memory", lambda: 99_999_999)
