@@ -9,7 +9,7 @@ from typing import Any
 
 _FIRST = {
     "explore": ("http.server", "ThreadingHTTPServer.serve_forever"),
-    "fit": ("xarray", "load_dataset"),
+    "fit": ("xarray", "open_dataset"),
     "listen": ("soundfile", "read"),
     "template": ("restitution._cli._template", "say"),
 }
