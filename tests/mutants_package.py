@@ -44,6 +44,7 @@ FIRST_IMPACT_TESTS = (
     "test_first_impact_derived.py",
     "test_first_impact_manners.py",
     "test_first_impact_panels.py",
+    "test_first_impact_simulated.py",
 )
 LAWS = ("laws/_law.py", "laws/_materials.py")
 FITS = tuple(

@@ -53,6 +53,12 @@ def test_discs_hold_every_value(name: str, centres: Any, radii: Any, points: Any
                 assert distance <= image.radius[0] * (1 + 1e-12) + 1e-13 * image.bound[0]
 
 
+def test_the_bound_of_a_disc_is_its_farthest_point() -> None:
+    """Infinite where nothing is known."""
+    discs = Disc(np.array([-2.0, 1.0, 3.0, np.nan]), np.array([0.5, 2.0, np.inf, 1.0]))
+    assert discs.bound.tolist() == [2.5, 3.0, np.inf, np.inf]
+
+
 @pytest.mark.parametrize("gap", [1.0, 1e-2, 1e-5])
 def test_panels_shrink_towards_a_pole(gap: float) -> None:
     """1/(x² + d²): no panel's disc holds the pole, and Gauss sums have all digits of 2 arctan(1/d)/d."""

@@ -71,6 +71,27 @@ def test_a_store_of_another_physics(done: Path, tiny: Study, tmp_path: Path) -> 
     assert len(told) == 13
 
 
+def test_a_store_that_knows_more(done: Path, tiny: Study, tmp_path: Path) -> None:
+    """A table where there is none here, and the other way round."""
+
+    def change(own: dict[str, Any]) -> None:
+        own["physics"]["more"] = {"a": 1}
+        own["statistics"] = 5
+
+    with pytest.raises(Refused) as raised:
+        check(changed(done, tmp_path, change), tiny)
+    more, statistics = (line.strip() for line in str(raised.value).splitlines()[1:])
+    assert more == 'physics.more: {"a": 1} in the store, nothing here'
+    assert statistics.startswith("statistics: 5 in the store, {")
+
+
+def test_a_merge_is_of_the_study_that_is_given(done: Path, tmp_path: Path) -> None:
+    """Not of whatever the parts are of."""
+    with pytest.raises(Refused, match=r"run\.seed: 7 in the store, 8 here"):
+        merge(tmp_path / "both.zarr", [done], study=TINY | {"run": TINY["run"] | {"seed": 8}})
+    assert not (tmp_path / "both.zarr").exists()
+
+
 @pytest.mark.parametrize(
     "content", [b"{}", b"[]", b"\xff", b"", b'{"attributes": {"restitution_study": "[1]"}}']
 )
@@ -129,7 +150,7 @@ def test_a_study_is_read_back_from_its_store(more: dict[str, Any], tmp_path: Pat
         (OSError(5, "of the system"), "of the system"),
         (Refused("already"), "^already$"),
         (MemoryError("much"), "^much$"),
-        (RuntimeError("can't start new thread"), "the system gives no thread to work on it"),
+        (RuntimeError("can't start new thread"), r"\] the system gives no thread to work on it: 'store'$"),
         (RuntimeError("other"), r"store: is damaged \(RuntimeError: other\)"),
     ],
 )

@@ -423,6 +423,12 @@ def test_a_store_that_appears_meanwhile(
     assert [file.name for file in tmp_path.iterdir()] == ["new.zarr"]
 
 
+def test_a_store_with_other_arrays_is_named(tiny: Study, tmp_path: Path) -> None:
+    create_or_open(path := tmp_path / "new.zarr", tiny, WORDS)
+    with pytest.raises(Refused, match=rf"^{re.escape(str(path))}: is damaged \(ValueError: tasks/words is "):
+        create_or_open(path, tiny, WORDS + 1)
+
+
 def test_a_store_that_cannot_take_its_place(
     tiny: Study, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

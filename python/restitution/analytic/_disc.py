@@ -62,7 +62,7 @@ class Disc:
     __rmul__ = __mul__
 
     def __truediv__(self, other: Number) -> "Disc":
-        return self.__mul__(other.reciprocal() if isinstance(other, Disc) else 1.0 / other)
+        return self.__mul__(1.0 / other)
 
     def __rtruediv__(self, other: Number) -> "Disc":
         return self.reciprocal().__mul__(other)
