@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+import xarray as xr
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy import stats
@@ -235,3 +236,62 @@ def test_wrong_arguments_of_the_threshold_are_named() -> None:
         negative_threshold(3, rs.Frictionless(normal=0.5))  # type: ignore[arg-type]
     with pytest.raises(ValueError, match=r"law = 0\.5: must be a TangentialRestitution"):
         negative_threshold(EGG, 0.5)  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize(
+    ("told", "use"),
+    [
+        ("x = 'half': must be a number or an array of numbers", lambda d: d.cdf("half")),
+        ("q = 'half': must be a number or an array of numbers", lambda d: d.isf("half")),
+        ("restitution = 'x': must be a number or an array of numbers", lambda d: d.cos_theta("x")),
+        ("cos_theta = 'x': must be a number or an array of numbers", lambda d: d.restitution("x")),
+        ("confidence = 'x': must be a number or an array of numbers", lambda d: d.interval("x")),
+        ("func = 5: must be a function of one number", lambda d: d.expect(5)),
+        ("lb = nan: must be a number or None", lambda d: d.expect(lb=np.nan)),
+        ("ub = nan: must be a number or None", lambda d: d.expect(ub=np.nan)),
+        ("lb = 'x': must be a number or None", lambda d: d.expect(lb="x")),
+        ("ub = 'x': must be a number or None", lambda d: d.expect(ub="x")),
+        (
+            "x has units 's': must be in 1; drop_attrs() removes units that xarray handed on",
+            lambda d: d.pdf(xr.DataArray(0.5, attrs={"units": "s"})),
+        ),
+    ],
+)
+def test_errors_name_the_argument(told: str, use: Callable[[FirstImpact], object]) -> None:
+    with pytest.raises(ValueError) as raised:  # noqa: PT011 (the message is compared below)
+        use(ALL[0])
+    assert str(raised.value) == told
+
+
+def test_draws_are_what_fits_into_memory(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Three numbers a draw: the uniform one, the quantile, and what it is found with."""
+    monkeypatch.setattr("restitution.analytic._frozen.available_memory", lambda: 2399)
+    assert np.shape(ALL[0].rvs(size=(9, 11), random_state=1)) == (9, 11)
+    with pytest.raises(
+        MemoryError, match=r"^size = 100: must be at most 99 draws, which this process can hold$"
+    ):
+        ALL[0].rvs(size=100)
+
+
+def test_the_shortest_and_the_longest_pair() -> None:
+    law = rs.TangentialRestitution(normal=0.5)
+    for separation, beyond in ((1e-100, 0.9), (1e100, 1.1)):
+        first_impact(rs.Dumbbell(radius=1.0, separation=separation), law)
+        with pytest.raises(ValueError, match=r"body\.separation = .* 1e-100 to 1e\+100 times body\.radius"):
+            first_impact(rs.Dumbbell(radius=1.0, separation=separation * beyond), law)
+
+
+def test_a_pair_turned_upside_down_is_the_same_body() -> None:
+    law = rs.TangentialRestitution(normal=0.5)
+    radii, densities = (1.0, 0.3), (1.0, 4.0)
+    one = first_impact(rs.Dumbbell(radius=radii, separation=1.5, density=densities), law)
+    two = first_impact(rs.Dumbbell(radius=radii[::-1], separation=1.5, density=densities[::-1]), law)
+    assert two.support() == pytest.approx(one.support(), rel=1e-14)
+    at = np.linspace(*one.support(), 50)
+    np.testing.assert_allclose(two.cdf(at), one.cdf(at), rtol=0, atol=1e-7)  # like √ at the ends
+
+
+@pytest.mark.parametrize("radii", [(1.0, 0.3), (0.3, 1.0)])
+def test_a_pair_one_of_which_holds_the_other_is_a_sphere(radii: tuple[float, float]) -> None:
+    with pytest.raises(ValueError, match=r"varies by 1e-09 at least; here by 0\.0e\+00"):
+        first_impact(rs.Dumbbell(radius=radii, separation=0.5), rs.TangentialRestitution(normal=0.5))
