@@ -85,6 +85,24 @@ def test_a_store_that_knows_more(done: Path, tiny: Study, tmp_path: Path) -> Non
     assert statistics.startswith("statistics: 5 in the store, {")
 
 
+def test_a_study_of_one_point(tmp_path: Path) -> None:
+    sweep(TINY | {"sweep": {"law.normal": [0.9]}}, tmp_path / "one.zarr", threads=1)
+    found = status(tmp_path / "one.zarr")
+    assert (found.points, found.finished, found.tasks, found.there) == (1, 1, 2, 2)
+
+
+def test_what_is_read_of_a_store_names_it_where_it_is_damaged(done: Path, tmp_path: Path) -> None:
+    path = changed(done, tmp_path, lambda own: own.update(effort=None))
+    for read in (status, study_in):
+        with pytest.raises(Refused, match=rf"^{path}: is damaged \(TypeError: "):
+            read(path)
+    meta = json.loads((path / "zarr.json").read_text())
+    meta["consolidated_metadata"]["metadata"]["normal"] = {}
+    (path / "zarr.json").write_text(json.dumps(meta))
+    with pytest.raises(Refused, match=rf"^{path}: is damaged \("):
+        open_store(path)
+
+
 def test_a_merge_is_of_the_study_that_is_given(done: Path, tmp_path: Path) -> None:
     """Not of whatever the parts are of."""
     with pytest.raises(Refused, match=r"run\.seed: 7 in the store, 8 here"):

@@ -209,12 +209,31 @@ def test_a_chunk_longer_than_memory(copy: Path, done: Path, monkeypatch: pytest.
             file.truncate(_reading.MOST)
     with monkeypatch.context() as patched:
         patched.setattr(_folder, "available_memory", lambda: _reading.MOST - 1)
-        with pytest.raises(OSError, match="longer than this process has memory") as raised:
+        with pytest.raises(OSError, match="longer") as raised:
             open_store(copy).load()
+        assert raised.value.strerror == "longer than this process has memory"
         assert raised.value.errno == errno.EFBIG
         assert raised.value.filename == str(copy / "mean_restitution/c/0/0/0")
         sweep(TINY, copy, threads=1)
     assert bits(copy) == bits(done)
+
+
+def test_a_short_chunk_is_read_whatever_memory_there_is(copy: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Neither is memory looked at for every chunk, nor is one refused that exactly fits."""
+    name = copy / "status" / "c" / "0" / "0"
+    size = name.stat().st_size
+    monkeypatch.setattr(_folder, "available_memory", lambda: 0)
+    assert status(copy).finished == 6
+    monkeypatch.setattr(_folder, "MOST", size - 1)
+    monkeypatch.setattr(_folder, "available_memory", lambda: size)
+    _folder._check(name)
+
+
+def test_a_folder_in_the_place_of_a_chunk_is_named(tmp_path: Path) -> None:
+    with pytest.raises(IsADirectoryError) as raised:
+        _folder._check(tmp_path)
+    assert (raised.value.errno, raised.value.strerror) == (errno.EISDIR, os.strerror(errno.EISDIR))
+    assert raised.value.filename == str(tmp_path)
 
 
 @pytest.fixture
