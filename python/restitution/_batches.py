@@ -60,7 +60,7 @@ def standard_errors(parts: Sequence[dict[str, FloatArray]]) -> dict[str, Any]:
     """
     n = np.array([part["number"] for part in parts], dtype=np.float64)
     mean, variance, skewness, kurtosis, fraction = (
-        np.where(n > 0, np.nan_to_num([part[name] for part in parts]), 0.0) for name in _NAMES
+        np.nan_to_num([part[name] for part in parts]) for name in _NAMES
     )
     second = n * variance
     third, fourth = second * np.sqrt(variance) * skewness, second * variance * kurtosis
@@ -79,9 +79,8 @@ def standard_errors(parts: Sequence[dict[str, FloatArray]]) -> dict[str, Any]:
     estimates = np.array(found)
     size = len(parts)
     with np.errstate(invalid="ignore"):
+        # A row that one batch alone has met is 0/0 without that one: it leaves nothing to compare.
         errors = np.sqrt((size - 1.0) * estimates.var(axis=0))
-    # A row that fewer than two batches have met leaves nothing to compare.
-    errors[:, np.count_nonzero(n, axis=0) < 2] = np.nan
     text = "standard error of {} over {} batches of particles; NaN where fewer than two have an impact"
     return {
         f"{name}_error": (values, {"long_name": text.format(name, size)})
