@@ -79,7 +79,7 @@ TESTS = {
     "_batches.py": ("test_statistics.py",),
     "_energy.py": ("test_energy.py",),
     "_compare.py": ("test_compare.py",),
-    **dict.fromkeys(BODIES, ("test_bodies.py",)),
+    **dict.fromkeys(BODIES, ("test_bodies.py", "test_objects.py")),
     **dict.fromkeys(FIRST_IMPACT, FIRST_IMPACT_TESTS),
     "analytic/_near_round.py": ("test_near_round.py",),
     **dict.fromkeys(LAWS, ("test_laws.py", "test_laws_materials.py")),

@@ -200,6 +200,7 @@ def test_a_run_without_impacts_has_a_ledger() -> None:
     """No share of nothing, and no factor."""
     empty = {"all_impacts": 0, "energy_created_impacts": 0, "energy_created_share": 0.0}
     assert ledger(0, 0, np.nan) == empty
+    assert ledger(1, 1, 2.0)["energy_created_share"] == 1.0
     assert ledger_of(np.full((2, 3), np.nan)) == empty
     assert ledger_of(np.array([[0.5, np.nan], [1.0, 1 + 4e-12]])) == {
         "all_impacts": 3,

@@ -184,8 +184,7 @@ class BranchedFirstImpact(FirstImpact):
                 total += share - self._tilt.below(branch.low)
         low, high = self.support()
         total = np.where(x >= high, 0.0 if above else 1.0, np.clip(total, 0.0, 1.0))
-        total = np.where(x <= low, 1.0 if above else 0.0, total)
-        return np.where(np.isnan(x), np.nan, total)
+        return np.where(x <= low, 1.0 if above else 0.0, total)
 
     def _quantile(self, q: Floats, *, above: bool) -> Values:
         low, high = self.support()
