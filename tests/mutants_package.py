@@ -82,7 +82,7 @@ TESTS = {
     **dict.fromkeys(BODIES, ("test_bodies.py", "test_objects.py")),
     **dict.fromkeys(FIRST_IMPACT, FIRST_IMPACT_TESTS),
     "analytic/_near_round.py": ("test_near_round.py",),
-    **dict.fromkeys(LAWS, ("test_laws.py", "test_laws_materials.py")),
+    **dict.fromkeys(LAWS, ("test_laws_materials.py",)),
     **dict.fromkeys(
         FITS, ("test_fit.py", "test_fit_clusters.py", "test_fit_counts.py", "test_fit_manners.py")
     ),

@@ -1,5 +1,6 @@
 """Counts and moments against slow exact arithmetic, standard errors against repetition."""
 
+from collections.abc import Callable
 from fractions import Fraction
 from itertools import pairwise
 from typing import Any
@@ -451,3 +452,42 @@ def test_errors_that_are_not_there_say_why() -> None:
     data = rs.simulate(body, law, **(how | {"particles": 31}))
     assert rs.reduce(data, **bins).attrs["standard_errors"].startswith("none: 31 particles")
     assert rs.reduce(data, **bins, batches=8).attrs["standard_errors"].startswith("jackknife over 8")
+
+
+@pytest.mark.parametrize("batches", [1, 4])
+def test_both_ways_to_statistics_have_one_layout(batches: int) -> None:
+    """Counted during the run or from its records: variables, dimensions, types, texts and units."""
+    body, law = rs.Dumbbell(radius=3e-3, separation=3e-4), rs.Frictionless(normal=0.98)
+    run: dict[str, Any] = {"particles": 40, "impacts": 50, "seed": 3}
+    bins: dict[str, Any] = {
+        **{"velocity_bins": 5, "velocity_range": (0.0, 1.2)},
+        **{"restitution_bins": 6, "restitution_range": (-1.0, 3.0), "batches": batches},
+    }
+    counted = rs.statistics(body, law, **run, **bins)
+    reduced = rs.reduce(rs.simulate(body, law, **run), **bins)
+    assert set(reduced.variables) == set(counted.variables) - {"particles_ended", "stop_reason"}
+    assert ("variance_error" in reduced) == (batches > 1)
+    for name, variable in reduced.variables.items():
+        expected = counted.variables[name]
+        assert (variable.dims, variable.dtype) == (expected.dims, expected.dtype), name
+        assert variable.attrs == expected.attrs, name
+    assert reduced.attrs["content"].startswith("statistics of restitution")
+    assert reduced.attrs["standard_errors"] == counted.attrs["standard_errors"]
+
+
+def test_standard_errors_of_clusters_lie_along_the_velocity() -> None:
+    found = standard_errors(impacts([[0.1, 0.1]], [[0.5, 0.7]]), [0.0, 1.0, 2.0])
+    assert found.sizes == {"velocity": 2}
+    assert all(variable.dims == ("velocity",) for variable in found.variables.values())
+    assert found["deviation_standard_error"].attrs["long_name"] == (
+        "cluster-robust standard error of the standard deviation of restitution; a particle is a cluster"
+    )
+    calls: dict[str, Callable[[], object]] = {
+        "restitution_bins": lambda: reduce(impacts(0.1, 0.5), [0.0, 1.0], [1.0, 0.0]),
+        "fraction_bins": lambda: reduce(impacts(0.1, 0.5), [0.0, 1.0], [0.0, 1.0], [1.0, 0.0]),
+        "velocity_bins": lambda: standard_errors(impacts(0.1, 0.5), [1.0, 0.0]),
+        "data": lambda: standard_errors(impacts(0.1, 0.5).drop_vars("restitution"), [0.0, 1.0]),
+    }
+    for name, call in calls.items():
+        with pytest.raises(ValueError, match=rf"^{name}"):
+            call()
