@@ -13,6 +13,7 @@ from reference.arithmetic import mp
 from restitution.analytic import first_impact, negative_threshold
 from restitution.analytic._branched import BranchedFirstImpact
 from restitution.analytic._disc import Disc
+from restitution.analytic._hull import Ball, Ellipsoid
 from restitution.analytic._impulse import Impulse
 from restitution.analytic._normal import Fall, coefficient, kinks
 from restitution.bodies import Body
@@ -85,6 +86,37 @@ def test_every_mode_of_the_contact_solves_the_impulse_equations() -> None:
         for mode, expected in (("free", FREE), ("stuck", STUCK), ("sliding", SLIDING)):
             value = evaluated(coulomb, mode, *numbers)
             assert value == pytest.approx(float(expected.subs(at)), rel=0, abs=2e-15 * (1 + abs(value)))
+
+
+def test_thresholds_are_where_the_restitution_vanishes() -> None:
+    """ε = ε_n - λ = 0 for ε_n at the threshold, in every mode."""
+    laws: dict[Any, Law] = {
+        "free": rs.Frictionless(normal=0.5),
+        "stuck": rs.TangentialRestitution(normal=0.5),
+        "sliding": rs.Coulomb(normal=0.5, friction=0.3),
+        "part": rs.ChatterjeeRuina(normal=0.5, tangential=0.6, friction=0.3),
+    }
+    for mode, law in laws.items():
+        for inertia, height, arm in ((0.4, 1.1, 0.9), (0.05, 0.6, 0.2), (1.3, 0.31, 1.7)):
+            threshold = float(Impulse(law, inertia).threshold(mode, height, arm))
+            assert evaluated(law, mode, inertia, threshold, height, arm) == pytest.approx(0.0, abs=4e-15)
+    with pytest.raises(TypeError, match="no closed form of 'a law'"):
+        Impulse("a law", 1.0).modes()  # type: ignore[arg-type]
+
+
+HULLS = (Ball(1.0, -0.6), Ball(0.7, 0.9), Ellipsoid(1.0, 3.0), Ellipsoid(3.0, 1.0))
+
+
+@pytest.mark.parametrize("hull", HULLS)
+def test_the_angle_follows_from_the_height(hull: Any) -> None:
+    """And there is none for heights that a body never has, or always."""
+    for theta in (0.0, 0.3, 1.1, 1.5):
+        height, _ = hull.contact(np.sin(theta), np.cos(theta))
+        assert hull.cosine(float(height)) == pytest.approx(np.cos(theta), rel=0, abs=1e-13)
+    beyond = hull.cosine(3.1)
+    assert np.isnan(beyond) or abs(beyond) > 1.0
+    assert np.isnan(Ball(1.0, 0.0).cosine(1.0))
+    assert np.isnan(Ellipsoid(1.0, 1.0).cosine(1.0))
 
 
 def test_coulomb_sticks_or_slides_from_the_start_and_either_way_loses() -> None:

@@ -72,11 +72,8 @@ class Impulse:
         if mode == "sliding":
             dragged = square - self._friction * (height * arm)
             return (1.0 + normal) * dragged / (inertia + dragged)
-        free = square / (inertia + square)
-        if mode == "free":
-            return (1.0 + normal) * free
         share = height * height / (inertia + square + height * height)
-        return free * (1.0 + normal - self._kept * share)
+        return square / (inertia + square) * (1.0 + normal - self._kept * share)
 
     def raised(self, mode: Mode, normal: Number, height: Number, arm: Number) -> Number:
         """Positive where ε > ε_n."""
@@ -94,17 +91,16 @@ class Impulse:
             return square / (inertia + height * height)
         if mode == "sliding":
             return (square - self._friction * (height * arm)) / inertia
-        if mode == "free":
-            return square / inertia
         share = height * height / (inertia + square + height * height)
         return square / inertia * (1.0 - self._kept * share)
 
     @property
     def _friction(self) -> float:
-        """μ."""
-        return self.law.friction if isinstance(self.law, Coulomb | ChatterjeeRuina) else 0.0
+        """μ, of the laws that have it."""
+        assert isinstance(self.law, Coulomb | ChatterjeeRuina)
+        return self.law.friction
 
     @property
     def _kept(self) -> float:
-        """1 + e_t."""
+        """1 + e_t, the share of the impulse that sticking adds to that without friction."""
         return 1.0 + self.law.tangential if isinstance(self.law, ChatterjeeRuina) else 0.0
