@@ -1,5 +1,6 @@
 """Bodies and laws side by side."""
 
+import re
 import warnings
 from typing import Any
 
@@ -129,6 +130,13 @@ def test_parameters_that_are_pairs_or_laws() -> None:
     assert found["normal"].values.tolist() == [repr(steel), "0.9"]
     assert found["law"].values.tolist() == [f"Frictionless(normal = {steel!r})", "Frictionless(normal = 0.9)"]
     assert found["body"].values[2] == "Spheroid"
+    densities = [
+        rs.Dumbbell(radius=3e-3, separation=s, density=d) for s, d in ((1e-3, (1e3, 2e3)), (2e-3, 3e3))
+    ]
+    found = rs.compare(densities, laws[1:], **(RUN | {"particles": 32, "impacts": 2}))
+    np.testing.assert_array_equal(found["separation"], [1e-3, 2e-3])
+    np.testing.assert_array_equal(found["density_2"], [2e3, nan])
+    assert found["density_2"].attrs["units"] == found["density"].attrs["units"] == "kg m-3"
 
 
 def test_it_can_be_written_and_read(found: xr.Dataset, tmp_path: Any) -> None:
@@ -146,8 +154,8 @@ def test_rows_by_number() -> None:
 
 def test_an_interruption_keeps_what_was_finished(monkeypatch: pytest.MonkeyPatch) -> None:
     """Ctrl-C in the first batch of the second run, which has no standard errors yet: the first is whole."""
-    runs: list[Any] = [rs.statistics(BODIES["short"], LAWS[1], **RUN), SimulationInterrupted]
-    begun = rs.statistics(BODIES["short"], LAWS[2], **(RUN | {"batches": 1}))
+    runs: list[Any] = [rs.statistics(BODIES["long"], LAWS[0], **RUN), SimulationInterrupted]
+    begun = rs.statistics(BODIES["long"], LAWS[1], **(RUN | {"batches": 1}))
 
     def next_one(*_: Any, **__: Any) -> xr.Dataset:
         run = runs.pop(0)
@@ -157,10 +165,10 @@ def test_an_interruption_keeps_what_was_finished(monkeypatch: pytest.MonkeyPatch
 
     monkeypatch.setattr("restitution._compare.statistics", next_one)
     with pytest.raises(SimulationInterrupted) as stop:
-        rs.compare({"short": BODIES["short"]}, LAWS[1:3], **RUN)
+        rs.compare({"long": BODIES["long"]}, LAWS[:2], **RUN)
     kept = stop.value.data
     assert kept.finished.to_numpy().tolist() == [[True, False]]
-    alone = rs.statistics(BODIES["short"], LAWS[1], **RUN)
+    alone = rs.statistics(BODIES["long"], LAWS[0], **RUN)
     for name in ("restitution_count", "mean_restitution_error"):
         np.testing.assert_array_equal(kept[name][0, 0], alone[name])
     assert np.isnan(kept.mean_restitution_error[0, 1]).all()
@@ -168,6 +176,7 @@ def test_an_interruption_keeps_what_was_finished(monkeypatch: pytest.MonkeyPatch
     assert not kept.restitution_count[0, 1].any()
     assert kept.all_impacts.values.tolist() == [[alone.attrs["all_impacts"], 0]]
     assert kept.energy_created_impacts[0, 1] == kept.energy_created_share[0, 1] == 0
+    assert kept.energy_created_share[0, 0] > 0
     assert kept.largest_energy_ratio_of_all[0, 1] == 1
     assert kept.attrs["incomplete"] == "interrupted: 1 of 2 combinations are finished"
     assert kept.finished.dims == ("body", "law")
@@ -189,6 +198,7 @@ def test_an_interruption_of_the_first_run(monkeypatch: pytest.MonkeyPatch) -> No
     assert not kept.finished.any()
     assert not kept.all_impacts.any()
     assert np.isnan(kept.mean_restitution).all()
+    assert np.array_equal(kept.velocity_edges, begun.velocity_edges)
 
 
 @pytest.mark.parametrize(
@@ -221,4 +231,6 @@ def test_arguments_of_the_runs_are_checked_in_its_own_name() -> None:
 
 def test_progress_counts_combinations(capsys: pytest.CaptureFixture[str]) -> None:
     rs.compare(BODIES, LAWS[1:3], **RUN, progress=True)
-    assert "4/4" in capsys.readouterr().err
+    assert re.search(r"compare: .*4/4 .*combinations", capsys.readouterr().err)
+    rs.compare(BODIES, LAWS[1:3], **RUN)
+    assert not capsys.readouterr().err

@@ -233,7 +233,7 @@ def _parameters(axis: str, objects: Iterable[Parameters]) -> dict[str, Any]:
         numeric = all(value is None or isinstance(value, float) for value in values)
         if numeric:
             column = np.array([np.nan if value is None else value for value in values])
-            unit = units.get(name.removesuffix("_1").removesuffix("_2"), "1")
+            unit = units[name.removesuffix("_1").removesuffix("_2")]
             found[name] = ((axis,), column, {"long_name": f"{name} of the {axis}", "units": unit})
         else:
             words = ["" if value is None else str(value) for value in values]
