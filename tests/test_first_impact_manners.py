@@ -77,6 +77,22 @@ def test_the_density_where_two_branches_meet_is_that_of_one() -> None:
         assert min(abs(at - below), abs(at - above)) < 1e-6 * at
 
 
+PAIR = first_impact(rs.Dumbbell(radius=1.0, separation=0.8), rs.TangentialRestitution(normal=0.7))
+
+
+@pytest.mark.parametrize("distribution", [PAIR, ALL[0]])
+def test_upright_a_body_does_not_turn(distribution: FirstImpact) -> None:
+    """ε = ε_n where the axis is vertical, either way up."""
+    assert np.asarray(distribution.restitution([1.0, -1.0])) == pytest.approx(0.7, rel=1e-15)
+    assert np.isnan(distribution.restitution([1.0 + 1e-15, -1.1])).all()
+
+
+@pytest.mark.parametrize("distribution", [PAIR, ALL[0]])
+def test_options_of_an_expectation_are_quad_s(distribution: FirstImpact) -> None:
+    with pytest.raises(TypeError, match="nonsense"):
+        distribution.expect(lambda x: x, nonsense=1)
+
+
 @each
 def test_the_ends(distribution: FirstImpact) -> None:
     low, high = distribution.support()
