@@ -1,5 +1,7 @@
 """The Dataset and the file of a learned distribution, from histograms that are written down here."""
 
+import hashlib
+import re
 from typing import Any
 
 import numpy as np
@@ -145,7 +147,8 @@ def test_an_attribute_of_another_name_breaks_the_seal(conditional: xr.Dataset) -
 
 @pytest.mark.parametrize("thing", [None, 3, "file.nc", {}])
 def test_what_is_no_dataset_is_refused(thing: Any) -> None:
-    with pytest.raises(ParameterError, match=r"^data = .*: must be the Dataset of a FluctuatingRestitution"):
+    shown = re.escape(repr(thing))
+    with pytest.raises(ParameterError, match=rf"^data = {shown}: must be the Dataset of a FluctuatingRest"):
         _store.check(thing)
 
 
@@ -185,6 +188,18 @@ def test_a_checksum_is_of_the_content_and_not_of_its_order(conditional: xr.Datas
     turned = sealed[sorted(map(str, sealed.data_vars), reverse=True)]
     turned.attrs = dict(reversed(sealed.attrs.items())) | {"number": np.array([3.0])}
     assert _store.unsealed(turned, "d.nc")["velocity"].identical(conditional["velocity"])
+
+
+def test_the_checksum_of_a_file_of_before(data: xr.Dataset) -> None:
+    """Format 1: BLAKE2b of 16 bytes over the variables in the order of their names, then the attributes."""
+    digest = hashlib.blake2b(digest_size=16)
+    for name in sorted(map(str, data.variables)):
+        values = data[name].to_numpy()
+        digest.update(repr((name, data[name].dims, values.dtype.str, values.shape)).encode())
+        digest.update(values.tobytes())
+        digest.update(repr([(key, [text]) for key, text in sorted(data[name].attrs.items())]).encode())
+    digest.update(b"[('beyond', ['raise']), ('source', ['here'])]")
+    assert _store.sealed(data).attrs["checksum"] == digest.hexdigest()
 
 
 @pytest.mark.parametrize(
