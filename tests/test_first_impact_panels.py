@@ -99,6 +99,28 @@ def test_many_equations_are_solved_at_once(values: list[float]) -> None:
 
 
 @pytest.mark.parametrize(
+    ("function", "root"),
+    [
+        (lambda x: np.cos(x) - 0.3, np.arccos(0.3)),
+        (lambda x: np.exp(x) - 2.0, np.log(2.0)),
+        (lambda x: x**9 - 1e-3, 1e-3 ** (1 / 9)),
+        (lambda x: np.tanh(20.0 * (x - 0.3)), 0.3),
+    ],
+)
+def test_a_root_takes_a_dozen_evaluations(function: Any, root: float) -> None:
+    """Where bisection alone takes fifty."""
+    asked: list[float] = []
+
+    def watched(x: Any) -> Any:
+        asked.append(float(x[0]))
+        return function(x)
+
+    found = solve(watched, np.zeros(1), np.full(1, np.pi / 2))
+    assert float(found[0]) == pytest.approx(root, rel=4e-15)
+    assert len(asked) <= 14
+
+
+@pytest.mark.parametrize(
     ("body", "law"),
     [
         (rs.Spheroid(equatorial=1.0, polar=1000.0), rs.Frictionless(normal=0.9)),
