@@ -104,6 +104,7 @@ def test_everything_that_was_counted_has_its_place(given: str | None) -> None:
         np.testing.assert_array_equal(data[name].values, values)
         assert data[name].attrs.get("units") == units
     told = {name: data[name].attrs.get("long_name", "") for name in data.variables}
+    assert all(told.values())
     prefixes = ["", "given_"] if given else [""]
     for prefix in prefixes:
         about = "; a batch of particles is a draw"

@@ -240,6 +240,9 @@ def test_results_have_a_place_for_every_point(store: Store, tiny: Study) -> None
     for _ in range(2):
         store.ensure(found, tiny.design)
         assert "count" in store.group
+    store.ensure(found.assign(later=("velocity", [1.0, 2.0])), tiny.design)
+    assert store.group["later"].shape == (2, 3, 2)
+    del store.group["later"]
     assert store.group["nothing"].chunks == (2, 3, 1, 1)
     mean, count, grid = (store.group[name] for name in ("mean", "count", "grid"))
     assert (mean.shape, mean.chunks) == ((2, 3, 2), (2, 3, 2))

@@ -43,7 +43,8 @@ def assemble(
         about = {"long_name": GIVEN[given], "units": "1"}
         data["given_components"] = ("node", sizes, {"long_name": "conditions of the node"})
         data["given"] = ("given_component", np.concatenate(conditional.conditions), about)
-        data["given_impacts"] = ("given_component", conditional.impacts, {"units": "1"})
+        about = {"long_name": "impacts at the condition, counted likewise", "units": "1"}
+        data["given_impacts"] = ("given_component", conditional.impacts, about)
         data = data.assign(_ragged(conditional.histograms, "given_")).assign(
             _errors(conditional, "given_", "given_component")
         )
