@@ -70,6 +70,11 @@ def test_panels_shrink_towards_a_pole(gap: float) -> None:
     assert len(edges) < 80
 
 
+def test_a_constant_needs_one_panel() -> None:
+    """A formula that does not depend on the angle gives a plain number for discs, too."""
+    assert panels(lambda x: -3.0, 0.0, 1.0).tolist() == [0.0, 1.0]
+
+
 def test_a_singularity_on_the_interval_is_refused() -> None:
     with pytest.raises(ArithmeticError, match="no bound on the function near"):
         panels(lambda x: x**0.5 * 1.0, 0.0, 1.0)
