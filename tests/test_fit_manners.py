@@ -129,6 +129,12 @@ def test_bad_input_is_named() -> None:
         (lambda: fit.bootstrap(fit.gaussian, x, [1]), "clusters: 1 values"),
         (lambda: fit.bootstrap(fit.gaussian, x, [1, 1, 1]), "clusters: all samples are in one"),
         (lambda: fit.bootstrap(fit.gaussian, x, resamples=2).interval("mean", 1.0), "confidence = 1.0: must"),
+        (lambda: fit.bootstrap(fit.gaussian, x, resamples=2).interval("mean", 0.0), "confidence = 0.0: must"),
+        (lambda: fit.bootstrap(fit.gaussian, x, resamples=2, seed=-1), "seed = -1: must be a whole number"),
+        (
+            lambda: fit.bootstrap(fit.gaussian, x, resamples=2).draws("width"),
+            "name = 'width': must be 'mean' or 'deviation'$",
+        ),
         (lambda: fit.bootstrap(fit.gaussian, Counts(edges, np.ones(2))), "samples: one set of counts"),
         (lambda: fit.bootstrap(fit.gaussian, [Counts(edges, np.ones(2))]), "counts: all samples are in one"),
         (
