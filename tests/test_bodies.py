@@ -249,3 +249,18 @@ def test_what_is_no_pair(radius: Any, told: str) -> None:
     """The argument, or which of the two, with its value and what is allowed."""
     with pytest.raises(ValueError, match=told):
         rs.Dumbbell(radius=radius, separation=1e-3)
+
+
+def test_a_body_shows_mass_and_moments_of_inertia_in_si_units() -> None:
+    """A sphere of water, at which the two moments are 2mR²/5; its parameters come first."""
+    body = rs.Spheroid(equatorial=0.1, polar=0.1, density=1e3)
+    mass = 1e3 * 4.0 / 3.0 * np.pi * 1e-3
+    moment = f"{0.4 * mass * 1e-2:.6g} kg m²"
+    assert list(body._rows()) == [
+        ("equatorial", "0.1 m"),
+        ("polar", "0.1 m"),
+        ("density", "1000 kg/m³"),
+        ("mass", f"{mass:.6g} kg"),
+        ("transverse_inertia", moment),
+        ("axial_inertia", moment),
+    ]

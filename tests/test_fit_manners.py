@@ -4,7 +4,7 @@ import time
 import tracemalloc
 from collections.abc import Callable
 from functools import partial
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 import pytest
@@ -135,6 +135,19 @@ def test_bad_input_is_named() -> None:
             lambda: fit.bootstrap(fit.gaussian, x, resamples=2).draws("width"),
             "name = 'width': must be 'mean' or 'deviation'$",
         ),
+        (
+            lambda: fit.bootstrap(cast(Any, x), x),
+            r"family = \[1.0, 2.0, 4.0\]: must be a function from samples to a Fit$",
+        ),
+        (
+            lambda: fit.bootstrap(cast(Any, len), x),
+            "family = <built-in function len>: must be a function from samples to a Fit; it gave 3$",
+        ),
+        (
+            lambda: fit.bootstrap(cast(Any, {}.__getitem__), x),
+            "family = .* gave TypeError: unhashable .*: must be a function to a Fit$",
+        ),
+        (lambda: fit.bootstrap(fit.gaussian, data, [1]), "clusters: a Dataset knows its particles"),
         (lambda: fit.bootstrap(fit.gaussian, Counts(edges, np.ones(2))), "samples: one set of counts"),
         (lambda: fit.bootstrap(fit.gaussian, [Counts(edges, np.ones(2))]), "counts: all samples are in one"),
         (

@@ -141,8 +141,8 @@ def _labels(clusters: ArrayLike) -> NDArray[np.int64]:
     allowed = "whole numbers, one for each sample"
     labels = reals("clusters", clusters, allowed).ravel()
     check_each("clusters", labels, (labels == np.rint(labels)) & (np.abs(labels) < 2.0**63), allowed)
-    given = np.asarray(clusters).ravel()  # doubles do not distinguish neighbours above 2**53
-    return (labels if given.dtype.kind == "f" else given).astype(np.int64)
+    # As given: doubles do not distinguish neighbours above 2**53.
+    return np.asarray(clusters).ravel().astype(np.int64)
 
 
 def refitted(
