@@ -264,3 +264,8 @@ def test_a_body_shows_mass_and_moments_of_inertia_in_si_units() -> None:
         ("transverse_inertia", moment),
         ("axial_inertia", moment),
     ]
+
+
+def test_elongation_is_in_units_of_the_radius() -> None:
+    assert rs.Dumbbell(radius=2.0, separation=3.0).elongation == 1.5
+    assert rs.Spherocylinder(radius=2.0, separation=3.0).elongation == 1.5

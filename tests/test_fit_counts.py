@@ -225,3 +225,14 @@ def test_the_exponent_stays_within_its_bounds(sharpness: float, exponent: float)
     counts = fit.asymmetric_power(binned(x, np.linspace(low, high, 400)), location=CUSP)
     assert found.parameters["exponent"] == pytest.approx(exponent, rel=1e-3)
     assert counts.parameters["exponent"] == pytest.approx(exponent, rel=1e-12)
+
+
+def test_shares_of_bins_far_out_on_either_side() -> None:
+    """Of a symmetric density the same on both: the upper ones are not 1 less what lies below."""
+    edges = np.arange(-12.0, 12.5, 0.5)
+    share = Counts(edges, np.ones(edges.size - 1)).logshare(stats.norm)
+    np.testing.assert_allclose(share, share[::-1], rtol=1e-12)
+    assert share[1] == pytest.approx(np.log(stats.norm.cdf(-11.5) - stats.norm.cdf(-12.0)), rel=1e-12)
+    assert np.exp(share).sum() == pytest.approx(1.0, abs=1e-14)
+    with pytest.raises(ValueError, match=r"^q = 'x': must be probabilities"):
+        Counts(edges, np.ones(edges.size - 1)).quantile("x")  # type: ignore[arg-type]

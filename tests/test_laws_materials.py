@@ -8,6 +8,7 @@ from typing import Any
 import mpmath
 import numpy as np
 import pytest
+import xarray as xr
 from scipy.integrate import solve_ivp
 from scipy.special import beta
 
@@ -304,3 +305,19 @@ def test_copies_and_files_hold_the_parameters_alone() -> None:
     assert smooth.compiled.respond(*contact) == rs.Frictionless(normal=law.normal).compiled.respond(*contact)
     body = pickle.loads(pickle.dumps(rs.Spheroid(equatorial=1.0, polar=2.0)))
     assert body.mass == rs.Spheroid(equatorial=1.0, polar=2.0).mass
+
+
+def test_parameters_of_a_material_come_after_those_of_the_law() -> None:
+    law = rs.Coulomb(normal=rs.Plastic(yield_speed=0.5), friction=0.2)
+    plain = {"friction": 0.2, "hypothesis": "stronge"}
+    assert law.attributes() == {"normal": "Plastic", "normal_yield_speed": 0.5} | plain
+    assert rs.Coulomb(normal=0.5, friction=0.2).attributes() == {"normal": 0.5} | plain
+    assert rs.Coulomb(normal=0.5, friction=0.2).constant == 0.5
+    with pytest.raises(ValueError, match=r"^normal = Plastic\(yield_speed=0.5\): must be a number, the same"):
+        _ = law.constant
+
+
+def test_a_function_is_taken_up_to_a_speed_in_metres_per_second() -> None:
+    speed = xr.DataArray(2.0, attrs={"units": "km/h"})
+    with pytest.raises(ValueError, match=r"^fastest has units 'km/h': must be in m s-1"):
+        rs.Tabulated.from_function(lambda v: 0.9, fastest=speed)  # type: ignore[arg-type]
