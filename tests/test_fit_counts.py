@@ -236,3 +236,17 @@ def test_shares_of_bins_far_out_on_either_side() -> None:
     assert np.exp(share).sum() == pytest.approx(1.0, abs=1e-14)
     with pytest.raises(ValueError, match=r"^q = 'x': must be probabilities"):
         Counts(edges, np.ones(edges.size - 1)).quantile("x")  # type: ignore[arg-type]
+
+
+def test_counts_are_arrays_that_stay_as_they_are() -> None:
+    counts = Counts([0.0, 1.0, 2.0], [1, 2], above=3)  # type: ignore[arg-type]
+    for array in (counts.edges, counts.count):
+        assert isinstance(array, np.ndarray)
+        assert not array.flags.writeable
+    assert counts.total == 6
+    with pytest.raises(ValueError, match=r"^above = 9007199254740993: must be a whole number in \[0, 9007"):
+        Counts(np.arange(3.0), np.ones(2), above=2**53 + 1)
+    with pytest.raises(
+        ValueError, match=r"^distribution = 3: must be a distribution, with methods cdf and sf$"
+    ):
+        counts.logshare(3)

@@ -321,3 +321,51 @@ def test_a_function_is_taken_up_to_a_speed_in_metres_per_second() -> None:
     speed = xr.DataArray(2.0, attrs={"units": "km/h"})
     with pytest.raises(ValueError, match=r"^fastest has units 'km/h': must be in m s-1"):
         rs.Tabulated.from_function(lambda v: 0.9, fastest=speed)  # type: ignore[arg-type]
+
+
+def test_bounds_of_a_tabulated_function_belong_to_what_is_allowed() -> None:
+    """ε_n = 0 and 1, the greatest tolerance, speeds below 1 m/s."""
+    assert rs.Tabulated.from_function(lambda v: 0.0, fastest=0.5, tolerance=0.1).e == (0.0, 0.0)
+    assert rs.Tabulated.from_function(lambda v: 1.0, fastest=0.5, tolerance=1e-12).v == (0.0, 0.5)
+
+
+@pytest.mark.parametrize(
+    ("use", "told"),
+    [
+        (
+            lambda: rs.Tabulated.from_function(lambda v: 1.5),
+            "function gave 1.5 at 0.0 m/s: must give ε_n in [0, 1] up to 100.0 m/s; "
+            "Tabulated.from_function takes a lower `fastest`",
+        ),
+        (
+            lambda: rs.Tabulated.from_function(lambda v: 0.5 + 0.4 * math.sin(1e6 * v)),
+            "function needs more than 100,000 points for 1e-06: must be smoother, or have a greater "
+            "tolerance",
+        ),
+        (
+            lambda: rs.Tabulated.from_function(lambda v: 0.5, fastest=math.inf),
+            "fastest = inf: must be a finite number > 0 (m/s)",
+        ),
+        (
+            lambda: rs.Tabulated.from_function(lambda v: 0.5, tolerance=0.2),
+            "tolerance = 0.2: must be a number in [1e-12, 0.1]",
+        ),
+        (lambda: rs.Plastic(yield_speed=1.0)("x"), "speed = 'x': must be real numbers (m/s), or nan"),
+        (
+            lambda: rs.Plastic(yield_speed=1.0)(xr.DataArray(1.0, attrs={"units": "km/h"})),
+            "speed has units 'km/h': must be in m s-1; drop_attrs() removes units that xarray handed on",
+        ),
+        (
+            lambda: rs.Tabulated(v=[0.1, 0.3, 0.2], e=[0.9, 0.8, 0.7]),
+            "v[2] = 0.2: must be greater than v[1] = 0.3",
+        ),
+    ],
+)
+def test_what_a_material_refuses(use: Any, told: str) -> None:
+    with pytest.raises(ValueError) as raised:  # noqa: PT011 (the message is compared below)
+        use()
+    assert str(raised.value) == told
+
+
+def test_a_speed_that_is_no_number_has_no_coefficient() -> None:
+    assert np.isnan(rs.Plastic(yield_speed=1.0)([np.nan, 1.0])).tolist() == [True, False]
