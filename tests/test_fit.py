@@ -1,5 +1,8 @@
 """Fits of the density of ε: against brute force, against known parameters; p-values that are true."""
 
+from collections.abc import Callable
+from typing import Any
+
 import numpy as np
 import pytest
 from scipy import integrate, optimize, special, stats
@@ -208,3 +211,20 @@ def test_repeated_samples_carry_no_information_when_clustered() -> None:
     naive = fit.compare(first, second, np.repeat(x, 3))
     assert naive.standard_error == pytest.approx(once.standard_error / np.sqrt(3), rel=2e-3)
     assert fit.compare(first, first, x).z == 0
+
+
+@pytest.mark.parametrize(
+    ("family", "kind"),
+    [
+        (fit.gaussian, stats.norm),
+        (fit.laplace, stats.laplace),
+        (fit.logistic, stats.logistic),
+        (fit.student_t, stats.t),
+    ],
+)
+def test_no_other_fit_of_the_family_is_likelier(family: Callable[[Any], fit.Fit], kind: Any) -> None:
+    """Not that of SciPy, which climbs by itself."""
+    x = np.random.default_rng(1).gamma(2.0, size=400)
+    other = float(kind(*kind.fit(x)).logpdf(x).sum())
+    assert family(x).loglikelihood == pytest.approx(other, abs=1e-4)
+    assert float(family(x).distribution.logpdf(x).sum()) == pytest.approx(other, abs=1e-4)
