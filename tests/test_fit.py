@@ -113,6 +113,13 @@ def test_unusable_samples_are_refused_by_name(family: object, samples: list[floa
         family(samples)  # type: ignore[operator]
 
 
+def test_five_parameters_need_six_samples() -> None:
+    six = [0.9, 0.95, 0.97, 0.98, 0.99, 1.1]
+    assert np.isfinite(fit.cusp_mixture(six, location=0.98).loglikelihood)
+    with pytest.raises(ValueError, match=r"^samples: 5 value\(s\); five parameters need at least six$"):
+        fit.cusp_mixture(six[1:], location=0.98)
+
+
 def test_unusable_arguments_are_refused_by_name() -> None:
     with pytest.raises(ValueError, match="location = nan"):
         fit.asymmetric_laplace([1.0, 2.0], location=np.nan)
