@@ -8,6 +8,7 @@ import xarray as xr
 
 import restitution as rs
 from reference.bouncing import flight_in_air, impact_times
+from restitution.flight._chain import chain, measured, measured_of
 
 CONSTANT = 0.9
 
@@ -175,3 +176,54 @@ def test_several_series_are_not_taken_for_one() -> None:
     with pytest.raises(ValueError, match="a Dataset of series 0, 1; take one"):
         rs.flight.restitution(heard)
     assert rs.flight.restitution(heard.where(heard.series == 0, drop=True)).sizes["impact"] == 2
+
+
+DRAG = rs.flight.Drag(terminal_velocity=6.0, uncertainty=0.2)
+
+
+@pytest.mark.parametrize(
+    ("drop", "drag"), [(None, None), ((0.2, 1e-3), DRAG), ((0.2, 1e-3), None), (None, DRAG)]
+)
+def test_a_dataset_says_what_was_measured(
+    drop: tuple[float, float] | None, drag: rs.flight.Drag | None
+) -> None:
+    times = one_series(5)
+    times[2] = np.nan
+    height, error = drop if drop else (None, 0.0)
+    data = rs.flight.restitution(
+        times,
+        2e-5,
+        gravity=9.8,
+        gravity_uncertainty=0.02,
+        drop_height=height,
+        drop_height_uncertainty=error,
+        drag=drag,
+    )
+    found = measured_of(data)
+    np.testing.assert_array_equal(found.times, times)
+    assert (found.gravity, found.drop) == (9.8, height)
+    assert found.terminal == (drag.terminal_velocity if drag else None)
+    of_times = [0.0 if np.isnan(time) else 2e-5**2 for time in times]
+    common = [0.02**2, error**2, drag.uncertainty**2 if drag else 0.0]
+    np.testing.assert_allclose(found.variances, [*of_times, *common], rtol=1e-14)
+
+
+@pytest.mark.parametrize("drag", [None, DRAG])
+def test_derivatives_of_a_chain_are_its_differences(drag: rs.flight.Drag | None) -> None:
+    """By each time, g, the height of the drop and the terminal velocity; 0 where there is no speed."""
+    times = one_series(6)
+    times[3] = np.nan
+    given = measured(times, np.full(6, 1e-5), (9.81, 0.0), (0.2, 0.0), drag)
+    found = chain(given)
+    assert np.isnan(found.before).tolist() == [False, False, False, True, True, False]
+    assert np.isnan(found.after).tolist() == [False, False, True, True, False, True]
+    for number in range(times.size + 3):
+        step = np.zeros(times.size + 3)
+        step[number] = 1e-5
+        up, down = chain(given.moved(step)), chain(given.moved(-step))
+        for by, one, other in (
+            (found.before_by, up.before, down.before),
+            (found.after_by, up.after, down.after),
+        ):
+            expected = np.nan_to_num((one - other) / 2e-5)
+            np.testing.assert_allclose(by[:, number], expected, rtol=1e-6, atol=1e-7)
