@@ -341,6 +341,8 @@ def particles_of(blocks: Iterator[Impacts]) -> list[int]:
         # A tenth of them in the range: 40 were found of 400, ten times as many are looked at.
         (400, 10, [(0.0, 0.1), (0.1, 1.0)]),
         (400, 4, [(0.0, 0.1), (0.1, 0.4)]),
+        (360, 3, [(0.0, 0.09), (0.09, 0.27)]),
+        (400, 100, [(0.0, 0.1), (0.1, 1.0)]),  # there are no more than all
     ],
 )
 @pytest.mark.parametrize("held", [0, 300, 400, 10_000])
