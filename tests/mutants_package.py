@@ -51,8 +51,7 @@ FITS = tuple(
     f"fit/_{name}.py" for name in ("asymmetric", "bootstrap", "clusters", "counts", "families", "mixture")
 )
 FLIGHT = tuple(
-    f"flight/_{name}.py"
-    for name in ("chain", "clock", "drag", "fit", "law_fit", "laws", "restitution", "times")
+    f"flight/_{name}.py" for name in ("chain", "drag", "fit", "law_fit", "laws", "restitution", "times")
 )
 TESTS = {
     "_files.py": ("test_files.py", "test_believed.py"),
