@@ -104,6 +104,7 @@ def test_the_ends(distribution: FirstImpact) -> None:
     assert np.array_equal(distribution.pdf(outside), np.zeros(4))
     assert np.array_equal(distribution.logpdf(outside), np.full(4, -np.inf))
     assert np.all(np.isnan(distribution.cos_theta(outside)))
+    assert np.all(np.asarray(distribution.cos_theta([low, high])) <= 1.0)
     assert np.array_equal(distribution.cdf([low, high]), [0, 1])
     assert np.array_equal(distribution.logcdf([low, high]), [-np.inf, 0])
     assert np.array_equal(distribution.logsf([low, high]), [0, -np.inf])
