@@ -70,6 +70,29 @@ def test_coefficients_of_materials_are_the_core_s(name: str) -> None:
     assert coefficient(0.9, 1.0, 1.0) == 0.9
 
 
+@pytest.mark.parametrize("name", MATERIALS)
+def test_the_curve_bends_where_the_material_does(name: str) -> None:
+    """ε = e - (1 + e)a²/(J + a²) without friction, with e at v² = 2g(H - h) by the core, for a spheroid.
+
+    Its height h and arm a as in `_hull`. The speed goes from 0.44 to 0.63 m/s, past 0.5.
+    """
+    across, along, top, gravity = 5e-3, 1.5e-2, 0.025, 9.81
+    body = rs.Spheroid(equatorial=across, polar=along)
+    law = rs.Frictionless(normal=MATERIALS[name])
+    theta = np.linspace(0.0, np.pi / 2, 401)
+    sine, cosine = np.sin(theta), np.cos(theta)
+    height = np.hypot(across * sine, along * cosine)
+    arm = (along**2 - across**2) * sine * cosine / height
+    speed = np.sqrt(2.0 * gravity * (top - height))
+    assert speed.min() < 0.45
+    assert speed.max() > 0.6
+    coefficients = np.asarray(MATERIALS[name](speed))
+    inertia = body.transverse_inertia / body.mass
+    expected = coefficients - (1.0 + coefficients) * arm**2 / (inertia + arm**2)
+    distribution = first_impact(body, law, release_height=top, gravity=gravity)
+    np.testing.assert_allclose(distribution.restitution(cosine), expected, rtol=0, atol=4e-15)
+
+
 def test_a_fall_is_faster_the_further_it_goes() -> None:
     """v² = 2g(H - h), and back."""
     fall = Fall(release_height=0.3, gravity=9.81)
