@@ -74,6 +74,7 @@ TESTS = {
     "distribution/_learn.py": ("test_distribution_ensemble.py",),
     "_reading.py": ("test_reading.py",),
     "_formats.py": ("test_reading.py",),
+    "_dataset.py": ("test_columns.py", "test_given_files.py", "test_release.py", "test_limits.py"),
     "_reduce.py": ("test_statistics.py",),
     "_batches.py": ("test_statistics.py",),
     "_energy.py": ("test_energy.py",),

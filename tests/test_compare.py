@@ -10,6 +10,7 @@ import xarray as xr
 
 import restitution as rs
 from restitution import SimulationInterrupted
+from restitution._compare import _warn
 
 BODIES = {
     "short": rs.Dumbbell(radius=3e-3, separation=3e-4),
@@ -41,7 +42,7 @@ def test_each_combination_is_the_run_alone(found: xr.Dataset) -> None:
     for name, body in BODIES.items():
         for law, label in zip(LAWS, found["law"].values, strict=True):
             alone, here = rs.statistics(body, law, **RUN), found.sel(body=name, law=label)
-            for variable in alone.data_vars:
+            for variable in alone.variables:
                 np.testing.assert_array_equal(here[variable], alone[variable], err_msg=str(variable))
             for total in ("all_impacts", "energy_created_impacts", "energy_created_share"):
                 assert here[total].item() == alone.attrs[total]
@@ -61,6 +62,21 @@ def test_names_tell_what_differs(found: xr.Dataset) -> None:
     assert found.attrs["particles"] == 40
     assert "separation" not in found.attrs
     assert "energy_created_share" not in found.attrs
+
+
+def test_coordinates_of_bodies_and_laws(found: xr.Dataset) -> None:
+    assert {*found.dims} == {*rs.statistics(BODIES["short"], LAWS[0], **RUN).dims, "body", "law"}
+    for name, objects in (("body", list(BODIES.values())), ("law", LAWS)):
+        parameters = found[f"{name}_parameters"]
+        assert parameters.dims == (name,)
+        assert parameters.values.tolist() == list(map(repr, objects))
+
+
+def test_a_single_impact_that_creates_energy_is_told(found: xr.Dataset) -> None:
+    one = found.isel(body=[0], law=[1]).copy()
+    one["energy_created_impacts"][:] = 1
+    with pytest.warns(rs.EnergyWarning, match="Impacts created kinetic energy under"):
+        _warn(one)
 
 
 def test_it_warns_once_and_names_the_laws() -> None:

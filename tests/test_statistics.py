@@ -3,7 +3,7 @@
 from collections.abc import Callable
 from fractions import Fraction
 from itertools import pairwise
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 import numpy.typing as npt
@@ -483,6 +483,7 @@ def test_standard_errors_of_clusters_lie_along_the_velocity() -> None:
     found = standard_errors(impacts([[0.1, 0.1]], [[0.5, 0.7]]), [0.0, 1.0, 2.0])
     assert found.sizes == {"velocity": 2}
     assert all(variable.dims == ("velocity",) for variable in found.variables.values())
+    assert found["particles"].dtype == np.int64
     assert found["deviation_standard_error"].attrs["long_name"] == (
         "cluster-robust standard error of the standard deviation of restitution; a particle is a cluster"
     )
@@ -493,6 +494,7 @@ def test_standard_errors_of_clusters_lie_along_the_velocity() -> None:
         "data": lambda: standard_errors(impacts(0.1, 0.5).drop_vars("restitution"), [0.0, 1.0]),
         "block = 0": lambda: standard_errors(impacts(0.1, 0.5), [0.0, 1.0], block=0),
         "data lacks": lambda: reduce(impacts(0.1, 0.5).drop_vars("restitution"), [0.0, 1.0], [0.0, 1.0]),
+        "data = 5": lambda: reduce(cast(Any, 5), [0.0, 1.0], [0.0, 1.0]),
         "data lacks impact_velocity": lambda: reduce(xr.Dataset(), [0.0, 1.0], [0.0, 1.0]),
     }
     for name, call in calls.items():
