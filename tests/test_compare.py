@@ -72,6 +72,21 @@ def test_coordinates_of_bodies_and_laws(found: xr.Dataset) -> None:
         assert parameters.values.tolist() == list(map(repr, objects))
 
 
+def test_one_body_under_one_law() -> None:
+    found = rs.compare([BODIES["short"]], [LAWS[1]], **RUN)
+    assert found.sizes["body"] == found.sizes["law"] == 1
+    assert found["law"].values.tolist() == ["Frictionless"]
+
+
+def test_names_have_all_parameters_that_differ() -> None:
+    bodies = [rs.Dumbbell(radius=r, separation=s) for r, s in ((1e-3, 1e-3), (2e-3, 3e-3))]
+    found = rs.compare(bodies, [LAWS[1]], **(RUN | {"particles": 32, "impacts": 2}))
+    assert found["body"].values.tolist() == [
+        "Dumbbell(radius = 0.001, separation = 0.001)",
+        "Dumbbell(radius = 0.002, separation = 0.003)",
+    ]
+
+
 def test_a_single_impact_that_creates_energy_is_told(found: xr.Dataset) -> None:
     one = found.isel(body=[0], law=[1]).copy()
     one["energy_created_impacts"][:] = 1
@@ -195,6 +210,7 @@ def test_an_interruption_keeps_what_was_finished(monkeypatch: pytest.MonkeyPatch
     assert kept.energy_created_share[0, 0] > 0
     assert kept.largest_energy_ratio_of_all[0, 1] == 1
     assert kept.attrs["incomplete"] == "interrupted: 1 of 2 combinations are finished"
+    assert (kept.attrs["radius"], kept.attrs["seed"]) == (alone.attrs["radius"], 3)
     assert kept.finished.dims == ("body", "law")
     assert "whether" in kept.finished.attrs["long_name"]
 

@@ -494,9 +494,26 @@ def test_standard_errors_of_clusters_lie_along_the_velocity() -> None:
         "data": lambda: standard_errors(impacts(0.1, 0.5).drop_vars("restitution"), [0.0, 1.0]),
         "block = 0": lambda: standard_errors(impacts(0.1, 0.5), [0.0, 1.0], block=0),
         "data lacks": lambda: reduce(impacts(0.1, 0.5).drop_vars("restitution"), [0.0, 1.0], [0.0, 1.0]),
+        "velocity_bins goes": lambda: reduce(impacts(0.1, 0.5), [1.0, 0.0], [0.0, 1.0]),
         "data = 5": lambda: reduce(cast(Any, 5), [0.0, 1.0], [0.0, 1.0]),
         "data lacks impact_velocity": lambda: reduce(xr.Dataset(), [0.0, 1.0], [0.0, 1.0]),
     }
     for name, call in calls.items():
         with pytest.raises(ValueError, match=rf"^{name}"):
             call()
+
+
+def test_two_batches_are_enough_for_standard_errors() -> None:
+    data = impacts(np.full((4, 1), 0.1), [[0.5], [0.6], [0.8], [0.9]])
+    found = reduce(data, [0.0, 1.0], [0.0, 1.0], batches=2)
+    # Without either batch the mean is that of the other: √(1/2 · 2 · 0.15²).
+    assert float(found["mean_restitution_error"][0]) == pytest.approx(0.15, rel=1e-12)
+
+
+def test_values_that_differ_by_their_rounding_do_not_scatter() -> None:
+    """ε = 0.98 of a sphere, as recorded: the variance is 0, and there is no skewness."""
+    values = [[0.98, np.nextafter(0.98, 1.0), 0.98, np.nextafter(0.98, 0.0)]]
+    found = reduce(impacts(np.full((1, 4), 0.1), values), [0.0, 1.0], [0.0, 1.0])
+    assert float(found["variance"][0]) == 0.0
+    assert np.isnan(found["skewness"][0])
+    assert np.isnan(found["kurtosis"][0])
