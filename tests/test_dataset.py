@@ -1,0 +1,80 @@
+"""The Dataset of a run, and the file that it is written to and read from."""
+
+import inspect
+import re
+from pathlib import Path
+
+import numpy as np
+import pytest
+import xarray as xr
+
+import restitution as rs
+from restitution._dataset import load, save
+
+
+@pytest.fixture(scope="module")
+def data() -> xr.Dataset:
+    body, law = rs.Dumbbell(radius=3e-3, separation=3e-4), rs.Frictionless(normal=0.98)
+    return rs.simulate(body, law, particles=3, impacts=4, orientation=[0.1, 0.2, 0.3])
+
+
+def test_numbers_of_particles_and_impacts_are_coordinates(data: xr.Dataset) -> None:
+    for name, size in (("particle", 3), ("impact", 4)):
+        assert data[name].values.tolist() == list(range(size))
+        assert data[name].attrs == {"long_name": f"number of the {name}, from 0"}
+
+
+def test_angles_that_were_given_are_kept(data: xr.Dataset) -> None:
+    assert data["orientation"].values.tolist() == [0.1, 0.2, 0.3]
+    assert data["orientation"].attrs == {
+        "long_name": "angle (and azimuth) of the axis at release, as given",
+        "units": "rad",
+    }
+
+
+def test_a_run_that_was_finished_does_not_say_that_it_was_not(data: xr.Dataset) -> None:
+    assert "incomplete" not in data.attrs
+
+
+def test_a_file_gives_back_what_was_written(data: xr.Dataset, tmp_path: Path) -> None:
+    """And is not replaced unless that is asked for."""
+    save(data, tmp_path / "run.nc")
+    assert load(tmp_path / "run.nc").identical(data)
+    with pytest.raises(FileExistsError):
+        save(data, tmp_path / "run.nc")
+    other = data.isel(particle=[1])
+    save(other, tmp_path / "run.nc", replace=True)
+    assert load(tmp_path / "run.nc").identical(other)
+    assert inspect.signature(save).parameters["replace"].default is False
+
+
+def test_a_file_that_cannot_be_read_is_named(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    (spoilt := tmp_path / "spoilt.nc").write_bytes(b"x" * 100)
+    for path, told in ((spoilt, "NetCDF: Unknown file format"), (tmp_path / "none.nc", "No such file")):
+        with pytest.raises(OSError, match=re.escape(told)) as raised:
+            load(path)
+        assert raised.value.filename == str(path)
+        assert raised.value.errno
+
+    def broken(*_: object, **__: object) -> None:
+        raise ValueError("of a decoder")
+
+    monkeypatch.setattr(xr, "open_dataset", broken)
+    with pytest.raises(OSError, match="cannot be read as netCDF: of a decoder") as raised:
+        load(spoilt)
+    assert raised.value.filename == str(spoilt)
+
+
+def test_a_file_that_memory_does_not_hold_is_named(
+    data: xr.Dataset, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    save(data, tmp_path / "run.nc")
+    monkeypatch.setattr("restitution._memory.available_memory", lambda: data.nbytes)
+    assert load(tmp_path / "run.nc").identical(data)
+    monkeypatch.setattr("restitution._memory.available_memory", lambda: data.nbytes - 1)
+    with pytest.raises(MemoryError, match=re.escape(str(tmp_path / "run.nc"))):
+        load(tmp_path / "run.nc")
+
+
+def test_records_say_how_many_impacts_there_were(data: xr.Dataset) -> None:
+    assert data.attrs["all_impacts"] == np.isfinite(data["time"]).sum()
