@@ -1,5 +1,6 @@
 """The Dataset of a run, and the file that it is written to and read from."""
 
+import errno
 import inspect
 import re
 from pathlib import Path
@@ -9,7 +10,7 @@ import pytest
 import xarray as xr
 
 import restitution as rs
-from restitution._dataset import load, save
+from restitution._dataset import load, put, save
 
 
 @pytest.fixture(scope="module")
@@ -78,3 +79,30 @@ def test_a_file_that_memory_does_not_hold_is_named(
 
 def test_records_say_how_many_impacts_there_were(data: xr.Dataset) -> None:
     assert data.attrs["all_impacts"] == np.isfinite(data["time"]).sum()
+
+
+def test_a_run_says_where_it_comes_from(data: xr.Dataset) -> None:
+    expected = {
+        "title": "Impacts of bouncing aspherical particles",
+        "Conventions": "CF-1.11",
+        "source": f"restitution {rs.__version__}",
+        "version": rs.__version__,
+        "references": "A. Glielmo, N. Gunkelmann, T. Pöschel, Phys. Rev. E 90, 052204 (2014)",
+    }
+    assert data.attrs.items() >= expected.items()
+
+
+def test_a_disk_that_netcdf_cannot_write_to(
+    data: xr.Dataset, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The error is an OSError that names the file, where the system itself has nothing to say."""
+
+    def fail(*_: object, **__: object) -> None:
+        raise RuntimeError("NetCDF: HDF error")
+
+    monkeypatch.setattr(xr.Dataset, "to_netcdf", fail)
+    with pytest.raises(OSError, match="cannot be written: NetCDF: HDF error") as raised:
+        put(data, tmp_path / "draft")
+    assert (raised.value.errno, raised.value.filename) == (errno.EIO, str(tmp_path / "draft"))
+    assert raised.value.strerror == "cannot be written: NetCDF: HDF error"
+    assert (tmp_path / "draft").stat().st_size == data.nbytes, "room was asked for"
