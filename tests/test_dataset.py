@@ -106,3 +106,22 @@ def test_a_disk_that_netcdf_cannot_write_to(
     assert (raised.value.errno, raised.value.filename) == (errno.EIO, str(tmp_path / "draft"))
     assert raised.value.strerror == "cannot be written: NetCDF: HDF error"
     assert (tmp_path / "draft").stat().st_size == data.nbytes, "room was asked for"
+
+
+def test_records_of_the_state_have_vectors_and_the_body_they_are_of() -> None:
+    """With the body's mass and moments of inertia, by which energies follow from velocities."""
+    body, law = rs.Dumbbell(radius=3e-3, separation=3e-4), rs.Frictionless(normal=0.98)
+    given = [[0.1, 0.2], [0.3, 0.4]]
+    plain = rs.simulate(body, law, particles=2, impacts=2, orientation=given)
+    full = rs.simulate(body, law, particles=2, impacts=2, orientation=given, record="state")
+    for data in (plain, full):
+        assert data["orientation"].dims == ("particle", "angle_and_azimuth")
+        assert data["orientation"].values.tolist() == given
+        assert data.attrs["title"] == "Impacts of bouncing aspherical particles"
+    assert full["component"].dims == ("component",)
+    assert full["component"].values.tolist() == ["x", "y", "z"]
+    assert full["component"].attrs == {"long_name": "z: the plane normal"}
+    inertia = {name: getattr(body, name) for name in ("mass", "transverse_inertia", "axial_inertia")}
+    assert full.attrs.items() >= inertia.items()
+    assert "component" not in plain.coords
+    assert "mass" not in plain.attrs
