@@ -50,9 +50,15 @@ LAWS = ("laws/_law.py", "laws/_materials.py")
 FITS = tuple(
     f"fit/_{name}.py" for name in ("asymmetric", "bootstrap", "clusters", "counts", "families", "mixture")
 )
+SLOPES = tuple(f"fit/_{name}.py" for name in ("dependence", "judgement", "result", "slopes", "source"))
 FLIGHT = tuple(
-    f"flight/_{name}.py" for name in ("chain", "drag", "fit", "law_fit", "laws", "restitution", "times")
+    f"flight/_{name}.py"
+    for name in (
+        *("chain", "clock", "drag", "fit", "law_fit", "laws"),
+        *("problem", "restitution", "series", "times"),
+    )
 )
+INFERENCE = tuple(f"inference/_{name}.py" for name in ("family", "likelihood", "posterior", "series", "table"))
 TESTS = {
     "_files.py": ("test_files.py", "test_believed.py"),
     "_signals.py": ("test_signals.py",),
@@ -92,7 +98,9 @@ TESTS = {
     **dict.fromkeys(
         FITS, ("test_fit.py", "test_fit_clusters.py", "test_fit_counts.py", "test_fit_manners.py")
     ),
+    **dict.fromkeys(SLOPES, ("test_fit_slopes.py", "test_fit.py", "test_fit_manners.py")),
     **dict.fromkeys(FLIGHT, ("test_flight.py", "test_flight_fit.py")),
+    **dict.fromkeys(INFERENCE, ("test_inference.py",)),
 }
 """What reads and writes files, handles signals, or works out numbers, and the tests that are about it."""
 
