@@ -1,10 +1,13 @@
 """The first-impact distribution used like one of scipy's: inverses, ends, shapes, nan, draws, errors."""
 
+import math
 import pickle
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
 import pytest
+import xarray as xr
 from hypothesis import given
 from hypothesis import strategies as st
 from scipy import stats
@@ -185,3 +188,41 @@ def test_wrong_orders_are_named() -> None:
             distribution.moment(order)  # type: ignore[arg-type]
     with pytest.raises(ValueError, match="moments = 'mx': must be letters of 'mvsk'"):
         distribution.stats("mx")
+
+
+@pytest.mark.parametrize(
+    ("call", "message"),
+    [
+        (lambda d: d.rvs(-1), r"size = -1: "),
+        (lambda d: d.rvs(3, "x"), r"random_state = 'x': "),
+        (lambda d: d.expect(conditional="yes"), r"conditional = 'yes': "),
+        (lambda d: d.expect(lb=math.nan), r"lb = nan: must be a number or None"),
+        (lambda d: d.expect(ub=math.nan), r"ub = nan: must be a number or None"),
+        (lambda d: d.pdf(xr.DataArray(0.1, attrs={"units": "m s-1"})), r"^x has units 'm s-1': must be in 1"),
+    ],
+)
+def test_wrong_arguments_of_methods_are_named(call: Callable[[FirstImpact], object], message: str) -> None:
+    for distribution in FIG_9.values():
+        with pytest.raises(ValueError, match=message):
+            call(distribution)
+
+
+def test_a_mean_over_what_never_happens_is_nan() -> None:
+    for distribution in FIG_9.values():
+        _, high = distribution.support()
+        assert math.isnan(distribution.expect(lb=high + 1, ub=high + 2, conditional=True))
+        assert distribution.expect(lb=high + 1, ub=high + 2) == 0
+
+
+def test_all_moments_at_once_come_in_the_order_of_their_letters() -> None:
+    for distribution in FIG_9.values():
+        mean, variance, skewness, kurtosis = distribution.stats("mvsk")
+        assert (mean, variance) == (distribution.mean(), distribution.var())
+        assert distribution.stats("ksvm") == (kurtosis, skewness, variance, mean)
+
+
+def test_the_unit_of_an_angle_on_its_cosine_does_no_harm() -> None:
+    """np.cos of a DataArray keeps the attributes of the angle."""
+    for distribution in FIG_9.values():
+        cosine = np.cos(xr.DataArray(0.3, attrs={"units": "rad"}))
+        assert distribution.restitution(cosine) == distribution.restitution(math.cos(0.3))

@@ -222,10 +222,7 @@ def dataset_of(run: Run, edges: Edges, tally: _core.Tally) -> xr.Dataset:
         more |= by_row("velocity", created[1:-1], largest[1:-1])
         found = by_velocity(counts, moments, velocity, columns, more)
     found.attrs = attributes(run, "Statistics of the impacts of bouncing aspherical particles")
-    every = int((found["number"] + found["undefined"]).sum())
-    if velocity is not None:
-        every += int(found["velocity_underflow"] + found["velocity_overflow"])
-    found.attrs |= ledger(every, int(created.sum()), float(largest.max()))
+    found.attrs |= ledger(int(table["count"].sum()), int(created.sum()), float(largest.max()))
     return found
 
 
