@@ -48,7 +48,9 @@ class Grid:
     def of(cls, found: xr.Dataset) -> "Grid":
         """From what `restitution.statistics` returns."""
         numbers = ("number", "undefined", "velocity_underflow", "velocity_overflow")
-        return cls(found["restitution_count"].to_numpy(), sum(int(found[name].to_numpy().sum()) for name in numbers))
+        return cls(
+            found["restitution_count"].to_numpy(), sum(int(found[name].to_numpy().sum()) for name in numbers)
+        )
 
 
 @dataclass(frozen=True)

@@ -58,7 +58,9 @@ FLIGHT = tuple(
         *("problem", "restitution", "series", "times"),
     )
 )
-INFERENCE = tuple(f"inference/_{name}.py" for name in ("family", "likelihood", "posterior", "series", "table"))
+INFERENCE = tuple(
+    f"inference/_{name}.py" for name in ("family", "likelihood", "posterior", "series", "table")
+)
 TESTS = {
     "_files.py": ("test_files.py", "test_believed.py"),
     "_signals.py": ("test_signals.py",),
