@@ -8,6 +8,7 @@ import pytest
 from scipy import integrate, optimize, special, stats
 
 from restitution import fit
+from restitution.fit._asymmetric import frozen
 
 CUSP, ABOVE, BELOW = 0.98, 0.02, 0.05
 
@@ -90,6 +91,15 @@ def test_samples_on_one_side_give_the_exponential() -> None:
     assert mirrored.loglikelihood == pytest.approx(found.loglikelihood)
 
 
+def test_the_cusp_of_samples_on_one_side_is_at_their_end() -> None:
+    """Drawn evenly from an exponential: the densest end is the cusp, and nothing lies beyond it."""
+    x = 1.0 - np.log1p(-(np.arange(200) + 0.5) / 200)
+    found, mirrored = fit.asymmetric_laplace(x), fit.asymmetric_laplace(-x)
+    mean = float(np.mean(x - x[0]))
+    assert found.parameters == pytest.approx({"location": x[0], "above": mean, "below": 0.0})
+    assert mirrored.parameters == pytest.approx({"location": -x[0], "above": 0.0, "below": mean})
+
+
 def test_one_sample_beside_a_fixed_location() -> None:
     assert fit.asymmetric_laplace([3.0], location=1.0).parameters["above"] == pytest.approx(2.0)
 
@@ -168,6 +178,27 @@ def test_power_density_recovers_its_members() -> None:
             >= max(family(x).loglikelihood for family in (fit.asymmetric_laplace, fit.gaussian, fit.laplace))
             - 1e-6
         )
+
+
+@pytest.mark.parametrize("exponent", [0.7, 1.0, 2.0, 6.0])
+def test_quantiles_of_the_power_density_invert_its_distribution_function(exponent: float) -> None:
+    """That is worked out by quadrature here; a Gaussian's quantiles are SciPy's."""
+    m, a, b = CUSP, 0.03, 0.01
+    found = frozen(exponent, m, a, b)
+
+    def density(x: float) -> float:
+        width = a if x >= m else b
+        scale = (a + b) * special.gamma(1 / exponent) / exponent
+        return float(np.exp(-((abs(x - m) / width) ** exponent)) / scale)
+
+    for q in (0.01, 0.2, 0.25, 0.5, 0.9, 0.99):  # b/(a + b) = 1/4 of it lies below m
+        x = float(found.ppf(q))
+        side = integrate.quad(density, m, x)[0]
+        assert 0.25 + side == pytest.approx(q, abs=1e-9)
+    sigma = 0.02
+    gaussian = frozen(2.0, m, np.sqrt(2) * sigma, np.sqrt(2) * sigma)
+    q = np.array([1e-6, 0.3, 0.5, 0.999])
+    np.testing.assert_allclose(gaussian.ppf(q), stats.norm(m, sigma).ppf(q), rtol=1e-12)
 
 
 def test_student_t_is_at_least_as_likely_as_the_truth() -> None:
