@@ -192,13 +192,12 @@ def test_quantiles_of_the_power_density_invert_its_distribution_function(exponen
         return float(np.exp(-((abs(x - m) / width) ** exponent)) / scale)
 
     for q in (0.01, 0.2, 0.25, 0.5, 0.9, 0.99):  # b/(a + b) = 1/4 of it lies below m
-        x = float(found.ppf(q))
-        side = integrate.quad(density, m, x)[0]
+        side = integrate.quad(density, m, float(found.ppf(q)))[0]
         assert 0.25 + side == pytest.approx(q, abs=1e-9)
     sigma = 0.02
     gaussian = frozen(2.0, m, np.sqrt(2) * sigma, np.sqrt(2) * sigma)
-    q = np.array([1e-6, 0.3, 0.5, 0.999])
-    np.testing.assert_allclose(gaussian.ppf(q), stats.norm(m, sigma).ppf(q), rtol=1e-12)
+    shares = np.array([1e-6, 0.3, 0.5, 0.999])
+    np.testing.assert_allclose(gaussian.ppf(shares), stats.norm(m, sigma).ppf(shares), rtol=1e-12)
 
 
 def test_student_t_is_at_least_as_likely_as_the_truth() -> None:

@@ -66,12 +66,11 @@ def fit(
         raise ParameterError(
             Problem("data", f": {known.sum()} coefficients of restitution; must have {allowed}")
         )
-    fixed = 0.0
     if not (isinstance(scatter, str) and scatter == "fit"):
         allowed = '"fit" or a number in [0, 1e30]'
-        scatter = fixed = real("scatter", scatter, allowed, lambda width: 0.0 <= width <= LARGEST)
+        scatter = real("scatter", scatter, allowed, lambda width: 0.0 <= width <= LARGEST)
     problem = Misfit(form, experiments, known)
-    if fixed == 0.0 and not problem.errors_are_known:
+    if scatter == 0.0 and not problem.errors_are_known:
         raise ParameterError(
             Problem("data", ": times without errors; must have an uncertainty > 0, or give scatter='fit'")
         )

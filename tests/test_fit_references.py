@@ -1,0 +1,597 @@
+"""What the fits say about series, flanks and pairs of fits, worked out again in loops over single values."""
+
+import pickle
+from itertools import pairwise
+from math import erfc, exp, inf, isnan, log, sqrt
+from statistics import fmean, stdev
+from types import MappingProxyType
+from typing import Any, cast
+
+import numpy as np
+import pytest
+import xarray as xr
+from scipy import optimize, stats
+
+import restitution as rs
+from restitution import fit
+from restitution.fit import Slopes
+
+Counts: Any = fit.Counts  # lists are taken, though its fields are arrays
+EDGES = [0.2, 0.3, 0.5, 0.9, 1.2]
+
+
+def impacts(particles: int = 40, each: int = 30, seed: int = 2) -> xr.Dataset:
+    """Give impacts of any speed, some at the edges of the bins, some without a coefficient or a contact."""
+    rng = np.random.default_rng(seed)
+    shape = (particles, each)
+    velocity = rng.uniform(0.1, 1.0, shape)
+    at_edges = rng.random(shape) < 0.1
+    velocity[at_edges] = rng.choice(EDGES, np.count_nonzero(at_edges))
+    restitution = rng.normal(0.9, 0.1, shape) + 0.05 * rng.normal(size=(particles, 1))
+    restitution[rng.random(shape) < 0.05] = np.nan
+    contact = rng.integers(0, 3, shape).astype(np.int8)
+    dims = ("particle", "impact")
+    return xr.Dataset(
+        {
+            "impact_velocity": (dims, velocity),
+            "restitution": (dims, restitution),
+            "contact": (dims, contact),
+        },
+        attrs={"law": "any"},
+    )
+
+
+def share_with_error(values: dict[int, list[float]]) -> tuple[float, float, int]:
+    """Mean over all values of all particles, and the error of a ratio of sums over particles."""
+    every = [x for one in values.values() for x in one]
+    if not every:
+        return np.nan, np.nan, 0
+    mean = fmean(every)
+    groups = len(values)
+    squares = sum((sum(one) - mean * len(one)) ** 2 for one in values.values())
+    error = sqrt(squares * groups / (groups - 1)) / len(every) if groups > 1 else np.nan
+    return mean, error, len(every)
+
+
+def distance(samples: Any, one: Any) -> float:
+    return float(stats.kstest(samples, one.cdf).statistic)
+
+
+def test_dependence_is_that_of_pairs_counted_one_by_one() -> None:
+    """The ranks, the pairs and the errors over particles, in every bin and at its edges."""
+    data = impacts()
+    v, e, c = (data[name].to_numpy().tolist() for name in ("impact_velocity", "restitution", "contact"))
+    # One particle alone in the bin that would be empty: it has a mean and no error.
+    v[0][:3], e[0][:3] = [1.0, 1.1, 1.0], [0.9, 0.91, 0.92]
+    v[1][0], c[1][0], c[1][1] = 0.1, 1, 2  # slower than all bins, though with both contacts
+    data["impact_velocity"][:], data["restitution"][:], data["contact"][:] = v, e, c
+    found = fit.dependence(data, EDGES)
+    assert found.attrs == data.attrs
+    np.testing.assert_array_equal(found["lag"], [1, 2, 3, 4, 5])
+    np.testing.assert_allclose(found["velocity"], [0.25, 0.4, 0.7, 1.05], rtol=1e-15)
+
+    def bin_of(p: int, n: int) -> int | None:
+        if isnan(e[p][n]):
+            return None
+        return next((i for i in range(4) if EDGES[i] <= v[p][n] < EDGES[i + 1]), None)
+
+    members: dict[int, list[float]] = {
+        i: sorted(e[p][n] for p in range(40) for n in range(30) if bin_of(p, n) == i) for i in range(4)
+    }
+
+    def u(p: int, n: int) -> float | None:
+        i = bin_of(p, n)
+        return None if i is None else (members[i].index(e[p][n]) + 0.5) / len(members[i])
+
+    for i in range(4):
+        for lag in range(1, 6):
+            products: dict[int, list[float]] = {}
+            for p in range(40):
+                for n in range(30 - lag):
+                    first, second = u(p, n), u(p, n + lag)
+                    if bin_of(p, n) == i and first is not None and second is not None:
+                        products.setdefault(p, []).append(12 * (first - 0.5) * (second - 0.5))
+            mean, error, _ = share_with_error(products)
+            one = found.isel(velocity=i).sel(lag=lag)
+            assert float(one.autocorrelation) == pytest.approx(mean, rel=1e-11, abs=1e-14, nan_ok=True)
+            assert float(one.autocorrelation_error) == pytest.approx(error, rel=1e-11, nan_ok=True)
+        sides: dict[int, list[float]] = {}
+        others: dict[int, list[float]] = {}
+        for p in range(40):
+            for n in range(29):
+                first, second = u(p, n), u(p, n + 1)
+                if bin_of(p, n) != i:
+                    continue
+                if first is not None and second is not None:
+                    sides.setdefault(p, []).append(float((first < 0.5) != (second < 0.5)))
+                if c[p][n] > 0 and c[p][n + 1] > 0:
+                    others.setdefault(p, []).append(float(c[p][n] != c[p][n + 1]))
+        crossing, error, pairs = share_with_error(sides)
+        one = found.isel(velocity=i)
+        assert int(one.pairs) == pairs
+        assert float(one.crossing) == pytest.approx(crossing, rel=1e-12)
+        assert float(one.crossing_error) == pytest.approx(error, rel=1e-12, nan_ok=True)
+        swap, swap_error, _ = share_with_error(others)
+        assert float(one.alternation) == pytest.approx(swap, rel=1e-12, nan_ok=True)
+        assert float(one.alternation_error) == pytest.approx(swap_error, rel=1e-12, nan_ok=True)
+        if crossing > 0:
+            assert float(one.run) == pytest.approx(1 / crossing, rel=1e-12)
+            assert float(one.run_error) == pytest.approx(error / crossing**2, rel=1e-12, nan_ok=True)
+
+
+def known_slopes() -> Slopes:
+    """Give five bins whose flanks, errors and redrawn flanks are written down; one has no fit."""
+    v = np.array([0.2, 0.3, 0.4, 0.6, 0.9])
+    above = np.array([0.05, 0.034, 0.024, np.nan, 0.012])
+    error = np.array([0.002, 0.001, 0.003, np.nan, 0.0005])
+    rng = np.random.default_rng(3)
+    drawn = above * np.exp(0.05 * rng.normal(size=(7, 5)))
+    drawn[4, 0] = np.nan  # a draw that could not be fitted
+    table = xr.Dataset(
+        {
+            "above": ("velocity", above),
+            "above_error": ("velocity", error),
+            "ks_distance": ("velocity", [0.05, 0.03, 0.04, 0.03, np.nan]),
+            "velocity_edges": ("velocity_edge", [0.15, 0.25, 0.35, 0.5, 0.7, 1.1]),
+        },
+        coords={"velocity": v},
+        attrs={"standard_errors": "over resampled particles"},
+    )
+    return Slopes(table, xr.Dataset({"above": (("resample", "velocity"), drawn)}, coords={"velocity": v}))
+
+
+@pytest.mark.parametrize("release", [None, 1.5])
+def test_power_law_is_the_weighted_line(release: float | None) -> None:
+    """Normal equations of the line through ln y, by hand; the ends of the range belong to it."""
+    given = known_slopes()
+    v, y = given.table["velocity"].to_numpy(), given.table["above"].to_numpy()
+    used = [0, 1, 2, 4]
+
+    def line(values: Any, weights: list[float]) -> tuple[float, float]:
+        x = [log(v[i]) if release is None else log(sqrt(release**2 / v[i] ** 2 - 1)) for i in used]
+        z = [log(values[i]) for i in used]
+        w = [one**2 for one in weights]
+        mean_x = sum(a * b for a, b in zip(w, x, strict=True)) / sum(w)
+        mean_z = sum(a * b for a, b in zip(w, z, strict=True)) / sum(w)
+        slope = sum(a * (b - mean_x) * (d - mean_z) for a, b, d in zip(w, x, z, strict=True)) / sum(
+            a * (b - mean_x) ** 2 for a, b in zip(w, x, strict=True)
+        )
+        return slope, mean_z - slope * mean_x
+
+    def residuals(weights: list[float]) -> list[float]:
+        slope, intercept = line(y, weights)
+        x = [log(v[i]) if release is None else log(sqrt(release**2 / v[i] ** 2 - 1)) for i in used]
+        return [log(y[i]) - intercept - slope * x[k] for k, i in enumerate(used)]
+
+    error = given.table["above_error"].to_numpy()
+    weights = [y[i] / error[i] for i in used]
+    slope, intercept = line(y, weights)
+    found = given.power_law("above", 0.2, 0.9, release_speed=release)
+    assert found.exponent == pytest.approx(slope, rel=1e-10)
+    assert found.amplitude == pytest.approx(exp(intercept), rel=1e-10)
+    off = residuals(weights)
+    assert found.scatter == pytest.approx(sqrt(sum(r**2 for r in off) / 2), rel=1e-9)
+    misfit = sqrt(sum((r * w) ** 2 for r, w in zip(off, weights, strict=True)) / 2)
+    assert found.misfit == pytest.approx(misfit, rel=1e-9)
+    again = [line(one, weights) for one in given.resampled["above"].to_numpy() if np.all(one[used] > 0)]
+    assert len(again) == 6
+    assert found.exponent_error == pytest.approx(stdev(one[0] for one in again), rel=1e-9)
+    assert found.amplitude_error == pytest.approx(exp(intercept) * stdev(one[1] for one in again), rel=1e-9)
+    assert found.without_errors == ""
+
+    given.table["above_error"][2] = 0.0  # without an error of one bin, all weigh the same
+    unweighted = given.power_law("above", 0.2, 0.9, release_speed=release)
+    assert unweighted.exponent == pytest.approx(line(y, [1.0] * 4)[0], rel=1e-10)
+    assert unweighted.scatter == pytest.approx(sqrt(sum(r**2 for r in residuals([1.0] * 4)) / 2), rel=1e-9)
+    assert isnan(unweighted.misfit)
+
+
+def test_power_law_needs_three_bins_and_two_draws() -> None:
+    given = known_slopes()
+    assert given.power_law("above", 0.2, 0.4).exponent == pytest.approx(-1.0, abs=0.2)
+    for low, high in ((0.2, 0.39), (0.21, 0.6)):
+        with pytest.raises(ValueError, match="fewer than three bins have a fit there"):
+            given.power_law("above", low, high)
+    with pytest.raises(ValueError, match=r"release_speed = 0\.9: must be above 0\.9 m/s"):
+        given.power_law("above", release_speed=0.9)
+    pair = Slopes(given.table, given.resampled.isel(resample=[0, 1]))
+    assert pair.power_law("above").exponent_error > 0
+    assert pair.power_law("above").without_errors == ""
+    alone = Slopes(given.table, given.resampled.isel(resample=[0])).power_law("above")
+    assert isnan(alone.exponent_error)
+    assert isnan(alone.amplitude_error)
+    assert alone.without_errors == "over resampled particles"
+
+
+def test_the_end_of_the_form_is_an_edge() -> None:
+    """A distance that is just allowed is allowed; a bin without a fit is far; the fastest may be left out."""
+    given = known_slopes()
+    assert isnan(given.fails_below(0.05))  # the fastest bin has no distance
+    assert given.fails_below(0.03, high=0.6) == 0.5
+    assert isnan(given.fails_below(0.029, high=0.6))
+    assert given.fails_below(0.04, high=0.6) == given.fails_below(0.045, high=0.6) == 0.25
+    assert given.fails_below(0.05, high=0.6) == 0.15
+    assert given.fails_below(high=0.6) == given.fails_below(0.03, high=0.6)
+
+
+def test_arguments_of_the_slopes_are_named() -> None:
+    given = known_slopes()
+    data = impacts()
+    wrong: list[tuple[Any, str]] = [
+        (lambda: given.power_law("above", low=np.nan), r"low = nan: must be a speed in m/s"),
+        (lambda: given.power_law("above", high=np.nan), r"high = nan: must be a speed in m/s"),
+        (lambda: given.power_law("above", release_speed=inf), "release_speed = inf: must be a finite speed"),
+        (lambda: given.fails_below(np.nan), "distance = nan: must be a number"),
+        (lambda: given.fails_below(0.03, np.nan), "high = nan: must be a speed in m/s"),
+        (lambda: fit.slopes(data, EDGES, location=inf), "location = inf: must be a finite number"),
+        (lambda: fit.slopes(data, EDGES, seed=-1), "seed = -1"),
+    ]
+    for call, text in wrong:
+        with pytest.raises(ValueError, match=text):
+            call()
+    other = xr.DataArray(0.2, attrs={"units": "mm"})
+    for name in ("low", "high", "release_speed"):
+        arguments: dict[str, Any] = {name: other}
+        with pytest.raises(ValueError, match=f"{name}.*m s-1"):
+            given.power_law("above", **arguments)
+    with pytest.raises(ValueError, match=r"high.*m s-1"):
+        given.fails_below(0.03, other)  # type: ignore[arg-type]
+
+
+def test_slopes_fit_what_is_in_each_bin() -> None:
+    """Bins closed below and open above; draws of the same particles in all; the cusp given or fitted."""
+    data = impacts(particles=12, each=60, seed=5)
+    v, e = data["impact_velocity"].to_numpy(), data["restitution"].to_numpy()
+    v[v >= EDGES[3]] = 2.0
+    v[:2, :4] = 1.05  # eight impacts of two particles are not enough
+    data["impact_velocity"][:] = v
+    times = np.random.default_rng(4).multinomial(12, np.full(12, 1 / 12), size=5)
+    for location in (None, 0.9):
+        found = fit.slopes(data, EDGES, location=location, resamples=5, seed=4)
+        assert dict(found.table.sizes) == {"velocity": 4, "velocity_edge": 5}
+        assert found.table.attrs["standard_errors"] == "over resampled particles"
+        np.testing.assert_allclose(found.resampled["velocity"], found.table["velocity"], rtol=0)
+        for i in range(4):
+            inside = (v >= EDGES[i]) & (v < EDGES[i + 1]) & np.isfinite(e)
+            one = found.table.isel(velocity=i)
+            assert int(one.particles) == np.count_nonzero(inside.any(axis=1))
+            if i == 3:
+                assert int(one.samples) == 0
+                assert isnan(one.above)
+                assert isnan(one.above_error)
+                assert np.isnan(found.resampled["above"].isel(velocity=i)).all()
+                continue
+            assert int(one.samples) == np.count_nonzero(inside)
+            whole = fit.asymmetric_laplace(e[inside], location)
+            assert float(one.ks_distance) == pytest.approx(distance(e[inside], whole), rel=1e-12)
+            for name in ("location", "above", "below"):
+                assert float(one[name]) == pytest.approx(whole.parameters[name], rel=1e-9)
+                draws = []
+                for row in times:
+                    again = np.concatenate([np.repeat(e[p][inside[p]], row[p]) for p in range(12)])
+                    draws.append(fit.asymmetric_laplace(again, location).parameters[name])
+                np.testing.assert_allclose(found.resampled[name].isel(velocity=i), draws, rtol=1e-9)
+                assert float(one[f"{name}_error"]) == pytest.approx(stdev(draws), rel=1e-7, abs=1e-15)
+
+
+def test_the_least_that_is_fitted() -> None:
+    """Thirty samples of ten particles just do; of equal ones, of 29, of nine particles, no fit is made.
+
+    A bin after one without a fit has its own. Of those that are equal but for one there is a fit.
+    """
+    rng = np.random.default_rng(6)
+    v = np.concatenate([np.full((10, 3), 0.25), np.full((10, 3), 0.4), np.full((10, 3), 0.7)], axis=1)
+    e = rng.normal(0.9, 0.1, v.shape)
+    dims = ("particle", "impact")
+
+    def fitted(restitution: np.ndarray, velocity: np.ndarray = v) -> list[int]:
+        data = xr.Dataset({"impact_velocity": (dims, velocity), "restitution": (dims, restitution)})
+        return [int(n) for n in fit.slopes(data, EDGES, location=0.9, resamples=3).table["samples"]]
+
+    assert fitted(e) == [30, 30, 30, 0]
+    equal = e.copy()
+    equal[:, :3] = 0.9
+    assert fitted(equal) == [0, 30, 30, 0]
+    for p, n, value in ((0, 0, 0.8), (9, 2, 1.0)):
+        one_other = equal.copy()
+        one_other[p, n] = value
+        assert fitted(one_other) == [30, 30, 30, 0]
+    few = e.copy()
+    few[0, 4] = np.nan
+    assert fitted(few) == [30, 0, 30, 0]
+    nine = np.insert(v, 0, 2.0, axis=1)
+    nine[0, 7:] = 2.0
+    nine[1, 0] = 0.7
+    nine[2, 0] = nine[3, 0] = 0.7  # as many samples, of nine particles
+    assert fitted(np.insert(e, 0, 0.85, axis=1), nine) == [30, 30, 0, 0]
+
+
+def test_slopes_of_counts_need_more_bins_than_parameters() -> None:
+    """Two filled bins do for a given cusp with two lengths and an open bin, not for three parameters."""
+
+    def table(count: list[int], below: int, above: int) -> xr.Dataset:
+        return xr.Dataset(
+            {
+                "restitution_count": (("velocity", "restitution"), [count]),
+                "restitution_underflow": ("velocity", [below]),
+                "restitution_overflow": ("velocity", [above]),
+                "number": ("velocity", [sum(count) + below + above]),
+                "velocity_edges": ("velocity_edge", [0.2, 0.4]),
+                "restitution_edges": ("restitution_edge", np.linspace(0.6, 1.2, 7)),
+            },
+            coords={"velocity": [0.3], "restitution": np.linspace(0.65, 1.15, 6)},
+        )
+
+    def samples(given: xr.Dataset, location: float | None) -> int:
+        return int(fit.slopes(given, location=location).table["samples"][0])
+
+    three, four = table([0, 8, 20, 1, 0, 0], 0, 1), table([0, 8, 20, 5, 0, 0], 0, 1)
+    assert samples(three, 0.82) == 30
+    assert samples(four, None) == 34
+    assert samples(table([0, 8, 20, 5, 0, 0], 0, 0), None) == 0  # three filled bins, three parameters
+    assert samples(table([0, 8, 20, 5, 0, 0], 0, 0), 0.82) == 33
+    assert samples(table([0, 28, 20, 0, 0, 0], 0, 0), 0.82) == 0
+    assert samples(table([0, 8, 20, 1, 0, 0], 0, 0), 0.82) == 0  # 29
+    counts = Counts.at(four, 0.2)
+    one = fit.asymmetric_laplace(counts)
+    share = np.cumsum([0, 0, 8, 20, 5, 0, 0]) / 34
+    expected = max(abs(a - one.distribution.cdf(x)) for a, x in zip(share, counts.edges, strict=True))
+    found = fit.slopes(four)
+    assert float(found.table["ks_distance"][0]) == pytest.approx(expected, rel=1e-12)
+    assert found.table.attrs["standard_errors"].startswith("unknown: counts do not say")
+    assert np.isnan(found.table["particles"][0])
+
+
+def two_fits(samples: Any) -> tuple[fit.Fit, fit.Fit]:
+    return fit.gaussian(samples), fit.laplace(samples)
+
+
+def test_vuong_test_over_clusters_and_runs() -> None:
+    """Squares of the sums of each of G particles or runs, times G/(G - 1); the p-value of the normal."""
+    rng = np.random.default_rng(8)
+    x = rng.normal(0.9, 0.05, 60)
+    labels = rng.integers(0, 7, 60)
+    first, second = two_fits(x)
+    gain = np.array([float(first.logpdf(one) - second.logpdf(one)) for one in x])
+    mean = fmean(gain)
+    sums = [sum(gain[labels == k] - mean) for k in range(7)]
+    found = fit.compare(first, second, x, labels)
+    assert found.difference == pytest.approx(mean, rel=1e-12)
+    error = sqrt(sum(s**2 for s in sums) * 7 / 6) / 60
+    assert found.standard_error == pytest.approx(error, rel=1e-12)
+    assert found.z == pytest.approx(mean / error, rel=1e-12)
+    assert found.p == pytest.approx(2 * stats.norm.sf(abs(mean / error)), rel=1e-12)
+    free = fit.compare(first, second, x)
+    assert free.standard_error == pytest.approx(stdev(gain) / sqrt(60), rel=1e-12)
+
+    edges = np.linspace(0.7, 1.1, 9)
+    runs = []
+    for _ in range(4):
+        y = rng.normal(0.9, 0.08, 50)
+        count, _ = np.histogram(y, edges)
+        runs.append(Counts(edges, count, int(np.sum(y < 0.7)), int(np.sum(y > 1.1))))
+    every = Counts(edges, sum(r.count for r in runs), sum(r.below for r in runs), sum(r.above for r in runs))
+    first, second = two_fits(every)
+
+    def logs(one: fit.Fit) -> list[float]:
+        d = one.distribution
+        shares = [d.cdf(edges[0]), *(d.cdf(b) - d.cdf(a) for a, b in pairwise(edges))]
+        return [log(share) for share in [*shares, d.sf(edges[-1])]]
+
+    per_bin = [a - b for a, b in zip(logs(first), logs(second), strict=True)]
+    mean = sum(n * g for n, g in zip(every.all, per_bin, strict=True)) / every.total
+    sums = [sum(n * (g - mean) for n, g in zip(r.all, per_bin, strict=True)) for r in runs]
+    tallied = fit.compare(first, second, runs)
+    assert tallied.difference == pytest.approx(mean, rel=1e-9)
+    assert tallied.standard_error == pytest.approx(
+        sqrt(sum(s**2 for s in sums) * 4 / 3) / every.total, rel=1e-9
+    )
+
+
+def test_a_difference_without_error() -> None:
+    assert fit.Comparison(0.0, 0.0).z == 0.0
+    assert fit.Comparison(0.5, 0.0).z == inf
+    assert fit.Comparison(-0.5, 0.0).z == -inf
+    assert fit.Comparison(1.0, 0.5).p == pytest.approx(erfc(sqrt(2)), rel=1e-14)
+    assert pickle.loads(pickle.dumps(fit.Comparison(0.5, 0.25))).z == 2.0
+
+
+def test_the_statistics_of_goodness_are_those_of_scipy() -> None:
+    """D by `kstest`; A² by its sum; both p-values are shares of refitted draws, the samples counted in."""
+    x = np.random.default_rng(9).normal(0.9, 0.05, 25)
+    for samples in (x, np.full(25, 0.9) + np.where(np.arange(25) < 24, 1e-3 * np.arange(25), 9.0)):
+        found = fit.goodness(fit.gaussian, samples, resamples=20, seed=3)
+        one = fit.gaussian(samples)
+        assert found.kolmogorov_smirnov == pytest.approx(distance(samples, one), rel=1e-12)
+        assert found.resamples == 20
+        assert (found.kolmogorov_smirnov_p * 21) % 1 == pytest.approx(0, abs=1e-9)
+    one, y = fit.gaussian(x), np.sort(x)
+    terms = [
+        (2 * i + 1) * (float(one.distribution.logcdf(y[i])) + float(one.distribution.logsf(y[-1 - i])))
+        for i in range(25)
+    ]
+    found = fit.goodness(fit.gaussian, x, resamples=20, seed=3)
+    assert found.anderson_darling == pytest.approx(-25 - sum(terms) / 25, rel=1e-9)
+    again = np.random.default_rng(3)
+    reached = 1
+    for _ in range(20):
+        draw = one.distribution.rvs(size=25, random_state=again)
+        reached += int(distance(draw, fit.gaussian(draw)) >= found.kolmogorov_smirnov)
+    assert found.kolmogorov_smirnov_p == pytest.approx(reached / 21, rel=1e-12)
+
+
+def test_goodness_with_clusters_asks_the_same_of_all_its_doors() -> None:
+    """A Dataset's particles, given clusters and single values as lists; the sides of a distance below."""
+    data = impacts(particles=9, each=20, seed=3)
+    v, e = data["impact_velocity"].to_numpy(), data["restitution"].to_numpy()
+    inside = (v >= 0.3) & (v < 0.6) & np.isfinite(e)
+    labels = np.nonzero(inside)[0]
+    by_data = fit.goodness(fit.gaussian, data, velocity=(0.3, 0.6), resamples=5, seed=2)
+    by_label = fit.goodness(fit.gaussian, e[inside], clusters=labels, resamples=5, seed=2)
+    assert by_data.kolmogorov_smirnov_p == by_label.kolmogorov_smirnov_p
+    assert by_data.anderson_darling == pytest.approx(by_label.anderson_darling, rel=1e-12)
+    assert by_data.resamples == by_label.resamples == 5
+    first, second = two_fits(e[inside])
+    assert fit.compare(first, second, data, velocity=(0.3, 0.6)) == fit.compare(
+        first, second, e[inside], labels
+    )
+    as_list = fit.goodness(fit.gaussian, e[inside].tolist(), resamples=5, seed=2)
+    as_array = fit.goodness(fit.gaussian, e[inside], resamples=5, seed=2)
+    assert as_list == as_array
+    for call in (
+        lambda: fit.goodness(fit.gaussian, e[inside], velocity=(0.3, 0.6)),
+        lambda: fit.compare(first, second, e[inside], velocity=(0.3, 0.6)),
+    ):
+        with pytest.raises(ValueError, match="velocity"):
+            call()
+    with pytest.raises(ValueError, match="seed = -1"):
+        fit.goodness(fit.gaussian, e[inside], seed=-1)
+    with pytest.raises(ValueError, match="resamples = 1000001: must be"):
+        fit.goodness(fit.gaussian, e[inside], resamples=1_000_001)
+    wrong: Any = "no fit"
+    with pytest.raises(ValueError, match="first = 'no fit': must be a Fit"):
+        fit.compare(wrong, second, e[inside])
+    with pytest.raises(ValueError, match="second = 'no fit': must be a Fit"):
+        fit.compare(first, wrong, e[inside])
+
+
+def test_draws_of_a_fit() -> None:
+    one = fit.gaussian(np.random.default_rng(1).normal(0.9, 0.1, 100))
+    mean, deviation = one.parameters["mean"], one.parameters["deviation"]
+    expected = stats.norm(mean, deviation).rvs(size=4, random_state=np.random.default_rng(7))
+    np.testing.assert_array_equal(one.rvs(4, 7), expected)
+    np.testing.assert_array_equal(one.rvs(4), one.rvs(4, seed=1))
+    assert one.rvs(0).shape == (0,)
+    assert one.family == "Gaussian"
+    assert one.free_parameters == 2
+    with pytest.raises(ValueError, match="size = -1"):
+        one.rvs(-1)
+    with pytest.raises(ValueError, match="size = 1000000000000: must be"):
+        one.rvs(10**12)
+    with pytest.raises(ValueError, match="seed = -1"):
+        one.rvs(1, -1)
+    assert one.cdf(inf) == 1.0
+    assert one.cdf(-inf) == 0.0
+    with pytest.raises(ValueError, match="x = 'a': must be numbers"):
+        one.pdf("a")
+
+
+def test_maxima_of_counts_of_all_families() -> None:
+    """The likelihood of a multinomial, maximised by another search from the fitted point and from afar."""
+    rng = np.random.default_rng(11)
+    x = 0.9 + 0.04 * rng.standard_t(4, 4000)
+    edges = np.linspace(0.75, 1.05, 31)
+    count, _ = np.histogram(x, edges)
+    counts = Counts(edges, count, int(np.sum(x < 0.75)), int(np.sum(x > 1.05)))
+    families: tuple[tuple[Any, Any, int], ...] = (
+        (fit.gaussian, stats.norm, 0),
+        (fit.laplace, stats.laplace, 0),
+        (fit.logistic, stats.logistic, 0),
+        (fit.student_t, stats.t, 1),
+    )
+    for family, kind, shapes in families:
+
+        def likelihood(point: np.ndarray, kind: Any = kind, shapes: int = shapes) -> float:
+            given = [*np.exp(point[2:]), point[0], exp(point[1])]
+            assert len(given) == 2 + shapes
+            below = kind(*given).cdf(edges)
+            share = np.diff(np.concatenate([[0.0], below, [1.0]]))
+            return -float(counts.all @ np.log(np.maximum(share, 1e-300)))
+
+        found = family(counts)
+        start = [0.9, log(0.05), log(5.0)][: 2 + shapes]
+        best = optimize.minimize(likelihood, start, method="Powell", options={"xtol": 1e-9, "ftol": 1e-14})
+        assert found.loglikelihood == pytest.approx(-best.fun, rel=1e-9)
+        named = dict(found.parameters)
+        width = named.get("scale", named.get("deviation"))
+        assert width == pytest.approx(exp(best.x[1]), rel=1e-4)
+
+
+def test_counts_are_told_apart_and_named() -> None:
+    edges = np.linspace(0.8, 1.0, 5)
+    one = Counts(edges, [1, 2, 3, 4], 5, 6)
+    assert (one.below, one.above, one.total) == (5, 6, 21)
+    with pytest.raises(ValueError, match=r"count = .*: must be a 1-D array of 4 counts >= 0"):
+        Counts(edges, [1, 2, 3])
+    with pytest.raises(ValueError, match=r"count.*must be a 1-D array of 4 counts"):
+        Counts(edges, [[1, 2, 3, 4]])
+    for array in (one.edges, one.count):
+        with pytest.raises(ValueError, match="read-only"):
+            array[0] = 0
+    # A whole 2**53 is the most that doubles count.
+    assert Counts(edges, [2**53, 1, 0, 0]).count[0] == 2.0**53
+    table = xr.Dataset(
+        {
+            "restitution_count": (("velocity", "restitution"), [[1, 2, 3, 4], [4, 3, 2, 1]]),
+            "restitution_underflow": ("velocity", [7, 8]),
+            "restitution_overflow": ("velocity", [9, 10]),
+            "number": ("velocity", [26, 28]),
+            "velocity_edges": ("velocity_edge", [0.2, 0.4, 0.8]),
+            "restitution_edges": ("restitution_edge", edges),
+        },
+        coords={"velocity": [0.3, 0.6], "restitution": (edges[1:] + edges[:-1]) / 2},
+    )
+    second = Counts.at(table, 0.4)
+    assert second.count.tolist() == [4, 3, 2, 1]
+    assert (second.below, second.above) == (8, 10)
+    wrong: Any
+    for wrong, text in (
+        (np.nan, "velocity = nan: must be a speed in m/s, in one of the velocity bins"),
+        (xr.DataArray(0.3, attrs={"units": "mm/s"}), "velocity.*m s-1"),
+        (0.8, r"velocity = 0\.8: must be in \[0\.2, 0\.8\) m/s"),
+    ):
+        with pytest.raises(ValueError, match=text):
+            Counts.at(table, wrong)
+    with pytest.raises(ValueError, match="statistics"):
+        Counts.at(3, 0.3)
+    np.testing.assert_allclose(one.quantile([0.0, 1.0]), [0.8, 1.0])
+    assert one.quantile([inf])[0] == 1.0
+    halves = [Counts(edges, [1, 0, 3, 1], 2, 3), Counts(edges, [0, 2, 0, 3], 3, 3)]
+    compared = fit.compare(*two_fits(one), halves)
+    assert compared.difference == pytest.approx(
+        (one.loglikelihood(fit.gaussian(one).distribution) - one.loglikelihood(fit.laplace(one).distribution))
+        / 21,
+        rel=1e-12,
+    )
+    with pytest.raises(ValueError, match="counts: must all have the same edges"):
+        fit.compare(*two_fits(one), [one, Counts(edges + 0.1, [1, 2, 3, 4])])
+
+
+def test_standard_errors_are_of_a_sample() -> None:
+    """Deviations with n - 1; intervals between the quantiles that leave out half of the rest on each side."""
+    fits = tuple(
+        fit.Fit("any", MappingProxyType({"a": a}), 1, 10, 0.0, stats.norm()) for a in (1.0, 2.0, 4.0, 8.0)
+    )
+    given = fit.Bootstrap(fits[0], fits, 5, 1.0)
+    assert given.standard_errors["a"] == pytest.approx(stdev([1, 2, 4, 8]), rel=1e-14)
+    assert given.interval("a", 0.5) == pytest.approx((1.75, 5.0), rel=1e-14)
+    for bad in (0.0, 1.0):
+        with pytest.raises(ValueError, match=r"confidence = .*: must be a number in \(0, 1\)"):
+            given.interval("a", bad)
+    x = np.random.default_rng(2).normal(size=40)
+    assert fit.bootstrap(fit.gaussian, x, resamples=3).draws("mean").size == 3
+    assert fit.bootstrap(fit.gaussian, x) == fit.bootstrap(fit.gaussian, x, resamples=199, seed=1)
+
+
+def test_the_words_of_clusters() -> None:
+    x = [0.9, 0.91, 0.95, 0.99]
+    counts = Counts([0.8, 0.9, 1.0], [3, 4])
+    data = impacts()
+    letters, zero = cast(Any, ["a", 1, 2, 3]), cast(Any, int)
+    wrong: list[tuple[Any, str]] = [
+        (lambda: fit.bootstrap(fit.gaussian, [counts, counts], [0, 1]), "clusters: counts are drawn again"),
+        (lambda: fit.bootstrap(fit.gaussian, data, [0, 1]), "clusters: a Dataset knows its particles"),
+        (lambda: fit.bootstrap(fit.gaussian, counts), "several independent runs in a list"),
+        (lambda: fit.bootstrap(fit.gaussian, x, letters), "clusters.*whole numbers, one for each"),
+        (lambda: fit.bootstrap(fit.gaussian, x, velocity=0.3), "velocity"),
+        (lambda: fit.bootstrap(zero, x), "family = .*int.* gave TypeError"),
+    ]
+    for call, text in wrong:
+        with pytest.raises(ValueError, match=text):
+            call()
+    with pytest.raises(ValueError, match="samples"):
+        fit.bootstrap(fit.gaussian, [])
+
+
+def test_the_doors_of_the_package_lead_to_the_fits() -> None:
+    assert rs.fit is fit

@@ -1,0 +1,337 @@
+"""Fits of laws to times of impacts, compared with least squares of the true times themselves."""
+
+import math
+import re
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import pytest
+import xarray as xr
+from scipy.optimize import least_squares
+
+import restitution as rs
+from restitution import flight
+
+SOFT: dict[str, Any] = {"young_modulus": 1e8, "poisson_ratio": 0.4, "density": 1200.0, "radius": 5e-3}
+BETA = rs.Viscoelastic(dissipation=5e-6, **SOFT).beta
+
+
+def coefficient(law: str, parameters: Any) -> Callable[[float], float]:
+    if law == "constant":
+        return lambda _: parameters[0]
+    if law == "power law":
+        return lambda v: parameters[0] * v ** -parameters[1]
+    if law == "viscoelastic":  # β is proportional to the dissipation
+        sphere = rs.Viscoelastic(dissipation=5e-6 * parameters[0] / BETA, **SOFT)
+        return lambda v: float(sphere(v))
+    return lambda v: float(rs.Plastic(yield_speed=parameters[0])(v))
+
+
+TRUE = {"constant": [0.93], "power law": [0.9, 0.04], "viscoelastic": [BETA], "plastic": [0.05]}
+G, G_ERROR = 9.81, 0.02
+
+
+class Series:
+    """Times that were measured, with errors and the drop, and the times that follow from a law."""
+
+    def __init__(self, law: str, impacts: int, error: float, drop: float | None, seed: int, scatter: float):
+        rng = np.random.default_rng(seed)
+        self.impacts, self.error, self.drop, self.drop_error = impacts, error, drop, 2e-4
+        kicks = scatter * rng.normal(size=impacts - 1)
+        speed = 2.4 if drop is None else math.sqrt(2 * 9.8 * drop)
+        self.times = self.predicted(coefficient(law, TRUE[law]), 0.3, speed, 9.8, kicks)
+        self.times += error * rng.normal(size=impacts)
+
+    def predicted(
+        self, law: Callable[[float], float], start: float, speed: float, gravity: float, kicks: Any
+    ) -> np.ndarray:
+        times = [start]
+        for kick in kicks:
+            speed *= law(speed) + kick
+            times.append(times[-1] + 2 * speed / gravity)
+        return np.array(times)
+
+    def data(self) -> xr.Dataset:
+        drop = {} if self.drop is None else {"drop_height": self.drop, "drop_height_uncertainty": 2e-4}
+        return flight.restitution(
+            self.times,
+            self.error,
+            gravity=G,
+            gravity_uncertainty=G_ERROR,
+            **drop,  # type: ignore[arg-type]
+        )
+
+    def coefficients(self) -> int:
+        """With a known drop the first impact has a coefficient, too; the last never has."""
+        return self.impacts - (1 if self.drop is not None else 2)
+
+
+def by_true_times(law: str, several: list[Series], scatter: float) -> tuple[np.ndarray, np.ndarray, float]:
+    """Minimise χ² over the law, g, and start, first speed and kicks of each series.
+
+    Give the parameters of the law, their covariance, and χ². Without a drop the first interval only tells the
+    speed at the second impact, so that the first impact gets no kick and any coefficient is as good.
+    """
+    free = len(TRUE[law])
+
+    def residuals(point: np.ndarray) -> np.ndarray:
+        one_law, gravity = coefficient(law, point[:free]), point[free]
+        parts = [np.array([(gravity - G) / G_ERROR])]
+        place = free + 1
+        for one in several:
+            start, speed = point[place : place + 2]
+            place += 2
+            kicks = np.zeros(one.impacts - 1)
+            if scatter:
+                used = slice(0 if one.drop is not None else 1, None)
+                number = kicks[used].size
+                standard = point[place : place + number]
+                kicks[used] = scatter * standard
+                parts.append(standard)
+                place += number
+            times = one.predicted(one_law, start, speed, gravity, kicks)
+            parts.append((one.times - times) / one.error)
+            if one.drop is not None:
+                parts.append(np.array([(speed**2 / (2 * gravity) - one.drop) / one.drop_error]))
+        return np.concatenate(parts)
+
+    first = [*TRUE[law], G]
+    for one in several:
+        first += [0.3, 2.4 if one.drop is None else math.sqrt(2 * G * one.drop)]
+        first += [0.0] * one.coefficients() if scatter else []
+    found = least_squares(residuals, first, jac="3-point", x_scale="jac", xtol=1e-15, ftol=1e-15, gtol=1e-15)
+    jacobian = np.asarray(found.jac)
+    information = jacobian.T @ jacobian
+    return found.x[:free], np.linalg.inv(information)[:free, :free], 2 * found.cost
+
+
+@pytest.mark.parametrize("scatter", [0.0, 0.004])
+@pytest.mark.parametrize("law", TRUE)
+def test_a_fit_is_the_least_squares_of_all_times(law: str, scatter: float) -> None:
+    """Three series: parameters, covariance and χ²; g is one for all, starts and drops are each series' own.
+
+    The fit's covariance of the scatter leaves out products of two kicks, 0.004 beside 1.
+    """
+    several = [
+        Series(law, 9, 2e-5, None, 1, scatter),
+        Series(law, 7, 5e-5, 0.31, 2, scatter),
+        Series(law, 12, 3e-5, 0.22, 3, scatter),
+    ]
+    values, covariance, chi2 = by_true_times(law, several, scatter)
+    found = flight.fit([one.data() for one in several], law, scatter=scatter)
+    errors = np.sqrt(np.diag(covariance))
+    within = 0.03 if scatter else 2e-3
+    np.testing.assert_array_less(np.abs(list(found.parameters.values()) - values), within * errors)
+    np.testing.assert_allclose(list(found.errors.values()), errors, rtol=within)
+    size = np.outer(errors, errors)
+    assert np.all(np.abs(found.covariance - covariance) < 3 * within * size)
+    assert found.chi2 == pytest.approx(chi2, rel=within)
+    assert found.impacts == sum(one.coefficients() for one in several) == 24
+    assert found.degrees_of_freedom == 24 - len(values)
+    assert (found.scatter, found.scatter_error) == (scatter, 0.0)
+    assert found.law == law
+    assert list(found.units) == list(found.parameters) == list(found.errors)
+    if scatter == 0.0:  # of the times themselves
+        assert found.loglikelihood == pytest.approx(-0.5 * chi2, rel=within)
+
+
+@pytest.mark.parametrize("law", ["constant", "power law", "plastic"])
+def test_the_fitted_scatter_is_the_most_likely(law: str) -> None:
+    """The determinant of the covariance and χ², from the Dataset's own covariances, are least there.
+
+    The information on the scatter is half the trace of the square of C⁻¹ dC/dσ.
+    """
+    data = Series(law, 25, 4e-5, 0.3, 5, 0.01).data()
+    found = flight.fit(data, law, scatter="fit")
+    known = np.isfinite(data["restitution"].to_numpy())
+    v, e = data["impact_velocity"].to_numpy()[known], data["restitution"].to_numpy()[known]
+    pick = np.ix_(known, known)
+    of_ratio = data["restitution_covariance"].to_numpy()[pick]
+    of_speed = data["impact_velocity_covariance"].to_numpy()[pick]
+    crossed = data["cross_covariance"].to_numpy()[pick]
+
+    def loglikelihood(parameters: Any, scatter: float) -> tuple[float, np.ndarray]:
+        one = coefficient(law, parameters)
+        slope = np.array([(one(x * 1.0001) - one(x * 0.9999)) / (2e-4 * x) for x in v])
+        by_v = np.diag(slope)
+        covariance = of_ratio - by_v @ crossed - (by_v @ crossed).T + by_v @ of_speed @ by_v
+        covariance += scatter**2 * np.eye(v.size)
+        off = e - np.array([one(x) for x in v])
+        return -0.5 * (off @ np.linalg.solve(covariance, off) + np.linalg.slogdet(covariance)[1]), covariance
+
+    values = np.array(list(found.parameters.values()))
+    top, covariance = loglikelihood(values, found.scatter)
+    # Below the top by ½ one standard error away; in the parameters that move together by no more.
+    for way in (-1, 1):
+        aside = loglikelihood(values, found.scatter + way * found.scatter_error)[0]
+        assert 0.2 < top - aside < 1.0
+    inverse = np.linalg.inv(covariance)
+    information = 2 * found.scatter**2 * np.trace(inverse @ inverse)
+    assert found.scatter_error == pytest.approx(information**-0.5, rel=0.02)
+    steps = np.linspace(0.8, 1.2, 81)
+    best = steps[int(np.argmax([loglikelihood(values, step * found.scatter)[0] for step in steps]))]
+    assert best == pytest.approx(1.0, abs=0.02)
+    # Residuals of the fit are of speeds, v times these: ln det differs by 2 Σ ln v.
+    assert found.loglikelihood == pytest.approx(top - np.sum(np.log(v)), abs=0.1)
+    assert found.aic == pytest.approx(2 * (len(values) + 1) - 2 * found.loglikelihood, rel=1e-14)
+    fixed = flight.fit(data, law, scatter=0.01)
+    assert fixed.aic == pytest.approx(2 * len(values) - 2 * fixed.loglikelihood, rel=1e-14)
+
+
+def test_the_scatter_of_exact_times_is_that_of_the_coefficients() -> None:
+    """Of a Gaussian: the mean, and the root of the mean square; errors σ/√n and σ/√(2n)."""
+    data = flight.restitution(Series("constant", 25, 0.0, None, 5, 0.01).times)
+    e = data["restitution"].to_numpy()[1:-1]
+    found = flight.fit(data, "constant", scatter="fit")
+    assert found.parameters["restitution"] == pytest.approx(e.mean(), rel=1e-6)
+    assert found.scatter == pytest.approx(e.std(), rel=1e-5)
+    assert found.errors["restitution"] == pytest.approx(e.std() / math.sqrt(e.size), rel=1e-5)
+    assert found.scatter_error == pytest.approx(e.std() / math.sqrt(2 * e.size), rel=1e-5)
+    with pytest.raises(ValueError, match=r"^data: times without errors; .*, or give scatter='fit'"):
+        flight.fit(data, "constant")
+
+
+def test_what_a_fit_says() -> None:
+    data = Series("plastic", 12, 2e-5, None, 4, 0.0).data()
+    plastic, constant = flight.fit(data, "plastic"), flight.fit(data, "constant")
+    scattered = flight.fit(data, "constant", scatter="fit")
+    assert str(plastic).startswith("plastic: yield_speed = 0.05")
+    assert " m/s; χ²/n = " in str(plastic)
+    assert f"/{plastic.degrees_of_freedom}, p = {plastic.p_value:.2g}" in str(plastic)
+    assert "scatter" not in str(plastic)
+    assert " ± " in str(constant)
+    assert re.fullmatch(r"constant: restitution = [\d.]+ ± [\d.]+; χ².*", str(constant))  # without a unit
+    assert f"; χ²/n = {scattered.chi2:.1f}/{scattered.degrees_of_freedom}" in str(scattered)
+    assert f", scatter {scattered.scatter:.3f} ± " in str(scattered)
+    assert " ± " in str(scattered).split("scatter ")[1]
+    assert ", p = " not in str(scattered)
+    assert "<td>p</td>" in plastic._repr_html_() or ">p<" in plastic._repr_html_()
+    assert "scatter" not in plastic._repr_html_()
+    assert "scatter" in scattered._repr_html_()
+    for bad in (0.0, -1.0):
+        with pytest.raises(ValueError, match=r"speed = .*: must be speeds > 0, in m/s"):
+            plastic(bad)
+    with pytest.raises(ValueError, match=r"speed.*m s-1"):
+        plastic(xr.DataArray([1.0], attrs={"units": "mm s-1"}))
+    with pytest.raises(ValueError, match="speed = 'a': must be speeds > 0, in m/s"):
+        plastic.error("a")
+    slope = (rs.Plastic(yield_speed=0.0501)(1.0) - rs.Plastic(yield_speed=0.0499)(1.0)) / 2e-4
+    at = plastic.parameters["yield_speed"]
+    slope *= (at / 0.05) ** -0.75  # ε ∝ v_y^(1/4) nearly
+    assert plastic.error(1.0) == pytest.approx(abs(slope) * plastic.errors["yield_speed"], rel=0.02)
+
+
+def test_a_power_law_of_equal_speeds_starts_somewhere() -> None:
+    """All flights as long: the speeds are equal, ε is 1 in each and its exponent told by nothing."""
+    found = flight.fit(flight.restitution(np.arange(8.0), 1e-4), "power law")
+    assert found(4.905) == pytest.approx(1.0, rel=1e-6)
+
+
+def test_series_of_another_g_or_drag_are_refused() -> None:
+    one = Series("constant", 8, 2e-5, None, 1, 0.0)
+    drag = flight.Drag(terminal_velocity=8.0)
+    for other in (
+        flight.restitution(one.times, 2e-5, gravity=9.8, gravity_uncertainty=G_ERROR),
+        flight.restitution(one.times, 2e-5, gravity=G),
+        flight.restitution(one.times, 2e-5, gravity=G, gravity_uncertainty=G_ERROR, drag=drag),
+    ):
+        with pytest.raises(ValueError, match=r"^data: series with different g or drag; must have the same"):
+            flight.fit([one.data(), other])
+    changed = one.data()
+    changed["time"].attrs["units"] = "ms"
+    with pytest.raises(ValueError, match=r"^data"):
+        flight.fit(changed)
+
+
+def heard(**more: Any) -> xr.Dataset:
+    """Give times of three impacts as a microphone does."""
+    return xr.Dataset(
+        {"time": ("impact", [0.0, 1.0, 1.9]), "uncertainty": ("impact", [1e-4] * 3)}
+        | {name: ("impact", values) for name, values in more.items()}
+    )
+
+
+def units(data: xr.Dataset, name: str) -> xr.Dataset:
+    data[name].attrs["units"] = "ms"
+    return data
+
+
+WRONG: list[tuple[Any, Any, str]] = [
+    (heard(), 1e-4, r"^uncertainty = 0\.0001: must be left out: the Dataset has its own"),
+    (xr.Dataset(), None, r"^times: a Dataset without time and uncertainty; it has nothing"),
+    (
+        heard().drop_vars("uncertainty").assign(speed=1.0),
+        None,
+        r"^times: a Dataset without uncertainty; it has time, speed",
+    ),
+    (
+        xr.Dataset({"time": (("a", "b"), np.ones((2, 2))), "uncertainty": (("a", "b"), np.ones((2, 2)))}),
+        None,
+        r"^times: a Dataset whose time has dimensions \('a', 'b'\); must be one series of impacts",
+    ),
+    (
+        heard().assign(uncertainty=(("impact", "way"), np.ones((3, 2)))),
+        None,
+        r"^times\.uncertainty has dimensions \(impact, way\): must be those of time, \(impact\)",
+    ),
+    (heard(flag=[0.0, 4.0, 7.0]), None, r"^times\.flag = 4\.0: must be 0 to 3: good, doubtful, missed, doub"),
+    (heard(flag=["a", "b", "c"]), None, r"^times\.flag = .*: must be 0 to 3: good, doubtful"),
+    (heard().assign(time=("impact", ["a", "b", "c"])), None, r"^times\.time = .*: must be numbers, in s"),
+    (
+        heard().assign(uncertainty=("impact", ["a", "b", "c"])),
+        None,
+        r"^times\.uncertainty = .*: must be numbers, in s",
+    ),
+    (units(heard(), "time"), None, r"^times.*time.*ms"),
+    (units(heard(), "uncertainty"), None, r"^times.*uncertainty.*ms"),
+    (xr.DataArray([0.0, 1.0], attrs={"units": "ms"}), None, r"^times.*ms"),
+    ([0.0, 1.0], xr.DataArray([0.1, 0.1], attrs={"units": "ms"}), r"^uncertainty.*ms"),
+    ([0.0, 1.0], "a", r"^uncertainty = 'a': must be numbers, in s"),
+    ([[0.0, 1.0]], None, r"^times.*: must be a 1-D array of times in s"),
+    (
+        [0.0, 1.0, 2.0],
+        [0.1, -0.1, -0.2],
+        r"^uncertainty\[1\] = -0\.1: must be a number in \[0, 1e\+30\] \(s\)",
+    ),
+    ([0.0, 1.0], [0.1, math.nan], r"^uncertainty\[1\] = nan: must be a number in"),
+    ([0.0, 2e30], None, r"^times\[1\] = 2e\+30: must be at most 1e\+30 s either way"),
+]
+
+
+@pytest.mark.parametrize(("times", "uncertainty", "message"), WRONG)
+def test_wrong_times_are_named(times: Any, uncertainty: Any, message: str) -> None:
+    with pytest.raises(ValueError, match=message):
+        flight.restitution(times, uncertainty)
+
+
+def test_times_that_are_just_right() -> None:
+    """The largest numbers, flags that are not known, and errors of impacts that were missed."""
+    data = flight.restitution([-1e30, 1e30], [1e30, 0.0])
+    assert data["time"].to_numpy().tolist() == [-1e30, 1e30]
+    data = flight.restitution(heard(flag=[np.nan, 0.0, 1.0]))
+    assert float(data["restitution"][1]) == pytest.approx(0.9, rel=1e-12)
+    missed = flight.restitution([0.0, 1.0, math.nan, 2.5], [1e-4, 1e-4, math.nan, 1e-4])
+    assert np.isnan(missed["uncertainty"][2])
+    np.testing.assert_array_equal(flight.restitution([0.0, 1.0, 1.9])["uncertainty"], 0.0)
+    dropped = flight.restitution([0.0, 1.0], drop_height=1.0)
+    assert dropped.attrs["drop_height_uncertainty"] == 0.0
+    assert dropped["impact_velocity"].attrs["long_name"].startswith("normal velocity of the centre of mass")
+
+
+def test_covariances_are_known_where_both_numbers_are() -> None:
+    """NaN in every row and column of what the times do not tell, 0 nowhere."""
+    times = [0.0, 0.5, 0.96, math.nan, 1.8, 2.2, 2.5]
+    data = flight.restitution(times, 1e-4)
+    v, e = (np.isfinite(data[name].to_numpy()) for name in ("impact_velocity", "restitution"))
+    for name, rows, columns in (
+        ("impact_velocity_covariance", v, v),
+        ("restitution_covariance", e, e),
+        ("cross_covariance", v, e),
+    ):
+        found = data[name].to_numpy()
+        np.testing.assert_array_equal(np.isfinite(found), np.outer(rows, columns))
+    variance = data["restitution_covariance"].to_numpy()[1, 1]
+    ratio = (0.96 - 0.5) / 0.5
+    # Of Δt_1/Δt_0, with the time between them in both.
+    assert variance == pytest.approx(1e-8 * (1 + (1 + ratio) ** 2 + ratio**2) / 0.25, rel=1e-9)
