@@ -50,11 +50,19 @@ LAWS = ("laws/_law.py", "laws/_materials.py")
 FITS = tuple(
     f"fit/_{name}.py" for name in ("asymmetric", "bootstrap", "clusters", "counts", "families", "mixture")
 )
+FIT_TESTS = (
+    "test_fit.py",
+    "test_fit_clusters.py",
+    "test_fit_counts.py",
+    "test_fit_manners.py",
+    "test_fit_references.py",
+    "test_fit_slopes.py",
+)
 SLOPES = tuple(f"fit/_{name}.py" for name in ("dependence", "judgement", "result", "slopes", "source"))
 FLIGHT = tuple(
     f"flight/_{name}.py"
     for name in (
-        *("chain", "clock", "drag", "fit", "law_fit", "laws"),
+        *("chain", "drag", "fit", "law_fit", "laws"),
         *("problem", "restitution", "series", "times"),
     )
 )
@@ -97,11 +105,9 @@ TESTS = {
     **dict.fromkeys(FIRST_IMPACT, FIRST_IMPACT_TESTS),
     "analytic/_near_round.py": ("test_near_round.py",),
     **dict.fromkeys(LAWS, ("test_laws_materials.py",)),
-    **dict.fromkeys(
-        FITS, ("test_fit.py", "test_fit_clusters.py", "test_fit_counts.py", "test_fit_manners.py")
-    ),
-    **dict.fromkeys(SLOPES, ("test_fit_slopes.py", "test_fit.py", "test_fit_manners.py")),
-    **dict.fromkeys(FLIGHT, ("test_flight.py", "test_flight_fit.py")),
+    **dict.fromkeys(FITS + SLOPES, FIT_TESTS),
+    "flight/_clock.py": ("test_measuring_pages.py",),
+    **dict.fromkeys(FLIGHT, ("test_flight.py", "test_flight_fit.py", "test_flight_references.py")),
     **dict.fromkeys(INFERENCE, ("test_inference.py",)),
 }
 """What reads and writes files, handles signals, or works out numbers, and the tests that are about it."""
@@ -215,6 +221,8 @@ def main() -> int:
     shutil.copytree(ROOT / "python" / "restitution", WORK / "restitution", ignore=ignore)
     shutil.copytree(ROOT / "tests", WORK / "tests", ignore=ignore)
     shutil.copy(ROOT / "pyproject.toml", WORK)
+    for read in ("benchmarks", "docs"):
+        (WORK / read).symlink_to(ROOT / read)
     known: dict[str, str] = {}
     if asked.go_on and OUTCOMES.exists():
         known = dict(json.loads(line) for line in OUTCOMES.read_text(encoding="utf-8").splitlines())
