@@ -1,5 +1,8 @@
 """`analytic.near_round`: the exact engine's moments, without its search for contacts."""
 
+import math
+import statistics
+
 import numpy as np
 import pytest
 
@@ -101,3 +104,98 @@ def test_slow_bins_are_left_empty() -> None:
     assert np.flatnonzero(filled).tolist() == sorted(np.searchsorted(EDGES, speeds) - 1)
     assert found["mean_restitution"].values[filled] == pytest.approx(0.5, abs=1e-14)
     assert np.all(found["std_restitution"].values[filled] < 1e-14)
+
+
+def one_body(
+    theta: float, body: rs.Dumbbell, law: rs.TangentialRestitution | rs.Frictionless, height: float, g: float
+) -> list[tuple[float, float]]:
+    """Follow one body by the map of the docstring, each impact a solution of its linear equations.
+
+    Unknowns are the velocities after it and the impulse: momentum along and across, spin, and the law.
+    """
+    assert isinstance(law.normal, float)
+    radius, half, mass = body.radii[0], body.separation / 2, body.mass
+
+    def ends(angle: float) -> float:
+        return half * abs(math.cos(angle))
+
+    speed = math.sqrt(2 * g * (height - radius - ends(theta)))
+    along, spin, found = 0.0, 0.0, []
+    while True:
+        x = -half * math.sin(theta) * math.copysign(1.0, math.cos(theta))
+        z = -radius - ends(theta)
+        before = (along + z * spin, -speed - x * spin)
+        # (along', up', spin', P_x, P_z); the law gives the surface's velocity after the impact.
+        rows = [
+            ([mass, 0, 0, -1, 0], mass * along),
+            ([0, mass, 0, 0, -1], -mass * speed),
+            ([0, 0, body.transverse_inertia, -z, x], body.transverse_inertia * spin),
+            ([0, 1, -x, 0, 0], -law.normal * before[1]),
+            ([1, 0, z, 0, 0], law.tangential * before[0])
+            if isinstance(law, rs.TangentialRestitution)
+            else ([0, 0, 0, 1, 0], 0.0),
+        ]
+        along, up, spin, _, _ = np.linalg.solve([row for row, _ in rows], [value for _, value in rows])
+        found.append((speed, up / speed))
+        if up <= 0 or speed < 0.01:
+            return found
+        turned = theta + spin * 2 * up / g
+        speed = math.sqrt(max(up**2 - 2 * g * (ends(turned) - ends(theta)), 0.0))
+        theta += spin * (up + speed) / g
+        if speed == 0.0:
+            return found
+
+
+@pytest.mark.parametrize("gravity", [9.81, 1.62])
+@pytest.mark.parametrize(
+    "law", [rs.TangentialRestitution(normal=0.8, tangential=-0.4), rs.Frictionless(normal=0.6)]
+)
+def test_moments_are_those_of_bodies_followed_one_by_one(
+    law: rs.TangentialRestitution | rs.Frictionless, gravity: float
+) -> None:
+    """Angles are the middles of equal parts of [0, π); slow impacts and those of no bin do not count.
+
+    The steps of the angle amplify rounding in later impacts: 1e-9 is far below the width of a bin.
+    """
+    body = rs.Dumbbell(radius=3e-3, separation=5e-4)
+    edges = np.linspace(0.05, 0.95, 10)
+    slowest = 0.6 * math.sqrt(gravity * 3e-3)
+    every = [one_body((k + 0.5) * math.pi / 37, body, law, 0.05, gravity) for k in range(37)]
+    found = near_round(body, law, velocity_bins=edges, release_height=0.05, gravity=gravity, angles=37)
+    np.testing.assert_allclose(found["velocity"], 0.5 * (edges[1:] + edges[:-1]), rtol=1e-15)
+    assert found["velocity"].attrs == {"units": "m s-1", "long_name": "impact velocity"}
+    assert found["number"].dtype == np.int64
+    told = 0
+    for i in range(9):
+        here = [e for body_ in every for v, e in body_ if max(edges[i], slowest) <= v < edges[i + 1]]
+        one = found.isel(velocity=i)
+        assert int(one.number) == len(here)
+        if not here or edges[i] < slowest:
+            for name in ("mean_restitution", "std_restitution", "second_moment"):
+                assert np.isnan(one[name])
+            continue
+        told += 1
+        assert float(one.mean_restitution) == pytest.approx(statistics.fmean(here), rel=1e-9)
+        assert float(one.std_restitution) == pytest.approx(statistics.pstdev(here), rel=1e-7, abs=1e-12)
+        assert float(one.second_moment) == pytest.approx(statistics.fmean(e * e for e in here), rel=1e-9)
+    assert told >= 2
+
+
+def test_numbers_at_the_ends_of_what_is_allowed() -> None:
+    """One angle; the most angles; g and heights whose products are too large or too small for a double."""
+    body, law = rs.Dumbbell(radius=3e-3, separation=3e-4), rs.Frictionless(normal=0.5)
+    alone = near_round(body, law, velocity_bins=[0.9, 1.2], angles=1)
+    assert alone["number"].values.tolist() == [1]
+    # θ = π/2: the lower end is L/2 aside.
+    lying = 1.5 / (1 + body.mass * 1.5e-4**2 / body.transverse_inertia) - 1
+    assert alone["mean_restitution"].values[0] == pytest.approx(lying, rel=1e-12)
+    with pytest.raises(ValueError, match=r"gravity = 1e\+308: must be such that speeds neither overflow"):
+        near_round(body, law, velocity_bins=EDGES, gravity=1e308, release_height=1e3)
+    with pytest.raises(ValueError, match="angles = 10000001: must be a whole number"):
+        near_round(body, law, velocity_bins=EDGES, angles=10**7 + 1)
+    with pytest.raises(ValueError, match=r"release_height = .*: must be a number, the same for all"):
+        near_round(body, law, velocity_bins=EDGES, release_height=rs.RandomHeight(0.05, 0.06))  # type: ignore[arg-type]
+    with pytest.raises(ValueError, match=r"body = 3: must be a Dumbbell with equal spheres"):
+        near_round(3, law, velocity_bins=EDGES)  # type: ignore[arg-type]
+    with pytest.raises(ValueError, match=r"law = 3: must be TangentialRestitution or Frictionless"):
+        near_round(body, 3, velocity_bins=EDGES)  # type: ignore[arg-type]
