@@ -11,6 +11,7 @@ import xarray as xr
 from scipy.optimize import least_squares
 
 import restitution as rs
+from reference.bouncing import flight_in_air
 from restitution import flight
 
 SOFT: dict[str, Any] = {"young_modulus": 1e8, "poisson_ratio": 0.4, "density": 1200.0, "radius": 5e-3}
@@ -335,3 +336,27 @@ def test_covariances_are_known_where_both_numbers_are() -> None:
     ratio = (0.96 - 0.5) / 0.5
     # Of Δt_1/Δt_0, with the time between them in both.
     assert variance == pytest.approx(1e-8 * (1 + (1 + ratio) ** 2 + ratio**2) / 0.25, rel=1e-9)
+
+
+def test_errors_of_drag_and_drop_are_those_of_the_coefficients() -> None:
+    """The best mean of coefficients with the covariance C of the Dataset has the variance 1/ΣC⁻¹.
+
+    An error of the height of a drop is each series' own: two series have half the variance.
+    """
+    times = [0.0]
+    drag = flight.Drag(terminal_velocity=8.0, uncertainty=0.4)
+    speed = 8.0 * math.sqrt(-math.expm1(-2 * 9.81 * 0.3 / 8.0**2))  # of the fall
+    for _ in range(9):
+        duration, speed = flight_in_air(0.9 * speed, 8.0)
+        times.append(times[-1] + duration)
+    for given, drop_error in ((drag, 2e-3), (drag, 0.0), (flight.Drag(terminal_velocity=8.0), 2e-3)):
+        data = flight.restitution(
+            times, 2e-5, drag=given, drop_height=0.3, drop_height_uncertainty=drop_error
+        )
+        covariance = data["restitution_covariance"].to_numpy()[:-1, :-1]
+        found = flight.fit(data, "constant")
+        assert found.parameters["restitution"] == pytest.approx(0.9, abs=1e-9)
+        variance = 1 / np.linalg.inv(covariance).sum()
+        assert found.errors["restitution"] == pytest.approx(math.sqrt(variance), rel=1e-6)
+    both = flight.fit([data, data], "constant")
+    assert both.errors["restitution"] == pytest.approx(math.sqrt(variance / 2), rel=1e-6)
