@@ -15,6 +15,8 @@ from scipy import optimize, stats
 import restitution as rs
 from restitution import fit
 from restitution.fit import Slopes
+from restitution.fit._asymmetric import frozen
+from restitution.fit._mixture import Mixture
 
 Counts: Any = fit.Counts  # lists are taken, though its fields are arrays
 EDGES = [0.2, 0.3, 0.5, 0.9, 1.2]
@@ -595,3 +597,50 @@ def test_the_words_of_clusters() -> None:
 
 def test_the_doors_of_the_package_lead_to_the_fits() -> None:
     assert rs.fit is fit
+
+
+def test_a_mixture_is_the_sum_of_its_parts() -> None:
+    """Densities weighted by their shares, also where they underflow; draws of a generator."""
+    first, second, share = frozen(1.0, 0.95, 0.01, 0.01), stats.norm(0.8, 0.1), 0.3
+    made = Mixture(share, first, second)
+    x = np.array([[0.2, 0.7, 0.94], [0.95, 0.96, 1.4]])
+    density = share * first.pdf(x) + (1 - share) * second.pdf(x)
+    np.testing.assert_allclose(made.pdf(x), density, rtol=1e-14)
+    np.testing.assert_allclose(made.logpdf(x), np.log(density), rtol=1e-13)
+    assert made.logpdf(0.9) == pytest.approx(log(float(made.pdf(0.9))), rel=1e-13)
+    assert made.logpdf(100.0) == pytest.approx(log(share / 0.02) - 99.05 / 0.01, rel=1e-12)
+    assert Mixture(0.0, first, second).logpdf(0.9) == pytest.approx(second.logpdf(0.9), rel=1e-14)
+    levels = np.array([[0.01, 0.2], [0.7, 0.999]])
+    np.testing.assert_allclose(made.cdf(made.ppf(levels)), levels, rtol=1e-12)
+    drawn = [made.rvs(20_000, np.random.default_rng(seed)) for seed in (1, 1, 2)]
+    np.testing.assert_array_equal(drawn[0], drawn[1])
+    for one in drawn[1:]:
+        assert distance(one, made) < 0.016  # exceeded once in 10 000 times
+
+
+def test_a_cusp_fit_is_a_maximum_of_its_likelihood() -> None:
+    """No step of one parameter gains; it says how likely the samples are under its density."""
+    rng = np.random.default_rng(12)
+    x = np.concatenate([rng.laplace(0.95, 0.01, 300), rng.normal(0.85, 0.08, 500)])
+    found = fit.cusp_mixture(x, 0.95)
+    assert found.loglikelihood == pytest.approx(float(np.sum(np.log(found.pdf(x)))), rel=1e-12)
+    given = dict(found.parameters)
+
+    def likelihood(p: dict[str, float]) -> float:
+        wide = np.where(x >= p["location"], p["above"], p["below"])
+        cusp = np.exp(-np.abs(x - p["location"]) / wide) / (p["above"] + p["below"])
+        gauss = stats.norm.pdf(x, p["mean"], p["deviation"])
+        return float(np.sum(np.log(p["share"] * cusp + (1 - p["share"]) * gauss)))
+
+    assert found.loglikelihood == pytest.approx(likelihood(given), rel=1e-12)
+    for name in given.keys() - {"location"}:
+        for step in (0.99, 1.01):
+            assert likelihood(given | {name: step * given[name]}) < found.loglikelihood + 1e-4
+    assert given["location"] == 0.95
+    for bad in (np.nan, inf):
+        with pytest.raises(ValueError, match=r"location = .*: must be a finite number"):
+            fit.cusp_mixture(x, bad)
+    equal = fit.cusp_mixture(np.full(8, 0.9), 1.0)  # their own spread is 0: that from the cusp is taken
+    assert np.isfinite(equal.loglikelihood)
+    assert equal.parameters["deviation"] >= 1e-3 * 0.1 * (1 - 1e-9)
+    assert equal.parameters["deviation"] < 0.01
