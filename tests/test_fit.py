@@ -194,6 +194,8 @@ def test_quantiles_of_the_power_density_invert_its_distribution_function(exponen
     for q in (0.01, 0.2, 0.25, 0.5, 0.9, 0.99):  # b/(a + b) = 1/4 of it lies below m
         side = integrate.quad(density, m, float(found.ppf(q)))[0]
         assert 0.25 + side == pytest.approx(q, abs=1e-9)
+        assert float(found.cdf(found.ppf(q))) == pytest.approx(q, rel=1e-12)
+        assert float(found.sf(found.ppf(q))) == pytest.approx(1 - q, rel=1e-12)
     sigma = 0.02
     gaussian = frozen(2.0, m, np.sqrt(2) * sigma, np.sqrt(2) * sigma)
     shares = np.array([1e-6, 0.3, 0.5, 0.999])

@@ -640,7 +640,42 @@ def test_a_cusp_fit_is_a_maximum_of_its_likelihood() -> None:
     for bad in (np.nan, inf):
         with pytest.raises(ValueError, match=r"location = .*: must be a finite number"):
             fit.cusp_mixture(x, bad)
+    for family in (fit.asymmetric_laplace, fit.cusp_mixture):
+        with pytest.raises(ValueError, match=r"location = 1e\+200: must be a finite number, at most 1e100"):
+            family(x, location=1e200)
     equal = fit.cusp_mixture(np.full(8, 0.9), 1.0)  # their own spread is 0: that from the cusp is taken
     assert np.isfinite(equal.loglikelihood)
     assert equal.parameters["deviation"] >= 1e-3 * 0.1 * (1 - 1e-9)
     assert equal.parameters["deviation"] < 0.01
+
+
+def test_goodness_with_clusters_redraws_particles() -> None:
+    """F_n and F at all samples, which are fewer than the grid; redrawn differences less the observed one."""
+    rng = np.random.default_rng(13)
+    x, labels = rng.normal(0.9, 0.1, 40), np.repeat(np.arange(8), 5)
+    found = fit.goodness(fit.gaussian, x, clusters=labels, resamples=30, seed=6)
+    grid = np.sort(x)
+
+    def difference(samples: np.ndarray) -> list[float]:
+        one = stats.norm(np.mean(samples), np.std(samples))
+        return [float(np.mean(samples <= at) - one.cdf(at)) for at in grid]
+
+    observed = difference(x)
+    inside = stats.norm(np.mean(x), np.std(x)).cdf(grid)
+    steps = np.diff(np.concatenate([[0.0], inside]))
+
+    def both(differences: list[float]) -> tuple[float, float]:
+        squares = [d * d / (f * (1 - f)) * w for d, f, w in zip(differences, inside, steps, strict=True)]
+        return max(map(abs, differences)), 40 * sum(squares)
+
+    ks, ad = both(observed)
+    assert found.kolmogorov_smirnov == pytest.approx(ks, rel=1e-10)
+    assert found.anderson_darling == pytest.approx(ad, rel=1e-10)
+    draws, reached = np.random.default_rng(6), [1, 1]
+    for _ in range(30):
+        chosen = draws.integers(8, size=8)
+        again = difference(np.concatenate([x[5 * k : 5 * k + 5] for k in chosen]))
+        values = both([a - b for a, b in zip(again, observed, strict=True)])
+        reached = [n + (value >= top) for n, value, top in zip(reached, values, (ks, ad), strict=True)]
+    assert found.kolmogorov_smirnov_p == pytest.approx(reached[0] / 31, rel=1e-12)
+    assert found.anderson_darling_p == pytest.approx(reached[1] / 31, rel=1e-12)
