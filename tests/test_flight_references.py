@@ -360,3 +360,27 @@ def test_errors_of_drag_and_drop_are_those_of_the_coefficients() -> None:
         assert found.errors["restitution"] == pytest.approx(math.sqrt(variance), rel=1e-6)
     both = flight.fit([data, data], "constant")
     assert both.errors["restitution"] == pytest.approx(math.sqrt(variance / 2), rel=1e-6)
+
+
+def test_a_sphere_whose_drag_is_not_given() -> None:
+    """C_d of 0.45 ± 0.05, between the 0.4 and 0.5 of smooth spheres."""
+    usual = flight.Drag.of_sphere(diameter=0.04, mass=2.7e-3)
+    area = math.pi * 0.02**2
+    assert 0.5 * 1.2 * 0.45 * area * usual.terminal_velocity**2 == pytest.approx(2.7e-3 * 9.81, rel=1e-12)
+    assert usual.uncertainty == pytest.approx(0.5 * 0.05 / 0.45 * usual.terminal_velocity, rel=1e-12)
+
+
+def test_columns_of_a_dataset_that_is_fitted_are_named() -> None:
+    good = Series("constant", 8, 2e-5, None, 1, 0.0).data()
+    for name in ("time", "uncertainty"):
+        words = good.copy()
+        words[name] = ("impact", ["a"] * 8)
+        with pytest.raises(ValueError, match=rf"^data\.{name} = .*: must be numbers, in s"):
+            flight.fit(words)
+        square = good.copy()
+        square[name] = (("impact", "way"), np.ones((8, 2)))
+        with pytest.raises(ValueError, match=rf"^data\.{name}.*: must be numbers, in s"):
+            flight.fit(square)
+    gap = Series("constant", 8, 2e-5, None, 1, 0.0)
+    gap.times[3] = math.nan
+    assert flight.fit(gap.data()).impacts == 3
