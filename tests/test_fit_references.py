@@ -63,8 +63,12 @@ def test_dependence_is_that_of_pairs_counted_one_by_one() -> None:
     """The ranks, the pairs and the errors over particles, in every bin and at its edges."""
     data = impacts()
     v, e, c = (data[name].to_numpy().tolist() for name in ("impact_velocity", "restitution", "contact"))
-    # One particle alone in the bin that would be empty: it has a mean and no error.
+    # In the fastest bin one particle is alone, and its mean has no error; in the next there are two.
+    for one in v:
+        one[:] = [0.3 * x if x >= EDGES[2] else x for x in one]
     v[0][:3], e[0][:3] = [1.0, 1.1, 1.0], [0.9, 0.91, 0.92]
+    for p in (2, 7):
+        v[p][4:9], e[p][4:9] = [0.6, 0.7, 0.8, 0.5, 0.85], [0.8 + 0.01 * (n * p % 5) for n in range(5)]
     v[1][0], c[1][0], c[1][1] = 0.1, 1, 2  # slower than all bins, though with both contacts
     data["impact_velocity"][:], data["restitution"][:], data["contact"][:] = v, e, c
     found = fit.dependence(data, EDGES)
@@ -83,7 +87,10 @@ def test_dependence_is_that_of_pairs_counted_one_by_one() -> None:
 
     def u(p: int, n: int) -> float | None:
         i = bin_of(p, n)
-        return None if i is None else (members[i].index(e[p][n]) + 0.5) / len(members[i])
+        if i is None:
+            return None
+        equal = members[i].count(e[p][n])  # which share the mean of their ranks
+        return (members[i].index(e[p][n]) + 0.5 * equal) / len(members[i])
 
     for i in range(4):
         for lag in range(1, 6):
@@ -119,6 +126,15 @@ def test_dependence_is_that_of_pairs_counted_one_by_one() -> None:
         if crossing > 0:
             assert float(one.run) == pytest.approx(1 / crossing, rel=1e-12)
             assert float(one.run_error) == pytest.approx(error / crossing**2, rel=1e-12, nan_ok=True)
+
+
+def test_equal_coefficients_do_not_depend_on_each_other() -> None:
+    """As those of a sphere: whatever their order, ranks do not say that one follows from another."""
+    data = impacts()
+    data["restitution"][:] = 0.9
+    found = fit.dependence(data, EDGES)
+    np.testing.assert_array_equal(found["autocorrelation"][:3], 0.0)
+    np.testing.assert_array_equal(found["crossing"][:3], 0.0)
 
 
 def known_slopes() -> Slopes:
@@ -440,6 +456,14 @@ def test_goodness_with_clusters_asks_the_same_of_all_its_doors() -> None:
     as_list = fit.goodness(fit.gaussian, e[inside].tolist(), resamples=5, seed=2)
     as_array = fit.goodness(fit.gaussian, e[inside], resamples=5, seed=2)
     assert as_list == as_array
+    few = e[inside][:20]
+    assert fit.goodness(fit.gaussian, few) == fit.goodness(fit.gaussian, few, resamples=199, seed=1)
+    edges = np.linspace(0.5, 1.3, 17)
+    runs = [Counts(edges, np.histogram(part, edges)[0]) for part in (e[:4], e[4:])]
+    tallied = fit.goodness(fit.gaussian, runs, resamples=5, seed=2)
+    counted = fit.gaussian(Counts(edges, runs[0].count + runs[1].count))
+    share = np.concatenate([[0], np.cumsum(runs[0].count + runs[1].count)]) / counted.samples
+    assert tallied.kolmogorov_smirnov == pytest.approx(np.max(np.abs(share - counted.cdf(edges))), rel=1e-9)
     for call in (
         lambda: fit.goodness(fit.gaussian, e[inside], velocity=(0.3, 0.6)),
         lambda: fit.compare(first, second, e[inside], velocity=(0.3, 0.6)),

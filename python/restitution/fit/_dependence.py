@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike, NDArray
+from scipy import stats
 
 from restitution._arrays import whole
 from restitution._bins import centres, increasing_edges
@@ -94,12 +95,12 @@ def dependence(data: xr.Dataset, velocity_bins: ArrayLike, *, lags: int = 5) -> 
 
 
 def _ranks(values: Array, row: NDArray[np.int64], rows: int) -> Array:
-    """Rank of each value in its row, in (0, 1); NaN outside the rows."""
+    """Rank of each value in its row, in (0, 1), the mean of theirs where values are equal; NaN outside."""
     u = np.full(values.shape, np.nan)
     for i in range(rows):
         here = row == i
-        x = values[here]
-        u[here] = (np.argsort(np.argsort(x)) + 0.5) / max(x.size, 1)
+        if here.any():
+            u[here] = (stats.rankdata(values[here]) - 0.5) / np.count_nonzero(here)
     return u
 
 
