@@ -349,6 +349,8 @@ def test_slopes_of_counts_need_more_bins_than_parameters() -> None:
     assert samples(table([0, 8, 20, 5, 0, 0], 0, 0), None) == 0  # three filled bins, three parameters
     assert samples(table([0, 8, 20, 5, 0, 0], 0, 0), 0.82) == 33
     assert samples(table([0, 28, 20, 0, 0, 0], 0, 0), 0.82) == 0
+    for below, above in ((1, 0), (0, 1)):  # an open bin counts, with one sample
+        assert samples(table([0, 20, 10, 0, 0, 0], below, above), 0.82) == 31
     assert samples(table([0, 8, 20, 1, 0, 0], 0, 0), 0.82) == 0  # 29
     counts = Counts.at(four, 0.2)
     one = fit.asymmetric_laplace(counts)
