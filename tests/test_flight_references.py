@@ -384,3 +384,48 @@ def test_columns_of_a_dataset_that_is_fitted_are_named() -> None:
     gap = Series("constant", 8, 2e-5, None, 1, 0.0)
     gap.times[3] = math.nan
     assert flight.fit(gap.data()).impacts == 3
+
+
+def test_variables_say_what_they_are() -> None:
+    """Dimensions, units and symbols; and all numbers that were given, so that a fit needs the Dataset alone."""
+    data = flight.restitution(
+        [0.0, 0.5, 0.96],
+        1e-4,
+        gravity=9.8,
+        gravity_uncertainty=0.01,
+        drop_height=0.3,
+        drop_height_uncertainty=1e-3,
+        drag=flight.Drag(terminal_velocity=8.0, uncertainty=0.4),
+    )
+    about = {name: (one.dims, one.attrs.get("units"), one.attrs.get("symbol")) for name, one in data.items()}
+    one, two = ("impact",), ("impact", "other_impact")
+    assert about == {
+        "time": (one, "s", None),
+        "uncertainty": (one, "s", None),
+        "impact_velocity": (one, "m s-1", "v"),
+        "impact_velocity_error": (one, "m s-1", None),
+        "restitution": (one, "1", "ε"),
+        "restitution_error": (one, "1", None),
+        "impact_velocity_covariance": (two, "m2 s-2", None),
+        "restitution_covariance": (two, "1", None),
+        "cross_covariance": (two, "m s-1", None),
+    }
+    assert {name: data[name].attrs["long_name"] for name in data if "long_name" in data[name].attrs} == {
+        "time": "time of the impact",
+        "uncertainty": "standard error of the time",
+        "impact_velocity": "normal velocity of the centre of mass towards the plane, before the impact",
+        "impact_velocity_error": "standard error of the impact velocity",
+        "restitution": "coefficient of restitution",
+        "restitution_error": "standard error of the coefficient of restitution",
+        "cross_covariance": "covariance of the velocity at impact and the coefficient at other_impact",
+    }
+    assert data.attrs.pop("source").startswith("restitution ")
+    assert data.attrs == {
+        "title": "Impact velocities and coefficients of restitution from times of impacts",
+        "gravity": 9.8,
+        "gravity_uncertainty": 0.01,
+        "drop_height": 0.3,
+        "drop_height_uncertainty": 1e-3,
+        "terminal_velocity": 8.0,
+        "terminal_velocity_uncertainty": 0.4,
+    }
