@@ -387,7 +387,7 @@ def test_columns_of_a_dataset_that_is_fitted_are_named() -> None:
 
 
 def test_variables_say_what_they_are() -> None:
-    """Dimensions, units and symbols; and all numbers that were given, so that a fit needs the Dataset alone."""
+    """Dimensions, units, symbols, and all numbers that were given: a fit needs the Dataset alone."""
     data = flight.restitution(
         [0.0, 0.5, 0.96],
         1e-4,
