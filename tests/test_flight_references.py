@@ -429,3 +429,49 @@ def test_variables_say_what_they_are() -> None:
         "terminal_velocity": 8.0,
         "terminal_velocity_uncertainty": 0.4,
     }
+
+
+def test_laws_are_compared_by_their_criterion() -> None:
+    """Each line holds a law, its numbers, and how far its criterion is above the best one."""
+    data = Series("power law", 12, 2e-5, None, 4, 0.0).data()
+    constant, power, scattered = (
+        flight.fit(data, "constant"),
+        flight.fit(data, "power law"),
+        flight.fit(data, "constant", scatter="fit"),
+    )
+    a, b = power.parameters.values()
+    e, f = power.errors.values()
+    lines = flight.compare(constant, power, scattered).splitlines()
+    assert lines[:2] == ["| law | parameters | χ² | n | p | ΔAIC |", "|---|---|---|---|---|---|"]
+    cells = [[cell.strip() for cell in line.strip("|").split("|")] for line in lines[2:]]
+    ordered = sorted([constant, power, scattered], key=lambda one: one.aic)
+    assert [row[0] for row in cells] == [one.law for one in ordered]
+    for row, one in zip(cells, ordered, strict=True):
+        assert row[2:4] == [f"{one.chi2:.1f}", str(one.degrees_of_freedom)]
+        assert row[4] == ("" if one is scattered else f"{one.p_value:.2g}")
+        assert row[5] == f"{one.aic - ordered[0].aic:.1f}"
+        assert ";" not in row[1]
+        assert row[1].startswith(next(iter(one.parameters)) + " = ")
+    words = next(row[1] for row in cells if row[0] == "power law").split(", ")
+    assert [float(word.split(" = ")[1].split(" ± ")[0]) for word in words] == pytest.approx(
+        [a, b], abs=2 * max(e, f)
+    )
+    for bad, message in (
+        ((), "fits: of none coefficients; must be fits of the same data"),
+        ((constant, 3), "fits = 3: must be fits that flight.fit returned"),
+        (
+            (constant, flight.fit(Series("constant", 8, 2e-5, None, 1, 0.0).data())),
+            "fits: of 10, 6 coefficients; must be fits of the same data",
+        ),
+    ):
+        with pytest.raises(ValueError, match=re.escape(message)):
+            flight.compare(*bad)
+
+
+def test_a_fit_that_does_not_exist_is_refused() -> None:
+    """Errors as large as the intervals: the chain of flights cannot be straightened out."""
+    with pytest.raises(ValueError, match=r'^scatter = \'other\': must be "fit" or a number in \[0, 1e30\]'):
+        flight.fit(Series("constant", 8, 2e-5, None, 1, 0.0).data(), scatter="other")  # type: ignore[arg-type]
+    data = Series("constant", 8, 2e-5, None, 1, 0.0).data().drop_vars("uncertainty")
+    with pytest.raises(ValueError, match=r"^data = .*: must be a Dataset of flight\.restitution, or several"):
+        flight.fit(data)
