@@ -17,6 +17,7 @@ from restitution import fit
 from restitution.fit import Slopes
 from restitution.fit._asymmetric import frozen
 from restitution.fit._mixture import Mixture
+from restitution.fit._slopes import _again, _deviation
 
 Counts: Any = fit.Counts  # lists are taken, though its fields are arrays
 EDGES = [0.2, 0.3, 0.5, 0.9, 1.2]
@@ -145,6 +146,7 @@ def known_slopes() -> Slopes:
     rng = np.random.default_rng(3)
     drawn = above * np.exp(0.05 * rng.normal(size=(7, 5)))
     drawn[4, 0] = np.nan  # a draw that could not be fitted
+    drawn[5, 1] = 0.0  # and one with all samples on one side of the cusp
     table = xr.Dataset(
         {
             "above": ("velocity", above),
@@ -192,7 +194,7 @@ def test_power_law_is_the_weighted_line(release: float | None) -> None:
     misfit = sqrt(sum((r * w) ** 2 for r, w in zip(off, weights, strict=True)) / 2)
     assert found.misfit == pytest.approx(misfit, rel=1e-9)
     again = [line(one, weights) for one in given.resampled["above"].to_numpy() if np.all(one[used] > 0)]
-    assert len(again) == 6
+    assert len(again) == 5
     assert found.exponent_error == pytest.approx(stdev(one[0] for one in again), rel=1e-9)
     assert found.amplitude_error == pytest.approx(exp(intercept) * stdev(one[1] for one in again), rel=1e-9)
     assert found.without_errors == ""
@@ -206,6 +208,9 @@ def test_power_law_is_the_weighted_line(release: float | None) -> None:
 
 def test_power_law_needs_three_bins_and_two_draws() -> None:
     given = known_slopes()
+    without = given.power_law("above")
+    given.table["above"][3] = 0.0  # a flank without a width has no logarithm, as one that is not known
+    assert given.power_law("above") == without
     assert given.power_law("above", 0.2, 0.4).exponent == pytest.approx(-1.0, abs=0.2)
     for low, high in ((0.2, 0.39), (0.21, 0.6)):
         with pytest.raises(ValueError, match="fewer than three bins have a fit there"):
@@ -290,6 +295,22 @@ def test_slopes_fit_what_is_in_each_bin() -> None:
                     draws.append(fit.asymmetric_laplace(again, location).parameters[name])
                 np.testing.assert_allclose(found.resampled[name].isel(velocity=i), draws, rtol=1e-9)
                 assert float(one[f"{name}_error"]) == pytest.approx(stdev(draws), rel=1e-7, abs=1e-15)
+
+
+def test_draws_that_cannot_be_fitted_are_left_out() -> None:
+    """None of the bin's particles, or equal samples alone; the deviation is that of the others, if two."""
+    x = np.array([0.8, 0.9, 1.0])
+    for times in ([0, 0, 0], [0, 2, 0], [0, 1, 0]):
+        assert np.isnan(_again(x, np.array(times), 0.9)).all()
+    for times in ([2, 0, 1], [1, 0, 2], [0, 2, 1], [1, 2, 0]):
+        assert np.isfinite(_again(x, np.array(times), 0.9)).all()
+    known = np.array([[0.9, 0.1, 0.2], [0.92, 0.12, 0.25]])
+    nothing = np.full((1, 3), np.nan)
+    np.testing.assert_allclose(
+        _deviation(np.concatenate([known, nothing])), np.array([0.02, 0.02, 0.05]) / sqrt(2), rtol=1e-12
+    )
+    for few in (known[:1], nothing):
+        assert np.isnan(_deviation(few)).tolist() == [True] * 3
 
 
 def test_the_least_that_is_fitted() -> None:
