@@ -108,7 +108,7 @@ TESTS = {
     **dict.fromkeys(FITS + SLOPES, FIT_TESTS),
     "flight/_clock.py": ("test_measuring_pages.py",),
     **dict.fromkeys(FLIGHT, ("test_flight.py", "test_flight_fit.py", "test_flight_references.py")),
-    **dict.fromkeys(INFERENCE, ("test_inference.py",)),
+    **dict.fromkeys(INFERENCE, ("test_inference.py", "test_inference_references.py")),
 }
 """What reads and writes files, handles signals, or works out numbers, and the tests that are about it."""
 
