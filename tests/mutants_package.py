@@ -62,7 +62,7 @@ SLOPES = tuple(f"fit/_{name}.py" for name in ("dependence", "judgement", "result
 FLIGHT = tuple(
     f"flight/_{name}.py"
     for name in (
-        *("chain", "drag", "fit", "law_fit", "laws"),
+        *("chain", "clock", "drag", "fit", "law_fit", "laws"),
         *("problem", "restitution", "series", "times"),
     )
 )
@@ -106,7 +106,6 @@ TESTS = {
     "analytic/_near_round.py": ("test_near_round.py",),
     **dict.fromkeys(LAWS, ("test_laws_materials.py",)),
     **dict.fromkeys(FITS + SLOPES, FIT_TESTS),
-    "flight/_clock.py": ("test_measuring_pages.py",),
     **dict.fromkeys(FLIGHT, ("test_flight.py", "test_flight_fit.py", "test_flight_references.py")),
     **dict.fromkeys(INFERENCE, ("test_inference.py", "test_inference_references.py")),
 }

@@ -475,3 +475,59 @@ def test_a_fit_that_does_not_exist_is_refused() -> None:
     data = Series("constant", 8, 2e-5, None, 1, 0.0).data().drop_vars("uncertainty")
     with pytest.raises(ValueError, match=r"^data = .*: must be a Dataset of flight\.restitution, or several"):
         flight.fit(data)
+
+
+@pytest.mark.parametrize("incline", [None, 0.3])
+def test_the_clock_of_a_run_flight_by_flight(incline: float | None) -> None:
+    """g Δt/2 with the normal part of g, and ratios of neighbours; none after a flight of no time."""
+    times = np.array([[0.1, 0.5, 0.86, 0.86, 1.3], [0.2, 0.7, 1.1, np.nan, np.nan]])
+    dims = ("particle", "impact")
+    run = xr.Dataset(
+        {
+            "time": (dims, times, {"units": "s"}),
+            "rebound_velocity": (dims, np.ones((2, 5)), {"units": "m s-1"}),
+        },
+        attrs={"gravity": 9.8} | ({} if incline is None else {"incline": incline}),
+    )
+    found = flight.clock(run)
+    g = 9.8 * math.cos(incline or 0.0)
+    for p in range(2):
+        for n in range(5):
+            before = times[p, n] - times[p, n - 1] if n else math.nan
+            after = times[p, n + 1] - times[p, n] if n < 4 else math.nan
+            one = found.isel(particle=p, impact=n)
+            assert float(one.clock_velocity) == pytest.approx(0.5 * g * before, rel=1e-12, nan_ok=True)
+            ratio = after / before if before > 0 else math.nan
+            assert float(one.clock_restitution) == pytest.approx(ratio, rel=1e-12, nan_ok=True)
+    about = {name: found[name].attrs for name in ("clock_velocity", "clock_restitution")}
+    assert about == {
+        "clock_velocity": {
+            "long_name": "impact velocity from the time of flight",
+            "units": "m s-1",
+            "symbol": "g Δt/2",
+        },
+        "clock_restitution": {
+            "long_name": "coefficient of restitution from the times of flight",
+            "units": "1",
+        },
+    }
+    assert found.drop_vars(["clock_velocity", "clock_restitution"]).identical(run)
+
+
+def test_a_clock_names_what_is_no_run() -> None:
+    run = rs.simulate(
+        rs.Dumbbell(radius=3e-3, separation=3e-4), rs.Frictionless(normal=0.9), particles=2, impacts=4
+    )
+    nothing: Any = 3
+    with pytest.raises(ValueError, match=r"^data = 3: must be a Dataset that simulate returned"):
+        flight.clock(nothing)
+    without = run.copy()
+    del without.attrs["gravity"]
+    for wrong in (without, run.drop_vars("time"), run.drop_vars("rebound_velocity"), run.rename(impact="n")):
+        with pytest.raises(ValueError, match=r"^data: not a run; must be a Dataset that simulate returned"):
+            flight.clock(wrong)
+    other = run.copy()
+    other["time"] = run["time"].copy()
+    other["time"].attrs["units"] = "ms"
+    with pytest.raises(ValueError, match=r"^data.*time.*ms"):
+        flight.clock(other)
