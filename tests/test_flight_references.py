@@ -13,6 +13,7 @@ from scipy.optimize import least_squares
 import restitution as rs
 from reference.bouncing import flight_in_air
 from restitution import flight
+from restitution.flight._laws import by_parameters, by_speed, law_named
 
 SOFT: dict[str, Any] = {"young_modulus": 1e8, "poisson_ratio": 0.4, "density": 1200.0, "radius": 5e-3}
 BETA = rs.Viscoelastic(dissipation=5e-6, **SOFT).beta
@@ -531,3 +532,12 @@ def test_a_clock_names_what_is_no_run() -> None:
     other["time"].attrs["units"] = "ms"
     with pytest.raises(ValueError, match=r"^data.*time.*ms"):
         flight.clock(other)
+
+
+def test_slopes_of_a_law_at_all_speeds() -> None:
+    """dε/dv = -qε/v of a power law, from crawling to fast, and its derivatives by ε_1 and q."""
+    form, v, values = law_named("power law"), np.array([1e-4, 1e-2, 1.0, 30.0]), np.array([0.9, 0.04])
+    e = 0.9 * v**-0.04
+    np.testing.assert_allclose(by_speed(form, v, values), -0.04 * e / v, rtol=1e-8)
+    expected = np.stack([e / 0.9, -np.log(v) * e], axis=-1)
+    np.testing.assert_allclose(by_parameters(form, v, values), expected, rtol=1e-7, atol=1e-9)
