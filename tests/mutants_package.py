@@ -43,6 +43,7 @@ FIRST_IMPACT_TESTS = (
     "test_analytic_manners.py",
     "test_first_impact_derived.py",
     "test_first_impact_manners.py",
+    "test_first_impact_materials.py",
     "test_first_impact_panels.py",
     "test_first_impact_simulated.py",
 )
@@ -54,6 +55,8 @@ FIT_TESTS = (
     "test_fit.py",
     "test_fit_clusters.py",
     "test_fit_counts.py",
+    "test_fit_dependence.py",
+    "test_fit_flanks.py",
     "test_fit_manners.py",
     "test_fit_references.py",
     "test_fit_slopes.py",
@@ -72,8 +75,8 @@ INFERENCE = tuple(
 TESTS = {
     "_files.py": ("test_files.py", "test_believed.py"),
     "_signals.py": ("test_signals.py",),
-    "study/_store.py": ("test_study_store.py",),
-    "study/_create.py": ("test_study_store.py",),
+    "study/_store.py": ("test_study_store.py", "test_study_create.py"),
+    "study/_create.py": ("test_study_store.py", "test_study_create.py"),
     "study/_identity.py": ("test_study_merge.py",),
     "study/_layout.py": ("test_study_merge.py",),
     "study/_merge.py": ("test_study_merge.py",),
@@ -82,12 +85,16 @@ TESTS = {
     "distribution/_store.py": ("test_distribution_store.py", "test_distribution_errors.py"),
     "distribution/_errors.py": ("test_distribution_errors.py",),
     "distribution/_nodes.py": ("test_distribution_nodes.py",),
-    "distribution/_check.py": ("test_distribution_nodes.py", "test_distribution_ensemble.py"),
+    "distribution/_check.py": (
+        "test_distribution_nodes.py",
+        "test_distribution_ensemble.py",
+        "test_distribution_pilot.py",
+    ),
     "distribution/_table.py": ("test_distribution_table.py",),
-    "distribution/_ensemble.py": ("test_distribution_ensemble.py",),
-    "distribution/_pilot.py": ("test_distribution_ensemble.py",),
-    "distribution/_count.py": ("test_distribution_ensemble.py",),
-    "distribution/_learn.py": ("test_distribution_ensemble.py",),
+    "distribution/_ensemble.py": ("test_distribution_ensemble.py", "test_distribution_pilot.py"),
+    "distribution/_pilot.py": ("test_distribution_ensemble.py", "test_distribution_pilot.py"),
+    "distribution/_count.py": ("test_distribution_ensemble.py", "test_distribution_pilot.py"),
+    "distribution/_learn.py": ("test_distribution_ensemble.py", "test_distribution_pilot.py"),
     "_reading.py": ("test_reading.py",),
     "_formats.py": ("test_reading.py",),
     "_dataset.py": (
@@ -97,8 +104,8 @@ TESTS = {
         "test_release.py",
         "test_limits.py",
     ),
-    "_reduce.py": ("test_statistics.py",),
-    "_batches.py": ("test_statistics.py",),
+    "_reduce.py": ("test_statistics.py", "test_standard_errors.py"),
+    "_batches.py": ("test_statistics.py", "test_standard_errors.py"),
     "_energy.py": ("test_energy.py",),
     "_compare.py": ("test_compare.py",),
     **dict.fromkeys(BODIES, ("test_bodies.py", "test_objects.py")),
@@ -106,7 +113,9 @@ TESTS = {
     "analytic/_near_round.py": ("test_near_round.py",),
     **dict.fromkeys(LAWS, ("test_laws_materials.py",)),
     **dict.fromkeys(FITS + SLOPES, FIT_TESTS),
-    **dict.fromkeys(FLIGHT, ("test_flight.py", "test_flight_fit.py", "test_flight_references.py")),
+    **dict.fromkeys(
+        FLIGHT, ("test_flight.py", "test_flight_fit.py", "test_flight_references.py", "test_flight_times.py")
+    ),
     **dict.fromkeys(INFERENCE, ("test_inference.py", "test_inference_references.py")),
 }
 """What reads and writes files, handles signals, or works out numbers, and the tests that are about it."""
