@@ -65,7 +65,7 @@ def throughput(times: timing.Times) -> list[str]:
         level: float(times.wall[:, times.names.index(statistics.name(level, 1))].min())
         for level in rs.build_info()["simd_available"]
     }
-    return shares(best, clock())
+    return shares(best, clock(), machine.generation())
 
 
 def rest(long: bool, only: str) -> None:

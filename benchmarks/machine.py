@@ -45,6 +45,12 @@ def _huge_pages() -> str:
     return path.read_text().partition("[")[2].partition("]")[0] if path.exists() else ""
 
 
+def generation() -> str:
+    """Vendor, family and model of the processor, as it gives them; its name often leaves them out."""
+    vendor, family, model = (_cpuinfo(key) for key in ("vendor_id", "cpu family", "model"))
+    return f"{vendor} family {family} model {model}" if vendor and family else ""
+
+
 def describe() -> str:
     """CPU, cores, caches, SIMD extensions, load, system and versions, one a line."""
     flags = set(_cpuinfo("flags", "Features").split())
@@ -52,7 +58,8 @@ def describe() -> str:
     load = f"{os.getloadavg()[0]:.2f}" if hasattr(os, "getloadavg") else "unknown"
     return "\n".join(
         (
-            f"CPU      {_cpuinfo('model name', 'Model') or platform.processor() or platform.machine()}",
+            f"CPU      {_cpuinfo('model name', 'Model') or platform.processor() or platform.machine()}; "
+            f"{generation() or 'of unknown generation'}",
             f"cores    {cores} usable; load at the start {load}",
             f"memory   {_caches() or 'caches unknown'}; huge pages: {_huge_pages() or 'unknown'}",
             f"SIMD     {' '.join(flag for flag in SIMD if flag in flags) or 'unknown'}; "

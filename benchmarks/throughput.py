@@ -1,7 +1,8 @@
 """How much of what the vector units could do the engine does.
 
 The instructions of a vector of impacts are counted from the machine code for the job of Fig. 2, in
-docs/performance.md. The multiplications set the peak: processors have two units for them.
+docs/performance.md. The multiplications set the peak: processors have two units for them, which on some are
+half as wide as the widest vectors.
 """
 
 from time import perf_counter
@@ -14,10 +15,15 @@ MULTIPLICATIONS = 167
 INSTRUCTIONS = 554
 """All vector instructions, loads and stores of their own among them."""
 
-UNITS = 2
-"""Multiplications at a time."""
-
 LANES = {"avx512": 8, "avx2": 4}
+
+ZEN_4 = "AuthenticAMD family 25 "
+"""Processors (Zen 3 has no AVX-512) that take vectors of eight lanes in two halves."""
+
+
+def units(level: str, generation: str) -> int:
+    """Multiplications of vectors of a level at a time."""
+    return 1 if level == "avx512" and generation.startswith(ZEN_4) else 2
 
 
 @numba.njit(error_model="numpy")
@@ -36,12 +42,12 @@ def clock(steps: int = 200_000_000) -> float:
     return 2e-9 * steps / (perf_counter() - start)
 
 
-def shares(nanoseconds: dict[str, float], cycles: float) -> list[str]:
-    """One line a level, from its time an impact and the clock."""
+def shares(nanoseconds: dict[str, float], cycles: float, generation: str) -> list[str]:
+    """One line a level, from its time an impact, the clock and the processor."""
     lines = []
     for level, time in nanoseconds.items():
         if lanes := LANES.get(level):
-            needed, taken = MULTIPLICATIONS / lanes / UNITS, cycles * time
+            needed, taken = MULTIPLICATIONS / lanes / units(level, generation), cycles * time
             lines.append(
                 f"{level:<8} {taken:.1f} cycles an impact at {cycles:.2f} GHz for "
                 f"{INSTRUCTIONS / lanes:.0f} vector instructions, whose multiplications "

@@ -149,6 +149,15 @@ def test_a_body_beyond_floating_point(values: dict[str, float]) -> None:
     assert "neither overflow nor underflow" in text
 
 
+@pytest.mark.parametrize("gravity", [1e273, 1e-273])
+def test_scales_with_few_digits(gravity: float) -> None:
+    """Where R/g or gR is subnormal, times and speeds would be off by the digits that it lacks."""
+    body, law = rs.Dumbbell(radius=1.4e-50, separation=0.0), rs.Frictionless(normal=0.5)
+    text = message(lambda: rs.simulate(body, law, release_height=1e-49, gravity=gravity))
+    assert text.startswith("gravity = 1e")
+    assert "such that R/g and gR neither overflow nor underflow" in text
+
+
 def test_absurd_scales(body: rs.Dumbbell, law: rs.TangentialRestitution) -> None:
     """Finite heights and gravities that overflow in the engine's units, R and √(R/g)."""
     assert message(lambda: rs.simulate(body, law, release_height=1.7e308)).startswith("release_height = 1")

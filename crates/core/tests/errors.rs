@@ -203,6 +203,18 @@ fn runs() {
             "gravity"
         );
     }
+    // gR or R/g has three digits left: the motion would be off by as much.
+    for gravity in [1e-270, 1e270] {
+        assert_eq!(
+            name(Run {
+                gravity,
+                body: Dumbbell::new(1e-50, 0.0, 1.0).unwrap().into(),
+                release_height: 1e-49.into(),
+                ..run()
+            }),
+            "gravity"
+        );
+    }
     assert_eq!(
         name(Run {
             particles: 0,

@@ -22,18 +22,19 @@ impl Scales {
         let allowed = "finite and > 0 (m/s^2)";
         let positive = gravity.is_finite() && gravity > 0.0;
         Error::unless(positive, "gravity", gravity, allowed)?;
-        let scales = Self {
-            length: radius,
-            time: (radius / gravity).sqrt(),
-            speed: (radius * gravity).sqrt(),
-        };
-        let representable = scales.time.is_normal() && scales.speed.is_normal();
+        // A subnormal number has few digits, and its root is normal again.
+        let (time_squared, speed_squared) = (radius / gravity, radius * gravity);
+        let representable = time_squared.is_normal() && speed_squared.is_normal();
         Error::unless(
             representable,
             "gravity",
             gravity,
             "such that R/g and gR neither overflow nor underflow",
         )?;
-        Ok(scales)
+        Ok(Self {
+            length: radius,
+            time: time_squared.sqrt(),
+            speed: speed_squared.sqrt(),
+        })
     }
 }

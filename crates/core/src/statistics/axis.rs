@@ -45,7 +45,7 @@ impl Axis {
             width > 0.0 && width.is_finite() && density.is_finite(),
             name,
             width,
-            "increasing edges",
+            "increasing edges, whose mean distance has a finite reciprocal",
         )?;
         for pair in edges.windows(2) {
             let increasing = pair[0] < pair[1] && pair[0].is_finite() && pair[1].is_finite();
