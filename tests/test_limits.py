@@ -131,6 +131,28 @@ told(dist.rvs, 0.25, size=10**5)
     assert found[2] == ["done", ""]
 
 
+def test_tables_that_no_memory_holds() -> None:
+    """A million points of ε_n(v), with less and less room: taken or a MemoryError, never an abort."""
+    found = run("""
+x, e = np.linspace(0.1, 1, 10**6), np.linspace(0.9, 0.8, 10**6)
+rs.Tabulated(v=x[:2], e=e[:2]).compiled
+for room in range(4, 200, 12):
+    child = os.fork()
+    if child == 0:
+        used = int(open("/proc/self/statm").read().split()[0]) * resource.getpagesize()
+        resource.setrlimit(resource.RLIMIT_AS, (used + room * 2**20, resource.RLIM_INFINITY))
+        try:
+            rs.Tabulated(v=x, e=e).compiled
+        except MemoryError as error:
+            what, _, told = str(error).partition(": ")
+            os._exit(1 + (what in ("v", "e") and told.startswith("takes 120 MB of memory, and this ")))
+        os._exit(0)
+    print(os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]))
+""")
+    assert set(found) == {0, 2}
+    assert found == sorted(found, reverse=True)  # with more room it goes better
+
+
 def test_a_refused_size_is_a_bad_argument_too(body: rs.Dumbbell, law: rs.TangentialRestitution) -> None:
     for kind in (ValueError, MemoryError):
         with pytest.raises(kind, match=r"particles \* impacts = 1e\+15: must be at most"):
@@ -195,6 +217,12 @@ print(json.dumps([rs.build_info()["threads"], time.monotonic() - start]))
     )
     assert threads == 1
     assert seconds < 5
+
+
+def test_the_environment_does_not_decide_how_large_stacks_are() -> None:
+    """With a stack of a byte every thread of a run would end in a segmentation fault."""
+    [found] = run("told(rs.simulate, body, law, particles=500, threads=2)", RUST_MIN_STACK="1")
+    assert found == ["done", ""]
 
 
 def test_few_particles_need_few_threads() -> None:

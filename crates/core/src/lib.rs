@@ -69,9 +69,10 @@ pub use engine::{
 pub use error::{Error, Value};
 pub use flight::{State, Vector};
 pub use follow::Followed;
+pub use memory::{collected, copied};
 pub use particles::PER_PARTICLE;
 pub use run::{About, Height, Orientation, Run, Scales, Spin};
 pub use simd::{Level, elementary};
 pub use simulate::simulate_series;
-pub use threads::{Means, Monitor, default_threads};
+pub use threads::{Means, Monitor, STACK, default_threads};
 pub use variable::{Values, Variable, When};

@@ -29,6 +29,27 @@ pub(crate) fn empty<T>(what: &'static str, length: usize) -> Result<Vec<T>, Erro
     }
 }
 
+/// All values of an iterator that knows how many there are; `what` is for the error.
+///
+/// # Errors
+/// [`Error::Memory`].
+pub fn collected<T>(
+    what: &'static str,
+    values: impl ExactSizeIterator<Item = T>,
+) -> Result<Vec<T>, Error> {
+    let mut vector = empty(what, values.len())?;
+    vector.extend(values);
+    Ok(vector)
+}
+
+/// A copy of `values`, likewise.
+///
+/// # Errors
+/// [`Error::Memory`].
+pub fn copied<T: Copy>(what: &'static str, values: &[T]) -> Result<Vec<T>, Error> {
+    collected(what, values.iter().copied())
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -44,6 +65,11 @@ mod tests {
         let room = empty::<u64>(what, 1000).unwrap();
         assert!(room.is_empty() && room.capacity() >= 1000);
         assert_eq!(filled(what, 7, 3), Ok(vec![7; 3]));
+        assert_eq!(copied(what, &[1, 2]), Ok(vec![1, 2]));
+        assert_eq!(
+            collected(what, std::iter::repeat_n(0_u8, bytes)),
+            Err(Error::Memory { what, bytes })
+        );
         assert_eq!(zeros::<u64>(what, 3), Ok(vec![0; 3]));
     }
 }

@@ -56,6 +56,9 @@ impl Monitor {
     }
 }
 
+/// Bytes of the stack of a thread of ours, whatever `RUST_MIN_STACK` says.
+pub const STACK: usize = 2 << 20;
+
 /// The default number of threads: one for each core that the process may use. Environment variables are not read.
 pub fn default_threads() -> usize {
     std::thread::available_parallelism().map_or(1, usize::from)
@@ -80,6 +83,7 @@ impl Means {
         }
         let pool = rayon::ThreadPoolBuilder::new()
             .num_threads(threads)
+            .stack_size(STACK)
             .build()
             .map_err(|error| Error::Threads {
                 asked: threads,

@@ -217,7 +217,7 @@ proptest! {
             if !part.is_empty() {
                 let means = Means { threads: 1, level };
                 let tally = run.statistics_of_part(part, &bins, means, &Monitor::default()).unwrap();
-                let words = tally.to_words();
+                let words = tally.to_words().unwrap();
                 prop_assert_eq!(&Tally::from_words(&bins, run.origin(), &words).unwrap(), &tally);
                 prop_assert!(Tally::from_words(&bins, run.origin(), &words[1..]).is_err());
                 prop_assert!(Tally::from_words(&bins, 0.5, &words).is_err());
@@ -319,11 +319,11 @@ fn sites_that_have_no_number_are_refused() {
 #[test]
 fn every_word_of_a_tally_is_kept() {
     let bins = Edges::coarse().bins(By::Number(ROWS));
-    let empty = Tally::new(&bins, 0.98).unwrap().to_words();
+    let empty = Tally::new(&bins, 0.98).unwrap().to_words().unwrap();
     let number = |i: usize| (i as u64 + 1).wrapping_mul(0x9e37_79b9_7f4a_7c15);
     let words: Vec<u64> = (0..empty.len())
         .map(|i| if i == 0 { empty[0] } else { number(i) })
         .collect();
     let tally = Tally::from_words(&bins, 0.98, &words).unwrap();
-    assert_eq!(tally.to_words(), words);
+    assert_eq!(tally.to_words().unwrap(), words);
 }

@@ -1,14 +1,14 @@
 //! Impacts counted for a learned distribution: tables of shape (particle, impact) in, counts out.
 
-use crate::distribution::{Mixture, nodes};
+use crate::distribution::{Mixture, nodes, owned};
 use crate::errors::python_error;
 use crate::{means, watch};
 use numpy::ndarray::{ArrayD, IxDyn};
 use numpy::{Element, IntoPyArray, PyArrayDyn, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
-use restitution_core::Monitor;
 use restitution_core::distribution::{COARSE, FINE, Impacts};
+use restitution_core::{Monitor, collected};
 
 type Array<'py> = PyReadonlyArray1<'py, f64>;
 type Rows<'py> = PyReadonlyArray2<'py, f64>;
@@ -60,7 +60,7 @@ impl Counter {
     ) -> PyResult<Self> {
         let nodes = nodes(&speeds, &first, &conditions)?;
         let components = conditions.as_slice()?.len();
-        let (start, edges) = (start.as_slice()?.to_vec(), edges.as_slice()?.to_vec());
+        let (start, edges) = (owned(&start)?, owned(&edges)?);
         let counter = restitution_core::distribution::Counter::new(nodes, start, edges, batches);
         Ok(Self {
             counter: counter.map_err(python_error)?,
@@ -144,7 +144,8 @@ impl Levels {
     /// The counts of all impacts in an interval, over levels.
     fn fine<'py>(&self, py: Python<'py>, interval: usize) -> PyResult<Bound<'py, PyArrayDyn<i64>>> {
         let counts = self.levels.fine(interval).map_err(python_error)?;
-        let counts = counts.into_iter().map(|count| count as i64).collect();
+        let counts = counts.into_iter().map(|count| count as i64);
+        let counts = collected("levels", counts).map_err(python_error)?;
         Ok(shaped(py, &[FINE], counts))
     }
 

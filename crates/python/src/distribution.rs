@@ -2,10 +2,10 @@
 
 use crate::errors::python_error;
 use crate::{means, watch};
-use numpy::{IntoPyArray, PyArray1, PyReadonlyArray1};
+use numpy::{Element, IntoPyArray, PyArray1, PyReadonlyArray1};
 use pyo3::prelude::*;
 use restitution_core::distribution::{At, BLOCK, Layout, Nodes, Values};
-use restitution_core::{Error, Means, Monitor};
+use restitution_core::{Error, Means, Monitor, copied};
 
 /// The table of a distribution.
 #[pyclass(frozen, module = "restitution._core")]
@@ -22,8 +22,12 @@ pub(crate) fn nodes(
     first: &PyReadonlyArray1<'_, i64>,
     conditions: &Array<'_>,
 ) -> PyResult<Nodes> {
-    let (speeds, first) = (speeds.as_slice()?.to_vec(), first.as_slice()?.to_vec());
-    Nodes::new(speeds, first, conditions.as_slice()?.to_vec()).map_err(python_error)
+    Nodes::new(owned(speeds)?, owned(first)?, owned(conditions)?).map_err(python_error)
+}
+
+/// A copy of an array of a table.
+pub(crate) fn owned<T: Element + Copy>(values: &PyReadonlyArray1<'_, T>) -> PyResult<Vec<T>> {
+    copied("table", values.as_slice()?).map_err(python_error)
 }
 
 /// A function of the table that is evaluated at many points.
@@ -101,9 +105,9 @@ impl Mixture {
     ) -> PyResult<Self> {
         let layout = Layout {
             nodes: nodes(&speeds, &first, &conditions)?,
-            start: start.as_slice()?.to_vec(),
-            edges: edges.as_slice()?.to_vec(),
-            cumulative: cumulative.as_slice()?.to_vec(),
+            start: owned(&start)?,
+            edges: owned(&edges)?,
+            cumulative: owned(&cumulative)?,
         };
         let mixture = restitution_core::distribution::Mixture::new(layout);
         mixture.map(Self).map_err(python_error)

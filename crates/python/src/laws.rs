@@ -6,7 +6,7 @@ use pyo3::prelude::*;
 use restitution_core::collision::{Components, Contact, MOST_FRICTION, PADE_ABOVE, PADE_BELOW};
 use restitution_core::{
     ChatterjeeRuina, Coulomb, Error, Frictionless, Hypothesis, Normal, Plastic, Points, Rule,
-    TangentialRestitution, Viscoelastic,
+    TangentialRestitution, Viscoelastic, collected,
 };
 use std::sync::Arc;
 
@@ -48,7 +48,8 @@ impl Material {
     ) -> PyResult<Bound<'py, PyArray1<f64>>> {
         let normal = self.0.normal();
         let values = speeds.as_slice()?.iter().map(|&speed| normal.at(speed));
-        Ok(values.collect::<Vec<_>>().into_pyarray(py))
+        let values = collected("speeds", values).map_err(python_error)?;
+        Ok(values.into_pyarray(py))
     }
 }
 
@@ -80,8 +81,8 @@ fn plastic(yield_speed: f64) -> PyResult<Material> {
 }
 
 #[pyfunction]
-fn tabulated(v: Vec<f64>, e: Vec<f64>) -> PyResult<Material> {
-    let points = Points::new(v, e).map_err(python_error)?;
+fn tabulated(v: PyReadonlyArray1<'_, f64>, e: PyReadonlyArray1<'_, f64>) -> PyResult<Material> {
+    let points = Points::new(v.as_slice()?, e.as_slice()?).map_err(python_error)?;
     Ok(Material(Arc::new(Coefficient::Measured(points))))
 }
 

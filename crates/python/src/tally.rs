@@ -2,10 +2,11 @@
 
 use crate::errors::python_error;
 use crate::{Parameters, means, range, set, watch};
-use numpy::{IntoPyArray, PyArray1, PyReadonlyArray1};
+use numpy::{Element, IntoPyArray, PyArray1, PyReadonlyArray1};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
+use restitution_core::collected;
 use restitution_core::statistics as core;
 use restitution_core::statistics::{Axis, Bins, By, Moments};
 
@@ -66,8 +67,9 @@ impl Tally {
     }
 
     /// All numbers of the tally.
-    fn words<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<u64>> {
-        self.tally.to_words().into_pyarray(py)
+    fn words<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<u64>>> {
+        let words = self.tally.to_words().map_err(python_error)?;
+        Ok(words.into_pyarray(py))
     }
 
     /// The sum of this tally and others.
@@ -99,10 +101,10 @@ impl Tally {
             let counts = grid.to_counts().map_err(python_error)?;
             set(py, &table, name, (self.bins.rows(), grid.columns()), counts)?;
         }
-        let created: Vec<_> = tally.gains.iter().map(|row| row.count as i64).collect();
-        table.set_item("energy_created", created.into_pyarray(py))?;
-        let largest: Vec<_> = tally.gains.iter().map(|row| row.largest).collect();
-        table.set_item("largest_energy_ratio", largest.into_pyarray(py))?;
+        let created = tally.gains.iter().map(|row| row.count as i64);
+        table.set_item("energy_created", column(py, created)?)?;
+        let largest = tally.gains.iter().map(|row| row.largest);
+        table.set_item("largest_energy_ratio", column(py, largest)?)?;
         let stops = tally.stops.map(|count| count as i64).to_vec();
         table.set_item("stops", stops.into_pyarray(py))?;
         Ok(table)
@@ -112,25 +114,37 @@ impl Tally {
     fn moments<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let tally = &self.tally;
         // Row by row, because a fine grid does not fit into the cache, but one of its rows does.
-        let (mut numbers, mut moments, mut fractions) = (vec![], vec![], vec![]);
-        for row in 0..self.bins.rows() {
-            numbers.push(tally.number(row) as i64);
-            moments.extend(tally.moments(row));
-            fractions.extend(tally.mean_fraction(row));
-        }
-        let column =
-            |f: fn(&Moments) -> f64| moments.iter().map(f).collect::<Vec<_>>().into_pyarray(py);
+        let rows = self.bins.rows();
+        let numbers = (0..rows).map(|row| tally.number(row) as i64);
+        // Where impacts are only counted, no row has moments.
+        let summed = 0..tally.moments(0).map_or(0, |_| rows);
+        let every = summed.clone().map(|row| tally.moments(row));
+        let moments = collected("moments", every).map_err(python_error)?;
+        let fractions = summed.map(|row| tally.mean_fraction(row).unwrap_or(f64::NAN));
+        let moment = |f: fn(&Moments) -> f64| {
+            let value = |moments: &Option<Moments>| moments.as_ref().map_or(f64::NAN, f);
+            column(py, moments.iter().map(value))
+        };
         let table = PyDict::new(py);
-        table.set_item("number", numbers.into_pyarray(py))?;
-        table.set_item("mean", column(|m| m.mean))?;
-        table.set_item("variance", column(|m| m.variance))?;
-        table.set_item("skewness", column(|m| m.skewness))?;
-        table.set_item("kurtosis", column(|m| m.kurtosis))?;
-        table.set_item("minimum", column(|m| m.minimum))?;
-        table.set_item("maximum", column(|m| m.maximum))?;
-        table.set_item("mean_fraction", fractions.into_pyarray(py))?;
+        table.set_item("number", column(py, numbers)?)?;
+        table.set_item("mean", moment(|m| m.mean)?)?;
+        table.set_item("variance", moment(|m| m.variance)?)?;
+        table.set_item("skewness", moment(|m| m.skewness)?)?;
+        table.set_item("kurtosis", moment(|m| m.kurtosis)?)?;
+        table.set_item("minimum", moment(|m| m.minimum)?)?;
+        table.set_item("maximum", moment(|m| m.maximum)?)?;
+        table.set_item("mean_fraction", column(py, fractions)?)?;
         Ok(table)
     }
+}
+
+/// An array with a value for each row.
+fn column<T: Element>(
+    py: Python<'_>,
+    values: impl ExactSizeIterator<Item = T>,
+) -> PyResult<Bound<'_, PyArray1<T>>> {
+    let values = collected("velocity_bins or impacts", values).map_err(python_error)?;
+    Ok(values.into_pyarray(py))
 }
 
 /// Simulates the particles from `part[0]` up to, not including, `part[1]`, or all, and counts their impacts. Returns the tally, and

@@ -3,7 +3,7 @@
 use crate::errors::python_error;
 use pyo3::exceptions::{PyKeyboardInterrupt, PyRuntimeError};
 use pyo3::prelude::*;
-use restitution_core::{Error, Monitor};
+use restitution_core::{Error, Monitor, STACK};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::mpsc::{RecvTimeoutError, channel};
 use std::sync::{Arc, Mutex};
@@ -31,13 +31,15 @@ pub fn run<T: Send>(
         thread::scope(|scope| {
             let (sender, receiver) = channel();
             let monitor = &monitor;
-            let spawned = thread::Builder::new().spawn_scoped(scope, || {
-                let sender = sender; // dropped with this thread, whatever happens
-                let result = taken()(monitor);
-                // The receiver outlives this thread; there is nobody to report a failure to.
-                let _ = sender.send(());
-                result
-            });
+            let spawned = thread::Builder::new()
+                .stack_size(STACK)
+                .spawn_scoped(scope, || {
+                    let sender = sender; // dropped with this thread, whatever happens
+                    let result = taken()(monitor);
+                    // The receiver outlives this thread; there is nobody to report a failure to.
+                    let _ = sender.send(());
+                    result
+                });
             let Ok(worker) = spawned else {
                 return run_here(progress, taken());
             };

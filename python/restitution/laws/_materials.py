@@ -12,6 +12,7 @@ from pydantic import BeforeValidator, Field, model_validator
 
 from restitution import _core
 from restitution._arrays import real, reals
+from restitution._memory import check_room
 from restitution._parameters import Allowed, Number, ParameterError, Parameters, Problem, shown, wrong
 
 Floats = npt.NDArray[np.float64]
@@ -128,6 +129,11 @@ class Plastic(Material):
         return _core.plastic(self.yield_speed)
 
 
+_POINT = 120
+"""Bytes of a point of a table on its way through the checks, which end the process where there is no room."""
+_MANY_POINTS = 10_000
+
+
 def _numbers(name: str, unit: str, good: Callable[[float], bool], allowed: str) -> BeforeValidator:
     """Take a 1-D sequence of numbers in this unit, each of them good."""
 
@@ -136,6 +142,8 @@ def _numbers(name: str, unit: str, good: Callable[[float], bool], allowed: str) 
         array = reals(name, value, some, unit=unit, dimensions=(1,), finite=False)
         if not array.size:
             raise ParameterError(wrong(name, value, some))
+        if array.size > _MANY_POINTS:
+            check_room(name, _POINT * array.size)
         numbers = tuple(map(float, array))
         for i, x in enumerate(numbers):
             if not good(x):
@@ -220,7 +228,7 @@ class Tabulated(Material):
         return cls(**dict(zip("ve", _points("function", function, fastest, tolerance), strict=True)))
 
     def _compile(self) -> _core.Material:
-        return _core.tabulated(self.v, self.e)
+        return _core.tabulated(np.asarray(self.v, dtype=float), np.asarray(self.e, dtype=float))
 
 
 _MOST_POINTS = 100_000

@@ -70,7 +70,7 @@ impl Counter {
         let guides = start
             .windows(2)
             .map(|range| Guide::new(&edges[range[0] as usize..range[1] as usize]))
-            .collect();
+            .collect::<Result<_, _>>()?;
         Ok(Self {
             nodes,
             start,

@@ -13,12 +13,16 @@ struct Inverse<'a> {
 }
 
 impl<'a> Inverse<'a> {
-    fn new((edges, cumulative): (&'a [f64], &'a [f64]), many: bool) -> Self {
+    fn new((edges, cumulative): (&'a [f64], &'a [f64]), guide: Option<Guide>) -> Self {
         Self {
             edges,
             cumulative,
-            guide: many.then(|| Guide::new(cumulative)),
+            guide,
         }
+    }
+
+    fn guided(histogram: (&'a [f64], &'a [f64])) -> Result<Self, Error> {
+        Ok(Self::new(histogram, Some(Guide::new(histogram.1)?)))
     }
 
     /// The quantile of u in [0, 1).
@@ -62,8 +66,8 @@ impl Mixture {
         let many = out.len() > layout.edges.len();
         let components = if many { nodes.components() } else { 0 };
         let inverses: Vec<_> = (0..components)
-            .map(|component| Inverse::new(self.histogram(component), true))
-            .collect();
+            .map(|component| Inverse::guided(self.histogram(component)))
+            .collect::<Result<_, Error>>()?;
         in_blocks(out, means, monitor, |first, block| {
             let (mut speed, mut site) = (f64::NAN, (0, 0.0));
             for (i, out) in block.iter_mut().enumerate() {
@@ -80,7 +84,7 @@ impl Mixture {
                 } else if many {
                     inverses[component].quantile(u2)
                 } else {
-                    Inverse::new(self.histogram(component), false).quantile(u2)
+                    Inverse::new(self.histogram(component), None).quantile(u2)
                 };
             }
         })

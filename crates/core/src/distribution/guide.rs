@@ -1,5 +1,8 @@
 //! A guide to a list of increasing numbers: nearly all searches in it end after one or two comparisons.
 
+use crate::Error;
+use crate::memory::zeros;
+
 /// How many of the numbers lie in the cells before each of equally wide cells, which span the middle of the list.
 #[derive(Debug)]
 pub(super) struct Guide {
@@ -11,7 +14,10 @@ pub(super) struct Guide {
 
 impl Guide {
     /// A guide to points, of which there are fewer than 2³².
-    pub fn new(points: &[f64]) -> Self {
+    ///
+    /// # Errors
+    /// [`Error::Memory`].
+    pub fn new(points: &[f64]) -> Result<Self, Error> {
         let cells = points.len().next_power_of_two();
         // The outermost points of a distribution are far apart: cells that span them all would hold most points in a few.
         let margin = points.len() / 8;
@@ -20,7 +26,7 @@ impl Guide {
         let mut guide = Self {
             low,
             scale: if scale.is_finite() { scale } else { 0.0 },
-            before: vec![0; cells + 1],
+            before: zeros("guide to a table", cells + 1)?,
         };
         for &point in points {
             let cell = guide.cell(point);
@@ -29,7 +35,7 @@ impl Guide {
         for cell in 0..cells {
             guide.before[cell + 1] += guide.before[cell];
         }
-        guide
+        Ok(guide)
     }
 
     /// Rounded operations do not change the order of two numbers: a point in an earlier cell than x is below x, and one in a later
@@ -59,7 +65,7 @@ mod tests {
         for number in [2_usize, 7, 8, 64, 100, 1000, 4097] {
             for (first, step) in [(0.0, 1.0), (-3.0, 0.1), (7.0, 1e-3)] {
                 let points: Vec<_> = (0..number).map(|i| first + step * i as f64).collect();
-                let guide = Guide::new(&points);
+                let guide = Guide::new(&points).unwrap();
                 let widths = guide.before.windows(2).map(|two| two[1] - two[0]);
                 let cells: Vec<_> = widths.map(|points| points as usize).collect();
                 assert_eq!(cells.iter().sum::<usize>(), number);
@@ -82,7 +88,11 @@ mod tests {
             let beyond = [f64::NEG_INFINITY, points[0] - 1.0, 1e9, f64::INFINITY];
             for x in between.chain(beyond).chain(points.iter().copied()) {
                 let reached = points.iter().filter(|&&point| point <= x).count();
-                assert_eq!(Guide::new(&points).reached(&points, x), reached, "{x}");
+                assert_eq!(
+                    Guide::new(&points).unwrap().reached(&points, x),
+                    reached,
+                    "{x}"
+                );
             }
         }
     }

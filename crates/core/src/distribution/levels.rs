@@ -132,7 +132,7 @@ impl Levels {
     /// [`Error::Parameter`] for an interval that there is not.
     pub fn fine(&self, interval: usize) -> Result<Vec<u64>, Error> {
         let levels = self.levels(interval, FINE)?;
-        let mut sum = vec![0; FINE];
+        let mut sum = zeros(ROOM, FINE)?;
         for counted in &*self.fine.lock().expect("nobody panics who holds it") {
             for (sum, count) in sum.iter_mut().zip(&counted[levels.clone()]) {
                 *sum += count;

@@ -31,7 +31,7 @@ impl Mixture {
     /// The distribution with this table.
     ///
     /// # Errors
-    /// [`Error::Parameter`] if the table is inconsistent or its values are not increasing.
+    /// [`Error::Parameter`] if the table is inconsistent or its values are not increasing, and [`Error::Memory`].
     pub fn new(layout: Layout) -> Result<Self, Error> {
         let Layout {
             nodes,
@@ -56,7 +56,7 @@ impl Mixture {
         let guides = start
             .windows(2)
             .map(|range| Guide::new(&edges[range[0] as usize..range[1] as usize]))
-            .collect();
+            .collect::<Result<_, _>>()?;
         Ok(Self { layout, guides })
     }
 

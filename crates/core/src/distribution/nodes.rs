@@ -50,7 +50,8 @@ impl Nodes {
     /// the conditions of the components increase within a node.
     ///
     /// # Errors
-    /// [`Error::Parameter`] for fewer than two nodes, one without a component, or what does not increase.
+    /// [`Error::Parameter`] for fewer than two nodes, one without a component, or what does not increase, and
+    /// [`Error::Memory`].
     pub fn new(speeds: Vec<f64>, first: Vec<i64>, conditions: Vec<f64>) -> Result<Self, Error> {
         let sound = speeds.len() >= 2
             && rises(&speeds)
@@ -62,7 +63,7 @@ impl Nodes {
         let allowed = "speeds that increase, and one condition or more for each, which increase";
         Error::unless(sound, "nodes", speeds.len(), allowed)?;
         Ok(Self {
-            guide: Guide::new(&speeds),
+            guide: Guide::new(&speeds)?,
             speeds,
             first,
             conditions,

@@ -2,6 +2,7 @@
 
 use super::cells::Cells;
 use crate::Error;
+use crate::memory::copied;
 use crate::simd::Pack;
 use pulp::Simd;
 
@@ -33,7 +34,7 @@ impl Axis {
     /// The axis with these edges; `name` is for the error.
     ///
     /// # Errors
-    /// [`Error::Parameter`] unless there are at least two edges, finite and increasing.
+    /// [`Error::Parameter`] unless there are at least two edges, finite and increasing, and [`Error::Memory`].
     pub fn new(name: &'static str, edges: &[f64]) -> Result<Self, Error> {
         let bins = edges.len().saturating_sub(1);
         Error::unless(bins > 0, name, edges.len(), "at least two edges")?;
@@ -55,7 +56,7 @@ impl Axis {
         let uniform = edges.iter().enumerate().map(off).all(|off| off <= UNIFORM);
         let count = edges.len() as f64;
         Ok(Self {
-            edges: edges.to_vec(),
+            edges: copied(name, edges)?,
             low: if uniform { low } else { 0.0 },
             last: if uniform { count } else { 0.0 },
             beyond: count + 1.0,
@@ -64,7 +65,7 @@ impl Axis {
             cells: if uniform {
                 None
             } else {
-                Some(Cells::new(edges))
+                Some(Cells::new(name, edges)?)
             },
         })
     }

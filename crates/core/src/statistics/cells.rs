@@ -5,6 +5,8 @@
 
 use super::axis::ROUND;
 use super::places::whole;
+use crate::Error;
+use crate::memory::{collected, empty, zeros};
 use crate::simd::Pack;
 use pulp::{Scalar, Simd};
 
@@ -100,16 +102,16 @@ impl Scale {
         index(self.cells(x, (cells - 1) as f64).as_slice()[0], cells)
     }
 
-    /// Number of edges in all cells before each of the `cells` cells.
-    fn before(self, edges: &[f64], cells: usize) -> Vec<u32> {
-        let mut before = vec![0; cells + 1];
+    /// Number of edges in all cells before each of the `cells` cells; `name` is for the error.
+    fn before(self, name: &'static str, edges: &[f64], cells: usize) -> Result<Vec<u32>, Error> {
+        let mut before = zeros(name, cells + 1)?;
         for &edge in edges {
             before[self.cell(edge, cells) + 1] += 1;
         }
         for cell in 0..cells {
             before[cell + 1] += before[cell];
         }
-        before
+        Ok(before)
     }
 }
 
@@ -127,38 +129,44 @@ fn crowd(before: &[u32]) -> u32 {
 
 impl Cells {
     /// The table for increasing, finite edges: with as few cells as put every edge into a cell of its own, if that is possible.
-    pub fn new(edges: &[f64]) -> Self {
+    ///
+    /// # Errors
+    /// [`Error::Memory`] with `name`.
+    pub fn new(name: &'static str, edges: &[f64]) -> Result<Self, Error> {
         let (low, high) = (edges[0], edges[edges.len() - 1]);
         let mut count = edges.len().next_power_of_two();
         let most = MOST.max(count);
         loop {
             let density = count as f64 / (high - low);
-            let found = [Scale::Linear { low, density }, Scale::octaves(edges, count)]
-                .map(|scale| (scale, scale.before(edges, count)))
-                .map(|(scale, before)| (crowd(&before), scale, before));
-            let [equal, logarithmic] = found;
+            let found = |scale: Scale| {
+                let before = scale.before(name, edges, count)?;
+                Ok((crowd(&before), scale, before))
+            };
+            let equal = found(Scale::Linear { low, density })?;
+            let logarithmic = found(Scale::octaves(edges, count))?;
             let (crowd, scale, before) = if logarithmic.0 < equal.0 {
                 logarithmic
             } else {
                 equal
             };
             if crowd <= 1 || count >= most {
-                let mut edges = edges.to_vec();
-                edges.push(f64::INFINITY);
+                let mut padded = empty(name, edges.len() + 1)?;
+                padded.extend_from_slice(edges);
+                padded.push(f64::INFINITY);
                 let of = |pair: &[u32]| {
                     let number = f64::from(pair[0]) + ROUND;
                     let several = pair[1] - pair[0] > 1;
                     Cell {
-                        edge: edges[pair[0] as usize],
+                        edge: padded[pair[0] as usize],
                         number: if several { -number } else { number },
                     }
                 };
-                return Self {
+                return Ok(Self {
                     scale,
-                    cells: before.windows(2).map(of).collect(),
+                    cells: collected(name, before.windows(2).map(of))?,
                     last: (count - 1) as f64,
-                    crowded: (crowd > 1).then_some(edges),
-                };
+                    crowded: (crowd > 1).then_some(padded),
+                });
             }
             count *= 2;
         }
@@ -210,7 +218,7 @@ mod tests {
     use proptest::prelude::*;
 
     fn agrees(edges: &[f64], x: f64) {
-        let cells = Cells::new(edges);
+        let cells = Cells::new("edges", edges).unwrap();
         let bin = cells.locate(Pack::<_, 1>::splat(Scalar::new(), x));
         let expected = edges.partition_point(|&edge| edge <= x);
         assert_eq!(whole(bin.as_slice()[0]), expected, "{x} in {edges:?}");
@@ -246,7 +254,7 @@ mod tests {
     fn even_bins_are_found_at_once() {
         for low in [-1.0, 0.0, 0.5] {
             let edges: Vec<_> = (0..401).map(|i| low + 0.01 * f64::from(i)).collect();
-            assert_eq!(Cells::new(&edges).crowded, None);
+            assert_eq!(Cells::new("edges", &edges).unwrap().crowded, None);
         }
     }
 
@@ -257,7 +265,7 @@ mod tests {
             let edges: Vec<_> = (0..121)
                 .map(|i| 0.98 + (f64::from(i) / 60.0 - 1.0).powi(power))
                 .collect();
-            assert_eq!(Cells::new(&edges).crowded, None);
+            assert_eq!(Cells::new("edges", &edges).unwrap().crowded, None);
         }
     }
 
@@ -268,7 +276,7 @@ mod tests {
             .map(|i| 10.0_f64.powf(f64::from(i) / 100.0 - 6.0))
             .collect();
         for _ in 0..2 {
-            let cells = Cells::new(&edges);
+            let cells = Cells::new("edges", &edges).unwrap();
             assert_eq!(cells.crowded, None);
             edges.insert(0, 0.0);
         }

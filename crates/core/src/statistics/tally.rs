@@ -4,7 +4,7 @@ use super::axis::Axis;
 use super::moments::{Moments, Sums};
 use super::recent::FRACTION_QUANTA;
 use crate::Error;
-use crate::memory::{filled, zeros};
+use crate::memory::{copied, filled, zeros};
 
 /// Energy ratio above which an impact counts as creating kinetic energy. Rounding errors of the ratio are a few 10⁻¹⁵.
 pub const CREATES_ENERGY: f64 = 1.0 + 1e-12;
@@ -133,6 +133,13 @@ impl Grid {
         Ok(copy)
     }
 
+    fn copied(&self) -> Result<Self, Error> {
+        Ok(Self {
+            columns: self.columns,
+            counts: copied(WHAT, &self.counts)?,
+        })
+    }
+
     /// Number of columns: one below the bins, the bins, one above, and one for undefined values.
     pub fn columns(&self) -> usize {
         self.columns
@@ -176,6 +183,18 @@ impl Tally {
             fractions: zeros(WHAT, summed)?,
             gains: filled(WHAT, Gains::default(), rows)?,
             stops: [0; 5],
+        })
+    }
+
+    pub(super) fn copied(&self) -> Result<Self, Error> {
+        Ok(Self {
+            restitution: self.restitution.copied()?,
+            fraction: self.fraction.copied()?,
+            origin: self.origin,
+            sums: copied(WHAT, &self.sums)?,
+            fractions: copied(WHAT, &self.fractions)?,
+            gains: copied(WHAT, &self.gains)?,
+            stops: self.stops,
         })
     }
 

@@ -1,16 +1,27 @@
 //! A tally as a list of integers. Parts of a run that were counted at different times or places are stored in this form, and merge to
 //! the same bits as the whole run.
 
-use super::tally::{Bins, Tally};
+use super::tally::{Bins, Tally, WHAT};
 use crate::Error;
+use crate::memory::empty;
 
 impl Tally {
     /// All numbers of the tally, in an order that depends on the bins alone: origin, grids, sums, created energy, particles by stop
     /// reason.
-    pub fn to_words(&self) -> Vec<u64> {
-        let mut words = Vec::new();
-        self.clone().visit(&mut |word| words.push(*word));
-        words
+    ///
+    /// # Errors
+    /// [`Error::Memory`].
+    pub fn to_words(&self) -> Result<Vec<u64>, Error> {
+        let mut copy = self.copied()?;
+        let mut words = empty(WHAT, copy.number_of_words())?;
+        copy.visit(&mut |word| words.push(*word));
+        Ok(words)
+    }
+
+    fn number_of_words(&mut self) -> usize {
+        let mut number = 0;
+        self.visit(&mut |_| number += 1);
+        number
     }
 
     /// The tally with these bins from its words.
@@ -19,8 +30,7 @@ impl Tally {
     /// [`Error::Parameter`] for words that belong to another number of rows or columns, or to sums about another origin.
     pub fn from_words(bins: &Bins, origin: f64, words: &[u64]) -> Result<Self, Error> {
         let mut tally = Self::new(bins, origin)?;
-        let mut needed = 0_usize;
-        tally.visit(&mut |_| needed += 1);
+        let needed = tally.number_of_words();
         let allowed = "as many as these bins have";
         Error::unless(words.len() == needed, "words", words.len() as f64, allowed)?;
         let mut words = words.iter();

@@ -1,6 +1,7 @@
 //! A normal coefficient that is interpolated in a table, for example of measured values.
 
 use crate::Error;
+use crate::memory::copied;
 use crate::simd::Pack;
 use pulp::Simd;
 
@@ -21,10 +22,13 @@ pub struct Points {
 }
 
 impl Points {
-    /// The points; parameters and errors as for [`Tabulated::new`].
-    pub fn new(speeds: Vec<f64>, values: Vec<f64>) -> Result<Self, Error> {
-        Tabulated::new(&speeds, &values)?;
-        Ok(Self { speeds, values })
+    /// A copy of points; parameters and errors as for [`Tabulated::new`], and [`Error::Memory`].
+    pub fn new(speeds: &[f64], values: &[f64]) -> Result<Self, Error> {
+        Tabulated::new(speeds, values)?;
+        Ok(Self {
+            speeds: copied("v", speeds)?,
+            values: copied("e", values)?,
+        })
     }
 
     /// The coefficient through these points.
