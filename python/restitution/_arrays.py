@@ -116,6 +116,16 @@ def shape(name: str, value: Any) -> tuple[int, ...]:
     return lengths
 
 
+def check_shapes(**arrays: np.ndarray) -> None:
+    """Refuse arrays whose shapes do not broadcast, naming them all."""
+    try:
+        np.broadcast_shapes(*(array.shape for array in arrays.values()))
+    except ValueError:
+        given = ", ".join(f"{name} of shape {array.shape}" for name, array in arrays.items() if array.ndim)
+        names = ", ".join(name for name, array in arrays.items() if array.ndim)
+        raise ParameterError(Problem(names, f": {given}; must broadcast to one shape")) from None
+
+
 def function(name: str, value: Any) -> Callable[[float], float]:
     """Take a function of one number; what it raises, or gives that is no number, names it."""
     if not callable(value):

@@ -143,12 +143,13 @@ class FirstImpact(ABC):
         conditional : bool
             Divide by the probability of [lb, ub]; nan where that is 0.
         **options
-            For `scipy.integrate.quad`.
+            ``epsabs``, ``epsrel`` and ``limit`` of `scipy.integrate.quad`.
         """
         low, high = self.support()
         low = low if lb is None else real("lb", lb, "a number or None", lambda x: x == x)
         high = high if ub is None else real("ub", ub, "a number or None", lambda x: x == x)
         divide = flag("conditional", conditional)
+        options = {name: _of_quad(name, value) for name, value in options.items()}
         total, share = self._expected(_itself if func is None else function("func", func), low, high, options)
         if not divide:
             return total
@@ -191,7 +192,7 @@ class FirstImpact(ABC):
         """Draw independent ε; the same ``random_state`` (seed or generator's state) gives the same ones."""
         lengths = None if size is None else shape("size", size)
         available = available_memory()
-        if lengths is not None and 3 * 8 * math.prod(lengths) > available:
+        if lengths is not None and 3 * 8 * math.prod(length or 1 for length in lengths) > available:
             allowed = f"at most {available // 24:.4g} draws, which this process can hold"
             raise TooLargeError(wrong("size", size, allowed))
         return self._drawn(np.asarray(generator(random_state).random(lengths)))
@@ -232,6 +233,17 @@ class FirstImpact(ABC):
 
 def _itself(x: float) -> float:
     return x
+
+
+def _of_quad(name: str, given: object) -> float | int:
+    """Take an option of `scipy.integrate.quad`; others would change what it integrates or gives."""
+    if name == "limit":
+        return whole(name, given, 1, 10**6)
+    if name in ("epsabs", "epsrel"):
+        # Of a smaller relative error quad says that it cannot be had, unless the absolute one allows more.
+        least = 0.0 if name == "epsabs" else 50.0 * np.finfo(np.float64).eps
+        return real(name, given, f"a number >= {least:.3g}", lambda x: x >= least)
+    raise ParameterError(wrong("options", name, "epsabs, epsrel or limit"))
 
 
 def check(body: Body, law: Law) -> None:

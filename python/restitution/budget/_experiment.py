@@ -108,7 +108,15 @@ class Experiment:
             raise ParameterError(wrong("law", law, "one under which a ball bounces, ε_n > 0"))
         flights = 2.0 * np.array(speed[1:]) / setting.gravity
         times = np.concatenate([[0.0], np.cumsum(flights)])
-        return cls(setting, law, law_of_speed(law), np.array(speed[:-1]), np.array(coefficient), times)
+        if not np.diff(times).min() > 0.0:
+            allowed = f"one under which {setting.impacts} flights have a duration beside that of the first"
+            raise ParameterError(wrong("law", law, allowed))
+        form = law_of_speed(law)
+        found = cls(setting, law, form, np.array(speed[:-1]), np.array(coefficient), times)
+        if not by_parameters(form, found.speed, found.parameters()).any():
+            allowed = "one whose parameter ε_n depends on at the speeds of the drop"
+            raise ParameterError(wrong("law", law, allowed))
+        return found
 
     def measured(self, timing: float, gravity: float, drop: float) -> Measured:
         """Give what is measured, with these standard errors of each time, of g and of the drop."""

@@ -7,7 +7,7 @@ import numpy as np
 import numpy.typing as npt
 import xarray as xr
 
-from restitution._arrays import reals
+from restitution._arrays import check_each, reals
 from restitution._dataset import attributes
 from restitution._parameters import ParameterError, Problem, wrong
 from restitution._resources import progress_bar
@@ -75,6 +75,10 @@ def learn(ensemble: Ensemble, nodes: Floats, given: Given | None, progress: bool
     return assemble(counted, conditional, given, check, attrs)
 
 
+_FASTEST = 1e100
+"""In m/s: its square is a number."""
+
+
 def checked_speeds(velocities: npt.ArrayLike | None, run: Run) -> Floats:
     """Give the least and the greatest speed to learn, or all nodes, in m/s."""
     if velocities is None:
@@ -85,6 +89,7 @@ def checked_speeds(velocities: npt.ArrayLike | None, run: Run) -> Floats:
         raise ParameterError(wrong("velocities", velocities, allowed))
     if nodes[0] <= 0 or not np.all(np.diff(nodes) > 0):
         raise ParameterError(wrong("velocities", velocities, "> 0 and strictly increasing"))
+    check_each("velocities", nodes, nodes <= _FASTEST, f"at most {_FASTEST:g} m/s")
     return nodes
 
 

@@ -171,6 +171,8 @@ class Table:
 
     def entropy(self, v: float, z: float) -> float:
         """Differential entropy of the mixture, whose density is constant between neighbouring edges."""
+        if np.isnan(v) or np.isnan(z):
+            return np.nan
         components = {int(i) for weight, i in self.parts(np.float64(v), np.float64(z)) if weight > 0.0}  # type: ignore[arg-type]
         edges = np.unique(np.concatenate([self[i].edges for i in components]))
         width = np.diff(edges)

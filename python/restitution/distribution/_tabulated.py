@@ -11,7 +11,7 @@ import numpy as np
 import numpy.typing as npt
 import xarray as xr
 
-from restitution._arrays import check_each, flag, function, real, reals, shape, whole
+from restitution._arrays import check_each, check_shapes, flag, function, real, reals, shape, whole
 from restitution._content import check_names
 from restitution._memory import available_memory
 from restitution._parameters import ParameterError, TooLargeError, _plain_number, wrong
@@ -161,7 +161,7 @@ class TabulatedDistribution:
         lb, ub : float, optional
             Only ε in [lb, ub] count.
         conditional : bool
-            Divide by the probability of [lb, ub].
+            Divide by the probability of [lb, ub]; nan where that is 0.
         """
         table, speeds, z = self._at(v, given)
         low = -np.inf if lb is None else real("lb", lb, "a number or None", lambda x: x == x)
@@ -169,7 +169,8 @@ class TabulatedDistribution:
         of_one = (lambda x: x) if func is None else np.vectorize(function("func", func), otypes=[np.float64])
         found = table.expectation(of_one, speeds, z, low, high, 15)
         if flag("conditional", conditional):
-            found = found / (self.cdf(high, v, given) - self.cdf(low, v, given))
+            share = np.asarray(self.cdf(high, v, given) - self.cdf(low, v, given))
+            found = np.divide(found, share, out=np.full_like(found, np.nan), where=share > 0.0)
         return found[()]
 
     def entropy(self, v: npt.ArrayLike, given: npt.ArrayLike | None = None) -> Values:
@@ -204,12 +205,13 @@ class TabulatedDistribution:
         table, speeds, z = self._at(v, given)
         own = np.broadcast_shapes(speeds.shape, z.shape)
         wanted = own if size is None else shape("size", size)
-        if wanted != own and not _reaches(own, wanted):
+        if not _reaches(own, wanted):
             raise ParameterError(wrong("size", size, f"a shape that {own} broadcasts to"))
         available = available_memory()
-        if 8 * math.prod(wanted) > available:
+        if 8 * math.prod(length or 1 for length in wanted) > available:
+            name, value = ("v", v) if size is None else ("size", size)
             allowed = f"at most {available // 8:.4g} draws, which this process can hold"
-            raise TooLargeError(wrong("size", size, allowed))
+            raise TooLargeError(wrong(name, value, allowed))
         return table.draw(speeds, z, wanted, _seed(random_state), threads)[()]
 
     @cached_property
@@ -229,7 +231,9 @@ class TabulatedDistribution:
         given: npt.ArrayLike | None,
     ) -> Values:
         table, speeds, z = self._at(v, given)
-        return table.value(what, numbers(name, x), speeds, z)[()]
+        points = numbers(name, x)
+        check_shapes(**{name: points, "v": speeds, "given": z})
+        return table.value(what, points, speeds, z)[()]
 
     def _at(self, v: npt.ArrayLike, given: npt.ArrayLike | None) -> tuple[Table, Floats, Floats]:
         """Give the table to use, with speeds and conditions inside its range or clamped to it."""
@@ -247,6 +251,7 @@ class TabulatedDistribution:
                 wrong("given", given, "None: the distribution was learned without a condition")
             )
         z = numbers("given", given)
+        check_shapes(v=speeds, given=z)
         self._refuse("given", z, (z < 0.0) | (z > 1.0), f"in [0, 1], {self.given}")
         if not self._clamps:
             self._seen(speeds, z)
@@ -287,11 +292,10 @@ def numbers(name: str, values: npt.ArrayLike, unit: str = "1") -> Floats:
     return reals(name, values, "a number or an array of numbers", unit=unit, finite=False)
 
 
-def _reaches(shape: tuple[int, ...], larger: tuple[int, ...]) -> bool:
-    try:
-        return np.broadcast_shapes(shape, larger) == larger
-    except ValueError:
-        return False
+def _reaches(own: tuple[int, ...], larger: tuple[int, ...]) -> bool:
+    """Whether an array of the first shape can be broadcast to the second, of which NumPy may have none."""
+    last = larger[len(larger) - len(own) :]
+    return len(own) <= len(larger) and all(a in (1, b) for a, b in zip(own, last, strict=True))
 
 
 def _seed(random_state: RandomState) -> int:

@@ -37,7 +37,7 @@ class Counts(Content):
     edges : ndarray, shape (bins + 1,)
         Strictly increasing, finite; the bins may have any width.
     count : ndarray, shape (bins,)
-        Samples in each bin, >= 0.
+        Samples in each bin, whole numbers >= 0.
     below, above : int, default 0
         Samples below the first and above the last edge.
 
@@ -68,7 +68,8 @@ class Counts(Content):
         count = np.array(reals("count", self.count, allowed, dimensions=(1,)))
         if count.size != edges.size - 1:
             raise ParameterError(wrong("count", self.count, allowed))
-        check_each("count", count, (count >= 0) & (count <= _MOST), "a count in [0, 2**53]")
+        whole_number = (count >= 0) & (count <= _MOST) & (count == np.rint(count))
+        check_each("count", count, whole_number, "a whole number in [0, 2**53]")
         below, above = (whole(name, getattr(self, name), 0, 2**53) for name in ("below", "above"))
         numbers = np.concatenate([[below], count, [above]])
         if np.count_nonzero(numbers) < 2:

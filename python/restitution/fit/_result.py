@@ -18,6 +18,7 @@ from restitution._display import table, value
 Array = NDArray[np.float64]
 
 _LARGEST = 1e100
+_NARROWEST = 1e-100
 _MOST_DRAWS = 10**9
 
 
@@ -128,6 +129,9 @@ def finite_samples(samples: ArrayLike, location: float | None = None) -> Array:
     centre = float(x[0]) if location is None else location
     if np.all(x == centre):
         raise ValueError(f"samples: all {x.size} equal {centre!r}; the likelihood of a scale has no maximum")
+    spread = float(np.abs(x - centre).max())
+    if spread < _NARROWEST:
+        raise ValueError(f"samples: spread over {spread:g}; at least {_NARROWEST:g} can be squared")
     return x
 
 

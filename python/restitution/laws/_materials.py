@@ -17,6 +17,8 @@ from restitution._parameters import Allowed, Number, ParameterError, Parameters,
 
 Floats = npt.NDArray[np.float64]
 
+_FASTEST = np.finfo(np.float64).max
+
 
 class Material(Parameters):
     """A normal coefficient of restitution ε_n that depends on the speed; call it to see it."""
@@ -36,6 +38,8 @@ class Material(Parameters):
             ε_n, of the shape of `speed`; nan for nan.
         """
         v = np.abs(reals("speed", speed, "real numbers (m/s), or nan", unit="m s-1", finite=False))
+        # At infinity the quotient of polynomials has no value; at the largest double it is 0 to 90 digits.
+        v = np.minimum(v, _FASTEST)
         return np.where(np.isnan(v), np.nan, self.compiled.at(v.ravel()).reshape(v.shape))
 
     @abstractmethod

@@ -18,6 +18,8 @@ LOWEST_RATE = 2000.0
 """In Hz; below it nothing is left of an impact's sound."""
 HIGHEST_RATE = 1e6
 _SHORTEST = 0.1
+_LOUDEST = 1e100
+"""Over full scale; the power of such a sound is a number."""
 _SOURCE = "a path, or samples of shape (n,) or (n, channels)"
 
 
@@ -56,10 +58,15 @@ def load(source: str | PathLike[str] | npt.ArrayLike, rate: float | None) -> tup
         )
     if not np.isfinite(samples).all():
         raise ParameterError(Problem(name, ": samples that are NaN or infinite; must be finite"))
-    samples = samples - np.mean(samples, axis=0)
-    if not np.abs(samples).max() > 0.0:
+    if not samples.shape[1]:
+        raise ParameterError(Problem(name, ": no channel; must have at least one"))
+    if not np.abs(samples).max() <= _LOUDEST:
+        text = f": samples up to {np.abs(samples).max():.3g} of full scale; must be at most {_LOUDEST:g}"
+        raise ParameterError(Problem(name, text))
+    # Asked before the mean is taken off, whose rounding would be heard.
+    if not np.ptp(samples, axis=0).max() > 0.0:
         raise ParameterError(Problem(name, ": silence; every sample has the same value"))
-    return samples, own
+    return samples - np.mean(samples, axis=0), own
 
 
 def _file(path: Path) -> tuple[Array, float]:
