@@ -1,6 +1,6 @@
 """Results that compare and hash by what they hold, with NaN equal to NaN, also after a journey by pickle."""
 
-from collections.abc import Mapping, Set
+from collections.abc import Callable, Mapping, Set
 from dataclasses import fields
 from functools import cached_property
 from inspect import getattr_static
@@ -19,7 +19,7 @@ class Content:
     def __eq__(self, other: object) -> bool:
         if type(other) is not type(self):
             return NotImplemented
-        return all(same(one, getattr(other, name)) for name, one in self._compared().items())
+        return same(self._compared(), other._compared())
 
     def __hash__(self) -> int:
         return hash((type(self), *map(_key, self._compared().values())))
@@ -56,16 +56,33 @@ def check_names(kind: type, wanted: Set[str], found: Set[str]) -> None:
 
 def same(one: Any, other: Any) -> bool:
     """Whether two parts are of one kind and hold the same."""
-    if isinstance(one, np.ndarray) and isinstance(other, np.ndarray):
-        return one.dtype == other.dtype and np.array_equal(one, other, equal_nan=one.dtype.kind == "f")
-    if isinstance(one, xr.Dataset) and isinstance(other, xr.Dataset):
-        return one.identical(other)
-    if isinstance(one, Mapping) and isinstance(other, Mapping):
-        return one.keys() == other.keys() and all(same(part, other[name]) for name, part in one.items())
-    if isinstance(one, tuple) and isinstance(other, tuple):
-        return len(one) == len(other) and all(map(same, one, other))
+    for kind, equal in _ALIKE.items():
+        if isinstance(one, kind) or isinstance(other, kind):
+            # What such a part says of one of another kind has no truth value, or a wrong one.
+            return isinstance(one, kind) and isinstance(other, kind) and bool(equal(one, other))
     both_nan = isinstance(one, float) and isinstance(other, float) and one != one and other != other
     return both_nan or bool(one == other)
+
+
+def _same_arrays(one: Any, other: Any) -> bool:
+    return one.dtype == other.dtype and np.array_equal(one, other, equal_nan=one.dtype.kind == "f")
+
+
+def _same_mappings(one: Any, other: Any) -> bool:
+    return one.keys() == other.keys() and all(same(part, other[name]) for name, part in one.items())
+
+
+def _same_tuples(one: Any, other: Any) -> bool:
+    return len(one) == len(other) and all(map(same, one, other))
+
+
+_ALIKE: dict[type, Callable[[Any, Any], bool]] = {
+    np.ndarray: _same_arrays,
+    xr.Dataset: xr.Dataset.identical,
+    xr.DataTree: xr.DataTree.identical,
+    Mapping: _same_mappings,  # after those of xarray, which are mappings, too
+    tuple: _same_tuples,
+}
 
 
 def _key(part: Any) -> Any:
@@ -74,6 +91,8 @@ def _key(part: Any) -> Any:
         return part.shape
     if isinstance(part, xr.Dataset):
         return tuple(sorted((str(name), size) for name, size in part.sizes.items()))
+    if isinstance(part, xr.DataTree):
+        return tuple((path, _key(node.dataset)) for path, node in part.subtree_with_keys)
     if isinstance(part, Mapping):
         return tuple((name, _key(value)) for name, value in sorted(part.items()))
     if isinstance(part, tuple):

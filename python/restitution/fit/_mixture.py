@@ -38,6 +38,14 @@ class Mixture(Content):
     first: Any
     second: Any
 
+    def _compared(self) -> dict[str, Any]:
+        # SciPy's distributions are equal to themselves alone.
+        parts = {
+            name: (type(one.dist), one.args, one.kwds)
+            for name, one in (("first", self.first), ("second", self.second))
+        }
+        return {"share": self.share, **parts}
+
     def _both(self, what: str, x: ArrayLike) -> Array:
         one, other = (getattr(part, what)(x) for part in (self.first, self.second))
         return np.asarray(self.share * one + (1.0 - self.share) * other)

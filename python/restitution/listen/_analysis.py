@@ -12,6 +12,7 @@ import xarray as xr
 from pydantic import Field, model_validator
 
 from restitution import flight
+from restitution._content import Content
 from restitution._files import path_from
 from restitution._parameters import (
     Allowed,
@@ -81,8 +82,8 @@ class Setting(Parameters):
         return flight.Drag.of_sphere(diameter=self.diameter, mass=self.mass, gravity=self.gravity)
 
 
-@dataclass(frozen=True)
-class Series:
+@dataclass(frozen=True, eq=False)
+class Series(Content):
     """One series of impacts.
 
     Attributes
@@ -155,8 +156,8 @@ class Series:
         return text + "."
 
 
-@dataclass(frozen=True)
-class Analysis:
+@dataclass(frozen=True, eq=False)
+class Analysis(Content):
     """All results of a recording.
 
     Attributes

@@ -7,6 +7,7 @@ import numpy.typing as npt
 import xarray as xr
 
 from restitution import flight
+from restitution._content import Content
 from restitution._parameters import ParameterError, TooLargeError
 from restitution.bodies import from_roundness
 from restitution.budget import ErrorBudget, error_budget
@@ -19,8 +20,8 @@ _APART = 5e-3
 """Difference in ε by which the law of a ball may be off the best law: the shape, too, bends ε(v)."""
 
 
-@dataclass(frozen=True)
-class Shape:
+@dataclass(frozen=True, eq=False)
+class Shape(Content):
     """Posterior and error budget of one series.
 
     Attributes

@@ -2,11 +2,13 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from types import MappingProxyType
 from typing import Any
 
 import numpy as np
 import xarray as xr
 
+from restitution._content import Content
 from restitution._parameters import ParameterError, Problem, unknown, wrong
 from restitution._run import Run
 
@@ -19,8 +21,8 @@ TASK = 100_000_000
 """Impacts of a task, at most, where batches are not larger."""
 
 
-@dataclass(frozen=True)
-class Effort:
+@dataclass(frozen=True, eq=False)
+class Effort(Content):
     """Particles and batches of a point.
 
     Particles come in blocks of the run's ``particles``; a block is cut into batches. A point begins with one
@@ -36,7 +38,7 @@ class Effort:
         Most blocks of a point, a power of 2.
     impacts : int
         Most impacts of a particle.
-    until : dict of str to float or str
+    until : mapping of str to float or str
         Standard errors that are asked for: of a variable, absolute or, as ``"1 %"``, relative.
     velocities : tuple of two floats, or None
         Bins of impact velocity, by their centres, in which they are asked for; in m/s.
@@ -146,7 +148,7 @@ def effort(table: Any, run: Run) -> Effort:
         text = ": particles cannot be added where orientation or spin are given one by one"
         raise ParameterError(Problem("effort.until", text))
     blocks = 1 << (most // run.particles).bit_length() - 1
-    return Effort(run.particles, batches, blocks, run.impacts, dict(until), velocities)
+    return Effort(run.particles, batches, blocks, run.impacts, MappingProxyType(dict(until)), velocities)
 
 
 def _velocities(value: Any) -> tuple[float, float] | None:
