@@ -3,6 +3,7 @@
 import os
 import re
 import shutil
+import sys
 from pathlib import Path
 
 import pytest
@@ -33,12 +34,13 @@ def test_what_zarr_needs(monkeypatch: pytest.MonkeyPatch) -> None:
         ):
             need_zarr(Path("store"))
     with monkeypatch.context() as patched:
-        patched.setitem(__import__("sys").modules, "zarr", None)
+        patched.setitem(sys.modules, "zarr", None)
         with pytest.raises(
             ImportError, match=r"^parameter studies need zarr: pip install 'restitution\[sweep\]'$"
         ):
             need_zarr(Path("store"))
     with monkeypatch.context() as patched:
+        patched.delitem(sys.modules, "zarr")  # what is there has its room
         patched.setattr("restitution._memory.available_memory", lambda: 99_999_999)
         with pytest.raises(MemoryError, match=r"a study: takes 100 MB of memory"):
             need_zarr(Path("store"))

@@ -5,15 +5,20 @@ from pathlib import Path
 
 MOST = 2**28
 """Bytes of a file that is read as a whole; tables of times and parameters of runs are far below it."""
+_PIECE = 2**20
+"""Bytes that are read at a time."""
 
 
 def content(path: Path) -> bytes:
     """Read a file as a whole; an OSError that names it if it cannot be read, or is longer than any table."""
+    found = bytearray()
     with path.open("rb") as file:
-        found = file.read(MOST + 1)
+        # Python takes room for all that is asked for, however short the file is.
+        while piece := file.read(min(_PIECE, MOST + 1 - len(found))):
+            found += piece
     if len(found) > MOST:
         raise OSError(errno.EFBIG, f"longer than {MOST >> 20} MiB", str(path))
-    return found
+    return bytes(found)
 
 
 def check_regular(path: Path) -> None:

@@ -3,6 +3,7 @@
 import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
+from contextvars import ContextVar
 from importlib import import_module
 from pathlib import Path
 from typing import Annotated, Any, NoReturn
@@ -19,6 +20,9 @@ FAILED, BAD_INPUT, WARNED, INTERRUPTED = 1, 2, 3, 130
 
 Other signals that end a command give 128 + their number.
 """
+
+_RUNNING = ContextVar("command", default="restitution")
+"""The command that runs, as it is typed."""
 
 _LONGEST = 1000
 """Letters of a line of an error, which the name of a file can make longer than a terminal holds."""
@@ -71,6 +75,11 @@ class _Flags:
 class Command(_Flags, TyperCommand):
     """A command."""
 
+    def invoke(self, ctx: Any) -> Any:
+        """Run it, and keep its name for errors that have no words."""
+        _RUNNING.set(ctx.command_path)
+        return super().invoke(ctx)
+
 
 class Group(_Flags, TyperGroup):
     """A group of commands."""
@@ -82,15 +91,16 @@ def progress(quiet: bool) -> bool:
 
 
 @contextmanager
-def errors_in_a_line(*libraries: str) -> Iterator[None]:
+def errors_in_a_line(*libraries: str, room: int = _ROOM) -> Iterator[None]:
     """Show expected errors as one line each instead of a traceback; signals end the block likewise.
 
     The libraries are loaded first: the work would be lost if there were no room for what writes its result.
+    `room` is what they and the work take of address space, in bytes.
     """
     with ending() as came:
         try:
             if libraries:
-                check_address_space("this command", _ROOM)
+                check_address_space("this command", room)
             for name in libraries:
                 import_module(name)
             yield
@@ -119,7 +129,7 @@ def _failed(error: Exception) -> NoReturn:
         case OSError():
             fail(f"{_named(error.filename)}: {error.strerror}" if error.filename else str(error), FAILED)
         case RuntimeError() | MemoryError() | ImportError():  # NumericalError is a RuntimeError
-            fail(str(error) or "out of memory", FAILED)
+            fail(str(error) or f"{_RUNNING.get()}: out of memory", FAILED)
     raise error
 
 

@@ -6,10 +6,11 @@ from typing import Annotated
 import typer
 
 from restitution._cli._common import Overwrite, Quiet, errors_in_a_line
+from restitution._memory import check_room
 from restitution._streams import say, tell
 
-_ROOM = 500_000_000
-"""Bytes that the libraries and the analysis of a minute of sound take."""
+_ROOM, _ADDRESSES = 500_000_000, 800_000_000
+"""Bytes of memory and of address space that the libraries and the analysis of a minute of sound take."""
 
 
 def listen(
@@ -44,10 +45,9 @@ def listen(
     covariance (netCDF).
     """
     with errors_in_a_line():
-        from restitution._memory import check_room
-        from restitution._parameters import ParameterError
-
         check_room("listen", _ROOM)  # before the libraries are there
+    with errors_in_a_line("netCDF4", "restitution.listen", room=_ADDRESSES):
+        from restitution._parameters import ParameterError
         from restitution.listen import write
         from restitution.listen._analysis import Setting
 

@@ -48,6 +48,13 @@ class Engine:
             self._stop.set()
 
 
+def width(client: Any, threads: int | None) -> int:
+    """Give the number of threads of this machine that work; none where workers of a client do."""
+    if client is not None:
+        return 0
+    return checked_threads(threads) or int(_core.build_info()["threads"])
+
+
 @contextmanager
 def engine(client: Any, threads: int | None) -> Iterator[Engine]:
     """Open the engine of a client, or of this machine.
@@ -60,7 +67,7 @@ def engine(client: Any, threads: int | None) -> Iterator[Engine]:
         Number of threads without a client; one per core by default.
     """
     if client is None:
-        number = checked_threads(threads) or _core.build_info()["threads"]
+        number = width(client, threads)
         stop = threading.Event()
         with ThreadPoolExecutor(number, thread_name_prefix="restitution-sweep") as pool:
             try:

@@ -8,7 +8,7 @@ from restitution._files import path_from
 from restitution._formats import ZARR, check_name
 from restitution._parameters import ParameterError, Problem, shown, wrong
 from restitution.study._drive import Driver
-from restitution.study._engines import engine
+from restitution.study._engines import engine, width
 from restitution.study._identity import check
 from restitution.study._layout import check_layout
 from restitution.study._status import Status, status, study_in
@@ -65,7 +65,7 @@ def merge(
     if isinstance(parts, str | bytes) or not isinstance(parts, Sequence):
         raise ParameterError(wrong("parts", parts, "a list of paths"))
     path, others = path_from("out", out), [path_from(f"parts[{i}]", part) for i, part in enumerate(parts)]
-    need_zarr(path)
+    need_zarr(path, width(None, threads))
     if not path.exists() and not others:
         raise ParameterError(Problem("out", f" = {shown(out)}: there is no such store, and no parts for it"))
     if not path.exists():

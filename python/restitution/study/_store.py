@@ -10,6 +10,7 @@ import contextlib
 import hashlib
 import math
 import os
+import sys
 import threading
 import warnings
 from collections.abc import Callable, Iterator, Mapping
@@ -21,7 +22,7 @@ import numpy as np
 import numpy.typing as npt
 import xarray as xr
 
-from restitution._memory import check_room
+from restitution._memory import check_address_space, check_room
 from restitution.study._axes import Design
 from restitution.study._identity import readable, threads_for
 from restitution.study._layout import check_array
@@ -36,17 +37,26 @@ _CHUNK = 4_000_000
 """Bytes of a chunk of the other variables, at most where the shape allows it."""
 
 
-_ROOM = 100_000_000
-"""Bytes that Zarr takes, with its threads: one that starts where memory ends is waited for without end."""
+_ROOM, _ADDRESSES, _OF_THREAD = 100_000_000, 250_000_000, 75_000_000
+"""Bytes of memory that Zarr takes; of address space, with the threads by which it reads, and of one thread.
 
-
+A thread that starts where memory ends is waited for without end.
+"""
+_WRITERS = 6
+"""Threads by which Zarr writes, as many as it ever had in a study."""
 _FILES = 4
 """Files that Zarr opens at least: three for its loop, of which it leaves pieces otherwise, and a chunk's."""
 
 
-def need_zarr(path: Path) -> None:
-    """Say what to install; refuse a store where there is no room for Zarr, no thread, or no file to open."""
-    check_room("a study", _ROOM)
+def need_zarr(path: Path, threads: int | None = None) -> None:
+    """Say what to install; refuse a store where there is no room for Zarr, no thread, or no file to open.
+
+    Where it is to be written, `threads` work on it, 0 if others do.
+    """
+    if "zarr" not in sys.modules:
+        more = 0 if threads is None else (threads + _WRITERS) * _OF_THREAD
+        check_room("a study", _ROOM)
+        check_address_space("a study" if not threads else f"a study, threads = {threads}", _ADDRESSES + more)
     with contextlib.ExitStack() as files:
         try:
             for _ in range(_FILES):
@@ -67,6 +77,23 @@ def need_zarr(path: Path) -> None:
         raise ImportError(
             f"parameter studies need zarr 3, here is {zarr.__version__}: pip install 'restitution[sweep]'"
         )
+    if not __debug__:
+        _try(zarr)
+
+
+def _try(zarr: Any) -> None:
+    """Make groups in memory and open them: Zarr may do in assertions what is left out under `python -O`."""
+    memory = zarr.storage.MemoryStore()
+    try:
+        group = zarr.create_group(memory, zarr_format=3)
+        group.create_group("tasks")
+        group["tasks"]
+        with warnings.catch_warnings(action="ignore"):
+            zarr.consolidate_metadata(memory, zarr_format=3)
+        zarr.open_group(memory, mode="r")
+    except Exception:
+        text = f"zarr {zarr.__version__} does not work under python -O or PYTHONOPTIMIZE: leave that out"
+        raise RuntimeError(f"parameter studies: {text}") from None
 
 
 def _naming(method: F) -> F:

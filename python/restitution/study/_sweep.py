@@ -15,7 +15,7 @@ from restitution._resources import bar as bar_of
 from restitution._streams import tell as say
 from restitution.study._create import create_or_open
 from restitution.study._drive import Driver, Progress
-from restitution.study._engines import engine
+from restitution.study._engines import engine, width
 from restitution.study._estimate import estimate
 from restitution.study._identity import check
 from restitution.study._point import count, point_of, with_template
@@ -94,7 +94,7 @@ def sweep(
     wanted = study_of(study)
     points = _shard(shard, wanted.design.points)
     path = path_from("out", out)
-    need_zarr(path)
+    need_zarr(path, width(client, threads))
     if path.exists():
         check(path, wanted)
     else:
