@@ -195,7 +195,7 @@ def test_a_full_disk_leaves_nothing(parameters: Path) -> None:
     ("error", "code", "text"),
     [
         (rs.NumericalError("particle 3 (seed 1): ..."), FAILED, "error: particle 3 (seed 1): ...\n"),
-        (MemoryError(), FAILED, "error: out of memory\n"),
+        (MemoryError(), FAILED, "error: root simulate: out of memory\n"),
         (KeyboardInterrupt(), INTERRUPTED, "interrupted\n"),
     ],
     ids=["numerics", "memory", "Ctrl-C while saving"],

@@ -98,12 +98,17 @@ def put(data: xr.Dataset, draft: Path) -> None:
         raise OSError(errno.EIO, f"cannot be written: {error}", str(draft)) from error
 
 
+_BESIDE = 2**20
+"""Bytes that HDF5 keeps beside the numbers of a file, at most."""
+
+
 def _ask_for_room(draft: Path, size: int) -> None:
-    """Raise the system's own error where the disk is full, or files may not be as large."""
+    """Raise the system's own error where the disk is full, or files may not be so much larger."""
     if not hasattr(os, "posix_fallocate"):
         return
     try:
         with draft.open("ab") as file:
-            os.posix_fallocate(file.fileno(), 0, size)
+            # It may have failed in what HDF5 keeps beside the numbers, which itself would fit.
+            os.posix_fallocate(file.fileno(), file.tell(), size + _BESIDE)
     except OSError as error:
         raise OSError(error.errno, error.strerror, str(draft)) from None
