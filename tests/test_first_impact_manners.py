@@ -282,7 +282,7 @@ def test_errors_name_the_argument(told: str, use: Callable[[FirstImpact], object
 
 def test_draws_are_what_fits_into_memory(monkeypatch: pytest.MonkeyPatch) -> None:
     """Three numbers a draw: the uniform one, the quantile, and what it is found with."""
-    monkeypatch.setattr("restitution.analytic._frozen.available_memory", lambda: 2399)
+    monkeypatch.setattr("restitution._resources.available_memory", lambda: 2399)
     assert np.shape(ALL[0].rvs(size=(9, 11), random_state=1)) == (9, 11)
     with pytest.raises(
         MemoryError, match=r"^size = 100: must be at most 99 draws, which this process can hold$"

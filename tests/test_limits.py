@@ -120,8 +120,8 @@ dist = rs.FluctuatingRestitution.learn(body, law, particles=200, impacts=400, ve
 used = int(open("/proc/self/statm").read().split()[0]) * resource.getpagesize()
 resource.setrlimit(resource.RLIMIT_AS, (used + 2**29, resource.RLIM_INFINITY))
 told(dist.rvs, 0.25, size=3 * 10**8)
-from restitution.distribution import _tabulated
-_tabulated.available_memory = lambda: 2**60
+from restitution import _resources
+_resources.available_memory = lambda: 2**60
 told(dist.rvs, 0.25, size=3 * 10**8)
 told(dist.rvs, 0.25, size=10**5)
 """)

@@ -41,6 +41,20 @@ def check_memory(impacts: int, bytes_per_impact: int) -> None:
         raise TooLargeError(Problem("particles * impacts", f" = {impacts:.4g}: must be {allowed}"))
 
 
+def check_size(name: str, value: Any, number: int, bytes_of_each: int, what: str) -> None:
+    """Refuse an argument by which an array is larger than this process can hold.
+
+    Raises
+    ------
+    TooLargeError
+        Naming the argument.
+    """
+    available = available_memory()
+    if number * bytes_of_each > available:
+        allowed = f"at most {available // bytes_of_each:.4g} {what}, which this process can hold"
+        raise TooLargeError(wrong(name, value, allowed))
+
+
 @contextmanager
 def progress_bar(what: str, total: int, unit: str, *, show: bool) -> Iterator[Callable[[int], None] | None]:
     """Show a bar on standard error; yields what takes the amount done, or None where none is shown.

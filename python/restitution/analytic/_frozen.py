@@ -15,8 +15,8 @@ from restitution._arrays import flag, function, real, reals, shape, whole
 from restitution._arrays import generator as _generator
 from restitution._content import check_state
 from restitution._display import table, value
-from restitution._memory import available_memory
-from restitution._parameters import ParameterError, TooLargeError, wrong
+from restitution._parameters import ParameterError, wrong
+from restitution._resources import check_size
 from restitution.analytic._orientation import Floats, OrientationName
 from restitution.bodies import BODIES, Body
 from restitution.laws import LAWS, Law
@@ -191,10 +191,8 @@ class FirstImpact(ABC):
     def rvs(self, size: int | tuple[int, ...] | None = None, random_state: RandomState = None) -> Values:
         """Draw independent ε; the same ``random_state`` (seed or generator's state) gives the same ones."""
         lengths = None if size is None else shape("size", size)
-        available = available_memory()
-        if lengths is not None and 3 * 8 * math.prod(length or 1 for length in lengths) > available:
-            allowed = f"at most {available // 24:.4g} draws, which this process can hold"
-            raise TooLargeError(wrong("size", size, allowed))
+        if lengths is not None:
+            check_size("size", size, math.prod(length or 1 for length in lengths), 3 * 8, "draws")
         return self._drawn(np.asarray(generator(random_state).random(lengths)))
 
     def _drawn(self, uniform: Floats) -> Values:

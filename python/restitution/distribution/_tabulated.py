@@ -13,8 +13,8 @@ import xarray as xr
 
 from restitution._arrays import check_each, check_shapes, flag, function, real, reals, shape, whole
 from restitution._content import check_names
-from restitution._memory import available_memory
-from restitution._parameters import ParameterError, TooLargeError, _plain_number, wrong
+from restitution._parameters import ParameterError, _plain_number, wrong
+from restitution._resources import check_size
 from restitution.distribution import _store
 from restitution.distribution._learn import Given
 from restitution.distribution._table import Floats, Table
@@ -207,11 +207,9 @@ class TabulatedDistribution:
         wanted = own if size is None else shape("size", size)
         if not _reaches(own, wanted):
             raise ParameterError(wrong("size", size, f"a shape that {own} broadcasts to"))
-        available = available_memory()
-        if 8 * math.prod(length or 1 for length in wanted) > available:
-            name, value = ("v", v) if size is None else ("size", size)
-            allowed = f"at most {available // 8:.4g} draws, which this process can hold"
-            raise TooLargeError(wrong(name, value, allowed))
+        longest = ("v", v) if speeds.size >= z.size else ("given", given)
+        name, asked = longest if size is None else ("size", size)
+        check_size(name, asked, math.prod(length or 1 for length in wanted), 8, "draws")
         return table.draw(speeds, z, wanted, _seed(random_state), threads)[()]
 
     @cached_property

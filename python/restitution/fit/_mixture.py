@@ -14,6 +14,7 @@ from restitution._arrays import real
 from restitution._content import Content
 from restitution.fit._asymmetric import asymmetric_laplace, frozen
 from restitution.fit._counts import Counts, fit_counts
+from restitution.fit._in_parts import drawn, draws
 from restitution.fit._result import Array, Fit, fitted
 from restitution.fit._source import Samples, Window, taken
 
@@ -82,8 +83,8 @@ class Mixture(Content):
 
     def rvs(self, size: int, random_state: np.random.Generator) -> Array:
         """Independent draws, shape (size,)."""
-        chosen = random_state.random(size) < self.share
-        first, second = (part.rvs(size=size, random_state=random_state) for part in (self.first, self.second))
+        chosen = draws(random_state.random, size) < self.share
+        first, second = (drawn(part, size, random_state) for part in (self.first, self.second))
         return np.asarray(np.where(chosen, first, second))
 
 

@@ -14,6 +14,8 @@ from numpy.typing import ArrayLike, NDArray
 from restitution._arrays import generator, reals, whole
 from restitution._content import Content
 from restitution._display import table, value
+from restitution._resources import check_size
+from restitution.fit import _in_parts as in_parts
 
 Array = NDArray[np.float64]
 
@@ -98,11 +100,15 @@ class Fit(Content):
     def _at(self, function: Any, x: ArrayLike) -> Array:
         points = reals("x", x, "numbers", finite=False)
         with np.errstate(over="ignore"):  # so far off that the density is 0
-            return np.asarray(function(points))
+            return in_parts.values(function, points)
 
     def rvs(self, size: int, seed: int | np.random.Generator = 1) -> Array:
         """`size` independent draws, shape (size,)."""
         number, random = whole("size", size, 0, _MOST_DRAWS), generator("seed", seed)
+        if hasattr(self.distribution, "dist"):  # SciPy's own
+            check_size("size", size, number, 8, "draws")
+            return in_parts.drawn(self.distribution, number, random)
+        check_size("size", size, number, 4 * 8, "draws")  # of a mixture, from both parts
         return np.asarray(self.distribution.rvs(size=number, random_state=random))
 
 

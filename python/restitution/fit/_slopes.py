@@ -14,6 +14,7 @@ from restitution._bins import LARGEST, centres, increasing_edges
 from restitution._content import Content
 from restitution._parameters import ParameterError, wrong
 from restitution._recorded import counted, records
+from restitution._resources import check_size
 from restitution.fit._asymmetric import asymmetric_laplace
 from restitution.fit._clusters import MOST_RESAMPLES
 from restitution.fit._counts import Counts
@@ -246,11 +247,12 @@ def slopes(
     edges = increasing_edges(velocity_bins, "velocity_bins")
     velocity, restitution = records("data", data, "impact_velocity", "restitution")
     particles = velocity.shape[0]
-    times = random.multinomial(particles, np.full(particles, 1.0 / particles), size=resamples)
     rows = edges.size - 1
+    check_size("resamples", resamples, resamples, 2 * 8 * len(_NAMES) * rows, "draws")
     fits: list[Fit | None] = [None] * rows
     near, members = np.full(rows, np.nan), np.zeros(rows)
     drawn = np.full((rows, resamples, len(_NAMES)), np.nan)
+    fitted: dict[int, tuple[NDArray[np.intp], Array]] = {}
     for i in range(rows):
         inside = (velocity >= edges[i]) & (velocity < edges[i + 1]) & (np.abs(restitution) < LARGEST)
         particle, x = np.nonzero(inside)[0], restitution[inside]
@@ -261,7 +263,12 @@ def slopes(
             continue
         one = asymmetric_laplace(x, location)
         fits[i], near[i] = one, distances(one, x)[0]
-        drawn[i] = [_again(x, row[particle], location) for row in times]
+        fitted[i] = particle, x
+    equal = np.full(particles, 1.0 / particles)
+    for k in range(resamples):  # one after the other: all take room for resamples times particles
+        times = random.multinomial(particles, equal)
+        for i, (particle, x) in fitted.items():
+            drawn[i, k] = _again(x, times[particle], location)
     # A draw without any of the bin's particles leaves nan.
     errors = np.array([_deviation(one) for one in drawn])
     return _assembled(edges, fits, near, errors, drawn, members)
