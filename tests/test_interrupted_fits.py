@@ -120,3 +120,22 @@ except KeyboardInterrupt:
         [sys.executable, "-c", code], capture_output=True, text=True, check=True, timeout=100
     )
     assert json.loads(done.stdout) < 1.0
+
+
+def test_nothing_is_left_to_be_imported_when_a_run_ends() -> None:
+    """What xarray imports with its first index would take a quarter of a second after Ctrl-C."""
+    code = """
+import sys
+import restitution
+assert "xarray" not in sys.modules
+restitution.statistics, restitution.simulate
+before = set(sys.modules)
+import numpy as np
+body, law = restitution.Dumbbell(radius=3e-3, separation=3e-4), restitution.Frictionless(normal=0.9)
+bins = {"velocity_bins": np.linspace(0, 1, 4), "restitution_bins": np.linspace(-1, 3, 4)}
+restitution.statistics(body, law, particles=2, impacts=2, **bins)
+late = {name for name in set(sys.modules) - before if name.partition(".")[0] in ("dask", "scipy", "pandas")}
+print(sorted(late))
+"""
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout == "[]\n"

@@ -18,6 +18,9 @@ from restitution._memory import check_room
 from restitution._reading import check_regular
 from restitution._run import Run
 
+# With its first index xarray imports dask, which would take its time when Ctrl-C has ended a run.
+xr.Dataset(coords={"impact": [0]})
+
 
 def dataset(
     run: Run, table: dict[str, tuple[tuple[str, ...], npt.NDArray[Any], dict[str, Any]]]
