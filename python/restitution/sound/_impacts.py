@@ -12,7 +12,7 @@ import numpy as np
 import numpy.typing as npt
 import xarray as xr
 
-from restitution._parameters import ParameterError, Problem
+from restitution._parameters import ParameterError, Problem, TooLargeError
 from restitution.flight._times import DOUBLED, DOUBTFUL, GOOD, MISSED, flag_attributes
 from restitution.sound._choice import Choice, choose
 from restitution.sound._envelope import Envelope, bands, envelope, rounding
@@ -84,6 +84,8 @@ def impacts(source: str | PathLike[str] | npt.ArrayLike, rate: float | None = No
         heard.
     OSError
         If the file cannot be read.
+    MemoryError
+        If it is too long for the memory that this process can have.
 
     Notes
     -----
@@ -105,8 +107,16 @@ def impacts(source: str | PathLike[str] | npt.ArrayLike, rate: float | None = No
     >>> np.diff(heard.time.values).round(3).tolist()
     [0.4, 0.36, 0.324, 0.292]
     """
-    samples, own = load(source, rate)
     name = Path(source).name if isinstance(source, str | PathLike) else "source"
+    try:
+        return _heard_in(*load(source, rate), name)
+    except TooLargeError:
+        raise
+    except MemoryError as error:  # of NumPy, which does not say what for, or of SciPy, which says nothing
+        raise MemoryError(f"{name}: takes more memory than this process can have") from error
+
+
+def _heard_in(samples: Array, own: float, name: str) -> xr.Dataset:
     channel, tracks, loudest = _tracks(samples, own)
     if not tracks:
         share = clipped_share(samples)

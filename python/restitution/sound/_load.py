@@ -9,7 +9,8 @@ import numpy.typing as npt
 
 from restitution._arrays import real, reals
 from restitution._files import path_from
-from restitution._parameters import ParameterError, Problem, wrong
+from restitution._memory import available_memory
+from restitution._parameters import ParameterError, Problem, TooLargeError, wrong
 from restitution._reading import check_regular
 
 Array = npt.NDArray[np.float64]
@@ -20,6 +21,8 @@ HIGHEST_RATE = 1e6
 _SHORTEST = 0.1
 _LOUDEST = 1e100
 """Over full scale; the power of such a sound is a number."""
+_OF_TIME, _OF_SAMPLE = 40, 8
+"""Bytes that it takes at least to listen to a time, and to each of its samples in a channel."""
 _SOURCE = "a path, or samples of shape (n,) or (n, channels)"
 
 
@@ -78,7 +81,11 @@ def _file(path: Path) -> tuple[Array, float]:
         message = ": reading sound files needs soundfile: pip install 'restitution[measure]'"
         raise ParameterError(Problem(str(path), message)) from None
     try:
+        about = soundfile.info(path)
+        check_memory(str(path), about.frames, about.channels)
         samples, rate = soundfile.read(path, dtype="float64", always_2d=True)
+    except MemoryError:
+        raise
     except (soundfile.LibsndfileError, RuntimeError) as error:
         reason = str(error).partition(": ")[2].strip() or str(error)
         raise ParameterError(
@@ -91,12 +98,30 @@ def _array(source: Any) -> Array:
     """Take integers at their full scale, and floats as they are; shape (n,) or (n, channels)."""
     numbers = reals("source", source, _SOURCE, unit=None, dimensions=(1, 2), finite=False)
     array = np.asarray(source)
+    check_memory("source", array.shape[0], array[:1].size)
     scale = 1.0
     if array.dtype.kind in "iu":
         info = np.iinfo(array.dtype)
         scale = float(info.max) if array.dtype.kind == "i" else 0.5 * float(info.max)
     samples = numbers / scale
     return samples[:, None] if samples.ndim == 1 else samples
+
+
+def check_memory(name: str, times: int, channels: int) -> None:
+    """Refuse what is too long to be listened to in the memory that this process can have.
+
+    Raises
+    ------
+    TooLargeError
+        Naming the file, or the argument.
+    """
+    needed, available = times * (_OF_TIME + _OF_SAMPLE * channels), available_memory()
+    if needed > available:
+        text = (
+            f": {times:,} samples in {channels} channel{'s' * (channels > 1)} take {needed / 1e9:.3g} GB of "
+            f"memory: must be at most {available / 1e9:.3g} GB, what this process can have"
+        )
+        raise TooLargeError(Problem(name, text))
 
 
 def clipped_share(samples: Array) -> float:
