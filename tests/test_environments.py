@@ -35,7 +35,7 @@ def test_every_command_is_tried() -> None:
     names |= {group.name or "" for group in app.registered_groups}
     assert names <= {name.split()[0] for name in COMMANDS}
     sent = {number for one in ENVIRONMENTS.values() for number in one.signals}
-    assert sent == {signal.SIGINT, signal.SIGTERM, signal.SIGHUP}
+    assert sent == {signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGSTOP, signal.SIGCONT}
 
 
 @pytest.mark.parametrize(
@@ -50,6 +50,13 @@ def test_every_command_is_tried() -> None:
 )
 def test_few_open_files(name: str, surroundings: str) -> None:
     """Their error names what cannot be opened; nothing is left, though listing a folder takes one."""
+    assert command(name, surroundings, random.Random(1)) is None
+
+
+@pytest.mark.parametrize("surroundings", ["stopped and continued", "no assertions"])
+@pytest.mark.parametrize("name", ["statistics", "sweep"])
+def test_other_surroundings(name: str, surroundings: str) -> None:
+    """Who is stopped goes on, and ends at Ctrl-C; where Python leaves assertions out, Zarr's are named."""
     assert command(name, surroundings, random.Random(1)) is None
 
 

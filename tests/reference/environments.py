@@ -172,6 +172,8 @@ ENVIRONMENTS: dict[str, Environment] = {
     "SIGHUP": Environment(signals=(signal.SIGHUP,)),
     "SIGINT twice": Environment(signals=(signal.SIGINT, signal.SIGINT)),
     "SIGTERM and SIGHUP": Environment(signals=(signal.SIGTERM, signal.SIGHUP)),
+    "stopped and continued": Environment(signals=(signal.SIGSTOP, signal.SIGCONT, signal.SIGINT)),
+    "no assertions": variables(PYTHONOPTIMIZE="1"),
     "no home": variables(HOME=None, TMPDIR=None, XDG_CACHE_HOME=None, MPLCONFIGDIR=None),
     "a home that is gone": variables(HOME="/none", TMPDIR="/none", XDG_CACHE_HOME="/none"),
     "files for folders": Environment(_gone),
