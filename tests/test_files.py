@@ -13,7 +13,8 @@ from typing import Any
 import pytest
 
 from restitution import _files
-from restitution._files import _prefix, check, draft_folder, whole_file, whole_folder, write
+from restitution._drafts import draft_folder, prefix
+from restitution._files import check, whole_file, whole_folder, write
 
 
 def names(folder: Path) -> set[str]:
@@ -288,11 +289,11 @@ def test_the_longest_names_have_room_for_a_draft(tmp_path: Path, letter: str) ->
     """A draft's name is longer than that of its file, which may be as long as the file system allows."""
     name = letter * (252 // len(letter.encode())) + ".nc"
     check(tmp_path / name, replace=False)
-    left = tmp_path / f"{_prefix(name)}x.part".replace(f"-{os.getpid()}.", f"-{2**22 + 1}.")
+    left = tmp_path / f"{prefix(name)}x.part".replace(f"-{os.getpid()}.", f"-{2**22 + 1}.")
     left.touch()  # of a process that is no more
     write(tmp_path / name, "all")
     assert [file.name for file in tmp_path.iterdir()] == [name]
-    assert _prefix(name) != _prefix(name.replace(".nc", ".cn"))
+    assert prefix(name) != prefix(name.replace(".nc", ".cn"))
 
 
 def test_permissions_of_new_files_are_not_touched(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -1,34 +1,29 @@
 """Files and folders that appear whole or not at all: everything that the package writes goes through here.
 
-What is written stands in a draft, `.NAME.*.part`, on the same file system, and takes its place in one step
-when it is complete and on the disk. Unless it may replace, that step fails where something else has appeared
-meanwhile. The name of a draft contains the machine and the process that writes it, so that what a killed
-process left is removed by the next one that writes to the same name.
+What is written stands in a draft on the same file system, and takes its place in one step when it is complete
+and on the disk. Unless it may replace, that step fails where something else has appeared meanwhile.
+
+Signals wait (`undisturbed`) from the making of a draft until who removes it knows of it, while drafts take
+their places or what stood there is put back, and while drafts are removed. Then they count, and all of what
+is written is there or nothing.
 """
 
 import errno
 import os
-import platform
 import re
-import secrets
 import shutil
-import tempfile
-from collections.abc import Collection, Iterable, Iterator, Sequence
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from contextlib import ExitStack, contextmanager, suppress
-from functools import cache
-from hashlib import blake2b
+from functools import partial
 from pathlib import Path
 from threading import Lock
-from typing import Any
+from typing import Any, NoReturn
 
+from restitution._drafts import discard, discarding, draft_file, draft_folder, remove_leftovers
 from restitution._parameters import ParameterError, wrong
-from restitution._signals import undisturbed
+from restitution._signals import surely, undisturbed
 
 _MASKING = Lock()
-_LEFT = re.compile(r"\..+\.([0-9a-f]{8})-(\d+)\.[^.]+\.part", re.DOTALL)
-"""The name of a draft, with its machine and its process."""
-_LONGEST = 200
-"""Bytes of a name that a draft's contains as it is: most file systems allow 255 in all."""
 
 
 def path_from(name: str, value: Any) -> Path:
@@ -46,27 +41,8 @@ def check(path: Path, *, replace: bool) -> None:
     """Find out before the work begins whether a file can be written; raises the OSError if it cannot."""
     target = followed(path)
     _refuse_existing(path, target, replace)
-    _draft_of(path, target).unlink()
-
-
-def draft_folder(path: Path) -> Path:
-    """Make an empty folder beside `path`, whose place it is to take, and remove what the dead left."""
-    _remove_leftovers(path.name, path.parent)
-    return Path(tempfile.mkdtemp(prefix=_prefix(path.name), suffix=".part", dir=path.parent))
-
-
-def draft_of(path: Path) -> Path:
-    """Name a draft beside `path`, which nothing has yet."""
-    return path.with_name(f"{_prefix(path.name)}{secrets.token_hex(8)}.part")
-
-
-def remove_all_leftovers(folder: Path) -> None:
-    """Remove what the dead left in a folder and in those below it, whatever its name was to be."""
-    for place, _, names in os.walk(folder):
-        for name in names:
-            found = _LEFT.fullmatch(name)
-            if found and found[1] == _machine() and not _is_alive(int(found[2])):
-                discard([Path(place, name)])
+    with undisturbed():
+        _draft_of(path, target).unlink()
 
 
 def check_folder(path: Path, *, replace: bool) -> None:
@@ -116,8 +92,9 @@ def whole_files(paths: Sequence[Path], *, replace: bool = False) -> Iterator[lis
         _refuse_existing(path, target, replace)
     drafts: list[Path] = []
     try:
-        for path, target in zip(paths, targets, strict=True):
-            drafts.append(_draft_of(path, target))
+        with undisturbed():
+            for path, target in zip(paths, targets, strict=True):
+                drafts.append(_draft_of(path, target))
         yield drafts
         for draft in drafts:
             _finish(draft, 0o666)
@@ -125,18 +102,10 @@ def whole_files(paths: Sequence[Path], *, replace: bool = False) -> Iterator[lis
         for folder in {target.parent for target in targets}:
             _flush(folder)
     except OSError as error:
-        with undisturbed():
-            discard(drafts)
-        for path, *ours in zip(paths, drafts, targets, strict=False):
-            if str(error.filename) in map(str, ours):
-                raise OSError(error.errno, error.strerror or str(error), str(path)) from error
-        if error.filename is None:
-            names = ", ".join(map(str, paths))
-            raise OSError(error.errno, error.strerror or str(error), names) from error
-        raise
+        discard(drafts)
+        _raise_named(error, dict(zip([*targets, *drafts], [*paths, *paths], strict=False)))
     except BaseException:
-        with undisturbed():
-            discard(drafts)
+        discard(drafts)
         raise
 
 
@@ -171,18 +140,13 @@ def whole_folder(path: Path, *, replace: bool = False, names: Collection[str] = 
     for name in names:
         _refuse_existing(path / name, target / name, replace)
     above = [folder for folder in reversed(target.parents) if not folder.exists()]
+    named = {target: path}
     try:
-        target.parent.mkdir(parents=True, exist_ok=True)
-        if target.exists() and not target.is_dir():
-            raise FileExistsError(errno.EEXIST, os.strerror(errno.EEXIST))
-        # Inside a folder that exists, which may be a file system of its own; else beside its place.
-        place = target if target.is_dir() else target.parent
-        draft = draft_folder(place / target.name)
-    except OSError as error:
-        _remove(above)
-        raise OSError(error.errno, f"out cannot be written to: {error.strerror}", str(path)) from None
-    try:
-        with discarding(draft):
+        with ExitStack() as drafts:
+            with undisturbed():
+                place, draft = _begin(path, target)
+                drafts.enter_context(discarding(draft))
+            named[draft] = path
             yield draft
             for file in draft.iterdir():
                 _finish(file, 0o666)
@@ -192,9 +156,11 @@ def whole_folder(path: Path, *, replace: bool = False, names: Collection[str] = 
             else:
                 os.rename(draft, target)
             _flush(place)
+    except OSError as error:
+        _remove(above)
+        _raise_named(error, named)
     except BaseException:
-        with undisturbed():
-            _remove(above)
+        _remove(above)
         raise
 
 
@@ -212,7 +178,7 @@ def followed(path: Path) -> Path:
 
 
 def _refuse_existing(path: Path, target: Path, replace: bool) -> None:
-    if target.exists() and not target.is_file():
+    if path.exists() and not target.is_file():  # a pipe in /dev/fd is there, and leads to no name of a file
         raise OSError(errno.EINVAL, "not a file that can be written", str(path))
     if target.exists() and not replace:
         raise FileExistsError(errno.EEXIST, "exists already", str(path))
@@ -220,82 +186,40 @@ def _refuse_existing(path: Path, target: Path, replace: bool) -> None:
 
 def _draft_of(path: Path, target: Path) -> Path:
     """Make an empty file beside `target`."""
-    _remove_leftovers(target.name, target.parent)
     try:
-        handle, name = tempfile.mkstemp(prefix=_prefix(target.name), suffix=".part", dir=target.parent)
+        return draft_file(target)
     except OSError as error:
-        raise OSError(error.errno, error.strerror, str(path.parent)) from None
-    os.close(handle)
-    return Path(name)
+        # The folder as it was given, but that of a link is where it leads to.
+        folder = target.parent if path.is_symlink() else path.parent
+        raise OSError(error.errno, error.strerror, str(folder)) from None
 
 
-def _prefix(name: str) -> str:
-    return f".{_short(name)}.{_machine()}-{os.getpid()}."
-
-
-def _short(name: str) -> str:
-    """Shorten a name that leaves no room for what a draft's has besides, in the same way always."""
-    whole = os.fsencode(name)
-    if len(whole) <= _LONGEST:
-        return name
-    return whole[: _LONGEST // 2].decode("utf-8", "ignore") + "-" + blake2b(whole, digest_size=8).hexdigest()
-
-
-@cache
-def _machine() -> str:
-    return blake2b(platform.node().encode(), digest_size=4).hexdigest()
-
-
-def _remove_leftovers(name: str, folder: Path) -> None:
-    """Remove drafts of this name whose process, on this machine, has ended."""
-    draft = re.compile(rf"\.{re.escape(_short(name))}\.{_machine()}-(\d+)\.[^.]+\.part")
-    with suppress(OSError):  # a folder that is not there, or cannot be looked into
-        for entry in os.scandir(folder):
-            found = draft.fullmatch(entry.name)
-            if found and not _is_alive(int(found[1])):
-                discard([Path(entry.path)])
-
-
-def _is_alive(process: int) -> bool:
-    if os.name != "posix":  # elsewhere the call would end it
-        return True
+def _begin(path: Path, target: Path) -> tuple[Path, Path]:
+    """Make a draft of a folder, and the folders above it; give also the folder that it is to be moved in."""
     try:
-        os.kill(process, 0)
-    except ProcessLookupError:
-        return False
-    except (OSError, OverflowError):  # of another user
-        return True
-    return True
+        target.parent.mkdir(parents=True, exist_ok=True)
+        if target.exists() and not target.is_dir():
+            raise FileExistsError(errno.EEXIST, os.strerror(errno.EEXIST))
+        # Inside a folder that exists, which may be a file system of its own; else beside its place.
+        place = target if target.is_dir() else target.parent
+        return place, draft_folder(place / target.name)
+    except OSError as error:
+        raise OSError(error.errno, f"out cannot be written to: {error.strerror}", str(path)) from None
 
 
-def discard(drafts: Iterable[Path]) -> None:
-    """Remove drafts and all that is in them, as far as possible, with one open file at a time."""
-    for draft in drafts:
-        for folder, _, names in os.walk(draft, topdown=False):
-            for name in names:
-                with suppress(OSError):
-                    Path(folder, name).unlink()
-            with suppress(OSError):
-                Path(folder).rmdir()
-        with suppress(OSError):  # a file
-            draft.unlink()
-
-
-@contextmanager
-def discarding(draft: Path) -> Iterator[None]:
-    """Discard a folder's draft if the block fails, whatever files it leaves open.
-
-    Those of fonts stay open with a figure that could not be drawn, and the process may have no more.
-    """
-    with ExitStack() as spare:
-        try:
-            spare.callback(os.close, os.open(os.devnull, os.O_RDONLY))
-            yield
-        except BaseException:
-            spare.close()
-            with undisturbed():
-                discard([draft])
-            raise
+def _raise_named(error: OSError, given: Mapping[Path, Path]) -> NoReturn:
+    """Raise an error by the names that were given, where it has none or that of a draft or a target."""
+    if error.errno is None and type(error) is not OSError:  # not of the system, as what a signal may raise
+        raise error
+    name = str(error.filename)
+    for ours, path in given.items():
+        # Of a folder also what is in it; the names of several files may stand in a row.
+        name = str(path).join(re.split(rf"(?<!\S){re.escape(str(ours))}(?=[/\\]|, |$)", name))
+    if error.filename is None:
+        name = ", ".join(map(str, dict.fromkeys(given.values())))
+    elif name == str(error.filename):
+        raise error
+    raise OSError(error.errno, error.strerror or str(error), name) from error
 
 
 def _finish(draft: Path, mode: int) -> None:
@@ -342,44 +266,46 @@ def _put(draft: Path, target: Path, replace: bool) -> None:
 
 def claim(draft: Path, target: Path) -> None:
     """Move a draft to a place that nothing has taken; raises a FileExistsError."""
-    try:
-        os.link(draft, target)
-        draft.unlink()
-    except FileExistsError:
-        raise
-    except OSError:  # a file system without links: the name first, then what is in it
-        os.close(os.open(target, os.O_CREAT | os.O_EXCL | os.O_WRONLY))
-        os.replace(draft, target)
+    with undisturbed():
+        try:
+            os.link(draft, target)
+        except FileExistsError:
+            raise
+        except OSError:  # a file system without links: the name first, then what is in it
+            os.close(os.open(target, os.O_CREAT | os.O_EXCL | os.O_WRONLY))
+            try:
+                os.replace(draft, target)
+            except OSError:
+                target.unlink()  # it is ours, and empty
+                raise
+        else:
+            draft.unlink()
 
 
 def _move_up(draft: Path, target: Path, replace: bool) -> None:
     """Move all files of a draft into a folder, or none."""
     files = sorted(draft.iterdir(), key=lambda file: file.suffix == ".html")
+    remove_leftovers(target, [file.name for file in files])  # copies of what stood there
     _put_all([(file, target / file.name) for file in files], replace)
     draft.rmdir()
 
 
 def _put_all(moves: Sequence[tuple[Path, Path]], replace: bool) -> None:
     """Move drafts to their places, all or none."""
-    moved: list[Path] = []
-    with ExitStack() as copies:
-        old: dict[Path, Path] = {}
-        try:
-            for draft, target in moves:
-                if replace and target.exists() and len(moves) > 1:
-                    folder = tempfile.mkdtemp(prefix=_prefix(target.name), suffix=".part", dir=target.parent)
-                    copies.callback(discard, [Path(folder)])
-                    _keep(target, Path(folder) / target.name)
-                    old[target] = Path(folder) / target.name
-                _put(draft, target, replace)
-                moved.append(target)
-        except BaseException:
-            for target in moved:
-                if target in old:
-                    os.replace(old[target], target)
-                else:
-                    target.unlink()
-            raise
+    with undisturbed(), ExitStack() as copies, ExitStack() as taken_back:
+        if len(moves) == 1:  # it has its place, or what stood there has
+            _put(*moves[0], replace)
+            return
+        for draft, target in moves:
+            take_back: Callable[[], object] = target.unlink
+            if replace and target.exists():
+                copy = draft_folder(target) / target.name
+                copies.callback(discard, [copy.parent])
+                _keep(target, copy)
+                take_back = partial(os.replace, copy, target)
+            _put(draft, target, replace)
+            taken_back.callback(take_back)
+        taken_back.pop_all()
 
 
 def _keep(file: Path, copy: Path) -> None:
@@ -391,6 +317,10 @@ def _keep(file: Path, copy: Path) -> None:
 
 def _remove(folders: list[Path]) -> None:
     """Take back folders that were made; if something else was put there meanwhile, it stays."""
-    with suppress(OSError):
-        for folder in reversed(folders):
-            folder.rmdir()
+
+    def remove() -> None:
+        with suppress(OSError):
+            for folder in reversed(folders):
+                folder.rmdir()
+
+    surely(remove)

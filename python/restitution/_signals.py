@@ -6,29 +6,59 @@ import sys
 import threading
 import time
 import weakref
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable, Iterable, Iterator
+from contextlib import ExitStack, contextmanager
 from functools import partial
 from typing import Any, NoReturn
 
 _ENDING = [getattr(signal, name) for name in ("SIGINT", "SIGTERM", "SIGHUP") if hasattr(signal, name)]
+_ALL = sorted(signal.valid_signals())
+
+
+def _handlers(numbers: Iterable[int]) -> dict[int, Any]:
+    """Give what handles these signals now, but for those that are ignored, as under nohup, or end nothing."""
+    if threading.current_thread() is not threading.main_thread():  # which alone has handlers
+        return {}
+    found = {number: signal.getsignal(number) for number in numbers}
+    default = {number for number in _ENDING if found.get(number) == signal.SIG_DFL}
+    return {number: old for number, old in found.items() if callable(old) or number in default}
 
 
 @contextmanager
-def _handled(handler: Callable[[int, Any], None]) -> Iterator[None]:
-    """Give the signals that end a process to `handler`, but for those that are ignored, as under nohup."""
-    if threading.current_thread() is not threading.main_thread():
-        yield
-        return
-    previous = {number: signal.getsignal(number) for number in _ENDING}
-    taken = [number for number, old in previous.items() if old not in (signal.SIG_IGN, None)]
-    for number in taken:
-        signal.signal(number, handler)
+def _handled(handler: Callable[[int, Any], None], before: dict[int, Any]) -> Iterator[None]:
+    """Give signals to `handler` instead of what handled them before, which has them again after the block."""
+    over = False
+
+    def handle(number: int, frame: Any) -> None:
+        if over:
+            _pass_on(number, frame, before[number])
+        else:
+            handler(number, frame)
+
+    def put_back() -> None:
+        for number, old in before.items():
+            signal.signal(number, old)
+
     try:
+        for number in before:
+            signal.signal(number, handle)
         yield
     finally:
-        for number in taken:
-            signal.signal(number, previous[number])
+        try:
+            over = True
+            put_back()
+        except BaseException:  # of a signal, which counts again
+            put_back()
+            raise
+
+
+def _pass_on(number: int, frame: Any, handler: Any) -> None:
+    """Do what a signal does; were it sent again, who hears of it by other ways, as asyncio, would do so twice."""
+    if callable(handler):
+        handler(number, frame)
+    else:
+        signal.signal(number, handler)
+        signal.raise_signal(number)
 
 
 class _Interrupted(KeyboardInterrupt):
@@ -92,7 +122,7 @@ def ending() -> Iterator[list[int]]:
         came.append(number)
         throw(number)
 
-    with _thrown(_Interrupted) as throw, _handled(end):
+    with _thrown(_Interrupted) as throw, _handled(end, _handlers(_ENDING)):
         yield came
 
 
@@ -103,7 +133,7 @@ def leaving() -> Iterator[None]:
     def leave(number: int, _: Any) -> None:
         throw(number, 128 + number)
 
-    with _thrown(_Leaving) as throw, _handled(leave):
+    with _thrown(_Leaving) as throw, _handled(leave, _handlers(_ENDING)):
         yield
 
 
@@ -118,14 +148,39 @@ def put_off(tell: Callable[[], None]) -> Iterator[list[int]]:
             throw(number)
         tell()
 
-    with _thrown(_Interrupted) as throw, _handled(wait):
+    with _thrown(_Interrupted) as throw, _handled(wait, _handlers(_ENDING)):
         yield late
 
 
 @contextmanager
 def undisturbed() -> Iterator[None]:
-    """Let the block end before a signal counts, as `put_off` does; the signal is sent again after it."""
-    with put_off(lambda: None) as late:
-        yield
-    for number in late:
-        signal.raise_signal(number)
+    """Let the block, which is to be short, end well or not before a signal counts, whatever the signal does.
+
+    Those that came meanwhile are then given to who would have had them, each once.
+    """
+    late: dict[int, Any] = {}
+
+    def hold(number: int, frame: Any) -> None:
+        late.setdefault(number, frame)
+
+    before = _handlers(_ALL)
+    try:
+        with _handled(hold, before):
+            yield
+    finally:
+        with ExitStack() as each:  # also where one before it raises
+            for number, frame in reversed(late.items()):
+                each.callback(_pass_on, number, frame, before[number])
+
+
+def surely(work: Callable[[], object]) -> None:
+    """Do what is short and must be done, as in `undisturbed`, and also if a signal comes before it begins."""
+    begun = False
+    try:
+        with undisturbed():
+            begun = True
+            work()
+    except BaseException:
+        if not begun:
+            surely(work)
+        raise

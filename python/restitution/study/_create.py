@@ -7,7 +7,8 @@ from typing import Any
 import numpy as np
 
 from restitution._dataset import version_here
-from restitution._files import discarding, draft_folder, followed, permit
+from restitution._drafts import discarding, draft_folder
+from restitution._files import followed, permit
 from restitution._parameters import unit_of
 from restitution._signals import undisturbed
 from restitution.study._identity import attribute, check, threads_for

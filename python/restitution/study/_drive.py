@@ -16,7 +16,7 @@ import numpy as np
 import numpy.typing as npt
 import xarray as xr
 
-from restitution._files import remove_all_leftovers
+from restitution._drafts import remove_all_leftovers
 from restitution.study._axes import Design
 from restitution.study._effort import Effort
 from restitution.study._engines import Engine

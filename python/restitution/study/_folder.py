@@ -12,7 +12,8 @@ from zarr.abc.store import ByteRequest
 from zarr.core.buffer import Buffer, BufferPrototype
 from zarr.storage import LocalStore
 
-from restitution._files import claim, draft_of
+from restitution._drafts import draft_of
+from restitution._files import claim
 from restitution._memory import available_memory
 from restitution._reading import MOST
 
