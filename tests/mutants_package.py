@@ -74,6 +74,7 @@ INFERENCE = tuple(
 )
 TESTS = {
     "_files.py": ("test_files.py", "test_believed.py"),
+    "_drafts.py": ("test_files.py", "test_files_signals.py"),
     "_signals.py": ("test_signals.py",),
     "study/_store.py": ("test_study_store.py", "test_study_create.py"),
     "study/_create.py": ("test_study_store.py", "test_study_create.py"),

@@ -53,7 +53,7 @@ def _handled(handler: Callable[[int, Any], None], before: dict[int, Any]) -> Ite
 
 
 def _pass_on(number: int, frame: Any, handler: Any) -> None:
-    """Do what a signal does; were it sent again, who hears of it by other ways, as asyncio, would do so twice."""
+    """Do what a signal does; sent again, it would be heard twice by those who have other ways, as asyncio."""
     if callable(handler):
         handler(number, frame)
     else:
