@@ -38,6 +38,25 @@ def records(name: str, data: Any, *names: str) -> tuple[FloatArray, ...]:
     return tuple(found)
 
 
+def first_impact_of(name: str, data: xr.Dataset) -> int:
+    """Give the number of the first impact of a Dataset, whose others must follow one another.
+
+    The number is the coordinate ``impact``, which selecting impacts keeps; without it they count from 0.
+
+    Raises
+    ------
+    ParameterError
+        If some impacts between the first and the last are not there.
+    """
+    if "impact" not in data.coords or not data.sizes["impact"]:
+        return 0
+    allowed = "numbers of impacts that follow one another"
+    number = reals(f"{name}.impact", data["impact"].to_numpy(), allowed, dimensions=(1,))
+    if not np.all(np.diff(number) == 1.0) or number[0] < 0.0 or number[0] != np.rint(number[0]):
+        raise ParameterError(wrong(f"{name}.impact", number, allowed))
+    return int(number[0])
+
+
 _COUNTED = {
     "restitution_count": ("velocity", "restitution"),
     "velocity_edges": ("velocity_edge",),

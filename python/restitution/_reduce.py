@@ -28,7 +28,7 @@ from restitution._bins import (
     increasing_edges,
 )
 from restitution._core import CREATES_ENERGY
-from restitution._energy import by_row
+from restitution._energy import LEDGER, by_row, ledger_of
 from restitution._recorded import records
 
 
@@ -102,6 +102,7 @@ def reduce(
         "restitution": increasing_edges(restitution, "restitution_bins"),
         "fraction": increasing_edges(fraction, "fraction_bins"),
     }
+    batches = whole("batches", batches, 1)
     parts = batches_of(data.sizes.get("particle", 0) if isinstance(data, xr.Dataset) else 0, batches)
     names = ("impact_velocity", "restitution", "rotational_fraction", "energy_ratio")
     velocity, restitution, fraction, energy = (column.ravel() for column in records("data", data, *names))
@@ -138,7 +139,11 @@ def reduce(
     found = by_velocity(counts, moments, velocity_edges, columns, more)
     content = "statistics of restitution in bins of impact velocity, bins lo <= x < hi"
     how = origin(len(parts), data.sizes["particle"], batches)
-    return found.assign_attrs(data.attrs, content=content, standard_errors=how)
+    # Of a part of a run its own ledger of energy, not that of the whole.
+    about = {name: value for name, value in data.attrs.items() if name not in LEDGER}
+    if LEDGER[0] in data.attrs:
+        about |= ledger_of(energy)
+    return found.assign_attrs(about, content=content, standard_errors=how)
 
 
 def standard_errors(data: xr.Dataset, velocity_bins: npt.ArrayLike, *, block: int = 1024) -> xr.Dataset:

@@ -11,7 +11,7 @@ import numpy.typing as npt
 import xarray as xr
 
 from restitution import _core
-from restitution._arrays import flag
+from restitution._arrays import flag, whole
 from restitution._batches import BATCHES, batches_of, origin, standard_errors
 from restitution._bins import FRACTION_BINS, all_edges_from, assemble, by_velocity, increasing_edges
 from restitution._core import STOP_REASONS
@@ -131,6 +131,7 @@ def statistics(
     )
     edges = edges_of(velocity, restitution, None if counts_only else fraction)
     number = checked_threads(threads)
+    batches = whole("batches", batches, 1)
     parts = batches_of(run.particles, 1 if counts_only else batches)
     _check_memory(run, edges, number)
     with progress_bar("statistics", run.particles, "particles", show=progress) as tell:

@@ -9,12 +9,21 @@ import numpy.typing as npt
 
 from restitution._arrays import FloatArray, check_each, reals, whole
 from restitution._parameters import ParameterError, Problem, wrong
+from restitution._recorded import first_impact_of
 from restitution._units import check_variables
 
 if TYPE_CHECKING:
     import xarray as xr
 
-_NEEDED = ("time", "position", "axis", "velocity_after", "angular_velocity_after", "release_angle")
+_NEEDED = {
+    "time": ("impact",),
+    "position": ("impact", "component"),
+    "axis": ("impact", "component"),
+    "velocity_after": ("impact", "component"),
+    "angular_velocity_after": ("impact", "component"),
+    "release_angle": (),
+}
+"""What is needed of the recorded states, and its dimensions besides that of the particle."""
 _SETTINGS = ("gravity", "incline", "release_velocity", "axial_inertia", "transverse_inertia")
 _RELEASED = ("release_height", "release_azimuth", "release_spin")
 """Of each particle, or of all as attributes, or neither where it is 0."""
@@ -90,7 +99,18 @@ def trajectory(data: xr.Dataset, particle: int, times: npt.ArrayLike) -> xr.Data
     lacking = lacking or [name for name in _SETTINGS if name not in data.attrs]
     if lacking:
         raise ParameterError(Problem("data", f" lacks {', '.join(lacking)}: must be {instead}"))
-    one = _particle(data, particle)
+    check_variables("data", data, *_NEEDED)
+    for name, dimensions in _NEEDED.items():
+        if set(data[name].dims) != {"particle", *dimensions}:
+            text = f" has dimensions ({', '.join(map(str, data[name].dims))}): must be {instead}, whole"
+            raise ParameterError(Problem(f"data.{name}", text))
+    if first_impact_of("data", data) != 0 or data.sizes["component"] != 3:
+        raise ParameterError(
+            Problem("data", f": a part of the impacts or components: must be {instead}, whole")
+        )
+    if "release_height" not in data and "release_height" not in data.attrs:
+        raise ParameterError(Problem("data", f" lacks release_height: must be {instead}"))
+    one = _particle(data.transpose(..., "impact", "component"), particle)
     _check(one)
     asked = reals("times", times, "times in s, one or several", unit="s", dimensions=(0, 1), finite=False)
     when = np.atleast_1d(asked)
@@ -144,7 +164,7 @@ def _particle(data: xr.Dataset, particle: int) -> xr.Dataset:
 def _check(one: xr.Dataset) -> None:
     """Refuse states and settings that are no numbers."""
     check_variables("data", one, *_NEEDED, *_RELEASED)
-    for name in _NEEDED + _RELEASED:
+    for name in (*_NEEDED, *_RELEASED):
         if name in one:
             reals(f"data.{name}", one[name].to_numpy(), "real numbers, NaN for none", finite=False)
     for name in _SETTINGS + _RELEASED:

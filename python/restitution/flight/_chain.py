@@ -7,6 +7,7 @@ import numpy.typing as npt
 import xarray as xr
 
 from restitution._arrays import reals
+from restitution._recorded import first_impact_of
 from restitution.flight._drag import Drag, fall, speeds
 
 Array = npt.NDArray[np.float64]
@@ -93,7 +94,8 @@ def measured_of(data: xr.Dataset) -> Measured:
     """Read from a Dataset that `restitution` returned what was measured."""
     attrs = data.attrs
     drop = None
-    if "drop_height" in attrs:
+    # Of impacts that were selected the first is not that after the drop.
+    if first_impact_of("data", data) == 0 and "drop_height" in attrs:
         drop = (attrs["drop_height"], attrs["drop_height_uncertainty"])
     drag = None
     if "terminal_velocity" in attrs:

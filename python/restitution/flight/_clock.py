@@ -5,7 +5,9 @@ import math
 import numpy as np
 import xarray as xr
 
+from restitution._arrays import real, reals
 from restitution._parameters import ParameterError, Problem, wrong
+from restitution._recorded import first_impact_of
 from restitution._units import check_variables
 
 
@@ -48,8 +50,16 @@ def clock(data: xr.Dataset) -> xr.Dataset:
     if missing or "gravity" not in data.attrs or "impact" not in data.dims:
         raise ParameterError(Problem("data", ": not a run; must be a Dataset that simulate returned"))
     check_variables("data", data, "time")
-    gravity = data.attrs["gravity"] * math.cos(data.attrs.get("incline", 0.0))
-    flight = data.time.diff("impact").values
+    if first_impact_of("data", data) < 0 or set(data.time.dims) - {"particle"} != {"impact"}:
+        raise ParameterError(Problem("data.time", ": must have the dimensions (particle, impact)"))
+    data = data.transpose(..., "impact")
+    positive = "a finite number > 0 (m/s^2)"
+    pull = real("data.gravity", data.attrs["gravity"], positive, lambda g: g > 0.0)
+    steep = "a finite number in (-pi/2, pi/2) (rad)"
+    incline = real("data.incline", data.attrs.get("incline", 0.0), steep, lambda a: abs(a) < math.pi / 2)
+    gravity = pull * math.cos(incline)
+    times = reals("data.time", data.time.to_numpy(), "real numbers (s), NaN for none", finite=False)
+    flight = np.diff(times, axis=-1)
     velocity = np.full(data.time.shape, np.nan)
     velocity[..., 1:] = 0.5 * gravity * flight
     ratio = np.full(data.time.shape, np.nan)

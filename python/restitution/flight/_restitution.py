@@ -68,12 +68,13 @@ def restitution(
     Returns
     -------
     xarray.Dataset
-        Dimension ``impact`` of size n. ``time``, ``uncertainty``, ``impact_velocity`` and its standard error
-        ``impact_velocity_error`` in m/s, ``restitution`` and ``restitution_error``; with the further
-        dimension ``other_impact`` ``impact_velocity_covariance``, ``restitution_covariance`` and
-        ``cross_covariance``, of the velocity at ``impact`` and the coefficient at ``other_impact``. NaN
-        where the times do not determine them: the last coefficient, the first two numbers without a drop
-        height, and next to a missed impact. The attributes hold all parameters.
+        Dimension ``impact`` of size n, with the numbers of the impacts from 0 as its coordinate. ``time``,
+        ``uncertainty``, ``impact_velocity`` and its standard error ``impact_velocity_error`` in m/s,
+        ``restitution`` and ``restitution_error``; with the further dimension ``other_impact``
+        ``impact_velocity_covariance``, ``restitution_covariance`` and ``cross_covariance``, of the velocity
+        at ``impact`` and the coefficient at ``other_impact``. NaN where the times do not determine them: the
+        last coefficient, the first two numbers without a drop height, and next to a missed impact. The
+        attributes hold all parameters.
 
     Raises
     ------
@@ -165,6 +166,14 @@ def restitution(
                     "long_name": "covariance of the velocity at impact and the coefficient at other_impact",
                     "units": "m s-1",
                 },
+            ),
+        },
+        {
+            "impact": (one, np.arange(instants.size), {"long_name": "number of the impact, from 0"}),
+            "other_impact": (
+                ("other_impact",),
+                np.arange(instants.size),
+                {"long_name": "number of another impact, from 0"},
             ),
         },
         attrs=attrs,

@@ -1,0 +1,132 @@
+"""Datasets of which a part was selected: their own result or an error, never that of the whole."""
+
+import warnings
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import pytest
+import xarray as xr
+
+import restitution as rs
+from restitution import flight
+
+BODY = rs.Dumbbell(radius=3e-3, separation=3e-4)
+LAW = rs.TangentialRestitution(normal=0.98)
+TIMES = np.cumsum(0.9 ** np.arange(10.0))
+
+
+@pytest.fixture(scope="module")
+def run() -> xr.Dataset:
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", rs.EnergyWarning)
+        return rs.simulate(BODY, LAW, particles=50, impacts=20, record="state")
+
+
+@pytest.fixture
+def series() -> xr.Dataset:
+    return flight.restitution(TIMES, 1e-4, drop_height=0.125 * 9.81)
+
+
+def test_a_fit_of_some_impacts(series: xr.Dataset) -> None:
+    """Flights that shorten by 0.9 each, wherever the series is cut; the drop belongs to its first impact."""
+    for part in (series, series.isel(impact=slice(3, 8)), series.isel(impact=slice(0, 6))):
+        found = flight.fit(part).parameters["restitution"]
+        assert found == pytest.approx(0.9, abs=1e-9), part.sizes
+    with pytest.raises(
+        ValueError, match=r"^data\.impact = .*: must be numbers of impacts that follow one ano"
+    ):
+        flight.fit(series.isel(impact=[0, 2, 4, 5, 6, 7]))
+
+
+def test_a_trajectory_needs_all_impacts_from_the_first(run: xr.Dataset) -> None:
+    """The flight that leads to an impact begins at the one before it."""
+    time = float(run.time[3, 5]) + 0.01
+    whole = rs.trajectory(run.isel(impact=slice(0, 10)), 3, [time])
+    assert whole.position.identical(rs.trajectory(run, 3, [time]).position)
+    assert whole.position.identical(rs.trajectory(run.transpose(), 3, [time]).position)
+    lacking = run.copy()
+    del lacking.attrs["release_height"]
+    bad: list[tuple[xr.Dataset, str]] = [
+        (run.isel(impact=slice(5, None)), r"^data: a part of the impacts or components: must be from rest"),
+        (run.isel(impact=[0, 2, 3]), r"^data\.impact = .*: must be numbers of impacts that follow one anot"),
+        (run.isel(component=[0]), r"^data: a part of the impacts or components"),
+        (run.isel(particle=3), r"^data\.time has dimensions \(impact\): must be from restitution\.simulate"),
+        (run.rename(component="axis_of_space"), r"^data\.position has dimensions"),
+        (lacking, r"^data lacks release_height: must be from restitution\.simulate"),
+    ]
+    for data, message in bad:
+        with pytest.raises(ValueError, match=message):
+            rs.trajectory(data, 3, [time])
+
+
+def with_attribute(data: xr.Dataset, name: str, value: Any) -> xr.Dataset:
+    return data.assign_attrs({name: value})
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        (
+            lambda run: run.isel(impact=[0, 2, 4]),
+            r"^data\.impact = .*: must be numbers of impacts that follow",
+        ),
+        (
+            lambda run: run.assign(time=run.time.copy(data=(1e9 * run.time.values).astype("m8[ns]"))),
+            r"^data\.time",
+        ),
+        (
+            lambda run: with_attribute(run, "gravity", -1.0),
+            r"^data\.gravity = -1\.0: must be a finite",
+        ),
+        (lambda run: with_attribute(run, "gravity", "9.81"), r"^data\.gravity = '9\.81': must be a finite"),
+        (lambda run: with_attribute(run, "gravity", None), r"^data\.gravity = None: must be"),
+        (lambda run: with_attribute(run, "gravity", 10**400), r"^data\.gravity = an integer of .*: must be"),
+        (lambda run: with_attribute(run, "incline", None), r"^data\.incline = None: must be"),
+    ],
+)
+def test_a_clock_of_no_run(run: xr.Dataset, change: Callable[[xr.Dataset], xr.Dataset], message: str) -> None:
+    with pytest.raises(ValueError, match=message):
+        flight.clock(change(run))
+
+
+def test_a_clock_of_a_part(run: xr.Dataset) -> None:
+    """Any particles, in any order of the dimensions, and impacts from any on."""
+    whole = flight.clock(run)
+    turned = flight.clock(run.transpose())
+    xr.testing.assert_identical(
+        turned.clock_restitution.transpose("particle", "impact"), whole.clock_restitution
+    )
+    part = flight.clock(run.isel(impact=slice(4, None), particle=[7]))
+    np.testing.assert_array_equal(part.clock_velocity[:, 1:], whole.clock_velocity[7:8, 5:])
+    one = flight.clock(run.isel(particle=7))
+    np.testing.assert_array_equal(one.clock_velocity, whole.clock_velocity[7])
+
+
+def test_a_part_has_its_own_ledger_of_energy(run: xr.Dataset) -> None:
+    """Impacts, and those that created energy, are counted among what is reduced."""
+    part = run.isel(particle=[0, 3])
+    found = rs.reduce(part, [0.0, 2.0], [-1.0, 3.0])
+    gained = part.energy_ratio.values > 1.0 + 1e-12
+    assert found.attrs["all_impacts"] == part.time.size
+    assert found.attrs["energy_created_impacts"] == gained.sum()
+    assert rs.reduce(run, [0.0, 2.0], [-1.0, 3.0]).attrs["all_impacts"] == run.attrs["all_impacts"]
+
+
+def test_why_there_are_no_standard_errors() -> None:
+    """Whatever kind of whole number asks for batches."""
+    few = rs.simulate(BODY, LAW, particles=3, impacts=3)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        found = rs.reduce(few, [0.0, 2.0], [-1.0, 3.0], batches=np.int8(100))  # type: ignore[arg-type]
+        counted = rs.statistics(
+            BODY,
+            LAW,
+            particles=3,
+            impacts=3,
+            velocity_bins=[0.0, 2.0],
+            restitution_bins=[-1.0, 3.0],
+            batches=np.int8(100),  # type: ignore[arg-type]
+        )
+    why = "none: 3 particles are fewer than two for each of 100 batches"
+    assert found.attrs["standard_errors"] == counted.attrs["standard_errors"] == why
