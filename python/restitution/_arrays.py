@@ -10,7 +10,8 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from restitution._parameters import ParameterError, Problem, _plain_number, wrong
+from restitution._memory import available_memory
+from restitution._parameters import ParameterError, Problem, TooLargeError, _plain_number, wrong
 from restitution._units import check_units
 
 FloatArray = npt.NDArray[np.float64]
@@ -18,6 +19,8 @@ FloatArray = npt.NDArray[np.float64]
 _DEEPEST = 32
 """Lists in lists that are looked into; no table of ours has more than two."""
 _MOST_DIMENSIONS = 32
+_MANY = 10**6
+"""Numbers from which on it is asked whether there is memory for them."""
 _BYTES = ("B", "b", "c")
 """Formats of a view of memory whose elements are bytes, as those of text that was read, not numbers."""
 _UNITS = ("to_value", "dimensionality")
@@ -61,6 +64,8 @@ def reals(
         raise ParameterError(wrong(name, value, f"{allowed}; it {reason}"))
     if unit is not None:
         check_units(name, value, unit)
+    if isinstance(value, range):
+        _check_size(name, value, (value.stop - value.start) // value.step)
     try:
         found = np.asarray(value)
     except MemoryError:
@@ -71,11 +76,19 @@ def reals(
         raise ParameterError(wrong(name, value, allowed))
     if dimensions is not None and found.ndim not in dimensions:
         raise ParameterError(wrong(name, value, allowed))
+    _check_size(name, value, found.size)
     with np.errstate(over="ignore"):  # of extended precision, to infinity
         numbers = np.asarray(found, dtype=np.float64, order="C")
     if finite:
         check_each(name, numbers, np.isfinite(numbers), allowed)
     return numbers
+
+
+def _check_size(name: str, value: Any, size: int) -> None:
+    """Refuse more numbers than memory holds, of a range or of one number that stands for many."""
+    if size > _MANY and 8 * size > (available := available_memory()):
+        allowed = f"at most {available // 8:.4g} numbers, which this process can hold"
+        raise TooLargeError(wrong(name, value, allowed))
 
 
 def real(
@@ -169,6 +182,8 @@ def check_each(name: str, array: FloatArray, good: npt.NDArray[np.bool_], allowe
 
 def _stray(value: Any, depth: int) -> str | None:
     """Say what NumPy would silently convert to a number, or drop."""
+    if getattr(getattr(value, "dtype", None), "kind", None) == "V":
+        return "holds records"
     if isinstance(value, np.ma.MaskedArray):
         return "holds masked values" if np.ma.is_masked(value) else None
     if isinstance(value, bytes | bytearray) or (isinstance(value, memoryview) and value.format in _BYTES):

@@ -8,6 +8,7 @@ import numpy as np
 
 from restitution._arrays import whole
 from restitution._bins import FloatArray
+from restitution._parameters import shown
 
 BATCHES = 16
 """Default number of batches. n of them make the standard errors uncertain by 1/√(2(n - 1)), here 18 %."""
@@ -36,7 +37,7 @@ def origin(found: int, particles: int, batches: int) -> str:
     if batches == 1:
         return "none: a single batch was asked for"
     if particles < 2 * batches:
-        return f"none: {particles} particles are fewer than two for each of {batches} batches"
+        return f"none: {particles} particles are fewer than two for each of {shown(batches)} batches"
     return "none: interrupted before the second batch"
 
 

@@ -9,7 +9,7 @@ import xarray as xr
 
 from restitution._arrays import reals
 from restitution._core import LARGEST_RESTITUTION
-from restitution._parameters import ParameterError, Problem, wrong
+from restitution._parameters import ParameterError, Problem, shown, wrong
 
 FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.int64]
@@ -53,9 +53,18 @@ def increasing_edges(bins: npt.ArrayLike, name: str) -> FloatArray:
     if not np.all(widths > 0):
         at = int(np.argmin(widths > 0))
         raise ValueError(f"{name} goes from {edges[at]} to {edges[at + 1]}: edges must increase strictly")
+    if not _are_apart(edges):
+        text = "bins must be so wide that there are finitely many in a unit"
+        raise ValueError(f"{name} goes from {edges[0]} to {edges[-1]}: {text}")
     if np.abs(edges).max() > _FARTHEST:
         raise ValueError(f"{name} goes from {edges[0]} to {edges[-1]}: at most {_FARTHEST:g} either way")
     return edges
+
+
+def _are_apart(edges: FloatArray) -> bool:
+    """Whether the reciprocal of the mean width, by which bins are found, is a number."""
+    with np.errstate(all="ignore"):
+        return bool(np.isfinite((edges.size - 1) / (edges[-1] - edges[0])))
 
 
 def edges_from(bins: npt.ArrayLike | None, span: npt.ArrayLike | None, name: str) -> npt.ArrayLike | None:
@@ -69,14 +78,19 @@ def edges_from(bins: npt.ArrayLike | None, span: npt.ArrayLike | None, name: str
         return bins
     if span is None:
         raise ParameterError(
-            Problem(f"{kind}_range", f": missing; {name} = {bins} needs a range (low, high)")
+            Problem(f"{kind}_range", f": missing; {name} = {shown(bins)} needs a range (low, high)")
         )
     ends = reals(f"{kind}_range", span, "(low, high) with low < high", unit=_unit(kind), dimensions=(1,))
     if ends.shape != (2,) or not ends[0] < ends[1]:
         raise ParameterError(wrong(f"{kind}_range", span, "(low, high) with low < high"))
     if not 1 <= bins <= _MOST_BINS:
         raise ParameterError(wrong(name, bins, f"edges, or a number of bins in [1, {_MOST_BINS}]"))
-    return np.linspace(ends[0], ends[1], int(bins) + 1)
+    with np.errstate(all="ignore"):
+        edges = np.linspace(ends[0], ends[1], int(bins) + 1)
+        wide = bool(np.all(np.diff(edges) > 0.0)) and _are_apart(edges)
+    if not wide:
+        raise ParameterError(wrong(f"{kind}_range", span, f"a range that {bins} bins divide"))
+    return edges
 
 
 def all_edges_from(**asked: tuple[npt.ArrayLike | None, npt.ArrayLike | None]) -> list[Any]:

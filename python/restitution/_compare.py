@@ -140,8 +140,11 @@ def _named(what: str, given: Mapping[str, T] | Iterable[T], kind: type[Any]) -> 
     """Give every body or law its name."""
     if isinstance(given, Mapping):
         named = dict(given)
-    elif isinstance(given, Iterable) and not isinstance(given, Parameters | str) and not _is_scalar(given):
-        values = list(given)
+    elif isinstance(given, Iterable) and not isinstance(given, Parameters | str):
+        try:
+            values = list(given)
+        except Exception:  # whatever the object raises
+            raise ValueError(f"{what} = {shown(given)}: must be a dict or list of {kind.__name__}") from None
         for value in values:
             _check(what, value, kind)
         names = [_name(value, values) for value in values]
@@ -158,10 +161,6 @@ def _named(what: str, given: Mapping[str, T] | Iterable[T], kind: type[Any]) -> 
             raise ValueError(f"{what}: {shown(name)} is not a name; must be a str")
         _check(what, value, kind)
     return named
-
-
-def _is_scalar(given: object) -> bool:
-    return isinstance(given, np.ndarray) and given.ndim == 0
 
 
 def _check(what: str, value: object, kind: type) -> None:

@@ -58,9 +58,11 @@ def in_terms_of(**given: Any) -> Iterator[None]:
         raise kind(*(Problem(first, f" = {rest}: gives {one}") for one in error.problems)) from None
 
 
-def unknown(name: str, taker: str, allowed: Iterable[str], prefix: str = "") -> Problem:
+def unknown(name: object, taker: str, allowed: Iterable[str], prefix: str = "") -> Problem:
     """Say that `taker` knows no such name, which it does know, and which was meant."""
     names = list(allowed)
+    if not isinstance(name, str):
+        return Problem(prefix + shown(name), f": no name; {taker} takes {', '.join(names)}")
     meant = "".join(f"did you mean {prefix}{close}? " for close in get_close_matches(name, names, n=1))
     return Problem(prefix + name, f": unknown; {meant}{taker} takes {', '.join(names)}")
 
@@ -71,7 +73,14 @@ def listed(kinds: Iterable[type]) -> str:
     return f"{', '.join(others)} or {last}"
 
 
-_SHORT = Repr()
+class _Line(Repr):
+    """Writes integers of any size, inside lists too: Python refuses to write out the largest."""
+
+    def repr_int(self, x: int, level: int) -> str:
+        return f"an integer of {x.bit_length()} bits" if x.bit_length() > _MOST_BITS else repr(x)
+
+
+_SHORT = _Line()
 _SHORT.maxstring = _SHORT.maxother = 72
 _MOST_BITS = 256
 _MOST_ELEMENTS = 6
@@ -80,8 +89,6 @@ _MOST_ELEMENTS = 6
 def shown(value: Any) -> str:
     """Write a value in at most a line, however large it is."""
     value = _plain_number(value)
-    if isinstance(value, int) and value.bit_length() > _MOST_BITS:
-        return f"an integer of {value.bit_length()} bits"
     if isinstance(value, np.ndarray) and value.size > _MOST_ELEMENTS:
         return f"an array of shape {value.shape}"
     return " ".join(_SHORT.repr(value).split())

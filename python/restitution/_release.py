@@ -75,7 +75,7 @@ def _velocity(value: Any) -> tuple[float, ...]:
 
 
 def _rate(value: Any) -> float | tuple[float, float]:
-    pair = isinstance(value, list | tuple) and len(value) == 2
+    pair = isinstance(value, list | tuple | np.ndarray) and np.shape(value) == (2,)
     try:
         parts = [_plain_number(part) for part in (value if pair else [value])]
         rates = _array("rate", parts, _RATES, "rad s-1", 1)

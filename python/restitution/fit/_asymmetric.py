@@ -10,7 +10,7 @@ from scipy import optimize, special, stats
 
 from restitution.fit._counts import Counts, fit_counts
 from restitution.fit._result import Array, Fit, fitted
-from restitution.fit._source import Samples, Window, taken
+from restitution.fit._source import Samples, Window, placed, taken
 
 
 def asymmetric_laplace(
@@ -57,6 +57,7 @@ def asymmetric_laplace(
     >>> 0.02 < found.parameters["above"] < 0.03
     True
     """
+    location = placed(location)
     x = taken(samples, velocity, location)
     if isinstance(x, Counts):
         return _counted("asymmetric Laplace", x, location, 1.0)
@@ -113,6 +114,7 @@ def asymmetric_power(
     >>> 1.8 < fit.asymmetric_power(x).parameters["exponent"] < 2.2  # a Gaussian's is 2
     True
     """
+    location = placed(location)
     x = taken(samples, velocity, location)
     if isinstance(x, Counts):
         return _counted("asymmetric power", x, location, None)

@@ -16,7 +16,7 @@ from restitution.fit._asymmetric import asymmetric_laplace, frozen
 from restitution.fit._counts import Counts, fit_counts
 from restitution.fit._in_parts import drawn, draws
 from restitution.fit._result import Array, Fit, fitted
-from restitution.fit._source import Samples, Window, taken
+from restitution.fit._source import Samples, Window, placed, taken
 
 _NARROWEST = 1e-3
 """Least width of a part, over the spread of the samples: a narrower Gaussian would sit on one sample."""
@@ -122,7 +122,7 @@ def cusp_mixture(samples: Samples, location: float, *, velocity: Window | None =
     >>> 0.2 < fit.cusp_mixture(x, 0.98).parameters["share"] < 0.3
     True
     """
-    location = real("location", location, "a finite number")
+    location = real("location", placed(location), "a finite number")
     x = taken(samples, velocity, location)
     if isinstance(x, Counts):
         return _from_counts(x, location)

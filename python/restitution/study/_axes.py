@@ -1,6 +1,7 @@
 """What is varied in a study: values of named parameters, on a grid or spread over their ranges."""
 
 import math
+import sys
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any
@@ -18,6 +19,8 @@ _KEYS = ("from", "to", "points", "scale")
 _SCALES = ("linear", "log")
 DESIGNS = ("grid", "latin-hypercube", "sobol")
 _MOST_POINTS = 10_000_000
+_LARGEST = sys.float_info.max
+_DEEPEST = 8
 
 # Dimensions and variables that results have of their own.
 _TAKEN = [
@@ -124,9 +127,13 @@ def design(table: Mapping[str, Any], seed: int) -> Design:
         raise ParameterError(wrong("sweep", table, "a table [sweep]"))
     options = {key: table[key] for key in ("design", "points") if key in table}
     kind = options.get("design", "grid")
-    if kind not in DESIGNS:
+    if not isinstance(kind, str) or kind not in DESIGNS:
         raise ParameterError(wrong("sweep.design", kind, " or ".join(map(repr, DESIGNS))))
-    varied = dict(_varied({key: value for key, value in table.items() if key not in options}))
+    varied: dict[str, Any] = {}
+    for key, value in _varied({key: value for key, value in table.items() if key not in options}):
+        if key in varied:
+            raise ParameterError(Problem(f'sweep."{key}"', ": is there twice, quoted and as a table"))
+        varied[key] = value
     if not varied:
         text = ': nothing is varied; name parameters, as in "body.separation" = [3e-5, 1e-4]'
         raise ParameterError(Problem("sweep", text))
@@ -158,6 +165,10 @@ def design(table: Mapping[str, Any], seed: int) -> Design:
 def _varied(table: Mapping[str, Any], prefix: str = "") -> Iterator[tuple[str, Any]]:
     """Flatten tables, so that quoted and bare keys mean the same."""
     for key, value in table.items():
+        if not isinstance(key, str):
+            raise ParameterError(unknown(key, "[sweep]", ("parameters",), prefix=f"sweep.{prefix}"))
+        if prefix.count(".") > _DEEPEST:
+            raise ParameterError(Problem(f"sweep.{prefix}", ": tables in tables; parameters have few words"))
         if isinstance(value, Mapping) and not set(value) & {"from", "to"}:
             yield from _varied(value, f"{prefix}{key}.")
         else:
@@ -179,10 +190,17 @@ def _on_grid(key: str, value: Any) -> tuple[float, ...]:
         if not isinstance(number, int) or isinstance(number, bool) or not 2 <= number <= _MOST_POINTS:
             allowed = f"a whole number in [2, {_MOST_POINTS:,}]"
             raise ParameterError(wrong(f"sweep.{key}.points", number, allowed))
-        return tuple(_between(key, value, np.linspace(0.0, 1.0, number)).tolist())
-    values = value.tolist() if isinstance(value, np.ndarray) else value
+        spread = tuple(_between(key, value, np.linspace(0.0, 1.0, number)).tolist())
+        if len(set(spread)) < number:
+            allowed = f"so far apart that {number} values differ in 15 digits"
+            raise ParameterError(wrong(f"sweep.{key}", dict(value), allowed))
+        return spread
+    # Durations would become whole numbers.
+    numbers = isinstance(value, np.ndarray) and value.dtype.kind in "iuf"
+    values = value.tolist() if numbers else value
     good = isinstance(values, list | tuple) and len(values) > 0 and all(map(_is_number, values))
-    if not good or len(set(values)) < len(values):
+    # Axes of results are doubles.
+    if not good or len(set(map(float, values))) < len(values) or any(float(x) != x for x in values):
         raise ParameterError(wrong(f"sweep.{key}", value, _VALUES))
     return tuple(_plain_number(number) for number in values)
 
@@ -198,9 +216,9 @@ def _between(key: str, value: Any, unit: npt.NDArray[np.float64]) -> npt.NDArray
     low: Any = value.get("from")
     high: Any = value.get("to")
     scale = value.get("scale", "linear")
-    if not (_is_number(low) and _is_number(high) and low < high):
+    if not (_is_number(low) and _is_number(high) and low < high and math.isfinite(float(high) - float(low))):
         raise ParameterError(wrong(f"sweep.{key}", dict(value), _VALUES))
-    if scale not in _SCALES:
+    if not isinstance(scale, str) or scale not in _SCALES:
         raise ParameterError(wrong(f"sweep.{key}.scale", scale, " or ".join(map(repr, _SCALES))))
     if scale == "log" and low <= 0:
         raise ParameterError(wrong(f"sweep.{key}.from", low, "> 0 where the scale is logarithmic"))
@@ -220,4 +238,7 @@ def _spread(kind: str, number: int, dimensions: int, seed: int) -> npt.NDArray[n
 
 
 def _is_number(value: Any) -> bool:
-    return isinstance(value, int | float | np.number) and not isinstance(value, bool) and math.isfinite(value)
+    value = _plain_number(value)
+    if not isinstance(value, int | float) or isinstance(value, bool):
+        return False
+    return abs(value) <= _LARGEST

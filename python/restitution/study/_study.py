@@ -10,10 +10,9 @@ from importlib import import_module
 from pathlib import Path
 from typing import Any
 
-import numpy as np
 import xarray as xr
 
-from restitution._arrays import whole
+from restitution._arrays import real, whole
 from restitution._bins import edges_from
 from restitution._files import path_from
 from restitution._parameters import ParameterError, Parameters, Problem, unknown, wrong
@@ -167,10 +166,13 @@ def study_of(source: Any) -> Study:
 def _study(tables: dict[str, Any], source: str) -> Study:
     try:
         for name in tables:
-            if name not in _TABLES:
+            if not isinstance(name, str) or name not in _TABLES:
                 raise ParameterError(unknown(name, "a study", _TABLES))
         own = {name: tables.pop(name) for name in _TABLES[3:] if name in tables}
-        points = design(own.get("sweep", {}), seed=int(dict(tables.get("run", {})).get("seed", 1)))
+        settings = tables.get("run", {})
+        if not isinstance(settings, Mapping):
+            raise ParameterError(wrong("run", settings, "a table [run]"))
+        points = design(own.get("sweep", {}), seed=whole("run.seed", settings.get("seed", 1), 0, 2**64 - 1))
         plain = {
             name: table_of(table) if isinstance(table, Parameters) else _copy(table)
             for name, table in tables.items()
@@ -278,13 +280,15 @@ def _bins(name: str, value: Any, span: Any) -> Any:
     good = (
         set(value) == {"from", "to", "bins"}
         and isinstance(value["bins"], int)
+        and not isinstance(value["bins"], bool)
         and 1 <= value["bins"] <= 2**24
     )
     if not good:
         raise ParameterError(
             wrong(f"statistics.{name}", dict(value), "{ from, to, bins } with bins >= 1, or edges")
         )
-    return np.linspace(value["from"], value["to"], value["bins"] + 1)
+    low, high = (real(f"statistics.{name}.{end}", value[end], "a finite number") for end in ("from", "to"))
+    return edges_from(value["bins"], (low, high), name)
 
 
 def _measure(table: Any) -> tuple[Measure | None, str]:
