@@ -9,7 +9,7 @@ import xarray as xr
 
 from restitution._arrays import reals
 from restitution._core import LARGEST_RESTITUTION
-from restitution._parameters import ParameterError, Problem, wrong
+from restitution._parameters import ParameterError, Problem, shown, wrong
 
 FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.int64]
@@ -19,6 +19,7 @@ FRACTION_BINS.flags.writeable = False
 
 _FARTHEST = 1e100
 """Of any edge, so that widths and centres are finite."""
+_RANGE = f"(low, high) with low < high, at most {_FARTHEST:g} either way"
 _MOST_BINS = 10_000_000
 LARGEST = LARGEST_RESTITUTION
 """A restitution of this magnitude or more counts as undefined: its fourth power leaves the exact sums."""
@@ -45,17 +46,31 @@ def increasing_edges(bins: npt.ArrayLike, name: str) -> FloatArray:
     allowed = "a 1-D array of at least two finite edges"
     edges = np.array(reals(name, bins, allowed, unit=_unit(name), finite=False))
     if edges.ndim != 1 or edges.size < 2:
-        raise ValueError(f"{name} has shape {edges.shape}: needs one dimension and at least two edges")
+        text = f" has shape {edges.shape}: needs one dimension and at least two edges"
+        raise ParameterError(Problem(name, text))
     if not np.all(np.isfinite(edges)):
-        raise ValueError(f"{name} holds {edges[~np.isfinite(edges)][0]}: edges must be finite")
+        raise ParameterError(Problem(name, f" holds {edges[~np.isfinite(edges)][0]}: edges must be finite"))
     with np.errstate(over="ignore"):
         widths = np.diff(edges)
-    if not np.all(widths > 0):
-        at = int(np.argmin(widths > 0))
-        raise ValueError(f"{name} goes from {edges[at]} to {edges[at + 1]}: edges must increase strictly")
+    _check_bins(name, edges, widths > 0, "edges must increase strictly")
     if np.abs(edges).max() > _FARTHEST:
-        raise ValueError(f"{name} goes from {edges[0]} to {edges[-1]}: at most {_FARTHEST:g} either way")
+        text = f" goes from {edges[0]} to {edges[-1]}: at most {_FARTHEST:g} either way"
+        raise ParameterError(Problem(name, text))
+    _check_bins(name, edges, _wide_enough(widths), "bins must be so wide that 1/width is finite")
     return edges
+
+
+def _check_bins(name: str, edges: FloatArray, good: npt.NDArray[np.bool_], allowed: str) -> None:
+    """Name the edges of the first bin that is not good."""
+    if not good.all():
+        at = int(np.argmin(good))
+        raise ParameterError(Problem(name, f" goes from {edges[at]} to {edges[at + 1]}: {allowed}"))
+
+
+def _wide_enough(widths: FloatArray) -> npt.NDArray[np.bool_]:
+    """Whether the density of bins, by which a number finds its own, is finite."""
+    with np.errstate(divide="ignore", over="ignore"):
+        return np.isfinite(1.0 / widths)
 
 
 def edges_from(bins: npt.ArrayLike | None, span: npt.ArrayLike | None, name: str) -> npt.ArrayLike | None:
@@ -69,14 +84,18 @@ def edges_from(bins: npt.ArrayLike | None, span: npt.ArrayLike | None, name: str
         return bins
     if span is None:
         raise ParameterError(
-            Problem(f"{kind}_range", f": missing; {name} = {bins} needs a range (low, high)")
+            Problem(f"{kind}_range", f": missing; {name} = {shown(bins)} needs a range (low, high)")
         )
-    ends = reals(f"{kind}_range", span, "(low, high) with low < high", unit=_unit(kind), dimensions=(1,))
-    if ends.shape != (2,) or not ends[0] < ends[1]:
-        raise ParameterError(wrong(f"{kind}_range", span, "(low, high) with low < high"))
+    ends = reals(f"{kind}_range", span, _RANGE, unit=_unit(kind), dimensions=(1,))
+    if ends.shape != (2,) or not ends[0] < ends[1] or np.abs(ends).max() > _FARTHEST:
+        raise ParameterError(wrong(f"{kind}_range", span, _RANGE))
     if not 1 <= bins <= _MOST_BINS:
         raise ParameterError(wrong(name, bins, f"edges, or a number of bins in [1, {_MOST_BINS}]"))
-    return np.linspace(ends[0], ends[1], int(bins) + 1)
+    edges = np.linspace(ends[0], ends[1], int(bins) + 1)
+    if not _wide_enough(np.diff(edges)).all():
+        allowed = f"so wide that 1/width of each of {bins} bins is finite"
+        raise ParameterError(wrong(f"{kind}_range", span, allowed))
+    return edges
 
 
 def all_edges_from(**asked: tuple[npt.ArrayLike | None, npt.ArrayLike | None]) -> list[Any]:

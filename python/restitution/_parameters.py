@@ -12,7 +12,7 @@ import numpy as np
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, ValidationError
 from pydantic_core import PydanticCustomError
 
-from restitution import _display
+from restitution import _core, _display
 
 
 class Problem(NamedTuple):
@@ -71,17 +71,26 @@ def listed(kinds: Iterable[type]) -> str:
     return f"{', '.join(others)} or {last}"
 
 
-_SHORT = Repr()
-_SHORT.maxstring = _SHORT.maxother = 72
 _MOST_BITS = 256
 _MOST_ELEMENTS = 6
+
+
+class _Short(Repr):
+    """Values in at most a line; whole numbers may have more digits than Python writes."""
+
+    def repr_int(self, x: int, level: int) -> str:
+        if x.bit_length() > _MOST_BITS:
+            return f"an integer of {x.bit_length()} bits"
+        return super().repr_int(x, level)
+
+
+_SHORT = _Short()
+_SHORT.maxstring = _SHORT.maxother = 72
 
 
 def shown(value: Any) -> str:
     """Write a value in at most a line, however large it is."""
     value = _plain_number(value)
-    if isinstance(value, int) and value.bit_length() > _MOST_BITS:
-        return f"an integer of {value.bit_length()} bits"
     if isinstance(value, np.ndarray) and value.size > _MOST_ELEMENTS:
         return f"an array of shape {value.shape}"
     return " ".join(_SHORT.repr(value).split())
@@ -221,8 +230,10 @@ def _problems(model: type[BaseModel], error: ValidationError) -> Iterator[Proble
                 cause = problem["ctx"]["error"]
                 if isinstance(cause, ParameterError):
                     yield from cause.problems
-                else:  # of the core
+                elif isinstance(cause, _core.ParameterError):
                     yield wrong(cause.name, cause.value, cause.allowed)
+                else:  # of the object that was given
+                    yield wrong(name, problem["input"], _allowed(model, name))
             case _:
                 yield wrong(name, problem["input"], _allowed(model, name))
 
