@@ -6,8 +6,8 @@ from typing import Any
 
 import numpy as np
 
-from restitution._arrays import whole
 from restitution._bins import FloatArray
+from restitution._parameters import shown
 
 BATCHES = 16
 """Default number of batches. n of them make the standard errors uncertain by 1/√(2(n - 1)), here 18 %."""
@@ -22,9 +22,7 @@ def batches_of(particles: int, batches: int) -> list[tuple[int, int]]:
     list of tuple of int
         First particle of each batch, and the one after its last.
     """
-    number = whole("batches", batches, 1)
-    if particles < 2 * number:
-        number = 1
+    number = 1 if particles < 2 * batches else batches
     ends = [particles * k // number for k in range(number + 1)]
     return list(pairwise(ends))
 
@@ -36,7 +34,7 @@ def origin(found: int, particles: int, batches: int) -> str:
     if batches == 1:
         return "none: a single batch was asked for"
     if particles < 2 * batches:
-        return f"none: {particles} particles are fewer than two for each of {batches} batches"
+        return f"none: {particles} particles are fewer than two for each of {shown(batches)} batches"
     return "none: interrupted before the second batch"
 
 

@@ -11,7 +11,7 @@ import numpy.typing as npt
 import xarray as xr
 
 from restitution import _core
-from restitution._arrays import flag
+from restitution._arrays import flag, whole
 from restitution._batches import BATCHES, batches_of, origin, standard_errors
 from restitution._bins import FRACTION_BINS, all_edges_from, assemble, by_velocity, increasing_edges
 from restitution._core import STOP_REASONS
@@ -123,7 +123,7 @@ def statistics(
     ('velocity', 'restitution')
     """
     run = Run.called(locals())
-    counts_only = flag("counts_only", counts_only)
+    counts_only, batches = flag("counts_only", counts_only), whole("batches", batches, 1)
     velocity, restitution, fraction = all_edges_from(
         velocity_bins=(velocity_bins, velocity_range),
         restitution_bins=(restitution_bins, restitution_range),
