@@ -9,8 +9,11 @@ MOST = 2**28
 
 def content(path: Path) -> bytes:
     """Read a file as a whole; an OSError that names it if it cannot be read, or is longer than any table."""
-    with path.open("rb") as file:
-        found = file.read(MOST + 1)
+    try:
+        with path.open("rb") as file:
+            found = file.read(MOST + 1)
+    except OSError as error:  # while it is read, it names no file
+        raise OSError(error.errno, error.strerror, str(path)) from error
     if len(found) > MOST:
         raise OSError(errno.EFBIG, f"longer than {MOST >> 20} MiB", str(path))
     return found
