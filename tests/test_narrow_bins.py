@@ -29,7 +29,7 @@ BOTH = pytest.mark.parametrize("call", [counted, reduced])
 def test_a_range_beyond_all_edges(call: Callable[..., object], span: tuple[float, float]) -> None:
     """It is the range that is wrong: nobody gave the edges between its ends."""
     text = message(lambda: call(velocity_bins=3, velocity_range=span, **LOW))
-    assert text == f"velocity_range = {span}: must be (low, high) with low < high, at most 1e+100 either way"
+    assert text == f"velocity_range = {span}: must be at most 1e+100 either way"
 
 
 @BOTH

@@ -19,7 +19,6 @@ FRACTION_BINS.flags.writeable = False
 
 _FARTHEST = 1e100
 """Of any edge, so that widths and centres are finite."""
-_RANGE = f"(low, high) with low < high, at most {_FARTHEST:g} either way"
 _MOST_BINS = 10_000_000
 LARGEST = LARGEST_RESTITUTION
 """A restitution of this magnitude or more counts as undefined: its fourth power leaves the exact sums."""
@@ -86,9 +85,11 @@ def edges_from(bins: npt.ArrayLike | None, span: npt.ArrayLike | None, name: str
         raise ParameterError(
             Problem(f"{kind}_range", f": missing; {name} = {shown(bins)} needs a range (low, high)")
         )
-    ends = reals(f"{kind}_range", span, _RANGE, unit=_unit(kind), dimensions=(1,))
-    if ends.shape != (2,) or not ends[0] < ends[1] or np.abs(ends).max() > _FARTHEST:
-        raise ParameterError(wrong(f"{kind}_range", span, _RANGE))
+    ends = reals(f"{kind}_range", span, "(low, high) with low < high", unit=_unit(kind), dimensions=(1,))
+    if ends.shape != (2,) or not ends[0] < ends[1]:
+        raise ParameterError(wrong(f"{kind}_range", span, "(low, high) with low < high"))
+    if np.abs(ends).max() > _FARTHEST:
+        raise ParameterError(wrong(f"{kind}_range", span, f"at most {_FARTHEST:g} either way"))
     if not 1 <= bins <= _MOST_BINS:
         raise ParameterError(wrong(name, bins, f"edges, or a number of bins in [1, {_MOST_BINS}]"))
     edges = np.linspace(ends[0], ends[1], int(bins) + 1)
