@@ -38,6 +38,7 @@ def test_numpy_numbers_of_batches(kind: Any) -> None:
 
 def test_an_object_that_is_a_whole_number() -> None:
     assert told(Sixteen(), 40) == {"jackknife over 16 batches of particles"}
+    assert told(Sixteen(), 3) == {"none: 3 particles are fewer than two for each of 16 batches"}
 
 
 def test_a_number_of_more_digits_than_python_writes() -> None:
