@@ -245,7 +245,7 @@ MAKERS: list[tuple[str, Callable[[], Body], str]] = [
     (
         "offset",
         lambda: rs.LoadedSphere(radius=1.0, load=1.0, offset=1.5),
-        "offset = 1.5: must be at most the",
+        "offset = 1.5, radius = 1.0: must be at most the",
     ),
     (
         "load",

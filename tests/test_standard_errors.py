@@ -148,8 +148,6 @@ def test_batches_take_every_particle_once(particles: int, batches: int) -> None:
     assert [particle for first, end in found for particle in range(first, end)] == list(range(particles))
     sizes = [end - first for first, end in found]
     assert max(sizes) - min(sizes) <= 1
-    with pytest.raises(ValueError, match=r"^batches = 0: "):
-        batches_of(particles, 0)
 
 
 def scatter_over_error(estimates: npt.NDArray[np.float64], errors: npt.NDArray[np.float64]) -> float:

@@ -4,8 +4,9 @@ import math
 import sys
 from collections import UserList, deque
 from collections.abc import Callable, Collection, Iterable
+from itertools import islice
 from operator import index
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 import numpy.typing as npt
@@ -15,12 +16,15 @@ from restitution._parameters import ParameterError, Problem, TooLargeError, _pla
 from restitution._units import check_units
 
 FloatArray = npt.NDArray[np.float64]
+T = TypeVar("T")
 
 _DEEPEST = 32
 """Lists in lists that are looked into; no table of ours has more than two."""
 _MOST_DIMENSIONS = 32
-_MANY = 10**6
-"""Numbers from which on it is asked whether there is memory for them."""
+_MANY = 2**24
+"""Numbers from which on the memory that there is is looked up."""
+_BYTES_EACH = 24
+"""Of a number that is taken: as it was given, as a double, and in a copy that nobody else can change."""
 _BYTES = ("B", "b", "c")
 """Formats of a view of memory whose elements are bytes, as those of text that was read, not numbers."""
 _UNITS = ("to_value", "dimensionality")
@@ -67,16 +71,20 @@ def reals(
     if isinstance(value, range):
         _check_size(name, value, (value.stop - value.start) // value.step)
     try:
-        found = np.asarray(value)
-    except MemoryError:
+        found = _array_of(name, value)
+    except TooLargeError:
         raise
+    except MemoryError as error:
+        allowed = "as many numbers as this process has the memory for"
+        raise TooLargeError(wrong(name, value, allowed)) from error
     except Exception:  # lists of different lengths, or whatever the object itself raises
         raise ParameterError(wrong(name, value, allowed)) from None
     if found.dtype.kind not in "iuf":
         raise ParameterError(wrong(name, value, allowed))
     if dimensions is not None and found.ndim not in dimensions:
         raise ParameterError(wrong(name, value, allowed))
-    _check_size(name, value, found.size)
+    if found.dtype != np.float64 or not found.flags.c_contiguous:  # a copy follows
+        _check_memory(name, value, found.size)
     with np.errstate(over="ignore"):  # of extended precision, to infinity
         numbers = np.asarray(found, dtype=np.float64, order="C")
     if finite:
@@ -119,7 +127,8 @@ def whole(name: str, value: Any, least: int, most: int | None = None) -> int:
 def shape(name: str, value: Any) -> tuple[int, ...]:
     """Take the shape of an array: a whole number, or a tuple of them."""
     try:
-        lengths = tuple(whole(name, one, 0) for one in (value if isinstance(value, Iterable) else (value,)))
+        given = value if isinstance(value, Iterable) else (value,)
+        lengths = tuple(whole(name, one, 0) for one in islice(given, _MOST_DIMENSIONS + 1))
     except Exception:  # whatever the object raises
         lengths = (-1,)
     if min(lengths, default=0) < 0:
@@ -129,14 +138,14 @@ def shape(name: str, value: Any) -> tuple[int, ...]:
     return lengths
 
 
-def check_shapes(**arrays: np.ndarray) -> None:
-    """Refuse arrays whose shapes do not broadcast, naming them all."""
+def several(name: str, value: Any, allowed: str, take: Callable[[int, Any], T]) -> list[T]:
+    """Take one after the other what can be gone through, with the number of each, and stop at a wrong one."""
     try:
-        np.broadcast_shapes(*(array.shape for array in arrays.values()))
-    except ValueError:
-        given = ", ".join(f"{name} of shape {array.shape}" for name, array in arrays.items() if array.ndim)
-        names = ", ".join(name for name, array in arrays.items() if array.ndim)
-        raise ParameterError(Problem(names, f": {given}; must broadcast to one shape")) from None
+        return [take(number, one) for number, one in enumerate(value)]
+    except (ParameterError, MemoryError):  # of one of them, or of what makes them
+        raise
+    except Exception as error:  # whatever the object raises
+        raise ParameterError(wrong(name, value, allowed)) from error
 
 
 def function(name: str, value: Any) -> Callable[[float], float]:
@@ -180,12 +189,26 @@ def check_each(name: str, array: FloatArray, good: npt.NDArray[np.bool_], allowe
         raise ParameterError(wrong(f"{name}{place}", float(array[at]), allowed))
 
 
+def _array_of(name: str, value: Any) -> npt.NDArray[Any]:
+    """Make an array; of a range without the Python numbers in it, which take five times as much memory."""
+    if not isinstance(value, range):
+        return np.asarray(value)
+    _check_memory(name, value, max(0, -((value.start - value.stop) // value.step)))
+    inside = all(abs(number) <= sys.maxsize for number in (value.start, value.stop, value.step))
+    return np.arange(value.start, value.stop, value.step) if inside else np.asarray(value)
+
+
+def _check_memory(name: str, value: Any, size: int) -> None:
+    """Refuse more numbers than this process can hold, as doubles and what is made of these."""
+    if size > _MANY and _BYTES_EACH * size > (available := available_memory()):
+        allowed = f"at most {available // _BYTES_EACH:,} numbers, for which this process has the memory"
+        raise TooLargeError(wrong(name, value, allowed))
+
+
 def _stray(value: Any, depth: int) -> str | None:
     """Say what NumPy would silently convert to a number, or drop."""
-    if getattr(getattr(value, "dtype", None), "kind", None) == "V":
-        return "holds records"
-    if isinstance(value, np.ma.MaskedArray):
-        return "holds masked values" if np.ma.is_masked(value) else None
+    if isinstance(value, np.ma.MaskedArray):  # NumPy cannot tell of values with fields, which are no numbers
+        return "holds masked values" if value.dtype.names is None and np.ma.is_masked(value) else None
     if isinstance(value, bytes | bytearray) or (isinstance(value, memoryview) and value.format in _BYTES):
         return "holds bytes"
     if depth > 0 and getattr(getattr(value, "dtype", None), "kind", None) == "b":

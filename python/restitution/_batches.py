@@ -6,7 +6,6 @@ from typing import Any
 
 import numpy as np
 
-from restitution._arrays import whole
 from restitution._bins import FloatArray
 from restitution._parameters import shown
 
@@ -23,9 +22,7 @@ def batches_of(particles: int, batches: int) -> list[tuple[int, int]]:
     list of tuple of int
         First particle of each batch, and the one after its last.
     """
-    number = whole("batches", batches, 1)
-    if particles < 2 * number:
-        number = 1
+    number = 1 if particles < 2 * batches else batches
     ends = [particles * k // number for k in range(number + 1)]
     return list(pairwise(ends))
 

@@ -45,26 +45,31 @@ def increasing_edges(bins: npt.ArrayLike, name: str) -> FloatArray:
     allowed = "a 1-D array of at least two finite edges"
     edges = np.array(reals(name, bins, allowed, unit=_unit(name), finite=False))
     if edges.ndim != 1 or edges.size < 2:
-        raise ValueError(f"{name} has shape {edges.shape}: needs one dimension and at least two edges")
+        text = f" has shape {edges.shape}: needs one dimension and at least two edges"
+        raise ParameterError(Problem(name, text))
     if not np.all(np.isfinite(edges)):
-        raise ValueError(f"{name} holds {edges[~np.isfinite(edges)][0]}: edges must be finite")
+        raise ParameterError(Problem(name, f" holds {edges[~np.isfinite(edges)][0]}: edges must be finite"))
     with np.errstate(over="ignore"):
         widths = np.diff(edges)
-    if not np.all(widths > 0):
-        at = int(np.argmin(widths > 0))
-        raise ValueError(f"{name} goes from {edges[at]} to {edges[at + 1]}: edges must increase strictly")
-    if not _are_apart(edges):
-        text = "bins must be so wide that there are finitely many in a unit"
-        raise ValueError(f"{name} goes from {edges[0]} to {edges[-1]}: {text}")
+    _check_bins(name, edges, widths > 0, "edges must increase strictly")
     if np.abs(edges).max() > _FARTHEST:
-        raise ValueError(f"{name} goes from {edges[0]} to {edges[-1]}: at most {_FARTHEST:g} either way")
+        text = f" goes from {edges[0]} to {edges[-1]}: at most {_FARTHEST:g} either way"
+        raise ParameterError(Problem(name, text))
+    _check_bins(name, edges, _wide_enough(widths), "bins must be so wide that 1/width is finite")
     return edges
 
 
-def _are_apart(edges: FloatArray) -> bool:
-    """Whether the reciprocal of the mean width, by which bins are found, is a number."""
-    with np.errstate(all="ignore"):
-        return bool(np.isfinite((edges.size - 1) / (edges[-1] - edges[0])))
+def _check_bins(name: str, edges: FloatArray, good: npt.NDArray[np.bool_], allowed: str) -> None:
+    """Name the edges of the first bin that is not good."""
+    if not good.all():
+        at = int(np.argmin(good))
+        raise ParameterError(Problem(name, f" goes from {edges[at]} to {edges[at + 1]}: {allowed}"))
+
+
+def _wide_enough(widths: FloatArray) -> npt.NDArray[np.bool_]:
+    """Whether the density of bins, by which a number finds its own, is finite."""
+    with np.errstate(divide="ignore", over="ignore"):
+        return np.isfinite(1.0 / widths)
 
 
 def edges_from(bins: npt.ArrayLike | None, span: npt.ArrayLike | None, name: str) -> npt.ArrayLike | None:
@@ -83,13 +88,14 @@ def edges_from(bins: npt.ArrayLike | None, span: npt.ArrayLike | None, name: str
     ends = reals(f"{kind}_range", span, "(low, high) with low < high", unit=_unit(kind), dimensions=(1,))
     if ends.shape != (2,) or not ends[0] < ends[1]:
         raise ParameterError(wrong(f"{kind}_range", span, "(low, high) with low < high"))
+    if np.abs(ends).max() > _FARTHEST:
+        raise ParameterError(wrong(f"{kind}_range", span, f"at most {_FARTHEST:g} either way"))
     if not 1 <= bins <= _MOST_BINS:
         raise ParameterError(wrong(name, bins, f"edges, or a number of bins in [1, {_MOST_BINS}]"))
-    with np.errstate(all="ignore"):
-        edges = np.linspace(ends[0], ends[1], int(bins) + 1)
-        wide = bool(np.all(np.diff(edges) > 0.0)) and _are_apart(edges)
-    if not wide:
-        raise ParameterError(wrong(f"{kind}_range", span, f"a range that {bins} bins divide"))
+    edges = np.linspace(ends[0], ends[1], int(bins) + 1)
+    if not _wide_enough(np.diff(edges)).all():
+        allowed = f"so wide that 1/width of each of {bins} bins is finite"
+        raise ParameterError(wrong(f"{kind}_range", span, allowed))
     return edges
 
 

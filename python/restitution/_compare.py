@@ -11,8 +11,9 @@ from typing import Any, TypeVar
 import numpy as np
 import xarray as xr
 
+from restitution._arrays import several
 from restitution._energy import LEDGER, WHY, EnergyWarning, factor, percent, reported_elsewhere
-from restitution._parameters import Parameters, shown, unit_of
+from restitution._parameters import ParameterError, Parameters, Problem, shown, unit_of, wrong
 from restitution._resources import progress_bar
 from restitution._simulate import SimulationInterrupted
 from restitution._statistics import statistics
@@ -138,34 +139,33 @@ def _finished(
 
 def _named(what: str, given: Mapping[str, T] | Iterable[T], kind: type[Any]) -> dict[str, T]:
     """Give every body or law its name."""
+    allowed = f"a dict or list of {kind.__name__}"
     if isinstance(given, Mapping):
         named = dict(given)
     elif isinstance(given, Iterable) and not isinstance(given, Parameters | str):
-        try:
-            values = list(given)
-        except Exception:  # whatever the object raises
-            raise ValueError(f"{what} = {shown(given)}: must be a dict or list of {kind.__name__}") from None
-        for value in values:
-            _check(what, value, kind)
+        values = several(what, given, allowed, lambda _, value: _checked(what, value, kind))
         names = [_name(value, values) for value in values]
         named = dict(zip(names, values, strict=True))
         if len(named) < len(values):
             twice = next(name for name in names if names.count(name) > 1)
-            raise ValueError(f"{what}: {twice} is there twice; all must differ, or have names: a dict")
+            text = f": {twice} is there twice; all must differ, or have names: a dict"
+            raise ParameterError(Problem(what, text))
     else:
-        raise ValueError(f"{what} = {shown(given)}: must be a dict or list of {kind.__name__}")
+        raise ParameterError(wrong(what, given, allowed))
     if not named:
-        raise ValueError(f"{what}: must not be empty")
+        raise ParameterError(Problem(what, ": must not be empty"))
     for name, value in named.items():
         if not isinstance(name, str):
-            raise ValueError(f"{what}: {shown(name)} is not a name; must be a str")
-        _check(what, value, kind)
+            raise ParameterError(Problem(what, f": {shown(name)} is not a name; must be a str"))
+        _checked(what, value, kind)
     return named
 
 
-def _check(what: str, value: object, kind: type) -> None:
+def _checked(what: str, value: Any, kind: type[Any]) -> Any:
     if not isinstance(value, kind):
-        raise ValueError(f"{what} holds {shown(value)}: must be objects of a {kind.__name__}")
+        text = f" holds {shown(value)}: must be objects of a {kind.__name__}"
+        raise ParameterError(Problem(what, text))
+    return value
 
 
 def _name(one: Parameters, others: list[T]) -> str:

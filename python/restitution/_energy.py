@@ -63,7 +63,7 @@ def ledger_of(energy_ratio: FloatArray) -> dict[str, Any]:
     """`ledger` of recorded energy ratios, NaN where there was no impact."""
     impacts = energy_ratio.size - int(np.count_nonzero(np.isnan(energy_ratio)))
     created = int(np.count_nonzero(energy_ratio > CREATES_ENERGY))
-    return ledger(impacts, created, float(np.fmax.reduce(energy_ratio, axis=None)))
+    return ledger(impacts, created, float(np.fmax.reduce(energy_ratio, axis=None, initial=np.nan)))
 
 
 def by_row(row: str, created: IntArray, largest: FloatArray) -> dict[str, Any]:

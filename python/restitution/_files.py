@@ -24,16 +24,24 @@ from restitution._parameters import ParameterError, wrong
 from restitution._signals import surely, undisturbed
 
 _MASKING = Lock()
+_LEFT = re.compile(r"\..+\.([0-9a-f]{8})-(\d+)\.[^.]+\.part", re.DOTALL)
+"""The name of a draft, with its machine and its process."""
+_LONGEST = 200
+"""Bytes of a name that a draft's contains as it is: most file systems allow 255 in all."""
+_LONGEST_PATH = 4095 if os.name == "posix" else 32_767  # bytes of any path that a system opens
 
 
 def path_from(name: str, value: Any) -> Path:
     """Take what names a file; raises a ParameterError for what does not."""
     try:
         path = Path(value)
+        length = len(os.fsencode(path))
     except Exception:  # whatever the object raises
-        path = Path()
-    if path == Path() or "\0" in str(path):
-        raise ParameterError(wrong(name, value, "the path of a file, without null characters"))
+        path, length = Path(), 0
+    bad = path == Path() or "\0" in str(path)
+    if bad or length > _LONGEST_PATH:
+        how = "without null characters or lone surrogates" if bad else f"of at most {_LONGEST_PATH} bytes"
+        raise ParameterError(wrong(name, value, f"the path of a file, {how}"))
     return path
 
 

@@ -34,7 +34,7 @@ _OTHERS = {
 
 
 def check_name(argument: str, path: Path, kind: str) -> None:
-    """Refuse the name of another format, and a dash, by which other programs mean standard output.
+    """Refuse the name of another format, a folder's, and a dash, which to other programs is standard output.
 
     Any other name will do: what follows the last dot may be part of a number.
 
@@ -53,7 +53,8 @@ def check_name(argument: str, path: Path, kind: str) -> None:
         Saying what is written.
     """
     strange = _OTHERS.union(*(own for other, own in _OWN.items() if other != kind))
-    if path.suffix.lower() in strange or path.name == "-":
+    nameless = path.name in ("", "..") and kind != FOLDER
+    if nameless or path.suffix.lower() in strange or path.name == "-":
         raise ParameterError(wrong(argument, str(path), f"the name of {kind}"))
 
 

@@ -12,7 +12,7 @@ import numpy as np
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, ValidationError
 from pydantic_core import PydanticCustomError
 
-from restitution import _display
+from restitution import _core, _display
 
 
 class Problem(NamedTuple):
@@ -73,17 +73,21 @@ def listed(kinds: Iterable[type]) -> str:
     return f"{', '.join(others)} or {last}"
 
 
-class _Line(Repr):
-    """Writes integers of any size, inside lists too: Python refuses to write out the largest."""
-
-    def repr_int(self, x: int, level: int) -> str:
-        return f"an integer of {x.bit_length()} bits" if x.bit_length() > _MOST_BITS else repr(x)
-
-
-_SHORT = _Line()
-_SHORT.maxstring = _SHORT.maxother = 72
 _MOST_BITS = 256
 _MOST_ELEMENTS = 6
+
+
+class _Short(Repr):
+    """Values in at most a line; whole numbers may have more digits than Python writes."""
+
+    def repr_int(self, x: int, level: int) -> str:
+        if x.bit_length() > _MOST_BITS:
+            return f"an integer of {x.bit_length()} bits"
+        return super().repr_int(x, level)
+
+
+_SHORT = _Short()
+_SHORT.maxstring = _SHORT.maxother = 72
 
 
 def shown(value: Any) -> str:
@@ -228,8 +232,10 @@ def _problems(model: type[BaseModel], error: ValidationError) -> Iterator[Proble
                 cause = problem["ctx"]["error"]
                 if isinstance(cause, ParameterError):
                     yield from cause.problems
-                else:  # of the core
+                elif isinstance(cause, _core.ParameterError):
                     yield wrong(cause.name, cause.value, cause.allowed)
+                else:  # of the object that was given
+                    yield wrong(name, problem["input"], _allowed(model, name))
             case _:
                 yield wrong(name, problem["input"], _allowed(model, name))
 

@@ -10,6 +10,9 @@ is counted too, so that for the impacts that happened
 
 from __future__ import annotations
 
+from collections.abc import Hashable
+from typing import Any
+
 import numpy as np
 import numpy.typing as npt
 import xarray as xr
@@ -74,8 +77,8 @@ def reduce(
 
         Left out of the grids, and counted: ``velocity_underflow``, ``velocity_overflow``; for each
         velocity bin ``restitution_underflow``, ``restitution_overflow``, ``fraction_underflow``,
-        ``fraction_overflow``, and ``undefined``, the impacts whose restitution is not finite
-        (v = 0 in Eq. 1) or at least 2³³ in magnitude, which enter no other number of their bin.
+        ``fraction_overflow``, and ``undefined``, the impacts whose restitution or E_rot/E_tot is not
+        finite (v = 0 in Eq. 1) or at least 2³³ in magnitude, which enter no other number of their bin.
 
     Raises
     ------
@@ -103,9 +106,9 @@ def reduce(
         "fraction": increasing_edges(fraction, "fraction_bins"),
     }
     batches = whole("batches", batches, 1)
-    parts = batches_of(data.sizes.get("particle", 0) if isinstance(data, xr.Dataset) else 0, batches)
     names = ("impact_velocity", "restitution", "rotational_fraction", "energy_ratio")
     velocity, restitution, fraction, energy = (column.ravel() for column in records("data", data, *names))
+    parts = batches_of(data.sizes["particle"], batches)
     happened = ~np.isnan(velocity)
     particle = np.repeat(np.arange(data.sizes["particle"]), data.sizes["impact"])[happened]
     velocity, restitution, fraction, energy = (
@@ -114,7 +117,7 @@ def reduce(
     # Rows as in the core: below, the bins, above.
     rows = velocity_edges.size + 1
     row = _bin(velocity, velocity_edges) + 1
-    defined = (np.abs(restitution) < LARGEST) & np.isfinite(fraction)
+    defined = (np.abs(restitution) < LARGEST) & (np.abs(fraction) < LARGEST)
     counts = {
         "restitution_count": _grid(row, restitution, defined, rows, columns["restitution"]),
         "fraction_count": _grid(row, fraction, defined, rows, columns["fraction"]),
@@ -139,10 +142,7 @@ def reduce(
     found = by_velocity(counts, moments, velocity_edges, columns, more)
     content = "statistics of restitution in bins of impact velocity, bins lo <= x < hi"
     how = origin(len(parts), data.sizes["particle"], batches)
-    # Of a part of a run its own ledger of energy, not that of the whole.
-    about = {name: value for name, value in data.attrs.items() if name not in LEDGER}
-    if LEDGER[0] in data.attrs:
-        about |= ledger_of(energy)
+    about = _without_ledger(data) | ledger_of(energy)
     return found.assign_attrs(about, content=content, standard_errors=how)
 
 
@@ -177,7 +177,8 @@ def standard_errors(data: xr.Dataset, velocity_bins: npt.ArrayLike, *, block: in
     names = ("impact_velocity", "restitution", "rotational_fraction")
     velocity, restitution, fraction = records("data", data, *names)
     bins = _bin(velocity, edges)
-    kept = (bins >= 0) & (bins < nv) & (np.abs(restitution) < LARGEST) & np.isfinite(fraction)
+    defined = (np.abs(restitution) < LARGEST) & (np.abs(fraction) < LARGEST)
+    kept = (bins >= 0) & (bins < nv) & defined
     pooled = _moments(restitution[kept], bins[kept], nv)
     mean, variance = pooled["mean_restitution"], pooled["variance"]
     number = _tally(bins[kept], nv)
@@ -211,8 +212,13 @@ def standard_errors(data: xr.Dataset, velocity_bins: npt.ArrayLike, *, block: in
             "particles": ("velocity", particles, {"long_name": "particles with an impact in the bin"}),
         },
         coords={"velocity": ("velocity", centres(edges), {"units": "m s-1", "long_name": "impact velocity"})},
-        attrs=dict(data.attrs),
+        attrs=_without_ledger(data),
     )
+
+
+def _without_ledger(data: xr.Dataset) -> dict[Hashable, Any]:
+    """Give the attributes of impacts but those on energy, which are of the whole run, not of a part of it."""
+    return {name: value for name, value in data.attrs.items() if name not in LEDGER}
 
 
 def _bin(values: FloatArray, edges: FloatArray) -> IntArray:

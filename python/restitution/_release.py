@@ -9,7 +9,7 @@ from pydantic import BeforeValidator, Field, TypeAdapter, ValidationError, model
 
 from restitution import _core
 from restitution._arrays import check_each, reals
-from restitution._parameters import Allowed, Number, ParameterError, Parameters, _plain_number, wrong
+from restitution._parameters import Allowed, Number, ParameterError, Parameters, wrong
 
 Orientation = Literal["uniform-angle", "isotropic"]
 Axis = Literal["isotropic", "horizontal", "across", "thermal"]
@@ -75,15 +75,12 @@ def _velocity(value: Any) -> tuple[float, ...]:
 
 
 def _rate(value: Any) -> float | tuple[float, float]:
-    pair = isinstance(value, list | tuple | np.ndarray) and np.shape(value) == (2,)
-    try:
-        parts = [_plain_number(part) for part in (value if pair else [value])]
-        rates = _array("rate", parts, _RATES, "rad s-1", 1)
-    except ParameterError:
-        raise ParameterError(wrong("rate", value, _RATES)) from None
-    if not 0.0 <= rates[0] <= rates[-1] < math.inf:
-        raise ParameterError(wrong("rate", value, _RATES))
-    return (float(rates[0]), float(rates[1])) if pair else float(rates[0])
+    rates = _array("rate", value, _RATES, "rad s-1", 0, 1)
+    if rates.shape in ((), (2,)):
+        low, high = np.broadcast_to(rates, 2).tolist()
+        if 0.0 <= low <= high < math.inf:
+            return (low, high) if rates.shape else low
+    raise ParameterError(wrong("rate", value, _RATES))
 
 
 class RandomHeight(Parameters):

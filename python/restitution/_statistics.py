@@ -123,7 +123,7 @@ def statistics(
     ('velocity', 'restitution')
     """
     run = Run.called(locals())
-    counts_only = flag("counts_only", counts_only)
+    counts_only, batches = flag("counts_only", counts_only), whole("batches", batches, 1)
     velocity, restitution, fraction = all_edges_from(
         velocity_bins=(velocity_bins, velocity_range),
         restitution_bins=(restitution_bins, restitution_range),

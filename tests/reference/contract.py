@@ -92,6 +92,16 @@ FITTING: dict[str, str] = {
     "study.study_of.source": "study",
     "study.merge.study": "sweep",
     "flight.restitution.times": "uncertainty",
+    "from_roundness.lobes": "out_of_roundness",
+    "posterior.diameter": "release_height",
+    "posterior.lobes": "elongation",
+    **dict.fromkeys(
+        (
+            f"FluctuatingRestitution.learn.{name}"
+            for name in ("gravity", "minimum_speed", "particles", "release_height")
+        ),
+        "velocities",  # between which too few impacts are left
+    ),
 }
 """Where an argument is right in itself, the other that no longer fits it may be the one that is named."""
 
@@ -152,7 +162,8 @@ def judged(name: str, text: str, argument: str, bad: Any) -> str | None:
 def _same_number(text: str, bad: Any) -> bool:
     """Whether a number is shown that is equal, if written otherwise."""
     try:
-        plain = isinstance(bad, int | float | np.integer | np.floating) and not isinstance(bad, bool)
-        return plain and float(re.split(r"[:;,] ", text)[0]) == float(bad)
-    except (ValueError, OverflowError):
+        number = np.asarray(bad)  # in whatever form it was given
+        plain = number.ndim == 0 and number.dtype.kind in "iuf"
+        return plain and float(re.split(r"[:;,] ", text)[0]) == float(number)
+    except Exception:  # whatever the object raises
         return False

@@ -1,5 +1,6 @@
 """One catalogue of hostile values: whatever once broke something, and its kin. It grows with every find."""
 
+import ctypes
 from collections import deque
 from collections.abc import Callable
 from decimal import Decimal
@@ -35,6 +36,13 @@ def _itself() -> list[Any]:
     return found
 
 
+def masked_with_fields() -> Any:
+    """Values with fields, of which one is masked: NumPy's `is_masked` raises."""
+    fields = [("a", "f8"), ("b", "f8")]
+    mask = np.array([(True, False)], dtype=[("a", "?"), ("b", "?")])
+    return np.ma.masked_array([(1.0, 2.0)], mask=mask, dtype=fields)
+
+
 VALUES: dict[str, Callable[[], Any]] = {
     "None": lambda: None,
     "True": lambda: True,
@@ -49,6 +57,10 @@ VALUES: dict[str, Callable[[], Any]] = {
     "huge": lambda: 1.7e308,
     "2**64": lambda: 2**64,
     "10**400": lambda: 10**400,
+    "endless": lambda: 10**5000,
+    "endless inside": lambda: [10**5000],
+    "whole number of a byte": lambda: np.int8(100),
+    "of C": lambda: ctypes.c_double(0.5),
     "longdouble beyond": lambda: np.longdouble("1e4000"),
     "complex": lambda: 1 + 0j,
     "numpy complex": lambda: np.complex64(1.0),
@@ -81,6 +93,13 @@ VALUES: dict[str, Callable[[], Any]] = {
     "ragged": lambda: [[0.0], [1.0, 2.0]],
     "two dimensions": lambda: np.zeros((2, 3)),
     "bool array inside": lambda: [np.array(True), 2.0, 3.0],
+    "masked with fields": masked_with_fields,
+    "one masked with fields": lambda: masked_with_fields()[0],
+    "vast range": lambda: range(10**12),
+    "vast array": lambda: np.broadcast_to(0.5, (10**13,)),
+    "subnormal": lambda: [1e-310, 2e-310, 3e-310],
+    "data array of no dimension": lambda: xr.DataArray(0.5),
+    "table in memory": lambda: np.zeros((2, 2)).data,
     "masked whole number": lambda: np.ma.masked_array(3, mask=True),
     "queue of bools": lambda: deque([0.0, True, 2.0]),
     "bytes to be changed": lambda: bytearray(b"012"),
@@ -107,6 +126,10 @@ VALUES: dict[str, Callable[[], Any]] = {
     "path": lambda: Path("none"),
     "name of a table": lambda: "hostile.csv",
     "dash": lambda: "-",
+    "half a character": lambda: "\ud800",
+    "no name": lambda: "/",
+    "endless name": lambda: 100_000 * "a",
+    "what cannot be read": lambda: "/proc/self/mem",
     "what has no end": lambda: "/dev/zero",
     "what takes all": lambda: Path("/dev/null"),
 }

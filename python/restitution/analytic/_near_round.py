@@ -90,12 +90,11 @@ def near_round(
     if isinstance(release_height, RandomHeight):
         raise ParameterError(wrong("release_height", release_height, "a number, the same for all"))
     run = Run(body=body, law=law, release_height=release_height, gravity=gravity)
-    height = run.release_height
-    assert isinstance(height, float)
-    slowest = _SLOW * float(np.sqrt(run.gravity * body.radii[0]))
+    gravity, height = run.gravity, run.release_height
+    slowest = _SLOW * float(np.sqrt(gravity * body.radii[0]))
     if law.normal == 1.0:
         raise ParameterError(Problem("normal", " = 1.0: must be < 1; the impacts would never end"))
-    if not (slowest > 0.0 and np.isfinite(slowest) and np.isfinite(2.0 * run.gravity * height)):
+    if not (slowest > 0.0 and np.isfinite(slowest) and np.isfinite(2 * gravity * height)):
         raise ParameterError(wrong("gravity", gravity, "such that speeds neither overflow nor underflow"))
     velocity, epsilon = _impacts(run, min(slowest, edges[-1]), angles)
     return _by_velocity(velocity, epsilon, edges, slowest)

@@ -5,7 +5,7 @@ from typing import Annotated
 from pydantic import Field
 
 from restitution import _core
-from restitution._parameters import Number
+from restitution._parameters import Number, ParameterError, Problem, shown
 from restitution.bodies._body import Body
 
 
@@ -40,6 +40,9 @@ class LoadedSphere(Body):
 
     def _compile(self) -> _core.Solid:
         """Make the body as the core knows it."""
+        if self.offset > self.radius:
+            text = f" = {shown(self.offset)}, radius = {shown(self.radius)}: must be "
+            raise ParameterError(Problem("offset", text, "at most the radius (m)"))
         return _core.loaded_sphere(self.radius, self.density, self.load, self.offset)
 
     @property

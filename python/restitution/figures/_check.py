@@ -32,9 +32,9 @@ def colours(name: str, value: Any) -> ScalarMappable:
 
 
 def text(name: str, value: Any) -> str:
-    """Take words."""
-    if not isinstance(value, str):
-        raise ParameterError(wrong(name, value, "text"))
+    """Take words, as files can hold them: a lone surrogate is half a character."""
+    if not isinstance(value, str) or any("\ud800" <= one <= "\udfff" for one in value):
+        raise ParameterError(wrong(name, value, "text, without lone surrogates"))
     return value
 
 

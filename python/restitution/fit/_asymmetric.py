@@ -10,7 +10,7 @@ from scipy import optimize, special, stats
 
 from restitution.fit._counts import Counts, fit_counts
 from restitution.fit._result import Array, Fit, fitted
-from restitution.fit._source import Samples, Window, placed, taken
+from restitution.fit._source import Samples, Window, cusp, taken
 
 
 def asymmetric_laplace(
@@ -57,14 +57,14 @@ def asymmetric_laplace(
     >>> 0.02 < found.parameters["above"] < 0.03
     True
     """
-    location = placed(location)
+    location = None if location is None else cusp(location)
     x = taken(samples, velocity, location)
     if isinstance(x, Counts):
         return _counted("asymmetric Laplace", x, location, 1.0)
     if location is None:
         m, above, below = _best_cusp(np.sort(x))
     else:
-        m = float(location)
+        m = location
         above, below = float(np.sum(np.maximum(x - m, 0))), float(np.sum(np.maximum(m - x, 0)))
     total = sqrt(above) + sqrt(below)
     a, b = sqrt(above) * total / x.size, sqrt(below) * total / x.size
@@ -114,7 +114,7 @@ def asymmetric_power(
     >>> 1.8 < fit.asymmetric_power(x).parameters["exponent"] < 2.2  # a Gaussian's is 2
     True
     """
-    location = placed(location)
+    location = None if location is None else cusp(location)
     x = taken(samples, velocity, location)
     if isinstance(x, Counts):
         return _counted("asymmetric power", x, location, None)

@@ -10,13 +10,12 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy import optimize, special, stats
 
-from restitution._arrays import real
 from restitution._content import Content
 from restitution.fit._asymmetric import asymmetric_laplace, frozen
 from restitution.fit._counts import Counts, fit_counts
 from restitution.fit._in_parts import drawn, draws
 from restitution.fit._result import Array, Fit, fitted
-from restitution.fit._source import Samples, Window, placed, taken
+from restitution.fit._source import Samples, Window, cusp, taken
 
 _NARROWEST = 1e-3
 """Least width of a part, over the spread of the samples: a narrower Gaussian would sit on one sample."""
@@ -122,7 +121,7 @@ def cusp_mixture(samples: Samples, location: float, *, velocity: Window | None =
     >>> 0.2 < fit.cusp_mixture(x, 0.98).parameters["share"] < 0.3
     True
     """
-    location = real("location", placed(location), "a finite number")
+    location = cusp(location)
     x = taken(samples, velocity, location)
     if isinstance(x, Counts):
         return _from_counts(x, location)

@@ -1,7 +1,7 @@
 """What may be fitted: an array, binned counts, recorded impacts or statistics at an impact velocity."""
 
 from collections.abc import Sequence
-from typing import TypeAlias
+from typing import Any, TypeAlias
 
 import numpy as np
 import xarray as xr
@@ -32,13 +32,13 @@ def taken(samples: Samples, velocity: Window | None, location: float | None = No
         For a Dataset, and for that alone. Impacts: the window (low, high), low ≤ v < high. Statistics: the
         velocity bin that holds the number, or a window whose ends are edges of velocity bins.
     location : float, optional
-        Of a cusp that is given, as from `placed`.
+        Of a cusp that is given, as from `cusp`.
 
     Raises
     ------
     ValueError
-        If `velocity` is missing, superfluous or outside the data, no impact is there, or the samples or the
-        location are not as they must be.
+        If `velocity` is missing, superfluous or outside the data, no impact is there, or the samples are not
+        as they must be.
     """
     if isinstance(samples, xr.Dataset):
         if "restitution_count" in samples:
@@ -48,12 +48,9 @@ def taken(samples: Samples, velocity: Window | None, location: float | None = No
     return samples if isinstance(samples, Counts) else finite_samples(samples, location)
 
 
-def placed(location: float | None) -> float | None:
-    """Take the place of a cusp, if it is given."""
-    if location is None:
-        return None
-    allowed = "a finite number, at most 1e100 either way"
-    return real("location", location, allowed, lambda x: abs(x) <= 1e100)
+def cusp(location: Any) -> float:
+    """Take the location of a cusp that is given."""
+    return real("location", location, "a finite number, at most 1e100 either way", lambda x: abs(x) <= 1e100)
 
 
 def counted(statistics: xr.Dataset, velocity: Window | None) -> Counts:

@@ -4,6 +4,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
+from restitution._arrays import several
 from restitution._files import path_from
 from restitution._formats import ZARR, check_name
 from restitution._parameters import ParameterError, Problem, shown, wrong
@@ -64,8 +65,9 @@ def merge(
     """
     if isinstance(parts, str | bytes) or not isinstance(parts, Sequence):
         raise ParameterError(wrong("parts", parts, "a list of paths"))
-    path, others = path_from("out", out), [path_from(f"parts[{i}]", part) for i, part in enumerate(parts)]
-    need_zarr(path, width(None, threads))
+    path = path_from("out", out)
+    others = several("parts", parts, "a list of paths", lambda i, part: path_from(f"parts[{i}]", part))
+    need_zarr(path)
     if not path.exists() and not others:
         raise ParameterError(Problem("out", f" = {shown(out)}: there is no such store, and no parts for it"))
     if not path.exists():
