@@ -76,10 +76,10 @@ def test_a_million_samples_take_a_second_and_little_memory() -> None:
 
 
 def test_huge_counts_are_no_harder_than_few() -> None:
-    """10¹² samples in bins: the parameters are those of 10⁴ with the same shares."""
+    """10¹⁵ samples in bins: the parameters are those of 10⁹ with the same shares."""
     edges = np.linspace(0.5, 1.3, 201)
     shares = np.diff(fit.asymmetric_laplace(flanks(np.random.default_rng(1).random(2000))).cdf(edges))
-    few, many = (fit.asymmetric_laplace(Counts(edges, n * shares)).parameters for n in (1e4, 1e12))
+    few, many = (fit.asymmetric_laplace(Counts(edges, np.rint(n * shares))).parameters for n in (1e9, 1e15))
     assert list(few.values()) == pytest.approx(list(many.values()), rel=1e-5)
 
 
@@ -160,7 +160,7 @@ def test_bad_input_is_named() -> None:
         ),
         (lambda: Counts(edges, np.ones(3)), r"count = .*: must be a 1-D array of 2 counts"),
         (lambda: Counts(edges[::-1], np.ones(2)), "edges goes from 2.0 to 1.0: edges must increase"),
-        (lambda: Counts(edges, np.array([1.0, -1.0])), r"count\[1\] = -1.0: must be a count in"),
+        (lambda: Counts(edges, np.array([1.0, -1.0])), r"count\[1\] = -1.0: must be a whole number in"),
         (lambda: Counts(edges, np.array([1.0, 0.0])), r"count: 1 bin\(s\) filled"),
         (lambda: fit.slopes(data), "velocity_bins: missing"),
         (

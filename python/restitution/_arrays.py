@@ -68,8 +68,6 @@ def reals(
         raise ParameterError(wrong(name, value, f"{allowed}; it {reason}"))
     if unit is not None:
         check_units(name, value, unit)
-    if isinstance(value, range):
-        _check_size(name, value, (value.stop - value.start) // value.step)
     try:
         found = _array_of(name, value)
     except TooLargeError:
@@ -90,13 +88,6 @@ def reals(
     if finite:
         check_each(name, numbers, np.isfinite(numbers), allowed)
     return numbers
-
-
-def _check_size(name: str, value: Any, size: int) -> None:
-    """Refuse more numbers than memory holds, of a range or of one number that stands for many."""
-    if size > _MANY and 8 * size > (available := available_memory()):
-        allowed = f"at most {available // 8:.4g} numbers, which this process can hold"
-        raise TooLargeError(wrong(name, value, allowed))
 
 
 def real(
@@ -136,6 +127,16 @@ def shape(name: str, value: Any) -> tuple[int, ...]:
     if len(lengths) > _MOST_DIMENSIONS or max(lengths, default=0) > sys.maxsize:
         raise ParameterError(wrong(name, value, f"at most {_MOST_DIMENSIONS} lengths of at most 2**63 - 1"))
     return lengths
+
+
+def check_shapes(**arrays: np.ndarray) -> None:
+    """Refuse arrays whose shapes do not broadcast, naming them all."""
+    try:
+        np.broadcast_shapes(*(array.shape for array in arrays.values()))
+    except ValueError:
+        given = ", ".join(f"{name} of shape {array.shape}" for name, array in arrays.items() if array.ndim)
+        names = ", ".join(name for name, array in arrays.items() if array.ndim)
+        raise ParameterError(Problem(names, f": {given}; must broadcast to one shape")) from None
 
 
 def several(name: str, value: Any, allowed: str, take: Callable[[int, Any], T]) -> list[T]:

@@ -24,10 +24,6 @@ from restitution._parameters import ParameterError, wrong
 from restitution._signals import surely, undisturbed
 
 _MASKING = Lock()
-_LEFT = re.compile(r"\..+\.([0-9a-f]{8})-(\d+)\.[^.]+\.part", re.DOTALL)
-"""The name of a draft, with its machine and its process."""
-_LONGEST = 200
-"""Bytes of a name that a draft's contains as it is: most file systems allow 255 in all."""
 _LONGEST_PATH = 4095 if os.name == "posix" else 32_767  # bytes of any path that a system opens
 
 

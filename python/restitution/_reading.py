@@ -12,8 +12,11 @@ _PIECE = 2**20
 def content(path: Path) -> bytes:
     """Read a file as a whole; an OSError that names it if it cannot be read, or is longer than any table."""
     try:
+        found = bytearray()
         with path.open("rb") as file:
-            found = file.read(MOST + 1)
+            # Python takes room for all that is asked for, however short the file is.
+            while piece := file.read(min(_PIECE, MOST + 1 - len(found))):
+                found += piece
     except OSError as error:  # while it is read, it names no file
         raise OSError(error.errno, error.strerror, str(path)) from error
     if len(found) > MOST:

@@ -131,7 +131,6 @@ def statistics(
     )
     edges = edges_of(velocity, restitution, None if counts_only else fraction)
     number = checked_threads(threads)
-    batches = whole("batches", batches, 1)
     parts = batches_of(run.particles, 1 if counts_only else batches)
     _check_memory(run, edges, number)
     with progress_bar("statistics", run.particles, "particles", show=progress) as tell:

@@ -67,7 +67,7 @@ def merge(
         raise ParameterError(wrong("parts", parts, "a list of paths"))
     path = path_from("out", out)
     others = several("parts", parts, "a list of paths", lambda i, part: path_from(f"parts[{i}]", part))
-    need_zarr(path)
+    need_zarr(path, width(None, threads))
     if not path.exists() and not others:
         raise ParameterError(Problem("out", f" = {shown(out)}: there is no such store, and no parts for it"))
     if not path.exists():
