@@ -130,3 +130,81 @@ def test_why_there_are_no_standard_errors() -> None:
         )
     why = "none: 3 particles are fewer than two for each of 100 batches"
     assert found.attrs["standard_errors"] == counted.attrs["standard_errors"] == why
+
+
+@pytest.mark.parametrize(
+    ("name", "value"),
+    [("gravity", 0.0), ("gravity", -1.0), ("gravity", None), ("gravity", "x"), ("gravity_uncertainty", -1.0)],
+)
+def test_a_fit_of_attributes_that_are_none(series: xr.Dataset, name: str, value: Any) -> None:
+    with pytest.raises(ValueError, match=rf"^data\.{name} = .*: must be a finite number >"):
+        flight.fit(series.assign_attrs({name: value}))
+
+
+def test_a_fit_without_an_error_of_gravity(series: xr.Dataset) -> None:
+    """It is then exact, as it is by default."""
+    found = series.copy()
+    del found.attrs["gravity_uncertainty"]
+    assert flight.fit(found).parameters == flight.fit(series).parameters
+
+
+BINS: dict[str, Any] = {
+    "velocity_bins": np.linspace(0.1, 1.1, 6),
+    "restitution_bins": np.linspace(0.5, 1.5, 40),
+}
+
+
+@pytest.fixture(scope="module")
+def statistics() -> xr.Dataset:
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", rs.EnergyWarning)
+        return rs.statistics(BODY, LAW, particles=400, impacts=100, **BINS)
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        (
+            lambda s: s.drop_vars("restitution_underflow"),
+            r"^statistics lacks restitution_underflow: must",
+        ),
+        (
+            lambda s: s.isel(restitution_edge=slice(20)),
+            r"^statistics\.restitution_edges has 20 edges",
+        ),
+        (
+            lambda s: s.assign(restitution_count=s.restitution_count.astype(complex)),
+            r"^statistics\.restitution_count = .*: must be whole numbers",
+        ),
+        (
+            lambda _: rs.statistics(BODY, LAW, particles=4, impacts=5, counts_only=True, **BINS),
+            r"^statistics lacks minimum, maximum: give a result of .*, without counts_only",
+        ),
+        (
+            lambda _: rs.compare([BODY], [LAW], particles=4, impacts=5, **BINS),
+            r"^statistics\.restitution_count has dimensions .*: must be \(velocity, restitution\)",
+        ),
+    ],
+)
+@pytest.mark.filterwarnings("ignore::restitution.EnergyWarning")
+def test_statistics_that_no_distribution_is_made_of(
+    statistics: xr.Dataset, change: Callable[[xr.Dataset], xr.Dataset], message: str
+) -> None:
+    with pytest.raises(ValueError, match=message):
+        rs.FluctuatingRestitution.from_statistics(change(statistics))
+
+
+def test_statistics_in_any_order(statistics: xr.Dataset) -> None:
+    """Of their dimensions: the same distribution, and the same figure."""
+    turned = statistics.transpose(*reversed(list(statistics.dims)))
+    made = rs.FluctuatingRestitution.from_statistics(turned)
+    assert made == rs.FluctuatingRestitution.from_statistics(statistics)
+
+
+@pytest.mark.filterwarnings("ignore::restitution.EnergyWarning")
+def test_figures_of_a_comparison() -> None:
+    """One picture shows one of its statistics."""
+    several = rs.compare([BODY], [LAW], particles=4, impacts=5, **BINS)
+    for draw in (rs.figures.map, lambda found: rs.figures.densities(found, [0.5])):
+        with pytest.raises(ValueError, match=r"^found has dimensions body, law: must be one of a comparison"):
+            draw(several)

@@ -3,6 +3,9 @@
 import numpy as np
 import xarray as xr
 
+from restitution._arrays import reals
+from restitution._parameters import ParameterError, wrong
+from restitution._recorded import counted
 from restitution._units import check_variables
 from restitution.distribution._nodes import LEAST_IMPACTS, POINT
 from restitution.distribution._store import of_histograms, require
@@ -12,9 +15,15 @@ from restitution.distribution._table import Floats, Histogram
 def from_statistics(statistics: xr.Dataset) -> xr.Dataset:
     """Make the Dataset of a distribution; see `FluctuatingRestitution.from_statistics`."""
     needed = ("restitution_count", "restitution_edges", "minimum", "maximum", "velocity")
-    instead = "a result of restitution.statistics or restitution.reduce with velocity bins"
+    instead = "a result of restitution.statistics, without counts_only, or reduce with velocity bins"
     require(statistics, "statistics", needed, instead)
-    check_variables("statistics", statistics, *needed, "restitution_underflow", "restitution_overflow")
+    statistics = counted("statistics", statistics)
+    check_variables("statistics", statistics, *needed)
+    for name in needed[2:]:
+        allowed = "real numbers, one for each velocity bin"
+        found = reals(f"statistics.{name}", statistics[name].to_numpy(), allowed, finite=False)
+        if found.shape != (statistics.sizes["velocity"],):
+            raise ParameterError(wrong(f"statistics.{name}", found, allowed))
     counts, number = _counts(statistics)
     velocity = statistics["velocity"].to_numpy()
     kept = np.flatnonzero((number >= LEAST_IMPACTS) & (velocity > 0))

@@ -11,7 +11,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from restitution._arrays import reals, whole
-from restitution._parameters import ParameterError, wrong
+from restitution._parameters import ParameterError, Problem, wrong
 from restitution._units import check_variables
 from restitution.figures._panels import line, population, population_bar
 from restitution.figures._style import COLORS, COLUMN, MARKERS, PAGE, letter, panels, styled
@@ -315,3 +315,9 @@ def _require(name: str, data: object, *variables: str) -> None:
     if lacking:
         raise ValueError(f"{name} lacks {', '.join(lacking)}: must be a Dataset as from {origin}")
     check_variables(name, data, *variables)
+    several = {"body", "law"} & set(data.dims)
+    if several:
+        text = f" has dimensions {', '.join(sorted(several))}: must be one of a comparison, as by `sel`"
+        raise ParameterError(Problem(name, text))
+    for each in variables:
+        reals(f"{name}.{each}", data[each].to_numpy(), "real numbers", finite=False)

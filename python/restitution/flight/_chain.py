@@ -6,7 +6,7 @@ import numpy as np
 import numpy.typing as npt
 import xarray as xr
 
-from restitution._arrays import reals
+from restitution._arrays import check_each, real, reals
 from restitution._recorded import first_impact_of
 from restitution.flight._drag import Drag, fall, speeds
 
@@ -90,9 +90,28 @@ def measured(
     )
 
 
+_POSITIVE = ("gravity", "drop_height", "terminal_velocity")
+_ERRORS = ("gravity_uncertainty", "drop_height_uncertainty", "terminal_velocity_uncertainty")
+
+
+def _numbers(data: xr.Dataset) -> dict[str, float]:
+    """Take the attributes that were measured; errors that are not there are 0."""
+    found = {}
+    for name in _POSITIVE:
+        if name in data.attrs or name == "gravity":
+            allowed = "a finite number > 0, as flight.restitution writes it"
+            given = data.attrs.get(name)
+            found[name] = real(f"data.{name}", given, allowed, lambda x: 0.0 < x < np.inf)
+    for name in _ERRORS:
+        allowed = "a finite number >= 0, as flight.restitution writes it"
+        given = data.attrs.get(name, 0.0)
+        found[name] = real(f"data.{name}", given, allowed, lambda x: 0.0 <= x < np.inf)
+    return found
+
+
 def measured_of(data: xr.Dataset) -> Measured:
     """Read from a Dataset that `restitution` returned what was measured."""
-    attrs = data.attrs
+    attrs = _numbers(data)
     drop = None
     # Of impacts that were selected the first is not that after the drop.
     if first_impact_of("data", data) == 0 and "drop_height" in attrs:
@@ -107,6 +126,7 @@ def measured_of(data: xr.Dataset) -> Measured:
         reals(f"data.{name}", data[name].to_numpy(), "numbers, in s", dimensions=(1,), finite=False)
         for name in ("time", "uncertainty")
     )
+    check_each("data.uncertainty", errors, ~(errors < 0.0), "a time >= 0 (s), or NaN")
     return measured(times, errors, gravity, drop, drag)
 
 
