@@ -133,6 +133,7 @@ def test_friction_and_materials_are_inferred_with_the_shape() -> None:
         ({"law": 1}, r"^law = 1: must be a law"),
         ({"elongation": (0.0, 0.1)}, r"^elongation = .*: must be a pair \(low, high\) with 0 < low < high"),
         ({"elongation": 0.1}, r"^elongation = 0.1: must be a pair"),
+        ({"elongation": (5e-324, 0.1)}, r"^elongation = .*: must be high < 1e\+06 low"),
         ({"elongation": (1e-3, 3.0)}, r"^elongation = \(0.001, 3.0\), .* gives out_of_roundness = "),
         ({"friction": (0.0, 0.4)}, r"^friction: given for a Frictionless; only a Coulomb law has it"),
         ({"data": xr.Dataset()}, r"^data = .*: must be a Dataset of flight.restitution, or several"),
@@ -144,6 +145,37 @@ def test_what_cannot_be_inferred_is_refused(change: dict[str, Any], message: str
     given: dict[str, Any] = {"data": heard(0.05, law, 1), "law": law, "diameter": 6e-3} | change
     with pytest.raises(ValueError, match=message):
         rs.posterior(given.pop("data"), given.pop("law"), **given)
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        (
+            lambda data: data.isel(impact=slice(2, None), other_impact=slice(2, None)),
+            r"^data: begins with",
+        ),
+        (
+            lambda data: data.drop_vars("restitution_covariance"),
+            r"^data lacks restitution_covar",
+        ),
+        (
+            lambda data: data.drop_vars("impact_velocity"),
+            r"^data lacks impact_velocity",
+        ),
+    ],
+)
+def test_a_part_of_a_series_is_refused(change: Any, message: str) -> None:
+    """A drop begins with its release."""
+    law = rs.Frictionless(normal=0.93)
+    with pytest.raises(ValueError, match=message):
+        quick(change(heard(0.05, law, 1)), law)
+
+
+def test_the_first_impacts_of_a_series_are_a_series() -> None:
+    """The coefficient of the last is left out: its flight ends with an impact that is not there."""
+    law = rs.Frictionless(normal=0.93)
+    part = heard(0.15, law, 3).isel(impact=slice(0, 12), other_impact=slice(0, 12))
+    assert quick(part, law).attrs["elongation_determined"] == 1
 
 
 def test_few_impacts_are_refused() -> None:

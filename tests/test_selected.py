@@ -208,3 +208,28 @@ def test_figures_of_a_comparison() -> None:
     for draw in (rs.figures.map, lambda found: rs.figures.densities(found, [0.5])):
         with pytest.raises(ValueError, match=r"^found has dimensions body, law: must be one of a comparison"):
             draw(several)
+
+
+@pytest.mark.parametrize(
+    ("call", "message"),
+    [
+        (
+            lambda s, _: rs.fit.slopes(s.drop_vars("number")),
+            r"^data = .*: must be a result of",
+        ),
+        (
+            lambda _, run: rs.fit.slopes(run.isel(particle=[]), [0.1, 0.5, 1.0]),
+            r"^data = .*: must be impacts of at least one particle",
+        ),
+        (
+            lambda _, __: flight.restitution([0.0, 1e-310, 1.0]),
+            r"^times: intervals so unequal that their quotient overflows",
+        ),
+    ],
+)
+@pytest.mark.filterwarnings("error")
+def test_parts_that_say_nothing(
+    statistics: xr.Dataset, run: xr.Dataset, call: Callable[[Any, Any], Any], message: str
+) -> None:
+    with pytest.raises(ValueError, match=message):
+        call(statistics, run)

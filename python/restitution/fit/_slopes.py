@@ -247,6 +247,8 @@ def slopes(
     edges = increasing_edges(velocity_bins, "velocity_bins")
     velocity, restitution = records("data", data, "impact_velocity", "restitution")
     particles = velocity.shape[0]
+    if not particles:
+        raise ParameterError(wrong("data", data, "impacts of at least one particle"))
     rows = edges.size - 1
     check_size("resamples", resamples, resamples, 2 * 8 * len(_NAMES) * rows, "draws")
     fits: list[Fit | None] = [None] * rows
@@ -292,6 +294,8 @@ def _from_counts(statistics: xr.Dataset, location: float | None) -> Slopes:
     if "velocity_edges" not in statistics:
         raise ValueError("data: statistics without velocity bins; give velocity_bins to `statistics`")
     statistics = counted("data", statistics)
+    if "number" not in statistics:
+        raise ParameterError(wrong("data", statistics, "a result of restitution.statistics, with its number"))
     edges = statistics["velocity_edges"].to_numpy()
     rows = edges.size - 1
     fits: list[Fit | None] = [None] * rows

@@ -10,7 +10,7 @@ import numpy.typing as npt
 import xarray as xr
 from pydantic import Field
 
-from restitution._parameters import Number, ParameterError, Parameters, wrong
+from restitution._parameters import Number, ParameterError, Parameters, Problem, wrong
 from restitution.flight._chain import chain, measured
 from restitution.flight._drag import Drag
 from restitution.flight._times import LARGEST, LEAST, checked
@@ -121,9 +121,11 @@ def restitution(
             "terminal_velocity_uncertainty": drag.uncertainty,
         }
     links = chain(measured(instants, errors, (setting.gravity, setting.gravity_uncertainty), drop, drag))
-    ratio = links.after / links.before
-    with np.errstate(invalid="ignore"):
+    with np.errstate(all="ignore"):
+        ratio = links.after / links.before
         ratio_by = (links.after_by - ratio[:, None] * links.before_by) / links.before[:, None]
+    if np.isinf(ratio).any() or np.isinf(ratio_by).any():
+        raise ParameterError(Problem("times", ": intervals so unequal that their quotient overflows"))
     ratio_by[np.isnan(ratio)] = 0.0
 
     def covariance(a: Array, b: Array, known_a: Array, known_b: Array) -> Array:

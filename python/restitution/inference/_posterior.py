@@ -24,6 +24,8 @@ Array = npt.NDArray[np.float64]
 _SHAPES, _FRICTIONS = 10, 6
 """Values of L/R in a decade, and values of friction."""
 _WALKERS, _CHAINS, _BURN = 32, 4, 100
+_MOST_RANGE = 1e6
+"""Of L/R: the grid has points all the way."""
 _TOLD = 3.3
 """Difference of log-likelihoods that separates shapes: 99 % of χ² with one degree of freedom."""
 
@@ -71,7 +73,7 @@ def posterior(
     form, lobes
         Kind of deviation from a sphere, as in `restitution.from_roundness`; L = 2t.
     elongation : (float, float)
-        Prior: ln(L/R) is uniform between these, 0 < low < high.
+        Prior: ln(L/R) is uniform between these, 0 < low < high < 10⁶ low.
     friction : (float, float), optional
         Prior of the friction of a `Coulomb` law: uniform between these, 0 <= low < high. Not inferred unless
         given.
@@ -117,6 +119,8 @@ def posterior(
     if not isinstance(law, Law):
         raise ParameterError(wrong("law", law, "a law such as Frictionless(normal=0.9)"))
     low, high = _pair("elongation", elongation, least=0.0, strictly=True)
+    if not high < _MOST_RANGE * low:
+        raise ParameterError(wrong("elongation", elongation, f"high < {_MOST_RANGE:g} low"))
     family = Family(law, setting.diameter, form, setting.lobes)
     family.check_friction(friction)
     with in_terms_of(elongation=elongation, diameter=diameter):

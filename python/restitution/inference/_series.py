@@ -10,6 +10,7 @@ import xarray as xr
 from restitution._arrays import reals
 from restitution._energy import reported_elsewhere
 from restitution._parameters import ParameterError, Problem
+from restitution._recorded import first_impact_of
 from restitution._simulate import simulate
 from restitution._units import check_variables
 from restitution.bodies import Body
@@ -80,13 +81,21 @@ class Series:
     def of(cls, data: xr.Dataset, form: LawOfSpeed, reference: float, scatter: float) -> "Series":
         """Take a Dataset of `restitution.flight.restitution`."""
         names = ("restitution", "impact_velocity", "uncertainty", "restitution_covariance")
+        lacking = [name for name in (*names, "time") if name not in data]
+        if lacking:
+            text = f" lacks {', '.join(lacking)}: must be a Dataset of flight.restitution"
+            raise ParameterError(Problem("data", text))
         check_variables("data", data, *names, "time")
+        if first_impact_of("data", data) != 0:
+            text = ": begins with a later impact; must begin with the first one after the release"
+            raise ParameterError(Problem("data", text))
         ratio, speed, errors, covariances = (
             reals(f"data.{name}", data[name].to_numpy(), "numbers, NaN where unknown", finite=False)
             for name in names
         )
         known = np.flatnonzero(np.isfinite(ratio))
-        known = known[known > 0]
+        # Of a part of a series the last coefficient has a flight that is not there.
+        known = known[(known > 0) & (known < ratio.size - 1)]
         if known.size < _FEWEST:
             text = f": {known.size} coefficients from times alone; must be at least {_FEWEST}"
             raise ParameterError(Problem("data", text))
