@@ -66,8 +66,8 @@ _COUNTED = {
 }
 
 
-def counted(name: str, data: Any) -> xr.Dataset:
-    """Take counts by velocity bin and restitution bin, with their edges.
+def counted(name: str, data: Any, *, spans: bool = True) -> xr.Dataset:
+    """Take counts by velocity bin and restitution bin, with their edges, of velocity where `spans` asks.
 
     Raises
     ------
@@ -77,12 +77,13 @@ def counted(name: str, data: Any) -> xr.Dataset:
     """
     if not isinstance(data, xr.Dataset):
         raise ParameterError(wrong(name, data, "a Dataset from restitution.statistics or reduce"))
-    missing = [each for each in _COUNTED if each not in data]
+    wanted = {each: own for each, own in _COUNTED.items() if spans or each != "velocity_edges"}
+    missing = [each for each in wanted if each not in data]
     if missing:
         text = f" lacks {', '.join(missing)}: must be from restitution.statistics or reduce, by velocity"
         raise ParameterError(Problem(name, text))
-    check_variables(name, data, *_COUNTED)
-    for each, dimensions in _COUNTED.items():
+    check_variables(name, data, *wanted)
+    for each, dimensions in wanted.items():
         variable = data[each]
         if set(variable.dims) != set(dimensions):
             needed = ", ".join(dimensions)

@@ -241,7 +241,7 @@ def _of_quad(name: str, given: object) -> float | int:
         # Of a smaller relative error quad says that it cannot be had, unless the absolute one allows more.
         least = 0.0 if name == "epsabs" else 50.0 * np.finfo(np.float64).eps
         return real(name, given, f"a number >= {least:.3g}", lambda x: x >= least)
-    raise ParameterError(wrong("options", name, "epsabs, epsrel or limit"))
+    raise TypeError(f"expect takes no argument {name!r}; of quad's it takes epsabs, epsrel and limit")
 
 
 def check(body: Body, law: Law) -> None:

@@ -17,7 +17,7 @@ def from_statistics(statistics: xr.Dataset) -> xr.Dataset:
     needed = ("restitution_count", "restitution_edges", "minimum", "maximum", "velocity")
     instead = "a result of restitution.statistics, without counts_only, or reduce with velocity bins"
     require(statistics, "statistics", needed, instead)
-    statistics = counted("statistics", statistics)
+    statistics = counted("statistics", statistics, spans=False)
     check_variables("statistics", statistics, *needed)
     for name in needed[2:]:
         allowed = "real numbers, one for each velocity bin"
