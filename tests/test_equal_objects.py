@@ -4,6 +4,7 @@ import copy
 import pickle
 from collections.abc import Iterator
 from dataclasses import replace
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -98,8 +99,11 @@ SLOW_ONES = {
 """Pages, and calls that a test ends."""
 
 
-def test_everything_that_public_functions_return_compares() -> None:
+def test_everything_that_public_functions_return_compares(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     """Results, what is in them, and the arguments of this catalogue; a figure is equal to itself alone."""
+    monkeypatch.chdir(tmp_path)  # some of the functions write files
     kinds: dict[type, Any] = {}
     for name, (function, make) in CALLS.items():
         if name in SLOW_ONES:

@@ -14,12 +14,12 @@ from restitution.distribution._table import Floats, Histogram
 
 def from_statistics(statistics: xr.Dataset) -> xr.Dataset:
     """Make the Dataset of a distribution; see `FluctuatingRestitution.from_statistics`."""
-    needed = ("restitution_count", "restitution_edges", "minimum", "maximum", "velocity")
     instead = "a result of restitution.statistics, without counts_only, or reduce with velocity bins"
-    require(statistics, "statistics", needed, instead)
+    of_bins = ("minimum", "maximum", "velocity")
+    require(statistics, "statistics", ("restitution_count", "restitution_edges", *of_bins), instead)
     statistics = counted("statistics", statistics, spans=False)
-    check_variables("statistics", statistics, *needed)
-    for name in needed[2:]:
+    check_variables("statistics", statistics, *of_bins)
+    for name in of_bins:
         allowed = "real numbers, one for each velocity bin"
         found = reals(f"statistics.{name}", statistics[name].to_numpy(), allowed, finite=False)
         if found.shape != (statistics.sizes["velocity"],):

@@ -50,8 +50,9 @@ def clock(data: xr.Dataset) -> xr.Dataset:
     if missing or "gravity" not in data.attrs or "impact" not in data.dims:
         raise ParameterError(Problem("data", ": not a run; must be a Dataset that simulate returned"))
     check_variables("data", data, "time")
-    if first_impact_of("data", data) < 0 or set(data.time.dims) - {"particle"} != {"impact"}:
+    if set(data.time.dims) - {"particle"} != {"impact"}:
         raise ParameterError(Problem("data.time", ": must have the dimensions (particle, impact)"))
+    first_impact_of("data", data)  # after which all others must be there
     data = data.transpose(..., "impact")
     positive = "a finite number > 0 (m/s^2)"
     pull = real("data.gravity", data.attrs["gravity"], positive, lambda g: g > 0.0)
