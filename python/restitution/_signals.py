@@ -7,7 +7,7 @@ import threading
 import time
 import weakref
 from collections.abc import Callable, Iterable, Iterator
-from contextlib import ExitStack, contextmanager
+from contextlib import contextmanager
 from functools import partial
 from typing import Any, NoReturn
 
@@ -163,14 +163,20 @@ def undisturbed() -> Iterator[None]:
     def hold(number: int, frame: Any) -> None:
         late.setdefault(number, frame)
 
+    def let_come() -> None:
+        if late:
+            number = next(iter(late))
+            try:
+                _pass_on(number, late.pop(number), before[number])
+            finally:  # the others, too, where this one raises
+                let_come()
+
     before = _handlers(_ALL)
     try:
         with _handled(hold, before):
             yield
     finally:
-        with ExitStack() as each:  # also where one before it raises
-            for number, frame in reversed(late.items()):
-                each.callback(_pass_on, number, frame, before[number])
+        let_come()
 
 
 def surely(work: Callable[[], object]) -> None:
