@@ -58,11 +58,9 @@ def in_terms_of(**given: Any) -> Iterator[None]:
         raise kind(*(Problem(first, f" = {rest}: gives {one}") for one in error.problems)) from None
 
 
-def unknown(name: object, taker: str, allowed: Iterable[str], prefix: str = "") -> Problem:
+def unknown(name: str, taker: str, allowed: Iterable[str], prefix: str = "") -> Problem:
     """Say that `taker` knows no such name, which it does know, and which was meant."""
     names = list(allowed)
-    if not isinstance(name, str):
-        return Problem(prefix + shown(name), f": no name; {taker} takes {', '.join(names)}")
     meant = "".join(f"did you mean {prefix}{close}? " for close in get_close_matches(name, names, n=1))
     return Problem(prefix + name, f": unknown; {meant}{taker} takes {', '.join(names)}")
 

@@ -1,7 +1,6 @@
 """What is varied in a study: values of named parameters, on a grid or spread over their ranges."""
 
 import math
-import sys
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any
@@ -9,18 +8,18 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from restitution._parameters import ParameterError, Problem, _plain_number, unknown, wrong
+from restitution._arrays import whole
+from restitution._parameters import ParameterError, Problem, wrong
+from restitution.study._tables import check_keys, number, word
 
 _VALUES = (
     "a list of different numbers, or a table { from, to, points } with finite from < to"
     ' and perhaps scale = "linear" or "log"'
 )
-_KEYS = ("from", "to", "points", "scale")
+_KEYS = ("from", "to", "scale")
 _SCALES = ("linear", "log")
 DESIGNS = ("grid", "latin-hypercube", "sobol")
 _MOST_POINTS = 10_000_000
-_LARGEST = sys.float_info.max
-_DEEPEST = 8
 
 # Dimensions and variables that results have of their own.
 _TAKEN = [
@@ -107,7 +106,7 @@ class Design:
         return {axis.parameter: axis.values[i] for axis, i in zip(self.axes, index, strict=True)}
 
 
-def design(table: Mapping[str, Any], seed: int) -> Design:
+def design(table: Any, seed: Any) -> Design:
     """Make the points of the table ``[sweep]``.
 
     Parameters
@@ -126,14 +125,8 @@ def design(table: Mapping[str, Any], seed: int) -> Design:
     if not isinstance(table, Mapping):
         raise ParameterError(wrong("sweep", table, "a table [sweep]"))
     options = {key: table[key] for key in ("design", "points") if key in table}
-    kind = options.get("design", "grid")
-    if not isinstance(kind, str) or kind not in DESIGNS:
-        raise ParameterError(wrong("sweep.design", kind, " or ".join(map(repr, DESIGNS))))
-    varied: dict[str, Any] = {}
-    for key, value in _varied({key: value for key, value in table.items() if key not in options}):
-        if key in varied:
-            raise ParameterError(Problem(f'sweep."{key}"', ": is there twice, quoted and as a table"))
-        varied[key] = value
+    kind = word("sweep.design", options.get("design", "grid"), DESIGNS)
+    varied = _each_once({key: value for key, value in table.items() if key not in options})
     if not varied:
         text = ': nothing is varied; name parameters, as in "body.separation" = [3e-5, 1e-4]'
         raise ParameterError(Problem("sweep", text))
@@ -144,14 +137,12 @@ def design(table: Mapping[str, Any], seed: int) -> Design:
             raise ParameterError(Problem("sweep.points", text))
         axes = tuple(Axis(key, name, _on_grid(key, varied[key])) for key, name in names.items())
     else:
-        number = options.get("points")
-        if not isinstance(number, int) or isinstance(number, bool) or not 1 <= number <= _MOST_POINTS:
-            raise ParameterError(wrong("sweep.points", number, f"a whole number in [1, {_MOST_POINTS:,}]"))
-        if kind == "sobol" and number & (number - 1):
+        points = whole("sweep.points", options.get("points"), 1, _MOST_POINTS)
+        if kind == "sobol" and points & (points - 1):
             raise ParameterError(
-                wrong("sweep.points", number, "a power of 2, or a Sobol set loses its balance")
+                wrong("sweep.points", points, "a power of 2, or a Sobol set loses its balance")
             )
-        unit = _spread(kind, number, len(varied), seed)
+        unit = _spread(kind, points, len(varied), whole("run.seed", seed, 0, 2**64 - 1))
         axes = tuple(
             Axis(key, name, tuple(_between(key, varied[key], unit[:, i]).tolist()))
             for i, (key, name) in enumerate(names.items())
@@ -162,14 +153,27 @@ def design(table: Mapping[str, Any], seed: int) -> Design:
     return found
 
 
+def _each_once(table: Mapping[str, Any]) -> dict[str, Any]:
+    """Name what is varied by its place, and refuse what would replace something else that is asked for."""
+    varied: dict[str, Any] = {}
+    for key, value in _varied(table):
+        if key in varied:
+            text = ": is there twice; must be there once, in quotes or as a table"
+            raise ParameterError(Problem(f"sweep.{key}", text))
+        varied[key] = value
+    for key in varied:
+        parts = key.split(".")
+        for outer in (".".join(parts[:i]) for i in range(1, len(parts))):
+            if outer in varied:
+                text = f": must be left out, or sweep.{outer}, which it is a part of"
+                raise ParameterError(Problem(f"sweep.{key}", text))
+    return varied
+
+
 def _varied(table: Mapping[str, Any], prefix: str = "") -> Iterator[tuple[str, Any]]:
-    """Flatten tables, so that quoted and bare keys mean the same."""
+    """Flatten tables, so that quoted and bare keys mean the same; an empty one is a wrong value."""
     for key, value in table.items():
-        if not isinstance(key, str):
-            raise ParameterError(unknown(key, "[sweep]", ("parameters",), prefix=f"sweep.{prefix}"))
-        if prefix.count(".") > _DEEPEST:
-            raise ParameterError(Problem(f"sweep.{prefix}", ": tables in tables; parameters have few words"))
-        if isinstance(value, Mapping) and not set(value) & {"from", "to"}:
+        if isinstance(value, Mapping) and value and not set(value) & {"from", "to"}:
             yield from _varied(value, f"{prefix}{key}.")
         else:
             yield prefix + key, value
@@ -185,24 +189,31 @@ def _names(parameters: list[str]) -> dict[str, str]:
 
 
 def _on_grid(key: str, value: Any) -> tuple[float, ...]:
-    if isinstance(value, Mapping):
-        number = value.get("points")
-        if not isinstance(number, int) or isinstance(number, bool) or not 2 <= number <= _MOST_POINTS:
-            allowed = f"a whole number in [2, {_MOST_POINTS:,}]"
-            raise ParameterError(wrong(f"sweep.{key}.points", number, allowed))
-        spread = tuple(_between(key, value, np.linspace(0.0, 1.0, number)).tolist())
-        if len(set(spread)) < number:
-            allowed = f"so far apart that {number} values differ in 15 digits"
-            raise ParameterError(wrong(f"sweep.{key}", dict(value), allowed))
-        return spread
-    # Durations would become whole numbers.
-    numbers = isinstance(value, np.ndarray) and value.dtype.kind in "iuf"
-    values = value.tolist() if numbers else value
-    good = isinstance(values, list | tuple) and len(values) > 0 and all(map(_is_number, values))
-    # Axes of results are doubles.
-    if not good or len(set(map(float, values))) < len(values) or any(float(x) != x for x in values):
+    if isinstance(value, Mapping) and value:
+        points = whole(f"sweep.{key}.points", value.get("points"), 2, _MOST_POINTS)
+        ends = {name: part for name, part in value.items() if name != "points"}
+        return tuple(_between(key, ends, np.linspace(0.0, 1.0, points)).tolist())
+    array = isinstance(value, np.ndarray) and value.ndim == 1 and value.dtype.kind in "iuf"
+    listed = array or isinstance(value, list | tuple)
+    if listed and len(value) > _MOST_POINTS:
+        text = f" has {len(value):,} values: must have at most {_MOST_POINTS:,}"
+        raise ParameterError(Problem(f"sweep.{key}", text))
+    values = _numbers(key, value, tuple(value) if listed else ())
+    if not values or len(set(values)) < len(values):
         raise ParameterError(wrong(f"sweep.{key}", value, _VALUES))
-    return tuple(_plain_number(number) for number in values)
+    for i, one in enumerate(values):
+        if int(one) != int(float(one)):
+            allowed = "a number that a double, as in the results, holds exactly: a whole one up to 2**53"
+            raise ParameterError(wrong(f"sweep.{key}[{i}]", one, allowed))
+    return values
+
+
+def _numbers(key: str, value: Any, given: tuple[Any, ...]) -> tuple[int | float, ...]:
+    """Take numbers that `value` holds."""
+    try:
+        return tuple(number(f"sweep.{key}", one, _VALUES) for one in given)
+    except ParameterError:
+        raise ParameterError(wrong(f"sweep.{key}", value, _VALUES)) from None
 
 
 def _between(key: str, value: Any, unit: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
@@ -211,21 +222,25 @@ def _between(key: str, value: Any, unit: npt.NDArray[np.float64]) -> npt.NDArray
         raise ParameterError(
             wrong(f"sweep.{key}", value, "a table { from, to } in a design that is not a grid")
         )
-    for stranger in set(value) - set(_KEYS):
-        raise ParameterError(unknown(stranger, f"sweep.{key}", _KEYS, prefix=f"sweep.{key}."))
-    low: Any = value.get("from")
-    high: Any = value.get("to")
-    scale = value.get("scale", "linear")
-    if not (_is_number(low) and _is_number(high) and low < high and math.isfinite(float(high) - float(low))):
-        raise ParameterError(wrong(f"sweep.{key}", dict(value), _VALUES))
-    if not isinstance(scale, str) or scale not in _SCALES:
-        raise ParameterError(wrong(f"sweep.{key}.scale", scale, " or ".join(map(repr, _SCALES))))
+    check_keys(f"sweep.{key}", value, _KEYS, f"sweep.{key}")
+    low, high = _numbers(key, value, (value.get("from"), value.get("to")))
+    if not low < high:
+        raise ParameterError(wrong(f"sweep.{key}", value, _VALUES))
+    scale = word(f"sweep.{key}.scale", value.get("scale", "linear"), _SCALES)
     if scale == "log" and low <= 0:
         raise ParameterError(wrong(f"sweep.{key}.from", low, "> 0 where the scale is logarithmic"))
-    inside = low * (high / low) ** unit if scale == "log" else low + (high - low) * unit
+    width = high / low if scale == "log" else high - low
+    if not math.isfinite(width):
+        allowed = "such that to - from, or on a logarithmic scale to / from, is finite"
+        raise ParameterError(wrong(f"sweep.{key}", value, allowed))
+    inside = low * width**unit if scale == "log" else low + width * unit
     # Fifteen digits, so that a value reads as it was meant and is the same on every platform.
     rounded = np.array([float(f"{x:.15g}") for x in inside])
-    return np.where(unit == 0.0, low, np.where(unit == 1.0, high, rounded))
+    found = np.where(unit == 0.0, low, np.where(unit == 1.0, high, rounded))
+    if not np.all(np.diff(found[np.argsort(unit)]) > 0):
+        allowed = f"so far apart that its {unit.size} points differ in 15 digits"
+        raise ParameterError(wrong(f"sweep.{key}", value, allowed))
+    return found
 
 
 def _spread(kind: str, number: int, dimensions: int, seed: int) -> npt.NDArray[np.float64]:
@@ -235,10 +250,3 @@ def _spread(kind: str, number: int, dimensions: int, seed: int) -> npt.NDArray[n
     if kind == "sobol":
         return np.asarray(qmc.Sobol(dimensions, rng=random).random(number))
     return np.asarray(qmc.LatinHypercube(dimensions, rng=random).random(number))
-
-
-def _is_number(value: Any) -> bool:
-    value = _plain_number(value)
-    if not isinstance(value, int | float) or isinstance(value, bool):
-        return False
-    return abs(value) <= _LARGEST

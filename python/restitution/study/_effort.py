@@ -1,6 +1,6 @@
 """How many particles a point gets, in which portions, and when it has enough."""
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass
 from types import MappingProxyType
 from typing import Any
@@ -8,15 +8,19 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from restitution._arrays import reals, whole
 from restitution._content import Content
-from restitution._parameters import ParameterError, Problem, unknown, wrong
+from restitution._parameters import ParameterError, Problem, wrong
 from restitution._run import Run
+from restitution.study._tables import number, table
 
 _KEYS = ("batches", "until", "velocities", "most_particles")
 _SHORT = ("mean", "std")
 """Mean and standard deviation of restitution may be asked for by these words."""
 _BATCHES = 16
 _MOST_DOUBLINGS = 10
+_MOST_PARTICLES = 2**40 - 1
+"""Of a point; as many as a run can have."""
 TASK = 100_000_000
 """Impacts of a task, at most, where batches are not larger."""
 
@@ -80,6 +84,13 @@ class Effort(Content):
             "most_particles": most,
         }
 
+    def check(self, names: Collection[str]) -> None:
+        """Refuse to wait for the standard error of a variable that is not among those that have one."""
+        for name in self.until:
+            if _variable(name) not in names:
+                there = f"there are {', '.join(sorted(names))}" if names else "no variable has one"
+                raise ParameterError(Problem(f"effort.until.{name}", f": has no standard error; {there}"))
+
     def is_enough(self, found: xr.Dataset, blocks: int) -> bool:
         """Whether a point with so many blocks is finished."""
         return blocks >= self.blocks or all(self._excess(found, name) <= 1.0 for name in self.until)
@@ -94,10 +105,8 @@ class Effort(Content):
 
     def _excess(self, found: xr.Dataset, name: str) -> float:
         """Give the largest standard error over the one that is asked for; infinite where one is unknown."""
-        wanted = f"{name}_restitution" if name in _SHORT else name
-        if f"{wanted}_error" not in found:
-            names = sorted(str(key)[:-6] for key in found if str(key).endswith("_error"))
-            raise ValueError(f"effort.until.{name}: has no standard error; there are {', '.join(names)}")
+        self.check([str(key)[:-6] for key in found if str(key).endswith("_error")])
+        wanted = _variable(name)
         value, error = found[wanted], found[f"{wanted}_error"]
         if "velocity" in value.dims:
             if self.velocities is None:
@@ -113,33 +122,14 @@ class Effort(Content):
         return float(np.max(np.where(np.isnan(excess), np.inf, excess), initial=0.0))
 
 
-def effort(table: Any, run: Run) -> Effort:
+def effort(given: Any, run: Run) -> Effort:
     """Read the table ``[effort]``."""
-    if not isinstance(table, Mapping):
-        raise ParameterError(wrong("effort", table, "a table [effort]"))
-    for stranger in set(table) - set(_KEYS):
-        raise ParameterError(unknown(stranger, "[effort]", _KEYS, prefix="effort."))
-    batches = table.get("batches", min(_BATCHES, run.particles))
-    if (
-        not isinstance(batches, int)
-        or isinstance(batches, bool)
-        or not 2 <= batches <= min(run.particles, 4096)
-    ):
-        allowed = f"a whole number in [2, {min(run.particles, 4096)}], at most the particles of the run"
-        raise ParameterError(wrong("effort.batches", batches, allowed))
-    until = table.get("until", {})
-    if not isinstance(until, Mapping):
-        raise ParameterError(wrong("effort.until", until, "a table of standard errors, as { std = 0.01 }"))
-    for name, target in until.items():
-        number = _share(target) if isinstance(target, str) else target
-        if not isinstance(number, int | float) or isinstance(number, bool) or not 0 < number < np.inf:
-            allowed = 'a number > 0, or a share as "1 %"'
-            raise ParameterError(wrong(f"effort.until.{name}", target, allowed))
-    velocities = _velocities(table.get("velocities"))
-    most = table.get("most_particles", 2**_MOST_DOUBLINGS * run.particles if until else run.particles)
-    if not isinstance(most, int) or isinstance(most, bool) or most < run.particles:
-        allowed = f"a whole number, at least the particles of the run, {run.particles}"
-        raise ParameterError(wrong("effort.most_particles", most, allowed))
+    own = table("effort", given, _KEYS)
+    batches = _batches(own.get("batches", min(_BATCHES, run.particles)), run.particles)
+    until = _until(own.get("until", {}))
+    velocities = _velocities(own.get("velocities"))
+    usual = min(_MOST_PARTICLES, 2**_MOST_DOUBLINGS * run.particles) if until else run.particles
+    most = whole("effort.most_particles", own.get("most_particles", usual), run.particles, _MOST_PARTICLES)
     if not until and most != run.particles:
         raise ParameterError(
             Problem("effort.most_particles", ": is for `until`; without it run.particles decides")
@@ -148,19 +138,42 @@ def effort(table: Any, run: Run) -> Effort:
         text = ": particles cannot be added where orientation or spin are given one by one"
         raise ParameterError(Problem("effort.until", text))
     blocks = 1 << (most // run.particles).bit_length() - 1
-    return Effort(run.particles, batches, blocks, run.impacts, MappingProxyType(dict(until)), velocities)
+    return Effort(run.particles, batches, blocks, run.impacts, MappingProxyType(until), velocities)
+
+
+def _batches(value: Any, particles: int) -> int:
+    if particles < 2:
+        text = f" = {particles}: must be at least 2, of which batches for standard errors are made"
+        raise ParameterError(Problem("run.particles", text))
+    return whole("effort.batches", value, 2, min(particles, 4096))
+
+
+def _until(value: Any) -> dict[str, float | str]:
+    if not isinstance(value, Mapping):
+        raise ParameterError(wrong("effort.until", value, "a table of standard errors, as { std = 0.01 }"))
+    allowed = 'a number > 0, or a share as "1 %"'
+    until: dict[str, float | str] = {}
+    for name, target in value.items():
+        share = _share(target) if isinstance(target, str) else None
+        if share is None or not 0 < share < np.inf:
+            until[name] = number(f"effort.until.{name}", target, allowed, lambda size: 0 < size < np.inf)
+        else:
+            until[name] = str(target)
+    return until
+
+
+def _variable(name: str) -> str:
+    return f"{name}_restitution" if name in _SHORT else name
 
 
 def _velocities(value: Any) -> tuple[float, float] | None:
     if value is None:
         return None
-    try:
-        low, high = (float(part) for part in value)
-    except (TypeError, ValueError):
-        low, high = 1.0, 0.0
-    if not low < high:
-        raise ParameterError(wrong("effort.velocities", value, "a pair (low, high) with low < high, in m/s"))
-    return low, high
+    allowed = "a pair (low, high) with low < high, in m/s"
+    ends = reals("effort.velocities", value, allowed, unit="m s-1", dimensions=(1,), finite=False)
+    if ends.shape != (2,) or not ends[0] < ends[1]:
+        raise ParameterError(wrong("effort.velocities", value, allowed))
+    return float(ends[0]), float(ends[1])
 
 
 def _share(text: str) -> float | None:

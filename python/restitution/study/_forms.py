@@ -7,9 +7,11 @@ from typing import Any, Protocol
 import numpy as np
 import xarray as xr
 
-from restitution._parameters import ParameterError, Problem, unknown, wrong
+from restitution._arrays import reals
+from restitution._parameters import ParameterError, Problem, _plain_number, wrong
 from restitution._run import Run
 from restitution._statistics import Edges
+from restitution.study._tables import table, word
 
 FAMILIES = ("asymmetric-laplace", "laplace", "gaussian", "logistic", "student-t", "cusp-mixture")
 _CUSPED = ("asymmetric-laplace", "cusp-mixture")
@@ -23,6 +25,10 @@ class Form(Protocol):
     @property
     def name(self) -> str:
         """The table of the study that asks for it."""
+
+    @property
+    def variables(self) -> tuple[str, ...]:
+        """Names of what it gives."""
 
     def table(self) -> dict[str, Any]:
         """Everything that it depends on, as plain values."""
@@ -43,6 +49,7 @@ class Learn:
 
     levels: tuple[float, ...]
     name = "learn"
+    variables = ("restitution_quantile",)
 
     def table(self) -> dict[str, Any]:
         """Give the levels."""
@@ -79,6 +86,11 @@ class Fitted:
     velocity: tuple[float, float]
     at_normal: bool
     name = "fit"
+
+    @property
+    def variables(self) -> tuple[str, ...]:
+        """Names of the parameters, and of the distance."""
+        return (*(f"fit_{name}" for name in _PARAMETERS[self.family]), "fit_distance")
 
     def table(self) -> dict[str, Any]:
         """Give the parameters as a file has them."""
@@ -130,52 +142,35 @@ def forms_of(tables: Mapping[str, Any], edges: Edges | None, run: Run) -> tuple[
         if edges is None or edges["velocity"] is None:
             text = f": missing; [{name}] is taken from statistics by impact velocity"
             raise ParameterError(Problem("statistics.velocity_bins", text))
-        if not isinstance(tables[name], Mapping):
-            raise ParameterError(wrong(name, tables[name], f"a table [{name}]"))
         found.append(read(tables[name], edges, run))
     return tuple(found)
 
 
-def _learn(table: Mapping[str, Any], edges: Edges, run: Run) -> Learn:
-    _known(table, "learn", ("levels",))
-    levels = table.get("levels", _LEVELS)
+def _learn(given: Any, edges: Edges, run: Run) -> Learn:
+    levels = table("learn", given, ("levels",)).get("levels", _LEVELS)
     allowed = f"a number of levels in [2, {_MOST_LEVELS}], from 0 to 1, or increasing levels in [0, 1]"
-    if isinstance(levels, int) and not isinstance(levels, bool):
-        if not 2 <= levels <= _MOST_LEVELS:
-            raise ParameterError(wrong("learn.levels", levels, allowed))
-        return Learn(tuple(np.linspace(0.0, 1.0, levels).tolist()))
-    try:
-        given = np.array(levels, dtype=np.float64)
-    except (TypeError, ValueError):
-        given = np.empty(0)
-    good = given.ndim == 1 and 1 <= given.size <= _MOST_LEVELS and bool(np.all(np.diff(given) > 0))
-    if not good or given[0] < 0.0 or given[-1] > 1.0:
+    number = _plain_number(levels)
+    if isinstance(number, int) and 2 <= number <= _MOST_LEVELS:
+        return Learn(tuple(np.linspace(0.0, 1.0, number).tolist()))
+    probabilities = reals("learn.levels", levels, allowed, dimensions=(1,))
+    within = bool(np.all((probabilities >= 0.0) & (probabilities <= 1.0)))
+    if not 1 <= probabilities.size <= _MOST_LEVELS or not within or not np.all(np.diff(probabilities) > 0):
         raise ParameterError(wrong("learn.levels", levels, allowed))
-    return Learn(tuple(given.tolist()))
+    return Learn(tuple(probabilities.tolist()))
 
 
-def _fit(table: Mapping[str, Any], edges: Edges, run: Run) -> Fitted:
-    from restitution.fit._source import window
-
-    _known(table, "fit", ("family", "velocity", "location"))
-    family = table.get("family", FAMILIES[0])
-    if family not in FAMILIES:
-        raise ParameterError(wrong("fit.family", family, " or ".join(map(repr, FAMILIES))))
-    if "velocity" not in table:
+def _fit(given: Any, edges: Edges, run: Run) -> Fitted:
+    own = table("fit", given, ("family", "velocity", "location"))
+    family = word("fit.family", own.get("family", FAMILIES[0]), FAMILIES)
+    if "velocity" not in own:
         raise ParameterError(
             Problem("fit.velocity", ": missing; must be edges of velocity bins, (low, high)")
         )
-    low, high = window(table["velocity"])
-    bins = edges["velocity"]
-    assert bins is not None
-    if not all(np.isclose(bins, end, rtol=0.0, atol=1e-6 * (bins[1] - bins[0])).any() for end in (low, high)):
-        raise ParameterError(
-            wrong("fit.velocity", table["velocity"], "a pair (low, high) of edges of velocity bins")
-        )
-    at_normal = "location" in table
-    if at_normal and (table["location"] != "normal" or family not in _CUSPED):
+    low, high = _window(own["velocity"], edges)
+    at_normal, location = "location" in own, own.get("location")
+    if at_normal and (not isinstance(location, str) or location != "normal" or family not in _CUSPED):
         allowed = f"'normal', the law's ε_n, and for a family with a cusp: {' or '.join(_CUSPED)}"
-        raise ParameterError(wrong("fit.location", table["location"], allowed))
+        raise ParameterError(wrong("fit.location", location, allowed))
     if family == "cusp-mixture" and not at_normal:
         raise ParameterError(Problem("fit.location", ": missing; a cusp-mixture needs location = 'normal'"))
     if at_normal and not isinstance(run.law.normal, float):
@@ -184,6 +179,13 @@ def _fit(table: Mapping[str, Any], edges: Edges, run: Run) -> Fitted:
     return Fitted(family, (low, high), at_normal)
 
 
-def _known(table: Mapping[str, Any], name: str, names: tuple[str, ...]) -> None:
-    for stranger in set(table) - set(names):
-        raise ParameterError(unknown(stranger, f"[{name}]", names, prefix=f"{name}."))
+def _window(velocity: Any, edges: Edges) -> tuple[float, float]:
+    """Take a window that whole bins make up."""
+    bins = edges["velocity"]
+    assert bins is not None
+    allowed = "a pair (low, high) of edges of velocity bins, with low < high"
+    ends = reals("fit.velocity", velocity, allowed, unit="m s-1", dimensions=(1,))
+    closest = [np.abs(bins - end).min() for end in ends]
+    if ends.shape != (2,) or not ends[0] < ends[1] or max(closest) > 1e-6 * (bins[1] - bins[0]):
+        raise ParameterError(wrong("fit.velocity", velocity, allowed))
+    return float(ends[0]), float(ends[1])

@@ -16,6 +16,7 @@ from restitution._run import Run
 from restitution._statistics import MOMENTS, Edges, dataset_of
 from restitution.study._effort import Effort
 from restitution.study._forms import Form
+from restitution.study._named import DERIVED, MOVED, with_errors
 from restitution.study._study import Measure, Study
 
 FloatArray = npt.NDArray[np.float64]
@@ -79,10 +80,22 @@ def point_of(study: Study, number: int, template: xr.Dataset | None = None) -> P
 
 
 def with_template(point: Point) -> Point:
-    """Find out what a measure of recorded impacts gives, from the first two particles."""
-    if not point.records:
+    """Find out what a measure of recorded impacts gives, from the first two particles.
+
+    Raises
+    ------
+    ParameterError
+        If a standard error is asked for of what has none; a measure has to be called to know what it gives.
+    """
+    if point.measure is None or not (point.records or point.effort.until):
         return point
-    return replace(point, template=_measured(point, _recorded(point, (0, 2), None)))
+    if point.records:
+        template = _measured(point, _recorded(point, (0, 2), None))
+        names, found = list(template.data_vars), replace(point, template=template)
+    else:
+        names, found = _real(_measured(point, _statistics_of(point, count(point, (0, 2))))), point
+    point.effort.check([*with_errors(point.edges, point.forms), *map(str, names)])
+    return found
 
 
 def count(point: Point, part: tuple[int, int], tell: Tell | None = None) -> Words:
@@ -167,6 +180,16 @@ def _measured(point: Point, data: xr.Dataset) -> xr.Dataset:
     return found
 
 
+def _real(measured: xr.Dataset) -> list[Hashable]:
+    """Name what gets standard errors of what a form or a measure of statistics gives."""
+    return [name for name, variable in measured.data_vars.items() if variable.dtype.kind == "f"]
+
+
+def _statistics_of(point: Point, words: Words) -> xr.Dataset:
+    assert point.edges is not None
+    return dataset_of(point.run, point.edges, _core.Tally.read(point.run.parameters(), point.edges, words))
+
+
 def _values(found: xr.Dataset, name: str) -> npt.NDArray[np.float64]:
     return np.asarray(found[name].to_numpy(), dtype=np.float64, order="C")
 
@@ -187,7 +210,7 @@ def _with_errors(point: Point, total: _core.Tally, without: Sequence[_core.Tally
     found: dict[Hashable, Any] = {}
     for name, value in values.items():
         dims = (row, "restitution")[: value.ndim]
-        about = {"long_name": _DERIVED[name]} if name in _DERIVED else statistics.variables[name].attrs
+        about = {"long_name": DERIVED[name]} if name in DERIVED else statistics.variables[name].attrs
         found[name] = (dims, value, about)
         found[f"{name}_error"] = (
             dims,
@@ -206,7 +229,7 @@ def _with_errors(point: Point, total: _core.Tally, without: Sequence[_core.Tally
     parts = [dataset_of(point.run, point.edges, tally) for tally in without] if measures else []
     for measure in measures:
         measured, left = measure(statistics), [measure(part) for part in parts]
-        real = [name for name, variable in measured.data_vars.items() if variable.dtype.kind == "f"]
+        real = _real(measured)
         spread = _errors([{str(name): _values(part, str(name)) for name in real} for part in left])
         errors_of = {
             f"{name}_error": (measured[name].dims, spread[str(name)], _about_error(measured[name]))
@@ -214,15 +237,6 @@ def _with_errors(point: Point, total: _core.Tally, without: Sequence[_core.Tally
         }
         result = result.merge(measured.assign(errors_of), join="exact", compat="equals")
     return result
-
-
-_EXTREMES = ("minimum", "maximum")
-"""They have no standard error: leaving out a group moves them by a jump, or not at all."""
-_DERIVED = {
-    "std_restitution": "standard deviation of restitution",
-    "second_moment": "mean of restitution squared",
-    "density": "probability density of restitution",
-}
 
 
 def _derived(tally: _core.Tally, edges: Edges) -> dict[str, FloatArray]:
@@ -234,7 +248,7 @@ def _derived(tally: _core.Tally, edges: Edges) -> dict[str, FloatArray]:
     with np.errstate(invalid="ignore", divide="ignore"):
         found = {"density": count[:, 1:-2] / count[:, :-1].sum(axis=1)[:, None] / np.diff(bins)}
     if edges["fraction"] is not None:
-        found |= {name: table[key][inner] for name, key in MOMENTS.items() if name not in _EXTREMES}
+        found |= {name: table[key][inner] for name, key in MOMENTS.items() if name in MOVED}
         found["std_restitution"] = np.sqrt(found["variance"])
         found["second_moment"] = found["variance"] + found["mean_restitution"] ** 2
     return found

@@ -12,10 +12,10 @@ from typing import Any
 
 import xarray as xr
 
-from restitution._arrays import real, whole
+from restitution._arrays import whole
 from restitution._bins import edges_from
 from restitution._files import path_from
-from restitution._parameters import ParameterError, Parameters, Problem, unknown, wrong
+from restitution._parameters import ParameterError, Parameters, Problem, in_terms_of, shown, unknown, wrong
 from restitution._release import RandomHeight
 from restitution._run import Run
 from restitution._statistics import Edges, edges_of
@@ -24,6 +24,8 @@ from restitution.laws._materials import Material
 from restitution.study._axes import Design, design
 from restitution.study._effort import Effort, effort
 from restitution.study._forms import Form, forms_of
+from restitution.study._named import with_errors
+from restitution.study._tables import check_keys, copied, table, word
 
 Measure = Callable[[xr.Dataset], xr.Dataset]
 """A function of what `restitution.statistics` or `restitution.simulate` returns."""
@@ -159,22 +161,21 @@ def study_of(source: Any) -> Study:
     if isinstance(source, str | Path):
         return _study(tables_in(path_from("study", source)), str(source))
     if isinstance(source, Mapping):
-        return _study(dict(source), "study")
+        return _study(source, "study")
     raise ParameterError(wrong("study", source, "a path of a TOML file, or its tables as a mapping"))
 
 
-def _study(tables: dict[str, Any], source: str) -> Study:
+def _study(given: Mapping[str, Any], source: str) -> Study:
     try:
+        tables = copied("study", given)
         for name in tables:
-            if not isinstance(name, str) or name not in _TABLES:
+            if name not in _TABLES:
                 raise ParameterError(unknown(name, "a study", _TABLES))
         own = {name: tables.pop(name) for name in _TABLES[3:] if name in tables}
-        settings = tables.get("run", {})
-        if not isinstance(settings, Mapping):
-            raise ParameterError(wrong("run", settings, "a table [run]"))
-        points = design(own.get("sweep", {}), seed=whole("run.seed", settings.get("seed", 1), 0, 2**64 - 1))
+        run = tables.get("run")
+        points = design(own.get("sweep", {}), run.get("seed", 1) if isinstance(run, dict) else 1)
         plain = {
-            name: table_of(table) if isinstance(table, Parameters) else _copy(table)
+            name: table_of(table) if isinstance(table, Parameters) else table
             for name, table in tables.items()
         }
         for parameter, value in points.values(0).items():
@@ -187,7 +188,7 @@ def _study(tables: dict[str, Any], source: str) -> Study:
         edges = _edges(own["statistics"]) if "statistics" in own else None
         forms = forms_of(own, edges, base)
         first = "first_impact" in own
-        if first and own["first_impact"]:
+        if first and not (isinstance(own["first_impact"], Mapping) and len(own["first_impact"]) == 0):
             raise ParameterError(wrong("first_impact", own["first_impact"], "an empty table"))
         if first and isinstance(base.release_height, RandomHeight) and isinstance(base.law.normal, Material):
             allowed = "a number, for the closed form of [first_impact] where the coefficient varies"
@@ -200,6 +201,8 @@ def _study(tables: dict[str, Any], source: str) -> Study:
                 Problem("statistics", f": nothing is measured; there must be {tables_of_measures}")
             )
         amount = effort(own.get("effort", {}), base)
+        if measure is None:  # else its own variables are known when it has been called
+            amount.check(with_errors(edges, forms))
         found = Study(base, points, edges, forms, measure, of, first, amount)
         for point in range(points.points):
             found.run(point)
@@ -208,10 +211,6 @@ def _study(tables: dict[str, Any], source: str) -> Study:
     except ValueError as error:
         raise ValueError(f"{source}: {error}") from None
     return found
-
-
-def _copy(table: Any) -> Any:
-    return {key: _copy(value) for key, value in table.items()} if isinstance(table, Mapping) else table
 
 
 def _set(tables: dict[str, Any], parameter: str, value: float) -> None:
@@ -225,7 +224,7 @@ def _set(tables: dict[str, Any], parameter: str, value: float) -> None:
         table = table.setdefault(part, {})
         if not isinstance(table, dict):
             raise ParameterError(
-                Problem(f"sweep.{parameter}", f": {part} is {table!r} and has no parameters")
+                Problem(f"sweep.{parameter}", f": {part} is {shown(table)} and has no parameters")
             )
     table[last] = value
 
@@ -252,21 +251,18 @@ def _with(parameters: Any, changes: Mapping[str, Any]) -> Any:
     return type(parameters)(**fields)
 
 
-def _edges(table: Any) -> Edges:
+def _edges(given: Any) -> Edges:
     """Read ``[statistics]``."""
     names = ("velocity_bins", "restitution_bins", "fraction_bins")
     spans = tuple(name.replace("_bins", "_range") for name in names)
-    if not isinstance(table, Mapping):
-        raise ParameterError(wrong("statistics", table, "a table [statistics]"))
-    for stranger in set(table) - set(names) - set(spans):
-        raise ParameterError(unknown(stranger, "[statistics]", (*names, *spans), prefix="statistics."))
-    if "restitution_bins" not in table:
+    own = table("statistics", given, (*names, *spans))
+    if "restitution_bins" not in own:
         raise ParameterError(
             Problem("statistics.restitution_bins", ": missing; must be { from, to, bins } or edges")
         )
-    bins = {"velocity_bins": None, "fraction_bins": {"from": 0.0, "to": 1.0, "bins": 50}, **table}
+    bins = {"velocity_bins": None, "fraction_bins": {"from": 0.0, "to": 1.0, "bins": 50}, **own}
     return edges_of(
-        *(_bins(name, bins[name], table.get(span)) for name, span in zip(names, spans, strict=True))
+        *(_bins(name, bins[name], own.get(span)) for name, span in zip(names, spans, strict=True))
     )
 
 
@@ -277,41 +273,33 @@ def _bins(name: str, value: Any, span: Any) -> Any:
     if span is not None:
         kind = name.removesuffix("_bins")
         raise ParameterError(wrong(f"statistics.{kind}_range", span, f"left out: {name} has its own ends"))
-    good = (
-        set(value) == {"from", "to", "bins"}
-        and isinstance(value["bins"], int)
-        and not isinstance(value["bins"], bool)
-        and 1 <= value["bins"] <= 2**24
-    )
-    if not good:
+    if set(value) != {"from", "to", "bins"}:
         raise ParameterError(
-            wrong(f"statistics.{name}", dict(value), "{ from, to, bins } with bins >= 1, or edges")
+            wrong(f"statistics.{name}", value, "{ from, to, bins } with bins >= 1, or edges")
         )
-    low, high = (real(f"statistics.{name}.{end}", value[end], "a finite number") for end in ("from", "to"))
-    return edges_from(value["bins"], (low, high), name)
+    number = whole(f"statistics.{name}.bins", value["bins"], 1)
+    with in_terms_of(**{f"statistics.{name}": value}):
+        return edges_from(number, (value["from"], value["to"]), name)
 
 
-def _measure(table: Any) -> tuple[Measure | None, str]:
+def _measure(given: Any) -> tuple[Measure | None, str]:
     """Read ``[measure]``: a function, or its name in a file."""
-    if table is None:
+    if given is None:
         return None, _OF[0]
-    if callable(table):
-        return table, _OF[0]
-    names = ("function", "of")
-    if not isinstance(table, Mapping):
-        raise ParameterError(wrong("measure", table, "a function of a Dataset, or a table [measure]"))
-    for stranger in set(table) - set(names):
-        raise ParameterError(unknown(stranger, "[measure]", names, prefix="measure."))
-    of, function = table.get("of", _OF[0]), table.get("function")
-    if of not in _OF:
-        raise ParameterError(wrong("measure.of", of, " or ".join(map(repr, _OF))))
+    if callable(given):
+        return given, _OF[0]
+    if not isinstance(given, Mapping):
+        raise ParameterError(wrong("measure", given, "a function of a Dataset, or a table [measure]"))
+    check_keys("measure", given, ("function", "of"), "[measure]")
+    of, function = word("measure.of", given.get("of", _OF[0]), _OF), given.get("function")
     if isinstance(function, str):
         module, _, name = function.partition(":")
         try:
             function = getattr(import_module(module), name)
-        except (ImportError, AttributeError, ValueError) as error:
-            text = f"{error}; must be 'module:function', importable where the study runs"
-            raise ParameterError(Problem("measure.function", f" = {function!r}: {text}")) from None
+        except (Exception, SystemExit) as error:  # whatever a module raises that is imported
+            said = " ".join(str(error).split())[:200]
+            text = f"{said}; must be 'module:function', importable where the study runs"
+            raise ParameterError(Problem("measure.function", f" = {shown(function)}: {text}")) from None
     if not callable(function):
         raise ParameterError(wrong("measure.function", function, "'module:function', or a function"))
     return function, of
