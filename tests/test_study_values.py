@@ -10,7 +10,7 @@ import xarray as xr
 import restitution as rs
 from reference.command import invoke
 from reference.studies import TINY
-from restitution.study import study_of
+from restitution.study import learned, merge, open_store, study_of
 
 
 def refused(**tables: Any) -> str:
@@ -111,6 +111,28 @@ def test_points_of_a_range_are_for_a_grid() -> None:
     """A design that is drawn has one number of points for all parameters."""
     drawn = {"design": "sobol", "points": 4, "law.normal": {"from": 0.5, "to": 0.9, "points": 8}}
     assert refused(sweep=drawn).startswith("sweep.law.normal.points: unknown")
+
+
+@pytest.mark.parametrize("design", ["latin-hypercube", "sobol"])
+def test_a_store_of_points_that_were_drawn_knows_its_study(tmp_path: Path, design: str) -> None:
+    """Shards are merged without the study, and a point is learned from; its values were drawn once."""
+    ranges = {"law.normal": {"from": 0.5, "to": 0.9}, "body.separation": {"from": 1e-4, "to": 2e-3}}
+    bins = {
+        "velocity_bins": {"from": 0.2, "to": 1.0, "bins": 4},
+        "restitution_bins": {"from": -1.0, "to": 3.0, "bins": 40},
+    }
+    run = {"particles": 1500, "impacts": 8, "seed": 7}
+    tables = TINY | {"run": run, "statistics": bins, "sweep": {"design": design, "points": 2} | ranges}
+    parts = [tmp_path / f"{number}.zarr" for number in (1, 2)]
+    for number, part in enumerate(parts, start=1):
+        rs.sweep(tables, part, threads=1, shard=(number, 2))
+    assert merge(tmp_path / "both.zarr", parts, threads=1).finished == 2
+    rs.sweep(tables, tmp_path / "whole.zarr", threads=1)
+    xr.testing.assert_identical(
+        open_store(tmp_path / "both.zarr").load(), open_store(tmp_path / "whole.zarr").load()
+    )
+    normal = study_of(tables).design.values(1)["law.normal"]
+    assert learned(tmp_path / "both.zarr", point=1).data.attrs["normal"] == normal
 
 
 @pytest.mark.parametrize("end", ["a", True, None, 10**400, [0.0], np.datetime64("2020-01-01")])

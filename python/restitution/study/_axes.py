@@ -153,6 +153,19 @@ def design(table: Any, seed: Any) -> Design:
     return found
 
 
+def design_again(table: Any) -> Design:
+    """Make the points of `Study.identity` again, which has the values of those that were drawn."""
+    if not isinstance(table, Mapping):
+        raise ParameterError(wrong("sweep", table, "a table [sweep]"))
+    kind = word("sweep.design", table.get("design"), DESIGNS)
+    varied = {key: value for key, value in table.items() if key != "design"}
+    axes = tuple(Axis(key, name, _on_grid(key, varied[key])) for key, name in _names(list(varied)).items())
+    sizes = {len(axis.values) for axis in axes}
+    if not sizes or (kind != "grid" and len(sizes) > 1):
+        raise ParameterError(wrong("sweep", table, "parameters, with a value of each for every point"))
+    return Design(kind, axes)
+
+
 def _each_once(table: Mapping[str, Any]) -> dict[str, Any]:
     """Name what is varied by its place, and refuse what would replace something else that is asked for."""
     varied: dict[str, Any] = {}

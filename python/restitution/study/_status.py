@@ -8,6 +8,7 @@ import numpy as np
 import xarray as xr
 
 from restitution._files import path_from
+from restitution.study._axes import design_again
 from restitution.study._identity import identity, readable
 from restitution.study._store import Store, need_zarr
 from restitution.study._study import Study, study_of
@@ -133,6 +134,6 @@ def study_in(path: Path) -> Study:
         if effort["velocities"] is None:
             del effort["velocities"]
     try:
-        return study_of({**found, "effort": effort})
+        return study_of({**found, "sweep": design_again(found.get("sweep")), "effort": effort})
     except ValueError as error:
         raise ValueError(f"{path}: its study cannot be made again: {error}") from None

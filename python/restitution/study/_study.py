@@ -173,7 +173,9 @@ def _study(given: Mapping[str, Any], source: str) -> Study:
                 raise ParameterError(unknown(name, "a study", _TABLES))
         own = {name: tables.pop(name) for name in _TABLES[3:] if name in tables}
         run = tables.get("run")
-        points = design(own.get("sweep", {}), run.get("seed", 1) if isinstance(run, dict) else 1)
+        points = own.get("sweep", {})
+        if not isinstance(points, Design):  # as a store has it
+            points = design(points, run.get("seed", 1) if isinstance(run, dict) else 1)
         plain = {
             name: table_of(table) if isinstance(table, Parameters) else table
             for name, table in tables.items()
