@@ -6,8 +6,10 @@ import numpy as np
 import numpy.typing as npt
 import xarray as xr
 
-from restitution._arrays import reals
+from restitution._recorded import check_successive
 from restitution.flight._drag import Drag, fall, speeds
+from restitution.flight._setting import setting_of
+from restitution.flight._times import check_series
 
 Array = npt.NDArray[np.float64]
 
@@ -89,23 +91,26 @@ def measured(
     )
 
 
-def measured_of(data: xr.Dataset) -> Measured:
-    """Read from a Dataset that `restitution` returned what was measured."""
-    attrs = data.attrs
-    drop = None
-    if "drop_height" in attrs:
-        drop = (attrs["drop_height"], attrs["drop_height_uncertainty"])
-    drag = None
-    if "terminal_velocity" in attrs:
-        drag = Drag(
-            terminal_velocity=attrs["terminal_velocity"], uncertainty=attrs["terminal_velocity_uncertainty"]
-        )
-    gravity = (attrs["gravity"], attrs["gravity_uncertainty"])
-    times, errors = (
-        reals(f"data.{name}", data[name].to_numpy(), "numbers, in s", dimensions=(1,), finite=False)
-        for name in ("time", "uncertainty")
+def measured_of(name: str, data: xr.Dataset) -> Measured:
+    """Read from a Dataset that `restitution` returned what was measured.
+
+    The height of the drop counts where the first of the impacts is the first after it.
+
+    Raises
+    ------
+    ParameterError
+        If impacts between others are left out, or a time or an attribute is not as `restitution` has it.
+    """
+    check_successive(name, data)
+    times, errors = check_series(
+        data["time"].to_numpy().astype(np.float64),
+        data["uncertainty"].to_numpy().astype(np.float64),
+        f"{name}.time",
+        f"{name}.uncertainty",
     )
-    return measured(times, errors, gravity, drop, drag)
+    gravity, drop, drag = setting_of(name, data)
+    falls = "impact" not in data.coords or data["impact"].to_numpy()[0] == 0
+    return measured(times, errors, gravity, drop if falls else None, drag)
 
 
 def chain(given: Measured) -> Chain:

@@ -42,7 +42,7 @@ def figure(data: xr.Dataset | Iterable[xr.Dataset], *fits: LawFit) -> Figure:
     >>> figure = rs.flight.figure(data, rs.flight.fit(data, "constant"))
     """
     needed = ("restitution", "restitution_error", "impact_velocity", "impact_velocity_error")
-    series = series_of(data, *needed)
+    series = list(series_of(data, *needed).values())
     known = [np.isfinite(one.restitution.values) for one in series]
     if not any(rows.any() for rows in known):
         raise ParameterError(
