@@ -131,7 +131,10 @@ def test_friction_and_materials_are_inferred_with_the_shape() -> None:
     [
         ({"diameter": 0.0}, r"^diameter = 0.0"),
         ({"law": 1}, r"^law = 1: must be a law"),
-        ({"elongation": (0.0, 0.1)}, r"^elongation = .*: must be a pair \(low, high\) with 0 < low < high"),
+        (
+            {"elongation": (0.0, 0.1)},
+            r"^elongation = .*: must be a pair \(low, high\) with 1e-09 <= low < high",
+        ),
         ({"elongation": 0.1}, r"^elongation = 0.1: must be a pair"),
         ({"elongation": (1e-3, 3.0)}, r"^elongation = \(0.001, 3.0\), .* gives out_of_roundness = "),
         ({"friction": (0.0, 0.4)}, r"^friction: given for a Frictionless; only a Coulomb law has it"),

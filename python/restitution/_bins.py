@@ -17,7 +17,7 @@ IntArray = npt.NDArray[np.int64]
 FRACTION_BINS: FloatArray = np.linspace(0.0, 1.0, 51)
 FRACTION_BINS.flags.writeable = False
 
-_FARTHEST = 1e100
+FARTHEST = 1e100
 """Of any edge, so that widths and centres are finite."""
 _MOST_BINS = 10_000_000
 LARGEST = LARGEST_RESTITUTION
@@ -53,8 +53,8 @@ def increasing_edges(bins: npt.ArrayLike, name: str) -> FloatArray:
     if not np.all(widths > 0):
         at = int(np.argmin(widths > 0))
         raise ValueError(f"{name} goes from {edges[at]} to {edges[at + 1]}: edges must increase strictly")
-    if np.abs(edges).max() > _FARTHEST:
-        raise ValueError(f"{name} goes from {edges[0]} to {edges[-1]}: at most {_FARTHEST:g} either way")
+    if np.abs(edges).max() > FARTHEST:
+        raise ValueError(f"{name} goes from {edges[0]} to {edges[-1]}: at most {FARTHEST:g} either way")
     return edges
 
 

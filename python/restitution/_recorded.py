@@ -127,7 +127,9 @@ def pull(name: str, data: xr.Dataset) -> tuple[float, float]:
     gravity = attribute(name, data, "gravity", "a finite number > 0", lambda g: 0.0 < g < math.inf)
     if "incline" not in data.attrs:
         return gravity, 0.0
-    return gravity, attribute(name, data, "incline", "in [0, π/2)", lambda a: 0.0 <= a < math.pi / 2)
+    return gravity, attribute(
+        name, data, "incline", "a finite number in [0, π/2)", lambda a: 0.0 <= a < math.pi / 2
+    )
 
 
 def released_from(name: str, data: xr.Dataset) -> FloatArray:
@@ -208,6 +210,6 @@ def counted(name: str, data: Any, names: tuple[str, ...] = LATTICE) -> xr.Datase
 
 def _origin(missing: list[str]) -> str:
     """Say what has the variables that are missing."""
-    if all(each in LATTICE for each in missing):
+    if all(each in _OF_BINS or each.endswith(_COUNTS) for each in missing):
         return "from restitution.statistics or reduce, by velocity"
     return "from restitution.statistics or reduce, by velocity; counts_only=True leaves the moments out"

@@ -15,7 +15,7 @@ from restitution._display import Text, table, value
 from restitution._files import path_from, write
 from restitution._formats import HEADER, MODULE, NETCDF, path_for
 from restitution._parameters import ParameterError, Problem, wrong
-from restitution._recorded import records
+from restitution._recorded import check_filled, records
 from restitution._release import RandomHeight, RandomSpin
 from restitution._resources import checked_threads
 from restitution._run import Run
@@ -256,6 +256,7 @@ class FluctuatingRestitution(EstimatedDistribution):
             is due to the scatter of these impacts, by bootstrap over particles; and ``impacts``.
         """
         velocity, restitution = records("data", data, "impact_velocity", "restitution")
+        check_filled("data", velocity)
         check = Check.of(self._table, [Impacts(velocity, restitution, np.empty((0, 0)))])
         low, high = self._table.speeds[:-1], self._table.speeds[1:]
         return xr.Dataset(
@@ -290,6 +291,7 @@ class FluctuatingRestitution(EstimatedDistribution):
         names = ("impact_velocity", "restitution", "rotational_fraction")
         lags = whole("lags", lags, 1, 10_000)
         velocity, restitution, fraction = records("data", data, *names)
+        check_filled("data", velocity)
         low, high = self.velocities
         inside = (velocity >= low) & (velocity <= high)
         speed = np.where(inside, velocity, np.nan)

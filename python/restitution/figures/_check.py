@@ -2,11 +2,13 @@
 
 from typing import Any
 
+import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.cm import ScalarMappable
 from matplotlib.figure import Figure
 
-from restitution._arrays import FloatArray, reals
+from restitution._arrays import FloatArray, check_each, reals
+from restitution._bins import FARTHEST
 from restitution._parameters import ParameterError, Problem, wrong
 
 
@@ -39,10 +41,15 @@ def text(name: str, value: Any) -> str:
 
 
 def column(name: str, value: Any, length: int | None = None, like: str = "") -> FloatArray:
-    """Take a 1-D array of real numbers, NaN and infinities among them, of a length that another one sets."""
+    """Take a 1-D array of real numbers of a length that another one sets.
+
+    NaN and infinities may be among them; finite numbers whose sums or margins would be infinite are refused.
+    """
     allowed = "a 1-D array of real numbers"
     found = reals(name, value, allowed, unit=None, dimensions=(1,), finite=False)
     if length is not None and found.size != length:
         text = f": {name} has {found.size} numbers, and must have {length} beside {like}"
         raise ParameterError(Problem(f"{like}, {name}", text))
+    drawable = ~np.isfinite(found) | (np.abs(found) <= FARTHEST)
+    check_each(name, found, drawable, f"at most {FARTHEST:g} either way, or not finite")
     return found

@@ -13,7 +13,7 @@ from restitution._arrays import generator, real, whole
 from restitution._bins import LARGEST, centres, increasing_edges
 from restitution._content import Content
 from restitution._parameters import ParameterError, wrong
-from restitution._recorded import counted, records
+from restitution._recorded import LATTICE, check_filled, counted, records
 from restitution.fit._asymmetric import asymmetric_laplace
 from restitution.fit._clusters import MOST_RESAMPLES
 from restitution.fit._counts import Counts
@@ -245,6 +245,7 @@ def slopes(
         raise ValueError("velocity_bins: missing; recorded impacts need edges in m/s")
     edges = increasing_edges(velocity_bins, "velocity_bins")
     velocity, restitution = records("data", data, "impact_velocity", "restitution")
+    check_filled("data", velocity)
     particles = velocity.shape[0]
     times = random.multinomial(particles, np.full(particles, 1.0 / particles), size=resamples)
     rows = edges.size - 1
@@ -284,7 +285,7 @@ def _deviation(drawn: Array) -> Array:
 def _from_counts(statistics: xr.Dataset, location: float | None) -> Slopes:
     if "velocity_edges" not in statistics:
         raise ValueError("data: statistics without velocity bins; give velocity_bins to `statistics`")
-    statistics = counted("data", statistics)
+    statistics = counted("data", statistics, (*LATTICE, "number"))
     edges = statistics["velocity_edges"].to_numpy()
     rows = edges.size - 1
     fits: list[Fit | None] = [None] * rows

@@ -91,7 +91,7 @@ def measured(
     )
 
 
-def measured_of(name: str, data: xr.Dataset) -> Measured:
+def measured_of(data: xr.Dataset, name: str = "data") -> Measured:
     """Read from a Dataset that `restitution` returned what was measured.
 
     The height of the drop counts where the first of the impacts is the first after it.

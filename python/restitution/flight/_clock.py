@@ -45,7 +45,9 @@ def clock(data: xr.Dataset) -> xr.Dataset:
     """
     # Of one particle, as isel(particle=0) gives it, there is no dimension of particles.
     shape = RECORDS if not isinstance(data, xr.Dataset) or "particle" in data.dims else RECORDS[1:]
-    time, _ = variables("data", data, "restitution.simulate", dict.fromkeys(("time", "rebound_velocity"), shape))
+    time, _ = variables(
+        "data", data, "restitution.simulate", dict.fromkeys(("time", "rebound_velocity"), shape)
+    )
     check_successive("data", data)
     gravity, incline = pull("data", data)
     check_each("data.time", time, ~np.isinf(time), "finite times, NaN for none")
