@@ -133,7 +133,7 @@ def test_friction_and_materials_are_inferred_with_the_shape() -> None:
         ({"law": 1}, r"^law = 1: must be a law"),
         (
             {"elongation": (0.0, 0.1)},
-            r"^elongation = .*: must be a pair \(low, high\) with 1e-09 <= low < high",
+            r"^elongation = .*: must be a pair \(low, high\) with 1e-09 <= low",
         ),
         ({"elongation": 0.1}, r"^elongation = 0.1: must be a pair"),
         ({"elongation": (1e-3, 3.0)}, r"^elongation = \(0.001, 3.0\), .* gives out_of_roundness = "),

@@ -8,7 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from restitution._arrays import FloatArray, check_each, reals, whole
-from restitution._parameters import ParameterError, wrong
+from restitution._parameters import ParameterError, Problem, wrong
 from restitution._recorded import (
     RECORDS,
     attribute,
@@ -91,7 +91,7 @@ def trajectory(data: xr.Dataset, particle: int, times: npt.ArrayLike) -> xr.Data
     import xarray as xr
 
     _check(data)
-    slender = 1.0 - _inertia(data, "axial_inertia") / _inertia(data, "transverse_inertia")
+    slender = _slender(data)
     pulled = np.array(_gravity(*pull("data", data)))
     one = _particle(data.assign(release_height=_heights(data)), particle)
     asked = reals("times", times, "times in s, one or several", unit="s", dimensions=(0, 1), finite=False)
@@ -102,20 +102,24 @@ def trajectory(data: xr.Dataset, particle: int, times: npt.ArrayLike) -> xr.Data
     check_each("times", when, (when >= 0.0) & (when <= last), allowed)
 
     flight = np.searchsorted(happened, when, side="right")
-    begin = _begin(one, happened.size)
-    elapsed = (when - begin["time"][flight])[:, None]
-    position, velocity, axis, spin = (
-        begin[name][flight] for name in ("position", "velocity", "axis", "angular_velocity")
-    )
-    along = np.sum(spin * axis, axis=1, keepdims=True)
-    precession = spin - slender * along * axis  # Λ/J'
-    turned = _turned(axis, precession * elapsed)
-    found = {
-        "position": position + elapsed * (velocity + 0.5 * elapsed * pulled),
-        "velocity": velocity + elapsed * pulled,
-        "axis": turned,
-        "angular_velocity": precession + slender * along * turned,
-    }
+    with np.errstate(over="ignore", invalid="ignore"):
+        begin = _begin(one, happened.size)
+        elapsed = (when - begin["time"][flight])[:, None]
+        position, velocity, axis, spin = (
+            begin[name][flight] for name in ("position", "velocity", "axis", "angular_velocity")
+        )
+        along = np.sum(spin * axis, axis=1, keepdims=True)
+        precession = spin - slender * along * axis  # Λ/J'
+        turned = _turned(axis, precession * elapsed)
+        found = {
+            "position": position + elapsed * (velocity + 0.5 * elapsed * pulled),
+            "velocity": velocity + elapsed * pulled,
+            "axis": turned,
+            "angular_velocity": precession + slender * along * turned,
+        }
+    if not all(np.isfinite(values).all() for values in found.values()):
+        text = ": the motion at these times is not finite; must be the states and settings of a run"
+        raise ParameterError(Problem("data", text))
     variables: dict[str, Any] = {
         name: (("time", "component"), values, {"long_name": _ABOUT[name][0], "units": _ABOUT[name][1]})
         for name, values in found.items()
@@ -154,8 +158,12 @@ def _check(data: xr.Dataset) -> None:
         raise ParameterError(wrong("data.release_velocity", velocity, allowed))
 
 
-def _inertia(data: xr.Dataset, name: str) -> float:
-    return attribute("data", data, name, "a finite number > 0", lambda moment: 0.0 < moment < np.inf)
+def _slender(data: xr.Dataset) -> float:
+    """Give 1 - J/J'; of no body J is above 2J'."""
+    across = attribute("data", data, "transverse_inertia", "a finite number > 0", lambda j: 0.0 < j < np.inf)
+    most = 2.0 * across * (1.0 + 1e-9)  # rounding
+    allowed = f"a finite number in (0, 2 transverse_inertia = {2.0 * across:g}]"
+    return 1.0 - attribute("data", data, "axial_inertia", allowed, lambda j: 0.0 < j <= most) / across
 
 
 def _heights(data: xr.Dataset) -> tuple[str, FloatArray]:

@@ -14,7 +14,7 @@ _EXTREMES = ("minimum", "maximum")
 
 def from_statistics(statistics: xr.Dataset) -> xr.Dataset:
     """Make the Dataset of a distribution; see `FluctuatingRestitution.from_statistics`."""
-    needed = (*LATTICE, "velocity", *_EXTREMES)
+    needed: tuple[str, ...] = (*LATTICE, "velocity", *_EXTREMES)
     if isinstance(statistics, xr.Dataset) and "velocity_edges" not in statistics:
         needed = tuple(name for name in needed if name != "velocity_edges")  # points of a study have none
     statistics = counted("statistics", statistics, needed)

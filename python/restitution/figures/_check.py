@@ -43,13 +43,18 @@ def text(name: str, value: Any) -> str:
 def column(name: str, value: Any, length: int | None = None, like: str = "") -> FloatArray:
     """Take a 1-D array of real numbers of a length that another one sets.
 
-    NaN and infinities may be among them; finite numbers whose sums or margins would be infinite are refused.
+    NaN and infinities may be among them.
     """
     allowed = "a 1-D array of real numbers"
     found = reals(name, value, allowed, unit=None, dimensions=(1,), finite=False)
     if length is not None and found.size != length:
         text = f": {name} has {found.size} numbers, and must have {length} beside {like}"
         raise ParameterError(Problem(f"{like}, {name}", text))
-    drawable = ~np.isfinite(found) | (np.abs(found) <= FARTHEST)
-    check_each(name, found, drawable, f"at most {FARTHEST:g} either way, or not finite")
+    check_drawable(name, found)
     return found
+
+
+def check_drawable(name: str, numbers: FloatArray) -> None:
+    """Refuse finite numbers whose sums, or margins of a panel, would be infinite."""
+    good = ~np.isfinite(numbers) | (np.abs(numbers) <= FARTHEST)
+    check_each(name, numbers, good, f"at most {FARTHEST:g} either way, or not finite")

@@ -12,6 +12,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from restitution._arrays import reals, whole
+from restitution._bins import FARTHEST
 from restitution._parameters import ParameterError, Problem, wrong
 from restitution._recorded import (
     check_filled,
@@ -21,6 +22,7 @@ from restitution._recorded import (
     records,
     released_from,
 )
+from restitution.figures._check import check_drawable
 from restitution.figures._panels import line, population, population_bar
 from restitution.figures._style import COLORS, COLUMN, MARKERS, PAGE, letter, panels, styled
 
@@ -66,10 +68,8 @@ def map(found: xr.Dataset, of: Literal["restitution", "fraction"] = "restitution
     if not found[f"{of}_count"].any():
         raise ParameterError(Problem(f"found.{of}_count", ": every bin is empty; must hold an impact"))
     figure, [[axes]] = panels(COLUMN, 2.7)
-    edges = {name: found[f"{name}_edges"].to_numpy() for name in ("velocity", of)}
-    population_bar(
-        figure, population(axes, edges["velocity"], edges[of], found[f"{of}_count"].to_numpy()), axes
-    )
+    across, up = (found[f"{name}_edges"].to_numpy() for name in ("velocity", of))
+    population_bar(figure, population(axes, across, up, found[f"{of}_count"].to_numpy()), axes)
     axes.set_xlabel(VELOCITY)
     axes.set_ylabel(RESTITUTION if of == "restitution" else FRACTION)
     return figure
@@ -238,8 +238,13 @@ def trajectory(data: xr.Dataset, particle: int = 0, impacts: int = 20) -> Figure
     impacts = whole("impacts", impacts, 1)
     happened = np.isfinite(recorded[0][particle, :impacts])
     time, fall, rise, ratio, fraction = (values[particle, :impacts][happened] for values in recorded)
+    for each, values in zip(names, (time, fall, rise, ratio, fraction), strict=True):
+        check_drawable(f"data.{each}", values)
     start = float(heights if heights.ndim == 0 else heights[particle])
-    when, height = _heights(time, fall, rise, gravity * float(np.cos(incline)), start)
+    with np.errstate(over="ignore", invalid="ignore"):
+        when, height = _heights(time, fall, rise, gravity * float(np.cos(incline)), start)
+    if not np.all(np.abs(height) <= FARTHEST):
+        raise ParameterError(Problem("data", ": heights are no finite numbers; must be those of a run"))
     figure, [[path], [below]] = panels(COLUMN, 3.6, 2, 1, sharex=True)
     path.plot(when, 1e3 * height, linewidth=0.8)
     path.set_ylabel("height (mm)")
@@ -275,6 +280,8 @@ def _moment(axes: Axes, found: xr.Dataset, name: str, **style: Any) -> None:
     errors = (error,) if isinstance(found, xr.Dataset) and error in found else ()
     found = counted("found", found, (moment, *errors, "number", "velocity_edges", "velocity"))
     enough = (found["number"].to_numpy() >= 100) & (found["velocity_edges"].to_numpy()[:-1] > 0)
+    for each in (moment, *errors):
+        check_drawable(f"found.{each}", found[each].to_numpy())
     shown = np.where(enough, found[moment].to_numpy(), np.nan)
     if name == "deviation":
         # A logarithmic axis has no room for zero.
