@@ -3,7 +3,7 @@
 import numpy as np
 import xarray as xr
 
-from restitution._parameters import ParameterError, wrong
+from restitution._parameters import ParameterError, Problem, wrong
 from restitution._recorded import LATTICE, counted
 from restitution.distribution._nodes import LEAST_IMPACTS, POINT
 from restitution.distribution._store import of_histograms
@@ -18,6 +18,9 @@ def from_statistics(statistics: xr.Dataset) -> xr.Dataset:
     if isinstance(statistics, xr.Dataset) and "velocity_edges" not in statistics:
         needed = tuple(name for name in needed if name != "velocity_edges")  # points of a study have none
     statistics = counted("statistics", statistics, needed)
+    if "source" not in statistics.attrs:
+        text = " lacks the attribute source: must be from restitution.statistics or reduce"
+        raise ParameterError(Problem("statistics", text))
     counts, number = _counts(statistics)
     velocity = statistics["velocity"].to_numpy()
     kept = np.flatnonzero((number >= LEAST_IMPACTS) & (velocity > 0))
