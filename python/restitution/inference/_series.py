@@ -120,17 +120,23 @@ class Series:
             check_each(f"{name}.{each}", values, good, f"in (0, {LARGEST:g}], and known at every coefficient")
         covariance = data["restitution_covariance"].transpose("impact", "other_impact").to_numpy()
         covariance = covariance[np.ix_(known, known)].astype(np.float64)
-        if not np.all(np.isfinite(covariance)) or _negative(covariance):
-            allowed = "a covariance, with no negative variance, of all coefficients that are known"
-            raise ParameterError(wrong(f"{name}.restitution_covariance", covariance, allowed))
+        measured = covariance
         covariance = covariance + 10.0 ** (np.round(4.0 * np.log10(max(scatter, 1e-12))) / 2.0) * np.eye(
             known.size
         )
         values = np.array([reference])
         slopes = by_parameters(form, speed[known], values)[:, 0]
-        weighted = np.linalg.solve(covariance, slopes)
+        try:
+            if not np.all(np.isfinite(measured)) or _negative(measured):
+                raise np.linalg.LinAlgError
+            weighted = np.linalg.solve(covariance, slopes)
+            root = np.linalg.inv(np.linalg.cholesky(covariance))
+        except (
+            np.linalg.LinAlgError
+        ):  # or one of errors so large, and so alike, that nothing is left to weigh
+            allowed = "a covariance, with no negative variance, of all coefficients that are known"
+            raise ParameterError(wrong(f"{name}.restitution_covariance", measured, allowed)) from None
         estimator = weighted / (slopes @ weighted)
-        root = np.linalg.inv(np.linalg.cholesky(covariance))
         whiten = root @ (np.eye(known.size) - np.outer(slopes, estimator))
         first = float(speed[0])
         if not np.isfinite(first):
