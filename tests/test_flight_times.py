@@ -114,6 +114,7 @@ def test_the_clock_of_a_run_flight_by_flight(incline: float | None) -> None:
             "time": (dims, times, {"units": "s"}),
             "rebound_velocity": (dims, np.ones((2, 5)), {"units": "m s-1"}),
         },
+        coords={"impact": np.arange(5)},
         attrs={"gravity": 9.8} | ({} if incline is None else {"incline": incline}),
     )
     found = flight.clock(run)

@@ -167,3 +167,67 @@ def test_a_ball_of_one_coefficient_is_a_line() -> None:
     learned = rs.FluctuatingRestitution.learn(sphere, LAW, particles=400, velocities=(0.3, 0.6))
     (axes,) = figures.densities(learned, 0.4).axes
     assert np.allclose(np.asarray(axes.lines[0].get_xdata()), 0.98)
+
+
+def test_impacts_without_their_numbers() -> None:
+    """All of a run are as many as it says that it has; of some, and of a series, nobody knows which."""
+    when = float(RUN.time[3, 2:4].mean())
+    bare = RUN.drop_vars("impact")
+    assert rs.trajectory(bare, 3, when).equals(rs.trajectory(RUN, 3, when))
+    assert flight.clock(bare).equals(flight.clock(RUN).drop_vars("impact"))
+    later, second = bare.isel(impact=slice(5, None)), bare.isel(impact=slice(None, None, 2))
+    for call in (
+        lambda: rs.trajectory(later, 3, when),
+        lambda: figures.trajectory(later),
+        lambda: flight.clock(second),
+        lambda: flight.fit(MEASURED.isel(impact=slice(3, 8)).drop_vars("impact")),
+    ):
+        with pytest.raises(ValueError, match=r"^data lacks the coordinate impact: must say by number which"):
+            call()
+
+
+def test_axes_without_their_names() -> None:
+    """z for x is a fall along the plane."""
+    turned = RUN.isel(component=[2, 1, 0])
+    for given in (turned, turned.drop_vars("component")):
+        with pytest.raises(ValueError, match=r"^data\.component = .*: must be x, y, z"):
+            rs.trajectory(given, 3, 0.1)
+
+
+def test_a_drawing_of_times_that_fall() -> None:
+    """Heights between them would be drawn of flights that end before they begin."""
+    with pytest.raises(ValueError, match=r"^data\.time\[\d+\] = .*: must be a finite time >= 0, not before"):
+        figures.trajectory(RUN.assign(time=RUN.time[:, ::-1].variable))
+
+
+def test_a_drawing_of_coefficients_needs_their_speeds() -> None:
+    fitted = flight.fit(MEASURED)
+    for value in (-1.0, 0.0, np.nan):
+        with pytest.raises(
+            ValueError, match=r"^data\.impact_velocity\[\d\] = .*: must be a speed > 0 at every"
+        ):
+            flight.figure(MEASURED.assign(impact_velocity=0.0 * MEASURED.impact_velocity + value), fitted)
+    for name in ("impact_velocity", "impact_velocity_error", "restitution_error"):
+        with pytest.raises(ValueError, match=rf"^data\.{name}\[\d\] = 1e\+308: must be at most 1e\+100"):
+            flight.figure(MEASURED.assign({name: 0.0 * MEASURED[name].fillna(0.0) + 1e308}), fitted)
+
+
+def test_a_posterior_of_what_no_ball_does() -> None:
+    """A coefficient of nothing after which balls fly on, and errors that leave nothing to weigh."""
+    for name, value, said in (
+        ("restitution", 5e-324, r"^data: balls of no such shape bounce as often"),
+        ("restitution_covariance", 1e308, r"^data\.restitution_covariance = .*: must be a covariance"),
+        ("restitution_covariance", 1e30, r"^data\.restitution_covariance = .*: must be a covariance"),
+    ):
+        with pytest.raises(ValueError, match=said):
+            _posterior(MEASURED.assign({name: 0.0 * MEASURED[name].fillna(0.0) + value}))
+
+
+def test_a_distribution_of_part_of_an_edge() -> None:
+    found = rs.reduce(rs.simulate(BODY, LAW, particles=300, impacts=20), SPEEDS, RATIOS)
+    learned = rs.FluctuatingRestitution.from_statistics(found).data
+    for value in (1e300, 0.5, -1.0):
+        with pytest.raises(ValueError, match=r"^data\.edges\[0\] = .*: must be whole numbers of edges"):
+            rs.FluctuatingRestitution(learned.assign(edges=0.0 * learned.edges + value))
+    with pytest.raises(ValueError, match=r"^statistics lacks the attribute source: must be from"):
+        rs.FluctuatingRestitution.from_statistics(found.drop_attrs())

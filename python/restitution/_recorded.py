@@ -84,7 +84,8 @@ def check_filled(name: str, records: FloatArray) -> None:
 def check_successive(name: str, data: xr.Dataset, *, start: int | None = None) -> None:
     """Refuse impacts that do not follow one another, as their numbers in the coordinate ``impact`` say.
 
-    Without that coordinate they are taken to be 0, 1, 2, ….
+    Without that coordinate they are all impacts of a run only where they are as many as its attribute
+    ``impacts`` says.
 
     Parameters
     ----------
@@ -96,6 +97,10 @@ def check_successive(name: str, data: xr.Dataset, *, start: int | None = None) -
         What number the first must have; any unless given.
     """
     if "impact" not in data.coords:
+        every = data.attrs.get("impacts")
+        if not isinstance(every, int | np.integer) or every != data.sizes["impact"]:
+            text = " lacks the coordinate impact: must say by number which impacts it has"
+            raise ParameterError(Problem(name, text))
         return
     rule = "whole numbers that rise by one from impact to impact"
     check_dimensions(f"{name}.impact", data["impact"], ("impact",))

@@ -96,7 +96,7 @@ def trajectory(data: xr.Dataset, particle: int, times: npt.ArrayLike) -> xr.Data
     one = _particle(data.assign(release_height=_heights(data)), particle)
     asked = reals("times", times, "times in s, one or several", unit="s", dimensions=(0, 1), finite=False)
     when = np.atleast_1d(asked)
-    happened = _happened(one["time"].to_numpy())
+    happened = times_of(one["time"].to_numpy())
     last = float(happened[-1]) if happened.size else 0.0
     allowed = f"in [0, {last!r}] s, from the release to the last recorded impact of particle {particle}"
     check_each("times", when, (when >= 0.0) & (when <= last), allowed)
@@ -150,7 +150,7 @@ def _check(data: xr.Dataset) -> None:
     variables("data", data, 'restitution.simulate(..., record="state")', _NEEDED | given)
     check_successive("data", data, start=0)
     frame = data["component"].to_numpy()
-    if frame.size != 3 or ("component" in data.coords and frame.tolist() != ["x", "y", "z"]):
+    if "component" not in data.coords or frame.tolist() != ["x", "y", "z"]:
         raise ParameterError(wrong("data.component", frame, "x, y, z"))
     allowed = "three finite numbers"
     velocity = data.attrs.get("release_velocity")
@@ -171,8 +171,8 @@ def _heights(data: xr.Dataset) -> tuple[str, FloatArray]:
     return "particle", np.broadcast_to(released_from("data", data), data.sizes["particle"])
 
 
-def _happened(time: FloatArray) -> FloatArray:
-    """Take the times of the impacts that happened: NaN comes after the last one only."""
+def times_of(time: FloatArray) -> FloatArray:
+    """Take the times of the impacts of a particle that happened: NaN comes after the last one only."""
     happened = time[: np.count_nonzero(~np.isnan(time))]
     allowed = "a finite time >= 0, not before the impact before it"
     with np.errstate(invalid="ignore"):

@@ -22,6 +22,7 @@ from restitution._recorded import (
     records,
     released_from,
 )
+from restitution._trajectory import times_of
 from restitution.figures._check import check_drawable
 from restitution.figures._panels import line, population, population_bar
 from restitution.figures._style import COLORS, COLUMN, MARKERS, PAGE, letter, panels, styled
@@ -236,8 +237,8 @@ def trajectory(data: xr.Dataset, particle: int = 0, impacts: int = 20) -> Figure
     heights = released_from("data", data)
     particle = whole("particle", particle, 0, data.sizes["particle"] - 1)
     impacts = whole("impacts", impacts, 1)
-    happened = np.isfinite(recorded[0][particle, :impacts])
-    time, fall, rise, ratio, fraction = (values[particle, :impacts][happened] for values in recorded)
+    happened = times_of(recorded[0][particle, :impacts]).size
+    time, fall, rise, ratio, fraction = (values[particle, :happened] for values in recorded)
     for each, values in zip(names, (time, fall, rise, ratio, fraction), strict=True):
         check_drawable(f"data.{each}", values)
     start = float(heights if heights.ndim == 0 else heights[particle])
