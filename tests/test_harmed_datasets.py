@@ -9,9 +9,11 @@ import matplotlib.pyplot as plt
 import numpy as np
 import pytest
 import xarray as xr
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
 import restitution as rs
-from reference.harmed import harms
+from reference.harmed import every_harm, harm, harms, takers
 from restitution import figures, fit, flight
 
 BODY = rs.Dumbbell(radius=3e-3, separation=3e-4)
@@ -87,9 +89,18 @@ def test_a_harmed_dataset(name: str) -> None:
     """Every harm of the catalogue to what the function takes: our error, or a result, in time."""
     data, attributes, taker = TAKERS[name]
     found = {}
-    for words, harm in harms(data, attributes):
-        harmed = harm(data)
+    for words, make in harms(data, attributes):
+        harmed = make(data)
         wrong = broken(lambda harmed=harmed: taker(harmed))  # type: ignore[misc]
         if wrong is not None:
             found[words] = wrong
     assert found == {}
+
+
+@pytest.mark.filterwarnings("ignore::restitution.DistanceWarning")
+@pytest.mark.parametrize("name", list(takers()))
+@settings(max_examples=12)
+@given(st.data())
+def test_every_function_that_takes_one(name: str, data: st.DataObject) -> None:
+    """Drawn from the catalogue, of all public functions; `make hostile` goes through all of it."""
+    assert harm(name, data.draw(st.sampled_from(list(every_harm(name))))) is None

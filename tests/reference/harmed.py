@@ -1,10 +1,14 @@
 """One catalogue of harms that a Dataset can have on its way to a function; it grows with every find."""
 
 from collections.abc import Callable, Iterator
+from functools import cache
 from typing import Any
 
+import matplotlib.pyplot as plt
 import numpy as np
 import xarray as xr
+
+from reference.contract import CALLS, attack
 
 Harm = tuple[str, Callable[[xr.Dataset], xr.Dataset]]
 
@@ -90,3 +94,40 @@ def harms(data: xr.Dataset, attributes: tuple[str, ...]) -> Iterator[Harm]:
         yield from _of_dimension(name)
     for name in attributes:
         yield from _of_attribute(name)
+
+
+FITTING: dict[str, tuple[str, ...]] = {
+    "trajectory": ("times", "particle = "),
+    "figures.trajectory": ("particle = ",),
+    "figures.densities": ("velocities",),
+    **{name: ("velocity = ", "clusters: ", "count: ") for name in CALLS if name.startswith("fit.")},
+    "posterior": ("diameter = ",),
+    "explore": ("spin and release_velocity = ",),
+}
+"""Where what is left in a Dataset is right in itself: the argument that does not fit it any more."""
+
+
+@cache
+def takers() -> dict[str, str]:
+    """Give every public function that takes a Dataset of ours, with the argument that is one."""
+    return {
+        name: argument
+        for name, (_, make) in CALLS.items()
+        for argument, given in make().items()
+        if isinstance(given, xr.Dataset)
+    }
+
+
+def every_harm(name: str) -> dict[str, Callable[[xr.Dataset], xr.Dataset]]:
+    """Give all harms to what a function takes, of all its variables, dimensions and attributes."""
+    good = CALLS[name][1]()[takers()[name]]
+    return dict(harms(good, tuple(map(str, good.attrs))))
+
+
+def harm(name: str, words: str) -> str | None:
+    """Give a function a harmed Dataset; say what is wrong with what happens, if anything is."""
+    argument = takers()[name]
+    found = attack(name, argument, every_harm(name)[words](CALLS[name][1]()[argument]))
+    plt.close("all")
+    fits = tuple(f"does not name {argument}: {other}" for other in FITTING.get(name, ()))
+    return None if found is not None and found.startswith(fits) else found
