@@ -76,8 +76,8 @@ def trajectory(data: xr.Dataset, particle: int, times: npt.ArrayLike) -> xr.Data
     Raises
     ------
     ValueError
-        If there are no states, or such as are no numbers, no such particle, or times before the release or
-        after the last impact.
+        If there are no states, or such as are no numbers or not of all impacts from the first on, no such
+        particle, or times before the release or after the last impact.
 
     Examples
     --------

@@ -179,12 +179,14 @@ class FluctuatingRestitution(EstimatedDistribution):
         Parameters
         ----------
         statistics : xarray.Dataset
-            With velocity bins. At both ends bins of fewer than 500 impacts are left out.
+            With velocity bins, and the smallest and largest restitution in each, which ``counts_only=True``
+            leaves out. At both ends bins of fewer than 500 impacts are left out.
 
         Raises
         ------
         ValueError
-            If fewer than two bins have enough impacts, or some between them have not.
+            If fewer than two bins have enough impacts, or some between them have not, or counts, edges
+            and extremes are not those of statistics.
         """
         return cls(from_statistics(statistics))
 

@@ -32,7 +32,8 @@ def clock(data: xr.Dataset) -> xr.Dataset:
     Raises
     ------
     ValueError
-        If the Dataset is not a run, or its impacts do not follow one another.
+        If the Dataset is not a run, or its impacts do not follow one another, as the coordinate ``impact``
+        says.
 
     Examples
     --------
