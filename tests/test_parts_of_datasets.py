@@ -130,7 +130,7 @@ def test_a_posterior_of_the_first_impacts() -> None:
     [
         (MEASURED, {"elongation": (5e-324, 1e-2)}, r"elongation = .*: must be a pair"),
         (MEASURED, {"diameter": 1e6}, r"diameter = 1000000.0, elongation = .*: gives release_height = "),
-        (MEASURED.drop_vars("impact_velocity"), {}, "data = .*it lacks impact_velocity"),
+        (MEASURED.drop_vars("impact_velocity"), {}, "data lacks impact_velocity: must be a Dataset from"),
         (MEASURED.assign(time=-MEASURED.time), {}, r"data.time\[1\]"),
         (
             MEASURED.assign(restitution_covariance=-MEASURED.restitution_covariance),

@@ -222,6 +222,10 @@ def test_figures_of_a_comparison() -> None:
             r"^data has 0 particles of 20 impacts: must have at least one of both",
         ),
         (
+            lambda _, __: flight.restitution([0.0, 0.1, 9.0], drag=flight.Drag(terminal_velocity=1.0)),
+            r"^times: a flight of 8\.9 s; must be at most 50 V/g = 5\.09\d+ s with a terminal velocity",
+        ),
+        (
             lambda _, __: flight.restitution([0.0, 1e-310, 1.0]),
             r"^times\[1\] = 1e-310: must be later than times\[0\] = 0\.0, by at least 1e-30 s",
         ),

@@ -6,6 +6,7 @@ import numpy as np
 import numpy.typing as npt
 import xarray as xr
 
+from restitution._parameters import ParameterError, Problem
 from restitution._recorded import check_successive
 from restitution.flight._drag import Drag, fall, speeds
 from restitution.flight._setting import setting_of
@@ -15,6 +16,8 @@ Array = npt.NDArray[np.float64]
 
 COMMON = 3
 """Quantities that are measured once: g, the height of the drop, the terminal velocity."""
+_LONGEST = 50.0
+"""Of a flight with drag, in V/g: its body starts with V times the exponential function of this."""
 
 
 @dataclass(frozen=True)
@@ -79,8 +82,22 @@ def measured(
     gravity: tuple[float, float],
     drop: tuple[float, float] | None,
     drag: Drag | None,
+    name: str = "times",
 ) -> Measured:
-    """Put together what was measured; g and the height of the drop come with their standard errors."""
+    """Put together what was measured; g and the height of the drop come with their standard errors.
+
+    Raises
+    ------
+    ParameterError
+        Naming the times, if drag would have let no body fly as long as between two of them.
+    """
+    if drag is not None:
+        most = _LONGEST * drag.terminal_velocity / gravity[0]
+        longest = float(np.nanmax(np.diff(times), initial=0.0))
+        if longest > most:
+            speed = f"a terminal velocity V of {drag.terminal_velocity:g} m/s"
+            text = f": a flight of {longest:g} s; must be at most {_LONGEST:g} V/g = {most:g} s with {speed}"
+            raise ParameterError(Problem(name, text))
     errors = [gravity[1], 0.0 if drop is None else drop[1], 0.0 if drag is None else drag.uncertainty]
     return Measured(
         times,
@@ -110,7 +127,7 @@ def measured_of(data: xr.Dataset, name: str = "data") -> Measured:
     )
     gravity, drop, drag = setting_of(name, data)
     falls = int(data["impact"][0]) == 0
-    return measured(times, errors, gravity, drop if falls else None, drag)
+    return measured(times, errors, gravity, drop if falls else None, drag, f"{name}.time")
 
 
 def chain(given: Measured) -> Chain:

@@ -10,8 +10,6 @@ from restitution._arrays import check_each
 from restitution._parameters import ParameterError, wrong
 from restitution._recorded import variables
 
-_NEEDED = "a Dataset of flight.restitution, or several"
-
 
 def series_of(data: Any, *needed: str) -> dict[str, xr.Dataset]:
     """Take a Dataset of `flight.restitution`, or several, by what errors call them.
@@ -29,13 +27,10 @@ def series_of(data: Any, *needed: str) -> dict[str, xr.Dataset]:
         except Exception:  # whatever the object raises
             several = []
     if not several or not all(isinstance(one, xr.Dataset) for one in several):
-        raise ParameterError(wrong("data", data, _NEEDED))
+        raise ParameterError(wrong("data", data, "a Dataset of flight.restitution, or several"))
     named = {"data": data} if isinstance(data, xr.Dataset) else {}
     named = named or {f"data[{k}]": one for k, one in enumerate(several)}
     for name, one in named.items():
-        lacking = [each for each in needed if each not in one]
-        if lacking:
-            raise ParameterError(wrong(name, one, f"{_NEEDED}; it lacks {', '.join(lacking)}"))
         dimensions = {each: _dimensions(each) for each in needed}
         for each, values in zip(needed, variables(name, one, "flight.restitution", dimensions), strict=True):
             check_each(f"{name}.{each}", values, ~np.isinf(values), "finite, or NaN for what is not known")
