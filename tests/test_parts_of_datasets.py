@@ -52,6 +52,20 @@ def test_a_clock_of_impacts_that_follow_one_another() -> None:
         flight.clock(RUN.isel(impact=[0, 2, 4]))
 
 
+def test_how_successive_impacts_depend_on_each_other() -> None:
+    """Every second one has a later one after it, and a lag that is counted would be half of what it is."""
+    flown = rs.simulate(BODY, LAW, particles=300, impacts=20)
+    learned = rs.FluctuatingRestitution.from_statistics(rs.reduce(flown, SPEEDS, RATIOS))
+    for measure in (learned.memory, lambda data: fit.dependence(data, SPEEDS)):
+        measure(flown.isel(impact=slice(5, None)))
+        for given, text in (
+            (flown.isel(impact=slice(None, None, 2)), r"\.impact\[1\] = 2\.0: must be whole numbers >= 0"),
+            (flown.drop_vars("impact").isel(impact=slice(5, None)), " lacks the coordinate impact: must say"),
+        ):
+            with pytest.raises(ValueError, match=rf"^data{text}"):
+                measure(given)
+
+
 @pytest.mark.parametrize("value", [-1, "9.81", None, 10**400, np.ma.masked])
 def test_a_clock_needs_gravity(value: Any) -> None:
     with pytest.raises(ValueError, match=r"^data.gravity = .*: must be a finite number > 0"):

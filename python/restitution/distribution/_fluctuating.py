@@ -15,7 +15,7 @@ from restitution._display import Text, table, value
 from restitution._files import path_from, write
 from restitution._formats import HEADER, MODULE, NETCDF, path_for
 from restitution._parameters import ParameterError, Problem, wrong
-from restitution._recorded import check_filled, records
+from restitution._recorded import check_filled, check_successive, records
 from restitution._release import RandomHeight, RandomSpin
 from restitution._resources import checked_threads
 from restitution._run import Run
@@ -279,7 +279,7 @@ class FluctuatingRestitution(EstimatedDistribution):
         Parameters
         ----------
         data : xarray.Dataset
-            Impacts as from `restitution.simulate`; only those at learned speeds count.
+            Successive impacts as from `restitution.simulate`; only those at learned speeds count.
         lags : int, default 5
             Largest number of impacts from one to the other.
 
@@ -294,6 +294,7 @@ class FluctuatingRestitution(EstimatedDistribution):
         lags = whole("lags", lags, 1, 10_000)
         velocity, restitution, fraction = records("data", data, *names)
         check_filled("data", velocity)
+        check_successive("data", data)
         low, high = self.velocities
         inside = (velocity >= low) & (velocity <= high)
         speed = np.where(inside, velocity, np.nan)
