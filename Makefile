@@ -79,7 +79,7 @@ licences:  ## list the licences of what is compiled into the package and the pag
 fuzz:  ## random runs beside the oracle and between the SIMD levels, $(FUZZ) seconds each
 	RESTITUTION_FUZZ_SECONDS=$(FUZZ) cargo test -p restitution-core --locked --test agreement --test fuzz -- --nocapture
 
-hostile: $(STAMP) | web  ## every public function with every hostile value, harmed files and random tables for $(FUZZ) seconds, every command in every hostile environment
+hostile: $(STAMP) | web  ## every public function with every hostile value and every harmed Dataset, harmed files and random tables for $(FUZZ) seconds, every command in every hostile environment
 	$(BIN)/python tests/hostile.py
 	OPENBLAS_NUM_THREADS=1 OMP_NUM_THREADS=1 $(BIN)/python tests/fuzz.py --seconds $(FUZZ)
 	OPENBLAS_NUM_THREADS=1 OMP_NUM_THREADS=1 $(BIN)/python tests/environments.py

@@ -1,4 +1,4 @@
-"""`make hostile`: every value of the catalogue at every argument of every public function."""
+"""`make hostile`: every value of the catalogue at every argument of every public function, and every harm."""
 
 import os
 import sys
@@ -7,6 +7,7 @@ import warnings
 
 import restitution as rs
 from reference.contract import CALLS, arguments, attack
+from reference.harmed import every_harm, harm, takers
 from reference.hostile import VALUES
 
 
@@ -14,6 +15,7 @@ def main(wanted: list[str]) -> int:
     """Attack the functions whose names hold a word of `wanted`, or all; tell what breaks the contract."""
     warnings.simplefilter("error")
     warnings.filterwarnings("ignore", category=rs.EnergyWarning)
+    warnings.filterwarnings("ignore", category=rs.DistanceWarning)
     calls = failures = 0
     os.chdir(tempfile.mkdtemp())  # some values are names of files that can be written
     for name in CALLS:
@@ -26,6 +28,12 @@ def main(wanted: list[str]) -> int:
                 if found is not None:
                     failures += 1
                     print(f"{name}({argument} = {value}): {found}", flush=True)
+        for words in every_harm(name) if name in takers() else ():
+            calls += 1
+            found = harm(name, words)
+            if found is not None:
+                failures += 1
+                print(f"{name}({takers()[name]}: {words}): {found}", flush=True)
     print(f"{calls} calls, {failures} break the contract")
     return min(failures, 1)
 

@@ -66,8 +66,12 @@ FLIGHT = tuple(
     f"flight/_{name}.py"
     for name in (
         *("chain", "clock", "drag", "fit", "law_fit", "laws"),
-        *("problem", "restitution", "series", "times"),
+        *("problem", "restitution", "series", "setting", "times"),
     )
+)
+FLIGHT_TESTS = (
+    *("test_flight.py", "test_flight_fit.py", "test_flight_references.py", "test_flight_times.py"),
+    *("test_parts_of_datasets.py", "test_selected.py"),
 )
 INFERENCE = tuple(
     f"inference/_{name}.py" for name in ("family", "likelihood", "posterior", "series", "table")
@@ -114,9 +118,7 @@ TESTS = {
     "analytic/_near_round.py": ("test_near_round.py",),
     **dict.fromkeys(LAWS, ("test_laws_materials.py",)),
     **dict.fromkeys(FITS + SLOPES, FIT_TESTS),
-    **dict.fromkeys(
-        FLIGHT, ("test_flight.py", "test_flight_fit.py", "test_flight_references.py", "test_flight_times.py")
-    ),
+    **dict.fromkeys(FLIGHT, FLIGHT_TESTS),
     **dict.fromkeys(INFERENCE, ("test_inference.py", "test_inference_references.py")),
 }
 """What reads and writes files, handles signals, or works out numbers, and the tests that are about it."""

@@ -89,7 +89,8 @@ def sequences(kind: str, seed: int = 1) -> xr.Dataset:
             "impact_velocity": (("particle", "impact"), np.full(shape, 0.35)),
             "restitution": (("particle", "impact"), score),
             "contact": (("particle", "impact"), contact.astype(np.int8)),
-        }
+        },
+        coords={"impact": np.arange(shape[1])},
     )
 
 

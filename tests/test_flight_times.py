@@ -114,6 +114,7 @@ def test_the_clock_of_a_run_flight_by_flight(incline: float | None) -> None:
             "time": (dims, times, {"units": "s"}),
             "rebound_velocity": (dims, np.ones((2, 5)), {"units": "m s-1"}),
         },
+        coords={"impact": np.arange(5)},
         attrs={"gravity": 9.8} | ({} if incline is None else {"incline": incline}),
     )
     found = flight.clock(run)
@@ -146,12 +147,17 @@ def test_a_clock_names_what_is_no_run() -> None:
         rs.Dumbbell(radius=3e-3, separation=3e-4), rs.Frictionless(normal=0.9), particles=2, impacts=4
     )
     nothing: Any = 3
-    with pytest.raises(ValueError, match=r"^data = 3: must be a Dataset that simulate returned"):
+    with pytest.raises(ValueError, match=r"^data = 3: must be a Dataset from restitution.simulate"):
         flight.clock(nothing)
     without = run.copy()
     del without.attrs["gravity"]
-    for wrong in (without, run.drop_vars("time"), run.drop_vars("rebound_velocity"), run.rename(impact="n")):
-        with pytest.raises(ValueError, match=r"^data: not a run; must be a Dataset that simulate returned"):
+    for wrong, said in (
+        (without, "data lacks the attribute gravity"),
+        (run.drop_vars("time"), "data lacks time"),
+        (run.drop_vars("rebound_velocity"), "data lacks rebound_velocity"),
+        (run.rename(impact="n"), r"data\.time has dimensions \(particle, n\)"),
+    ):
+        with pytest.raises(ValueError, match=f"^{said}"):
             flight.clock(wrong)
     other = run.copy()
     other["time"] = run["time"].copy()

@@ -155,4 +155,4 @@ def test_what_a_series_lacks_is_named() -> None:
     other: xr.Dataset = rs.flight.restitution(times, 1e-5)
     other["impact_velocity"].attrs["units"] = "mm s-1"
     with pytest.raises(ValueError, match=r"^data.*impact_velocity.*mm s-1"):
-        Series.of(other, form, 0.9, 1e-3)
+        rs.posterior(other, rs.Frictionless(normal=0.9), diameter=6e-3)

@@ -89,7 +89,7 @@ def test_a_sphere_and_a_clock_agree() -> None:
 
 
 def test_a_clock_needs_a_run() -> None:
-    with pytest.raises(ValueError, match=r"^data: not a run; must be a Dataset that simulate returned"):
+    with pytest.raises(ValueError, match=r"^data lacks rebound_velocity: must be a Dataset from"):
         rs.flight.clock(rs.flight.restitution([0.0, 1.0, 1.9]))
 
 

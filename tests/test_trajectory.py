@@ -162,7 +162,7 @@ def test_the_state_is_recorded_for_who_asks() -> None:
 @pytest.mark.parametrize(
     ("wrong", "said"),
     [
-        ({"data": 3}, r'data = 3: must be from restitution.simulate\(..., record="state"\)'),
+        ({"data": 3}, r'data = 3: must be a Dataset from restitution.simulate\(..., record="state"\)'),
         ({"data": "impacts"}, r"data lacks position, axis, velocity_after, angular_velocity_after: must be"),
         ({"particle": 6}, r"particle = 6: must be one of 0 to 5"),
         ({"particle": [1, 2]}, r"particle = \[1, 2\]: must be one of 0 to 5"),

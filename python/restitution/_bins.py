@@ -17,7 +17,7 @@ IntArray = npt.NDArray[np.int64]
 FRACTION_BINS: FloatArray = np.linspace(0.0, 1.0, 51)
 FRACTION_BINS.flags.writeable = False
 
-_FARTHEST = 1e100
+FARTHEST = 1e100
 """Of any edge, so that widths and centres are finite."""
 _MOST_BINS = 10_000_000
 LARGEST = LARGEST_RESTITUTION
@@ -52,8 +52,8 @@ def increasing_edges(bins: npt.ArrayLike, name: str) -> FloatArray:
     with np.errstate(over="ignore"):
         widths = np.diff(edges)
     _check_bins(name, edges, widths > 0, "edges must increase strictly")
-    if np.abs(edges).max() > _FARTHEST:
-        text = f" goes from {edges[0]} to {edges[-1]}: at most {_FARTHEST:g} either way"
+    if np.abs(edges).max() > FARTHEST:
+        text = f" goes from {edges[0]} to {edges[-1]}: at most {FARTHEST:g} either way"
         raise ParameterError(Problem(name, text))
     _check_bins(name, edges, _wide_enough(widths), "bins must be so wide that 1/width is finite")
     return edges
@@ -88,8 +88,8 @@ def edges_from(bins: npt.ArrayLike | None, span: npt.ArrayLike | None, name: str
     ends = reals(f"{kind}_range", span, "(low, high) with low < high", unit=_unit(kind), dimensions=(1,))
     if ends.shape != (2,) or not ends[0] < ends[1]:
         raise ParameterError(wrong(f"{kind}_range", span, "(low, high) with low < high"))
-    if np.abs(ends).max() > _FARTHEST:
-        raise ParameterError(wrong(f"{kind}_range", span, f"at most {_FARTHEST:g} either way"))
+    if np.abs(ends).max() > FARTHEST:
+        raise ParameterError(wrong(f"{kind}_range", span, f"at most {FARTHEST:g} either way"))
     if not 1 <= bins <= _MOST_BINS:
         raise ParameterError(wrong(name, bins, f"edges, or a number of bins in [1, {_MOST_BINS}]"))
     edges = np.linspace(ends[0], ends[1], int(bins) + 1)

@@ -9,24 +9,22 @@ import numpy.typing as npt
 
 from restitution._arrays import FloatArray, check_each, reals, whole
 from restitution._parameters import ParameterError, Problem, wrong
-from restitution._recorded import first_impact_of
-from restitution._units import check_variables
+from restitution._recorded import (
+    RECORDS,
+    attribute,
+    check_successive,
+    pull,
+    released_from,
+    variables,
+)
 
 if TYPE_CHECKING:
     import xarray as xr
 
-_NEEDED = {
-    "time": ("impact",),
-    "position": ("impact", "component"),
-    "axis": ("impact", "component"),
-    "velocity_after": ("impact", "component"),
-    "angular_velocity_after": ("impact", "component"),
-    "release_angle": (),
-}
-"""What is needed of the recorded states, and its dimensions besides that of the particle."""
-_SETTINGS = ("gravity", "incline", "release_velocity", "axial_inertia", "transverse_inertia")
-_RELEASED = ("release_height", "release_azimuth", "release_spin")
-"""Of each particle, or of all as attributes, or neither where it is 0."""
+_STATES = ("position", "axis", "velocity_after", "angular_velocity_after")
+_NEEDED = {"time": RECORDS, **dict.fromkeys(_STATES, (*RECORDS, "component")), "release_angle": ("particle",)}
+_RELEASED = {"release_azimuth": ("particle",), "release_spin": ("particle", "component")}
+"""Of each particle, or not there where it is 0."""
 _ABOUT = {
     "position": ("position of the centre of mass; the release is over the origin, z = 0 the plane", "m"),
     "velocity": ("velocity of the centre of mass", "m s-1"),
@@ -41,11 +39,11 @@ def with_positions(data: xr.Dataset) -> xr.Dataset:
     position = np.empty(after.shape)
     position[..., 2] = data["height"].to_numpy()
     duration = np.diff(time, axis=1, prepend=0.0)
-    pull = _gravity(data)
+    pulled = _gravity(data.attrs["gravity"], data.attrs["incline"])
     for i in range(2):
         start = np.empty(time.shape)
         start[:, :1], start[:, 1:] = data.attrs["release_velocity"][i], after[:, :-1, i]
-        np.cumsum(duration * (start + 0.5 * pull[i] * duration), axis=1, out=position[..., i])
+        np.cumsum(duration * (start + 0.5 * pulled[i] * duration), axis=1, out=position[..., i])
     about, unit = _ABOUT["position"]
     attrs = {"long_name": f"{about}; at the impact", "units": unit}
     return data.drop_vars("height").assign(position=(("particle", "impact", "component"), position, attrs))
@@ -78,8 +76,8 @@ def trajectory(data: xr.Dataset, particle: int, times: npt.ArrayLike) -> xr.Data
     Raises
     ------
     ValueError
-        If there are no states, or such as are no numbers, no such particle, or times before the release or
-        after the last impact.
+        If there are no states, or such as are no numbers or not of all impacts from the first on, no such
+        particle, or times before the release or after the last impact.
 
     Examples
     --------
@@ -92,51 +90,36 @@ def trajectory(data: xr.Dataset, particle: int, times: npt.ArrayLike) -> xr.Data
     """
     import xarray as xr
 
-    instead = 'from restitution.simulate(..., record="state")'
-    if not isinstance(data, xr.Dataset):
-        raise ParameterError(wrong("data", data, instead))
-    lacking = [name for name in _NEEDED if name not in data]
-    lacking = lacking or [name for name in _SETTINGS if name not in data.attrs]
-    if lacking:
-        raise ParameterError(Problem("data", f" lacks {', '.join(lacking)}: must be {instead}"))
-    check_variables("data", data, *_NEEDED)
-    for name, dimensions in _NEEDED.items():
-        if set(data[name].dims) != {"particle", *dimensions}:
-            text = f" has dimensions ({', '.join(map(str, data[name].dims))}): must be {instead}, whole"
-            raise ParameterError(Problem(f"data.{name}", text))
-    if first_impact_of("data", data) != 0 or data.sizes["component"] != 3:
-        raise ParameterError(
-            Problem("data", f": a part of the impacts or components: must be {instead}, whole")
-        )
-    if "release_height" not in data and "release_height" not in data.attrs:
-        raise ParameterError(Problem("data", f" lacks release_height: must be {instead}"))
-    one = _particle(data.transpose(..., "impact", "component"), particle)
-    _check(one)
+    _check(data)
+    slender = _slender(data)
+    pulled = np.array(_gravity(*pull("data", data)))
+    one = _particle(data.assign(release_height=_heights(data)), particle)
     asked = reals("times", times, "times in s, one or several", unit="s", dimensions=(0, 1), finite=False)
     when = np.atleast_1d(asked)
-    recorded = one["time"].to_numpy()
-    happened = recorded[~np.isnan(recorded)]
+    happened = times_of(one["time"].to_numpy())
     last = float(happened[-1]) if happened.size else 0.0
     allowed = f"in [0, {last!r}] s, from the release to the last recorded impact of particle {particle}"
     check_each("times", when, (when >= 0.0) & (when <= last), allowed)
 
     flight = np.searchsorted(happened, when, side="right")
-    begin = _begin(one, happened.size)
-    elapsed = (when - begin["time"][flight])[:, None]
-    position, velocity, axis, spin = (
-        begin[name][flight] for name in ("position", "velocity", "axis", "angular_velocity")
-    )
-    pull = np.array(_gravity(data))
-    along = np.sum(spin * axis, axis=1, keepdims=True)
-    slender = 1.0 - float(data.attrs["axial_inertia"]) / float(data.attrs["transverse_inertia"])
-    precession = spin - slender * along * axis  # Λ/J'
-    turned = _turned(axis, precession * elapsed)
-    found = {
-        "position": position + elapsed * (velocity + 0.5 * elapsed * pull),
-        "velocity": velocity + elapsed * pull,
-        "axis": turned,
-        "angular_velocity": precession + slender * along * turned,
-    }
+    with np.errstate(over="ignore", invalid="ignore"):
+        begin = _begin(one, happened.size)
+        elapsed = (when - begin["time"][flight])[:, None]
+        position, velocity, axis, spin = (
+            begin[name][flight] for name in ("position", "velocity", "axis", "angular_velocity")
+        )
+        along = np.sum(spin * axis, axis=1, keepdims=True)
+        precession = spin - slender * along * axis  # Λ/J'
+        turned = _turned(axis, precession * elapsed)
+        found = {
+            "position": position + elapsed * (velocity + 0.5 * elapsed * pulled),
+            "velocity": velocity + elapsed * pulled,
+            "axis": turned,
+            "angular_velocity": precession + slender * along * turned,
+        }
+    if not all(np.isfinite(values).all() for values in found.values()):
+        text = ": the motion at these times is not finite; must be the states and settings of a run"
+        raise ParameterError(Problem("data", text))
     variables: dict[str, Any] = {
         name: (("time", "component"), values, {"long_name": _ABOUT[name][0], "units": _ABOUT[name][1]})
         for name, values in found.items()
@@ -161,26 +144,45 @@ def _particle(data: xr.Dataset, particle: int) -> xr.Dataset:
     return data.isel(particle=int(at[0]))
 
 
-def _check(one: xr.Dataset) -> None:
-    """Refuse states and settings that are no numbers."""
-    check_variables("data", one, *_NEEDED, *_RELEASED)
-    for name in (*_NEEDED, *_RELEASED):
-        if name in one:
-            reals(f"data.{name}", one[name].to_numpy(), "real numbers, NaN for none", finite=False)
-    for name in _SETTINGS + _RELEASED:
-        if name in one.attrs and not (name in _RELEASED and name in one):
-            lengths = (3,) if name == "release_velocity" else ()
-            allowed = "three finite numbers" if lengths else "a finite number"
-            if reals(f"data.{name}", one.attrs[name], allowed).shape != lengths:
-                raise ParameterError(wrong(f"data.{name}", one.attrs[name], allowed))
-    if not one.attrs["transverse_inertia"] > 0.0:
-        raise ParameterError(
-            wrong("data.transverse_inertia", one.attrs["transverse_inertia"], "a finite number > 0")
-        )
+def _check(data: xr.Dataset) -> None:
+    """Refuse states that are no numbers, or not those of all impacts from the release on."""
+    given = {name: needed for name, needed in _RELEASED.items() if name in getattr(data, "variables", ())}
+    variables("data", data, 'restitution.simulate(..., record="state")', _NEEDED | given)
+    check_successive("data", data, start=0)
+    frame = data["component"].to_numpy()
+    if "component" not in data.coords or frame.tolist() != ["x", "y", "z"]:
+        raise ParameterError(wrong("data.component", frame, "x, y, z"))
+    allowed = "three finite numbers"
+    velocity = data.attrs.get("release_velocity")
+    if reals("data.release_velocity", velocity, allowed).shape != (3,):
+        raise ParameterError(wrong("data.release_velocity", velocity, allowed))
 
 
-def _gravity(data: xr.Dataset) -> tuple[float, float, float]:
-    gravity, incline = float(data.attrs["gravity"]), float(data.attrs["incline"])
+def _slender(data: xr.Dataset) -> float:
+    """Give 1 - J/J'; of no body J is above 2J'."""
+    across = attribute("data", data, "transverse_inertia", "a finite number > 0", lambda j: 0.0 < j < np.inf)
+    most = 2.0 * across * (1.0 + 1e-9)  # rounding
+    allowed = f"a finite number in (0, 2 transverse_inertia = {2.0 * across:g}]"
+    return 1.0 - attribute("data", data, "axial_inertia", allowed, lambda j: 0.0 < j <= most) / across
+
+
+def _heights(data: xr.Dataset) -> tuple[str, FloatArray]:
+    """Give every particle its height of release."""
+    return "particle", np.broadcast_to(released_from("data", data), data.sizes["particle"])
+
+
+def times_of(time: FloatArray) -> FloatArray:
+    """Take the times of the impacts of a particle that happened: NaN comes after the last one only."""
+    happened = time[: np.count_nonzero(~np.isnan(time))]
+    allowed = "a finite time >= 0, not before the impact before it"
+    with np.errstate(invalid="ignore"):
+        check_each("data.time", happened, np.diff(happened, prepend=0.0) >= 0.0, allowed)
+    check_each("data.time", happened, np.isfinite(happened), allowed)
+    return happened
+
+
+def _gravity(gravity: float, incline: float) -> tuple[float, float, float]:
+    """Give the acceleration of free flight in the frame of the plane."""
     return gravity * float(np.sin(incline)), 0.0, -gravity * float(np.cos(incline))
 
 
@@ -189,19 +191,24 @@ def _begin(one: xr.Dataset, impacts: int) -> dict[str, FloatArray]:
     angle = float(one["release_angle"])
     azimuth = float(one["release_azimuth"]) if "release_azimuth" in one else 0.0
     level = np.sin(angle)
-    height = float(one["release_height"] if "release_height" in one else one.attrs["release_height"])
     released = {
         "time": 0.0,
-        "position": [0.0, 0.0, height],
+        "position": [0.0, 0.0, float(one["release_height"])],
         "velocity": one.attrs["release_velocity"],
         "axis": [level * np.cos(azimuth), level * np.sin(azimuth), np.cos(angle)],
         "angular_velocity": one["release_spin"].to_numpy() if "release_spin" in one else np.zeros(3),
     }
     after = {"velocity": "velocity_after", "angular_velocity": "angular_velocity_after"}
     return {
-        name: np.concatenate([[value], one[after.get(name, name)].to_numpy()[:impacts]])
+        name: np.concatenate([[value], _states(one, after.get(name, name))[:impacts]])
         for name, value in released.items()
     }
+
+
+def _states(one: xr.Dataset, name: str) -> FloatArray:
+    """Give a variable of all impacts, a row each."""
+    values: FloatArray = one[name].transpose("impact", ...).to_numpy()
+    return values
 
 
 def _turned(vectors: FloatArray, rotations: FloatArray) -> FloatArray:

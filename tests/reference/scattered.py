@@ -26,6 +26,7 @@ def impacts(particles: int = 40, each: int = 30, seed: int = 2) -> xr.Dataset:
             "restitution": (dims, restitution),
             "contact": (dims, contact),
         },
+        coords={"impact": np.arange(each)},
         attrs={"law": "any"},
     )
 

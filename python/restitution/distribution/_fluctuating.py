@@ -15,7 +15,7 @@ from restitution._display import Text, table, value
 from restitution._files import path_from, write
 from restitution._formats import HEADER, MODULE, NETCDF, path_for
 from restitution._parameters import ParameterError, Problem, wrong
-from restitution._recorded import records
+from restitution._recorded import check_filled, check_successive, records
 from restitution._release import RandomHeight, RandomSpin
 from restitution._resources import checked_threads
 from restitution._run import Run
@@ -179,12 +179,14 @@ class FluctuatingRestitution(EstimatedDistribution):
         Parameters
         ----------
         statistics : xarray.Dataset
-            With velocity bins. At both ends bins of fewer than 500 impacts are left out.
+            With velocity bins, and the smallest and largest restitution in each, which ``counts_only=True``
+            leaves out. At both ends bins of fewer than 500 impacts are left out.
 
         Raises
         ------
         ValueError
-            If fewer than two bins have enough impacts, or some between them have not.
+            If fewer than two bins have enough impacts, or some between them have not, or counts, edges
+            and extremes are not those of statistics.
         """
         return cls(from_statistics(statistics))
 
@@ -256,6 +258,7 @@ class FluctuatingRestitution(EstimatedDistribution):
             is due to the scatter of these impacts, by bootstrap over particles; and ``impacts``.
         """
         velocity, restitution = records("data", data, "impact_velocity", "restitution")
+        check_filled("data", velocity)
         check = Check.of(self._table, [Impacts(velocity, restitution, np.empty((0, 0)))])
         low, high = self._table.speeds[:-1], self._table.speeds[1:]
         return xr.Dataset(
@@ -276,7 +279,7 @@ class FluctuatingRestitution(EstimatedDistribution):
         Parameters
         ----------
         data : xarray.Dataset
-            Impacts as from `restitution.simulate`; only those at learned speeds count.
+            Successive impacts as from `restitution.simulate`; only those at learned speeds count.
         lags : int, default 5
             Largest number of impacts from one to the other.
 
@@ -290,6 +293,8 @@ class FluctuatingRestitution(EstimatedDistribution):
         names = ("impact_velocity", "restitution", "rotational_fraction")
         lags = whole("lags", lags, 1, 10_000)
         velocity, restitution, fraction = records("data", data, *names)
+        check_filled("data", velocity)
+        check_successive("data", data)
         low, high = self.velocities
         inside = (velocity >= low) & (velocity <= high)
         speed = np.where(inside, velocity, np.nan)

@@ -3,27 +3,24 @@
 import numpy as np
 import xarray as xr
 
-from restitution._arrays import reals
-from restitution._parameters import ParameterError, wrong
-from restitution._recorded import counted
-from restitution._units import check_variables
+from restitution._parameters import ParameterError, Problem, wrong
+from restitution._recorded import LATTICE, counted
 from restitution.distribution._nodes import LEAST_IMPACTS, POINT
-from restitution.distribution._store import of_histograms, require
+from restitution.distribution._store import of_histograms
 from restitution.distribution._table import Floats, Histogram
+
+_EXTREMES = ("minimum", "maximum")
 
 
 def from_statistics(statistics: xr.Dataset) -> xr.Dataset:
     """Make the Dataset of a distribution; see `FluctuatingRestitution.from_statistics`."""
-    instead = "a result of restitution.statistics, without counts_only, or reduce with velocity bins"
-    of_bins = ("minimum", "maximum", "velocity")
-    require(statistics, "statistics", ("restitution_count", "restitution_edges", *of_bins), instead)
-    statistics = counted("statistics", statistics, spans=False)
-    check_variables("statistics", statistics, *of_bins)
-    for name in of_bins:
-        allowed = "real numbers, one for each velocity bin"
-        found = reals(f"statistics.{name}", statistics[name].to_numpy(), allowed, finite=False)
-        if found.shape != (statistics.sizes["velocity"],):
-            raise ParameterError(wrong(f"statistics.{name}", found, allowed))
+    needed: tuple[str, ...] = (*LATTICE, "velocity", *_EXTREMES)
+    if isinstance(statistics, xr.Dataset) and "velocity_edges" not in statistics:
+        needed = tuple(name for name in needed if name != "velocity_edges")  # points of a study have none
+    statistics = counted("statistics", statistics, needed)
+    if "source" not in statistics.attrs:
+        text = " lacks the attribute source: must be from restitution.statistics or reduce"
+        raise ParameterError(Problem("statistics", text))
     counts, number = _counts(statistics)
     velocity = statistics["velocity"].to_numpy()
     kept = np.flatnonzero((number >= LEAST_IMPACTS) & (velocity > 0))
@@ -39,7 +36,8 @@ def from_statistics(statistics: xr.Dataset) -> xr.Dataset:
             f"bins between others must have at least {LEAST_IMPACTS}"
         )
     edges = statistics["restitution_edges"].to_numpy()
-    extremes = [statistics[name].to_numpy() for name in ("minimum", "maximum")]
+    _check_extremes(statistics, counts, edges)
+    extremes = [statistics[name].to_numpy() for name in _EXTREMES]
     histograms = [_histogram(counts[row], edges, *(float(e[row]) for e in extremes)) for row in rows]
     attrs = {key: value for key, value in statistics.attrs.items() if key != "content"} | {
         "title": "Distribution of the coefficient of restitution at given impact velocity",
@@ -56,7 +54,7 @@ def quantiles(statistics: xr.Dataset, levels: Floats) -> Floats:
     """
     counts, number = _counts(statistics)
     edges = statistics["restitution_edges"].to_numpy()
-    extremes = [statistics[name].to_numpy() for name in ("minimum", "maximum")]
+    extremes = [statistics[name].to_numpy() for name in _EXTREMES]
     found = np.full((number.size, levels.size), np.nan)
     for row in np.flatnonzero(number >= LEAST_IMPACTS):
         histogram = _histogram(counts[row], edges, *(float(e[row]) for e in extremes))
@@ -70,6 +68,20 @@ def _counts(statistics: xr.Dataset) -> tuple[Floats, Floats]:
     below, inside, above = (statistics[name].to_numpy() for name in names)
     counts = np.concatenate([below[:, None], inside, above[:, None]], axis=1).astype(np.float64)
     return counts, counts.sum(axis=1)
+
+
+def _check_extremes(statistics: xr.Dataset, counts: Floats, edges: Floats) -> None:
+    """Refuse a smallest or largest restitution that is not in the first or last bin that holds any."""
+    ends = np.concatenate([[-np.inf], edges, [np.inf]])
+    filled = counts > 0
+    first = np.argmax(filled, axis=1)
+    last = filled.shape[1] - 1 - np.argmax(filled[:, ::-1], axis=1)
+    for name, at in zip(_EXTREMES, (first, last), strict=True):
+        values = statistics[name].to_numpy()
+        inside = np.isfinite(values) & (values >= ends[at]) & (values <= ends[at + 1])
+        for row in np.flatnonzero(filled.any(axis=1) & ~inside)[:1]:
+            allowed = f"in [{ends[at[row]]:g}, {ends[at[row] + 1]:g}], the outermost bin that holds impacts"
+            raise ParameterError(wrong(f"statistics.{name}[{row}]", float(values[row]), allowed))
 
 
 def _histogram(count: Floats, edges: Floats, minimum: float, maximum: float) -> Histogram:

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from restitution._arrays import reals
+from restitution._arrays import check_each, reals
 from restitution._parameters import ParameterError, Problem, wrong
 from restitution._units import check_variables
 from restitution.distribution._check import Check
@@ -150,7 +150,11 @@ def check(data: xr.Dataset) -> None:
     check_variables("data", data, *used, "impacts")
     for name in used:
         allowed = "finite numbers, as a FluctuatingRestitution has them"
-        reals(f"data.{name}", data[name].to_numpy(), allowed, dimensions=(1,))
+        numbers = reals(f"data.{name}", data[name].to_numpy(), allowed, dimensions=(1,))
+        if name in ("edges", "given_edges"):
+            most = data[name.replace("edges", "restitution_edge")].size
+            whole = (numbers >= 1) & (numbers <= most) & (numbers == np.rint(numbers))
+            check_each(f"data.{name}", numbers, whole, "whole numbers of edges of the histograms")
     for prefix in prefixes:
         try:
             found = table(data, prefix)

@@ -94,19 +94,21 @@ def _run_of(data: "xr.Dataset") -> Run:
             orientation = data["release_angle"]
         spin = attributes["spin"]
         if isinstance(spin, str):
-            raise ValueError(f"spin = {spin}: the explorer shows this only if it is the same for all")
+            raise ValueError(f"data.spin = {spin}: the explorer shows this only if it is the same for all")
         numbers = {name: attributes[name] for name in NUMBERS}
         return Run(
             body=body,
             law=law,
             **numbers,
-            particles=int(attributes["particles"]),
-            impacts=int(attributes["impacts"]),
+            particles=attributes["particles"],
+            impacts=attributes["impacts"],
             orientation=orientation,
-            spin=tuple(map(float, spin)),
-            release_velocity=tuple(map(float, attributes["release_velocity"])),
-            seed=int(attributes["seed"]),
+            spin=spin,
+            release_velocity=attributes["release_velocity"],
+            seed=attributes["seed"],
         )
+    except ParameterError as error:
+        raise ParameterError(*(one._replace(name=f"data.{one.name}") for one in error.problems)) from None
     except (KeyError, AttributeError) as error:
         raise ValueError(
             f"data: not a Dataset from restitution.simulate, or of a law without numbers: {error}"

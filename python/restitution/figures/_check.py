@@ -2,11 +2,13 @@
 
 from typing import Any
 
+import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.cm import ScalarMappable
 from matplotlib.figure import Figure
 
-from restitution._arrays import FloatArray, reals
+from restitution._arrays import FloatArray, check_each, reals
+from restitution._bins import FARTHEST
 from restitution._parameters import ParameterError, Problem, wrong
 
 
@@ -39,10 +41,20 @@ def text(name: str, value: Any) -> str:
 
 
 def column(name: str, value: Any, length: int | None = None, like: str = "") -> FloatArray:
-    """Take a 1-D array of real numbers, NaN and infinities among them, of a length that another one sets."""
+    """Take a 1-D array of real numbers of a length that another one sets.
+
+    NaN and infinities may be among them.
+    """
     allowed = "a 1-D array of real numbers"
     found = reals(name, value, allowed, unit=None, dimensions=(1,), finite=False)
     if length is not None and found.size != length:
         text = f": {name} has {found.size} numbers, and must have {length} beside {like}"
         raise ParameterError(Problem(f"{like}, {name}", text))
+    check_drawable(name, found)
     return found
+
+
+def check_drawable(name: str, numbers: FloatArray) -> None:
+    """Refuse finite numbers whose sums, or margins of a panel, would be infinite."""
+    good = ~np.isfinite(numbers) | (np.abs(numbers) <= FARTHEST)
+    check_each(name, numbers, good, f"at most {FARTHEST:g} either way, or not finite")

@@ -67,12 +67,12 @@ def population(
     panel("axes", axes)
     x_edges, y_edges = increasing_edges(x_edges, "x_edges"), increasing_edges(y_edges, "y_edges")
     sites = (x_edges.size - 1, y_edges.size - 1)
-    allowed = f"whole numbers >= 0, of shape {sites}"
+    allowed = f"whole numbers in [0, 2**53], of shape {sites}"
     numbers = reals("count", count, allowed, dimensions=(2,))
     if numbers.shape != sites:
         text = f": {sites[0]} and {sites[1]} bins, and count has shape {numbers.shape}"
         raise ParameterError(Problem("x_edges, y_edges, count", text))
-    if not np.all((numbers >= 0) & (numbers == np.rint(numbers))):
+    if not np.all((numbers >= 0) & (numbers <= 2**53) & (numbers == np.rint(numbers))):
         raise ParameterError(wrong("count", count, allowed))
     count = numbers.astype(np.int64)
     top = int(count.max()) if largest is None else whole("largest", largest, 1, 2**53)
@@ -171,7 +171,9 @@ def line(axes: Axes, x: FloatArray, y: FloatArray, error: FloatArray | None = No
     (drawn,) = panel("axes", axes).plot(x, y, **style)
     if error is not None:
         error = column("error", error, x.size, "x")
-        axes.fill_between(x, y - error, y + error, color=drawn.get_color(), alpha=0.3, linewidth=0)
+        with np.errstate(invalid="ignore"):  # ∞ - ∞ leaves a gap, too
+            lower, upper = y - error, y + error
+        axes.fill_between(x, lower, upper, color=drawn.get_color(), alpha=0.3, linewidth=0)
 
 
 def plain_log(axes: Axes, ticks: Sequence[float]) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from itertools import product
 from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
@@ -11,8 +12,18 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from restitution._arrays import reals, whole
+from restitution._bins import FARTHEST
 from restitution._parameters import ParameterError, Problem, wrong
-from restitution._units import check_variables
+from restitution._recorded import (
+    check_filled,
+    check_successive,
+    counted,
+    pull,
+    records,
+    released_from,
+)
+from restitution._trajectory import times_of
+from restitution.figures._check import check_drawable
 from restitution.figures._panels import line, population, population_bar
 from restitution.figures._style import COLORS, COLUMN, MARKERS, PAGE, letter, panels, styled
 
@@ -54,11 +65,12 @@ def map(found: xr.Dataset, of: Literal["restitution", "fraction"] = "restitution
     """
     if not isinstance(of, str) or of not in ("restitution", "fraction"):
         raise ParameterError(wrong("of", of, "'restitution' or 'fraction'"))
-    _require("found", found, f"{of}_count", "velocity_edges", f"{of}_edges")
+    found = counted("found", found, (f"{of}_count", "velocity_edges", f"{of}_edges"))
+    if not found[f"{of}_count"].any():
+        raise ParameterError(Problem(f"found.{of}_count", ": every bin is empty; must hold an impact"))
     figure, [[axes]] = panels(COLUMN, 2.7)
-    edges = [found[f"{name}_edges"].to_numpy() for name in ("velocity", of)]
-    counts = found[f"{of}_count"].transpose("velocity", of).to_numpy()
-    population_bar(figure, population(axes, edges[0], edges[1], counts), axes)
+    across, up = (found[f"{name}_edges"].to_numpy() for name in ("velocity", of))
+    population_bar(figure, population(axes, across, up, found[f"{of}_count"].to_numpy()), axes)
     axes.set_xlabel(VELOCITY)
     axes.set_ylabel(RESTITUTION if of == "restitution" else FRACTION)
     return figure
@@ -104,9 +116,12 @@ def densities(found: xr.Dataset | FluctuatingRestitution, velocities: npt.ArrayL
                 low, high = found.support(float(v))
             except ParameterError as error:
                 raise ParameterError(*(p._replace(name=f"velocities[{k}]") for p in error.problems)) from None
-            edges = np.linspace(low, high, 401)
-            density = np.diff(found.cdf(edges, float(v))) / np.diff(edges)
             name = f"{v:g} m/s"
+            edges = np.linspace(low, high, 401)
+            if not np.all(np.diff(edges) > 0):  # one value alone, which has no density
+                axes.axvline(low, color=COLORS[k], label=name)
+                continue
+            density = np.diff(found.cdf(edges, float(v))) / np.diff(edges)
         axes.stairs(np.where(density > 0, density, np.nan), edges, baseline=None, color=COLORS[k], label=name)
     axes.set_yscale("log")
     axes.set_xlabel(RESTITUTION)
@@ -214,20 +229,23 @@ def trajectory(data: xr.Dataset, particle: int = 0, impacts: int = 20) -> Figure
     ...     rs.Dumbbell(radius=3e-3, separation=3e-4), rs.TangentialRestitution(normal=0.98), particles=1)
     >>> figure = rs.figures.trajectory(data, impacts=10)
     """
-    _require(
-        "data", data, "time", "impact_velocity", "rebound_velocity", "restitution", "rotational_fraction"
-    )
-    check_variables("data", data, "release_height")
+    names = ("time", "impact_velocity", "rebound_velocity", "restitution", "rotational_fraction")
+    recorded = records("data", data, *names)
+    check_filled("data", recorded[0])
+    check_successive("data", data, start=0)
+    gravity, incline = pull("data", data)
+    heights = released_from("data", data)
     particle = whole("particle", particle, 0, data.sizes["particle"] - 1)
     impacts = whole("impacts", impacts, 1)
-    one = data.isel(particle=particle, impact=slice(0, impacts))
-    time, fall, rise, ratio, fraction = (
-        one[name].dropna("impact").to_numpy()
-        for name in ("time", "impact_velocity", "rebound_velocity", "restitution", "rotational_fraction")
-    )
-    gravity = float(data.attrs["gravity"]) * np.cos(float(data.attrs["incline"]))
-    start = float(one["release_height"] if "release_height" in one else data.attrs["release_height"])
-    when, height = _heights(time, fall, rise, gravity, start)
+    happened = times_of(recorded[0][particle, :impacts]).size
+    time, fall, rise, ratio, fraction = (values[particle, :happened] for values in recorded)
+    for each, values in zip(names, (time, fall, rise, ratio, fraction), strict=True):
+        check_drawable(f"data.{each}", values)
+    start = float(heights if heights.ndim == 0 else heights[particle])
+    with np.errstate(over="ignore", invalid="ignore"):
+        when, height = _heights(time, fall, rise, gravity * float(np.cos(incline)), start)
+    if not np.all(np.abs(height) <= FARTHEST):
+        raise ParameterError(Problem("data", ": heights are no finite numbers; must be those of a run"))
     figure, [[path], [below]] = panels(COLUMN, 3.6, 2, 1, sharex=True)
     path.plot(when, 1e3 * height, linewidth=0.8)
     path.set_ylabel("height (mm)")
@@ -259,16 +277,17 @@ def _heights(
 
 def _moment(axes: Axes, found: xr.Dataset, name: str, **style: Any) -> None:
     """Draw a moment of the velocity bins that have enough impacts, and none at v = 0, where ε diverges."""
-    _require("found", found, "variance", "number", "velocity_edges")
-    check_variables("found", found, name, f"{name}_error", "velocity")
-    lower = xr.DataArray(found["velocity_edges"].to_numpy()[:-1], dims="velocity")
-    enough = (found["number"] >= 100) & (lower > 0)
-    values = np.sqrt(found["variance"]) if name == "deviation" else found[name]
-    error = f"{name}_error"
-    shown = np.where(enough, values, np.nan)
+    moment, error = "variance" if name == "deviation" else name, f"{name}_error"
+    errors = (error,) if isinstance(found, xr.Dataset) and error in found else ()
+    found = counted("found", found, (moment, *errors, "number", "velocity_edges", "velocity"))
+    enough = (found["number"].to_numpy() >= 100) & (found["velocity_edges"].to_numpy()[:-1] > 0)
+    for each in (moment, *errors):
+        check_drawable(f"found.{each}", found[each].to_numpy())
+    shown = np.where(enough, found[moment].to_numpy(), np.nan)
     if name == "deviation":
-        shown = np.where(shown > 0, shown, np.nan)  # a logarithmic axis has no room for zero
-    band = np.where(enough, found[error], np.nan) if error in found else None
+        # A logarithmic axis has no room for zero.
+        shown = np.sqrt(np.where(shown > 0, shown, np.nan))
+    band = np.where(enough, found[error].to_numpy(), np.nan) if errors else None
     line(axes, found["velocity"].to_numpy(), shown, band, **style)
 
 
@@ -281,21 +300,21 @@ def _lines(found: xr.Dataset | Mapping[str, xr.Dataset]) -> dict[str, xr.Dataset
             if not isinstance(one, xr.Dataset):
                 raise ParameterError(wrong(f"found[{name!r}]", one, "a Dataset of restitution.statistics"))
         return {str(name): one for name, one in found.items()}
-    if "body" not in found.dims:
+    axes = [axis for axis in ("body", "law") if axis in found.dims]
+    if not axes:
         return {"": found}
     lines = {}
-    for body in found["body"].values:
-        for law in found["law"].values:
-            name = ", ".join(
-                str(one) for one, axis in ((body, "body"), (law, "law")) if found.sizes[axis] > 1
-            )
-            lines[name or str(body)] = found.sel(body=body, law=law)
+    for place in product(*(range(found.sizes[axis]) for axis in axes)):
+        one = found.isel(dict(zip(axes, place, strict=True)))
+        names = [str(found[axis].values[at]) for axis, at in zip(axes, place, strict=True)]
+        told = [name for name, axis in zip(names, axes, strict=True) if found.sizes[axis] > 1]
+        lines[", ".join(told or names[:1])] = one
     return lines
 
 
 def _bin_density(found: xr.Dataset, name: str, v: float) -> tuple[Any, Any, str]:
     """Give edges and density of the velocity bin that holds v, and the bin in words."""
-    _require("found", found, "restitution_count", "velocity_edges", "restitution_edges", "number")
+    found = counted("found", found, ("restitution_count", "velocity_edges", "restitution_edges", "number"))
     ends = found["velocity_edges"].to_numpy()
     row = int(np.searchsorted(ends, v, side="right")) - 1
     if not 0 <= row < ends.size - 1:
@@ -305,19 +324,3 @@ def _bin_density(found: xr.Dataset, name: str, v: float) -> tuple[Any, Any, str]
     with np.errstate(invalid="ignore", divide="ignore"):
         density = here["restitution_count"].to_numpy() / (int(here["number"]) * np.diff(edges))
     return edges, density, f"{ends[row]:.3g} to {ends[row + 1]:.3g} m/s"
-
-
-def _require(name: str, data: object, *variables: str) -> None:
-    origin = "restitution.simulate" if name == "data" else "restitution.statistics, by velocity"
-    if not isinstance(data, xr.Dataset):
-        raise ParameterError(wrong(name, data, f"a Dataset as from {origin}"))
-    lacking = [each for each in variables if each not in data]
-    if lacking:
-        raise ValueError(f"{name} lacks {', '.join(lacking)}: must be a Dataset as from {origin}")
-    check_variables(name, data, *variables)
-    several = {"body", "law"} & set(data.dims)
-    if several:
-        text = f" has dimensions {', '.join(sorted(several))}: must be one of a comparison, as by `sel`"
-        raise ParameterError(Problem(name, text))
-    for each in variables:
-        reals(f"{name}.{each}", data[each].to_numpy(), "real numbers", finite=False)

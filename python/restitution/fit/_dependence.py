@@ -9,7 +9,7 @@ from scipy import stats
 
 from restitution._arrays import whole
 from restitution._bins import centres, increasing_edges
-from restitution._recorded import records
+from restitution._recorded import check_successive, records
 from restitution.fit._result import Array
 
 
@@ -42,7 +42,8 @@ def dependence(data: xr.Dataset, velocity_bins: ArrayLike, *, lags: int = 5) -> 
     Raises
     ------
     ValueError
-        If `velocity_bins` are not as they must be, ``lags < 1``, or data lack a variable.
+        If `velocity_bins` are not as they must be, ``lags < 1``, data lack a variable, or their impacts do
+        not follow one another, as the coordinate ``impact`` says.
 
     Examples
     --------
@@ -56,6 +57,7 @@ def dependence(data: xr.Dataset, velocity_bins: ArrayLike, *, lags: int = 5) -> 
     lags = whole("lags", lags, 1, 10_000)
     edges = increasing_edges(velocity_bins, "velocity_bins")
     velocity, restitution, contact = records("data", data, "impact_velocity", "restitution", "contact")
+    check_successive("data", data)
     rows = edges.size - 1
     row = np.searchsorted(edges, velocity, side="right") - 1
     row[~((velocity >= edges[0]) & (velocity < edges[-1]) & np.isfinite(restitution))] = -1

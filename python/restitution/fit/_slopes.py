@@ -13,7 +13,7 @@ from restitution._arrays import generator, real, whole
 from restitution._bins import LARGEST, centres, increasing_edges
 from restitution._content import Content
 from restitution._parameters import ParameterError, wrong
-from restitution._recorded import counted, records
+from restitution._recorded import LATTICE, check_filled, counted, records
 from restitution._resources import check_size
 from restitution.fit._asymmetric import asymmetric_laplace
 from restitution.fit._clusters import MOST_RESAMPLES
@@ -246,9 +246,8 @@ def slopes(
         raise ValueError("velocity_bins: missing; recorded impacts need edges in m/s")
     edges = increasing_edges(velocity_bins, "velocity_bins")
     velocity, restitution = records("data", data, "impact_velocity", "restitution")
+    check_filled("data", velocity)
     particles = velocity.shape[0]
-    if not particles:
-        raise ParameterError(wrong("data", data, "impacts of at least one particle"))
     rows = edges.size - 1
     check_size("resamples", resamples, resamples, 2 * 8 * len(_NAMES) * rows, "draws")
     fits: list[Fit | None] = [None] * rows
@@ -293,9 +292,7 @@ def _deviation(drawn: Array) -> Array:
 def _from_counts(statistics: xr.Dataset, location: float | None) -> Slopes:
     if "velocity_edges" not in statistics:
         raise ValueError("data: statistics without velocity bins; give velocity_bins to `statistics`")
-    statistics = counted("data", statistics)
-    if "number" not in statistics:
-        raise ParameterError(wrong("data", statistics, "a result of restitution.statistics, with its number"))
+    statistics = counted("data", statistics, (*LATTICE, "number"))
     edges = statistics["velocity_edges"].to_numpy()
     rows = edges.size - 1
     fits: list[Fit | None] = [None] * rows

@@ -6,14 +6,18 @@ import numpy as np
 import numpy.typing as npt
 import xarray as xr
 
-from restitution._arrays import check_each, real, reals
-from restitution._recorded import first_impact_of
+from restitution._parameters import ParameterError, Problem
+from restitution._recorded import check_successive
 from restitution.flight._drag import Drag, fall, speeds
+from restitution.flight._setting import setting_of
+from restitution.flight._times import check_series
 
 Array = npt.NDArray[np.float64]
 
 COMMON = 3
 """Quantities that are measured once: g, the height of the drop, the terminal velocity."""
+_LONGEST = 50.0
+"""Of a flight with drag, in V/g: its body starts with V times the exponential function of this."""
 
 
 @dataclass(frozen=True)
@@ -78,8 +82,22 @@ def measured(
     gravity: tuple[float, float],
     drop: tuple[float, float] | None,
     drag: Drag | None,
+    name: str = "times",
 ) -> Measured:
-    """Put together what was measured; g and the height of the drop come with their standard errors."""
+    """Put together what was measured; g and the height of the drop come with their standard errors.
+
+    Raises
+    ------
+    ParameterError
+        Naming the times, if drag would have let no body fly as long as between two of them.
+    """
+    if drag is not None:
+        most = _LONGEST * drag.terminal_velocity / gravity[0]
+        longest = float(np.nanmax(np.diff(times), initial=0.0))
+        if longest > most:
+            speed = f"a terminal velocity V of {drag.terminal_velocity:g} m/s"
+            text = f": a flight of {longest:g} s; must be at most {_LONGEST:g} V/g = {most:g} s with {speed}"
+            raise ParameterError(Problem(name, text))
     errors = [gravity[1], 0.0 if drop is None else drop[1], 0.0 if drag is None else drag.uncertainty]
     return Measured(
         times,
@@ -90,44 +108,26 @@ def measured(
     )
 
 
-_POSITIVE = ("gravity", "drop_height", "terminal_velocity")
-_ERRORS = ("gravity_uncertainty", "drop_height_uncertainty", "terminal_velocity_uncertainty")
+def measured_of(data: xr.Dataset, name: str = "data") -> Measured:
+    """Read from a Dataset that `restitution` returned what was measured.
 
+    The height of the drop counts where the first of the impacts is the first after it.
 
-def _numbers(data: xr.Dataset) -> dict[str, float]:
-    """Take the attributes that were measured; errors that are not there are 0."""
-    found = {}
-    for name in _POSITIVE:
-        if name in data.attrs or name == "gravity":
-            allowed = "a finite number > 0, as flight.restitution writes it"
-            given = data.attrs.get(name)
-            found[name] = real(f"data.{name}", given, allowed, lambda x: 0.0 < x < np.inf)
-    for name in _ERRORS:
-        allowed = "a finite number >= 0, as flight.restitution writes it"
-        given = data.attrs.get(name, 0.0)
-        found[name] = real(f"data.{name}", given, allowed, lambda x: 0.0 <= x < np.inf)
-    return found
-
-
-def measured_of(data: xr.Dataset) -> Measured:
-    """Read from a Dataset that `restitution` returned what was measured."""
-    attrs = _numbers(data)
-    drop = None
-    # Of impacts that were selected the first is not that after the drop.
-    if first_impact_of("data", data) == 0 and "drop_height" in attrs:
-        drop = (attrs["drop_height"], attrs["drop_height_uncertainty"])
-    drag = None
-    if "terminal_velocity" in attrs:
-        drag = Drag(
-            terminal_velocity=attrs["terminal_velocity"], uncertainty=attrs["terminal_velocity_uncertainty"]
-        )
-    gravity = (attrs["gravity"], attrs["gravity_uncertainty"])
-    times, errors = (
-        reals(f"data.{name}", data[name].to_numpy(), "numbers, in s", dimensions=(1,), finite=False)
-        for name in ("time", "uncertainty")
+    Raises
+    ------
+    ParameterError
+        If impacts between others are left out, or a time or an attribute is not as `restitution` has it.
+    """
+    check_successive(name, data)
+    times, errors = check_series(
+        data["time"].to_numpy().astype(np.float64),
+        data["uncertainty"].to_numpy().astype(np.float64),
+        f"{name}.time",
+        f"{name}.uncertainty",
     )
-    check_each("data.uncertainty", errors, ~(errors < 0.0), "a time >= 0 (s), or NaN")
-    return measured(times, errors, gravity, drop, drag)
+    gravity, drop, drag = setting_of(name, data)
+    falls = int(data["impact"][0]) == 0
+    return measured(times, errors, gravity, drop if falls else None, drag, f"{name}.time")
 
 
 def chain(given: Measured) -> Chain:

@@ -5,10 +5,9 @@ import math
 import numpy as np
 import xarray as xr
 
-from restitution._arrays import real, reals
-from restitution._parameters import ParameterError, Problem, wrong
-from restitution._recorded import first_impact_of
-from restitution._units import check_variables
+from restitution._arrays import check_each
+from restitution._parameters import ParameterError, wrong
+from restitution._recorded import RECORDS, check_successive, pull, variables
 
 
 def clock(data: xr.Dataset) -> xr.Dataset:
@@ -33,7 +32,8 @@ def clock(data: xr.Dataset) -> xr.Dataset:
     Raises
     ------
     ValueError
-        If the Dataset is not a run.
+        If the Dataset is not a run, or its impacts do not follow one another, as the coordinate ``impact``
+        says.
 
     Examples
     --------
@@ -44,38 +44,34 @@ def clock(data: xr.Dataset) -> xr.Dataset:
     >>> 1e-4 < float(difference) < 1e-2
     True
     """
-    if not isinstance(data, xr.Dataset):
-        raise ParameterError(wrong("data", data, "a Dataset that simulate returned"))
-    missing = [name for name in ("time", "rebound_velocity") if name not in data]
-    if missing or "gravity" not in data.attrs or "impact" not in data.dims:
-        raise ParameterError(Problem("data", ": not a run; must be a Dataset that simulate returned"))
-    check_variables("data", data, "time")
-    if set(data.time.dims) - {"particle"} != {"impact"}:
-        raise ParameterError(Problem("data.time", ": must have the dimensions (particle, impact)"))
-    first_impact_of("data", data)  # after which all others must be there
-    data = data.transpose(..., "impact")
-    positive = "a finite number > 0 (m/s^2)"
-    pull = real("data.gravity", data.attrs["gravity"], positive, lambda g: g > 0.0)
-    steep = "a finite number in (-pi/2, pi/2) (rad)"
-    incline = real("data.incline", data.attrs.get("incline", 0.0), steep, lambda a: abs(a) < math.pi / 2)
-    gravity = pull * math.cos(incline)
-    times = reals("data.time", data.time.to_numpy(), "real numbers (s), NaN for none", finite=False)
-    flight = np.diff(times, axis=-1)
-    velocity = np.full(data.time.shape, np.nan)
-    velocity[..., 1:] = 0.5 * gravity * flight
-    ratio = np.full(data.time.shape, np.nan)
+    # Of one particle, as isel(particle=0) gives it, there is no dimension of particles.
+    shape = RECORDS if not isinstance(data, xr.Dataset) or "particle" in data.dims else RECORDS[1:]
+    time, _ = variables(
+        "data", data, "restitution.simulate", dict.fromkeys(("time", "rebound_velocity"), shape)
+    )
+    check_successive("data", data)
+    gravity, incline = pull("data", data)
+    check_each("data.time", time, ~np.isinf(time), "finite times, NaN for none")
+    flight = np.diff(time, axis=-1)
+    check_each("data.time", time[..., 1:], ~(flight < 0.0), "not before the impact before it")
+    velocity = np.full(time.shape, np.nan)
+    with np.errstate(over="ignore"):
+        velocity[..., 1:] = 0.5 * gravity * math.cos(incline) * flight
+    if np.isinf(velocity).any():
+        raise ParameterError(wrong("data.gravity", gravity, "such that speeds after the flights are finite"))
+    ratio = np.full(time.shape, np.nan)
     # Two spheres that touch at once are two impacts with no flight between.
-    with np.errstate(divide="ignore", invalid="ignore"):
+    with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
         ratio[..., 1:-1] = flight[..., 1:] / flight[..., :-1]
     ratio[~np.isfinite(ratio)] = np.nan
     return data.assign(
         clock_velocity=(
-            data.time.dims,
+            shape,
             velocity,
             {"long_name": "impact velocity from the time of flight", "units": "m s-1", "symbol": "g Δt/2"},
         ),
         clock_restitution=(
-            data.time.dims,
+            shape,
             ratio,
             {"long_name": "coefficient of restitution from the times of flight", "units": "1"},
         ),

@@ -6,8 +6,10 @@ import numpy as np
 import xarray as xr
 from matplotlib.figure import Figure
 
+from restitution._arrays import check_each
 from restitution._parameters import ParameterError, wrong
 from restitution.figures import COLORS, COLUMN, line, panels, styled
+from restitution.figures._check import check_drawable
 from restitution.flight._law_fit import LawFit
 from restitution.flight._series import series_of
 
@@ -42,7 +44,14 @@ def figure(data: xr.Dataset | Iterable[xr.Dataset], *fits: LawFit) -> Figure:
     >>> figure = rs.flight.figure(data, rs.flight.fit(data, "constant"))
     """
     needed = ("restitution", "restitution_error", "impact_velocity", "impact_velocity_error")
-    series = series_of(data, *needed)
+    named = series_of(data, *needed)
+    for name, one in named.items():
+        for each in needed:
+            check_drawable(f"{name}.{each}", one[each].to_numpy().astype(np.float64))
+        speed = one.impact_velocity.to_numpy().astype(np.float64)
+        good = ~np.isfinite(one.restitution.to_numpy()) | (speed > 0.0)
+        check_each(f"{name}.impact_velocity", speed, good, "a speed > 0 at every coefficient")
+    series = list(named.values())
     known = [np.isfinite(one.restitution.values) for one in series]
     if not any(rows.any() for rows in known):
         raise ParameterError(

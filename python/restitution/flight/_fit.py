@@ -57,7 +57,7 @@ def fit(
     constant: restitution = 0.95004 ± 0.00014; χ²/n = 0.8/2, p = 0.66
     """
     form = law_named(law)
-    experiments = [measured_of(one) for one in series_of(data, "time", "uncertainty")]
+    experiments = [measured_of(one, name) for name, one in series_of(data, "time", "uncertainty").items()]
     links = joined(experiments, None)
     known = ~np.isnan(links.before) & ~np.isnan(links.after)
     free = len(form.parameters)

@@ -3,29 +3,19 @@
 from __future__ import annotations
 
 from importlib.metadata import version
-from typing import Annotated, Any
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 import xarray as xr
-from pydantic import Field
 
-from restitution._parameters import Number, ParameterError, Parameters, Problem, wrong
+from restitution._parameters import ParameterError, wrong
 from restitution.flight._chain import chain, measured
 from restitution.flight._drag import Drag
-from restitution.flight._times import LARGEST, LEAST, checked
+from restitution.flight._setting import Drop, Errors
+from restitution.flight._times import checked
 
 Array = npt.NDArray[np.float64]
-
-
-class _Setting(Parameters):
-    gravity: Annotated[Number, Field(ge=LEAST, le=LARGEST, description="m/s²")]
-    gravity_uncertainty: Annotated[Number, Field(ge=0, le=LARGEST, description="m/s²")]
-    drop_height_uncertainty: Annotated[Number, Field(ge=0, le=LARGEST, description="m")]
-
-
-class _Drop(Parameters):
-    drop_height: Annotated[Number, Field(ge=LEAST, le=LARGEST, description="m")]
 
 
 def restitution(
@@ -68,13 +58,13 @@ def restitution(
     Returns
     -------
     xarray.Dataset
-        Dimension ``impact`` of size n, with the numbers of the impacts from 0 as its coordinate. ``time``,
-        ``uncertainty``, ``impact_velocity`` and its standard error ``impact_velocity_error`` in m/s,
-        ``restitution`` and ``restitution_error``; with the further dimension ``other_impact``
-        ``impact_velocity_covariance``, ``restitution_covariance`` and ``cross_covariance``, of the velocity
-        at ``impact`` and the coefficient at ``other_impact``. NaN where the times do not determine them: the
-        last coefficient, the first two numbers without a drop height, and next to a missed impact. The
-        attributes hold all parameters.
+        Dimension ``impact`` of size n, numbered from 0, the first impact after the drop: where rows are taken
+        out, these numbers say which. ``time``, ``uncertainty``, ``impact_velocity`` and its standard error
+        ``impact_velocity_error`` in m/s, ``restitution`` and ``restitution_error``; with the further
+        dimension ``other_impact`` ``impact_velocity_covariance``, ``restitution_covariance`` and
+        ``cross_covariance``, of the velocity at ``impact`` and the coefficient at ``other_impact``. NaN
+        where the times do not determine them: the last coefficient, the first two numbers without a drop
+        height, and next to a missed impact. The attributes hold all parameters.
 
     Raises
     ------
@@ -98,7 +88,7 @@ def restitution(
     [0.0006, 0.00063]
     """
     instants, errors = checked(times, uncertainty)
-    setting = _Setting(
+    setting = Errors(
         gravity=gravity,
         gravity_uncertainty=gravity_uncertainty,
         drop_height_uncertainty=drop_height_uncertainty,
@@ -111,7 +101,7 @@ def restitution(
     }
     drop = None
     if drop_height is not None:
-        drop = (_Drop(drop_height=drop_height).drop_height, setting.drop_height_uncertainty)
+        drop = (Drop(drop_height=drop_height).drop_height, setting.drop_height_uncertainty)
         attrs |= {"drop_height": drop[0], "drop_height_uncertainty": drop[1]}
     if drag is not None:
         if not isinstance(drag, Drag):
@@ -121,11 +111,9 @@ def restitution(
             "terminal_velocity_uncertainty": drag.uncertainty,
         }
     links = chain(measured(instants, errors, (setting.gravity, setting.gravity_uncertainty), drop, drag))
-    with np.errstate(all="ignore"):
-        ratio = links.after / links.before
+    ratio = links.after / links.before
+    with np.errstate(invalid="ignore"):
         ratio_by = (links.after_by - ratio[:, None] * links.before_by) / links.before[:, None]
-    if np.isinf(ratio).any() or np.isinf(ratio_by).any():
-        raise ParameterError(Problem("times", ": intervals so unequal that their quotient overflows"))
     ratio_by[np.isnan(ratio)] = 0.0
 
     def covariance(a: Array, b: Array, known_a: Array, known_b: Array) -> Array:

@@ -3,19 +3,22 @@
 from collections.abc import Iterable
 from typing import Any
 
+import numpy as np
 import xarray as xr
 
+from restitution._arrays import check_each
 from restitution._parameters import ParameterError, wrong
-from restitution._units import check_variables
+from restitution._recorded import variables
 
 
-def series_of(data: Any, *needed: str) -> list[xr.Dataset]:
-    """Take a Dataset of `flight.restitution`, or several.
+def series_of(data: Any, *needed: str) -> dict[str, xr.Dataset]:
+    """Take a Dataset of `flight.restitution`, or several, by what errors call them.
 
     Raises
     ------
     ParameterError
-        If one of them is none, lacks a variable that is needed or has it in other units, or there is none.
+        If one of them is none, lacks a variable that is needed or has it in other units, of other dimensions
+        or of no real numbers, or an error that is negative, or there is none.
     """
     several = [data]
     if isinstance(data, Iterable) and not isinstance(data, xr.Dataset):
@@ -23,12 +26,18 @@ def series_of(data: Any, *needed: str) -> list[xr.Dataset]:
             several = list(data)
         except Exception:  # whatever the object raises
             several = []
-    for one in several:
-        measured = isinstance(one, xr.Dataset) and "gravity" in one.attrs
-        if not measured or any(name not in one for name in needed):
-            several = []
-    if not several:
+    if not several or not all(isinstance(one, xr.Dataset) for one in several):
         raise ParameterError(wrong("data", data, "a Dataset of flight.restitution, or several"))
-    for one in several:
-        check_variables("data", one, *needed)
-    return several
+    named = {"data": data} if isinstance(data, xr.Dataset) else {}
+    named = named or {f"data[{k}]": one for k, one in enumerate(several)}
+    for name, one in named.items():
+        dimensions = {each: _dimensions(each) for each in needed}
+        for each, values in zip(needed, variables(name, one, "flight.restitution", dimensions), strict=True):
+            check_each(f"{name}.{each}", values, ~np.isinf(values), "finite, or NaN for what is not known")
+            if each.endswith("_error"):
+                check_each(f"{name}.{each}", values, ~(values < 0.0), "a standard error >= 0, or NaN")
+    return named
+
+
+def _dimensions(variable: str) -> tuple[str, ...]:
+    return ("impact", "other_impact") if variable.endswith("_covariance") else ("impact",)

@@ -9,6 +9,7 @@ import xarray as xr
 
 from restitution._arrays import reals
 from restitution._parameters import ParameterError, Problem, wrong
+from restitution._recorded import check_successive
 from restitution._units import check_variables
 
 Array = npt.NDArray[np.float64]
@@ -50,34 +51,48 @@ def checked(times: npt.ArrayLike | xr.Dataset, uncertainty: npt.ArrayLike | None
         )
         if errors.ndim == 0:
             errors = np.full(instants.shape, float(errors))
+    return check_series(instants, errors, "times", "uncertainty")
+
+
+def check_series(instants: Array, errors: Array, times: str, uncertainty: str) -> tuple[Array, Array]:
+    """Give times that increase and their standard errors, of the arguments of these names.
+
+    Raises
+    ------
+    ParameterError
+        Naming the first time that is not later than the one before it, and what else is wrong.
+    """
     if instants.size < 2:
-        raise ParameterError(Problem("times", f": {instants.size} impacts; must be at least two"))
+        raise ParameterError(Problem(times, f": {instants.size} impacts; must be at least two"))
     if errors.shape != instants.shape:
         allowed = f"one number, or one for each of the {instants.size} times"
-        raise ParameterError(Problem("uncertainty", f": an array of shape {errors.shape}; must be {allowed}"))
+        raise ParameterError(Problem(uncertainty, f": an array of shape {errors.shape}; must be {allowed}"))
     known = np.flatnonzero(~np.isnan(instants))
     if known.size < 2:
         raise ParameterError(
-            Problem("times", f": {known.size} of {instants.size} are numbers; at least two must be")
+            Problem(times, f": {known.size} of {instants.size} are numbers; at least two must be")
         )
     bad = known[~((errors[known] >= 0.0) & (errors[known] <= LARGEST))]
     if bad.size:
         raise ParameterError(
-            wrong(f"uncertainty[{bad[0]}]", float(errors[bad[0]]), f"a number in [0, {LARGEST:g}] (s)")
+            wrong(f"{uncertainty}[{bad[0]}]", float(errors[bad[0]]), f"a number in [0, {LARGEST:g}] (s)")
         )
     infinite = known[~(np.abs(instants[known]) <= LARGEST)]
     if infinite.size:
         raise ParameterError(
             wrong(
-                f"times[{infinite[0]}]",
+                f"{times}[{infinite[0]}]",
                 float(instants[infinite[0]]),
                 f"at most {LARGEST:g} s either way, or NaN",
             )
         )
     for earlier, later in pairwise(known):
-        if not instants[later] > instants[earlier]:
-            allowed = f"later than times[{earlier}] = {instants[earlier]!s}"
-            raise ParameterError(wrong(f"times[{later}]", float(instants[later]), allowed))
+        # Ratios and squares of shorter intervals are no numbers that a double holds.
+        if not instants[later] - instants[earlier] >= LEAST:
+            allowed = f"later than {times}[{earlier}] = {instants[earlier]!s}"
+            if instants[later] > instants[earlier]:
+                allowed += f", by at least {LEAST:g} s"
+            raise ParameterError(wrong(f"{times}[{later}]", float(instants[later]), allowed))
     return instants, np.where(np.isnan(instants), np.nan, errors)
 
 
@@ -101,6 +116,8 @@ def _of_dataset(data: xr.Dataset) -> tuple[Array, Array]:
             )
         )
     instants, errors = _column(data, "time", "numbers, in s"), _column(data, "uncertainty", "numbers, in s")
+    if data.time.dims == ("impact",) and "impact" in data.coords:  # of a recording there are no numbers
+        check_successive("times", data)
     if "flag" in data:
         allowed = f"0 to {len(FLAGS) - 1}: {', '.join(FLAGS)}"
         flags = _column(data, "flag", allowed)

@@ -3,6 +3,7 @@
 import math
 from collections.abc import Iterable, Sequence
 from importlib.metadata import version
+from itertools import product
 from typing import Annotated, Any
 
 import numpy as np
@@ -14,8 +15,9 @@ from restitution import flight
 from restitution._arrays import reals
 from restitution._parameters import Number, ParameterError, Parameters, Whole, in_terms_of, wrong
 from restitution.bodies._roundness import Form
+from restitution.flight._series import series_of
 from restitution.inference._family import Family
-from restitution.inference._series import Series
+from restitution.inference._series import NEEDED, Series, check_from_release
 from restitution.inference._table import Table, table
 from restitution.laws._law import Law
 
@@ -23,6 +25,8 @@ Array = npt.NDArray[np.float64]
 
 _SHAPES, _FRICTIONS = 10, 6
 """Values of L/R in a decade, and values of friction."""
+_ROUNDEST = 1e-9
+"""L/R below which no ball is: of a millimetre it is less than an atom."""
 _WALKERS, _CHAINS, _BURN = 32, 4, 100
 _MOST_RANGE = 1e6
 """Of L/R: the grid has points all the way."""
@@ -73,7 +77,7 @@ def posterior(
     form, lobes
         Kind of deviation from a sphere, as in `restitution.from_roundness`; L = 2t.
     elongation : (float, float)
-        Prior: ln(L/R) is uniform between these, 0 < low < high < 10⁶ low.
+        Prior: ln(L/R) is uniform between these, 10⁻⁹ <= low < high < 10⁶ low.
     friction : (float, float), optional
         Prior of the friction of a `Coulomb` law: uniform between these, 0 <= low < high. Not inferred unless
         given.
@@ -118,7 +122,7 @@ def posterior(
     setting = Setting(diameter=diameter, lobes=lobes, particles=particles, draws=draws, seed=seed)
     if not isinstance(law, Law):
         raise ParameterError(wrong("law", law, "a law such as Frictionless(normal=0.9)"))
-    low, high = _pair("elongation", elongation, least=0.0, strictly=True)
+    low, high = _pair("elongation", elongation, least=_ROUNDEST)
     if not high < _MOST_RANGE * low:
         raise ParameterError(wrong("elongation", elongation, f"high < {_MOST_RANGE:g} low"))
     family = Family(law, setting.diameter, form, setting.lobes)
@@ -127,27 +131,23 @@ def posterior(
         family.body(high)
     frictions: Sequence[float | None] = [None]
     if friction is not None:
-        bottom, top = _pair("friction", friction, least=0.0, strictly=False)
+        bottom, top = _pair("friction", friction, least=0.0)
         frictions = [float(mu) for mu in bottom + (top - bottom) * np.linspace(0.0, 1.0, _FRICTIONS) ** 2]
-    every = _several(data)
-    if not every or not all(isinstance(one, xr.Dataset) and "restitution" in one for one in every):
-        raise ParameterError(wrong("data", data, "a Dataset of flight.restitution, or several"))
-    first = flight.fit(every, family.of_speed.name, scatter="fit")
+    named = series_of(data, *NEEDED)
+    for name, one in named.items():
+        check_from_release(name, one)
+    first = flight.fit(
+        data if data is named.get("data") else named.values(), family.of_speed.name, scatter="fit"
+    )
     reference = next(iter(first.parameters.values()))
-    series = [Series.of(one, family.of_speed, reference, first.scatter) for one in every]
+    series = [Series.of(one, family.of_speed, reference, first.scatter, name) for name, one in named.items()]
+    with in_terms_of(diameter=diameter, elongation=elongation):
+        for measured, end in product(series, (low, high)):
+            measured.check_release(family.body(end), law)
     nodes = np.geomspace(low, high, 1 + math.ceil(_SHAPES * math.log10(high / low)))
     found = table(series, family, nodes, frictions, setting.particles, setting.seed)
     chain, log = _sampled(emcee, found, setting)
     return _tree(from_dict, family, setting, found, chain, log, series)
-
-
-def _several(data: Any) -> list[xr.Dataset]:
-    if isinstance(data, xr.Dataset):
-        return [data]
-    try:
-        return list(data)
-    except Exception:  # whatever the object raises
-        raise ParameterError(wrong("data", data, "a Dataset of flight.restitution, or several")) from None
 
 
 def _packages() -> tuple[Any, Any]:
@@ -161,13 +161,13 @@ def _packages() -> tuple[Any, Any]:
     return emcee, from_dict
 
 
-def _pair(name: str, value: object, *, least: float, strictly: bool) -> tuple[float, float]:
-    allowed = f"a pair (low, high) with {least:g} {'<' if strictly else '<='} low < high"
+def _pair(name: str, value: object, *, least: float) -> tuple[float, float]:
+    allowed = f"a pair (low, high) with {least:g} <= low < high"
     ends = reals(name, value, allowed, dimensions=(1,), finite=False)
     if ends.shape != (2,):
         raise ParameterError(wrong(name, value, allowed))
     low, high = ends.tolist()
-    if not ((least < low if strictly else least <= low) and low < high < math.inf):
+    if not least <= low < high < math.inf:
         raise ParameterError(wrong(name, value, allowed))
     return low, high
 

@@ -7,22 +7,31 @@ import numpy as np
 import numpy.typing as npt
 import xarray as xr
 
-from restitution._arrays import reals
+from restitution._arrays import check_each
 from restitution._energy import reported_elsewhere
-from restitution._parameters import ParameterError, Problem
-from restitution._recorded import first_impact_of
+from restitution._parameters import ParameterError, Problem, wrong
+from restitution._recorded import check_successive
+from restitution._run import Run
 from restitution._simulate import simulate
-from restitution._units import check_variables
 from restitution.bodies import Body
 from restitution.budget._experiment import mean_radius
 from restitution.flight._laws import LawOfSpeed, by_parameters
+from restitution.flight._times import LARGEST
 from restitution.laws._law import Law
 
 Array = npt.NDArray[np.float64]
 
 _FEWEST = 5
+_ROUNDING = 1e-6
+"""Of a variance of 0, over the largest, in a covariance that was computed."""
 _SHORTEST = 0.1
 """Flights shorter than this, over the one before, are heard as one impact with the next."""
+
+
+def _negative(covariance: Array) -> bool:
+    """Whether a combination of the numbers has a negative variance, beyond rounding."""
+    variances = np.linalg.eigvalsh(covariance)
+    return bool(variances[0] < -_ROUNDING * np.abs(variances).max())
 
 
 class Drops(NamedTuple):
@@ -37,6 +46,19 @@ class Drops(NamedTuple):
 
     statistics: Array
     share: float
+
+
+NEEDED = ("time", "uncertainty", "impact_velocity", "restitution", "restitution_covariance")
+"""Variables of a Dataset of `restitution.flight.restitution` that stand for a series."""
+
+
+def check_from_release(name: str, data: xr.Dataset) -> None:
+    """Refuse a series that does not begin with the first impact, or whose covariance is of other impacts."""
+    check_successive(name, data, start=0)
+    impacts, others = data.sizes["impact"], data.sizes["other_impact"]
+    if impacts != others:
+        text = f" has {impacts} impacts and {others} of other_impact: must be the same impacts of both"
+        raise ParameterError(Problem(name, text))
 
 
 @dataclass(frozen=True)
@@ -78,48 +100,50 @@ class Series:
     observed: Array
 
     @classmethod
-    def of(cls, data: xr.Dataset, form: LawOfSpeed, reference: float, scatter: float) -> "Series":
-        """Take a Dataset of `restitution.flight.restitution`."""
-        names = ("restitution", "impact_velocity", "uncertainty", "restitution_covariance")
-        lacking = [name for name in (*names, "time") if name not in data]
-        if lacking:
-            text = f" lacks {', '.join(lacking)}: must be a Dataset of flight.restitution"
-            raise ParameterError(Problem("data", text))
-        check_variables("data", data, *names, "time")
-        if first_impact_of("data", data) != 0:
-            text = ": begins with a later impact; must begin with the first one after the release"
-            raise ParameterError(Problem("data", text))
-        ratio, speed, errors, covariances = (
-            reals(f"data.{name}", data[name].to_numpy(), "numbers, NaN where unknown", finite=False)
-            for name in names
-        )
+    def of(
+        cls, data: xr.Dataset, form: LawOfSpeed, reference: float, scatter: float, name: str = "data"
+    ) -> "Series":
+        """Take a Dataset of `restitution.flight.restitution`, which has what is `NEEDED`."""
+        time, errors, speed, ratio = (data[each].to_numpy().astype(np.float64) for each in NEEDED[:-1])
         known = np.flatnonzero(np.isfinite(ratio))
-        # Of a part of a series the last coefficient has a flight that is not there.
+        # A coefficient is simulated from three times: it has a flight before it and one after it.
         known = known[(known > 0) & (known < ratio.size - 1)]
         if known.size < _FEWEST:
             text = f": {known.size} coefficients from times alone; must be at least {_FEWEST}"
-            raise ParameterError(Problem("data", text))
+            raise ParameterError(Problem(name, text))
         errors = np.nan_to_num(errors)
         if not np.any(errors > 0.0):
-            raise ParameterError(Problem("data", ": times without errors; must have an uncertainty > 0"))
-        covariance = covariances[np.ix_(known, known)]
+            raise ParameterError(Problem(name, ": times without errors; must have an uncertainty > 0"))
+        for each, values in (("impact_velocity", speed), ("restitution", ratio)):
+            good = np.isnan(values) | ((values > 0.0) & (values <= LARGEST))
+            good[known] &= ~np.isnan(values[known])
+            check_each(f"{name}.{each}", values, good, f"in (0, {LARGEST:g}], and known at every coefficient")
+        covariance = data["restitution_covariance"].transpose("impact", "other_impact").to_numpy()
+        covariance = covariance[np.ix_(known, known)].astype(np.float64)
+        measured = covariance
         covariance = covariance + 10.0 ** (np.round(4.0 * np.log10(max(scatter, 1e-12))) / 2.0) * np.eye(
             known.size
         )
         values = np.array([reference])
         slopes = by_parameters(form, speed[known], values)[:, 0]
-        weighted = np.linalg.solve(covariance, slopes)
+        try:
+            if not np.all(np.isfinite(measured)) or _negative(measured):
+                raise np.linalg.LinAlgError
+            weighted = np.linalg.solve(covariance, slopes)
+            root = np.linalg.inv(np.linalg.cholesky(covariance))
+        except (
+            np.linalg.LinAlgError
+        ):  # or one of errors so large, and so alike, that nothing is left to weigh
+            allowed = "a covariance, with no negative variance, of all coefficients that are known"
+            raise ParameterError(wrong(f"{name}.restitution_covariance", measured, allowed)) from None
         estimator = weighted / (slopes @ weighted)
-        root = np.linalg.inv(np.linalg.cholesky(covariance))
         whiten = root @ (np.eye(known.size) - np.outer(slopes, estimator))
-        first = data.impact_velocity.values[0]
+        first = float(speed[0])
         if not np.isfinite(first):
             # The first flight begins with v' = g Δt/2, and the ball fell with v'/ε_n.
-            up = 0.5 * data.attrs["gravity"] * float(data.time[1] - data.time[0])
+            up = 0.5 * data.attrs["gravity"] * float(time[1] - time[0])
             if not np.isfinite(up):
-                raise ParameterError(
-                    Problem("data", ": the first two times must be known, or the drop height")
-                )
+                raise ParameterError(Problem(name, ": the first two times must be known, or the drop height"))
             first = up / float(form.coefficient(np.array([up]), values)[0])
         gravity = float(data.attrs["gravity"])
         drop = first**2 / (2.0 * gravity)
@@ -140,6 +164,14 @@ class Series:
             ]
         )
 
+    def check_release(self, body: Body, law: Law) -> None:
+        """Refuse a fall from so low that a part of the body would be in the plane."""
+        height = self._release_height(body)
+        Run(body=body, law=law, particles=1, impacts=1, release_height=height, gravity=self.gravity)
+
+    def _release_height(self, body: Body) -> float:
+        return mean_radius(body) + self.drop
+
     @reported_elsewhere()
     def simulated(self, body: Body, law: Law, particles: int, noises: int, seed: int) -> Drops:
         """Drop such balls, and time each of them with errors, several times over."""
@@ -148,7 +180,7 @@ class Series:
             law,
             particles=particles,
             impacts=self.errors.size,
-            release_height=mean_radius(body) + self.drop,
+            release_height=self._release_height(body),
             gravity=self.gravity,
             seed=seed,
         )

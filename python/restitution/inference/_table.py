@@ -7,6 +7,7 @@ import numpy as np
 import numpy.typing as npt
 from scipy.interpolate import RegularGridInterpolator
 
+from restitution._parameters import ParameterError, Problem
 from restitution.inference._family import Family
 from restitution.inference._likelihood import Density
 from restitution.inference._series import Series
@@ -106,5 +107,8 @@ def _widths(series: Sequence[Series], densities: list[list[Density]], middle: fl
         total = sum(d(one.observed, truths) for d, one in zip(each, series, strict=True))
         best.append(float(np.max(total)))
         scales.append(scale + abs(shift) / 3.0)
+    if not best:
+        text = ": balls of no such shape bounce as often as this under the law, at the coefficients it has"
+        raise ParameterError(Problem("data", text))
     allowed = [scale for scale, value in zip(scales, best, strict=True) if value > max(best) - 12.0]
     return max(allowed), min(allowed)
