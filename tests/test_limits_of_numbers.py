@@ -1,10 +1,12 @@
-"""Counts that are not whole, samples that hardly spread."""
+"""Counts that are not whole, samples that hardly spread, infinite speeds."""
 
 from collections.abc import Callable
+from typing import Any
 
 import numpy as np
 import pytest
 
+import restitution as rs
 from restitution import fit
 from restitution._parameters import ParameterError
 
@@ -17,6 +19,7 @@ FAMILIES: list[Callable[..., fit.Fit]] = [
     fit.asymmetric_power,
     lambda samples: fit.cusp_mixture(samples, 0.0),
 ]
+SPHERE = {"young_modulus": 1e9, "poisson_ratio": 0.3, "density": 1e3, "radius": 1e-3}
 
 
 @pytest.mark.parametrize("count", [[0.5, 0.5, 0.5], [0.1, 0.1, 0.1], [1.0, 2.0, 2.5]])
@@ -46,3 +49,22 @@ def test_a_spread_without_a_square(family: Callable[..., fit.Fit]) -> None:
             continue  # those of a uniform distribution have no end
         scale = 1.0 if name in ("share", "exponent") else 2.0**-330
         assert small[name] == pytest.approx(scale * value, rel=1e-4, abs=1e-4 * scale)
+
+
+@pytest.mark.parametrize(
+    ("material", "limit"),
+    [
+        (rs.Viscoelastic(dissipation=1e-6, **SPHERE), 0.0),
+        (rs.Viscoelastic(dissipation=1e-300, **SPHERE), 0.0),
+        (rs.Viscoelastic(dissipation=0.0, **SPHERE), 1.0),
+        (rs.Plastic(yield_speed=0.01), 0.0),
+        (rs.Tabulated(v=[0.1, 0.5], e=[0.97, 0.95]), 0.95),
+    ],
+)
+def test_an_infinite_speed_gives_the_limit(material: Any, limit: float) -> None:
+    """The Padé approximant [3/6] falls as v*⁻³, but not without dissipation; a table stays as it ends."""
+    found = material([-np.inf, np.nan, np.inf])
+    assert found[[0, 2]].tolist() == [limit, limit]
+    assert np.isnan(found[1])
+    finite = material([0.0, 0.1, 1e300])
+    assert np.all((finite >= 0.0) & (finite <= 1.0))
