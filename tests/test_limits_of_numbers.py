@@ -1,12 +1,14 @@
-"""Counts that are not whole, samples that hardly spread, infinite speeds."""
+"""Counts that are not whole, samples that hardly spread, infinite speeds, speeds whose squares overflow."""
 
 from collections.abc import Callable
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 
 import restitution as rs
+from reference.command import SMALL, invoke
 from restitution import fit
 from restitution._parameters import ParameterError
 
@@ -68,3 +70,18 @@ def test_an_infinite_speed_gives_the_limit(material: Any, limit: float) -> None:
     assert np.isnan(found[1])
     finite = material([0.0, 0.1, 1e300])
     assert np.all((finite >= 0.0) & (finite <= 1.0))
+
+
+@pytest.mark.parametrize("velocities", [[1e200, 1e201], [0.1, 1e160], [1e-310, 0.5], [0.1, 0.2, 1e300]])
+def test_speeds_whose_squares_overflow(velocities: list[float]) -> None:
+    body, law = rs.Dumbbell(radius=3e-3, separation=3e-4), rs.TangentialRestitution(normal=0.98)
+    with pytest.raises(ParameterError, match=r"^velocities\[\d\] = .*: must be in \[1e-100, 1e\+100\] m/s"):
+        rs.FluctuatingRestitution.learn(body, law, particles=100, velocities=velocities)
+
+
+def test_the_command_names_such_speeds(tmp_path: Path) -> None:
+    run = tmp_path / "run.toml"
+    run.write_text(SMALL, encoding="utf-8")
+    result = invoke("distribution", run, "--out", tmp_path / "dist.nc", "--velocities", 1e200, 1e201)
+    assert result.exit_code == 2
+    assert "velocities[0] = 1e+200: must be in" in result.output

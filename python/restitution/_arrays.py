@@ -128,6 +128,8 @@ def shape(name: str, value: Any) -> tuple[int, ...]:
         raise ParameterError(wrong(name, value, "a whole number >= 0 or a tuple of them"))
     if len(lengths) > _MOST_DIMENSIONS or max(lengths, default=0) > sys.maxsize:
         raise ParameterError(wrong(name, value, f"at most {_MOST_DIMENSIONS} lengths of at most 2**63 - 1"))
+    if 0 in lengths and math.prod(filter(None, lengths)) > sys.maxsize // 8:
+        raise ParameterError(wrong(name, value, "such that its lengths that are not 0 multiply to < 2**60"))
     return lengths
 
 
