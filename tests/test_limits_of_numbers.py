@@ -85,3 +85,14 @@ def test_the_command_names_such_speeds(tmp_path: Path) -> None:
     result = invoke("distribution", run, "--out", tmp_path / "dist.nc", "--velocities", 1e200, 1e201)
     assert result.exit_code == 2
     assert "velocities[0] = 1e+200: must be in" in result.output
+
+
+def test_samples_far_from_many() -> None:
+    """The square of 1e99 over 1e-60 overflowed, with a warning of SciPy's."""
+    near = 1e-60 * np.random.default_rng(1).normal(size=49)
+    text = r"^samples: up to 1e\+99 from their median; must be at most 1e\+100 times the width .* 7\.\d+e-61$"
+    with pytest.raises(ValueError, match=text):
+        fit.student_t(np.append(near, 1e99))
+    assert abs(fit.student_t(np.append(near, 1e20)).parameters["location"]) < 1e-60
+    for far in (0.6, 1e20, 1e99):
+        assert np.isfinite(fit.student_t(np.append(np.full(49, 0.5), far)).loglikelihood)
