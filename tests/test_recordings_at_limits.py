@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 import pytest
+import xarray as xr
 
 import restitution as rs
 from reference.command import invoke
@@ -81,3 +82,10 @@ def test_few_bits_in_long_integers(kind: type) -> None:
     offset = 2**15 if kind is np.uint64 else 0
     heard = rs.sound.impacts((samples + offset).astype(kind), RATE)
     np.testing.assert_allclose(heard.time, expected, rtol=0, atol=1e-9)
+
+
+def test_a_list_of_integers_is_an_array_of_them() -> None:
+    """16 bits in a list have the full scale of NumPy's own integers, of which they are nearly nothing."""
+    samples = np.rint(32000 * clicks()).astype(np.int64)
+    for given in (samples, np.stack([samples, 0 * samples], axis=1)):
+        xr.testing.assert_identical(rs.sound.impacts(given.tolist(), RATE), rs.sound.impacts(given, RATE))
