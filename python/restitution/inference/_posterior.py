@@ -13,6 +13,7 @@ from pydantic import Field
 from restitution import flight
 from restitution._arrays import reals
 from restitution._parameters import Number, ParameterError, Parameters, Whole, in_terms_of, wrong
+from restitution._run import Run
 from restitution.bodies._roundness import Form
 from restitution.inference._family import Family
 from restitution.inference._series import Series
@@ -135,6 +136,10 @@ def posterior(
     first = flight.fit(every, family.of_speed.name, scatter="fit")
     reference = next(iter(first.parameters.values()))
     series = [Series.of(one, family.of_speed, reference, first.scatter) for one in every]
+    with in_terms_of(diameter=diameter, elongation=elongation):
+        body = family.body(high)
+        for one in series:
+            Run(body=body, law=law, release_height=one.release_height(body), gravity=one.gravity)
     nodes = np.geomspace(low, high, 1 + math.ceil(_SHAPES * math.log10(high / low)))
     found = table(series, family, nodes, frictions, setting.particles, setting.seed)
     chain, log = _sampled(emcee, found, setting)

@@ -140,6 +140,10 @@ class Series:
             ]
         )
 
+    def release_height(self, body: Body) -> float:
+        """Give the height from which the body falls as far as the ball did, in m."""
+        return mean_radius(body) + self.drop
+
     @reported_elsewhere()
     def simulated(self, body: Body, law: Law, particles: int, noises: int, seed: int) -> Drops:
         """Drop such balls, and time each of them with errors, several times over."""
@@ -148,7 +152,7 @@ class Series:
             law,
             particles=particles,
             impacts=self.errors.size,
-            release_height=mean_radius(body) + self.drop,
+            release_height=self.release_height(body),
             gravity=self.gravity,
             seed=seed,
         )
