@@ -239,11 +239,11 @@ def test_datasets_that_are_none(body: rs.Dumbbell, law: rs.TangentialRestitution
         (data, "data lacks restitution_count"),
         (
             found.assign(restitution_count=found.restitution_count - 1),
-            r"data.restitution_count\[0, 0\] = -1.0: must be whole",
+            r"data.restitution_count\[0, 0\] = -1.0: must be a whole number",
         ),
         (
             found.assign(restitution_count=found.restitution_count + 0.5),
-            r"data.restitution_count\[0, 0\] = 0.5: must be whole",
+            r"data.restitution_count\[0, 0\] = 0.5: must be a whole number",
         ),
         (found.isel(velocity=0), "data.restitution_count has dimensions"),
         (found.assign(velocity_edges=-found.velocity_edges), "data.velocity_edges goes from -0.0 to -0.5"),

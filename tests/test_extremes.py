@@ -42,8 +42,8 @@ def budget(normal: Any) -> Any:
         (lambda: fit.asymmetric_power(TINY), r"^samples: spread over "),
         (lambda: fit.gaussian(TINY), r"^samples: spread over "),
         # A metal that stays elastic, and impacts that follow one another without a flight.
-        (lambda: budget(rs.Plastic(yield_speed=10.0)), r"^law = .*: must be one whose parameter ε_n depends"),
-        (lambda: budget(1e-7), r"^law = .*: must be one under which 5 flights have a duration beside"),
+        (lambda: budget(rs.Plastic(yield_speed=10.0)), r"^law = .*: must be one from whose ε_n at the "),
+        (lambda: budget(1e-7), r"^law = .*: must be one whose flights last at least 1e-10 of "),
         (lambda: sound.impacts(0.1 + 0.0 * CLICKS, 44100), r"^source: silence; every sample has the same"),
         (
             lambda: sound.impacts(1e300 * CLICKS, 44100),
@@ -52,11 +52,14 @@ def budget(normal: Any) -> Any:
         (lambda: sound.impacts(np.zeros((8000, 0)), 44100), r"^source: no channel; must have at least one"),
         (
             lambda: rs.FluctuatingRestitution.learn(BODY, PAPER, velocities=[1e200, 1e201]),
-            r"^velocities\[0\] = 1e\+200: must be at most 1e\+100 m/s",
+            r"^velocities\[0\] = 1e\+200: must be in \[1e-100, 1e\+100\] m/s",
         ),
-        (lambda: FIRST.rvs(size=(2**62, 2**62, 0)), r"^size = .*: must be at most .* draws, which this pro"),
-        (lambda: FIRST.expect(epsabs=-1), r"^epsabs = -1: must be a number >= 0"),
-        (lambda: FIRST.expect(epsrel=0), r"^epsrel = 0: must be a number >= 1\.11e-14"),
+        (
+            lambda: FIRST.rvs(size=(2**62, 2**62, 0)),
+            r"^size = .*: must be such that its lengths that are not",
+        ),
+        (lambda: FIRST.expect(epsabs=-1), r"^epsabs = -1: must be a finite number >= 0"),
+        (lambda: FIRST.expect(epsrel=0), r"^epsrel = 0: must be a finite number >= 1\.11e-14"),
         (lambda: FIRST.expect(limit=0), r"^limit = 0: must be a whole number in \[1, "),
     ],
 )
@@ -71,7 +74,7 @@ def test_what_is_refused(call: Callable[[], Any], message: str) -> None:
         (lambda p: p.cdf([0.9, 1.0, 1.1], [0.3, 0.4]), r"^x, v: x of shape \(3,\), v of shape \(2,\); must "),
         (lambda p: p.ppf([[0.1], [0.2]], np.full((3, 4), 0.3)), r"^q, v: q of shape \(2, 1\), v of shape"),
         (lambda p: p.rvs(0.3, size=(2**40, 2**40)), r"^size = .*: must be at most .* draws"),
-        (lambda p: p.rvs(0.3, size=(2**62, 0)), r"^size = .*: must be at most .* draws"),
+        (lambda p: p.rvs(0.3, size=(2**62, 0)), r"^size = .*: must be such that its lengths that are"),
         (lambda p: p.rvs([0.3, 0.4], size=3), r"^size = 3: must be a shape that \(2,\) broadcasts to"),
         (lambda p: p.rvs([[0.3, 0.4]], size=2), r"^size = 2: must be a shape that \(1, 2\) broadcasts to"),
     ],

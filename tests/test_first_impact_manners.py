@@ -90,7 +90,7 @@ def test_upright_a_body_does_not_turn(distribution: FirstImpact) -> None:
 @pytest.mark.parametrize("distribution", [PAIR, ALL[0]])
 def test_options_of_an_expectation_are_quad_s(distribution: FirstImpact) -> None:
     with pytest.raises(TypeError, match="nonsense"):
-        distribution.expect(lambda x: x, nonsense=1)
+        distribution.expect(lambda x: x, nonsense=1)  # type: ignore[call-arg]
 
 
 @each

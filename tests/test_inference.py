@@ -33,7 +33,7 @@ def heard(elongation: float, law: Any, seed: int, impacts: int = 15, **known: An
 
 
 def quick(data: Any, law: Any, **options: Any) -> xr.DataTree:
-    return rs.posterior(data, law, diameter=6e-3, **({"particles": 200, "draws": 800} | options))
+    return rs.posterior(data, law, **({"diameter": 6e-3, "particles": 200, "draws": 800} | options))
 
 
 KEPT = Path(__file__).parents[1] / "docs" / "data" / "calibration.csv"
@@ -188,6 +188,15 @@ def test_few_impacts_are_refused() -> None:
     law = rs.Frictionless(normal=0.93)
     with pytest.raises(ValueError, match=r"^data: 3 coefficients from times alone; must be at least 5"):
         quick(heard(0.01, law, 1, impacts=5), law)
+
+
+@pytest.mark.parametrize(("diameter", "least"), [(1e6, "at least"), (1e-20, "at most")])
+def test_a_ball_that_cannot_fall_so_far_is_refused(diameter: float, least: str) -> None:
+    """Dropped by 0.1 m it begins below the plane, or is lost in the digits of its height."""
+    law = rs.Frictionless(normal=0.93)
+    text = rf"^diameter = {diameter!r}, elongation = .*: gives release_height = .*: must be {least} "
+    with pytest.raises(ValueError, match=text.replace("+", r"\+")):
+        quick(heard(0.01, law, 1), law, diameter=diameter)
 
 
 @pytest.mark.parametrize("name", ["restitution", "impact_velocity", "uncertainty", "restitution_covariance"])

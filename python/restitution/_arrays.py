@@ -25,6 +25,8 @@ _MANY = 2**24
 """Numbers from which on the memory that there is is looked up."""
 _BYTES_EACH = 24
 """Of a number that is taken: as it was given, as a double, and in a copy that nobody else can change."""
+_MOST_COUNTED = 2.0**53
+"""Beyond it doubles do not count."""
 _BYTES = ("B", "b", "c")
 """Formats of a view of memory whose elements are bytes, as those of text that was read, not numbers."""
 _UNITS = ("to_value", "dimensionality")
@@ -126,6 +128,8 @@ def shape(name: str, value: Any) -> tuple[int, ...]:
         raise ParameterError(wrong(name, value, "a whole number >= 0 or a tuple of them"))
     if len(lengths) > _MOST_DIMENSIONS or max(lengths, default=0) > sys.maxsize:
         raise ParameterError(wrong(name, value, f"at most {_MOST_DIMENSIONS} lengths of at most 2**63 - 1"))
+    if 0 in lengths and math.prod(filter(None, lengths)) > sys.maxsize // 8:
+        raise ParameterError(wrong(name, value, "such that its lengths that are not 0 multiply to < 2**60"))
     return lengths
 
 
@@ -188,6 +192,12 @@ def check_each(name: str, array: FloatArray, good: npt.NDArray[np.bool_], allowe
         at = tuple(int(i) for i in np.argwhere(~good)[0])
         place = f"[{', '.join(map(str, at))}]" if at else ""
         raise ParameterError(wrong(f"{name}{place}", float(array[at]), allowed))
+
+
+def check_counts(name: str, counts: FloatArray) -> None:
+    """Name the first that is no whole number, or is so large that doubles do not count."""
+    good = (counts >= 0) & (counts <= _MOST_COUNTED) & (counts == np.rint(counts))
+    check_each(name, counts, good, "a whole number in [0, 2**53]")
 
 
 def _array_of(name: str, value: Any) -> npt.NDArray[Any]:

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from restitution._arrays import FloatArray, check_each, real, reals
+from restitution._arrays import FloatArray, check_counts, check_each, real, reals
 from restitution._bins import increasing_edges
 from restitution._parameters import ParameterError, Problem, wrong
 from restitution._units import check_variables
@@ -200,10 +200,8 @@ def counted(name: str, data: Any, names: tuple[str, ...] = LATTICE) -> xr.Datase
                 text = f" has {variable.size} edges: must be one more than the {bins} bins"
                 raise ParameterError(Problem(f"{name}.{each}", text))
         elif each.endswith(_COUNTS):
-            allowed = "whole numbers in [0, 2**53]"
-            counts = reals(f"{name}.{each}", variable.to_numpy(), allowed)
-            whole = (counts >= 0) & (counts <= 2**53) & (counts == np.rint(counts))
-            check_each(f"{name}.{each}", counts, whole, allowed)
+            counts = reals(f"{name}.{each}", variable.to_numpy(), "whole numbers in [0, 2**53]")
+            check_counts(f"{name}.{each}", counts)
         else:
             reals(f"{name}.{each}", variable.to_numpy(), "real numbers, NaN for none", finite=False)
     if "velocity" in names and "velocity_edges" in names:

@@ -24,6 +24,10 @@ from restitution.laws import LAWS, Law
 Values: TypeAlias = Any  # np.float64 for a scalar argument, an array of floats otherwise
 RandomState: TypeAlias = int | np.random.Generator | np.random.RandomState | None
 
+_MOST_INTERVALS = 10**6
+_DIGITS = 50 * float(np.finfo(np.float64).eps)
+"""Of a smaller relative error quad says that it cannot be had, unless the absolute one allows more."""
+
 
 @dataclass(frozen=True)
 class FirstImpact(ABC):
@@ -130,7 +134,10 @@ class FirstImpact(ABC):
         lb: float | None = None,
         ub: float | None = None,
         conditional: bool = False,
-        **options: Any,
+        *,
+        epsabs: float = 1.49e-8,
+        epsrel: float = 1.49e-8,
+        limit: int = 50,
     ) -> float:
         """Mean of ``func(ε)``, of ε itself if left out, by `scipy.integrate.quad` without a singularity.
 
@@ -139,17 +146,22 @@ class FirstImpact(ABC):
         func : callable, optional
             Of one number.
         lb, ub : float, optional
-            Only ε in [lb, ub] count.
+            Only ε in [lb, ub] count; lb <= ub.
         conditional : bool
             Divide by the probability of [lb, ub]; nan where that is 0.
-        **options
-            ``epsabs``, ``epsrel`` and ``limit`` of `scipy.integrate.quad`.
+        epsabs, epsrel : float
+            Absolute and relative error to which `scipy.integrate.quad` integrates, one of which is enough;
+            >= 0 and above rounding.
+        limit : int
+            Most intervals that it takes.
         """
         low, high = self.support()
         low = low if lb is None else real("lb", lb, "a number or None", lambda x: x == x)
         high = high if ub is None else real("ub", ub, "a number or None", lambda x: x == x)
+        if lb is not None and ub is not None and low > high:
+            raise ParameterError(wrong("lb", lb, f"at most ub = {high!r}"))
         divide = flag("conditional", conditional)
-        options = {name: _of_quad(name, value) for name, value in options.items()}
+        options = _options(epsabs, epsrel, limit)
         total, share = self._expected(_itself if func is None else function("func", func), low, high, options)
         if not divide:
             return total
@@ -192,7 +204,7 @@ class FirstImpact(ABC):
         """Draw independent ε; the same ``random_state`` (seed or generator's state) gives the same ones."""
         lengths = None if size is None else shape("size", size)
         if lengths is not None:
-            check_size("size", size, math.prod(length or 1 for length in lengths), 3 * 8, "draws")
+            check_size("size", size, math.prod(lengths), 3 * 8, "draws")
         return self._drawn(np.asarray(generator(random_state).random(lengths)))
 
     def _drawn(self, uniform: Floats) -> Values:
@@ -229,19 +241,21 @@ class FirstImpact(ABC):
         return self.ppf(tail), self.isf(tail)
 
 
+def _options(epsabs: float, epsrel: float, limit: int) -> dict[str, Any]:
+    """Check the options that `scipy.integrate.quad` is given."""
+    return {
+        "epsabs": _error("epsabs", epsabs, 0.0),
+        "epsrel": _error("epsrel", epsrel, _DIGITS),
+        "limit": whole("limit", limit, 1, _MOST_INTERVALS),
+    }
+
+
+def _error(name: str, given: float, least: float) -> float:
+    return real(name, given, f"a finite number >= {least:.3g}", lambda x: least <= x < math.inf)
+
+
 def _itself(x: float) -> float:
     return x
-
-
-def _of_quad(name: str, given: object) -> float | int:
-    """Take an option of `scipy.integrate.quad`; others would change what it integrates or gives."""
-    if name == "limit":
-        return whole(name, given, 1, 10**6)
-    if name in ("epsabs", "epsrel"):
-        # Of a smaller relative error quad says that it cannot be had, unless the absolute one allows more.
-        least = 0.0 if name == "epsabs" else 50.0 * np.finfo(np.float64).eps
-        return real(name, given, f"a number >= {least:.3g}", lambda x: x >= least)
-    raise TypeError(f"expect takes no argument {name!r}; of quad's it takes epsabs, epsrel and limit")
 
 
 def check(body: Body, law: Law) -> None:

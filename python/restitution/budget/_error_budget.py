@@ -172,7 +172,7 @@ def _dataset(
     variables |= {
         "impact_velocity": ("impact", experiment.speed, {"units": "m s-1", "symbol": "v"}),
         "restitution": ("impact", experiment.coefficient, one | {"long_name": "ε_n at that speed"}),
-        "parameter_value": ("parameter", experiment.parameters()),
+        "parameter_value": ("parameter", experiment.parameters),
         "parameter_unit": ("parameter", list(experiment.form.units)),
     }
     limit = near_round(experiment, body)

@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Annotated, Self
 
 import numpy as np
@@ -24,6 +25,8 @@ _LEAST = 1e-30
 """Of g, in m/s²: with `LARGEST` it keeps speeds from over- and underflow."""
 _MOST = 1000
 """Of coefficients, which have a covariance each with each: so many that no ball reaches them."""
+_SHORTEST = 1e-10
+"""Of flights, over the time since release: doubles resolve 1e-16 of that, and ε to 1e-6."""
 
 
 class Setting(Parameters):
@@ -108,15 +111,23 @@ class Experiment:
             raise ParameterError(wrong("law", law, "one under which a ball bounces, ε_n > 0"))
         flights = 2.0 * np.array(speed[1:]) / setting.gravity
         times = np.concatenate([[0.0], np.cumsum(flights)])
-        if not np.diff(times).min() > 0.0:
-            allowed = f"one under which {setting.impacts} flights have a duration beside that of the first"
-            raise ParameterError(wrong("law", law, allowed))
-        form = law_of_speed(law)
-        found = cls(setting, law, form, np.array(speed[:-1]), np.array(coefficient), times)
-        if not by_parameters(form, found.speed, found.parameters()).any():
-            allowed = "one whose parameter ε_n depends on at the speeds of the drop"
-            raise ParameterError(wrong("law", law, allowed))
+        if not np.all(flights >= _SHORTEST * (speed[0] / setting.gravity + times[1:])):
+            allowed = f"one whose flights last at least {_SHORTEST:g} of the time since release"
+            raise ParameterError(wrong("law", law, f"{allowed}, for impacts = {setting.impacts} of them"))
+        found = cls(setting, law, law_of_speed(law), np.array(speed[:-1]), np.array(coefficient), times)
+        found._check_fit()
         return found
+
+    def _check_fit(self) -> None:
+        """Refuse laws whose parameters do not show, as those of plastic spheres that stay elastic."""
+        size = np.linalg.norm(self._by_parameters, axis=0)
+        names = " and ".join(self.form.parameters)
+        if not np.all(size > 0.0) or np.linalg.matrix_rank(self._by_parameters / size) < size.size:
+            low, high = self.speed.min(), self.speed.max()
+            allowed = (
+                f"one from whose ε_n at the speeds {low:.6g} to {high:.6g} m/s the {names} can be fitted"
+            )
+            raise ParameterError(wrong("law", self.law, allowed))
 
     def measured(self, timing: float, gravity: float, drop: float) -> Measured:
         """Give what is measured, with these standard errors of each time, of g and of the drop."""
@@ -140,9 +151,13 @@ class Experiment:
         step = 1e-6 * self.speed
         return np.asarray((at(self.law, self.speed + step) - at(self.law, self.speed - step)) / (2.0 * step))
 
+    @cached_property
     def parameters(self) -> Array:
         """Parameters of the fitted law of speed that are nearest to the law, by least squares in ε."""
         start = self.form.start(self.speed, self.coefficient)
+        if isinstance(self.law.normal, Plastic):
+            # Where spheres stay elastic at all speeds, no slope leads a search to the yield speed.
+            start = np.array([max(self.law.normal.yield_speed, self.form.least)])
 
         def misfit(values: Array) -> Array:
             return self.form.coefficient(self.speed, values) - self.coefficient
@@ -158,6 +173,11 @@ class Experiment:
         )
         return np.asarray(found.x)
 
+    @cached_property
+    def _by_parameters(self) -> Array:
+        """Derivatives of the fitted ε_n by the parameters, shape (n, p)."""
+        return by_parameters(self.form, self.speed, self.parameters)
+
     def fitted(self, covariance: Array) -> tuple[Array, Array]:
         """Give what a generalised least-squares fit makes of changes of ε.
 
@@ -166,7 +186,7 @@ class Experiment:
         parameters, coefficients : ndarray, shapes (p, n) and (n, n)
             Change of the parameters, and of the fitted ε_n at the speeds, by changes of the n coefficients.
         """
-        slopes = by_parameters(self.form, self.speed, self.parameters())
+        slopes = self._by_parameters
         weighted = np.linalg.solve(covariance, slopes)
         estimator = np.linalg.solve(slopes.T @ weighted, weighted.T)
         return estimator, slopes @ estimator

@@ -23,6 +23,9 @@ from restitution.distribution._table import Floats, Table
 
 Given: TypeAlias = Literal["rotational_fraction", "previous"]
 
+_SLOWEST, _FASTEST = 1e-100, 1e100
+"""In m/s; squares and quotients of such speeds neither over- nor underflow."""
+
 
 def learn(ensemble: Ensemble, nodes: Floats, given: Given | None, progress: bool) -> xr.Dataset:
     """Simulate the ensemble, count its impacts, and measure the result against a fresh ensemble."""
@@ -75,10 +78,6 @@ def learn(ensemble: Ensemble, nodes: Floats, given: Given | None, progress: bool
     return assemble(counted, conditional, given, check, attrs)
 
 
-_FASTEST = 1e100
-"""In m/s: its square is a number."""
-
-
 def checked_speeds(velocities: npt.ArrayLike | None, run: Run) -> Floats:
     """Give the least and the greatest speed to learn, or all nodes, in m/s."""
     if velocities is None:
@@ -89,7 +88,8 @@ def checked_speeds(velocities: npt.ArrayLike | None, run: Run) -> Floats:
         raise ParameterError(wrong("velocities", velocities, allowed))
     if nodes[0] <= 0 or not np.all(np.diff(nodes) > 0):
         raise ParameterError(wrong("velocities", velocities, "> 0 and strictly increasing"))
-    check_each("velocities", nodes, nodes <= _FASTEST, f"at most {_FASTEST:g} m/s")
+    allowed = f"in [{_SLOWEST:g}, {_FASTEST:g}] m/s, to be squared"
+    check_each("velocities", nodes, (nodes >= _SLOWEST) & (nodes <= _FASTEST), allowed)
     return nodes
 
 

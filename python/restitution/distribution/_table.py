@@ -161,17 +161,20 @@ class Table:
         for share, component in self.parts(v, z):
             for i in np.unique(component):
                 part = self[int(i)]
-                edges = np.clip(part.edges, low, high)
+                edges = np.clip(part.edges, min(low, part.edges[-1]), max(high, part.edges[0]))
                 width = np.diff(edges)
                 density = np.diff(part.cumulative) / np.diff(part.edges)
-                x = edges[:-1, None] + 0.5 * width[:, None] * (1.0 + points)
-                value = float(np.sum(0.5 * weights * (density * width)[:, None] * function(x)))
+                # Where nothing is left of a bin the function need not have a value.
+                values = np.zeros((width.size, points.size))
+                left, half = edges[:-1][width > 0.0], 0.5 * width[width > 0.0]
+                values[width > 0.0] = function(left[:, None] + half[:, None] * (1.0 + points))
+                value = float(np.sum(0.5 * weights * (density * width)[:, None] * values))
                 total = total + np.where(component == i, share * value, 0.0)
         return np.where(np.isnan(v + z), np.nan, total)
 
     def entropy(self, v: float, z: float) -> float:
-        """Differential entropy of the mixture, whose density is constant between neighbouring edges."""
-        if np.isnan(v) or np.isnan(z):
+        """Differential entropy of the mixture, whose density is constant between edges; NaN for NaN."""
+        if np.isnan(v + z):
             return np.nan
         components = {int(i) for weight, i in self.parts(np.float64(v), np.float64(z)) if weight > 0.0}  # type: ignore[arg-type]
         edges = np.unique(np.concatenate([self[i].edges for i in components]))

@@ -97,7 +97,8 @@ class TabulatedDistribution:
         """Both ends of the range that leaves out equal probability on either side."""
         level = numbers("confidence", confidence)
         tail = 0.5 * (1.0 - np.where((level >= 0.0) & (level <= 1.0), level, np.nan))
-        return self.ppf(tail, v, given), self.ppf(1.0 - tail, v, given)
+        low, high = (self._value("ppf", "confidence", q, v, given) for q in (tail, 1.0 - tail))
+        return low, high
 
     def median(self, v: npt.ArrayLike, given: npt.ArrayLike | None = None) -> Values:
         """Median of ε."""
@@ -159,13 +160,15 @@ class TabulatedDistribution:
         v, given : array_like
             Impact velocity in m/s, and condition.
         lb, ub : float, optional
-            Only ε in [lb, ub] count.
+            Only ε in [lb, ub] count; lb <= ub.
         conditional : bool
             Divide by the probability of [lb, ub]; nan where that is 0.
         """
         table, speeds, z = self._at(v, given)
         low = -np.inf if lb is None else real("lb", lb, "a number or None", lambda x: x == x)
         high = np.inf if ub is None else real("ub", ub, "a number or None", lambda x: x == x)
+        if low > high:
+            raise ParameterError(wrong("lb", lb, f"at most ub = {high!r}"))
         of_one = (lambda x: x) if func is None else np.vectorize(function("func", func), otypes=[np.float64])
         found = table.expectation(of_one, speeds, z, low, high, 15)
         if flag("conditional", conditional):
@@ -209,7 +212,7 @@ class TabulatedDistribution:
             raise ParameterError(wrong("size", size, f"a shape that {own} broadcasts to"))
         longest = ("v", v) if speeds.size >= z.size else ("given", given)
         name, asked = longest if size is None else ("size", size)
-        check_size(name, asked, math.prod(length or 1 for length in wanted), 8, "draws")
+        check_size(name, asked, math.prod(wanted), 8, "draws")
         return table.draw(speeds, z, wanted, _seed(random_state), threads)[()]
 
     @cached_property

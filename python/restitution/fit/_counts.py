@@ -12,7 +12,7 @@ import xarray as xr
 from numpy.typing import ArrayLike
 from scipy import optimize
 
-from restitution._arrays import check_each, real, reals, whole
+from restitution._arrays import check_counts, real, reals, whole
 from restitution._bins import increasing_edges
 from restitution._content import Content
 from restitution._parameters import ParameterError, wrong
@@ -22,8 +22,6 @@ from restitution.fit._result import Array, Fit
 Maker: TypeAlias = Callable[[Array, float, float], tuple[Any, dict[str, float]]]
 """From an unbounded point, the median and the spread to a distribution and its parameters."""
 
-_MOST = 2.0**53
-"""Beyond it doubles do not count."""
 _IMPOSSIBLE = 1e-300
 """Probability of a bin where the distribution says 0: the likelihood must stay a number to be maximised."""
 
@@ -68,8 +66,7 @@ class Counts(Content):
         count = np.array(reals("count", self.count, allowed, dimensions=(1,)))
         if count.size != edges.size - 1:
             raise ParameterError(wrong("count", self.count, allowed))
-        whole_number = (count >= 0) & (count <= _MOST) & (count == np.rint(count))
-        check_each("count", count, whole_number, "a whole number in [0, 2**53]")
+        check_counts("count", count)
         below, above = (whole(name, getattr(self, name), 0, 2**53) for name in ("below", "above"))
         numbers = np.concatenate([[below], count, [above]])
         if np.count_nonzero(numbers) < 2:

@@ -13,6 +13,9 @@ from restitution.fit._counts import Counts, fit_counts
 from restitution.fit._result import Array, Fit, fitted
 from restitution.fit._source import Samples, Window, taken
 
+_FURTHEST = 1e100
+"""Of a sample from the median, in widths of the middle half: such a number can be squared."""
+
 
 def gaussian(samples: Samples, *, velocity: Window | None = None) -> Fit:
     """Fit the normal distribution: ``mean``, ``deviation``. Samples and errors as `asymmetric_laplace`.
@@ -92,6 +95,10 @@ def student_t(samples: Samples, *, velocity: Window | None = None) -> Fit:
         return _student(x)
     low, median, high = np.quantile(x, [0.25, 0.5, 0.75])
     width = (high - low) / 1.349 or float(np.std(x))  # a Gaussian's quartiles are 1.349 deviations apart
+    furthest = float(np.abs(x - median).max())
+    if furthest > _FURTHEST * width:
+        allowed = f"must be at most {_FURTHEST:g} times the width of their middle half, {width:g}"
+        raise ValueError(f"samples: up to {furthest:g} from their median; {allowed}")
     degrees, location, scale = stats.t.fit(x, 5.0, loc=median, scale=width)
     return fitted(
         "Student t", x, stats.t(degrees, location, scale), degrees=degrees, location=location, scale=scale

@@ -119,7 +119,8 @@ def finite_samples(samples: ArrayLike, location: float | None = None) -> Array:
     ------
     ValueError
         If `samples` are not numbers, none at all, hold NaN, inf or magnitudes above 1e100, or do not spread
-        at all (about `location`, where that is given): the likelihood then has no maximum.
+        at all (about `location`, where that is given), as the likelihood then has no maximum, or spread by
+        less than 1e-100.
     """
     x = reals("samples", samples, "numbers, Counts or a Dataset", finite=False).ravel()
     if x.size == 0:

@@ -17,8 +17,6 @@ from restitution._parameters import Allowed, Number, ParameterError, Parameters,
 
 Floats = npt.NDArray[np.float64]
 
-_FASTEST = np.finfo(np.float64).max
-
 
 class Material(Parameters):
     """A normal coefficient of restitution ε_n that depends on the speed; call it to see it."""
@@ -35,12 +33,16 @@ class Material(Parameters):
         Returns
         -------
         ndarray
-            ε_n, of the shape of `speed`; nan for nan.
+            ε_n, of the shape of `speed`; nan for nan, and the limit for an infinite speed.
         """
         v = np.abs(reals("speed", speed, "real numbers (m/s), or nan", unit="m s-1", finite=False))
-        # At infinity the quotient of polynomials has no value; at the largest double it is 0 to 90 digits.
-        v = np.minimum(v, _FASTEST)
-        return np.where(np.isnan(v), np.nan, self.compiled.at(v.ravel()).reshape(v.shape))
+        found = self.compiled.at(v.ravel()).reshape(v.shape)
+        return np.where(np.isnan(v), np.nan, np.where(np.isinf(v), self._limit, found))
+
+    @property
+    @abstractmethod
+    def _limit(self) -> float:
+        """What ε_n goes to as the speed goes to infinity, where formulas are quotients of infinities."""
 
     @abstractmethod
     def _compile(self) -> _core.Material:
@@ -103,6 +105,11 @@ class Viscoelastic(Material):
         return self
 
     @property
+    def _limit(self) -> float:
+        # The numerator grows as v*³, the denominator as v*⁶; without dissipation v* is 0 at any speed.
+        return 0.0 if self.dissipation > 0.0 else 1.0
+
+    @property
     def beta(self) -> float:
         """β in (s/m)^{1/5}: the dissipation in the units that elasticity and inertia make."""
         beta = self.compiled.beta
@@ -131,6 +138,10 @@ class Plastic(Material):
 
     def _compile(self) -> _core.Material:
         return _core.plastic(self.yield_speed)
+
+    @property
+    def _limit(self) -> float:
+        return 0.0  # as (v_y/v)^{1/4}
 
 
 _POINT = 120
@@ -233,6 +244,10 @@ class Tabulated(Material):
 
     def _compile(self) -> _core.Material:
         return _core.tabulated(np.asarray(self.v, dtype=float), np.asarray(self.e, dtype=float))
+
+    @property
+    def _limit(self) -> float:
+        return self.e[-1]
 
 
 _MOST_POINTS = 100_000

@@ -1,5 +1,6 @@
 """Sound files and arrays as samples: what can be heard in them, and what is wrong with them."""
 
+import math
 from os import PathLike
 from pathlib import Path
 from typing import Any
@@ -21,6 +22,8 @@ HIGHEST_RATE = 1e6
 _SHORTEST = 0.1
 _LOUDEST = 1e100
 """Over full scale; the power of such a sound is a number."""
+_QUIET = 1e-10
+"""Quieter samples are amplified, as 16 bits in integers of 64: floors of powers are made for full scale."""
 _OF_TIME, _OF_SAMPLE = 40, 8
 """Bytes that it takes at least to listen to a time, and to each of its samples in a channel."""
 _SOURCE = "a path, or samples of shape (n,) or (n, channels)"
@@ -69,7 +72,11 @@ def load(source: str | PathLike[str] | npt.ArrayLike, rate: float | None) -> tup
     # Asked before the mean is taken off, whose rounding would be heard.
     if not np.ptp(samples, axis=0).max() > 0.0:
         raise ParameterError(Problem(name, ": silence; every sample has the same value"))
-    return samples - np.mean(samples, axis=0), own
+    samples = samples - np.mean(samples, axis=0)
+    largest = float(np.abs(samples).max())
+    if largest < _QUIET:
+        samples = np.ldexp(samples, -math.frexp(largest)[1])  # by a power of two, which is exact
+    return samples, own
 
 
 def _file(path: Path) -> tuple[Array, float]:
