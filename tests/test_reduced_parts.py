@@ -13,13 +13,13 @@ VELOCITY, RESTITUTION = [0.0, 2.0], [-1.0, 3.0]
 
 @pytest.fixture(scope="module")
 def run() -> xr.Dataset:
-    """Impacts under a law that creates energy in some of them, particle by particle at most 20."""
+    """Impacts under a law that creates energy in some of them, particle by particle at most 8."""
     with pytest.warns(rs.EnergyWarning):
         return rs.simulate(
             rs.Dumbbell(radius=3e-3, separation=3e-3),
             rs.TangentialRestitution(normal=0.98),
             particles=50,
-            impacts=20,
+            impacts=8,
         )
 
 

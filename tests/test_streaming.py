@@ -66,11 +66,19 @@ def test_it_counts_what_simulate_records(
     np.testing.assert_array_equal(found.largest_energy_ratio, expected.largest_energy_ratio)
     np.testing.assert_array_equal(found.minimum, expected.minimum)
     np.testing.assert_array_equal(found.maximum, expected.maximum)
-    # A mean moves by half a quantum at most, a variance by that times twice the largest deviation.
+    # A mean moves by half a quantum at most, a variance by that times twice the largest deviation. Values that
+    # are further than 2 from the origin, which is in [0, 1], have quanta that are 16 times as large.
+    speeds, ratios = data.impact_velocity.to_numpy(), data.restitution.to_numpy()
+    far, all_there = (
+        np.histogram(speeds[which], bins["velocity_bins"])[0]
+        for which in (np.abs(ratios) > 1.0, np.isfinite(ratios))
+    )
+    coarse = 1.0 + 15.0 * far / np.maximum(all_there, 1)
     spread = np.maximum(expected.maximum - expected.minimum, QUANTUM)
     rounding = (1e-13 * np.maximum(abs(expected.maximum), 1.0)).fillna(1)
     np.testing.assert_array_less(
-        abs(found["mean_restitution"] - expected["mean_restitution"]).fillna(0), 0.5 * QUANTUM + rounding
+        abs(found["mean_restitution"] - expected["mean_restitution"]).fillna(0),
+        0.5 * QUANTUM * coarse + rounding,
     )
     allowed = (2 * QUANTUM * spread + rounding * spread).fillna(1)
     np.testing.assert_array_less(abs(found.variance - expected.variance).fillna(0), allowed)

@@ -91,13 +91,13 @@ fn a_cancelled_run_has_all_particles_that_were_begun() {
 }
 
 /// Where more than four million cells would have to be blanked, the particles that were cut short are left out: here all of a block that
-/// want more than 60 000 impacts, which nobody has had yet.
+/// want more than 50 000 impacts. Those that want fewer have ended after 60 000, for none of them waits for its release long.
 #[test]
 fn what_was_cut_short_in_long_rows_is_left_out() {
     let run = of_two_kinds(60_000);
     let records = cancelled(&run, 500..700, 60_000);
     let all = undisturbed(&run, 500..596);
-    let done: Vec<_> = (0..96).filter(|&i| all.impacts[i] < 60_000).collect();
+    let done: Vec<_> = (0..96).filter(|&i| all.impacts[i] < 50_000).collect();
     assert!(1 < done.len() && done.len() <= done[done.len() - 1]);
     let numbers: Vec<_> = done.iter().map(|&i| 500 + i as i64).collect();
     assert_eq!(records.particle, numbers);

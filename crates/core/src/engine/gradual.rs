@@ -1,7 +1,7 @@
 //! Impacts under a law whose responses may take long: those that do are found for all groups together.
 
 use super::group::{GROUPS, Group};
-use super::strike::Turn;
+use super::strike::{Touch, Turn};
 use crate::body::{Body, Hull};
 use crate::collision::{Gradual, Late};
 use pulp::{Simd, WithSimd};
@@ -25,25 +25,26 @@ impl<S: Simd, T: Turn, H: Hull> WithSimd for Collide<'_, S, T, H> {
             hull,
             law,
         } = self;
-        let mut waiting = [0; GROUPS];
-        let mut late = [Late::nothing(groups[0].active.simd()); GROUPS];
+        let simd = groups[0].active.simd();
+        let mut waiting = [(0, Touch::nothing(simd)); GROUPS];
+        let mut late = [Late::nothing(simd); GROUPS];
         let mut count = 0;
         for (i, group) in groups.iter_mut().enumerate() {
-            group.land(hull);
-            let (contact, landing) = group.contact(body, hull);
+            let touch = group.land(hull);
+            let (contact, landing) = group.contact(body, touch);
             let mut answer = law.begin(&contact);
             answer.open = landing.select(answer.open, 0.0);
             if answer.open.eq(1.0).any() {
-                (waiting[count], late[count]) = (i, answer);
+                (waiting[count], late[count]) = ((i, touch), answer);
                 count += 1;
             } else {
-                group.respond(body, hull, answer.approach(), &answer.response);
+                group.respond(body, touch, answer.approach(), &answer.response);
             }
         }
         if count > 0 {
             law.finish(&mut late[..count]);
-            for (&i, late) in waiting[..count].iter().zip(&late) {
-                groups[i].respond(body, hull, late.approach(), &late.response);
+            for (&(i, touch), late) in waiting[..count].iter().zip(&late) {
+                groups[i].respond(body, touch, late.approach(), &late.response);
             }
         }
     }

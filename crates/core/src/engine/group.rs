@@ -232,6 +232,14 @@ impl<S: Simd, T: Turn> Group<S, T> {
             .arrival(&self.look, &self.leap, &self.residue, hull);
     }
 
+    /// Looks at the gap again where the contact was found, in the lanes in which it is not located yet.
+    #[inline(always)]
+    pub fn look_closer(&mut self, hull: &impl Hull) {
+        self.leap = self.search.nearer(self.time, &self.leap, &self.arrival);
+        self.residue(hull);
+        self.arrive(hull);
+    }
+
     /// Whether the contact of some particle was not located before this pass, or is not by this one: rare after the first pass, except
     /// for spinning smooth hulls.
     #[inline(always)]
@@ -304,13 +312,14 @@ impl<S: Simd, T: Turn> Group<S, T> {
         }
     }
 
-    /// Replaces the start of the flight by the state at the contact.
+    /// Replaces the start of the flight by the state at the contact; returns the sphere that touches like the hull there.
     #[inline(always)]
-    pub fn land(&mut self, hull: &impl Hull) {
+    pub fn land(&mut self, hull: &impl Hull) -> Touch<S, 1> {
         let Arrival { time, attitude, .. } = self.arrival;
         let state = self.search.flight.state(time, attitude);
         let (part, tilt) = (&self.look.gap.part, state.tilt());
         let (sphere, lift) = (hull.name(part, tilt), hull.lift(part, tilt)); // (2)
+        let touch = Touch::of(hull, part, tilt);
         let departure = &mut self.search.departure;
         if self.is_behind {
             let before = self.search.flight.start();
@@ -320,16 +329,17 @@ impl<S: Simd, T: Turn> Group<S, T> {
             );
             self.search.flight.end(state, lift);
             departure.sphere = self.waiting.select(departure.sphere, sphere);
+            touch.but_not(self.waiting)
         } else {
             self.search.flight.end(state, lift);
             departure.sphere = sphere;
+            touch
         }
     }
 
     /// Applies the collision law.
     #[inline(always)]
-    pub fn collide(&mut self, body: &Body, hull: &impl Hull, law: &impl Respond) {
-        let touch = Touch::of(hull, &self.look.gap.part, self.before().tilt());
+    pub fn collide(&mut self, body: &Body, law: &impl Respond, touch: Touch<S, 1>) {
         let struck = self.before().strike(body, law, touch);
         self.leave(struck.motion, struck.approach, struck.separation);
     }
@@ -351,8 +361,7 @@ impl<S: Simd, T: Turn> Group<S, T> {
 
     /// The contact as a law sees it, and the lanes that have one.
     #[inline(always)]
-    pub fn contact(&self, body: &Body, hull: &impl Hull) -> (Contacts<S, 1>, Mask<S, 1>) {
-        let touch = Touch::of(hull, &self.look.gap.part, self.before().tilt());
+    pub fn contact(&self, body: &Body, touch: Touch<S, 1>) -> (Contacts<S, 1>, Mask<S, 1>) {
         (self.before().contact(body, touch), self.landing())
     }
 
@@ -361,11 +370,10 @@ impl<S: Simd, T: Turn> Group<S, T> {
     pub fn respond(
         &mut self,
         body: &Body,
-        hull: &impl Hull,
+        touch: Touch<S, 1>,
         approach: Pack<S, 1>,
         response: &Responses<S, 1>,
     ) {
-        let touch = Touch::of(hull, &self.look.gap.part, self.before().tilt());
         let after = self.before().respond(body, touch, response);
         self.leave(after, approach, response.separation_speed);
     }

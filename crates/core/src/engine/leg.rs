@@ -119,8 +119,8 @@ impl<S: Simd, T: Turn, H: Hull, L: Respond> Legs<S, T> for Together<'_, H, L> {
             return Ok(());
         }
         for (i, group) in groups.iter_mut().enumerate() {
-            group.land(hull);
-            group.collide(body, hull, law);
+            let touch = group.land(hull);
+            group.collide(body, law, touch);
             work_up::<S>(sink, i, 7);
         }
         Ok(())

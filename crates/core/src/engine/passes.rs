@@ -9,7 +9,7 @@ use pulp::{Simd, WithSimd};
 
 /// Largest share of the lanes that sit out the impacts of the others: a further pass for fewer would take longer than the impacts
 /// that they miss.
-const SHARE: f64 = 0.25;
+const SHARE: f64 = 0.4;
 
 /// Decides which lanes are done, and continues with passes of all groups, stage by stage as in the first one, until few lanes wait.
 /// Compiled separately: inlined, it would use up the registers of every bounce loop.
@@ -25,6 +25,11 @@ impl<S: Simd, T: Turn, H: Hull> WithSimd for SearchOn<'_, S, T, H> {
     fn with_simd<U: Simd>(self, _: U) -> Self::Output {
         let Self { groups, hull } = self;
         loop {
+            for group in groups.iter_mut() {
+                if group.takes_another_pass() {
+                    group.look_closer(hull);
+                }
+            }
             for group in groups.iter_mut() {
                 group.clear(hull);
             }

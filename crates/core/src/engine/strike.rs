@@ -6,7 +6,7 @@ use crate::flight::{
     Flight, PlanarMotion, PlanarStates, SpatialFlight, SpatialMotion, SpatialStates, States,
     Vectors,
 };
-use crate::simd::Pack;
+use crate::simd::{Mask, Pack};
 use pulp::Simd;
 
 /// Planar or spatial motion.
@@ -43,6 +43,25 @@ pub(crate) struct Touch<S: Simd, const K: usize> {
 }
 
 impl<S: Simd, const K: usize> Touch<S, K> {
+    /// Before the first contact.
+    #[inline(always)]
+    pub fn nothing(simd: S) -> Self {
+        let zero = Pack::splat(simd, 0.0);
+        Self {
+            lever: zero,
+            radius: zero,
+        }
+    }
+
+    /// The same, but of no size in the lanes of the mask, which have no contact.
+    #[inline(always)]
+    pub fn but_not(self, mask: Mask<S, K>) -> Self {
+        Self {
+            lever: mask.select(0.0, self.lever),
+            radius: mask.select(0.0, self.radius),
+        }
+    }
+
     /// That of a part of a hull at this e_z.
     #[inline(always)]
     pub fn of(hull: &impl Hull, part: &Part<S, K>, tilt: Pack<S, K>) -> Self {

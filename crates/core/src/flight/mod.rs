@@ -53,7 +53,7 @@ impl<S: Simd, const K: usize> Attitude<S, K> {
         }
     }
 
-    /// The attitude after a further rotation by a moderate `angle`: accurate to double precision for angles up to 0.15.
+    /// The attitude after a further rotation by a moderate `angle`: accurate to double precision for angles up to ½.
     #[inline(always)]
     pub fn turned(self, angle: Pack<S, K>) -> Self {
         let (sin, cos) = moderate_sincos_in_lanes(angle);

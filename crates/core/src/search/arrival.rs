@@ -1,6 +1,6 @@
 //! The end of the search: from the last certified step to the contact. [`super`] explains why this is the first contact.
 
-use super::gap::{Gap, Look, Search};
+use super::gap::{Look, Search};
 use super::{FAR, INVISIBLE, LAST, NEAR, SMALL};
 use crate::body::Hull;
 use crate::flight::{Attitude, Flight};
@@ -13,9 +13,8 @@ use pulp::Simd;
 pub(crate) struct Leap<S: Simd, const K: usize> {
     /// The certified step.
     step: Pack<S, K>,
-    /// The step to the zero of an expansion, accurate where the contact is near.
+    /// The step to where the contact is looked for next: at first to the zero of an expansion.
     ahead: Pack<S, K>,
-    near: Mask<S, K>,
 }
 
 /// The gap that remains at the zero of an expansion.
@@ -25,7 +24,9 @@ pub(crate) struct Residue<S: Simd, const K: usize> {
     time: Pack<S, K>,
     attitude: Attitude<S, K>,
     width: Pack<S, K>,
+    /// f′ and f″.
     rate: Pack<S, K>,
+    curvature: Pack<S, K>,
 }
 
 /// The result of a pass of the search.
@@ -47,7 +48,6 @@ impl<S: Simd, const K: usize> Leap<S, K> {
         Self {
             step: zero,
             ahead: zero,
-            near: Mask::splat(simd, false),
         }
     }
 }
@@ -62,6 +62,7 @@ impl<S: Simd, const K: usize> Residue<S, K> {
             attitude: Attitude::none(simd),
             width: zero,
             rate: zero,
+            curvature: zero,
         }
     }
 }
@@ -86,11 +87,10 @@ impl<S: Simd, F: Flight<S, K>, const K: usize> Search<S, F, K> {
         Leap {
             step,
             ahead: self.expanded(look, step, hull),
-            near: self.is_near(&look.gap, step, hull),
         }
     }
 
-    /// The gap that remains after the step to the zero of the expansion, from an evaluation at `time`.
+    /// The gap that remains after the step ahead, from an evaluation at `time`.
     #[inline(always)]
     pub fn residue(
         &self,
@@ -101,16 +101,18 @@ impl<S: Simd, F: Flight<S, K>, const K: usize> Search<S, F, K> {
     ) -> Residue<S, K> {
         let time = time + leap.ahead;
         let attitude = look.attitude.turned(self.flight.rate() * leap.ahead);
-        let (width, rate) = self.moment(time, attitude).opening(&look.gap.part, hull);
+        let part = &look.gap.part;
+        let (width, rate) = self.moment(time, attitude).opening(part, hull);
         Residue {
             time,
             attitude,
             width,
             rate,
+            curvature: hull.bend(part, &self.flight.swing(attitude), -1.0),
         }
     }
 
-    /// The contact, valid where it is near and the other part cannot have touched before.
+    /// The contact, valid where it is located and neither part can have touched before.
     #[inline(always)]
     pub fn arrival<H: Hull>(
         &self,
@@ -123,11 +125,17 @@ impl<S: Simd, F: Flight<S, K>, const K: usize> Search<S, F, K> {
         // A step of third order closes the remaining gap.
         let inverse = -1.0 / residue.rate;
         let newton = residue.width * inverse;
-        let curvature = hull.bend(part, &self.flight.swing(residue.attitude), -1.0); // f″
-        let rest = newton.mul_add(0.5 * curvature * newton * inverse, newton);
+        let rest = newton.mul_add(0.5 * residue.curvature * newton * inverse, newton);
         let attitude = residue.attitude.advanced(self.flight.rate() * rest);
 
-        let mut found = leap.near & newton.abs().le(SMALL * leap.step);
+        // Backwards in time from the contact, the gap stays open for at least 2|f′|/M. A zero before the end of the step, which is
+        // certified, can only be that of the contact at the start, within its rounding.
+        let beyond = (0.5 * self.bound).mul_add(leap.ahead, residue.rate);
+        let before = leap.step.mul_add(0.5, -leap.ahead);
+        let far = FAR.min(1.0 / hull.sharpness());
+        let turned = (self.flight.rate() * leap.ahead).abs() - far;
+        let first = beyond.max(turned).max(before).le(0.0);
+        let mut found = first & newton.abs().le(SMALL * leap.step);
         if H::TWO {
             // If the other part had touched after `step`, its gap could have grown since by at most ½S·since².
             let since = (leap.ahead - leap.step) + rest;
@@ -139,6 +147,21 @@ impl<S: Simd, F: Flight<S, K>, const K: usize> Search<S, F, K> {
             time: residue.time + rest,
             attitude,
             done: look.never | found,
+        }
+    }
+
+    /// The step to the contact that was found, to look at the gap there again; that of the lanes that are done stays as it is, so that
+    /// they repeat the same result.
+    #[inline(always)]
+    pub fn nearer(
+        &self,
+        time: Pack<S, K>,
+        leap: &Leap<S, K>,
+        arrival: &Arrival<S, K>,
+    ) -> Leap<S, K> {
+        Leap {
+            ahead: arrival.done.select(leap.ahead, arrival.time - time),
+            ..*leap
         }
     }
 
@@ -192,9 +215,9 @@ impl<S: Simd, F: Flight<S, K>, const K: usize> Search<S, F, K> {
         let rate = residue.rate;
         // Backwards in time from the contact, the gap stays open for at least 2|f′|/M.
         let beyond = (0.5 * self.bound).mul_add(arrival.time - certain, rate);
-        // At half the distance that counts as near, a pass ends the search, and the gap is larger than its rounding error.
+        // So near to the contact a pass ends the search, and the gap is larger than its rounding error.
         let turning = self.flight.rate().abs() * hull.sharpness();
-        let margin = (0.5 * NEAR) * rate / turning.mul_add(-rate, self.sway);
+        let margin = NEAR * rate / turning.mul_add(-rate, self.sway);
         let aim = (arrival.time + margin).max(certain);
         let led = (self.flight.rate() * leap.ahead).abs().le(FAR);
         (led & beyond.le(0.0) & rate.lt(0.0)).select(aim, certain)
@@ -229,18 +252,6 @@ impl<S: Simd, F: Flight<S, K>, const K: usize> Search<S, F, K> {
     fn least_gap(&self, since: Pack<S, K>, width: Pack<S, K>, rate: Pack<S, K>) -> Pack<S, K> {
         let fallen = since.mul_add(0.5 * self.bound, rate);
         since.mul_add(-fallen, width).min(width)
-    }
-
-    /// Whether the only zero of the gap is just after `step`.
-    #[inline(always)]
-    fn is_near(&self, gap: &Gap<S, K>, step: Pack<S, K>, hull: &impl Hull) -> Mask<S, K> {
-        let turned = self
-            .flight
-            .rate()
-            .abs()
-            .mul_add(step, -NEAR / hull.sharpness());
-        let bent = self.sway.mul_add(step, -(NEAR * gap.root));
-        gap.rate.lt(0.0) & turned.max(bent).le(0.0)
     }
 
     /// The step to the zero of the fourth-order expansion of the gap, found by a step of third order from the end of `step`.

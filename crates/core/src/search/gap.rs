@@ -64,7 +64,7 @@ impl<S: Simd, const K: usize> Look<S, K> {
     /// Before the first evaluation.
     #[inline(always)]
     pub fn nothing(part: Part<S, K>) -> Self {
-        let simd = part.lever.simd();
+        let simd = part.own.simd();
         let zero = Pack::splat(simd, 0.0);
         Self {
             attitude: Attitude::none(simd),
@@ -294,7 +294,7 @@ impl<S: Simd, F: Flight<S, K>, const K: usize> Search<S, F, K> {
         Gap {
             part: Part {
                 one: gap.part.one ^ swap,
-                lever: swap.select(other.part.lever, gap.part.lever),
+                own: swap.select(other.part.own, gap.part.own),
             },
             width: swap.select(other.width, gap.width),
             rate: swap.select(other.rate, gap.rate),

@@ -3,14 +3,16 @@
 //! The gap f of either part of a hull obeys f″ ≥ −M throughout a flight, with M = 1 + (L/2)AΩ² for a dumbbell, and another bound for
 //! another hull. A step to the first zero of the lower bound f + f′τ − Mτ²/2 can therefore not pass a contact; such steps converge
 //! quadratically to the first contact. While the centre of mass is higher than the hull can reach, the step goes to the time at
-//! which it comes back down. If the axis turns little in a step and the gap is nearly linear, f has its only zero just after the
-//! step. An expansion of f about the start of the step, and a second one about the zero of the first, locate it to double precision.
-//! No lower bound covers the time between the end of the step and that zero; whether the other part can have touched in that
-//! interval is checked afterwards. At a grazing contact certified steps are repeated until the gap is below the resolution.
+//! which it comes back down. An expansion of f about the start of the step, and a second one about the zero of the first, locate a
+//! contact to double precision. No lower bound covers the time between the end of the step and the contact, but f″ ≥ −M also bounds
+//! the gap backwards in time: a part that arrives at the speed −f′ was clear of the plane for the last 2|f′|/M. A contact which the
+//! step comes that near to is the first of its part; whether the other part can have touched in between is checked as well. Where
+//! the second expansion is too far from the contact, a third one is made about the zero of the second. At a grazing contact
+//! certified steps are repeated until the gap is below the resolution.
 //!
 //! All lanes are evaluated together; those that need a further pass may sit out the impacts of the others meanwhile. A further pass evaluates the gap just
-//! before the contact predicted by the expansions of the previous pass. There it checks that no contact was passed, since f″ ≥ −M
-//! also bounds the gap backwards in time. Where this check fails, the pass is repeated from the end of the last certified step.
+//! before the contact predicted by the expansions of the previous pass. There it checks, by the same bound backwards in time, that no
+//! contact was passed. Where this check fails, the pass is repeated from the end of the last certified step.
 
 mod arrival;
 mod gap;
@@ -18,13 +20,15 @@ mod gap;
 pub(crate) use arrival::{Arrival, Leap, Residue};
 pub(crate) use gap::{Departure, Look, Search};
 
-/// A contact is near if in the step the axis turns by at most this angle divided by the sharpness of the hull, and the gap departs
-/// from its tangent by at most about this fraction.
-const NEAR: f64 = 0.125;
-/// Angle turned through, in rad, beyond which the expansions do not predict the contact.
+/// A pass begins about this angle, in rad, divided by the sharpness of the hull, or this fraction of the speed of approach divided
+/// by S before the contact that was predicted, whichever is nearer.
+const NEAR: f64 = 0.0625;
+/// Angle turned through, in rad, beyond which an expansion does not predict the contact. It does not locate one beyond this angle
+/// either, nor beyond the inverse of the sharpness.
 const FAR: f64 = 0.5;
-/// A contact is located if the correction at the zero of the expansion is at most this fraction of the step, 2⁻¹⁸. The next
-/// correction, relative to the step, is twice the cube of it.
+/// A contact is located if the correction at the zero of the expansion is at most this fraction h of the step, 2⁻¹⁸. The next
+/// correction, relative to the step τ, is then (½(f″τ/f′)² − f‴τ²/6f′)h³, which is below 2⁻⁵², or 2⁻⁵⁰ for a
+/// spheroid, because Mτ ≤ 2|f′|.
 const SMALL: f64 = 1.0 / 262_144.0;
 /// At a grazing contact the last step is at most this fraction of the flight time, turns the axis by at most this angle, 2⁻¹¹...
 const LAST: f64 = 1.0 / 2048.0;

@@ -49,7 +49,7 @@ impl<B: Balls> Hull for B {
         let [first, second] = self.levers();
         Part {
             one,
-            lever: one.select(first, second),
+            own: one.select(first, second),
         }
     }
 
@@ -84,17 +84,17 @@ impl<B: Balls> Hull for B {
         tilt: Pack<S, K>,
         lift: Pack<S, K>,
     ) -> Pack<S, K> {
-        part.lever.mul_add(self.lean(tilt), lift) // (2)
+        part.own.mul_add(self.lean(tilt), lift) // (2)
     }
 
     #[inline(always)]
     fn lift<S: Simd, const K: usize>(&self, part: &Part<S, K>, tilt: Pack<S, K>) -> Pack<S, K> {
-        -(part.lever * self.lean(tilt)) // (2)
+        -(part.own * self.lean(tilt)) // (2)
     }
 
     #[inline(always)]
     fn lever<S: Simd, const K: usize>(&self, part: &Part<S, K>, _: Pack<S, K>) -> Pack<S, K> {
-        part.lever
+        part.own
     }
 
     #[inline(always)]
@@ -109,7 +109,7 @@ impl<B: Balls> Hull for B {
         swing: &Swing<S, K>,
         addend: f64,
     ) -> Pack<S, K> {
-        part.lever.mul_add(swing.acceleration, addend)
+        part.own.mul_add(swing.acceleration, addend)
     }
 
     #[inline(always)]
@@ -118,7 +118,7 @@ impl<B: Balls> Hull for B {
         part: &Part<S, K>,
         swing: &Swing<S, K>,
     ) -> [Pack<S, K>; 3] {
-        linear_bends(part.lever, swing)
+        linear_bends(part.own, swing)
     }
 
     #[inline(always)]

@@ -104,7 +104,11 @@ fn what_a_hull_tells_of_its_derivatives() {
             close(surface.lever(sphere, here), -slope, 7);
             let [_, second, third, fourth] = derivatives(|time| height(nod.tilt(time)));
             with_hull!(surface, hull => {
-                let (part, swing) = (named(hull, sphere), nod.swing());
+                let swing = nod.swing();
+                let part = match surface {
+                    Surface::Ellipsoid(_) => hull.nearer(one(0.3), one(0.0), &swing, one(1.0)),
+                    _ => named(hull, sphere),
+                };
                 let [a, b, c] = hull.bends(&part, &swing).map(|pack| pack.as_slice()[0]);
                 close(a, -second, 6);
                 close(b, -third, 3);

@@ -47,23 +47,28 @@ impl Ellipsoid {
         (tilt * tilt).mul_add(along, across).sqrt()
     }
 
-    /// The inverse of the support function, 1/h.
+    /// 1/h and h − a, the latter as De_z²/(h + a), which does not subtract nearly equal numbers; with one quotient for both.
+    #[inline(always)]
+    fn profile<S: Simd, const K: usize>(&self, tilt: Pack<S, K>) -> [Pack<S, K>; 2] {
+        let support = self.support(tilt);
+        let sum = self.equatorial + support;
+        let quotient = 1.0 / (support * sum);
+        [
+            quotient * sum,
+            self.excess * (tilt * tilt) * (quotient * support),
+        ]
+    }
+
+    /// 1/h.
     #[inline(always)]
     fn inverse<S: Simd, const K: usize>(&self, tilt: Pack<S, K>) -> Pack<S, K> {
-        1.0 / self.support(tilt)
+        self.profile(tilt)[0]
     }
 
-    /// h − a, as De_z²/(h + a), which does not subtract nearly equal numbers.
+    /// h − a.
     #[inline(always)]
     fn rise<S: Simd, const K: usize>(&self, tilt: Pack<S, K>) -> Pack<S, K> {
-        self.excess * (tilt * tilt) / (self.equatorial + self.support(tilt))
-    }
-
-    fn only<S: Simd, const K: usize>(simd: S) -> Part<S, K> {
-        Part {
-            one: Mask::splat(simd, true),
-            lever: Pack::splat(simd, 0.0),
-        }
+        self.profile(tilt)[1]
     }
 }
 
@@ -80,7 +85,11 @@ impl Hull for Ellipsoid {
 
     #[inline(always)]
     fn ceiling<S: Simd, const K: usize>(&self, reach: Pack<S, K>) -> Pack<S, K> {
-        self.rise(reach.min(1.0)).max(0.0)
+        if self.excess > 0.0 {
+            self.rise(reach.min(1.0))
+        } else {
+            0.0 * reach
+        }
     }
 
     #[inline(always)]
@@ -90,24 +99,33 @@ impl Hull for Ellipsoid {
         reach: Pack<S, K>,
     ) -> Pack<S, K> {
         let reach = (reach * (1.0 + 4.0 * f64::EPSILON)).min(1.0);
-        let least = self.support(reach).min(self.equatorial);
-        self.excess.abs() * (amplitude * reach) / least
+        if self.excess > 0.0 {
+            self.excess / self.equatorial * (amplitude * reach)
+        } else {
+            -self.excess * (amplitude * reach) / self.support(reach)
+        }
     }
 
     #[inline(always)]
     fn part<S: Simd, const K: usize>(&self, one: Mask<S, K>) -> Part<S, K> {
-        Self::only(one.simd())
+        Part {
+            one,
+            own: Pack::splat(one.simd(), 0.0),
+        }
     }
 
     #[inline(always)]
     fn nearer<S: Simd, const K: usize>(
         &self,
-        lift: Pack<S, K>,
         _: Pack<S, K>,
-        _: &Swing<S, K>,
+        _: Pack<S, K>,
+        swing: &Swing<S, K>,
         _: Pack<S, K>,
     ) -> Part<S, K> {
-        Self::only(lift.simd())
+        Part {
+            one: Mask::splat(swing.tilt.simd(), true),
+            own: self.inverse(swing.tilt),
+        }
     }
 
     #[inline(always)]
@@ -152,10 +170,10 @@ impl Hull for Ellipsoid {
     #[inline(always)]
     fn bends<S: Simd, const K: usize>(
         &self,
-        _: &Part<S, K>,
+        part: &Part<S, K>,
         swing: &Swing<S, K>,
     ) -> [Pack<S, K>; 3] {
-        let inverse = self.inverse(swing.tilt);
+        let inverse = part.own;
         let (e, v, a) = (swing.tilt, swing.rate, swing.acceleration);
         let (j, s) = (-swing.square * v, -swing.square * a); // e_z‴ and e_z⁗
         let first = self.excess * (e * v) * inverse; // h′

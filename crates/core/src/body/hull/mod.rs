@@ -67,8 +67,9 @@ pub struct Ball {
 pub(crate) struct Part<S: Simd, const K: usize> {
     /// Whether it is sphere 1; ignored where only one part can touch.
     pub one: Mask<S, K>,
-    /// The lever s of a sphere; ignored for a smooth hull, where it depends on the tilt.
-    pub lever: Pack<S, K>,
+    /// What its gap depends on besides e_z: the lever s of a sphere. For a smooth hull it is 1/h where [`Hull::nearer`] was asked for
+    /// the part, which the derivatives there need again.
+    pub own: Pack<S, K>,
 }
 
 /// The vertical component of the axis, e_z, and its time derivatives. Since e_z = c + A cos(Ωt + φ), each derivative from the third
@@ -142,7 +143,7 @@ pub(crate) trait Hull: Copy {
         addend: f64,
     ) -> Pack<S, K>;
 
-    /// −d²h/dt², −d³h/dt³ and −d⁴h/dt⁴.
+    /// −d²h/dt², −d³h/dt³ and −d⁴h/dt⁴ where [`Hull::nearer`] was asked for the part.
     fn bends<S: Simd, const K: usize>(
         &self,
         part: &Part<S, K>,
