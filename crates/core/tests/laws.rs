@@ -105,6 +105,20 @@ fn the_normal_velocity_obeys_newton() {
     });
 }
 
+/// A plastic contact has no speed of separation at all: the smallest one would be the start of a flight.
+#[test]
+fn a_plastic_contact_is_not_left() {
+    each_contact(3, |random, contact| {
+        let (t, mu) = (random.between(-1.0, 1.0), random.friction());
+        let mut laws = vec![frictionless(0.0), chatterjee_ruina(0.0, t, mu)];
+        laws.extend(HYPOTHESES.map(|hypothesis| coulomb(0.0, mu, hypothesis)));
+        for law in laws {
+            let left = law.respond(contact).separation_speed;
+            assert_eq!(left, 0.0, "{law:?} {contact:?}");
+        }
+    });
+}
+
 /// Without friction every law that knows of friction is frictionless; e_t = −1 is another name for it.
 #[test]
 fn without_friction_there_is_one_law() {

@@ -289,11 +289,13 @@ impl<S: Simd> Impacts<S> {
     #[inline(always)]
     fn answer(&self) -> Answer<S, 1> {
         let (course, scale) = (&self.course, self.scale);
+        // A plastic contact is not left: rounding must not end its stay.
+        let plastic = self.goal.restitution.eq(0.0);
         Answer {
             normal: course.normal * scale,
             along: self.aside.select(0.0, course.along * course.mirror * scale),
             across: self.left.select(-course.across, course.across) * scale,
-            separation_speed: course.v.max(0.0) * scale,
+            separation_speed: plastic.select(0.0, course.v.max(0.0)) * scale,
         }
     }
 }
