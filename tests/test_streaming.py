@@ -66,8 +66,8 @@ def test_it_counts_what_simulate_records(
     np.testing.assert_array_equal(found.largest_energy_ratio, expected.largest_energy_ratio)
     np.testing.assert_array_equal(found.minimum, expected.minimum)
     np.testing.assert_array_equal(found.maximum, expected.maximum)
-    # A mean moves by half a quantum at most, a variance by that times twice the largest deviation. Values that
-    # are further than 2 from the origin, which is in [0, 1], have quanta that are 16 times as large.
+    # A mean moves by half a quantum at most, a variance by that times twice the largest deviation. Values
+    # further than 2 from the origin, which is in [0, 1], have quanta that are 16 times as large.
     speeds, ratios = data.impact_velocity.to_numpy(), data.restitution.to_numpy()
     far, all_there = (
         np.histogram(speeds[which], bins["velocity_bins"])[0]

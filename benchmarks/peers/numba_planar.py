@@ -106,7 +106,7 @@ def jump_then_steps(
 def expand_the_last(
     radius: float, arm: float, g: float, z0: float, v0: float, x0: float, y0: float, spin: float, hit: int
 ) -> Flight:
-    """The jump, certified steps until the contact is near, then two expansions: as this package does it."""
+    """The jump, a certified step, then two expansions, or further steps: as this package does it."""
     touching = 1e-14 * radius
     square = spin * spin
     sway = arm * square
@@ -137,7 +137,7 @@ def expand_the_last(
         if gap <= touching and closing < 0.0:
             return time, v, x, y, touched
         step = 2.0 * gap / (root - closing) if closing < 0.0 else per_bend * (closing + root)
-        if closing < 0.0 and abs(spin) * step <= 0.125 and sway * step <= 0.125 * root:
+        if closing < 0.0:
             second, third = -side * square * y, -side * square * turning
             slack = second + sway
             left = 0.5 * step * step * (slack + step * (third / 3.0 - step * square * second / 12.0))
@@ -146,19 +146,23 @@ def expand_the_last(
             ahead = step + newton * (1.0 + 0.5 * (second - g + step * third) * newton * inverse)
             a = spin * ahead
             b = a * a
-            s = a + a * b * (-1 / 6 + b * (1 / 120 + b * (-1 / 5040 + b / 362880)))
-            c = 1.0 + b * (-0.5 + b * (1 / 24 + b * (-1 / 720 + b * (1 / 40320 - b / 3628800))))
+            s = a + a * b * (-1 / 6 + b * (1 / 120 + b * (-1 / 5040 + b * (1 / 362880 - b / 39916800))))
+            c = 1.0 + b * (
+                -0.5 + b * (1 / 24 + b * (-1 / 720 + b * (1 / 40320 + b * (-1 / 3628800 + b / 479001600))))
+            )
             x, y = x * c + y * s, y * c - x * s
             there = time + ahead
             v = v0 - g * there
-            inverse = -1.0 / (v - side * spin * x)
+            closing = v - side * spin * x
+            inverse = -1.0 / closing
             newton = (z0 + (v0 - 0.5 * g * there) * there - radius + side * y) * inverse
             rest = newton * (1.0 + 0.5 * (-side * square * y - g) * newton * inverse)
-            a = spin * rest
-            c = 1.0 - 0.5 * a * a
-            x, y = x * c + y * a, y * c - x * a
+            little = spin * rest
+            c = 1.0 - 0.5 * little * little
+            x, y = x * c + y * little, y * c - x * little
             late = ahead - step + rest
-            if abs(newton) <= step / 262144.0 and -2.0 * side * y >= 0.5 * sway * late * late:
+            first = 0.5 * bend * ahead + closing <= 0.0 and 0.5 * step <= ahead and abs(a) <= 0.5
+            if first and abs(newton) <= step / 262144.0 and -2.0 * side * y >= 0.5 * sway * late * late:
                 return there + rest, v0 - g * (there + rest), x, y, touched
         if time + step == time:  # closer than the clock resolves
             return time, v, x, y, touched
