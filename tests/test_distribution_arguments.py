@@ -163,3 +163,9 @@ def test_options_are_handed_on() -> None:
     for first in FIRST:
         for options in ({"epsabs": 0.0, "epsrel": 1e-12}, {"epsabs": 1e-12, "epsrel": 2e-14, "limit": 200}):
             assert first.expect(None, **options) == pytest.approx(first.mean(), rel=1e-10)  # type: ignore[arg-type]
+
+
+def test_a_wrong_height_of_several_is_named_with_its_place() -> None:
+    body = rs.Dumbbell(radius=3e-3, separation=3e-4)
+    with pytest.raises(ValueError, match=r"^release_height\[1\] = 0\.001: must be at least 0\.00\d* m"):
+        rs.FluctuatingRestitution.learn(body, rs.Frictionless(normal=0.9), release_height=[0.06, 1e-3])

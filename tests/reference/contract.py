@@ -82,7 +82,7 @@ def arguments(name: str) -> list[str]:
     return sorted((taken | set(make())) - {"self"} - endless)
 
 
-_PLACE = r"(?:\[[\d, ]*\]|\.\w+)*"
+_PLACE = r"(?:\[[\d, ]*\]|\['\w+'\]|\.\w+)*"
 _AFTER = r"(?= = |: | has | holds | goes | lacks | gave |, \w+(?:: |, )| \* )"
 """What follows the name of an argument, of several, or of an element of it."""
 
@@ -92,6 +92,7 @@ FITTING: dict[str, str] = {
     "study.study_of.source": "study",
     "study.merge.study": "sweep",
     "flight.restitution.times": "uncertainty",
+    "FluctuatingRestitution.rvs.v": "size",
     "from_roundness.lobes": "out_of_roundness",
     "posterior.diameter": "release_height",
     "posterior.lobes": "elongation",
@@ -146,7 +147,8 @@ def judged(name: str, text: str, argument: str, bad: Any) -> str | None:
         return None
     if len(text) > 2000:
         return f"goes on and on: {text[:200]}"
-    if isinstance(bad, str | Path) and text.startswith(f"{bad}: "):
+    files = bad if isinstance(bad, list) else [bad]
+    if any(isinstance(one, str | Path) and text.startswith(f"{one}: ") for one in files):
         return None  # of a file, which it names
     names = [argument, *FITTING.get(f"{name}.{argument}", "").split()]
     if not any(re.search(rf"(?<![\w.]){re.escape(one)}{_PLACE}{_AFTER}", text) for one in names):
@@ -163,7 +165,7 @@ def _same_number(text: str, bad: Any) -> bool:
     """Whether a number is shown that is equal, if written otherwise."""
     try:
         number = np.asarray(bad)  # in whatever form it was given
-        plain = number.ndim == 0 and number.dtype.kind in "iuf"
+        plain = number.ndim == 0 and (number.dtype.kind in "iuf" or isinstance(bad, int))
         return plain and float(re.split(r"[:;,] ", text)[0]) == float(number)
     except Exception:  # whatever the object raises
         return False

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 import numpy.typing as npt
@@ -150,7 +151,7 @@ class FluctuatingRestitution(EstimatedDistribution):
             "impacts": 1 if impacts is None else impacts,
             "minimum_speed": 0.0 if minimum_speed is None else minimum_speed,
         }
-        runs = [Run.called(arguments | {"release_height": height}) for height in heights]
+        runs = list(_runs(arguments, heights, np.ndim(release_height) > 0))
         run = runs[0]
         nodes = checked_speeds(velocities, min(runs, key=lambda one: one.heights[0]))
         if minimum_speed is None:
@@ -342,6 +343,20 @@ class FluctuatingRestitution(EstimatedDistribution):
         if "ks_distance" in self.data:
             about += f", ks_distance up to {float(self.data['ks_distance'].max()):.4f}"
         return f"<FluctuatingRestitution: {about}>"
+
+
+def _runs(arguments: dict[str, Any], heights: Sequence[Any], several: bool) -> Iterator[Run]:
+    """Make a run from each height; what is wrong with one of several is said with its place."""
+    for place, height in enumerate(heights):
+        try:
+            yield Run.called(arguments | {"release_height": height})
+        except ParameterError as error:
+            if not several:
+                raise
+            name = "release_height"
+            placed = {name: f"{name}[{place}]"}
+            problems = (one._replace(name=placed.get(one.name, one.name)) for one in error.problems)
+            raise type(error)(*problems) from None
 
 
 def _heights(release_height: npt.ArrayLike) -> list[float]:
