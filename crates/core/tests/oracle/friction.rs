@@ -16,7 +16,8 @@ const WORK: usize = 5;
 
 /// A step turns or brakes the slip by no more than this part of it.
 const STEP: f64 = 0.25;
-/// Slip that, until it stopped, would turn aside by no more than this part of the impulse so far goes straight on.
+/// Slip that, until it stopped, would turn aside by no more than this part of the impulse so far goes straight on; so does slip that
+/// gets faster, if its rate is no more than this aside of it.
 const STRAIGHT: f64 = 0.25 * f64::EPSILON;
 const STAGES: usize = 8;
 const MOST_ITERATIONS: usize = 40;
@@ -186,8 +187,15 @@ impl Motion<'_> {
             let rate = self.slipping(path);
             let size = rate[0].hypot(rate[1]);
             let reach = slip / size;
-            let turn = (path[0] * rate[1] - path[1] * rate[0]).abs() / (size * size);
-            if turn > STRAIGHT * p {
+            let aside = (path[0] * rate[1] - path[1] * rate[0]).abs();
+            let braked = path[0] * rate[0] + path[1] * rate[1] < 0.0;
+            // Slip that gets faster keeps the direction that it is given here to the end.
+            let straight = if braked {
+                aside <= STRAIGHT * p * size * size
+            } else {
+                aside <= STRAIGHT * slip * size
+            };
+            if !straight {
                 let step = STEP * slip / self.stiffness;
                 let after = self.advanced(path, step);
                 return if end.lack(p + step, &after) < 0.0 {
@@ -197,7 +205,6 @@ impl Motion<'_> {
                     (p + length, self.advanced(path, length), true)
                 };
             }
-            let braked = path[0] * rate[0] + path[1] * rate[1] < 0.0;
             let most = if braked { reach } else { f64::INFINITY };
             ([0, 1].map(|i| -self.friction * path[i] / slip), most)
         };
