@@ -1,7 +1,7 @@
 """One validation for the Python call and the TOML file: frozen parameter sets with readable errors."""
 
 import math
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 from difflib import get_close_matches
@@ -44,6 +44,16 @@ class TooLargeError(ParameterError, MemoryError):
 def wrong(name: str, value: Any, allowed: str) -> Problem:
     """Say that a value is not one of those that are allowed."""
     return Problem(name, f" = {shown(value)}: must be ", allowed)
+
+
+@contextmanager
+def renamed(rename: Callable[[str], str]) -> Iterator[None]:
+    """Name parameters as whoever gave them knows them, where they are wrong."""
+    try:
+        yield
+    except ParameterError as error:
+        kind = type(error)  # too large stays too large
+        raise kind(*(one._replace(name=rename(one.name)) for one in error.problems)) from None
 
 
 @contextmanager

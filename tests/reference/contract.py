@@ -94,7 +94,6 @@ FITTING: dict[str, str] = {
     "flight.restitution.times": "uncertainty",
     "FluctuatingRestitution.rvs.v": "size",
     "from_roundness.lobes": "out_of_roundness",
-    "posterior.diameter": "release_height",
     "posterior.lobes": "elongation",
     **dict.fromkeys(
         (

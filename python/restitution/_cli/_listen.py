@@ -47,11 +47,11 @@ def listen(
     with errors_in_a_line():
         check_room("listen", _ROOM)  # before the libraries are there
     with errors_in_a_line("netCDF4", "restitution.listen", room=_ADDRESSES):
-        from restitution._parameters import ParameterError
+        from restitution._parameters import renamed
         from restitution.listen import write
         from restitution.listen._analysis import Setting
 
-        try:
+        with renamed(lambda name: name.replace("uncertainty", "error")):  # as the options are called
             setting = Setting(
                 diameter=diameter,
                 mass=mass,
@@ -61,10 +61,6 @@ def listen(
                 gravity_uncertainty=gravity_error,
                 out_of_roundness=out_of_roundness,
             )
-        except ParameterError as error:  # of the options' names
-            raise ParameterError(
-                *(one._replace(name=one.name.replace("uncertainty", "error")) for one in error.problems)
-            ) from None
         analysis = write(file, out, setting, replace=overwrite)
         for warning in analysis.warnings:
             tell(f"note: {warning}")

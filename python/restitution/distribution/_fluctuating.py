@@ -15,7 +15,7 @@ from restitution._dataset import load, save
 from restitution._display import Text, table, value
 from restitution._files import path_from, write
 from restitution._formats import HEADER, MODULE, NETCDF, path_for
-from restitution._parameters import ParameterError, Problem, wrong
+from restitution._parameters import ParameterError, Problem, renamed, wrong
 from restitution._recorded import check_filled, check_successive, records
 from restitution._release import RandomHeight, RandomSpin
 from restitution._resources import checked_threads
@@ -151,14 +151,15 @@ class FluctuatingRestitution(EstimatedDistribution):
             "impacts": 1 if impacts is None else impacts,
             "minimum_speed": 0.0 if minimum_speed is None else minimum_speed,
         }
-        runs = list(_runs(arguments, heights, np.ndim(release_height) > 0))
+        one_asked = not isinstance(release_height, RandomHeight) and np.ndim(release_height) == 0
+        several = not (one_asked or isinstance(release_height, RandomHeight))
+        runs = list(_runs(arguments, heights, several))
         run = runs[0]
         nodes = checked_speeds(velocities, min(runs, key=lambda one: one.heights[0]))
         if minimum_speed is None:
             run = run.model_copy(update={"minimum_speed": defaults.minimum_speed(run, float(nodes[0]))})
         if impacts is None:
             run = run.model_copy(update={"impacts": defaults.impacts(run, checked_threads(threads) or None)})
-        one_asked = not isinstance(release_height, RandomHeight) and np.ndim(release_height) == 0
         spread = defaults.heights(run) if one_asked else tuple(one.release_height for one in runs)
         ensemble = Ensemble(
             run, spread, threads, fraction=isinstance(given, str) and given == "rotational_fraction"
@@ -347,16 +348,11 @@ class FluctuatingRestitution(EstimatedDistribution):
 
 def _runs(arguments: dict[str, Any], heights: Sequence[Any], several: bool) -> Iterator[Run]:
     """Make a run from each height; what is wrong with one of several is said with its place."""
-    for place, height in enumerate(heights):
-        try:
-            yield Run.called(arguments | {"release_height": height})
-        except ParameterError as error:
-            if not several:
-                raise
-            name = "release_height"
-            placed = {name: f"{name}[{place}]"}
-            problems = (one._replace(name=placed.get(one.name, one.name)) for one in error.problems)
-            raise type(error)(*problems) from None
+    for k, height in enumerate(heights):
+        place = f"[{k}]" if several else ""
+        with renamed(lambda name, place=place: name + place if name == "release_height" else name):  # type: ignore[misc]
+            run = Run.called(arguments | {"release_height": height})
+        yield run
 
 
 def _heights(release_height: npt.ArrayLike) -> list[float]:

@@ -3,7 +3,7 @@
 from typing import TYPE_CHECKING, Any
 
 from restitution._arrays import whole
-from restitution._parameters import ParameterError, wrong
+from restitution._parameters import ParameterError, renamed, wrong
 from restitution._run import Run
 from restitution.explorer._page import NUMBERS, link, page
 
@@ -85,30 +85,30 @@ def _run_of(data: "xr.Dataset") -> Run:
         raise ParameterError(wrong("data", data, "a Dataset from restitution.simulate"))
     attributes = dict(data.attrs)
     try:
-        body_type = getattr(bodies, str(attributes["body"]))
-        law_type = getattr(laws, str(attributes["law"]))
-        body = body_type(**{name: attributes[name] for name in body_type.model_fields})
-        law = law_type(**{name: attributes[name] for name in law_type.model_fields})
-        orientation = attributes["orientation"]
-        if orientation == "given":
-            orientation = data["release_angle"]
-        spin = attributes["spin"]
-        if isinstance(spin, str):
-            raise ValueError(f"data.spin = {spin}: the explorer shows this only if it is the same for all")
-        numbers = {name: attributes[name] for name in NUMBERS}
-        return Run(
-            body=body,
-            law=law,
-            **numbers,
-            particles=attributes["particles"],
-            impacts=attributes["impacts"],
-            orientation=orientation,
-            spin=spin,
-            release_velocity=attributes["release_velocity"],
-            seed=attributes["seed"],
-        )
-    except ParameterError as error:
-        raise ParameterError(*(one._replace(name=f"data.{one.name}") for one in error.problems)) from None
+        with renamed(lambda name: f"data.{name}"):
+            body_type = getattr(bodies, str(attributes["body"]))
+            law_type = getattr(laws, str(attributes["law"]))
+            body = body_type(**{name: attributes[name] for name in body_type.model_fields})
+            law = law_type(**{name: attributes[name] for name in law_type.model_fields})
+            orientation = attributes["orientation"]
+            if orientation == "given":
+                orientation = data["release_angle"]
+            spin = attributes["spin"]
+            if isinstance(spin, str):
+                text = "the explorer shows this only if it is the same for all"
+                raise ValueError(f"data.spin = {spin}: {text}")
+            numbers = {name: attributes[name] for name in NUMBERS}
+            return Run(
+                body=body,
+                law=law,
+                **numbers,
+                particles=attributes["particles"],
+                impacts=attributes["impacts"],
+                orientation=orientation,
+                spin=spin,
+                release_velocity=attributes["release_velocity"],
+                seed=attributes["seed"],
+            )
     except (KeyError, AttributeError) as error:
         raise ValueError(
             f"data: not a Dataset from restitution.simulate, or of a law without numbers: {error}"

@@ -13,7 +13,7 @@ from matplotlib.figure import Figure
 
 from restitution._arrays import reals, whole
 from restitution._bins import FARTHEST
-from restitution._parameters import ParameterError, Problem, wrong
+from restitution._parameters import ParameterError, Problem, renamed, wrong
 from restitution._recorded import (
     check_filled,
     check_successive,
@@ -112,10 +112,9 @@ def densities(found: xr.Dataset | FluctuatingRestitution, velocities: npt.ArrayL
         if isinstance(found, xr.Dataset):
             edges, density, name = _bin_density(found, f"velocities[{k}]" if many else "velocities", float(v))
         else:
-            try:
+            place = f"velocities[{k}]"
+            with renamed(lambda _, place=place: place):  # type: ignore[misc]
                 low, high = found.support(float(v))
-            except ParameterError as error:
-                raise ParameterError(*(p._replace(name=f"velocities[{k}]") for p in error.problems)) from None
             name = f"{v:g} m/s"
             edges = np.linspace(low, high, 401)
             if not np.all(np.diff(edges) > 0):  # one value alone, which has no density

@@ -5,7 +5,7 @@ from typing import Annotated, NamedTuple
 import xarray as xr
 from pydantic import Field
 
-from restitution._parameters import Number, ParameterError, Parameters
+from restitution._parameters import Number, Parameters, renamed
 from restitution.flight._drag import Drag
 from restitution.flight._times import LARGEST, LEAST
 
@@ -43,7 +43,8 @@ def setting_of(name: str, data: xr.Dataset) -> Setting:
     attrs = data.attrs
     falls = "drop_height" in attrs or "drop_height_uncertainty" in attrs
     drags = "terminal_velocity" in attrs or "terminal_velocity_uncertainty" in attrs
-    try:
+    attributes = {"uncertainty": "terminal_velocity_uncertainty"}
+    with renamed(lambda each: f"{name}.{attributes.get(each, each)}"):
         given = Errors(**{each: attrs[each] for each in Errors.model_fields if each in attrs})
         drop = None
         if falls:
@@ -55,10 +56,4 @@ def setting_of(name: str, data: xr.Dataset) -> Setting:
                 terminal_velocity=attrs.get("terminal_velocity"),
                 uncertainty=attrs.get("terminal_velocity_uncertainty", 0.0),
             )
-    except ParameterError as error:
-        attributes = {"uncertainty": "terminal_velocity_uncertainty"}
-        problems = (
-            one._replace(name=f"{name}.{attributes.get(one.name, one.name)}") for one in error.problems
-        )
-        raise ParameterError(*problems) from None
     return Setting((given.gravity, given.gravity_uncertainty), drop, drag)
