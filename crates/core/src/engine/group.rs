@@ -235,7 +235,7 @@ impl<S: Simd, T: Turn> Group<S, T> {
     /// Looks at the gap again where the contact was found, in the lanes in which it is not located yet.
     #[inline(always)]
     pub fn look_closer(&mut self, hull: &impl Hull) {
-        self.leap = self.search.nearer(self.time, &self.leap, &self.arrival);
+        self.leap = self.leap.on_to(&self.arrival, self.time);
         self.residue(hull);
         self.arrive(hull);
     }

@@ -50,6 +50,16 @@ impl<S: Simd, const K: usize> Leap<S, K> {
             ahead: zero,
         }
     }
+
+    /// The step to the contact that was found from `time`, to look at the gap there again; that of the lanes that are done stays as it
+    /// is, so that they repeat the same result.
+    #[inline(always)]
+    pub fn on_to(self, arrival: &Arrival<S, K>, time: Pack<S, K>) -> Self {
+        Self {
+            ahead: arrival.done.select(self.ahead, arrival.time - time),
+            ..self
+        }
+    }
 }
 
 impl<S: Simd, const K: usize> Residue<S, K> {
@@ -128,9 +138,8 @@ impl<S: Simd, F: Flight<S, K>, const K: usize> Search<S, F, K> {
         let rest = newton.mul_add(0.5 * residue.curvature * newton * inverse, newton);
         let attitude = residue.attitude.advanced(self.flight.rate() * rest);
 
-        // Backwards in time from the contact, the gap stays open for at least 2|f′|/M. A zero before the end of the step, which is
-        // certified, can only be that of the contact at the start, within its rounding.
-        let beyond = (0.5 * self.bound).mul_add(leap.ahead, residue.rate);
+        // A zero before the end of the step, which is certified, can only be that of the contact at the start, within its rounding.
+        let beyond = self.least_fall(leap.ahead, residue.rate);
         let before = leap.step.mul_add(0.5, -leap.ahead);
         let far = FAR.min(1.0 / hull.sharpness());
         let turned = (self.flight.rate() * leap.ahead).abs() - far;
@@ -147,21 +156,6 @@ impl<S: Simd, F: Flight<S, K>, const K: usize> Search<S, F, K> {
             time: residue.time + rest,
             attitude,
             done: look.never | found,
-        }
-    }
-
-    /// The step to the contact that was found, to look at the gap there again; that of the lanes that are done stays as it is, so that
-    /// they repeat the same result.
-    #[inline(always)]
-    pub fn nearer(
-        &self,
-        time: Pack<S, K>,
-        leap: &Leap<S, K>,
-        arrival: &Arrival<S, K>,
-    ) -> Leap<S, K> {
-        Leap {
-            ahead: arrival.done.select(leap.ahead, arrival.time - time),
-            ..*leap
         }
     }
 
@@ -213,8 +207,7 @@ impl<S: Simd, F: Flight<S, K>, const K: usize> Search<S, F, K> {
         hull: &impl Hull,
     ) -> Pack<S, K> {
         let rate = residue.rate;
-        // Backwards in time from the contact, the gap stays open for at least 2|f′|/M.
-        let beyond = (0.5 * self.bound).mul_add(arrival.time - certain, rate);
+        let beyond = self.least_fall(arrival.time - certain, rate);
         // So near to the contact a pass ends the search, and the gap is larger than its rounding error.
         let turning = self.flight.rate().abs() * hull.sharpness();
         let margin = NEAR * rate / turning.mul_add(-rate, self.sway);
@@ -250,8 +243,15 @@ impl<S: Simd, F: Flight<S, K>, const K: usize> Search<S, F, K> {
     /// A lower bound on the gap of a part during the interval of length `since` before its evaluation.
     #[inline(always)]
     fn least_gap(&self, since: Pack<S, K>, width: Pack<S, K>, rate: Pack<S, K>) -> Pack<S, K> {
-        let fallen = since.mul_add(0.5 * self.bound, rate);
+        let fallen = self.least_fall(since, rate);
         since.mul_add(-fallen, width).min(width)
+    }
+
+    /// An upper bound on the mean f′ during the interval of length `since` before a time at which f′ is `rate`, f′ + ½M·since. Where it
+    /// is negative, the gap was wider before: of a contact, for at least 2|f′|/M.
+    #[inline(always)]
+    fn least_fall(&self, since: Pack<S, K>, rate: Pack<S, K>) -> Pack<S, K> {
+        since.mul_add(0.5 * self.bound, rate)
     }
 
     /// The step to the zero of the fourth-order expansion of the gap, found by a step of third order from the end of `step`.
