@@ -5,8 +5,8 @@ mod scalar;
 
 use common::*;
 use restitution_core::{
-    COLLAPSE_RUN, Limits, Monitor, Orientation, Records, Run, SingleImpact as Impact, State,
-    StopReason, Vector,
+    About, COLLAPSE_RUN, ChatterjeeRuina, Coulomb, Hypothesis, Law, Limits, Monitor, Orientation,
+    Records, Run, SingleImpact as Impact, Spin, State, StopReason, Vector,
 };
 use scalar::*;
 
@@ -79,14 +79,40 @@ fn a_trajectory_without_impacts_ends() {
     assert_eq!((impacts.len(), reason), (0, StopReason::ImpactsReached));
 }
 
-/// A perfectly plastic sphere is hit once and stays.
+/// A perfectly plastic sphere is hit once and stays, however it spins and flies, on a slope as on a floor: the two balls of a
+/// dumbbell of no length are at the same place, and one cannot touch once more where the other rests.
 #[test]
 fn a_plastic_sphere_collapses_after_one_impact() {
-    let run = paper(0.0, law(0.0, 1.0));
-    let records = simulate(&run);
-    assert!(all_stopped_for(&records, StopReason::Collapse));
-    assert!(records.impacts.iter().all(|&count| count == 1));
-    is_consistent(&run, &records);
+    let spin = Spin::Random {
+        low: 1.0,
+        high: 1000.0,
+        about: About::Isotropic,
+    };
+    let friction = 1.2; // enough for every slip to stop
+    let coulomb = Hypothesis::NAMED.map(|(_, hypothesis)| {
+        let rule = Coulomb::new(friction, hypothesis).unwrap();
+        Law::new(0.0, rule).unwrap()
+    });
+    let chatterjee_ruina = Law::new(0.0, ChatterjeeRuina::new(0.3, friction).unwrap()).unwrap();
+    let laws = [law(0.0, 1.0), law(0.0, 0.3), chatterjee_ruina];
+    for law in laws.into_iter().chain(coulomb) {
+        for (spin, incline) in [(Spin::NONE, 0.0), (spin, 0.0), (spin, 0.5)] {
+            let run = Run {
+                spin,
+                incline,
+                release_velocity: Vector::new(0.3 * incline, 0.2 * incline, 0.0),
+                ..paper(0.0, law)
+            };
+            let records = simulate(&run);
+            let most = records.impacts.iter().max();
+            assert!(all_stopped_for(&records, StopReason::Collapse), "{law:?}");
+            assert!(
+                records.impacts.iter().all(|&count| count == 1),
+                "{law:?}, {spin:?}, {incline}: up to {most:?}"
+            );
+            is_consistent(&run, &records);
+        }
+    }
 }
 
 /// A lossy contact closes by infinitely many impacts in a finite time. For a sphere the clock tells when, t₁(1 + ε)/(1 − ε); a

@@ -166,6 +166,9 @@ impl<S: Simd, F: Flight<S, K>, const K: usize> Search<S, F, K> {
     }
 
     /// Lanes whose part on the plane has no normal speed and stays there: f″ ≤ 0, and the other part is not about to touch as well.
+    ///
+    /// The speed at which the other part approaches is taken relative to the part at rest: what rounding makes of the speed of that
+    /// one is in both, and is all that there is where the two parts touch at the same place.
     #[inline(always)]
     pub fn rests<H: Hull>(&self, hull: &H) -> Mask<S, K> {
         let moment = self.beginning();
@@ -173,8 +176,9 @@ impl<S: Simd, F: Flight<S, K>, const K: usize> Search<S, F, K> {
         let part = hull.part(!on.lt(0.0));
         let held = !on.eq(0.0) & hull.bend(&part, &moment.swing, -1.0).le(0.0);
         if H::TWO {
+            let (_, still) = moment.opening(&part, hull);
             let other = self.gap(&moment, hull.part(on.lt(0.0)), hull);
-            held & !(other.rate.lt(0.0) & other.width.le(TOUCHING))
+            held & !(other.rate.lt(still) & other.width.le(TOUCHING))
         } else {
             held
         }

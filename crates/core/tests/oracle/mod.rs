@@ -81,6 +81,8 @@ impl Noise {
 pub struct Impact {
     pub columns: [f64; 7],
     pub contact: i8,
+    /// Whether the gap is resolved: the flight may have opened it, and the speed of approach closes it, by more than rounding does.
+    pub resolved: bool,
 }
 
 /// A particle on its way.
@@ -169,11 +171,12 @@ impl<'a> Particle<'a> {
                 ..before
             },
         );
-        self.low = if flight.bound() * time * time < 8.0 * UNRESOLVED * world.shape.size() {
-            self.low + 1
-        } else {
-            0
-        };
+        let bound = flight.bound();
+        let visible = UNRESOLVED * world.shape.size();
+        let high = bound * time * time >= 8.0 * visible;
+        self.low = if high { 0 } else { self.low + 1 };
+        // f ≤ v²/2M where a gap that bends by no more than M has closed to f = 0 at the speed v.
+        let resolved = high && contact.approach().powi(2) >= 2.0 * bound * visible;
         self.leaving = Some((part, separation));
         self.state = after;
 
@@ -191,6 +194,7 @@ impl<'a> Particle<'a> {
                 axis[0].hypot(axis[1]).atan2(axis[2]),
             ],
             contact: body.name(part, axis),
+            resolved,
         })
     }
 
@@ -215,7 +219,7 @@ fn blurred(noise: &mut Noise, state: State) -> State {
     }
 }
 
-/// Sixteen flights in a row in which no gap can have opened by this part of the radius are a collapse.
+/// Sixteen flights in a row in which no gap can have opened by this part of the radius are a collapse. It is 16 times the noise.
 const UNRESOLVED: f64 = 1.0 / 8_796_093_022_208.0;
 
 fn unit(a: Vector) -> Vector {
