@@ -12,7 +12,7 @@ import numpy as np
 import numpy.typing as npt
 
 from restitution._memory import available_memory
-from restitution._parameters import ParameterError, Problem, TooLargeError, _plain_number, wrong
+from restitution._parameters import ParameterError, Problem, TooLargeError, plain_number, wrong
 from restitution._units import check_units
 
 FloatArray = npt.NDArray[np.float64]
@@ -106,7 +106,7 @@ def whole(name: str, value: Any, least: int, most: int | None = None) -> int:
     """Take a whole number in [least, most]."""
     allowed = f"a whole number >= {least}" if most is None else f"a whole number in [{least}, {most}]"
     check_units(name, value, "1")
-    plain = _plain_number(value)
+    plain = plain_number(value)
     try:
         number = index(plain)
     except Exception:  # whatever the object raises

@@ -100,13 +100,13 @@ _SHORT.maxstring = _SHORT.maxother = 72
 
 def shown(value: Any) -> str:
     """Write a value in at most a line, however large it is."""
-    value = _plain_number(value)
+    value = plain_number(value)
     if isinstance(value, np.ndarray) and value.size > _MOST_ELEMENTS:
         return f"an array of shape {value.shape}"
     return " ".join(_SHORT.repr(value).split())
 
 
-def _plain_number(value: Any) -> Any:
+def plain_number(value: Any) -> Any:
     """Make a Python number of a NumPy scalar or 0-d array; what is masked, or a date, stays what it is."""
     if not isinstance(value, np.generic | np.ndarray) or value.ndim != 0 or value.dtype.kind not in "biuf":
         return value
@@ -120,7 +120,7 @@ def _plain_number(value: Any) -> Any:
 
 def _number_itself(value: Any) -> int | float:
     """Refuse what is made a number of: pydantic would take dates, masked and complex values."""
-    value = _plain_number(value)
+    value = plain_number(value)
     if isinstance(value, bool) or not isinstance(value, int | float):
         raise PydanticCustomError("no_number", "no number")
     return value

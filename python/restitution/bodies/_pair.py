@@ -6,14 +6,14 @@ from typing import Annotated, Any
 import numpy as np
 from pydantic import BeforeValidator, ValidationInfo
 
-from restitution._parameters import Allowed, ParameterError, _plain_number, wrong
+from restitution._parameters import Allowed, ParameterError, plain_number, wrong
 
 _POSITIVE = "a finite number > 0"
 _ALLOWED = f"{_POSITIVE} (or one for each sphere)"
 
 
 def _positive(value: Any) -> float | None:
-    value = _plain_number(value)
+    value = plain_number(value)
     if isinstance(value, bool) or not isinstance(value, int | float):
         return None
     try:

@@ -13,7 +13,7 @@ import xarray as xr
 
 from restitution._arrays import check_each, check_shapes, flag, function, real, reals, shape, whole
 from restitution._content import check_names
-from restitution._parameters import ParameterError, _plain_number, wrong
+from restitution._parameters import ParameterError, plain_number, wrong
 from restitution._resources import check_size
 from restitution.distribution import _store
 from restitution.distribution._learn import Given
@@ -304,7 +304,7 @@ def _seed(random_state: RandomState) -> int:
         return int.from_bytes(random_state.bytes(8), "little")
     if isinstance(random_state, np.random.Generator) or random_state is None:
         return int(np.random.default_rng(random_state).integers(2**64, dtype=np.uint64, endpoint=False))
-    if not isinstance(_plain_number(random_state), int) or isinstance(_plain_number(random_state), bool):
+    if not isinstance(plain_number(random_state), int) or isinstance(plain_number(random_state), bool):
         allowed = "a seed in [0, 2**64), a numpy.random.Generator or RandomState, or None"
         raise ParameterError(wrong("random_state", random_state, allowed))
     if not 0 <= random_state < 2**64:

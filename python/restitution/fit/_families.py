@@ -15,6 +15,8 @@ from restitution.fit._source import Samples, Window, taken
 
 _FURTHEST = 1e100
 """Of a sample from the median, in widths of the middle half: such a number can be squared."""
+_POINT = 1e-9
+"""A scale below this part of that width is of a search that has gone down to a single value."""
 
 
 def gaussian(samples: Samples, *, velocity: Window | None = None) -> Fit:
@@ -82,6 +84,13 @@ def student_t(samples: Samples, *, velocity: Window | None = None) -> Fit:
     SciPy's search would start at one degree of freedom, from where it can end early; here it starts at five,
     the median and the spread of the middle half.
 
+    Raises
+    ------
+    ValueError
+        As `asymmetric_laplace`, and where so many samples are one and the same number that the search goes
+        down to it: at k of n the likelihood grows without bound as the scale falls, for fewer degrees of
+        freedom than k/(n−k).
+
     Examples
     --------
     >>> import numpy as np
@@ -100,6 +109,10 @@ def student_t(samples: Samples, *, velocity: Window | None = None) -> Fit:
         allowed = f"must be at most {_FURTHEST:g} times the width of their middle half, {width:g}"
         raise ValueError(f"samples: up to {furthest:g} from their median; {allowed}")
     degrees, location, scale = stats.t.fit(x, 5.0, loc=median, scale=width)
+    if scale < _POINT * width:
+        value = x[np.abs(x - location).argmin()]
+        same = f"{np.count_nonzero(x == value)} of {len(x)} are {value:g}"
+        raise ValueError(f"samples: {same}; must be fewer: Student's t has no largest likelihood there")
     return fitted(
         "Student t", x, stats.t(degrees, location, scale), degrees=degrees, location=location, scale=scale
     )

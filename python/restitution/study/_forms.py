@@ -8,7 +8,7 @@ import numpy as np
 import xarray as xr
 
 from restitution._arrays import reals
-from restitution._parameters import ParameterError, Problem, _plain_number, wrong
+from restitution._parameters import ParameterError, Problem, plain_number, wrong
 from restitution._run import Run
 from restitution._statistics import Edges
 from restitution.study._tables import table, word
@@ -149,7 +149,7 @@ def forms_of(tables: Mapping[str, Any], edges: Edges | None, run: Run) -> tuple[
 def _learn(given: Any, edges: Edges, run: Run) -> Learn:
     levels = table("learn", given, ("levels",)).get("levels", _LEVELS)
     allowed = f"a number of levels in [2, {_MOST_LEVELS}], from 0 to 1, or increasing levels in [0, 1]"
-    number = _plain_number(levels)
+    number = plain_number(levels)
     if isinstance(number, int) and 2 <= number <= _MOST_LEVELS:
         return Learn(tuple(np.linspace(0.0, 1.0, number).tolist()))
     probabilities = reals("learn.levels", levels, allowed, dimensions=(1,))

@@ -5,7 +5,7 @@ from collections.abc import Callable, Collection, Mapping
 from typing import Any
 
 from restitution._arrays import real
-from restitution._parameters import ParameterError, Problem, _plain_number, shown, unknown, wrong
+from restitution._parameters import ParameterError, Problem, plain_number, shown, unknown, wrong
 
 _DEEPEST = 8
 """Tables in tables that are looked into; those of a study are four deep."""
@@ -59,5 +59,5 @@ def word(name: str, value: Any, words: Collection[str]) -> str:
 
 def number(name: str, value: Any, allowed: str, good: Callable[[float], bool] = math.isfinite) -> int | float:
     """Take a number for which `good` holds; a whole one stays one, and has the digest that it always had."""
-    checked, plain = real(name, value, allowed, good), _plain_number(value)
+    checked, plain = real(name, value, allowed, good), plain_number(value)
     return plain if isinstance(plain, int) else checked
