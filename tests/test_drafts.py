@@ -1,6 +1,7 @@
 """Whose a draft is: what the dead left goes, what the living write stays, in containers too."""
 
 import os
+import platform
 import signal
 import subprocess
 import sys
@@ -8,12 +9,17 @@ from pathlib import Path
 
 import pytest
 
-from restitution._drafts import prefix
+from restitution._drafts import discard, prefix
 from restitution._files import check, whole_file, whole_folder, write
 
 
 def names(folder: Path) -> set[str]:
     return {file.name for file in folder.iterdir()}
+
+
+def of_the_dead(name: str) -> str:
+    """Name a draft of a process of this machine that is no more."""
+    return f"{prefix(name)}x.part".replace(f"-{os.getpid()}.", f"-{2**22 + 1}.")
 
 
 def test_a_draft_of_a_process_in_another_container_stays(tmp_path: Path) -> None:
@@ -46,10 +52,59 @@ def test_a_machine_that_does_not_number_its_containers(
     here = prefix("run.nc")
     monkeypatch.setattr(os, "readlink", none)
     assert prefix("run.nc") == prefix("run.nc") != here
-    left = tmp_path / f"{prefix('run.nc')}x.part".replace(f"-{os.getpid()}.", f"-{2**22 + 1}.")
-    left.touch()  # of a process that is no more
+    (tmp_path / of_the_dead("run.nc")).touch()
     check(tmp_path / "run.nc", replace=False)
     assert names(tmp_path) == set()
+
+
+def test_a_draft_of_another_machine_stays(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """On a disk that several share, the same number is another process."""
+    with monkeypatch.context() as there:
+        there.setattr(platform, "node", lambda: "another")
+        left = of_the_dead("run.nc")
+    assert left != of_the_dead("run.nc")
+    (tmp_path / left).touch()
+    check(tmp_path / "run.nc", replace=False)
+    assert names(tmp_path) == {left}
+
+
+def test_a_draft_of_another_user_stays(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Of whose processes the system tells nothing but that they are not ours."""
+
+    def forbid(process: int, number: int) -> None:
+        raise PermissionError
+
+    left = tmp_path / of_the_dead("run.nc")
+    left.touch()
+    monkeypatch.setattr(os, "kill", forbid)
+    check(tmp_path / "run.nc", replace=False)
+    assert left.exists()
+    monkeypatch.undo()
+    check(tmp_path / "run.nc", replace=False)
+    assert not left.exists()
+
+
+def test_a_draft_goes_with_all_folders_in_it(tmp_path: Path) -> None:
+    """However deep, as those of a Zarr store."""
+    for draft in (tmp_path / "a", tmp_path / of_the_dead("run.zarr")):
+        (draft / "b" / "c" / "d").mkdir(parents=True)
+        for folder in (draft, draft / "b", draft / "b" / "c" / "d"):
+            (folder / "file").touch()
+    discard([tmp_path / "a"])
+    check(tmp_path / "run.zarr", replace=False)
+    assert names(tmp_path) == set()
+
+
+@pytest.mark.parametrize("name", ["x" * 255, "é" * 127, "€" * 85, "x" + "𝜀" * 63])
+def test_the_longest_names_have_drafts(name: str, tmp_path: Path) -> None:
+    """255 bytes leave no room for what a draft's name has besides; characters may take two, three or four."""
+    path, left = tmp_path / name, tmp_path / of_the_dead(name)
+    left.touch()
+    with whole_file(path) as draft:
+        assert not left.exists()
+        assert len(os.fsencode(draft.name)) <= 255
+        draft.write_text("all")
+    assert names(tmp_path) == {name}
 
 
 DYING = """
