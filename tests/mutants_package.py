@@ -77,7 +77,7 @@ INFERENCE = tuple(
     f"inference/_{name}.py" for name in ("family", "likelihood", "posterior", "series", "table")
 )
 TESTS = {
-    "_files.py": ("test_files.py", "test_files_errors.py", "test_believed.py"),
+    "_files.py": ("test_files.py", "test_files_errors.py", "test_files_words.py"),
     "_drafts.py": ("test_drafts.py", "test_files.py", "test_files_signals.py"),
     "_signals.py": ("test_signals.py",),
     "study/_store.py": ("test_study_store.py", "test_study_create.py"),
