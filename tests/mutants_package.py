@@ -79,7 +79,7 @@ INFERENCE = tuple(
 TESTS = {
     "_files.py": ("test_files.py", "test_files_errors.py", "test_files_words.py"),
     "_drafts.py": ("test_drafts.py", "test_files.py", "test_files_signals.py"),
-    "_signals.py": ("test_signals.py",),
+    "_signals.py": ("test_signals.py", "test_undisturbed.py"),
     "study/_store.py": ("test_study_store.py", "test_study_create.py"),
     "study/_create.py": ("test_study_store.py", "test_study_create.py"),
     "study/_identity.py": ("test_study_merge.py",),
@@ -120,6 +120,7 @@ TESTS = {
     **dict.fromkeys(FITS + SLOPES, FIT_TESTS),
     **dict.fromkeys(FLIGHT, FLIGHT_TESTS),
     **dict.fromkeys(INFERENCE, ("test_inference.py", "test_inference_references.py")),
+    "_trajectory.py": ("test_trajectory.py",),
 }
 """What reads and writes files, handles signals, or works out numbers, and the tests that are about it."""
 

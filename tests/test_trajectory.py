@@ -182,3 +182,101 @@ def test_bad_arguments_are_named(wrong: dict[str, Any], said: str) -> None:
 def test_what_to_record_is_one_of_two() -> None:
     with pytest.raises(ValueError, match=r"^record = 'all': must be 'impacts' or 'state'$"):
         run("at rest", record="all")
+
+
+def test_what_is_given_says_what_it_is() -> None:
+    """Names, units and settings, as of the records."""
+    data = run("thrown")
+    path = rs.trajectory(data, 1, [0.0, 0.01])
+    assert set(path.coords) == {"time", "component"}
+    assert path["component"].to_numpy().tolist() == ["x", "y", "z"]
+    assert path["time"].attrs == {"long_name": "time since release", "units": "s"}
+    units = {"position": "m", "velocity": "m s-1", "axis": "1", "angular_velocity": "rad s-1"}
+    for name, unit in units.items():
+        assert path[name].dims == ("time", "component")
+        assert path[name].attrs["units"] == unit
+        assert set(path[name].attrs) == {"long_name", "units"}
+    assert path["axis"].attrs["long_name"] == "unit vector of the symmetry axis, from sphere 2 to sphere 1"
+    assert path["impacts"].dims == ("time",)
+    assert path["impacts"].attrs == {"long_name": "number of impacts up to then"}
+    assert path.attrs == data.attrs | {"particle": 1}
+    recorded = data["position"].attrs
+    assert recorded["units"] == "m"
+    assert recorded["long_name"] == path["position"].attrs["long_name"] + "; at the impact"
+
+
+def test_states_in_another_order_of_dimensions() -> None:
+    data = run("thrown")
+    expected = rs.trajectory(data, 1, [0.0, 0.01, 0.1])
+    turned = data.transpose("component", "impact", "particle")
+    xr.testing.assert_identical(rs.trajectory(turned, 1, [0.0, 0.01, 0.1]), expected)
+
+
+def test_a_particle_without_impacts_has_its_release_alone() -> None:
+    """What the largest angle that is followed ends before its first impact has no last one."""
+    data = rs.simulate(
+        BODY,
+        LAW,
+        particles=2,
+        impacts=3,
+        release_height=1.0,
+        record="state",
+        spin=[(0.0, 4e6, 0.0), (0.0, 1.0, 0.0)],
+    )
+    assert data["impacts"].to_numpy().tolist() == [0, 3]
+    start = rs.trajectory(data, 0, 0.0)
+    np.testing.assert_array_equal(start["angular_velocity"], [[0.0, 4e6, 0.0]])
+    with pytest.raises(ValueError, match=r"^times.* = 0\.001: must be in \[0, 0\.0\] s, from the release"):
+        rs.trajectory(data, 0, 1e-3)
+
+
+def harmed(data: xr.Dataset, what: str) -> xr.Dataset:
+    """Give a run one of whose settings or records is wrong."""
+    data = data.copy(deep=True)
+    name, _, value = what.partition(" ")
+    if name == "component":
+        return data.assign_coords(component=value.split())
+    if name == "time":
+        data["time"][0, 3] = float(value) if value != "before" else data["time"][0, 2] - 1e-3
+    elif name == "first":
+        data["time"][0, 0] = -1e-3
+    elif name == "velocity":
+        data["velocity_after"][0] = np.inf
+    else:
+        data.attrs[name] = [float(number) for number in value.split()] if " " in value else float(value)
+    return data
+
+
+@pytest.mark.parametrize(
+    ("what", "said"),
+    [
+        ("component z y x", r"data\.component = .*'z'.*: must be x, y, z"),
+        ("time inf", r"data\.time\[3\] = inf: must be a finite time >= 0, not before the impact before it"),
+        ("time before", r"data\.time\[3\] = .*: must be a finite time >= 0, not before the impact before it"),
+        ("first", r"data\.time\[0\] = -0\.001: must be a finite time >= 0, not before the impact"),
+        ("velocity", r"data: the motion at these times is not finite; must be the states and settings of a"),
+        ("release_velocity 1 2", r"data\.release_velocity = .*1.*2.*: must be three finite numbers$"),
+        ("release_velocity nan 0 0", r"data\.release_velocity.*nan.*: must be three finite numbers"),
+        ("transverse_inertia inf", r"data\.transverse_inertia = inf: must be a finite number > 0"),
+        ("transverse_inertia 0", r"data\.transverse_inertia = 0\.0: must be a finite number > 0"),
+        ("axial_inertia 0", r"data\.axial_inertia = 0\.0: must be a finite number in \(0, 2 trans"),
+        ("gravity nan", r"data\.gravity = nan: must be"),
+    ],
+)
+def test_a_run_that_came_to_harm_is_named(what: str, said: str) -> None:
+    with pytest.raises(ValueError, match=f"^{said}"):
+        rs.trajectory(harmed(run("at rest"), what), 0, [0.0, 0.3])
+
+
+def test_no_body_is_flatter_than_a_disc() -> None:
+    """J <= 2J', with what rounding makes of it, and the message says what 2J' is."""
+    data = run("at rest")
+    across = data.attrs["transverse_inertia"]
+    data.attrs["axial_inertia"] = 2.0 * across * (1.0 + 1e-12)
+    assert np.isfinite(rs.trajectory(data, 0, [0.3])["axis"]).all()
+    data.attrs["axial_inertia"] = 2.01 * across
+    said = (
+        rf"data\.axial_inertia = .*: must be a finite number in \(0, 2 transverse_inertia = {2 * across:g}\]"
+    )
+    with pytest.raises(ValueError, match=f"^{said}$"):
+        rs.trajectory(data, 0, [0.3])

@@ -175,9 +175,8 @@ def times_of(time: FloatArray) -> FloatArray:
     """Take the times of the impacts of a particle that happened: NaN comes after the last one only."""
     happened = time[: np.count_nonzero(~np.isnan(time))]
     allowed = "a finite time >= 0, not before the impact before it"
-    with np.errstate(invalid="ignore"):
-        check_each("data.time", happened, np.diff(happened, prepend=0.0) >= 0.0, allowed)
     check_each("data.time", happened, np.isfinite(happened), allowed)
+    check_each("data.time", happened, np.diff(happened, prepend=0.0) >= 0.0, allowed)
     return happened
 
 
