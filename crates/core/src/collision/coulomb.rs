@@ -102,7 +102,6 @@ impl Coulomb {
         contact: &Contacts<S, 1>,
         restitution: Pack<S, 1>,
     ) -> Late<S> {
-        let straight = self.in_plane(contact, restitution);
         let turns = !contact.slip_across.eq(0.0);
         let slipping = Slipping {
             speed: contact.approach_speed(),
@@ -115,13 +114,24 @@ impl Coulomb {
             restitution,
         };
         let (found, open) = turning::begin(&slipping, self.friction, self.hypothesis);
+        let mut response = Responses {
+            normal: found.normal,
+            along: found.along,
+            across: found.across,
+            separation_speed: found.separation_speed,
+        };
+        if !turns.all() {
+            let straight = self.in_plane(contact, restitution);
+            response = Responses {
+                normal: turns.select(response.normal, straight.normal),
+                along: turns.select(response.along, straight.along),
+                across: turns.select(response.across, straight.across),
+                separation_speed: turns
+                    .select(response.separation_speed, straight.separation_speed),
+            };
+        }
         Late {
-            response: Responses {
-                normal: turns.select(found.normal, straight.normal),
-                along: turns.select(found.along, straight.along),
-                across: turns.select(found.across, straight.across),
-                separation_speed: turns.select(found.separation_speed, straight.separation_speed),
-            },
+            response,
             open: (open & turns).select(1.0, 0.0),
             slipping,
         }
@@ -212,20 +222,19 @@ impl<S: Simd, const K: usize> Path<S, K> {
         let turn = self.stop.mul_add(self.first, -speed); // normal velocity at p_s
         let early = turn.le(0.0); // the slip velocity vanishes during the compression
         let depth = -turn;
-        let further = depth / self.second;
-        let compression = early.select(self.stop + further, speed / self.first);
+        // One quotient, one root at a time for both cases: of these there are few, and they take longest.
+        let last = early.select(depth, speed) / early.select(self.second, self.first);
+        let compression = early.select(self.stop + last, last);
 
         // Where the contact slips to the end of the impact, all three hypotheses give v_c^n′ = −ε_n v_c^n.
         let plain = !early & rebound.le(turn);
         let steady = restitution.mul_add(compression, compression);
         let (impulse, separation) = match hypothesis {
-            Hypothesis::Newton => (
-                early.select(
-                    compression + rebound / self.second,
-                    self.stop + (rebound - turn) / self.second,
-                ),
-                rebound,
-            ),
+            Hypothesis::Newton => {
+                let start = early.select(compression, self.stop);
+                let gain = early.select(rebound, rebound - turn);
+                (start + gain / self.second, rebound)
+            }
             Hypothesis::Poisson => (
                 steady,
                 early.select(
@@ -235,18 +244,15 @@ impl<S: Simd, const K: usize> Path<S, K> {
             ),
             Hypothesis::Stronge => {
                 // Twice the work done against the normal force in the compression: the area of two trapezia.
-                let work = self.stop.mul_add(speed + depth, depth * further);
-                let from_stick = restitution * (self.second * work).sqrt();
+                let work = self.stop.mul_add(speed + depth, depth * last);
                 // Twice the work that is still to be returned after p_s, times dv_c^n/dp before p_s.
                 let left = (rebound - turn) * (rebound + turn);
-                let from_slip = turn.mul_add(turn, self.second / self.first * left).sqrt();
-                (
-                    early.select(
-                        compression + from_stick / self.second,
-                        self.stop + left / (self.first * (from_slip + turn)),
-                    ),
-                    early.select(from_stick, from_slip),
-                )
+                let late = turn.mul_add(turn, self.second / self.first * left);
+                let root = early.select(self.second * work, late).sqrt();
+                let separation = early.select(restitution * root, root);
+                let gain = early.select(separation, left)
+                    / early.select(self.second, self.first * (separation + turn));
+                (early.select(compression, self.stop) + gain, separation)
             }
         };
         (
