@@ -160,10 +160,14 @@ def test_heights_beyond_the_digits_of_a_double(law: rs.TangentialRestitution, he
     body = rs.Dumbbell(radius=3e-3, separation=3e-4)
     with pytest.raises(ValueError, match=r"^release_height = .*: must be at most 3e\+07 m, 1e\+10 times the"):
         rs.simulate(body, law, release_height=height)
-    with pytest.raises(ValueError, match=r"^release_velocity = .*: must be at most"):
+    with pytest.raises(ValueError, match=r"^release_velocity\[2\] = -.*: must be at most .* m/s in mag"):
         rs.simulate(body, law, release_velocity=[0.0, 0.0, -height])
-    with pytest.raises(ValueError, match=r"^spin = .*: must be at most"):
+    with pytest.raises(ValueError, match=r"^spin\[1\] = .*: must be at most .* rad/s in magnitude, 1e"):
         rs.simulate(body, law, spin=[0.0, height, 0.0])
+    with pytest.raises(ValueError, match=r"^spin\[1, 2\] = -.*: must be at most"):
+        rs.simulate(body, law, particles=2, spin=[[0.0, 1.0, 0.0], [1.0, 2.0, -height]])
+    with pytest.raises(ValueError, match=r"^spin = .*: must be at most"):
+        rs.simulate(body, law, spin=rs.RandomSpin(rate=height))
     with pytest.raises(ValueError, match=r"^incline = .*: must be at most pi/2"):
         rs.simulate(body, law, incline=math.pi / 2 - 1e-12)
 

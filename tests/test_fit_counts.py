@@ -250,3 +250,14 @@ def test_counts_are_arrays_that_stay_as_they_are() -> None:
         ValueError, match=r"^distribution = 3: must be a distribution, with methods cdf and sf$"
     ):
         counts.logshare(3)
+
+
+def test_what_else_is_in_statistics_does_not_matter(bounced: xr.Dataset) -> None:
+    """As times of day, which have no sum, beside each velocity."""
+    found = rs.reduce(bounced, np.linspace(0.1, 1.1, 11), np.linspace(-1.0, 3.0, 201))
+    noted = found.assign(
+        noted=("velocity", np.full(found.sizes["velocity"], "2014-11-20", "datetime64[ns]")),
+        by=("velocity", ["somebody"] * found.sizes["velocity"]),
+    )
+    expected = fit.laplace(found, velocity=(0.3, 0.9))
+    assert fit.laplace(noted, velocity=(0.3, 0.9)).parameters == expected.parameters

@@ -8,6 +8,7 @@ import numpy as np
 import numpy.typing as npt
 from pydantic import ConfigDict, Field, InstanceOf, model_validator
 
+from restitution._arrays import check_each
 from restitution._parameters import Allowed, Number, ParameterError, Parameters, Problem, Whole, wrong
 from restitution._release import (
     FloatArray,
@@ -100,7 +101,7 @@ class Run(Parameters):
         highest = self.heights[1]
         if highest > _BEYOND * least:
             of = "the least height of the centre of mass over the plane"
-            raise ParameterError(self._beyond("release_height", highest, _BEYOND * least, "m", of))
+            raise ParameterError(wrong("release_height", highest, self._beyond(_BEYOND * least, "m", of)))
         falling = self.gravity * math.cos(self.incline)
         if self.incline > math.pi / 2 - 1.0 / _BEYOND:
             allowed = (
@@ -108,23 +109,23 @@ class Run(Parameters):
             )
             raise ParameterError(wrong("incline", self.incline, allowed))
         fastest = math.sqrt(_BEYOND) * math.sqrt(falling) * math.sqrt(least)
-        for component in self.release_velocity:
-            if abs(component) > fastest:
-                of = "the square of what a fall from the body's own height gives"
-                raise ParameterError(self._beyond("release_velocity", component, fastest, "m/s", of))
+        of = "the square of what a fall from the body's own height gives"
+        self._check_within("release_velocity", self.release_velocity, fastest, "m/s", of)
         most = math.sqrt(_BEYOND) * math.sqrt(falling) / math.sqrt(solid.farthest())
-        spins = self.spin.rates if isinstance(self.spin, RandomSpin) else self.spin
-        spin = float(np.max(np.abs(spins), initial=0.0))
-        if spin > most:
-            raise ParameterError(
-                self._beyond("spin", spin, most, "rad/s", "gravity over the body's size, of the square")
-            )
+        spins = self.spin.rates[1] if isinstance(self.spin, RandomSpin) else self.spin
+        self._check_within("spin", spins, most, "rad/s", "gravity over the body's size, of the square")
         return self
 
+    def _check_within(self, name: str, values: Any, most: float, unit: str, of: str) -> None:
+        """Name the first number whose magnitude is too large, with its place in a vector or a table."""
+        numbers = np.asarray(values)
+        allowed = self._beyond(most, f"{unit} in magnitude", of)
+        check_each(name, numbers, np.abs(numbers) <= most, allowed)
+
     @staticmethod
-    def _beyond(name: str, value: float, most: float, unit: str, of: str) -> Problem:
+    def _beyond(most: float, unit: str, of: str) -> str:
         allowed = f"at most {most:.6g} {unit}, {_BEYOND:g} times {of}"
-        return wrong(name, value, f"{allowed}; beyond, a double has no digits left for the body")
+        return f"{allowed}; beyond, a double has no digits left for the body"
 
     @model_validator(mode="after")
     def _one_spin_per_particle(self) -> "Run":

@@ -69,13 +69,13 @@ def counted(statistics: xr.Dataset, velocity: Window | None) -> Counts:
     if first >= last or abs(edges[first] - low) > allowed or abs(edges[last] - high) > allowed:
         near = ", ".join(f"{v:g}" for v in edges[max(first - 1, 0) : last + 2][:6])
         raise ParameterError(wrong("velocity", velocity, f"edges of velocity bins, here {near}, …, in m/s"))
-    rows = statistics.isel(velocity=slice(first, last)).sum("velocity")
-    return Counts(
-        edges=statistics["restitution_edges"].to_numpy(),
-        count=rows["restitution_count"].to_numpy(),
-        below=int(rows["restitution_underflow"]),
-        above=int(rows["restitution_overflow"]),
+    # What else is in the Dataset may have no sum.
+    count, below, above = (
+        statistics[f"restitution_{name}"].isel(velocity=slice(first, last)).sum("velocity").to_numpy()
+        for name in ("count", "underflow", "overflow")
     )
+    edges = statistics["restitution_edges"].to_numpy()
+    return Counts(edges=edges, count=count, below=int(below), above=int(above))
 
 
 def recorded(data: xr.Dataset, velocity: Window | None) -> tuple[Array, NDArray[np.int64]]:
