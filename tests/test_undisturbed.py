@@ -69,6 +69,20 @@ def test_all_that_waited_come(came: list[int]) -> None:
     assert came == [signal.SIGTERM, signal.SIGALRM, signal.SIGINT]
 
 
+def test_a_handler_is_told_where_the_signal_came() -> None:
+    """In the block, and not where the handler is called: debuggers look there."""
+    frames: list[FrameType | None] = []
+
+    def look(_: int, frame: FrameType | None) -> None:
+        frames.append(frame)
+
+    signal.signal(signal.SIGALRM, look)
+    with undisturbed():
+        signal.raise_signal(signal.SIGALRM)
+    assert frames[0] is not None
+    assert frames[0].f_code.co_name == "test_a_handler_is_told_where_the_signal_came"
+
+
 def test_a_block_that_fails_does_not_swallow_a_signal(came: list[int]) -> None:
     """What it raises has the error as its context; one that raises nothing hides no error."""
 
