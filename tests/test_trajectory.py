@@ -169,6 +169,9 @@ def test_the_state_is_recorded_for_who_asks() -> None:
         ({"times": -0.1}, r"times.* = -0\.1: must be in \[0, .*\] s, from the release to the last recorded"),
         ({"times": [0.0, 1e9]}, r"times\[1\] = 1000000000\.0: must be in \[0, .*\] s"),
         ({"times": np.nan}, r"times.* = nan: must be in"),
+        ({"times": "soon"}, r"times = 'soon': must be times in s, one or several$"),
+        ({"times": [[0.0]]}, r"times = \[\[0\.0\]\]: must be times in s, one or several$"),
+        ({"times": xr.DataArray([0.0], attrs={"units": "m"})}, r"times .*'?m'?.*s"),
     ],
 )
 def test_bad_arguments_are_named(wrong: dict[str, Any], said: str) -> None:
@@ -266,6 +269,15 @@ def harmed(data: xr.Dataset, what: str) -> xr.Dataset:
 def test_a_run_that_came_to_harm_is_named(what: str, said: str) -> None:
     with pytest.raises(ValueError, match=f"^{said}"):
         rs.trajectory(harmed(run("at rest"), what), 0, [0.0, 0.3])
+
+
+def test_two_impacts_at_one_time() -> None:
+    """As in a collapse, when the clock has no digits left: the motion is that after the second."""
+    data = run("at rest").copy(deep=True)
+    data["time"][0, 3] = data["time"][0, 2]
+    path = rs.trajectory(data, 0, float(data["time"][0, 2]))
+    assert path["impacts"].to_numpy().tolist() == [4]
+    np.testing.assert_array_equal(path["velocity"][0], data["velocity_after"][0, 3])
 
 
 def test_no_body_is_flatter_than_a_disc() -> None:
