@@ -96,6 +96,19 @@ def test_a_command_says_what_address_space_it_takes(name: str, tmp_path: Path) -
     assert not list(tmp_path.iterdir())
 
 
+@pytest.mark.parametrize("name", ["distribution", "laws", "paper"])
+def test_a_command_says_what_data_it_takes(name: str, tmp_path: Path) -> None:
+    """Where figures find no room for the buffers of OpenBLAS, that ends the process, and drafts would stay."""
+    code = "import resource; resource.setrlimit(resource.RLIMIT_DATA, (1 << 28, 1 << 28))\n"
+    code += "from restitution._cli import main; main()"
+    words = [sys.executable, "-c", code, *COMMANDS[name][0].split()]
+    done = subprocess.run(words, cwd=tmp_path, capture_output=True, text=True, check=False, timeout=60)
+    assert done.returncode == 1
+    said = r"error: this command: takes 400 MB of data, and this process can have \d+ MB\n"
+    assert re.fullmatch(said, done.stderr)
+    assert not list(tmp_path.iterdir())
+
+
 def test_a_file_that_no_memory_holds(tmp_path: Path) -> None:
     """It is named, with what it takes, before it is read."""
     found = run(f"""

@@ -114,6 +114,19 @@ def check_address_space(what: str, needed: int) -> None:
         _check_bytes(what, "address space", needed, left)
 
 
+def check_data(what: str, needed: int) -> None:
+    """Refuse work that has no room below the limit on data (`ulimit -d`), where libraries end the process.
+
+    Raises
+    ------
+    MemoryError
+        As `check_room`.
+    """
+    _, left = _limits(Path("/"))
+    if left is not None:
+        _check_bytes(what, "data", needed, left)
+
+
 def _check_bytes(what: str, kind: str, needed: int, available: int) -> None:
     if needed > available:
         took, has = (f"{size / 1e6:.0f} MB" for size in (needed, available))

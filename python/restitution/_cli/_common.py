@@ -11,7 +11,7 @@ from typing import Annotated, Any, NoReturn
 import typer
 from typer.core import TyperCommand, TyperGroup
 
-from restitution._memory import check_address_space
+from restitution._memory import check_address_space, check_data
 from restitution._signals import ending
 from restitution._streams import is_terminal, tell
 
@@ -29,6 +29,8 @@ _LONGEST = 1000
 
 _ROOM = 600_000_000
 """Bytes of address space that the libraries of a command take at most, and what they load besides."""
+_DATA = 400_000_000
+"""Bytes of data that a command with figures takes. Short of them OpenBLAS ends the process, with drafts left."""
 
 RunFile = Annotated[
     Path,
@@ -101,6 +103,8 @@ def errors_in_a_line(*libraries: str, room: int = _ROOM) -> Iterator[None]:
         try:
             if libraries:
                 check_address_space("this command", room)
+            if "matplotlib.figure" in libraries:
+                check_data("this command", _DATA)
             for name in libraries:
                 import_module(name)
             yield
