@@ -98,7 +98,7 @@ def test_a_command_says_what_address_space_it_takes(name: str, tmp_path: Path) -
 
 @pytest.mark.parametrize("name", ["distribution", "laws", "paper"])
 def test_a_command_says_what_data_it_takes(name: str, tmp_path: Path) -> None:
-    """Where figures find no room for the buffers of OpenBLAS, that ends the process, and drafts would stay."""
+    """Where OpenBLAS finds no room for its buffers it ends the process, and drafts would stay."""
     code = "import resource; resource.setrlimit(resource.RLIMIT_DATA, (1 << 28, 1 << 28))\n"
     code += "from restitution._cli import main; main()"
     words = [sys.executable, "-c", code, *COMMANDS[name][0].split()]

@@ -30,7 +30,7 @@ _LONGEST = 1000
 _ROOM = 600_000_000
 """Bytes of address space that the libraries of a command take at most, and what they load besides."""
 _DATA = 400_000_000
-"""Bytes of data that a command with figures takes. Short of them OpenBLAS ends the process, with drafts left."""
+"""Bytes of data that a command with figures takes. With less OpenBLAS ends the process, drafts and all."""
 
 RunFile = Annotated[
     Path,
