@@ -1,5 +1,6 @@
 """What the commands share: options, exit statuses, and how errors and warnings are shown."""
 
+import logging
 import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -107,6 +108,8 @@ def errors_in_a_line(*libraries: str, room: int = _ROOM) -> Iterator[None]:
                 check_data("this command", _DATA)
             for name in libraries:
                 import_module(name)
+            # Of the files that Zarr reads at once the first that fails ends the command, in a line.
+            logging.getLogger("asyncio").setLevel(logging.CRITICAL)
             yield
         except Kept as kept:
             raise typer.Exit(128 + (came + kept.late)[-1]) from None
