@@ -81,32 +81,31 @@ def test_listen_says_what_it_takes_before_its_libraries_are_there(tmp_path: Path
     )
 
 
+def refused(name: str, limit: str, size: int, said: str, folder: Path) -> None:
+    """Run a command under a limit; it ends with these words and leaves nothing."""
+    code = f"import resource; resource.setrlimit(resource.{limit}, ({size}, {size}))\n"
+    code += "from restitution._cli import main; main()"
+    words = [sys.executable, "-c", code, *COMMANDS[name][0].split()]
+    done = subprocess.run(words, cwd=folder, capture_output=True, text=True, check=False, timeout=60)
+    assert done.returncode == 1
+    assert re.fullmatch(
+        rf"error: this command: takes {said}, and this process can have \d+ MB\n", done.stderr
+    )
+    assert not list(folder.iterdir())
+
+
 @pytest.mark.parametrize(
     "name", ["simulate", "statistics", "compare", "distribution", "fit", "laws", "sweep"]
 )
 def test_a_command_says_what_address_space_it_takes(name: str, tmp_path: Path) -> None:
     """Before its libraries are loaded, which fail in ways of their own where they have no room."""
-    code = "import resource; resource.setrlimit(resource.RLIMIT_AS, (3 << 27, 3 << 27))\n"
-    code += "from restitution._cli import main; main()"
-    words = [sys.executable, "-c", code, *COMMANDS[name][0].split()]
-    done = subprocess.run(words, cwd=tmp_path, capture_output=True, text=True, check=False, timeout=60)
-    assert done.returncode == 1
-    said = r"error: this command: takes 600 MB of address space, and this process can have \d+ MB\n"
-    assert re.fullmatch(said, done.stderr)
-    assert not list(tmp_path.iterdir())
+    refused(name, "RLIMIT_AS", 3 << 27, "600 MB of address space", tmp_path)
 
 
 @pytest.mark.parametrize("name", ["distribution", "laws", "paper"])
 def test_a_command_says_what_data_it_takes(name: str, tmp_path: Path) -> None:
     """Where OpenBLAS finds no room for its buffers it ends the process, and drafts would stay."""
-    code = "import resource; resource.setrlimit(resource.RLIMIT_DATA, (1 << 28, 1 << 28))\n"
-    code += "from restitution._cli import main; main()"
-    words = [sys.executable, "-c", code, *COMMANDS[name][0].split()]
-    done = subprocess.run(words, cwd=tmp_path, capture_output=True, text=True, check=False, timeout=60)
-    assert done.returncode == 1
-    said = r"error: this command: takes 400 MB of data, and this process can have \d+ MB\n"
-    assert re.fullmatch(said, done.stderr)
-    assert not list(tmp_path.iterdir())
+    refused(name, "RLIMIT_DATA", 1 << 28, "400 MB of data", tmp_path)
 
 
 def test_a_file_that_no_memory_holds(tmp_path: Path) -> None:

@@ -109,9 +109,7 @@ def check_address_space(what: str, needed: int) -> None:
     MemoryError
         As `check_room`.
     """
-    left, _ = _limits(Path("/"))
-    if left is not None:
-        _check_bytes(what, "address space", needed, left)
+    _check_limit(what, "address space", needed)
 
 
 def check_data(what: str, needed: int) -> None:
@@ -122,9 +120,13 @@ def check_data(what: str, needed: int) -> None:
     MemoryError
         As `check_room`.
     """
-    _, left = _limits(Path("/"))
+    _check_limit(what, "data", needed)
+
+
+def _check_limit(what: str, kind: str, needed: int) -> None:
+    left = dict(zip(("address space", "data"), _limits(Path("/")), strict=True))[kind]
     if left is not None:
-        _check_bytes(what, "data", needed, left)
+        _check_bytes(what, kind, needed, left)
 
 
 def _check_bytes(what: str, kind: str, needed: int, available: int) -> None:
