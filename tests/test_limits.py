@@ -279,10 +279,15 @@ except rs.SimulationInterrupted as stop:
     assert kept > 0
 
 
-def test_ctrl_c_in_fine_statistics() -> None:
-    """Grids of 2·10⁸ sites, most of them empty, cost the processor less than a second after it."""
-    [[seconds, kept]] = run("""
-fine = {"velocity_bins": np.linspace(0, 1.2, 1001), "restitution_bins": np.linspace(-1, 3, 200_001)}
+@pytest.mark.parametrize("bins", [(1000, 200_000), (3000, 30_000)])
+def test_ctrl_c_in_fine_statistics(bins: tuple[int, int]) -> None:
+    """Grids of 2·10⁸ sites, with impacts in parts of each row or in most sites, cost about a second."""
+    [[seconds, kept]] = run(f"""
+body = rs.Dumbbell(radius=3e-3, separation=3e-3)
+fine = {{
+    "velocity_bins": {bins[0]}, "velocity_range": (0, 1.2),
+    "restitution_bins": {bins[1]}, "restitution_range": (-1, 3),
+}}
 pressed = []
 def press():
     pressed.append(time.process_time())

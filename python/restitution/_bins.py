@@ -119,6 +119,7 @@ def centres(edges: FloatArray) -> FloatArray:
 
 def assemble(
     counts: dict[str, IntArray],
+    number: IntArray,
     moments: dict[str, FloatArray],
     rows: xr.Variable,
     columns: dict[str, FloatArray],
@@ -131,6 +132,8 @@ def assemble(
     counts : dict of int64 arrays, shape (rows, bins + 3)
         ``restitution_count`` and perhaps ``fraction_count``; the columns are what is below the bins, the
         bins, what is above, and the undefined.
+    number : int64 array, shape (rows,)
+        Impacts whose restitution is defined.
     moments : dict of float arrays, shape (rows,)
         ``mean_restitution``, ``variance``, ``skewness``, ``kurtosis``, ``minimum``, ``maximum``,
         ``mean_fraction``; or none.
@@ -145,8 +148,8 @@ def assemble(
     grid = counts["restitution_count"]
     site = {"long_name": "impacts in the site"}
     variables: dict[str, Any] = {"restitution_count": ((row, "restitution"), grid[:, 1:-2], site)}
-    per_row = {
-        "number": (grid[:, :-1].sum(axis=1), "impacts whose restitution is defined"),
+    per_row: dict[str, tuple[npt.NDArray[Any], str]] = {
+        "number": (number, "impacts whose restitution is defined"),
         "undefined": (grid[:, -1], "impacts whose restitution is not finite or at least 2**33 in magnitude"),
         "restitution_underflow": (grid[:, 0], "impacts below the restitution bins"),
         "restitution_overflow": (grid[:, -2], "impacts above the restitution bins"),
@@ -168,6 +171,7 @@ def assemble(
 
 def by_velocity(
     counts: dict[str, IntArray],
+    number: IntArray,
     moments: dict[str, FloatArray],
     velocity_edges: FloatArray,
     columns: dict[str, FloatArray],
@@ -178,7 +182,7 @@ def by_velocity(
     outer = {
         name: (
             (),
-            np.int64(counts["restitution_count"][row].sum()),
+            number[row] + counts["restitution_count"][row, -1],
             {"long_name": f"impacts {where} the velocity bins"},
         )
         for name, row, where in (("velocity_underflow", 0, "below"), ("velocity_overflow", -1, "above"))
@@ -186,6 +190,7 @@ def by_velocity(
     edges = {"velocity_edges": ("velocity_edge", velocity_edges, {"units": "m s-1"})}
     return assemble(
         {name: grid[1:-1] for name, grid in counts.items()},
+        number[1:-1],
         {name: values[1:-1] for name, values in moments.items()},
         xr.Variable("velocity", centres(velocity_edges), about),
         columns,

@@ -139,7 +139,8 @@ def reduce(
         more |= {
             name: ("velocity", values, about) for name, (values, about) in standard_errors_of(each).items()
         }
-    found = by_velocity(counts, moments, velocity_edges, columns, more)
+    number = counts["restitution_count"][:, :-1].sum(axis=1)
+    found = by_velocity(counts, number, moments, velocity_edges, columns, more)
     content = "statistics of restitution in bins of impact velocity, bins lo <= x < hi"
     how = origin(len(parts), data.sizes["particle"], batches)
     about = _without_ledger(data) | ledger_of(energy)

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from functools import partial
 from typing import Any, Literal, TypeAlias
 
 import numpy as np
@@ -28,6 +26,8 @@ from restitution.laws import Law
 
 Edges: TypeAlias = dict[str, npt.NDArray[np.float64] | None]
 """Edges of the bins of ``velocity`` or None, of ``restitution``, and of ``fraction`` or None."""
+Table: TypeAlias = dict[str, npt.NDArray[Any]]
+"""What the core counted or measured, by its names."""
 
 _SAME = ("variance", "skewness", "kurtosis", "minimum", "maximum", "mean_fraction")
 MOMENTS = {"mean_restitution": "mean", **{name: name for name in _SAME}}
@@ -132,11 +132,12 @@ def statistics(
     edges = edges_of(velocity, restitution, None if counts_only else fraction)
     number = checked_threads(threads)
     parts = batches_of(run.particles, 1 if counts_only else batches)
-    _check_memory(run, edges, number)
+    _check_memory(run, edges, number, len(parts))
     with progress_bar("statistics", run.particles, "particles", show=progress) as tell:
-        tally, rows, interrupted = _counted(run, edges, number, parts, tell)
-    found = dataset_of(run, edges, tally)
-    if len(rows) > 1:
+        table, each, interrupted = _core.statistics(run.parameters(), edges, number, tell, parts)
+    found = dataset_of(run, edges, table)
+    rows = [_moments(edges, one) for one in each] if len(each) > 1 else []  # one batch has no scatter
+    if rows:
         row = "impact" if edges["velocity"] is None else "velocity"
         found = found.assign(
             {name: (row, values, attrs) for name, (values, attrs) in standard_errors(rows).items()}
@@ -149,37 +150,8 @@ def statistics(
     return found
 
 
-def _counted(
-    run: Run,
-    edges: Edges,
-    threads: int,
-    parts: list[tuple[int, int]],
-    tell: Callable[[int], None] | None,
-) -> tuple[_core.Tally, list[dict[str, Any]], KeyboardInterrupt | None]:
-    """Count batch by batch; give the sum, the moments of every batch, and what Ctrl-C raised, if it came."""
-    total: _core.Tally | None = None
-    rows: list[dict[str, Any]] = []
-    for first, last in parts:
-        advance = None if tell is None else partial(_shifted, tell, first)
-        tally, interrupted = _core.statistics(run.parameters(), edges, threads, advance, (first, last))
-        total = tally if total is None else total.merged([tally])
-        if interrupted and not rows:
-            break  # at once: a part of one batch has no scatter
-        if len(parts) > 1:
-            rows.append(_moments(edges, tally))
-        if interrupted:
-            break
-    assert total is not None
-    return total, rows, interrupted
-
-
-def _shifted(tell: Callable[[int], None], first: int, done: int) -> None:
-    tell(first + done)
-
-
-def _moments(edges: Edges, tally: _core.Tally) -> dict[str, Any]:
+def _moments(edges: Edges, table: Table) -> dict[str, Any]:
     """Take the rows that a result has, and of them what standard errors are made of."""
-    table = tally.moments()
     inner = slice(None) if edges["velocity"] is None else slice(1, -1)
     return {name: table[key][inner] for name, key in (MOMENTS | {"number": "number"}).items()}
 
@@ -195,11 +167,11 @@ def edges_of(
     }
 
 
-def dataset_of(run: Run, edges: Edges, tally: _core.Tally) -> xr.Dataset:
-    """Lay out what was counted as `statistics` returns it."""
-    table = tally.table()
+def dataset_of(run: Run, edges: Edges, table: Table) -> xr.Dataset:
+    """Lay out what was counted as `statistics` returns it. The counts are never summed: that takes long."""
     columns = {name: own for name, own in edges.items() if name != "velocity" and own is not None}
     counts = {"restitution_count": table["count"]}
+    number = table["number"]
     moments = {}
     if "fraction" in columns:
         counts["fraction_count"] = table["fraction_count"]
@@ -217,25 +189,30 @@ def dataset_of(run: Run, edges: Edges, tally: _core.Tally) -> xr.Dataset:
     if velocity is None:
         rows = xr.Variable("impact", np.arange(run.impacts), {"long_name": "number of the impact, from 0"})
         more |= by_row("impact", created, largest)
-        found = assemble(counts, moments, rows, columns, more)
+        found = assemble(counts, number, moments, rows, columns, more)
     else:  # the outer rows are beyond the bins
         more |= by_row("velocity", created[1:-1], largest[1:-1])
-        found = by_velocity(counts, moments, velocity, columns, more)
+        found = by_velocity(counts, number, moments, velocity, columns, more)
     found.attrs = attributes(run, "Statistics of the impacts of bouncing aspherical particles")
-    found.attrs |= ledger(int(table["count"].sum()), int(created.sum()), float(largest.max()))
+    all_impacts = int(number.sum() + table["count"][:, -1].sum())
+    found.attrs |= ledger(all_impacts, int(created.sum()), float(largest.max()))
     return found
 
 
-def _check_memory(run: Run, edges: Edges, threads: int) -> None:
-    """Refuse grids that this process cannot hold: 12 bytes a site and 600 a row, a thread, and the total."""
+def _check_memory(run: Run, edges: Edges, threads: int, batches: int) -> None:
+    """Refuse grids that this process cannot hold.
+
+    A site takes 8 bytes, and 4 more a thread; a row 400, as many a thread, and 200 a batch.
+    """
     velocity = edges["velocity"]
     rows = run.impacts if velocity is None else velocity.size + 1
     columns = sum(own.size + 2 for name, own in edges.items() if name != "velocity" and own is not None)
-    copies = (threads or _core.build_info()["threads"]) + 1
-    needed, available = copies * rows * (12 * columns + 600), available_memory()
+    copies = threads or _core.build_info()["threads"]
+    needed = rows * ((8 + 4 * copies) * columns + 400 * (1 + copies) + 200 * batches)
+    available = available_memory()
     if needed > available:
         text = (
-            f": {rows:,} rows of {columns:,} sites in {copies} copies take {needed / 1e9:.3g} GB: must be "
-            f"at most {available / 1e9:.3g} GB, what this process can have"
+            f": {rows:,} rows of {columns:,} sites, counted by {copies} threads, take {needed / 1e9:.3g} GB: "
+            f"must be at most {available / 1e9:.3g} GB, what this process can have"
         )
         raise TooLargeError(Problem("velocity_bins, restitution_bins, fraction_bins", text))

@@ -26,7 +26,7 @@ def arm(number: int, name: str) -> None:
         return
     from restitution import _core
 
-    for work in ("simulate", "simulate_series", "statistics"):
+    for work in ("simulate", "simulate_series", "statistics", "tally"):
         setattr(_core, work, _sending(getattr(_core, work), number))
     _core.Tally = _Sending(_core.Tally, number)  # type: ignore[assignment,misc]
 

@@ -4,7 +4,7 @@ use crate::Error;
 use crate::columns::{Columns, Records};
 use crate::records::Table;
 use crate::run::{BLOCK, Plan, Run, Series, Source, bounce_block, even, share};
-use crate::statistics::{Bins, By, Counter, Counts, Tally, Tallying};
+use crate::statistics::{Bins, By, Counter, Counts, Rows, Tally, Tallying, UNSPOILT};
 use crate::threads::{Means, Monitor};
 use std::ops::Range;
 use std::sync::Mutex;
@@ -61,46 +61,79 @@ impl Run<'_> {
         means: Means,
         monitor: &Monitor,
     ) -> Result<Tally, Error> {
+        self.statistics_of_parts(&[part], bins, means, monitor, |_| Ok(()))
+    }
+
+    /// As [`Run::statistics_of_part`], for several parts, one after the other; `tell` has what is summed by row of each that was begun.
+    pub fn statistics_of_parts(
+        &self,
+        parts: &[Range<usize>],
+        bins: &Bins,
+        means: Means,
+        monitor: &Monitor,
+        mut tell: impl FnMut(&Rows) -> Result<(), Error>,
+    ) -> Result<Tally, Error> {
         let plan = Plan::new(self)?;
-        plan.check_part(&part)?;
+        parts.iter().try_for_each(|part| plan.check_part(part))?;
         bins.check()?;
         if let By::Number(rows) = bins.by {
             let allowed = "at most the number of rows";
             Error::unless(self.impacts <= rows, "impacts", self.impacts, allowed)?;
         }
-        let origin = self.origin();
-        let even = bins.are_even();
-        let tallies = match &bins.fraction {
-            Some(fractions) if even => Self::tallies(&plan, part, means, monitor, || {
-                Counter::<true>::new(bins, fractions, &plan, origin)
-            }),
-            Some(fractions) => Self::tallies(&plan, part, means, monitor, || {
-                Counter::<false>::new(bins, fractions, &plan, origin)
-            }),
-            None if even => Self::tallies(&plan, part, means, monitor, || {
-                Counts::<true>::new(bins, &plan, origin)
-            }),
-            None => Self::tallies(&plan, part, means, monitor, || {
-                Counts::<false>::new(bins, &plan, origin)
-            }),
-        };
-        let mut tallies = tallies?.into_iter();
-        let mut total = tallies.next().expect("at least one thread counts")?;
-        for tally in tallies {
-            total.merge(&tally?);
+        let mut total = Tally::new(bins, self.origin())?;
+        for part in parts {
+            let shared = Mutex::new(total);
+            let rows = Self::rows(&plan, part.clone(), bins, means, monitor, &shared)?;
+            total = shared.into_inner().expect(UNSPOILT);
+            tell(&rows)?;
+            total.rows.merge(&rows);
+            if monitor.is_cancelled() {
+                break;
+            }
         }
         Ok(total)
     }
 
-    /// The tallies of all threads. Which thread takes which block does not matter, because integer sums do not depend on the
+    /// Counts the impacts of a part in the grids of a tally, and returns what else is summed of them.
+    fn rows(
+        plan: &Plan<'_>,
+        part: Range<usize>,
+        bins: &Bins,
+        means: Means,
+        monitor: &Monitor,
+        shared: &Mutex<Tally>,
+    ) -> Result<Rows, Error> {
+        let even = bins.are_even();
+        let found = match &bins.fraction {
+            Some(fractions) if even => Self::each(plan, part, means, monitor, || {
+                Counter::<true>::new(bins, fractions, plan, shared)
+            }),
+            Some(fractions) => Self::each(plan, part, means, monitor, || {
+                Counter::<false>::new(bins, fractions, plan, shared)
+            }),
+            None if even => Self::each(plan, part, means, monitor, || {
+                Counts::<true>::new(bins, plan, shared)
+            }),
+            None => Self::each(plan, part, means, monitor, || {
+                Counts::<false>::new(bins, plan, shared)
+            }),
+        };
+        let mut sum = Rows::new(bins, plan.run.origin())?;
+        for rows in found? {
+            sum.merge(&rows?);
+        }
+        Ok(sum)
+    }
+
+    /// What every thread has summed. Which thread takes which block does not matter, because integer sums do not depend on the
     /// order.
-    fn tallies<T: Tallying>(
+    fn each<T: Tallying>(
         plan: &Plan<'_>,
         part: Range<usize>,
         means: Means,
         monitor: &Monitor,
         counter: impl Fn() -> Result<T, Error> + Sync,
-    ) -> Result<Vec<Result<Tally, Error>>, Error> {
+    ) -> Result<Vec<Result<Rows, Error>>, Error> {
         let next = AtomicUsize::new(part.start);
         means.each_thread(part.len().div_ceil(BLOCK), |threads| {
             let mut counter = counter()?;

@@ -123,9 +123,9 @@ fn the_statistics_count_what_the_oracle_counts() {
             }
         }
         for (row, found) in found.iter().enumerate() {
-            assert_eq!(tally.number(row), found.len() as u64);
+            assert_eq!(tally.rows.number(row), found.len() as u64);
             let mean = found.iter().sum::<f64>() / found.len() as f64;
-            let counted = tally.moments(row).unwrap().mean;
+            let counted = tally.rows.moments(row).unwrap().mean;
             assert!(
                 (counted - mean).abs() <= QUANTUM,
                 "{counted} in {row}: {mean}"

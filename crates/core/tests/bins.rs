@@ -98,13 +98,13 @@ impl Expected {
     fn agrees(&self, tally: &Tally, origin: f64) -> Result<(), TestCaseError> {
         prop_assert_eq!(tally.restitution.counts(), &self.restitution[..]);
         prop_assert_eq!(tally.fraction.counts(), &self.fraction[..]);
-        prop_assert_eq!(&tally.gains, &self.gains);
-        prop_assert_eq!(tally.stops, self.stops);
+        prop_assert_eq!(&tally.rows.gains, &self.gains);
+        prop_assert_eq!(tally.rows.stops, self.stops);
         for (row, values) in self.values.iter().enumerate() {
             let number = values.len();
-            prop_assert_eq!(tally.number(row), number as u64);
-            let found = tally.moments(row).unwrap();
-            let mean_fraction = tally.mean_fraction(row).unwrap();
+            prop_assert_eq!(tally.rows.number(row), number as u64);
+            let found = tally.rows.moments(row).unwrap();
+            let mean_fraction = tally.rows.mean_fraction(row).unwrap();
             if number == 0 {
                 prop_assert!(mean_fraction.is_nan());
                 prop_assert!(
@@ -257,7 +257,7 @@ fn counts_and_sums_what_simulate_records(run: &Run<'_>, level: Level) -> Result<
     for tally in [&by_velocity, &by_number] {
         prop_assert_eq!(total(&tally.restitution), impacts);
         prop_assert_eq!(total(&tally.fraction), impacts);
-        prop_assert_eq!(tally.stops.iter().sum::<u64>(), run.particles as u64);
+        prop_assert_eq!(tally.rows.stops.iter().sum::<u64>(), run.particles as u64);
     }
     Ok(())
 }

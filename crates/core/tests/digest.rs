@@ -58,11 +58,15 @@ impl Digest {
 
     fn tally(&mut self, tally: &Tally, rows: usize) {
         let grids: [&Grid; 2] = [&tally.restitution, &tally.fraction];
-        for count in grids.into_iter().flat_map(Grid::counts).chain(&tally.stops) {
+        for count in grids
+            .into_iter()
+            .flat_map(Grid::counts)
+            .chain(&tally.rows.stops)
+        {
             self.word(*count);
         }
         for row in 0..rows {
-            let m = tally.moments(row).unwrap();
+            let m = tally.rows.moments(row).unwrap();
             let numbers = [
                 m.mean,
                 m.variance,
@@ -70,7 +74,7 @@ impl Digest {
                 m.kurtosis,
                 m.minimum,
                 m.maximum,
-                tally.mean_fraction(row).unwrap(),
+                tally.rows.mean_fraction(row).unwrap(),
             ];
             numbers.into_iter().for_each(|x| self.number(x));
         }

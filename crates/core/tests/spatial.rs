@@ -111,9 +111,9 @@ fn every_impact_is_counted() {
             fraction: Some(axis(&[0.0, 0.5, 1.0])),
         };
         let tally = run.statistics(&bins, MEANS, &Monitor::default()).unwrap();
-        let counted: u64 = (0..run.impacts).map(|row| tally.number(row)).sum();
+        let counted: u64 = (0..run.impacts).map(|row| tally.rows.number(row)).sum();
         assert_eq!(counted, records.impacts.iter().sum::<i64>() as u64);
-        let stops: u64 = tally.stops.iter().sum();
+        let stops: u64 = tally.rows.stops.iter().sum();
         assert_eq!(stops, run.particles as u64);
     }
 }

@@ -44,6 +44,7 @@ fn the_pieces_are_as_different_as_they_should_be() {
     let largest = |tally: &Tally| {
         let largest = |row| {
             tally
+                .rows
                 .moments(row)
                 .map_or(0.0, |m| m.maximum.max(-m.minimum))
         };
@@ -61,7 +62,7 @@ fn the_pieces_are_as_different_as_they_should_be() {
         last.sum::<u64>()
     };
     assert!(undefined(extreme) > 0);
-    let gains = |tally: &Tally| tally.gains.iter().map(|row| row.count).sum::<u64>();
+    let gains = |tally: &Tally| tally.rows.gains.iter().map(|row| row.count).sum::<u64>();
     let creating = PIECES.iter().filter(|piece| gains(piece) > 0).count();
     assert!(0 < creating && creating < PIECES.len());
 }
@@ -104,23 +105,24 @@ fn full_grids_merge() {
         .collect();
     assert_eq!(total.restitution.counts(), sums);
     assert_eq!(total.restitution.columns(), 1403);
-    let copied = total.restitution.to_counts().unwrap();
-    assert!(copied.iter().map(|&count| count as u64).eq(sums));
+    let counts = total.restitution.into_counts();
+    assert!(counts.iter().map(|&count| count as u64).eq(sums));
 }
 
-/// What goes to NumPy is what was counted, in grids of several parts too, some of them empty.
+/// What goes to NumPy is what was counted, in grids of several parts too, some of them empty, and so is a copy.
 #[test]
-fn counts_are_copied_as_they_are() {
+fn copies_and_counts_are_what_was_counted() {
     let fine = Edges::coarse().bins(By::Number(ROWS));
     for tally in PIECES.iter().chain([&Tally::new(&fine, 0.98).unwrap()]) {
-        for grid in [&tally.restitution, &tally.fraction] {
-            let copied: Vec<_> = grid.to_counts().unwrap();
-            assert!(
-                copied
-                    .iter()
-                    .map(|&count| count as u64)
-                    .eq(grid.counts().iter().copied())
-            );
+        let copy = tally.copied().unwrap();
+        assert_eq!(&copy, tally);
+        for (copied, grid) in [
+            (copy.restitution, &tally.restitution),
+            (copy.fraction, &tally.fraction),
+        ] {
+            let counts = copied.into_counts();
+            let counts = counts.iter().map(|&count| count as u64);
+            assert!(counts.eq(grid.counts().iter().copied()));
         }
     }
 }
@@ -284,7 +286,7 @@ fn every_impact_and_every_end_is_counted_once() {
                         "{number} {level:?}"
                     );
                 }
-                for (reason, &count) in tally.stops.iter().enumerate() {
+                for (reason, &count) in tally.rows.stops.iter().enumerate() {
                     let ended = |&&stop: &&i8| stop as usize == reason;
                     let expected = records.stop_reason.iter().filter(ended).count();
                     assert_eq!(count, expected as u64, "{reason} {level:?}");

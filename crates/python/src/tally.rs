@@ -8,7 +8,9 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use restitution_core::collected;
 use restitution_core::statistics as core;
-use restitution_core::statistics::{Axis, Bins, By, Moments};
+use restitution_core::statistics::{Axis, Bins, By, Moments, Rows};
+use restitution_core::{Error, Monitor};
+use std::ops::Range;
 
 /// The edges of the bins. Rows are bins of the impact velocity, or, if these have no edges, the numbers of the impacts.
 #[derive(FromPyObject)]
@@ -92,48 +94,70 @@ impl Tally {
 
     /// The counts and moments by name.
     fn table<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        let tally = &self.tally;
-        let table = self.moments(py)?;
-        for (name, grid) in [
-            ("count", &tally.restitution),
-            ("fraction_count", &tally.fraction),
-        ] {
-            let counts = grid.to_counts().map_err(python_error)?;
-            set(py, &table, name, (self.bins.rows(), grid.columns()), counts)?;
-        }
-        let created = tally.gains.iter().map(|row| row.count as i64);
-        table.set_item("energy_created", column(py, created)?)?;
-        let largest = tally.gains.iter().map(|row| row.largest);
-        table.set_item("largest_energy_ratio", column(py, largest)?)?;
-        let stops = tally.stops.map(|count| count as i64).to_vec();
-        table.set_item("stops", stops.into_pyarray(py))?;
-        Ok(table)
+        let copy = self.tally.copied().map_err(python_error)?;
+        table(py, copy)
+    }
+}
+
+/// What was counted, by name. The counts themselves are handed over, not a copy: a fine grid is large.
+fn table(py: Python<'_>, tally: core::Tally) -> PyResult<Bound<'_, PyDict>> {
+    let core::Tally {
+        restitution,
+        fraction,
+        rows,
+    } = tally;
+    let number = rows.gains.len();
+    let table = Measured::of(&rows).map_err(python_error)?.table(py)?;
+    for (name, grid) in [("count", restitution), ("fraction_count", fraction)] {
+        let shape = (number, grid.columns());
+        set(py, &table, name, shape, grid.into_counts())?;
+    }
+    let created = rows.gains.iter().map(|row| row.count as i64);
+    table.set_item("energy_created", column(py, created)?)?;
+    let largest = rows.gains.iter().map(|row| row.largest);
+    table.set_item("largest_energy_ratio", column(py, largest)?)?;
+    let stops = rows.stops.map(|count| count as i64).to_vec();
+    table.set_item("stops", stops.into_pyarray(py))?;
+    Ok(table)
+}
+
+/// The number of impacts with a defined ε in each row, and what follows from their sums, if there are any: impacts may only be
+/// counted.
+struct Measured {
+    numbers: Vec<i64>,
+    moments: Vec<Option<Moments>>,
+    fractions: Vec<f64>,
+}
+
+impl Measured {
+    fn of(rows: &Rows) -> Result<Self, Error> {
+        let all = rows.gains.len();
+        let summed = 0..rows.moments(0).map_or(0, |_| all);
+        Ok(Self {
+            numbers: collected("numbers", (0..all).map(|row| rows.number(row) as i64))?,
+            moments: collected("moments", summed.clone().map(|row| rows.moments(row)))?,
+            fractions: collected(
+                "moments",
+                summed.map(|row| rows.mean_fraction(row).unwrap_or(f64::NAN)),
+            )?,
+        })
     }
 
-    /// The number of impacts with a defined ε in each row, and their moments by name.
-    fn moments<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        let tally = &self.tally;
-        // Row by row, because a fine grid does not fit into the cache, but one of its rows does.
-        let rows = self.bins.rows();
-        let numbers = (0..rows).map(|row| tally.number(row) as i64);
-        // Where impacts are only counted, no row has moments.
-        let summed = 0..tally.moments(0).map_or(0, |_| rows);
-        let every = summed.clone().map(|row| tally.moments(row));
-        let moments = collected("moments", every).map_err(python_error)?;
-        let fractions = summed.map(|row| tally.mean_fraction(row).unwrap_or(f64::NAN));
+    /// By name.
+    fn table(self, py: Python<'_>) -> PyResult<Bound<'_, PyDict>> {
         let moment = |f: fn(&Moments) -> f64| {
             let value = |moments: &Option<Moments>| moments.as_ref().map_or(f64::NAN, f);
-            column(py, moments.iter().map(value))
+            column(py, self.moments.iter().map(value))
         };
         let table = PyDict::new(py);
-        table.set_item("number", column(py, numbers)?)?;
         table.set_item("mean", moment(|m| m.mean)?)?;
         table.set_item("variance", moment(|m| m.variance)?)?;
         table.set_item("skewness", moment(|m| m.skewness)?)?;
         table.set_item("kurtosis", moment(|m| m.kurtosis)?)?;
         table.set_item("minimum", moment(|m| m.minimum)?)?;
         table.set_item("maximum", moment(|m| m.maximum)?)?;
-        table.set_item("mean_fraction", column(py, fractions)?)?;
+        table.set_item("number", self.numbers.into_pyarray(py))?;
+        table.set_item("mean_fraction", self.fractions.into_pyarray(py))?;
         Ok(table)
     }
 }
@@ -151,7 +175,7 @@ fn column<T: Element>(
 /// the `KeyboardInterrupt` that cut the run short, if any.
 #[pyfunction]
 #[pyo3(signature = (run, edges, threads, progress, part=None))]
-fn statistics<'py>(
+fn tally<'py>(
     py: Python<'py>,
     run: Parameters<'py>,
     edges: Edges<'py>,
@@ -163,7 +187,7 @@ fn statistics<'py>(
     let means = means(threads)?;
     let bins = edges.bins(run.impacts)?;
     let part = range(part, run.particles);
-    let (tally, interrupted) = watch::run(py, progress, |monitor| {
+    let (tally, interrupted) = watch::run(py, progress, |monitor: &Monitor| {
         run.statistics_of_part(part, &bins, means, monitor)
     })?;
     let origin = run.origin();
@@ -177,7 +201,37 @@ fn statistics<'py>(
     ))
 }
 
+/// What was counted of a run, by name; the moments of each of its parts that was begun; and what cut it short, if anything.
+type Counted<'py> = (Bound<'py, PyDict>, Vec<Bound<'py, PyDict>>, Option<PyErr>);
+
+/// The same for the particles of several parts, one part after the other.
+#[pyfunction]
+fn statistics<'py>(
+    py: Python<'py>,
+    run: Parameters<'py>,
+    edges: Edges<'py>,
+    threads: usize,
+    progress: Option<Bound<'py, PyAny>>,
+    parts: Vec<(usize, usize)>,
+) -> PyResult<Counted<'py>> {
+    let run = run.run()?;
+    let means = means(threads)?;
+    let bins = edges.bins(run.impacts)?;
+    let parts: Vec<Range<usize>> = parts.into_iter().map(|(first, end)| first..end).collect();
+    let mut measured = Vec::new();
+    let (tally, interrupted) = watch::run(py, progress, |monitor: &Monitor| {
+        run.statistics_of_parts(&parts, &bins, means, monitor, |rows| {
+            measured.push(Measured::of(rows)?);
+            Ok(())
+        })
+    })?;
+    let measured = measured.into_iter().map(|part| part.table(py));
+    let measured = measured.collect::<PyResult<_>>()?;
+    Ok((table(py, tally)?, measured, interrupted))
+}
+
 pub fn add_to(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<Tally>()?;
+    module.add_function(wrap_pyfunction!(tally, module)?)?;
     module.add_function(wrap_pyfunction!(statistics, module)?)
 }

@@ -102,7 +102,7 @@ def count(point: Point, part: tuple[int, int], tell: Tell | None = None) -> Word
     """Drop the particles of a part, and write down what their impacts add up to."""
     words = [np.empty(0, np.uint64)]
     if point.edges is not None:
-        tally, interrupted = _core.statistics(_parameters(point.run, part), point.edges, 1, tell, part)
+        tally, interrupted = _core.tally(_parameters(point.run, part), point.edges, 1, tell, part)
         if interrupted:
             raise KeyboardInterrupt from interrupted
         words.append(tally.words())
@@ -187,7 +187,8 @@ def _real(measured: xr.Dataset) -> list[Hashable]:
 
 def _statistics_of(point: Point, words: Words) -> xr.Dataset:
     assert point.edges is not None
-    return dataset_of(point.run, point.edges, _core.Tally.read(point.run.parameters(), point.edges, words))
+    tally = _core.Tally.read(point.run.parameters(), point.edges, words)
+    return dataset_of(point.run, point.edges, tally.table())
 
 
 def _values(found: xr.Dataset, name: str) -> npt.NDArray[np.float64]:
@@ -203,7 +204,7 @@ def _recorded_words(point: Point) -> int:
 
 def _with_errors(point: Point, total: _core.Tally, without: Sequence[_core.Tally]) -> xr.Dataset:
     assert point.edges is not None
-    statistics = dataset_of(point.run, point.edges, total)
+    statistics = dataset_of(point.run, point.edges, total.table())
     row = str(statistics["number"].dims[0])
     values = _derived(total, point.edges)
     errors = _errors([_derived(tally, point.edges) for tally in without])
@@ -226,7 +227,7 @@ def _with_errors(point: Point, total: _core.Tally, without: Sequence[_core.Tally
     measures = [partial(form, point.run) for form in point.forms]
     if point.measure is not None and not point.records:
         measures.append(partial(_measured, point))
-    parts = [dataset_of(point.run, point.edges, tally) for tally in without] if measures else []
+    parts = [dataset_of(point.run, point.edges, tally.table()) for tally in without] if measures else []
     for measure in measures:
         measured, left = measure(statistics), [measure(part) for part in parts]
         real = _real(measured)

@@ -1,4 +1,4 @@
-//! The sink that counts impacts and sums moments for a [`Tally`].
+//! The sink that counts impacts for a [`Tally`] and sums their moments.
 
 use super::Tallying;
 use super::axis::{Axis, ROUND};
@@ -8,7 +8,8 @@ use super::places::{all_sites, last, nowhere, sites, whole};
 use super::recent::{
     COARSE, Extremes, Half, LARGEST, QUANTA, Recent, fraction_quanta, quanta, words,
 };
-use super::tally::{Bins, By, CREATES_ENERGY, Tally, WHAT};
+use super::rows::{CREATES_ENERGY, Rows};
+use super::tally::{Bins, By, Tally, UNSPOILT, WHAT};
 use crate::Error;
 use crate::engine::StopReason;
 use crate::engine::{GROUPS, Impact, Meanwhile, Sink};
@@ -17,6 +18,7 @@ use crate::run::Plan;
 use crate::simd::{LANES, Pack};
 use pulp::Simd;
 use std::ops::{IndexMut, Range};
+use std::sync::Mutex;
 
 /// Length of the queue: a place for each lane of every group.
 const LENGTH: usize = GROUPS * LANES;
@@ -25,14 +27,17 @@ const LENGTH: usize = GROUPS * LANES;
 /// once and queued; the queue is counted lane by lane while other arithmetic waits for its results. Lanes without an impact, or with
 /// one that cannot be summed there, are counted in an additional site or row that is never read, so that no branch is needed.
 pub(crate) struct Counter<'a, const EVEN: bool> {
-    tally: Tally,
+    /// Whose grids this counter and others fill.
+    shared: &'a Mutex<Tally>,
+    /// What else is summed here.
+    own: Rows,
     by: &'a By,
     columns: &'a Axis,
     fractions: &'a Axis,
     plan: &'a Plan<'a>,
     restitution: Vec<u32>,
     fraction: Vec<u32>,
-    /// Sums since they were last moved to the tally: one for each row, one for the large values of each row, and some that are never
+    /// Sums since they were last moved to `own`: one for each row, one for the large values of each row, and some that are never
     /// read.
     rows: Vec<Recent>,
     /// Extremes of ε, likewise.
@@ -53,15 +58,15 @@ struct Queue {
 }
 
 impl Queue {
-    /// Counts the impact at place `i` in the grids, in the sums and extremes of its row, and, if there is no room left in the sums, in
-    /// the tally.
+    /// Counts the impact at place `i` in the grids, in the recent sums and extremes of its row, and, if there is no room left
+    /// there, in `own`.
     #[inline(always)]
     fn count<G, R, E>(
         &self,
         i: usize,
         (restitution, fraction): (&mut G, &mut G),
         (rows, extremes): (&mut R, &mut E),
-        tally: &mut Tally,
+        sums: &mut Rows,
     ) where
         G: IndexMut<usize, Output = u32> + ?Sized,
         R: IndexMut<usize, Output = Recent> + ?Sized,
@@ -74,7 +79,7 @@ impl Queue {
         extremes[number].add(value);
         let row = &mut rows[number];
         if row.add(&self.low[i], &self.high[i]) {
-            empty_row(tally, row, number);
+            empty_row(sums, row, number);
         }
     }
 }
@@ -89,65 +94,70 @@ fn put<S: Simd, const K: usize>(queue: &mut [[f64; 4]], packs: [Pack<S, K>; 4]) 
     queue.copy_from_slice(pulp::bytemuck::cast_slice(&records));
 }
 
-/// Moves the recent sums of a row to the tally.
+/// Moves the recent sums of a row to those of all rows.
 #[cold]
 #[inline(never)]
-fn empty_row(tally: &mut Tally, row: &mut Recent, number: usize) {
+fn empty_row(all: &mut Rows, row: &mut Recent, number: usize) {
     let row = std::mem::replace(row, Recent::EMPTY);
-    let rows = tally.sums.len();
+    let rows = all.sums.len();
     let (number, unit) = if number < rows {
         (number, 1)
     } else {
         (number - rows, COARSE)
     };
-    if let Some(sums) = tally.sums.get_mut(number) {
+    if let Some(sums) = all.sums.get_mut(number) {
         let totals = row.totals();
         sums.absorb(&totals, unit);
-        tally.fractions[number] += u128::from(totals.fractions);
-        tally.gains[number].count += totals.gains;
+        all.fractions[number] += u128::from(totals.fractions);
+        all.gains[number].count += totals.gains;
     }
 }
 
 impl<'a, const EVEN: bool> Counter<'a, EVEN> {
-    /// A counter without impacts; `fractions` is the axis of E_rot/E_tot in `bins`.
+    /// A counter without impacts, for a tally with these bins; `fractions` is their axis of E_rot/E_tot.
     pub fn new(
         bins: &'a Bins,
         fractions: &'a Axis,
         plan: &'a Plan<'a>,
-        origin: f64,
+        shared: &'a Mutex<Tally>,
     ) -> Result<Self, Error> {
-        let tally = Tally::new(bins, origin)?;
+        let rows = bins.rows();
         Ok(Self {
+            shared,
+            own: Rows::new(bins, plan.run.origin())?,
             by: &bins.by,
             columns: &bins.restitution,
             fractions,
             plan,
-            restitution: zeros(WHAT, tally.restitution.counts().len() + LANES)?,
-            fraction: zeros(WHAT, tally.fraction.counts().len() + LANES)?,
-            rows: filled(WHAT, Recent::EMPTY, 2 * tally.sums.len() + LANES)?,
-            extremes: filled(WHAT, Extremes::EMPTY, 2 * tally.sums.len() + LANES)?,
-            largest: zeros(WHAT, 2 * tally.sums.len() + LANES)?,
+            restitution: zeros(WHAT, rows * (bins.restitution.bins() + 1) + LANES)?,
+            fraction: zeros(WHAT, rows * (fractions.bins() + 1) + LANES)?,
+            rows: filled(WHAT, Recent::EMPTY, 2 * rows + LANES)?,
+            extremes: filled(WHAT, Extremes::EMPTY, 2 * rows + LANES)?,
+            largest: zeros(WHAT, 2 * rows + LANES)?,
             recently: Recently::default(),
             queue: Queue {
                 places: [[0.0; 4]; LENGTH],
                 low: [[0.0; 4]; LENGTH],
                 high: [[0.0; 4]; LENGTH],
             },
-            tally,
         })
     }
 
     fn empty(&mut self) {
-        self.tally.restitution.absorb(&mut self.restitution);
-        self.tally.fraction.absorb(&mut self.fraction);
+        let mut shared = self.shared.lock().expect(UNSPOILT);
+        let numbers = &mut self.own.numbers;
+        let tell = |row: usize, number| numbers[row] += number;
+        shared.restitution.absorb(&mut self.restitution, tell);
+        shared.fraction.absorb(&mut self.fraction, |_, _| {});
+        drop(shared);
         for (number, row) in self.rows.iter_mut().enumerate() {
-            empty_row(&mut self.tally, row, number);
+            empty_row(&mut self.own, row, number);
         }
-        let rows = self.tally.sums.len();
+        let rows = self.own.sums.len();
         for (number, extremes) in self.extremes[..2 * rows].iter_mut().enumerate() {
-            self.tally.sums[number % rows].widen(&std::mem::replace(extremes, Extremes::EMPTY));
+            self.own.sums[number % rows].widen(&std::mem::replace(extremes, Extremes::EMPTY));
         }
-        for (gains, largest) in self.tally.gains.iter_mut().zip(&mut self.largest) {
+        for (gains, largest) in self.own.gains.iter_mut().zip(&mut self.largest) {
             gains.largest = gains.largest.max(std::mem::take(largest));
         }
     }
@@ -155,8 +165,8 @@ impl<'a, const EVEN: bool> Counter<'a, EVEN> {
     /// Sums a value that is too far from the origin for [`Recent`].
     #[inline(never)]
     fn sum_large(&mut self, row: usize, restitution: f64, fraction: f64) {
-        self.tally.sums[row].add(quanta(restitution - self.tally.origin));
-        self.tally.fractions[row] += fraction_quanta(fraction) as u128;
+        self.own.sums[row].add(quanta(restitution - self.own.origin));
+        self.own.fractions[row] += fraction_quanta(fraction) as u128;
         self.extremes[row].add(restitution);
     }
 }
@@ -168,7 +178,7 @@ impl<const EVEN: bool> Meanwhile for Counter<'_, EVEN> {
             (&mut self.restitution, &mut self.fraction),
             (&mut self.rows, &mut self.extremes),
         );
-        self.queue.count(place, grids, rows, &mut self.tally);
+        self.queue.count(place, grids, rows, &mut self.own);
     }
 }
 
@@ -215,7 +225,7 @@ impl<const EVEN: bool> Sink for Counter<'_, EVEN> {
         };
         let (before, after) = (impact.energy_before, impact.energy_after);
         let gaining = impact.active & (before * CREATES_ENERGY).lt(after);
-        let offset = restitution - self.tally.origin;
+        let offset = restitution - self.own.origin;
         let start = row - ROUND;
         let mut site = sites(columns, start, column);
         let mut fraction_site = sites(fractions, start, fraction_column);
@@ -229,10 +239,8 @@ impl<const EVEN: bool> Sink for Counter<'_, EVEN> {
             let grid = (fractions, &self.fraction[..]);
             fraction_site = all_sites(grid, start, fraction_column, defined, active);
             let large = offset.abs().le(COARSE as f64 * LARGEST) & active & fraction.le(1.0);
-            let coarse_row = large.select(
-                row + self.tally.sums.len() as f64,
-                nowhere(simd, &self.rows),
-            );
+            let coarse_row =
+                large.select(row + self.own.sums.len() as f64, nowhere(simd, &self.rows));
             summed_row = plain.select(row, coarse_row);
             unit = plain.select(QUANTA, QUANTA / COARSE as f64);
             let aside = active & !large;
@@ -242,7 +250,7 @@ impl<const EVEN: bool> Sink for Counter<'_, EVEN> {
                 self.sum_large(whole(row.as_slice()[lane]), restitution, fraction);
             });
             (aside & gaining).each(|lane| {
-                self.tally.gains[whole(row.as_slice()[lane])].count += 1;
+                self.own.gains[whole(row.as_slice()[lane])].count += 1;
             });
         }
         let queue = &mut self.queue;
@@ -274,18 +282,18 @@ impl<const EVEN: bool> Sink for Counter<'_, EVEN> {
                 (&mut *restitution, &mut *fraction),
                 (&mut *rows, &mut *extremes),
             );
-            self.queue.count(place, grids, rows, &mut self.tally);
+            self.queue.count(place, grids, rows, &mut self.own);
         }
     }
 
     fn end(&mut self, _: usize, _: usize, reason: StopReason) {
-        self.tally.stops[reason as usize] += 1;
+        self.own.stops[reason as usize] += 1;
     }
 }
 
 impl<const EVEN: bool> Tallying for Counter<'_, EVEN> {
-    fn finish(mut self) -> Tally {
+    fn finish(mut self) -> Rows {
         self.empty();
-        self.tally
+        self.own
     }
 }

@@ -5,7 +5,8 @@ use super::axis::{Axis, ROUND};
 use super::moments::Sums;
 use super::narrow::Recently;
 use super::places::{all_sites, last, sites, whole};
-use super::tally::{Bins, By, CREATES_ENERGY, Tally, WHAT};
+use super::rows::{CREATES_ENERGY, Rows};
+use super::tally::{Bins, By, Tally, UNSPOILT, WHAT};
 use crate::Error;
 use crate::engine::StopReason;
 use crate::engine::{GROUPS, Impact, Meanwhile, Sink};
@@ -13,13 +14,17 @@ use crate::memory::zeros;
 use crate::run::Plan;
 use crate::simd::{LANES, Pack};
 use pulp::Simd;
+use std::sync::Mutex;
 
 /// Length of the queue: a place for each lane of every group.
 const LENGTH: usize = GROUPS * LANES;
 
 /// Counts impacts in the grid of ε, and those that create energy, as [`super::Counter`] does, and nothing else.
 pub(crate) struct Counts<'a, const EVEN: bool> {
-    tally: Tally,
+    /// Whose grids this counter and others fill.
+    shared: &'a Mutex<Tally>,
+    /// What else is summed here.
+    own: Rows,
     bins: &'a Bins,
     plan: &'a Plan<'a>,
     restitution: Vec<u32>,
@@ -29,15 +34,20 @@ pub(crate) struct Counts<'a, const EVEN: bool> {
 }
 
 impl<'a, const EVEN: bool> Counts<'a, EVEN> {
-    pub fn new(bins: &'a Bins, plan: &'a Plan<'a>, origin: f64) -> Result<Self, Error> {
-        let tally = Tally::new(bins, origin)?;
+    pub fn new(
+        bins: &'a Bins,
+        plan: &'a Plan<'a>,
+        shared: &'a Mutex<Tally>,
+    ) -> Result<Self, Error> {
+        let sites = bins.rows() * (bins.restitution.bins() + 1);
         Ok(Self {
+            shared,
+            own: Rows::new(bins, plan.run.origin())?,
             bins,
             plan,
-            restitution: zeros(WHAT, tally.restitution.counts().len() + LANES)?,
+            restitution: zeros(WHAT, sites + LANES)?,
             recently: Recently::default(),
             queue: [0.0; LENGTH],
-            tally,
         })
     }
 
@@ -48,7 +58,10 @@ impl<'a, const EVEN: bool> Counts<'a, EVEN> {
     }
 
     fn empty(&mut self) {
-        self.tally.restitution.absorb(&mut self.restitution);
+        let numbers = &mut self.own.numbers;
+        let tell = |row: usize, number| numbers[row] += number;
+        let mut shared = self.shared.lock().expect(UNSPOILT);
+        shared.restitution.absorb(&mut self.restitution, tell);
     }
 }
 
@@ -103,19 +116,19 @@ impl<const EVEN: bool> Sink for Counts<'_, EVEN> {
             let ratio = impact.energy_ratio();
             gaining.each(|lane| {
                 let row = whole(row.as_slice()[lane]);
-                self.tally.gains[row].add(ratio.as_slice()[lane]);
+                self.own.gains[row].add(ratio.as_slice()[lane]);
             });
         }
     }
 
     fn end(&mut self, _: usize, _: usize, reason: StopReason) {
-        self.tally.stops[reason as usize] += 1;
+        self.own.stops[reason as usize] += 1;
     }
 }
 
 impl<const EVEN: bool> Tallying for Counts<'_, EVEN> {
-    fn finish(mut self) -> Tally {
+    fn finish(mut self) -> Rows {
         self.empty();
-        self.tally
+        self.own
     }
 }

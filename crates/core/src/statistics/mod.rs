@@ -8,6 +8,7 @@ mod moments;
 mod narrow;
 mod places;
 mod recent;
+mod rows;
 mod tally;
 mod words;
 
@@ -15,10 +16,12 @@ pub use axis::Axis;
 pub(crate) use counter::Counter;
 pub(crate) use counts::Counts;
 pub use moments::{Moments, Sums};
-pub use tally::{Bins, By, CREATES_ENERGY, Gains, Grid, Tally};
+pub use rows::{CREATES_ENERGY, Gains, Rows};
+pub(crate) use tally::UNSPOILT;
+pub use tally::{Bins, By, Grid, Tally};
 
-/// A sink that makes a [`Tally`] of the impacts that it receives.
+/// A sink that counts the impacts that it receives in the grids of a [`Tally`], which is shared with others.
 pub(crate) trait Tallying: crate::engine::Sink {
-    /// The tally of all impacts received.
-    fn finish(self) -> Tally;
+    /// What else is summed of the impacts, all of which are then in the grids.
+    fn finish(self) -> Rows;
 }

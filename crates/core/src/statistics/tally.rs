@@ -1,16 +1,15 @@
 //! The statistics of a run: grids of counts, and sums, whose size depends on the bins alone.
 
 use super::axis::Axis;
-use super::moments::{Moments, Sums};
-use super::recent::FRACTION_QUANTA;
+use super::rows::Rows;
 use crate::Error;
-use crate::memory::{copied, filled, zeros};
-
-/// Energy ratio above which an impact counts as creating kinetic energy. Rounding errors of the ratio are a few 10⁻¹⁵.
-pub const CREATES_ENERGY: f64 = 1.0 + 1e-12;
+use crate::memory::zeros;
+use bytemuck_alloc::allocation::cast_vec;
 
 /// The parameters that the size of a tally follows from.
 pub(super) const WHAT: &str = "velocity_bins or impacts, times restitution_bins and fraction_bins";
+/// Why a lock on the tally that threads share is never poisoned.
+pub(crate) const UNSPOILT: &str = "no thread panics while it adds to the tally";
 /// Number of sites that are examined together when grids are merged: most sites of a fine grid are empty, and pages that are never
 /// written to take no memory.
 const PART: usize = 512;
@@ -74,40 +73,8 @@ pub struct Tally {
     pub restitution: Grid,
     /// Impacts by row and bin of E_rot/E_tot; the last column as above. It has no columns if [`Bins::fraction`] is `None`.
     pub fraction: Grid,
-    /// Origin of ε in the sums: ε_n, so that no digits are lost for nearly round bodies.
-    pub(super) origin: f64,
-    /// Sums of ε − origin by row; empty if impacts are only counted.
-    pub(super) sums: Vec<Sums>,
-    /// Σ E_rot/E_tot by row, in units of 2⁻⁴²; empty if impacts are only counted.
-    pub(super) fractions: Vec<u128>,
-    /// Impacts that create energy, by row.
-    pub gains: Vec<Gains>,
-    /// Number of particles by [`crate::StopReason`].
-    pub stops: [u64; 5],
-}
-
-/// The impacts whose energy ratio exceeds [`CREATES_ENERGY`].
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub struct Gains {
-    /// Their number.
-    pub count: u64,
-    /// Their largest energy ratio; 0 if there are none.
-    pub largest: f64,
-}
-
-impl Gains {
-    /// Adds an impact with this energy ratio.
-    pub(super) fn add(&mut self, ratio: f64) {
-        self.merge(Self {
-            count: 1,
-            largest: ratio,
-        });
-    }
-
-    pub(super) fn merge(&mut self, other: Self) {
-        self.count += other.count;
-        self.largest = self.largest.max(other.largest);
-    }
+    /// What else is summed of the same impacts.
+    pub rows: Rows,
 }
 
 /// A grid of counts.
@@ -123,21 +90,19 @@ impl Grid {
         Ok(Self { columns, counts })
     }
 
-    /// A copy of the counts, row by row, as signed integers for NumPy.
-    pub fn to_counts(&self) -> Result<Vec<i64>, Error> {
-        let mut copy = zeros(WHAT, self.counts.len())?;
-        let parts = copy.chunks_mut(PART).zip(self.counts.chunks(PART));
-        for (copies, counts) in parts.filter(|(_, counts)| counts.iter().any(|&count| count > 0)) {
-            copies.copy_from_slice(pulp::bytemuck::cast_slice::<u64, i64>(counts));
-        }
+    /// A copy, which takes no memory for parts without impacts.
+    pub(super) fn copied(&self) -> Result<Self, Error> {
+        let mut copy = Self {
+            columns: self.columns,
+            counts: zeros(WHAT, self.counts.len())?,
+        };
+        copy.merge(self);
         Ok(copy)
     }
 
-    fn copied(&self) -> Result<Self, Error> {
-        Ok(Self {
-            columns: self.columns,
-            counts: copied(WHAT, &self.counts)?,
-        })
+    /// The counts, row by row, as signed integers for NumPy.
+    pub fn into_counts(self) -> Vec<i64> {
+        cast_vec(self.counts)
     }
 
     /// Number of columns: one below the bins, the bins, one above, and one for undefined values.
@@ -150,11 +115,25 @@ impl Grid {
         &self.counts
     }
 
-    pub(super) fn absorb(&mut self, recent: &mut [u32]) {
-        let parts = self.counts.chunks_mut(PART).zip(recent.chunks_mut(PART));
-        for (counts, recent) in parts.filter(|(_, recent)| recent.iter().any(|&count| count > 0)) {
-            for (count, recent) in counts.iter_mut().zip(recent) {
-                *count += u64::from(std::mem::take(recent));
+    /// Moves recent counts here, and tells of each row with any how many of them have defined values.
+    pub(super) fn absorb(&mut self, recent: &mut [u32], mut tell: impl FnMut(usize, u64)) {
+        let columns = self.columns;
+        let rows = self.counts.chunks_mut(columns);
+        for (row, (counts, recent)) in rows.zip(recent.chunks_mut(columns)).enumerate() {
+            let undefined = recent[columns - 1];
+            let mut number = 0;
+            let parts = counts.chunks_mut(PART).zip(recent.chunks_mut(PART));
+            for (counts, recent) in
+                parts.filter(|(_, recent)| recent.iter().any(|&count| count > 0))
+            {
+                for (count, recent) in counts.iter_mut().zip(recent) {
+                    let recent = u64::from(std::mem::take(recent));
+                    *count += recent;
+                    number += recent;
+                }
+            }
+            if number > 0 {
+                tell(row, number - u64::from(undefined));
             }
         }
     }
@@ -167,34 +146,38 @@ impl Grid {
             }
         }
     }
+
+    /// Number of impacts with defined values in each row.
+    pub(super) fn numbers(&self) -> impl Iterator<Item = u64> {
+        let defined = |row: &[u64]| {
+            let counts = row[..row.len() - 1].iter();
+            counts.fold(0_u64, |sum, &count| sum.wrapping_add(count))
+        };
+        self.counts.chunks(self.columns).map(defined)
+    }
 }
 
 impl Tally {
     /// A tally of no impacts, whose sums are relative to `origin`.
     pub fn new(bins: &Bins, origin: f64) -> Result<Self, Error> {
         let rows = bins.rows();
-        let summed = bins.fraction.as_ref().map_or(0, |_| rows);
         let columns = bins.fraction.as_ref().map_or(0, |axis| axis.bins() + 1);
         Ok(Self {
             restitution: Grid::new(rows, bins.restitution.bins() + 1)?,
             fraction: Grid::new(rows, columns)?,
-            origin,
-            sums: filled(WHAT, Sums::EMPTY, summed)?,
-            fractions: zeros(WHAT, summed)?,
-            gains: filled(WHAT, Gains::default(), rows)?,
-            stops: [0; 5],
+            rows: Rows::new(bins, origin)?,
         })
     }
 
-    pub(super) fn copied(&self) -> Result<Self, Error> {
+    /// A copy.
+    ///
+    /// # Errors
+    /// [`Error::Memory`].
+    pub fn copied(&self) -> Result<Self, Error> {
         Ok(Self {
             restitution: self.restitution.copied()?,
             fraction: self.fraction.copied()?,
-            origin: self.origin,
-            sums: copied(WHAT, &self.sums)?,
-            fractions: copied(WHAT, &self.fractions)?,
-            gains: copied(WHAT, &self.gains)?,
-            stops: self.stops,
+            rows: self.rows.copied()?,
         })
     }
 
@@ -202,37 +185,6 @@ impl Tally {
     pub fn merge(&mut self, other: &Self) {
         self.restitution.merge(&other.restitution);
         self.fraction.merge(&other.fraction);
-        for (sums, other) in self.sums.iter_mut().zip(&other.sums) {
-            sums.merge(other);
-        }
-        for (sum, other) in self.fractions.iter_mut().zip(&other.fractions) {
-            *sum += other;
-        }
-        for (gains, other) in self.gains.iter_mut().zip(&other.gains) {
-            gains.merge(*other);
-        }
-        for (count, other) in self.stops.iter_mut().zip(&other.stops) {
-            *count += other;
-        }
-    }
-
-    /// Number of impacts in a row for which ε is defined.
-    pub fn number(&self, row: usize) -> u64 {
-        let columns = self.restitution.columns;
-        self.restitution.counts[row * columns..][..columns - 1]
-            .iter()
-            .sum()
-    }
-
-    /// Moments of ε in a row; `None` if impacts are only counted.
-    pub fn moments(&self, row: usize) -> Option<Moments> {
-        let sums = self.sums.get(row)?;
-        Some(sums.moments(self.number(row), self.origin))
-    }
-
-    /// Mean of E_rot/E_tot in a row, NaN without impacts; `None` if impacts are only counted.
-    pub fn mean_fraction(&self, row: usize) -> Option<f64> {
-        let sum = *self.fractions.get(row)?;
-        Some(sum as f64 / FRACTION_QUANTA / self.number(row) as f64)
+        self.rows.merge(&other.rows);
     }
 }

@@ -39,31 +39,36 @@ impl Tally {
                 *word = given;
             }
         });
-        let allowed = "that of this run";
-        let same = tally.origin.to_bits() == origin.to_bits();
-        Error::unless(same, "origin of the words", tally.origin, allowed)?;
+        let (allowed, found) = ("that of this run", tally.rows.origin);
+        let same = found.to_bits() == origin.to_bits();
+        Error::unless(same, "origin of the words", found, allowed)?;
+        let numbers = tally.rows.numbers.iter_mut();
+        for (number, counted) in numbers.zip(tally.restitution.numbers()) {
+            *number = counted;
+        }
         Ok(tally)
     }
 
     /// Calls `visit` with every word, which it may change.
     fn visit(&mut self, visit: &mut impl FnMut(&mut u64)) {
-        float(&mut self.origin, visit);
+        let rows = &mut self.rows;
+        float(&mut rows.origin, visit);
         self.restitution.counts.iter_mut().for_each(&mut *visit);
         self.fraction.counts.iter_mut().for_each(&mut *visit);
-        for sums in &mut self.sums {
+        for sums in &mut rows.sums {
             sums.words(visit);
         }
-        for sum in &mut self.fractions {
+        for sum in &mut rows.fractions {
             let (mut low, mut high) = (*sum as u64, (*sum >> 64) as u64);
             visit(&mut low);
             visit(&mut high);
             *sum = u128::from(high) << 64 | u128::from(low);
         }
-        for gains in &mut self.gains {
+        for gains in &mut rows.gains {
             visit(&mut gains.count);
             float(&mut gains.largest, visit);
         }
-        self.stops.iter_mut().for_each(visit);
+        rows.stops.iter_mut().for_each(visit);
     }
 }
 

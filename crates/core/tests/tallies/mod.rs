@@ -61,9 +61,9 @@ pub fn statistics(run: &Run<'_>, bins: &Bins, level: Level, threads: usize) -> T
         ..bins.clone()
     });
     assert_eq!(counts.restitution, found.restitution);
-    assert_eq!(counts.gains, found.gains);
-    assert_eq!(counts.stops, found.stops);
-    assert!(counts.fraction.counts().is_empty() && counts.moments(0).is_none());
+    assert_eq!(counts.rows.gains, found.rows.gains);
+    assert_eq!(counts.rows.stops, found.rows.stops);
+    assert!(counts.fraction.counts().is_empty() && counts.rows.moments(0).is_none());
     found
 }
 
@@ -74,8 +74,8 @@ pub fn level() -> impl Strategy<Value = Level> {
 /// Every number of a row of a tally, as bits.
 pub fn bits(tally: &Tally, rows: usize) -> Vec<u64> {
     let moments = |row| {
-        let m: Moments = tally.moments(row).unwrap();
-        let extremes = [m.minimum, m.maximum, tally.mean_fraction(row).unwrap()];
+        let m: Moments = tally.rows.moments(row).unwrap();
+        let extremes = [m.minimum, m.maximum, tally.rows.mean_fraction(row).unwrap()];
         [m.mean, m.variance, m.skewness, m.kurtosis]
             .into_iter()
             .chain(extremes)
