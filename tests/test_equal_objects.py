@@ -13,9 +13,10 @@ import xarray as xr
 
 from reference import measuring
 from reference.contract import CALLS
-from restitution import fit
+from restitution import fit, listen
 from restitution._content import Content, same
 from restitution.fit._mixture import Mixture
+from restitution.listen._analysis import Setting
 from restitution.study import study_of
 
 MIXED = np.concatenate(
@@ -59,6 +60,14 @@ def test_equal_is_what_holds_the_same(one: Any, other: Any) -> None:
         assert (again == one, again != one, hash(again) == hash(one)) == (True, False, True)
     assert (one == other, other == one, one != other) == (False, False, True)
     assert len({one, other, copy.deepcopy(one)}) == 2
+
+
+def test_the_same_recording_gives_the_same_result() -> None:
+    """Whenever it is analysed: a posterior does not tell when it was drawn."""
+    again = listen.analyse(measuring.recording(), Setting(diameter=0.02))
+    assert again.series[0].shape is not None
+    assert again.series[0].shape.draws is not None
+    assert again == measuring.heard()
 
 
 @pytest.mark.parametrize(

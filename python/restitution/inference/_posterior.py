@@ -237,6 +237,8 @@ def _tree(
         },
         sample_dims=["chain", "draw"],
     )
+    for node in tree.subtree:  # the same draws are the same result, whenever they were made
+        node.attrs.pop("created_at", None)
     tree["posterior"]["out_of_roundness"].attrs["units"] = "m"
     profile = found.values.max(axis=tuple(k for k in range(found.values.ndim) if k != 1))
     shape = xr.Dataset(
