@@ -56,6 +56,35 @@ def test_what_zarr_takes_is_not_asked_for_twice(done: Path, monkeypatch: pytest.
     assert open_store(done).sizes
 
 
+@pytest.mark.parametrize(("limit", "field"), [("AS", 0), ("DATA", 5)])
+@pytest.mark.parametrize("room", [-50 * MIB, 0, 10 * MIB])
+def test_no_thread_is_begun_where_memory_has_ended(
+    limit: str, field: int, room: int, tmp_path: Path, done: Path
+) -> None:
+    """Such a thread is waited for without end, also where Zarr is there already."""
+    (tmp_path / "study.toml").symlink_to(inputs() / "study.toml")
+    code = f"""
+import resource
+import restitution as rs
+from pathlib import Path
+assert rs.study.open_store({str(done)!r}).sizes
+asked = rs.study.study_of("study.toml")
+used = int(open("/proc/self/statm").read().split()[{field}]) * resource.getpagesize()
+resource.setrlimit(resource.RLIMIT_{limit}, (used + {room}, resource.RLIM_INFINITY))
+for work in (lambda: rs.sweep(asked, "new.zarr"), lambda: rs.study.open_store({str(done)!r})):
+    try:
+        work()
+    except MemoryError as error:
+        print(error)
+"""
+    command = [sys.executable, "-c", code]
+    ended = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=False, timeout=60)
+    kind = {"AS": "address space", "DATA": "data"}[limit]
+    line = rf"a study: takes 20 MB of {kind}, and this process can have \d+ MB\n"
+    assert re.fullmatch(2 * line, ended.stdout), ended
+    assert not (tmp_path / "new.zarr").exists()
+
+
 def test_a_short_file_takes_no_room_of_the_longest() -> None:
     """Python makes room for as much as it is asked to read, and tables may have 256 MiB."""
     code = (

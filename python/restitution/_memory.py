@@ -131,5 +131,5 @@ def _check_limit(what: str, kind: str, needed: int) -> None:
 
 def _check_bytes(what: str, kind: str, needed: int, available: int) -> None:
     if needed > available:
-        took, has = (f"{size / 1e6:.0f} MB" for size in (needed, available))
+        took, has = (f"{size / 1e6:.0f} MB" for size in (needed, max(0, available)))
         raise MemoryError(f"{what}: takes {took} of {kind}, and this process can have {has}")

@@ -22,7 +22,7 @@ import numpy as np
 import numpy.typing as npt
 import xarray as xr
 
-from restitution._memory import check_address_space, check_room
+from restitution._memory import check_address_space, check_data, check_room
 from restitution.study._axes import Design
 from restitution.study._identity import readable, threads_for
 from restitution.study._layout import check_array
@@ -42,6 +42,8 @@ _ROOM, _ADDRESSES, _OF_THREAD = 100_000_000, 250_000_000, 75_000_000
 
 A thread that starts where memory ends is waited for without end.
 """
+_BEGINNING = 20_000_000
+"""Bytes, of address space and of data, that a thread takes to begin: its stack, and what Python gives it."""
 _WRITERS = 6
 """Threads by which Zarr writes, as many as it ever had in a study."""
 _FILES = 4
@@ -57,6 +59,8 @@ def need_zarr(path: Path, threads: int | None = None) -> None:
         more = 0 if threads is None else (threads + _WRITERS) * _OF_THREAD
         check_room("a study", _ROOM)
         check_address_space("a study" if not threads else f"a study, threads = {threads}", _ADDRESSES + more)
+    check_address_space("a study", _BEGINNING)
+    check_data("a study", _BEGINNING)
     with contextlib.ExitStack() as files:
         try:
             for _ in range(_FILES):
