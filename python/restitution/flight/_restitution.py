@@ -42,9 +42,10 @@ def restitution(
     Parameters
     ----------
     times : array_like, shape (n,), or Dataset
-        Times of all impacts of one series in s, increasing; NaN for an impact that was missed. Or a Dataset
-        with ``time`` and ``uncertainty``, as `restitution.sound.impacts` and `restitution.flight.read`
-        return it: what is flagged as missed counts as NaN, what is flagged as doubled is left out.
+        Times of all impacts of one series in s, increasing, 2 to 3000 of them; NaN for an impact that was
+        missed. Or a Dataset with ``time`` and ``uncertainty``, as `restitution.sound.impacts` and
+        `restitution.flight.read` return it: what is flagged as missed counts as NaN, what is flagged as
+        doubled is left out.
     uncertainty : float or array_like, shape (n,), optional
         Standard error of the times in s, >= 0; independent of one another.
     gravity, gravity_uncertainty : float

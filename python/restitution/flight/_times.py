@@ -18,6 +18,8 @@ FLAGS = ("good", "doubtful", "missed", "doubled")
 """What may be said of an impact; its number is the place in this tuple."""
 LEAST, LARGEST = 1e-30, 1e30
 """Products of measured numbers between them are numbers that a double holds."""
+MOST = 3000
+"""Impacts of a series: a product with its covariance takes half a second, in which no signal is heard."""
 GOOD, DOUBTFUL, MISSED, DOUBLED = range(len(FLAGS))
 
 
@@ -64,6 +66,9 @@ def check_series(instants: Array, errors: Array, times: str, uncertainty: str) -
     """
     if instants.size < 2:
         raise ParameterError(Problem(times, f": {instants.size} impacts; must be at least two"))
+    if instants.size > MOST:
+        text = f": {instants.size} impacts; must be at most {MOST}, which have a covariance with one another"
+        raise ParameterError(Problem(times, text))
     if errors.shape != instants.shape:
         allowed = f"one number, or one for each of the {instants.size} times"
         raise ParameterError(Problem(uncertainty, f": an array of shape {errors.shape}; must be {allowed}"))
