@@ -52,7 +52,7 @@ def near_round(
     gravity : float
         In m/s².
     angles : int
-        Angles of the axis at release, spread evenly over [0, π).
+        Angles of the axis at release, spread evenly over [0, π); at most 10⁶.
 
     Returns
     -------
@@ -86,7 +86,7 @@ def near_round(
         raise ParameterError(
             wrong("law", law, "TangentialRestitution or Frictionless, with a number for normal")
         )
-    angles = whole("angles", angles, 1, 10**7)
+    angles = whole("angles", angles, 1, 10**6)
     if isinstance(release_height, RandomHeight):
         raise ParameterError(wrong("release_height", release_height, "a number, the same for all"))
     run = Run(body=body, law=law, release_height=release_height, gravity=gravity)
