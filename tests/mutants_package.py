@@ -119,7 +119,9 @@ TESTS = {
     **dict.fromkeys(LAWS, ("test_laws_materials.py",)),
     **dict.fromkeys(FITS + SLOPES, FIT_TESTS),
     **dict.fromkeys(FLIGHT, FLIGHT_TESTS),
-    **dict.fromkeys(INFERENCE, ("test_inference.py", "test_inference_references.py")),
+    **dict.fromkeys(
+        INFERENCE, ("test_inference_tree.py", "test_inference.py", "test_inference_references.py")
+    ),
     "_trajectory.py": ("test_trajectory.py",),
 }
 """What reads and writes files, handles signals, or works out numbers, and the tests that are about it."""
