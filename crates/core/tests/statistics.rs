@@ -317,6 +317,20 @@ fn sites_that_have_no_number_are_refused() {
     assert!(matches!(refused, Err(Error::Parameter { .. })));
 }
 
+/// Rows of a tally that is read have the numbers of impacts with a defined ε that they had, where others have none.
+#[test]
+fn a_tally_that_is_read_is_the_one_that_was_written() {
+    let extreme = nearly_at_rest(2.0, 0.0, &[]);
+    let bins = Edges::coarse().bins(By::Number(ROWS));
+    for tally in PIECES.iter() {
+        let words = tally.to_words().unwrap();
+        assert_eq!(
+            &Tally::from_words(&bins, extreme.origin(), &words).unwrap(),
+            tally
+        );
+    }
+}
+
 /// What was written down is what is read, whatever the words are: sums of E_rot/E_tot beyond 2⁶⁴ quanta have a second one.
 #[test]
 fn every_word_of_a_tally_is_kept() {
