@@ -135,6 +135,7 @@ def test_a_round_ball_explains_the_times_as_well_if_the_least_elongation_does(
             r"^elongation = \(0\.1, inf\): must be a pair \(low, high\) with 1e-09",
         ),
         ({"elongation": [[0.1, 0.2]]}, r"^elongation = \[\[0\.1, 0\.2\]\]: must be a pair"),
+        ({"elongation": (0.1, 0.2, 0.3)}, r"^elongation = \(0\.1, 0\.2, 0\.3\): must be a pair"),
         ({"elongation": (1e-8, 0.1)}, r"^elongation = \(1e-08, 0\.1\): must be high < 1e\+06 low"),
         ({"elongation": (1e-8, 1e-2)}, r"^elongation = \(1e-08, 0\.01\): must be high < 1e\+06 low"),
         (
@@ -157,6 +158,10 @@ def test_errors_name_the_series_of_several() -> None:
     data = [
         rs.flight.restitution(np.cumsum(0.28 * 0.93 ** np.arange(n)), 1e-5, drop_height=0.1) for n in (12, 5)
     ]
+    bad = data[0].assign_attrs(gravity=-1.0)
+    for given, name in ((bad, "data"), ([data[0], bad], r"data\[1\]")):
+        with pytest.raises(ValueError, match=rf"^{name}\.gravity = -1\.0: must be a real number in"):
+            rs.posterior(given, LAW, diameter=6e-3)
     for given, name in ((data[1], "data"), (data, r"data\[1\]")):
         with pytest.raises(ValueError, match=f"^{name}: 3 coefficients from times alone; must be at least 5"):
             rs.posterior(given, LAW, diameter=6e-3)
