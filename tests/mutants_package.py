@@ -246,7 +246,7 @@ def main() -> int:
     os.environ |= {"PYTHONPATH": str(WORK), "PYTHONDONTWRITEBYTECODE": "1"}
     sys.path.insert(0, str(WORK))
     sys.dont_write_bytecode = True
-    lived = 0
+    lived, chosen = 0, 0
     for tests in dict.fromkeys(TESTS.values()):
         names = [
             name
@@ -255,6 +255,7 @@ def main() -> int:
         ]
         if not names:
             continue
+        chosen += len(names)
         counted: list[int] = []
         child = os.fork()  # whose pytest can be loaded once
         if child == 0:
@@ -267,6 +268,9 @@ def main() -> int:
             pytest.main([*options, *(f"tests/{test}" for test in tests)], plugins=[judge])
             os._exit(min(counted[0], 1) if counted else 2)
         lived = max(lived, os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]))
+    if not chosen:
+        print(f"no file that is tried has all of these words in its path: {' '.join(asked.only)}")
+        return 2
     return lived
 
 

@@ -159,7 +159,7 @@ def test_errors_name_the_series_of_several() -> None:
         rs.flight.restitution(np.cumsum(0.28 * 0.93 ** np.arange(n)), 1e-5, drop_height=0.1) for n in (12, 5)
     ]
     bad = data[0].assign_attrs(gravity=-1.0)
-    for given, name in ((bad, "data"), ([data[0], bad], r"data\[1\]")):
+    for given, name in ((bad, "data"), ([data[0], bad], r"data\[1\]"), (iter([data[0], bad]), r"data\[1\]")):
         with pytest.raises(ValueError, match=rf"^{name}\.gravity = -1\.0: must be a real number in"):
             rs.posterior(given, LAW, diameter=6e-3)
     for given, name in ((data[1], "data"), (data, r"data\[1\]")):
