@@ -1,6 +1,8 @@
 """Parts of an inference beside closed forms: bodies and laws, the estimator, the density of its numbers."""
 
 import math
+import re
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -156,3 +158,79 @@ def test_what_a_series_lacks_is_named() -> None:
     other["impact_velocity"].attrs["units"] = "mm s-1"
     with pytest.raises(ValueError, match=r"^data.*impact_velocity.*mm s-1"):
         rs.posterior(other, rs.Frictionless(normal=0.9), diameter=6e-3)
+
+
+def test_what_a_series_has_is_checked() -> None:
+    """Speeds, coefficients and their covariance are named, with what is wrong and what is allowed."""
+    form = Family(rs.Frictionless(normal=0.9), 6e-3, "lobed", 2).of_speed
+    good = rs.flight.restitution(impact_times(lambda _: 0.9, 1.4, 12), 1e-5)
+
+    def refused(change: Callable[[xr.Dataset], object], said: str) -> None:
+        data = good.copy(deep=True)
+        change(data)
+        with pytest.raises(ValueError, match=said):
+            Series.of(data, form, 0.9, 1e-3, "data[1]")
+
+    def put(name: str, place: Any, value: float) -> Callable[[xr.Dataset], object]:
+        return lambda data: data[name].values.__setitem__(place, value)
+
+    known = r"must be in \(0, 1e\+30\], and known at every coefficient"
+    for value in (-1.0, 0.0, 1.1e30, np.nan):
+        told = re.escape(str(value))
+        refused(put("impact_velocity", 3, value), rf"^data\[1\]\.impact_velocity\[3\] = {told}: {known}")
+    for value in (-1.0, 0.0, 1.1e30):
+        told = re.escape(str(value))
+        refused(put("restitution", 3, value), rf"^data\[1\]\.restitution\[3\] = {told}: {known}")
+    allowed = "must be a covariance, with no negative variance, of all coefficients that are known"
+    of = r"^data\[1\]\.restitution_covariance = an array of shape \(10, 10\): "
+    refused(put("restitution_covariance", (3, 3), -1.0), of + allowed)
+    refused(put("restitution_covariance", (3, 4), np.nan), of + allowed)
+    largest = float(good["restitution_covariance"].max())
+    data = good.copy(deep=True)
+    data["restitution_covariance"].values[1:-1, 1:-1] = np.diag([-1e-9 * largest] + 9 * [largest])
+    assert Series.of(data, form, 0.9, 1e-3).known.size == 10  # of a variance that is 0 but for rounding
+    fewer = good.isel(other_impact=slice(0, 11))
+    with pytest.raises(ValueError, match=r"^data has 12 impacts and 11 of other_impact: must be the same"):
+        rs.posterior(fewer, rs.Frictionless(normal=0.9), diameter=6e-3)
+
+
+def test_simulated_series_are_those_that_could_have_been_heard(monkeypatch: pytest.MonkeyPatch) -> None:
+    """With as many impacts, in order, and no flight below a tenth of the one before."""
+    times = impact_times(lambda _: 0.9, 1.4, 8)
+    errors = np.array([1e-4] * 7 + [0.2])
+    form = Family(rs.Frictionless(normal=0.9), 6e-3, "lobed", 2).of_speed
+    one = Series.of(rs.flight.restitution(times, errors, gravity=9.7), form, 0.9, 1e-3)
+    flights = np.diff(times)
+    rows = {
+        "as measured": flights,
+        "two as one": flights * [1, 1, 1, 0.08, 1, 1, 1],
+        "hardly two": flights * [1, 1, 1, 0.13, 1, 1, 1],
+        "slower": flights * 1.1,
+        "ended": flights * [1, 1, 1, 1, 1, 1, np.nan],
+        "at once": flights * [1, 1, 1, 1, 1, 1, 0.0],
+    }
+    made = np.array([np.concatenate([[0.0], np.cumsum(row)]) for row in rows.values()])
+    asked: dict[str, Any] = {}
+
+    def simulate(body: Any, law: Any, **run: Any) -> xr.Dataset:
+        asked.update(run, body=body, law=law)
+        return xr.Dataset({"time": (("particle", "impact"), made)})
+
+    monkeypatch.setattr("restitution.inference._series.simulate", simulate)
+    body, law = rs.from_roundness(6e-3, 6e-5), rs.Frictionless(normal=0.9)
+    found = one.simulated(body, law, 6, 50, seed=5)
+    height = asked.pop("release_height") - one.drop
+    assert height == pytest.approx(0.5 * 6e-3, rel=0.02)
+    assert asked == {"body": body, "law": law, "particles": 6, "impacts": 8, "gravity": 9.7, "seed": 5}
+
+    noise = np.random.default_rng(5).standard_normal((3 * 50, 8))
+    expected = []
+    for row, z in zip(np.repeat(made[[0, 2, 3]], 50, axis=0), noise, strict=True):
+        heard = [row[i + 1] + errors[i + 1] * z[i + 1] - row[i] - errors[i] * z[i] for i in range(7)]
+        if min(heard) > 0.0:
+            ratio = [heard[i] / heard[i - 1] for i in range(1, 7)]
+            speed = [0.5 * 9.7 * heard[i - 1] for i in range(1, 7)]
+            expected.append(one.numbers(np.array([speed]), np.array([ratio]))[0])
+    assert 100 < len(expected) < 150
+    assert found.share == pytest.approx(len(expected) / 300, rel=1e-14)
+    np.testing.assert_allclose(found.statistics, expected, rtol=1e-9)
