@@ -73,6 +73,10 @@ FLIGHT_TESTS = (
     *("test_flight.py", "test_flight_fit.py", "test_flight_references.py", "test_flight_times.py"),
     *("test_parts_of_datasets.py", "test_selected.py"),
 )
+BUDGET = tuple(
+    f"budget/_{name}.py"
+    for name in ("error_budget", "experiment", "near_round", "required", "results", "sources")
+)
 INFERENCE = tuple(
     f"inference/_{name}.py" for name in ("family", "likelihood", "posterior", "series", "table")
 )
@@ -112,6 +116,9 @@ TESTS = {
     "_reduce.py": ("test_statistics.py", "test_standard_errors.py"),
     "_batches.py": ("test_statistics.py", "test_standard_errors.py"),
     "_energy.py": ("test_energy.py",),
+    "_statistics.py": ("test_statistics.py", "test_standard_errors.py", "test_limits.py"),
+    "study/_point.py": ("test_study_values.py", "test_study_forms.py", "test_study.py"),
+    **dict.fromkeys(BUDGET, ("test_budget.py",)),
     "_compare.py": ("test_compare.py",),
     **dict.fromkeys(BODIES, ("test_bodies.py", "test_objects.py")),
     **dict.fromkeys(FIRST_IMPACT, FIRST_IMPACT_TESTS),

@@ -16,7 +16,7 @@ from reference.processes import COMMANDS
 from restitution._memory import available_memory
 
 SETUP = """
-import json, os, resource, signal, sys, threading, time, warnings
+import json, mmap, os, resource, signal, sys, threading, time, warnings
 import numpy as np
 import restitution as rs
 body = rs.Dumbbell(radius=3e-3, separation=3e-4)
@@ -281,8 +281,12 @@ except rs.SimulationInterrupted as stop:
 
 @pytest.mark.parametrize("bins", [(1000, 200_000), (3000, 30_000)])
 def test_ctrl_c_in_fine_statistics(bins: tuple[int, int]) -> None:
-    """Grids of 2·10⁸ sites, with impacts in parts of each row or in most sites, cost about a second."""
-    [[seconds, kept]] = run(f"""
+    """Grids of 2·10⁸ sites, with impacts in parts of each row or in most sites, cost about a second.
+
+    That is about as long as the pages of such a grid take when they are written to for the first time, which
+    is measured at once: it depends on the machine and on what else it does. Summing the counts took longer.
+    """
+    [[seconds, touched, kept]] = run(f"""
 body = rs.Dumbbell(radius=3e-3, separation=3e-3)
 fine = {{
     "velocity_bins": {bins[0]}, "velocity_range": (0, 1.2),
@@ -296,9 +300,13 @@ threading.Timer(0.5, press).start()
 try:
     rs.statistics(body, law, particles=10**7, impacts=100, threads=1, **fine)
 except rs.SimulationInterrupted as stop:
-    print(json.dumps([time.process_time() - pressed[0], stop.data.attrs["all_impacts"]]))
+    seconds, kept = time.process_time() - pressed[0], stop.data.attrs["all_impacts"]
+began = time.process_time()
+pages = np.frombuffer(mmap.mmap(-1, {8 * bins[0] * bins[1]}), np.uint8)
+pages[::mmap.PAGESIZE] = 1
+print(json.dumps([seconds, time.process_time() - began, kept]))
 """)
-    assert seconds < 1.5
+    assert seconds < 2.0 * touched
     assert kept > 0
 
 
