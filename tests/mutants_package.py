@@ -118,7 +118,7 @@ TESTS = {
     "_energy.py": ("test_energy.py",),
     "_statistics.py": ("test_statistics.py", "test_standard_errors.py", "test_limits.py"),
     "study/_point.py": ("test_study_values.py", "test_study_forms.py", "test_study.py"),
-    **dict.fromkeys(BUDGET, ("test_budget.py",)),
+    **dict.fromkeys(BUDGET, ("test_budget_references.py", "test_budget.py")),
     "_compare.py": ("test_compare.py",),
     **dict.fromkeys(BODIES, ("test_bodies.py", "test_objects.py")),
     **dict.fromkeys(FIRST_IMPACT, FIRST_IMPACT_TESTS),
@@ -242,7 +242,7 @@ def main() -> int:
     shutil.copytree(ROOT / "python" / "restitution", WORK / "restitution", ignore=ignore)
     shutil.copytree(ROOT / "tests", WORK / "tests", ignore=ignore)
     shutil.copy(ROOT / "pyproject.toml", WORK)
-    for read in ("benchmarks", "docs"):
+    for read in ("benchmarks", "docs", "examples"):
         (WORK / read).symlink_to(ROOT / read)
     known: dict[str, str] = {}
     if asked.go_on and OUTCOMES.exists():
