@@ -1,16 +1,19 @@
 """Sources of error worked out again, drop by drop: what is heard, what counts, and how well it is known."""
 
 import math
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
 import pytest
 import xarray as xr
 from scipy.integrate import solve_ivp
+from scipy.optimize import curve_fit
 
 import restitution as rs
 from restitution.budget import _sources
 from restitution.budget._experiment import Experiment, Setting, mean_radius
+from restitution.budget._near_round import near_round
 
 METAL = rs.Frictionless(normal=rs.Plastic(yield_speed=0.05))
 BODY = rs.from_roundness(6e-3, 3e-5)
@@ -206,3 +209,148 @@ def test_what_the_engine_refuses_is_said_in_terms_of_the_experiment() -> None:
     said = r"^drop = 0\.1, gravity = 9\.81, spin = 1e\+30: gives "
     with pytest.raises(ValueError, match=said):
         _sources.simulated(experiment(spin=1e30), BODY, spin=True, tilt=False)
+
+
+def height(body: Any) -> Any:
+    """Height of the centre of mass over the plane by the cosine of the angle of the axis."""
+    if isinstance(body, rs.Spheroid):
+        return lambda u: np.sqrt(body.polar**2 * u**2 + body.equatorial**2 * (1.0 - u**2))
+    if isinstance(body, rs.LoadedSphere):
+        return lambda u: body.radius - body.centre_of_mass * u
+    return lambda u: body.radii[0] + 0.5 * body.separation * np.abs(u)
+
+
+@pytest.mark.parametrize(
+    ("law", "kept"),
+    [
+        (rs.TangentialRestitution(normal=0.9, tangential=1.0), True),
+        (rs.Frictionless(normal=0.9), False),
+        (METAL, False),
+    ],
+)
+@pytest.mark.parametrize(
+    "body",
+    [
+        rs.Spheroid(equatorial=3e-3, polar=3.0003e-3),
+        rs.Spheroid(equatorial=3e-3, polar=2.9997e-3),
+        rs.Dumbbell(radius=3e-3, separation=6e-7),
+        rs.LoadedSphere(radius=3e-3, load=1e-7, offset=1e-3),
+    ],
+    ids=lambda body: type(body).__name__,
+)
+def test_closed_forms_are_averages_over_angles(body: Any, law: Any, kept: bool) -> None:
+    """Of the lever arm dh/dθ and of dh/dt by a spin, to lowest order in t/R <= 1e-4."""
+    one = experiment(law, spin=50.0)
+    found = near_round(one, body)
+    assert found is not None
+    h, step = height(body), 1e-4
+    theta = (np.arange(4000) + 0.37) * 2.0 * np.pi / 4000
+    above, here, below = (h(np.cos(theta + by)) for by in (step, 0.0, -step))
+    arm, bend = (above - below) / (2 * step), (above - 2 * here + below) / step**2
+    bend = bend[np.abs(np.cos(theta)) > 0.01]  # elsewhere two spheres meet in an edge
+    inertia = body.transverse_inertia + (body.mass * (3e-3) ** 2 if kept else 0.0)
+    q, e, v = body.mass / inertia, one.coefficient, one.speed
+    square, c = float((arm**2).mean()), 1.0 + one.coefficient
+    assert found.bias == pytest.approx(-c * q * square, rel=3e-3)
+    # The largest |h''| is that of the angles where h is least or largest.
+    assert found.kick == pytest.approx(2.0 * c * q * e * v**2 * np.abs(bend).max() / 9.81, rel=3e-3)
+    u, weight = np.polynomial.legendre.leggauss(200)
+    by_u = (h(u + 1e-6) - h(u - 1e-6)) / 2e-6
+    # A spin of any direction gives (ω·(a x z))², a third of ω² sin² θ in the mean.
+    turned = 50.0**2 / 3.0 * float((weight * by_u**2 * (1.0 - u**2)).sum() / 2.0)
+    scatter = float((arm**2).var())
+    gained = [q**2 * square * float(((c * v) ** 2)[:k].sum()) for k in range(4)]
+    expected = c * np.sqrt((np.array(gained) * square + turned) / v**2 + q**2 * scatter)
+    assert found.deviation == pytest.approx(expected, rel=3e-3)
+
+
+@pytest.mark.parametrize(
+    ("law", "body"),
+    [
+        (rs.TangentialRestitution(normal=0.9, tangential=0.5), BODY),
+        (rs.Coulomb(normal=0.9, friction=0.3), BODY),
+        (rs.Frictionless(normal=0.9), rs.Spherocylinder(radius=3e-3, separation=1e-5)),
+        (rs.Frictionless(normal=0.9), rs.Dumbbell(radius=(3e-3, 2.9e-3), separation=1e-5)),
+    ],
+)
+def test_closed_forms_that_are_not_known_are_none(law: Any, body: Any) -> None:
+    assert near_round(experiment(law), body) is None
+
+
+RUBBER = rs.Viscoelastic(young_modulus=1e7, poisson_ratio=0.3, dissipation=1e-4, density=1100.0, radius=3e-3)
+TABLE = rs.Tabulated(v=[0.1, 0.5, 1.0, 2.0], e=[0.95, 0.9, 0.88, 0.86])
+
+
+@pytest.mark.parametrize(
+    ("normal", "name"),
+    [(0.9, "constant"), (METAL.normal, "plastic"), (RUBBER, "viscoelastic"), (TABLE, "power law")],
+)
+def test_the_covariance_of_what_is_measured_is_that_of_its_derivatives(normal: Any, name: str) -> None:
+    """ε_i - ε_n(v_i) by each time, by g and by the height of the drop, as differences."""
+    law = rs.Frictionless(normal=normal)
+    one = experiment(law)
+    assert one.form.name == name
+    numbers = np.array([*one.times, 9.81, 0.1])
+
+    def misfit(numbers: np.ndarray) -> np.ndarray:
+        g, drop = numbers[-2:]
+        v = np.concatenate([[math.sqrt(2.0 * g * drop)], 0.5 * g * np.diff(numbers[:-2])])
+        told = normal(v[:-1]) if callable(normal) else normal
+        return np.asarray(v[1:] / v[:-1] - told)
+
+    step = 1e-6
+    by = np.stack(
+        [
+            (misfit(numbers + step * unit) - misfit(numbers - step * unit)) / (2 * step)
+            for unit in np.eye(numbers.size)
+        ],
+        axis=1,
+    )
+    errors = np.array([2e-5] * one.times.size + [0.03, 1e-3])
+    found = one.covariance(timing=2e-5, gravity=0.03, drop=1e-3)
+    assert found == pytest.approx((by * errors**2) @ by.T, rel=2e-4, abs=1e-12)
+
+
+def test_parameters_of_another_law_are_those_of_least_squares() -> None:
+    """A power law through what a table says at the speeds: SciPy's own fit of it."""
+    one = experiment(rs.Frictionless(normal=TABLE))
+
+    def power(v: Any, *values: float) -> Any:
+        return one.form.coefficient(v, np.array(values))
+
+    fitted, _ = curve_fit(power, one.speed, one.coefficient, p0=0.7 * one.parameters, xtol=1e-14, ftol=1e-14)
+    assert one.parameters == pytest.approx(fitted, rel=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("make", "said"),
+    [
+        (
+            lambda: experiment(gravity_uncertainty=10.0),
+            r"^gravity_uncertainty = 10\.0: must be at most gravity = 9\.81",
+        ),
+        (lambda: experiment(drop_uncertainty=0.2), r"^drop_uncertainty = 0\.2: must be at most drop = 0\.1"),
+        (
+            lambda: experiment(rs.Frictionless(normal=0.0)),
+            r"^law = Frictionless\(normal=0\.0\): must be one under which a ball bounces, ε_n > 0",
+        ),
+        (
+            lambda: experiment(rs.Frictionless(normal=1e-6)),
+            r"^law = Frictionless\(normal=1e-06\): must be one whose flights last at least 1e-10 of the time "
+            r"since release, for impacts = 4 of them",
+        ),
+        (
+            lambda: experiment(rs.Frictionless(normal=rs.Plastic(yield_speed=50.0))),
+            r"^law = Frictionless\(.*yield_speed=50\.0\)\): must be one from whose ε_n at the speeds "
+            r"1\.40071 to 1\.40071 m/s the yield_speed can be fitted",
+        ),
+        (lambda: mean_radius(3), r"^body = 3: must be a Dumbbell"),  # type: ignore[arg-type]
+    ],
+)
+def test_what_is_no_experiment_is_said(make: Callable[[], object], said: str) -> None:
+    with pytest.raises(ValueError, match=said):
+        make()
+
+
+def test_what_is_known_just_well_enough() -> None:
+    assert experiment(drop_uncertainty=0.1).setting.drop_uncertainty == 0.1

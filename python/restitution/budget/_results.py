@@ -35,8 +35,9 @@ class ErrorBudget(Content):
         ``bias`` and ``standard_deviation`` of one coefficient, ``fit_bias`` and ``fit_standard_deviation`` of
         the fitted ε_n at that speed; over ``source`` and ``parameter``: ``parameter_bias`` and
         ``parameter_standard_deviation``. Over ``impact``: ``impact_velocity`` in m/s, ``restitution``, and
-        where they are known the closed forms of a nearly round ball, ``kick``,
-        ``shape_standard_deviation_turning`` and ``shape_standard_deviation_still``.
+        where they are known the closed forms of a nearly round ball that turns far between impacts,
+        ``kick``, ``turning_bias`` and ``turning_standard_deviation``. Of all that is sampled the standard
+        errors, as ``bias_error``.
 
     Examples
     --------
