@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 import xarray as xr
 from scipy.integrate import solve_ivp
-from scipy.optimize import curve_fit
+from scipy.optimize import brentq, curve_fit
 
 import restitution as rs
 from restitution.budget import _sources
@@ -238,9 +238,10 @@ def height(body: Any) -> Any:
     ],
     ids=lambda body: type(body).__name__,
 )
-def test_closed_forms_are_averages_over_angles(body: Any, law: Any, kept: bool) -> None:
+@pytest.mark.parametrize("rate", [0.0, 50.0])
+def test_closed_forms_are_averages_over_angles(body: Any, law: Any, kept: bool, rate: float) -> None:
     """Of the lever arm dh/dθ and of dh/dt by a spin, to lowest order in t/R <= 1e-4."""
-    one = experiment(law, spin=50.0)
+    one = experiment(law, spin=rate)
     found = near_round(one, body)
     assert found is not None
     h, step = height(body), 1e-4
@@ -257,7 +258,7 @@ def test_closed_forms_are_averages_over_angles(body: Any, law: Any, kept: bool) 
     u, weight = np.polynomial.legendre.leggauss(200)
     by_u = (h(u + 1e-6) - h(u - 1e-6)) / 2e-6
     # A spin of any direction gives (ω·(a x z))², a third of ω² sin² θ in the mean.
-    turned = 50.0**2 / 3.0 * float((weight * by_u**2 * (1.0 - u**2)).sum() / 2.0)
+    turned = rate**2 / 3.0 * float((weight * by_u**2 * (1.0 - u**2)).sum() / 2.0)
     scatter = float((arm**2).var())
     gained = [q**2 * square * float(((c * v) ** 2)[:k].sum()) for k in range(4)]
     expected = c * np.sqrt((np.array(gained) * square + turned) / v**2 + q**2 * scatter)
@@ -354,3 +355,11 @@ def test_what_is_no_experiment_is_said(make: Callable[[], object], said: str) ->
 
 def test_what_is_known_just_well_enough() -> None:
     assert experiment(drop_uncertainty=0.1).setting.drop_uncertainty == 0.1
+
+
+def test_the_shortest_flights_that_a_double_resolves() -> None:
+    """The fourth takes 1e-10 of the time since release: 2 e⁴ = 1e-10 (1 + 2 e + 2 e² + 2 e³ + 2 e⁴)."""
+    normal = brentq(lambda e: 2 * e**4 - 1e-10 * (1 + 2 * (e + e**2 + e**3 + e**4)), 1e-3, 1e-2, xtol=1e-12)
+    assert experiment(rs.Frictionless(normal=normal * 1.0005)).times.size == 5
+    with pytest.raises(ValueError, match=r"^law = .*: must be one whose flights last at least 1e-10 of"):
+        experiment(rs.Frictionless(normal=normal * 0.9995))
