@@ -1,7 +1,11 @@
 """Statistics that the core counts on the fly: the same impacts, exactly counted, in any order."""
 
+import re
 import subprocess
 import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -140,6 +144,93 @@ def test_rows_may_be_the_numbers_of_the_impacts() -> None:
     )  # five standard errors
     data = rs.simulate(body, law, particles=40_000, impacts=5)
     np.testing.assert_allclose(found["mean_restitution"], data.restitution.mean("particle"), atol=QUANTUM)
+
+
+@pytest.mark.parametrize("counts_only", [False, True])
+def test_rows_of_impacts_hold_what_happened_in_each(counts_only: bool) -> None:
+    """Counted impact by impact from the record, under a law that creates energy, with values beside the bins."""
+    body, law = rs.Dumbbell(radius=3e-3, separation=6e-3), rs.TangentialRestitution(normal=0.4)
+    run: dict[str, Any] = {"particles": 300, "impacts": 30, "seed": 3}
+    edges = np.linspace(-0.5, 1.0, 16)
+    with pytest.warns(rs.EnergyWarning):
+        data = rs.simulate(body, law, **run)
+    with pytest.warns(rs.EnergyWarning):
+        found = rs.statistics(
+            body, law, **run, velocity_bins=None, restitution_bins=edges, counts_only=counts_only, batches=5
+        )
+    assert found.attrs["title"] == "Statistics of the impacts of bouncing aspherical particles"
+    assert found.impact.values.tolist() == list(range(30))
+    assert found.impact.attrs == {"long_name": "number of the impact, from 0"}
+    values, energy = data.restitution.values, data.energy_ratio.values
+    for row in range(30):
+        here = values[:, row][~np.isnan(data.time.values[:, row])]
+        assert int(found.number[row]) == np.isfinite(here).sum()
+        assert found["restitution_count"].values[row].tolist() == [
+            int(((here >= low) & (here < high)).sum()) for low, high in pairwise(edges)
+        ]
+        gains = energy[:, row][energy[:, row] > 1.0 + 1e-12]
+        assert int(found.energy_created[row]) == gains.size
+        assert float(found.largest_energy_ratio[row]) == (
+            gains.max() if gains.size else pytest.approx(np.nan, nan_ok=True)
+        )
+    assert found.attrs["all_impacts"] == data.attrs["all_impacts"] == int(data.impacts.sum())
+    assert found.attrs["energy_created_impacts"] == int(found.energy_created.sum()) > 0
+    reasons = data.stop_reason.attrs["flag_meanings"].split()
+    assert found.stop_reason.values.tolist() == reasons
+    ended = [int((data.stop_reason.values == code).sum()) for code in range(len(reasons))]
+    assert found.particles_ended.values.tolist() == ended
+    assert found.particles_ended.attrs == {"long_name": "particles by the reason why they ended"}
+    names = {"fraction_count", "variance", "mean_restitution", "mean_restitution_error"}
+    assert {name in found for name in names} == {not counts_only}
+    if not counts_only:
+        assert found.mean_restitution_error.dims == ("impact",)
+
+
+def test_the_progress_is_that_of_the_whole_run(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Batch after batch: it never falls back to the beginning of one."""
+    told: list[int] = []
+    shown: list[Any] = []
+
+    @contextmanager
+    def progress_bar(*what: Any, show: bool) -> Iterator[Any]:
+        shown.append((*what, show))
+        yield told.append
+
+    monkeypatch.setattr("restitution._statistics.progress_bar", progress_bar)
+    body = rs.Dumbbell(radius=3e-3, separation=3e-4)
+    rs.statistics(body, LAW, **call(particles=20_000, impacts=200, threads=1, batches=4, progress=True))
+    assert shown == [("statistics", 20_000, "particles", True)]
+    assert told == sorted(told)
+    assert told[-1] == 20_000
+
+
+@pytest.mark.parametrize(
+    ("bins", "rows", "columns"),
+    [
+        ({}, 10, 43 + 13),
+        ({"velocity_bins": None}, 60, 43 + 13),
+        ({"counts_only": True}, 10, 43),
+        ({"batches": 1}, 10, 43 + 13),
+    ],
+)
+def test_the_memory_of_grids_is_said_beforehand(
+    bins: dict[str, Any], rows: int, columns: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """8 bytes a site, and 4 a thread; 400 a row and as much a thread, and 200 a batch: no less is enough."""
+    body = rs.Dumbbell(radius=3e-3, separation=3e-4)
+    batches = 1 if "batches" in bins or "counts_only" in bins else 7
+    needed = rows * ((8 + 4 * 3) * columns + 400 * (1 + 3) + 200 * batches)
+    given = call(threads=3, batches=7) | bins
+    monkeypatch.setattr("restitution._statistics.available_memory", lambda: needed)
+    assert rs.statistics(body, LAW, **given).sizes
+    monkeypatch.setattr("restitution._statistics.available_memory", lambda: needed - 1)
+    text = (
+        f"velocity_bins, restitution_bins, fraction_bins: {rows} rows of {columns} sites, counted by 3 "
+        f"threads, take {needed / 1e9:.3g} GB: must be at most {(needed - 1) / 1e9:.3g} GB, what this process can have"
+    )
+    for kind in (ValueError, MemoryError):
+        with pytest.raises(kind, match=f"^{re.escape(text)}$"):
+            rs.statistics(body, LAW, **given)
 
 
 def test_the_threads_do_not_show() -> None:
