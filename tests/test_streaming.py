@@ -148,7 +148,7 @@ def test_rows_may_be_the_numbers_of_the_impacts() -> None:
 
 @pytest.mark.parametrize("counts_only", [False, True])
 def test_rows_of_impacts_hold_what_happened_in_each(counts_only: bool) -> None:
-    """Counted impact by impact from the record, under a law that creates energy, with values beside the bins."""
+    """Counted from the record, under a law that creates energy, with values beside the bins."""
     body, law = rs.Dumbbell(radius=3e-3, separation=6e-3), rs.TangentialRestitution(normal=0.4)
     run: dict[str, Any] = {"particles": 300, "impacts": 30, "seed": 3}
     edges = np.linspace(-0.5, 1.0, 16)
@@ -226,7 +226,8 @@ def test_the_memory_of_grids_is_said_beforehand(
     monkeypatch.setattr("restitution._statistics.available_memory", lambda: needed - 1)
     text = (
         f"velocity_bins, restitution_bins, fraction_bins: {rows} rows of {columns} sites, counted by 3 "
-        f"threads, take {needed / 1e9:.3g} GB: must be at most {(needed - 1) / 1e9:.3g} GB, what this process can have"
+        f"threads, take {needed / 1e9:.3g} GB: must be at most {(needed - 1) / 1e9:.3g} GB, "
+        "what this process can have"
     )
     for kind in (ValueError, MemoryError):
         with pytest.raises(kind, match=f"^{re.escape(text)}$"):
