@@ -117,7 +117,7 @@ TESTS = {
     "_batches.py": ("test_statistics.py", "test_standard_errors.py"),
     "_energy.py": ("test_energy.py",),
     "_statistics.py": ("test_streaming.py", "test_statistics.py", "test_standard_errors.py"),
-    "study/_point.py": ("test_study_values.py", "test_study_forms.py", "test_study.py"),
+    "study/_point.py": ("test_study_point.py", "test_study.py", "test_study_forms.py"),
     **dict.fromkeys(BUDGET, ("test_budget_references.py", "test_budget.py")),
     "_compare.py": ("test_compare.py",),
     **dict.fromkeys(BODIES, ("test_bodies.py", "test_objects.py")),
