@@ -5,9 +5,9 @@ from typing import Any
 
 import numpy as np
 import pytest
-from scipy.integrate import solve_ivp
 
 import restitution as rs
+from reference.bouncing import told_in_air
 from test_measuring_pages import script
 
 ROUND = rs.from_roundness(6e-3, 0.0)
@@ -65,21 +65,8 @@ def test_drag_is_that_of_an_integration_of_the_motion() -> None:
     terminal = 9.0
     drag = rs.flight.Drag(terminal_velocity=terminal, uncertainty=0.5)
     data = rs.error_budget(ROUND, LAW, drop=0.5, impacts=6, drag=drag).data
-
-    def motion(_: float, y: np.ndarray) -> list[float]:
-        return [y[1], -9.81 * (1.0 + abs(y[1]) * y[1] / terminal**2)]
-
-    def landed(_: float, y: np.ndarray) -> float:
-        return float(y[0])
-
-    landed.terminal, landed.direction = True, -1.0  # type: ignore[attr-defined]
-    told, state = [math.sqrt(2 * 9.81 * 0.5)], [0.5, 0.0]
-    for number in range(7):
-        flight = solve_ivp(motion, (0.0, 10.0), state, events=landed, rtol=1e-11, atol=1e-13)
-        if number:
-            told.append(9.81 * float(flight.t_events[0][0]) / 2.0)  # type: ignore[index]
-        state = [1e-13, -0.95 * float(flight.y_events[0][0][1])]  # type: ignore[index]
-    expected = np.array(told[1:]) / np.array(told[:-1]) - 0.95
+    told = told_in_air(lambda _: 0.95, 0.5, terminal, 6)
+    expected = told[1:] / told[:-1] - 0.95
     bias = deviation(data, "drag", "bias")
     assert bias == pytest.approx(expected, rel=1e-5)
 

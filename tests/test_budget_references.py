@@ -7,10 +7,10 @@ from typing import Any
 import numpy as np
 import pytest
 import xarray as xr
-from scipy.integrate import solve_ivp
 from scipy.optimize import brentq, curve_fit
 
 import restitution as rs
+from reference.bouncing import told_in_air
 from restitution.budget import _sources
 from restitution.budget._experiment import Experiment, Setting, mean_radius
 from restitution.budget._near_round import near_round
@@ -62,21 +62,7 @@ def test_drag_under_any_law_is_that_of_an_integration(law: rs.Frictionless) -> N
         return law.normal(v) if isinstance(law.normal, rs.Plastic) else law.normal
 
     def bias(terminal: float) -> np.ndarray:
-        def landed(_: float, y: np.ndarray) -> float:
-            return float(y[0])
-
-        def motion(_: float, y: np.ndarray) -> list[float]:
-            return [y[1], -9.81 * (1.0 + abs(y[1]) * y[1] / terminal**2)]
-
-        landed.terminal, landed.direction = True, -1.0  # type: ignore[attr-defined]
-        told, state = [math.sqrt(2 * 9.81 * 0.5)], [0.5, 0.0]
-        for number in range(5):
-            flight = solve_ivp(motion, (0.0, 10.0), state, events=landed, rtol=1e-12, atol=1e-14)
-            if number:
-                told.append(9.81 * float(flight.t_events[0][0]) / 2.0)  # type: ignore[index]
-            speed = -float(flight.y_events[0][0][1])  # type: ignore[index]
-            state = [1e-14, float(normal(np.array(speed))) * speed]
-        v = np.array(told)
+        v = told_in_air(lambda speed: float(normal(np.array(speed))), 0.5, terminal, 4)
         return np.asarray(v[1:] / v[:-1] - normal(v[:-1]))
 
     one = experiment(law, drop=0.5)

@@ -13,7 +13,7 @@ from restitution import _core
 from restitution._core import STOP_REASONS
 from restitution._dataset import dataset
 from restitution._run import Run
-from restitution._statistics import MOMENTS, Edges, dataset_of
+from restitution._statistics import MOMENTS, Edges, Table, dataset_of
 from restitution.study._effort import Effort
 from restitution.study._forms import Form
 from restitution.study._named import DERIVED, MOVED, with_errors
@@ -204,10 +204,11 @@ def _recorded_words(point: Point) -> int:
 
 def _with_errors(point: Point, total: _core.Tally, without: Sequence[_core.Tally]) -> xr.Dataset:
     assert point.edges is not None
-    statistics = dataset_of(point.run, point.edges, total.table())
+    table = total.table()
+    statistics = dataset_of(point.run, point.edges, table)
     row = str(statistics["number"].dims[0])
-    values = _derived(total, point.edges)
-    errors = _errors([_derived(tally, point.edges) for tally in without])
+    values = _derived(table, point.edges)
+    errors = _errors([_derived(tally.table(), point.edges) for tally in without])
     found: dict[Hashable, Any] = {}
     for name, value in values.items():
         dims = (row, "restitution")[: value.ndim]
@@ -240,14 +241,13 @@ def _with_errors(point: Point, total: _core.Tally, without: Sequence[_core.Tally
     return result
 
 
-def _derived(tally: _core.Tally, edges: Edges) -> dict[str, FloatArray]:
+def _derived(table: Table, edges: Edges) -> dict[str, FloatArray]:
     """Give what has a standard error, by row."""
-    table = tally.table()
     inner = slice(None) if edges["velocity"] is None else slice(1, -1)
     count, bins = table["count"][inner], edges["restitution"]
     assert bins is not None
     with np.errstate(invalid="ignore", divide="ignore"):
-        found = {"density": count[:, 1:-2] / count[:, :-1].sum(axis=1)[:, None] / np.diff(bins)}
+        found = {"density": count[:, 1:-2] / table["number"][inner][:, None] / np.diff(bins)}
     if edges["fraction"] is not None:
         found |= {name: table[key][inner] for name, key in MOMENTS.items() if name in MOVED}
         found["std_restitution"] = np.sqrt(found["variance"])
