@@ -34,6 +34,7 @@ lint: $(STAMP)
 	$(BIN)/ruff check
 	$(BIN)/ruff format --check
 	$(BIN)/mypy
+	$(BIN)/lint-imports
 
 test: lint  ## every check: Rust format, clippy, Rust tests, ruff, mypy, the explorer, pytest
 	cargo test --workspace --locked
@@ -66,7 +67,7 @@ docs: $(STAMP) web build/extra/paper/report.html  ## the site, into build/site: 
 	rm -rf build/site
 	$(BIN)/python -m sphinx -W --keep-going -b html -d build/doctrees docs build/site
 	$(BIN)/python docs/check.py build/site
-	$(BIN)/python -m pytest tests/test_import.py -q -k pages
+	$(BIN)/python -m pytest tests/project/test_import.py -q -k pages
 
 wheel: $(STAMP) web  ## wheels for Linux into dist/, each installed and run in an environment of its own
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check --upgrade 'pip>=25.1'
@@ -80,15 +81,15 @@ fuzz:  ## random runs beside the oracle and between the SIMD levels, $(FUZZ) sec
 	RESTITUTION_FUZZ_SECONDS=$(FUZZ) cargo test -p restitution-core --locked --test agreement --test fuzz -- --nocapture
 
 hostile: $(STAMP) | web  ## every public function with every hostile value and every harmed Dataset, harmed files and random tables for $(FUZZ) seconds, every command in every hostile environment
-	$(BIN)/python tests/hostile.py
-	OPENBLAS_NUM_THREADS=1 OMP_NUM_THREADS=1 $(BIN)/python tests/fuzz.py --seconds $(FUZZ)
-	OPENBLAS_NUM_THREADS=1 OMP_NUM_THREADS=1 $(BIN)/python tests/environments.py
+	PYTHONPATH=tests $(BIN)/python tests/manual/hostile.py
+	PYTHONPATH=tests OPENBLAS_NUM_THREADS=1 OMP_NUM_THREADS=1 $(BIN)/python tests/manual/fuzz.py --seconds $(FUZZ)
+	PYTHONPATH=tests OPENBLAS_NUM_THREADS=1 OMP_NUM_THREADS=1 $(BIN)/python tests/manual/environments.py
 
 audit:  ## known weaknesses of dependencies; says of each check whether it ran
-	sh tests/audit.sh
+	sh tests/manual/audit.sh
 
 mutants: $(STAMP)  ## do the tests notice changes of the core and the package? SHARD=0/64 takes a part, FILES=statistics some files
-	sh tests/mutants.sh $(SHARD) $(FILES)
+	sh tests/manual/mutants.sh $(SHARD) $(FILES)
 
 test-arm:  ## the digests on AArch64, under qemu-user; installs nothing and says what it needs
 	sh crates/core/tests/arm.sh

@@ -13,10 +13,10 @@ from dataclasses import dataclass
 import numpy as np
 
 import restitution as rs
-from restitution._run import Run
 from restitution.bodies import Body
 from restitution.distribution._check import Check
 from restitution.distribution._ensemble import FRESH, Ensemble
+from restitution.drop.run import Run
 from restitution.laws import Law
 
 R = 3e-3

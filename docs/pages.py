@@ -7,10 +7,10 @@ own place:
     ...
     <!-- stamp 0123456789ab -->
 
-The stamp is a digest of the tables, of the figures, of the size of the run, and of what the same code prints
-in a small run. `tests/test_pages.py` makes the small runs again: where the code, the engine, a table or a
-figure has changed since, the page is stale, and the test says which command sets it right. Results do not
-depend on the machine, so neither does the stamp.
+The stamp is a digest of the tables, of the figures, of the size of the run, and of what the same code
+prints in a small run. `tests/project/test_pages.py` makes the small runs again: where the code, the engine,
+a table or a figure has changed since, the page is stale, and the test says which command sets it right.
+Results do not depend on the machine, so neither does the stamp.
 """
 
 import argparse
@@ -41,7 +41,7 @@ def _script(name: str) -> Any:
 
 def energy(impacts: int, images: Path | None) -> str:
     """Make the table and the figure of `restitution laws`."""
-    from restitution import laws_figure as laws
+    from restitution.figures import laws
 
     data = laws.measure(impacts, 1)
     if images is not None:

@@ -3,15 +3,8 @@
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from restitution import analytic, figures, fit, flight, sound, study
-    from restitution._compare import compare
+    from restitution import analytic, figures, fit, study
     from restitution._core import NumericalError, build_info
-    from restitution._energy import EnergyWarning
-    from restitution._reduce import reduce
-    from restitution._release import RandomHeight, RandomSpin
-    from restitution._simulate import SimulationInterrupted, simulate
-    from restitution._statistics import statistics
-    from restitution._trajectory import trajectory
     from restitution.bodies import (
         Dumbbell,
         LoadedSphere,
@@ -20,10 +13,18 @@ if TYPE_CHECKING:
         ball_grade,
         from_roundness,
     )
-    from restitution.budget import ErrorBudget, RequiredRoundness, error_budget, required_roundness
     from restitution.distribution import DistanceWarning, FluctuatingRestitution
+    from restitution.drop.compare import compare
+    from restitution.drop.energy import EnergyWarning
+    from restitution.drop.reduce import reduce
+    from restitution.drop.release import RandomHeight, RandomSpin
+    from restitution.drop.simulate import SimulationInterrupted, simulate
+    from restitution.drop.statistics import statistics
+    from restitution.drop.trajectory import trajectory
+    from restitution.experiment import flight, sound
+    from restitution.experiment.budget import ErrorBudget, RequiredRoundness, error_budget, required_roundness
+    from restitution.experiment.inference import posterior
     from restitution.explorer import explore
-    from restitution.inference import posterior
     from restitution.laws import (
         ChatterjeeRuina,
         Coulomb,
@@ -84,22 +85,22 @@ _HOMES = {
     "Spheroid": "bodies",
     "ball_grade": "bodies",
     "from_roundness": "bodies",
-    "ErrorBudget": "budget",
-    "RequiredRoundness": "budget",
-    "error_budget": "budget",
-    "required_roundness": "budget",
+    "ErrorBudget": "experiment.budget",
+    "RequiredRoundness": "experiment.budget",
+    "error_budget": "experiment.budget",
+    "required_roundness": "experiment.budget",
     "DistanceWarning": "distribution",
     "FluctuatingRestitution": "distribution",
     "NumericalError": "_core",
     "build_info": "_core",
-    "compare": "_compare",
+    "compare": "drop.compare",
     "explore": "explorer",
-    "posterior": "inference",
-    "EnergyWarning": "_energy",
-    "RandomHeight": "_release",
-    "RandomSpin": "_release",
-    "reduce": "_reduce",
-    "SimulationInterrupted": "_simulate",
+    "posterior": "experiment.inference",
+    "EnergyWarning": "drop.energy",
+    "RandomHeight": "drop.release",
+    "RandomSpin": "drop.release",
+    "reduce": "drop.reduce",
+    "SimulationInterrupted": "drop.simulate",
     "ChatterjeeRuina": "laws",
     "Coulomb": "laws",
     "Frictionless": "laws",
@@ -107,12 +108,14 @@ _HOMES = {
     "Tabulated": "laws",
     "TangentialRestitution": "laws",
     "Viscoelastic": "laws",
-    "simulate": "_simulate",
-    "statistics": "_statistics",
+    "simulate": "drop.simulate",
+    "statistics": "drop.statistics",
     "sweep": "study",
-    "trajectory": "_trajectory",
+    "trajectory": "drop.trajectory",
 }
 """The module that each public name comes from; the others are modules themselves."""
+_FOLDERS = {"flight": "experiment.flight", "sound": "experiment.sound"}
+"""The folders of the public modules that do not stand at the root."""
 
 
 def __getattr__(name: str) -> Any:
@@ -126,7 +129,7 @@ def __getattr__(name: str) -> Any:
     if name in _HOMES:
         value = getattr(import_module(f"restitution.{_HOMES[name]}"), name)
     elif name in __all__:
-        value = import_module(f"restitution.{name}")
+        value = import_module(f"restitution.{_FOLDERS.get(name, name)}")
     else:
         from difflib import get_close_matches
 

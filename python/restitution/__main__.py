@@ -8,7 +8,7 @@ def main() -> None:
     if signal.getsignal(signal.SIGINT) is signal.default_int_handler:
         # There is nothing to be lost then, and Python's own handler would tell where the import was.
         signal.signal(signal.SIGINT, signal.SIG_DFL)
-    from restitution._cli import main as command
+    from restitution.cli import main as command
 
     command()
 

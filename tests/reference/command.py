@@ -7,9 +7,9 @@ import xarray as xr
 from typer.testing import CliRunner, Result
 
 import restitution as rs
-from restitution._cli import app
+from restitution.cli import app
 
-COMMAND = [sys.executable, "-c", "from restitution._cli import main; main()"]
+COMMAND = [sys.executable, "-c", "from restitution.cli import main; main()"]
 AMONG_TESTS = f"import sys; sys.path.insert(0, {str(Path(__file__).parents[1])!r})\n"
 """How a program begins that imports from here."""
 

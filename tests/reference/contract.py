@@ -15,7 +15,7 @@ import numpy as np
 
 import restitution as rs
 from reference import calls, measuring, methods
-from restitution._parameters import shown
+from restitution._internal.parameters import shown
 
 SLOW = 30.0
 """Seconds that no call of these sizes may take, on a busy machine either."""

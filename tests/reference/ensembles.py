@@ -6,8 +6,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 import restitution as rs
-from restitution._run import Run
 from restitution.distribution._ensemble import Ensemble
+from restitution.drop.run import Run
 
 Floats = NDArray[np.float64]
 

@@ -13,9 +13,9 @@ import xarray as xr
 from numpy.typing import NDArray
 
 from restitution.analytic import first_impact
-from restitution.paper import _claims as claims
-from restitution.paper._runs import Runs
-from restitution.paper._settings import Settings
+from restitution.papers.glielmo2014 import _claims as claims
+from restitution.papers.glielmo2014._runs import Runs
+from restitution.papers.glielmo2014._settings import Settings
 
 Array = NDArray[np.float64]
 Noise = Callable[[np.random.Generator, tuple[int, ...]], Array]

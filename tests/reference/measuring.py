@@ -9,9 +9,12 @@ import numpy as np
 
 import restitution as rs
 from reference.calls import Call, folder, good, of, some
-from restitution import budget, explorer, flight, inference, laws_figure, listen, paper, sound, study
-from restitution._run import Run
-from restitution.listen._analysis import Setting
+from restitution import explorer, flight, sound, study
+from restitution.drop.run import Run
+from restitution.experiment import budget, inference, listen
+from restitution.experiment.listen._analysis import Setting
+from restitution.figures import laws as laws_figure
+from restitution.papers import glielmo2014 as paper
 
 ENOUGH = "the attack has come far enough"
 
@@ -22,13 +25,13 @@ def _leave(*_: Any, **__: Any) -> None:
 
 def _redraw(**given: Any) -> Any:
     """Call up to where the work would begin, which takes minutes."""
-    with patch("restitution.paper._redraw.simulate_all", _leave):
+    with patch("restitution.papers.glielmo2014._redraw.simulate_all", _leave):
         return paper.redraw(**given)
 
 
 def _laws(**given: Any) -> Any:
     """Likewise."""
-    with patch("restitution.laws_figure._measure.compare", _leave):
+    with patch("restitution.figures.laws._measure.compare", _leave):
         return laws_figure.write(**given)
 
 

@@ -69,7 +69,7 @@ LONG = {"paper"}
 """Commands that take minutes, which only `make hostile` runs."""
 ENDLESS = {"explore"}
 STATUSES = (0, 1, 2, 3)
-_START = "import os; from restitution._cli import main; os.write(BEGUN, b'.'); os.close(BEGUN); main()"
+_START = "import os; from restitution.cli import main; os.write(BEGUN, b'.'); os.close(BEGUN); main()"
 
 
 @dataclass
@@ -121,7 +121,7 @@ def address_space() -> int:
 @cache
 def imported() -> int:
     """Address space of a process that has imported what commands import."""
-    code = "import xarray, netCDF4, scipy.stats, matplotlib.figure, restitution._cli, typer, tqdm\n"
+    code = "import xarray, netCDF4, scipy.stats, matplotlib.figure, restitution.cli, typer, tqdm\n"
     code += "print(open('/proc/self/statm').read().split()[0])"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     return int(done.stdout) * os.sysconf("SC_PAGESIZE")

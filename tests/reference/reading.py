@@ -22,9 +22,11 @@ from reference.calls import folder, good
 from reference.command import SMALL, invoke
 from reference.damage import BINARY, TEXT, Harm, harm_dataset, harm_store, harmed
 from reference.processes import RUN, STUDY, same
-from restitution import _toml, flight, listen, study
+from restitution import flight, study
 from restitution.distribution._store import sealed
-from restitution.listen._analysis import Setting
+from restitution.drop import toml as _toml
+from restitution.experiment import listen
+from restitution.experiment.listen._analysis import Setting
 from restitution.study._status import study_in
 
 

@@ -11,7 +11,7 @@ _FIRST = {
     "explore": ("http.server", "ThreadingHTTPServer.serve_forever"),
     "fit": ("xarray", "open_dataset"),
     "listen": ("soundfile", "read"),
-    "template": ("restitution._cli._template", "say"),
+    "template": ("restitution.cli._template", "say"),
 }
 """Where the work of a command begins that has the core do nothing."""
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from restitution._parameters import ParameterError, Problem, wrong
+from restitution._internal.parameters import ParameterError, Problem, wrong
 from restitution.analytic._branched import BranchedFirstImpact
 from restitution.analytic._frozen import FirstImpact, check
 from restitution.analytic._normal import Fall

@@ -6,12 +6,12 @@ import numpy as np
 import numpy.typing as npt
 import xarray as xr
 
-from restitution._arrays import whole
-from restitution._bins import centres, increasing_edges
-from restitution._parameters import ParameterError, Problem, wrong
-from restitution._release import RandomHeight
-from restitution._run import Run
+from restitution._internal.arrays import whole
+from restitution._internal.parameters import ParameterError, Problem, wrong
 from restitution.bodies import Body, Dumbbell
+from restitution.drop.bins import centres, increasing_edges
+from restitution.drop.release import RandomHeight
+from restitution.drop.run import Run
 from restitution.laws import Frictionless, Law, TangentialRestitution
 
 Floats = npt.NDArray[np.float64]

@@ -6,7 +6,7 @@ import numpy as np
 from pydantic import Field
 
 from restitution._core import PADE
-from restitution._parameters import Number, Parameters
+from restitution._internal.parameters import Number, Parameters
 from restitution.analytic import _disc
 from restitution.laws import Plastic, Tabulated, Viscoelastic
 

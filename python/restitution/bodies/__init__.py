@@ -1,10 +1,10 @@
 """Bodies: what falls. All are bodies of revolution, of which the flight between impacts has a closed form."""
 
-from restitution._parameters import listed
+from restitution._internal.parameters import listed
 from restitution.bodies._body import Body
 from restitution.bodies._dumbbell import Dumbbell
 from restitution.bodies._loaded_sphere import LoadedSphere
-from restitution.bodies._roundness import GRADES, ball_grade, from_roundness
+from restitution.bodies._roundness import GRADES, Form, ball_grade, from_roundness
 from restitution.bodies._spherocylinder import Spherocylinder
 from restitution.bodies._spheroid import Spheroid
 
@@ -14,6 +14,7 @@ __all__ = [
     "KINDS",
     "Body",
     "Dumbbell",
+    "Form",
     "LoadedSphere",
     "Spherocylinder",
     "Spheroid",

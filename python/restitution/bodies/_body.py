@@ -7,8 +7,9 @@ from typing import Self
 
 from pydantic import model_validator
 
-from restitution import _core, _display
-from restitution._parameters import ParameterError, Parameters, Problem, shown
+from restitution import _core
+from restitution._internal import display as _display
+from restitution._internal.parameters import ParameterError, Parameters, Problem, shown
 
 
 class Body(Parameters):

@@ -4,7 +4,7 @@ from typing import Annotated
 
 from pydantic import Field
 
-from restitution._parameters import Number, ParameterError, Parameters, wrong
+from restitution._internal.parameters import Number, ParameterError, Parameters, wrong
 
 
 class LengthWidth(Parameters):

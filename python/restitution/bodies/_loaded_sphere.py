@@ -5,7 +5,7 @@ from typing import Annotated
 from pydantic import Field
 
 from restitution import _core
-from restitution._parameters import Number, ParameterError, Problem, shown
+from restitution._internal.parameters import Number, ParameterError, Problem, shown
 from restitution.bodies._body import Body
 
 

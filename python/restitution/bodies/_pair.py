@@ -6,7 +6,7 @@ from typing import Annotated, Any
 import numpy as np
 from pydantic import BeforeValidator, ValidationInfo
 
-from restitution._parameters import Allowed, ParameterError, plain_number, wrong
+from restitution._internal.parameters import Allowed, ParameterError, plain_number, wrong
 
 _POSITIVE = "a finite number > 0"
 _ALLOWED = f"{_POSITIVE} (or one for each sphere)"

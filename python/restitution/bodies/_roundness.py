@@ -6,7 +6,7 @@ from typing import Annotated, Literal, TypeAlias, get_args
 
 from pydantic import Field
 
-from restitution._parameters import (
+from restitution._internal.parameters import (
     Allowed,
     Number,
     ParameterError,

@@ -5,7 +5,7 @@ from typing import Annotated, Self
 from pydantic import Field
 
 from restitution import _core
-from restitution._parameters import Number, ParameterError, in_terms_of, wrong
+from restitution._internal.parameters import Number, ParameterError, in_terms_of, wrong
 from restitution.bodies._body import Body
 from restitution.bodies._length_width import LengthWidth
 

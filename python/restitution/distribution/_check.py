@@ -7,7 +7,7 @@ import numpy as np
 import xarray as xr
 
 from restitution import _core
-from restitution._resources import checked_threads
+from restitution._internal.resources import checked_threads
 from restitution.distribution._ensemble import BATCHES, Impacts
 from restitution.distribution._nodes import POINT
 from restitution.distribution._table import Floats, Ints, Table

@@ -7,7 +7,7 @@ from functools import cached_property
 import numpy as np
 
 from restitution import _core
-from restitution._resources import checked_threads
+from restitution._internal.resources import checked_threads
 from restitution.distribution._ensemble import BATCHES, Impacts, Look
 from restitution.distribution._table import Floats, Histogram, starts
 

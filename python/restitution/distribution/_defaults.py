@@ -4,10 +4,10 @@ import math
 
 import numpy as np
 
-from restitution._run import Run
-from restitution._simulate import simulate_run
 from restitution.distribution._table import Floats
-from restitution.laws._materials import Material
+from restitution.drop.run import Run
+from restitution.drop.simulate import simulate_run
+from restitution.laws import Material
 
 RANGE = (0.04, 0.4)
 """Learned speeds where none are asked for, over the largest possible one at the first impact."""

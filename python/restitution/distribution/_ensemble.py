@@ -8,11 +8,11 @@ from typing import Any, NamedTuple, TypeAlias
 import numpy as np
 
 from restitution import _core
-from restitution._parameters import ParameterError, Problem, wrong
-from restitution._release import RandomHeight, RandomSpin
-from restitution._resources import check_memory, checked_threads
-from restitution._run import Run
+from restitution._internal.parameters import ParameterError, Problem, wrong
+from restitution._internal.resources import check_memory, checked_threads
 from restitution.distribution._table import Floats
+from restitution.drop.release import RandomHeight, RandomSpin
+from restitution.drop.run import Run
 
 LEARNING, FRESH = 0, 1
 """Streams of random numbers: what is learned from, and what the learned distribution is held against."""

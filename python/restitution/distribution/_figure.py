@@ -7,8 +7,9 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from restitution import figures as fg
 from restitution.distribution._errors import EstimatedDistribution
+from restitution.figures import pieces
+from restitution.figures import style as fg
 
 _LEVELS = (0.05, 0.25, 0.5, 0.75, 0.95)
 _CONFIDENCE = 1.96
@@ -70,7 +71,7 @@ def draw(dist: EstimatedDistribution) -> Figure:
         fg.letter(axes, f"({name})", left=axes in (quantiles, densities))
         if axes is not densities:
             axes.set_xlabel(_VELOCITY)
-            fg.plain_log(axes, _TICKS)
+            pieces.plain_log(axes, _TICKS)
             axes.set_xlim(speeds[0], speeds[-1])
     for row in conditional:
         _given(row, dist)
@@ -102,7 +103,7 @@ def _given(row: list[Axes], dist: EstimatedDistribution) -> None:
         row[1].plot(x, np.where(density > 0, density, np.nan), color=fg.COLORS[k], label=label, linewidth=0.7)
     row[0].set_xlabel(_VELOCITY)
     row[0].set_ylabel(_RESTITUTION)
-    fg.plain_log(row[0], _TICKS)
+    pieces.plain_log(row[0], _TICKS)
     row[0].set_xlim(speeds[0], speeds[-1])
     row[1].set_xlabel(_RESTITUTION)
     row[1].set_ylabel(rf"$p(\varepsilon\,|\,v, z)$ at {speeds[near]:.3g} m/s")

@@ -10,27 +10,27 @@ import numpy as np
 import numpy.typing as npt
 import xarray as xr
 
-from restitution._arrays import flag, reals, whole
-from restitution._dataset import load, save
-from restitution._display import Text, table, value
-from restitution._files import path_from, write
-from restitution._formats import HEADER, MODULE, NETCDF, path_for
-from restitution._parameters import ParameterError, Problem, renamed, wrong
-from restitution._recorded import check_filled, check_successive, records
-from restitution._release import RandomHeight, RandomSpin
-from restitution._resources import checked_threads
-from restitution._run import Run
+from restitution._internal.arrays import flag, reals, whole
+from restitution._internal.display import Text, table, value
+from restitution._internal.files import path_from, write
+from restitution._internal.formats import HEADER, MODULE, NETCDF, path_for
+from restitution._internal.parameters import ParameterError, Problem, renamed, wrong
+from restitution._internal.resources import checked_threads
 from restitution.bodies import Body
 from restitution.distribution import _defaults as defaults
-from restitution.distribution._c import header
 from restitution.distribution._check import Check, warn_of_distance
 from restitution.distribution._ensemble import Ensemble, Impacts
 from restitution.distribution._errors import EstimatedDistribution
-from restitution.distribution._fortran import module
 from restitution.distribution._from_statistics import from_statistics
 from restitution.distribution._learn import Given, checked_speeds, condition, learn
 from restitution.distribution._memory import correlations
 from restitution.distribution._store import sealed, unsealed
+from restitution.distribution.c import header
+from restitution.distribution.fortran import module
+from restitution.drop.dataset import load, save
+from restitution.drop.recorded import check_filled, check_successive, records
+from restitution.drop.release import RandomHeight, RandomSpin
+from restitution.drop.run import Run
 from restitution.laws import Law
 
 if TYPE_CHECKING:

@@ -3,11 +3,11 @@
 import numpy as np
 import xarray as xr
 
-from restitution._parameters import ParameterError, Problem, wrong
-from restitution._recorded import LATTICE, counted
+from restitution._internal.parameters import ParameterError, Problem, wrong
 from restitution.distribution._nodes import LEAST_IMPACTS, POINT
 from restitution.distribution._store import of_histograms
 from restitution.distribution._table import Floats, Histogram
+from restitution.drop.recorded import LATTICE, counted
 
 _EXTREMES = ("minimum", "maximum")
 

@@ -7,11 +7,9 @@ import numpy as np
 import numpy.typing as npt
 import xarray as xr
 
-from restitution._arrays import check_each, reals
-from restitution._dataset import attributes
-from restitution._parameters import ParameterError, Problem, wrong
-from restitution._resources import progress_bar
-from restitution._run import Run
+from restitution._internal.arrays import check_each, reals
+from restitution._internal.parameters import ParameterError, Problem, wrong
+from restitution._internal.resources import progress_bar
 from restitution.distribution import _nodes
 from restitution.distribution._check import Check
 from restitution.distribution._count import Counter
@@ -20,6 +18,8 @@ from restitution.distribution._ensemble import FRESH, Ensemble, Impacts
 from restitution.distribution._pilot import Pilot, Sample
 from restitution.distribution._store import assemble
 from restitution.distribution._table import Floats, Table
+from restitution.drop.dataset import attributes
+from restitution.drop.run import Run
 
 Given: TypeAlias = Literal["rotational_fraction", "previous"]
 

@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 
-from restitution._parameters import ParameterError, wrong
+from restitution._internal.parameters import ParameterError, wrong
 from restitution.distribution._table import Floats
 
 POINT = 1e-9

@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from restitution import _core
-from restitution._resources import checked_threads
+from restitution._internal.resources import checked_threads
 
 Floats = npt.NDArray[np.float64]
 Ints = npt.NDArray[np.int64]

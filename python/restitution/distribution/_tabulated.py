@@ -11,10 +11,10 @@ import numpy as np
 import numpy.typing as npt
 import xarray as xr
 
-from restitution._arrays import check_each, check_shapes, flag, function, real, reals, shape, whole
-from restitution._content import check_names
-from restitution._parameters import ParameterError, plain_number, wrong
-from restitution._resources import check_size
+from restitution._internal.arrays import check_each, check_shapes, flag, function, real, reals, shape, whole
+from restitution._internal.content import check_names
+from restitution._internal.parameters import ParameterError, plain_number, wrong
+from restitution._internal.resources import check_size
 from restitution.distribution import _store
 from restitution.distribution._learn import Given
 from restitution.distribution._table import Floats, Table

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import xarray as xr
 
-from restitution._parameters import ParameterError, wrong
+from restitution._internal.parameters import ParameterError, wrong
 from restitution.distribution._table import Floats, Ints
 
 _LEFT_OUT = ("title", "Conventions", "source", "beyond", "version", "references")

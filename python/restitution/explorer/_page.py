@@ -6,10 +6,10 @@ from urllib.parse import urlencode
 
 import numpy as np
 
-from restitution._parameters import ParameterError, wrong
-from restitution._release import RandomHeight, RandomSpin
-from restitution._run import Run
+from restitution._internal.parameters import ParameterError, wrong
 from restitution.bodies import Dumbbell, Spherocylinder, Spheroid
+from restitution.drop.release import RandomHeight, RandomSpin
+from restitution.drop.run import Run
 from restitution.laws import ChatterjeeRuina, Coulomb, Frictionless, TangentialRestitution
 
 MOST_IMPACTS = 2_000_000

@@ -4,8 +4,8 @@ import webbrowser
 from collections.abc import Callable
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 
-from restitution._arrays import flag, whole
-from restitution._parameters import ParameterError, wrong
+from restitution._internal.arrays import flag, whole
+from restitution._internal.parameters import ParameterError, wrong
 from restitution.explorer._page import page
 
 

@@ -2,9 +2,9 @@
 
 from typing import TYPE_CHECKING, Any
 
-from restitution._arrays import whole
-from restitution._parameters import ParameterError, renamed, wrong
-from restitution._run import Run
+from restitution._internal.arrays import whole
+from restitution._internal.parameters import ParameterError, renamed, wrong
+from restitution.drop.run import Run
 from restitution.explorer._page import NUMBERS, link, page
 
 if TYPE_CHECKING:

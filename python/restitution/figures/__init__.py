@@ -11,9 +11,9 @@ they are given into a panel, in the sizes, colours and markers that stand here:
 >>> image = right.imshow([[0.0, 0.5, 1.0]], cmap=figures.COLORMAP)
 """
 
-from restitution.figures._panels import histogram, line, plain_log, population, population_bar
 from restitution.figures._plots import densities, map, moments, scatter, trajectory
-from restitution.figures._style import COLORMAP, COLORS, COLUMN, MARKERS, PAGE, letter, panels, save, styled
+from restitution.figures.pieces import histogram, line, plain_log, population, population_bar
+from restitution.figures.style import COLORMAP, COLORS, COLUMN, MARKERS, PAGE, letter, panels, save, styled
 
 __all__ = [
     "COLORMAP",

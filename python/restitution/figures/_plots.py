@@ -11,10 +11,9 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from restitution._arrays import reals, whole
-from restitution._bins import FARTHEST
-from restitution._parameters import ParameterError, Problem, renamed, wrong
-from restitution._recorded import (
+from restitution._internal.arrays import FARTHEST, reals, whole
+from restitution._internal.parameters import ParameterError, Problem, renamed, wrong
+from restitution.drop.recorded import (
     check_filled,
     check_successive,
     counted,
@@ -22,10 +21,10 @@ from restitution._recorded import (
     records,
     released_from,
 )
-from restitution._trajectory import times_of
-from restitution.figures._check import check_drawable
-from restitution.figures._panels import line, population, population_bar
-from restitution.figures._style import COLORS, COLUMN, MARKERS, PAGE, letter, panels, styled
+from restitution.drop.trajectory import times_of
+from restitution.figures.check import check_drawable
+from restitution.figures.pieces import line, population, population_bar
+from restitution.figures.style import COLORS, COLUMN, MARKERS, PAGE, letter, panels, styled
 
 if TYPE_CHECKING:
     import numpy.typing as npt

@@ -10,7 +10,7 @@ from scipy import optimize, special, stats
 
 from restitution.fit._counts import Counts, fit_counts
 from restitution.fit._result import Array, Fit, fitted
-from restitution.fit._source import Samples, Window, cusp, taken
+from restitution.fit.source import Samples, Window, cusp, taken
 
 
 def asymmetric_laplace(

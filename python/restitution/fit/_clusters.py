@@ -10,11 +10,11 @@ import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike, NDArray
 
-from restitution._arrays import check_each, reals
-from restitution._parameters import ParameterError, Problem, shown, wrong
+from restitution._internal.arrays import check_each, reals
+from restitution._internal.parameters import ParameterError, Problem, shown, wrong
 from restitution.fit._counts import Counts, pooled
 from restitution.fit._result import Array, Fit, finite_samples
-from restitution.fit._source import Parts, Window, counted, no_window, recorded
+from restitution.fit.source import Parts, Window, counted, no_window, recorded
 
 _GRID = 1000
 

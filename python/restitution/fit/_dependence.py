@@ -7,9 +7,9 @@ import xarray as xr
 from numpy.typing import ArrayLike, NDArray
 from scipy import stats
 
-from restitution._arrays import whole
-from restitution._bins import centres, increasing_edges
-from restitution._recorded import check_successive, records
+from restitution._internal.arrays import whole
+from restitution.drop.bins import centres, increasing_edges
+from restitution.drop.recorded import check_successive, records
 from restitution.fit._result import Array
 
 

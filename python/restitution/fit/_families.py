@@ -11,7 +11,7 @@ from scipy import stats
 from restitution.fit._asymmetric import frozen
 from restitution.fit._counts import Counts, fit_counts
 from restitution.fit._result import Array, Fit, fitted
-from restitution.fit._source import Samples, Window, taken
+from restitution.fit.source import Samples, Window, taken
 
 _FURTHEST = 1e100
 """Of a sample from the median, in widths of the middle half: such a number can be squared."""

@@ -11,11 +11,11 @@ import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike
 
-from restitution._arrays import generator, whole
-from restitution._content import Content
-from restitution._display import table, value
-from restitution._parameters import ParameterError, wrong
-from restitution._words import with_error
+from restitution._internal.arrays import generator, whole
+from restitution._internal.content import Content
+from restitution._internal.display import table, value
+from restitution._internal.parameters import ParameterError, wrong
+from restitution._internal.words import with_error
 from restitution.fit._clusters import (
     MOST_RESAMPLES,
     Clustered,
@@ -27,7 +27,7 @@ from restitution.fit._clusters import (
 )
 from restitution.fit._counts import Counts
 from restitution.fit._result import Array, Fit, finite_samples
-from restitution.fit._source import Parts, Window, no_window
+from restitution.fit.source import Parts, Window, no_window
 
 
 @dataclass(frozen=True, eq=False)

@@ -10,12 +10,12 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy import optimize, special, stats
 
-from restitution._content import Content
+from restitution._internal.content import Content
 from restitution.fit._asymmetric import asymmetric_laplace, frozen
 from restitution.fit._counts import Counts, fit_counts
 from restitution.fit._in_parts import drawn, draws
 from restitution.fit._result import Array, Fit, fitted
-from restitution.fit._source import Samples, Window, cusp, taken
+from restitution.fit.source import Samples, Window, cusp, taken
 
 _NARROWEST = 1e-3
 """Least width of a part, over the spread of the samples: a narrower Gaussian would sit on one sample."""

@@ -11,10 +11,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from restitution._arrays import generator, reals, whole
-from restitution._content import Content
-from restitution._display import table, value
-from restitution._resources import check_size
+from restitution._internal.arrays import generator, reals, whole
+from restitution._internal.content import Content
+from restitution._internal.display import table, value
+from restitution._internal.resources import check_size
 from restitution.fit import _in_parts as in_parts
 
 Array = NDArray[np.float64]

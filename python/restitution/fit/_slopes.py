@@ -9,12 +9,12 @@ import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike, NDArray
 
-from restitution._arrays import generator, real, whole
-from restitution._bins import LARGEST, centres, increasing_edges
-from restitution._content import Content
-from restitution._parameters import ParameterError, wrong
-from restitution._recorded import LATTICE, check_filled, counted, records
-from restitution._resources import check_size
+from restitution._internal.arrays import generator, real, whole
+from restitution._internal.content import Content
+from restitution._internal.parameters import ParameterError, wrong
+from restitution._internal.resources import check_size
+from restitution.drop.bins import LARGEST, centres, increasing_edges
+from restitution.drop.recorded import LATTICE, check_filled, counted, records
 from restitution.fit._asymmetric import asymmetric_laplace
 from restitution.fit._clusters import MOST_RESAMPLES
 from restitution.fit._counts import Counts

@@ -1,11 +1,11 @@
 """Collision laws, and materials: how the normal coefficient depends on the speed."""
 
-from restitution._parameters import listed
+from restitution._internal.parameters import listed
 from restitution.laws._chatterjee_ruina import ChatterjeeRuina
 from restitution.laws._coulomb import Coulomb
 from restitution.laws._frictionless import Frictionless
 from restitution.laws._law import Law
-from restitution.laws._materials import Plastic, Tabulated, Viscoelastic
+from restitution.laws._materials import Material, Plastic, Tabulated, Viscoelastic
 from restitution.laws._tangential_restitution import TangentialRestitution
 
 __all__ = [
@@ -16,6 +16,7 @@ __all__ = [
     "Coulomb",
     "Frictionless",
     "Law",
+    "Material",
     "Plastic",
     "Tabulated",
     "TangentialRestitution",

@@ -3,7 +3,7 @@
 from typing import Annotated, Literal
 
 from restitution import _core
-from restitution._parameters import Allowed
+from restitution._internal.parameters import Allowed
 from restitution.laws._law import Friction, Law
 
 Hypothesis = Literal["stronge", "poisson", "newton"]

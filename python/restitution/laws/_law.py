@@ -7,7 +7,7 @@ from typing import Annotated, Any, Self
 from pydantic import BeforeValidator, Field, TypeAdapter, ValidationError, model_validator
 
 from restitution import _core
-from restitution._parameters import Allowed, Number, ParameterError, Parameters, wrong
+from restitution._internal.parameters import Allowed, Number, ParameterError, Parameters, wrong
 from restitution.laws._materials import Material, Plastic, Tabulated, Viscoelastic, tabulated
 
 NORMAL = "a real number in [0, 1], a Viscoelastic, Plastic or Tabulated, or a function of the speed"

@@ -11,9 +11,17 @@ import numpy.typing as npt
 from pydantic import BeforeValidator, Field, model_validator
 
 from restitution import _core
-from restitution._arrays import real, reals
-from restitution._memory import check_room
-from restitution._parameters import Allowed, Number, ParameterError, Parameters, Problem, shown, wrong
+from restitution._internal.arrays import real, reals
+from restitution._internal.memory import check_room
+from restitution._internal.parameters import (
+    Allowed,
+    Number,
+    ParameterError,
+    Parameters,
+    Problem,
+    shown,
+    wrong,
+)
 
 Floats = npt.NDArray[np.float64]
 

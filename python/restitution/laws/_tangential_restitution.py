@@ -5,7 +5,7 @@ from typing import Annotated
 from pydantic import Field
 
 from restitution import _core
-from restitution._parameters import Number
+from restitution._internal.parameters import Number
 from restitution.laws._law import Law
 
 

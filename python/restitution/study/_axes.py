@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from restitution._arrays import whole
-from restitution._parameters import ParameterError, Problem, wrong
+from restitution._internal.arrays import whole
+from restitution._internal.parameters import ParameterError, Problem, wrong
 from restitution.study._tables import check_keys, number, word
 
 _VALUES = (

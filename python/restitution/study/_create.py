@@ -6,11 +6,11 @@ from typing import Any
 
 import numpy as np
 
-from restitution._dataset import version_here
-from restitution._drafts import discarding, draft_folder
-from restitution._files import followed, permit
-from restitution._parameters import unit_of
-from restitution._signals import undisturbed
+from restitution._internal.drafts import discarding, draft_folder
+from restitution._internal.files import followed, permit
+from restitution._internal.parameters import unit_of
+from restitution._internal.signals import undisturbed
+from restitution.drop.dataset import version_here
 from restitution.study._identity import attribute, check, threads_for
 from restitution.study._layout import check_layout
 from restitution.study._store import DIGEST, Store, fast

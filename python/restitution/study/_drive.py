@@ -16,14 +16,14 @@ import numpy as np
 import numpy.typing as npt
 import xarray as xr
 
-from restitution._drafts import remove_all_leftovers
+from restitution._internal.drafts import remove_all_leftovers
 from restitution.study._axes import Design
 from restitution.study._effort import Effort
-from restitution.study._engines import Engine
 from restitution.study._point import Point, point_of
 from restitution.study._store import Store, small
 from restitution.study._study import Study
 from restitution.study._work import End, Ended, Stopped, Task, digest_of, end_point, run_task
+from restitution.study.engines import Engine
 
 Tell = Callable[["Progress"], None]
 

@@ -8,10 +8,10 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from restitution._arrays import reals, whole
-from restitution._content import Content
-from restitution._parameters import ParameterError, Problem, wrong
-from restitution._run import Run
+from restitution._internal.arrays import reals, whole
+from restitution._internal.content import Content
+from restitution._internal.parameters import ParameterError, Problem, wrong
+from restitution.drop.run import Run
 from restitution.study._tables import number, table
 
 _KEYS = ("batches", "until", "velocities", "most_particles")

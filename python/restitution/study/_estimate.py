@@ -5,8 +5,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from restitution._arrays import whole
-from restitution._parameters import ParameterError, wrong
+from restitution._internal.arrays import whole
+from restitution._internal.parameters import ParameterError, wrong
 from restitution.study._point import count, evaluate, point_of, with_template
 from restitution.study._study import Study
 

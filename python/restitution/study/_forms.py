@@ -7,10 +7,10 @@ from typing import Any, Protocol
 import numpy as np
 import xarray as xr
 
-from restitution._arrays import reals
-from restitution._parameters import ParameterError, Problem, plain_number, wrong
-from restitution._run import Run
-from restitution._statistics import Edges
+from restitution._internal.arrays import reals
+from restitution._internal.parameters import ParameterError, Problem, plain_number, wrong
+from restitution.drop.run import Run
+from restitution.drop.statistics import Edges
 from restitution.study._tables import table, word
 
 FAMILIES = ("asymmetric-laplace", "laplace", "gaussian", "logistic", "student-t", "cusp-mixture")
@@ -57,7 +57,7 @@ class Learn:
 
     def __call__(self, run: Run, statistics: xr.Dataset) -> xr.Dataset:
         """Give ``restitution_quantile`` (velocity, level); NaN where there are too few impacts."""
-        from restitution.distribution._from_statistics import quantiles
+        from restitution.distribution import quantiles
 
         level = xr.Variable("level", np.array(self.levels), {"long_name": "probability of a smaller one"})
         about = {"long_name": "quantile of restitution"}
@@ -100,7 +100,7 @@ class Fitted:
     def __call__(self, run: Run, statistics: xr.Dataset) -> xr.Dataset:
         """Give ``fit_…`` for each parameter, and ``fit_distance``; NaN where no density can be fitted."""
         from restitution import fit
-        from restitution.fit._source import counted
+        from restitution.fit.source import counted
 
         location = {"location": run.law.normal} if self.at_normal else {}
         function = getattr(fit, self.family.replace("-", "_"))

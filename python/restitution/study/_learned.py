@@ -5,11 +5,11 @@ from pathlib import Path
 import numpy as np
 import xarray as xr
 
-from restitution._arrays import real, whole
-from restitution._dataset import attributes
-from restitution._files import path_from
-from restitution._parameters import ParameterError, Problem
+from restitution._internal.arrays import real, whole
+from restitution._internal.files import path_from
+from restitution._internal.parameters import ParameterError, Problem
 from restitution.distribution import FluctuatingRestitution
+from restitution.drop.dataset import attributes
 from restitution.study._identity import Refused, readable
 from restitution.study._status import open_store, study_in
 

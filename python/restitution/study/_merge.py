@@ -4,18 +4,18 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from restitution._arrays import several
-from restitution._files import path_from
-from restitution._formats import ZARR, check_name
-from restitution._parameters import ParameterError, Problem, shown, wrong
+from restitution._internal.arrays import several
+from restitution._internal.files import path_from
+from restitution._internal.formats import ZARR, check_name
+from restitution._internal.parameters import ParameterError, Problem, shown, wrong
 from restitution.study._drive import Driver
-from restitution.study._engines import engine, width
 from restitution.study._identity import check
 from restitution.study._layout import check_layout
 from restitution.study._status import Status, status, study_in
 from restitution.study._store import Store, need_zarr
 from restitution.study._study import Study, study_of
 from restitution.study._sweep import opened
+from restitution.study.engines import engine, width
 
 
 def merge(

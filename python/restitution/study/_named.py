@@ -2,7 +2,7 @@
 
 from collections.abc import Iterable
 
-from restitution._statistics import MOMENTS, Edges
+from restitution.drop.statistics import MOMENTS, Edges
 from restitution.study._forms import Form
 
 _EXTREMES = ("minimum", "maximum")

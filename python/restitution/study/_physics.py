@@ -6,9 +6,9 @@ from functools import cache
 import numpy as np
 
 from restitution import _core
-from restitution._dataset import version_here
-from restitution._run import Run
 from restitution.bodies import Body, Dumbbell, LoadedSphere, Spheroid
+from restitution.drop.dataset import version_here
+from restitution.drop.run import Run
 from restitution.laws import ChatterjeeRuina, Coulomb, Frictionless, Law, TangentialRestitution
 
 _BODIES: tuple[Body, ...] = (

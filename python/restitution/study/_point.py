@@ -11,9 +11,9 @@ import xarray as xr
 
 from restitution import _core
 from restitution._core import STOP_REASONS
-from restitution._dataset import dataset
-from restitution._run import Run
-from restitution._statistics import MOMENTS, Edges, Table, dataset_of
+from restitution.drop.dataset import dataset
+from restitution.drop.run import Run
+from restitution.drop.statistics import MOMENTS, Edges, Table, dataset_of
 from restitution.study._effort import Effort
 from restitution.study._forms import Form
 from restitution.study._named import DERIVED, MOVED, with_errors

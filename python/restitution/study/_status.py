@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import xarray as xr
 
-from restitution._files import path_from
+from restitution._internal.files import path_from
 from restitution.study._axes import design_again
 from restitution.study._identity import identity, readable
 from restitution.study._store import Store, need_zarr

@@ -12,15 +12,23 @@ from typing import Any
 
 import xarray as xr
 
-from restitution._arrays import whole
-from restitution._bins import edges_from
-from restitution._files import path_from
-from restitution._parameters import ParameterError, Parameters, Problem, in_terms_of, shown, unknown, wrong
-from restitution._release import RandomHeight
-from restitution._run import Run
-from restitution._statistics import Edges, edges_of
-from restitution._toml import run_of, table_of, tables_in, tables_of
-from restitution.laws._materials import Material
+from restitution._internal.arrays import whole
+from restitution._internal.files import path_from
+from restitution._internal.parameters import (
+    ParameterError,
+    Parameters,
+    Problem,
+    in_terms_of,
+    shown,
+    unknown,
+    wrong,
+)
+from restitution.drop.bins import edges_from
+from restitution.drop.release import RandomHeight
+from restitution.drop.run import Run
+from restitution.drop.statistics import Edges, edges_of
+from restitution.drop.toml import run_of, table_of, tables_in, tables_of
+from restitution.laws import Material
 from restitution.study._axes import Design, design
 from restitution.study._effort import Effort, effort
 from restitution.study._forms import Form, forms_of
@@ -45,7 +53,7 @@ class Study:
     design : Design
         The points.
     edges : dict or None
-        Bins of the impacts that are counted, as `restitution._statistics.edges_of` gives them.
+        Bins of the impacts that are counted, as `restitution.drop.statistics.edges_of` gives them.
     forms : tuple of Form
         What is taken from the statistics of a point by name: quantiles, a fit.
     measure : callable or None

@@ -7,21 +7,21 @@ from typing import Any
 
 import xarray as xr
 
-from restitution._arrays import flag
-from restitution._files import path_from
-from restitution._formats import ZARR, check_name
-from restitution._parameters import ParameterError, wrong
-from restitution._resources import bar as bar_of
-from restitution._streams import tell as say
+from restitution._internal.arrays import flag
+from restitution._internal.files import path_from
+from restitution._internal.formats import ZARR, check_name
+from restitution._internal.parameters import ParameterError, wrong
+from restitution._internal.resources import bar as bar_of
+from restitution._internal.streams import tell as say
 from restitution.study._create import create_or_open
 from restitution.study._drive import Driver, Progress
-from restitution.study._engines import engine, width
 from restitution.study._estimate import estimate
 from restitution.study._identity import check
 from restitution.study._point import count, point_of, with_template
 from restitution.study._status import open_store
 from restitution.study._store import Store, need_zarr
 from restitution.study._study import Study, study_of
+from restitution.study.engines import engine, width
 
 
 def sweep(

@@ -4,8 +4,8 @@ import math
 from collections.abc import Callable, Collection, Mapping
 from typing import Any
 
-from restitution._arrays import real
-from restitution._parameters import ParameterError, Problem, plain_number, shown, unknown, wrong
+from restitution._internal.arrays import real
+from restitution._internal.parameters import ParameterError, Problem, plain_number, shown, unknown, wrong
 
 _DEEPEST = 8
 """Tables in tables that are looked into; those of a study are four deep."""

@@ -1,0 +1,1 @@
+"""What every folder needs and no physics: parameters, arrays, files, processes, text."""

@@ -1,0 +1,242 @@
+"""Numbers from outside, checked in one place: real, unmasked, without units; the error names the argument."""
+
+import math
+import sys
+from collections import UserList, deque
+from collections.abc import Callable, Collection, Iterable
+from itertools import islice
+from operator import index
+from typing import Any, TypeVar
+
+import numpy as np
+import numpy.typing as npt
+
+from restitution._internal.memory import available_memory
+from restitution._internal.parameters import ParameterError, Problem, TooLargeError, plain_number, wrong
+from restitution._internal.units import check_units
+
+FloatArray = npt.NDArray[np.float64]
+IntArray = npt.NDArray[np.int64]
+
+FARTHEST = 1e100
+"""Of any edge, so that widths and centres are finite."""
+T = TypeVar("T")
+
+_DEEPEST = 32
+"""Lists in lists that are looked into; no table of ours has more than two."""
+_MOST_DIMENSIONS = 32
+_MANY = 2**24
+"""Numbers from which on the memory that there is is looked up."""
+_BYTES_EACH = 24
+"""Of a number that is taken: as it was given, as a double, and in a copy that nobody else can change."""
+_MOST_COUNTED = 2.0**53
+"""Beyond it doubles do not count."""
+_BYTES = ("B", "b", "c")
+"""Formats of a view of memory whose elements are bytes, as those of text that was read, not numbers."""
+_UNITS = ("to_value", "dimensionality")
+"""Attributes that identify the quantities of astropy, unyt and pint, whose units NumPy drops silently."""
+
+
+def reals(
+    name: str,
+    value: Any,
+    allowed: str,
+    *,
+    unit: str | None = "1",
+    dimensions: Collection[int] | None = None,
+    finite: bool = True,
+) -> FloatArray:
+    """Take an array of real numbers as doubles, without a copy where it is one already.
+
+    Parameters
+    ----------
+    name : str
+        Of the argument, for the error.
+    value : Any
+        A number, an array, or anything that NumPy makes real numbers of. Booleans, complex numbers, dates,
+        strings, objects, masked values and quantities with units are refused, inside lists too.
+    allowed : str
+        What is allowed, in words.
+    unit : str, optional
+        What the numbers are in, for `check_units`; None where that does not matter.
+    dimensions : collection of int, optional
+        Numbers of dimensions that are allowed.
+    finite : bool
+        Whether NaN and infinities are refused.
+
+    Raises
+    ------
+    ParameterError
+        Naming the argument, or the first element of it, that is wrong.
+    """
+    reason = _stray(value, 0)
+    if reason is not None:
+        raise ParameterError(wrong(name, value, f"{allowed}; it {reason}"))
+    if unit is not None:
+        check_units(name, value, unit)
+    try:
+        found = _array_of(name, value)
+    except TooLargeError:
+        raise
+    except MemoryError as error:
+        allowed = "as many numbers as this process has the memory for"
+        raise TooLargeError(wrong(name, value, allowed)) from error
+    except Exception:  # lists of different lengths, or whatever the object itself raises
+        raise ParameterError(wrong(name, value, allowed)) from None
+    if found.dtype.kind not in "iuf":
+        raise ParameterError(wrong(name, value, allowed))
+    if dimensions is not None and found.ndim not in dimensions:
+        raise ParameterError(wrong(name, value, allowed))
+    if found.dtype != np.float64 or not found.flags.c_contiguous:  # a copy follows
+        _check_memory(name, value, found.size)
+    with np.errstate(over="ignore"):  # of extended precision, to infinity
+        numbers = np.asarray(found, dtype=np.float64, order="C")
+    if finite:
+        check_each(name, numbers, np.isfinite(numbers), allowed)
+    return numbers
+
+
+def real(
+    name: str, value: Any, allowed: str, good: Callable[[float], bool] = math.isfinite, *, unit: str = "1"
+) -> float:
+    """Take one number, in this unit, for which `good` holds."""
+    number = float(reals(name, value, allowed, unit=unit, dimensions=(0,), finite=False))
+    if not good(number):
+        raise ParameterError(wrong(name, value, allowed))
+    return number
+
+
+def whole(name: str, value: Any, least: int, most: int | None = None) -> int:
+    """Take a whole number in [least, most]."""
+    allowed = f"a whole number >= {least}" if most is None else f"a whole number in [{least}, {most}]"
+    check_units(name, value, "1")
+    plain = plain_number(value)
+    try:
+        number = index(plain)
+    except Exception:  # whatever the object raises
+        raise ParameterError(wrong(name, value, allowed)) from None
+    stray = isinstance(plain, bool) or np.ma.is_masked(plain)
+    if stray or number < least or (most is not None and number > most):
+        raise ParameterError(wrong(name, value, allowed))
+    return number
+
+
+def shape(name: str, value: Any) -> tuple[int, ...]:
+    """Take the shape of an array: a whole number, or a tuple of them."""
+    try:
+        given = value if isinstance(value, Iterable) else (value,)
+        lengths = tuple(whole(name, one, 0) for one in islice(given, _MOST_DIMENSIONS + 1))
+    except Exception:  # whatever the object raises
+        lengths = (-1,)
+    if min(lengths, default=0) < 0:
+        raise ParameterError(wrong(name, value, "a whole number >= 0 or a tuple of them"))
+    if len(lengths) > _MOST_DIMENSIONS or max(lengths, default=0) > sys.maxsize:
+        raise ParameterError(wrong(name, value, f"at most {_MOST_DIMENSIONS} lengths of at most 2**63 - 1"))
+    if 0 in lengths and math.prod(filter(None, lengths)) > sys.maxsize // 8:
+        raise ParameterError(wrong(name, value, "such that its lengths that are not 0 multiply to < 2**60"))
+    return lengths
+
+
+def check_shapes(**arrays: np.ndarray) -> None:
+    """Refuse arrays whose shapes do not broadcast, naming them all."""
+    try:
+        np.broadcast_shapes(*(array.shape for array in arrays.values()))
+    except ValueError:
+        given = ", ".join(f"{name} of shape {array.shape}" for name, array in arrays.items() if array.ndim)
+        names = ", ".join(name for name, array in arrays.items() if array.ndim)
+        raise ParameterError(Problem(names, f": {given}; must broadcast to one shape")) from None
+
+
+def several(name: str, value: Any, allowed: str, take: Callable[[int, Any], T]) -> list[T]:
+    """Take one after the other what can be gone through, with the number of each, and stop at a wrong one."""
+    try:
+        return [take(number, one) for number, one in enumerate(value)]
+    except (ParameterError, MemoryError):  # of one of them, or of what makes them
+        raise
+    except Exception as error:  # whatever the object raises
+        raise ParameterError(wrong(name, value, allowed)) from error
+
+
+def function(name: str, value: Any) -> Callable[[float], float]:
+    """Take a function of one number; what it raises, or gives that is no number, names it."""
+    if not callable(value):
+        raise ParameterError(wrong(name, value, "a function of one number"))
+
+    def at(x: float) -> float:
+        try:
+            return float(value(x))
+        except Exception as error:
+            text = f" gave {type(error).__name__}: {error} at {x!r}: must give a number"
+            raise ParameterError(Problem(name, text)) from error
+
+    return at
+
+
+def flag(name: str, value: Any) -> bool:
+    """Take True or False."""
+    if not isinstance(value, bool | np.bool_):
+        raise ParameterError(wrong(name, value, "True or False"))
+    return bool(value)
+
+
+def generator(name: str, seed: Any) -> np.random.Generator:
+    """Take a seed, or the generator itself."""
+    if isinstance(seed, np.random.Generator):
+        return seed
+    try:
+        return np.random.default_rng(whole(name, seed, 0))
+    except ParameterError:
+        allowed = "a whole number >= 0 or a numpy.random.Generator"
+        raise ParameterError(wrong(name, seed, allowed)) from None
+
+
+def check_each(name: str, array: FloatArray, good: npt.NDArray[np.bool_], allowed: str) -> None:
+    """Name the first element that is not good."""
+    if not good.all():
+        at = tuple(int(i) for i in np.argwhere(~good)[0])
+        place = f"[{', '.join(map(str, at))}]" if at else ""
+        raise ParameterError(wrong(f"{name}{place}", float(array[at]), allowed))
+
+
+def check_counts(name: str, counts: FloatArray) -> None:
+    """Name the first that is no whole number, or is so large that doubles do not count."""
+    good = (counts >= 0) & (counts <= _MOST_COUNTED) & (counts == np.rint(counts))
+    check_each(name, counts, good, "a whole number in [0, 2**53]")
+
+
+def _array_of(name: str, value: Any) -> npt.NDArray[Any]:
+    """Make an array; of a range without the Python numbers in it, which take five times as much memory."""
+    if not isinstance(value, range):
+        return np.asarray(value)
+    _check_memory(name, value, max(0, -((value.start - value.stop) // value.step)))
+    inside = all(abs(number) <= sys.maxsize for number in (value.start, value.stop, value.step))
+    return np.arange(value.start, value.stop, value.step) if inside else np.asarray(value)
+
+
+def _check_memory(name: str, value: Any, size: int) -> None:
+    """Refuse more numbers than this process can hold, as doubles and what is made of these."""
+    if size > _MANY and _BYTES_EACH * size > (available := available_memory()):
+        allowed = f"at most {available // _BYTES_EACH:,} numbers, for which this process has the memory"
+        raise TooLargeError(wrong(name, value, allowed))
+
+
+def _stray(value: Any, depth: int) -> str | None:
+    """Say what NumPy would silently convert to a number, or drop."""
+    if isinstance(value, np.ma.MaskedArray):  # NumPy cannot tell of values with fields, which are no numbers
+        return "holds masked values" if value.dtype.names is None and np.ma.is_masked(value) else None
+    if isinstance(value, bytes | bytearray) or (isinstance(value, memoryview) and value.format in _BYTES):
+        return "holds bytes"
+    if depth > 0 and getattr(getattr(value, "dtype", None), "kind", None) == "b":
+        return "holds True or False"
+    if isinstance(value, list | tuple | deque | UserList):
+        if depth > _DEEPEST:
+            return "is too deeply nested"
+        kinds = set(map(type, value))
+        if kinds & {bool, np.bool_}:
+            return "holds True or False"
+        if kinds <= {float, int}:
+            return None
+        return next((found for part in value if (found := _stray(part, depth + 1))), None)
+    if any(hasattr(value, attribute) for attribute in _UNITS):
+        return "has units of its own"
+    return None

@@ -1,0 +1,293 @@
+"""One validation for the Python call and the TOML file: frozen parameter sets with readable errors."""
+
+import math
+from collections.abc import Callable, Iterable, Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from difflib import get_close_matches
+from reprlib import Repr
+from typing import Annotated, Any, ClassVar, NamedTuple, Self
+
+import numpy as np
+from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, ValidationError
+from pydantic_core import PydanticCustomError
+
+from restitution import _core
+from restitution._internal import display as _display
+
+
+class Problem(NamedTuple):
+    """What is wrong with one parameter; the name, the text after it and what is allowed make a sentence."""
+
+    name: str
+    text: str
+    allowed: str = ""
+
+    def __str__(self) -> str:
+        return self.name + self.text + self.allowed
+
+
+class ParameterError(ValueError):
+    """Everything that is wrong with a set of parameters, a line for each `Problem`."""
+
+    def __init__(self, *problems: Problem) -> None:
+        super().__init__(*problems)
+        self.problems = problems
+
+    def __str__(self) -> str:
+        return "\n".join(map(str, self.problems))
+
+
+class TooLargeError(ParameterError, MemoryError):
+    """What is asked for takes more memory than this process can have; a ValueError and a MemoryError."""
+
+
+def wrong(name: str, value: Any, allowed: str) -> Problem:
+    """Say that a value is not one of those that are allowed."""
+    return Problem(name, f" = {shown(value)}: must be ", allowed)
+
+
+@contextmanager
+def renamed(rename: Callable[[str], str]) -> Iterator[None]:
+    """Name parameters as whoever gave them knows them, where they are wrong."""
+    try:
+        yield
+    except ParameterError as error:
+        kind = type(error)  # too large stays too large
+        raise kind(*(one._replace(name=rename(one.name)) for one in error.problems)) from None
+
+
+@contextmanager
+def in_terms_of(**given: Any) -> Iterator[None]:
+    """Name the arguments where something that follows from them is wrong."""
+    try:
+        yield
+    except ParameterError as error:
+        words = ", ".join(f"{name} = {shown(value)}" for name, value in given.items())
+        first, _, rest = words.partition(" = ")
+        kind = type(error)  # too large stays too large
+        raise kind(*(Problem(first, f" = {rest}: gives {one}") for one in error.problems)) from None
+
+
+def unknown(name: str, taker: str, allowed: Iterable[str], prefix: str = "") -> Problem:
+    """Say that `taker` knows no such name, which it does know, and which was meant."""
+    names = list(allowed)
+    meant = "".join(f"did you mean {prefix}{close}? " for close in get_close_matches(name, names, n=1))
+    return Problem(prefix + name, f": unknown; {meant}{taker} takes {', '.join(names)}")
+
+
+def listed(kinds: Iterable[type]) -> str:
+    """Name classes in words."""
+    *others, last = (kind.__name__ for kind in kinds)
+    return f"{', '.join(others)} or {last}"
+
+
+_MOST_BITS = 256
+_MOST_ELEMENTS = 6
+
+
+class _Short(Repr):
+    """Values in at most a line; whole numbers may have more digits than Python writes."""
+
+    def repr_int(self, x: int, level: int) -> str:
+        if x.bit_length() > _MOST_BITS:
+            return f"an integer of {x.bit_length()} bits"
+        return super().repr_int(x, level)
+
+
+_SHORT = _Short()
+_SHORT.maxstring = _SHORT.maxother = 72
+
+
+def shown(value: Any) -> str:
+    """Write a value in at most a line, however large it is."""
+    value = plain_number(value)
+    if isinstance(value, np.ndarray) and value.size > _MOST_ELEMENTS:
+        return f"an array of shape {value.shape}"
+    return " ".join(_SHORT.repr(value).split())
+
+
+def plain_number(value: Any) -> Any:
+    """Make a Python number of a NumPy scalar or 0-d array; what is masked, or a date, stays what it is."""
+    if not isinstance(value, np.generic | np.ndarray) or value.ndim != 0 or value.dtype.kind not in "biuf":
+        return value
+    if np.ma.is_masked(value):
+        return value
+    if value.dtype.kind != "f":
+        return value.item()
+    number = float(value)
+    return value if math.isinf(number) and np.isfinite(value) else number  # of extended precision
+
+
+def _number_itself(value: Any) -> int | float:
+    """Refuse what is made a number of: pydantic would take dates, masked and complex values."""
+    value = plain_number(value)
+    if isinstance(value, bool) or not isinstance(value, int | float):
+        raise PydanticCustomError("no_number", "no number")
+    return value
+
+
+Number = Annotated[float, BeforeValidator(_number_itself), Field(strict=True, allow_inf_nan=False)]
+Whole = Annotated[int, BeforeValidator(_number_itself), Field(strict=True)]
+
+
+@dataclass(frozen=True)
+class Allowed:
+    """In an annotation: says in words what a field may hold."""
+
+    text: str
+
+
+class Parameters(BaseModel, metaclass=_display.Listed):
+    """A frozen set of named parameters.
+
+    Raises
+    ------
+    ValueError
+        Naming each argument that is wrong, its value, and what is allowed.
+    TypeError
+        If parameters are given without their names, but for those in `by_place`.
+    """
+
+    by_place: ClassVar[tuple[str, ...]] = ()
+    """Fields that may be given without their names, in this order: the two ends of a range, and no others."""
+
+    model_config: ClassVar[ConfigDict] = ConfigDict(frozen=True, extra="forbid", arbitrary_types_allowed=True)
+
+    def __init__(self, *values: Any, **named: Any) -> None:
+        """Check the parameters, and keep them for good."""
+        if values:
+            placed = dict(zip(self.by_place, values, strict=False))
+            if len(values) > len(placed) or placed.keys() & named:
+                raise TypeError(_misplaced(type(self), values, named))
+            named |= placed
+        try:
+            super().__init__(**named)
+        except ValidationError as error:
+            raise ParameterError(*_problems(type(self), error)) from None
+
+    # What is worked out from the fields, compiled objects among it, is neither copied nor pickled.
+
+    def _fields(self) -> dict[str, Any]:
+        return {name: value for name, value in self.__dict__.items() if name in type(self).model_fields}
+
+    def __getstate__(self) -> dict[Any, Any]:
+        return super().__getstate__() | {"__dict__": self._fields()}
+
+    def __setstate__(self, state: dict[Any, Any]) -> None:
+        """Check what a pickle holds: it may be of another version, which had other fields or other bounds."""
+        super().__setstate__(type(self)(**state["__dict__"]).__getstate__())
+
+    def __copy__(self) -> Self:
+        copied = type(self).__new__(type(self))
+        super(Parameters, copied).__setstate__(self.__getstate__())
+        return copied
+
+    def __deepcopy__(self, memo: dict[int, Any] | None = None) -> Self:
+        return self.__copy__()  # nothing in it can change
+
+    @classmethod
+    def __pydantic_init_subclass__(cls, **options: Any) -> None:
+        cls.__signature__ = _display.signature(cls, cls.by_place)
+
+    def __setattr__(self, name: str, value: Any) -> None:
+        raise AttributeError(f"{name}: {self!r} cannot be changed; make another")
+
+    def __delattr__(self, name: str) -> None:
+        raise AttributeError(f"{name}: {self!r} cannot be changed; make another")
+
+    def __dir__(self) -> list[str]:
+        return sorted({*_display.public_names(type(self)), *type(self).model_fields})
+
+    def __str__(self) -> str:
+        fields = (f"{name}={_display.short(getattr(self, name))}" for name in type(self).model_fields)
+        return f"{type(self).__name__}({', '.join(fields)})"
+
+    def _repr_html_(self) -> str:
+        return _display.table(type(self).__name__, self._rows())
+
+    def _rows(self) -> Iterator[tuple[str, str]]:
+        """Yield the names and values that a notebook shows."""
+        for name, field in type(self).model_fields.items():
+            value = getattr(self, name)
+            if isinstance(value, Parameters):
+                yield name, type(value).__name__
+                for key, text in value._rows():
+                    yield f"{name}.{key}", text
+            else:
+                yield name, _display.value(value, field.description)
+
+
+def _misplaced(kind: type[Parameters], values: tuple[Any, ...], named: dict[str, Any]) -> str:
+    """Say how values without names should have been given."""
+    given = ", ".join(map(shown, values))
+    if kind.by_place:
+        given += "".join(f", {name}={shown(value)}" for name, value in named.items())
+        return f"{kind.__name__}({given}): must be {kind.__name__}({', '.join(kind.by_place)})"
+    meant = zip([name for name in kind.model_fields if name not in named], values, strict=False)
+    example = ", ".join(f"{name}={shown(value)}" for name, value in meant)
+    return f"{kind.__name__}({given}): parameters are given by name, as in {kind.__name__}({example})"
+
+
+def _problems(model: type[BaseModel], error: ValidationError) -> Iterator[Problem]:
+    for problem in error.errors(include_url=False):
+        name = ".".join(str(part) for part in problem["loc"])
+        match problem["type"]:
+            case "missing":
+                yield Problem(name, ": missing; must be ", _allowed(model, name))
+            case "extra_forbidden":
+                yield unknown(name, model.__name__, model.model_fields)
+            case "value_error":
+                cause = problem["ctx"]["error"]
+                if isinstance(cause, ParameterError):
+                    yield from cause.problems
+                elif isinstance(cause, _core.ParameterError):
+                    yield wrong(cause.name, cause.value, cause.allowed)
+                else:  # of the object that was given
+                    yield wrong(name, problem["input"], _allowed(model, name))
+            case _:
+                yield wrong(name, problem["input"], _allowed(model, name))
+
+
+def _allowed(model: type[BaseModel], name: str) -> str:
+    """Say in words what the field of a model may hold."""
+    field = model.model_fields[name]
+    for rule in field.metadata:
+        if isinstance(rule, Allowed):
+            return rule.text
+    about = f" ({field.description})" if field.description else ""
+    if field.annotation not in (int, float):
+        return f"a {getattr(field.annotation, '__name__', field.annotation)}{about}"
+    bounds = {key: getattr(rule, key) for rule in field.metadata for key in _BOUNDS if hasattr(rule, key)}
+    below = "le" in bounds or "lt" in bounds
+    kind = "whole" if field.annotation is int else "real" if below else "finite"
+    return f"a {kind} number {_interval(bounds)}{about}"
+
+
+_UNITS = {"m/s": "m s-1", "m/s²": "m s-2", "rad/s": "rad s-1", "kg/m³": "kg m-3"}
+_UNITS |= {unit: unit for unit in ("m", "s", "rad", "kg", "Pa")}
+
+
+def unit_of(kind: type[BaseModel], name: str) -> str:
+    """Give the unit of a parameter as the CF conventions write it; "1" of pure numbers."""
+    return _UNITS.get((kind.model_fields[name].description or "").partition(";")[0], "1")
+
+
+_BOUNDS = ("gt", "ge", "lt", "le")
+
+
+def _interval(bounds: dict[str, float]) -> str:
+    """Write bounds as an interval; every number here is bounded from below."""
+    low = _bound(bounds.get("ge", bounds.get("gt", 0)))
+    high = _bound(bounds.get("le", bounds.get("lt", 0)))
+    if "le" in bounds or "lt" in bounds:
+        return f"in {'[' if 'ge' in bounds else '('}{low}, {high}{']' if 'le' in bounds else ')'}"
+    return f"{'>=' if 'ge' in bounds else '>'} {low}"
+
+
+def _bound(value: float) -> str:
+    """Write large powers of two as such, and a right angle."""
+    if value == math.pi / 2:
+        return "π/2"
+    power = int(value).bit_length() - 1
+    return f"2**{power}" if power >= 20 and value == 2**power else f"{value}"

@@ -1,0 +1,69 @@
+"""`restitution listen`: from a recording of a bouncing ball to a page."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from restitution._internal.memory import check_room
+from restitution._internal.streams import say, tell
+from restitution.cli._common import Overwrite, Quiet, errors_in_a_line
+
+_ROOM, _ADDRESSES = 500_000_000, 800_000_000
+"""Bytes of memory and of address space that the libraries and the analysis of a minute of sound take."""
+
+
+def listen(
+    file: Annotated[Path, typer.Argument(metavar="FILE", help="The recording: WAV, FLAC, OGG, MP3 or AIFF.")],
+    diameter: Annotated[float, typer.Option(metavar="D", help="Diameter of the ball, m.")],
+    out: Annotated[
+        Path,
+        typer.Option(metavar="PAGE.html", help="The page to write, with PAGE.csv and PAGE.nc beside it."),
+    ],
+    mass: Annotated[
+        float | None, typer.Option(metavar="M", help="Mass of the ball, kg, for a correction of air drag.")
+    ] = None,
+    drop: Annotated[
+        float | None,
+        typer.Option(metavar="H", help="Fall from rest to the first impact heard, m."),
+    ] = None,
+    drop_error: Annotated[float, typer.Option(metavar="S", help="Standard error of the drop, m.")] = 0.0,
+    gravity: Annotated[float, typer.Option(metavar="G", help="Acceleration of gravity, m/s2.")] = 9.81,
+    gravity_error: Annotated[float, typer.Option(metavar="S", help="Standard error of gravity, m/s2.")] = 0.0,
+    out_of_roundness: Annotated[
+        float | None, typer.Option(metavar="T", help="Out-of-roundness of the ball, m, if it was measured.")
+    ] = None,
+    overwrite: Overwrite = False,
+    quiet: Quiet = False,
+) -> None:
+    """Find the impacts of a bouncing ball in a recording, and evaluate them.
+
+    Writes one page that needs nothing else: the impacts marked on the waveform,
+    close-ups of onsets, the coefficient of restitution against the speed with
+    errors, the laws that fit it, what the times say of the ball's shape, and an
+    error budget; beside it a table of all impacts (CSV) and all numbers with their
+    covariance (netCDF).
+    """
+    with errors_in_a_line():
+        check_room("listen", _ROOM)  # before the libraries are there
+    with errors_in_a_line("netCDF4", "restitution.experiment.listen", room=_ADDRESSES):
+        from restitution._internal.parameters import renamed
+        from restitution.experiment.listen import Setting, write
+
+        with renamed(lambda name: name.replace("uncertainty", "error")):  # as the options are called
+            setting = Setting(
+                diameter=diameter,
+                mass=mass,
+                drop=drop,
+                drop_uncertainty=drop_error,
+                gravity=gravity,
+                gravity_uncertainty=gravity_error,
+                out_of_roundness=out_of_roundness,
+            )
+        analysis = write(file, out, setting, replace=overwrite)
+        for warning in analysis.warnings:
+            tell(f"note: {warning}")
+        if not quiet:
+            for series in analysis.series:
+                say(series.sentence(setting))
+            say(str(out))

@@ -1,0 +1,66 @@
+"""`restitution paper` and `restitution laws`: figures, data and reports in a folder."""
+
+from typing import Annotated
+
+import typer
+
+from restitution._internal.streams import say
+from restitution.cli._common import Folder, Overwrite, Quiet, Threads, errors_in_a_line, progress
+
+
+def paper(
+    out: Folder,
+    impacts: Annotated[
+        int,
+        typer.Option(
+            metavar="N",
+            help="Impacts for each figure and each curve of Fig. 6; at least 400000, as in the paper.",
+        ),
+    ] = 100_000_000,
+    seed: Annotated[int, typer.Option(metavar="S", help="Seed of the random numbers, in [0, 2**64).")] = 1,
+    threads: Threads = None,
+    overwrite: Overwrite = False,
+    quiet: Quiet = False,
+) -> None:
+    """Redraw the figures of Phys. Rev. E 90, 052204 (2014) and check its claims.
+
+    Writes Figs. 2-7 and 9 as PNG and PDF, the data behind each as netCDF, and
+    one HTML page that needs nothing else: the figures, the misprints with their
+    proof, and every claim of the paper with the measured number, its standard
+    error and a verdict.
+    """
+    with errors_in_a_line("netCDF4", "scipy.stats", "matplotlib.figure"):
+        from restitution.papers.glielmo2014 import redraw
+
+        how = {"seed": seed, "threads": threads, "progress": progress(quiet)}
+        report = redraw(out, impacts=impacts, overwrite=overwrite, **how)  # type: ignore[arg-type]
+        if not quiet:
+            say(str(report))
+
+
+def laws(
+    out: Folder,
+    impacts: Annotated[
+        int, typer.Option(metavar="N", help="Impacts for each body and law, on average; at least 19680.")
+    ] = 10_000_000,
+    seed: Annotated[int, typer.Option(metavar="S", help="Seed of the random numbers, in [0, 2**63).")] = 1,
+    threads: Threads = None,
+    overwrite: Overwrite = False,
+    quiet: Quiet = False,
+) -> None:
+    """Compare what six collision laws make of the same bodies.
+
+    Drops dumbbells of L/R = 0.01, 0.1, 0.5 and 2 under six laws, and writes one
+    figure (PNG, PDF), its caption, its data (netCDF) and its table (Markdown):
+    the density of the coefficient of restitution, its scatter, the rotational
+    energy, and the impacts that create energy.
+    """
+    with errors_in_a_line("netCDF4", "scipy.stats", "matplotlib.figure"):
+        from restitution._internal.resources import checked_threads
+        from restitution.figures.laws import write
+
+        checked_threads(threads)
+        how = {"seed": seed, "threads": threads, "progress": progress(quiet)}
+        png, _ = write(out, impacts=impacts, overwrite=overwrite, **how)  # type: ignore[arg-type]
+        if not quiet:
+            say(str(png))

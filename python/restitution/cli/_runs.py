@@ -1,0 +1,314 @@
+"""The commands that drop particles: `simulate`, `statistics`, `compare` and `distribution`."""
+
+import warnings
+from collections.abc import Iterator
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from restitution._internal.signals import put_off
+from restitution._internal.streams import say, tell
+from restitution.cli._common import (
+    WARNED,
+    Kept,
+    Out,
+    Overwrite,
+    Quiet,
+    RunFile,
+    Threads,
+    errors_in_a_line,
+    press_again,
+    progress,
+)
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+Bins = Annotated[int | None, typer.Option(metavar="N", help="Number of bins; if not given, as in RUN.toml.")]
+Record = Annotated[
+    str, typer.Option(metavar="WHAT", help='"impacts", or "state": also position, axis and velocities.')
+]
+Span = Annotated[
+    tuple[float, float] | None,
+    typer.Option(metavar="LOW HIGH", help="Range of these bins; if not given, as in RUN.toml."),
+]
+
+
+def simulate(
+    run: RunFile,
+    out: Out,
+    record: Record = "impacts",
+    threads: Threads = None,
+    overwrite: Overwrite = False,
+    quiet: Quiet = False,
+) -> None:
+    """Drop particles and write every impact to a netCDF file.
+
+    The file holds what restitution.simulate returns for the same parameters; in
+    Python xarray.open_dataset reads it. Ctrl-C ends the run early; the impacts so
+    far are written, and the attribute "incomplete" of the file says so.
+    """
+    interrupted: KeyboardInterrupt | None = None  # kept: what is caught has not been lost
+    with errors_in_a_line("netCDF4"):
+        from restitution._internal.files import check, check_apart
+        from restitution._internal.formats import NETCDF, check_name
+        from restitution._internal.resources import checked_threads
+        from restitution.drop.dataset import save
+        from restitution.drop.simulate import SimulationInterrupted, checked_record, simulate_run
+        from restitution.drop.toml import read
+
+        parameters = read(run)
+        checked_threads(threads)
+        check_apart([run], [out])
+        check_name("out", out, NETCDF)
+        check(out, replace=overwrite)
+        try:
+            data = simulate_run(
+                parameters, threads=threads, progress=progress(quiet), record=checked_record(record)
+            )
+        except SimulationInterrupted as stop:
+            data, interrupted = stop.data, stop
+            tell("interrupted; writing the impacts so far")
+        with put_off(press_again) as late:
+            save(data, out, replace=overwrite)
+        for line in _summary(data) if not quiet else ():
+            say(line)
+        if interrupted or late:
+            raise Kept(late) from interrupted
+
+
+def statistics(
+    run: RunFile,
+    out: Out,
+    velocity_bins: Bins = None,
+    velocity_range: Span = None,
+    restitution_bins: Bins = None,
+    restitution_range: Span = None,
+    threads: Threads = None,
+    overwrite: Overwrite = False,
+    quiet: Quiet = False,
+) -> None:
+    r"""Count impacts by velocity and restitution, in memory that does not grow.
+
+    The file holds what restitution.statistics returns: counts, moments and
+    energy. The bins are those of the table \[statistics] of RUN.toml, or of the
+    options. Ctrl-C ends the run early; what was counted until then is written.
+    """
+    given = _given(locals())
+    with errors_in_a_line("netCDF4"):
+        import restitution as rs
+        from restitution.drop.toml import read_all
+
+        study = read_all(run, single=True)
+        how = _bins(run, study.statistics | given)
+        (body,), (law,) = study.bodies.values(), study.laws.values()
+        _counted(
+            lambda: rs.statistics(body, law, **study.run, **how, threads=threads, progress=progress(quiet)),
+            run,
+            out,
+            overwrite=overwrite,
+            quiet=quiet,
+        )
+
+
+def compare(
+    run: RunFile,
+    out: Out,
+    velocity_bins: Bins = None,
+    velocity_range: Span = None,
+    restitution_bins: Bins = None,
+    restitution_range: Span = None,
+    threads: Threads = None,
+    overwrite: Overwrite = False,
+    quiet: Quiet = False,
+) -> None:
+    r"""Count the impacts of several bodies under several laws.
+
+    RUN.toml has a table [\[body]] for each body and a table [\[law]] for each law,
+    each with a key "name" if you like, and a table \[statistics] with the bins.
+    The file holds what restitution.compare returns. Ctrl-C ends the work early;
+    combinations that were finished are written.
+    """
+    given = _given(locals())
+    with errors_in_a_line("netCDF4"):
+        import restitution as rs
+        from restitution.drop.toml import read_all
+
+        study = read_all(run)
+        how = study.run | _bins(run, study.statistics | given)
+        _counted(
+            lambda: rs.compare(study.bodies, study.laws, **how, threads=threads, progress=progress(quiet)),
+            run,
+            out,
+            overwrite=overwrite,
+            quiet=quiet,
+        )
+
+
+def distribution(
+    run: RunFile,
+    out: Out,
+    header: Annotated[
+        Path | None, typer.Option(metavar="FILE", help="A C99 and C++ header with a sampler.")
+    ] = None,
+    fortran: Annotated[
+        Path | None, typer.Option(metavar="FILE", help="A Fortran module with a sampler.")
+    ] = None,
+    figure: Annotated[Path | None, typer.Option(metavar="FILE", help="A figure: .png, .pdf or .svg.")] = None,
+    velocities: Annotated[
+        tuple[float, float] | None,
+        typer.Option(
+            metavar="LOW HIGH",
+            help="Impact velocities, m/s; if not given, 0.04 to 0.4 of the first one.",
+        ),
+    ] = None,
+    given: Annotated[
+        str | None,
+        typer.Option(
+            metavar="CONDITION",
+            help='Learn it given "rotational_fraction", or the "previous" restitution.',
+        ),
+    ] = None,
+    threads: Threads = None,
+    overwrite: Overwrite = False,
+    quiet: Quiet = False,
+) -> None:
+    """Learn the distribution of the coefficient of restitution at given impact velocity.
+
+    The file holds what restitution.FluctuatingRestitution.learn returns for the
+    same parameters. The distance of the distribution from fresh impacts is
+    measured and printed; where it is larger than their statistical scatter
+    explains, a warning says so, and the exit status is 3. Ctrl-C ends the work,
+    and nothing is written.
+    """
+    with errors_in_a_line("netCDF4", "scipy.stats", "matplotlib.figure"):
+        from restitution._internal.files import check, check_apart, whole_files
+        from restitution._internal.formats import HEADER, MODULE, NETCDF, check_name
+        from restitution._internal.resources import checked_threads
+        from restitution.distribution import FluctuatingRestitution, image, image_format, sealed
+        from restitution.distribution.c import header as c_header
+        from restitution.distribution.fortran import module as fortran_module
+        from restitution.drop.dataset import put
+        from restitution.drop.toml import read_all
+
+        study = read_all(run, single=True)
+        checked_threads(threads)
+        if figure is not None:
+            image_format(figure)
+        paths = [path for path in (out, header, fortran, figure) if path is not None]
+        check_apart([run], paths)
+        named = {"out": (out, NETCDF), "header": (header, HEADER), "fortran": (fortran, MODULE)}
+        for option, (path, kind) in named.items():
+            if path is not None:
+                check_name(option, path, kind)
+        for path in paths:
+            check(path, replace=overwrite)
+        how = study.run | study.distribution | _given({"velocities": velocities, "given": given})
+        (body,), (law,) = study.bodies.values(), study.laws.values()
+        with warnings.catch_warnings(record=True) as doubts:
+            warnings.simplefilter("always")
+            found = FluctuatingRestitution.learn(body, law, **how, threads=threads, progress=progress(quiet))
+        with whole_files(paths, replace=overwrite) as drafts:
+            draft = dict(zip(paths, drafts, strict=True))
+            put(sealed(found.data), draft[out])
+            if header is not None:
+                draft[header].write_text(c_header(found.data, "restitution"), encoding="ascii")
+            if fortran is not None:
+                draft[fortran].write_text(fortran_module(found.data, "restitution"), encoding="ascii")
+            if figure is not None:
+                draft[figure].write_bytes(image(found, image_format(figure)))
+        if not quiet:
+            say(str(found.summary()))
+        for doubt in doubts:
+            tell(f"warning: {doubt.message}")
+    if doubts:
+        raise typer.Exit(WARNED)
+
+
+_OPTIONS = (
+    "velocity_bins",
+    "velocity_range",
+    "restitution_bins",
+    "restitution_range",
+    "velocities",
+    "given",
+)
+
+
+def _given(options: dict[str, Any]) -> dict[str, Any]:
+    """Give those options that were used."""
+    return {name: options[name] for name in _OPTIONS if options.get(name) is not None}
+
+
+def _bins(run: Path, how: dict[str, Any]) -> dict[str, Any]:
+    """Give the arguments of a count, or say which bins neither the file nor the options have."""
+    missing = [name for name in ("velocity_bins", "restitution_bins") if name not in how]
+    if missing:
+        options = ", ".join(f"--{name.replace('_', '-')}" for name in missing)
+        raise ValueError(
+            f"{run}: {' and '.join(missing)}: missing; must be in a table [statistics], "
+            f"as restitution template prints it, or given as {options} with a range"
+        )
+    return how
+
+
+def _counted(count: Any, run: Path, out: Path, *, overwrite: bool, quiet: bool) -> None:
+    """Count, write what was counted, and say what it is."""
+    from restitution._internal.files import check, check_apart
+    from restitution._internal.formats import NETCDF, check_name
+    from restitution.drop.dataset import save
+    from restitution.drop.simulate import SimulationInterrupted
+
+    check_apart([run], [out])
+    check_name("out", out, NETCDF)
+    check(out, replace=overwrite)
+    interrupted: KeyboardInterrupt | None = None  # kept: what is caught has not been lost
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # the summary says what they would
+        try:
+            found = count()
+        except SimulationInterrupted as stop:
+            found, interrupted = stop.data, stop
+            tell("interrupted; writing what was counted so far")
+    with put_off(press_again) as late:
+        save(found, out, replace=overwrite)
+    for line in _counts(found) if not quiet else ():
+        say(line)
+    if interrupted or late:
+        raise Kept(late) from interrupted
+
+
+def _counts(found: "xr.Dataset") -> Iterator[str]:
+    inside, total = int(found["restitution_count"].sum()), int(found["number"].sum())
+    yield f"{total} impacts in the rows, {inside} of them in the bins of restitution"
+    if "body" not in found.dims:
+        yield from _energy(found.attrs)
+        return
+    for body in found["body"].values:
+        for law in found["law"].values:
+            here = found.sel(body=body, law=law)
+            yield (
+                f"{body}, {law}: {int(here['all_impacts'])} impacts, "
+                f"{100 * float(here['energy_created_share']):.3g} % of them created kinetic energy"
+            )
+
+
+def _summary(data: "xr.Dataset") -> Iterator[str]:
+    """Say what a run holds: impacts, why the particles stopped, and whether energy was created."""
+    from restitution._core import STOP_REASONS
+
+    impacts = int(data.impacts.sum())
+    yield f"{data.sizes['particle']} particles, {impacts} impacts"
+    counts = [(int((data.stop_reason == code).sum()), name) for code, name in enumerate(STOP_REASONS)]
+    yield "stop reasons: " + ", ".join(f"{name} {count}" for count, name in counts if count)
+    yield from _energy(data.attrs)
+
+
+def _energy(attrs: dict[str, Any]) -> Iterator[str]:
+    from restitution.drop.energy import factor
+
+    gains = attrs["energy_created_impacts"]
+    if gains:
+        largest = attrs["largest_energy_ratio"]
+        yield f"{gains} impacts created kinetic energy, at most by a factor of {factor(largest)}"

@@ -1,0 +1,263 @@
+"""The statistics of several bodies under several laws, side by side."""
+
+from __future__ import annotations
+
+import inspect
+import warnings
+from collections.abc import Iterable, Mapping
+from itertools import product
+from typing import Any, TypeVar
+
+import numpy as np
+import xarray as xr
+
+from restitution._internal.arrays import several
+from restitution._internal.parameters import ParameterError, Parameters, Problem, shown, unit_of, wrong
+from restitution._internal.resources import progress_bar
+from restitution.bodies import Body
+from restitution.drop.energy import LEDGER, WHY, EnergyWarning, factor, percent, reported_elsewhere
+from restitution.drop.simulate import SimulationInterrupted
+from restitution.drop.statistics import statistics
+from restitution.laws import Law
+
+T = TypeVar("T", bound=Parameters)
+
+_NEEDED = ("velocity_bins", "restitution_bins")
+"""Arguments that have no default."""
+
+_PER_RUN = {
+    "all_impacts": "impacts of the run, in the bins or not",
+    "energy_created_impacts": "of these, impacts that multiplied the kinetic energy by more than 1 + 1e-12",
+    "energy_created_share": "their share",
+    "largest_energy_ratio_of_all": "their largest factor, 1 where there are none",
+}
+
+
+def compare(
+    bodies: Mapping[str, Body] | Iterable[Body],
+    laws: Mapping[str, Law] | Iterable[Law],
+    *,
+    progress: bool = False,
+    **run: Any,
+) -> xr.Dataset:
+    """Drop every body under every law and put the statistics side by side.
+
+    Parameters
+    ----------
+    bodies, laws : mapping of str to Body or Law, or iterable of them
+        The bodies and the collision laws. Without names they are called by their class and those
+        parameters in which they differ from others of their class.
+    progress : bool
+        Show a progress bar on standard error, over the combinations.
+    **run
+        As in `restitution.statistics`: ``velocity_bins`` and ``restitution_bins`` must be given. All
+        combinations have the same bins and the same seed.
+
+    Returns
+    -------
+    xarray.Dataset
+        As from `restitution.statistics`, with dimensions (body, law) first. Over (body, law) also
+        ``all_impacts``, ``energy_created_impacts``, ``energy_created_share`` and
+        ``largest_energy_ratio_of_all``; over body and over law ``body_parameters`` and ``law_parameters``.
+        Each parameter in which bodies differ is a coordinate over body, such as ``separation``, and likewise
+        over law: ``found.swap_dims(body="separation")`` makes an axis of it. The attributes are what all runs
+        share.
+
+    Raises
+    ------
+    TypeError
+        If ``velocity_bins`` or ``restitution_bins`` is missing, or an argument is unknown.
+    ValueError
+        Naming the argument that is wrong.
+    SimulationInterrupted
+        On Ctrl-C; its ``data`` holds the combinations that were finished, and says which in ``finished``.
+
+    Warns
+    -----
+    EnergyWarning
+        Once, naming the laws under which impacts created kinetic energy.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import restitution as rs
+    >>> found = rs.compare(
+    ...     {"short": rs.Dumbbell(radius=3e-3, separation=3e-4)},
+    ...     [rs.Frictionless(normal=0.98), rs.Coulomb(normal=0.98, friction=0.3)],
+    ...     particles=50, velocity_bins=np.linspace(0.0, 1.2, 13),
+    ...     restitution_bins=np.linspace(-1.0, 3.0, 401))
+    >>> found["mean_restitution"].dims, found["law"].values.tolist()
+    (('body', 'law', 'velocity'), ['Frictionless', 'Coulomb'])
+    """
+    try:
+        inspect.signature(statistics).bind(None, None, **dict.fromkeys(_NEEDED) | run)
+    except TypeError as error:
+        raise TypeError(f"compare(): {error}") from None
+    if missing := [name for name in _NEEDED if name not in run]:
+        raise TypeError(f"compare(): missing a required argument: {' and '.join(map(repr, missing))}")
+    solids = _named("bodies", bodies, Body)
+    rules = _named("laws", laws, Law)
+    pairs = list(product(solids, rules))
+    with (
+        reported_elsewhere(),  # below, once
+        progress_bar("compare", len(pairs), "combinations", show=progress) as tell,
+    ):
+        runs: list[xr.Dataset] = []
+        for done, (body, law) in enumerate(pairs, start=1):
+            try:
+                runs.append(statistics(solids[body], rules[law], **run))
+            except SimulationInterrupted as stop:
+                raise SimulationInterrupted(_finished(runs, stop.data, solids, rules)) from stop
+            if tell is not None:
+                tell(done)
+    found = _side_by_side(runs, solids, rules)
+    _warn(found)
+    return found
+
+
+def _finished(
+    runs: list[xr.Dataset], begun: xr.Dataset, bodies: Mapping[str, Body], laws: Mapping[str, Law]
+) -> xr.Dataset:
+    """Put the finished runs side by side, with nothing in the places of the others."""
+    example = runs[0] if runs else begun  # what had only begun may lack standard errors
+    empty = xr.zeros_like(example)
+    for name, variable in example.data_vars.items():
+        if str(name).endswith("_edges"):
+            empty[name] = variable
+        elif variable.dtype.kind == "f":
+            empty[name] = variable * np.nan
+    empty.attrs |= dict.fromkeys(("all_impacts", "energy_created_impacts"), 0)
+    empty.attrs |= {"energy_created_share": 0.0, "largest_energy_ratio": 1.0}
+    missing = len(bodies) * len(laws) - len(runs)
+    found = _side_by_side([*runs, *[empty] * missing], bodies, laws)
+    finished = np.arange(len(bodies) * len(laws)) < len(runs)
+    about = {"long_name": "whether the run was finished; there is nothing of the others"}
+    found["finished"] = (("body", "law"), finished.reshape(len(bodies), len(laws)), about)
+    incomplete = f"interrupted: {len(runs)} of {finished.size} combinations are finished"
+    return found.assign_attrs(incomplete=incomplete)
+
+
+def _named(what: str, given: Mapping[str, T] | Iterable[T], kind: type[Any]) -> dict[str, T]:
+    """Give every body or law its name."""
+    allowed = f"a dict or list of {kind.__name__}"
+    if isinstance(given, Mapping):
+        named = dict(given)
+    elif isinstance(given, Iterable) and not isinstance(given, Parameters | str):
+        values = several(what, given, allowed, lambda _, value: _checked(what, value, kind))
+        names = [_name(value, values) for value in values]
+        named = dict(zip(names, values, strict=True))
+        if len(named) < len(values):
+            twice = next(name for name in names if names.count(name) > 1)
+            text = f": {twice} is there twice; all must differ, or have names: a dict"
+            raise ParameterError(Problem(what, text))
+    else:
+        raise ParameterError(wrong(what, given, allowed))
+    if not named:
+        raise ParameterError(Problem(what, ": must not be empty"))
+    for name, value in named.items():
+        if not isinstance(name, str):
+            raise ParameterError(Problem(what, f": {shown(name)} is not a name; must be a str"))
+        _checked(what, value, kind)
+    return named
+
+
+def _checked(what: str, value: Any, kind: type[Any]) -> Any:
+    if not isinstance(value, kind):
+        text = f" holds {shown(value)}: must be objects of a {kind.__name__}"
+        raise ParameterError(Problem(what, text))
+    return value
+
+
+def _name(one: Parameters, others: list[T]) -> str:
+    """Name an object by its class and the parameters in which it differs from others of the class."""
+    alike = [other for other in others if type(other) is type(one)]
+    telling = [
+        f"{field} = {getattr(one, field)!r}"
+        for field in type(one).model_fields
+        if any(getattr(other, field) != getattr(one, field) for other in alike)
+    ]
+    return type(one).__name__ + (f"({', '.join(telling)})" if telling else "")
+
+
+def _side_by_side(runs: list[xr.Dataset], bodies: Mapping[str, Body], laws: Mapping[str, Law]) -> xr.Dataset:
+    """Stack statistics, all in the same bins, in the order body, law."""
+    first = runs[0]
+    variables: dict[str, Any] = {}
+    for name, variable in first.data_vars.items():
+        if str(name).endswith("_edges"):
+            variables[str(name)] = variable
+            continue
+        stacked = np.stack([run[name].to_numpy() for run in runs])
+        shape = (len(bodies), len(laws), *stacked.shape[1:])
+        variables[str(name)] = (("body", "law", *variable.dims), stacked.reshape(shape), variable.attrs)
+    for name, text in _PER_RUN.items():
+        values = np.array([_total(run, name) for run in runs]).reshape(len(bodies), len(laws))
+        variables[name] = (("body", "law"), values, {"long_name": text})
+    coordinates: dict[str, Any] = {
+        "body": list(bodies),
+        "law": list(laws),
+        **{str(k): v for k, v in first.coords.items()},
+    }
+    coordinates |= _parameters("body", bodies.values()) | _parameters("law", laws.values())
+    coordinates["body_parameters"] = (("body",), [repr(body) for body in bodies.values()])
+    coordinates["law_parameters"] = (("law",), [repr(law) for law in laws.values()])
+    shared = {
+        name: value
+        for name, value in first.attrs.items()
+        if all(name in run.attrs and run.attrs[name] == value for run in runs) and name not in LEDGER
+    }
+    shared["title"] = "Statistics of the impacts of bodies under collision laws"
+    return xr.Dataset(variables, coordinates, shared)
+
+
+def _parameters(axis: str, objects: Iterable[Parameters]) -> dict[str, Any]:
+    """Give the parameters in which objects differ, each as a coordinate: numbers as numbers, NaN for none."""
+    rows: list[dict[str, Any]] = []
+    units: dict[str, str] = {}
+    for one in objects:
+        row: dict[str, Any] = {}
+        for name in type(one).model_fields:
+            value = getattr(one, name)
+            units.setdefault(name, unit_of(type(one), name))
+            if isinstance(value, tuple) and len(value) == 2:
+                row |= {f"{name}_1": value[0], f"{name}_2": value[1]}
+            else:
+                row[name] = value if isinstance(value, float | str) else repr(value)
+        rows.append(row)
+    found: dict[str, Any] = {}
+    for name in dict.fromkeys(key for row in rows for key in row):
+        values = [row.get(name) for row in rows]
+        if all(value == values[0] for value in values):
+            continue
+        numeric = all(value is None or isinstance(value, float) for value in values)
+        if numeric:
+            column = np.array([np.nan if value is None else value for value in values])
+            unit = units[name.removesuffix("_1").removesuffix("_2")]
+            found[name] = ((axis,), column, {"long_name": f"{name} of the {axis}", "units": unit})
+        else:
+            words = ["" if value is None else str(value) for value in values]
+            found[name] = ((axis,), words, {"long_name": f"{name} of the {axis}"})
+    return found
+
+
+def _total(run: xr.Dataset, name: str) -> int | float:
+    if name == "largest_energy_ratio_of_all":
+        return float(run.attrs.get("largest_energy_ratio", 1.0))
+    value: int | float = run.attrs[name]
+    return value
+
+
+def _warn(found: xr.Dataset) -> None:
+    created = found["energy_created_impacts"].sum("body")
+    laws = [str(law) for law in found["law"].values[created > 0]]
+    if laws:
+        share, largest = (
+            float(found["energy_created_share"].max()),
+            float(found["largest_energy_ratio_of_all"].max()),
+        )
+        warnings.warn(
+            f"Impacts created kinetic energy under {', '.join(laws)}: in up to {percent(share)} of the "
+            f"impacts of a run, at most by a factor of {factor(largest)}. {WHY}",
+            EnergyWarning,
+            stacklevel=3,
+        )

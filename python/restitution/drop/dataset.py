@@ -1,0 +1,117 @@
+"""A run as an xarray Dataset, with the names, units and flags of the core; files."""
+
+import errno
+import os
+from functools import cache
+from importlib.metadata import version
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+import xarray as xr
+
+from restitution._core import STOP_REASONS
+from restitution._internal.files import whole_file
+from restitution._internal.memory import check_room
+from restitution._internal.reading import check_regular
+from restitution.drop.energy import ledger_of
+from restitution.drop.run import Run
+
+# With its first index xarray imports dask, which would take its time when Ctrl-C has ended a run.
+xr.Dataset(coords={"impact": [0]})
+
+
+def dataset(
+    run: Run, table: dict[str, tuple[tuple[str, ...], npt.NDArray[Any], dict[str, Any]]]
+) -> xr.Dataset:
+    """Turn the records of the core into a Dataset of dimensions (particle, impact)."""
+    variables: dict[str, Any] = dict(table)
+    if any("component" in dimensions for dimensions, _, _ in table.values()):
+        variables["component"] = (("component",), ["x", "y", "z"], {"long_name": "z: the plane normal"})
+    for name, size in zip(("particle", "impact"), table["time"][1].shape, strict=True):
+        about = {"long_name": f"number of the {name}, from 0"}
+        variables.setdefault(name, ((name,), np.arange(size), about))
+    if run.angles is not None:
+        rows = variables["particle"][1]
+        about = {"long_name": "angle (and azimuth) of the axis at release, as given", "units": "rad"}
+        given = run.orientation[rows]
+        variables["orientation"] = (("particle", "angle_and_azimuth")[: given.ndim], given, about)
+    attrs = attributes(run, "Impacts of bouncing aspherical particles")
+    if "axis" in table:
+        body = run.body
+        attrs |= {name: getattr(body, name) for name in ("mass", "transverse_inertia", "axial_inertia")}
+    attrs |= ledger_of(table["energy_ratio"][1])
+    reasons = table["stop_reason"][1]
+    cut_short = np.count_nonzero(reasons == STOP_REASONS.index("interrupted"))
+    done = len(reasons) - cut_short
+    if done < run.particles:
+        attrs["incomplete"] = (
+            f"interrupted: {done} of {run.particles} particles are finished, {cut_short} cut short"
+            + (", others that were cut short are left out" if "particle" in table else "")
+        )
+    return xr.Dataset(variables, attrs=attrs)
+
+
+@cache
+def version_here() -> str:
+    """Return the version; looking it up takes as long as a small run."""
+    return version("restitution")
+
+
+def attributes(run: Run, title: str) -> dict[str, Any]:
+    """Give what every result carries: title, conventions, version, all parameters and the seed."""
+    return {
+        "title": title,
+        "Conventions": "CF-1.11",
+        "source": f"restitution {version_here()}",
+        "version": version_here(),
+        "references": "A. Glielmo, N. Gunkelmann, T. Pöschel, Phys. Rev. E 90, 052204 (2014)",
+        **run.attributes(),
+    }
+
+
+def load(path: Path) -> xr.Dataset:
+    """Read a netCDF file; an OSError that names it if it cannot be read."""
+    check_regular(path)
+    try:
+        with xr.open_dataset(path, engine="netcdf4") as data:
+            check_room(str(path), data.nbytes)
+            return data.load()
+    except MemoryError:
+        raise
+    except OSError as error:  # of netCDF, which names the file in full, or not at all
+        raise OSError(error.errno or errno.EIO, error.strerror or str(error), str(path)) from error
+    except Exception as error:  # of netCDF, which raises many kinds for a damaged file
+        raise OSError(errno.EIO, f"cannot be read as netCDF: {error}", str(path)) from error
+
+
+def save(data: xr.Dataset, path: Path, *, replace: bool = False) -> None:
+    """Write a netCDF file whole or not at all."""
+    with whole_file(path, replace=replace) as draft:
+        put(data, draft)
+
+
+def put(data: xr.Dataset, draft: Path) -> None:
+    """Write a netCDF file."""
+    try:
+        data.to_netcdf(draft, engine="netcdf4")
+    except (RuntimeError, OSError) as error:  # of netCDF, which says neither where nor why
+        _ask_for_room(draft, data.nbytes)
+        raise OSError(errno.EIO, f"cannot be written: {error}", str(draft)) from error
+
+
+_BESIDE = 2**20
+"""Bytes that HDF5 keeps beside the numbers of a file, at most."""
+
+
+def _ask_for_room(draft: Path, size: int) -> None:
+    """Raise the system's own error where the disk is full, or files may not be so much larger."""
+    if not hasattr(os, "posix_fallocate"):
+        return
+    try:
+        with draft.open("ab") as file:
+            # It may have failed in what HDF5 keeps beside the numbers, which itself would fit.
+            os.posix_fallocate(file.fileno(), file.tell(), size + _BESIDE)
+    except OSError as error:
+        raise OSError(error.errno, error.strerror, str(draft)) from None

@@ -1,0 +1,213 @@
+"""The parameters of a run: one validation for `simulate`, `statistics` and the TOML file."""
+
+import math
+from collections.abc import Mapping
+from typing import Annotated, Any, ClassVar, Self
+
+import numpy as np
+import numpy.typing as npt
+from pydantic import ConfigDict, Field, InstanceOf, model_validator
+
+from restitution._internal.arrays import check_each
+from restitution._internal.parameters import (
+    Allowed,
+    Number,
+    ParameterError,
+    Parameters,
+    Problem,
+    Whole,
+    wrong,
+)
+from restitution.bodies import BODIES, Body
+from restitution.drop.release import (
+    FloatArray,
+    HeightOfRun,
+    OrientationOfRun,
+    RandomHeight,
+    RandomSpin,
+    SpinOfRun,
+    VelocityOfRun,
+)
+from restitution.laws import LAWS, Law
+
+_BEYOND = 1e10
+"""Heights and the like, over those of the body: beyond, 16 digits do not resolve its surface."""
+
+
+class Run(Parameters):
+    """The parameters of `simulate`, checked.
+
+    Parameters
+    ----------
+    body, law
+        The body and the collision law.
+    particles, impacts : int
+        Number of particles and most impacts of each; > 0.
+    release_height : float or RandomHeight
+        Distance of the centre of mass from the plane at release, in m; the same for all or drawn at random.
+        No part may be below the plane.
+    gravity : float
+        Acceleration of gravity in m/s², > 0.
+    orientation : {"uniform-angle", "isotropic"} or array of float, shape (particles,) or (particles, 2)
+        Angle θ between symmetry axis and plane normal at release: uniform in [0, π), isotropic,
+        or given in rad. The azimuth φ of the axis is uniform in [0, 2π), or given beside θ.
+    spin : tuple of three floats, array of float, shape (particles, 3), or RandomSpin
+        Angular velocity at release, in rad/s; the same for all, one each, or drawn at random.
+    release_velocity : tuple of three floats
+        Velocity of the centre of mass at release, in m/s.
+    incline : float
+        Angle in [0, π/2) by which the plane is inclined, in rad. In its frame gravity is
+        g (sin α, 0, -cos α): z is the plane normal, and the plane falls along x.
+    minimum_speed : float
+        A particle ends when √(2 E_kin/m) after an impact falls below this, in m/s; 0 never does.
+    seed : int
+        Seed of the random numbers, in [0, 2⁶⁴).
+    """
+
+    body: Annotated[InstanceOf[Body], Allowed(BODIES)]
+    law: Annotated[InstanceOf[Law], Allowed(LAWS)]
+    particles: Annotated[Whole, Field(ge=1, lt=2**40, description="number of particles")] = 1000
+    impacts: Annotated[Whole, Field(ge=1, lt=2**40, description="most impacts of a particle")] = 400
+    release_height: Annotated[HeightOfRun, Field(description="m")] = 0.06
+    gravity: Annotated[Number, Field(gt=0, description="m/s²")] = 9.81
+    orientation: OrientationOfRun = "uniform-angle"
+    spin: SpinOfRun = (0.0, 0.0, 0.0)
+    release_velocity: VelocityOfRun = (0.0, 0.0, 0.0)
+    incline: Annotated[Number, Field(ge=0, lt=math.pi / 2, description="rad")] = 0.0
+    minimum_speed: Annotated[Number, Field(ge=0, description="m/s; 0 never stops a particle")] = 0.0
+    seed: Annotated[Whole, Field(ge=0, lt=2**64)] = 1
+
+    model_config: ClassVar[ConfigDict] = ConfigDict(validate_default=True)
+
+    @classmethod
+    def called(cls, arguments: Mapping[str, Any]) -> Self:
+        """Take the parameters of a run from the arguments of a function that has them among its own."""
+        return cls(**{name: arguments[name] for name in cls.model_fields})
+
+    @model_validator(mode="after")
+    def _nothing_below_the_plane(self) -> "Run":
+        angles = self.angles
+        if angles is not None and angles.size != self.particles:
+            text = f" has {angles.size} angles: must have one for each of particles = {self.particles}"
+            raise ParameterError(Problem("orientation", text))
+        solid = self.body.solid
+        least = self.heights[0]
+        if solid.clears(least):
+            return self
+        cosines = None if angles is None else np.cos(angles)
+        if cosines is None or not solid.clears(least, cosines):
+            lowest = solid.farthest() if cosines is None else solid.lowest(cosines)
+            allowed = f"at least {lowest!r} m, or a part of the body would reach below the plane"
+            raise ParameterError(wrong("release_height", self.release_height, allowed))
+        return self
+
+    @model_validator(mode="after")
+    def _within_the_digits(self) -> "Run":
+        """Refuse heights, speeds and spins so large that a double has no digits left for the body."""
+        solid = self.body.solid
+        least = min(solid.lowest(np.array([cosine])) for cosine in (-1.0, 0.0, 1.0))
+        highest = self.heights[1]
+        if highest > _BEYOND * least:
+            of = "the least height of the centre of mass over the plane"
+            raise ParameterError(wrong("release_height", highest, self._beyond(_BEYOND * least, "m", of)))
+        falling = self.gravity * math.cos(self.incline)
+        if self.incline > math.pi / 2 - 1.0 / _BEYOND:
+            allowed = (
+                f"at most pi/2 - {1.0 / _BEYOND:g}: a double has no digits left for gravity towards the plane"
+            )
+            raise ParameterError(wrong("incline", self.incline, allowed))
+        fastest = math.sqrt(_BEYOND) * math.sqrt(falling) * math.sqrt(least)
+        of = "the square of what a fall from the body's own height gives"
+        self._check_within("release_velocity", self.release_velocity, fastest, "m/s", of)
+        most = math.sqrt(_BEYOND) * math.sqrt(falling) / math.sqrt(solid.farthest())
+        spins = self.spin.rates[1] if isinstance(self.spin, RandomSpin) else self.spin
+        self._check_within("spin", spins, most, "rad/s", "gravity over the body's size, of the square")
+        return self
+
+    def _check_within(self, name: str, values: Any, most: float, unit: str, of: str) -> None:
+        """Name the first number whose magnitude is too large, with its place in a vector or a table."""
+        numbers = np.asarray(values)
+        allowed = self._beyond(most, f"{unit} in magnitude", of)
+        check_each(name, numbers, np.abs(numbers) <= most, allowed)
+
+    @staticmethod
+    def _beyond(most: float, unit: str, of: str) -> str:
+        allowed = f"at most {most:.6g} {unit}, {_BEYOND:g} times {of}"
+        return f"{allowed}; beyond, a double has no digits left for the body"
+
+    @model_validator(mode="after")
+    def _one_spin_per_particle(self) -> "Run":
+        spins = self.spins
+        if spins is not None and len(spins) != self.particles:
+            text = f" has {len(spins)} of them: must have one for each of particles = {self.particles}"
+            raise ParameterError(Problem("spin", text))
+        return self
+
+    @property
+    def heights(self) -> tuple[float, float]:
+        """Least and largest height at release, in m."""
+        height = self.release_height
+        return (height.lowest, height.highest) if isinstance(height, RandomHeight) else (height, height)
+
+    @property
+    def angles(self) -> FloatArray | None:
+        """The angles θ at release where they were given, in rad, shape (particles,)."""
+        if isinstance(self.orientation, str):
+            return None
+        angles: FloatArray = self.orientation
+        return angles if angles.ndim == 1 else angles[:, 0]
+
+    @property
+    def spins(self) -> FloatArray | None:
+        """The angular velocities where each particle has its own, in rad/s, shape (particles, 3)."""
+        return self.spin if isinstance(self.spin, np.ndarray) else None
+
+    def of(self, rows: npt.NDArray[np.int64]) -> Self:
+        """Give the run of these of its particles; what is drawn for them depends on their new numbers."""
+        changed: dict[str, Any] = {"particles": rows.size}
+        if self.angles is not None:
+            changed["orientation"] = self.orientation[rows]
+        if self.spins is not None:
+            changed["spin"] = self.spins[rows]
+        return self.model_copy(update=changed)
+
+    def fall_speed(self, drop: float) -> float:
+        """Give the normal velocity in m/s after the centre of mass has come nearer by `drop`, in m."""
+        fall = 2.0 * self.gravity * math.cos(self.incline) * drop
+        return math.sqrt(fall + self.release_velocity[2] ** 2)
+
+    def parameters(self) -> dict[str, Any]:
+        """Name every parameter as the core does, compiled where the core knows it as an object of its own."""
+        compiled = {
+            "body": self.body.solid,
+            "law": self.law.compiled,
+        }
+        for name in ("release_height", "spin"):
+            value = getattr(self, name)
+            random = isinstance(value, RandomHeight | RandomSpin)
+            compiled[name] = value.parameters() if random else value
+        return {name: compiled.get(name, getattr(self, name)) for name in type(self).model_fields}
+
+    def attributes(self) -> dict[str, Any]:
+        """Every parameter under its own name, as plain values that a netCDF file can hold."""
+        written = {
+            "body": {"body": type(self.body).__name__, **self.body.model_dump()},
+            "law": {"law": type(self.law).__name__, **self.law.attributes()},
+            "orientation": {"orientation": self.orientation if self.angles is None else "given"},
+            "release_height": self._height_attributes(),
+            "spin": self._spin_attributes(),
+            "seed": {"seed": self.seed},
+        }
+        names = type(self).model_fields
+        parts = [written.get(name, {name: getattr(self, name)}) for name in names]
+        return {key: value for part in parts for key, value in part.items()}
+
+    def _height_attributes(self) -> dict[str, Any]:
+        if isinstance(self.release_height, RandomHeight):
+            return {"release_height": "random", "release_height_range": self.heights}
+        return {"release_height": self.release_height}
+
+    def _spin_attributes(self) -> dict[str, Any]:
+        if isinstance(self.spin, RandomSpin):
+            return {"spin": "random", "spin_rate": self.spin.rates, "spin_axis": self.spin.axis}
+        return {"spin": self.spin if self.spins is None else "given"}

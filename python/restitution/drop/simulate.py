@@ -1,0 +1,184 @@
+"""Every impact of every particle, as an xarray Dataset."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Literal, TypeAlias, get_args
+
+import numpy.typing as npt
+
+from restitution import _core
+from restitution._internal.parameters import ParameterError, wrong
+from restitution._internal.resources import check_memory, checked_threads, progress_bar
+from restitution.bodies import Body
+from restitution.drop.release import RandomHeight, RandomSpin
+from restitution.drop.run import Run
+from restitution.laws import Law
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+
+Record: TypeAlias = Literal["impacts", "state"]
+POSITION = 24
+"""Bytes of a position."""
+
+
+class SimulationInterrupted(KeyboardInterrupt):
+    """Ctrl-C during `simulate`; `data` holds what was finished.
+
+    Attributes
+    ----------
+    data : xarray.Dataset
+        As `simulate` returns it, with the particles that were begun; those that were cut short have the stop
+        reason ``interrupted``.
+
+    Examples
+    --------
+    >>> import restitution as rs
+    >>> body, law = rs.Dumbbell(radius=3e-3, separation=3e-4), rs.TangentialRestitution(normal=0.98)
+    >>> try:
+    ...     data = rs.simulate(body, law, particles=10)
+    ... except rs.SimulationInterrupted as stopped:
+    ...     data = stopped.data  # what Ctrl-C left
+    """
+
+    def __init__(self, data: xr.Dataset) -> None:
+        super().__init__("interrupted; the impacts so far are in the exception's `data`")
+        self.data = data
+
+
+def simulate(
+    body: Body,
+    law: Law,
+    *,
+    particles: int = 1000,
+    impacts: int = 400,
+    release_height: float | RandomHeight = 0.06,
+    gravity: float = 9.81,
+    orientation: Literal["uniform-angle", "isotropic"] | npt.ArrayLike = "uniform-angle",
+    spin: npt.ArrayLike | RandomSpin | None = None,
+    release_velocity: npt.ArrayLike | None = None,
+    incline: float = 0.0,
+    minimum_speed: float = 0.0,
+    seed: int = 1,
+    record: Record = "impacts",
+    threads: int | None = None,
+    progress: bool = False,
+) -> xr.Dataset:
+    """Drop particles and record every impact with the plane (the paper's Sec. III, steps 1-7).
+
+    Parameters
+    ----------
+    body : Dumbbell, LoadedSphere, Spherocylinder or Spheroid
+        The body that is dropped.
+    law : Law
+        The collision law.
+    particles, impacts : int
+        Number of particles, and the most impacts that each may have; both > 0.
+    release_height : float or RandomHeight
+        Distance of the centre of mass from the plane at release, in m, the same for all or drawn at random;
+        no part may be below the plane.
+    gravity : float
+        Acceleration of gravity in m/s², > 0.
+    orientation : {"uniform-angle", "isotropic"} or array of float, shape (particles,) or (particles, 2)
+        The angle θ between symmetry axis and plane normal at release: uniform in [0, π) (above Eq. 18),
+        isotropic, or given in rad. Its azimuth φ is uniform in [0, 2π), or given beside θ.
+    spin : array of float, shape (3,) or (particles, 3), or RandomSpin, optional
+        Angular velocity ω at release, in rad/s: the same for all, one each, or drawn at random.
+    release_velocity : array of float, shape (3,), optional
+        Velocity of the centre of mass at release, in m/s. It may point up or down.
+    incline : float
+        Angle α by which the plane is inclined, in rad, in [0, π/2): gravity is g (sin α, 0, -cos α). Every
+        vector is in the frame of the plane: z along its normal, x down the slope.
+    minimum_speed : float
+        A particle ends when √(2 E_kin/m) after an impact falls below this, in m/s. 0 never does.
+    seed : int
+        Seed of the random numbers, in [0, 2⁶⁴). The same seed gives the same bits with any number of threads.
+    record : {"impacts", "state"}
+        With "state" also the full state at each impact, in 144 bytes more.
+    threads : int, optional
+        Number of threads; one for each core if not given.
+    progress : bool
+        Show a progress bar on standard error.
+
+    Returns
+    -------
+    xarray.Dataset
+        Dimensions (particle, impact). Variables over both: ``time``, ``impact_velocity``,
+        ``rebound_velocity``, ``restitution``, ``rotational_fraction``, ``energy_ratio``, ``angle`` (float64,
+        NaN where the impact never happened) and ``contact`` (which sphere touched, or which half of a
+        spheroid); where ε_n depends on the speed also ``microscopic``, its value at the speed of the
+        contact. Over particles: ``impacts``, ``stop_reason``, ``release_angle``; where heights are
+        drawn also ``release_height``; with spin, release velocity or
+        incline also ``release_azimuth`` and, over (particle, component), ``release_spin``. With
+        ``record="state"`` also, over (particle, impact, component), ``position`` and ``axis`` at the impact,
+        which both stay through it, ``velocity_before``, ``velocity_after``, ``angular_velocity_before`` and
+        ``angular_velocity_after``; `trajectory` makes of them the motion between impacts. Units are in the
+        variables' attributes, all parameters in the Dataset's, as are ``energy_created_impacts``, the
+        number of impacts that multiplied the kinetic energy by more than 1 + 1e-12, their share of all
+        impacts, ``energy_created_share``, and if there are any ``largest_energy_ratio``.
+
+    Raises
+    ------
+    ValueError
+        If a parameter is out of range; the message names it, its value and what is allowed.
+    NumericalError
+        If the engine cannot follow a particle; the message says how to reproduce it.
+    SimulationInterrupted
+        On Ctrl-C; a `KeyboardInterrupt` that carries the impacts so far.
+
+    Warns
+    -----
+    EnergyWarning
+        Once, if impacts created kinetic energy; see docs/energy.md.
+
+    Notes
+    -----
+    Two spheres that touch the plane at the same instant (axis exactly horizontal) are hit one after the
+    other, as two impacts with no flight time between.
+
+    Examples
+    --------
+    >>> import restitution as rs
+    >>> body = rs.Dumbbell(radius=3e-3, separation=3e-4)
+    >>> law = rs.TangentialRestitution(normal=0.98)
+    >>> data = rs.simulate(body, law, particles=10, impacts=20)
+    >>> dict(data.sizes)
+    {'particle': 10, 'impact': 20}
+    >>> bool((data.restitution.isel(impact=0) <= 0.98).all())
+    True
+    """
+    from restitution.drop.energy import warn
+
+    run = Run.called(locals())
+    data = simulate_run(run, threads=threads, progress=progress, record=record)
+    warn(data)
+    return data
+
+
+def checked_record(record: object) -> Record:
+    """Refuse what is neither "impacts" nor "state"."""
+    if isinstance(record, str) and record in get_args(Record):
+        return "state" if record == "state" else "impacts"
+    raise ParameterError(wrong("record", record, " or ".join(map(repr, get_args(Record)))))
+
+
+def simulate_run(
+    run: Run, *, threads: int | None = None, progress: bool = False, record: Record = "impacts"
+) -> xr.Dataset:
+    """`simulate` for parameters that are already checked."""
+    from restitution.drop.dataset import dataset
+    from restitution.drop.trajectory import with_positions
+
+    number = checked_threads(threads)
+    state = checked_record(record) == "state"
+    columns = _core.columns(run.law.compiled, state)
+    check_memory(run.particles * run.impacts, _core.bytes_per_impact(columns) + state * POSITION)
+    with progress_bar("simulate", run.particles, "particles", show=progress) as tell:
+        table, interrupted = _core.simulate(run.parameters(), number, tell, columns=columns)
+    data = dataset(run, table)
+    if state:
+        data = with_positions(data)
+    if interrupted:
+        raise SimulationInterrupted(data) from interrupted
+    return data

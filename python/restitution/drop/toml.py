@@ -1,0 +1,262 @@
+"""Runs written down as TOML files: bodies, laws, the run, and how to count it or learn from it."""
+
+import re
+import tomllib
+from collections.abc import Iterable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, TypeVar
+
+import numpy as np
+
+from restitution import bodies, laws
+from restitution._internal.parameters import ParameterError, Parameters, Problem, unknown, wrong
+from restitution._internal.reading import content
+from restitution.drop.release import RandomHeight, RandomSpin
+from restitution.drop.run import Run
+
+
+def _by_name(kinds: Iterable[type[Parameters]]) -> dict[str, type[Parameters]]:
+    """Name classes as a file does: `tangential-restitution` for TangentialRestitution."""
+    return {re.sub(r"(?<!^)(?=[A-Z])", "-", kind.__name__).lower(): kind for kind in kinds}
+
+
+# Table: the key that chooses a kind of body, law or material, and the kinds there are.
+_KINDS: dict[str, tuple[str, dict[str, type[Parameters]]]] = {
+    "body": ("shape", _by_name(bodies.KINDS)),
+    "law": ("type", _by_name(laws.KINDS)),
+    "normal": ("type", _by_name(laws.MATERIALS)),  # a table [law.normal]; a number stands for itself
+}
+_PARTS = ("body", "law")
+_TABLES = (*_PARTS, "run", "statistics", "distribution")
+_COUNTING = (
+    "velocity_bins",
+    "velocity_range",
+    "restitution_bins",
+    "restitution_range",
+    "fraction_bins",
+    "fraction_range",
+    "counts_only",
+)
+_ALLOWED = {"normal": "a real number in [0, 1] or a table [law.normal]"}
+"""What a file may hold for a parameter, where a call may give objects."""
+_LEARNING = ("velocities", "given", "release_height")
+
+P = TypeVar("P", bound=Parameters)
+_NESTED = re.compile(rb"(?:[\[{]\s*){100}")
+
+
+def read(path: Path) -> Run:
+    """Read the parameters of a run from a TOML file.
+
+    Raises
+    ------
+    ValueError
+        If the file is not TOML, or if keys are unknown, missing or out of range: a line for each, with the
+        name of the file, the key, its value and what is allowed.
+    OSError
+        If the file cannot be read.
+    """
+    return run_of(tables_in(path), str(path))
+
+
+@dataclass(frozen=True)
+class Asked:
+    """What a file says: bodies and laws by name, and the arguments of the calls.
+
+    Parameters
+    ----------
+    bodies, laws : dict of str to Body, Law
+        A table ``[body]``, or tables ``[[body]]`` with a ``name`` each; likewise laws.
+    run, statistics, distribution : dict
+        Arguments as they stand in the tables of these names; those of the run are checked.
+    """
+
+    bodies: dict[str, Any]
+    laws: dict[str, Any]
+    run: dict[str, Any]
+    statistics: dict[str, Any]
+    distribution: dict[str, Any]
+
+
+def read_all(path: Path, *, single: bool = False) -> Asked:
+    """Read what is to be counted, compared or learned; errors as from `read`.
+
+    Parameters
+    ----------
+    path : Path
+        The file.
+    single : bool
+        Refuse more than one body or law.
+    """
+    reader = _Reader(tables_in(path))
+    bodies, laws = (reader.several(name, single=single) for name in _PARTS)
+    for body in bodies.values():
+        for law in laws.values():
+            reader.problems += [
+                problem for problem in reader.problems_of_run(body, law) if problem not in reader.problems
+            ]
+    run = dict(reader.table("run"))
+    run |= reader.random(run)
+    tables = {}
+    for name, keys in (("statistics", _COUNTING), ("distribution", _LEARNING)):
+        tables[name] = reader.table(name)
+        strangers = (key for key in tables[name] if key not in keys)
+        reader.problems.extend(unknown(key, f"[{name}]", keys, prefix=f"{name}.") for key in strangers)
+    reader.finish(str(path))
+    return Asked(bodies, laws, run, **tables)
+
+
+def tables_in(path: Path) -> dict[str, Any]:
+    """Read the tables of a TOML file."""
+    text = content(path)
+    try:
+        if _NESTED.search(text):  # which the parser recurses into
+            raise ValueError("lists or tables nested too deeply")
+        return tomllib.loads(text.decode())
+    except (ValueError, RecursionError) as error:  # wrong syntax, or not UTF-8
+        raise ValueError(f"{path}: not a TOML file: {error}") from None
+
+
+def run_of(tables: dict[str, Any], source: str) -> Run:
+    """Make a run of the tables of a file; errors begin with `source`."""
+    reader = _Reader(tables)
+    run = reader.run({name: reader.chosen(name, reader.table(name)) for name in _PARTS})
+    reader.finish(source)
+    assert run is not None
+    return run
+
+
+def tables_of(run: Run) -> dict[str, Any]:
+    """Write a run down as the tables of a file, complete, of plain values."""
+    fields = {name: _plain(getattr(run, name)) for name in type(run).model_fields if name not in _PARTS}
+    return {**{name: table_of(getattr(run, name)) for name in _PARTS}, "run": fields}
+
+
+def table_of(parameters: Parameters) -> dict[str, Any]:
+    """Write a body, a law or a material down as a table."""
+    fields = {name: _plain(getattr(parameters, name)) for name in type(parameters).model_fields}
+    for selector, kinds in _KINDS.values():
+        for name, kind in kinds.items():
+            if type(parameters) is kind:
+                return {selector: name, **fields}
+    return fields
+
+
+def _plain(value: Any) -> Any:
+    if isinstance(value, Parameters):
+        return table_of(value)
+    if isinstance(value, np.ndarray):
+        return value.tolist()
+    return list(value) if isinstance(value, tuple) else value
+
+
+def _allowed_in_a_file(problem: Problem) -> str:
+    return problem.allowed and _ALLOWED.get(problem.name, problem.allowed)
+
+
+class _Reader:
+    """The tables of a file and everything that is wrong with them."""
+
+    def __init__(self, tables: dict[str, Any]) -> None:
+        self.tables = tables
+        self.problems = [unknown(name, "the file", _TABLES) for name in tables if name not in _TABLES]
+
+    def finish(self, source: str) -> None:
+        """Raise what is wrong, if anything is."""
+        if self.problems:
+            raise ValueError("\n".join(f"{source}: {problem}" for problem in self.problems))
+
+    def run(self, parts: dict[str, Parameters | None]) -> Run | None:
+        """Make the run of a body and a law."""
+        table = self.table("run")
+        return self.made("run", Run, table, parts | self.random(table))
+
+    def random(self, table: dict[str, Any]) -> dict[str, Any]:
+        """Make what a run draws at random, where its table has tables for it."""
+        kinds: dict[str, type[Parameters]] = {"release_height": RandomHeight, "spin": RandomSpin}
+        return {
+            name: self.made(f"run.{name}", kind, table[name], {})
+            for name, kind in kinds.items()
+            if isinstance(table.get(name), dict)
+        }
+
+    def problems_of_run(self, body: Parameters | None, law: Parameters | None) -> list[Problem]:
+        """Report what is wrong with the run of a body and a law."""
+        before, self.problems = self.problems, []
+        self.run({"body": body, "law": law})
+        found, self.problems = self.problems, before
+        return found
+
+    def several(self, name: str, *, single: bool) -> dict[str, Parameters | None]:
+        """Make the bodies or the laws of all tables of a name, by their own names."""
+        found = self.tables.get(name, {})
+        tables = found if isinstance(found, list) else [self.table(name)]
+        if single and len(tables) > 1:
+            self.problems.append(Problem(name, f": {len(tables)} tables; must be one, [{name}]"))
+        made: dict[str, Parameters | None] = {}
+        for number, table in enumerate(tables, start=1):
+            place = name if len(tables) == 1 else f"{name}[{number}]"
+            if not isinstance(table, dict):
+                self.problems.append(wrong(place, table, f"a table [{name}]"))
+                continue
+            own = {key: value for key, value in table.items() if key != "name"}
+            title = table.get("name", f"{name} {number}" if len(tables) > 1 else name)
+            if not isinstance(title, str) or title in made:
+                self.problems.append(wrong(f"{place}.name", title, "a string, another one for each"))
+                continue
+            made[title] = self.chosen(place, own)
+        return made
+
+    def chosen(self, name: str, table: dict[str, Any]) -> Parameters | None:
+        """Make the body, the law or the material, of the kind that its table asks for."""
+        selector, kinds = _KINDS[name.rpartition(".")[2].partition("[")[0]]
+        allowed = " or ".join(f'"{kind}"' for kind in kinds)
+        if selector not in table:
+            self.problems.append(Problem(f"{name}.{selector}", f": missing; must be {allowed}"))
+            return None
+        kind = table[selector]
+        if not isinstance(kind, str) or kind not in kinds:
+            self.problems.append(wrong(f"{name}.{selector}", kind, allowed))
+            return None
+        tables = {key: value for key, value in table.items() if key in _KINDS and isinstance(value, dict)}
+        parts = {key: self.chosen(f"{name}.{key}", value) for key, value in tables.items()}
+        return self.made(name, kinds[kind], table, parts, selector)
+
+    def made(
+        self,
+        name: str,
+        kind: type[P],
+        table: dict[str, Any],
+        parts: dict[str, Parameters | None],
+        *selector: str,
+    ) -> P | None:
+        """Make one set of parameters from a table and the parts that have tables of their own."""
+        fields = [field for field in kind.model_fields if field not in _PARTS]
+        keys = [*selector, *fields]
+        strangers = (key for key in table if key not in keys)
+        self.problems.extend(unknown(key, f"[{name}]", keys, prefix=f"{name}.") for key in strangers)
+        values = {field: table[field] for field in fields if field in table}
+        good = {
+            field: part for field, part in parts.items() if part is not None and field in kind.model_fields
+        }
+        bad = parts.keys() - good.keys()
+        try:
+            return kind(**{key: value for key, value in (values | good).items() if key not in bad})
+        except ParameterError as error:
+            # A part that is missing has been reported already.
+            found = (
+                problem._replace(name=f"{name}.{problem.name}", allowed=_allowed_in_a_file(problem))
+                for problem in error.problems
+                if problem.name not in bad
+            )
+            self.problems.extend(found)
+            return None
+
+    def table(self, name: str) -> dict[str, Any]:
+        """Return a table of the file, empty if there is none."""
+        table = self.tables.get(name, {})
+        if isinstance(table, dict):
+            return table
+        self.problems.append(wrong(name, table, f"a table [{name}]"))
+        return {}

@@ -1,0 +1,219 @@
+"""The motion between impacts in closed form: where a particle is at any time, from its recorded states."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import numpy.typing as npt
+
+from restitution._internal.arrays import FloatArray, check_each, reals, whole
+from restitution._internal.parameters import ParameterError, Problem, wrong
+from restitution.drop.recorded import (
+    RECORDS,
+    attribute,
+    check_successive,
+    pull,
+    released_from,
+    variables,
+)
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+_STATES = ("position", "axis", "velocity_after", "angular_velocity_after")
+_NEEDED = {"time": RECORDS, **dict.fromkeys(_STATES, (*RECORDS, "component")), "release_angle": ("particle",)}
+_RELEASED = {"release_azimuth": ("particle",), "release_spin": ("particle", "component")}
+"""Of each particle, or not there where it is 0."""
+_ABOUT = {
+    "position": ("position of the centre of mass; the release is over the origin, z = 0 the plane", "m"),
+    "velocity": ("velocity of the centre of mass", "m s-1"),
+    "axis": ("unit vector of the symmetry axis, from sphere 2 to sphere 1", "1"),
+    "angular_velocity": ("angular velocity", "rad s-1"),
+}
+
+
+def with_positions(data: xr.Dataset) -> xr.Dataset:
+    """Make positions of the recorded heights and velocities: in flight gravity alone acts (5)."""
+    time, after = data["time"].to_numpy(), data["velocity_after"].to_numpy()
+    position = np.empty(after.shape)
+    position[..., 2] = data["height"].to_numpy()
+    duration = np.diff(time, axis=1, prepend=0.0)
+    pulled = _gravity(data.attrs["gravity"], data.attrs["incline"])
+    for i in range(2):
+        start = np.empty(time.shape)
+        start[:, :1], start[:, 1:] = data.attrs["release_velocity"][i], after[:, :-1, i]
+        np.cumsum(duration * (start + 0.5 * pulled[i] * duration), axis=1, out=position[..., i])
+    about, unit = _ABOUT["position"]
+    attrs = {"long_name": f"{about}; at the impact", "units": unit}
+    return data.drop_vars("height").assign(position=(("particle", "impact", "component"), position, attrs))
+
+
+def trajectory(data: xr.Dataset, particle: int, times: npt.ArrayLike) -> xr.Dataset:
+    """Give the exact motion of a particle at any times, from its release to its last recorded impact.
+
+    Between impacts the centre of mass moves on a parabola, and a free body of revolution turns about its
+    angular momentum **Λ** at the constant rate Λ/J', its moment of inertia across the axis being J'; the
+    formulas are closed, no step is taken. At the time of an impact it is the motion after it.
+
+    Parameters
+    ----------
+    data : xarray.Dataset
+        Impacts from `restitution.simulate` with ``record="state"``.
+    particle : int
+        Its number, as in the coordinate ``particle``.
+    times : float or array_like, shape (n,)
+        Times since release in s, in any order, from 0 to that of the last impact.
+
+    Returns
+    -------
+    xarray.Dataset
+        Over ``time`` and ``component`` (x, y, z, in the frame of the plane): ``position`` of the centre of
+        mass in m, relative to the point of the plane under the release, ``velocity`` in m/s, ``axis``, the
+        unit vector of the symmetry axis, and ``angular_velocity`` in rad/s; over ``time`` the number of
+        ``impacts`` up to then.
+
+    Raises
+    ------
+    ValueError
+        If there are no states, or such as are no numbers or not of all impacts from the first on, no such
+        particle, or times before the release or after the last impact.
+
+    Examples
+    --------
+    >>> import restitution as rs
+    >>> body, law = rs.Dumbbell(radius=3e-3, separation=3e-3), rs.Coulomb(normal=0.9, friction=0.2)
+    >>> data = rs.simulate(body, law, particles=5, impacts=20, spin=(0.0, 30.0, 10.0), record="state")
+    >>> path = rs.trajectory(data, 3, [0.0, 0.1, 0.2])
+    >>> path.position.shape, path.impacts.values.tolist()
+    ((3, 3), [0, 0, 1])
+    """
+    import xarray as xr
+
+    _check(data)
+    slender = _slender(data)
+    pulled = np.array(_gravity(*pull("data", data)))
+    one = _particle(data.assign(release_height=_heights(data)), particle)
+    asked = reals("times", times, "times in s, one or several", unit="s", dimensions=(0, 1), finite=False)
+    when = np.atleast_1d(asked)
+    happened = times_of(one["time"].to_numpy())
+    last = float(happened[-1]) if happened.size else 0.0
+    allowed = f"in [0, {last!r}] s, from the release to the last recorded impact of particle {particle}"
+    check_each("times", when, (when >= 0.0) & (when <= last), allowed)
+
+    flight = np.searchsorted(happened, when, side="right")
+    with np.errstate(over="ignore", invalid="ignore"):
+        begin = _begin(one, happened.size)
+        elapsed = (when - begin["time"][flight])[:, None]
+        position, velocity, axis, spin = (
+            begin[name][flight] for name in ("position", "velocity", "axis", "angular_velocity")
+        )
+        along = np.sum(spin * axis, axis=1, keepdims=True)
+        precession = spin - slender * along * axis  # Λ/J'
+        turned = _turned(axis, precession * elapsed)
+        found = {
+            "position": position + elapsed * (velocity + 0.5 * elapsed * pulled),
+            "velocity": velocity + elapsed * pulled,
+            "axis": turned,
+            "angular_velocity": precession + slender * along * turned,
+        }
+    if not all(np.isfinite(values).all() for values in found.values()):
+        text = ": the motion at these times is not finite; must be the states and settings of a run"
+        raise ParameterError(Problem("data", text))
+    variables: dict[str, Any] = {
+        name: (("time", "component"), values, {"long_name": _ABOUT[name][0], "units": _ABOUT[name][1]})
+        for name, values in found.items()
+    }
+    variables["impacts"] = ("time", flight, {"long_name": "number of impacts up to then"})
+    coordinates = {
+        "time": ("time", when, {"long_name": "time since release", "units": "s"}),
+        "component": data["component"],
+    }
+    return xr.Dataset(variables, coordinates, data.attrs | {"particle": int(particle)})
+
+
+def _particle(data: xr.Dataset, particle: int) -> xr.Dataset:
+    numbers = data["particle"].to_numpy()
+    allowed = f"one of {numbers[0]} to {numbers[-1]}" if numbers.size else "one that `data` has"
+    try:
+        at = np.flatnonzero(numbers == whole("particle", particle, 0))
+    except ParameterError:
+        at = np.empty(0, dtype=np.int64)
+    if at.size != 1:
+        raise ParameterError(wrong("particle", particle, allowed))
+    return data.isel(particle=int(at[0]))
+
+
+def _check(data: xr.Dataset) -> None:
+    """Refuse states that are no numbers, or not those of all impacts from the release on."""
+    given = {name: needed for name, needed in _RELEASED.items() if name in getattr(data, "variables", ())}
+    variables("data", data, 'restitution.simulate(..., record="state")', _NEEDED | given)
+    check_successive("data", data, start=0)
+    frame = data["component"].to_numpy()
+    if "component" not in data.coords or frame.tolist() != ["x", "y", "z"]:
+        raise ParameterError(wrong("data.component", frame, "x, y, z"))
+    allowed = "three finite numbers"
+    velocity = data.attrs.get("release_velocity")
+    if reals("data.release_velocity", velocity, allowed).shape != (3,):
+        raise ParameterError(wrong("data.release_velocity", velocity, allowed))
+
+
+def _slender(data: xr.Dataset) -> float:
+    """Give 1 - J/J'; of no body J is above 2J'."""
+    across = attribute("data", data, "transverse_inertia", "a finite number > 0", lambda j: 0.0 < j < np.inf)
+    most = 2.0 * across * (1.0 + 1e-9)  # rounding
+    allowed = f"a finite number in (0, 2 transverse_inertia = {2.0 * across:g}]"
+    return 1.0 - attribute("data", data, "axial_inertia", allowed, lambda j: 0.0 < j <= most) / across
+
+
+def _heights(data: xr.Dataset) -> tuple[str, FloatArray]:
+    """Give every particle its height of release."""
+    return "particle", np.broadcast_to(released_from("data", data), data.sizes["particle"])
+
+
+def times_of(time: FloatArray) -> FloatArray:
+    """Take the times of the impacts of a particle that happened: NaN comes after the last one only."""
+    happened = time[: np.count_nonzero(~np.isnan(time))]
+    allowed = "a finite time >= 0, not before the impact before it"
+    check_each("data.time", happened, np.isfinite(happened), allowed)
+    check_each("data.time", happened, np.diff(happened, prepend=0.0) >= 0.0, allowed)
+    return happened
+
+
+def _gravity(gravity: float, incline: float) -> tuple[float, float, float]:
+    """Give the acceleration of free flight in the frame of the plane."""
+    return gravity * float(np.sin(incline)), 0.0, -gravity * float(np.cos(incline))
+
+
+def _begin(one: xr.Dataset, impacts: int) -> dict[str, FloatArray]:
+    """Give the states from which the flights begin: the release, then what each impact left."""
+    angle = float(one["release_angle"])
+    azimuth = float(one["release_azimuth"]) if "release_azimuth" in one else 0.0
+    level = np.sin(angle)
+    released = {
+        "time": 0.0,
+        "position": [0.0, 0.0, float(one["release_height"])],
+        "velocity": one.attrs["release_velocity"],
+        "axis": [level * np.cos(azimuth), level * np.sin(azimuth), np.cos(angle)],
+        "angular_velocity": one["release_spin"].to_numpy() if "release_spin" in one else np.zeros(3),
+    }
+    after = {"velocity": "velocity_after", "angular_velocity": "angular_velocity_after"}
+    return {
+        name: np.concatenate([[value], _states(one, after.get(name, name))[:impacts]])
+        for name, value in released.items()
+    }
+
+
+def _states(one: xr.Dataset, name: str) -> FloatArray:
+    """Give a variable of all impacts, a row each."""
+    values: FloatArray = one[name].transpose("impact", ...).to_numpy()
+    return values
+
+
+def _turned(vectors: FloatArray, rotations: FloatArray) -> FloatArray:
+    """Turn vectors about rotation vectors, by their lengths in rad."""
+    angle = np.linalg.norm(rotations, axis=1, keepdims=True)
+    about = rotations / np.where(angle > 0.0, angle, 1.0)
+    along = about * np.sum(about * vectors, axis=1, keepdims=True)
+    turned: FloatArray = along + np.cos(angle) * (vectors - along) + np.sin(angle) * np.cross(about, vectors)
+    return turned

@@ -1,0 +1,1 @@
+"""Bouncing-ball experiments: times, recordings, error budgets, inference."""

@@ -1,0 +1,230 @@
+"""`error_budget`: which error comes from where."""
+
+from importlib.metadata import version
+from typing import Any, Literal
+
+import numpy as np
+import xarray as xr
+
+from restitution._internal.parameters import ParameterError, wrong
+from restitution.bodies import BODIES, Body
+from restitution.experiment.budget import _sources
+from restitution.experiment.budget._near_round import near_round
+from restitution.experiment.budget._results import ErrorBudget
+from restitution.experiment.budget._sources import Source
+from restitution.experiment.budget.experiment import Array, Experiment, Setting, mean_radius
+from restitution.experiment.flight.drag import Drag
+from restitution.laws import Law
+
+
+def error_budget(
+    body: Body,
+    law: Law,
+    *,
+    drop: float,
+    impacts: int = 20,
+    timing: float = 0.0,
+    gravity: float = 9.81,
+    gravity_uncertainty: float = 0.0,
+    drop_uncertainty: float = 0.0,
+    tilt: float = 0.0,
+    spin: float = 0.0,
+    drag: Drag | Literal["sphere"] | None = "sphere",
+    drag_corrected: bool = False,
+    particles: int = 1000,
+    seed: int = 1,
+) -> ErrorBudget:
+    """Errors that each part of a bouncing-ball experiment causes in its results.
+
+    The ball falls from rest and the times of its impacts are heard. From these come n coefficients, the
+    first by the height of the drop. Each source of error gives them a bias and a covariance, and these are
+    carried on to the mean over the run and to the law ε_n(v) that is fitted to it. Sources are taken to be
+    independent.
+
+    Parameters
+    ----------
+    body : Dumbbell, LoadedSphere, Spherocylinder or Spheroid
+        The ball; `restitution.from_roundness` makes it from a diameter and an out-of-roundness.
+    law : Law
+        The collision law. Fitted is what goes with its normal coefficient: a constant, the Padé
+        approximant of viscoelastic spheres, plastic spheres, or for a table a power law.
+    drop : float
+        Height of the fall to the first impact, in m, > 0.
+    impacts : int
+        Number n of coefficients, from 3 to 1000: one impact more is heard.
+    timing : float
+        Standard error of each time, in s, >= 0.
+    gravity, gravity_uncertainty : float
+        g and its standard error, in m/s².
+    drop_uncertainty : float
+        Standard error of the height of the drop, in m, >= 0.
+    tilt : float
+        Angle by which the plate is inclined, in rad, in [0, 0.5).
+    spin : float
+        Angular velocity at release, about an axis of any direction, in rad/s, >= 0.
+    drag : Drag, "sphere" or None
+        Air drag; "sphere" is a sphere with the diameter and mass of the body in air, for which the body needs
+        its true density.
+    drag_corrected : bool
+        Whether drag is accounted for, as by `restitution.flight.restitution`: what remains is the standard
+        deviation that the uncertainty of the drag causes. Otherwise all of it is a bias.
+    particles : int
+        Number of simulated drops, >= 50. A standard deviation of shape, spin or tilt is known to a part
+        1/√(2 particles); what spin and tilt add is a difference of two such variances.
+    seed : int
+        Seed of the random numbers.
+
+    Returns
+    -------
+    ErrorBudget
+        Prints as a table. Its ``data`` is a Dataset with bias and standard deviation by ``source`` and
+        ``impact``, of the mean over the run and of the fitted law.
+
+    Raises
+    ------
+    ValueError
+        If a value is out of range, or the ball does not bounce so often; the message names it.
+
+    Notes
+    -----
+    Errors of g do not enter ε, which is a quotient of times, but for the first coefficient and the speeds.
+    Drag that is neglected makes ε too small by the factor 1 - (1 + ε²) v²/(4 V²), to lowest order in the
+    speed over the terminal velocity V. Shape, spin and tilt are simulated, without any approximation.
+
+    Examples
+    --------
+    >>> import restitution as rs
+    >>> ball = rs.from_roundness(6e-3, 15e-6)
+    >>> budget = rs.error_budget(ball, rs.Frictionless(normal=0.95), drop=0.1, impacts=10, timing=5e-6)
+    >>> shape, timing = budget.data.mean_standard_deviation.sel(source=["shape", "timing"]).values
+    >>> bool(shape > timing)
+    True
+    """
+    if not isinstance(body, Body):
+        raise ParameterError(wrong("body", body, BODIES))
+    if not isinstance(law, Law):
+        raise ParameterError(wrong("law", law, "a law such as Frictionless(normal=0.9)"))
+    setting = Setting(
+        drop=drop,
+        impacts=impacts,
+        timing=timing,
+        gravity=gravity,
+        gravity_uncertainty=gravity_uncertainty,
+        drop_uncertainty=drop_uncertainty,
+        tilt=tilt,
+        spin=spin,
+        particles=particles,
+        seed=seed,
+    )
+    force = _force(drag, body, setting)
+    if not isinstance(drag_corrected, bool):
+        raise ParameterError(wrong("drag_corrected", drag_corrected, "True or False"))
+    experiment = Experiment.of(law, setting)
+    n = setting.impacts
+    shape = _sources.shape(experiment, body)
+    sources = {
+        "shape": shape,
+        "timing": _sources.timing(experiment),
+        "gravity": _sources.gravity(experiment),
+        "drop": _sources.drop(experiment),
+        "tilt": _sources.tilt(experiment, body, shape) if setting.tilt > 0.0 else _sources.nothing(n),
+        "spin": _sources.spin(experiment, body, shape) if setting.spin > 0.0 else _sources.nothing(n),
+        "drag": _sources.nothing(n) if force is None else _sources.drag(experiment, force, drag_corrected),
+    }
+    data = _dataset(experiment, body, sources, force)
+    return ErrorBudget(data.assign_attrs(drag_corrected=int(drag_corrected)))
+
+
+def _force(drag: object, body: Body, setting: Setting) -> Drag | None:
+    if drag is None or isinstance(drag, Drag):
+        return drag
+    if not isinstance(drag, str) or drag != "sphere":
+        raise ParameterError(wrong("drag", drag, 'a Drag, "sphere" or None'))
+    return Drag.of_sphere(diameter=2.0 * mean_radius(body), mass=body.mass, gravity=setting.gravity)
+
+
+def weights(experiment: Experiment, shape: Source) -> Array:
+    """Covariance that a fit assumes: of times, g and drop, and one scatter of ε for all impacts."""
+    setting = experiment.setting
+    known = experiment.covariance(setting.timing, setting.gravity_uncertainty, setting.drop_uncertainty)
+    # Without any error all impacts have equal weight.
+    scatter = max(float(np.mean(np.diag(shape.covariance))), 1e-24)
+    return np.asarray(known + scatter * np.eye(experiment.speed.size))
+
+
+def _dataset(
+    experiment: Experiment, body: Body, sources: dict[str, Source], force: Drag | None
+) -> xr.Dataset:
+    n = experiment.speed.size
+    estimator, curve = experiment.fitted(weights(experiment, sources["shape"]))
+    one = {"units": "1"}
+    variables: dict[str, Any] = {}
+    for prefix, by, dimensions, what in (
+        ("", np.eye(n), ("source", "impact"), "ε of one impact"),
+        ("mean_", np.full((1, n), 1.0 / n), ("source",), "the mean of a run"),
+        ("fit_", curve, ("source", "impact"), "the fitted ε_n(v)"),
+        ("parameter_", estimator, ("source", "parameter"), "the parameters"),
+    ):
+        unit = one if prefix != "parameter_" else {}
+        for name, values in _carried(list(sources.values()), by).items():
+            shaped = values[:, 0] if prefix == "mean_" else values
+            variables[prefix + name] = (dimensions, shaped, unit | {"long_name": f"{_LONG[name]} {what}"})
+    variables |= {
+        "impact_velocity": ("impact", experiment.speed, {"units": "m s-1", "symbol": "v"}),
+        "restitution": ("impact", experiment.coefficient, one | {"long_name": "ε_n at that speed"}),
+        "parameter_value": ("parameter", experiment.parameters),
+        "parameter_unit": ("parameter", list(experiment.form.units)),
+    }
+    limit = near_round(experiment, body)
+    if limit is not None:
+        text = "closed form of shape and spin, angles independent"
+        variables |= {
+            "kick": ("impact", limit.kick, one | {"long_name": "kick parameter K of the rotation"}),
+            "turning_bias": ("impact", np.full(n, limit.bias), one | {"long_name": f"bias of ε, {text}"}),
+            "turning_standard_deviation": (
+                "impact",
+                limit.deviation,
+                one | {"long_name": f"standard deviation of ε, {text}"},
+            ),
+        }
+    attrs: dict[str, Any] = {
+        "title": "Error budget of a bouncing-ball experiment",
+        "source": f"restitution {version('restitution')}",
+        "body": repr(body),
+        "law": repr(experiment.law),
+        "fitted_law": experiment.form.name,
+        **experiment.setting.model_dump(),
+    }
+    if force is not None:
+        attrs |= {
+            "terminal_velocity": force.terminal_velocity,
+            "terminal_velocity_uncertainty": force.uncertainty,
+        }
+    coords = {
+        "source": [*sources, "total"],
+        "parameter": list(experiment.form.parameters),
+        "impact": np.arange(n),
+    }
+    return xr.Dataset(variables, coords=coords, attrs=attrs)
+
+
+_LONG = {
+    "bias": "mean error of",
+    "standard_deviation": "standard deviation of",
+    "bias_error": "sampling error of the mean error of",
+    "standard_deviation_error": "sampling error of the standard deviation of",
+}
+
+
+def _carried(sources: list[Source], by: Array) -> dict[str, Array]:
+    """Errors of m quantities by every source, and by all together; each array of shape (sources + 1, m)."""
+    every = [one.carried(by) for one in sources]
+    bias, deviation, bias_error, deviation_error = (np.stack(parts) for parts in zip(*every, strict=True))
+    total = np.sqrt(np.sum(deviation**2, axis=0))
+    error = np.sqrt(np.sum((deviation * deviation_error) ** 2, axis=0)) / np.maximum(total, 1e-300)
+    return {
+        "bias": np.vstack([bias, bias.sum(axis=0)]),
+        "standard_deviation": np.vstack([deviation, total]),
+        "bias_error": np.vstack([bias_error, np.sqrt(np.sum(bias_error**2, axis=0))]),
+        "standard_deviation_error": np.vstack([deviation_error, error]),
+    }

@@ -1,0 +1,139 @@
+"""`required_roundness`: how round a ball must be."""
+
+import math
+from importlib.metadata import version
+from typing import Annotated, Literal
+
+import numpy as np
+import xarray as xr
+from pydantic import Field
+
+from restitution._internal.parameters import Allowed, Number, ParameterError, Parameters, TooLargeError, wrong
+from restitution.bodies import Form, from_roundness
+from restitution.experiment.budget._error_budget import weights
+from restitution.experiment.budget._results import RequiredRoundness
+from restitution.experiment.budget._sources import shape
+from restitution.experiment.budget.experiment import Experiment, Setting
+from restitution.laws import Law
+
+_ROUNDEST, _LEAST_ROUND, _STEPS = 1e-6, 0.03, 19
+"""Out-of-roundness over diameter that is looked at: four steps a decade."""
+
+
+class _Asked(Parameters):
+    precision: Annotated[Number, Field(gt=0, lt=1)]
+    diameter: Annotated[Number, Field(gt=0, le=1e6, description="m")]
+    quantity: Annotated[Literal["single", "mean", "fit"], Allowed("'single', 'mean' or 'fit'")]
+
+
+def required_roundness(
+    precision: float,
+    *,
+    diameter: float,
+    law: Law,
+    drop: float,
+    impacts: int = 20,
+    quantity: Literal["single", "mean", "fit"] = "mean",
+    form: Form = "lobed",
+    lobes: int = 2,
+    gravity: float = 9.81,
+    particles: int = 400,
+    seed: int = 1,
+) -> RequiredRoundness:
+    """Find how round a ball must be for its shape to cause no more than an error.
+
+    Balls of increasing out-of-roundness are dropped, all at the same random angles, and for each the root
+    mean square error that the shape alone causes is taken: √(bias² + variance), over ε.
+
+    Parameters
+    ----------
+    precision : float
+        The error over ε, in (0, 1): 1e-3 is 0.1 %.
+    diameter : float
+        In m, > 0.
+    law : Law
+        The collision law.
+    drop : float
+        Height of the fall to the first impact, in m, > 0.
+    impacts : int
+        Number of coefficients, from 3 to 1000.
+    quantity : {"single", "mean", "fit"}
+        One coefficient (root mean square over the run), the mean over the run, or the fitted ε_n(v).
+    form, lobes
+        Kind of deviation from a sphere, as in `restitution.from_roundness`.
+    gravity : float
+        In m/s², > 0.
+    particles, seed : int
+        Number of simulated drops for each out-of-roundness, >= 50, and the seed.
+
+    Returns
+    -------
+    RequiredRoundness
+        The number, which ``float`` gives, the curve, ``table()`` and ``figure()``.
+
+    Raises
+    ------
+    ValueError
+        If a value is out of range; the message names it.
+
+    Examples
+    --------
+    >>> import restitution as rs
+    >>> needed = rs.required_roundness(1e-3, diameter=6e-3, law=rs.Frictionless(normal=0.95), drop=0.1)
+    >>> 2e-5 < float(needed) < 5e-5
+    True
+    """
+    asked = _Asked(precision=precision, diameter=diameter, quantity=quantity)
+    if not isinstance(law, Law):
+        raise ParameterError(wrong("law", law, "a law such as Frictionless(normal=0.9)"))
+    # The errors of what makes the balls come first.
+    from_roundness(asked.diameter, asked.diameter * _ROUNDEST, form=form, lobes=lobes)
+    setting = Setting(drop=drop, impacts=impacts, gravity=gravity, particles=particles, seed=seed)
+    experiment = Experiment.of(law, setting)
+    deviations: list[float] = []
+    rows: list[tuple[float, float, float]] = []
+    for share in np.geomspace(_ROUNDEST, _LEAST_ROUND * 2.0 / lobes, _STEPS):
+        body = from_roundness(asked.diameter, asked.diameter * share, form=form, lobes=lobes)
+        try:
+            alone = shape(experiment, body)
+        except TooLargeError:
+            raise
+        except ParameterError:
+            if not rows:
+                raise
+            break  # such balls no longer bounce that often
+        _, curve = experiment.fitted(weights(experiment, alone))
+        n = setting.impacts
+        # ⟨δ δᵀ⟩ with its bias.
+        square = alone.covariance + np.outer(alone.bias, alone.bias)
+        one = 1.0 / experiment.coefficient
+        fitted = curve @ square @ curve.T
+        middle = float(experiment.coefficient.mean())
+        deviations.append(asked.diameter * share)
+        single = math.sqrt(np.mean(np.diag(square) * one**2))
+        mean = math.sqrt(square.sum()) / n / middle
+        rows.append((single, mean, math.sqrt(np.mean(np.diag(fitted) * one**2))))
+    data = xr.Dataset(
+        {
+            name: ("out_of_roundness", column, {"units": "1", "long_name": f"error of ε over ε, {what}"})
+            for name, column, what in zip(
+                ("single", "mean", "fit"),
+                np.array(rows).T,
+                ("one coefficient", "mean over a run", "fitted law"),
+                strict=True,
+            )
+        },
+        coords={"out_of_roundness": ("out_of_roundness", np.array(deviations), {"units": "m"})},
+        attrs={
+            "title": "Error of the coefficient of restitution that an out-of-roundness causes",
+            "source": f"restitution {version('restitution')}",
+            "law": repr(law),
+            "form": form,
+            "lobes": lobes,
+            "diameter": asked.diameter,
+            "quantity": asked.quantity,
+            **setting.model_dump(include={"drop", "impacts", "gravity", "particles", "seed"}),
+        },
+    )
+    found = RequiredRoundness(float("nan"), asked.precision, data)
+    return RequiredRoundness(found.allowed(asked.precision, asked.quantity), asked.precision, data)

@@ -1,0 +1,197 @@
+"""The experiment of an error budget: a round ball whose times are known, and how it is evaluated."""
+
+import math
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Annotated, Self
+
+import numpy as np
+import numpy.typing as npt
+from pydantic import Field, model_validator
+from scipy.optimize import least_squares
+
+from restitution._internal.parameters import Number, ParameterError, Parameters, Whole, wrong
+from restitution.bodies import BODIES, Body, Dumbbell, LoadedSphere, Spherocylinder, Spheroid
+from restitution.experiment.flight.chain import COMMON, Measured, chain
+from restitution.experiment.flight.laws import LAWS, LawOfSpeed, by_parameters
+from restitution.experiment.flight.times import LARGEST
+from restitution.laws import Law, Material, Plastic, Viscoelastic
+
+Array = npt.NDArray[np.float64]
+
+_LEAST = 1e-30
+"""Of g, in m/s²: with `LARGEST` it keeps speeds from over- and underflow."""
+_MOST = 1000
+"""Of coefficients, which have a covariance each with each: so many that no ball reaches them."""
+_SHORTEST = 1e-10
+"""Of flights, over the time since release: doubles resolve 1e-16 of that, and ε to 1e-6."""
+
+
+class Setting(Parameters):
+    """How the ball is dropped, and how well everything is known."""
+
+    drop: Annotated[Number, Field(gt=0, description="m")]
+    impacts: Annotated[Whole, Field(ge=3, le=_MOST)]
+    timing: Annotated[Number, Field(ge=0, le=LARGEST, description="s")] = 0.0
+    gravity: Annotated[Number, Field(ge=_LEAST, le=LARGEST, description="m/s²")] = 9.81
+    gravity_uncertainty: Annotated[Number, Field(ge=0, le=LARGEST, description="m/s²")] = 0.0
+    drop_uncertainty: Annotated[Number, Field(ge=0, le=LARGEST, description="m")] = 0.0
+    tilt: Annotated[Number, Field(ge=0, lt=0.5, description="rad")] = 0.0
+    spin: Annotated[Number, Field(ge=0, description="rad/s")] = 0.0
+    particles: Annotated[Whole, Field(ge=50)] = 1000
+    seed: Annotated[Whole, Field(ge=0, lt=2**63)] = 1
+
+    @model_validator(mode="after")
+    def _known_to_a_factor(self) -> Self:
+        for name in ("gravity", "drop"):
+            error, value = getattr(self, f"{name}_uncertainty"), getattr(self, name)
+            if error > value:
+                raise ParameterError(wrong(f"{name}_uncertainty", error, f"at most {name} = {value!r}"))
+        return self
+
+
+def mean_radius(body: Body) -> float:
+    """Half the mean of the largest and the smallest diameter, in m."""
+    match body:
+        case Spheroid():
+            return 0.5 * (body.equatorial + body.polar)
+        case LoadedSphere():
+            return body.radius
+        case Spherocylinder():
+            return body.radius + 0.25 * body.separation
+        case Dumbbell():
+            return 0.5 * (max(body.radii) + 0.5 * (sum(body.radii) + body.separation))
+        case _:
+            raise ParameterError(wrong("body", body, BODIES))
+
+
+def law_of_speed(law: Law) -> LawOfSpeed:
+    """Find what an experimenter fits to balls that bounce by a law."""
+    normal = law.normal
+    if isinstance(normal, Viscoelastic):
+        return LAWS["viscoelastic"]
+    if isinstance(normal, Plastic):
+        return LAWS["plastic"]
+    return LAWS["power law" if isinstance(normal, Material) else "constant"]
+
+
+@dataclass(frozen=True)
+class Experiment:
+    """A round ball, dropped: n coefficients of restitution from n + 1 impacts, without any error.
+
+    Attributes
+    ----------
+    setting : Setting
+    law : Law
+    form : LawOfSpeed
+        The law of speed that is fitted.
+    speed, coefficient : ndarray, shape (n,)
+        Speed in m/s and ε_n of each impact.
+    times : ndarray, shape (n + 1,)
+        Of the impacts, in s; 0 is the first.
+    """
+
+    setting: Setting
+    law: Law
+    form: LawOfSpeed
+    speed: Array
+    coefficient: Array
+    times: Array
+
+    @classmethod
+    def of(cls, law: Law, setting: Setting) -> "Experiment":
+        """Let the ball bounce."""
+        speed, coefficient = [math.sqrt(2.0 * setting.gravity * setting.drop)], []
+        for _ in range(setting.impacts):
+            coefficient.append(float(at(law, np.array(speed[-1]))))
+            speed.append(coefficient[-1] * speed[-1])
+        if not speed[-1] > 0.0:
+            raise ParameterError(wrong("law", law, "one under which a ball bounces, ε_n > 0"))
+        flights = 2.0 * np.array(speed[1:]) / setting.gravity
+        times = np.concatenate([[0.0], np.cumsum(flights)])
+        if not np.all(flights >= _SHORTEST * (speed[0] / setting.gravity + times[1:])):
+            allowed = f"one whose flights last at least {_SHORTEST:g} of the time since release"
+            raise ParameterError(wrong("law", law, f"{allowed}, for impacts = {setting.impacts} of them"))
+        found = cls(setting, law, law_of_speed(law), np.array(speed[:-1]), np.array(coefficient), times)
+        found._check_fit()
+        return found
+
+    def _check_fit(self) -> None:
+        """Refuse laws whose parameters do not show, as those of plastic spheres that stay elastic."""
+        size = np.linalg.norm(self._by_parameters, axis=0)
+        names = " and ".join(self.form.parameters)
+        if not np.all(size > 0.0) or np.linalg.matrix_rank(self._by_parameters / size) < size.size:
+            low, high = self.speed.min(), self.speed.max()
+            allowed = (
+                f"one from whose ε_n at the speeds {low:.6g} to {high:.6g} m/s the {names} can be fitted"
+            )
+            raise ParameterError(wrong("law", self.law, allowed))
+
+    def measured(self, timing: float, gravity: float, drop: float) -> Measured:
+        """Give what is measured, with these standard errors of each time, of g and of the drop."""
+        variances = np.array([*np.full(self.times.size, timing), gravity, drop, 0.0]) ** 2
+        return Measured(self.times, self.setting.gravity, self.setting.drop, None, variances)
+
+    def covariance(self, timing: float = 0.0, gravity: float = 0.0, drop: float = 0.0) -> Array:
+        """Covariance of ε less the law at the measured speed, shape (n, n), from these standard errors."""
+        given = self.measured(timing, gravity, drop)
+        links = chain(given)
+        n = self.speed.size
+        # r_i = v'_i - ε_n(v_i) v_i, over v_i.
+        slope = self.coefficient + self._slope * self.speed
+        by = (links.after_by[:n] - slope[:, None] * links.before_by[:n]) / self.speed[:, None]
+        assert by.shape == (n, n + 1 + COMMON)
+        return np.asarray((by * given.variances) @ by.T)
+
+    @property
+    def _slope(self) -> Array:
+        """dε_n/dv at the speeds."""
+        step = 1e-6 * self.speed
+        return np.asarray((at(self.law, self.speed + step) - at(self.law, self.speed - step)) / (2.0 * step))
+
+    @cached_property
+    def parameters(self) -> Array:
+        """Parameters of the fitted law of speed that are nearest to the law, by least squares in ε."""
+        start = self.form.start(self.speed, self.coefficient)
+        if isinstance(self.law.normal, Plastic):
+            # Where spheres stay elastic at all speeds, no slope leads a search to the yield speed.
+            start = np.array([max(self.law.normal.yield_speed, self.form.least)])
+
+        def misfit(values: Array) -> Array:
+            return self.form.coefficient(self.speed, values) - self.coefficient
+
+        found = least_squares(
+            misfit,
+            start,
+            x_scale=np.maximum(np.abs(start), 1e-3),
+            bounds=(self.form.least, np.inf),
+            xtol=1e-14,
+            ftol=1e-14,
+            gtol=1e-14,
+        )
+        return np.asarray(found.x)
+
+    @cached_property
+    def _by_parameters(self) -> Array:
+        """Derivatives of the fitted ε_n by the parameters, shape (n, p)."""
+        return by_parameters(self.form, self.speed, self.parameters)
+
+    def fitted(self, covariance: Array) -> tuple[Array, Array]:
+        """Give what a generalised least-squares fit makes of changes of ε.
+
+        Returns
+        -------
+        parameters, coefficients : ndarray, shapes (p, n) and (n, n)
+            Change of the parameters, and of the fitted ε_n at the speeds, by changes of the n coefficients.
+        """
+        slopes = self._by_parameters
+        weighted = np.linalg.solve(covariance, slopes)
+        estimator = np.linalg.solve(slopes.T @ weighted, weighted.T)
+        return estimator, slopes @ estimator
+
+
+def at(law: Law, speed: Array) -> Array:
+    """ε_n of a law at speeds; shape of `speed`."""
+    if isinstance(law.normal, Material):
+        return law.normal(speed)
+    return np.full_like(speed, law.normal)

@@ -1,0 +1,171 @@
+"""Impact velocities and coefficients of restitution from the times of impacts, with their covariance."""
+
+from __future__ import annotations
+
+from importlib.metadata import version
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+import xarray as xr
+
+from restitution._internal.parameters import ParameterError, wrong
+from restitution.experiment.flight._setting import Drop, Errors
+from restitution.experiment.flight.chain import chain, measured
+from restitution.experiment.flight.drag import Drag
+from restitution.experiment.flight.times import checked
+
+Array = npt.NDArray[np.float64]
+
+
+def restitution(
+    times: npt.ArrayLike | xr.Dataset,
+    uncertainty: npt.ArrayLike | None = None,
+    *,
+    gravity: float = 9.81,
+    gravity_uncertainty: float = 0.0,
+    drop_height: float | None = None,
+    drop_height_uncertainty: float = 0.0,
+    drag: Drag | None = None,
+) -> xr.Dataset:
+    """Impact velocity and coefficient of restitution of each impact of a bouncing ball, from their times.
+
+    Between the impacts i and i + 1 the ball flies for Δt_i = t_{i+1} - t_i. A flight that ends at the height
+    where it began has g Δt_i/2 at both ends, so that impact i + 1 comes with v_{i+1} = g Δt_i/2 and
+
+        ε_i = Δt_i/Δt_{i-1}.
+
+    One time enters two flights and three coefficients: the errors of neighbours are correlated, and the
+    covariance that is returned holds that, with the errors of g, the drop and the drag, which are common to
+    all.
+
+    Parameters
+    ----------
+    times : array_like, shape (n,), or Dataset
+        Times of all impacts of one series in s, increasing, 2 to 3000 of them; NaN for an impact that was
+        missed. Or a Dataset with ``time`` and ``uncertainty``, as `restitution.sound.impacts` and
+        `restitution.flight.read` return it: what is flagged as missed counts as NaN, what is flagged as
+        doubled is left out.
+    uncertainty : float or array_like, shape (n,), optional
+        Standard error of the times in s, >= 0; independent of one another.
+    gravity, gravity_uncertainty : float
+        g and its standard error, in m/s². Buoyancy makes it smaller by the factor 1 - ρ_air/ρ.
+    drop_height, drop_height_uncertainty : float, optional
+        How far the ball fell from rest to the first impact, in m: then the first impact has a velocity and a
+        coefficient, too.
+    drag : Drag, optional
+        Air drag. Both speeds of a flight then differ from g Δt/2, and from one another.
+
+    Returns
+    -------
+    xarray.Dataset
+        Dimension ``impact`` of size n, numbered from 0, the first impact after the drop: where rows are taken
+        out, these numbers say which. ``time``, ``uncertainty``, ``impact_velocity`` and its standard error
+        ``impact_velocity_error`` in m/s, ``restitution`` and ``restitution_error``; with the further
+        dimension ``other_impact`` ``impact_velocity_covariance``, ``restitution_covariance`` and
+        ``cross_covariance``, of the velocity at ``impact`` and the coefficient at ``other_impact``. NaN
+        where the times do not determine them: the last coefficient, the first two numbers without a drop
+        height, and next to a missed impact. The attributes hold all parameters.
+
+    Raises
+    ------
+    ValueError
+        If the times do not increase, or a value is out of range; the message names it.
+
+    Notes
+    -----
+    For a non-spherical body g Δt/2 is not the velocity of the centre of mass, which has not the same
+    height at all impacts; `restitution.flight.clock` shows by how much.
+
+    Errors are propagated to first order, so they must be small beside the intervals.
+
+    Examples
+    --------
+    >>> import restitution as rs
+    >>> data = rs.flight.restitution([0.0, 0.400, 0.780, 1.141], 1e-4)
+    >>> data.restitution.values.round(4).tolist()
+    [nan, 0.95, 0.95, nan]
+    >>> data.restitution_error.values[1:3].round(5).tolist()
+    [0.0006, 0.00063]
+    """
+    instants, errors = checked(times, uncertainty)
+    setting = Errors(
+        gravity=gravity,
+        gravity_uncertainty=gravity_uncertainty,
+        drop_height_uncertainty=drop_height_uncertainty,
+    )
+    attrs: dict[str, Any] = {
+        "title": "Impact velocities and coefficients of restitution from times of impacts",
+        "source": f"restitution {version('restitution')}",
+        "gravity": setting.gravity,
+        "gravity_uncertainty": setting.gravity_uncertainty,
+    }
+    drop = None
+    if drop_height is not None:
+        drop = (Drop(drop_height=drop_height).drop_height, setting.drop_height_uncertainty)
+        attrs |= {"drop_height": drop[0], "drop_height_uncertainty": drop[1]}
+    if drag is not None:
+        if not isinstance(drag, Drag):
+            raise ParameterError(wrong("drag", drag, "a Drag, or None"))
+        attrs |= {
+            "terminal_velocity": drag.terminal_velocity,
+            "terminal_velocity_uncertainty": drag.uncertainty,
+        }
+    links = chain(measured(instants, errors, (setting.gravity, setting.gravity_uncertainty), drop, drag))
+    ratio = links.after / links.before
+    with np.errstate(invalid="ignore"):
+        ratio_by = (links.after_by - ratio[:, None] * links.before_by) / links.before[:, None]
+    ratio_by[np.isnan(ratio)] = 0.0
+
+    def covariance(a: Array, b: Array, known_a: Array, known_b: Array) -> Array:
+        product = (a * links.variances) @ b.T
+        product[np.isnan(known_a)] = np.nan
+        product[:, np.isnan(known_b)] = np.nan
+        return product
+
+    of_velocity = covariance(links.before_by, links.before_by, links.before, links.before)
+    of_ratio = covariance(ratio_by, ratio_by, ratio, ratio)
+    crossed = covariance(links.before_by, ratio_by, links.before, ratio)
+    one, two = ("impact",), ("impact", "other_impact")
+    velocity = "normal velocity of the centre of mass towards the plane, before the impact"
+    return xr.Dataset(
+        {
+            "time": (one, instants, {"long_name": "time of the impact", "units": "s"}),
+            "uncertainty": (one, errors, {"long_name": "standard error of the time", "units": "s"}),
+            "impact_velocity": (one, links.before, {"long_name": velocity, "units": "m s-1", "symbol": "v"}),
+            "impact_velocity_error": (
+                one,
+                np.sqrt(np.diag(of_velocity)),
+                {"long_name": "standard error of the impact velocity", "units": "m s-1"},
+            ),
+            "restitution": (
+                one,
+                ratio,
+                {"long_name": "coefficient of restitution", "units": "1", "symbol": "ε"},
+            ),
+            "restitution_error": (
+                one,
+                np.sqrt(np.diag(of_ratio)),
+                {"long_name": "standard error of the coefficient of restitution", "units": "1"},
+            ),
+            "impact_velocity_covariance": (two, of_velocity, {"units": "m2 s-2"}),
+            "restitution_covariance": (two, of_ratio, {"units": "1"}),
+            "cross_covariance": (
+                two,
+                crossed,
+                {
+                    "long_name": "covariance of the velocity at impact and the coefficient at other_impact",
+                    "units": "m s-1",
+                },
+            ),
+        },
+        {
+            "impact": (one, np.arange(instants.size), {"long_name": "number of the impact, from 0"}),
+            "other_impact": (
+                ("other_impact",),
+                np.arange(instants.size),
+                {"long_name": "number of another impact, from 0"},
+            ),
+        },
+        attrs=attrs,
+    )

@@ -1,0 +1,82 @@
+"""The balls and laws that an inference compares: nearly round bodies, and a law with one parameter in ε_n."""
+
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from restitution._internal.parameters import ParameterError, Problem
+from restitution.bodies import Body, Form, from_roundness
+from restitution.experiment.budget.experiment import law_of_speed
+from restitution.experiment.flight.laws import LawOfSpeed
+from restitution.laws import Coulomb, Law, Material, Plastic, Tabulated, Viscoelastic
+
+Array = npt.NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Family:
+    """Bodies by L/R, and laws by the parameter of ε_n and by friction.
+
+    Attributes
+    ----------
+    law : Law
+        Whose kind, and whatever is not inferred, is kept.
+    diameter : float
+        In m.
+    form : Form
+        As in `restitution.from_roundness`.
+    lobes : int
+    """
+
+    law: Law
+    diameter: float
+    form: Form
+    lobes: int
+
+    @property
+    def of_speed(self) -> LawOfSpeed:
+        """ε_n(v), with one parameter."""
+        if isinstance(self.law.normal, Tabulated):
+            raise ParameterError(Problem("law", ": a Tabulated ε_n has no parameter; take another material"))
+        return law_of_speed(self.law)
+
+    @property
+    def parameter(self) -> str:
+        """Name of the parameter of ε_n."""
+        return "normal" if self.of_speed.name == "constant" else self.of_speed.parameters[0]
+
+    @property
+    def range(self) -> tuple[float, float]:
+        """Between what the parameter is."""
+        return (0.0, 1.0) if self.parameter == "normal" else (0.0, np.inf)
+
+    def body(self, elongation: float) -> Body:
+        """Give the ball of an L/R, with L = 2t."""
+        t = 0.25 * elongation * self.diameter
+        return from_roundness(self.diameter, t, form=self.form, lobes=self.lobes)
+
+    def law_of(self, parameter: float, friction: float | None) -> Law:
+        """Give the law of a parameter of ε_n and, where it is inferred, of a friction."""
+        changed: dict[str, object] = {"normal": self._normal(parameter)}
+        if friction is not None:
+            changed["friction"] = friction
+        return type(self.law)(
+            **{name: getattr(self.law, name) for name in type(self.law).model_fields} | changed
+        )
+
+    def _normal(self, parameter: float) -> float | Material:
+        normal = self.law.normal
+        if isinstance(normal, Plastic):
+            return Plastic(yield_speed=parameter)
+        if isinstance(normal, Viscoelastic):
+            # β goes as the dissipation A, all else the same.
+            given = {name: getattr(normal, name) for name in type(normal).model_fields}
+            return Viscoelastic(**given | {"dissipation": given["dissipation"] * parameter / normal.beta})
+        return parameter
+
+    def check_friction(self, friction: tuple[float, float] | None) -> None:
+        """Raise `ValueError` where friction is to be inferred and the law has none."""
+        if friction is not None and not isinstance(self.law, Coulomb):
+            kind = type(self.law).__name__
+            raise ParameterError(Problem("friction", f": given for a {kind}; only a Coulomb law has it"))

@@ -1,0 +1,276 @@
+"""`posterior`: what measured times say of ε_n, of the shape and of friction."""
+
+import math
+from collections.abc import Iterable, Sequence
+from importlib.metadata import version
+from itertools import product
+from typing import Annotated, Any
+
+import numpy as np
+import numpy.typing as npt
+import xarray as xr
+from pydantic import Field
+
+from restitution import flight
+from restitution._internal.arrays import reals
+from restitution._internal.parameters import Number, ParameterError, Parameters, Whole, in_terms_of, wrong
+from restitution.bodies import Form
+from restitution.experiment.flight.series import series_of
+from restitution.experiment.inference._family import Family
+from restitution.experiment.inference._series import NEEDED, Series, check_from_release
+from restitution.experiment.inference._table import Table, table
+from restitution.laws import Law
+
+Array = npt.NDArray[np.float64]
+
+_SHAPES, _FRICTIONS = 10, 6
+"""Values of L/R in a decade, and values of friction."""
+_ROUNDEST = 1e-9
+"""L/R below which no ball is: of a millimetre it is less than an atom."""
+_WALKERS, _CHAINS, _BURN = 32, 4, 100
+_MOST_RANGE = 1e6
+"""Of L/R: the grid has points all the way."""
+_TOLD = 3.3
+"""Difference of log-likelihoods that separates shapes: 99 % of χ² with one degree of freedom."""
+
+
+class Setting(Parameters):
+    """What an inference needs besides the times."""
+
+    diameter: Annotated[Number, Field(gt=0, le=1e6, description="m")]
+    lobes: Annotated[Whole, Field(ge=2)]
+    particles: Annotated[Whole, Field(ge=100)]
+    draws: Annotated[Whole, Field(ge=100, le=10**8)]
+    seed: Annotated[Whole, Field(ge=0, lt=2**32)]
+
+
+def posterior(
+    data: xr.Dataset | Iterable[xr.Dataset],
+    law: Law,
+    *,
+    diameter: float,
+    form: Form = "lobed",
+    lobes: int = 2,
+    elongation: tuple[float, float] = (1e-3, 0.3),
+    friction: tuple[float, float] | None = None,
+    particles: int = 500,
+    draws: int = 2000,
+    seed: int = 1,
+) -> xr.DataTree:
+    """Infer ε_n, the shape and friction of a ball from the times of its impacts.
+
+    A ball is released from rest at any angle; how it turns is not measured. Its times are compared with
+    those of simulated balls with the same errors, through three numbers: the parameter of ε_n by least
+    squares, and how large the residuals are early and late. Their joint density is estimated from simulations
+    on a grid of L/R and friction, and the posterior is sampled with emcee.
+
+    Parameters
+    ----------
+    data : Dataset or iterable of Dataset
+        As `restitution.flight.restitution` returns it: one series, or several of the same ball. The first
+        impact must be the first after the release. Air drag is to be accounted for there.
+    law : Law
+        Its kind and everything that is not inferred. Inferred is the normal coefficient, or the parameter of
+        its material: β of a `Viscoelastic`, the yield speed of a `Plastic`. Its own value there is not used.
+    diameter : float
+        In m, > 0.
+    form, lobes
+        Kind of deviation from a sphere, as in `restitution.from_roundness`; L = 2t.
+    elongation : (float, float)
+        Prior: ln(L/R) is uniform between these, 10⁻⁹ <= low < high < 10⁶ low.
+    friction : (float, float), optional
+        Prior of the friction of a `Coulomb` law: uniform between these, 0 <= low < high. Not inferred unless
+        given.
+    particles : int
+        Drops that are simulated at each point of the grid, >= 100.
+    draws : int
+        Draws of the posterior, >= 100.
+    seed : int
+        In [0, 2³²).
+
+    Returns
+    -------
+    xarray.DataTree
+        In ArviZ's schema: ``posterior`` with ``normal`` (or ``beta``, ``yield_speed``), ``elongation`` (L/R),
+        ``out_of_roundness`` (m) and ``friction``, over chain and draw; ``sample_stats`` with ``lp``;
+        ``observed_data``; ``likelihood`` with ``profile``, the log-likelihood as a function of L/R, largest
+        over the rest. The attributes hold the settings, ``elongation_determined`` (1 or 0),
+        ``elongation_upper_limit`` (95 %, for L/R uniform from 0) and ``verdict``, a sentence.
+
+    Raises
+    ------
+    ValueError
+        If a value is out of range or the data are too few; the message names it.
+    ImportError
+        If emcee or ArviZ are not installed.
+
+    Notes
+    -----
+    docs/inference.md shows that the intervals cover what they should.
+
+    Examples
+    --------
+    >>> import numpy as np, restitution as rs
+    >>> ball, law = rs.from_roundness(6e-3, 6e-5), rs.Frictionless(normal=0.93)
+    >>> run = rs.simulate(ball, law, particles=1, impacts=14, release_height=0.103)
+    >>> data = rs.flight.restitution(run.time.values[0], 1e-5, drop_height=0.1)
+    >>> found = rs.posterior(data, law, diameter=6e-3, particles=200, draws=500)
+    >>> bool(found.attrs["elongation_determined"])
+    True
+    """
+    emcee, from_dict = _packages()
+    setting = Setting(diameter=diameter, lobes=lobes, particles=particles, draws=draws, seed=seed)
+    if not isinstance(law, Law):
+        raise ParameterError(wrong("law", law, "a law such as Frictionless(normal=0.9)"))
+    low, high = _pair("elongation", elongation, least=_ROUNDEST)
+    if not high < _MOST_RANGE * low:
+        raise ParameterError(wrong("elongation", elongation, f"high < {_MOST_RANGE:g} low"))
+    family = Family(law, setting.diameter, form, setting.lobes)
+    family.check_friction(friction)
+    with in_terms_of(elongation=elongation, diameter=diameter):
+        family.body(high)
+    frictions: Sequence[float | None] = [None]
+    if friction is not None:
+        bottom, top = _pair("friction", friction, least=0.0)
+        frictions = [float(mu) for mu in bottom + (top - bottom) * np.linspace(0.0, 1.0, _FRICTIONS) ** 2]
+    named = series_of(data, *NEEDED)
+    for name, one in named.items():
+        check_from_release(name, one)
+    first = flight.fit(
+        data if data is named.get("data") else named.values(), family.of_speed.name, scatter="fit"
+    )
+    reference = next(iter(first.parameters.values()))
+    series = [Series.of(one, family.of_speed, reference, first.scatter, name) for name, one in named.items()]
+    with in_terms_of(diameter=diameter, elongation=elongation):
+        for measured, end in product(series, (low, high)):
+            measured.check_release(family.body(end), law)
+    nodes = np.geomspace(low, high, 1 + math.ceil(_SHAPES * math.log10(high / low)))
+    found = table(series, family, nodes, frictions, setting.particles, setting.seed)
+    chain, log = _sampled(emcee, found, setting)
+    return _tree(from_dict, family, setting, found, chain, log, series)
+
+
+def _packages() -> tuple[Any, Any]:
+    """Import what this alone needs."""
+    try:
+        import emcee
+        from arviz_base import from_dict
+    except ImportError:
+        text = "a posterior needs emcee and ArviZ: pip install 'restitution[measure]'"
+        raise ImportError(text) from None
+    return emcee, from_dict
+
+
+def _pair(name: str, value: object, *, least: float) -> tuple[float, float]:
+    allowed = f"a pair (low, high) with {least:g} <= low < high"
+    ends = reals(name, value, allowed, dimensions=(1,), finite=False)
+    if ends.shape != (2,):
+        raise ParameterError(wrong(name, value, allowed))
+    low, high = ends.tolist()
+    if not least <= low < high < math.inf:
+        raise ParameterError(wrong(name, value, allowed))
+    return low, high
+
+
+def _sampled(emcee: Any, found: Table, setting: Setting) -> tuple[Array, Array]:
+    """Give draws of walkers that start in the table: shapes (chains, draws, p) and (chains, draws)."""
+    rng = np.random.default_rng(setting.seed)
+    between = found.between()
+    lower = np.array([axis[0] for axis in found.axes])
+    upper = np.array([axis[-1] for axis in found.axes])
+
+    def log(points: Array) -> Array:
+        inside = np.all((points >= lower) & (points <= upper), axis=1)
+        values = np.full(len(points), -np.inf)
+        values[inside] = between(points[inside])
+        return values
+
+    weight = np.exp(found.values - found.values.max())
+    for place, axis in enumerate(found.axes):
+        step = np.gradient(axis)
+        weight *= step.reshape([-1 if other == place else 1 for other in range(len(found.axes))])
+    chosen = rng.choice(weight.size, _WALKERS, p=(weight / weight.sum()).ravel())
+    places = np.unravel_index(chosen, weight.shape)
+    start = np.column_stack([axis[place] for axis, place in zip(found.axes, places, strict=True)])
+    # Walkers must not coincide; half a step of the table apart they are still likely.
+    steps = np.column_stack(
+        [np.gradient(axis)[place] for axis, place in zip(found.axes, places, strict=True)]
+    )
+    start = np.clip(start + 0.5 * steps * rng.uniform(-1.0, 1.0, start.shape), lower, upper)
+    sampler: emcee.EnsembleSampler = emcee.EnsembleSampler(_WALKERS, start.shape[1], log, vectorize=True)
+    sampler.random_state = np.random.RandomState(setting.seed).get_state()
+    thin = 4
+    each = math.ceil(setting.draws / _WALKERS)
+    sampler.run_mcmc(start, _BURN + each * thin, skip_initial_state_check=True)
+    chain = sampler.get_chain(discard=_BURN, thin=thin)
+    lp = sampler.get_log_prob(discard=_BURN, thin=thin)
+    # Walkers together explore as one; a fourth of them is taken for a chain.
+    shape = (_CHAINS, each * _WALKERS // _CHAINS)
+    return (
+        np.swapaxes(chain, 0, 1).reshape(*shape, start.shape[1]),
+        np.swapaxes(lp, 0, 1).reshape(shape),
+    )
+
+
+def _tree(
+    from_dict: Any,
+    family: Family,
+    setting: Setting,
+    found: Table,
+    chain: Array,
+    log: Array,
+    series: Sequence[Series],
+) -> xr.DataTree:
+    elongation = np.exp(chain[..., 1])
+    drawn = {
+        family.parameter: chain[..., 0],
+        "elongation": elongation,
+        "out_of_roundness": 0.25 * setting.diameter * elongation,
+    }
+    if chain.shape[2] == 3:
+        drawn["friction"] = chain[..., 2]
+    tree: xr.DataTree = from_dict(
+        {
+            "posterior": drawn,
+            "sample_stats": {"lp": log},
+            "observed_data": {"numbers": np.array([one.observed for one in series])},
+        },
+        sample_dims=["chain", "draw"],
+    )
+    for node in tree.subtree:  # the same draws are the same result, whenever they were made
+        node.attrs.pop("created_at", None)
+    tree["posterior"]["out_of_roundness"].attrs["units"] = "m"
+    profile = found.values.max(axis=tuple(k for k in range(found.values.ndim) if k != 1))
+    shape = xr.Dataset(
+        {"profile": ("elongation", profile - profile.max(), {"long_name": "ln L, less its largest"})},
+        coords={"elongation": np.exp(found.axes[1])},
+    )
+    tree["likelihood"] = xr.DataTree(shape)
+    told = bool(profile[0] < profile.max() - _TOLD)
+    # With equal weight for equal intervals of L/R, so that the limit does not depend on where the prior ends.
+    flat = elongation.ravel()
+    order = np.argsort(flat)
+    limit = float(flat[order][np.searchsorted(np.cumsum(flat[order]) / flat.sum(), 0.95)])
+    low, middle, high = np.quantile(flat, (0.05, 0.5, 0.95))
+    t = 0.25 * setting.diameter * 1e6
+    if told:
+        verdict = (
+            f"The times determine the shape: L/R = {middle:.2g}, between {low:.2g} and {high:.2g} (90 %), an "
+            f"out-of-roundness of {t * middle:.2g} µm."
+        )
+    else:
+        verdict = (
+            f"The times do not determine the shape: a round ball explains them as well. L/R is below "
+            f"{limit:.2g} (95 %), the out-of-roundness below {t * limit:.2g} µm."
+        )
+    tree.attrs |= {
+        "title": "Posterior from the times of impacts",
+        "source": f"restitution {version('restitution')}",
+        "law": repr(family.law),
+        "form": family.form,
+        **setting.model_dump(),
+        "elongation_determined": int(told),
+        "elongation_upper_limit": limit,
+        "verdict": verdict,
+    }
+    return tree

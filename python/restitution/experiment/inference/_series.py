@@ -1,0 +1,196 @@
+"""One series of impacts, and the few numbers that stand for it."""
+
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+import xarray as xr
+
+from restitution._internal.arrays import check_each
+from restitution._internal.parameters import ParameterError, Problem, wrong
+from restitution.bodies import Body
+from restitution.drop.energy import reported_elsewhere
+from restitution.drop.recorded import check_successive
+from restitution.drop.run import Run
+from restitution.drop.simulate import simulate
+from restitution.experiment.budget.experiment import mean_radius
+from restitution.experiment.flight.laws import LawOfSpeed, by_parameters
+from restitution.experiment.flight.times import LARGEST
+from restitution.laws import Law
+
+Array = npt.NDArray[np.float64]
+
+_FEWEST = 5
+_ROUNDING = 1e-6
+"""Of a variance of 0, over the largest, in a covariance that was computed."""
+_SHORTEST = 0.1
+"""Flights shorter than this, over the one before, are heard as one impact with the next."""
+
+
+def _negative(covariance: Array) -> bool:
+    """Whether a combination of the numbers has a negative variance, beyond rounding."""
+    variances = np.linalg.eigvalsh(covariance)
+    return bool(variances[0] < -_ROUNDING * np.abs(variances).max())
+
+
+class Drops(NamedTuple):
+    """Simulated series that could have been measured.
+
+    Attributes
+    ----------
+    statistics : ndarray, shape (kept, 3)
+    share : float
+        Of all simulated series, those that bounce as often and have distinct impacts.
+    """
+
+    statistics: Array
+    share: float
+
+
+NEEDED = ("time", "uncertainty", "impact_velocity", "restitution", "restitution_covariance")
+"""Variables of a Dataset of `restitution.flight.restitution` that stand for a series."""
+
+
+def check_from_release(name: str, data: xr.Dataset) -> None:
+    """Refuse a series that does not begin with the first impact, or whose covariance is of other impacts."""
+    check_successive(name, data, start=0)
+    impacts, others = data.sizes["impact"], data.sizes["other_impact"]
+    if impacts != others:
+        text = f" has {impacts} impacts and {others} of other_impact: must be the same impacts of both"
+        raise ParameterError(Problem(name, text))
+
+
+@dataclass(frozen=True)
+class Series:
+    """What was measured, and how the numbers that stand for it follow from coefficients.
+
+    The three numbers are the parameter of ε_n by generalised least squares, and the logarithms of the mean
+    squares of the whitened residuals in the first and in the second half. The covariance is that of the times
+    and one scatter for all, rounded to half decades so that it hardly depends on the series.
+
+    Attributes
+    ----------
+    drop : float
+        Height of the fall before the first impact, in m.
+    gravity : float
+    errors : ndarray, shape (n,)
+        Standard errors of the times.
+    known : ndarray of int, shape (k,)
+        Impacts whose coefficient is known from times alone.
+    speed : ndarray, shape (k,)
+        Their measured speeds.
+    reference : float
+        The parameter about which everything is linear.
+    form : LawOfSpeed
+    estimator : ndarray, shape (k,)
+    whiten : ndarray, shape (k, k)
+        Makes of residuals those that are independent, the fitted parameter taken off.
+    observed : ndarray, shape (3,)
+    """
+
+    drop: float
+    gravity: float
+    errors: Array
+    known: npt.NDArray[np.intp]
+    reference: float
+    form: LawOfSpeed
+    estimator: Array
+    whiten: Array
+    observed: Array
+
+    @classmethod
+    def of(
+        cls, data: xr.Dataset, form: LawOfSpeed, reference: float, scatter: float, name: str = "data"
+    ) -> "Series":
+        """Take a Dataset of `restitution.flight.restitution`, which has what is `NEEDED`."""
+        time, errors, speed, ratio = (data[each].to_numpy().astype(np.float64) for each in NEEDED[:-1])
+        known = np.flatnonzero(np.isfinite(ratio))
+        # A coefficient is simulated from three times: it has a flight before it and one after it.
+        known = known[(known > 0) & (known < ratio.size - 1)]
+        if known.size < _FEWEST:
+            text = f": {known.size} coefficients from times alone; must be at least {_FEWEST}"
+            raise ParameterError(Problem(name, text))
+        errors = np.nan_to_num(errors)
+        if not np.any(errors > 0.0):
+            raise ParameterError(Problem(name, ": times without errors; must have an uncertainty > 0"))
+        for each, values in (("impact_velocity", speed), ("restitution", ratio)):
+            good = np.isnan(values) | ((values > 0.0) & (values <= LARGEST))
+            good[known] &= ~np.isnan(values[known])
+            check_each(f"{name}.{each}", values, good, f"in (0, {LARGEST:g}], and known at every coefficient")
+        covariance = data["restitution_covariance"].transpose("impact", "other_impact").to_numpy()
+        covariance = covariance[np.ix_(known, known)].astype(np.float64)
+        measured = covariance
+        covariance = covariance + 10.0 ** (np.round(4.0 * np.log10(max(scatter, 1e-12))) / 2.0) * np.eye(
+            known.size
+        )
+        values = np.array([reference])
+        slopes = by_parameters(form, speed[known], values)[:, 0]
+        try:
+            if not np.all(np.isfinite(measured)) or _negative(measured):
+                raise np.linalg.LinAlgError
+            weighted = np.linalg.solve(covariance, slopes)
+            root = np.linalg.inv(np.linalg.cholesky(covariance))
+        except (
+            np.linalg.LinAlgError
+        ):  # or one of errors so large, and so alike, that nothing is left to weigh
+            allowed = "a covariance, with no negative variance, of all coefficients that are known"
+            raise ParameterError(wrong(f"{name}.restitution_covariance", measured, allowed)) from None
+        estimator = weighted / (slopes @ weighted)
+        whiten = root @ (np.eye(known.size) - np.outer(slopes, estimator))
+        first = float(speed[0])
+        if not np.isfinite(first):
+            # The first flight begins with v' = g Δt/2, and the ball fell with v'/ε_n.
+            up = 0.5 * data.attrs["gravity"] * float(time[1] - time[0])
+            if not np.isfinite(up):
+                raise ParameterError(Problem(name, ": the first two times must be known, or the drop height"))
+            first = up / float(form.coefficient(np.array([up]), values)[0])
+        gravity = float(data.attrs["gravity"])
+        drop = first**2 / (2.0 * gravity)
+        one = cls(drop, gravity, errors, known, reference, form, estimator, whiten, np.zeros(3))
+        observed = one.numbers(speed[None, known], ratio[None, known])[0]
+        return cls(drop, gravity, errors, known, reference, form, estimator, whiten, observed)
+
+    def numbers(self, speed: Array, ratio: Array) -> Array:
+        """Give the three numbers of series with these speeds and coefficients, shape (m, k)."""
+        residual = ratio - self.form.coefficient(speed, np.array([self.reference]))
+        squares = (residual @ self.whiten.T) ** 2
+        half = self.known.size // 2
+        return np.column_stack(
+            [
+                self.reference + residual @ self.estimator,
+                np.log(squares[:, :half].mean(axis=1) + 1e-300),
+                np.log(squares[:, half:].mean(axis=1) + 1e-300),
+            ]
+        )
+
+    def check_release(self, body: Body, law: Law) -> None:
+        """Refuse a fall from so low that a part of the body would be in the plane."""
+        height = self._release_height(body)
+        Run(body=body, law=law, particles=1, impacts=1, release_height=height, gravity=self.gravity)
+
+    def _release_height(self, body: Body) -> float:
+        return mean_radius(body) + self.drop
+
+    @reported_elsewhere()
+    def simulated(self, body: Body, law: Law, particles: int, noises: int, seed: int) -> Drops:
+        """Drop such balls, and time each of them with errors, several times over."""
+        run = simulate(
+            body,
+            law,
+            particles=particles,
+            impacts=self.errors.size,
+            release_height=self._release_height(body),
+            gravity=self.gravity,
+            seed=seed,
+        )
+        flight = np.diff(run.time.values, axis=1)
+        kept = np.all(flight > 0.0, axis=1) & np.all(flight[:, 1:] > _SHORTEST * flight[:, :-1], axis=1)
+        times = np.repeat(run.time.values[kept], noises, axis=0)
+        rng = np.random.default_rng(seed)
+        heard = np.diff(times + self.errors * rng.standard_normal(times.shape), axis=1)
+        whole = np.all(heard > 0.0, axis=1)
+        heard = heard[whole]
+        ratio = heard[:, self.known] / heard[:, self.known - 1]
+        speed = 0.5 * self.gravity * heard[:, self.known - 1]
+        return Drops(self.numbers(speed, ratio), len(heard) / (particles * noises))

@@ -1,0 +1,335 @@
+"""What follows from a recording: impacts, coefficients, laws, and what to be careful about."""
+
+import csv
+import io
+import math
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Annotated, Literal, Self
+
+import numpy as np
+import xarray as xr
+from pydantic import Field, model_validator
+
+from restitution import flight
+from restitution._internal.content import Content
+from restitution._internal.files import path_from
+from restitution._internal.parameters import (
+    Allowed,
+    Number,
+    ParameterError,
+    Parameters,
+    Problem,
+    TooLargeError,
+    wrong,
+)
+from restitution._internal.words import with_error
+from restitution.bodies import from_roundness
+from restitution.experiment.flight.times import DOUBLED, FLAGS, MISSED
+from restitution.experiment.listen._shape import Shape, shape
+from restitution.experiment.sound import impacts
+
+_CLIPPED = 0.02
+"""Share of loud samples at the limit from which clipping is reported."""
+_FEWEST_FOR_SCATTER = 6
+"""Coefficients that are needed to fit a scatter beside a law."""
+_EXPLAINED = 0.01
+"""Where a law has this probability or more, errors of measurement explain all scatter."""
+_LAWS = ("constant", "power law", "viscoelastic", "plastic")
+
+
+_OR_NONE = Allowed("a finite number > 0 (SI units), or None")
+
+
+class Setting(Parameters):
+    """What is known of the experiment besides the recording.
+
+    Parameters
+    ----------
+    diameter : float
+        Of the ball, in m.
+    mass : float, optional
+        In kg; then air drag is taken into account.
+    drop, drop_uncertainty : float, optional
+        Height of the fall before the first impact heard, and its standard error, in m.
+    gravity, gravity_uncertainty : float
+        g and its standard error, in m/s².
+    out_of_roundness : float, optional
+        Of the ball, in m, where it was measured.
+    """
+
+    diameter: Annotated[Number, Field(gt=0, description="m")]
+    mass: Annotated[Number | None, Field(gt=0, description="kg"), _OR_NONE] = None
+    drop: Annotated[Number | None, Field(gt=0, description="m"), _OR_NONE] = None
+    drop_uncertainty: Annotated[Number, Field(ge=0, description="m")] = 0.0
+    gravity: Annotated[Number, Field(gt=0, description="m/s²")] = 9.81
+    gravity_uncertainty: Annotated[Number, Field(ge=0, description="m/s²")] = 0.0
+    out_of_roundness: Annotated[
+        Number | None, Field(ge=0, description="m"), Allowed("a finite number >= 0 (m), or None")
+    ] = None
+
+    @model_validator(mode="after")
+    def _nearly_round(self) -> Self:
+        if self.out_of_roundness is not None:
+            from_roundness(self.diameter, self.out_of_roundness)
+        return self
+
+    @property
+    def drag(self) -> flight.Drag | None:
+        """Air drag of a sphere, where the mass is known."""
+        if self.mass is None:
+            return None
+        return flight.Drag.of_sphere(diameter=self.diameter, mass=self.mass, gravity=self.gravity)
+
+
+@dataclass(frozen=True, eq=False)
+class Series(Content):
+    """One series of impacts.
+
+    Attributes
+    ----------
+    number : int
+        Of the series, from 0.
+    heard : Dataset
+        Its rows of what `sound.impacts` found.
+    data : Dataset
+        What `flight.restitution` makes of them.
+    fits : tuple of LawFit
+        The laws that could be fitted, the best first; none where there are too few impacts.
+    shape : Shape or None
+        What the times say of the ball's shape, and the error budget; None where no law was fitted.
+    """
+
+    number: int
+    heard: xr.Dataset
+    data: xr.Dataset
+    fits: tuple[flight.LawFit, ...]
+    shape: Shape | None
+
+    @property
+    def coefficients(self) -> int:
+        """Number of coefficients of restitution."""
+        return int(np.isfinite(self.data.restitution).sum())
+
+    def sentence(self, setting: Setting) -> str:
+        """Say in a sentence what was measured, as a paper would."""
+        checked(setting)
+        flags = self.heard.flag.values
+        known = np.isfinite(self.data.restitution.values)
+        speeds = self.data.impact_velocity.values[known]
+        error = float(np.nanmedian(self.data.uncertainty.values)) * 1e6
+        number = int(np.count_nonzero(flags < MISSED))
+        begin = (
+            f"From the sound of {number} impacts of a ball of {1e3 * setting.diameter:g} mm diameter, "
+            f"timed to {error:.2g} µs (standard error)"
+        )
+        if not known.any():
+            return f"{begin}, no coefficient of restitution can be given."
+        between = f"between {speeds.min():.2f} and {speeds.max():.2f} m/s"
+        if not self.fits:
+            values = ", ".join(
+                with_error(float(value), float(sigma))
+                for value, sigma in zip(
+                    self.data.restitution.values[known],
+                    self.data.restitution_error.values[known],
+                    strict=True,
+                )
+            )
+            return f"{begin}, the coefficient of restitution is {values} {between}."
+        mean = next(fit for fit in self.fits if fit.law == "constant")
+        best = self.fits[0]
+        text = (
+            f"{begin}, the mean coefficient of restitution {between} is "
+            f"{with_error(mean.parameters['restitution'], mean.errors['restitution'])}"
+        )
+        if mean.scatter_error > 0.0:
+            text += (
+                f", with a scatter of {with_error(mean.scatter, mean.scatter_error)} from impact to impact"
+            )
+            text += " that errors of the times do not explain"
+        text += "; air drag is accounted for" if setting.mass is not None else "; air drag is neglected"
+        if best.law != "constant":
+            gain = mean.aic - best.aic
+            text += f". The law that fits best is {best}, by {gain:.1f} in Akaike's criterion over a constant"
+        if self.shape is not None and self.shape.draws is not None:
+            text += f". {self.shape.verdict.rstrip('.')}"
+        return text + "."
+
+
+@dataclass(frozen=True, eq=False)
+class Analysis(Content):
+    """All results of a recording.
+
+    Attributes
+    ----------
+    file : str
+        Name of the recording.
+    setting : Setting
+        What was known besides.
+    heard : Dataset
+        As `sound.impacts` returned it.
+    series : tuple of Series
+        In the order of time.
+    warnings : tuple of str
+        What to be careful about, a sentence each.
+    """
+
+    file: str
+    setting: Setting
+    heard: xr.Dataset
+    series: tuple[Series, ...]
+    warnings: tuple[str, ...]
+
+    def dataset(self) -> xr.Dataset:
+        """Put everything into one Dataset over ``impact``; the covariance is that of each series."""
+        rows = self.heard.sizes["impact"]
+        table = self.heard.copy()
+        names = ("impact_velocity", "impact_velocity_error", "restitution", "restitution_error")
+        columns = {name: np.full(rows, np.nan) for name in names}
+        covariance = np.full((rows, rows), np.nan)
+        for one in self.series:
+            places = np.flatnonzero((self.heard.series == one.number) & (self.heard.flag != DOUBLED))
+            for name in names:
+                columns[name][places] = one.data[name].values
+            covariance[np.ix_(places, places)] = one.data.restitution_covariance.values
+        first = self.series[0].data
+        for name in names:
+            table[name] = ("impact", columns[name], first[name].attrs)
+        table["restitution_covariance"] = (("impact", "other_impact"), covariance, {"units": "1"})
+        table.attrs |= {name: value for name, value in self.setting.model_dump().items() if value is not None}
+        return table
+
+    def csv(self) -> str:
+        """Write a line for each impact; `flight.read` reads the times of a single series back."""
+        data = self.dataset()
+        text = io.StringIO()
+        writer = csv.writer(text, lineterminator="\n")
+        names = (
+            "time",
+            "uncertainty",
+            "impact_velocity",
+            "impact_velocity_error",
+            "restitution",
+            "restitution_error",
+        )
+        units = ("s", "s", "m/s", "m/s", "1", "1")
+        writer.writerow(
+            [
+                "series",
+                "flag",
+                *(f"{name.replace('_', ' ')} ({unit})" for name, unit in zip(names, units, strict=True)),
+            ]
+        )
+        for place in range(data.sizes["impact"]):
+            one = data.isel(impact=place)
+            if int(one.flag) == DOUBLED:
+                continue
+            values = [float(one[name]) for name in names]
+            numbers = ["" if math.isnan(value) else f"{value:.9g}" for value in values]
+            writer.writerow([int(one.series), FLAGS[int(one.flag)], *numbers])
+        return text.getvalue()
+
+
+def analyse(file: Path, setting: Setting) -> Analysis:
+    """Listen to a recording and fit what is heard.
+
+    Raises
+    ------
+    ValueError
+        If no series of impacts is heard, or the drop does not go with the first flight.
+    OSError
+        If the file cannot be read.
+    """
+    file = path_from("file", file)
+    heard = impacts(file)
+    checked(setting)
+    series = tuple(_series(heard, int(number), setting) for number in np.unique(heard.series))
+    _check_drop(series[0], setting)
+    return Analysis(file.name, setting, heard, series, tuple(_warnings(heard, series)))
+
+
+def checked(setting: object) -> None:
+    """Refuse what is no setting."""
+    if not isinstance(setting, Setting):
+        raise ParameterError(wrong("setting", setting, "a Setting"))
+
+
+def _series(heard: xr.Dataset, number: int, setting: Setting) -> Series:
+    rows = heard.isel(impact=np.flatnonzero(heard.series == number))
+    data = flight.restitution(
+        rows,
+        gravity=setting.gravity,
+        gravity_uncertainty=setting.gravity_uncertainty,
+        # The drop is that of the first series; another ball, or another drop, made the others.
+        drop_height=setting.drop if number == 0 else None,
+        drop_height_uncertainty=setting.drop_uncertainty,
+        drag=setting.drag,
+    )
+    known = int(np.isfinite(data.restitution).sum())
+    fits = _fitted(data, 0.0) if known >= 3 else []
+    if known >= _FEWEST_FOR_SCATTER and not any(fit.p_value > _EXPLAINED for fit in fits):
+        fits = _fitted(data, "fit")
+    if not any(fit.law == "constant" for fit in fits):
+        fits = []
+    ordered = tuple(sorted(fits, key=lambda fit: fit.aic))
+    found = shape(
+        data,
+        ordered,
+        diameter=setting.diameter,
+        mass=setting.mass,
+        out_of_roundness=setting.out_of_roundness,
+        drag=setting.drag,
+    )
+    return Series(number, rows, data, ordered, found)
+
+
+def _fitted(data: xr.Dataset, scatter: float | Literal["fit"]) -> list[flight.LawFit]:
+    """Fit all laws that the number and errors of the coefficients allow."""
+    fits = []
+    for law in _LAWS:
+        try:
+            fits.append(flight.fit(data, law, scatter=scatter))
+        except TooLargeError:
+            raise
+        except ParameterError:  # too few coefficients for this one
+            continue
+    return fits
+
+
+def _check_drop(first: Series, setting: Setting) -> None:
+    """Refuse a drop that the first flight contradicts."""
+    if setting.drop is None:
+        return
+    ratio = float(first.data.restitution[0])
+    if not ratio <= 1.05:
+        interval = float(first.data.time[1] - first.data.time[0])
+        least = setting.gravity * interval**2 / 8.0
+        raise ParameterError(
+            Problem(
+                "drop",
+                f" = {setting.drop:g} m: the first flight heard, {interval:.3f} s, is {least:.3g} m high; "
+                "the drop is wrong, or the sample rate of the file, or an earlier impact was not heard",
+            )
+        )
+
+
+def _warnings(heard: xr.Dataset, series: tuple[Series, ...]) -> list[str]:
+    found = []
+    share = float(heard.attrs["clipped_share"])
+    if share > _CLIPPED:
+        found.append(
+            f"{100 * share:.0f} % of the loud samples are clipped: "
+            "loudness is lost, times are not; record with less gain."
+        )
+    for one in series:
+        flags = one.heard.flag.values
+        name = f"Series {one.number}: " if len(series) > 1 else ""
+        for code, what in ((1, "doubtful"), (2, "missed"), (3, "doubled")):
+            number = int(np.count_nonzero(flags == code))
+            if number:
+                found.append(f"{name}{number} impact{'s' * (number > 1)} {what}.")
+        over = int(np.count_nonzero(one.data.restitution.values > 1.0))
+        if over:
+            words = "above 1: a non-spherical body, or wrong times"
+            found.append(f"{name}{over} coefficient{'s' * (over > 1)} {words}.")
+    return found

@@ -1,0 +1,221 @@
+"""The report as one page that needs nothing else, with a table and a netCDF file beside it."""
+
+import tempfile
+from importlib.metadata import version
+from pathlib import Path
+
+import numpy as np
+from matplotlib.figure import Figure
+
+from restitution import flight
+from restitution._internal.arrays import flag
+from restitution._internal.files import check, check_apart, path_from, whole_files
+from restitution._internal.parameters import ParameterError, wrong
+from restitution._internal.words import with_error
+from restitution.drop.dataset import put
+from restitution.experiment.flight.times import DOUBLED, FLAGS
+from restitution.experiment.listen._analysis import Analysis, Series, Setting, analyse, checked
+from restitution.experiment.listen._figures import close_ups, drawn_shape, waveform
+from restitution.experiment.listen._shape import Shape
+from restitution.figures.report import image, paragraph, prose, section, style, table, text
+from restitution.figures.style import styled
+
+_FAR = 10.0
+"""Laws that are worse by this, in Akaike's criterion, are in the table and not in the figure."""
+
+
+def write(file: Path, out: Path, setting: Setting, *, replace: bool = False) -> Analysis:
+    """Analyse a recording and write ``out``, and beside it the same name with .csv and .nc.
+
+    Raises
+    ------
+    ValueError
+        If `out` is not an HTML file, or nothing is heard.
+    OSError
+        If a file cannot be read or written.
+    """
+    file, out, replace = path_from("file", file), path_from("out", out), flag("replace", replace)
+    if out.suffix.lower() not in (".html", ".htm"):
+        raise ParameterError(wrong("out", str(out), "a file that ends with .html"))
+    checked(setting)
+    beside = {suffix: out.with_suffix(suffix) for suffix in (".csv", ".nc")}
+    paths = [*beside.values(), out]
+    check_apart([file], paths)
+    for path in paths:
+        check(path, replace=replace)
+    analysis = analyse(file, setting)
+    with whole_files(paths, replace=replace) as (table, numbers, page):
+        table.write_text(analysis.csv(), encoding="utf-8", newline="")
+        put(analysis.dataset(), numbers)
+        page.write_text(_page(file, analysis), encoding="utf-8", newline="")
+    return analysis
+
+
+def _page(file: Path, analysis: Analysis) -> str:
+    sections = [section("recording", "The recording", *_recording(file, analysis))]
+    for one in analysis.series:
+        title = "Coefficient of restitution" if len(analysis.series) == 1 else f"Series {one.number}"
+        sections.append(section(f"series-{one.number}", title, *_series(one, analysis.setting)))
+        if one.shape is not None:
+            of = "" if len(analysis.series) == 1 else f" (series {one.number})"
+            sections.append(section(f"shape-{one.number}", f"Shape of the ball{of}", *_shape(one.shape)))
+            sections.append(section(f"budget-{one.number}", f"Error budget{of}", *_budget(one.shape)))
+    sections.append(section("impacts", "All impacts", _impacts(analysis)))
+    body = "\n".join(sections)
+    warnings = "".join(f"<li>{text(warning)}</li>" for warning in analysis.warnings)
+    careful = f"<ul>{warnings}</ul>" if warnings else ""
+    lead = "".join(paragraph(one.sentence(analysis.setting), "lead") for one in analysis.series)
+    return f"""<!DOCTYPE html>
+<html lang="en">
+<head>
+<meta charset="utf-8">
+<meta name="viewport" content="width=device-width, initial-scale=1">
+<title>{text(analysis.file)}: impacts and coefficient of restitution</title>
+<style>
+{style()}</style>
+</head>
+<body>
+<header id="top">
+<h1>{text(analysis.file)}</h1>
+{lead}
+{careful}
+</header>
+<main>
+{body}
+</main>
+<footer>
+<p>Made by restitution {text(version("restitution"))}.</p>
+</footer>
+</body>
+</html>
+"""
+
+
+def _recording(file: Path, analysis: Analysis) -> list[str]:
+    attrs = analysis.heard.attrs
+    setting = analysis.setting
+    rows = [
+        ["sample rate", f"{attrs['rate']:g} Hz"],
+        ["channel", str(attrs["channel"])],
+        ["band", text(attrs["band"])],
+        ["rule for the onset", text(attrs["rule"])],
+        ["diameter", f"{1e3 * setting.diameter:g} mm"],
+        ["gravity", f"{with_error(setting.gravity, setting.gravity_uncertainty)} m/s²"],
+    ]
+    if setting.drop is not None:
+        rows.append(["drop height", f"{with_error(setting.drop, setting.drop_uncertainty)} m"])
+    drag = setting.drag
+    if drag is None:
+        rows.append(["air drag", "neglected; give the mass to account for it"])
+    else:
+        speed = with_error(drag.terminal_velocity, drag.uncertainty)
+        rows.append(["air drag", f"quadratic, terminal velocity {speed} m/s"])
+    return [
+        _picture(waveform(file, analysis), "The sound against time, with a mark at each impact."),
+        _picture(
+            close_ups(file, analysis), "Onsets, from the first impact to the last, with their standard error."
+        ),
+        table(["", ""], rows, caption="Recording and set-up"),
+    ]
+
+
+def _series(one: Series, setting: Setting) -> list[str]:
+    parts = []
+    if one.coefficients:
+        figure = flight.figure(one.data, *(fit for fit in one.fits if fit.aic < one.fits[0].aic + _FAR))
+        parts.append(_picture(figure, "ε against v with standard errors, and the laws with their bands."))
+    if one.fits:
+        best = one.fits[0].aic
+        rows = []
+        for fit in one.fits:
+            parameters = ", ".join(
+                f"{name.replace('_m_s', ' m/s').replace('_', ' ')} {with_error(value, fit.errors[name])}"
+                + (f" {fit.units[name]}" if fit.units[name] != "1" else "")
+                for name, value in fit.parameters.items()
+            )
+            spread = with_error(fit.scatter, fit.scatter_error) if fit.scatter_error > 0.0 else "none fitted"
+            chance = "" if fit.scatter_error > 0.0 else f"{fit.p_value:.2g}"
+            quality = f"{fit.chi2:.1f}/{fit.degrees_of_freedom}"
+            cells = [text(fit.law), text(parameters), text(spread), quality, chance, f"{fit.aic - best:.1f}"]
+            rows.append(cells)
+        caption = "Laws, the best first. The scatter is what errors of measurement do not explain."
+        head = ["law", "parameters", "scatter of ε", "χ²/n", "p", "ΔAIC"]
+        parts.append(table(head, rows, caption=caption, numbers=(3, 4, 5)))
+    else:
+        parts.append(paragraph("Fewer than three coefficients: no law is fitted."))
+    return parts
+
+
+def _shape(found: Shape) -> list[str]:
+    parts = [paragraph(found.verdict)]
+    if found.draws is None:
+        return parts
+    drawn = found.draws["posterior"].to_dataset()
+    rows = []
+    for name, values in drawn.data_vars.items():
+        low, middle, high = np.quantile(values, (0.05, 0.5, 0.95))
+        scale, digits = (1e6, 3) if name == "out_of_roundness" else (1.0, 3 if name == "elongation" else 6)
+        words = _NAMES.get(str(name), str(name).replace("_", " "))
+        rows.append([prose(words), *(f"{scale * x:.{digits}g}" for x in (middle, low, high))])
+    parts += [
+        _picture(drawn_shape(found.draws), "Draws of the posterior, and the likelihood of the shape alone."),
+        table(
+            ["", "median", "5 %", "95 %"], rows, caption="Posterior: median and quantiles", numbers=(1, 2, 3)
+        ),
+        paragraph(
+            "A ball with two lobes, L = 2t, released at rest at an unknown angle, on a plate without "
+            "friction; where it sticks at the contact its spin gets 2/7 of the kick, and the same times need "
+            "a larger L/R. The prior is uniform in ln L/R. A ball that was already spinning, or air drag "
+            "that is neglected, would be taken for shape."
+        ),
+    ]
+    return parts
+
+
+_NAMES = {"normal": "ε_n", "elongation": "L/R", "out_of_roundness": "out-of-roundness (µm)"}
+
+
+def _budget(found: Shape) -> list[str]:
+    parts = [paragraph(found.assumed)]
+    if found.budget is None:
+        return parts
+    head, _, *lines = [line.strip("| ").split(" | ") for line in found.budget.table().splitlines()]
+    rows = [[text(cell.replace(" ± ", "\u00a0±\u00a0")) for cell in line] for line in lines]
+    caption = (
+        "Bias ± standard deviation of each source; “below”: not distinguishable from 0 in the simulation."
+    )
+    parts += [
+        table([text(cell) for cell in head], rows, caption=caption),
+        _picture(found.budget.figure(), "Root mean square error of one ε by its source, against the speed."),
+    ]
+    return parts
+
+
+def _impacts(analysis: Analysis) -> str:
+    data = analysis.dataset()
+    rows = []
+    for place in range(data.sizes["impact"]):
+        one = data.isel(impact=place)
+        if int(one.flag) == DOUBLED:
+            continue
+        known = [
+            with_error(float(one[name]), float(one[error])) if float(one[name]) == float(one[name]) else "–"
+            for name, error in (
+                ("impact_velocity", "impact_velocity_error"),
+                ("restitution", "restitution_error"),
+            )
+        ]
+        time = float(one.time)
+        shown = "–" if time != time else f"{time:.6f}"
+        error = "–" if time != time else f"{1e6 * float(one.uncertainty):.2g}"
+        rows.append([str(place), str(int(one.series)), FLAGS[int(one.flag)], shown, error, *known])
+    head = ["row", "series", "flag", "time (s)", "error (µs)", "v (m/s)", "ε"]
+    return table(head, rows, caption="All impacts, with their standard errors", numbers=(3, 4, 5, 6))
+
+
+@styled
+def _picture(figure: Figure, caption: str) -> str:
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder, "figure.png")
+        figure.savefig(path, dpi=200)
+        return f"<figure>{image(path, caption)}<figcaption>{text(caption)}</figcaption></figure>"

@@ -1,0 +1,144 @@
+"""What the times of a series say of the ball's shape, and what shape and all else do to its ε."""
+
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+import xarray as xr
+
+from restitution import flight
+from restitution._internal.content import Content
+from restitution._internal.parameters import ParameterError, TooLargeError
+from restitution.bodies import from_roundness
+from restitution.experiment.budget import ErrorBudget, error_budget
+from restitution.experiment.flight.drag import Drag
+from restitution.experiment.inference import posterior
+from restitution.laws import Frictionless, Plastic, Viscoelastic
+
+_PARTICLES = 300
+_APART = 5e-3
+"""Difference in ε by which the law of a ball may be off the best law: the shape, too, bends ε(v)."""
+
+
+@dataclass(frozen=True, eq=False)
+class Shape(Content):
+    """Posterior and error budget of one series.
+
+    Attributes
+    ----------
+    law : Frictionless
+        With ε_n as it fits the series best.
+    draws : DataTree or None
+        The posterior; None where there are too few impacts, or no law of a ball fits.
+    verdict : str
+        What it says of the shape, or why there is none.
+    budget : ErrorBudget or None
+    assumed : str
+        The shape that the budget is about, or why there is none.
+    """
+
+    law: Frictionless
+    draws: xr.DataTree | None
+    verdict: str
+    budget: ErrorBudget | None
+    assumed: str
+
+
+def shape(
+    data: xr.Dataset,
+    fits: tuple[flight.LawFit, ...],
+    *,
+    diameter: float,
+    mass: float | None,
+    out_of_roundness: float | None,
+    drag: Drag | None,
+) -> Shape | None:
+    """Infer the shape of the ball of a series, and budget its errors; None where no law was fitted."""
+    found = _law(fits, data.impact_velocity.values)
+    if found is None:
+        return None
+    law, apart = found
+    draws, verdict = (
+        None,
+        "A power law fits far better than the law of any ball; no shape is inferred from that.",
+    )
+    if apart <= _APART:
+        try:
+            draws = posterior(data, law, diameter=diameter, particles=_PARTICLES)
+            verdict = str(draws.attrs["verdict"])
+        except TooLargeError:
+            raise
+        except ParameterError as error:
+            verdict = f"No shape is inferred: {error}."
+    t, assumed = _roundness(out_of_roundness, draws, diameter)
+    if t is None:
+        return Shape(law, draws, verdict, None, assumed)
+    density = 2500.0 if mass is None else 6.0 * mass / (np.pi * diameter**3)
+    try:
+        budget = error_budget(
+            from_roundness(diameter, t, density=density),
+            law,
+            drop=_drop(data, law),
+            impacts=int(np.isfinite(data.restitution).sum()),
+            timing=float(np.nanmedian(data.uncertainty)),
+            gravity=float(data.attrs["gravity"]),
+            gravity_uncertainty=float(data.attrs["gravity_uncertainty"]),
+            drop_uncertainty=float(data.attrs.get("drop_height_uncertainty", 0.0)),
+            drag=drag,
+            drag_corrected=drag is not None,
+        )
+    except TooLargeError:
+        raise
+    except ParameterError as error:
+        return Shape(law, draws, verdict, None, f"No budget of errors: {error}.")
+    return Shape(law, draws, verdict, budget, assumed)
+
+
+def _law(
+    fits: tuple[flight.LawFit, ...], speed: npt.NDArray[np.float64]
+) -> tuple[Frictionless, float] | None:
+    """Take the best law that a ball may have, and the most by which ε is off the best of all there."""
+    known = speed[np.isfinite(speed)]
+    for fit in fits:
+        apart = float(np.abs(fit(known) - fits[0](known)).max())
+        value = next(iter(fit.parameters.values()))
+        if fit.law == "constant" and 0.0 < value < 1.0:
+            return Frictionless(normal=value), apart
+        if fit.law == "plastic":
+            return Frictionless(normal=Plastic(yield_speed=value)), apart
+        if fit.law == "viscoelastic" and value > 0.0:
+            # With these constants β is (3/2) A, and ε_n depends on nothing else.
+            rubber = Viscoelastic(
+                young_modulus=np.pi, poisson_ratio=0.0, dissipation=value / 1.5, density=1.0, radius=1.0
+            )
+            return Frictionless(normal=rubber), apart
+    return None
+
+
+def _roundness(
+    measured: float | None, draws: xr.DataTree | None, diameter: float
+) -> tuple[float | None, str]:
+    """Choose the out-of-roundness that the budget is about."""
+    if measured is not None:
+        return measured, f"The out-of-roundness is {1e6 * measured:.3g} µm, as measured."
+    if draws is None:
+        return None, "No budget of errors without an out-of-roundness; give it."
+    told = bool(draws.attrs["elongation_determined"])
+    if told:
+        elongation = float(draws["posterior"].to_dataset().elongation.median())
+    else:
+        elongation = float(draws.attrs["elongation_upper_limit"])
+    t = 0.25 * diameter * elongation
+    which = "the median of the posterior" if told else "the upper limit that the times give"
+    return t, f"The out-of-roundness is taken to be {1e6 * t:.2g} µm, {which}."
+
+
+def _drop(data: xr.Dataset, law: Frictionless) -> float:
+    """Height of the drop, as measured or as it follows from the first flight."""
+    if "drop_height" in data.attrs:
+        return float(data.attrs["drop_height"])
+    intervals = np.diff(data.time.values)
+    up = 0.5 * float(data.attrs["gravity"]) * float(intervals[np.isfinite(intervals)][0])
+    normal = law.normal
+    ratio = normal if isinstance(normal, float) else float(normal(up))
+    return (up / ratio) ** 2 / (2.0 * float(data.attrs["gravity"]))

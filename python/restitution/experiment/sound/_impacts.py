@@ -1,0 +1,272 @@
+"""`impacts`: when a bouncing ball hit, from a recording."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from importlib.metadata import version
+from os import PathLike
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+import xarray as xr
+
+from restitution._internal.parameters import ParameterError, Problem, TooLargeError
+from restitution.experiment.flight.times import DOUBLED, DOUBTFUL, GOOD, MISSED, flag_attributes
+from restitution.experiment.sound._choice import Choice, choose
+from restitution.experiment.sound._envelope import Envelope, bands, envelope, rounding
+from restitution.experiment.sound._pickers import pick, variants
+from restitution.experiment.sound._series import best_series, strongest
+from restitution.experiment.sound._track import Track, followed
+from restitution.experiment.sound.load import clipped_share, load
+
+Array = npt.NDArray[np.float64]
+
+CANDIDATE = 4.0
+"""A rise of a band's level is a candidate from so many times the spread of its rises."""
+_WORTH = 3.0
+"""And is worth what it has beyond so many."""
+_SATURATED = 6.0
+"""In the choice of the band each impact counts up to this: it is their number that matters."""
+_PIECE = 20.0
+"""What a series costs, so that a band that tears one into pieces is not preferred."""
+_LEAST_SPREAD = 0.8
+"""In dB. A quiet recording is not more certain than that."""
+FIRST_SCORE, FURTHER_SCORE = 7.0, 15.0
+"""Scores that the first series and further ones must have."""
+_MEAN = 2.4
+"""And the mean for each impact: the best chain through noise that swells reaches 2.1."""
+_CLIPPED_THROUGHOUT = 0.5
+"""Share of loud samples at the limit that explains why nothing is heard."""
+_FURTHER_MEMBERS = 4
+"""Impacts that a further series must have."""
+
+
+@dataclass(frozen=True)
+class _Heard:
+    """One series, with what was made of it."""
+
+    track: Track
+    choice: Choice
+
+
+def impacts(source: str | PathLike[str] | npt.ArrayLike, rate: float | None = None) -> xr.Dataset:
+    """Find the impacts of a bouncing ball in a recording.
+
+    The band of frequencies is chosen in which most impacts follow one another like those of a bouncing ball:
+    each flight is shorter than the one before by about the same ratio. Echoes and second bursts do not do
+    that. The onset of each is picked by several rules in several parts of the sound; the rule is taken
+    whose times scatter least.
+
+    Parameters
+    ----------
+    source : path or array_like, shape (n,) or (n, channels)
+        A sound file of any kind that libsndfile reads (WAV, FLAC, OGG, MP3, AIFF) and any depth, or
+        samples. Of several channels, the one is taken in which impacts stand out most.
+    rate : float, optional
+        Samples per second of an array, at least 2000. A file has its own.
+
+    Returns
+    -------
+    xarray.Dataset
+        Dimension ``impact``, in the order of time: ``time`` and its standard error ``uncertainty`` in s;
+        ``flag``: "good", "doubtful" (found, but its time is off, or it is hardly heard), "missed" (there
+        must have been one; time NaN), "doubled" (a second sound as loud as the impact before it, which
+        belongs to no series); ``series``, counted from 0; ``level``, in dB over the noise. All times have
+        one small delay in common. The attributes give the band and the rule of each series, and the share
+        of clipped samples.
+
+    Raises
+    ------
+    ValueError
+        If it is not a sound, silent, or no three impacts of a series can be heard; the message says what was
+        heard.
+    OSError
+        If the file cannot be read.
+    MemoryError
+        If it is too long for the memory that this process can have.
+
+    Notes
+    -----
+    docs/listening.md has the precision on synthetic recordings and on a real one. The standard error is the
+    scatter of the rule that was taken, separated from changes of the ball itself where at least 12 impacts
+    were heard; with fewer, changes of the ball are part of it.
+
+    Examples
+    --------
+    Clicks at 0.2 s and after flights of 400, 360, 324 and 291.6 ms, in noise:
+
+    >>> import numpy as np
+    >>> import restitution as rs
+    >>> rng = np.random.default_rng(1)
+    >>> samples = 1e-3 * rng.standard_normal(2 * 44100)
+    >>> for time in 0.2 + np.cumsum([0.0, 0.4, 0.36, 0.324, 0.2916]):
+    ...     samples[round(time * 44100) :][:200] += rng.standard_normal(200) * np.exp(-np.arange(200) / 40)
+    >>> heard = rs.sound.impacts(samples, 44100)
+    >>> np.diff(heard.time.values).round(3).tolist()
+    [0.4, 0.36, 0.324, 0.292]
+    """
+    name = Path(source).name if isinstance(source, str | PathLike) else "source"
+    try:
+        return _heard_in(*load(source, rate), name)
+    except TooLargeError:
+        raise
+    except MemoryError as error:  # of NumPy, which does not say what for, or of SciPy, which says nothing
+        raise MemoryError(f"{name}: takes more memory than this process can have") from error
+
+
+def _heard_in(samples: Array, own: float, name: str) -> xr.Dataset:
+    channel, tracks, loudest = _tracks(samples, own)
+    if not tracks:
+        share = clipped_share(samples)
+        if share > _CLIPPED_THROUGHOUT:
+            text = f": clipped throughout ({100 * share:.0f} % of the loud samples); record with less gain"
+            raise ParameterError(Problem(name, text))
+        raise ParameterError(Problem(name, f": {_what_was_heard(loudest)}"))
+    heard = [_Heard(track, _picked(samples[:, channel], own, track)) for track in tracks]
+    heard.sort(key=lambda one: float(one.choice.picks.times[0]))
+    return _dataset(heard, own, channel, clipped_share(samples), name)
+
+
+def _tracks(samples: Array, rate: float) -> tuple[int, list[Track], Envelope]:
+    """Follow the series in the channel and the band where most impacts are heard."""
+    best: tuple[float, int, list[Track], Envelope] | None = None
+    for channel in range(samples.shape[1]):
+        if not np.ptp(samples[:, channel]) > 0.0:
+            continue
+        least = rounding(samples[:, channel])
+        heard = [envelope(samples[:, channel], rate, band, least) for band in bands(rate)]
+        for one in heard:
+            tracks = _series_in(one)
+            worth = sum(float(np.minimum(track.rewards, _SATURATED).sum()) for track in tracks)
+            worth -= _PIECE * max(len(tracks) - 1, 0)
+            if best is None or worth > best[0]:
+                best = (worth, channel, [followed(track, heard) for track in tracks], one)
+    assert best is not None
+    return best[1], best[2], best[3]
+
+
+def _series_in(one: Envelope) -> list[Track]:
+    """Take series out of the candidates of a band, the best first, until none is left."""
+    times, rises = one.candidates(CANDIDATE)
+    times, rewards = strongest(times, rises / max(one.spread, _LEAST_SPREAD) - _WORTH)
+    tracks: list[Track] = []
+    while True:
+        found = best_series(times, rewards, one.width / 3.0)
+        if found is None or found.score < (FURTHER_SCORE if tracks else FIRST_SCORE):
+            return tracks
+        members = found.members
+        if found.score < _MEAN * members.size or (tracks and members.size < _FURTHER_MEMBERS):
+            return tracks
+        tracks.append(Track(times[members], rewards[members], one))
+        # What lies within a series is its own: echoes, second bursts, noise.
+        left = (times < times[members[0]] - one.width) | (times > times[members[-1]] + one.width)
+        times, rewards = times[left], rewards[left]
+
+
+def _what_was_heard(one: Envelope) -> str:
+    times, rises = one.candidates(CANDIDATE)
+    if times.size == 0:
+        return "no impact is heard over the noise; at least three are needed"
+    loud = times[np.argsort(rises)[::-1][:5]]
+    places = ", ".join(f"{time:.2f} s" for time in np.sort(loud))
+    if times.size == 1:
+        return f"one impact is heard, at {places}; at least three are needed"
+    only = f"only {times.size} sounds (the loudest at {places})"
+    return f"no series of impacts is heard, {only}; at least three are needed"
+
+
+def _picked(samples: Array, rate: float, track: Track) -> Choice:
+    """Pick onsets twice: near where the level rises, then near where the best rule says they should be."""
+    width = track.envelope.width
+    gaps = np.diff(track.times)
+    before = np.minimum(1.5 * width + 2e-3, 0.4 * np.append(gaps[0], gaps))
+    after = np.minimum(width + 1.5e-3, 0.4 * np.append(gaps, gaps[-1]))
+
+    def window(
+        times: Array, before: Array, after: Array
+    ) -> tuple[npt.NDArray[np.int64], npt.NDArray[np.int64]]:
+        begins = np.clip(((times - before) * rate).astype(np.int64), 0, samples.size - 16)
+        return begins, np.clip(((times + after) * rate).astype(np.int64), begins + 16, samples.size)
+
+    parts = variants(samples, rate, track.envelope.band)
+    rough = choose(pick(parts, rate, *window(track.times, before, after), track.places))
+    # A time that is off is looked for where the others want it.
+    onsets = np.where(rough.doubtful, rough.picks.times - rough.jumps, rough.picks.times)
+    reach = 0.4e-3 + 8.0 * rough.error / rate
+    second = window(onsets / rate, np.minimum(before, reach), np.minimum(after, reach + 1e-3))
+    fine = choose(pick(parts, rate, *second, track.places, onsets))
+    return fine if fine.error < rough.error else rough
+
+
+def _dataset(heard: list[_Heard], rate: float, channel: int, clipped: float, name: str) -> xr.Dataset:
+    columns: dict[str, list[Array]] = {key: [] for key in ("time", "uncertainty", "flag", "series", "level")}
+    for number, one in enumerate(heard):
+        for key, values in _rows(one, rate).items():
+            columns[key].append(values)
+        columns["series"].append(np.full(columns["time"][-1].size, number))
+    joined = {key: np.concatenate(values) for key, values in columns.items()}
+    words: dict[str, dict[str, Any]] = {
+        "time": {"long_name": "time of the impact from the beginning of the recording", "units": "s"},
+        "uncertainty": {"long_name": "standard error of the time", "units": "s"},
+        "flag": flag_attributes(),
+        "series": {"long_name": "number of the series"},
+        "level": {"long_name": "level over the noise", "units": "dB"},
+    }
+    kinds = {"flag": np.int8, "series": np.int64}
+    return xr.Dataset(
+        {
+            key: ("impact", values.astype(kinds.get(key, np.float64)), words[key])
+            for key, values in joined.items()
+        },
+        attrs={
+            "title": "Impacts heard in a recording",
+            "source": f"{name}, listened to by restitution {version('restitution')}",
+            "rate": rate,
+            "channel": channel,
+            "band": "; ".join("{:g} to {:g} Hz".format(*one.track.envelope.band) for one in heard),
+            "rule": "; ".join(str(one.choice.picks) for one in heard),
+            "clipped_share": clipped,
+        },
+    )
+
+
+def _rows(one: _Heard, rate: float) -> dict[str, Array]:
+    """Lay out a series, with what was missed and doubled in it."""
+    track, choice = one.track, one.choice
+    times = choice.picks.times / rate
+    # Where no onset is found near the rise of the level, the rise stands for it, with the delay of the
+    # others.
+    delay = times - track.times
+    astray = np.abs(delay - np.median(delay)) > 1.5 * track.envelope.width
+    times = np.where(astray, track.times + np.median(delay), times)
+    # Between samples a time is known only to a part of their distance.
+    errors = np.full(times.size, max(choice.error, 0.1) / rate)
+    errors = np.where(choice.doubtful, np.maximum(np.abs(choice.jumps) / rate, errors), errors)
+    errors = np.where(astray, np.maximum(track.envelope.width, errors), errors)
+    flags = np.where(choice.doubtful | track.faint | astray, DOUBTFUL, GOOD)
+    levels = track.levels
+    rows = [np.stack([times, errors, flags, levels, times])]
+    for earlier, number in track.missed:
+        # Between two that were heard; for the order, flights are taken as equal.
+        part = np.arange(1, number + 1) / (number + 1)
+        between = times[earlier] + part * (times[earlier + 1] - times[earlier])
+        gap = np.full(number, np.nan)
+        rows.append(np.stack([gap, gap, np.full(number, MISSED), gap, between]))
+    if track.doubled.size:
+        late = track.doubled
+        rows.append(
+            np.stack(
+                [
+                    late,
+                    np.full(late.size, track.envelope.width),
+                    np.full(late.size, DOUBLED),
+                    track.levels_at(late),
+                    late,
+                ]
+            )
+        )
+    table = np.concatenate(rows, axis=1)
+    table = table[:, np.argsort(table[4], kind="stable")]
+    return dict(zip(("time", "uncertainty", "flag", "level"), table[:4], strict=True))

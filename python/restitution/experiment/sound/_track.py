@@ -1,0 +1,145 @@
+"""A series followed to its end: later impacts are looked for where the flights before say they must be."""
+
+from dataclasses import dataclass, field
+
+import numpy as np
+import numpy.typing as npt
+
+from restitution.experiment.sound._envelope import Envelope
+
+Array = npt.NDArray[np.float64]
+
+_FAINT = 2.5
+"""A rise of so many spreads is enough where an impact is expected."""
+_STANDS_OUT = 1.3
+"""If it also is so many times larger than any other in the flight before it."""
+_TOLERANCE = 0.09
+"""Part of a flight by which an impact may be early or late."""
+_MOST_MISSED = 1
+"""Impacts that may be missed between two that are heard, beyond the first series of candidates."""
+_AS_LOUD = 0.85
+"""A second sound whose rise is this part of the impact's is flagged as doubled."""
+_LATER = 0.25
+"""And which comes after this part of the flight, where no echo of plate or ball is expected."""
+
+
+@dataclass(frozen=True)
+class Track:
+    """A series of impacts in an envelope.
+
+    Attributes
+    ----------
+    times, rewards : ndarray, shape (n,)
+        When the level rises, in s, and what each impact was worth in the search.
+    envelope : Envelope
+        Of the band in which the series was found.
+    faint : ndarray of bool, shape (n,)
+        Which impacts were found only because they were expected.
+    missed : tuple of (int, int)
+        After which impact, and how many, were not heard.
+    doubled : ndarray
+        Times of sounds as loud as an impact that belong to no series.
+    """
+
+    times: Array
+    rewards: Array
+    envelope: Envelope
+    faint: npt.NDArray[np.bool_] = field(default_factory=lambda: np.empty(0, dtype=np.bool_))
+    missed: tuple[tuple[int, int], ...] = ()
+    doubled: Array = field(default_factory=lambda: np.empty(0))
+
+    @property
+    def places(self) -> npt.NDArray[np.int64]:
+        """Number of each impact in the series, those that were missed counted; shape (n,)."""
+        skipped = np.zeros(self.times.size, dtype=np.int64)
+        for earlier, number in self.missed:
+            skipped[earlier + 1 :] += number
+        return np.arange(self.times.size) + skipped
+
+    def levels_at(self, times: Array) -> Array:
+        """Level in dB over the noise within a smoothing time after each of the times."""
+        level, step = self.envelope.level, self.envelope.step
+        reach = max(int(2.0 * self.envelope.width / step), 1)
+        starts = np.clip((times / step).astype(np.int64), 0, level.size - 1)
+        return np.array([level[start : start + reach].max() for start in starts])
+
+    @property
+    def levels(self) -> Array:
+        """Level of each impact in dB over the noise."""
+        return self.levels_at(self.times)
+
+
+def followed(track: Track, bands: list[Envelope]) -> Track:
+    """Look for impacts after the last, band by band, and for what was missed or doubled within the series."""
+    times, faint = list(track.times), [False] * track.times.size
+    weak = [one.candidates(_FAINT) for one in bands]
+    while True:
+        found = _next(np.array(times), track.envelope, bands, weak)
+        if found is None:
+            break
+        times.append(found)
+        faint.append(True)
+    heard = np.array(times)
+    rewards = np.append(track.rewards, np.zeros(heard.size - track.rewards.size))
+    return Track(heard, rewards, track.envelope, np.array(faint), _missed(heard), _doubled(track))
+
+
+def _ratio(times: Array) -> float:
+    """Ratio of successive flights, the mean of the last few."""
+    flights = np.diff(times[-7:])
+    return float(np.exp(np.mean(np.log(flights[1:] / flights[:-1]))))
+
+
+def _next(
+    times: Array, own: Envelope, bands: list[Envelope], weak: list[tuple[Array, Array]]
+) -> float | None:
+    """Find the next impact where it is expected; None if nothing stands out there."""
+    if times.size < 4:
+        return None
+    flight = (times[-1] - times[-2]) * min(_ratio(times), 1.0)
+    best: tuple[float, float] | None = None
+    for one, (candidates, rises) in zip(bands, weak, strict=True):
+        if one.width > 0.35 * flight:
+            continue
+        window = max(_TOLERANCE * flight, one.width / 2.0)
+        expected = times[-1] + flight
+        near = np.abs(candidates - expected) < window
+        # The flight before it, without the sound of the impact that began it.
+        quiet = (candidates > times[-1] + max(0.25 * flight, one.width)) & (candidates < expected - window)
+        if not near.any():
+            continue
+        rise = float(rises[near].max())
+        other = float(rises[quiet].max()) if quiet.any() else 0.0
+        strength = rise / max(one.spread, 0.8)
+        if strength > _FAINT and rise > _STANDS_OUT * other and (best is None or strength > best[0]):
+            best = (strength, float(candidates[near][np.argmax(rises[near])]))
+    return None if best is None else best[1]
+
+
+def _missed(times: Array) -> tuple[tuple[int, int], ...]:
+    """Find flights that are two in one, by how they compare with the one before."""
+    flights = np.diff(times)
+    if flights.size < 4:
+        return ()
+    typical = float(np.exp(np.median(np.log(flights[1:] / flights[:-1]))))
+    found = []
+    for place in range(1, flights.size):
+        # One missed: the flight is (e + e²) of the one before.
+        one = flights[place] / flights[place - 1]
+        if abs(np.log(one / (typical + typical**2))) < 0.15 and one > 1.15:
+            found.append((place, 1))
+    return tuple(found)
+
+
+def _doubled(track: Track) -> Array:
+    """Find sounds within the series that rise as far as the impact before them."""
+    times, rises = track.envelope.candidates(_FAINT * 2.0)
+    heard = track.times
+    own = np.interp(heard, times, rises) if times.size else np.zeros(heard.size)
+    found = []
+    for place in range(heard.size - 1):
+        flight = heard[place + 1] - heard[place]
+        inside = (times > heard[place] + _LATER * flight) & (times < heard[place + 1] - _LATER * flight)
+        loud = inside & (rises > _AS_LOUD * own[place])
+        found.extend(times[loud].tolist())
+    return np.array(found)

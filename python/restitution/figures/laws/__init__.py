@@ -1,0 +1,61 @@
+"""`restitution laws`: one figure of what the collision law does to the result."""
+
+from pathlib import Path
+
+from restitution import figures as fg
+from restitution.figures.laws._caption import caption
+from restitution.figures.laws._draw import draw
+from restitution.figures.laws._measure import ELONGATIONS, LAWS, bound, coupling, growth, measure
+from restitution.figures.laws._table import table
+
+__all__ = ["ELONGATIONS", "LAWS", "bound", "coupling", "growth", "measure", "table", "write"]
+
+TITLE = "What the collision law does to the coefficient of restitution"
+
+
+def write(
+    out: Path,
+    *,
+    impacts: int,
+    seed: int,
+    threads: int | None = None,
+    progress: bool = False,
+    overwrite: bool = False,
+) -> tuple[Path, str]:
+    """Measure, and write ``laws.png``, ``.pdf``, ``.nc``, ``.txt`` (the caption) and ``.md`` (the table).
+
+    Parameters
+    ----------
+    out : Path
+        The folder to write to, all or nothing.
+    impacts, seed, threads, progress
+        As in `measure`.
+    overwrite : bool
+        Whether files of an earlier call are replaced.
+
+    Returns
+    -------
+    tuple of Path and str
+        The PNG, and the table.
+
+    Raises
+    ------
+    OSError
+        If `out` cannot be written to, or holds anything and is not to be overwritten; before the work begins.
+    """
+    from restitution._internal.arrays import flag
+    from restitution._internal.files import check_folder, whole_folder
+    from restitution._internal.formats import FOLDER, path_for
+    from restitution.drop.dataset import save
+
+    out, overwrite = path_for("out", out, FOLDER), flag("overwrite", overwrite)
+    names = [f"laws.{kind}" for kind in ("png", "pdf", "nc", "txt", "md")]
+    check_folder(out, replace=overwrite)
+    with whole_folder(out, replace=overwrite, names=names) as folder:
+        data = measure(impacts, seed, threads=threads, progress=progress)
+        text, rows = caption(data), table(data)
+        fg.save(draw(data), folder / "laws", TITLE, text)
+        save(data.assign_attrs(title=TITLE, caption=text), folder / "laws.nc")
+        (folder / "laws.txt").write_text(text + "\n", encoding="utf-8")
+        (folder / "laws.md").write_text(rows, encoding="utf-8")
+    return out / "laws.png", rows

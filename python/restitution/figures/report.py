@@ -1,0 +1,109 @@
+"""The pieces of HTML that the report is made of; only `text` and `prose` let foreign text in."""
+
+import re
+from base64 import b64encode
+from collections.abc import Iterable, Sequence
+from html import escape
+from importlib.resources import files
+from pathlib import Path
+
+_SCALE = 0.6
+"""Pixels of the page for each of a figure."""
+_SUBSCRIPT = re.compile(r"(?<=[A-Za-zΑ-ω\]])_([A-Za-zΑ-ω]{1,5})(?![A-Za-z_])")
+_MINUS = re.compile(r"(?<![\w)\-])-(?=[\d.])")
+_SUPERSCRIPT = re.compile(r"\^([A-Za-z0-9]|\([^()]*\))")
+_DOI = re.compile(r"\bDOI (10\.\d{4,9}/[\w./-]*\w)")
+_THOUSANDS = re.compile(r"(?<=\d) (?=\d{3}(?!\d))")
+_BEFORE_UNIT = re.compile(r"(?<=\d) (?=(?:%|°|m/s²?|mm|m|kg|rad|ms|s|standard errors)(?![\w/]))")
+_AROUND_SIGN = re.compile(r" ?([±=<>≤≥≈×]|&lt;|&gt;) (?=[\d.(−-])")
+_AFTER_NAME = re.compile(r"\b(Figs?\.|Eqs?\.|Secs?\.) (?=\(?[A-Z\d])")
+_OPEN_MINUS = re.compile(r"(?<=[\[(])−(?=[(|])")
+
+
+def text(value: object) -> str:
+    """Escape plain text."""
+    return escape(str(value), quote=True)
+
+
+def prose(value: str) -> str:
+    """Escape text with formulas: ``x_y`` is lowered, ``x^y`` raised, ``-1`` gets a true minus sign.
+
+    Lines do not break within a number, before its unit or after a sign, and a DOI becomes a link.
+    """
+    whole = _together(_MINUS.sub("−", text(value)))
+    lowered = _SUBSCRIPT.sub(r"<sub>\1</sub>", whole)
+    raised = _SUPERSCRIPT.sub(lambda match: f"<sup>{match[1].strip('()')}</sup>", lowered)
+    return _DOI.sub(r'<a href="https://doi.org/\1">doi:\1</a>', raised)
+
+
+def _together(value: str) -> str:
+    """Join by no-break spaces what a line break would tear apart."""
+    value = _BEFORE_UNIT.sub("\u00a0", _THOUSANDS.sub("\u202f", value))
+    value = _AROUND_SIGN.sub(
+        lambda match: ("\u00a0" if match[0][0] == " " else "") + match[1] + "\u00a0", value
+    )
+    value = value.replace(" − ", "\u00a0−\u00a0")
+    return _OPEN_MINUS.sub("−\u2060", _AFTER_NAME.sub("\\1\u00a0", value))
+
+
+def section(anchor: str, title: str, *body: str) -> str:
+    """Make a section that the table of contents can point to."""
+    top = '<p class="top"><a href="#top">Back to the top</a></p>'
+    return "\n".join((f'<section id="{anchor}">\n<h2>{text(title)}</h2>', *body, top, "</section>"))
+
+
+def paragraph(value: str, style: str = "") -> str:
+    """Make a paragraph of `prose`."""
+    return f"<p{_class(style)}>{prose(value)}</p>"
+
+
+def table(
+    headers: Sequence[str], rows: Iterable[Sequence[str]], *, caption: str, numbers: Sequence[int] = ()
+) -> str:
+    """Make a table of cells that are HTML already; on a phone it is folded, with the caption to open it.
+
+    Parameters
+    ----------
+    headers : sequence of str
+        One cell for each column.
+    rows : iterable of sequence of str
+        The first cell of each row is its header.
+    caption : str
+        What it shows.
+    numbers : sequence of int
+        Columns that are set flush right.
+    """
+
+    def cells(row: Sequence[str], head: bool) -> str:
+        tags = ("th scope='col'" if head else "th scope='row'" if k == 0 else "td" for k in range(len(row)))
+        styles = (" class='n'" if k in numbers else "" for k in range(len(row)))
+        parts = (f"<{t}{c}>{v}</{t[:2]}>" for t, c, v in zip(tags, styles, row, strict=True))
+        return f"<tr>{''.join(parts)}</tr>"
+
+    about = prose(caption)
+    head = f"<thead>{cells(headers, True)}</thead>" if any(headers) else ""
+    body = "\n".join(cells(row, False) for row in rows)
+    return (
+        f'<details class="fold"><summary>{about}</summary>\n<div class="scroll"><table>'
+        f"<caption>{about}</caption>{head}<tbody>\n{body}\n</tbody></table></div></details>"
+    )
+
+
+def image(path: Path, alternative: str) -> str:
+    """Embed a PNG file, small enough to be sharp on screen and paper, and at most as wide as the page."""
+    content = path.read_bytes()
+    if content[:8] != b"\x89PNG\r\n\x1a\n":
+        raise ValueError(f"figure {str(path)!r}: not a PNG file")
+    width, height = (round(_SCALE * int.from_bytes(content[k : k + 4], "big")) for k in (16, 20))
+    data = b64encode(content).decode("ascii")
+    size = f'width="{width}" height="{height}"'
+    return f'<img src="data:image/png;base64,{data}" {size} alt="{text(alternative)}">'
+
+
+def style() -> str:
+    """Read the style sheet of reports."""
+    return files("restitution.figures").joinpath("report.css").read_text(encoding="utf-8")
+
+
+def _class(style: str) -> str:
+    return f' class="{style}"' if style else ""

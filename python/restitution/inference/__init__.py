@@ -1,5 +1,0 @@
-"""What measured times say of a ball: the posterior of its law and of its shape."""
-
-from restitution.inference._posterior import posterior
-
-__all__ = ["posterior"]

@@ -1,0 +1,1 @@
+"""Papers, redrawn and judged claim by claim; one folder a paper."""

@@ -1,0 +1,195 @@
+"""Claims on the rotational energy: its share of the total, its growth, its density (Figs. 3, 5)."""
+
+from collections.abc import Sequence
+from itertools import pairwise
+
+import numpy as np
+import xarray as xr
+
+from restitution._core import STOP_REASONS
+from restitution._internal.words import with_error
+from restitution.papers.glielmo2014._claims._claim import SIGNIFICANT, Claim, Measurement, listed, verdict
+from restitution.papers.glielmo2014._claims._energy import energies
+from restitution.papers.glielmo2014._claims._estimate import Array, Estimate, blocks, in_blocks, in_windows
+from restitution.papers.glielmo2014._claims._trend import RISING_RULE, falling, trend
+from restitution.papers.glielmo2014._runs import Runs
+from restitution.papers.glielmo2014._settings import Settings
+
+SPEED_BINS = 20
+BLOCKS = (0, 1, 2, 5, 10, 20, 50, 100, 200, 400)
+DENSITY_BINS = 10
+_ERRORS = "standard errors"
+REST = 1e-6
+"""Share of the energy that counts as none; that of the speed 1 mm/s after a fall at 1 m/s."""
+
+
+def judge(runs: Runs, settings: Settings) -> list[Claim]:
+    """Judge the claims of Sec. III on the reservoir of rotational energy."""
+    return [
+        _share_monotone(runs, settings),
+        _grows_with_bounces(runs, settings),
+        _ceases(runs, settings),
+        _decaying(runs, settings),
+    ]
+
+
+def _share_monotone(runs: Runs, settings: Settings) -> Claim:
+    bins = falling(runs.main, 1e-3, SPEED_BINS)
+    share = bins.impacts.means(bins.impacts.of(runs.main["rotational_fraction"]))
+    found = trend(share)
+    shown = slice(None, None, 3)
+    rolling = _rolling(settings)
+    return Claim(
+        key="rotation-monotone",
+        quote="the ratio E_rot/(E_rot + E_tran) increases monotonously in Fig. 3",
+        where="Sec. III, Fig. 3, Eq. 12",
+        measured=(
+            *listed("mean E_rot/E_tot", bins.labels[shown], share.take(shown)),
+            Measurement("largest step against the trend", found.worst, unit=_ERRORS),
+            Measurement("E_rot/E_tot of rolling, J_xx/(J_xx + mR²)", rolling),
+        ),
+        verdict=found.verdict,
+        rule=f"{SPEED_BINS} logarithmic bins of impact velocity, fastest first, down to {bins.labels[-1]}. "
+        f"{RISING_RULE}",
+        why=f"The mean goes from {share.value[0]:.2g} at {bins.labels[0]} to {share.value[-1]:.3g} at "
+        f"{bins.labels[-1]}, "
+        f"{'with no significant decrease' if found.monotone else 'but does not rise at every step'}. For a "
+        f"rolling body it is {rolling:.3f}.",
+    )
+
+
+def _rolling(settings: Settings) -> float:
+    """E_rot/E_tot of rolling end over end, the centre of mass at height R."""
+    body = settings.body(settings.elongation)
+    return body.transverse_inertia / (body.transverse_inertia + body.mass * body.radii[0] ** 2)
+
+
+def _grows_with_bounces(runs: Runs, settings: Settings) -> Claim:
+    fraction = runs.main["rotational_fraction"].to_numpy()
+    total = energies(runs.main, settings.gravity)
+    edges = blocks(runs.main, BLOCKS)
+    energy, share = _blocks(fraction * total / total[:, :1], edges), _blocks(fraction, edges)
+    grows, accumulates = trend(energy), trend(share)
+    labels = [f"impacts {a + 1} to {b}" if b > a + 1 else f"impact {b}" for a, b in pairwise(edges)]
+    peak = int(np.argmax(energy.value))
+    return Claim(
+        key="rotation-grows",
+        quote="the amount of rotational energy of the particle which increases on average with the number "
+        "of bounces",
+        where="Sec. III",
+        measured=(
+            *listed("mean E_rot, over E_tot at the first impact", labels, energy),
+            Measurement("largest step down of it", grows.worst, unit=_ERRORS),
+            Measurement("largest step down of mean E_rot/E_tot", accumulates.worst, unit=_ERRORS),
+        ),
+        verdict=verdict(grows.monotone, accumulates.monotone),
+        rule="Blocks of impacts by their number. Holds if the mean rotational energy is larger in the last "
+        f"block than in the first and no step goes down by more than {SIGNIFICANT:g} standard errors; in "
+        "part if that is so only of its share E_rot/E_tot; fails otherwise.",
+        why="The mean rotational energy grows throughout."
+        if grows.monotone
+        else f"The mean rotational energy is largest at {labels[peak]} and then falls as all energy is "
+        "dissipated; its share E_rot/E_tot "
+        f"{'keeps growing' if accumulates.monotone else 'does not grow throughout either'}.",
+    )
+
+
+def _ceases(runs: Runs, settings: Settings) -> Claim:
+    """Look at what is left where infinitely many impacts have happened, that is, after a collapse."""
+    total = energies(runs.main, settings.gravity)
+    last = runs.main["impacts"].to_numpy() - 1
+    left = total[np.arange(last.size), last] / total[:, 0]
+    fraction = runs.main["rotational_fraction"].to_numpy()[np.arange(last.size), last]
+    ended = runs.main["stop_reason"].to_numpy() == STOP_REASONS.index("collapse")
+    kept = int(np.count_nonzero(left[ended] > REST))
+    return Claim(
+        key="energy-ceases",
+        quote="asymptotically both components of the energy, translation and rotation, will cease",
+        where="Sec. III",
+        measured=(
+            Measurement("mean energy left at the last impact", *_mean(left), unit="of that at the first"),
+            Measurement(
+                "trajectories that collapse (infinitely many impacts)", float(np.count_nonzero(ended))
+            ),
+            Measurement("mean energy left in them", *_mean(left[ended]), unit="of that at the first"),
+            Measurement("mean E_rot/E_tot at their last impact", *_mean(fraction[ended])),
+            Measurement("E_rot/E_tot of rolling, J_xx/(J_xx + mR²)", _rolling(settings)),
+        ),
+        verdict=verdict(kept == 0, float(left.mean()) < 0.5),
+        rule=f"Holds if no trajectory collapses with more than {with_error(REST, None)} of the energy of its "
+        "first impact left; in part if at least half of the energy is lost by the last impact, on average; "
+        "fails otherwise.",
+        why=f"{kept} of {np.count_nonzero(ended)} trajectories with infinitely many impacts in finite time "
+        f"retain energy, on average {100 * _mean(left[ended])[0]:.2g} % of the initial energy: this law does "
+        "not slow down rolling."
+        if kept
+        else "No trajectory collapses with energy left.",
+    )
+
+
+def _blocks(values: Array, edges: Sequence[int]) -> Estimate:
+    impacts = in_blocks(np.isfinite(values), edges)
+    return impacts.means(impacts.of(values))
+
+
+def _mean(values: Array) -> tuple[float, float]:
+    """Mean of independent values and its standard error; NaN without values."""
+    if values.size == 0:
+        return float("nan"), float("nan")
+    return float(values.mean()), float(values.std() / np.sqrt(values.size))
+
+
+def _decaying(runs: Runs, settings: Settings) -> Claim:
+    windows = in_windows(runs.main["impact_velocity"], settings.speed_windows)
+    fraction = windows.of(runs.main["rotational_fraction"])
+    mean = windows.means(fraction)
+    rate = Estimate(1 / mean.value, mean.covariance / np.outer(mean.value, mean.value) ** 2, mean.number)
+    labels = [f"{v:g} m/s" for v in settings.speeds]
+    rises = _rises(runs.main, settings)
+    flattens = trend(rate)
+    rising = [label for label, rise in zip(labels, rises, strict=True) if rise > SIGNIFICANT]
+    others = [
+        Measurement(f"largest rise of the density, R = {1e3 * radius:g} mm", rise, unit=_ERRORS, at=label)
+        for radius, by in runs.by_radius.items()
+        if radius != settings.radius
+        for label, rise in zip(labels, _rises(by[settings.elongation], settings), strict=True)
+    ]
+    return Claim(
+        key="rotation-decays",
+        quote="we obtain decaying functions whose slope decreases with decreasing impact velocity",
+        where="Sec. III, Fig. 5",
+        measured=(
+            *listed("decay rate 1/⟨E_rot/E_tot⟩", labels, rate),
+            *(
+                Measurement("largest rise of the density", rise, unit=_ERRORS, at=label)
+                for label, rise in zip(labels, rises, strict=True)
+            ),
+            *others,
+        ),
+        verdict=verdict(flattens.monotone and not rising, flattens.monotone),
+        rule="Decay rate: of the exponential with the same mean, its maximum-likelihood estimate. Rise: "
+        f"between neighbours of {DENSITY_BINS} equal bins from 0 to the 99th percentile. Holds if the rate "
+        f"falls from speed to speed and the density rises nowhere, each by more than {SIGNIFICANT:g} "
+        "standard errors; in part if only the rate falls; fails otherwise.",
+        why="The density decays at all four speeds and flattens as they fall."
+        if not rising and flattens.monotone
+        else f"The density flattens as the speed falls{'' if flattens.monotone else ' not at every step'}, "
+        f"but it is not a decaying function at {' and '.join(rising) or 'no speed'}, where it has a second "
+        "maximum at high E_rot/E_tot.",
+    )
+
+
+def _rises(data: xr.Dataset, settings: Settings) -> list[float]:
+    """Largest rise of the density of E_rot/E_tot between neighbouring bins at each speed, in its errors."""
+    windows = in_windows(data["impact_velocity"], settings.speed_windows)
+    found = []
+    for k in range(windows.cells):
+        one = windows.only(windows.cell == k)
+        fraction = one.of(data["rotational_fraction"])
+        if fraction.size == 0:
+            found.append(float("nan"))
+            continue
+        label = (fraction / np.quantile(fraction, 0.99) * DENSITY_BINS).astype(np.intp)
+        share = one.shares(np.minimum(label, DENSITY_BINS), DENSITY_BINS + 1)
+        found.append(float(max(share.take(slice(0, DENSITY_BINS)).steps())))
+    return found

@@ -1,0 +1,175 @@
+"""Claims on the scatter of ε: above 1, at the first impact, at low speed, of round beads (Figs. 2, 6)."""
+
+from itertools import pairwise
+
+import numpy as np
+
+from restitution._internal.words import with_error
+from restitution.papers.glielmo2014._claims._claim import SIGNIFICANT, Claim, Measurement, listed, verdict
+from restitution.papers.glielmo2014._claims._energy import energies
+from restitution.papers.glielmo2014._claims._estimate import in_bins, in_windows
+from restitution.papers.glielmo2014._claims._trend import RISING_RULE, falling, trend
+from restitution.papers.glielmo2014._runs import Runs
+from restitution.papers.glielmo2014._settings import Settings
+
+SPEED_BINS = 15
+ROUND_OFF = 1e-12
+"""ε at a first impact is a quotient of a few rounded numbers of order 1."""
+
+
+def judge(runs: Runs, settings: Settings) -> list[Claim]:
+    """Judge the claims of Sec. III on the scatter of ε."""
+    return [
+        _above_one(runs, settings),
+        _expense_of_rotation(runs, settings),
+        _first_impact(runs, settings),
+        _scatter_grows(runs),
+        _scatter_and_rotation(runs, settings),
+        _beads(runs, settings),
+    ]
+
+
+def _above_one(runs: Runs, settings: Settings) -> Claim:
+    impacts = in_bins(runs.main["impact_velocity"], np.array(settings.velocity_range))
+    values = impacts.of(runs.main["restitution"])
+    share = impacts.means((values > 1).astype(np.float64))
+    value, error = float(share.value[0]), float(share.error[0])
+    low, high = settings.velocity_range
+    return Claim(
+        key="above-one",
+        quote="the coefficient of restitution may exceed unity",
+        where="Sec. III, Fig. 2",
+        measured=(
+            Measurement("share of ε > 1", value, error, at=f"{low:g} to {high:g} m/s"),
+            Measurement("largest ε there", float(values.max())),
+        ),
+        verdict=verdict(value > SIGNIFICANT * error and value > 0, value > 0),
+        rule=f"Holds if the share of ε > 1 is above 0 by more than {SIGNIFICANT:g} standard errors; in part "
+        "if there is any such impact; fails otherwise.",
+        why=f"{100 * value:.3g} % of the impacts in the range of Fig. 2 have ε > 1.",
+    )
+
+
+def _expense_of_rotation(runs: Runs, settings: Settings) -> Claim:
+    """Whether E_rot falls whenever ε > 1; the E_rot after an impact is that before the next one."""
+    rotation = energies(runs.main, settings.gravity) * runs.main["rotational_fraction"].to_numpy()
+    before, after = rotation[:, :-1], rotation[:, 1:]
+    impacts = in_bins(runs.main["impact_velocity"][:, :-1], np.array(settings.velocity_range))
+    impacts = impacts.only((impacts.of(runs.main["restitution"]) > 1) & np.isfinite(impacts.of(after)))
+    paid = impacts.means((impacts.of(after) < impacts.of(before)).astype(np.float64))
+    value, error = float(paid.value[0]), float(paid.error[0])
+    return Claim(
+        key="expense-of-rotation",
+        quote="the postcollisional linear velocity perpendicular to the plane may be larger than the "
+        "precollisional value, at the expense of rotation",
+        where="Sec. III, Fig. 2",
+        measured=(
+            Measurement("impacts with ε > 1 in the range of Fig. 2", float(paid.number[0])),
+            Measurement("share of them in which E_rot falls", value, error),
+        ),
+        verdict=verdict(value == 1, value > 0.5),
+        rule="Holds if the rotational energy falls in every impact with ε > 1 in the range of Fig. 2; in "
+        "part if in more than half of them; fails otherwise.",
+        why="Rotational energy falls in every impact with ε > 1."
+        if value == 1
+        else f"Rotational energy does not fall in {100 * (1 - value):.2g} % of the impacts with ε > 1.",
+    )
+
+
+def _first_impact(runs: Runs, settings: Settings) -> Claim:
+    cases = (
+        ("uniform angle", runs.main, settings.normal),
+        ("isotropic", runs.isotropic, settings.normal),
+        ("L = 2R", runs.first, settings.first_normal),
+    )
+    excess = {name: data["restitution"].to_numpy()[:, 0] - normal for name, data, normal in cases}
+    above = sum(int(np.count_nonzero(x > ROUND_OFF)) for x in excess.values())
+    number = sum(x.size for x in excess.values())
+    return Claim(
+        key="first-impact",
+        quote="at the first impact, the particle can only gain but not lose rotational energy […] thus, to "
+        "a macroscopic (measured) coefficient of restitution ε < ε_n",
+        where="Sec. III",
+        measured=(
+            *(Measurement("largest ε − ε_n", float(np.nanmax(x)), at=name) for name, x in excess.items()),
+            Measurement("first impacts with ε > ε_n", float(above)),
+            Measurement("first impacts looked at", float(number)),
+        ),
+        verdict=verdict(above == 0, above < number / 1000),
+        rule=f"Holds if no particle has ε − ε_n > {with_error(ROUND_OFF, None)} (round-off) at its first "
+        "impact; in part if fewer than one in a thousand have; fails otherwise.",
+        why="No first impact exceeds ε_n; by Eq. 17 it is reached where the axis is along the normal."
+        if above == 0
+        else f"{above} of {number} first impacts exceed ε_n.",
+    )
+
+
+def _scatter_grows(runs: Runs) -> Claim:
+    bins = falling(runs.main, 1e-3, SPEED_BINS)
+    sigma = bins.impacts.deviations(bins.impacts.of(runs.main["restitution"]))
+    found = trend(sigma)
+    shown = slice(None, None, 2)
+    return Claim(
+        key="scatter-grows",
+        quote="an increasing uncertainty of the data (enhanced scatter) with decreasing impact velocity",
+        where="Sec. III, Fig. 2",
+        measured=(
+            *listed("σ(ε)", bins.labels[shown], sigma.take(shown)),
+            Measurement("largest step against the trend", found.worst, unit="standard errors"),
+        ),
+        verdict=found.verdict,
+        rule=f"{SPEED_BINS} logarithmic bins of impact velocity, fastest first. {RISING_RULE}",
+        why=f"σ(ε) goes from {sigma.value[0]:.2g} at {bins.labels[0]} to {sigma.value[-1]:.2g} at "
+        f"{bins.labels[-1]}, {'monotonically' if found.monotone else 'but does not rise at every step'}.",
+    )
+
+
+def _scatter_and_rotation(runs: Runs, settings: Settings) -> Claim:
+    inside = in_bins(runs.main["impact_velocity"], np.array(settings.velocity_range))
+    fraction = inside.of(runs.main["rotational_fraction"])
+    edges = np.unique(np.quantile(fraction, np.linspace(0, 1, 11)))
+    tenth = np.clip(np.searchsorted(edges, fraction, side="right") - 1, 0, edges.size - 2)
+    impacts = inside.regrouped(tenth, edges.size - 1)
+    distance = impacts.means(np.abs(inside.of(runs.main["restitution"]) - settings.normal))
+    found = trend(distance)
+    centres = [f"E_rot/E_tot from {low:.2g} to {high:.2g}" for low, high in pairwise(edges)]
+    return Claim(
+        key="scatter-and-rotation",
+        quote="the absolute of fluctuations, |ε − ε_n|, is intimately related to the amount of rotational "
+        "energy of the particle",
+        where="Sec. III",
+        measured=(
+            *listed("mean |ε − ε_n|", centres[::3], distance.take(slice(None, None, 3))),
+            Measurement("largest step against the trend", found.worst, unit="standard errors"),
+        ),
+        verdict=found.verdict,
+        rule=f"Tenths of the impacts in the range of Fig. 2 by E_rot/E_tot, lowest first. {RISING_RULE}",
+        why=f"The mean |ε − ε_n| goes from {distance.value[0]:.2g} in the lowest tenth of E_rot/E_tot to "
+        f"{distance.value[-1]:.2g} in the highest.",
+    )
+
+
+def _beads(runs: Runs, settings: Settings) -> Claim:
+    labels = [f"{v:g} m/s" for v in settings.speeds]
+    sigma = {}
+    for elongation, data in (*runs.beads.items(), (settings.elongation, runs.main)):
+        impacts = in_windows(data["impact_velocity"], settings.speed_windows)
+        sigma[elongation] = impacts.deviations(impacts.of(data["restitution"]))
+    ordered = [sigma[x] for x in sorted(sigma)]
+    longer = np.array([b.apart(a) for a, b in pairwise(ordered)])
+    slower = {x: trend(sigma[x].take(slice(None, None, -1))) for x in runs.beads}
+    grows, scatters = bool(np.all(longer > SIGNIFICANT)), all(t.monotone for t in slower.values())
+    return Claim(
+        key="beads",
+        quote="the error is rather small for small deviations from the spherical shape",
+        where="Sec. III, Fig. 6",
+        measured=tuple(item for x in runs.beads for item in listed(f"σ(ε), L/R = {x:g}", labels, sigma[x])),
+        verdict=verdict(grows and scatters, grows or scatters),
+        rule=f"Holds if σ(ε) grows with L/R (up to {settings.elongation:g}) at each of the four speeds, by "
+        f"more than {SIGNIFICANT:g} standard errors, and for the beads with falling speed as well; in part "
+        "if only one of the two is so; fails otherwise.",
+        why="Rounder beads scatter less at every speed, and each scatters more the slower it is."
+        if grows and scatters
+        else f"Growth with L/R: {'yes' if grows else 'no'}; with falling speed: "
+        f"{'yes' if scatters else 'no'}.",
+    )

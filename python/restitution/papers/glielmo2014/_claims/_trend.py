@@ -1,0 +1,80 @@
+"""Whether a quantity rises along its bins, and quantities in bins of falling impact velocity."""
+
+from dataclasses import dataclass
+
+import numpy as np
+import xarray as xr
+
+from restitution.papers.glielmo2014._claims._claim import SIGNIFICANT, Verdict, verdict
+from restitution.papers.glielmo2014._claims._estimate import Array, Estimate, Impacts, in_bins, settled_speed
+
+RISING_RULE = (
+    f"Holds if the last value is above the first by more than {SIGNIFICANT:g} standard errors and no step "
+    f"between neighbours goes down by more than {SIGNIFICANT:g}; in part if only the first is so; fails "
+    "otherwise."
+)
+
+
+@dataclass(frozen=True)
+class Trend:
+    """How an estimate changes along its bins, in standard errors of the change.
+
+    Attributes
+    ----------
+    span : float
+        Last − first value.
+    worst : float
+        The most negative step between neighbours; 0 if none is negative.
+    """
+
+    span: float
+    worst: float
+
+    @property
+    def rises(self) -> bool:
+        """Whether the last value is significantly above the first."""
+        return self.span > SIGNIFICANT
+
+    @property
+    def monotone(self) -> bool:
+        """Whether it rises and no step down is significant."""
+        return self.rises and self.worst > -SIGNIFICANT
+
+    @property
+    def verdict(self) -> Verdict:
+        """By `RISING_RULE`."""
+        return verdict(self.monotone, self.rises)
+
+
+def trend(estimate: Estimate) -> Trend:
+    """Trend of an estimate from its first bin to its last."""
+    return Trend(estimate.span(), float(min(0.0, *estimate.steps())))
+
+
+@dataclass(frozen=True)
+class Falling:
+    """Impacts in bins of impact velocity, fastest bin first.
+
+    Attributes
+    ----------
+    impacts : Impacts
+    speeds : ndarray, shape (bins,)
+        Centres of the bins in m/s, decreasing.
+    """
+
+    impacts: Impacts
+    speeds: Array
+
+    @property
+    def labels(self) -> list[str]:
+        """The speeds as text."""
+        return [f"{v:.2g} m/s" for v in self.speeds]
+
+
+def falling(data: xr.Dataset, lowest: float, bins: int) -> Falling:
+    """Logarithmic bins from the fastest impact down to `lowest`, or to where the data become incomplete."""
+    fastest = float(data["impact_velocity"].max())
+    # The fastest impact itself is inside.
+    edges = np.geomspace(max(lowest, settled_speed(data)), fastest * (1 + 1e-12), bins + 1)
+    impacts = in_bins(data["impact_velocity"], edges)
+    return Falling(impacts.regrouped(bins - 1 - impacts.cell, bins), np.sqrt(edges[1:] * edges[:-1])[::-1])

@@ -1,0 +1,111 @@
+"""What the paper leaves open: the law of the orientation, the radius and the release height."""
+
+from collections.abc import Mapping
+
+import numpy as np
+import xarray as xr
+from scipy import stats
+
+from restitution.papers.glielmo2014._claims._claim import SIGNIFICANT, Claim, Measurement, listed, verdict
+from restitution.papers.glielmo2014._claims._estimate import Estimate, in_blocks, in_windows
+from restitution.papers.glielmo2014._runs import Runs, derived_seed
+from restitution.papers.glielmo2014._settings import Settings
+
+
+def judge(runs: Runs, settings: Settings) -> list[Claim]:
+    """Judge whether what Sec. III leaves open may be left open."""
+    return [_orientation(runs, settings), _size_and_height(runs, settings)]
+
+
+def deviations(data: xr.Dataset, settings: Settings) -> Estimate:
+    """σ(ε) in the windows of the four speeds."""
+    impacts = in_windows(data["impact_velocity"], settings.speed_windows)
+    return impacts.deviations(impacts.of(data["restitution"]))
+
+
+def _orientation(runs: Runs, settings: Settings) -> Claim:
+    labels = [f"{v:g} m/s" for v in settings.speeds]
+    one, other = runs.main, runs.isotropic
+    apart = deviations(other, settings).apart(deviations(one, settings))
+    first = [_first(data) for data in (other, one)]
+    first_apart = float(first[0].apart(first[1])[0])
+    later, at_first = bool(np.all(np.abs(apart) <= SIGNIFICANT)), abs(first_apart) <= SIGNIFICANT
+    return Claim(
+        key="orientation-law",
+        quote="Release a particle […] at random angular orientation",
+        where="Sec. III, step 1",
+        measured=(
+            *listed("σ(ε), uniform angle", ["first impact"], first[1]),
+            *listed("σ(ε), isotropic", ["first impact"], first[0]),
+            *listed("σ(ε), uniform angle", labels, deviations(one, settings)),
+            *listed("σ(ε), isotropic", labels, deviations(other, settings)),
+            *(
+                Measurement("p (Kolmogorov–Smirnov, same density)", p, at=label)
+                for label, p in zip(labels, _same_density(one, other, settings, runs.seed), strict=True)
+            ),
+        ),
+        verdict=verdict(later and at_first, later),
+        rule="The law of the orientation may be left open if the results do not depend on it. Holds if σ(ε) "
+        f"of the angle uniform in [0, π) and of the isotropic axis agree within {SIGNIFICANT:g} standard "
+        "errors at the first impact and at each of the four speeds; in part if only at the speeds; fails "
+        "otherwise.",
+        why=f"The first impacts {'agree' if at_first else 'differ'} ({first_apart:.3g} standard errors), the "
+        f"later ones at given speed {'agree' if later else 'differ'} ({np.max(np.abs(apart)):.2g} "
+        "standard errors at most).",
+    )
+
+
+def _first(data: xr.Dataset) -> Estimate:
+    impacts = in_blocks(np.isfinite(data["restitution"].to_numpy()[:, :1]), (0, 1))
+    return impacts.deviations(impacts.of(data["restitution"]))
+
+
+def _same_density(one: xr.Dataset, other: xr.Dataset, settings: Settings, seed: int) -> list[float]:
+    """p-values of the two-sample Kolmogorov–Smirnov test on independent draws, one for each speed."""
+    draws = []
+    for name, data in (("uniform", one), ("isotropic", other)):
+        impacts = in_windows(data["impact_velocity"], settings.speed_windows)
+        impacts = impacts.one_per_particle(derived_seed(seed, f"same density, {name}"))
+        draws.append((impacts.of(data["restitution"]), impacts.cell))
+    return [
+        float(stats.ks_2samp(*(values[cell == k] for values, cell in draws)).pvalue)
+        for k in range(len(settings.speeds))
+    ]
+
+
+def _size_and_height(runs: Runs, settings: Settings) -> Claim:
+    labels = [f"{v:g} m/s" for v in settings.speeds]
+    measured: list[Measurement] = []
+    worst = {}
+    for name, by, ours in (
+        ("radius", runs.by_radius, settings.radius),
+        ("height", runs.by_height, settings.release_height),
+    ):
+        found = {value: deviations(pair[settings.elongation], settings) for value, pair in by.items()}
+        for value, sigma in found.items():
+            measured += listed(f"σ(ε), {name} {1e3 * value:g} mm", labels, sigma)
+        worst[name] = _worst(found, ours)
+    free = {name: apart <= SIGNIFICANT for name, apart in worst.items()}
+    return Claim(
+        key="size-and-height",
+        quote="System parameters are asphericity L/R = 0.1 and microscopic coefficient of restitution, ε_n "
+        "= 0.98, ε_t = 1",
+        where="Sec. III",
+        measured=tuple(measured),
+        verdict=verdict(all(free.values()), any(free.values())),
+        rule="Radius and release height may be left open if σ(ε) at given speed does not depend on them. "
+        "Holds if no other radius and no other height changes it at any of the four speeds by more than "
+        f"{SIGNIFICANT:g} standard errors; in part if only one of the two does not; fails otherwise.",
+        why="Largest change of σ(ε) at given speed: "
+        + ", ".join(f"{apart:.3g} standard errors with the {name}" for name, apart in worst.items())
+        + f". Must be stated: {' and '.join(name for name, yes in free.items() if not yes) or 'nothing'}.",
+    )
+
+
+def _worst(found: Mapping[float, Estimate], ours: float) -> float:
+    """Largest difference from our choice in standard errors, over what was measured at both."""
+    return max(
+        float(np.nanmax(np.abs(sigma.apart(found[ours])), initial=0.0))
+        for value, sigma in found.items()
+        if value != ours
+    )

@@ -1,0 +1,258 @@
+"""What each figure shows, reduced from the runs to the numbers that are drawn."""
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+import xarray as xr
+
+from restitution import analytic, fit
+from restitution.drop.reduce import reduce, standard_errors
+from restitution.papers.glielmo2014._counted import impacts_counted
+from restitution.papers.glielmo2014._misprints import printed_density
+from restitution.papers.glielmo2014._runs import Runs
+from restitution.papers.glielmo2014._settings import Settings
+from restitution.papers.glielmo2014._windows import (
+    FloatArray,
+    IntArray,
+    at_speeds,
+    coarse,
+    histogram_edges,
+    mesh,
+)
+
+QUANTILES = (0.01, 0.5, 0.99)
+"""Quantiles of restitution in the sensitivity figure of Fig. 2."""
+# With fewer impacts than this in a velocity bin, its outer quantiles are no more than its extremes.
+_FEWEST_FOR_QUANTILES = 200
+
+
+def restitution_map(runs: Runs, s: Settings) -> xr.Dataset:
+    """Fig. 2: ``restitution_count`` on the lattice of impact velocity and restitution."""
+    return runs.counted.lattice.assign_attrs(_about_counted(runs.counted.lattice))
+
+
+def fraction_map(runs: Runs, s: Settings) -> xr.Dataset:
+    """Fig. 3: ``fraction_count`` on the lattice of impact velocity and E_rot/E_tot."""
+    return runs.counted.lattice.assign_attrs(_about_counted(runs.counted.lattice))
+
+
+def low_velocity_map(runs: Runs, s: Settings) -> xr.Dataset:
+    """Fig. 7: as Fig. 2 at low and negative impact velocity."""
+    return runs.counted.slow.assign_attrs(_about_counted(runs.counted.slow))
+
+
+def restitution_histograms(runs: Runs, s: Settings) -> xr.Dataset:
+    """Fig. 4: density of restitution at each speed with its asymmetric Laplace fit to recorded impacts."""
+    parts = []
+    for counted, window, width in zip(
+        at_speeds(runs.counted.windows, s), s.speed_windows, s.histogram_widths, strict=True
+    ):
+        particle, values = _window(runs.main, "restitution", window)
+        edges = histogram_edges(s, width)
+        fitted = fit.asymmetric_laplace(values)
+        # The cusp itself is among the points, lest the curve cut it off.
+        points = np.sort(np.append(np.linspace(edges[0], edges[-1], 400), fitted.parameters["location"]))
+        count = coarse(counted["restitution_count"].to_numpy(), s, width)
+        part = _histogram(count, int(counted["number"]), edges, _together(particle, values, edges))
+        part["fit_point"] = ("point", points)
+        part["fit_density"] = ("point", fitted.pdf(points))
+        part["fit_number"] = values.size
+        for name, value in fitted.parameters.items():
+            part[f"fit_{name}"] = value
+        parts.append(part)
+    return _by_speed(parts, s).assign_attrs(_about(runs.main), **_about_counted(runs.counted.windows))
+
+
+def fraction_histograms(runs: Runs, s: Settings) -> xr.Dataset:
+    """Fig. 5: density of E_rot/E_tot at each speed."""
+    edges = mesh(*s.fraction_range, s.fraction_mesh)
+    parts = []
+    for counted, window in zip(at_speeds(runs.counted.windows, s), s.speed_windows, strict=True):
+        together = _together(*_window(runs.main, "rotational_fraction", window), edges)
+        count = counted["fraction_count"].to_numpy()
+        parts.append(_histogram(count, int(counted["number"]), edges, together))
+    return _by_speed(parts, s).assign_attrs(_about(runs.main), **_about_counted(runs.counted.windows))
+
+
+def bead_deviation(runs: Runs, s: Settings) -> xr.Dataset:
+    """Fig. 6: standard deviation of restitution against impact velocity, by elongation."""
+    counted = runs.counted.beads
+    drawn = _deviations(runs.beads, "elongation", mesh(*s.deviation_range, s.deviation_mesh), counted)
+    return drawn.assign_attrs(_about_counted(*counted.values()))
+
+
+def first_impact(runs: Runs, s: Settings) -> xr.Dataset:
+    """Fig. 9: density of restitution at the first impact, simulated, and by Eq. 21 as printed and right."""
+    body = s.body(s.first_elongation)
+    exact = analytic.first_impact(body, s.first_law)
+    low, high = exact.support()
+    step = s.first_mesh
+    # Bins end where the density does, with room for the rounding of a simulated value.
+    edges = high - step * np.arange(np.ceil((high - low) / step), -0.5, -1)
+    edges[0], edges[-1] = low - 1e-12, high + 1e-12
+    values = runs.first["restitution"].to_numpy().ravel()
+    bins, inside = _bins(values, edges)
+    # One impact a particle: all are independent.
+    drawn = _histogram(np.bincount(bins[inside], minlength=edges.size - 1), values.size, edges, 1.0)
+    # Even steps of the angle crowd where the density diverges, at the upper end.
+    points = exact.ppf(np.linspace(0.0, 1.0, 1002)[1:-1])
+    drawn["point"] = ("point", points)
+    drawn["exact_density"] = ("point", exact.pdf(points))
+    drawn["printed_density"] = ("point", printed_density(points, body, s.first_law))
+    chance = np.diff(exact.cdf(edges))
+    deviation = np.sqrt(values.size * chance * (1 - chance))
+    drawn["pull"] = ("bin", (drawn["impacts"].to_numpy() - values.size * chance) / deviation)
+    drawn["negative"] = np.count_nonzero(values < 0) / values.size
+    drawn["negative_exact"] = float(exact.cdf(0.0))
+    return drawn.assign_attrs(_about(runs.first))
+
+
+def map_sensitivity(runs: Runs, s: Settings) -> xr.Dataset:
+    """For the L/R of Fig. 2: quantiles of restitution against impact velocity, by radius and by height."""
+    edges = mesh(*s.sensitivity_range, s.sensitivity_mesh)
+    sides = []
+    for axis, by in (("radius", runs.by_radius), ("height", runs.by_height)):
+        found = [_quantiles(pair[s.elongation], edges) for pair in by.values()]
+        sides.append(
+            xr.concat(found, xr.DataArray(list(by), dims=axis, name=axis)).rename(quantile_value=f"by_{axis}")
+        )
+    return xr.merge(sides).assign_attrs(_about(*_varied(runs, s.elongation)))
+
+
+def deviation_sensitivity(runs: Runs, s: Settings) -> xr.Dataset:
+    """For the lowest L/R of Fig. 6: standard deviation of restitution, by radius and by release height."""
+    edges = mesh(*s.sensitivity_range, s.sensitivity_mesh)
+    x = s.bead_elongations[0]
+    sides = []
+    for axis, by in (("radius", runs.by_radius), ("height", runs.by_height)):
+        side = _deviations({value: pair[x] for value, pair in by.items()}, axis, edges)
+        sides.append(side.rename({name: f"{name}_by_{axis}" for name in side.data_vars}))
+    return xr.merge(sides, combine_attrs="override").assign_attrs(_about(*_varied(runs, x)))
+
+
+def _about(*runs: xr.Dataset) -> dict[str, Any]:
+    """Attributes for a caption: what all runs have in common, their seeds, and what was recorded."""
+    common = {
+        name: value
+        for name, value in runs[0].attrs.items()
+        if name not in ("seed", "run") and all(run.attrs[name] == value for run in runs)
+    }
+    return {
+        **common,
+        "seeds": [int(run.attrs["seed"]) for run in runs],
+        "particles_recorded": runs[0].sizes["particle"],
+        "impacts_recorded": int(sum(run["impacts"].sum() for run in runs)),
+    }
+
+
+def _about_counted(*ensembles: xr.Dataset) -> dict[str, Any]:
+    """Attributes for a caption: seeds, and how many particles (of each) and impacts (of all) were counted."""
+    return {
+        "seeds": [int(found.attrs["seed"]) for found in ensembles],
+        "particles": ensembles[0].attrs["particles"],
+        "impacts_counted": sum(map(impacts_counted, ensembles)),
+    }
+
+
+def _varied(runs: Runs, elongation: float) -> list[xr.Dataset]:
+    return [pair[elongation] for by in (runs.by_radius, runs.by_height) for pair in by.values()]
+
+
+def _window(data: xr.Dataset, name: str, window: tuple[float, float]) -> tuple[IntArray, FloatArray]:
+    """Particle and value of `name` for each impact with impact velocity in [lo, hi), both of shape (n,)."""
+    velocity = data["impact_velocity"].to_numpy()
+    particle, impact = np.nonzero((velocity >= window[0]) & (velocity < window[1]))
+    return particle, data[name].to_numpy()[particle, impact]
+
+
+def _together(particle: IntArray, values: FloatArray, edges: FloatArray) -> FloatArray:
+    """Design effect in each bin: the variance of its density over that if all impacts were independent.
+
+    A share p = Σc/Σn, with c of the n impacts of a particle in the bin, has the variance Σ(c − np)²/(Σn)²,
+    each particle being one draw. Given is Σ(c − np)²/Σc, which is 1 for rare impacts of different particles,
+    and 1 where there are none.
+    """
+    size = edges.size - 1
+    bins, inside = _bins(values, edges)
+    cell, each = np.unique(particle[inside] * size + bins[inside], return_counts=True)
+    drawn = np.bincount(particle)
+    weights = (each, each**2, each * drawn[cell // size])
+    single, squares, mixed = (np.bincount(cell % size, weights=w, minlength=size) for w in weights)
+    share = single / values.size
+    scatter = squares - 2 * share * mixed + share**2 * np.sum(drawn**2)
+    # Rounding may carry it below zero where every impact is in the bin.
+    return np.divide(np.maximum(scatter, 0.0), single, out=np.ones(size), where=single > 0)
+
+
+def _bins(values: FloatArray, edges: FloatArray) -> tuple[IntArray, npt.NDArray[np.bool_]]:
+    """Half-open bin of each value, and whether there is one."""
+    bins = np.searchsorted(edges, values, side="right").astype(np.int64) - 1
+    return bins, (bins >= 0) & (bins < edges.size - 1)
+
+
+def _histogram(count: IntArray, number: int, edges: FloatArray, together: FloatArray | float) -> xr.Dataset:
+    """Density of `number` impacts, and its standard error where `together` impacts make one draw."""
+    scale = 1 / (number * np.diff(edges))
+    error = np.sqrt(count * together)
+    return xr.Dataset(
+        {
+            "edges": ("edge", edges),
+            "impacts": ("bin", count),
+            "density": ("bin", count * scale, {"long_name": "probability density"}),
+            "density_error": ("bin", error * scale, {"long_name": "standard error, a particle is a cluster"}),
+            "number": number,
+            "outside": number - int(count.sum()),
+        }
+    )
+
+
+def _by_speed(parts: list[xr.Dataset], s: Settings) -> xr.Dataset:
+    speed = xr.DataArray(list(s.speeds), dims="speed", name="speed", attrs={"units": "m s-1"})
+    drawn = xr.concat(parts, speed)
+    drawn["window"] = (("speed", "side"), np.array(s.speed_windows), {"units": "m s-1"})
+    return drawn
+
+
+def _deviations(
+    by: Mapping[float, xr.Dataset],
+    axis: str,
+    edges: FloatArray,
+    counted: Mapping[float, xr.Dataset] | None = None,
+) -> xr.Dataset:
+    """Give, in each velocity bin and for each run, the standard deviation of restitution and its error.
+
+    Where more particles were counted than recorded, the deviation is that of all of them. Its error follows
+    from the recorded ones: it falls as one over the root of the number of particles.
+    """
+    parts = []
+    for value, data in by.items():
+        found = reduce(data, edges, [0.0, 1.0]) if counted is None else counted[value]
+        deviation, error = found["variance"] ** 0.5, standard_errors(data, edges)
+        ratio = found.attrs["particles"] / data.attrs["particles"]
+        parts.append(
+            xr.Dataset(
+                {
+                    "deviation": deviation.assign_attrs(long_name="standard deviation of restitution"),
+                    "deviation_error": error["deviation_standard_error"] / ratio**0.5,
+                    "particles_recorded": error["particles"],
+                }
+            )
+        )
+    joined = xr.concat(parts, xr.DataArray(list(by), dims=axis, name=axis))
+    return joined.assign_attrs(_about(*by.values()))
+
+
+def _quantiles(data: xr.Dataset, edges: FloatArray) -> xr.Dataset:
+    velocity, restitution = (data[name].to_numpy().ravel() for name in ("impact_velocity", "restitution"))
+    bins = np.searchsorted(edges, velocity, side="right") - 1
+    found = np.full((len(QUANTILES), edges.size - 1), np.nan)
+    for k in range(edges.size - 1):
+        values = restitution[bins == k]
+        if values.size >= _FEWEST_FOR_QUANTILES:
+            found[:, k] = np.quantile(values, QUANTILES)
+    return xr.Dataset(
+        {"quantile_value": (("quantile", "velocity"), found)},
+        coords={"quantile": list(QUANTILES), "velocity": 0.5 * (edges[:-1] + edges[1:])},
+    )

@@ -1,0 +1,134 @@
+"""One quantity for each misprint: from the printed formula, from the corrected one, and without either."""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.integrate import quad, solve_ivp
+from scipy.optimize import brentq
+
+from restitution.analytic import first_impact
+from restitution.bodies import Dumbbell
+from restitution.laws import TangentialRestitution
+from restitution.papers.glielmo2014._misprints._density import printed_density
+
+Floats = NDArray[np.float64]
+
+# The paper's own example (Fig. 9), L = 2R. With R = 1 and ρ = 1/π, J is the bracket in Eqs. A5 and A8.
+BODY = Dumbbell(radius=1.0, separation=2.0, density=1.0 / np.pi)
+LAW = TangentialRestitution(normal=0.4, tangential=1.0)
+TILT = np.pi / 3
+
+
+class Check(NamedTuple):
+    """Three numbers for one quantity; the last two agree."""
+
+    printed: float
+    right: float
+    independent: float
+
+
+def fall(theta: float) -> Floats:
+    """P/m of a body that arrives at 1 m/s without spin: Eq. 10 as a system of three linear equations."""
+    axis = np.array([np.sin(theta), 0.0, -np.cos(theta)])  # of the lower sphere (Fig. 8, Eq. 16)
+    up = np.array([0.0, 0.0, 1.0])
+    contact = 0.5 * BODY.separation * axis - BODY.radius * up
+    along = np.outer(axis, axis)
+    inertia = (BODY.transverse_inertia * (np.eye(3) - along) + BODY.axial_inertia * along) / BODY.mass
+    columns = [
+        unit + np.cross(np.linalg.solve(inertia, np.cross(contact, unit)), contact) for unit in np.eye(3)
+    ]
+    return np.asarray(np.linalg.solve(np.transpose(columns), (1.0 + LAW.constant) * up), dtype=np.float64)
+
+
+def axial_inertia() -> Check:
+    """J_zz/(πρR⁵) at L = 2R (Eq. A5)."""
+
+    def bracket(divisor: float) -> float:
+        return 8 / 15 + 2 / 2 - 2**3 / 12 + 2**5 / divisor
+
+    sphere = 4 / 3
+    return Check(bracket(180), bracket(160), 2 * 2 / 5 * sphere)
+
+
+def transverse_inertia() -> Check:
+    """J_xx/(πρR⁵) at L = 2R from the integrand of Eq. A7."""
+    nodes, weights = np.polynomial.legendre.leggauss(3)  # exact up to degree 5
+    z = 1 + nodes  # 0 <= z <= R + L/2
+    tail = (2 + 2**2 / 2) * z**2 + 2 * 2 * z**3 - 3 * z**4
+    printed = (1 / 2 - 2**2 / 8) ** 2 + (2 * 2 * z**2 - 2**3 / 2) * z + tail
+    right = ((1 - 2**2 / 4) ** 2 + (2 * 2 - 2**3 / 2) * z + tail) / 2
+    sphere = 4 / 3
+    steiner = 2 * sphere * (2 / 5 + 1)
+    return Check(float(weights @ printed), float(weights @ right), steiner)
+
+
+def normal_impulse() -> Check:
+    """P·n/(m|v_G|) at θ = 60° (Eq. 14)."""
+    inertia = BODY.transverse_inertia / BODY.mass
+    x, z = BODY.separation / 2 * np.sin(TILT), -BODY.separation / 2 * np.cos(TILT) - BODY.radius  # (16)
+    factor = (1 + LAW.constant) * (inertia + z**2) / (x**2 + z**2 + inertia)
+    approach = -1.0  # v_G·n
+    return Check(float(factor * approach), float(-factor * approach), float(fall(TILT)[2]))
+
+
+def cumulative_probability() -> Check:
+    """Probability that |cos θ| <= 1/2 (Eq. 18)."""
+    angles = np.pi * (np.arange(300_000) + 0.5) / 300_000
+    part = np.arccos(0.5) / np.pi
+    return Check(float(1 - part), float(1 - 2 * part), float(np.mean(np.abs(np.cos(angles)) <= 0.5)))
+
+
+def total_probability() -> Check:
+    """Integral of Eq. 19 over 0 <= cos θ <= 1."""
+    # The weight is (1 - s)^(-1/2).
+    integral, _ = quad(lambda s: 1 / np.sqrt(1 + s), 0, 1, weight="alg", wvar=(0, -0.5))
+    return Check(integral / np.pi, 2 * integral / np.pi, 1.0)
+
+
+def negative_restitution() -> Check:
+    """Probability that ε < 0 for Fig. 9 (Eq. 21)."""
+    distribution = first_impact(BODY, LAW)
+    low, _ = distribution.support()
+    printed, _ = quad(lambda s: float(printed_density(s, BODY, LAW)), low, 0)
+    right, _ = quad(lambda s: float(distribution.pdf(s)), low, 0)
+    # ε = -1 + P·n/(m|v_G|) (13) falls from ε_n as the axis leans; beyond this angle it is negative.
+    zero = brentq(lambda theta: fall(theta)[2] - 1, 0, np.pi / 2, xtol=1e-14)
+    return Check(printed, right, 1 - float(zero) / (np.pi / 2))
+
+
+def spinning_flight() -> Check:
+    """Height e_z of the axis' end 0.1 s after e = (1, 0, 0), ω = (10, -10, 0) rad/s (Eq. 3)."""
+    axis, spin, time = np.array([1.0, 0.0, 0.0]), np.array([10.0, -10.0, 0.0]), 0.1
+    inertia = np.array([BODY.axial_inertia, BODY.transverse_inertia, BODY.transverse_inertia])
+
+    def turned(rotation: Floats) -> float:  # (3), (4)
+        angle = np.linalg.norm(rotation)
+        unit = rotation / angle
+        end = axis * np.cos(angle) + unit * (unit @ axis) * (1 - np.cos(angle))
+        return float((end + np.cross(unit, axis) * np.sin(angle))[2])
+
+    def euler(_: float, state: Floats) -> Floats:  # spin along the body's axes, and these axes in space
+        omega, frame = state[:3], state[3:].reshape(3, 3)
+        torque_free = np.cross(inertia * omega, omega) / inertia
+        return np.concatenate([torque_free, np.cross(omega @ frame, frame).ravel()])
+
+    start = np.concatenate([spin, np.eye(3).ravel()])
+    end = solve_ivp(euler, (0, time), start, method="DOP853", rtol=1e-12, atol=1e-13).y[:, -1]
+    return Check(turned(spin * time), turned(inertia * spin * time / inertia[1]), float(end[5]))
+
+
+def released_axis() -> Check:
+    """Cosine of the axis at the first impact after release from rest at θ = 60° (Eqs. 2, 3)."""
+    unit_matrix = np.eye(3)  # (3) at ω = 0
+    upright, released = np.array([0.0, 0.0, 1.0]), np.array([np.sin(TILT), 0.0, np.cos(TILT)])
+    return Check(float((unit_matrix @ upright)[2]), float((unit_matrix @ released)[2]), 0.5)
+
+
+def contact_height() -> Check:
+    """Height of the point r_G + r_c, in R, when the sphere at -r touches at θ = 60° (Eq. 6)."""
+    offset = BODY.separation / 2 * np.cos(TILT)
+    centre = BODY.radius + offset  # (2), second line
+    polar = np.linspace(0, np.pi, 1001)
+    lowest = min(np.min(centre + side * offset + BODY.radius * np.cos(polar)) for side in (1, -1))
+    return Check(float(centre + offset - BODY.radius), float(centre - offset - BODY.radius), float(lowest))

@@ -1,0 +1,115 @@
+"""Where tasks run: threads of this machine, or workers of a Dask cluster. Nothing else of a study knows."""
+
+import threading
+from collections.abc import Callable, Iterator
+from concurrent.futures import Executor, Future, ThreadPoolExecutor
+from contextlib import contextmanager, suppress
+from typing import Any
+
+from restitution import _core
+from restitution._internal.parameters import ParameterError, wrong
+from restitution._internal.resources import checked_threads
+
+
+class Engine:
+    """Takes calls and gives futures.
+
+    Parameters
+    ----------
+    executor : concurrent.futures.Executor
+        Who does the work.
+    width : callable
+        Gives the number of calls that run at a time, now.
+    stop : threading.Event or None
+        Signals running calls to stop, where it reaches them.
+    """
+
+    def __init__(self, executor: Executor, width: Callable[[], int], stop: threading.Event | None) -> None:
+        self._executor, self._width, self._stop = executor, width, stop
+
+    @property
+    def room(self) -> int:
+        """How many calls should be under way: enough for no worker to wait for the next one."""
+        return 2 * max(1, self._width()) + 2
+
+    def submit(self, function: Callable[..., Any], *arguments: Any, stoppable: bool = False) -> "Future[Any]":
+        """Have a function called."""
+        more = (self._stop,) if stoppable and self._stop is not None else ()
+        try:
+            return self._executor.submit(function, *arguments, *more)
+        except RuntimeError as error:
+            if "new thread" not in str(error):
+                raise
+            raise RuntimeError(f"threads = {self._width()}: the system gives no thread") from error
+
+    def stop(self) -> None:
+        """Ask running calls to stop."""
+        if self._stop is not None:
+            self._stop.set()
+
+
+def width(client: Any, threads: int | None) -> int:
+    """Give the number of threads of this machine that work; none where workers of a client do."""
+    if client is not None:
+        return 0
+    return checked_threads(threads) or int(_core.build_info()["threads"])
+
+
+@contextmanager
+def engine(client: Any, threads: int | None) -> Iterator[Engine]:
+    """Open the engine of a client, or of this machine.
+
+    Parameters
+    ----------
+    client : distributed.Client or None
+        Of a Dask cluster.
+    threads : int or None
+        Number of threads without a client; one per core by default.
+    """
+    if client is None:
+        number = width(client, threads)
+        stop = threading.Event()
+        with ThreadPoolExecutor(number, thread_name_prefix="restitution-sweep") as pool:
+            try:
+                yield Engine(pool, lambda: number, stop)
+            except BaseException:
+                stop.set()
+                pool.shutdown(wait=True, cancel_futures=True)
+                raise
+        return
+    if threads is not None:
+        raise ValueError(f"threads = {threads!r}: is for this machine; with a client its workers decide")
+    if not hasattr(client, "get_executor"):
+        raise ParameterError(wrong("client", client, "a dask.distributed.Client or None"))
+    executor = client.get_executor(pure=False)
+    try:
+        yield Engine(executor, lambda: sum(client.nthreads().values()), None)
+    except Exception as error:
+        if client.status == "running":
+            raise
+        text = "the scheduler is gone; what is finished is in the store, and the same command continues"
+        raise RuntimeError(text) from error
+    finally:
+        with suppress(Exception):  # of a client that is closed
+            executor.shutdown(wait=False)
+
+
+@contextmanager
+def client_at(address: str) -> Iterator[Any]:
+    """Connect to the scheduler of a Dask cluster, at an address or with its file.
+
+    How long a silent one is waited for is Dask's ``distributed.comm.timeouts.connect``.
+    """
+    try:
+        from distributed import Client
+    except ImportError:
+        raise ImportError("--scheduler needs dask.distributed: pip install 'restitution[sweep]'") from None
+    where = {"scheduler_file" if address.endswith(".json") else "address": address}
+    try:
+        client: Any = Client(**where, set_as_default=False)  # type: ignore[no-untyped-call]
+    except (OSError, ValueError) as error:
+        raise OSError(f"scheduler = {address!r}: no Dask scheduler answers there: {error}") from None
+    try:
+        yield client
+    finally:
+        client.close(timeout=2)

@@ -1,0 +1,283 @@
+"""Signals, kills and streams: what is finished is kept, what is not leaves nothing behind."""
+
+import os
+import re
+import signal
+import subprocess
+import sys
+import time
+import tomllib
+from pathlib import Path
+
+import pytest
+
+import restitution as rs
+from reference.command import AMONG_TESTS, COMMAND, LONG, SMALL, load
+
+
+@pytest.fixture
+def long(tmp_path: Path) -> Path:
+    path = tmp_path / "long.toml"
+    path.write_text(f"{LONG}3000000", encoding="utf-8")
+    return path
+
+
+def start(*words: object) -> subprocess.Popen[str]:
+    command = [*COMMAND, *map(str, words)]
+    return subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+
+
+def wait_for(pattern: str, folder: Path) -> None:
+    """Until a file of that name is there."""
+    for _ in range(2000):
+        if any(re.fullmatch(pattern, file.name) for file in folder.iterdir()):
+            return
+        time.sleep(0.01)
+    pytest.fail(f"no {pattern} appeared in {folder}")
+
+
+# The command, which tells by a file when the engine is at work.
+TELLING = """
+import pathlib
+from reference.signals import watched
+from restitution.cli import main
+
+marker = sys.argv.pop()
+watched(lambda finished, _: finished and pathlib.Path(marker).touch())
+main()
+"""
+
+
+@pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGHUP, signal.SIGINT])
+def test_a_signal_ends_a_run_as_ctrl_c_does(long: Path, tmp_path: Path, number: signal.Signals) -> None:
+    """The impacts so far are written, nothing else is left, and the exit status names the signal."""
+    out = tmp_path / "run.nc"
+    words = ["simulate", str(long), "--out", str(out), "--threads", "1", str(tmp_path / "begun")]
+    process = subprocess.Popen(
+        [sys.executable, "-c", AMONG_TESTS + TELLING, *words], stderr=subprocess.PIPE, text=True
+    )
+    wait_for("begun", tmp_path)
+    process.send_signal(number)
+    _, told = process.communicate(timeout=60)
+    assert (process.returncode, told) == (128 + number, "interrupted; writing the impacts so far\n")
+    assert "incomplete" in load(out).attrs
+    assert {file.name for file in tmp_path.iterdir()} == {"run.nc", "long.toml", "begun"}
+    out.unlink()
+
+
+def test_hangup_that_is_ignored_stays_ignored(parameters: Path) -> None:
+    """As under nohup."""
+    code = "import signal; signal.signal(signal.SIGHUP, signal.SIG_IGN)\n"
+    code += "from restitution._internal.signals import ending\nimport os\n"
+    code += "with ending() as came:\n    os.kill(os.getpid(), signal.SIGHUP)\nprint(came)"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout == "[]\n"
+
+
+def test_what_a_killed_process_left_is_removed(parameters: Path) -> None:
+    """By the next run to the same name, and only what the dead left: a draft of the living stays."""
+    folder = parameters.parent
+    dying = "import os, sys; from pathlib import Path\n"
+    dying += "from restitution._internal.files import whole_file, whole_folder\n"
+    dying += "with whole_file(Path(sys.argv[1]), replace=True) as draft, whole_folder(Path(sys.argv[2])):\n"
+    dying += "    draft.write_text('half'); os.kill(os.getpid(), 9)"
+    command = [sys.executable, "-c", dying, str(folder / "run.nc"), str(folder / "laws")]
+    assert subprocess.run(command, check=False).returncode == -signal.SIGKILL
+    left = {file.name for file in folder.iterdir() if file.name.endswith(".part")}
+    assert len(left) == 2
+    from restitution._internal.files import whole_file, whole_folder
+
+    with whole_file(folder / "other.nc"), whole_file(folder / "run.nc") as alive:
+        assert {name for name in left if name.startswith(".laws.")} < {f.name for f in folder.iterdir()}
+        with whole_file(folder / "run.nc", replace=True) as draft:
+            draft.write_text("whole")
+        assert alive.exists()
+        (folder / "run.nc").unlink()
+    with whole_folder(folder / "laws") as draft:
+        (draft / "laws.md").write_text("table")
+    assert {file.name for file in folder.iterdir()} == {"run.toml", "run.nc", "other.nc", "laws"}
+
+
+@pytest.mark.parametrize("closed", ["2>&-", ">&-", ">&- 2>&-", "<&- >&- 2>&-", "| true", "2>&1 | true"])
+def test_closed_streams_do_not_matter(parameters: Path, closed: str) -> None:
+    """The file is written, whole: no other takes the place of a standard stream."""
+    out = parameters.with_name("run.nc")
+    code = "from restitution.cli import main; main()"
+    line = f"'{sys.executable}' -c '{code}' simulate '{parameters}' --out '{out}' {closed}"
+    done = subprocess.run(["bash", "-o", "pipefail", "-c", line], capture_output=True, text=True, check=False)
+    assert (done.returncode, done.stderr) == (0, "")
+    assert load(out).sizes["particle"] == 7
+
+
+@pytest.mark.parametrize("stream", [None, open(os.devnull, encoding="utf-8")])  # noqa: SIM115
+def test_progress_without_a_standard_error(
+    body: rs.Dumbbell, law: rs.TangentialRestitution, monkeypatch: pytest.MonkeyPatch, stream: object
+) -> None:
+    """None, or one that takes nothing: as in a service, or under pythonw."""
+    monkeypatch.setattr(sys, "stderr", stream)
+    assert rs.simulate(body, law, particles=2, impacts=2, progress=True).sizes["particle"] == 2
+
+
+def test_two_runs_to_one_name(tmp_path: Path) -> None:
+    """One of them gets it, the others are told; the file is whole and that of one run."""
+    for seed in range(3):
+        text = re.sub("seed = .*", f"seed = {seed}", SMALL)
+        (tmp_path / f"{seed}.toml").write_text(text, encoding="utf-8")
+    out = tmp_path / "run.nc"
+    runs = [start("simulate", tmp_path / f"{seed}.toml", "--out", out) for seed in range(3)]
+    told = [(run.communicate(timeout=120)[1], run.returncode) for run in runs]
+    assert sorted(code for _, code in told) == [0, 1, 1]
+    assert all(
+        text == f"error: {out}: exists already; --overwrite replaces it\n" for text, code in told if code
+    )
+    winner = next(seed for seed, (_, code) in enumerate(told) if code == 0)
+    assert load(out).attrs["seed"] == winner
+    assert len(list(tmp_path.iterdir())) == 4
+
+
+@pytest.mark.parametrize(
+    ("name", "text"),
+    [
+        ("run.toml", "is what is read: give another name to write to"),
+        ("link.toml", "is what is read: give another name to write to"),
+        (b"\xff.nc", "the name is not UTF-8"),
+        ("n" * 300, "File name too long"),
+        ("folder", "not a file that can be written"),
+        ("circle", "Symlink loop"),
+        ("none/run.nc", "No such file or directory"),
+        ("run.toml/run.nc", "Not a directory"),
+    ],
+    ids=str,
+)
+def test_names_that_are_refused_at_once(parameters: Path, name: str | bytes, text: str) -> None:
+    """Before anything is computed, with --overwrite too, and nothing is touched."""
+    folder = parameters.parent
+    (folder / "link.toml").symlink_to(parameters)
+    (folder / "circle").symlink_to(folder / "circle")
+    (folder / "folder").mkdir()
+    before = sorted(folder.iterdir())
+    path = os.fsencode(folder) + b"/" + os.fsencode(name)
+    command = [*COMMAND, "simulate", str(parameters), "--overwrite", "--out"]
+    done = subprocess.run([*command, path], capture_output=True, check=False)
+    told = done.stderr.decode()
+    assert done.returncode == 1
+    assert told.startswith("error: ")
+    assert text in told
+    assert done.stdout == b""
+    assert sorted(folder.iterdir()) == before
+
+
+def test_one_output_twice(parameters: Path) -> None:
+    out = parameters.with_name("dist.nc")
+    words = ["distribution", parameters, "--out", out, "--header", out.parent / "." / "dist.nc"]
+    done = start(*words)
+    told = done.communicate(timeout=60)[1]
+    assert (done.returncode, told) == (
+        1,
+        f"error: {out}: is to be written twice: give another name to write to\n",
+    )
+
+
+def test_a_stream_that_lacks_a_letter(capfd: pytest.CaptureFixture[str]) -> None:
+    """In the C locale, µ: what was written to files stays written, and the line is said."""
+    words = [
+        sys.executable,
+        "-c",
+        "from restitution._internal.streams import say, tell; say('1 µs'); tell('2 µs')",
+    ]
+    subprocess.run(words, check=True, env=os.environ | {"PYTHONIOENCODING": "ascii:strict"})
+    assert capfd.readouterr() == ("1 \\xb5s\n", "2 \\xb5s\n")
+
+
+LOSING = """
+import os, signal, time, typer
+from restitution.cli._common import errors_in_a_line
+
+class Losing:
+    def __del__(self):
+        os.kill(os.getpid(), signal.SIGTERM)
+
+def work():
+    with errors_in_a_line():
+        Losing()
+        try:
+            os.kill(os.getpid(), signal.SIGTERM)
+        except BaseException:
+            pass  # as libraries do
+        time.sleep(60)
+
+typer.run(work)
+"""
+
+
+def test_a_signal_is_not_lost() -> None:
+    """What it raises is dropped by Python in `__del__`, and by libraries; it comes again, in silence."""
+    command = [sys.executable, "-c", LOSING]
+    done = subprocess.run(command, capture_output=True, text=True, check=False, timeout=30)
+    assert (done.returncode, done.stderr) == (128 + signal.SIGTERM, "interrupted\n")
+
+
+BROKEN = """
+import os, signal, typer
+from restitution.cli._common import errors_in_a_line
+
+def work():
+    with errors_in_a_line():
+        try:
+            os.kill(os.getpid(), signal.SIGHUP)
+        except BaseException as error:
+            kept = error
+            raise ImportError("initialization failed")
+
+typer.run(work)
+"""
+
+
+def test_a_signal_in_an_import() -> None:
+    """Of which a compiled library makes an error of its own: the command was interrupted all the same."""
+    command = [sys.executable, "-c", BROKEN]
+    done = subprocess.run(command, capture_output=True, text=True, check=False, timeout=30)
+    assert (done.returncode, done.stderr) == (128 + signal.SIGHUP, "interrupted\n")
+
+
+EARLY = """
+import os, signal, sys
+
+class Finder:
+    def find_spec(self, name, *_):
+        if name == "typer":
+            os.kill(os.getpid(), signal.SIGINT)
+
+sys.meta_path.insert(0, Finder())
+"""
+LATE = """
+import atexit, os, signal, sys
+
+atexit.register(os.kill, os.getpid(), signal.SIGINT)
+"""
+
+
+@pytest.mark.parametrize("when", [EARLY, LATE], ids=["early", "late"])
+def test_ctrl_c_in_the_first_and_the_last_moment(when: str) -> None:
+    """While the command line is imported, and when it has done its work: no traceback."""
+    code = when + "sys.argv = ['restitution', '--version']\nfrom restitution.__main__ import main\nmain()"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
+    assert (done.returncode, done.stderr) == (-signal.SIGINT, "")
+    settings = tomllib.loads((Path(__file__).parents[2] / "pyproject.toml").read_text(encoding="utf-8"))
+    assert settings["project"]["scripts"] == {"restitution": "restitution.__main__:main"}
+
+
+@pytest.mark.parametrize(
+    ("name", "told"),
+    [
+        ("a\x1b]0;owned\x07\nerror: b", "a\\x1b]0;owned\\x07\\nerror: b: No such file or directory"),
+        ("n" * 100_000, "n" * 500 + " ... " + "n" * 480 + ": File name too long"),
+    ],
+    ids=["obeyed", "long"],
+)
+def test_a_name_that_is_told_stays_in_its_line(name: str, told: str, tmp_path: Path) -> None:
+    """And no terminal obeys it."""
+    done = subprocess.run(
+        [*COMMAND, "simulate", name, "--out", "run.nc"], capture_output=True, cwd=tmp_path, check=False
+    )
+    assert (done.returncode, done.stderr.decode()) == (1, f"error: {told}\n")

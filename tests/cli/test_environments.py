@@ -1,0 +1,97 @@
+"""Commands and functions where something is missing: a part, drawn with a fixed seed, of `make hostile`."""
+
+import os
+import random
+import signal
+import subprocess
+import sys
+from importlib.resources import files
+from pathlib import Path
+
+import pytest
+
+from reference.command import AMONG_TESTS
+from reference.environments import ENVIRONMENTS
+from reference.processes import COMMANDS, RUN, STUDY, command, inputs
+from restitution.cli import app
+
+TESTS = Path(__file__).parents[1]
+BUILT = files("restitution.explorer").joinpath("explorer.html").is_file()
+needs_the_explorer = pytest.mark.skipif(not BUILT, reason="the explorer is not built: make web")
+
+
+@needs_the_explorer
+def test_commands_and_functions_in_hostile_environments() -> None:
+    """Our error, or a right result, within a time; never an abort or a hang, and nothing is left behind."""
+    words = [sys.executable, str(TESTS / "manual" / "environments.py"), "--calls", "24", "--commands", "3"]
+    env = os.environ | {"PYTHONPATH": str(TESTS), "OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1"}
+    done = subprocess.run(words, capture_output=True, text=True, check=False, timeout=900, env=env)
+    assert done.stdout.splitlines()[-1:] == ["27 trials, 0 break the contract"], done.stdout + done.stderr
+
+
+def test_every_command_is_tried() -> None:
+    """What is called by its name, and what groups hold."""
+    names = {command.callback.__name__ for command in app.registered_commands if command.callback}
+    names |= {group.name or "" for group in app.registered_groups}
+    assert names <= {name.split()[0] for name in COMMANDS}
+    sent = {number for one in ENVIRONMENTS.values() for number in one.signals}
+    assert sent == {signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGSTOP, signal.SIGCONT}
+
+
+@pytest.mark.parametrize(
+    ("name", "surroundings"),
+    [
+        ("laws", "four files"),  # which figures take for their fonts
+        ("sweep status", "two files"),  # fewer than Zarr's loop takes
+        ("sweep", "six files"),
+        ("simulate", "two files"),
+        ("distribution", "ten files"),
+    ],
+)
+def test_few_open_files(name: str, surroundings: str) -> None:
+    """Their error names what cannot be opened; nothing is left, though listing a folder takes one."""
+    assert command(name, surroundings, random.Random(1)) is None
+
+
+@pytest.mark.parametrize("surroundings", ["stopped and continued", "no assertions"])
+@pytest.mark.parametrize("name", ["statistics", "sweep"])
+def test_other_surroundings(name: str, surroundings: str) -> None:
+    """Who is stopped goes on, and ends at Ctrl-C; where Python leaves assertions out, Zarr's are named."""
+    assert command(name, surroundings, random.Random(1)) is None
+
+
+HOURS = "100000000"
+"""Particles."""
+ENDED = {
+    # the words, the signal, and what may be there afterwards
+    "statistics": ("statistics run.toml --out counts.nc", signal.SIGTERM, {"counts.nc"}),
+    "compare": ("compare run.toml --out counts.nc", signal.SIGHUP, {"counts.nc"}),
+    "distribution": ("distribution run.toml --out dist.nc --header dist.h", signal.SIGINT, set()),
+    "laws": ("laws --out laws --impacts 100000000", signal.SIGTERM, set()),
+    "paper": ("paper --out paper", signal.SIGHUP, set()),
+    "sweep": ("sweep study.toml --out study.zarr", signal.SIGTERM, {"study.zarr"}),
+    "fit": ("fit data.nc --velocity 0.5 0.9 --resamples 1000000", signal.SIGTERM, set()),
+    "listen": ("listen ball.wav --diameter 0.02 --out ball.html", signal.SIGHUP, set()),
+    "template": ("template", signal.SIGTERM, set()),
+    "explore": ("explore run.toml --no-browser", signal.SIGHUP, set()),
+}
+
+
+@pytest.mark.parametrize(
+    "name", [pytest.param(name, marks=[needs_the_explorer] * (name == "explore")) for name in ENDED]
+)
+def test_a_signal_ends_a_command(name: str, tmp_path: Path) -> None:
+    """In the midst of work that would take hours: the status names the signal, and no draft is left."""
+    line, number, files = ENDED[name]
+    (tmp_path / "run.toml").write_text(RUN.replace("PARTICLES", HOURS), encoding="utf-8")
+    (tmp_path / "study.toml").write_text(STUDY.replace("PARTICLES", HOURS), encoding="utf-8")
+    for read in {"data.nc", "ball.wav"} & set(line.split()):
+        (tmp_path / read).symlink_to(inputs() / read)
+    before = set(tmp_path.iterdir())
+    # The signal comes at the first step of the work, whatever this machine takes to get there.
+    code = f"{AMONG_TESTS}from reference.signals import arm\narm({int(number)}, {name!r})\n"
+    code += "from restitution.cli import main; main()"
+    words = [sys.executable, "-c", code, *line.split()]
+    done = subprocess.run(words, cwd=tmp_path, capture_output=True, text=True, check=False, timeout=120)
+    assert (done.returncode, "Traceback" in done.stderr) == (128 + number, False), done.stderr
+    assert {file.name for file in set(tmp_path.iterdir()) - before} <= files

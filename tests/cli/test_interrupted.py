@@ -1,0 +1,94 @@
+"""The command line in a terminal: Ctrl-C loses nothing that was finished, and progress is shown."""
+
+import os
+import pty
+import signal
+import subprocess
+import sys
+import termios
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+import xarray as xr
+
+import restitution as rs
+from reference.command import AMONG_TESTS, COMMAND, LONG, invoke, load, small
+from restitution._core import STOP_REASONS
+from restitution.cli import INTERRUPTED
+from restitution.drop.toml import read
+
+# The command, with a Ctrl-C as soon as some particles have finished and others have not.
+PRESSING = """
+import signal
+from reference.signals import watched
+from restitution.cli import main
+
+watched(lambda finished, all: 0 < finished < all and signal.raise_signal(signal.SIGINT))
+main()
+"""
+
+
+def test_ctrl_c_keeps_what_was_finished(tmp_path: Path) -> None:
+    """A true signal in a true process, in the midst of its work.
+
+    The file has the particles that were begun: those that finished have the bits that an uninterrupted run
+    gives them, the others have the stop reason "interrupted", and the file says that it is incomplete.
+    """
+    parameters, out = tmp_path / "run.toml", tmp_path / "run.nc"
+    words = ["simulate", str(parameters), "--out", str(out), "--overwrite", "--threads", "1"]
+    for particles in (400_000, 800_000, 1_600_000):  # until this machine takes long enough to be interrupted
+        parameters.write_text(f"{LONG}{particles}", encoding="utf-8")
+        command = [sys.executable, "-c", AMONG_TESTS + PRESSING, *words]
+        done = subprocess.run(command, capture_output=True, text=True, check=False)
+        if done.returncode != 0:
+            break
+    assert (done.returncode, done.stderr) == (INTERRUPTED, "interrupted; writing the impacts so far\n")
+
+    data = load(out)
+    cut = (data.stop_reason == STOP_REASONS.index("interrupted")).to_numpy()
+    assert 0 < cut.sum() < cut.size < particles
+    done_and_cut = f"{(~cut).sum()} of {particles} particles are finished, {cut.sum()} cut short"
+    assert data.attrs["incomplete"] == f"interrupted: {done_and_cut}"
+    assert f"interrupted {cut.sum()}" in done.stdout
+    run = read(parameters)
+    whole = rs.simulate(run.body, run.law, particles=run.particles, impacts=run.impacts)
+    for name in whole.data_vars:
+        np.testing.assert_array_equal(data[name].to_numpy()[~cut], whole[name].to_numpy()[: cut.size][~cut])
+    assert sorted(tmp_path.iterdir()) == [out, parameters]
+    out.unlink()
+
+
+def test_a_terminal_gets_a_progress_bar(parameters: Path) -> None:
+    """And nothing else does, as the empty standard error of the other tests shows."""
+    terminal, end = pty.openpty()
+    termios.tcsetwinsize(end, (24, 80))  # a bar needs room
+    command = [*COMMAND, "simulate", str(parameters), "--out", str(parameters.with_name("run.nc"))]
+    subprocess.run(command, stderr=end, stdout=subprocess.DEVNULL, check=True)
+    os.close(end)
+    assert "simulate: 100%" in os.read(terminal, 10_000).decode()
+    os.close(terminal)
+
+
+@pytest.mark.parametrize("presses", [1, 2])
+def test_ctrl_c_while_the_file_is_written(
+    parameters: Path, monkeypatch: pytest.MonkeyPatch, presses: int
+) -> None:
+    """The first one waits for the file, the second one gives it up; either way no part of a file is left."""
+    out = parameters.with_name("run.nc")
+    write = xr.Dataset.to_netcdf
+
+    def pressed(data: xr.Dataset, *where: Any, **how: Any) -> None:
+        for _ in range(presses):
+            signal.raise_signal(signal.SIGINT)
+        write(data, *where, **how)
+
+    monkeypatch.setattr(xr.Dataset, "to_netcdf", pressed)
+    result = invoke("simulate", parameters, "--out", out)
+    assert result.exit_code == INTERRUPTED
+    assert signal.getsignal(signal.SIGINT) is signal.default_int_handler
+    if presses == 1:
+        xr.testing.assert_identical(load(out), small())
+    else:
+        assert list(parameters.parent.iterdir()) == [parameters]

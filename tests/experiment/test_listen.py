@@ -1,0 +1,191 @@
+"""`restitution listen`: the page, what stands beside it, and what it says to recordings that tell nothing."""
+
+import re
+from html.parser import HTMLParser
+from pathlib import Path
+
+import matplotlib as mpl
+import numpy as np
+import pytest
+import soundfile
+import xarray as xr
+from typer.testing import CliRunner
+
+import restitution as rs
+from benchmarks.recording import PLATE, recording
+from reference.bouncing import impact_times
+from restitution.cli import app
+
+RATE = 44100
+
+
+@pytest.fixture(scope="module")
+def ball(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A ball with ε = 0.9 that comes to its first impact with 2 m/s."""
+    times = impact_times(lambda _: 0.9, 2.0, 16)
+    speeds = np.array([2.0 * 0.9**i for i in range(16)])
+    samples, _ = recording(times, speeds, PLATE, noise=-45.0)
+    path = tmp_path_factory.mktemp("listen") / "ball.wav"
+    soundfile.write(path, 0.9 * samples, RATE)
+    return path
+
+
+def listen(*arguments: object) -> tuple[int, str]:
+    result = CliRunner().invoke(app, ["listen", *map(str, arguments)])
+    return result.exit_code, result.output
+
+
+class Page(HTMLParser):
+    """Collects what a page refers to and says."""
+
+    def __init__(self, html: str) -> None:
+        super().__init__()
+        self.sources: list[str] = []
+        self.words = ""
+        self.feed(html)
+
+    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        self.sources += [value or "" for name, value in attrs if name in ("src", "href")]
+
+    def handle_data(self, data: str) -> None:
+        self.words += data
+
+
+@pytest.fixture(scope="module")
+def report(ball: Path) -> tuple[Path, str]:
+    out = ball.parent / "report.html"
+    height = 2.0**2 / (2.0 * 9.81)
+    code, said = listen(ball, "--diameter", 0.02, "--drop", height, "--drop-error", 1e-3, "--out", out)
+    assert code == 0, said
+    return out, said
+
+
+def test_the_sentence_has_the_coefficient_with_its_error(report: tuple[Path, str]) -> None:
+    _, said = report
+    match = re.search(r"From the sound of 16 impacts .* is (0\.\d+) ± (0\.\d+)", said)
+    assert match is not None, said
+    assert abs(float(match[1]) - 0.9) < 4.0 * float(match[2]) < 4e-3
+
+
+def test_the_page_needs_nothing_else_and_shows_everything(report: tuple[Path, str]) -> None:
+    page = Page(report[0].read_text(encoding="utf-8"))
+    assert len([source for source in page.sources if source.startswith("data:image/png")]) == 5
+    assert all(source.startswith("data:") or source == "#top" for source in page.sources)
+    laws = ("constant", "power law", "viscoelastic", "plastic")
+    for words in ("ball.wav", "44100 Hz", "20 mm", *laws, "Shape of the ball", "Error budget"):
+        assert words in page.words
+
+
+def test_beside_it_stand_all_numbers(report: tuple[Path, str]) -> None:
+    out, _ = report
+    data = xr.load_dataset(out.with_suffix(".nc"))
+    assert data.sizes["impact"] == 16
+    assert data.attrs["diameter"] == 0.02
+    known = np.isfinite(data.restitution.values)
+    assert known.sum() == 15
+    errors = np.sqrt(np.diag(data.restitution_covariance.values))[known]
+    assert errors == pytest.approx(data.restitution_error.values[known], rel=1e-12)
+    again = rs.flight.read(out.with_suffix(".csv"))
+    assert again.time.values == pytest.approx(data.time.values, abs=1e-8)
+    assert again.uncertainty.values == pytest.approx(data.uncertainty.values, rel=1e-6)
+
+
+def test_pictures_need_no_latex(ball: Path, tmp_path: Path) -> None:
+    """Whatever the user's own settings of matplotlib ask for."""
+    with mpl.rc_context({"text.usetex": True}):
+        code, said = listen(ball, "--diameter", 0.02, "--out", tmp_path / "a.html")
+    assert code == 0, said
+
+
+def test_nothing_is_replaced_unless_asked(ball: Path, report: tuple[Path, str]) -> None:
+    code, said = listen(ball, "--diameter", 0.02, "--out", report[0])
+    assert code == 1
+    assert "exists already" in said
+
+
+def test_mass_accounts_for_drag(ball: Path, tmp_path: Path) -> None:
+    code, said = listen(ball, "--diameter", 0.04, "--mass", 2.7e-3, "--out", tmp_path / "a.html")
+    assert code == 0
+    assert "air drag is accounted for" in said
+    assert "quadratic, terminal velocity 8.8" in (tmp_path / "a.html").read_text(encoding="utf-8")
+
+
+def written(path: Path, samples: np.ndarray, rate: int = RATE) -> Path:
+    soundfile.write(path, samples, rate)
+    return path
+
+
+def silence(folder: Path) -> Path:
+    return written(folder / "a.wav", np.zeros(RATE))
+
+
+def one_impact(folder: Path) -> Path:
+    rng = np.random.default_rng(1)
+    samples = 1e-3 * rng.standard_normal(RATE)
+    samples[20000:20400] += 0.5 * rng.standard_normal(400) * np.exp(-np.arange(400) / 60)
+    return written(folder / "a.wav", samples)
+
+
+def clipped_throughout(folder: Path) -> Path:
+    noise = 50.0 * np.random.default_rng(1).standard_normal(RATE)
+    return written(folder / "a.wav", np.clip(noise, -1.0, 1.0))
+
+
+def no_sound(folder: Path) -> Path:
+    path = folder / "a.wav"
+    path.write_text("no sound", encoding="utf-8")
+    return path
+
+
+def slow_rate(folder: Path) -> Path:
+    return written(folder / "a.wav", np.random.default_rng(1).standard_normal(3000) / 10, 500)
+
+
+@pytest.mark.parametrize(
+    ("make", "message"),
+    [
+        (silence, "a.wav: silence; every sample has the same value"),
+        (one_impact, "a.wav: one impact is heard, at 0.45 s; at least three are needed"),
+        (clipped_throughout, "a.wav: clipped throughout"),
+        (no_sound, "a.wav: not a sound file that can be read (WAV, FLAC, OGG, MP3, AIFF)"),
+        (slow_rate, "a.wav: 500 samples per second; must be at least 2000"),
+    ],
+)
+def test_a_recording_that_tells_nothing_is_told_why(tmp_path: Path, make: object, message: str) -> None:
+    file = make(tmp_path)  # type: ignore[operator]
+    code, said = listen(file, "--diameter", 0.02, "--out", tmp_path / "report.html")
+    assert code == 2
+    assert message in said
+    assert not list(tmp_path.glob("report*"))
+
+
+def test_a_wrong_sample_rate_contradicts_the_drop(ball: Path, tmp_path: Path) -> None:
+    """Samples taken at 44.1 kHz in a file that says 22.05 kHz: flights last twice as long."""
+    samples, _ = soundfile.read(ball)
+    slow = written(tmp_path / "slow.wav", samples, 22050)
+    code, said = listen(slow, "--diameter", 0.02, "--drop", 0.204, "--out", tmp_path / "a.html")
+    assert code == 2
+    assert "drop = 0.204 m: the first flight heard, 0.734 s, is 0.661 m high; the drop is wrong, or" in said
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (("--diameter", -1.0, "--out", "a.html"), "diameter = -1.0: must be a finite number > 0 (m)"),
+        (("--diameter", 0.02, "--out", "a.pdf"), "out = 'a.pdf': must be a file that ends with .html"),
+    ],
+)
+def test_errors_name_what_is_wrong(ball: Path, arguments: tuple[object, ...], message: str) -> None:
+    code, said = listen(ball, *arguments)
+    assert code == 2
+    assert message in said
+
+
+def test_clipping_is_told(tmp_path: Path) -> None:
+    times = impact_times(lambda _: 0.9, 2.0, 10)
+    speeds = np.array([2.0 * 0.9**i for i in range(10)])
+    samples, _ = recording(times, speeds, PLATE, noise=-45.0, clipping=0.7)
+    file = written(tmp_path / "a.wav", samples)
+    code, said = listen(file, "--diameter", 0.02, "--out", tmp_path / "a.html")
+    assert code == 0
+    assert "of the loud samples are clipped: loudness is lost, times are not" in said

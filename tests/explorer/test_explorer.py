@@ -1,0 +1,164 @@
+"""The explorer outside the browser: its module, its links, its server, its widget."""
+
+import hashlib
+import json
+import sys
+import threading
+import urllib.error
+import urllib.request
+from pathlib import Path
+from urllib.parse import parse_qs
+
+import pytest
+
+import restitution as rs
+from restitution.drop.run import Run
+from restitution.explorer import _page, link, serve
+from restitution.explorer._widget import _run_of
+
+ROOT = Path(__file__).parents[2]
+BODY = rs.Dumbbell(radius=3e-3, separation=3e-4)
+LAW = rs.TangentialRestitution(normal=0.98)
+
+
+def test_the_module_in_the_repository_is_whole() -> None:
+    # Whether it is of these sources, `make test-web` says.
+    stamp = json.loads((ROOT / "web/module/restitution_web.json").read_text())
+    module = (ROOT / "web/module/restitution_web.wasm").read_bytes()
+    assert (stamp["module"], stamp["size"]) == (hashlib.sha256(module).hexdigest(), len(module))
+
+
+def test_the_lock_file_names_no_registry() -> None:
+    assert "://" not in (ROOT / "web/package-lock.json").read_text().replace('"url": "https://', "")
+
+
+def values(run: Run) -> dict[str, str]:
+    return {name: found[0] for name, found in parse_qs(link(run)).items()}
+
+
+def test_a_link_holds_every_parameter_of_a_run() -> None:
+    run = Run(
+        body=rs.Spherocylinder(radius=2e-3, separation=1e-3),
+        law=rs.Coulomb(normal=0.8, friction=0.25, hypothesis="poisson"),
+        particles=30,
+        impacts=50,
+        release_height=0.05,
+        gravity=1.62,
+        orientation="isotropic",
+        spin=(0.0, 3.0, -4.0),
+        release_velocity=(0.5, 0.0, -0.1),
+        incline=0.1,
+        minimum_speed=0.01,
+        seed=2**53 - 1,
+    )
+    assert values(run) == {
+        "shape": "spherocylinder",
+        "radius": "0.002",
+        "elongation": "0.5",
+        "law": "coulomb",
+        "normal": "0.8",
+        "friction": "0.25",
+        "hypothesis": "poisson",
+        "orientation": "isotropic",
+        "spin_y": "3.0",
+        "spin_z": "-4.0",
+        "velocity_x": "0.5",
+        "velocity_z": "-0.1",
+        "impacts": "50",
+        "release_height": "0.05",
+        "gravity": "1.62",
+        "incline": "0.1",
+        "minimum_speed": "0.01",
+        "particles": "30",
+        "seed": "9007199254740991",
+    }
+
+
+def test_the_length_of_the_body_survives_the_way_over_the_elongation() -> None:
+    # The page makes L from L/R to twelve digits; 3e-4 / 3e-3 is not 0.1.
+    for radius in (1e-3, 3e-3, 0.0123, 22e-3):
+        for separation in (0.0, 1e-5, 3e-4, 7e-4, 0.0123, 0.05):
+            body = rs.Dumbbell(radius=radius, separation=separation)
+            elongation = float(values(Run(body=body, law=LAW, release_height=1.0))["elongation"])
+            assert float(f"{radius * elongation:.12g}") == separation
+
+
+def test_large_runs_are_shown_in_part() -> None:
+    shown = values(Run(body=BODY, law=LAW, particles=10**6, impacts=400))
+    assert int(shown["particles"]) * 400 == _page.MOST_IMPACTS
+
+
+@pytest.mark.parametrize(
+    ("change", "word"),
+    [
+        ({"body": rs.LoadedSphere(radius=3e-3, load=1e-4, offset=1e-3)}, "body = LoadedSphere"),
+        ({"body": rs.Spheroid(equatorial=3e-3, polar=2e-3)}, "prolate"),
+        ({"body": rs.Dumbbell(radius=(3e-3, 2e-3), separation=1e-3)}, "equal spheres"),
+        ({"law": rs.Frictionless(normal=rs.Plastic(yield_speed=0.1))}, "law.normal = Plastic"),
+        ({"orientation": [0.1, 0.2], "particles": 2}, "orientation = an array"),
+        ({"spin": rs.RandomSpin(rate=10.0)}, "spin"),
+        ({"spin": (1.0, 0.0, 0.0)}, "spin and release_velocity"),
+        ({"seed": 2**60}, "seed"),
+    ],
+)
+def test_what_the_page_cannot_show_is_named(change: dict[str, object], word: str) -> None:
+    run = Run(**{"body": BODY, "law": LAW, **change})
+    with pytest.raises(ValueError, match="the explorer shows this only if it is") as error:
+        link(run)
+    assert word in str(error.value)
+
+
+def test_a_dataset_knows_its_run() -> None:
+    law = rs.Coulomb(normal=0.9, friction=0.1)
+    data = rs.simulate(BODY, law, particles=3, impacts=5, spin=(0.0, 2.0, 0.0), seed=7)
+    run = _run_of(data)
+    assert run == Run(body=BODY, law=law, particles=3, impacts=5, spin=(0.0, 2.0, 0.0), seed=7)
+    one = rs.simulate(BODY, LAW, particles=1, impacts=2, orientation=[0.75])
+    assert float(values(_run_of(one))["angle"]) == pytest.approx(0.75, abs=1e-15)
+    with pytest.raises(ValueError, match="data: not a Dataset"):
+        rs.explore(data.drop_attrs())
+
+
+def test_the_widget_carries_page_and_link(monkeypatch: pytest.MonkeyPatch) -> None:
+    data = rs.simulate(BODY, LAW, particles=3, impacts=5)
+    monkeypatch.setitem(sys.modules, "anywidget", None)
+    with pytest.raises(ImportError, match=r"restitution\[notebook\]"):
+        rs.explore(data)
+    monkeypatch.undo()
+    pytest.importorskip("anywidget")
+    monkeypatch.setattr("restitution.explorer._widget.page", lambda: "<title>page</title>")
+    widget = rs.explore(data, height=500)
+    assert (widget.page, widget.height) == ("<title>page</title>", 500)
+    assert "particles=3" in widget.fragment
+    with pytest.raises(ValueError, match="height = 0"):
+        rs.explore(data, height=0)
+
+
+def test_the_page_is_served_to_this_machine(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("restitution.explorer._server.page", lambda: "<title>π</title>")
+    told: list[str] = []
+    heard = threading.Event()
+
+    def tell(address: str) -> None:
+        told.append(address)
+        heard.set()
+
+    threading.Thread(
+        target=serve, args=("elongation=0.2",), kwargs={"browse": False, "tell": tell}, daemon=True
+    ).start()
+    assert heard.wait(10)
+    address, _, fragment = told[0].partition("#")
+    assert (address.startswith("http://127.0.0.1:"), fragment) == (True, "elongation=0.2")
+    with urllib.request.urlopen(address, timeout=10) as answer:
+        assert answer.read().decode() == "<title>π</title>"
+        assert answer.headers["Content-Type"] == "text/html; charset=utf-8"
+    with pytest.raises(urllib.error.HTTPError, match="404"):
+        urllib.request.urlopen(f"{address}other", timeout=10)
+    with pytest.raises(ValueError, match="port = -1"):
+        serve(port=-1)
+
+
+def test_without_the_page_the_error_says_what_to_do(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    monkeypatch.setattr(_page, "files", lambda _: tmp_path)
+    with pytest.raises(FileNotFoundError, match="make web"):
+        _page.page()

@@ -1,0 +1,124 @@
+"""CONTRIBUTING.md names the files that a further law, body or material takes; a run is declared once."""
+
+import inspect
+import re
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any, get_args
+
+import numpy as np
+import pytest
+
+import restitution as rs
+from restitution import bodies, laws
+from restitution.drop.release import Axis, Orientation
+from restitution.drop.run import Run
+from restitution.drop.toml import _KINDS
+from restitution.laws._coulomb import Hypothesis
+
+ROOT = Path(__file__).parents[2]
+SOURCES = [
+    path
+    for folder in ("crates/core/src", "crates/python/src", "python/restitution")
+    for path in sorted((ROOT / folder).rglob("*"))
+    if path.suffix in (".rs", ".py", ".pyi")
+]
+
+
+def snake(name: str) -> str:
+    return re.sub(r"(?<!^)(?=[A-Z])", "_", name).lower()
+
+
+def knowing(names: list[str]) -> set[str]:
+    """The source files in which every one of these is named."""
+    patterns = [re.compile(rf"\b({name}|{snake(name)})\b") for name in names]
+    texts = {path: path.read_text(encoding="utf-8") for path in SOURCES}
+    known = [path for path, text in texts.items() if all(pattern.search(text) for pattern in patterns)]
+    return {str(path.relative_to(ROOT)) for path in known}
+
+
+@pytest.mark.parametrize(
+    ("heading", "kinds", "core", "package"),
+    [
+        ("A law", laws.KINDS, "crates/core/src/collision", "python/restitution/laws"),
+        ("A body", bodies.KINDS, "crates/core/src/body", "python/restitution/bodies"),
+        ("A material", laws.MATERIALS, "crates/core/src/collision/normal", "python/restitution/laws"),
+    ],
+)
+def test_the_files_that_it_takes_are_those_listed(
+    heading: str, kinds: tuple[type, ...], core: str, package: str
+) -> None:
+    """A file that names all laws needs the next one, too; those are the list. Each law has two of its own."""
+    text = (ROOT / "CONTRIBUTING.md").read_text(encoding="utf-8")
+    section = text.split(f"\n### {heading}\n")[1].split("\n#")[0]
+    listed = set(re.findall(r"`([\w/]+\.(?:rs|pyi?))`", section))
+    assert listed == knowing([kind.__name__ for kind in kinds])
+    for folder, declared in ((core, "pub struct {}\\b"), (package, "class {}\\(")):
+        assert f"`{folder}/" in section
+        for kind in kinds:
+            pattern = re.compile(declared.format(kind.__name__))
+            texts = [path.read_text(encoding="utf-8") for path in SOURCES if path.parent == ROOT / folder]
+            assert sum(bool(pattern.search(text)) for text in texts) == 1
+
+
+def test_every_kind_is_entered() -> None:
+    """All classes of laws, bodies and materials can be chosen in a file, under their own names."""
+    families: tuple[tuple[Any, tuple[Any, ...]], ...] = (
+        (laws.Law, laws.KINDS),
+        (bodies.Body, bodies.KINDS),
+        (laws.Tabulated.__base__, laws.MATERIALS),
+    )
+    for base, kinds in families:
+        assert set(base.__subclasses__()) == set(kinds)
+        assert {kind.__name__ for kind in kinds} <= set(rs.__all__)
+    assert list(_KINDS["body"][1]) == ["dumbbell", "loaded-sphere", "spherocylinder", "spheroid"]
+    assert list(_KINDS["law"][1]) == ["tangential-restitution", "frictionless", "coulomb", "chatterjee-ruina"]
+    assert list(_KINDS["normal"][1]) == ["viscoelastic", "plastic", "tabulated"]
+
+
+@pytest.mark.parametrize("function", [rs.simulate, rs.statistics, rs.FluctuatingRestitution.learn])
+def test_a_run_is_asked_for_alike_everywhere(function: Callable[..., Any]) -> None:
+    """Each call has the parameters of `Run`, in its order, with its defaults; None stands for no motion.
+
+    `learn` follows more particles, and chooses for itself how far.
+    """
+    found = inspect.signature(function).parameters
+    assert [name for name in found if name in Run.model_fields] == list(Run.model_fields)
+    own = {"particles": 20_000, "impacts": None} if function == rs.FluctuatingRestitution.learn else {}
+    for name, field in Run.model_fields.items():
+        default = found[name].default
+        if field.is_required():
+            assert default is inspect.Parameter.empty
+        elif name in own:
+            assert default == own[name]
+        elif default is None:
+            np.testing.assert_array_equal(field.default, (0.0, 0.0, 0.0))
+        else:
+            assert default == field.default
+
+
+def test_names_in_annotations_are_the_cores() -> None:
+    """What a type checker allows is what the core knows; it refuses others with the list of these."""
+    run = Run(body=rs.Spheroid(equatorial=1e-3, polar=2e-3), law=rs.Frictionless(normal=0.9)).parameters()
+    spin = {"low": 0.0, "high": 1.0, "axis": "upwards"}
+    for changed, names in (
+        ({"orientation": "upright"}, get_args(Orientation)),
+        ({"spin": spin}, [axis for axis in get_args(Axis) if axis != "thermal"]),  # a law of its own there
+    ):
+        with pytest.raises(ValueError, match=r"upright|upwards") as caught:
+            rs._core.simulate(run | changed, 1, None)
+        assert caught.value.allowed == " or ".join(map(repr, names))  # type: ignore[attr-defined]
+    with pytest.raises(ValueError, match="hypothesis = 'routh'") as caught:
+        rs._core.coulomb(0.5, 0.1, "routh")
+    assert caught.value.allowed == " or ".join(map(repr, get_args(Hypothesis)))  # type: ignore[attr-defined]
+    assert (caught.value.name, caught.value.value) == ("hypothesis", "routh")  # type: ignore[attr-defined]
+
+
+def test_the_glossary_is_of_names_in_the_core() -> None:
+    """Every name of ARCHITECTURE.md's glossary is an identifier of the core."""
+    section = (ROOT / "ARCHITECTURE.md").read_text(encoding="utf-8").split("### Glossary of the core")[1]
+    section = section.split("\n###")[0]
+    names = re.findall(r"`(\w+)`", "".join(row.split("|")[1] for row in section.splitlines() if "|" in row))
+    source = "".join(path.read_text(encoding="utf-8") for path in SOURCES if path.suffix == ".rs")
+    assert len(names) > 20
+    assert [name for name in names if not re.search(rf"\b{name}\b", source)] == []

@@ -1,0 +1,31 @@
+"""The page of names has every public name."""
+
+import re
+from pathlib import Path
+from types import ModuleType
+
+import pytest
+
+import restitution as rs
+
+DOCS = Path(__file__).parents[2] / "docs"
+PAGE = (DOCS / "names.md").read_text(encoding="utf-8")
+
+
+@pytest.mark.parametrize("module", ["restitution", "analytic", "fit", "flight", "sound", "study", "figures"])
+def test_every_public_name_is_on_the_page(module: str) -> None:
+    listed = set(re.findall(r"`([A-Za-z_]\w*)`", PAGE))
+    names = set(rs.__all__ if module == "restitution" else getattr(rs, module).__all__)
+    assert names <= listed
+
+
+@pytest.mark.parametrize("module", ["", "analytic", "fit", "flight", "sound", "study", "figures"])
+def test_every_public_name_is_in_the_api(module: str) -> None:
+    """The pages made from docstrings: docs/api.md lists the names of a module below its name."""
+    text = (DOCS / "api.md").read_text(encoding="utf-8")
+    home = ".".join(filter(None, ["restitution", module]))
+    blocks = re.findall(rf"currentmodule:: {re.escape(home)}\n(.*?)^```", text, re.DOTALL | re.MULTILINE)
+    listed = sorted(re.findall(r"^   (\w+)$", "".join(blocks), re.MULTILINE))
+    space = getattr(rs, module) if module else rs
+    public = [name for name in space.__all__ if not isinstance(getattr(space, name), ModuleType)]
+    assert listed == sorted(public)

@@ -1,0 +1,227 @@
+"""Whatever happens to a study, the same command continues, and ends with the bits of an undisturbed one."""
+
+import os
+import resource
+import shutil
+import signal
+import subprocess
+from collections.abc import Callable
+from functools import partial
+from pathlib import Path
+
+import pytest
+
+from reference.studies import bits, chunks, finished, started, when, written
+from restitution._internal.drafts import draft_of
+from restitution.study import status, sweep
+
+# Each batch takes 20 ms longer, so that there is a middle of the study to strike in.
+SLOWLY = """
+import time
+import restitution.study._work as work
+count = work.count
+def slow_count(*arguments):
+    time.sleep(0.02)
+    return count(*arguments)
+work.count = slow_count
+"""
+
+
+@pytest.fixture(scope="module")
+def whole(tmp_path_factory: pytest.TempPathFactory) -> dict[str, str]:
+    """The bits of the study of 12 points, undisturbed."""
+    folder = tmp_path_factory.mktemp("undisturbed")
+    sweep(written(folder, normals=4), folder / "study.zarr")
+    assert status(folder / "study.zarr").finished == 12
+    return bits(folder / "study.zarr")
+
+
+def has_chunks(store: Path, number: int) -> bool:
+    return len(chunks(store)) >= number
+
+
+def test_killed_drivers(whole: dict[str, str], tmp_path: Path) -> None:
+    """Two are killed, one after the other, and their work is not done again."""
+    study, store = written(tmp_path, normals=4), tmp_path / "study.zarr"
+    for target in (3, 7):
+        process = started(study, "--out", store, code=SLOWLY)
+        when(partial(has_chunks, store, target), process)
+        os.killpg(process.pid, signal.SIGKILL)
+        finished(process)
+    there = {path: path.stat().st_mtime_ns for path in chunks(store)}
+    assert 7 <= len(there) < 12
+    sweep(study, store)
+    assert {path: path.stat().st_mtime_ns for path in there} == there
+    assert bits(store) == whole
+
+
+# Killed when the third file of the store itself is complete and has not yet taken its place.
+DYING = """
+import os
+from pathlib import Path
+replace, written = Path.replace, []
+def dying(draft, target):
+    if not any(part.endswith(".part") for part in draft.parent.parts):
+        written.append(draft)
+        if len(written) == 3:
+            os.kill(os.getpid(), 9)
+    return replace(draft, target)
+Path.replace = dying
+"""
+
+
+def test_what_a_killed_driver_left_is_removed(whole: dict[str, str], tmp_path: Path) -> None:
+    """By the next one on this machine; what another process is about to write stays."""
+    study, store = written(tmp_path, normals=4), tmp_path / "study.zarr"
+    assert finished(started(study, "--out", store, code=DYING))[0] == -signal.SIGKILL
+    assert list(store.rglob(".*.part"))  # more than one where others were being written at the same time
+    alive = draft_of(store / "zarr.json")
+    alive.touch()
+    sweep(study, store)
+    assert list(store.rglob(".*.part")) == [alive]
+    alive.unlink()
+    assert bits(store) == whole
+
+
+def test_ctrl_c_leaves_a_store_that_can_be_read(whole: dict[str, str], tmp_path: Path) -> None:
+    import xarray as xr
+
+    study, store = written(tmp_path, normals=4), tmp_path / "study.zarr"
+    process = started(study, "--out", store, code=SLOWLY)
+    when(lambda: len(chunks(store)) >= 9, process)
+    process.send_signal(signal.SIGINT)
+    code, _, error = finished(process, 60)
+    assert code == 130, error
+    assert "the same command continues" in error
+    found = xr.open_zarr(store, chunks=None)
+    done = int((found["status"] == 1).sum())
+    assert 1 <= done < 12
+    assert bool(found["mean_restitution"].where(found["status"] == 1).notnull().any())
+    sweep(study, store)
+    assert bits(store) == whole
+
+
+def cut(path: Path) -> None:
+    path.write_bytes(path.read_bytes()[: path.stat().st_size // 2])
+
+
+def flip(path: Path) -> None:
+    data = bytearray(path.read_bytes())
+    data[2 * len(data) // 3] ^= 4
+    path.write_bytes(data)
+
+
+def empty(path: Path) -> None:
+    path.write_bytes(b"")
+
+
+def vanish(path: Path) -> None:
+    path.unlink()
+
+
+@pytest.mark.parametrize("harm", [cut, flip, empty, vanish])
+def test_damaged_chunks(whole: dict[str, str], tmp_path: Path, harm: Callable[[Path], None]) -> None:
+    """Of the tasks and of every array of results; of the tasks only what is damaged is done again."""
+    study, store = written(tmp_path, normals=4), tmp_path / "study.zarr"
+    if not store.exists():
+        sweep(study, store)
+    arrays = sorted({path.parent for path in store.rglob("zarr.json")} - {store, store / "tasks"})
+    files = [
+        sorted(path for path in array.rglob("*") if path.is_file() and path.name != "zarr.json")
+        for array in arrays
+    ]
+    struck = [chunk[0] for chunk in files if chunk]  # of zeros alone no chunk is written
+    assert len(struck) > 20
+    kept = {path: path.stat().st_mtime_ns for path in chunks(store)}
+    for path in struck:
+        harm(path)
+    sweep(study, store)
+    assert bits(store) == whole
+    changed = {path for path, at in kept.items() if path.stat().st_mtime_ns != at}
+    assert changed == {path for path in struck if path in kept}
+
+
+def test_a_chunk_of_another_point_is_not_taken_for_its_own(whole: dict[str, str], tmp_path: Path) -> None:
+    study, store = written(tmp_path, normals=4), tmp_path / "study.zarr"
+    sweep(study, store)
+    words = store / "tasks" / "words" / "c"
+    shutil.copyfile(words / "3" / "0" / "0", words / "4" / "0" / "0")
+    sweep(study, store)
+    assert bits(store) == whole
+
+
+def limited() -> None:
+    resource.setrlimit(resource.RLIMIT_FSIZE, (3000, 3000))
+    signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+
+
+def test_files_that_cannot_grow(whole: dict[str, str], tmp_path: Path) -> None:
+    """No file may have more than 3000 bytes: tasks fit, results do not. The error names the reason."""
+    study, store = written(tmp_path, normals=4), tmp_path / "study.zarr"
+    code, _, error = finished(started(study, "--out", store, preexec_fn=limited))
+    assert code == 1
+    assert "File too large" in error
+    assert len(error.splitlines()) <= 2
+    if store.exists():
+        assert status(store).points == 12
+    sweep(study, store)
+    assert bits(store) == whole
+
+
+def test_a_full_disk(whole: dict[str, str], tmp_path: Path) -> None:
+    """On a file system of 300 kB, which has more room later."""
+    disk = tmp_path / "disk"
+    disk.mkdir()
+    mount = ["mount", "-t", "tmpfs", "-o", "size=300k", "tmpfs", str(disk)]
+    if subprocess.run(mount, capture_output=True, check=False).returncode != 0:
+        pytest.skip("no right to mount a small file system here; test_files_that_cannot_grow does without")
+    try:
+        study, store = written(tmp_path, normals=4), disk / "study.zarr"
+        code, _, error = finished(started(study, "--out", store))
+        assert code == 1
+        assert error.startswith(f"error: {disk}")
+        assert "No space left on device" in error
+        assert len(error.splitlines()) <= 2
+        assert len(chunks(store)) > 0
+        assert status(store).points == 12
+        subprocess.run(["mount", "-o", "remount,size=50m", str(disk)], check=True)
+        sweep(study, store)
+        assert bits(store) == whole
+    finally:
+        subprocess.run(["umount", str(disk)], check=True)
+
+
+def test_two_drivers_on_one_store(whole: dict[str, str], tmp_path: Path) -> None:
+    """Both end well, and the second spares itself what the first has done."""
+    study, store = written(tmp_path, normals=4), tmp_path / "study.zarr"
+    both = [started(study, "--out", store, "--threads", 1, code=SLOWLY) for _ in range(2)]
+    for process in both:
+        code, out, error = finished(process)
+        assert code == 0, error
+        assert "12 of 12 points finished" in out
+    assert bits(store) == whole
+
+
+# The clock on the wall jumps back and forth by years at every look.
+JUMPS = """
+import itertools, time
+jumps = itertools.cycle((0.0, 1e9, -1e9, 5e8))
+wall = time.time
+time.time = lambda: wall() + next(jumps)
+time.time_ns = lambda: int(1e9 * time.time())
+"""
+
+
+def test_a_clock_that_jumps(whole: dict[str, str], tmp_path: Path) -> None:
+    """In the driver, and between what is in the store and the time when it goes on."""
+    study, store = written(tmp_path, normals=4), tmp_path / "study.zarr"
+    process = started(study, "--out", store, code=SLOWLY)
+    when(lambda: len(chunks(store)) >= 5, process)
+    os.killpg(process.pid, signal.SIGKILL)
+    finished(process)
+    for i, path in enumerate(chunks(store)):
+        at = (0, 4_000_000_000)[i % 2]
+        os.utime(path, (at, at))
+    code, _, error = finished(started(study, "--out", store, code=JUMPS))
+    assert code == 0, error
+    assert bits(store) == whole

@@ -1,0 +1,331 @@
+"""Parameter studies: every point is the run it stands for, and its standard errors are those of particles."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+import xarray as xr
+
+import restitution as rs
+from reference import measuring
+from reference.command import invoke
+from reference.studies import bits, written
+from restitution.study import Refused, estimate, merge, status, study_of, sweep
+
+BINS = {
+    "velocity_bins": {"from": 0.0, "to": 1.1, "bins": 11},
+    "restitution_bins": {"from": -1.0, "to": 3.0, "bins": 40},
+}
+
+
+def tables(**more: object) -> dict[str, object]:
+    return {
+        "body": rs.Dumbbell(radius=3e-3, separation=3e-4),
+        "law": rs.TangentialRestitution(normal=0.98),
+        "run": {"particles": 64, "impacts": 60, "seed": 7},
+        "sweep": {"body.separation": [1e-4, 2e-3]},
+        "statistics": BINS,
+        **more,
+    }
+
+
+@pytest.fixture(scope="module")
+def store(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The small study, undisturbed, on one thread."""
+    folder = tmp_path_factory.mktemp("study")
+    sweep(written(folder), folder / "study.zarr", threads=1)
+    return folder / "study.zarr"
+
+
+def test_every_point_is_the_run_it_stands_for_to_the_bit(store: Path) -> None:
+    """Four batches counted apart and merged are the run in one go: counts and moments have the same bits."""
+    found = xr.load_dataset(store, engine="zarr")
+    assert found["std_restitution"].dims == ("separation", "normal", "velocity")
+    assert found["separation"].values.tolist() == [1e-4, 3e-4, 2e-3]
+    for separation in found["separation"].values:
+        for normal in found["normal"].values:
+            whole = rs.statistics(
+                rs.Dumbbell(radius=3e-3, separation=float(separation)),
+                rs.TangentialRestitution(normal=float(normal)),
+                particles=64,
+                impacts=60,
+                seed=7,
+                velocity_bins=np.linspace(0.0, 1.1, 12),
+                restitution_bins=np.linspace(-1.0, 3.0, 41),
+            )
+            point = found.sel(separation=separation, normal=normal)
+            exact = [str(name) for name in whole.data_vars if not str(name).endswith("_error")]
+            for name in exact:  # a store has errors of its own, over its batches
+                np.testing.assert_array_equal(point[name], whole[name], err_msg=name)
+            np.testing.assert_array_equal(point["std_restitution"], np.sqrt(whole["variance"]))
+    assert (found["status"] == 1).all()
+    assert (found["particles"] == 64).all()
+
+
+def test_threads_and_size_of_tasks_do_not_matter(
+    store: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Three threads and a task for each batch, where the fixture has one for each point."""
+    monkeypatch.setattr("restitution.study._effort.TASK", 64 * 60 // 4)
+    study = study_of(written(tmp_path))
+    assert study.effort.block_tasks == 4
+    found = sweep(study, tmp_path / "fine.zarr", threads=3).load()
+    plain = xr.load_dataset(store, engine="zarr")
+    xr.testing.assert_identical(found.drop_attrs(deep=False), plain.drop_attrs(deep=False))
+
+
+def test_standard_errors_are_those_of_particles(tmp_path: Path) -> None:
+    """Jackknife over 64 groups against cluster-robust errors of the recorded impacts, which share no code.
+
+    With 63 degrees of freedom the logarithm of a jackknife error scatters by 1/√126 = 9 % about the true one;
+    the mean over 8 bins, which are correlated, by less than that. Three times as much is allowed.
+    """
+    from restitution.drop.reduce import standard_errors
+
+    run = {"particles": 1024, "impacts": 100, "seed": 3}
+    found = sweep(tables(run=run, effort={"batches": 64}), tmp_path / "s.zarr").isel(separation=0)
+    data = rs.simulate(
+        rs.Dumbbell(radius=3e-3, separation=1e-4),
+        rs.TangentialRestitution(normal=0.98),
+        particles=1024,
+        impacts=100,
+        seed=3,
+    )
+    expected = standard_errors(data, np.linspace(0.0, 1.1, 12))
+    full = found["number"].values > 2000
+    assert full.sum() >= 6
+    for name, other in (
+        ("mean_restitution", "mean"), ("variance", "variance"), ("std_restitution", "deviation"),
+    ):  # fmt: skip
+        ratio = found[f"{name}_error"].values[full] / expected[f"{other}_standard_error"].values[full]
+        assert abs(np.log(ratio).mean()) < 0.27, name
+
+
+def test_particles_are_added_until_the_error_is_reached(tmp_path: Path) -> None:
+    """And the result is that of a study which had so many from the beginning."""
+    effort = {"until": {"mean": 4e-3}, "velocities": (0.5, 0.8), "most_particles": 64 * 64}
+    found = sweep(tables(effort=effort), tmp_path / "s.zarr", threads=2).load()
+    window = found["mean_restitution_error"].sel(velocity=slice(0.5, 0.8))
+    particles = found["particles"].values
+    assert (window <= 4e-3).all()
+    assert particles[0] == 64 < particles[1] < 64 * 64  # an elongated body scatters more
+    for i, separation in enumerate((1e-4, 2e-3)):
+        whole = rs.statistics(
+            rs.Dumbbell(radius=3e-3, separation=separation),
+            rs.TangentialRestitution(normal=0.98),
+            particles=int(particles[i]),
+            impacts=60,
+            seed=7,
+            velocity_bins=np.linspace(0.0, 1.1, 12),
+            restitution_bins=np.linspace(-1.0, 3.0, 41),
+        )
+        np.testing.assert_array_equal(found["restitution_count"][i], whole["restitution_count"])
+        np.testing.assert_array_equal(found["mean_restitution"][i], whole["mean_restitution"])
+    again = sweep(tables(effort=effort), tmp_path / "other.zarr", threads=1)
+    xr.testing.assert_identical(found, again.load())
+    share = sweep(tables(effort=effort | {"until": {"mean": "0.5 %"}}), tmp_path / "share.zarr")
+    share = share.sel(velocity=slice(0.5, 0.8))
+    assert (share["mean_restitution_error"] <= 0.005 * share["mean_restitution"]).all()
+
+
+@pytest.mark.parametrize("design", ["latin-hypercube", "sobol"])
+def test_points_may_be_spread_over_all_parameters(tmp_path: Path, design: str) -> None:
+    """Each parameter has one value in each eighth of its range, in both designs."""
+    varied = {
+        "design": design,
+        "points": 8,
+        "body.separation": {"from": 1e-5, "to": 1e-3, "scale": "log"},
+        "law.normal": {"from": 0.5, "to": 0.9},
+    }
+    found = sweep(tables(sweep=varied), tmp_path / "s.zarr").load()
+    assert found["std_restitution"].dims == ("point", "velocity")
+    assert set(found.coords) >= {"separation", "normal"}
+    for unit in (np.log10(found["separation"].values / 1e-5) / 2, (found["normal"].values - 0.5) / 0.4):
+        assert sorted(np.floor(8 * unit).astype(int)) == list(range(8))
+    body = rs.Dumbbell(radius=3e-3, separation=float(found["separation"][3]))
+    law = rs.TangentialRestitution(normal=float(found["normal"][3]))
+    whole = rs.simulate(body, law, particles=64, impacts=60, seed=7)
+    point = found.isel(point=3)
+    outside = point["velocity_underflow"] + point["velocity_overflow"] + point["undefined"].sum()
+    assert int(point["number"].sum() + outside) == int(whole["impacts"].sum())
+
+
+def negative(statistics: xr.Dataset) -> xr.Dataset:
+    """Share of negative coefficients: the bins end at 0."""
+    share = (
+        statistics["restitution_count"].sel(restitution=slice(-1.0, 0.0)).sum() / statistics["number"].sum()
+    )
+    return xr.Dataset({"negative": share})
+
+
+def duration(data: xr.Dataset) -> xr.Dataset:
+    """Mean time of the tenth impact, and the numbers of impacts."""
+    return xr.Dataset({"tenth": data["time"][:, 9].mean(), "impacts": data["impacts"].mean()})
+
+
+def test_any_function_is_measured_with_its_error(tmp_path: Path) -> None:
+    varied = {"body.separation": [6e-3, 1e-3], "law.normal": [0.3]}
+    run = {"particles": 512, "impacts": 12, "seed": 2}
+    found = sweep(tables(sweep=varied, run=run, measure=negative), tmp_path / "s.zarr").isel(normal=0)
+    value, error = found["negative"].values, found["negative_error"].values
+    assert value[0] > value[1] >= 0.0
+    # At least a binomial error: impacts of a particle are not independent.
+    number = found["number"].sum("velocity").values
+    assert error[0] > 0.5 * np.sqrt(value[0] * (1 - value[0]) / number[0])
+    assert error[0] < 0.2 * value[0]
+
+    recorded = {"function": duration, "of": "simulate"}
+    study = tables(run={"particles": 64, "impacts": 20, "seed": 7}, measure=recorded)
+    del study["statistics"]
+    found = sweep(study, tmp_path / "r.zarr", threads=2)
+    for i, separation in enumerate((1e-4, 2e-3)):
+        body = rs.Dumbbell(radius=3e-3, separation=separation)
+        data = rs.simulate(body, rs.TangentialRestitution(normal=0.98), particles=64, impacts=20, seed=7)
+        tenth = data["time"][:, 9].values
+        # 16 batches of four particles: means of means, and the scatter of the batches.
+        assert found["tenth"].values[i] == pytest.approx(tenth.mean(), rel=1e-14)
+        batches = tenth.reshape(16, 4).mean(axis=1)
+        assert found["tenth_error"].values[i] == pytest.approx(batches.std(ddof=1) / 4, rel=1e-12)
+
+
+def test_first_impact_is_that_of_the_closed_form(tmp_path: Path) -> None:
+    study = tables(first_impact={})
+    del study["statistics"]
+    found = sweep(study, tmp_path / "s.zarr")
+    for i, separation in enumerate((1e-4, 2e-3)):
+        exact = rs.analytic.first_impact(
+            rs.Dumbbell(radius=3e-3, separation=separation), rs.TangentialRestitution(normal=0.98)
+        )
+        assert found["first_impact_mean"].values[i] == exact.mean()
+        assert found["first_impact_std"].values[i] == exact.std()
+
+
+def test_the_results_can_be_saved_as_netcdf(store: Path, tmp_path: Path) -> None:
+    data = xr.load_dataset(store, engine="zarr")
+    data.to_netcdf(tmp_path / "study.nc")
+    xr.testing.assert_identical(xr.load_dataset(tmp_path / "study.nc"), data)
+
+
+def test_status_tells_how_far_a_store_is(store: Path) -> None:
+    result = invoke("sweep", written(store.parent), "--out", store, "--status")
+    assert result.stdout == "6 of 6 points finished (100 %); 6 tasks done, 6 at least\n"
+
+
+def test_a_finished_study_is_only_looked_at(store: Path) -> None:
+    before = {path: path.stat().st_mtime_ns for path in store.rglob("*") if path.is_file()}
+    sweep(written(store.parent), store)
+    assert before == {path: path.stat().st_mtime_ns for path in store.rglob("*") if path.is_file()}
+
+
+def test_shards_in_one_store_and_in_several_merge_to_the_same_bits(store: Path, tmp_path: Path) -> None:
+    study = written(tmp_path)
+    for i in (1, 2, 3):
+        assert invoke("sweep", study, "--out", tmp_path / "one.zarr", "--shard", f"{i}/3").exit_code == 0
+        assert invoke("sweep", study, "--out", tmp_path / f"{i}.zarr", "--shard", f"{i}/3").exit_code == 0
+    assert status(tmp_path / "one.zarr").finished == 0
+    assert invoke("sweep", "merge", "--out", tmp_path / "one.zarr").exit_code == 0
+    parts = [tmp_path / f"{i}.zarr" for i in (3, 1)]
+    result = invoke("sweep", "merge", "--out", tmp_path / "all.zarr", *parts)
+    assert result.exit_code == 1
+    assert "4 of 6 points finished" in result.stdout
+    assert merge(tmp_path / "all.zarr", [tmp_path / "2.zarr"]).finished == 6
+    assert bits(tmp_path / "one.zarr") == bits(tmp_path / "all.zarr") == bits(store)
+
+
+def test_the_store_of_another_study_is_refused_with_what_differs(
+    store: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    before = bits(store)
+    other = tmp_path / "other.toml"
+    text = written(tmp_path).read_text()
+    other.write_text(text.replace("seed = 7", "seed = 8").replace("3e-4", "4e-4"))
+    result = invoke("sweep", other, "--out", store)
+    assert result.exit_code == 2
+    assert "run.seed: 7 in the store, 8 here" in result.stderr
+    assert "sweep.body.separation: [0.0001, 0.0003, 0.002] in the store" in result.stderr
+    monkeypatch.setattr("restitution.study._identity.fingerprint", lambda: {"version": "9.9", "runs": "0"})
+    with pytest.raises(Refused, match=r'install that version.*\n.*physics.runs: .*\n.*"9.9" here'):
+        sweep(written(tmp_path), store)
+    with pytest.raises(Refused, match="is not the store of a study"):
+        sweep(written(tmp_path), tmp_path)
+    with pytest.raises(Refused, match="physics"):
+        merge(tmp_path / "new.zarr", [store], study=written(tmp_path))
+    assert not (tmp_path / "new.zarr").exists()
+    assert bits(store) == before
+
+
+@pytest.mark.parametrize(
+    ("more", "message"),
+    [
+        ({"sweep": {}}, "sweep: nothing is varied"),
+        ({"sweep": {"body.separaton": [1.0]}}, "separaton: unknown; did you mean"),
+        ({"sweep": {"separation": [1.0]}}, 'sweep."separation": must be the table and the name'),
+        ({"sweep": {"body.separation": []}}, r"sweep.body.separation = \[\]: must be a list of different"),
+        ({"sweep": {"body.separation": [1e-4, 1e-4]}}, "list of different numbers"),
+        ({"sweep": {"body.separation": ["a"]}}, "list of different numbers"),
+        ({"sweep": {"body.separation": {"from": 1.0, "to": 0.0, "points": 3}}}, "finite from < to"),
+        ({"sweep": {"body.separation": {"from": 0.0, "to": 1.0, "points": 1}}}, "whole number in"),
+        ({"sweep": {"law.normal": {"from": 0, "to": 1, "points": 3, "scale": "log"}}}, "from = 0: must be"),
+        ({"sweep": {"design": "sobol", "points": 6, "law.normal": {"from": 0, "to": 1}}}, "a power of 2"),
+        ({"sweep": {"design": "spiral", "law.normal": [0.5]}}, "'spiral': must be 'grid' or"),
+        ({"sweep": {"law.normal": [0.5, 1.5]}}, r"at law.normal = 1.5: .*normal = 1.5: must be"),
+        ({"sweep": {"body.separation": [1e-4, 1.0]}}, "release_height = 0.06: must be at least"),
+        ({"statistics": {}}, "statistics.restitution_bins: missing"),
+        ({"statistics": {**BINS, "velocity": 3}}, "statistics.velocity: unknown; did you mean"),
+        ({"statistics": {**BINS, "velocity_bins": {"from": 0}}}, "from, to, bins"),
+        ({"effort": {"batches": 1}}, r"effort.batches = 1: must be a whole number in \[2, 64\]"),
+        ({"effort": {"until": {"std": -1}}}, "effort.until.std = -1: must be a number > 0"),
+        ({"effort": {"until": {"std": "1"}}}, "a share as"),
+        ({"effort": {"most_particles": 128}}, "is for `until`"),
+        ({"measure": {"function": "no_such_module:f"}}, "importable where the study runs"),
+        ({"measure": {"function": "math:nothing"}}, "importable where the study runs"),
+        ({"measures": {}}, "measures: unknown; did you mean measure?"),
+        ({"first_impact": {"mean": True}}, "an empty table"),
+    ],
+)  # fmt: skip
+def test_what_is_wrong_is_named_before_anything_is_written(
+    tmp_path: Path, more: dict[str, object], message: str
+) -> None:
+    with pytest.raises(ValueError, match=message):
+        sweep(tables(**more), tmp_path / "s.zarr")
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_an_unknown_standard_error_is_named(tmp_path: Path) -> None:
+    with pytest.raises(
+        ValueError, match=r"effort\.until\.sigma: has no standard error; there are .*, std_restitution, "
+    ):
+        sweep(tables(effort={"until": {"sigma": 0.1}}), tmp_path / "s.zarr")
+
+
+def test_a_measure_that_fails_names_the_point(tmp_path: Path) -> None:
+    def fails(_: xr.Dataset) -> xr.Dataset:
+        raise ValueError("no such thing")
+
+    with pytest.raises(ValueError, match=r"at body\.separation = 0\.0001: no such thing"):
+        sweep(tables(measure=fails), tmp_path / "s.zarr", threads=1)
+    assert status(tmp_path / "s.zarr").finished == 0
+
+
+def test_the_cost_is_foretold(tmp_path: Path) -> None:
+    """Points, tasks and particles exactly; time within what a busy machine does to it."""
+    result = invoke("sweep", written(tmp_path), "--out", tmp_path / "s.zarr", "--dry-run")
+    assert result.exit_code == 0
+    assert result.stdout.startswith("6 points, 6 tasks of about ")
+    assert "384 particles" in result.stdout
+    assert not (tmp_path / "s.zarr").exists()
+    adaptive = study_of(tables(effort={"until": {"mean": 2e-3}, "velocities": (0.5, 0.8)}))
+    plain = estimate(study_of(tables()), 1)
+    found = estimate(adaptive, 1)
+    assert found.particles > plain.particles == 128
+    assert "particles are added" in str(found)
+
+
+def test_studies_compare_and_hash_by_what_they_are() -> None:
+    tables = measuring.study_tables()
+    one, same = study_of(tables), study_of(tables)
+    other = study_of(tables | {"sweep": {"law.normal": [0.8]}})
+    assert one == same
+    assert hash(one) == hash(same)
+    assert one != other
+    assert one != "study"
