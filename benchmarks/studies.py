@@ -21,8 +21,8 @@ import restitution as rs
 from restitution.study import study_of
 from restitution.study._drive import Driver, Progress
 from restitution.study._effort import TASK
-from restitution.study._engines import engine
 from restitution.study._sweep import opened
+from restitution.study.engines import engine
 
 POINTS = 10_000
 TASK_SECONDS, TASKS, SMALL = 1.0, 48, 200

@@ -13,8 +13,8 @@ import xarray as xr
 import restitution as rs
 from reference.command import COMMAND, SMALL, invoke, load, small
 from restitution._core import STOP_REASONS
+from restitution._internal.datasets import save
 from restitution.cli import BAD_INPUT, FAILED, INTERRUPTED
-from restitution.drop.dataset import save
 from restitution.drop.toml import read
 
 ROOT = Path(__file__).parents[2]

@@ -68,7 +68,7 @@ def test_a_signal_ends_a_run_as_ctrl_c_does(long: Path, tmp_path: Path, number: 
 def test_hangup_that_is_ignored_stays_ignored(parameters: Path) -> None:
     """As under nohup."""
     code = "import signal; signal.signal(signal.SIGHUP, signal.SIG_IGN)\n"
-    code += "from restitution._internal.signals import ending\nimport os\n"
+    code += "from restitution._internal.process import ending\nimport os\n"
     code += "with ending() as came:\n    os.kill(os.getpid(), signal.SIGHUP)\nprint(came)"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert done.stdout == "[]\n"
@@ -183,7 +183,7 @@ def test_a_stream_that_lacks_a_letter(capfd: pytest.CaptureFixture[str]) -> None
     words = [
         sys.executable,
         "-c",
-        "from restitution._internal.streams import say, tell; say('1 µs'); tell('2 µs')",
+        "from restitution._internal.process import say, tell; say('1 µs'); tell('2 µs')",
     ]
     subprocess.run(words, check=True, env=os.environ | {"PYTHONIOENCODING": "ascii:strict"})
     assert capfd.readouterr() == ("1 \\xb5s\n", "2 \\xb5s\n")

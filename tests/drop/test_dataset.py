@@ -10,7 +10,7 @@ import pytest
 import xarray as xr
 
 import restitution as rs
-from restitution.drop.dataset import load, put, save
+from restitution._internal.datasets import load, put, save
 
 
 @pytest.fixture(scope="module")
@@ -70,9 +70,9 @@ def test_a_file_that_memory_does_not_hold_is_named(
     data: xr.Dataset, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     save(data, tmp_path / "run.nc")
-    monkeypatch.setattr("restitution._internal.memory.available_memory", lambda: data.nbytes)
+    monkeypatch.setattr("restitution._internal.resources.available_memory", lambda: data.nbytes)
     assert load(tmp_path / "run.nc").identical(data)
-    monkeypatch.setattr("restitution._internal.memory.available_memory", lambda: data.nbytes - 1)
+    monkeypatch.setattr("restitution._internal.resources.available_memory", lambda: data.nbytes - 1)
     with pytest.raises(MemoryError, match=re.escape(str(tmp_path / "run.nc"))):
         load(tmp_path / "run.nc")
 

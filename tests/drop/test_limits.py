@@ -13,7 +13,7 @@ import pytest
 import restitution as rs
 from reference.command import AMONG_TESTS, SMALL
 from reference.processes import COMMANDS
-from restitution._internal.memory import available_memory
+from restitution._internal.resources import available_memory
 
 SETUP = """
 import json, mmap, os, resource, signal, sys, threading, time, warnings
@@ -113,13 +113,13 @@ def test_a_command_says_what_data_it_takes(name: str, tmp_path: Path) -> None:
 def test_a_file_that_no_memory_holds(tmp_path: Path) -> None:
     """It is named, with what it takes, before it is read."""
     found = run(f"""
-from restitution._internal import memory as _memory
-from restitution.drop.dataset import load
+from restitution._internal import resources as _resources
+from restitution._internal.datasets import load
 from pathlib import Path
 data = rs.simulate(body, law, particles=10, impacts=10)
 data.to_netcdf("{tmp_path}/run.nc")
 told(load, Path("{tmp_path}/run.nc"))
-_memory.available_memory = lambda: 4000
+_resources.available_memory = lambda: 4000
 told(load, Path("{tmp_path}/run.nc"))
 print(data.nbytes)
 """)

@@ -52,7 +52,7 @@ def test_a_study_says_what_it_takes(limit: int, tmp_path: Path) -> None:
 
 def test_what_zarr_takes_is_not_asked_for_twice(done: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Nothing is left when a study ends, which may be because Zarr is there."""
-    monkeypatch.setattr("restitution._internal.memory.available_memory", lambda: 0)
+    monkeypatch.setattr("restitution._internal.resources.available_memory", lambda: 0)
     assert open_store(done).sizes
 
 
@@ -92,7 +92,7 @@ def test_a_short_file_takes_no_room_of_the_longest() -> None:
         + f"""
 import resource
 from pathlib import Path
-from restitution._internal.reading import content
+from restitution._internal.files import content
 used = int(open("/proc/self/statm").read().split()[0]) * resource.getpagesize()
 resource.setrlimit(resource.RLIMIT_AS, (used + {64 * MIB}, resource.RLIM_INFINITY))
 print(len(content(Path({__file__!r}))))

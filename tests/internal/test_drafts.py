@@ -9,8 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from restitution._internal.drafts import discard, prefix
-from restitution._internal.files import check, whole_file, whole_folder, write
+from restitution._internal.files import check, discard, prefix, whole_file, whole_folder, write
 
 
 def names(folder: Path) -> set[str]:

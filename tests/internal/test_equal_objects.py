@@ -14,7 +14,7 @@ import xarray as xr
 from reference import measuring
 from reference.contract import CALLS
 from restitution import fit
-from restitution._internal.content import Content, same
+from restitution._internal.datasets import Content, same
 from restitution.experiment import listen
 from restitution.experiment.listen._analysis import Setting
 from restitution.fit._mixture import Mixture

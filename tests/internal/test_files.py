@@ -13,8 +13,7 @@ from typing import Any
 import pytest
 
 from restitution._internal import files as _files
-from restitution._internal.drafts import draft_folder, prefix
-from restitution._internal.files import check, whole_file, whole_folder, write
+from restitution._internal.files import check, draft_folder, prefix, whole_file, whole_folder, write
 
 
 def names(folder: Path) -> set[str]:

@@ -18,7 +18,7 @@ from typing import Any
 import pytest
 
 from restitution._internal.files import check, claim, whole_file, whole_files, whole_folder
-from restitution._internal.signals import ending
+from restitution._internal.process import ending
 
 NAMES = ("a", "b.html")
 

@@ -16,7 +16,7 @@ def test_the_error_is_the_systems_wherever_room_ends(tmp_path: Path) -> None:
 import errno, json, os, resource, signal
 from pathlib import Path
 from reference.command import small
-from restitution.drop.dataset import save
+from restitution._internal.datasets import save
 data, file = small(), Path({str(tmp_path)!r}) / "run.nc"
 save(data, file)
 size = file.stat().st_size

@@ -18,10 +18,10 @@ import restitution as rs
 from reference.command import COMMAND, SMALL, invoke
 from reference.studies import written
 from restitution import figures, flight
-from restitution._internal import reading as _reading
-from restitution._internal.formats import FOLDER, HEADER, IMAGE, MODULE, NETCDF, ZARR, check_name
+from restitution._internal import files as _files
+from restitution._internal.datasets import load
+from restitution._internal.files import FOLDER, HEADER, IMAGE, MODULE, NETCDF, ZARR, check_name
 from restitution.distribution import FluctuatingRestitution
-from restitution.drop.dataset import load
 from restitution.study import merge, status, sweep
 
 BINS = """
@@ -151,7 +151,7 @@ def test_a_run_may_come_through_a_pipe(tmp_path: Path) -> None:
 
 def test_what_has_no_end(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     """Is not read until the memory is full."""
-    monkeypatch.setattr(_reading, "MOST", 2**20)
+    monkeypatch.setattr(_files, "MOST", 2**20)
     for words in ("simulate /dev/zero --out run.nc", "sweep /dev/zero --out study.zarr"):
         assert invoke(*words.split()).stderr == "error: /dev/zero: longer than 1 MiB\n"
     with pytest.raises(OSError, match="longer than 1 MiB") as raised:

@@ -7,10 +7,20 @@ from pathlib import Path
 
 import pytest
 
-from restitution._internal import reading as _reading
-from restitution._internal.formats import FOLDER, HEADER, IMAGE, MODULE, NETCDF, ZARR, check_name, path_for
+from restitution._internal import files as _files
+from restitution._internal.files import (
+    FOLDER,
+    HEADER,
+    IMAGE,
+    MODULE,
+    NETCDF,
+    ZARR,
+    check_name,
+    check_regular,
+    content,
+    path_for,
+)
 from restitution._internal.parameters import ParameterError
-from restitution._internal.reading import check_regular, content
 
 OWN = {
     NETCDF: "run.nc",
@@ -23,7 +33,7 @@ OWN = {
 
 def test_a_file_is_read_to_its_end_or_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """A file of just the greatest length is read as it is, one of a byte more is not."""
-    monkeypatch.setattr(_reading, "MOST", 3 << 20)
+    monkeypatch.setattr(_files, "MOST", 3 << 20)
     path = tmp_path / "table"
     whole = os.urandom(3 << 20)
     path.write_bytes(whole)
@@ -43,7 +53,7 @@ def test_a_file_without_end_is_read_no_farther_than_needed(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """The byte beyond the greatest length is enough to refuse it, while its writer goes on."""
-    monkeypatch.setattr(_reading, "MOST", 1000)
+    monkeypatch.setattr(_files, "MOST", 1000)
     os.mkfifo(tmp_path / "pipe")
     refused = threading.Event()
     in_time = []

@@ -11,7 +11,7 @@ from typing import Any
 
 import pytest
 
-from restitution._internal.signals import ending, leaving, put_off, undisturbed
+from restitution._internal.process import ending, leaving, put_off, undisturbed
 
 ALL = [signal.SIGINT, signal.SIGTERM, signal.SIGHUP]
 PATIENCE = 20.0

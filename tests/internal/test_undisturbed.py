@@ -11,7 +11,7 @@ from typing import Any
 
 import pytest
 
-from restitution._internal.signals import ending, put_off, surely, undisturbed
+from restitution._internal.process import ending, put_off, surely, undisturbed
 
 NUMBERS = [signal.SIGINT, signal.SIGTERM, signal.SIGALRM]
 

@@ -12,8 +12,8 @@ import restitution as rs
 from reference.contract import CALLS
 from reference.processes import same
 from restitution import flight
-from restitution._internal.arrays import real, reals
-from restitution._internal.units import _UNITS, check_units
+from restitution._internal.arrays import check_units, real, reals
+from restitution._internal.datasets import _UNITS
 
 ANY = {
     "analytic.FirstImpact.restitution": "cos_theta",

@@ -41,7 +41,7 @@ def test_what_zarr_needs(monkeypatch: pytest.MonkeyPatch) -> None:
             need_zarr(Path("store"))
     with monkeypatch.context() as patched:
         patched.delitem(sys.modules, "zarr")  # what is there has its room
-        patched.setattr("restitution._internal.memory.available_memory", lambda: 99_999_999)
+        patched.setattr("restitution._internal.resources.available_memory", lambda: 99_999_999)
         with pytest.raises(MemoryError, match=r"a study: takes 100 MB of memory"):
             need_zarr(Path("store"))
 

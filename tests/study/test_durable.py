@@ -12,7 +12,7 @@ from pathlib import Path
 import pytest
 
 from reference.studies import bits, chunks, finished, started, when, written
-from restitution._internal.drafts import draft_of
+from restitution._internal.files import draft_of
 from restitution.study import status, sweep
 
 # Each batch takes 20 ms longer, so that there is a middle of the study to strike in.

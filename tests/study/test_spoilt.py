@@ -16,7 +16,7 @@ from zarr.core.buffer import default_buffer_prototype
 from zarr.storage import LocalStore
 
 from reference.studies import TINY, bits
-from restitution._internal import reading as _reading
+from restitution._internal import files as _files
 from restitution.study import Refused, _folder, merge, status, sweep
 from restitution.study._status import open_store
 from restitution.study._store import Store
@@ -206,9 +206,9 @@ def test_a_chunk_longer_than_memory(copy: Path, done: Path, monkeypatch: pytest.
     monkeypatch.setattr(_folder, "MOST", 2**20)
     for name in (TASK, "mean_restitution/c/0/0/0"):
         with (copy / name).open("wb") as file:
-            file.truncate(_reading.MOST)
+            file.truncate(_files.MOST)
     with monkeypatch.context() as patched:
-        patched.setattr(_folder, "available_memory", lambda: _reading.MOST - 1)
+        patched.setattr(_folder, "available_memory", lambda: _files.MOST - 1)
         with pytest.raises(OSError, match="longer") as raised:
             open_store(copy).load()
         assert raised.value.strerror == "longer than this process has memory"

@@ -3,7 +3,7 @@
 import math
 import sys
 from collections import UserList, deque
-from collections.abc import Callable, Collection, Iterable
+from collections.abc import Callable, Collection, Iterable, Mapping
 from itertools import islice
 from operator import index
 from typing import Any, TypeVar
@@ -11,9 +11,14 @@ from typing import Any, TypeVar
 import numpy as np
 import numpy.typing as npt
 
-from restitution._internal.memory import available_memory
-from restitution._internal.parameters import ParameterError, Problem, TooLargeError, plain_number, wrong
-from restitution._internal.units import check_units
+from restitution._internal.parameters import (
+    ParameterError,
+    Problem,
+    TooLargeError,
+    plain_number,
+    shown,
+    wrong,
+)
 
 FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.int64]
@@ -215,6 +220,8 @@ def _array_of(name: str, value: Any) -> npt.NDArray[Any]:
 
 def _check_memory(name: str, value: Any, size: int) -> None:
     """Refuse more numbers than this process can hold, as doubles and what is made of these."""
+    from restitution._internal.resources import available_memory
+
     if size > _MANY and _BYTES_EACH * size > (available := available_memory()):
         allowed = f"at most {available // _BYTES_EACH:,} numbers, for which this process has the memory"
         raise TooLargeError(wrong(name, value, allowed))
@@ -240,3 +247,56 @@ def _stray(value: Any, depth: int) -> str | None:
     if any(hasattr(value, attribute) for attribute in _UNITS):
         return "has units of its own"
     return None
+
+
+def _per_second(short: str, *long: str) -> set[str]:
+    exponents = ("s-1", "s^-1", "s**-1", "s⁻¹")
+    found = {f"{short}{sign}{one}" for one in exponents for sign in (" ", ".", "·", "*")}
+    return found | {f"{short}/s", f"{short} / s"} | {f"{one} / second" for one in long}
+
+
+_SPELLINGS = {
+    "m": {"m", "meter", "meters", "metre", "metres"},
+    "m s-1": _per_second("m", "meter", "metre"),
+    "rad": {"rad", "radian", "radians"},
+    "rad s-1": _per_second("rad", "radian") | {"s-1", "1/s"},
+    "s": {"s", "sec", "second", "seconds"},
+    "Hz": {"Hz", "hertz", "s-1", "1/s"},
+    "1": {"1", "", "dimensionless"},
+}
+
+_DEEPEST_UNITS = 2
+"""Lists in lists that are looked into; no table of ours has more."""
+
+
+def check_units(name: str, value: Any, unit: str, depth: int = 0) -> None:
+    """Refuse an array whose attribute ``units``, as of xarray, is another; one without is taken to have ours.
+
+    So are the arrays in a list.
+
+    Parameters
+    ----------
+    name : str
+        Of the argument, for the error.
+    value : Any
+        Anything; what has no attributes passes.
+    unit : str
+        What its numbers must be in, as the CF conventions write it.
+    depth : int
+        Of lists that `value` is in.
+
+    Raises
+    ------
+    ParameterError
+        With the units that it has.
+    """
+    attributes = getattr(value, "attrs", None)
+    said = attributes.get("units") if isinstance(attributes, Mapping) else None
+    if said is not None and str(said).strip() not in _SPELLINGS.get(unit, {unit}):
+        text = (
+            f" has units {shown(said)}: must be in {unit}; drop_attrs() removes units that xarray handed on"
+        )
+        raise ParameterError(Problem(name, text))
+    if depth < _DEEPEST_UNITS and isinstance(value, list | tuple | deque | UserList):
+        for part in () if set(map(type, value)) <= {float, int} else value:
+            check_units(name, part, unit, depth + 1)

@@ -10,18 +10,228 @@ is written is there or nothing.
 
 import errno
 import os
+import platform
 import re
+import secrets
 import shutil
-from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
+import tempfile
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from contextlib import ExitStack, contextmanager, suppress
 from functools import partial
+from hashlib import blake2b
 from pathlib import Path
 from threading import Lock
 from typing import Any, NoReturn
 
-from restitution._internal.drafts import discard, discarding, draft_file, draft_folder, remove_leftovers
 from restitution._internal.parameters import ParameterError, wrong
-from restitution._internal.signals import surely, undisturbed
+from restitution._internal.process import surely, undisturbed
+
+NETCDF, ZARR, HEADER, MODULE, IMAGE, FOLDER = (
+    "a netCDF file, such as run.nc",
+    "a Zarr store, such as study.zarr",
+    "a header of C and C++, such as dist.h",
+    "a Fortran source, such as dist.f90",
+    "a figure, which is written as .png, .pdf or .svg",
+    "a folder",
+)
+"""What the package writes under names that are given, in the words of an error."""
+
+_OWN = {
+    NETCDF: {".nc", ".nc3", ".nc4", ".netcdf", ".cdf", ".h5", ".hdf5"},
+    ZARR: {".zarr"},
+    HEADER: {".h", ".hh", ".hpp", ".hxx"},
+    MODULE: {".f90", ".f95", ".f03", ".f08"},
+    IMAGE: {".png", ".pdf", ".svg"},
+    FOLDER: set(),
+}
+_OTHERS = {
+    *(".c", ".cc", ".cpp", ".cxx", ".f", ".for", ".py", ".rs", ".jl", ".m", ".r", ".ipynb"),
+    *(".csv", ".tsv", ".txt", ".md", ".tex", ".html", ".htm", ".json", ".toml", ".yaml", ".yml", ".xml"),
+    *(".xls", ".xlsx", ".ods", ".parquet", ".feather", ".arrow", ".npy", ".npz", ".mat", ".pkl", ".pickle"),
+    *(".jpg", ".jpeg", ".gif", ".tif", ".tiff", ".bmp", ".webp", ".eps", ".ps", ".mp4"),
+    *(".wav", ".flac", ".ogg", ".mp3", ".aiff", ".zip", ".tar", ".gz", ".bz2", ".xz", ".7z", ".sqlite"),
+}
+
+
+def check_name(argument: str, path: Path, kind: str) -> None:
+    """Refuse the name of another format, a folder's, and a dash, which to other programs is standard output.
+
+    Any other name will do: what follows the last dot may be part of a number.
+
+    Parameters
+    ----------
+    argument : str
+        What the name is given as.
+    path : Path
+        The name.
+    kind : str
+        What is written: `NETCDF`, `ZARR`, `HEADER`, `MODULE`, `IMAGE` or `FOLDER`.
+
+    Raises
+    ------
+    ParameterError
+        Saying what is written.
+    """
+    strange = _OTHERS.union(*(own for other, own in _OWN.items() if other != kind))
+    nameless = path.name in ("", "..") and kind != FOLDER
+    if nameless or path.suffix.lower() in strange or path.name == "-":
+        raise ParameterError(wrong(argument, str(path), f"the name of {kind}"))
+
+
+def path_for(argument: str, value: Any, kind: str) -> Path:
+    """Take what names a file that is to be written; errors as of `path_from` and `check_name`."""
+    path = path_from(argument, value)
+    check_name(argument, path, kind)
+    return path
+
+
+MOST = 2**28
+"""Bytes of a file that is read as a whole; tables of times and parameters of runs are far below it."""
+_PIECE = 2**20
+"""Bytes that are read at a time."""
+
+
+def content(path: Path) -> bytes:
+    """Read a file as a whole; an OSError that names it if it cannot be read, or is longer than any table."""
+    try:
+        found = bytearray()
+        with path.open("rb") as file:
+            # Python takes room for all that is asked for, however short the file is.
+            while piece := file.read(min(_PIECE, MOST + 1 - len(found))):
+                found += piece
+    except OSError as error:  # while it is read, it names no file
+        raise OSError(error.errno, error.strerror, str(path)) from error
+    if len(found) > MOST:
+        raise OSError(errno.EFBIG, f"longer than {MOST >> 20} MiB", str(path))
+    return bytes(found)
+
+
+def check_regular(path: Path) -> None:
+    """Refuse folders, pipes and devices for libraries that go back and forth in a file, or wait for ever."""
+    path.stat()  # whose OSError names what is not there
+    if not path.is_file():
+        number = errno.EISDIR if path.is_dir() else errno.EINVAL
+        text = "is a folder" if path.is_dir() else "not a regular file: save it first"
+        raise OSError(number, text, str(path))
+
+
+_NAME = re.compile(r"\.(.+)\.([0-9a-f]{8})-(\d+)\.[^.]+\.part", re.DOTALL)
+"""The name of a draft: whose it is, its machine and its process."""
+_LONGEST = 200
+"""Bytes of a name that a draft's contains as it is: most file systems allow 255 in all."""
+
+
+def draft_of(path: Path) -> Path:
+    """Name a draft beside `path`, which nothing has yet."""
+    return path.with_name(f"{prefix(path.name)}{secrets.token_hex(8)}.part")
+
+
+def draft_file(path: Path) -> Path:
+    """Make an empty file beside `path`, whose place it is to take, and remove what the dead left."""
+    remove_leftovers(path.parent, [path.name])
+    handle, name = tempfile.mkstemp(prefix=prefix(path.name), suffix=".part", dir=path.parent)
+    os.close(handle)
+    return Path(name)
+
+
+def draft_folder(path: Path) -> Path:
+    """Make an empty folder beside `path`, whose place it is to take, and remove what the dead left."""
+    remove_leftovers(path.parent, [path.name])
+    return Path(tempfile.mkdtemp(prefix=prefix(path.name), suffix=".part", dir=path.parent))
+
+
+def prefix(name: str) -> str:
+    """Begin the name of a draft."""
+    return f".{_short(name)}.{_machine()}-{os.getpid()}."
+
+
+def _short(name: str) -> str:
+    """Shorten a name that leaves no room for what a draft's has besides, in the same way always."""
+    whole = os.fsencode(name)
+    if len(whole) <= _LONGEST:
+        return name
+    return whole[: _LONGEST // 2].decode("utf-8", "ignore") + "-" + blake2b(whole, digest_size=8).hexdigest()
+
+
+def _machine() -> str:
+    """Tell apart what has process numbers of its own: machines, and the containers of one."""
+    whole = platform.node()
+    with suppress(OSError):  # not Linux, or without /proc
+        whole += os.readlink("/proc/self/ns/pid")
+    return blake2b(whole.encode(), digest_size=4).hexdigest()
+
+
+def remove_leftovers(folder: Path, names: Iterable[str]) -> None:
+    """Remove drafts of these names in a folder whose process, on this machine, has ended."""
+    wanted = set(map(_short, names))
+    with suppress(OSError), os.scandir(folder) as entries:  # there may be none, or none that can be listed
+        for entry in entries:
+            if _whom_the_dead_left(entry.name) in wanted:
+                discard([Path(entry.path)])
+
+
+def remove_all_leftovers(folder: Path) -> None:
+    """Remove what the dead left in a folder and in those below it, whatever its name was to be."""
+    for place, _, names in os.walk(folder):
+        for name in names:
+            if _whom_the_dead_left(name):
+                discard([Path(place, name)])
+
+
+def _whom_the_dead_left(draft: str) -> str | None:
+    """Give the name that a draft was to have, if its process, on this machine, has ended."""
+    found = _NAME.fullmatch(draft)
+    if found and found[2] == _machine() and not _is_alive(int(found[3])):
+        return found[1]
+    return None
+
+
+def _is_alive(process: int) -> bool:
+    if os.name != "posix":  # elsewhere the call would end it
+        return True
+    try:
+        os.kill(process, 0)
+    except ProcessLookupError:
+        return False
+    except (OSError, OverflowError):  # of another user
+        return True
+    return True
+
+
+def discard(drafts: Sequence[Path]) -> None:
+    """Remove drafts and all that is in them, as far as possible, with one open file at a time."""
+
+    def remove() -> None:
+        for draft in drafts:
+            for folder, _, names in os.walk(draft, topdown=False):
+                for name in names:
+                    with suppress(OSError):
+                        Path(folder, name).unlink()
+                with suppress(OSError):
+                    Path(folder).rmdir()
+            with suppress(OSError):  # a file
+                draft.unlink()
+
+    surely(remove)
+
+
+@contextmanager
+def discarding(draft: Path) -> Iterator[None]:
+    """Discard a folder's draft if the block fails, whatever files it leaves open.
+
+    Those of fonts stay open with a figure that could not be drawn, and the process may have no more.
+    """
+    with ExitStack() as spare:
+        try:
+            spare.callback(os.close, os.open(os.devnull, os.O_RDONLY))
+            yield
+        except BaseException:
+            try:
+                spare.close()
+            finally:
+                discard([draft])
+            raise
+
 
 _MASKING = Lock()
 _LONGEST_PATH = 4095 if os.name == "posix" else 32_767  # bytes of any path that a system opens

@@ -13,7 +13,7 @@ from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, ValidationEr
 from pydantic_core import PydanticCustomError
 
 from restitution import _core
-from restitution._internal import display as _display
+from restitution._internal import text as _text
 
 
 class Problem(NamedTuple):
@@ -138,7 +138,7 @@ class Allowed:
     text: str
 
 
-class Parameters(BaseModel, metaclass=_display.Listed):
+class Parameters(BaseModel, metaclass=_text.Listed):
     """A frozen set of named parameters.
 
     Raises
@@ -188,7 +188,7 @@ class Parameters(BaseModel, metaclass=_display.Listed):
 
     @classmethod
     def __pydantic_init_subclass__(cls, **options: Any) -> None:
-        cls.__signature__ = _display.signature(cls, cls.by_place)
+        cls.__signature__ = _text.signature(cls, cls.by_place)
 
     def __setattr__(self, name: str, value: Any) -> None:
         raise AttributeError(f"{name}: {self!r} cannot be changed; make another")
@@ -197,14 +197,14 @@ class Parameters(BaseModel, metaclass=_display.Listed):
         raise AttributeError(f"{name}: {self!r} cannot be changed; make another")
 
     def __dir__(self) -> list[str]:
-        return sorted({*_display.public_names(type(self)), *type(self).model_fields})
+        return sorted({*_text.public_names(type(self)), *type(self).model_fields})
 
     def __str__(self) -> str:
-        fields = (f"{name}={_display.short(getattr(self, name))}" for name in type(self).model_fields)
+        fields = (f"{name}={_text.short(getattr(self, name))}" for name in type(self).model_fields)
         return f"{type(self).__name__}({', '.join(fields)})"
 
     def _repr_html_(self) -> str:
-        return _display.table(type(self).__name__, self._rows())
+        return _text.table(type(self).__name__, self._rows())
 
     def _rows(self) -> Iterator[tuple[str, str]]:
         """Yield the names and values that a notebook shows."""
@@ -215,7 +215,7 @@ class Parameters(BaseModel, metaclass=_display.Listed):
                 for key, text in value._rows():
                     yield f"{name}.{key}", text
             else:
-                yield name, _display.value(value, field.description)
+                yield name, _text.value(value, field.description)
 
 
 def _misplaced(kind: type[Parameters], values: tuple[Any, ...], named: dict[str, Any]) -> str:

@@ -13,10 +13,10 @@ from numpy.typing import ArrayLike
 
 from restitution._internal.arrays import flag, function, real, reals, shape, whole
 from restitution._internal.arrays import generator as _generator
-from restitution._internal.content import check_state
-from restitution._internal.display import table, value
+from restitution._internal.datasets import check_state
 from restitution._internal.parameters import ParameterError, wrong
 from restitution._internal.resources import check_size
+from restitution._internal.text import table, value
 from restitution.analytic._orientation import Floats, OrientationName
 from restitution.bodies import BODIES, Body
 from restitution.laws import LAWS, Law

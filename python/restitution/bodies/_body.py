@@ -8,7 +8,7 @@ from typing import Self
 from pydantic import model_validator
 
 from restitution import _core
-from restitution._internal import display as _display
+from restitution._internal import text as _text
 from restitution._internal.parameters import ParameterError, Parameters, Problem, shown
 
 
@@ -41,9 +41,9 @@ class Body(Parameters):
 
     def _rows(self) -> Iterator[tuple[str, str]]:
         yield from super()._rows()
-        yield "mass", _display.value(self.mass, "kg")
-        yield "transverse_inertia", _display.value(self.transverse_inertia, "kg m²")
-        yield "axial_inertia", _display.value(self.axial_inertia, "kg m²")
+        yield "mass", _text.value(self.mass, "kg")
+        yield "transverse_inertia", _text.value(self.transverse_inertia, "kg m²")
+        yield "axial_inertia", _text.value(self.axial_inertia, "kg m²")
 
     @property
     def mass(self) -> float:

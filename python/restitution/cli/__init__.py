@@ -6,8 +6,7 @@ from typing import Annotated
 
 import typer
 
-from restitution._internal.signals import leaving
-from restitution._internal.streams import open_missing, say, tell
+from restitution._internal.process import leaving, open_missing, say, tell
 from restitution.cli import _explore, _fit, _listen, _pages, _runs, _sweep, _template
 from restitution.cli._common import BAD_INPUT, FAILED, INTERRUPTED, WARNED, Command, Group
 

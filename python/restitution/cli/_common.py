@@ -12,9 +12,7 @@ from typing import Annotated, Any, NoReturn
 import typer
 from typer.core import TyperCommand, TyperGroup
 
-from restitution._internal.memory import check_address_space, check_data
-from restitution._internal.signals import ending
-from restitution._internal.streams import is_terminal, tell
+from restitution._internal.process import ending, is_terminal, tell
 
 FAILED, BAD_INPUT, WARNED, INTERRUPTED = 1, 2, 3, 130
 """Exit statuses: files or numbers in trouble; input that is refused; doubtful accuracy; Ctrl-C.
@@ -103,9 +101,11 @@ def errors_in_a_line(*libraries: str, room: int = _ROOM) -> Iterator[None]:
     with ending() as came:
         try:
             if libraries:
+                from restitution._internal.resources import check_address_space, check_data
+
                 check_address_space("this command", room)
-            if "matplotlib.figure" in libraries:
-                check_data("this command", _DATA)
+                if "matplotlib.figure" in libraries:
+                    check_data("this command", _DATA)
             for name in libraries:
                 import_module(name)
             # Of the files that Zarr reads at once the first that fails ends the command, in a line.

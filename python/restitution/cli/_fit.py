@@ -6,7 +6,7 @@ from typing import Annotated, Any
 
 import typer
 
-from restitution._internal.streams import say
+from restitution._internal.process import say
 from restitution.cli._common import Quiet, errors_in_a_line
 
 _FAMILIES = ("asymmetric-laplace", "laplace", "gaussian", "logistic", "student-t", "cusp-mixture")
@@ -40,8 +40,8 @@ def fit(
     """
     with errors_in_a_line("netCDF4", "scipy.stats"):
         from restitution import fit as fits
+        from restitution._internal.datasets import load
         from restitution._internal.parameters import ParameterError, wrong
-        from restitution.drop.dataset import load
 
         if family not in _FAMILIES:
             raise ParameterError(wrong("family", family, " or ".join(_FAMILIES)))

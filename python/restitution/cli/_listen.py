@@ -5,8 +5,8 @@ from typing import Annotated
 
 import typer
 
-from restitution._internal.memory import check_room
-from restitution._internal.streams import say, tell
+from restitution._internal.process import say, tell
+from restitution._internal.resources import check_room
 from restitution.cli._common import Overwrite, Quiet, errors_in_a_line
 
 _ROOM, _ADDRESSES = 500_000_000, 800_000_000

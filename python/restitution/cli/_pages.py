@@ -4,7 +4,7 @@ from typing import Annotated
 
 import typer
 
-from restitution._internal.streams import say
+from restitution._internal.process import say
 from restitution.cli._common import Folder, Overwrite, Quiet, Threads, errors_in_a_line, progress
 
 

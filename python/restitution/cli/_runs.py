@@ -7,8 +7,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from restitution._internal.signals import put_off
-from restitution._internal.streams import say, tell
+from restitution._internal.process import put_off, say, tell
 from restitution.cli._common import (
     WARNED,
     Kept,
@@ -51,10 +50,9 @@ def simulate(
     """
     interrupted: KeyboardInterrupt | None = None  # kept: what is caught has not been lost
     with errors_in_a_line("netCDF4"):
-        from restitution._internal.files import check, check_apart
-        from restitution._internal.formats import NETCDF, check_name
+        from restitution._internal.datasets import save
+        from restitution._internal.files import NETCDF, check, check_apart, check_name
         from restitution._internal.resources import checked_threads
-        from restitution.drop.dataset import save
         from restitution.drop.simulate import SimulationInterrupted, checked_record, simulate_run
         from restitution.drop.toml import read
 
@@ -183,13 +181,20 @@ def distribution(
     and nothing is written.
     """
     with errors_in_a_line("netCDF4", "scipy.stats", "matplotlib.figure"):
-        from restitution._internal.files import check, check_apart, whole_files
-        from restitution._internal.formats import HEADER, MODULE, NETCDF, check_name
+        from restitution._internal.datasets import put
+        from restitution._internal.files import (
+            HEADER,
+            MODULE,
+            NETCDF,
+            check,
+            check_apart,
+            check_name,
+            whole_files,
+        )
         from restitution._internal.resources import checked_threads
         from restitution.distribution import FluctuatingRestitution, image, image_format, sealed
         from restitution.distribution.c import header as c_header
         from restitution.distribution.fortran import module as fortran_module
-        from restitution.drop.dataset import put
         from restitution.drop.toml import read_all
 
         study = read_all(run, single=True)
@@ -255,9 +260,8 @@ def _bins(run: Path, how: dict[str, Any]) -> dict[str, Any]:
 
 def _counted(count: Any, run: Path, out: Path, *, overwrite: bool, quiet: bool) -> None:
     """Count, write what was counted, and say what it is."""
-    from restitution._internal.files import check, check_apart
-    from restitution._internal.formats import NETCDF, check_name
-    from restitution.drop.dataset import save
+    from restitution._internal.datasets import save
+    from restitution._internal.files import NETCDF, check, check_apart, check_name
     from restitution.drop.simulate import SimulationInterrupted
 
     check_apart([run], [out])

@@ -6,7 +6,7 @@ from typing import Annotated, Any
 
 import typer
 
-from restitution._internal.streams import say, tell
+from restitution._internal.process import say, tell
 from restitution.cli._common import Command, Group, Quiet, Threads, errors_in_a_line, progress
 
 

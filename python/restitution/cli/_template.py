@@ -1,6 +1,6 @@
 """`restitution template`: a commented TOML file with all parameters of a run."""
 
-from restitution._internal.streams import say
+from restitution._internal.process import say
 
 TEMPLATE = """\
 # What restitution simulate, statistics, compare and distribution read. SI units throughout: m, kg, s, rad.

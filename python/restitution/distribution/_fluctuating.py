@@ -11,11 +11,11 @@ import numpy.typing as npt
 import xarray as xr
 
 from restitution._internal.arrays import flag, reals, whole
-from restitution._internal.display import Text, table, value
-from restitution._internal.files import path_from, write
-from restitution._internal.formats import HEADER, MODULE, NETCDF, path_for
+from restitution._internal.datasets import load, save
+from restitution._internal.files import HEADER, MODULE, NETCDF, path_for, path_from, write
 from restitution._internal.parameters import ParameterError, Problem, renamed, wrong
 from restitution._internal.resources import checked_threads
+from restitution._internal.text import Text, table, value
 from restitution.bodies import Body
 from restitution.distribution import _defaults as defaults
 from restitution.distribution._check import Check, warn_of_distance
@@ -27,7 +27,6 @@ from restitution.distribution._memory import correlations
 from restitution.distribution._store import sealed, unsealed
 from restitution.distribution.c import header
 from restitution.distribution.fortran import module
-from restitution.drop.dataset import load, save
 from restitution.drop.recorded import check_filled, check_successive, records
 from restitution.drop.release import RandomHeight, RandomSpin
 from restitution.drop.run import Run

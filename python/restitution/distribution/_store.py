@@ -8,8 +8,8 @@ import numpy as np
 import xarray as xr
 
 from restitution._internal.arrays import check_each, reals
+from restitution._internal.datasets import check_variables
 from restitution._internal.parameters import ParameterError, Problem, wrong
-from restitution._internal.units import check_variables
 from restitution.distribution._check import Check
 from restitution.distribution._count import Counted
 from restitution.distribution._table import Floats, Histogram, Table

@@ -12,7 +12,7 @@ import numpy.typing as npt
 import xarray as xr
 
 from restitution._internal.arrays import check_each, check_shapes, flag, function, real, reals, shape, whole
-from restitution._internal.content import check_names
+from restitution._internal.datasets import check_names
 from restitution._internal.parameters import ParameterError, plain_number, wrong
 from restitution._internal.resources import check_size
 from restitution.distribution import _store

@@ -1,10 +1,7 @@
 """A run as an xarray Dataset, with the names, units and flags of the core; files."""
 
-import errno
-import os
 from functools import cache
 from importlib.metadata import version
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -12,9 +9,6 @@ import numpy.typing as npt
 import xarray as xr
 
 from restitution._core import STOP_REASONS
-from restitution._internal.files import whole_file
-from restitution._internal.memory import check_room
-from restitution._internal.reading import check_regular
 from restitution.drop.energy import ledger_of
 from restitution.drop.run import Run
 
@@ -69,49 +63,3 @@ def attributes(run: Run, title: str) -> dict[str, Any]:
         "references": "A. Glielmo, N. Gunkelmann, T. Pöschel, Phys. Rev. E 90, 052204 (2014)",
         **run.attributes(),
     }
-
-
-def load(path: Path) -> xr.Dataset:
-    """Read a netCDF file; an OSError that names it if it cannot be read."""
-    check_regular(path)
-    try:
-        with xr.open_dataset(path, engine="netcdf4") as data:
-            check_room(str(path), data.nbytes)
-            return data.load()
-    except MemoryError:
-        raise
-    except OSError as error:  # of netCDF, which names the file in full, or not at all
-        raise OSError(error.errno or errno.EIO, error.strerror or str(error), str(path)) from error
-    except Exception as error:  # of netCDF, which raises many kinds for a damaged file
-        raise OSError(errno.EIO, f"cannot be read as netCDF: {error}", str(path)) from error
-
-
-def save(data: xr.Dataset, path: Path, *, replace: bool = False) -> None:
-    """Write a netCDF file whole or not at all."""
-    with whole_file(path, replace=replace) as draft:
-        put(data, draft)
-
-
-def put(data: xr.Dataset, draft: Path) -> None:
-    """Write a netCDF file."""
-    try:
-        data.to_netcdf(draft, engine="netcdf4")
-    except (RuntimeError, OSError) as error:  # of netCDF, which says neither where nor why
-        _ask_for_room(draft, data.nbytes)
-        raise OSError(errno.EIO, f"cannot be written: {error}", str(draft)) from error
-
-
-_BESIDE = 2**20
-"""Bytes that HDF5 keeps beside the numbers of a file, at most."""
-
-
-def _ask_for_room(draft: Path, size: int) -> None:
-    """Raise the system's own error where the disk is full, or files may not be so much larger."""
-    if not hasattr(os, "posix_fallocate"):
-        return
-    try:
-        with draft.open("ab") as file:
-            # It may have failed in what HDF5 keeps beside the numbers, which itself would fit.
-            os.posix_fallocate(file.fileno(), file.tell(), size + _BESIDE)
-    except OSError as error:
-        raise OSError(error.errno, error.strerror, str(draft)) from None

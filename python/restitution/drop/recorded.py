@@ -1,65 +1,20 @@
 """Datasets from outside, checked in one place: recorded impacts, and counts in bins."""
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
 import xarray as xr
 
 from restitution._internal.arrays import FloatArray, check_counts, check_each, real, reals
+from restitution._internal.datasets import check_dimensions, check_variables, variables
 from restitution._internal.parameters import ParameterError, Problem, wrong
-from restitution._internal.units import check_variables
 from restitution.drop.bins import increasing_edges
 
 RECORDS = ("particle", "impact")
 """Dimensions of what is recorded of each impact."""
 _RUN = "restitution.simulate"
-
-
-def variables(
-    name: str, data: Any, origin: str, dimensions: Mapping[str, tuple[str, ...]]
-) -> tuple[FloatArray, ...]:
-    """Take variables of a Dataset as arrays of these dimensions, in their order.
-
-    Parameters
-    ----------
-    name : str
-        Of the argument, for the error.
-    data : Any
-        What was given.
-    origin : str
-        What such a Dataset comes from, for the error.
-    dimensions : mapping of str to tuple of str
-        Of each variable that is needed.
-
-    Raises
-    ------
-    ParameterError
-        If `data` is not a Dataset, lacks a variable, or has one of other dimensions, in other units or of
-        no real numbers.
-    """
-    if not isinstance(data, xr.Dataset):
-        raise ParameterError(wrong(name, data, f"a Dataset from {origin}"))
-    missing = [each for each in dimensions if each not in data]
-    if missing:
-        raise ParameterError(Problem(name, f" lacks {', '.join(missing)}: must be a Dataset from {origin}"))
-    check_variables(name, data, *dimensions)
-    found = []
-    for each, needed in dimensions.items():
-        check_dimensions(f"{name}.{each}", data[each], needed)
-        numbers = data[each].transpose(*needed).to_numpy()
-        found.append(reals(f"{name}.{each}", numbers, "real numbers, NaN for none", finite=False))
-    return tuple(found)
-
-
-def check_dimensions(name: str, variable: xr.DataArray, needed: tuple[str, ...]) -> None:
-    """Refuse a variable of other dimensions; their order does not matter."""
-    if set(variable.dims) != set(needed):
-        several = [each for each in ("body", "law") if each in variable.dims]
-        one = f"; take one with sel({', '.join(f'{each}=...' for each in several)})" if several else ""
-        text = f" has dimensions ({', '.join(map(str, variable.dims))}): must be ({', '.join(needed)}){one}"
-        raise ParameterError(Problem(name, text))
 
 
 def records(name: str, data: Any, *names: str) -> tuple[FloatArray, ...]:

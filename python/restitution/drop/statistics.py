@@ -11,9 +11,8 @@ import xarray as xr
 from restitution import _core
 from restitution._core import STOP_REASONS
 from restitution._internal.arrays import flag, whole
-from restitution._internal.memory import available_memory
 from restitution._internal.parameters import Problem, TooLargeError
-from restitution._internal.resources import checked_threads, progress_bar
+from restitution._internal.resources import available_memory, checked_threads, progress_bar
 from restitution.bodies import Body
 from restitution.drop.batches import BATCHES, batches_of, origin, standard_errors
 from restitution.drop.bins import FRACTION_BINS, all_edges_from, assemble, by_velocity, increasing_edges

@@ -10,8 +10,8 @@ from typing import Any, TypeVar
 import numpy as np
 
 from restitution import bodies, laws
+from restitution._internal.files import content
 from restitution._internal.parameters import ParameterError, Parameters, Problem, unknown, wrong
-from restitution._internal.reading import content
 from restitution.drop.release import RandomHeight, RandomSpin
 from restitution.drop.run import Run
 

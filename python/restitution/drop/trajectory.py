@@ -8,15 +8,9 @@ import numpy as np
 import numpy.typing as npt
 
 from restitution._internal.arrays import FloatArray, check_each, reals, whole
+from restitution._internal.datasets import variables
 from restitution._internal.parameters import ParameterError, Problem, wrong
-from restitution.drop.recorded import (
-    RECORDS,
-    attribute,
-    check_successive,
-    pull,
-    released_from,
-    variables,
-)
+from restitution.drop.recorded import RECORDS, attribute, check_successive, pull, released_from
 
 if TYPE_CHECKING:
     import xarray as xr

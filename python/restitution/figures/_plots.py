@@ -13,14 +13,7 @@ from matplotlib.figure import Figure
 
 from restitution._internal.arrays import FARTHEST, reals, whole
 from restitution._internal.parameters import ParameterError, Problem, renamed, wrong
-from restitution.drop.recorded import (
-    check_filled,
-    check_successive,
-    counted,
-    pull,
-    records,
-    released_from,
-)
+from restitution.drop.recorded import check_filled, check_successive, counted, pull, records, released_from
 from restitution.drop.trajectory import times_of
 from restitution.figures.check import check_drawable
 from restitution.figures.pieces import line, population, population_bar

@@ -13,8 +13,7 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
 from restitution._internal.arrays import flag, real, whole
-from restitution._internal.files import whole_files
-from restitution._internal.formats import IMAGE, path_for
+from restitution._internal.files import IMAGE, path_for, whole_files
 from restitution._internal.parameters import ParameterError, wrong
 from restitution.figures.check import figure as checked_figure
 from restitution.figures.check import panel

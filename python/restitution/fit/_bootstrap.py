@@ -11,10 +11,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from restitution._internal.arrays import generator, real, whole
-from restitution._internal.content import Content
-from restitution._internal.display import table, value
+from restitution._internal.datasets import Content
 from restitution._internal.parameters import ParameterError, wrong
-from restitution._internal.words import with_error
+from restitution._internal.text import table, value, with_error
 from restitution.fit._clusters import MOST_RESAMPLES, clustered, fitted_by, refitted
 from restitution.fit._counts import Counts
 from restitution.fit._result import Array, Fit

@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike
 from scipy import optimize
 
 from restitution._internal.arrays import check_counts, real, reals, whole
-from restitution._internal.content import Content
+from restitution._internal.datasets import Content
 from restitution._internal.parameters import ParameterError, wrong
 from restitution.drop.bins import increasing_edges
 from restitution.drop.recorded import counted

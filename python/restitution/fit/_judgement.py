@@ -12,10 +12,9 @@ import xarray as xr
 from numpy.typing import ArrayLike
 
 from restitution._internal.arrays import generator, whole
-from restitution._internal.content import Content
-from restitution._internal.display import table, value
+from restitution._internal.datasets import Content
 from restitution._internal.parameters import ParameterError, wrong
-from restitution._internal.words import with_error
+from restitution._internal.text import table, value, with_error
 from restitution.fit._clusters import (
     MOST_RESAMPLES,
     Clustered,

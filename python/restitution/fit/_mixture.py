@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy import optimize, special, stats
 
-from restitution._internal.content import Content
+from restitution._internal.datasets import Content
 from restitution.fit._asymmetric import asymmetric_laplace, frozen
 from restitution.fit._counts import Counts, fit_counts
 from restitution.fit._in_parts import drawn, draws

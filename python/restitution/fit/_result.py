@@ -12,9 +12,9 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from restitution._internal.arrays import generator, reals, whole
-from restitution._internal.content import Content
-from restitution._internal.display import table, value
+from restitution._internal.datasets import Content
 from restitution._internal.resources import check_size
+from restitution._internal.text import table, value
 from restitution.fit import _in_parts as in_parts
 
 Array = NDArray[np.float64]

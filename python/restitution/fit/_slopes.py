@@ -10,7 +10,7 @@ import xarray as xr
 from numpy.typing import ArrayLike, NDArray
 
 from restitution._internal.arrays import generator, real, whole
-from restitution._internal.content import Content
+from restitution._internal.datasets import Content
 from restitution._internal.parameters import ParameterError, wrong
 from restitution._internal.resources import check_size
 from restitution.drop.bins import LARGEST, centres, increasing_edges

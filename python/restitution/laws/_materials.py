@@ -12,7 +12,6 @@ from pydantic import BeforeValidator, Field, model_validator
 
 from restitution import _core
 from restitution._internal.arrays import real, reals
-from restitution._internal.memory import check_room
 from restitution._internal.parameters import (
     Allowed,
     Number,
@@ -22,6 +21,7 @@ from restitution._internal.parameters import (
     shown,
     wrong,
 )
+from restitution._internal.resources import check_room
 
 Floats = npt.NDArray[np.float64]
 

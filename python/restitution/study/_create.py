@@ -6,10 +6,9 @@ from typing import Any
 
 import numpy as np
 
-from restitution._internal.drafts import discarding, draft_folder
-from restitution._internal.files import followed, permit
+from restitution._internal.files import discarding, draft_folder, followed, permit
 from restitution._internal.parameters import unit_of
-from restitution._internal.signals import undisturbed
+from restitution._internal.process import undisturbed
 from restitution.drop.dataset import version_here
 from restitution.study._identity import attribute, check, threads_for
 from restitution.study._layout import check_layout

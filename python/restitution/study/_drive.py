@@ -16,7 +16,7 @@ import numpy as np
 import numpy.typing as npt
 import xarray as xr
 
-from restitution._internal.drafts import remove_all_leftovers
+from restitution._internal.files import remove_all_leftovers
 from restitution.study._axes import Design
 from restitution.study._effort import Effort
 from restitution.study._point import Point, point_of

@@ -9,7 +9,7 @@ import numpy as np
 import xarray as xr
 
 from restitution._internal.arrays import reals, whole
-from restitution._internal.content import Content
+from restitution._internal.datasets import Content
 from restitution._internal.parameters import ParameterError, Problem, wrong
 from restitution.drop.run import Run
 from restitution.study._tables import number, table

@@ -12,10 +12,8 @@ from zarr.abc.store import ByteRequest
 from zarr.core.buffer import Buffer, BufferPrototype
 from zarr.storage import LocalStore
 
-from restitution._internal.drafts import draft_of
-from restitution._internal.files import claim
-from restitution._internal.memory import available_memory
-from restitution._internal.reading import MOST
+from restitution._internal.files import MOST, claim, draft_of
+from restitution._internal.resources import available_memory
 
 
 class Folder(LocalStore):

@@ -7,8 +7,8 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
+from restitution._internal.files import check_regular, content
 from restitution._internal.parameters import ParameterError
-from restitution._internal.reading import check_regular, content
 from restitution.study._physics import fingerprint
 from restitution.study._study import Study
 

@@ -5,8 +5,7 @@ from pathlib import Path
 from typing import Any
 
 from restitution._internal.arrays import several
-from restitution._internal.files import path_from
-from restitution._internal.formats import ZARR, check_name
+from restitution._internal.files import ZARR, check_name, path_from
 from restitution._internal.parameters import ParameterError, Problem, shown, wrong
 from restitution.study._drive import Driver
 from restitution.study._identity import check

@@ -22,7 +22,7 @@ import numpy as np
 import numpy.typing as npt
 import xarray as xr
 
-from restitution._internal.memory import check_address_space, check_data, check_room
+from restitution._internal.resources import check_address_space, check_data, check_room
 from restitution.study._axes import Design
 from restitution.study._identity import readable, threads_for
 from restitution.study._layout import check_array

@@ -8,11 +8,10 @@ from typing import Any
 import xarray as xr
 
 from restitution._internal.arrays import flag
-from restitution._internal.files import path_from
-from restitution._internal.formats import ZARR, check_name
+from restitution._internal.files import ZARR, check_name, path_from
 from restitution._internal.parameters import ParameterError, wrong
+from restitution._internal.process import tell as say
 from restitution._internal.resources import bar as bar_of
-from restitution._internal.streams import tell as say
 from restitution.study._create import create_or_open
 from restitution.study._drive import Driver, Progress
 from restitution.study._estimate import estimate

@@ -7,7 +7,7 @@ import xarray as xr
 from matplotlib.figure import Figure
 
 from restitution._internal.arrays import real
-from restitution._internal.content import Content
+from restitution._internal.datasets import Content
 from restitution._internal.parameters import ParameterError, wrong
 from restitution.bodies import GRADES
 

@@ -6,8 +6,9 @@ import numpy as np
 import xarray as xr
 
 from restitution._internal.arrays import check_each
+from restitution._internal.datasets import variables
 from restitution._internal.parameters import ParameterError, wrong
-from restitution.drop.recorded import RECORDS, check_successive, pull, variables
+from restitution.drop.recorded import RECORDS, check_successive, pull
 
 
 def clock(data: xr.Dataset) -> xr.Dataset:

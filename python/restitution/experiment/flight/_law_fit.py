@@ -10,9 +10,8 @@ import numpy.typing as npt
 from scipy.stats import chi2
 
 from restitution._internal.arrays import check_each, reals
-from restitution._internal.content import Content
-from restitution._internal.display import table
-from restitution._internal.words import with_error
+from restitution._internal.datasets import Content
+from restitution._internal.text import table, with_error
 from restitution.experiment.flight.laws import LawOfSpeed, by_parameters
 
 Array = npt.NDArray[np.float64]

@@ -8,8 +8,8 @@ import numpy.typing as npt
 import xarray as xr
 
 from restitution._internal.arrays import reals
+from restitution._internal.datasets import check_variables
 from restitution._internal.parameters import ParameterError, Problem, wrong
-from restitution._internal.units import check_variables
 from restitution.drop.recorded import check_successive
 
 Array = npt.NDArray[np.float64]

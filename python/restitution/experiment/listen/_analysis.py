@@ -12,7 +12,7 @@ import xarray as xr
 from pydantic import Field, model_validator
 
 from restitution import flight
-from restitution._internal.content import Content
+from restitution._internal.datasets import Content
 from restitution._internal.files import path_from
 from restitution._internal.parameters import (
     Allowed,
@@ -23,7 +23,7 @@ from restitution._internal.parameters import (
     TooLargeError,
     wrong,
 )
-from restitution._internal.words import with_error
+from restitution._internal.text import with_error
 from restitution.bodies import from_roundness
 from restitution.experiment.flight.times import DOUBLED, FLAGS, MISSED
 from restitution.experiment.listen._shape import Shape, shape

@@ -9,10 +9,10 @@ from matplotlib.figure import Figure
 
 from restitution import flight
 from restitution._internal.arrays import flag
+from restitution._internal.datasets import put
 from restitution._internal.files import check, check_apart, path_from, whole_files
 from restitution._internal.parameters import ParameterError, wrong
-from restitution._internal.words import with_error
-from restitution.drop.dataset import put
+from restitution._internal.text import with_error
 from restitution.experiment.flight.times import DOUBLED, FLAGS
 from restitution.experiment.listen._analysis import Analysis, Series, Setting, analyse, checked
 from restitution.experiment.listen._figures import close_ups, drawn_shape, waveform

@@ -7,7 +7,7 @@ import numpy.typing as npt
 import xarray as xr
 
 from restitution import flight
-from restitution._internal.content import Content
+from restitution._internal.datasets import Content
 from restitution._internal.parameters import ParameterError, TooLargeError
 from restitution.bodies import from_roundness
 from restitution.experiment.budget import ErrorBudget, error_budget

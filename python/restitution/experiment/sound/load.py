@@ -9,10 +9,9 @@ import numpy as np
 import numpy.typing as npt
 
 from restitution._internal.arrays import real, reals
-from restitution._internal.files import path_from
-from restitution._internal.memory import available_memory
+from restitution._internal.files import check_regular, path_from
 from restitution._internal.parameters import ParameterError, Problem, TooLargeError, wrong
-from restitution._internal.reading import check_regular
+from restitution._internal.resources import available_memory
 
 Array = npt.NDArray[np.float64]
 

@@ -44,9 +44,8 @@ def write(
         If `out` cannot be written to, or holds anything and is not to be overwritten; before the work begins.
     """
     from restitution._internal.arrays import flag
-    from restitution._internal.files import check_folder, whole_folder
-    from restitution._internal.formats import FOLDER, path_for
-    from restitution.drop.dataset import save
+    from restitution._internal.datasets import save
+    from restitution._internal.files import FOLDER, check_folder, path_for, whole_folder
 
     out, overwrite = path_for("out", out, FOLDER), flag("overwrite", overwrite)
     names = [f"laws.{kind}" for kind in ("png", "pdf", "nc", "txt", "md")]

@@ -5,8 +5,7 @@ from contextlib import suppress
 from pathlib import Path
 
 from restitution._internal.arrays import flag, whole
-from restitution._internal.files import check_folder, whole_folder
-from restitution._internal.formats import FOLDER, path_for
+from restitution._internal.files import FOLDER, check_folder, path_for, whole_folder
 from restitution._internal.resources import bar, checked_threads
 from restitution.explorer import page
 from restitution.papers.glielmo2014._claims import judge

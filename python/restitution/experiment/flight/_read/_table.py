@@ -9,8 +9,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from restitution._internal.files import MOST, content
 from restitution._internal.parameters import ParameterError, Problem, shown
-from restitution._internal.reading import MOST, content
 
 _DECIMAL_COMMA = re.compile(r"[+-]?\d*,\d+([eE][+-]?\d+)?$")
 

@@ -1,6 +1,6 @@
 """The paper's quantitative claims, judged against the simulations."""
 
-from restitution._internal.words import with_error
+from restitution._internal.text import with_error
 from restitution.papers.glielmo2014._claims import (
     _dependence,
     _energy,

@@ -4,7 +4,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Literal
 
-from restitution._internal.words import with_error
+from restitution._internal.text import with_error
 from restitution.papers.glielmo2014._claims._estimate import Estimate
 
 Verdict = Literal["holds", "holds in part", "fails"]

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 import xarray as xr
 
-from restitution._internal.words import with_error
+from restitution._internal.text import with_error
 from restitution.papers.glielmo2014._claims._claim import Claim, Measurement, verdict
 from restitution.papers.glielmo2014._claims._estimate import Array, in_bins
 from restitution.papers.glielmo2014._runs import Runs

@@ -7,7 +7,7 @@ import numpy as np
 import xarray as xr
 
 from restitution._core import STOP_REASONS
-from restitution._internal.words import with_error
+from restitution._internal.text import with_error
 from restitution.papers.glielmo2014._claims._claim import SIGNIFICANT, Claim, Measurement, listed, verdict
 from restitution.papers.glielmo2014._claims._energy import energies
 from restitution.papers.glielmo2014._claims._estimate import Array, Estimate, blocks, in_blocks, in_windows

@@ -4,7 +4,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from restitution._internal.words import with_error
+from restitution._internal.text import with_error
 from restitution.papers.glielmo2014._claims._claim import SIGNIFICANT, Claim, Measurement, listed, verdict
 from restitution.papers.glielmo2014._claims._energy import energies
 from restitution.papers.glielmo2014._claims._estimate import in_bins, in_windows
