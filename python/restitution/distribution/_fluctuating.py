@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Any, Unpack
 
 import numpy as np
 import numpy.typing as npt
@@ -28,8 +28,8 @@ from restitution.distribution._store import sealed, unsealed
 from restitution.distribution.c import header
 from restitution.distribution.fortran import module
 from restitution.drop.recorded import check_filled, check_successive, records
-from restitution.drop.release import RandomHeight, RandomSpin
-from restitution.drop.run import Run
+from restitution.drop.release import RandomHeight
+from restitution.drop.run import Run, Surroundings, takes_run
 from restitution.laws import Law
 
 if TYPE_CHECKING:
@@ -74,6 +74,7 @@ class FluctuatingRestitution(EstimatedDistribution):
     """
 
     @classmethod
+    @takes_run(Surroundings)
     def learn(
         cls,
         body: Body,
@@ -82,28 +83,25 @@ class FluctuatingRestitution(EstimatedDistribution):
         particles: int = 20_000,
         impacts: int | None = None,
         release_height: npt.ArrayLike | RandomHeight = 0.06,
-        gravity: float = 9.81,
-        orientation: Literal["uniform-angle", "isotropic"] | npt.ArrayLike = "uniform-angle",
-        spin: npt.ArrayLike | RandomSpin | None = None,
-        release_velocity: npt.ArrayLike | None = None,
-        incline: float = 0.0,
         minimum_speed: float | None = None,
-        seed: int = 1,
         velocities: npt.ArrayLike | None = None,
         given: Given | None = None,
         threads: int | None = None,
         progress: bool = False,
+        **run: Unpack[Surroundings],
     ) -> FluctuatingRestitution:
         """Learn p(ε | v) from an ensemble of bouncing particles.
 
         The ensemble is simulated in rounds, and again with other random numbers to measure how far the result
         is from impacts that it was not learned from. Memory does not grow with the number of particles.
+        Orientations or spins that are given for each particle are dealt out to the heights at random; if
+        nothing is random, no fresh ensemble can be drawn, and this is an error.
 
         Parameters
         ----------
-        body, law, particles, gravity, orientation, spin, release_velocity, incline, seed, threads, progress
-            As in `restitution.simulate`. Orientations or spins of each particle are dealt out to the heights
-            at random; if nothing is random, no fresh ensemble can be drawn, and this is an error.
+        body, law, particles, threads, progress
+            As in `restitution.simulate`.
+        %(run)s
         impacts : int, optional
             The most impacts of a particle. By default, as many as it takes ninety-nine of a hundred
             particles to become slower than `minimum_speed`, 4096 at most: those that are slow early are
@@ -146,26 +144,28 @@ class FluctuatingRestitution(EstimatedDistribution):
         (3,)
         """
         heights = [release_height] if isinstance(release_height, RandomHeight) else _heights(release_height)
-        arguments = dict(locals()) | {
+        arguments = run | {
+            "particles": particles,
             "impacts": 1 if impacts is None else impacts,
             "minimum_speed": 0.0 if minimum_speed is None else minimum_speed,
         }
         one_asked = not isinstance(release_height, RandomHeight) and np.ndim(release_height) == 0
         several = not (one_asked or isinstance(release_height, RandomHeight))
-        runs = list(_runs(arguments, heights, several))
-        run = runs[0]
+        runs = list(_runs(body, law, arguments, heights, several))
+        first = runs[0]
         nodes = checked_speeds(velocities, min(runs, key=lambda one: one.heights[0]))
         if minimum_speed is None:
-            run = run.model_copy(update={"minimum_speed": defaults.minimum_speed(run, float(nodes[0]))})
+            first = first.model_copy(update={"minimum_speed": defaults.minimum_speed(first, float(nodes[0]))})
         if impacts is None:
-            run = run.model_copy(update={"impacts": defaults.impacts(run, checked_threads(threads) or None)})
-        spread = defaults.heights(run) if one_asked else tuple(one.release_height for one in runs)
+            most = defaults.impacts(first, checked_threads(threads) or None)
+            first = first.model_copy(update={"impacts": most})
+        spread = defaults.heights(first) if one_asked else tuple(one.release_height for one in runs)
         ensemble = Ensemble(
-            run, spread, threads, fraction=isinstance(given, str) and given == "rotational_fraction"
+            first, spread, threads, fraction=isinstance(given, str) and given == "rotational_fraction"
         )
         found = cls(learn(ensemble, nodes, given, progress))
         if one_asked:
-            found.data.attrs["release_height_asked"] = run.release_height
+            found.data.attrs["release_height_asked"] = first.release_height
         warn_of_distance(found.data, stacklevel=2)
         return found
 
@@ -345,12 +345,14 @@ class FluctuatingRestitution(EstimatedDistribution):
         return f"<FluctuatingRestitution: {about}>"
 
 
-def _runs(arguments: dict[str, Any], heights: Sequence[Any], several: bool) -> Iterator[Run]:
+def _runs(
+    body: Body, law: Law, arguments: dict[str, Any], heights: Sequence[Any], several: bool
+) -> Iterator[Run]:
     """Make a run from each height; what is wrong with one of several is said with its place."""
     for k, height in enumerate(heights):
         place = f"[{k}]" if several else ""
         with renamed(lambda name, place=place: name + place if name == "release_height" else name):  # type: ignore[misc]
-            run = Run.called(arguments | {"release_height": height})
+            run = Run.called("learn", body, law, arguments | {"release_height": height})
         yield run
 
 

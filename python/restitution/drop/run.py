@@ -1,8 +1,11 @@
 """The parameters of a run: one validation for `simulate`, `statistics` and the TOML file."""
 
+import inspect
 import math
-from collections.abc import Mapping
-from typing import Annotated, Any, ClassVar, Self
+import re
+from collections.abc import Callable, Mapping
+from textwrap import dedent, indent
+from typing import Annotated, Any, ClassVar, Literal, Self, TypedDict, TypeVar
 
 import numpy as np
 import numpy.typing as npt
@@ -30,38 +33,100 @@ from restitution.drop.release import (
 )
 from restitution.laws import LAWS, Law
 
+F = TypeVar("F", bound=Callable[..., Any])
+
+_NONE = ("spin", "release_velocity")
+"""Parameters for whose default, a vector of zeros, None may be given."""
 _BEYOND = 1e10
 """Heights and the like, over those of the body: beyond, 16 digits do not resolve its surface."""
 
 
+class Surroundings(TypedDict, total=False):
+    """Keyword arguments that say how particles are released and what acts on them, with their types."""
+
+    gravity: float
+    orientation: "Literal['uniform-angle', 'isotropic'] | npt.ArrayLike"
+    spin: "npt.ArrayLike | RandomSpin | None"
+    release_velocity: "npt.ArrayLike | None"
+    incline: float
+    seed: int
+
+
+class RunArguments(Surroundings, total=False):
+    """All keyword arguments of a run, with their types."""
+
+    particles: int
+    impacts: int
+    release_height: "float | RandomHeight"
+    minimum_speed: float
+
+
+def takes_run(kind: type[Surroundings]) -> Callable[[F], F]:
+    """Write the parameters of a run into the signature and the docstring of a function that passes them on.
+
+    The function takes them as its last argument, ``**run: Unpack[kind]``. Their defaults are those of `Run`,
+    and their text, which replaces the line ``%(run)s``, is that of its docstring.
+    """
+    types = {name: getattr(of, "__forward_arg__", of) for name, of in kind.__annotations__.items()}
+
+    def decorate(function: F) -> F:
+        signature = inspect.signature(function)
+        own = list(signature.parameters.values())[:-1]
+        places = [one for one in own if one.kind is not one.KEYWORD_ONLY]
+        added = [
+            inspect.Parameter(
+                name,
+                inspect.Parameter.KEYWORD_ONLY,
+                default=None if name in _NONE else field.default,
+                annotation=types[name],
+            )
+            for name, field in Run.model_fields.items()
+            if name in types
+        ]
+        changed = signature.replace(parameters=[*places, *added, *own[len(places) :]])
+        function.__signature__ = changed  # type: ignore[attr-defined]
+        if function.__doc__ and Run.__doc__:  # None under python -OO
+            entries = re.findall(r"^(    (\w+).*(?:\n        .*)*)", Run.__doc__, re.MULTILINE)
+            text = dedent("\n".join(entry for entry, name in entries if name in types))
+            function.__doc__ = re.sub(
+                r"^( *)%\(run\)s$",
+                lambda line: indent(text, line[1]),
+                function.__doc__,
+                flags=re.MULTILINE,
+            )
+        return function
+
+    return decorate
+
+
 class Run(Parameters):
-    """The parameters of `simulate`, checked.
+    """The parameters of a run, checked.
 
     Parameters
     ----------
     body, law
         The body and the collision law.
     particles, impacts : int
-        Number of particles and most impacts of each; > 0.
+        Number of particles, and the most impacts that each may have; both > 0.
     release_height : float or RandomHeight
-        Distance of the centre of mass from the plane at release, in m; the same for all or drawn at random.
-        No part may be below the plane.
+        Distance of the centre of mass from the plane at release, in m, the same for all or drawn at random;
+        no part may be below the plane.
     gravity : float
         Acceleration of gravity in m/s², > 0.
     orientation : {"uniform-angle", "isotropic"} or array of float, shape (particles,) or (particles, 2)
-        Angle θ between symmetry axis and plane normal at release: uniform in [0, π), isotropic,
-        or given in rad. The azimuth φ of the axis is uniform in [0, 2π), or given beside θ.
-    spin : tuple of three floats, array of float, shape (particles, 3), or RandomSpin
-        Angular velocity at release, in rad/s; the same for all, one each, or drawn at random.
-    release_velocity : tuple of three floats
-        Velocity of the centre of mass at release, in m/s.
+        The angle θ between symmetry axis and plane normal at release: uniform in [0, π) (above Eq. 18),
+        isotropic, or given in rad. Its azimuth φ is uniform in [0, 2π), or given beside θ.
+    spin : array of float, shape (3,) or (particles, 3), or RandomSpin, optional
+        Angular velocity ω at release, in rad/s: the same for all, one each, or drawn at random.
+    release_velocity : array of float, shape (3,), optional
+        Velocity of the centre of mass at release, in m/s. It may point up or down.
     incline : float
-        Angle in [0, π/2) by which the plane is inclined, in rad. In its frame gravity is
-        g (sin α, 0, -cos α): z is the plane normal, and the plane falls along x.
+        Angle α by which the plane is inclined, in rad, in [0, π/2): gravity is g (sin α, 0, -cos α). Every
+        vector is in the frame of the plane: z along its normal, x down the slope.
     minimum_speed : float
-        A particle ends when √(2 E_kin/m) after an impact falls below this, in m/s; 0 never does.
+        A particle ends when √(2 E_kin/m) after an impact falls below this, in m/s. 0 never does.
     seed : int
-        Seed of the random numbers, in [0, 2⁶⁴).
+        Seed of the random numbers, in [0, 2⁶⁴). The same seed gives the same bits with any number of threads.
     """
 
     body: Annotated[InstanceOf[Body], Allowed(BODIES)]
@@ -80,9 +145,18 @@ class Run(Parameters):
     model_config: ClassVar[ConfigDict] = ConfigDict(validate_default=True)
 
     @classmethod
-    def called(cls, arguments: Mapping[str, Any]) -> Self:
-        """Take the parameters of a run from the arguments of a function that has them among its own."""
-        return cls(**{name: arguments[name] for name in cls.model_fields})
+    def called(cls, function: str, body: Body, law: Law, arguments: Mapping[str, Any]) -> Self:
+        """Take the parameters of a run from the keyword arguments of a function.
+
+        Raises
+        ------
+        TypeError
+            As Python does where the function has no such argument.
+        """
+        for name in arguments:
+            if name not in RunArguments.__annotations__:
+                raise TypeError(f"{function}() got an unexpected keyword argument {name!r}")
+        return cls(body=body, law=law, **arguments)
 
     @model_validator(mode="after")
     def _nothing_below_the_plane(self) -> "Run":

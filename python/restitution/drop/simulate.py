@@ -2,16 +2,13 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Literal, TypeAlias, get_args
-
-import numpy.typing as npt
+from typing import TYPE_CHECKING, Literal, TypeAlias, Unpack, get_args
 
 from restitution import _core
 from restitution._internal.parameters import ParameterError, wrong
 from restitution._internal.resources import check_memory, checked_threads, progress_bar
 from restitution.bodies import Body
-from restitution.drop.release import RandomHeight, RandomSpin
-from restitution.drop.run import Run
+from restitution.drop.run import Run, RunArguments, takes_run
 from restitution.laws import Law
 
 if TYPE_CHECKING:
@@ -47,23 +44,15 @@ class SimulationInterrupted(KeyboardInterrupt):
         self.data = data
 
 
+@takes_run(RunArguments)
 def simulate(
     body: Body,
     law: Law,
     *,
-    particles: int = 1000,
-    impacts: int = 400,
-    release_height: float | RandomHeight = 0.06,
-    gravity: float = 9.81,
-    orientation: Literal["uniform-angle", "isotropic"] | npt.ArrayLike = "uniform-angle",
-    spin: npt.ArrayLike | RandomSpin | None = None,
-    release_velocity: npt.ArrayLike | None = None,
-    incline: float = 0.0,
-    minimum_speed: float = 0.0,
-    seed: int = 1,
     record: Record = "impacts",
     threads: int | None = None,
     progress: bool = False,
+    **run: Unpack[RunArguments],
 ) -> xr.Dataset:
     """Drop particles and record every impact with the plane (the paper's Sec. III, steps 1-7).
 
@@ -73,27 +62,7 @@ def simulate(
         The body that is dropped.
     law : Law
         The collision law.
-    particles, impacts : int
-        Number of particles, and the most impacts that each may have; both > 0.
-    release_height : float or RandomHeight
-        Distance of the centre of mass from the plane at release, in m, the same for all or drawn at random;
-        no part may be below the plane.
-    gravity : float
-        Acceleration of gravity in m/s², > 0.
-    orientation : {"uniform-angle", "isotropic"} or array of float, shape (particles,) or (particles, 2)
-        The angle θ between symmetry axis and plane normal at release: uniform in [0, π) (above Eq. 18),
-        isotropic, or given in rad. Its azimuth φ is uniform in [0, 2π), or given beside θ.
-    spin : array of float, shape (3,) or (particles, 3), or RandomSpin, optional
-        Angular velocity ω at release, in rad/s: the same for all, one each, or drawn at random.
-    release_velocity : array of float, shape (3,), optional
-        Velocity of the centre of mass at release, in m/s. It may point up or down.
-    incline : float
-        Angle α by which the plane is inclined, in rad, in [0, π/2): gravity is g (sin α, 0, -cos α). Every
-        vector is in the frame of the plane: z along its normal, x down the slope.
-    minimum_speed : float
-        A particle ends when √(2 E_kin/m) after an impact falls below this, in m/s. 0 never does.
-    seed : int
-        Seed of the random numbers, in [0, 2⁶⁴). The same seed gives the same bits with any number of threads.
+    %(run)s
     record : {"impacts", "state"}
         With "state" also the full state at each impact, in 144 bytes more.
     threads : int, optional
@@ -150,8 +119,8 @@ def simulate(
     """
     from restitution.drop.energy import warn
 
-    run = Run.called(locals())
-    data = simulate_run(run, threads=threads, progress=progress, record=record)
+    checked = Run.called("simulate", body, law, run)
+    data = simulate_run(checked, threads=threads, progress=progress, record=record)
     warn(data)
     return data
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any, Literal, TypeAlias
+from typing import Any, TypeAlias, Unpack
 
 import numpy as np
 import numpy.typing as npt
@@ -18,8 +18,7 @@ from restitution.drop.batches import BATCHES, batches_of, origin, standard_error
 from restitution.drop.bins import FRACTION_BINS, all_edges_from, assemble, by_velocity, increasing_edges
 from restitution.drop.dataset import attributes
 from restitution.drop.energy import by_row, ledger, warn
-from restitution.drop.release import RandomHeight, RandomSpin
-from restitution.drop.run import Run
+from restitution.drop.run import Run, RunArguments, takes_run
 from restitution.drop.simulate import SimulationInterrupted
 from restitution.laws import Law
 
@@ -33,20 +32,11 @@ MOMENTS = {"mean_restitution": "mean", **{name: name for name in _SAME}}
 """What the result calls the moments, and what the core does: a Dataset has a method `mean`."""
 
 
+@takes_run(RunArguments)
 def statistics(
     body: Body,
     law: Law,
     *,
-    particles: int = 1000,
-    impacts: int = 400,
-    release_height: float | RandomHeight = 0.06,
-    gravity: float = 9.81,
-    orientation: Literal["uniform-angle", "isotropic"] | npt.ArrayLike = "uniform-angle",
-    spin: npt.ArrayLike | RandomSpin | None = None,
-    release_velocity: npt.ArrayLike | None = None,
-    incline: float = 0.0,
-    minimum_speed: float = 0.0,
-    seed: int = 1,
     threads: int | None = None,
     velocity_bins: npt.ArrayLike | None,
     velocity_range: tuple[float, float] | None = None,
@@ -57,6 +47,7 @@ def statistics(
     counts_only: bool = False,
     batches: int = BATCHES,
     progress: bool = False,
+    **run: Unpack[RunArguments],
 ) -> xr.Dataset:
     """Drop an ensemble and keep only the statistics of its impacts.
 
@@ -66,18 +57,21 @@ def statistics(
 
     Parameters
     ----------
-    body, law, particles, impacts, release_height, gravity, orientation, spin, release_velocity, incline
-        As in `restitution.simulate`.
-    minimum_speed, seed, threads
-        Likewise.
+    body : Dumbbell, LoadedSphere, Spherocylinder or Spheroid
+        The body that is dropped.
+    law : Law
+        The collision law.
+    %(run)s
+    threads : int, optional
+        Number of threads; one for each core if not given.
     velocity_bins : int, array_like of shape (nv + 1,), or None
         Edges of the impact velocity bins in m/s, finite and strictly increasing, of any widths; or their
         number, with ``velocity_range`` (low, high), as `numpy.histogram` takes them. With None the rows are
         the numbers of the impacts instead, dimension ``impact``.
     restitution_bins : int or array_like, shape (nr + 1,)
-        Edges of the restitution bins, or their number with ``restitution_range``, likewise.
+        Edges of the restitution bins, or their number with ``restitution_range``, as above.
     fraction_bins : int or array_like, shape (nf + 1,)
-        Edges of the bins of E_rot/E_tot (Eq. 12), or their number with ``fraction_range``, likewise; 50 bins
+        Edges of the bins of E_rot/E_tot (Eq. 12), or their number with ``fraction_range``; 50 bins
         on [0, 1) by default.
     counts_only : bool
         Leave out the moments, the extremes and E_rot/E_tot: what remains are the counts of restitution, which
@@ -121,7 +115,7 @@ def statistics(
     >>> found["restitution_count"].dims
     ('velocity', 'restitution')
     """
-    run = Run.called(locals())
+    ensemble = Run.called("statistics", body, law, run)
     counts_only, batches = flag("counts_only", counts_only), whole("batches", batches, 1)
     velocity, restitution, fraction = all_edges_from(
         velocity_bins=(velocity_bins, velocity_range),
@@ -130,11 +124,11 @@ def statistics(
     )
     edges = edges_of(velocity, restitution, None if counts_only else fraction)
     number = checked_threads(threads)
-    parts = batches_of(run.particles, 1 if counts_only else batches)
-    _check_memory(run, edges, number, len(parts))
-    with progress_bar("statistics", run.particles, "particles", show=progress) as tell:
-        table, each, interrupted = _core.statistics(run.parameters(), edges, number, tell, parts)
-    found = dataset_of(run, edges, table)
+    parts = batches_of(ensemble.particles, 1 if counts_only else batches)
+    _check_memory(ensemble, edges, number, len(parts))
+    with progress_bar("statistics", ensemble.particles, "particles", show=progress) as tell:
+        table, each, interrupted = _core.statistics(ensemble.parameters(), edges, number, tell, parts)
+    found = dataset_of(ensemble, edges, table)
     rows = [_moments(edges, one) for one in each] if len(each) > 1 else []  # one batch has no scatter
     if rows:
         row = "impact" if edges["velocity"] is None else "velocity"
@@ -142,7 +136,7 @@ def statistics(
             {name: (row, values, attrs) for name, (values, attrs) in standard_errors(rows).items()}
         )
     why = "none: counts_only leaves the moments out" if counts_only else None
-    found.attrs["standard_errors"] = why or origin(len(rows), run.particles, batches)
+    found.attrs["standard_errors"] = why or origin(len(rows), ensemble.particles, batches)
     if interrupted:
         raise SimulationInterrupted(found.assign_attrs(incomplete="interrupted by the user")) from interrupted
     warn(found)
