@@ -17,62 +17,55 @@
 //! | ω | derived from the precession vector **Λ**/J_xx, [`State::precession`] |
 //! | Â(t)·(0, 0, 1) | [`State::axis`], from sphere 2 to sphere 1 |
 //! | L/2, J_xx, J_zz | [`Body::half_separation`], [`Body::transverse`], [`Body::axial`] |
-//! | r_c, v_c | `arm`, `slip` in [`collision`] |
+//! | r_c, v_c | `arm`, `slip` in [`law`] |
 //! | ε_n, ε_t | [`Normal`], [`TangentialRestitution`] |
 //!
 //! # From the equation to the code
 //! | equation | file |
 //! |---|---|
-//! | (1), (12) | `engine/impact.rs` |
-//! | (2) | `body/hull/`, `search/` |
-//! | (3)–(5) | `flight/` |
-//! | (6)–(8), (11) | `engine/strike.rs` |
-//! | (9), (10) | `collision/tangential.rs` |
-//! | (18) | `run/orientation.rs` |
-//! | (A1)–(A8) | `body/dumbbell.rs` |
+//! | (1), (12) | `drop/lanes/impact.rs` |
+//! | (2) | `shape/revolution/hull/`, `contact/` |
+//! | (3)–(5) | `motion/` |
+//! | (6)–(8), (11) | `drop/lanes/strike.rs` |
+//! | (9), (10) | `law/tangential.rs` |
+//! | (18) | `drop/release/orientation.rs` |
+//! | (A1)–(A8) | `shape/revolution/dumbbell.rs` |
 //!
 //! The first impact in closed form, (13)–(22), is in the Python package, `analytic/`.
 #![forbid(unsafe_code)]
 
-mod body;
-pub mod collision;
-mod columns;
+mod contact;
 pub mod distribution;
-mod engine;
+mod drop;
 mod error;
-mod flight;
-mod follow;
+pub mod law;
+mod math;
 mod memory;
-mod particles;
+mod motion;
 mod random;
-mod records;
-mod run;
-mod search;
+mod record;
+mod shape;
 mod simd;
 mod simulate;
 pub mod statistics;
 mod threads;
-mod variable;
 
-pub use body::{
-    Body, Dumbbell, LoadedSphere, Shape, Solid, Sphere, Spherocylinder, Spheroid, Surface,
+pub use drop::{
+    About, COLLAPSE_RUN, Departure, Followed, Height, Landing, Limits, NoConvergence, Orientation,
+    Run, Scales, SingleImpact, Spin, StopReason, collide, first_contact, trajectory,
 };
-pub use collision::{
+pub use error::{Error, Value};
+pub use law::{
     ChatterjeeRuina, Coulomb, Frictionless, Hypothesis, Law, Normal, Plastic, Points, Rule,
     Tabulated, TangentialRestitution, Viscoelastic,
 };
-pub use columns::{Columns, PER_IMPACT, Records};
-pub use engine::{
-    COLLAPSE_RUN, Departure, Landing, Limits, NoConvergence, SingleImpact, StopReason, collide,
-    first_contact, trajectory,
-};
-pub use error::{Error, Value};
-pub use flight::{State, Vector};
-pub use follow::Followed;
+pub use math::Vector;
 pub use memory::{collected, copied};
-pub use particles::PER_PARTICLE;
-pub use run::{About, Height, Orientation, Run, Scales, Spin};
+pub use motion::State;
+pub use record::{Columns, PER_IMPACT, PER_PARTICLE, Records, Values, Variable, When};
+pub use shape::{
+    Body, Dumbbell, LoadedSphere, Shape, Solid, Sphere, Spherocylinder, Spheroid, Surface,
+};
 pub use simd::{Level, elementary};
 pub use simulate::simulate_series;
 pub use threads::{Means, Monitor, STACK, default_threads};
-pub use variable::{Values, Variable, When};

@@ -1,9 +1,9 @@
 //! All particles of a run, on all cores. Particles do not interact, so that the result does not depend on the schedule.
 
 use crate::Error;
-use crate::columns::{Columns, Records};
-use crate::records::Table;
-use crate::run::{BLOCK, Plan, Run, Series, Source, bounce_block, even, share};
+use crate::drop::{BLOCK, Plan, Run, Series, Source, bounce_block, even, share};
+use crate::record::Table;
+use crate::record::{Columns, Records};
 use crate::statistics::{Bins, By, Counter, Counts, Rows, Tally, Tallying, UNSPOILT};
 use crate::threads::{Means, Monitor};
 use std::ops::Range;

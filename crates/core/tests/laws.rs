@@ -4,7 +4,7 @@
 mod contacts;
 
 use contacts::*;
-use restitution_core::collision::{Components, Contact, Response};
+use restitution_core::law::{Components, Contact, Response};
 use restitution_core::{Hypothesis, Law, Rule, TangentialRestitution};
 
 const CONTACTS: usize = 20_000;

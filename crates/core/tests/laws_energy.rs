@@ -3,7 +3,7 @@
 mod contacts;
 
 use contacts::*;
-use restitution_core::collision::Contact;
+use restitution_core::law::Contact;
 use restitution_core::{Hypothesis, Law, TangentialRestitution};
 
 const IMPACTS: u64 = 10_000_000;

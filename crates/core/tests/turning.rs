@@ -1,6 +1,6 @@
 //! Slip that turns, beside contacts solved with 28 digits by Taylor series of the slip's own equation (`turning/reference.py`).
 
-use restitution_core::collision::{Components, Contact};
+use restitution_core::law::{Components, Contact};
 use restitution_core::{Coulomb, Hypothesis, Law};
 
 /// Of the 155 hard impacts, 24 of them the hardest of 240 000 for an earlier quadrature, seven next to poles or fixed points of the

@@ -3,7 +3,7 @@
 use crate::errors::python_error;
 use numpy::{IntoPyArray, PyArray1, PyReadonlyArray1};
 use pyo3::prelude::*;
-use restitution_core::collision::{Components, Contact, MOST_FRICTION, PADE_ABOVE, PADE_BELOW};
+use restitution_core::law::{Components, Contact, MOST_FRICTION, PADE_ABOVE, PADE_BELOW};
 use restitution_core::{
     ChatterjeeRuina, Coulomb, Error, Frictionless, Hypothesis, Normal, Plastic, Points, Rule,
     TangentialRestitution, Viscoelastic, collected,

@@ -11,10 +11,10 @@ use super::recent::{
 use super::rows::{CREATES_ENERGY, Rows};
 use super::tally::{Bins, By, Tally, UNSPOILT, WHAT};
 use crate::Error;
-use crate::engine::StopReason;
-use crate::engine::{GROUPS, Impact, Meanwhile, Sink};
+use crate::drop::Plan;
+use crate::drop::StopReason;
+use crate::drop::{GROUPS, Impact, Meanwhile, Sink};
 use crate::memory::{filled, zeros};
-use crate::run::Plan;
 use crate::simd::{LANES, Pack};
 use pulp::Simd;
 use std::ops::{IndexMut, Range};

@@ -21,7 +21,7 @@ pub(crate) use tally::UNSPOILT;
 pub use tally::{Bins, By, Grid, Tally};
 
 /// A sink that counts the impacts that it receives in the grids of a [`Tally`], which is shared with others.
-pub(crate) trait Tallying: crate::engine::Sink {
+pub(crate) trait Tallying: crate::drop::Sink {
     /// What else is summed of the impacts, all of which are then in the grids.
     fn finish(self) -> Rows;
 }

@@ -1,7 +1,7 @@
 //! What the tests of the laws share: random contacts, with the corners of the laws among them, and the energy of an impulse.
 #![allow(dead_code, reason = "each test file uses its own part")]
 
-use restitution_core::collision::{Components, Contact, Response};
+use restitution_core::law::{Components, Contact, Response};
 use restitution_core::{ChatterjeeRuina, Coulomb, Frictionless, Hypothesis, Law};
 
 pub const HYPOTHESES: [Hypothesis; 3] =

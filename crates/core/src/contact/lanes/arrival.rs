@@ -1,0 +1,272 @@
+//! The end of the search: from the last certified step to the contact. [`super`] explains why this is the first contact.
+
+use super::gap::{Look, Search};
+use super::{FAR, INVISIBLE, LAST, NEAR, SMALL};
+use crate::motion::{Attitude, Flight};
+use crate::shape::Hull;
+use crate::simd::{Mask, Pack};
+use pulp::Simd;
+
+/// The two next steps of the search.
+#[derive(Clone, Copy)]
+#[repr(align(64))]
+pub(crate) struct Leap<S: Simd, const K: usize> {
+    /// The certified step.
+    step: Pack<S, K>,
+    /// The step to where the contact is looked for next: at first to the zero of an expansion.
+    ahead: Pack<S, K>,
+}
+
+/// The gap that remains at the zero of an expansion.
+#[derive(Clone, Copy)]
+#[repr(align(64))]
+pub(crate) struct Residue<S: Simd, const K: usize> {
+    time: Pack<S, K>,
+    attitude: Attitude<S, K>,
+    width: Pack<S, K>,
+    /// f′ and f″.
+    rate: Pack<S, K>,
+    curvature: Pack<S, K>,
+}
+
+/// The result of a pass of the search.
+#[derive(Clone, Copy)]
+#[repr(align(64))]
+pub(crate) struct Arrival<S: Simd, const K: usize> {
+    /// Time and attitude of the contact.
+    pub time: Pack<S, K>,
+    pub attitude: Attitude<S, K>,
+    /// The lanes in which the contact is located, or that never land.
+    pub done: Mask<S, K>,
+}
+
+impl<S: Simd, const K: usize> Leap<S, K> {
+    /// Before the first evaluation.
+    #[inline(always)]
+    pub fn none(simd: S) -> Self {
+        let zero = Pack::splat(simd, 0.0);
+        Self {
+            step: zero,
+            ahead: zero,
+        }
+    }
+
+    /// The step to the contact that was found from `time`, to look at the gap there again; that of the lanes that are done stays as it
+    /// is, so that they repeat the same result.
+    #[inline(always)]
+    pub fn on_to(self, arrival: &Arrival<S, K>, time: Pack<S, K>) -> Self {
+        Self {
+            ahead: arrival.done.select(self.ahead, arrival.time - time),
+            ..self
+        }
+    }
+}
+
+impl<S: Simd, const K: usize> Residue<S, K> {
+    /// Before the first evaluation.
+    #[inline(always)]
+    pub fn none(simd: S) -> Self {
+        let zero = Pack::splat(simd, 0.0);
+        Self {
+            time: zero,
+            attitude: Attitude::none(simd),
+            width: zero,
+            rate: zero,
+            curvature: zero,
+        }
+    }
+}
+
+impl<S: Simd, const K: usize> Arrival<S, K> {
+    /// Before the first evaluation.
+    #[inline(always)]
+    pub fn none(simd: S) -> Self {
+        Self {
+            time: Pack::splat(simd, 0.0),
+            attitude: Attitude::none(simd),
+            done: Mask::splat(simd, false),
+        }
+    }
+}
+
+impl<S: Simd, F: Flight<S, K>, const K: usize> Search<S, F, K> {
+    /// The next steps, from the gap as evaluated.
+    #[inline(always)]
+    pub fn leap(&self, look: &Look<S, K>, hull: &impl Hull) -> Leap<S, K> {
+        let step = self.certified(&look.gap);
+        Leap {
+            step,
+            ahead: self.expanded(look, step, hull),
+        }
+    }
+
+    /// The gap that remains after the step ahead, from an evaluation at `time`.
+    #[inline(always)]
+    pub fn residue(
+        &self,
+        time: Pack<S, K>,
+        look: &Look<S, K>,
+        leap: &Leap<S, K>,
+        hull: &impl Hull,
+    ) -> Residue<S, K> {
+        let time = time + leap.ahead;
+        let attitude = look.attitude.turned(self.flight.rate() * leap.ahead);
+        let part = &look.gap.part;
+        let (width, rate) = self.moment(time, attitude).opening(part, hull);
+        Residue {
+            time,
+            attitude,
+            width,
+            rate,
+            curvature: hull.bend(part, &self.flight.swing(attitude), -1.0),
+        }
+    }
+
+    /// The contact, valid where it is located and neither part can have touched before.
+    #[inline(always)]
+    pub fn arrival<H: Hull>(
+        &self,
+        look: &Look<S, K>,
+        leap: &Leap<S, K>,
+        residue: &Residue<S, K>,
+        hull: &H,
+    ) -> Arrival<S, K> {
+        let part = &look.gap.part;
+        // A step of third order closes the remaining gap.
+        let inverse = -1.0 / residue.rate;
+        let newton = residue.width * inverse;
+        let rest = newton.mul_add(0.5 * residue.curvature * newton * inverse, newton);
+        let attitude = residue.attitude.advanced(self.flight.rate() * rest);
+
+        // A zero before the end of the step, which is certified, can only be that of the contact at the start, within its rounding.
+        let beyond = self.least_fall(leap.ahead, residue.rate);
+        let before = leap.step.mul_add(0.5, -leap.ahead);
+        let far = FAR.min(1.0 / hull.sharpness());
+        let turned = (self.flight.rate() * leap.ahead).abs() - far;
+        let first = beyond.max(turned).max(before).le(0.0);
+        let mut found = first & newton.abs().le(SMALL * leap.step);
+        if H::TWO {
+            // If the other part had touched after `step`, its gap could have grown since by at most ½S·since².
+            let since = (leap.ahead - leap.step) + rest;
+            let tilt = self.flight.swing(attitude).tilt;
+            let other = hull.gap(&hull.part(!part.one), tilt, hull.lift(part, tilt));
+            found = found & (0.5 * self.sway * (since * since)).le(other);
+        }
+        Arrival {
+            time: residue.time + rest,
+            attitude,
+            done: look.never | found,
+        }
+    }
+
+    /// Ends the search in those of the `clear` lanes whose certified step from `time` leaves a gap below the resolution.
+    #[inline(always)]
+    pub fn graze(
+        &self,
+        time: Pack<S, K>,
+        look: &Look<S, K>,
+        leap: &Leap<S, K>,
+        clear: Mask<S, K>,
+        arrival: &mut Arrival<S, K>,
+    ) {
+        let step = leap.step;
+        let end = time + step;
+        let late = end.mul_add(-LAST, step);
+        let turned = self.flight.rate().abs().mul_add(step, -LAST);
+        let visible = self.bound.mul_add(step * step, -INVISIBLE);
+        // The largest excess must be ≤ 0: one comparison, because operations on masks are slower than those on numbers.
+        let invisible = late.max(turned).max(visible).le(0.0);
+        let last = look.gap.rate.lt(0.0) & invisible & clear & !arrival.done;
+        if !last.any() {
+            return;
+        }
+        let there = look.attitude.turned(self.flight.rate() * step);
+        let attitude = &mut arrival.attitude;
+        arrival.time = last.select(end, arrival.time);
+        attitude.sine = last.select(there.sine, attitude.sine);
+        attitude.cosine = last.select(there.cosine, attitude.cosine);
+        arrival.done = arrival.done | last;
+    }
+
+    /// The time up to which a pass that evaluated the gap at `time` rules out a contact.
+    #[inline(always)]
+    pub fn certain(&self, time: Pack<S, K>, leap: &Leap<S, K>) -> Pack<S, K> {
+        // The time must increase by at least one rounding unit, however short the step.
+        self.skip(time + leap.step.max(f64::EPSILON * time))
+    }
+
+    /// The time of the next evaluation: just before the contact that the expansions predict, or else `certain`, up to which a
+    /// contact is ruled out.
+    #[inline(always)]
+    pub fn aim(
+        &self,
+        certain: Pack<S, K>,
+        leap: &Leap<S, K>,
+        residue: &Residue<S, K>,
+        arrival: &Arrival<S, K>,
+        hull: &impl Hull,
+    ) -> Pack<S, K> {
+        let rate = residue.rate;
+        let beyond = self.least_fall(arrival.time - certain, rate);
+        // So near to the contact a pass ends the search, and the gap is larger than its rounding error.
+        let turning = self.flight.rate().abs() * hull.sharpness();
+        let margin = NEAR * rate / turning.mul_add(-rate, self.sway);
+        let aim = (arrival.time + margin).max(certain);
+        let led = (self.flight.rate() * leap.ahead).abs().le(FAR);
+        (led & beyond.le(0.0) & rate.lt(0.0)).select(aim, certain)
+    }
+
+    /// Whether no part can have touched between `certain`, up to which a contact is ruled out, and the `time` of the evaluation.
+    ///
+    /// The bound f″ ≥ −M holds backwards in time as well: a time s before the evaluation of f and f′ the gap was at least
+    /// f − f′s − Ms²/2, which is concave in s, and therefore positive in between if it is positive at both ends.
+    #[inline(always)]
+    pub fn is_clear<H: Hull>(
+        &self,
+        certain: Pack<S, K>,
+        time: Pack<S, K>,
+        look: &Look<S, K>,
+        hull: &H,
+    ) -> Mask<S, K> {
+        let since = time - certain;
+        let least = self.least_gap(since, look.gap.width, look.gap.rate);
+        let least = if H::TWO {
+            let other = hull.part(!look.gap.part.one);
+            let (width, rate) = self.moment(time, look.attitude).opening(&other, hull);
+            least.min(self.least_gap(since, width, rate))
+        } else {
+            least
+        };
+        !certain.lt(time) | (0.0 * since).lt(least)
+    }
+
+    /// A lower bound on the gap of a part during the interval of length `since` before its evaluation.
+    #[inline(always)]
+    fn least_gap(&self, since: Pack<S, K>, width: Pack<S, K>, rate: Pack<S, K>) -> Pack<S, K> {
+        let fallen = self.least_fall(since, rate);
+        since.mul_add(-fallen, width).min(width)
+    }
+
+    /// An upper bound on the mean f′ during the interval of length `since` before a time at which f′ is `rate`, f′ + ½M·since. Where it
+    /// is negative, the gap was wider before: of a contact, for at least 2|f′|/M.
+    #[inline(always)]
+    fn least_fall(&self, since: Pack<S, K>, rate: Pack<S, K>) -> Pack<S, K> {
+        since.mul_add(0.5 * self.bound, rate)
+    }
+
+    /// The step to the zero of the fourth-order expansion of the gap, found by a step of third order from the end of `step`.
+    #[inline(always)]
+    fn expanded(&self, look: &Look<S, K>, step: Pack<S, K>, hull: &impl Hull) -> Pack<S, K> {
+        let swing = self.flight.swing(look.attitude);
+        let [second, third, fourth] = hull.bends(&look.gap.part, &swing); // f″ without gravity, f‴, f⁗
+        let slack = second + self.sway; // f″ + M, which the lower bound neglects
+        // The gap after the step, and the speed at which it closes there.
+        let bend = (step * fourth).mul_add(1.0 / 12.0, third * (1.0 / 3.0));
+        let left = 0.5 * (step * step) * step.mul_add(bend, slack);
+        let speed = step.mul_add(-step.mul_add(0.5 * third, slack), look.gap.root);
+        let inverse = 1.0 / speed;
+        let newton = left * inverse;
+        let curvature = step.mul_add(third, second - 1.0); // f″
+        step + newton.mul_add(0.5 * curvature * newton * inverse, newton)
+    }
+}

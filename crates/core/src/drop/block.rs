@@ -1,0 +1,150 @@
+//! A block of particles, and the choice of the bounce loop for their motion, hull and law.
+
+use super::Source;
+use super::lanes::{Apart, GROUPS, Legs, Planar, Sink, Spatial, Stuck, Together, Turn, bounce};
+use crate::Error;
+use crate::shape::Surface;
+use crate::simd::Level;
+use crate::threads::Monitor;
+use pulp::{Simd, WithSimd};
+use std::ops::Range;
+
+/// Smallest number of particles in a block: large enough that scheduling costs nothing, small enough that all threads stay busy.
+pub(crate) const BLOCK: usize = 96;
+/// Largest number of particles in a block, at whose end some lanes have none left.
+const LARGEST: usize = 960;
+
+/// Number of particles in the next block, of those that are left to some threads: a multiple of [`BLOCK`], so that no lane is idle where
+/// all particles live equally long.
+pub(crate) fn share(left: usize, threads: usize) -> usize {
+    // One thread has nobody to wait for it.
+    let most = if threads > 1 {
+        left / (3 * threads)
+    } else {
+        left
+    };
+    (most / BLOCK * BLOCK).clamp(BLOCK, LARGEST).min(left)
+}
+
+/// Number of particles in each of the blocks that some threads share evenly, all but the last.
+pub(crate) fn even(particles: usize, threads: usize) -> usize {
+    let blocks = particles.div_ceil(LARGEST).next_multiple_of(threads);
+    particles.div_ceil(blocks)
+}
+
+/// Simulates a range of particles and hands their impacts to `sink`.
+pub(crate) fn bounce_block(
+    source: &impl Source,
+    particles: Range<usize>,
+    level: Level,
+    monitor: &Monitor,
+    sink: &mut impl Sink,
+) -> Result<(), Error> {
+    let count = particles.len() as u64;
+    level.run(Block {
+        source,
+        particles,
+        monitor,
+        sink,
+    })?;
+    monitor.add_finished(count);
+    Ok(())
+}
+
+/// The particles of a block, compiled for each SIMD level.
+struct Block<'a, R, T> {
+    source: &'a R,
+    particles: Range<usize>,
+    monitor: &'a Monitor,
+    sink: &'a mut T,
+}
+
+impl<R: Source, T: Sink> WithSimd for Block<'_, R, T> {
+    type Output = Result<(), Error>;
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) -> Self::Output {
+        let plan = self.source.plan();
+        let (body, law, slope) = (&plan.body, &plan.law, plan.slope);
+        // The paper's body, and in the most common runs the one that takes longest, have bounce loops of their own where these are not
+        // held up by memory.
+        let steady = plan.law.steady();
+        match (&body.hull, plan.at_rest, &steady) {
+            (Surface::EqualPair(hull), true, Some(law)) if T::TOGETHER => {
+                self.run::<S, Planar>(simd, &Together::new(body, hull, law, slope))
+            }
+            (Surface::EqualPair(hull), true, None) if T::TOGETHER => {
+                self.run::<S, Planar>(simd, &Together::new(body, hull, law, slope))
+            }
+            (Surface::Ellipsoid(hull), true, Some(law)) if T::COMMON => {
+                self.run::<S, Planar>(simd, &Together::new(body, hull, law, slope))
+            }
+            (Surface::Ellipsoid(hull), false, _) if T::COMMON => {
+                self.run::<S, Spatial>(simd, &Together::new(body, hull, law, slope))
+            }
+            (_, true, _) => self.run::<S, Planar>(simd, &Apart { body, law, slope }),
+            (_, false, _) => self.run::<S, Spatial>(simd, &Apart { body, law, slope }),
+        }
+    }
+}
+
+impl<R: Source, T: Sink> Block<'_, R, T> {
+    #[inline(always)]
+    fn run<S: Simd, K: Turn>(self, simd: S, legs: &impl Legs<S, K>) -> Result<(), Error> {
+        let Self {
+            source,
+            particles,
+            monitor,
+            sink,
+        } = self;
+        bounce::<S, K, _, GROUPS>(
+            simd,
+            (&source.plan().body, source.plan().limits()),
+            legs,
+            (source, particles),
+            sink,
+            || !monitor.is_cancelled(),
+        )
+        .map_err(|Stuck { particle, impacts }| {
+            let (plan, number) = source.origin(particle);
+            Error::Numerical {
+                particle: number as u64,
+                seed: plan.run.seed,
+                flight: impacts as u64,
+            }
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The largest number of whole vectors up to a third of what each thread has left, of all that is left to a single one; 96 and 960 are
+    /// the least and the most.
+    #[test]
+    fn blocks_shrink_with_what_is_left() {
+        for threads in 1..9 {
+            for left in (1..2000).chain([10_000, 123_456]) {
+                let waits = if threads > 1 { 3 * threads } else { 1 };
+                let fits = |&size: &usize| size * waits <= left;
+                let largest = (1..=10).map(|blocks| 96 * blocks).rfind(fits);
+                assert_eq!(share(left, threads), largest.unwrap_or(96).min(left));
+            }
+        }
+    }
+
+    /// The smallest blocks of which no more are needed than threads can share evenly, of 960 particles at most.
+    #[test]
+    fn threads_have_equally_many_blocks() {
+        for threads in 1..9 {
+            for particles in (1..3000).chain([10_000, 123_456]) {
+                let size = even(particles, threads);
+                let mut shared = (threads..).step_by(threads);
+                let blocks = shared.find(|blocks| 960 * blocks >= particles).unwrap();
+                assert!(size <= 960 && blocks * size >= particles);
+                assert!(blocks * (size - 1) < particles);
+            }
+        }
+    }
+}

@@ -1,0 +1,195 @@
+//! The bounce loop: flight to the next contact, impact, and again, for several groups of particles in alternation.
+
+use super::group::{Group, Release, Stuck};
+use super::impact::Sink;
+use super::leg::Legs;
+use super::strike::Turn;
+use crate::drop::stop::{Limits, StopReason};
+use crate::shape::Body;
+use crate::simd::Pack;
+use pulp::{Simd, WithSimd};
+use std::hint::black_box;
+use std::ops::Range;
+
+/// Simulates the `particles` of a release, as many at a time as N groups have lanes. Calls `go_on` before every impact.
+///
+/// `legs` takes the groups from one impact to the next; this function passes the impacts on and ends the trajectories.
+#[inline(always)]
+pub(crate) fn bounce<S: Simd, T: Turn, L: Legs<S, T>, const N: usize>(
+    simd: S,
+    (body, limits): (&Body, Limits),
+    legs: &L,
+    (release, mut particles): (&impl Release, Range<usize>),
+    sink: &mut impl Sink,
+    go_on: impl Fn() -> bool,
+) -> Result<(), Stuck> {
+    let mut groups = legs.groups::<N>(simd);
+    let width = Pack::<S, 1>::WIDTH;
+    let count = particles.len().div_ceil(width).min(N);
+    // Of a slice that it knows to be short the compiler would write out every stage for each group, which then do not fit into the
+    // instruction cache.
+    let mut groups = black_box(&mut groups[..count]);
+    let mut ended = true;
+    sink.begin();
+    loop {
+        if ended {
+            legs.occupy(groups, release, &mut particles);
+            let before = groups.len();
+            groups = in_use(groups);
+            if L::TOGETHER {
+                sink.settle(width * groups.len()..width * before);
+            }
+        }
+        if groups.is_empty() {
+            return Ok(());
+        }
+        if !go_on() {
+            break;
+        }
+        legs.fly(groups, sink)?;
+        ended = simd.vectorize(Tell {
+            groups: &mut *groups,
+            body,
+            limits,
+            sink: &mut *sink,
+            settle: !L::TOGETHER,
+        });
+    }
+    if L::TOGETHER {
+        sink.settle(0..width * groups.len());
+    }
+    for group in groups {
+        group.end(group.active, StopReason::Interrupted);
+        group.close(sink);
+    }
+    Ok(())
+}
+
+/// The groups that have particles, which the others make way for.
+fn in_use<S: Simd, T: Turn>(groups: &mut [Group<S, T>]) -> &mut [Group<S, T>] {
+    let mut count = 0;
+    for i in 0..groups.len() {
+        if groups[i].active.any() {
+            if i > count {
+                groups.swap(i, count);
+            }
+            count += 1;
+        }
+    }
+    &mut groups[..count]
+}
+
+/// Hands an impact of all groups to the sink, and returns whether some particle has ended. Compiled separately, because the rare
+/// branches of the sinks would take registers from the other stages.
+struct Tell<'a, S: Simd, T: Turn, K> {
+    groups: &'a mut [Group<S, T>],
+    body: &'a Body,
+    limits: Limits,
+    sink: &'a mut K,
+    /// Whether the sink works the impacts up here.
+    settle: bool,
+}
+
+impl<S: Simd, T: Turn, K: Sink> WithSimd for Tell<'_, S, T, K> {
+    type Output = bool;
+
+    #[inline(always)]
+    fn with_simd<U: Simd>(self, _: U) -> bool {
+        let width = Pack::<S, 1>::WIDTH;
+        let mut ended = false;
+        for (i, group) in self.groups.iter_mut().enumerate() {
+            ended |= group.tell(i, self.body, self.limits, self.sink);
+        }
+        if self.settle {
+            self.sink.settle(0..width * self.groups.len());
+        }
+        ended
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::drop::{GROUPS, Impact, Meanwhile, Sink, StopReason};
+    use crate::drop::{Orientation, Plan, Run, bounce_block};
+    use crate::simd::{LANES, Level, Pack};
+    use crate::{Dumbbell, Law, Monitor, Spin, TangentialRestitution, Vector};
+    use pulp::Simd;
+    use std::ops::Range;
+
+    /// Cancels its own run after some impacts, and knows which of them were worked up.
+    struct Cancelling<'a> {
+        monitor: &'a Monitor,
+        most: usize,
+        impacts: usize,
+        done: usize,
+        waits: [bool; GROUPS * LANES],
+    }
+
+    impl Meanwhile for Cancelling<'_> {
+        fn meanwhile(&mut self, place: usize) {
+            self.done += usize::from(std::mem::take(&mut self.waits[place]));
+        }
+    }
+
+    impl Sink for Cancelling<'_> {
+        const TOGETHER: bool = true;
+        const COMMON: bool = false;
+
+        fn begin(&mut self) {}
+
+        fn impact<S: Simd, const K: usize>(&mut self, group: usize, impact: &Impact<S, K>) {
+            impact.active.each(|lane| {
+                let place = group * Pack::<S, K>::WIDTH + lane;
+                assert!(!self.waits[place], "an impact is lost");
+                self.waits[place] = true;
+                self.impacts += 1;
+            });
+            if self.impacts >= self.most {
+                self.monitor.cancel();
+            }
+        }
+
+        fn end(&mut self, _: usize, _: usize, _: StopReason) {}
+    }
+
+    /// Wherever a run is cancelled, and if it is not, every impact is worked up once: those of the last round, too.
+    #[test]
+    fn every_impact_is_worked_up() {
+        let tangential = TangentialRestitution::new(0.3).unwrap();
+        let run = Run {
+            body: Dumbbell::new(3e-3, 1.5e-3, 2500.0).unwrap().into(),
+            law: Law::new(0.9, tangential).unwrap(),
+            particles: 100,
+            impacts: 7,
+            orientation: Orientation::UniformAngle,
+            release_height: 0.06.into(),
+            release_velocity: Vector::default(),
+            spin: Spin::NONE,
+            gravity: 9.81,
+            incline: 0.0,
+            minimum_speed: 0.0,
+            seed: 1,
+        };
+        let plan = Plan::new(&run).unwrap();
+        for level in Level::available() {
+            for particles in [1, 5, 100] {
+                for most in [1, 3, 30, 150, 400, usize::MAX] {
+                    let monitor = Monitor::default();
+                    let mut sink = Cancelling {
+                        monitor: &monitor,
+                        most,
+                        impacts: 0,
+                        done: 0,
+                        waits: [false; GROUPS * LANES],
+                    };
+                    let range: Range<usize> = 0..particles;
+                    bounce_block(&plan, range, level, &monitor, &mut sink).unwrap();
+                    assert_eq!(sink.done, sink.impacts, "{level:?}, {particles}, {most}");
+                    if most == usize::MAX {
+                        assert_eq!(sink.done, 7 * particles);
+                    }
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,386 @@
+//! A group of particles, as many as a vector has lanes, and the stages from one impact to the next.
+
+mod tell;
+
+use super::strike::{Strike, Touch, Turn};
+use crate::contact::{Arrival, Departure, Leap, Look, Residue, Search};
+use crate::drop::stop::StopReason;
+use crate::law::{Contacts, Respond, Responses};
+use crate::motion::{Flight, State, States};
+use crate::shape::{Body, Hull};
+use crate::simd::{LANES, Mask, Pack};
+use pulp::Simd;
+use std::ops::Range;
+
+/// The flight of a group with planar or spatial motion T.
+type FlightOf<S, T> = <T as Turn>::Flight<S, 1>;
+/// The state of a group.
+pub(crate) type StateOf<S, T> = <FlightOf<S, T> as Flight<S, 1>>::State;
+/// Velocity and angular momentum of a group, which an impact changes.
+type MotionOf<S, T> = <StateOf<S, T> as States<S, 1>>::Motion;
+
+/// Number of groups that alternate: enough to keep the arithmetic units busy, few enough to leave room in the first-level cache.
+pub(crate) const GROUPS: usize = 6;
+
+/// The initial conditions of particles.
+pub(crate) trait Release {
+    /// The state of a particle of the run at its release.
+    fn start(&self, particle: usize) -> State;
+}
+
+/// The particle whose contact search did not converge.
+#[derive(Debug)]
+pub(crate) struct Stuck {
+    pub particle: usize,
+    pub impacts: usize,
+}
+
+/// A contact that was located, in each lane.
+pub(crate) struct Found<S: Simd, T: Turn> {
+    /// Flight time.
+    pub time: Pack<S, 1>,
+    /// The state just before the impact.
+    pub state: StateOf<S, T>,
+    /// +1 or −1: sphere 1 or 2 touches.
+    pub sphere: Pack<S, 1>,
+}
+
+/// As many particles as a vector has lanes, each in a flight of its own: a lane whose contact is not located yet sits out the impacts
+/// of the others. Aligned to a cache line, so that no vector straddles two lines.
+#[derive(Clone, Copy)]
+#[repr(align(64))]
+pub(crate) struct Group<S: Simd, T: Turn> {
+    /// The search along the flight. The start of the flight is later replaced by the state before the impact.
+    search: Search<S, FlightOf<S, T>, 1>,
+    /// The time of the evaluation, with sine and cosine of the angle turned through by then.
+    pub time: Pack<S, 1>,
+    pub turned: (Pack<S, 1>, Pack<S, 1>),
+    /// The gap there, and the results of the stages that follow.
+    look: Look<S, 1>,
+    leap: Leap<S, 1>,
+    residue: Residue<S, 1>,
+    arrival: Arrival<S, 1>,
+    /// The time up to which a contact is ruled out, and the lanes in which it is ruled out up to the evaluation as well.
+    certain: Pack<S, 1>,
+    clear: Mask<S, 1>,
+    /// The lanes whose contact is not located by the passes so far, the number of these passes, and whether there are such lanes.
+    waiting: Mask<S, 1>,
+    passes: Pack<S, 1>,
+    pub is_behind: bool,
+    /// The motion after the impact.
+    after: MotionOf<S, T>,
+    /// Speed at which the point of contact approached the plane.
+    approach: Pack<S, 1>,
+    /// Time since release.
+    clock: Pack<S, 1>,
+    /// Unresolved flights in a row.
+    unresolved: Pack<S, 1>,
+    /// Number of the particle in the run.
+    particle: Pack<S, 1>,
+    /// Number of rounds so far, each of which has an impact in the lanes that do not wait.
+    rounds: f64,
+    /// Number of rounds in which the particle of the lane had none: those before its release, and those in which it waited.
+    idle: Pack<S, 1>,
+    /// The first round after which a particle may have all its impacts.
+    due: f64,
+    /// The lanes whose particle has not stopped.
+    pub active: Mask<S, 1>,
+    /// The lanes whose particle has stopped, which the sink does not know yet, and why.
+    ended: Mask<S, 1>,
+    has_ended: bool,
+    reasons: [StopReason; LANES],
+}
+
+impl<S: Simd, T: Turn> Group<S, T> {
+    /// A group without particles; its lanes hold a body at rest.
+    #[inline(always)]
+    pub fn empty(simd: S, hull: &impl Hull) -> Self {
+        let zero = Pack::splat(simd, 0.0);
+        let state = StateOf::<S, T>::resting(simd, 1.0);
+        let departure = Departure {
+            sphere: zero,
+            speed: zero,
+        };
+        let part = hull.part(Mask::splat(simd, false));
+        Self {
+            search: Search::new(FlightOf::<S, T>::new(state, 0.0), departure, hull),
+            look: Look::nothing(part),
+            leap: Leap::none(simd),
+            residue: Residue::none(simd),
+            arrival: Arrival::none(simd),
+            certain: zero,
+            clear: Mask::splat(simd, true),
+            waiting: Mask::splat(simd, false),
+            passes: zero,
+            is_behind: false,
+            time: zero,
+            turned: (zero, zero),
+            after: state.motion(),
+            approach: zero,
+            clock: zero,
+            unresolved: zero,
+            particle: zero,
+            rounds: 0.0,
+            idle: zero,
+            due: 0.0,
+            active: Mask::splat(simd, false),
+            ended: Mask::splat(simd, false),
+            has_ended: false,
+            reasons: [StopReason::Interrupted; LANES],
+        }
+    }
+
+    /// Puts the next particles of a release into the lanes that are free, as long as there are any.
+    #[inline(always)]
+    pub fn occupy(
+        &mut self,
+        release: &impl Release,
+        particles: &mut Range<usize>,
+        slope: f64,
+        hull: &impl Hull,
+    ) {
+        let mut state = self.before().moving(self.after);
+        let mut fresh = 0.0 * self.particle;
+        (!self.active).each(|lane| {
+            if let Some(particle) = particles.next() {
+                state.put(lane, &release.start(particle));
+                self.particle.as_mut_slice()[lane] = particle as f64;
+                fresh.as_mut_slice()[lane] = 1.0;
+            }
+        });
+        let fresh = fresh.eq(1.0);
+        self.active = self.active | fresh;
+        self.waiting = self.waiting & !fresh;
+        self.clock = fresh.select(0.0, self.clock);
+        self.unresolved = fresh.select(0.0, self.unresolved);
+        self.idle = fresh.select(self.rounds, self.idle);
+        self.due = self.rounds;
+        let released = Search::released(FlightOf::<S, T>::new(state, slope), hull).departure;
+        let departure = &mut self.search.departure;
+        departure.sphere = fresh.select(released.sphere, departure.sphere);
+        departure.speed = fresh.select(released.speed, departure.speed);
+        self.search.flight.end(state, state.lift());
+        self.after = state.motion();
+    }
+
+    /// The state before the impact, or at the start of the flight.
+    #[inline(always)]
+    fn before(&self) -> StateOf<S, T> {
+        *self.search.flight.start()
+    }
+
+    /// Replaces the departure of the release by that of an impact.
+    pub fn depart_from(&mut self, departure: Departure<S, 1>) {
+        self.search.departure = departure;
+    }
+
+    /// The contact of lane 0, or the stop reason if there is none.
+    pub fn found(&self) -> Result<Found<S, T>, StopReason> {
+        if self.active.any() {
+            Ok(Found {
+                time: self.arrival.time,
+                state: self.before(),
+                sphere: self.search.departure.sphere,
+            })
+        } else {
+            Err(self.reasons[0])
+        }
+    }
+
+    /// The angle turned through at the time of the evaluation.
+    #[inline(always)]
+    pub fn angle(&self) -> Pack<S, 1> {
+        self.search.angle(self.time)
+    }
+
+    /// Determines the time of the first evaluation of the flights that begin, and ends the particles that rest.
+    #[inline(always)]
+    pub fn depart(&mut self, hull: &impl Hull) {
+        let still = self.search.departure.speed.le(0.0);
+        if still.any() {
+            let rests = still & self.search.rests(hull);
+            self.end(rests, StopReason::Collapse);
+        }
+        let first = self.search.departed(hull);
+        if self.is_behind {
+            self.time = self.waiting.select(self.time, first);
+            self.certain = self.waiting.select(self.certain, first);
+        } else {
+            self.time = first;
+        }
+    }
+
+    #[inline(always)]
+    pub fn look(&mut self, hull: &impl Hull) {
+        self.look = self.search.look(self.time, self.turned, hull);
+    }
+
+    #[inline(always)]
+    pub fn leap(&mut self, hull: &impl Hull) {
+        self.leap = self.search.leap(&self.look, hull);
+    }
+
+    #[inline(always)]
+    pub fn residue(&mut self, hull: &impl Hull) {
+        self.residue = self.search.residue(self.time, &self.look, &self.leap, hull);
+    }
+
+    #[inline(always)]
+    pub fn arrive(&mut self, hull: &impl Hull) {
+        self.arrival = self
+            .search
+            .arrival(&self.look, &self.leap, &self.residue, hull);
+    }
+
+    /// Looks at the gap again where the contact was found, in the lanes in which it is not located yet.
+    #[inline(always)]
+    pub fn look_closer(&mut self, hull: &impl Hull) {
+        self.leap = self.leap.on_to(&self.arrival, self.time);
+        self.residue(hull);
+        self.arrive(hull);
+    }
+
+    /// Whether the contact of some particle was not located before this pass, or is not by this one: rare after the first pass, except
+    /// for spinning smooth hulls.
+    #[inline(always)]
+    pub fn takes_another_pass(&self) -> bool {
+        self.is_behind || (self.active & !self.arrival.done).any()
+    }
+
+    /// 1 in each lane that waits, otherwise 0.
+    #[inline(always)]
+    pub fn behind(&self) -> Pack<S, 1> {
+        self.waiting.select(1.0, 0.0)
+    }
+
+    /// The lanes that have an impact.
+    #[inline(always)]
+    fn landing(&self) -> Mask<S, 1> {
+        self.active & !self.waiting
+    }
+
+    /// Ends the particles that never land.
+    #[inline(always)]
+    pub fn end_those_that_never_land(&mut self) {
+        self.end(self.look.never, StopReason::NeverLands);
+    }
+
+    /// Ends the search in the lanes whose certified step leaves a gap below the resolution.
+    #[inline(always)]
+    pub fn graze(&mut self) {
+        if !self.takes_another_pass() {
+            return;
+        }
+        let Self {
+            time,
+            look,
+            leap,
+            clear,
+            arrival,
+            ..
+        } = self;
+        self.search.graze(*time, look, leap, *clear, arrival);
+    }
+
+    /// Determines the lanes that go on, and the time of their next evaluation. The others keep theirs and repeat the same result.
+    #[inline(always)]
+    pub fn go_on(&mut self, hull: &impl Hull) {
+        let (clear, done) = (self.clear, self.arrival.done);
+        let certain = self.search.certain(self.time, &self.leap);
+        let certain = clear.select(certain, self.certain);
+        let aim = self
+            .search
+            .aim(certain, &self.leap, &self.residue, &self.arrival, hull);
+        let next = clear.select(aim, certain);
+        self.time = done.select(self.time, next);
+        self.certain = done.select(self.time, certain);
+        self.passes = self.waiting.select(self.passes, 0.0) + 1.0;
+        self.waiting = self.active & !done;
+        self.is_behind = self.waiting.any();
+    }
+
+    /// Determines the lanes in which no contact can have been missed before the evaluation. The others are not done.
+    #[inline(always)]
+    pub fn clear(&mut self, hull: &impl Hull) {
+        if self.is_behind {
+            self.clear = self
+                .search
+                .is_clear(self.certain, self.time, &self.look, hull);
+            self.arrival.done = self.arrival.done & self.clear;
+        } else {
+            self.clear = Mask::splat(self.time.simd(), true);
+        }
+    }
+
+    /// Replaces the start of the flight by the state at the contact; returns the sphere that touches like the hull there.
+    #[inline(always)]
+    pub fn land(&mut self, hull: &impl Hull) -> Touch<S, 1> {
+        let Arrival { time, attitude, .. } = self.arrival;
+        let state = self.search.flight.state(time, attitude);
+        let (part, tilt) = (&self.look.gap.part, state.tilt());
+        let (sphere, lift) = (hull.name(part, tilt), hull.lift(part, tilt)); // (2)
+        let touch = Touch::of(hull, part, tilt);
+        let departure = &mut self.search.departure;
+        if self.is_behind {
+            let before = self.search.flight.start();
+            let (state, lift) = (
+                state.or(self.waiting, before),
+                self.waiting.select(before.lift(), lift),
+            );
+            self.search.flight.end(state, lift);
+            departure.sphere = self.waiting.select(departure.sphere, sphere);
+            touch.but_not(self.waiting)
+        } else {
+            self.search.flight.end(state, lift);
+            departure.sphere = sphere;
+            touch
+        }
+    }
+
+    /// Applies the collision law.
+    #[inline(always)]
+    pub fn collide(&mut self, body: &Body, law: &impl Respond, touch: Touch<S, 1>) {
+        let struck = self.before().strike(body, law, touch);
+        self.leave(struck.motion, struck.approach, struck.separation);
+    }
+
+    /// Takes the motion after an impact, and the normal speeds of its contact.
+    #[inline(always)]
+    fn leave(&mut self, after: MotionOf<S, T>, approach: Pack<S, 1>, separation: Pack<S, 1>) {
+        let departure = &mut self.search.departure;
+        self.approach = approach;
+        if self.is_behind {
+            let before = *self.search.flight.start();
+            self.after = before.moving(after).or(self.waiting, &before).motion();
+            departure.speed = self.waiting.select(departure.speed, separation);
+        } else {
+            self.after = after;
+            departure.speed = separation;
+        }
+    }
+
+    /// The contact as a law sees it, and the lanes that have one.
+    #[inline(always)]
+    pub fn contact(&self, body: &Body, touch: Touch<S, 1>) -> (Contacts<S, 1>, Mask<S, 1>) {
+        (self.before().contact(body, touch), self.landing())
+    }
+
+    /// Applies what a law answered.
+    #[inline(always)]
+    pub fn respond(
+        &mut self,
+        body: &Body,
+        touch: Touch<S, 1>,
+        approach: Pack<S, 1>,
+        response: &Responses<S, 1>,
+    ) {
+        let after = self.before().respond(body, touch, response);
+        self.leave(after, approach, response.separation_speed);
+    }
+
+    /// Starts the next flight.
+    #[inline(always)]
+    pub fn start(&mut self, slope: f64, hull: &impl Hull) {
+        self.search.depart(self.after, slope, hull);
+    }
+}

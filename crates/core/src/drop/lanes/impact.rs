@@ -1,0 +1,87 @@
+//! An impact as the bounce loop reports it, and the trait of its receivers.
+
+use crate::drop::StopReason;
+use crate::motion::SpatialStates;
+use crate::simd::{Mask, Pack};
+use pulp::Simd;
+use std::ops::Range;
+
+/// One impact in each lane, in the core's units.
+pub(crate) struct Impact<S: Simd, const K: usize> {
+    /// Number of the particle in the run.
+    pub particle: Pack<S, K>,
+    /// Number of the impact, counted from 0.
+    pub number: Pack<S, K>,
+    /// Time since release.
+    pub time: Pack<S, K>,
+    /// Normal velocity of the centre of mass before the impact, v_G^n, positive when falling, and after it, positive when rising.
+    pub fall: Pack<S, K>,
+    pub rise: Pack<S, K>,
+    /// Kinetic energy of the rotation before the impact.
+    pub rotation: Pack<S, K>,
+    /// Total kinetic energies before and after the impact.
+    pub energy_before: Pack<S, K>,
+    pub energy_after: Pack<S, K>,
+    /// Sine, up to its sign, and cosine of the angle between the axis and the plane normal.
+    pub sine: Pack<S, K>,
+    pub cosine: Pack<S, K>,
+    /// +1 or −1: sphere 1 or 2 touched.
+    pub sphere: Pack<S, K>,
+    /// Speed at which the point of contact approached the plane, −v_c^n.
+    pub approach: Pack<S, K>,
+    /// The states before and after the impact.
+    pub before: SpatialStates<S, K>,
+    pub after: SpatialStates<S, K>,
+    /// The lanes that have an impact.
+    pub active: Mask<S, K>,
+}
+
+impl<S: Simd, const K: usize> Impact<S, K> {
+    /// The coefficient of restitution (1).
+    #[inline(always)]
+    pub fn restitution(&self) -> Pack<S, K> {
+        self.rise / self.fall // (1)
+    }
+
+    /// E_rot/E_tot before the impact (12).
+    #[inline(always)]
+    pub fn rotational_fraction(&self) -> Pack<S, K> {
+        self.rotation / self.energy_before // (12)
+    }
+
+    /// Total kinetic energy after the impact divided by that before.
+    #[inline(always)]
+    pub fn energy_ratio(&self) -> Pack<S, K> {
+        self.energy_after / self.energy_before
+    }
+}
+
+/// Work that can be interleaved with the bounce loop while its arithmetic waits for results.
+pub(crate) trait Meanwhile {
+    /// Works up the impact at a place: number of its group times number of lanes, plus lane.
+    fn meanwhile(&mut self, place: usize);
+}
+
+/// A receiver of impacts, which records or counts them.
+pub(crate) trait Sink: Meanwhile {
+    /// Whether bounce loops are compiled for this sink ([`super::Together`]). Sinks that write records are limited by memory and
+    /// gain nothing from it.
+    const TOGETHER: bool;
+    /// Whether it is among the most common ones, for which more of them are compiled.
+    const COMMON: bool;
+
+    /// Announces a release: at no place is there an impact to be worked up.
+    fn begin(&mut self);
+    /// Receives an impact in each active lane of a group. What is left to be done with it is done before the next one of this group:
+    /// meanwhile, or by [`Sink::settle`].
+    fn impact<S: Simd, const K: usize>(&mut self, group: usize, impact: &Impact<S, K>);
+    /// Works up the impacts at these places.
+    #[inline(always)]
+    fn settle(&mut self, places: Range<usize>) {
+        for place in places {
+            self.meanwhile(place);
+        }
+    }
+    /// Receives the end of a particle after `impacts` impacts.
+    fn end(&mut self, particle: usize, impacts: usize, reason: StopReason);
+}

@@ -1,0 +1,86 @@
+//! A run, in SI units, and the initial conditions of its particles.
+
+mod block;
+mod follow;
+mod lanes;
+mod plan;
+mod release;
+mod scales;
+mod series;
+mod single;
+mod stop;
+
+pub(crate) use block::{BLOCK, bounce_block, even, share};
+pub use follow::Followed;
+pub(crate) use lanes::{GROUPS, Impact, Meanwhile, Sink};
+pub(crate) use plan::Plan;
+pub use release::{About, Height, Orientation, Spin};
+pub use scales::Scales;
+pub(crate) use series::{Series, Source};
+pub use single::{
+    Departure, Landing, NoConvergence, SingleImpact, collide, first_contact, trajectory,
+};
+pub use stop::{COLLAPSE_RUN, Limits, StopReason};
+
+use crate::law::Law;
+use crate::math::Vector;
+use crate::shape::Solid;
+use crate::simd::elementary::sincos;
+
+/// A run, in SI units.
+#[derive(Debug, Clone, Copy)]
+pub struct Run<'a> {
+    /// The body.
+    pub body: Solid,
+    /// The collision law.
+    pub law: Law<'a>,
+    /// Number of particles.
+    pub particles: usize,
+    /// Largest number of impacts of a particle.
+    pub impacts: usize,
+    /// Distribution of the height of the centre of mass over the plane at release, along the plane normal, in m.
+    pub release_height: Height,
+    /// Acceleration of gravity, in m/s².
+    pub gravity: f64,
+    /// Distribution of the symmetry axis at release.
+    pub orientation: Orientation<'a>,
+    /// Distribution of the angular velocity at release, in rad/s.
+    pub spin: Spin<'a>,
+    /// Velocity of the centre of mass at release, in m/s.
+    pub release_velocity: Vector,
+    /// Inclination α of the plane in [0, π/2) rad, descending along x: in its frame gravity is g(sin α, 0, −cos α).
+    pub incline: f64,
+    /// Value of √(2 E_kin/m) after an impact, in m/s, below which a particle stops; with 0 none does.
+    pub minimum_speed: f64,
+    /// Seed of the random numbers.
+    pub seed: u64,
+}
+
+impl Run<'_> {
+    /// The origin about which moments of ε are summed: ε_n at the normal speed of the first impact; for random heights, of a release
+    /// from the middle one.
+    pub fn origin(&self) -> f64 {
+        let drop = self.release_height.middle() - self.body.unit;
+        let gained = 2.0 * self.gravity * sincos(self.incline).1 * drop.max(0.0);
+        let start = self.release_velocity.z;
+        self.law.normal.at(start.mul_add(start, gained).sqrt())
+    }
+
+    /// Whether all particles are released at rest over a level plane. All directions in the plane are then equivalent, and each
+    /// particle remains in the vertical plane of its axis.
+    pub(crate) fn is_at_rest(&self) -> bool {
+        self.spin.is_none() && self.release_velocity == Vector::default() && self.incline == 0.0
+    }
+
+    /// Whether another run differs in nothing but its seed, the number of its particles and how they are released, and moves in the
+    /// same way.
+    pub(crate) fn is_like(&self, other: &Self) -> bool {
+        self.body == other.body
+            && self.law == other.law
+            && self.impacts == other.impacts
+            && self.gravity == other.gravity
+            && self.incline == other.incline
+            && self.minimum_speed == other.minimum_speed
+            && self.is_at_rest() == other.is_at_rest()
+    }
+}

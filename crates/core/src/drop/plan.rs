@@ -1,0 +1,160 @@
+//! A run that has been checked, in the core's units, ready for the bounce loop.
+
+use super::{Height, Orientation, Run, Scales};
+use crate::Error;
+use crate::drop::Limits;
+use crate::law::Law;
+use crate::math::Vector;
+use crate::motion::State;
+use crate::shape::{Body, Solid};
+use crate::simd::elementary::sincos;
+use std::f64::consts::FRAC_PI_2;
+use std::ops::Range;
+
+/// A run that has been checked, in the core's units.
+pub(crate) struct Plan<'a> {
+    pub run: &'a Run<'a>,
+    pub body: Body,
+    pub law: Law<'a>,
+    pub scales: Scales,
+    /// Height of the centre of mass at release.
+    height: Height,
+    /// Velocity of the centre of mass at release.
+    velocity: Vector,
+    /// tan α.
+    pub slope: f64,
+    /// [`Run::is_at_rest`].
+    pub at_rest: bool,
+}
+
+/// Largest magnitude of a component of spin or velocity, in the core's units, so that squares do not overflow.
+const FASTEST: f64 = 1e100;
+
+impl<'a> Plan<'a> {
+    pub fn new(run: &'a Run<'a>) -> Result<Self, Error> {
+        Error::unless(run.particles > 0, "particles", 0.0, "> 0")?;
+        Error::unless(run.impacts > 0, "impacts", 0.0, "> 0")?;
+        let speed = run.minimum_speed;
+        let allowed = "finite and >= 0 (m/s)";
+        Error::unless(
+            speed.is_finite() && speed >= 0.0,
+            "minimum_speed",
+            speed,
+            allowed,
+        )?;
+        run.orientation.check(run.particles)?;
+        let incline = run.incline;
+        let allowed = "in [0, pi/2) (rad)";
+        Error::unless(
+            (0.0..FRAC_PI_2).contains(&incline),
+            "incline",
+            incline,
+            allowed,
+        )?;
+        let (sine, cosine) = sincos(incline);
+        let scales = Scales::new(run.body.unit, run.gravity * cosine)?;
+        run.spin.check(run.particles, FASTEST / scales.time)?;
+        let velocity = run.release_velocity;
+        for component in [velocity.x, velocity.y, velocity.z] {
+            let allowed = "finite, at most 1e100 sqrt(gR) (m/s) either way";
+            let most = FASTEST * scales.speed;
+            Error::unless(
+                component.abs() <= most,
+                "release_velocity",
+                component,
+                allowed,
+            )?;
+        }
+        let plan = Self {
+            run,
+            body: run.body.scaled,
+            law: run.law.scaled(scales.speed),
+            scales,
+            height: run.release_height.scaled(scales.length),
+            velocity: velocity / scales.speed,
+            slope: sine / cosine,
+            at_rest: run.is_at_rest(),
+        };
+        run.release_height.check()?;
+        let lowest = plan.height.lowest();
+        let clear = |cosine: f64| Solid::clears(lowest, plan.body.hull.support(cosine));
+        let high = Solid::clears(run.release_height.lowest(), run.body.farthest());
+        let clear = high
+            || match run.orientation {
+                Orientation::Given(_) | Orientation::Directions(_) => {
+                    (0..run.particles).all(|i| clear(plan.release(i).1))
+                }
+                Orientation::UniformAngle | Orientation::Isotropic => false,
+            };
+        Error::unless(
+            clear && lowest.is_finite(),
+            "release_height",
+            run.release_height.lowest(),
+            "finite and high enough that no part is below the plane at release",
+        )?;
+        Ok(plan)
+    }
+
+    /// Sine and cosine of the angle at release.
+    #[inline(always)]
+    pub fn release(&self, particle: usize) -> (f64, f64) {
+        self.run.orientation.draw(self.run.seed, particle as u64)
+    }
+
+    /// Height of the centre of mass at release.
+    #[inline(always)]
+    fn height(&self, particle: usize) -> f64 {
+        self.height.draw(self.run.seed, particle as u64)
+    }
+
+    /// Height of the centre of mass at release, in m.
+    pub fn release_height(&self, particle: usize) -> f64 {
+        self.run.release_height.draw(self.run.seed, particle as u64)
+    }
+
+    /// Azimuth at release, in rad, and angular velocity, in rad/s.
+    pub fn spinning(&self, particle: usize) -> (f64, Vector) {
+        let (seed, number) = (self.run.seed, particle as u64);
+        let azimuth = self.run.orientation.azimuth(seed, number);
+        let angle = self.release(particle);
+        let ratio = self.body.transverse / self.body.axial;
+        let axis = (angle, sincos(azimuth));
+        let spin = self.run.spin.draw(seed, number, axis, ratio);
+        (azimuth, spin)
+    }
+
+    /// The limits at which a particle stops.
+    pub fn limits(&self) -> Limits {
+        Limits {
+            impacts: self.run.impacts,
+            minimum_speed: self.run.minimum_speed / self.scales.speed,
+        }
+    }
+
+    /// Whether the range has particles, all of them of the run.
+    pub fn check_part(&self, part: &Range<usize>) -> Result<(), Error> {
+        let allowed = "at least one of the particles of the run, from the first to before the last";
+        let inside = part.start < part.end && part.end <= self.run.particles;
+        Error::unless(inside, "part", part.end as f64, allowed)
+    }
+
+    /// The state of a particle at release. At rest over a level plane the azimuth does not matter, and the axis is in the x–z plane.
+    #[inline(always)]
+    pub fn state(&self, particle: usize) -> State {
+        let (sine, cosine) = self.release(particle);
+        let height = self.height(particle);
+        if self.at_rest {
+            return State {
+                lift: height - self.body.hull.level(),
+                velocity: Vector::default(),
+                axis: Vector::new(sine, 0.0, cosine),
+                precession: Vector::default(),
+            };
+        }
+        let (azimuth, spin) = self.spinning(particle);
+        let (y, x) = sincos(azimuth);
+        let axis = Vector::new(sine * x, sine * y, cosine);
+        let spin = spin * self.scales.time;
+        State::with_spin(&self.body, height, self.velocity, axis, spin)
+    }
+}

@@ -1,0 +1,160 @@
+//! Initial conditions: the angular velocity at release.
+
+use crate::Error;
+use crate::math::Vector;
+use crate::random::uniform;
+use crate::simd::elementary::{ln, sincos};
+use std::f64::consts::TAU;
+
+/// The distribution of the angular velocity **ω** at release, in rad/s.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Spin<'a> {
+    /// The same **ω** for every particle.
+    Fixed(Vector),
+    /// One **ω** for each particle.
+    Given(&'a [[f64; 3]]),
+    /// Random: |**ω**| is uniform from `low` to `high`, and independent of the direction.
+    Random {
+        /// Smallest |**ω**|.
+        low: f64,
+        /// Largest |**ω**|; equal to `low` if all particles spin equally fast.
+        high: f64,
+        /// Distribution of the direction.
+        about: About,
+    },
+    /// Maxwell distribution, ∝ exp(−E_rot/T): the components of **ω** along the axis and perpendicular to it are Gaussian, with the
+    /// same mean energy for each of the three degrees of freedom.
+    Thermal {
+        /// √⟨ω²⟩.
+        rate: f64,
+    },
+}
+
+/// The distribution of the direction of a random spin.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum About {
+    /// Isotropic.
+    Isotropic,
+    /// Uniform over the directions in the plane.
+    Horizontal,
+    /// Uniform over the directions perpendicular to the symmetry axis: the body tumbles, and **ω** is constant in flight.
+    Across,
+}
+
+impl About {
+    /// All distributions of the direction with their names.
+    pub const NAMED: [(&'static str, Self); 3] = [
+        ("isotropic", Self::Isotropic),
+        ("horizontal", Self::Horizontal),
+        ("across", Self::Across),
+    ];
+
+    /// The distribution with this name.
+    ///
+    /// # Errors
+    /// [`Error::Parameter`] for an unknown name.
+    pub fn named(name: &str) -> Result<Self, Error> {
+        Error::chosen("axis", name, &Self::NAMED)
+    }
+}
+
+/// Numbers of the random draws of a particle; the orientation has 0 and 1.
+const RATE: u32 = 2;
+const AROUND: u32 = 3;
+const UPWARD: u32 = 4;
+const LENGTHWISE: u32 = 7;
+
+impl Spin<'_> {
+    /// No spin.
+    pub const NONE: Self = Self::Fixed(Vector::new(0.0, 0.0, 0.0));
+
+    /// Whether no particle spins.
+    pub fn is_none(&self) -> bool {
+        match self {
+            Self::Fixed(spin) => *spin == Vector::default(),
+            Self::Given(spins) => spins.iter().flatten().all(|&x| x == 0.0),
+            Self::Random { high, .. } => *high == 0.0,
+            Self::Thermal { rate } => *rate == 0.0,
+        }
+    }
+
+    /// **ω** of a particle, in rad/s. The tuples are sine and cosine of the polar angle and of the azimuth of its symmetry axis;
+    /// `ratio` is J_xx/J_zz.
+    pub fn draw(
+        &self,
+        seed: u64,
+        particle: u64,
+        ((sine, cosine), (y, x)): ((f64, f64), (f64, f64)),
+        ratio: f64,
+    ) -> Vector {
+        // Two directions perpendicular to the axis: in its vertical plane, and horizontal.
+        let tilted = Vector::new(cosine * x, cosine * y, -sine);
+        let level = Vector::new(-y, x, 0.0);
+        match *self {
+            Self::Fixed(spin) => spin,
+            Self::Given(spins) => {
+                let [x, y, z] = spins[particle as usize];
+                Vector::new(x, y, z)
+            }
+            Self::Random { low, high, about } => {
+                let rate = (high - low).mul_add(uniform(seed, particle, RATE), low);
+                let (b, a) = sincos(TAU * uniform(seed, particle, AROUND));
+                let direction = match about {
+                    About::Isotropic => {
+                        let up = 2.0_f64.mul_add(uniform(seed, particle, UPWARD), -1.0);
+                        let level = up.mul_add(-up, 1.0).sqrt();
+                        Vector::new(level * a, level * b, up)
+                    }
+                    About::Horizontal => Vector::new(a, b, 0.0),
+                    About::Across => level.mul_add(b, tilted * a),
+                };
+                direction * rate
+            }
+            Self::Thermal { rate } => {
+                let normal = |size, direction| {
+                    let (size, turn) = (
+                        uniform(seed, particle, size),
+                        uniform(seed, particle, direction),
+                    );
+                    let (b, a) = sincos(TAU * turn);
+                    let size = (-2.0 * ln(1.0 - size)).sqrt();
+                    (size * a, size * b)
+                };
+                let (first, second) = normal(RATE, AROUND);
+                let (third, _) = normal(UPWARD, LENGTHWISE);
+                let across = rate / (2.0 + ratio).sqrt();
+                let axis = Vector::new(sine * x, sine * y, cosine);
+                let turning = level.mul_add(second, tilted * first);
+                axis.mul_add(third * ratio.sqrt(), turning) * across
+            }
+        }
+    }
+
+    /// Checks that all components are at most `most` and that there is a spin for each particle.
+    pub(crate) fn check(&self, particles: usize, most: f64) -> Result<(), Error> {
+        let all = |spin: [f64; 3]| {
+            spin.into_iter().try_for_each(|x| {
+                let allowed = "finite, at most 1e100 sqrt(g/R) (rad/s) either way";
+                Error::unless(x.abs() <= most, "spin", x, allowed)
+            })
+        };
+        match *self {
+            Self::Fixed(spin) => all([spin.x, spin.y, spin.z]),
+            Self::Given(spins) => {
+                let count = spins.len();
+                let allowed = "the number of particles";
+                Error::unless(count == particles, "number of spins", count, allowed)?;
+                spins.iter().copied().try_for_each(all)
+            }
+            Self::Random { low, high, .. } => {
+                let allowed = "finite and >= 0 (rad/s), the lower first, at most 1e100 sqrt(g/R)";
+                Error::unless(low >= 0.0, "rate", low, allowed)?;
+                Error::unless((low..=most).contains(&high), "rate", high, allowed)
+            }
+            Self::Thermal { rate } => {
+                let allowed = "finite and >= 0 (rad/s), at most 1e99 sqrt(g/R)";
+                Error::unless((0.0..=0.1 * most).contains(&rate), "rate", rate, allowed)
+            }
+        }
+    }
+}

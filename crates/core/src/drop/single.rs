@@ -1,0 +1,191 @@
+//! One particle at a time: the engine over a single lane, with scalars as arguments and results, for a single flight, a single
+//! impact, or the states of a trajectory.
+
+use super::lanes::{
+    Apart, Found, Group, Idle, Impact, Meanwhile, Planar, Release, Sink, Spatial, Strike, Touch,
+    bounce, find,
+};
+use super::stop::{Limits, StopReason};
+use crate::contact;
+use crate::law::Law;
+use crate::motion::State;
+use crate::shape::{Body, Hull, Sphere, with_hull};
+use crate::simd::one;
+use pulp::{Scalar, Simd};
+use std::cell::Cell;
+
+/// The start of a flight.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Departure {
+    /// A release; a part of the body may be on the plane, at rest or moving up.
+    Free,
+    /// An impact: a part of the body is on the plane, and its point of contact leaves at `speed` ≥ 0.
+    Touching {
+        /// The sphere on the plane.
+        sphere: Sphere,
+        /// Normal speed of the point of contact, in √(gR).
+        speed: f64,
+    },
+}
+
+/// The end of a flight.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Landing {
+    /// The body touches the plane.
+    Impact {
+        /// Flight time, in √(R/g).
+        time: f64,
+        /// The state just before the impact.
+        state: State,
+        /// The sphere that touches.
+        sphere: Sphere,
+    },
+    /// The sphere on the plane does not leave it: its point of contact has no normal velocity and is not accelerated upwards.
+    Resting,
+    /// No contact before the axis has turned by [`crate::elementary::RANGE`] rad.
+    Never,
+}
+
+/// The contact search did not converge, which is a defect of the program.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct NoConvergence;
+
+/// One impact of one particle.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SingleImpact {
+    /// Time since release, in √(R/g).
+    pub time: f64,
+    /// The state just before the impact.
+    pub before: State,
+    /// The state just after the impact.
+    pub after: State,
+    /// The sphere that touched.
+    pub sphere: Sphere,
+}
+
+/// First contact of the flight from `start`, over a plane that descends along x with this slope, tan α. Times are in √(R/g), lengths
+/// in R.
+///
+/// # Errors
+/// [`NoConvergence`] if the search does not converge.
+pub fn first_contact(
+    start: &State,
+    slope: f64,
+    body: &Body,
+    departure: Departure,
+) -> Result<Landing, NoConvergence> {
+    with_hull!(&body.hull, hull => {
+        let simd = Scalar::new();
+        let mut groups = [Group::<Scalar, Spatial>::empty(simd, hull)];
+        groups[0].occupy(&Single(*start), &mut (0..1), slope, hull);
+        if let Departure::Touching { sphere, speed } = departure {
+            groups[0].depart_from(contact::Departure {
+                sphere: one(sphere.sign()),
+                speed: one(speed),
+            });
+        }
+        groups[0].start(slope, hull);
+        find::<Scalar, Spatial>(&mut groups, hull, &mut Idle).map_err(|_| NoConvergence)?;
+        let [mut group] = groups;
+        group.land(hull);
+        Ok(match group.found() {
+            Ok(Found { time, state, sphere }) => Landing::Impact {
+                time: time.as_slice()[0],
+                state: state.lane(0),
+                sphere: Sphere::of(sphere.as_slice()[0]),
+            },
+            Err(StopReason::NeverLands) => Landing::Never,
+            Err(_) => Landing::Resting,
+        })
+    })
+}
+
+/// The state after the impact of `sphere`, and the speed, in √(gR), at which the point of contact leaves the plane. A law that
+/// depends on the speed must be scaled to √(gR) ([`Law::scaled`]).
+pub fn collide(body: &Body, law: &Law<'_>, before: &State, sphere: Sphere) -> (State, f64) {
+    with_hull!(&body.hull, hull => {
+        let state = before.in_lane();
+        let part = hull.part(one(sphere.sign()).eq(1.0));
+        let struck = state.strike(body, law, Touch::of(hull, &part, state.axis.z));
+        let after = crate::motion::States::moving(state, struck.motion);
+        (after.lane(0), struck.separation.as_slice()[0])
+    })
+}
+
+/// Simulates a particle until a limit is reached; `record` is called with every impact and returns whether to continue. The plane
+/// descends along x with the given slope, tan α. The impacts have the same bits as in a run, because a release from rest is treated
+/// as planar motion here as well.
+///
+/// # Errors
+/// [`NoConvergence`] if a contact search does not converge.
+pub fn trajectory(
+    body: &Body,
+    law: &Law<'_>,
+    slope: f64,
+    start: State,
+    limits: Limits,
+    record: impl FnMut(&SingleImpact) -> bool,
+) -> Result<StopReason, NoConvergence> {
+    if limits.impacts == 0 {
+        return Ok(StopReason::ImpactsReached);
+    }
+    let go_on = Cell::new(true);
+    let mut told = Told {
+        record,
+        go_on: &go_on,
+        ended: StopReason::Interrupted,
+    };
+    let (simd, job) = (Scalar::new(), (body, limits));
+    let legs = Apart { body, law, slope };
+    let release = (&Single(start), 0..1);
+    if start.is_at_rest() && slope == 0.0 {
+        bounce::<_, Planar, _, 1>(simd, job, &legs, release, &mut told, || go_on.get())
+    } else {
+        bounce::<_, Spatial, _, 1>(simd, job, &legs, release, &mut told, || go_on.get())
+    }
+    .map_err(|_| NoConvergence)?;
+    Ok(told.ended)
+}
+
+/// The release of a single particle.
+struct Single(State);
+
+impl Release for Single {
+    fn start(&self, _: usize) -> State {
+        self.0
+    }
+}
+
+/// The sink that hands the impacts to `record`.
+struct Told<'a, F> {
+    record: F,
+    go_on: &'a Cell<bool>,
+    ended: StopReason,
+}
+
+impl<F> Meanwhile for Told<'_, F> {
+    fn meanwhile(&mut self, _: usize) {}
+}
+
+impl<F: FnMut(&SingleImpact) -> bool> Sink for Told<'_, F> {
+    const TOGETHER: bool = false;
+    const COMMON: bool = false;
+
+    fn begin(&mut self) {}
+
+    fn impact<S: Simd, const K: usize>(&mut self, _: usize, impact: &Impact<S, K>) {
+        if !impact.active.any() {
+            return;
+        }
+        self.go_on.set((self.record)(&SingleImpact {
+            time: impact.time.as_slice()[0],
+            before: impact.before.lane(0),
+            after: impact.after.lane(0),
+            sphere: Sphere::of(impact.sphere.as_slice()[0]),
+        }));
+    }
+
+    fn end(&mut self, _: usize, _: usize, reason: StopReason) {
+        self.ended = reason;
+    }
+}

@@ -1,0 +1,178 @@
+//! Coulomb friction during the impact, with three hypotheses on when the impact ends.
+//!
+//! The independent variable is the accumulated normal impulse p (E. J. Routh, 1860; Y. Wang and M. T. Mason, J. Appl. Mech. **59**,
+//! 635 (1992)). While the contact slips, the tangential impulse per normal impulse is μ, opposite to the slip velocity. Once the
+//! slip velocity vanishes, the contact sticks if |K_nu| ≤ μ K_uu, and otherwise slips in the direction in which K_nu drives it. In
+//! both cases dP_u/dp = −K_nu/K_uu, limited to ±μ. In planar motion the contact velocity is therefore linear in p on either side
+//! of the impulse p_s at which the slip velocity vanishes.
+
+mod planar;
+pub(super) mod turning;
+
+use super::{Contacts, Late, Responses};
+use crate::Error;
+use crate::simd::Pack;
+use planar::Path;
+use pulp::Simd;
+use turning::Slipping;
+
+/// The condition that ends the phase of restitution, after that of compression. The three hypotheses agree as long as the slip
+/// velocity neither vanishes nor changes its direction.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Hypothesis {
+    /// W. J. Stronge, Proc. R. Soc. Lond. A **431**, 169 (1990): the normal force returns the fraction ε_n² of the work that was
+    /// done against it in the compression. The energy cannot grow, because friction dissipates as well.
+    Stronge,
+    /// S. D. Poisson: the normal impulse of restitution is ε_n times that of compression. The normal force may return more work
+    /// than was done against it, but no more than friction dissipates: with T the kinetic energy and **s** the slip velocity,
+    /// dT/dp = v_c^n − μ|**s**| ≤ 0 at the end of the compression. Its derivative, **q**ᵀK**q** with **q** = d**P**/dp, never
+    /// increases with p, so that the gain of T after that point cannot exceed the loss before it.
+    Poisson,
+    /// I. Newton: v_c^n′ = −ε_n v_c^n. The energy can grow where the slip stops or reverses.
+    Newton,
+}
+
+impl Hypothesis {
+    /// All hypotheses with their names.
+    pub const NAMED: [(&'static str, Self); 3] = [
+        ("stronge", Self::Stronge),
+        ("poisson", Self::Poisson),
+        ("newton", Self::Newton),
+    ];
+
+    /// The hypothesis with this name.
+    ///
+    /// # Errors
+    /// [`Error::Parameter`] for an unknown name.
+    pub fn named(name: &str) -> Result<Self, Error> {
+        Error::chosen("hypothesis", name, &Self::NAMED)
+    }
+}
+
+/// Coulomb friction with coefficient μ.
+///
+/// The impulse lies within the friction cone |P_t| ≤ μ P_n, and friction always dissipates. Without friction (μ = 0) the law is
+/// [`super::Frictionless`] under each hypothesis.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Coulomb {
+    friction: f64,
+    hypothesis: Hypothesis,
+}
+
+impl Coulomb {
+    /// The law with the coefficient of friction μ and a hypothesis.
+    ///
+    /// # Errors
+    /// [`Error::Parameter`] for μ outside [0, 10¹⁰⁰].
+    pub fn new(friction: f64, hypothesis: Hypothesis) -> Result<Self, Error> {
+        check_friction(friction)?;
+        Ok(Self {
+            friction,
+            hypothesis,
+        })
+    }
+
+    /// μ.
+    pub(super) fn friction(&self) -> f64 {
+        self.friction
+    }
+
+    #[inline(always)]
+    pub(super) fn respond<S: Simd, const K: usize, const SPACE: bool>(
+        &self,
+        contact: &Contacts<S, K>,
+        restitution: Pack<S, K>,
+    ) -> Responses<S, K> {
+        let mut answer = self.in_plane(contact, restitution);
+        if !SPACE || self.friction == 0.0 || contact.slip_across.eq(0.0).all() {
+            return answer;
+        }
+        for k in 0..K {
+            let mut late = [self.begin(&contact.part(k), restitution.part(k))];
+            self.finish(&mut late);
+            let found = late[0].response;
+            answer.normal.set_part(k, &found.normal);
+            answer.along.set_part(k, &found.along);
+            answer.across.set_part(k, &found.across);
+            answer.separation_speed.set_part(k, &found.separation_speed);
+        }
+        answer
+    }
+
+    /// The responses that do not take long, in space, μ > 0.
+    #[inline(always)]
+    pub(super) fn begin<S: Simd>(
+        &self,
+        contact: &Contacts<S, 1>,
+        restitution: Pack<S, 1>,
+    ) -> Late<S> {
+        let turns = !contact.slip_across.eq(0.0);
+        let slipping = Slipping {
+            speed: contact.approach_speed(),
+            along: contact.slip_along,
+            across: contact.slip_across,
+            nn: contact.normal_response(),
+            nu: contact.coupling(),
+            uu: contact.along_response(),
+            ww: contact.across_response(),
+            restitution,
+        };
+        let (found, open) = turning::begin(&slipping, self.friction, self.hypothesis);
+        let mut response = Responses {
+            normal: found.normal,
+            along: found.along,
+            across: found.across,
+            separation_speed: found.separation_speed,
+        };
+        if !turns.all() {
+            let straight = self.in_plane(contact, restitution);
+            response = Responses {
+                normal: turns.select(response.normal, straight.normal),
+                along: turns.select(response.along, straight.along),
+                across: turns.select(response.across, straight.across),
+                separation_speed: turns
+                    .select(response.separation_speed, straight.separation_speed),
+            };
+        }
+        Late {
+            response,
+            open: (open & turns).select(1.0, 0.0),
+            slipping,
+        }
+    }
+
+    /// Finds the responses that take long.
+    #[inline(always)]
+    pub(super) fn finish<S: Simd>(&self, late: &mut [Late<S>]) {
+        turning::finish(late, self.friction, self.hypothesis);
+    }
+
+    #[inline(always)]
+    fn in_plane<S: Simd, const K: usize>(
+        &self,
+        contact: &Contacts<S, K>,
+        restitution: Pack<S, K>,
+    ) -> Responses<S, K> {
+        let speed = contact.approach_speed();
+        let path = Path::new(contact, self.friction);
+        let (normal, separation_speed) = path.end(speed, restitution, self.hypothesis);
+        Responses {
+            normal,
+            along: path.friction(normal),
+            across: normal * 0.0,
+            separation_speed,
+        }
+    }
+}
+
+/// Largest μ; beyond it products of μ could overflow, and every contact sticks long before.
+pub const MOST_FRICTION: f64 = 1e100;
+
+pub(super) fn check_friction(friction: f64) -> Result<(), Error> {
+    Error::unless(
+        (0.0..=MOST_FRICTION).contains(&friction),
+        "friction",
+        friction,
+        "in [0, 1e100]",
+    )
+}

@@ -1,0 +1,282 @@
+//! Motion in three dimensions.
+//!
+//! With **p** = **Λ**/J_xx and Ω = |**p**| the axis is **e**(t) = **k** + (**e** − **k**) cos Ωt + (**p** × **e**)/Ω sin Ωt,
+//! where **k** = **p**(**p**·**e**)/Ω² and **e** is the axis at the start (3).
+
+use super::{Attitude, Flight, State};
+use crate::math::Vectors;
+use crate::shape::{Body, Swing};
+use crate::simd::{Mask, Pack};
+use pulp::Simd;
+
+/// Position and motion.
+#[derive(Clone, Copy)]
+pub(crate) struct States<S: Simd, const K: usize> {
+    pub lift: Pack<S, K>,
+    /// Unit vector of the symmetry axis, from sphere 2 to sphere 1.
+    pub axis: Vectors<S, K>,
+    pub motion: Motion<S, K>,
+}
+
+/// v_G and **p** = **Λ**/J_xx.
+#[derive(Clone, Copy)]
+pub(crate) struct Motion<S: Simd, const K: usize> {
+    pub velocity: Vectors<S, K>,
+    pub precession: Vectors<S, K>,
+}
+
+impl<S: Simd, const K: usize> States<S, K> {
+    /// The state in a lane.
+    #[inline(always)]
+    pub fn lane(&self, lane: usize) -> State {
+        State {
+            lift: self.lift.as_slice()[lane],
+            velocity: self.motion.velocity.lane(lane),
+            axis: self.axis.lane(lane),
+            precession: self.motion.precession.lane(lane),
+        }
+    }
+
+    /// Angular velocity **ω** = Ĵ⁻¹**Λ**.
+    #[inline(always)]
+    pub fn spin(&self, body: &Body) -> Vectors<S, K> {
+        let axial = body.transverse / body.axial - 1.0;
+        let precession = self.motion.precession;
+        self.axis
+            .mul_add(axial * precession.dot(self.axis), precession)
+    }
+}
+
+impl<S: Simd, const K: usize> super::States<S, K> for States<S, K> {
+    type Motion = Motion<S, K>;
+
+    #[inline(always)]
+    fn resting(simd: S, lift: f64) -> Self {
+        let lane = |x| Pack::splat(simd, x);
+        let zero = Vectors {
+            x: lane(0.0),
+            y: lane(0.0),
+            z: lane(0.0),
+        };
+        Self {
+            lift: lane(lift),
+            axis: Vectors {
+                z: lane(1.0),
+                ..zero
+            },
+            motion: Motion {
+                velocity: zero,
+                precession: zero,
+            },
+        }
+    }
+
+    #[inline(always)]
+    fn put(&mut self, lane: usize, start: &State) {
+        self.lift.as_mut_slice()[lane] = start.lift;
+        self.axis.put(lane, start.axis);
+        self.motion.velocity.put(lane, start.velocity);
+        self.motion.precession.put(lane, start.precession);
+    }
+
+    #[inline(always)]
+    fn lift(&self) -> Pack<S, K> {
+        self.lift
+    }
+
+    #[inline(always)]
+    fn climb(&self) -> Pack<S, K> {
+        self.motion.velocity.z
+    }
+
+    #[inline(always)]
+    fn sine(&self) -> Pack<S, K> {
+        let Vectors { x, y, .. } = self.axis;
+        x.mul_add(x, y * y).sqrt()
+    }
+
+    #[inline(always)]
+    fn tilt(&self) -> Pack<S, K> {
+        self.axis.z
+    }
+
+    #[inline(always)]
+    fn motion(&self) -> Motion<S, K> {
+        self.motion
+    }
+
+    #[inline(always)]
+    fn or(self, mask: Mask<S, K>, other: &Self) -> Self {
+        let (own, motion) = (self.motion, other.motion);
+        Self {
+            lift: mask.select(other.lift, self.lift),
+            axis: self.axis.or(mask, other.axis),
+            motion: Motion {
+                velocity: own.velocity.or(mask, motion.velocity),
+                precession: own.precession.or(mask, motion.precession),
+            },
+        }
+    }
+
+    #[inline(always)]
+    fn moving(self, motion: Motion<S, K>) -> Self {
+        Self { motion, ..self }
+    }
+
+    #[inline(always)]
+    fn in_space(&self) -> Self {
+        *self
+    }
+
+    /// **ω**·**Λ**/2, the rotational part of (12).
+    #[inline(always)]
+    fn rotational_energy(&self, body: &Body) -> Pack<S, K> {
+        let precession = self.motion.precession;
+        0.5 * body.transverse * self.spin(body).dot(precession)
+    }
+
+    #[inline(always)]
+    fn kinetic_energy(&self, body: &Body) -> Pack<S, K> {
+        let velocity = self.motion.velocity;
+        0.5 * velocity.dot(velocity) + self.rotational_energy(body)
+    }
+}
+
+/// A flight: the state at its start, and the constants of its rotation.
+#[derive(Clone, Copy)]
+pub(crate) struct Motions<S: Simd, const K: usize> {
+    start: States<S, K>,
+    slope: f64,
+    /// Ω and Ω².
+    rate: Pack<S, K>,
+    square: Pack<S, K>,
+    /// **p**·**e**/Ω² and 1/Ω; 0 for a body that does not rotate.
+    share: Pack<S, K>,
+    inverse: Pack<S, K>,
+    /// e_z is `centre + cosine cos φ + sine sin φ`, φ = Ωt (3).
+    centre: Pack<S, K>,
+    cosine: Pack<S, K>,
+    sine: Pack<S, K>,
+    amplitude: Pack<S, K>,
+}
+
+/// Ω² below which a body is treated as not rotating.
+const SLOWEST: f64 = 1e-300;
+
+impl<S: Simd, const K: usize> Flight<S, K> for Motions<S, K> {
+    type State = States<S, K>;
+
+    #[inline(always)]
+    fn new(start: States<S, K>, slope: f64) -> Self {
+        let (axis, precession) = (start.axis, start.motion.precession);
+        let square = precession.dot(precession);
+        let rate = square.sqrt();
+        let inverse = square.lt(SLOWEST).select(0.0, 1.0 / rate.max(SLOWEST));
+        let share = precession.dot(axis) * (inverse * inverse);
+        let centre = precession.z * share;
+        let cosine = axis.z - centre;
+        let horizontal = precession.x.mul_add(axis.y, -(precession.y * axis.x));
+        let sine = horizontal * inverse;
+        let amplitude = cosine.mul_add(cosine, sine * sine).sqrt();
+        Self {
+            start,
+            slope,
+            rate,
+            square,
+            share,
+            inverse,
+            centre,
+            cosine,
+            sine,
+            amplitude: (amplitude * (1.0 + 4.0 * f64::EPSILON)).min(1.0), // an upper bound in spite of rounding
+        }
+    }
+
+    #[inline(always)]
+    fn depart(&mut self, motion: Motion<S, K>, slope: f64) {
+        *self = Self::new(super::States::moving(self.start, motion), slope);
+    }
+
+    #[inline(always)]
+    fn start(&self) -> &States<S, K> {
+        &self.start
+    }
+
+    #[inline(always)]
+    fn rate(&self) -> Pack<S, K> {
+        self.rate
+    }
+
+    #[inline(always)]
+    fn square(&self) -> Pack<S, K> {
+        self.square
+    }
+
+    #[inline(always)]
+    fn amplitude(&self) -> Pack<S, K> {
+        self.amplitude
+    }
+
+    #[inline(always)]
+    fn reach(&self) -> Pack<S, K> {
+        self.centre.abs() + self.amplitude
+    }
+
+    #[inline(always)]
+    fn attitude(&self, (sine, cosine): (Pack<S, K>, Pack<S, K>)) -> Attitude<S, K> {
+        Attitude { sine, cosine }
+    }
+
+    #[inline(always)]
+    fn swing(&self, Attitude { sine, cosine }: Attitude<S, K>) -> Swing<S, K> {
+        let turning = self.cosine.mul_add(cosine, self.sine * sine); // (3)
+        let leading = self.sine.mul_add(cosine, -(self.cosine * sine)); // a quarter of a turn later
+        Swing {
+            tilt: turning + self.centre,
+            rate: self.rate * leading,
+            acceleration: -self.square * turning,
+            square: self.square,
+        }
+    }
+
+    #[inline(always)]
+    fn beginning(&self) -> Swing<S, K> {
+        Swing {
+            tilt: self.start.axis.z,
+            rate: self.rate * self.sine,
+            acceleration: -self.square * self.cosine,
+            square: self.square,
+        }
+    }
+
+    #[inline(always)]
+    fn state(&self, time: Pack<S, K>, attitude: Attitude<S, K>) -> States<S, K> {
+        let States { axis, motion, lift } = self.start;
+        let constant = motion.precession.times(self.share);
+        let leading = motion.precession.cross(axis).times(self.inverse);
+        let axis = leading.mul_add(
+            attitude.sine,
+            axis.minus(constant).mul_add(attitude.cosine, constant),
+        ); // (3)
+        // One Newton step to unit length; rounding would otherwise accumulate over the impacts.
+        let axis = axis.times(axis.dot(axis).mul_add(-0.5, 1.5));
+        let Vectors { x, y, .. } = motion.velocity;
+        States {
+            lift,
+            axis,
+            motion: Motion {
+                velocity: Vectors {
+                    x: time.mul_add(self.slope, x), // (5)
+                    y,
+                    z: self.climb_at(time),
+                },
+                ..motion
+            },
+        }
+    }
+
+    #[inline(always)]
+    fn end(&mut self, state: States<S, K>, lift: Pack<S, K>) {
+        self.start = States { lift, ..state };
+    }
+}

@@ -1,0 +1,92 @@
+//! The state of one particle, in the core's units.
+
+use super::{SpatialMotion, SpatialStates, States};
+use crate::math::{Vector, Vectors};
+use crate::shape::{Body, Sphere};
+use crate::simd::{elementary, one};
+use pulp::Scalar;
+
+/// Position and motion of one particle at its release, or just before or after an impact, in the core's units. The horizontal
+/// position is omitted, because the motion does not depend on it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct State {
+    /// Height of the centre of mass minus the hull's level, which is the height at which both spheres of a dumbbell lie on the
+    /// plane: R for equal spheres. At a contact the lift is ∓(L/2)e_z, so that the gap of the touching sphere is exactly 0.
+    pub lift: f64,
+    /// Velocity of the centre of mass, v_G.
+    pub velocity: Vector,
+    /// Unit vector of the symmetry axis, from sphere 2 to sphere 1.
+    pub axis: Vector,
+    /// **Λ**/J_xx with **Λ** the angular momentum: the axis turns about it at the rate |**Λ**|/J_xx. It equals **ω** if **ω** is
+    /// perpendicular to the axis.
+    pub precession: Vector,
+}
+
+impl State {
+    /// The state with this height of the centre of mass above the plane, velocity, axis and angular velocity **ω**, in the core's
+    /// units.
+    #[inline(always)]
+    pub fn with_spin(
+        body: &Body,
+        height: f64,
+        velocity: Vector,
+        axis: Vector,
+        spin: Vector,
+    ) -> Self {
+        let axial = body.axial / body.transverse - 1.0;
+        Self {
+            lift: height - body.hull.level(),
+            velocity,
+            axis,
+            precession: axis.mul_add(axial * spin.dot(axis), spin), // Λ/J_xx = Ĵω/J_xx
+        }
+    }
+
+    /// Whether the body is at rest with its axis in the x–z plane. The motion from such a state stays in that plane.
+    pub(crate) fn is_at_rest(&self) -> bool {
+        let rest = Vector::default();
+        self.velocity == rest && self.precession == rest && self.axis.y == 0.0
+    }
+
+    /// Angular velocity **ω** = Ĵ⁻¹**Λ**.
+    pub fn spin(&self, body: &Body) -> Vector {
+        self.in_lane().spin(body).lane(0)
+    }
+
+    /// Kinetic energy of the rotation, in m g R.
+    pub fn rotational_energy(&self, body: &Body) -> f64 {
+        self.in_lane().rotational_energy(body).as_slice()[0]
+    }
+
+    /// Kinetic energy, in m g R.
+    pub fn kinetic_energy(&self, body: &Body) -> f64 {
+        self.in_lane().kinetic_energy(body).as_slice()[0]
+    }
+
+    /// Angle θ between the symmetry axis and the plane normal, in [0, π] rad.
+    pub fn angle(&self) -> f64 {
+        elementary::angle(self.in_lane().sine().as_slice()[0], self.axis.z)
+    }
+
+    /// Gaps between the plane and spheres 1 and 2, in R; two equal values if only one part of the body can touch.
+    pub fn gaps(&self, body: &Body) -> [f64; 2] {
+        Sphere::BOTH.map(|sphere| body.hull.gap(sphere, self.axis.z, self.lift)) // (2)
+    }
+
+    /// The state in a single lane.
+    pub(crate) fn in_lane(&self) -> SpatialStates<Scalar, 1> {
+        let vector = |v: Vector| Vectors {
+            x: one(v.x),
+            y: one(v.y),
+            z: one(v.z),
+        };
+        SpatialStates {
+            lift: one(self.lift),
+            axis: vector(self.axis),
+            motion: SpatialMotion {
+                velocity: vector(self.velocity),
+                precession: vector(self.precession),
+            },
+        }
+    }
+}

@@ -1,0 +1,252 @@
+//! Two spheres on an axis. Equal ones are the paper's homogeneous dumbbell (A1)–(A8).
+
+use super::{
+    Ball, Body, EqualPair, Pair, Shape, Single, Surface, check_density, check_distance,
+    check_length, representable, seen,
+};
+use crate::Error;
+use crate::shape::mass::Part;
+use std::f64::consts::PI;
+
+/// Two spheres whose centres are `separation` apart, in SI units. The axis points from sphere 2 to sphere 1.
+///
+/// If the spheres overlap, the body is their union, divided at the plane of their intersection; each side has the density of its
+/// sphere. If they do not, it is two full spheres on a massless rod, and if one contains the other, it is that sphere alone. Mass
+/// and inertia are continuous from case to case. Spheres of equal radius and different density at zero separation are two
+/// hemispheres.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Dumbbell {
+    radius: [f64; 2],
+    separation: f64,
+    density: [f64; 2],
+}
+
+impl Dumbbell {
+    /// Equal spheres of `radius` (m) and `density` (kg/m³), their centres `separation` (m) apart.
+    ///
+    /// # Errors
+    /// Unless all three are finite, `radius` and `density` positive, and `separation` not negative; and if mass or inertia
+    /// overflows or underflows.
+    pub fn new(radius: f64, separation: f64, density: f64) -> Result<Self, Error> {
+        Self::unequal([radius; 2], separation, [density; 2])
+    }
+
+    /// Spheres 1 and 2, each with its own radius (m) and density (kg/m³). Errors as for [`Dumbbell::new`].
+    pub fn unequal(radius: [f64; 2], separation: f64, density: [f64; 2]) -> Result<Self, Error> {
+        for radius in radius {
+            check_length("radius", radius)?;
+        }
+        check_distance("separation", separation)?;
+        for density in density {
+            check_density(density)?;
+        }
+        let body = Self {
+            radius,
+            separation,
+            density,
+        };
+        representable(body, "radius")
+    }
+
+    /// Whether the spheres are equal.
+    fn is_equal(&self) -> bool {
+        self.radius[0] == self.radius[1] && self.density[0] == self.density[1]
+    }
+
+    /// Both radii in units of R.
+    fn radii(&self) -> [f64; 2] {
+        self.radius.map(|radius| radius / self.unit())
+    }
+
+    /// Mass, centre and inertia of unequal spheres, in units of R and of the density of sphere 1; the origin is the centre of
+    /// sphere 1.
+    fn whole(&self) -> Part {
+        let l = self.elongation();
+        let [one, two] = self.radii();
+        let density = self.density[1] / self.density[0];
+        if one > two && one - two >= l {
+            return Part::sphere(one, 1.0);
+        }
+        if two > one && two - one >= l {
+            return Part::sphere(two, density).upside_down(-l);
+        }
+        // Height of a spherical segment above the plane of intersection.
+        let height = |own: f64, other: f64| {
+            let difference = own - other;
+            let lean = if difference == 0.0 {
+                0.0
+            } else {
+                difference / l
+            };
+            (0.5 * (1.0 + lean) * (own + other + l)).min(2.0 * own)
+        };
+        let upper = Part::segment(one, height(one, two), 1.0);
+        let lower = Part::segment(two, height(two, one), density);
+        upper.and(lower.upside_down(-l))
+    }
+
+    /// L/R.
+    fn elongation(&self) -> f64 {
+        self.separation / self.unit()
+    }
+
+    /// m/(πρR³).
+    fn mass_factor(&self) -> f64 {
+        let l = self.elongation();
+        if l < 2.0 {
+            4.0 / 3.0 + l - l.powi(3) / 12.0 // (A3)
+        } else {
+            8.0 / 3.0 // two spheres
+        }
+    }
+
+    /// J_xx/(πρR⁵).
+    fn transverse_factor(&self) -> f64 {
+        let l = self.elongation();
+        if l < 2.0 {
+            8.0 / 15.0 + 3.0 / 4.0 * l + l.powi(2) / 3.0 + l.powi(3) / 24.0 + l.powi(5) / 960.0 // (A8)
+        } else {
+            16.0 / 15.0 + 2.0 / 3.0 * l.powi(2) // two spheres, parallel axis theorem
+        }
+    }
+
+    /// J_zz/(πρR⁵).
+    fn axial_factor(&self) -> f64 {
+        let l = self.elongation();
+        if l < 2.0 {
+            // (A5). The last term is printed as L⁵/180, but the integral is L⁵/160; only then is J_zz at L = 2R that of two spheres.
+            8.0 / 15.0 + l / 2.0 - l.powi(3) / 12.0 + l.powi(5) / 160.0
+        } else {
+            16.0 / 15.0 // two spheres
+        }
+    }
+}
+
+impl Shape for Dumbbell {
+    /// The radius of the larger sphere, relative to which rounding errors of positions are small.
+    fn unit(&self) -> f64 {
+        self.radius[0].max(self.radius[1])
+    }
+
+    fn mass(&self) -> f64 {
+        let unit = self.density[0] * self.unit().powi(3);
+        if self.is_equal() {
+            unit * PI * self.mass_factor() // (A3)
+        } else {
+            unit * self.whole().mass
+        }
+    }
+
+    fn transverse_inertia(&self) -> f64 {
+        let unit = self.density[0] * self.unit().powi(5);
+        if self.is_equal() {
+            unit * PI * self.transverse_factor() // (A8)
+        } else {
+            unit * self.whole().transverse
+        }
+    }
+
+    fn axial_inertia(&self) -> f64 {
+        let unit = self.density[0] * self.unit().powi(5);
+        if self.is_equal() {
+            unit * PI * self.axial_factor() // (A5)
+        } else {
+            unit * self.whole().axial
+        }
+    }
+
+    fn centre_of_mass(&self) -> f64 {
+        if self.is_equal() {
+            0.0
+        } else {
+            self.unit() * (self.whole().centre + 0.5 * self.elongation())
+        }
+    }
+
+    fn scaled(&self) -> Body {
+        let elongation = seen(self.elongation());
+        if self.is_equal() {
+            let half_separation = 0.5 * elongation;
+            let mass = self.mass_factor();
+            return Body {
+                hull: Surface::EqualPair(EqualPair::new(half_separation)),
+                half_separation,
+                transverse: self.transverse_factor() / mass,
+                axial: self.axial_factor() / mass,
+            };
+        }
+        let part = self.whole();
+        let ball = |place: f64, radius| Ball {
+            offset: place - part.centre,
+            radius,
+        };
+        let [one, two] = self.radii();
+        let balls = [ball(0.0, one), ball(-elongation, two)];
+        let (hull, half_separation) = if one - two >= elongation {
+            (Surface::Single(Single::new(balls[0], true)), 0.0)
+        } else if two - one >= elongation {
+            (Surface::Single(Single::new(balls[1], false)), 0.0)
+        } else {
+            let pair = Pair::new(balls, elongation);
+            (Surface::Pair(pair), 0.5 * elongation)
+        };
+        Body {
+            hull,
+            half_separation,
+            transverse: part.transverse / part.mass,
+            axial: part.axial / part.mass,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The integrals over slices of the upper half, (A3), (A5), (A6), by Gauss–Legendre quadrature, exact for these polynomials.
+    fn by_quadrature(l: f64) -> [f64; 3] {
+        // Five nodes integrate degree 9 exactly; the integrands have degree 4.
+        let nodes = [
+            (0.0, 128.0 / 225.0),
+            (0.538_469_310_105_683_1, 0.478_628_670_499_366_47),
+            (-0.538_469_310_105_683_1, 0.478_628_670_499_366_47),
+            (0.906_179_845_938_664, 0.236_926_885_056_189_08),
+            (-0.906_179_845_938_664, 0.236_926_885_056_189_08),
+        ];
+        let half = 0.5 * (1.0 + l / 2.0);
+        nodes.iter().fold([0.0; 3], |sum, &(x, w)| {
+            let z = half * (1.0 + x);
+            let r2 = 1.0 - (z - l / 2.0).powi(2); // (A2)
+            let w = w * half;
+            [
+                sum[0] + 2.0 * w * r2,
+                sum[1] + 2.0 * w * (r2 * r2 / 4.0 + z * z * r2),
+                sum[2] + w * r2 * r2,
+            ]
+        })
+    }
+
+    #[test]
+    fn inertia_is_the_integral_over_the_slices() {
+        for l in [0.0, 0.01, 0.1, 0.5, 1.0, 1.7, 1.999_999] {
+            let body = Dumbbell::new(1.0, l, 1.0).unwrap();
+            let [m, jxx, jzz] = by_quadrature(l);
+            assert!((body.mass_factor() - m).abs() < 1e-14 * m);
+            assert!((body.transverse_factor() - jxx).abs() < 1e-14 * jxx);
+            assert!((body.axial_factor() - jzz).abs() < 1e-14 * jzz);
+        }
+    }
+
+    #[test]
+    fn the_sphere_and_the_touching_spheres_are_limits() {
+        let sphere = Dumbbell::new(2.0, 0.0, 3.0).unwrap();
+        let m = 3.0 * 4.0 / 3.0 * PI * 8.0;
+        assert!((sphere.mass() - m).abs() < 1e-13 * m);
+        assert!((sphere.transverse_inertia() - 0.4 * m * 4.0).abs() < 1e-12 * m);
+        assert!((sphere.axial_inertia() - 0.4 * m * 4.0).abs() < 1e-12 * m);
+        let below = Dumbbell::new(1.0, 2.0 - 1e-12, 1.0).unwrap().scaled();
+        let above = Dumbbell::new(1.0, 2.0, 1.0).unwrap().scaled();
+        assert!((below.transverse - above.transverse).abs() < 1e-11);
+        assert!((below.axial - above.axial).abs() < 1e-11);
+    }
+}

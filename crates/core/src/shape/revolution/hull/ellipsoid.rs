@@ -1,0 +1,194 @@
+//! The hull of a spheroid: semi-axes a across and c along the symmetry axis, with the centre of mass at its centre.
+//!
+//! The support function is h² = a² + De_z² with D = c² − a². While e_z = k + A cos φ, φ = Ωt, is the vertical component of a unit
+//! vector,
+//!
+//! d²h/dt² = De_z e_z″/h + Da²e_z′²/h³,
+//!
+//! and this is at most |D|AEΩ²/h_min, where E = |k| + A ≤ 1 and h_min is the smallest h for |e_z| ≤ E:
+//!
+//! * D > 0, h_min = a: e_z e_z″ = −AΩ²(k cos φ + A cos²φ) ≤ A|k|Ω² and e_z′² ≤ A²Ω², with h ≥ a.
+//! * D < 0, h_min = h(E): the second term is negative, |e_z″| ≤ AΩ², and |e_z|/h grows with |e_z|.
+//!
+//! A test checks that |d²h/dt²| has the same bound. The derivatives follow from hh′ = De_z e_z′ by Leibniz's rule: with (n) for the
+//! n-th time derivative, h h⁽ⁿ⁾ = D(e_z²/2)⁽ⁿ⁾ minus products of lower derivatives of h.
+
+use super::{Hull, Part, Swing};
+use crate::simd::{Mask, Pack};
+use pulp::Simd;
+
+/// An ellipsoid of revolution.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Ellipsoid {
+    /// Semi-axis a across the symmetry axis.
+    equatorial: f64,
+    /// D = c² − a².
+    excess: f64,
+    /// max(a/c, c/a), [`Hull::sharpness`]: the larger it is, the smaller the radius of convergence of h in Ωt.
+    sharpness: f64,
+}
+
+impl Ellipsoid {
+    /// The hull with these semi-axes across and along the axis of revolution, in the core's unit of length.
+    pub(in crate::shape) fn new(equatorial: f64, polar: f64) -> Self {
+        Self {
+            equatorial,
+            excess: (polar - equatorial) * (polar + equatorial),
+            sharpness: (equatorial / polar).max(polar / equatorial),
+        }
+    }
+
+    /// h, from h² = a²(1 − e_z²) + c²e_z²: a sum of positive terms, in which no digits cancel.
+    #[inline(always)]
+    fn support<S: Simd, const K: usize>(&self, tilt: Pack<S, K>) -> Pack<S, K> {
+        let a2 = self.equatorial * self.equatorial;
+        let across = a2 * ((1.0 - tilt) * (1.0 + tilt)).max(0.0);
+        let along = self.excess + a2; // c²
+        (tilt * tilt).mul_add(along, across).sqrt()
+    }
+
+    /// 1/h and h − a, the latter as De_z²/(h + a), which does not subtract nearly equal numbers; with one quotient for both.
+    #[inline(always)]
+    fn profile<S: Simd, const K: usize>(&self, tilt: Pack<S, K>) -> [Pack<S, K>; 2] {
+        let support = self.support(tilt);
+        let sum = self.equatorial + support;
+        let quotient = 1.0 / (support * sum);
+        [
+            quotient * sum,
+            self.excess * (tilt * tilt) * (quotient * support),
+        ]
+    }
+
+    /// 1/h.
+    #[inline(always)]
+    fn inverse<S: Simd, const K: usize>(&self, tilt: Pack<S, K>) -> Pack<S, K> {
+        self.profile(tilt)[0]
+    }
+
+    /// h − a.
+    #[inline(always)]
+    fn rise<S: Simd, const K: usize>(&self, tilt: Pack<S, K>) -> Pack<S, K> {
+        self.profile(tilt)[1]
+    }
+}
+
+impl Hull for Ellipsoid {
+    const TWO: bool = false;
+
+    fn level(&self) -> f64 {
+        self.equatorial
+    }
+
+    fn sharpness(&self) -> f64 {
+        self.sharpness
+    }
+
+    #[inline(always)]
+    fn ceiling<S: Simd, const K: usize>(&self, reach: Pack<S, K>) -> Pack<S, K> {
+        if self.excess > 0.0 {
+            self.rise(reach.min(1.0))
+        } else {
+            0.0 * reach
+        }
+    }
+
+    #[inline(always)]
+    fn sway<S: Simd, const K: usize>(
+        &self,
+        amplitude: Pack<S, K>,
+        reach: Pack<S, K>,
+    ) -> Pack<S, K> {
+        let reach = (reach * (1.0 + 4.0 * f64::EPSILON)).min(1.0);
+        if self.excess > 0.0 {
+            self.excess / self.equatorial * (amplitude * reach)
+        } else {
+            -self.excess * (amplitude * reach) / self.support(reach)
+        }
+    }
+
+    #[inline(always)]
+    fn part<S: Simd, const K: usize>(&self, one: Mask<S, K>) -> Part<S, K> {
+        Part {
+            one,
+            own: Pack::splat(one.simd(), 0.0),
+        }
+    }
+
+    #[inline(always)]
+    fn nearer<S: Simd, const K: usize>(
+        &self,
+        _: Pack<S, K>,
+        _: Pack<S, K>,
+        swing: &Swing<S, K>,
+        _: Pack<S, K>,
+    ) -> Part<S, K> {
+        Part {
+            one: Mask::splat(swing.tilt.simd(), true),
+            own: self.inverse(swing.tilt),
+        }
+    }
+
+    #[inline(always)]
+    fn gap<S: Simd, const K: usize>(
+        &self,
+        _: &Part<S, K>,
+        tilt: Pack<S, K>,
+        lift: Pack<S, K>,
+    ) -> Pack<S, K> {
+        lift - self.rise(tilt)
+    }
+
+    #[inline(always)]
+    fn lift<S: Simd, const K: usize>(&self, _: &Part<S, K>, tilt: Pack<S, K>) -> Pack<S, K> {
+        self.rise(tilt)
+    }
+
+    #[inline(always)]
+    fn lever<S: Simd, const K: usize>(&self, _: &Part<S, K>, tilt: Pack<S, K>) -> Pack<S, K> {
+        (-self.excess * tilt) * self.inverse(tilt)
+    }
+
+    #[inline(always)]
+    fn radius<S: Simd, const K: usize>(&self, _: &Part<S, K>, tilt: Pack<S, K>) -> Pack<S, K> {
+        self.equatorial * self.equatorial * self.inverse(tilt)
+    }
+
+    #[inline(always)]
+    fn bend<S: Simd, const K: usize>(
+        &self,
+        _: &Part<S, K>,
+        swing: &Swing<S, K>,
+        addend: f64,
+    ) -> Pack<S, K> {
+        let inverse = self.inverse(swing.tilt);
+        let (e, v) = (swing.tilt, swing.rate);
+        let first = self.excess * (e * v) * inverse; // h′
+        let second = self.excess * e.mul_add(swing.acceleration, v * v); // D(e²/2)″
+        (first.mul_add(first, -second)).mul_add(inverse, addend)
+    }
+
+    #[inline(always)]
+    fn bends<S: Simd, const K: usize>(
+        &self,
+        part: &Part<S, K>,
+        swing: &Swing<S, K>,
+    ) -> [Pack<S, K>; 3] {
+        let inverse = part.own;
+        let (e, v, a) = (swing.tilt, swing.rate, swing.acceleration);
+        let (j, s) = (-swing.square * v, -swing.square * a); // e_z‴ and e_z⁗
+        let first = self.excess * (e * v) * inverse; // h′
+        let second = self.excess * e.mul_add(a, v * v);
+        let second = first.mul_add(-first, second) * inverse; // h″
+        let third = self.excess * e.mul_add(j, 3.0 * (v * a));
+        let third = (3.0 * first).mul_add(-second, third) * inverse; // h‴
+        let fourth = self.excess * e.mul_add(s, v.mul_add(4.0 * j, 3.0 * (a * a)));
+        let lower = (4.0 * first).mul_add(third, 3.0 * (second * second));
+        let fourth = (fourth - lower) * inverse; // h⁗
+        [-second, -third, -fourth]
+    }
+
+    #[inline(always)]
+    fn name<S: Simd, const K: usize>(&self, _: &Part<S, K>, tilt: Pack<S, K>) -> Pack<S, K> {
+        tilt.lt(0.0).select(1.0, -1.0_f64)
+    }
+}

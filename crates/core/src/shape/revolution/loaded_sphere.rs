@@ -1,0 +1,81 @@
+//! A sphere with a point mass inside: it is round, but its centre of mass is not its centre.
+
+use super::{
+    Ball, Body, Shape, Single, Surface, check_density, check_distance, check_length, representable,
+};
+use crate::Error;
+use crate::shape::mass::Part;
+
+/// A homogeneous sphere with a point mass on its axis, in SI units. The axis points from the centre to the load.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct LoadedSphere {
+    radius: f64,
+    density: f64,
+    load: f64,
+    offset: f64,
+}
+
+impl LoadedSphere {
+    /// A sphere of `radius` (m) and `density` (kg/m³) with a point mass `load` (kg) at the distance `offset` (m) from its centre.
+    ///
+    /// # Errors
+    /// Unless `radius` and `density` are positive, `load` is not negative and `offset` is in [0, `radius`]; and if mass or
+    /// inertia overflows or underflows.
+    pub fn new(radius: f64, density: f64, load: f64, offset: f64) -> Result<Self, Error> {
+        check_length("radius", radius)?;
+        check_density(density)?;
+        let weighs = load.is_finite() && load >= 0.0;
+        Error::unless(weighs, "load", load, "finite and >= 0 (kg)")?;
+        check_distance("offset", offset)?;
+        Error::unless(offset <= radius, "offset", offset, "at most the radius (m)")?;
+        let body = Self {
+            radius,
+            density,
+            load,
+            offset,
+        };
+        representable(body, "radius")
+    }
+
+    /// Mass, centre and inertia of sphere and load.
+    fn whole(&self) -> Part {
+        Part::sphere(self.radius, self.density).and(Part::point(self.load, self.offset))
+    }
+}
+
+impl Shape for LoadedSphere {
+    fn unit(&self) -> f64 {
+        self.radius
+    }
+
+    fn mass(&self) -> f64 {
+        self.whole().mass
+    }
+
+    fn transverse_inertia(&self) -> f64 {
+        self.whole().transverse
+    }
+
+    fn axial_inertia(&self) -> f64 {
+        self.whole().axial
+    }
+
+    fn centre_of_mass(&self) -> f64 {
+        self.whole().centre
+    }
+
+    fn scaled(&self) -> Body {
+        let part = self.whole();
+        let square = self.radius * self.radius;
+        let ball = Ball {
+            offset: -part.centre / self.radius,
+            radius: 1.0,
+        };
+        Body {
+            hull: Surface::Single(Single::new(ball, true)),
+            half_separation: 0.0,
+            transverse: part.transverse / part.mass / square,
+            axial: part.axial / part.mass / square,
+        }
+    }
+}

@@ -1,0 +1,150 @@
+//! Bodies of revolution: the properties on which the motion depends, and one file per shape.
+//!
+//! A new shape is a file with its parameters in SI units that implements [`Shape`]. Its hull consists of balls or is smooth;
+//! [`Hull`] lists what it has to provide.
+
+mod dumbbell;
+mod hull;
+mod loaded_sphere;
+mod spherocylinder;
+mod spheroid;
+
+pub use dumbbell::Dumbbell;
+pub use hull::{Ball, Ellipsoid, EqualPair, Pair, Single, Sphere, Surface};
+pub(crate) use hull::{Hull, Part, Swing, with_hull};
+pub use loaded_sphere::LoadedSphere;
+pub use spherocylinder::Spherocylinder;
+pub use spheroid::Spheroid;
+
+use crate::Error;
+
+/// A body of revolution in the core's units (lengths in R, masses in m).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Body {
+    /// The surface that can touch the plane.
+    pub hull: Surface,
+    /// Half the distance between the centres of the two spheres, L/(2R); 0 if the hull is a single sphere or smooth.
+    pub half_separation: f64,
+    /// Moment of inertia J_xx/(mR²) across the symmetry axis, about the centre of mass.
+    pub transverse: f64,
+    /// Moment of inertia J_zz/(mR²) about the symmetry axis.
+    pub axial: f64,
+}
+
+/// A body of revolution in SI units.
+pub trait Shape {
+    /// The core's unit of length R, in m.
+    fn unit(&self) -> f64;
+    /// Mass m, in kg.
+    fn mass(&self) -> f64;
+    /// Moment of inertia J_xx about any axis through the centre of mass perpendicular to the symmetry axis, in kg m².
+    fn transverse_inertia(&self) -> f64;
+    /// Moment of inertia J_zz about the symmetry axis, in kg m².
+    fn axial_inertia(&self) -> f64;
+    /// Position of the centre of mass on the axis, in m, relative to the middle of the shape: the midpoint of the centres of its
+    /// two spheres, or the centre of a single one.
+    fn centre_of_mass(&self) -> f64 {
+        0.0
+    }
+    /// The body in the core's units.
+    fn scaled(&self) -> Body;
+}
+
+/// The properties of any shape, as a run uses them.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Solid {
+    /// The core's unit of length R, in m.
+    pub unit: f64,
+    /// Mass m, in kg.
+    pub mass: f64,
+    /// Moment of inertia J_xx across the symmetry axis, in kg m².
+    pub transverse_inertia: f64,
+    /// Moment of inertia J_zz about the symmetry axis, in kg m².
+    pub axial_inertia: f64,
+    /// Position of the centre of mass on the axis, in m, relative to the middle of the shape ([`Shape::centre_of_mass`]).
+    pub centre_of_mass: f64,
+    /// The body in the core's units.
+    pub scaled: Body,
+}
+
+impl<S: Shape> From<S> for Solid {
+    fn from(shape: S) -> Self {
+        Self {
+            unit: shape.unit(),
+            mass: shape.mass(),
+            transverse_inertia: shape.transverse_inertia(),
+            axial_inertia: shape.axial_inertia(),
+            centre_of_mass: shape.centre_of_mass(),
+            scaled: shape.scaled(),
+        }
+    }
+}
+
+impl Solid {
+    /// Smallest height of the centre of mass, in m, at which no part of the body is below the plane, for an axis at an angle to the
+    /// plane normal with this cosine. It is rounded; compare heights with it by [`Solid::clears`].
+    pub fn lowest(&self, cosine: f64) -> f64 {
+        self.unit * self.scaled.hull.support(cosine)
+    }
+
+    /// Whether a `height` of the centre of mass is at least `lowest` up to rounding, both in m, so that a body may be placed on the
+    /// plane.
+    pub fn clears(height: f64, lowest: f64) -> bool {
+        height >= lowest * (1.0 - 4.0 * f64::EPSILON)
+    }
+
+    /// The largest value of [`Solid::lowest`] over all angles, in m.
+    pub fn farthest(&self) -> f64 {
+        self.unit * self.scaled.hull.farthest()
+    }
+}
+
+/// The shape, unless its mass, its inertia or their ratio overflows or underflows: then an error that names `name`, the
+/// parameter that sets its size.
+fn representable<S: Shape>(shape: S, name: &'static str) -> Result<S, Error> {
+    let body = shape.scaled();
+    let all = [
+        shape.mass(),
+        shape.transverse_inertia(),
+        shape.axial_inertia(),
+        body.transverse,
+        body.axial,
+    ];
+    Error::unless_beyond(
+        all.iter().all(|x| x.is_normal()),
+        name,
+        shape.unit(),
+        "such that mass and inertia neither overflow nor underflow",
+    )?;
+    Ok(shape)
+}
+
+/// L/R below which a dumbbell is treated as a sphere: far too small to change any digit of the motion.
+const NEGLIGIBLE: f64 = 1e-75;
+
+/// L/R, or 0 if it is below [`NEGLIGIBLE`], so that its powers do not underflow.
+fn seen(elongation: f64) -> f64 {
+    if elongation < NEGLIGIBLE {
+        0.0
+    } else {
+        elongation
+    }
+}
+
+/// Checks that a length, in m, is positive.
+fn check_length(name: &'static str, value: f64) -> Result<(), Error> {
+    let positive = value.is_finite() && value > 0.0;
+    Error::unless(positive, name, value, "finite and > 0 (m)")
+}
+
+/// Checks that a length, in m, is not negative.
+fn check_distance(name: &'static str, value: f64) -> Result<(), Error> {
+    let positive = value.is_finite() && value >= 0.0;
+    Error::unless(positive, name, value, "finite and >= 0 (m)")
+}
+
+/// Checks that a density, in kg/m³, is positive.
+fn check_density(value: f64) -> Result<(), Error> {
+    let positive = value.is_finite() && value > 0.0;
+    Error::unless(positive, "density", value, "finite and > 0 (kg/m^3)")
+}
