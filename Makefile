@@ -5,7 +5,6 @@ BIN := $(VENV)/bin
 STAMP := $(VENV)/.installed
 IMPACTS ?= 100000000
 OUT ?= paper
-SHARD ?= 0/256
 FUZZ ?= 300
 CORE := $(shell find crates -name '*.rs' -o -name 'Cargo.toml') Cargo.toml Cargo.lock pyproject.toml
 
@@ -88,8 +87,15 @@ hostile: $(STAMP) | web  ## every public function with every hostile value and e
 audit:  ## known weaknesses of dependencies; says of each check whether it ran
 	sh tests/manual/audit.sh
 
-mutants: $(STAMP)  ## do the tests notice changes of the core and the package? SHARD=0/64 takes a part, FILES=statistics some files
-	sh tests/manual/mutants.sh $(SHARD) $(FILES)
+# Hours for a file of the core, a day for a folder of the package; what each missed stays in mutants.out and build/mutants.
+mutants: $(STAMP)  ## which changes of the sources does no test notice? RUST="--file FILE" and NAMES='restitution.laws.*' take a part
+	@command -v cargo-mutants >/dev/null || { echo "It takes cargo-mutants (cargo install --locked cargo-mutants)." >&2; exit 1; }
+	@test -x $(BIN)/mutmut || { echo "It takes mutmut ($(BIN)/python -m pip install 'mutmut>=3.8')." >&2; exit 1; }
+	-cargo mutants --output build $(RUST)
+	mkdir -p build/mutants
+	ln -sfn ../../python build/mutants/src
+	ln -sfn ../../tests ../../pyproject.toml build/mutants
+	cd build/mutants && $(CURDIR)/$(BIN)/mutmut run $(NAMES)
 
 test-arm:  ## the digests on AArch64, under qemu-user; installs nothing and says what it needs
 	sh crates/core/tests/arm.sh
