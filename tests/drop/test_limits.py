@@ -2,7 +2,6 @@
 
 import json
 import os
-import re
 import subprocess
 import sys
 from pathlib import Path
@@ -12,7 +11,6 @@ import pytest
 
 import restitution as rs
 from reference.command import AMONG_TESTS, SMALL
-from reference.processes import COMMANDS
 from restitution._internal.resources import available_memory
 
 SETUP = """
@@ -69,45 +67,6 @@ told(rs.simulate, body, law, particles=100, impacts=100)
     assert failed[1].startswith("particles * impacts: 8.000 GB more are needed")
     assert bins_failed[1].startswith("velocity_bins or impacts, times restitution_bins and fraction_bins: ")
     assert done == again == ["done", ""]
-
-
-def test_listen_says_what_it_takes_before_its_libraries_are_there(tmp_path: Path) -> None:
-    """OpenBLAS, which SciPy brings along, tries for ever to get its buffers."""
-    code = "import resource; resource.setrlimit(resource.RLIMIT_DATA, (1 << 28, 1 << 28))\n"
-    code += "from restitution.cli import main; main()"
-    words = [sys.executable, "-c", code, "listen", "ball.wav", "--diameter", "0.02", "--out", "ball.html"]
-    done = subprocess.run(words, cwd=tmp_path, capture_output=True, text=True, check=False, timeout=60)
-    assert done.returncode == 1
-    assert re.fullmatch(
-        r"error: listen: takes 500 MB of memory, and this process can have \d+ MB\n", done.stderr
-    )
-
-
-def refused(name: str, limit: str, size: int, said: str, folder: Path) -> None:
-    """Run a command under a limit; it ends with these words and leaves nothing."""
-    code = f"import resource; resource.setrlimit(resource.{limit}, ({size}, {size}))\n"
-    code += "from restitution.cli import main; main()"
-    words = [sys.executable, "-c", code, *COMMANDS[name][0].split()]
-    done = subprocess.run(words, cwd=folder, capture_output=True, text=True, check=False, timeout=60)
-    assert done.returncode == 1
-    assert re.fullmatch(
-        rf"error: this command: takes {said}, and this process can have \d+ MB\n", done.stderr
-    )
-    assert not list(folder.iterdir())
-
-
-@pytest.mark.parametrize(
-    "name", ["simulate", "statistics", "compare", "distribution", "fit", "laws", "sweep"]
-)
-def test_a_command_says_what_address_space_it_takes(name: str, tmp_path: Path) -> None:
-    """Before its libraries are loaded, which fail in ways of their own where they have no room."""
-    refused(name, "RLIMIT_AS", 3 << 27, "600 MB of address space", tmp_path)
-
-
-@pytest.mark.parametrize("name", ["distribution", "laws", "paper"])
-def test_a_command_says_what_data_it_takes(name: str, tmp_path: Path) -> None:
-    """Where OpenBLAS finds no room for its buffers it ends the process, and drafts would stay."""
-    refused(name, "RLIMIT_DATA", 1 << 28, "400 MB of data", tmp_path)
 
 
 def test_a_file_that_no_memory_holds(tmp_path: Path) -> None:

@@ -20,7 +20,14 @@ def test_the_motion_of_later_impacts_is_not_that_from_the_release() -> None:
     """Without the first impacts nobody knows where the particle flew: it would be below the plane."""
     later = RUN.isel(impact=slice(5, None))
     when = float(RUN.time[3, 2:4].mean())
-    assert rs.trajectory(RUN.isel(particle=[3]), 3, when).position.values[0, 2] > 0.0
+    alone = rs.trajectory(RUN.isel(particle=[3]), 3, when)
+    assert alone.position.values[0, 2] > 0.0
+    for part in (RUN.isel(impact=slice(0, 6)), RUN.transpose()):
+        assert rs.trajectory(part, 3, when).position.identical(alone.position)
+    lacking = RUN.copy()
+    del lacking.attrs["release_height"]
+    with pytest.raises(ValueError, match=r"^data lacks the attribute release_height: must be a Dataset from"):
+        rs.trajectory(lacking, 3, when)
     for draw in (lambda: rs.trajectory(later, 3, when), lambda: figures.trajectory(later)):
         with pytest.raises(
             ValueError, match=r"^data.impact\[0\] = 5.0: must be whole numbers .*, from 0, the"
@@ -38,6 +45,22 @@ def test_a_fit_to_later_impacts_needs_no_drop() -> None:
         flight.fit(MEASURED.isel(impact=[0, 2, 4]))
     with pytest.raises(ValueError, match=r"^times.impact\[1\] = 2.0: must be whole numbers >= 0 that rise"):
         flight.restitution(MEASURED.isel(impact=[0, 2, 4]))
+
+
+@pytest.mark.parametrize(
+    ("name", "value"),
+    [("gravity", 0.0), ("gravity", None), ("gravity", "x"), ("gravity_uncertainty", -1.0)],
+)
+def test_a_fit_of_attributes_that_are_none(name: str, value: Any) -> None:
+    with pytest.raises(ValueError, match=rf"^data\.{name} = .*: must be a real number in \[.*, 1e\+30\]"):
+        flight.fit(MEASURED.assign_attrs({name: value}))
+
+
+def test_a_fit_without_an_error_of_gravity() -> None:
+    """It is then exact, as it is by default."""
+    found = MEASURED.copy()
+    del found.attrs["gravity_uncertainty"]
+    assert flight.fit(found).parameters == flight.fit(MEASURED).parameters
 
 
 def test_a_clock_of_impacts_that_follow_one_another() -> None:
@@ -105,6 +128,24 @@ def test_counts_only_has_no_moments() -> None:
         ValueError, match=r"^statistics lacks minimum, maximum: .* counts_only=True leaves the"
     ):
         rs.FluctuatingRestitution.from_statistics(found)
+
+
+def test_statistics_in_any_order_or_in_part() -> None:
+    """Of their dimensions: the same distribution; what is left of them must fit together."""
+    found = rs.reduce(rs.simulate(BODY, LAW, particles=300, impacts=20), SPEEDS, RATIOS)
+    turned = found.transpose(*reversed(list(found.dims)))
+    make = rs.FluctuatingRestitution.from_statistics
+    assert make(turned) == make(found)
+    for part, text in (
+        (found.drop_vars("restitution_underflow"), r" lacks restitution_underflow: must"),
+        (found.isel(restitution_edge=slice(20)), r"\.restitution_edges has 20 edges"),
+        (
+            found.assign(restitution_count=found.restitution_count.astype(complex)),
+            r"\.restitution_count = .*: must be whole",
+        ),
+    ):
+        with pytest.raises(ValueError, match=f"^statistics{text}"):
+            make(part)
 
 
 def test_extremes_are_in_the_outermost_bins() -> None:
