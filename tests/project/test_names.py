@@ -23,9 +23,10 @@ def test_every_public_name_is_on_the_page(module: str) -> None:
 def test_every_public_name_is_in_the_api(module: str) -> None:
     """The pages made from docstrings: docs/api.md lists the names of a module below its name."""
     text = (DOCS / "api.md").read_text(encoding="utf-8")
-    home = ".".join(filter(None, ["restitution", module]))
-    blocks = re.findall(rf"currentmodule:: {re.escape(home)}\n(.*?)^```", text, re.DOTALL | re.MULTILINE)
-    listed = sorted(re.findall(r"^   (\w+)$", "".join(blocks), re.MULTILINE))
     space = getattr(rs, module) if module else rs
+    blocks = re.findall(
+        rf"currentmodule:: {re.escape(space.__name__)}\n(.*?)^```", text, re.DOTALL | re.MULTILINE
+    )
+    listed = sorted(re.findall(r"^   (\w+)$", "".join(blocks), re.MULTILINE))
     public = [name for name in space.__all__ if not isinstance(getattr(space, name), ModuleType)]
     assert listed == sorted(public)

@@ -71,19 +71,22 @@ def takes_run(kind: type[Surroundings]) -> Callable[[F], F]:
 
     def decorate(function: F) -> F:
         signature = inspect.signature(function)
-        own = list(signature.parameters.values())[:-1]
-        places = [one for one in own if one.kind is not one.KEYWORD_ONLY]
-        added = [
-            inspect.Parameter(
+        own = dict(signature.parameters)
+        del own["run"]
+        first = {name: own.pop(name) for name in ("cls", "body", "law") if name in own}
+        of_run = {
+            name: own.pop(name)
+            if name in own
+            else inspect.Parameter(
                 name,
                 inspect.Parameter.KEYWORD_ONLY,
                 default=None if name in _NONE else field.default,
                 annotation=types[name],
             )
             for name, field in Run.model_fields.items()
-            if name in types
-        ]
-        changed = signature.replace(parameters=[*places, *added, *own[len(places) :]])
+            if name in own or name in types
+        }
+        changed = signature.replace(parameters=[*first.values(), *of_run.values(), *own.values()])
         function.__signature__ = changed  # type: ignore[attr-defined]
         if function.__doc__ and Run.__doc__:  # None under python -OO
             entries = re.findall(r"^(    (\w+).*(?:\n        .*)*)", Run.__doc__, re.MULTILINE)

@@ -57,13 +57,9 @@ def statistics(
 
     Parameters
     ----------
-    body : Dumbbell, LoadedSphere, Spherocylinder or Spheroid
-        The body that is dropped.
-    law : Law
-        The collision law.
+    body, law, threads
+        As in `restitution.simulate`.
     %(run)s
-    threads : int, optional
-        Number of threads; one for each core if not given.
     velocity_bins : int, array_like of shape (nv + 1,), or None
         Edges of the impact velocity bins in m/s, finite and strictly increasing, of any widths; or their
         number, with ``velocity_range`` (low, high), as `numpy.histogram` takes them. With None the rows are
