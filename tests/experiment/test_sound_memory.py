@@ -42,8 +42,8 @@ sound.impacts(ball, 8000)
 wave = np.random.default_rng(1).normal(0.0, 1e-4, 3_000_000)
 wave[: ball.size] += ball
 used = int(open("/proc/self/statm").read().split()[0]) * resource.getpagesize()
-from restitution.experiment.sound import _load
-_load.available_memory = lambda: 2**60
+from restitution.experiment.sound import load
+load.available_memory = lambda: 2**60
 found = []
 for room in (1, 30, 60, 90, 120, 150):
     resource.setrlimit(resource.RLIMIT_AS, (used + room * 2**20, resource.RLIM_INFINITY))

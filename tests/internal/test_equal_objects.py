@@ -103,7 +103,7 @@ SLOW_ONES = {
     "explorer.link",
     "explore",
     "explorer.serve",
-    "laws_figure.write",
+    "laws.write",
     "paper.redraw",
 }
 """Pages, and calls that a test ends."""

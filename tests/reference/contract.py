@@ -37,19 +37,26 @@ RESULTS = {
 }
 """Classes that nobody makes but the functions that return them, or that are bases of others."""
 WORKINGS = {
-    *(f"laws_figure.{name}" for name in ("bound", "coupling", "growth", "measure", "table")),
+    *(f"laws.{name}" for name in ("bound", "coupling", "growth", "measure", "table")),
+    "bodies.Form",
     "distribution.image",
     "distribution.image_format",
+    "distribution.quantiles",
+    "distribution.sealed",
+    "laws.Material",
+    "listen.Setting",
 }
-"""What a command alone calls, with what it has checked."""
+"""What other folders call, with what they have checked, and types of arguments."""
 
 
 def public() -> Iterator[tuple[str, Callable[..., Any]]]:
     """Yield each public function, class and method once, by the shortest name that it has."""
     seen: set[int] = set()
-    homes = [name for _, name, _ in pkgutil.iter_modules(rs.__path__) if not name.startswith("_")]
-    for home in ("", *homes):
-        module = importlib.import_module(f"restitution.{home}") if home else rs
+    folders = [name for _, name, folder in pkgutil.walk_packages(rs.__path__, "restitution.") if folder]
+    for path in ("restitution", *folders):
+        if "._" in path or path == "restitution.cli":
+            continue
+        module, home = importlib.import_module(path), path.partition(".")[2].rpartition(".")[2]
         for name in getattr(module, "__all__", ()):
             thing = getattr(module, name)
             if id(thing) in seen or isinstance(thing, ModuleType) or not callable(thing):

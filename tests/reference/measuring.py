@@ -13,7 +13,7 @@ from restitution import explorer, flight, sound, study
 from restitution.drop.run import Run
 from restitution.experiment import budget, inference, listen
 from restitution.experiment.listen._analysis import Setting
-from restitution.figures import laws as laws_figure
+from restitution.figures import laws
 from restitution.papers import glielmo2014 as paper
 
 ENOUGH = "the attack has come far enough"
@@ -32,7 +32,7 @@ def _redraw(**given: Any) -> Any:
 def _laws(**given: Any) -> Any:
     """Likewise."""
     with patch("restitution.figures.laws._measure.compare", _leave):
-        return laws_figure.write(**given)
+        return laws.write(**given)
 
 
 @cache
@@ -174,8 +174,8 @@ CALLS: dict[str, Call] = {
         listen.Series.sentence,
         lambda: {"self": heard().series[0], "setting": Setting(diameter=0.02)},
     ),
-    "laws_figure.write": (_laws, lambda: {"out": Path("laws"), "impacts": 20_000, "seed": 1}),
-    "paper.redraw": (
+    "laws.write": (_laws, lambda: {"out": Path("laws"), "impacts": 20_000, "seed": 1}),
+    "glielmo2014.redraw": (
         _redraw,
         lambda: {"out": Path("paper"), "impacts": 400_000, "seed": 1, "progress": False},
     ),
