@@ -195,7 +195,7 @@ class BranchedFirstImpact(FirstImpact):
         return scalar(np.where(np.isnan(q), np.nan, found))
 
     def _is_top(self, branch: Branch) -> bool:
-        """Whether no other branch goes on from the upper end."""
+        """Tell if no other branch goes on from the upper end."""
         most = max(branch.first, branch.last)
         starts = [min(other.first, other.last) for other in self._curve.branches]
         return not np.any(np.abs(np.array(starts) - most) <= 4.0 * np.finfo(float).eps)

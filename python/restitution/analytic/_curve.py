@@ -133,7 +133,7 @@ class Curve:
 
     @cached_property
     def branches(self) -> tuple[Branch, ...]:
-        """Where ε rises or falls, ascending in θ."""
+        """List the intervals in which ε rises or falls, ascending in θ."""
         found = []
         for piece in self.pieces:
             turns = extremes(piece.restitution, piece.low, piece.high)

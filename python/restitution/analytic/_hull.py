@@ -1,4 +1,4 @@
-"""Where a body touches the plane: height h of the centre of mass and lever arm a, for every angle.
+"""Contact of a body with the plane: height h of the centre of mass and lever arm a, for every angle.
 
 The centre of mass of a body that stands on the plane is h(θ) high, its support function. The point of contact
 is h below it and a = |h′| beside it. For a ball of radius ϱ at s on the axis h = ϱ - s cos θ, a = |s| sin θ;

@@ -7,7 +7,7 @@ spherocylinders. With c = |cos θ|, the loss λ = ε_n - ε and J = J_xx/m,
                            D = 4J + 4R² + L²,
     without friction       λ = w (1 + q) sin²θ/(1 + q sin²θ),  w = (1 + ε_n) q/(1 + q),  q = L²/(4J).
 
-Either falls strictly from w to 0 as c rises from 0 to 1, whatever the parameters: for Eq. 17 dλ/dc =
+Either falls strictly from w to 0 as c rises from 0 to 1, for all parameters: for Eq. 17 dλ/dc =
 -w (bc² + 2c + b)/(1 + bc)² with 0 < b < 1, because D > 4R² + L² >= 4LR. So ε rises strictly with c, from ε_n
 - w (axis horizontal) to ε_n (axis vertical), and has one inverse.
 

@@ -30,7 +30,7 @@ def negative_threshold(body: Body, law: Law) -> float:
     Returns
     -------
     float
-        Threshold, >= 0 and exact to rounding. If it is more than 1, ε < 0 occurs whatever ε_n.
+        Threshold, >= 0 and exact to rounding. If it is more than 1, ε < 0 occurs for every ε_n.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""What every shape has."""
+"""The base of every shape: mass, inertia, and the compiled body."""
 
 from abc import abstractmethod
 from collections.abc import Iterator

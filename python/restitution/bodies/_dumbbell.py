@@ -88,7 +88,7 @@ class Dumbbell(Body):
 
     @property
     def is_equal(self) -> bool:
-        """Whether both spheres are the same, as in the paper."""
+        """Tell if both spheres are the same, as in the paper."""
         return self.radii[0] == self.radii[1] and self.densities[0] == self.densities[1]
 
     @property

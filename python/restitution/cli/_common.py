@@ -1,4 +1,4 @@
-"""What the commands share: options, exit statuses, and how errors and warnings are shown."""
+"""Parts that the commands share: options, exit statuses, and how errors and warnings are shown."""
 
 import logging
 import sys
@@ -87,13 +87,13 @@ class Group(_Flags, TyperGroup):
 
 
 def progress(quiet: bool) -> bool:
-    """Whether to show a progress bar."""
+    """Tell if a progress bar is to be shown."""
     return not quiet and is_terminal(sys.stderr)
 
 
 @contextmanager
 def errors_in_a_line(*libraries: str, room: int = _ROOM) -> Iterator[None]:
-    """Show expected errors as one line each instead of a traceback; signals end the block likewise.
+    """Show expected errors as one line each instead of a traceback; signals end the block in the same way.
 
     The libraries are loaded first: the work would be lost if there were no room for what writes its result.
     `room` is what they and the work take of address space, in bytes.

@@ -63,7 +63,7 @@ def _check_bins(name: str, edges: FloatArray, good: npt.NDArray[np.bool_], allow
 
 
 def _wide_enough(widths: FloatArray) -> npt.NDArray[np.bool_]:
-    """Whether the density of bins, by which a number finds its own, is finite."""
+    """Tell if the density of bins, by which a number finds its own, is finite."""
     with np.errstate(divide="ignore", over="ignore"):
         return np.isfinite(1.0 / widths)
 

@@ -1,4 +1,4 @@
-"""How particles are released: the height, axis, spin and velocity of a run, checked."""
+"""The release of particles: the height, axis, spin and velocity of a run, checked."""
 
 import math
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal, Self, TypeAlias, get_args

@@ -25,11 +25,11 @@ from restitution.laws import Law
 Edges: TypeAlias = dict[str, npt.NDArray[np.float64] | None]
 """Edges of the bins of ``velocity`` or None, of ``restitution``, and of ``fraction`` or None."""
 Table: TypeAlias = dict[str, npt.NDArray[Any]]
-"""What the core counted or measured, by its names."""
+"""Counts and measured values, by the names of the core."""
 
 _SAME = ("variance", "skewness", "kurtosis", "minimum", "maximum", "mean_fraction")
 MOMENTS = {"mean_restitution": "mean", **{name: name for name in _SAME}}
-"""What the result calls the moments, and what the core does: a Dataset has a method `mean`."""
+"""Names of the moments in the result and in the core; `mean` is taken, as a method of Dataset."""
 
 
 @takes_run(RunArguments)

@@ -39,7 +39,7 @@ _COUNTING = (
     "counts_only",
 )
 _ALLOWED = {"normal": "a real number in [0, 1] or a table [law.normal]"}
-"""What a file may hold for a parameter, where a call may give objects."""
+"""Values that a file may hold for a parameter where a call takes an object."""
 _LEARNING = ("velocities", "given", "release_height")
 
 P = TypeVar("P", bound=Parameters)
@@ -62,12 +62,12 @@ def read(path: Path) -> Run:
 
 @dataclass(frozen=True)
 class Asked:
-    """What a file says: bodies and laws by name, and the arguments of the calls.
+    """The content of a file: bodies and laws by name, and the arguments of the calls.
 
     Parameters
     ----------
     bodies, laws : dict of str to Body, Law
-        A table ``[body]``, or tables ``[[body]]`` with a ``name`` each; likewise laws.
+        A table ``[body]``, or tables ``[[body]]`` with a ``name`` each; and the same for laws.
     run, statistics, distribution : dict
         Arguments as they stand in the tables of these names; those of the run are checked.
     """

@@ -1,4 +1,4 @@
-"""What the pieces of figures are given, checked: panels, and arrays that fit together."""
+"""Checks of what the pieces of figures are given: panels, and arrays that fit together."""
 
 from typing import Any
 

@@ -1,4 +1,4 @@
-"""What a panel shows: populations of a lattice, histograms, lines with their standard error."""
+"""The contents of a panel: populations of a lattice, histograms, lines with their standard error."""
 
 from __future__ import annotations
 

@@ -28,4 +28,4 @@ KINDS = (TangentialRestitution, Frictionless, Coulomb, ChatterjeeRuina)
 MATERIALS = (Viscoelastic, Plastic, Tabulated)
 """Every material."""
 LAWS = f"a {listed(KINDS)}"
-"""What may stand for a law, in words."""
+"""The laws, listed in words for error texts."""

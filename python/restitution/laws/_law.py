@@ -1,4 +1,4 @@
-"""What all laws have in common: the normal coefficient, and how a law is written down."""
+"""The base of every law: the normal coefficient, and how a law is written down."""
 
 from abc import abstractmethod
 from functools import cached_property

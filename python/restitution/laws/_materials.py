@@ -50,7 +50,7 @@ class Material(Parameters):
     @property
     @abstractmethod
     def _limit(self) -> float:
-        """What ε_n goes to as the speed goes to infinity, where formulas are quotients of infinities."""
+        """Give the limit of ε_n at infinite speed, where formulas are quotients of infinities."""
 
     @abstractmethod
     def _compile(self) -> _core.Material:

@@ -139,7 +139,7 @@ _NOTHING = 1e-12
 
 @dataclass(frozen=True, eq=False, repr=False)
 class RequiredRoundness(Content):
-    """How round a ball must be for a precision.
+    """The roundness that a precision requires.
 
     Attributes
     ----------

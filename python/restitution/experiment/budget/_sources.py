@@ -1,4 +1,4 @@
-"""What each source of error does to the coefficients of a series: a bias and a covariance."""
+"""Sources of error and their effect on the coefficients of a series: a bias and a covariance."""
 
 import math
 from dataclasses import dataclass

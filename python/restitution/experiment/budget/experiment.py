@@ -28,7 +28,7 @@ _SHORTEST = 1e-10
 
 
 class Setting(Parameters):
-    """How the ball is dropped, and how well everything is known."""
+    """An experiment: the drop of the ball, and the uncertainty of everything measured."""
 
     drop: Annotated[Number, Field(gt=0, description="m")]
     impacts: Annotated[Whole, Field(ge=3, le=_MOST)]

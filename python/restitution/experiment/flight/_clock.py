@@ -1,4 +1,4 @@
-"""What times of flight would give for a simulated run."""
+"""Coefficients that times of flight would give for a simulated run."""
 
 import math
 

@@ -1,4 +1,4 @@
-"""What is measured once in a series: g, the height of the drop, the terminal velocity."""
+"""Values that are measured once in a series: g, the height of the drop, the terminal velocity."""
 
 from typing import Annotated, NamedTuple
 
@@ -19,7 +19,7 @@ class Errors(Parameters):
 
 
 class Drop(Parameters):
-    """How far the ball fell from rest to the first impact."""
+    """Give the distance that the ball fell from rest to the first impact."""
 
     drop_height: Annotated[Number, Field(ge=LEAST, le=LARGEST, description="m")]
 

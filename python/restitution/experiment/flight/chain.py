@@ -44,7 +44,7 @@ class Chain:
 
 @dataclass(frozen=True)
 class Measured:
-    """What was measured in one series of n impacts, and the variances of these n + 3 numbers.
+    """Measured values of one series of n impacts, and the variances of these n + 3 numbers.
 
     Attributes
     ----------

@@ -166,7 +166,7 @@ def fall(height: float, gravity: float, terminal: float | None) -> Fall:
 
 
 class Launched(NamedTuple):
-    """How long a flight takes, in s, and the speed in m/s with which it ends."""
+    """Give the duration of a flight in s and the speed in m/s at its end."""
 
     duration: float
     landing: float

@@ -24,7 +24,7 @@ def series_of(data: Any, *needed: str) -> dict[str, xr.Dataset]:
     if isinstance(data, Iterable) and not isinstance(data, xr.Dataset):
         try:
             several = list(data)
-        except Exception:  # whatever the object raises
+        except Exception:  # the object may raise anything
             several = []
     if not several or not all(isinstance(one, xr.Dataset) for one in several):
         raise ParameterError(wrong("data", data, "a Dataset of flight.restitution, or several"))

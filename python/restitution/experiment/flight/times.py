@@ -15,7 +15,7 @@ from restitution.drop.recorded import check_successive
 Array = npt.NDArray[np.float64]
 
 FLAGS = ("good", "doubtful", "missed", "doubled")
-"""What may be said of an impact; its number is the place in this tuple."""
+"""Flags of an impact; the number of each is its place in this tuple."""
 LEAST, LARGEST = 1e-30, 1e30
 """Products of measured numbers between them are numbers that a double holds."""
 MOST = 3000

@@ -1,4 +1,4 @@
-"""What measured times say of a ball: the posterior of its law and of its shape."""
+"""Inference from measured times: the posterior of a ball's law and shape."""
 
 from restitution.experiment.inference._posterior import posterior
 

@@ -21,7 +21,7 @@ class Family:
     Attributes
     ----------
     law : Law
-        Whose kind, and whatever is not inferred, is kept.
+        Its kind is kept, and so is every parameter that is not inferred.
     diameter : float
         In m.
     form : Form

@@ -35,7 +35,7 @@ _TOLD = 3.3
 
 
 class Setting(Parameters):
-    """What an inference needs besides the times."""
+    """The settings of an inference besides the times."""
 
     diameter: Annotated[Number, Field(gt=0, le=1e6, description="m")]
     lobes: Annotated[Whole, Field(ge=2)]

@@ -29,7 +29,7 @@ _SHORTEST = 0.1
 
 
 def _negative(covariance: Array) -> bool:
-    """Whether a combination of the numbers has a negative variance, beyond rounding."""
+    """Tell if a combination of the numbers has a negative variance, beyond rounding."""
     variances = np.linalg.eigvalsh(covariance)
     return bool(variances[0] < -_ROUNDING * np.abs(variances).max())
 
@@ -63,7 +63,7 @@ def check_from_release(name: str, data: xr.Dataset) -> None:
 
 @dataclass(frozen=True)
 class Series:
-    """What was measured, and how the numbers that stand for it follow from coefficients.
+    """Measured numbers, and how those that stand for it follow from coefficients.
 
     The three numbers are the parameter of ε_n by generalised least squares, and the logarithms of the mean
     squares of the whitened residuals in the first and in the second half. The covariance is that of the times

@@ -1,4 +1,4 @@
-"""What follows from a recording: impacts, coefficients, laws, and what to be careful about."""
+"""Analysis of a recording: impacts, coefficients, laws, and warnings."""
 
 import csv
 import io
@@ -34,7 +34,7 @@ _CLIPPED = 0.02
 _FEWEST_FOR_SCATTER = 6
 """Coefficients that are needed to fit a scatter beside a law."""
 _EXPLAINED = 0.01
-"""Where a law has this probability or more, errors of measurement explain all scatter."""
+"""Probability of a law from which on errors of measurement explain all scatter."""
 _LAWS = ("constant", "power law", "viscoelastic", "plastic")
 
 
@@ -42,7 +42,7 @@ _OR_NONE = Allowed("a finite number > 0 (SI units), or None")
 
 
 class Setting(Parameters):
-    """What is known of the experiment besides the recording.
+    """Knowledge of the experiment besides the recording.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""What the times of a series say of the ball's shape, and what shape and all else do to its ε."""
+"""The ball's shape as the times of a series determine it, and the error budget of its ε."""
 
 from dataclasses import dataclass
 
@@ -123,13 +123,13 @@ def _roundness(
         return measured, f"The out-of-roundness is {1e6 * measured:.3g} µm, as measured."
     if draws is None:
         return None, "No budget of errors without an out-of-roundness; give it."
-    told = bool(draws.attrs["elongation_determined"])
-    if told:
+    determined = bool(draws.attrs["elongation_determined"])
+    if determined:
         elongation = float(draws["posterior"].to_dataset().elongation.median())
     else:
         elongation = float(draws.attrs["elongation_upper_limit"])
     t = 0.25 * diameter * elongation
-    which = "the median of the posterior" if told else "the upper limit that the times give"
+    which = "the median of the posterior" if determined else "the upper limit that the times give"
     return t, f"The out-of-roundness is taken to be {1e6 * t:.2g} µm, {which}."
 
 

@@ -1,4 +1,4 @@
-"""Which of the rules for onsets to trust, by their own scatter."""
+"""The choice among the rules for onsets, by their own scatter."""
 
 from typing import NamedTuple
 

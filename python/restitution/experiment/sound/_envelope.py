@@ -1,4 +1,4 @@
-"""Where the sound rises: envelopes in bands of frequency, and how fast each grows."""
+"""Envelopes of the sound in bands of frequency, and their rate of growth."""
 
 from dataclasses import dataclass
 
@@ -23,7 +23,7 @@ _APART = 2.5
 
 @dataclass(frozen=True)
 class Envelope:
-    """How the level of a band rises.
+    """Measure the rise of the level of a band.
 
     Attributes
     ----------

@@ -30,7 +30,7 @@ _WORTH = 3.0
 _SATURATED = 6.0
 """In the choice of the band each impact counts up to this: it is their number that matters."""
 _PIECE = 20.0
-"""What a series costs, so that a band that tears one into pieces is not preferred."""
+"""Cost of each series, so that a band that tears one into pieces is not preferred."""
 _LEAST_SPREAD = 0.8
 """In dB. A quiet recording is not more certain than that."""
 FIRST_SCORE, FURTHER_SCORE = 7.0, 15.0

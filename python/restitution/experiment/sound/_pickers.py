@@ -130,13 +130,13 @@ def _summit(values: Array, place: int) -> float:
 
 
 def _energy(window: Array) -> float:
-    """Where a tenth of the energy up to the peak has come in."""
+    """Find the time by which a tenth of the energy up to the peak has arrived."""
     energy = np.cumsum(window[: int(np.argmax(np.abs(window))) + 1] ** 2)
     return _crossing(energy, 0.1 * float(energy[-1]))
 
 
 def _akaike(window: Array) -> float:
-    """Where two pieces of noise of different strength part best, up to the peak (Maeda 1985).
+    """Find where two pieces of noise of different strength part best, up to the peak (Maeda 1985).
 
     AIC(k) = k ln var(x[:k]) + (N - k - 1) ln var(x[k:]).
     """

@@ -1,4 +1,4 @@
-"""How far times of impacts scatter about flights whose ratio changes slowly."""
+"""The scatter of times of impacts about flights whose ratio changes slowly."""
 
 from dataclasses import dataclass
 from typing import NamedTuple
@@ -98,7 +98,7 @@ def scatter(times: Array, places: Whole) -> Scatter | None:
 
 
 class Parts(NamedTuple):
-    """What the scatter of times is made of.
+    """Split the scatter of times into its parts.
 
     Attributes
     ----------

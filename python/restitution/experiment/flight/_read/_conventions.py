@@ -1,4 +1,4 @@
-"""Where the times stand in the tables of phyphox, Audacity and Tracker, and in plain tables."""
+"""The places of the times in the tables of phyphox, Audacity and Tracker, and in plain tables."""
 
 import math
 import re
@@ -44,7 +44,7 @@ def _scale(table: Table, row: Row, column: int, unit: str) -> float:
 
 
 def _is_heading(row: Row) -> bool:
-    """Whether a cell is a word and not a number; a missing number is neither."""
+    """Tell if a cell is a word and not a number; a missing number is neither."""
     values = [as_number(cell) for cell in row.cells]
     return any(value is None for value in values)
 
