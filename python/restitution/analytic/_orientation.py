@@ -1,4 +1,4 @@
-"""Orientation of the symmetry axis at the first impact: the law of c = |cos θ|, θ between axis and plane normal.
+"""Orientation of the axis at the first impact: the law of c = |cos θ|, θ between axis and plane normal.
 
 The contact is with the lower sphere, so only |cos θ| matters, and it lies in [0, 1] (Eqs. 18 and 19 put it in
 [-1, 1]). A law takes and gives c together with sin θ, because 1 - c² loses all digits where c is near 1, and

@@ -59,9 +59,9 @@ def compare(
         As from `restitution.statistics`, with dimensions (body, law) first. Over (body, law) also
         ``all_impacts``, ``energy_created_impacts``, ``energy_created_share`` and
         ``largest_energy_ratio_of_all``; over body and over law ``body_parameters`` and ``law_parameters``.
-        Each parameter in which bodies differ is a coordinate over body, such as ``separation``, and each in
-        which laws differ one over law: ``found.swap_dims(body="separation")`` makes an axis of it. The attributes are what all runs
-        share.
+        Each parameter in which bodies differ is a coordinate over body, such as ``separation``, each in which
+        laws differ over law: ``found.swap_dims(body="separation")`` makes an axis of it. The attributes are
+        what all runs share.
 
     Raises
     ------
