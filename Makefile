@@ -8,7 +8,7 @@ OUT ?= paper
 FUZZ ?= 300
 CORE := $(shell find crates -name '*.rs' -o -name 'Cargo.toml') Cargo.toml Cargo.lock pyproject.toml
 
-.PHONY: help install pages paper calibrate test fuzz hostile audit mutants test-arm test-web bench-web web docs wheel licences coverage lint bench clean
+.PHONY: help install pages paper calibrate test fuzz hostile audit mutants test-arm test-web bench-web look web docs wheel licences coverage lint bench clean
 
 help:  ## list the targets
 	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed 's/:.*##/\t/' | expand -t 12
@@ -105,6 +105,9 @@ pages: $(STAMP)  ## tables and figures of docs/ anew
 
 bench: $(STAMP)  ## speed beside the peers, as ratios measured in one run
 	$(BIN)/python -m benchmarks
+
+look: web  ## pictures of the explorer as people see it, into web/shots
+	cd web && node look.mjs
 
 bench-web: $(STAMP) web  ## the explorer's first picture, redraw and frame rate
 	cd web && node tests/speed.mjs

@@ -1,6 +1,7 @@
 /** The sliders and choices of a set-up. */
 
 import { problem } from "./link";
+import { part } from "./page";
 import {
   applies,
   HYPOTHESES,
@@ -30,17 +31,17 @@ const DEGREES = 180 / Math.PI;
 
 const SLIDERS: readonly Slider[] = [
   { key: "elongation", name: "Elongation L/R", unit: "", factor: 1, low: 0, high: 3, step: 0.01 },
-  { key: "normal", name: "Normal restitution ε_n", unit: "", factor: 1, low: 0, high: 1, step: 0.01 },
-  { key: "tangential", name: "Tangential restitution ε_t", unit: "", factor: 1, low: -1, high: 1, step: 0.01 },
+  { key: "normal", name: "Normal restitution εₙ", unit: "", factor: 1, low: 0, high: 1, step: 0.01 },
+  { key: "tangential", name: "Tangential restitution εₜ", unit: "", factor: 1, low: -1, high: 1, step: 0.01 },
   { key: "friction", name: "Friction μ", unit: "", factor: 1, low: 0, high: 1.5, step: 0.01 },
   { key: "release_height", name: "Release height of the centre", unit: "mm", factor: 1e3, low: 5, high: 300, step: 1 },
   { key: "radius", name: "Radius R", unit: "mm", factor: 1e3, low: 0.5, high: 20, step: 0.1 },
   { key: "angle", name: "Tilt θ of the axis at release", unit: "°", factor: DEGREES, low: 0, high: 180, step: 0.5 },
-  { key: "spin_y", name: "Spin across (ω_y)", unit: "rad/s", factor: 1, low: -300, high: 300, step: 1 },
+  { key: "spin_y", name: "Spin at release", unit: "rad/s", factor: 1, low: -300, high: 300, step: 1 },
   { key: "particles", name: "Particles", unit: "", factor: 1, low: 10, high: 5000, step: 10 },
   { key: "impacts", name: "Impacts of each, at most", unit: "", factor: 1, low: 1, high: 1000, step: 1 },
   { key: "seed", name: "Seed", unit: "", factor: 1, low: 0, high: 100, step: 1 },
-  { key: "spin_z", name: "Spin about the vertical (ω_z)", unit: "rad/s", factor: 1, low: -300, high: 300, step: 1, more: true },
+  { key: "spin_z", name: "Spin about the vertical", unit: "rad/s", factor: 1, low: -300, high: 300, step: 1, more: true },
   { key: "incline", name: "Tilt of the plane", unit: "°", factor: DEGREES, low: 0, high: 45, step: 0.5, more: true },
   { key: "velocity_x", name: "Thrown sideways", unit: "m/s", factor: 1, low: -2, high: 2, step: 0.01, more: true },
   { key: "velocity_z", name: "Thrown upwards", unit: "m/s", factor: 1, low: -2, high: 2, step: 0.01, more: true },
@@ -54,16 +55,20 @@ const CHOICES: readonly { key: ChoiceKey; name: string; options: readonly string
     key: "law",
     name: "Collision law",
     options: LAWS,
-    labels: ["The paper's: ε_n and ε_t", "No friction", "Coulomb friction", "Chatterjee and Ruina"],
+    labels: ["The paper's: εₙ and εₜ", "No friction", "Coulomb friction", "Chatterjee and Ruina"],
   },
   { key: "hypothesis", name: "Hypothesis", options: HYPOTHESES, labels: ["Stronge (energy)", "Poisson (impulse)", "Newton (velocity)"] },
   { key: "orientation", name: "Axis at release", options: ORIENTATIONS, labels: ["θ uniform", "every direction alike", "one particle, θ given"] },
 ];
+/** The slider that is shown where there is room for one only, until another is chosen. */
+const FIRST = "elongation";
 /** The choices and sliders in the order of the page; what follows the last is under "More". */
 const ORDER: readonly Key[] = [
   "shape", "elongation", "law", "normal", "tangential", "friction", "hypothesis", "release_height", "radius",
   "orientation", "angle", "spin_y", "particles", "impacts", "seed",
 ];
+
+const nameOf = (key: Key) => [...SLIDERS, ...CHOICES].find((x) => x.key === key)!.name;
 
 export class Controls {
   private setup!: Setup;
@@ -76,13 +81,23 @@ export class Controls {
     for (const key of ORDER) host.append(this.field(key));
     for (const { key, more: hidden } of SLIDERS) if (hidden) more.append(this.field(key));
     host.append(more);
+    this.quick.addEventListener("change", () => this.show(this.setup));
   }
+
+  /** Which field is shown where there is room for one only. */
+  private readonly quick = part<HTMLSelectElement>("quick");
 
   /** Shows the values of a set-up. */
   show(setup: Setup): void {
     this.setup = setup;
+    const there = ORDER.filter((key) => applies(key, setup));
+    const wanted = there.find((key) => key === this.quick.value) ?? FIRST;
+    // An open list stays as it is.
+    if (this.quick.options.length !== there.length) this.quick.replaceChildren(...there.map((key) => new Option(nameOf(key), key)));
+    this.quick.value = wanted;
     for (const [key, { row, show }] of this.fields) {
       row.hidden = !applies(key, setup);
+      row.classList.toggle("quick", key === wanted);
       show();
     }
   }

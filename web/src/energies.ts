@@ -3,8 +3,8 @@
 import type { Run } from "./engine/run";
 import type { Moment, Path } from "./stage/path";
 
-const NAMES = ["of height", "up and down", "sideways", "of rotation", "all"] as const;
-const HUES = ["var(--soft)", "var(--a)", "var(--a)", "var(--b)", "var(--ink)"];
+const NAMES = ["potential energy", "vertical motion", "sideways motion", "rotational energy", "total energy"] as const;
+const HUES = ["var(--soft)", "var(--velocity)", "var(--velocity)", "var(--spin)", "var(--ink)"];
 
 export class Energies {
   private readonly bars: { bar: HTMLElement; text: HTMLElement }[];
@@ -37,14 +37,20 @@ export class Energies {
   }
 }
 
+/** A duration as one says it: 11.7 s, 111 ms. */
+export const duration = (seconds: number): string =>
+  seconds < 1 ? `${Number((seconds * 1e3).toPrecision(3))} ms` : `${Number(seconds.toPrecision(3))} s`;
+
+/** A ratio with four decimals; what has not changed but by rounding is 1. */
+const ratio = (x: number) => (Math.abs(x - 1) < 1e-12 ? "1" : x.toFixed(4));
+
 const ROWS: [string, (run: Run, place: number) => string][] = [
-  ["impact velocity v", (run, i) => `${run.columns.impact_velocity[i].toPrecision(4)} m/s`],
+  ["impact velocity v", (run, i) => `${run.columns.impact_velocity[i].toPrecision(3)} m/s`],
   ["restitution ε", (run, i) => run.columns.restitution[i].toPrecision(4)],
-  ["axis to the normal θ", (run, i) => `${((run.columns.angle[i] * 180) / Math.PI).toFixed(1)}°`],
-  ["E_rot/E_tot before", (run, i) => run.columns.rotational_fraction[i].toPrecision(3)],
-  ["kinetic energy after/before", (run, i) => run.columns.energy_ratio[i].toFixed(4)],
-  ["end that touched", (run, i) => String(run.columns.contact[i])],
-  ["time since release", (run, i) => `${(run.columns.time[i] * 1e3).toFixed(2)} ms`],
+  ["tilt θ of the axis", (run, i) => `${((run.columns.angle[i] * 180) / Math.PI).toFixed(1)}°`],
+  ["rotational share", (run, i) => `${(100 * run.columns.rotational_fraction[i]).toPrecision(3)} %`],
+  ["energy after/before", (run, i) => ratio(run.columns.energy_ratio[i])],
+  ["time since release", (run, i) => duration(run.columns.time[i])],
 ];
 
 export function showImpact(table: HTMLTableElement, run: Run, particle: number, impact: number): void {

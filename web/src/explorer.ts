@@ -4,22 +4,25 @@ import { Chart } from "./charts/chart";
 import * as pictures from "./charts/pictures";
 import { Run } from "./engine/run";
 import type { Pool } from "./engine/pool";
+import { Paper } from "./charts/drawing";
+import { duration } from "./energies";
 import { initial, toHash, type State } from "./link";
 import { part } from "./page";
-import { KINDS, notable, STOP_REASONS, type Kind } from "./pick";
+import { endings, KINDS, notable, type Kind } from "./pick";
 import { Player } from "./player";
 import type { Setup } from "./setup";
 import { Statistics } from "./statistics";
 
-const CHARTS = ["scatter-a", "scatter-b", "density", "sigma", "reservoir"] as const;
+const MAPS = ["scatter-a", "scatter-b", "density", "sigma", "reservoir"] as const;
 /** While impacts arrive the charts are drawn no more often than this, in ms. */
 const PATIENCE = 80;
-export type ChartName = (typeof CHARTS)[number];
+export type ChartName = (typeof MAPS)[number];
 
 export class Explorer {
   state: State = initial();
   runs: { a?: Statistics; b?: Statistics } = {};
   readonly charts: Record<ChartName, Chart>;
+  readonly paper = new Paper(part("drawing"));
   readonly player: Player;
   private drawing = false;
   private drawn = 0;
@@ -49,6 +52,8 @@ export class Explorer {
   /** Takes a state, and computes what is new in it. */
   go(state: State, play = false, kind?: Kind): void {
     const old = this.state;
+    part("found").textContent = "";
+    this.waiting = [];
     this.state = state;
     for (const which of ["a", "b"] as const) {
       const setup = state[which];
@@ -152,6 +157,12 @@ export class Explorer {
     this.redraw();
   }
 
+  /** Draws everything in the colours and the size in force. */
+  restyle(): void {
+    this.player.stage?.restyle();
+    this.redraw();
+  }
+
   setSpeed(speed: number): void {
     this.state.speed = Number(speed.toPrecision(3));
     this.redraw();
@@ -179,11 +190,11 @@ export class Explorer {
     const started = performance.now();
     const [both, { state, charts }] = [{ a, b }, this];
     charts["scatter-a"].show(pictures.scatter(state, a, "a"));
-    part("scatter-b").hidden = !b;
     if (b) charts["scatter-b"].show(pictures.scatter(state, b, "b"));
     charts.density.show(pictures.density(state, both));
     charts.sigma.show(pictures.scatterWidth(state, both));
     charts.reservoir.show(pictures.reservoir(state, both));
+    this.paper.show(this.player.struck);
     this.describe();
     // For those who wait for the page: how long this took, and whether all of it is there to be seen.
     document.documentElement.dataset.redraw = (performance.now() - started).toFixed(1);
@@ -195,14 +206,15 @@ export class Explorer {
     const { a, b } = this.runs;
     const { speed } = this.state;
     const words = ([a && (["A", a] as const), b && (["B", b] as const)].filter(Boolean) as [string, Statistics][]).map(([name, s]) => {
-      const found = s.moments(...s.window(speed));
+      const first = s.run.setup.impacts === 1;
+      const found = s.moments(...(first ? ALL : s.window(speed)));
       const what = found.number
-        ? `mean of ε ${found.mean.toFixed(4)}, σ ${found.deviation.toFixed(4)}, E_rot/E_tot ${found.share.toFixed(3)}`
-        : "no impacts";
-      return `${name}: ${found.number.toLocaleString("en")} impacts within ±5 % of ${speed} m/s; ${what}.`;
+        ? `mean of ε ${found.mean.toFixed(4)}, σ ${found.deviation.toFixed(4)}, rotational share ${found.share.toFixed(3)}`
+        : "none to average";
+      return `${name}: ${found.number.toLocaleString("en")} ${first ? "first impacts" : `impacts within ±5 % of ${speed} m/s`}; ${what}.`;
     });
     part("density-text").textContent = words.join(" ");
-    for (const name of CHARTS) {
+    for (const name of MAPS) {
       const picture = this.charts[name].picture;
       const host = this.charts[name].host;
       if (picture) host.setAttribute("aria-label", `${picture.title}. ${words.join(" ")}`);
@@ -211,6 +223,8 @@ export class Explorer {
   }
 }
 
+const ALL: [number, number] = [-Infinity, Infinity];
+
 function summary(runs: [string, Statistics | undefined][]): string {
   const there = runs.filter((x): x is [string, Statistics] => x[1] !== undefined);
   const row = (name: string, cell: (s: Statistics) => string) =>
@@ -218,10 +232,10 @@ function summary(runs: [string, Statistics | undefined][]): string {
   const whole = (x: number) => x.toLocaleString("en");
   const share = (x: number, all: number) => (all ? `${whole(x)} (${((100 * x) / all).toFixed(2)} %)` : "0");
   return `<table><thead><tr><td></td>${there.map(([name]) => `<th scope="col"><span class="key ${name.toLowerCase()}">${name}</span></th>`).join("")}</tr></thead><tbody>${[
-    row("impacts", ({ run }) => `${whole(run.impacts)} of ${whole(run.finished)} particles${run.took ? `, in ${run.took < 1000 ? `${Math.round(run.took)} ms` : `${(run.took / 1000).toFixed(1)} s`}` : " so far"}`),
+    row("impacts computed", ({ run }) => `${whole(run.impacts)} of ${whole(run.finished)} particles${run.took ? `, in ${duration(run.took / 1e3)}` : " so far"}`),
     row("created kinetic energy", (s) => `${share(s.created, s.run.impacts)}${s.created ? `, at most ×${s.largest.toPrecision(s.largest < 1.05 ? 5 : 3)}` : ""}`),
     row("ε &lt; 0", (s) => share(s.negative, s.run.impacts)),
-    row("why particles ended", (s) => [...s.stops].map((n, k) => (n ? `${STOP_REASONS[k]} ${whole(n)}` : "")).filter(Boolean).join(", ")),
+    row("why particles ended", (s) => [...s.stops].map((n, k) => (n ? `${whole(n)} ${endings(s.run)[k]}` : "")).filter(Boolean).join(", ")),
     row("SHA-256 of the numbers", ({ run }) => (run.digest ? `<code>${run.digest}</code>` : "when all are there")),
   ].join("")}</tbody></table><p class="soft small">The digest is of times, restitutions, energy ratios and angles. The lines of Python below print the same one: every number is the same to the last bit.</p>`;
 }

@@ -13,10 +13,15 @@ import {
 } from "./setup";
 import { TOUR, at } from "./tour";
 
-export const RANGES = ["fig2", "fig7", "all"] as const;
+export const RANGES = ["fig2", "near", "fig7", "all"] as const;
 export const DENSITIES = ["restitution", "fraction"] as const;
+/** The pictures that can stand beside the scene, below the map of set-up A. */
+export const CHARTS = ["scatter-b", "density", "sigma", "reservoir", "drawing"] as const;
 
-/** Everything that a link holds. */
+/** In a link: the page is to open as it is projected. */
+export const PRESENT = "present";
+
+/** Everything that a link holds of what is shown. */
 export interface State {
   a: Setup;
   /** The second set-up, if there is one. */
@@ -25,6 +30,8 @@ export interface State {
   speed: number;
   range: (typeof RANGES)[number];
   density: (typeof DENSITIES)[number];
+  /** What to look at: the map, or the picture that is to stand beside the scene. */
+  chart: "map" | (typeof CHARTS)[number];
   /** The particle and the impact in the scene. */
   particle: number;
   impact: number;
@@ -38,6 +45,7 @@ export const initial = (): State => ({
   speed: 0.4,
   range: "fig2",
   density: "restitution",
+  chart: "map",
   particle: 0,
   impact: 0,
   stop: 0,
@@ -121,7 +129,7 @@ function all(state: State): string {
     out.set("b", "1");
     write("b.", state.b, out);
   }
-  for (const key of ["speed", "range", "density", "particle", "impact", "stop"] as const) {
+  for (const key of ["speed", "range", "density", "chart", "particle", "impact", "stop"] as const) {
     if (state[key] !== start[key]) out.set(key, String(state[key]));
   }
   return out.toString();
@@ -145,10 +153,13 @@ export function fromHash(hash: string): { state: State; problems: string[] } {
   number("particle", 0, MOST_IMPACTS);
   number("impact", 0, MOST_IMPACTS);
   number("stop", 0, TOUR.length);
-  if (state.stop && [...from.keys()].length === 1) state = at(state.stop, state);
-  const range = from.get("range");
-  if (RANGES.some((x) => x === range)) state.range = range as State["range"];
-  const density = from.get("density");
-  if (DENSITIES.some((x) => x === density)) state.density = density as State["density"];
+  if (state.stop && [...from.keys()].every((key) => key === "stop" || key === PRESENT)) state = at(state.stop, state);
+  const one = <K extends "range" | "density" | "chart">(key: K, of: readonly State[K][]) => {
+    const name = of.find((x) => x === from.get(key));
+    if (name !== undefined) state[key] = name;
+  };
+  one("range", RANGES);
+  one("density", DENSITIES);
+  one("chart", ["map", ...CHARTS]);
   return { state, problems };
 }

@@ -4,13 +4,13 @@ import "./language"; // before the charts, which look at it as they load
 import { changed, Controls } from "./controls";
 import { Pool } from "./engine/pool";
 import { Explorer, type ChartName } from "./explorer";
+import { canRecord } from "./export/record";
 import { save } from "./export/save";
 import { csv, python, toml } from "./export/text";
-import { fromHash, initial, type State } from "./link";
+import { CHARTS, fromHash, initial, PRESENT, type State } from "./link";
 import { onChange, onClick, part } from "./page";
 import { KINDS, type Kind } from "./pick";
-import { onGround } from "./charts/svg";
-import { svg } from "./charts/svg";
+import { onGround } from "./charts/chart";
 import { theme } from "./charts/colours";
 import { fallSpeed } from "./setup";
 import type { Pace } from "./stage/clock";
@@ -19,6 +19,11 @@ import { at, TOUR } from "./tour";
 /** Put in by build.mjs: the core in base 64, and the source of the worker. */
 declare const CORE: string;
 declare const WORKER: string;
+/** Where the page is published, if it is. */
+declare const HOME: string;
+
+/** The page as it came, before anything is changed in it: what is saved for others. */
+const SELF = `<!DOCTYPE html>\n${document.documentElement.outerHTML}`;
 
 const bytes = Uint8Array.from(atob(CORE), (letter) => letter.charCodeAt(0));
 const calm = matchMedia("(prefers-reduced-motion: reduce)").matches;
@@ -57,18 +62,21 @@ function begin(pool: Pool): void {
     part<HTMLInputElement>("particle").value = String(state.particle);
     part<HTMLSelectElement>("range").value = state.range;
     part<HTMLSelectElement>("density").value = state.density;
-    part("density-title").textContent = state.a.impacts === 1 && state.density === "restitution" ? "p(ε) of the first impact" : state.density === "fraction" ? "p(E_rot/E_tot | v) at this speed" : "p(ε | v) at this speed";
+    const given = state.a.impacts === 1 ? "" : " | v";
+    part("density-title").textContent = state.density === "fraction" ? `p(rotational share${given})` : `p(ε${given})`;
+    arrange(state);
     const speed = part<HTMLInputElement>("speed");
     const most = 1.1 * fallSpeed(state.a);
     [speed.min, speed.max] = [String(-0.1 * most), String(most)];
     speed.step = String(most / 500);
     speed.value = String(state.speed);
+    speed.disabled = state.a.impacts === 1;
     part("speed-value").textContent = `${state.speed} m/s`;
     speed.setAttribute("aria-valuetext", `${state.speed} metres per second`);
     part("of").textContent = which.toUpperCase();
     part("code").textContent = python(state[which]!);
     tour();
-    const hash = `#${explorer.hash()}`;
+    const hash = address();
     // An address that cannot be changed (a page inside another) is not a reason to stop.
     try {
       if (location.hash !== hash && (location.hash || hash !== "#")) history.replaceState(null, "", hash);
@@ -77,6 +85,10 @@ function begin(pool: Pool): void {
     }
     if (!explorer.done) document.documentElement.dataset.state = "busy";
   }
+
+  const presenting = () => PRESENT in document.documentElement.dataset;
+  /** What follows the name of the page in its address. */
+  const address = () => `#${[explorer.hash(), presenting() ? `${PRESENT}=1` : ""].filter(Boolean).join("&")}`;
 
   let found = 0;
   const kinds = part<HTMLSelectElement>("kind");
@@ -91,9 +103,10 @@ function begin(pool: Pool): void {
 
   function tour(): void {
     const { stop } = explorer.state;
+    part("first").classList.toggle("touring", stop > 0);
     part("tour").hidden = !stop;
     if (!stop) return;
-    part("tour-number").textContent = `Stop ${stop} of ${TOUR.length}`;
+    part("tour-number").textContent = `Stop ${stop} of ${TOUR.length}.`;
     part("tour-title").textContent = TOUR[stop - 1].title;
     part("tour-text").textContent = TOUR[stop - 1].text;
     part<HTMLButtonElement>("tour-back").disabled = stop === 1;
@@ -107,6 +120,7 @@ function begin(pool: Pool): void {
 
   function load(): void {
     const { state, problems } = fromHash(location.hash);
+    present(new URLSearchParams(location.hash.slice(1)).has(PRESENT));
     const kind = state.impact === 0 && state.stop ? TOUR[state.stop - 1].kind : undefined;
     explorer.go(state, !calm && state.impact === 0, replayed(kind));
     explorer.problem(problems.length ? `This link asks for what cannot be:\n${problems.join("\n")}` : "");
@@ -118,10 +132,49 @@ function begin(pool: Pool): void {
     refresh();
   };
 
-  // No link: what follows # in the address is the state.
-  onClick("to-set-up", () => {
-    part("set-up").focus();
-    part("set-up").scrollIntoView();
+  for (const section of document.querySelectorAll<HTMLElement>("[data-chart]")) {
+    const button = document.createElement("button");
+    [button.type, button.className, button.textContent] = ["button", "beside", "Beside the scene"];
+    button.addEventListener("click", () => {
+      view({ chart: section.dataset.chart as State["chart"] });
+      part("stage").scrollIntoView({ block: "nearest" });
+    });
+    section.querySelector(".head")!.append(button);
+  }
+  onClick("sheet", () => {
+    const open = part("set-up").classList.toggle("open");
+    part("sheet").textContent = open ? "Less" : "All";
+    part("sheet").setAttribute("aria-expanded", String(open));
+  });
+
+  function present(on: boolean): void {
+    const root = document.documentElement;
+    if (on === presenting()) return;
+    if (on) root.dataset[PRESENT] = "";
+    else delete root.dataset[PRESENT];
+    part("present").setAttribute("aria-pressed", String(on));
+    explorer.restyle();
+    refresh();
+  }
+  onClick("present", () => {
+    const on = !presenting();
+    present(on);
+    // A page inside another may not fill the screen; it is large in its frame all the same.
+    if (on) document.documentElement.requestFullscreen?.().catch(() => {});
+    else if (document.fullscreenElement) void document.exitFullscreen();
+  });
+  document.addEventListener("fullscreenchange", () => {
+    if (!document.fullscreenElement) present(false);
+  });
+  addEventListener("keydown", (event) => {
+    if (!presenting()) return;
+    const { stop } = explorer.state;
+    if (event.key === "Escape") present(false);
+    else if (event.key === "PageDown" && stop < TOUR.length) visit(stop + 1);
+    else if (event.key === "PageUp" && stop > 1) visit(stop - 1);
+    else if (event.key === " " && !(event.target instanceof HTMLButtonElement)) explorer.player.play(!explorer.player.clock.playing);
+    else return;
+    event.preventDefault();
   });
   onClick("tour-start", () => visit(1));
   onClick("tour-back", () => visit(explorer.state.stop - 1));
@@ -152,7 +205,8 @@ function begin(pool: Pool): void {
     const { state } = explorer;
     const on = part<HTMLInputElement>("compare").checked;
     which = on ? "b" : "a";
-    explorer.go({ ...state, b: on ? { ...state.a, law: state.a.law === "frictionless" ? "tangential-restitution" : "frictionless" } : undefined });
+    const law = state.a.law === "frictionless" ? "tangential-restitution" : "frictionless";
+    explorer.go({ ...state, chart: on ? "scatter-b" : "map", b: on ? { ...state.a, law } : undefined });
   });
   for (const radio of document.querySelectorAll<HTMLInputElement>("input[name=which]")) {
     radio.addEventListener("change", () => {
@@ -161,7 +215,7 @@ function begin(pool: Pool): void {
     });
   }
   addEventListener("hashchange", () => {
-    if (location.hash !== `#${explorer.hash()}`) load();
+    if (location.hash !== address()) load();
   });
 
   const setup = () => explorer.state[which]!;
@@ -174,14 +228,18 @@ function begin(pool: Pool): void {
   const what = part<HTMLSelectElement>("what");
   onChange("what", (name) => (part<HTMLButtonElement>("svg").disabled = name === "stage"));
   part<HTMLButtonElement>("svg").disabled = true;
+  const picture = () => (what.value === "drawing" ? explorer.paper : explorer.charts[what.value as ChartName]);
   onClick("png", () => {
-    const canvas = what.value === "stage" ? explorer.player.stage?.canvas : explorer.charts[what.value as ChartName].canvas;
-    if (canvas) onGround(canvas, theme().paper).toBlob((blob) => blob && save(`${what.value}.png`, blob));
+    let { canvas } = what.value === "stage" ? { canvas: document.createElement("canvas") } : picture();
+    if (what.value === "stage") explorer.player.stage?.compose(canvas);
+    else canvas = onGround(canvas, theme().paper);
+    canvas.toBlob((blob) => blob && save(`${what.value}.png`, blob));
   });
-  onClick("svg", () => {
-    const { picture } = explorer.charts[what.value as ChartName];
-    if (picture) save(`${what.value}.svg`, svg(picture), "image/svg+xml");
-  });
+  onClick("svg", () => save(`${what.value}.svg`, picture().svg(), "image/svg+xml"));
+  const film = part<HTMLButtonElement>("record");
+  film.hidden = !canRecord() || !explorer.player.stage;
+  onClick("record", () => void shoot(explorer, film));
+  onClick("save-page", () => save("explorer.html", SELF, "text/html"));
   onClick("licences", () => {
     const text = part("licence-text");
     text.hidden = !text.hidden;
@@ -191,28 +249,71 @@ function begin(pool: Pool): void {
   load();
 }
 
+/** Puts the picture that the state speaks of beside the scene, and the others below. */
+function arrange({ chart, b }: State): void {
+  const beside = chart === "map" || (chart === "scatter-b" && !b) ? "density" : chart;
+  for (const name of CHARTS) {
+    const section = document.querySelector<HTMLElement>(`[data-chart="${name}"]`)!;
+    section.hidden = name === "scatter-b" && !b;
+    const place = part(name === beside ? "slot" : "others");
+    if (section.parentElement !== place) place.append(section);
+  }
+  document.documentElement.dataset.looks = chart === "map" ? "map" : "other";
+  part("ledger-of").textContent = b ? " of A" : "";
+}
+
 /** Light or dark: as the system has it, until somebody chooses. */
 function dress(explorer: Explorer): void {
   const dark = matchMedia("(prefers-color-scheme: dark)");
   const put = (on: boolean) => {
     document.documentElement.dataset.theme = on ? "dark" : "light";
     part("theme").setAttribute("aria-pressed", String(on));
-    for (const chart of Object.values(explorer.charts)) chart.restyle();
-    explorer.player.stage?.restyle();
+    explorer.restyle();
   };
   put(dark.matches);
   dark.addEventListener("change", () => put(dark.matches));
   onClick("theme", () => put(document.documentElement.dataset.theme !== "dark"));
+  // Paper is white.
+  let on = false;
+  addEventListener("beforeprint", () => {
+    on = document.documentElement.dataset.theme === "dark";
+    if (on) put(false);
+  });
+  addEventListener("afterprint", () => {
+    if (on) put(true);
+  });
+}
+
+/** Saves the replay of the impact that is shown. */
+async function shoot(explorer: Explorer, button: HTMLButtonElement): Promise<void> {
+  const { particle, impact } = explorer.state;
+  button.disabled = true;
+  button.textContent = "Recording";
+  const { content, ending } = await explorer.player.record(impact);
+  save(`particle-${particle}-impact-${impact + 1}.${ending}`, content);
+  button.disabled = false;
+  button.textContent = "Record";
+}
+
+/** What leads others here: of a page on this disk or this machine the published one, if there is one, else what follows the name of the
+ * file that they have. */
+function linkFor(state: string): { text: string; note: string } {
+  const here = location.href.split("#")[0];
+  const local = !/^https?:/.test(here) || ["localhost", "127.0.0.1", "[::1]"].includes(location.hostname);
+  const end = state ? `#${state}` : "";
+  if (!local) return { text: here + end, note: "Copied" };
+  if (HOME) return { text: `${HOME}explorer.html${end}`, note: "Copied" };
+  return { text: `explorer.html${end}`, note: "Copied: for who has the file" };
 }
 
 async function share(explorer: Explorer): Promise<void> {
-  const link = `${location.href.split("#")[0]}#${explorer.hash()}`;
+  const { text, note } = linkFor(explorer.hash());
   const button = part("share");
   try {
-    await navigator.clipboard.writeText(link);
-    button.textContent = "Copied";
+    await navigator.clipboard.writeText(text);
+    button.textContent = note;
   } catch {
-    prompt("The link to this set-up:", link);
+    prompt("The link to this set-up:", text);
   }
-  setTimeout(() => (button.textContent = "Copy link"), 2000);
+  setTimeout(() => (button.textContent = "Copy link"), 3000);
 }

@@ -9,7 +9,7 @@ export interface Impact {
 
 export const KINDS = {
   gain: "Creates most energy",
-  superelastic: "Largest ε with v > 0.1 of the fall",
+  superelastic: "Largest ε with v > fall/10",
   downward: "ε < 0: goes on downwards",
   upward: "ε < 0: hit while it rises",
   locked: "Locked: in step with its rotation",
@@ -59,5 +59,11 @@ function locked({ columns, counts, particles, setup }: Run): Impact[] {
   return found.sort((a, b) => b[0] - a[0]).slice(0, MOST).map(([, place]) => place);
 }
 
-/** Why a particle ended, as the package names it. */
-export const STOP_REASONS = ["impacts_reached", "speed_below_threshold", "collapse", "never_lands", "interrupted"] as const;
+/** Why particles ended, in words: in the order of the engine's reasons. */
+export const endings = ({ setup }: Run): string[] => [
+  `reached ${setup.impacts.toLocaleString("en")} ${setup.impacts === 1 ? "impact" : "impacts"}`,
+  `slower than ${setup.minimum_speed} m/s`,
+  "collapsed: impacts accumulate",
+  "turned too far before the next impact",
+  "interrupted",
+];

@@ -1,7 +1,9 @@
 /** What plays in the scene: the same particle of one or two runs. */
 
+import { drawing, type Struck } from "./charts/drawing";
 import { Energies, showImpact } from "./energies";
 import type { Run } from "./engine/run";
+import { record, type Film } from "./export/record";
 import { part } from "./page";
 import { Clock } from "./stage/clock";
 import { Path } from "./stage/path";
@@ -19,6 +21,8 @@ export class Player {
   private last = performance.now();
   private readonly energies = new Energies(part("energies"));
   private asked = 0;
+  /** A film that is being made: where each picture goes, and what to do at its end. */
+  private film: { canvas: HTMLCanvasElement; finish: () => void } | undefined;
 
   /** `moved` hears of every impact that is passed, with its number; `stopped` when the play starts or ends. */
   constructor(private readonly moved: (impact: number) => void, private readonly stopped: () => void) {
@@ -35,7 +39,7 @@ export class Player {
     requestAnimationFrame(draw);
   }
 
-  /** Shows a particle of the runs, shortly before an impact, or from its release. */
+  /** Shows a particle of the runs, shortly before an impact, at which it holds, or from its release. */
   async show(runs: Run[], particle: number, impact: number | undefined, play: boolean): Promise<void> {
     const asked = ++this.asked;
     const rows = await Promise.all(runs.map((run) => run.follow(Math.min(particle, run.particles - 1))));
@@ -44,15 +48,19 @@ export class Player {
     [this.runs, this.particle, this.shown] = [runs, particle, NaN];
     this.stage?.show(this.paths.map((path, k) => ({ path, setup: runs[k].setup, of: k ? "b" : "a" })));
     this.awaited = impact ?? 0;
+    this.clock.until = Infinity;
     if (impact === undefined) this.clock.time = 0;
     else if (play) this.clock.before(this.paths[0], impact);
-    else this.clock.after(this.paths[0], impact);
-    this.play(play);
+    else this.clock.time = this.paths[0].impact(impact);
+    this.clock.playing = play;
+    this.stopped();
   }
 
+  /** Plays on, from the start if it is at the end; or stops. */
   play(playing: boolean): void {
     const path = this.paths[0];
-    if (playing && path && this.clock.time >= path.end + path.duration(path.flights.length - 1)) this.clock.time = this.awaited = 0;
+    if (playing && path && this.clock.time >= path.finish) this.clock.time = this.awaited = 0;
+    this.clock.until = Infinity;
     this.clock.playing = playing;
     this.stopped();
   }
@@ -72,22 +80,46 @@ export class Player {
     this.play(false);
   }
 
+  /** A film of an impact: the flight that leads to it, and half of the next. */
+  async record(impact: number): Promise<Film> {
+    const path = this.paths[0];
+    const number = Math.min(impact, path.flights.length - 2);
+    this.clock.time = path.flights[number].start;
+    this.awaited = number;
+    const canvas = document.createElement("canvas");
+    this.stage!.compose(canvas);
+    const end = record(canvas);
+    this.clock.until = path.impact(number) + 0.5 * path.duration(number + 1);
+    this.clock.playing = true;
+    this.stopped();
+    await new Promise<void>((finish) => (this.film = { canvas, finish }));
+    this.film = undefined;
+    return end();
+  }
+
+  /** The last impact before now, as it is drawn on paper. */
+  get struck(): Struck | undefined {
+    const path = this.paths[0];
+    const impacts = path?.flightAt(this.clock.time) ?? 0;
+    return impacts > 0 ? drawing(path, this.runs[0].setup, impacts) : undefined;
+  }
+
   private draw(lasted: number): void {
     const path = this.paths[0];
     if (!path) return;
     const was = this.clock.playing;
     this.clock.advance(path, lasted);
     if (was !== this.clock.playing) this.stopped();
-    const moment = this.stage ? this.stage.draw(this.clock.time, lasted, was || this.shown !== this.number(path)) : path.at(this.clock.time);
+    const moment = this.stage ? this.stage.draw(this.clock.time, was || this.shown !== path.flightAt(this.clock.time)) : path.at(this.clock.time);
     if (!moment) return;
+    if (this.film) {
+      this.stage!.compose(this.film.canvas);
+      if (!this.clock.playing) this.film.finish();
+    }
     if (was || moment.impacts !== this.shown) this.energies.show(path, moment);
     if (moment.impacts === this.shown) return;
     this.shown = moment.impacts;
     showImpact(part("impact"), this.runs[0], this.particle, moment.impacts - 1);
     if (moment.impacts > this.awaited) this.moved(moment.impacts - 1);
-  }
-
-  private number(path: Path): number {
-    return path.flightAt(this.clock.time);
   }
 }

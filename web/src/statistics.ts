@@ -1,5 +1,6 @@
-/** What the charts show, counted as portions arrive: lattices of (v, ε) and (v, E_rot/E_tot), and moments by v. */
+/** What the charts show: lattices of (v, ε) and (v, rotational share) and moments by v, counted as portions arrive; values at a speed. */
 
+import type { Column } from "./engine/layout";
 import type { Portion, Run } from "./engine/run";
 import { fallSpeed, type Setup } from "./setup";
 
@@ -8,7 +9,14 @@ export class Bins {
   readonly count: number;
 
   constructor(readonly low: number, high: number, readonly step: number) {
-    this.count = Math.round((high - low) / step);
+    this.count = Math.max(1, Math.round((high - low) / step));
+  }
+
+  /** Some `many` bins with a round step that cover [low, high]. */
+  static cover(low: number, high: number, many: number): Bins {
+    const step = nice((high - low) / many);
+    const first = Math.floor(low / step + 1e-9) * step;
+    return new Bins(first, Math.ceil(high / step - 1e-9) * step, step);
   }
 
   /** The bin of a value; −1 outside. */
@@ -28,11 +36,17 @@ export class Bins {
   get high(): number {
     return this.edge(this.count);
   }
+
+  get edges(): number[] {
+    return Array.from({ length: this.count + 1 }, (_, k) => this.edge(k));
+  }
 }
 
 /** Counts over rows of v and columns of another number. */
 export class Lattice {
   readonly counts: Uint32Array;
+  /** The largest count. */
+  most = 1;
   /** Everything that was counted, also outside: it tells whether a drawing is of now. */
   seen = 0;
 
@@ -44,28 +58,14 @@ export class Lattice {
     const row = this.v.of(v);
     const column = this.other.of(other);
     this.seen++;
-    if (row >= 0 && column >= 0) this.counts[row * this.other.count + column]++;
-  }
-
-  /** The sum over the rows whose middle is in [low, high). */
-  over(low: number, high: number): { counts: Float64Array; total: number } {
-    const counts = new Float64Array(this.other.count);
-    let total = 0;
-    for (let row = 0; row < this.v.count; row++) {
-      const middle = this.v.middle(row);
-      if (middle < low || middle >= high) continue;
-      for (let k = 0; k < counts.length; k++) {
-        const count = this.counts[row * counts.length + k];
-        counts[k] += count;
-        total += count;
-      }
-    }
-    return { counts, total };
+    if (row < 0 || column < 0) return;
+    const count = ++this.counts[row * this.other.count + column];
+    if (count > this.most) this.most = count;
   }
 }
 
 /** 1, 2 or 5 times a power of ten, at least `value`. */
-function nice(value: number): number {
+export function nice(value: number): number {
   const power = 10 ** Math.floor(Math.log10(value));
   return [1, 2, 5, 10].map((k) => k * power).find((x) => x >= value * (1 - 1e-9))!;
 }
@@ -73,64 +73,105 @@ function nice(value: number): number {
 /** Mesh of v: the paper's 0.002 m/s for the paper's fall. */
 export const meshOf = (s: Setup): number => nice(Math.max(fallSpeed(s), 1e-3) / 600);
 
-/** ε of the lattices: the range of Fig. 7, at the mesh of Fig. 2. */
-export const RESTITUTION = { low: -3, high: 4, step: 0.01 };
-export const FRACTION = { low: 0, high: 1, step: 0.005 };
 /** Half-width of the window about a speed, as a share of it; the paper's redrawing takes the same. */
 export const WINDOW = 0.05;
+/** Lattices that are kept and counted on. */
+const VIEWS = 4;
+/** What is left out at either end of the values of a run where its range is asked for. */
+const TAIL = 0.003;
+/** Impacts that are looked at for that. */
+const SAMPLE = 20_000;
+
+type Counted = Extract<Column, "restitution" | "rotational_fraction">;
 
 export class Statistics {
   readonly v: Bins;
-  readonly restitution: Lattice;
-  readonly fraction: Lattice;
-  /** Per bin of v: number, and sums of ε − ε_n, its square, and E_rot/E_tot. */
-  readonly number: Float64Array;
-  readonly first: Float64Array;
-  readonly second: Float64Array;
-  readonly share: Float64Array;
+  /** Per bin of v: number, and sums of ε − ε_n, its square, and the rotational share. */
+  private readonly number: Float64Array;
+  private readonly first: Float64Array;
+  private readonly second: Float64Array;
+  private readonly share: Float64Array;
+  private readonly views = new Map<string, { column: Counted; lattice: Lattice }>();
   /** Impacts that multiplied the kinetic energy by more than 1 + 10⁻¹², and the largest factor. */
   created = 0;
   largest = 1;
   negative = 0;
+  /** Largest |ε − ε_n| and rotational share. */
+  scatter = 0;
+  rotation = 0;
   readonly stops = new Uint32Array(5);
 
   constructor(readonly run: Run) {
     const mesh = meshOf(run.setup);
     const most = Math.ceil((1.1 * fallSpeed(run.setup)) / (10 * mesh)) * 10 * mesh;
     this.v = new Bins(-Math.ceil((0.1 * most) / (10 * mesh)) * 10 * mesh, most, mesh);
-    this.restitution = new Lattice(this.v, new Bins(RESTITUTION.low, RESTITUTION.high, RESTITUTION.step));
-    this.fraction = new Lattice(this.v, new Bins(FRACTION.low, FRACTION.high, FRACTION.step));
     const row = () => new Float64Array(this.v.count);
     [this.number, this.first, this.second, this.share] = [row(), row(), row(), row()];
   }
 
   add({ first, count }: Portion): void {
-    const { columns, counts, reasons, setup } = this.run;
-    for (let particle = first; particle < first + count; particle++) {
-      this.stops[reasons[particle]]++;
-      const start = particle * setup.impacts;
-      for (let i = start; i < start + counts[particle]; i++) {
-        const v = columns.impact_velocity[i];
-        const epsilon = columns.restitution[i];
-        const fraction = columns.rotational_fraction[i];
-        const ratio = columns.energy_ratio[i];
-        this.restitution.add(v, epsilon);
-        this.fraction.add(v, fraction);
-        if (ratio > 1 + 1e-12) this.created++;
-        if (ratio > this.largest) this.largest = ratio;
-        if (epsilon < 0) this.negative++;
-        const bin = this.v.of(v);
-        if (bin < 0 || !Number.isFinite(epsilon)) continue;
-        const off = epsilon - setup.normal;
-        this.number[bin]++;
-        this.first[bin] += off;
-        this.second[bin] += off * off;
-        this.share[bin] += fraction;
-      }
-    }
+    const { columns, reasons, setup } = this.run;
+    for (let particle = first; particle < first + count; particle++) this.stops[reasons[particle]]++;
+    for (const { column, lattice } of this.views.values()) this.count(column, lattice, first, count);
+    this.each(first, count, (i) => {
+      const v = columns.impact_velocity[i];
+      const epsilon = columns.restitution[i];
+      const fraction = columns.rotational_fraction[i];
+      const ratio = columns.energy_ratio[i];
+      if (ratio > 1 + 1e-12) this.created++;
+      if (ratio > this.largest) this.largest = ratio;
+      if (epsilon < 0) this.negative++;
+      if (fraction > this.rotation) this.rotation = fraction;
+      const off = epsilon - setup.normal;
+      if (Math.abs(off) > this.scatter) this.scatter = Math.abs(off);
+      const bin = this.v.of(v);
+      if (bin < 0 || !Number.isFinite(epsilon)) return;
+      this.number[bin]++;
+      this.first[bin] += off;
+      this.second[bin] += off * off;
+      this.share[bin] += fraction;
+    });
   }
 
-  /** σ(ε), the mean of ε and that of E_rot/E_tot where v is in [low, high). */
+  /** Impacts of v and another number, in these bins; kept, and counted on as portions arrive. */
+  lattice(column: Counted, v: Bins, other: Bins): Lattice {
+    const key = [column, v.low, v.count, v.step, other.low, other.count, other.step].join();
+    let view = this.views.get(key);
+    if (!view) {
+      if (this.views.size >= VIEWS) this.views.delete(this.views.keys().next().value!);
+      view = { column, lattice: new Lattice(v, other) };
+      this.views.set(key, view);
+      this.count(column, view.lattice, 0, this.run.particles);
+    }
+    return view.lattice;
+  }
+
+  /** The values of a column where v is in [low, high), in order. */
+  values(column: Counted, low: number, high: number): Float64Array {
+    const { columns, particles } = this.run;
+    const found: number[] = [];
+    this.each(0, particles, (i) => {
+      const v = columns.impact_velocity[i];
+      if (v >= low && v < high && Number.isFinite(columns[column][i])) found.push(columns[column][i]);
+    });
+    return Float64Array.from(found).sort();
+  }
+
+  /** Where nearly all values of a column are, of the impacts faster than a twentieth of the fall. */
+  range(column: Counted | "impact_velocity"): [number, number] {
+    const { columns, particles } = this.run;
+    const slow = 0.05 * fallSpeed(this.run.setup);
+    const every = Math.max(1, Math.floor(this.run.impacts / SAMPLE));
+    const found: number[] = [];
+    let k = 0;
+    this.each(0, particles, (i) => {
+      if (k++ % every === 0 && columns.impact_velocity[i] > slow && Number.isFinite(columns[column][i])) found.push(columns[column][i]);
+    });
+    const sorted = Float64Array.from(found).sort();
+    return sorted.length ? [quantile(sorted, TAIL), quantile(sorted, 1 - TAIL)] : [0, 1];
+  }
+
+  /** Mean and σ of ε, and the mean rotational share, where v is in [low, high). */
   moments(low: number, high: number): { number: number; mean: number; deviation: number; share: number } {
     let [n, a, b, c] = [0, 0, 0, 0];
     for (let k = 0; k < this.v.count; k++) {
@@ -151,4 +192,22 @@ export class Statistics {
     const half = Math.max(WINDOW * Math.abs(speed), 0.75 * this.v.step);
     return [speed - half, speed + half];
   }
+
+  private count(column: Counted, lattice: Lattice, first: number, count: number): void {
+    const { columns } = this.run;
+    this.each(first, count, (i) => lattice.add(columns.impact_velocity[i], columns[column][i]));
+  }
+
+  /** The places of the impacts of some particles; those that have not come yet have none. */
+  private each(first: number, count: number, visit: (place: number) => void): void {
+    const { counts, setup } = this.run;
+    for (let particle = first; particle < first + count; particle++) {
+      const start = particle * setup.impacts;
+      for (let i = start; i < start + counts[particle]; i++) visit(i);
+    }
+  }
 }
+
+/** Of sorted values. */
+export const quantile = (sorted: Float64Array, share: number): number =>
+  sorted[Math.min(sorted.length - 1, Math.max(0, Math.floor(share * sorted.length)))];

@@ -9,7 +9,7 @@ export interface Stop {
   text: string;
   a?: Partial<Setup>;
   b?: Partial<Setup>;
-  view?: Partial<Pick<State, "speed" | "range" | "density">>;
+  view?: Partial<Pick<State, "speed" | "range" | "density" | "chart">>;
   /** The impact to replay. */
   kind?: Kind;
 }
@@ -17,38 +17,36 @@ export interface Stop {
 export const TOUR: readonly Stop[] = [
   {
     title: "A sphere has one coefficient of restitution",
-    text: "A sphere (L = 0) loses the same share of its speed at every impact: ε = ε_n = 0.98, a line. Now move L/R from 0. The body of Fig. 1 of the paper is two overlapping spheres whose centres are L apart.",
+    text: "A sphere (L = 0) loses the same share of its speed at every impact: ε = εₙ = 0.98, a line. Now move L/R from 0. The body of Fig. 1 of the paper is two overlapping spheres whose centres are L apart.",
     a: { elongation: 0, impacts: 100, particles: 100 },
   },
   {
     title: "Fig. 2: ε of a slightly elongated body scatters",
     text: "The dumbbell of the paper, L/R = 0.1: hardly to be told from a sphere by eye. ε depends on how it lies and spins when it touches. Slow impacts scatter most. Colour: how many impacts, on a logarithmic scale.",
-    a: {},
   },
   {
     title: "ε > 1: rotation gives back",
-    text: "At many impacts the body leaves faster than it came. Watch the bars: rotation, charged by earlier impacts, goes into translation. Of the impacts faster than a tenth of the fall the one with the largest ε is replayed.",
-    a: {},
+    text: "At many impacts the body leaves faster than it came. Watch the bars: rotational energy, charged by earlier impacts, goes into translation. The impact with the largest ε, of those faster than a tenth of the fall, is replayed, and drawn.",
+    view: { chart: "drawing" },
     kind: "superelastic",
   },
   {
     title: "Figs. 3 and 5: the reservoir fills",
-    text: "Released from rest, a body has no rotation. The slower it has become, the more of its energy rotates (lattice and mean). The density shows E_rot/E_tot at the marked speed: drag the line.",
-    a: {},
-    view: { density: "fraction", speed: 0.2 },
+    text: "Released from rest, a body has no rotation. The slower it has become, the larger the share of its kinetic energy that rotates (colour and mean). Choose the density of the rotational share, and drag the line to another speed.",
+    view: { density: "fraction", speed: 0.2, chart: "reservoir" },
   },
   {
     title: "Fig. 4: p(ε | v) has a cusp",
-    text: "At a given speed ε has a density with a peak near ε_n and flanks that look straight on a logarithmic scale: nearly a Laplace density. Drag the line to lower speeds: it widens, and below 0.3 m/s lines grow out of it (last stop).",
+    text: "At a given speed ε has a density with a cusp near εₙ and flanks that are straight on a logarithmic scale: nearly a Laplace density, which is fitted to it. Drag the line to lower speeds: it widens, and below 0.3 m/s lines grow out of it (last stop).",
     a: { particles: 1000 },
-    view: { speed: 0.4 },
+    view: { speed: 0.4, chart: "density" },
   },
   {
     title: "Fig. 6: even good glass beads scatter",
     text: "Two set-ups with the same random numbers: L/R = 0.01 (A) and 0.02 (B), glass beads of average make. The standard deviation σ(ε) grows as they slow down. Twice the elongation gives four to five times the scatter: the rotation that a body picks up grows with L, and so does what it does at the next impact.",
     a: { elongation: 0.01 },
     b: { elongation: 0.02 },
-    view: { speed: 0.5 },
+    view: { speed: 0.5, range: "near", chart: "sigma" },
   },
   {
     title: "Fig. 7: ε < 0, in two ways",
@@ -59,22 +57,24 @@ export const TOUR: readonly Stop[] = [
   },
   {
     title: "Fig. 9: the first impact, exactly",
-    text: "Two touching spheres (L = 2R) of soft material, ε_n = 0.4, at their first impact from rest. The line is the density in closed form, Eqs. 17 to 21. Already without any spin, 3 % of the bodies go on downwards.",
+    text: "Two touching spheres (L = 2R) of soft material, εₙ = 0.4, at their first impact from rest. The line is the density in closed form, Eqs. 17 to 21. Already without any spin, 3 % of the bodies go on downwards: one of them is replayed.",
     a: { elongation: 2, normal: 0.4, impacts: 1, particles: 20000 },
-    view: { range: "all" },
+    view: { range: "near", chart: "density" },
+    kind: "downward",
   },
   {
     title: "A surprise: the law creates energy",
-    text: "A: the paper's law, which keeps the tangential velocity of the contact (ε_t = 1). B: no friction. They are not the same: A's plane must push sideways, and kinetic energy can grow. The impact that creates most is replayed. Nothing of the kind happens in B, whose scatter is larger by far.",
+    text: "A: the paper's law, which keeps the tangential velocity of the contact (εₜ = 1). B: no friction. They are not the same: A's plane must push sideways, and kinetic energy can grow. The impact that creates most is replayed. Nothing of the kind happens in B, whose scatter is larger by far.",
     a: { elongation: 0.5 },
     b: { elongation: 0.5, law: "frictionless" },
+    view: { chart: "scatter-b" },
     kind: "gain",
   },
   {
     title: "A surprise: slow bodies fall into step",
     text: "One in thirty slow bodies turns by half a turn in each bounce, or each two, for hundreds of impacts, and climbs while it loses energy: vω = πg/2. They draw the sharp lines of Fig. 2 at low speed. One is replayed.",
     a: { particles: 1000, impacts: 1000 },
-    view: { speed: 0.1, range: "fig2" },
+    view: { speed: 0.1 },
     kind: "locked",
   },
 ];
@@ -89,6 +89,7 @@ export function at(stop: number, state: State): State {
     speed: 0.4,
     range: "fig2",
     density: "restitution",
+    chart: "map",
     particle: 0,
     impact: 0,
     ...view,

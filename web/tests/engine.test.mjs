@@ -162,3 +162,103 @@ test("what the tour says of its runs is so", () => {
   assert.ok(smooth.columns.energy_ratio.every((x) => !(x > 1 + 1e-12)));
   assert.ok(sigma(smooth, 0.38, 0.42) > 1.5 * sigma(paper, 0.38, 0.42));
 });
+
+/** What the page counts of a stop, without its workers. */
+function counted(stop, of = "a", change = {}) {
+  const state = page.at(stop, page.initial());
+  const setup = { ...state[of], ...change };
+  const { columns, counts } = simulate(setup);
+  const particles = page.particlesOf(setup);
+  const run = { setup, columns, counts, particles, reasons: new Float64Array(particles), impacts: counts.reduce((a, b) => a + b) };
+  const statistics = new page.Statistics(run);
+  statistics.add({ first: 0, count: particles });
+  return { state, statistics };
+}
+const area = ({ x, y }) => y.reduce((sum, value, k) => sum + (value ?? 0) * (x[k + 1] - x[k]), 0);
+const beads = { particles: 100 };
+
+test("of a sphere the pictures say that there is nothing to see, and why", () => {
+  const { state, statistics: a } = counted(1);
+  assert.match(page.pictures.density(state, { a }).note, /All \d+ impacts have ε = 0\.98/);
+  assert.match(page.pictures.scatterWidth(state, { a }).note, /σ\(ε\) = 0/);
+  assert.match(page.pictures.reservoir(state, { a }).note, /Nothing rotates/);
+});
+
+test("the bins of p(ε | v) show its cusp, and the Laplace density over it is that of the package", () => {
+  const { state, statistics: a } = counted(5);
+  const { curves } = page.pictures.density(state, { a });
+  assert.deepEqual(curves.map(({ of, kind }) => [of, kind]), [["a", "steps"], ["ink", "line"]]);
+  const all = a.values("restitution", ...a.window(state.speed));
+  // A command line does not hold all of them.
+  const values = all.filter((_, k) => k % 3 === 0);
+  const fit = page.laplace(values);
+  const step = curves[0].x[1] - curves[0].x[0];
+  assert.ok(step < Math.min(fit.above, fit.below) / 5, `bins of ${step}, decay lengths ${fit.above} and ${fit.below}`);
+  assert.ok(area(curves[0]) > 0.998 && area(curves[0]) < 1 + 1e-9);
+  const lines = `import json, sys, numpy as np\nfrom restitution import fit\n` +
+    `found = fit.asymmetric_laplace(np.array(${JSON.stringify([...values])})).parameters\nprint(json.dumps({k: float(v) for k, v in found.items()}))`;
+  const [location, above, below] = Object.values(JSON.parse(native(lines)));
+  for (const [ours, theirs] of [[fit.location, location], [fit.above, above], [fit.below, below]]) {
+    assert.ok(Math.abs(ours / theirs - 1) < 1e-6, `${ours} against ${theirs}`);
+  }
+  const fine = Array.from({ length: 20001 }, (_, k) => fit.location - 1 + k * 1e-4);
+  const whole = fine.reduce((sum, x) => sum + 1e-4 * page.laplaceDensity(fit, x), 0);
+  assert.ok(Math.abs(whole - 1) < 1e-3, `${whole}`);
+});
+
+test("σ(ε) of glass beads is drawn as in Fig. 6, both axes logarithmic, at twenty speeds and more", () => {
+  const { state, statistics: a } = counted(6, "a", beads);
+  const { statistics: b } = counted(6, "b", beads);
+  const { x, y, curves } = page.pictures.scatterWidth(state, { a, b });
+  assert.ok(x.log && y.log && y.low > 0);
+  assert.deepEqual(curves.map(({ label }) => label), ["A: L/R = 0.01", "B: L/R = 0.02"]);
+  for (const curve of curves) {
+    const seen = curve.y.filter((value) => value > 0);
+    assert.ok(seen.length > 20 && seen.every((value) => value > y.low && value < y.high));
+  }
+  // And the map shows how they scatter: more than a few rows of it are filled.
+  const { lattice, y: axis } = page.pictures.scatter(state, a, "a");
+  assert.ok(axis.high - axis.low < 0.05);
+  const rows = new Set([...lattice.counts].flatMap((count, k) => (count ? [k % lattice.other.count] : [])));
+  assert.ok(rows.size > 50, `${rows.size} rows`);
+});
+
+test("the exact density of the first impact lies over that of its impacts, in a colour of its own", () => {
+  const { state, statistics: a } = counted(8);
+  const { curves, y } = page.pictures.density(state, { a });
+  const [seen, exact] = curves;
+  assert.equal(exact.of, "ink");
+  assert.ok(!y.log && Math.abs(area(seen) - 1) < 1e-9);
+  // In each bin of n impacts the count scatters by √n; the ends, where the density is infinite or ends, aside.
+  for (let k = 2; k < seen.y.length - 3; k++) {
+    const inside = [...exact.x].map((x, i) => [x, exact.y[i]]).filter(([x, p]) => x > seen.x[k] && x < seen.x[k + 1] && p !== null);
+    const mean = inside.reduce((sum, [, p]) => sum + p, 0) / inside.length;
+    const error = Math.sqrt(mean / (20000 * (seen.x[k + 1] - seen.x[k])));
+    assert.ok(Math.abs(seen.y[k] - mean) < 5 * error, `bin ${k}: ${seen.y[k]} against ${mean}`);
+  }
+  assert.match(page.pictures.scatterWidth(state, { a }).note, /One impact each/);
+  assert.match(page.pictures.reservoir(state, { a }).note, /Released without spin/);
+});
+
+test("a map is the same however its impacts arrive", () => {
+  const { state, statistics: whole } = counted(2, "a", { particles: 40 });
+  const { run } = whole;
+  const parts = new page.Statistics({ ...run, counts: new Float64Array(40) });
+  page.pictures.scatter(state, parts, "a");
+  for (const first of [30, 10, 0, 20]) {
+    parts.run.counts.set(run.counts.subarray(first, first + 10), first);
+    parts.add({ first, count: 10 });
+  }
+  const [one, other] = [whole, parts].map((s) => page.pictures.scatter(state, s, "a").lattice);
+  assert.deepEqual(one.counts, other.counts);
+  assert.equal(one.most, Math.max(...one.counts));
+  assert.equal(one.most, other.most);
+});
+
+test("no two ticks of an axis read alike, and some have a number", () => {
+  for (const [low, high, log] of [[0, 1], [0, 1e-3], [0.979, 0.981], [-3, 4], [0.4, 1.6], [0, 2e-5], [1e-5, 2e-2, true], [0.03, 1.16, true], [0.2, 0.9, true], [1e-9, 1e3, true]]) {
+    const texts = page.ticks({ label: "", low, high, log }, 6).map(({ text }) => text).filter(Boolean);
+    assert.equal(new Set(texts).size, texts.length, `${low} to ${high}: ${texts}`);
+    assert.ok(texts.length >= 2 && texts.length <= 12, `${low} to ${high}: ${texts}`);
+  }
+});

@@ -1,7 +1,7 @@
 // The page in a real browser, opened from the disk: load, change, drag, replay, tour, links, downloads; nothing in the console, nothing
 // from the network, no violation that axe-core can see.
 import assert from "node:assert/strict";
-import { mkdirSync, readFileSync } from "node:fs";
+import { copyFileSync, mkdirSync, readFileSync } from "node:fs";
 import { createRequire } from "node:module";
 import { fileURLToPath } from "node:url";
 import { after, before, test } from "node:test";
@@ -60,7 +60,7 @@ const set = (page, id, value) =>
 test("the page is one file of less than 1 MB compressed", () => {
   const content = readFileSync(PAGE);
   assert.ok(gzipSync(content).length < 1_000_000);
-  assert.doesNotMatch(content.toString().replace(/<pre id="licence-text"[\s\S]*?<\/pre>/, ""), /(src|href)="https?:/);
+  assert.doesNotMatch(content.toString().replace(/<pre id="licence-text"[\s\S]*?<\/pre>/, ""), /(src|href)="https?:(?!\/\/doi\.org)/);
 });
 
 test("the digests on the page are those of the engine, for two set-ups side by side", async () => {
@@ -108,7 +108,7 @@ test("what cannot be is said in words, and the next slider heals it", async () =
 
 test("the line of the speed is dragged, and p(ε | v) follows; so does the slider, by keys", async () => {
   const { page, close } = await open("particles=50&impacts=200");
-  const plot = await page.locator("#scatter-a .u-over").boundingBox();
+  const plot = await page.locator("#scatter-a .plot").boundingBox();
   // v = 0.4 of [0, 1.1 × fall]
   const x = plot.x + (plot.width * 0.4) / (1.1 * Math.sqrt(2 * 9.81 * 0.057));
   await page.mouse.move(x, plot.y + 10);
@@ -142,7 +142,7 @@ test("a picked impact is replayed, and found again by its link", async () => {
   await again.page.waitForFunction(() => /^Impact/.test(document.querySelector("#impact caption").textContent));
   assert.equal(await again.page.locator("#impact").innerText(), table);
   await again.close();
-  const plot = await page.locator("#scatter-a .u-over").boundingBox();
+  const plot = await page.locator("#scatter-a .plot").boundingBox();
   await page.mouse.click(plot.x + plot.width * 0.12, plot.y + plot.height * 0.5);
   await page.waitForFunction((old) => document.querySelector("#impact").innerText !== old, table);
   await close();
@@ -160,7 +160,7 @@ test("the bounce plays, stops, and is stepped through by keys", async () => {
   await page.locator("#later").press("Enter");
   await page.waitForFunction((n) => Number(/\d+/.exec(document.querySelector("#impact caption").textContent)[0]) === n, start + 1);
   // The scene is no empty canvas.
-  const colours = await page.locator("#stage canvas").evaluate((canvas) => {
+  const colours = await page.locator("#stage canvas").first().evaluate((canvas) => {
     const copy = document.createElement("canvas");
     [copy.width, copy.height] = [canvas.width, canvas.height];
     copy.getContext("2d").drawImage(canvas, 0, 0);
@@ -183,7 +183,7 @@ test("files: PNG, SVG, CSV, TOML, Python", async () => {
     const download = await waiting;
     return { name: download.suggestedFilename(), content: readFileSync(await download.path()) };
   };
-  for (const what of ["stage", "scatter-a", "density", "sigma", "reservoir"]) {
+  for (const what of ["stage", "drawing", "scatter-a", "density", "sigma", "reservoir"]) {
     await page.locator("#what").selectOption(what);
     const png = await file("png");
     assert.equal(png.content.subarray(1, 4).toString(), "PNG", what);
@@ -208,7 +208,7 @@ test("the tour has ten stops, by keys, and each is a link", async () => {
   const { page, close } = await open("");
   await page.locator("#tour-start").press("Enter");
   for (let stop = 1; stop <= 10; stop++) {
-    await page.waitForFunction((n) => document.getElementById("tour-number").textContent === `Stop ${n} of 10`, stop);
+    await page.waitForFunction((n) => document.getElementById("tour-number").textContent === `Stop ${n} of 10.`, stop);
     assert.equal(await page.evaluate(() => document.activeElement.id), "tour-title");
     assert.match(await hashOf(page), new RegExp(`stop=${stop}$`));
     if (stop === 3) assert.equal(await page.locator("#kind").inputValue(), "superelastic"); // where "Next one" goes on
@@ -229,6 +229,173 @@ test("a redraw takes less than 100 ms", async () => {
   }
   times.sort((a, b) => a - b);
   assert.ok(times[2] < 100, `${times} ms`);
+  await close();
+});
+
+const LAPTOP = { width: 1280, height: 800 };
+const PHONE = { width: 390, height: 844 };
+const box = (page, selector) => page.locator(selector).boundingBox();
+
+test("text, scene and the chart of every stop are on one screen, on a laptop and on a phone", async () => {
+  for (const window of [LAPTOP, PHONE]) {
+    const { page, close } = await open(`${SMALL}&stop=1`, window);
+    for (let stop = 1; stop <= library.TOUR.length; stop++) {
+      const { chart, b } = library.at(stop, library.initial());
+      await page.evaluate((hash) => (location.hash = hash), `${SMALL}&stop=${stop}&chart=${chart}${b ? "&b=1&b.particles=20&b.impacts=100" : ""}`);
+      await page.waitForFunction((n) => document.getElementById("tour-number").textContent === `Stop ${n} of 10.`, stop);
+      const foot = window === PHONE ? (await box(page, "#set-up")).y : window.height;
+      for (const part of ["#tour-text", "#stage", "#energies", chart === "map" ? "#map .chart" : `#slot [data-chart="${chart}"] .chart`]) {
+        const { x, y, width, height } = await box(page, part);
+        const where = `${part} at stop ${stop}, ${window.width} px: ${x}, ${y}, ${width}, ${height}`;
+        assert.ok(x >= 0 && y >= 0 && x + width <= window.width && y + height <= foot + 1, where);
+        assert.ok(height > (part === "#stage" ? 170 : 40), where);
+      }
+    }
+    // Slider and picture are in sight together.
+    const slider = await box(page, "#elongation");
+    assert.ok(slider.y > 0 && slider.y + slider.height <= window.height);
+    const map = await box(page, "#scatter-a");
+    assert.ok(map.width >= window.width / 3, `${map.width}`);
+    await close();
+  }
+});
+
+test("the replay of a stop ends at its impact and holds, and leaves no words behind", async () => {
+  const { page, close } = await open("particles=50&impacts=100&stop=3&chart=drawing", { motion: "no-preference" });
+  await page.waitForFunction(() => /particle/.test(document.getElementById("found").textContent));
+  const [, particle, impact] = /particle (\d+), impact (\d+)/.exec(await page.locator("#found").textContent());
+  await page.waitForFunction(() => document.getElementById("play").textContent === "Play");
+  const caption = () => page.locator("#impact caption").textContent();
+  assert.equal(await caption(), `Impact ${impact} of particle ${particle}`);
+  await page.waitForTimeout(1000);
+  assert.equal(await caption(), `Impact ${impact} of particle ${particle}`);
+  assert.match(await hashOf(page), new RegExp(`impact=${impact - 1}(&|$)`));
+  await page.evaluate((hash) => (location.hash = hash), `${SMALL}&stop=6`);
+  await page.waitForFunction(() => document.getElementById("found").textContent === "");
+  await close();
+});
+
+/** Colours of the scene without its writing, row by row. */
+const pixels = (page) =>
+  page.locator("#stage canvas").first().evaluate((canvas) => {
+    const copy = document.createElement("canvas");
+    [copy.width, copy.height] = [canvas.width, canvas.height];
+    copy.getContext("2d").drawImage(canvas, 0, 0);
+    const { data, width, height } = copy.getContext("2d").getImageData(0, 0, copy.width, copy.height);
+    return { width, height, data: [...data] };
+  });
+
+test("the body fills a third of the scene; in the dark it is bright and the ground is not", async () => {
+  const { page, close } = await open(`${SMALL}&impact=4`, LAPTOP);
+  await page.waitForFunction(() => /^Impact 5/.test(document.querySelector("#impact caption").textContent));
+  await page.waitForTimeout(300);
+  const light = await pixels(page);
+  // Blue, and much of it in a row: the body, not its trace.
+  const rows = Array.from({ length: light.height }, (_, y) => {
+    let blue = 0;
+    for (let x = 0; x < light.width; x++) {
+      const k = 4 * (y * light.width + x);
+      if (light.data[k + 2] - light.data[k] > 40 && light.data[k + 2] > light.data[k + 1] + 15) blue++;
+    }
+    return blue > 0.03 * light.width;
+  });
+  const share = rows.filter(Boolean).length / light.height;
+  assert.ok(share > 0.27 && share < 0.4, `${share}`);
+  await page.locator("#theme").click();
+  await page.waitForTimeout(300);
+  const dark = await pixels(page);
+  const at = ({ data, width, height }, x, y) => {
+    const k = 4 * (Math.floor(y * height) * width + Math.floor(x * width));
+    return data.slice(k, k + 3).reduce((a, b) => a + b);
+  };
+  const middle = rows.indexOf(true) / light.height + share / 2;
+  assert.ok(at(dark, 0.46, middle) > at(light, 0.46, middle), "the body");
+  assert.ok(at(dark, 0.1, 0.95) < 200 && at(light, 0.1, 0.95) > 500, "the ground");
+  await close();
+});
+
+test("the wheel scrolls the page, and the scene only where that was chosen", async () => {
+  const { page, close } = await open(SMALL, LAPTOP);
+  const { x, y } = await box(page, "#stage");
+  await page.mouse.move(x + 100, y + 150);
+  await page.mouse.wheel(0, 200);
+  await page.waitForFunction(() => scrollY > 100);
+  await page.evaluate(() => scrollTo(0, 0));
+  await page.mouse.click(x + 100, y + 150);
+  const before = await pixels(page);
+  await page.mouse.wheel(0, 200);
+  await page.waitForTimeout(500);
+  assert.equal(await page.evaluate(() => scrollY), 0);
+  assert.notDeepEqual((await pixels(page)).data, before.data);
+  await close();
+});
+
+test("presenting leaves scene, bars and map, in large type, and goes through the tour by the keys of a presenter", async () => {
+  const { page, close } = await open(`${SMALL}&present=1`, LAPTOP);
+  for (const part of ["#stage", "#energies", "#scatter-a"]) assert.ok(await page.locator(part).isVisible(), part);
+  for (const part of ["#set-up", "#others", "#rest", "#search"]) assert.equal(await page.locator(part).isVisible(), false, part);
+  assert.ok(parseFloat(await page.locator("#energies").evaluate((x) => getComputedStyle(x.firstChild).fontSize)) >= 18);
+  const map = await box(page, "#scatter-a");
+  assert.ok(map.y + map.height <= LAPTOP.height && map.height > 500);
+  await page.keyboard.press("PageDown");
+  await page.waitForFunction(() => document.getElementById("tour-number").textContent === "Stop 1 of 10.");
+  assert.equal(await hashOf(page), "stop=1&present=1");
+  await done(page);
+  await page.keyboard.press("Escape");
+  assert.ok(await page.locator("#set-up").isVisible());
+  assert.equal(await hashOf(page), "stop=1");
+  await close();
+});
+
+test("the replay of an impact is recorded as a film", async () => {
+  const { page, close } = await open(`${SMALL}&impact=2`, PHONE);
+  const waiting = page.waitForEvent("download");
+  await page.locator("#record").click();
+  const download = await waiting;
+  assert.equal(download.suggestedFilename(), "particle-0-impact-3.webm");
+  const content = readFileSync(await download.path());
+  assert.equal(content.subarray(0, 4).toString("hex"), "1a45dfa3", "Matroska");
+  assert.ok(content.length > 20_000, `${content.length} bytes`);
+  await close();
+});
+
+test("the page saves itself, and what is saved is the page", async () => {
+  const { page, close } = await open(SMALL);
+  await set(page, "elongation", 0.3);
+  await done(page);
+  const waiting = page.waitForEvent("download");
+  await page.locator("#save-page").click();
+  const saved = await (await waiting).path();
+  const again = await browser.newPage();
+  const file = `${SHOTS}saved.html`;
+  copyFileSync(saved, file);
+  await again.goto(`file://${file}#${await hashOf(page)}`);
+  await done(again);
+  assert.deepEqual(await shown(again), await shown(page));
+  await again.close();
+  await close();
+});
+
+test("the link of a page on a disk is one that others can use: the name of the file and the set-up", async () => {
+  const { page, close } = await open(`${SMALL}&elongation=0.2`);
+  await page.evaluate(() => {
+    window.copied = [];
+    Object.defineProperty(navigator, "clipboard", { value: { writeText: async (text) => window.copied.push(text) } });
+  });
+  await page.locator("#share").click();
+  const [copied] = await page.evaluate(() => window.copied);
+  assert.equal(copied, `explorer.html#${await hashOf(page)}`);
+  await close();
+});
+
+test("on paper nothing is cut", async () => {
+  const { page, close } = await open(SMALL);
+  await page.locator("summary", { hasText: "The same data in Python" }).click();
+  await page.emulateMedia({ media: "print" });
+  const cut = await page.evaluate(() =>
+    [...document.querySelectorAll("pre, #summary, p:not(.spoken)")].filter((x) => x.scrollWidth > x.clientWidth + 1 || x.scrollHeight > x.clientHeight + 1).map((x) => x.id),
+  );
+  assert.deepEqual(cut, []);
   await close();
 });
 

@@ -1,200 +1,123 @@
-/** A chart on the screen: uPlot draws axes and curves, and the lattice below them. */
+/** A chart on the screen: as large as its place on the page, with a line to drag and impacts to pick. */
 
-import uPlot from "uplot";
-import { population, theme } from "./colours";
 import type { Lattice } from "../statistics";
+import { PRINT, theme } from "./colours";
+import { back, draw, frame, grid, sites, type Frame } from "./draw";
+import { CanvasPen, SvgPen } from "./pen";
 import type { Picture } from "./picture";
 
 export interface Touch {
   /** The vertical line was dragged to this x. */
   drag?: (x: number) => void;
-  /** A place was picked. */
+  /** A place was picked; how much x and y a pixel is. */
   pick?: (x: number, y: number, perPixel: [number, number]) => void;
 }
 
-const HEIGHT = 270;
+/** Of a file, in pixels. */
+const FILE = { width: 640, height: 420, font: 13 };
+/** How far from the line a press still takes hold of it, in pixels. */
+const NEAR = 9;
 
 export class Chart {
   picture: Picture | undefined;
-  private plot: uPlot | undefined;
-  private shape = "";
-  /** The drawing of the lattice, and what it is of. */
-  private sites: { canvas: HTMLCanvasElement; of: Lattice; seen: number } | undefined;
+  readonly canvas = document.createElement("canvas");
+  /** What is inside the axes: it takes the presses. */
+  private readonly plot = document.createElement("div");
+  private at: Frame | undefined;
+  /** The drawing of the population, which is long, and what it is of. */
+  private population: { canvas: HTMLCanvasElement; of: Lattice; seen: number; box: string } | undefined;
 
   constructor(readonly host: HTMLElement, private readonly touch: Touch = {}) {
-    new ResizeObserver(() => this.resize()).observe(host);
+    this.plot.className = "plot";
+    host.append(this.canvas, this.plot);
+    this.listen();
+    new ResizeObserver(() => this.draw()).observe(host);
   }
 
   show(picture: Picture): void {
     this.picture = picture;
-    const shape = JSON.stringify([picture.x.label, picture.y.label, picture.y.log, picture.curves.map((c) => [c.label, c.of, c.kind])]);
-    const data = [picture.at, ...picture.curves.map((c) => c.y)] as uPlot.AlignedData;
-    if (!this.plot || shape !== this.shape) {
-      this.plot?.destroy();
-      this.plot = new uPlot(this.options(picture), data, this.host);
-      this.shape = shape;
-      this.listen(this.plot);
-    } else {
-      this.plot.setData(data, false);
-      this.scale();
-    }
+    this.draw();
   }
 
-  /** Draws again, in the colours of the theme in force. */
-  restyle(): void {
-    this.shape = "";
-    if (this.picture) this.show(this.picture);
+  /** The picture as a file for print: on white, whatever the theme on the screen. */
+  svg(): string {
+    const { width, height, font } = FILE;
+    const pen = new SvgPen();
+    const picture = this.picture!;
+    const at = frame(picture, width, height, font);
+    grid(pen, picture, at, PRINT, font);
+    if (picture.lattice) sites(pen, picture, at);
+    draw(pen, picture, at, PRINT, font);
+    return pen.file(picture.title, width, height);
   }
 
-  /** Moves the vertical line without new data. */
-  mark(x: number): void {
-    if (this.picture) this.picture.mark = x;
-    this.plot?.redraw(false);
+  /** Draws again: another size, other colours. */
+  draw(): void {
+    const { clientWidth: width, clientHeight: height } = this.host;
+    if (!this.picture || !width || !height) return;
+    const { canvas, picture, plot } = this;
+    const scale = devicePixelRatio;
+    [canvas.width, canvas.height] = [Math.round(width * scale), Math.round(height * scale)];
+    const font = 0.8 * parseFloat(getComputedStyle(this.host).fontSize);
+    this.at = frame(picture, width, height, font);
+    const { box } = this.at;
+    for (const side of ["left", "top", "width", "height"] as const) plot.style[side] = `${box[side]}px`;
+    const context = canvas.getContext("2d")!;
+    const [pen, colours] = [new CanvasPen(context), theme()];
+    context.scale(scale, scale);
+    grid(pen, picture, this.at, colours, font);
+    if (picture.lattice) context.drawImage(this.populated(picture.lattice, this.at, scale), 0, 0, width, height);
+    draw(pen, picture, this.at, colours, font);
   }
 
-  get canvas(): HTMLCanvasElement | undefined {
-    return this.plot?.ctx.canvas;
-  }
-
-  private scale(): void {
-    const { x, y } = this.picture!;
-    this.plot!.batch(() => {
-      this.plot!.setScale("x", { min: x.low, max: x.high });
-      this.plot!.setScale("y", { min: y.low, max: y.high });
-    });
-  }
-
-  private resize(): void {
-    const width = this.host.clientWidth;
-    if (this.plot && width && width !== this.plot.width) this.plot.setSize({ width, height: HEIGHT });
-  }
-
-  private options(picture: Picture): uPlot.Options {
-    const colours = theme();
-    const axis = (label: string): uPlot.Axis => ({
-      label,
-      stroke: colours.ink,
-      grid: { stroke: colours.line, width: 1 },
-      ticks: { stroke: colours.line, width: 1 },
-      font: "12px system-ui, sans-serif",
-      labelFont: "13px system-ui, sans-serif",
-      labelSize: 22,
-    });
-    const y = axis(picture.y.label);
-    y.size = 52;
-    return {
-      width: this.host.clientWidth || 400,
-      height: HEIGHT,
-      legend: { show: false },
-      cursor: { drag: { x: false, y: false }, points: { show: false } },
-      scales: {
-        x: { time: false, range: () => [this.picture!.x.low, this.picture!.x.high] },
-        y: { distr: picture.y.log ? 3 : 1, range: () => [this.picture!.y.low, this.picture!.y.high] },
-      },
-      axes: [axis(picture.x.label), y],
-      series: [
-        {},
-        ...picture.curves.map((curve): uPlot.Series => ({
-          label: curve.label,
-          stroke: colours[curve.of],
-          width: 1.6,
-          ...(curve.kind === "steps" ? { paths: uPlot.paths.stepped!({ align: 1 }) } : {}),
-          ...(curve.kind === "dashes" ? { dash: [5, 4] } : {}),
-          points: { show: curve.kind === "points", size: 5, fill: colours[curve.of] },
-          spanGaps: false,
-        })),
-      ],
-      hooks: {
-        drawClear: [(plot) => this.drawSites(plot)],
-        draw: [(plot) => this.drawMarks(plot)],
-      },
-    };
-  }
-
-  /** The lattice as an image, one pixel a site. */
-  private drawSites(plot: uPlot): void {
-    const lattice = this.picture?.lattice;
-    if (!lattice) return;
-    const { v, other, counts } = lattice;
-    if (this.sites?.of !== lattice || this.sites.seen !== lattice.seen) {
-      const canvas = document.createElement("canvas");
-      [canvas.width, canvas.height] = [v.count, other.count];
-      const context = canvas.getContext("2d")!;
-      const image = context.createImageData(v.count, other.count);
-      let most = 1;
-      for (const count of counts) if (count > most) most = count;
-      for (let row = 0; row < v.count; row++) {
-        for (let k = 0; k < other.count; k++) {
-          const count = counts[row * other.count + k];
-          if (!count) continue;
-          const [r, g, b] = population(count, most);
-          image.data.set([r, g, b, 255], 4 * ((other.count - 1 - k) * v.count + row));
-        }
-      }
-      context.putImageData(image, 0, 0);
-      this.sites = { canvas, of: lattice, seen: lattice.seen };
-    }
-    const { ctx, bbox } = plot;
-    ctx.save();
-    ctx.beginPath();
-    ctx.rect(bbox.left, bbox.top, bbox.width, bbox.height);
-    ctx.clip();
-    ctx.imageSmoothingEnabled = false;
-    const [left, right] = [v.low, v.high].map((x) => plot.valToPos(x, "x", true));
-    const [bottom, top] = [other.low, other.high].map((y) => plot.valToPos(y, "y", true));
-    ctx.drawImage(this.sites.canvas, left, top, right - left, bottom - top);
-    ctx.restore();
-  }
-
-  private drawMarks(plot: uPlot): void {
-    const { mark, spot } = this.picture!;
-    const { ctx, bbox } = plot;
-    const colours = theme();
-    ctx.save();
-    ctx.beginPath();
-    ctx.rect(bbox.left, bbox.top, bbox.width, bbox.height);
-    ctx.clip();
-    if (mark !== undefined) {
-      const x = plot.valToPos(mark, "x", true);
-      ctx.strokeStyle = colours.ink;
-      ctx.lineWidth = 1.5 * devicePixelRatio;
-      ctx.beginPath();
-      ctx.moveTo(x, bbox.top);
-      ctx.lineTo(x, bbox.top + bbox.height);
-      ctx.stroke();
-    }
-    if (spot) {
-      ctx.strokeStyle = colours.b;
-      ctx.lineWidth = 2.5 * devicePixelRatio;
-      ctx.beginPath();
-      ctx.arc(plot.valToPos(spot[0], "x", true), plot.valToPos(spot[1], "y", true), 7 * devicePixelRatio, 0, 7);
-      ctx.stroke();
-    }
-    ctx.restore();
+  private populated(lattice: Lattice, at: Frame, scale: number): HTMLCanvasElement {
+    const box = JSON.stringify([at.box, scale]);
+    const old = this.population;
+    if (old && old.of === lattice && old.seen === lattice.seen && old.box === box) return old.canvas;
+    const canvas = document.createElement("canvas");
+    [canvas.width, canvas.height] = [this.canvas.width, this.canvas.height];
+    const context = canvas.getContext("2d")!;
+    context.scale(scale, scale);
+    sites(new CanvasPen(context), this.picture!, at);
+    this.population = { canvas, of: lattice, seen: lattice.seen, box };
+    return canvas;
   }
 
   /** A press near the line drags it; any other one picks. */
-  private listen(plot: uPlot): void {
+  private listen(): void {
+    const { plot } = this;
     const { drag, pick } = this.touch;
-    const over = plot.over;
+    if (!drag) return;
+    const x = (event: PointerEvent) => back(this.picture!.x, event.offsetX / plot.clientWidth);
     let dragging = false;
-    over.style.touchAction = drag ? "pan-y" : "";
-    over.addEventListener("pointerdown", (event) => {
-      const mark = this.picture?.mark;
-      const off = mark === undefined ? Infinity : Math.abs(plot.valToPos(mark, "x") - event.offsetX);
-      dragging = drag !== undefined && (off < 9 || pick === undefined);
-      if (dragging) over.setPointerCapture(event.pointerId);
-      else pick?.(plot.posToVal(event.offsetX, "x"), plot.posToVal(event.offsetY, "y"), this.perPixel(plot));
-      if (dragging) drag!(plot.posToVal(event.offsetX, "x"));
+    plot.classList.add("touched");
+    plot.addEventListener("pointerdown", (event) => {
+      const { mark, y } = this.picture!;
+      const off = mark === undefined ? Infinity : Math.abs(this.at!.x(mark) - this.at!.box.left - event.offsetX);
+      dragging = off < NEAR || pick === undefined;
+      if (dragging) {
+        plot.setPointerCapture(event.pointerId);
+        drag(x(event));
+      } else {
+        const { low, high } = this.picture!.x;
+        const perPixel: [number, number] = [(high - low) / plot.clientWidth, (y.high - y.low) / plot.clientHeight];
+        pick?.(x(event), back(y, 1 - event.offsetY / plot.clientHeight), perPixel);
+      }
     });
-    over.addEventListener("pointermove", (event) => {
-      if (dragging) drag!(plot.posToVal(event.offsetX, "x"));
+    plot.addEventListener("pointermove", (event) => {
+      if (dragging) drag(x(event));
     });
-    for (const end of ["pointerup", "pointercancel"]) over.addEventListener(end, () => (dragging = false));
+    for (const end of ["pointerup", "pointercancel"]) plot.addEventListener(end, () => (dragging = false));
   }
+}
 
-  private perPixel(plot: uPlot): [number, number] {
-    const across = Math.abs(plot.posToVal(1, "x") - plot.posToVal(0, "x"));
-    return [across, Math.abs(plot.posToVal(1, "y") - plot.posToVal(0, "y"))];
-  }
+/** A canvas on a ground of this colour, for a PNG file. */
+export function onGround(canvas: HTMLCanvasElement, ground: string): HTMLCanvasElement {
+  const copy = document.createElement("canvas");
+  [copy.width, copy.height] = [canvas.width, canvas.height];
+  const context = copy.getContext("2d")!;
+  context.fillStyle = ground;
+  context.fillRect(0, 0, copy.width, copy.height);
+  context.drawImage(canvas, 0, 0);
+  return copy;
 }

@@ -1,30 +1,40 @@
-/** Colours: a perceptual scale for populations, and two that everybody can tell apart for set-ups A and B. */
+/** Colours: a perceptual scale for populations, and those of the theme. */
 
 /** Viridis at eight places; between, linear. */
 const VIRIDIS = ["#440154", "#46327e", "#365c8d", "#277f8e", "#1fa187", "#4ac16d", "#a0da39", "#fde725"];
+const STOPS = VIRIDIS.map((hex) => [1, 3, 5].map((i) => parseInt(hex.slice(i, i + 2), 16)));
 
-const rgb = (hex: string) => [1, 3, 5].map((i) => parseInt(hex.slice(i, i + 2), 16));
-const STOPS = VIRIDIS.map(rgb);
-
-export function viridis(x: number): [number, number, number] {
-  const place = Math.min(Math.max(x, 0), 1) * (STOPS.length - 1);
+/** The colour at a share of the scale, in [0, 1]. */
+export function viridis(share: number): string {
+  const place = Math.min(Math.max(share, 0), 1) * (STOPS.length - 1);
   const k = Math.min(Math.floor(place), STOPS.length - 2);
   const mix = (c: number) => Math.round(STOPS[k][c] + (place - k) * (STOPS[k + 1][c] - STOPS[k][c]));
-  return [mix(0), mix(1), mix(2)];
+  return `rgb(${mix(0)},${mix(1)},${mix(2)})`;
 }
 
-/** Colour of a site: the logarithm of its population, for the largest one is hundreds of times the usual one. */
-export const population = (count: number, most: number): [number, number, number] =>
-  viridis(Math.log1p(count) / Math.log1p(most));
+/** Share of the scale for a population: its logarithm, for the largest is hundreds of times the usual one. */
+export const population = (count: number, most: number): number => Math.log1p(count) / Math.log1p(most);
 
-const style = (name: string) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
+/** Ink, paper; set-ups A and B, which everybody can tell apart; velocity, angular velocity, impulse. */
+const NAMES = ["ink", "soft", "line", "paper", "ground", "a", "b", "velocity", "spin", "impulse"] as const;
+export type Palette = Record<(typeof NAMES)[number], string>;
 
 /** The colours of the theme in force. */
-export const theme = () => ({
-  ink: style("--ink"),
-  soft: style("--soft"),
-  line: style("--line"),
-  paper: style("--paper"),
-  a: style("--a"),
-  b: style("--b"),
-});
+export function theme(): Palette {
+  const style = getComputedStyle(document.documentElement);
+  return Object.fromEntries(NAMES.map((name) => [name, style.getPropertyValue(`--${name}`).trim()])) as Palette;
+}
+
+/** Of files, which are on white. */
+export const PRINT: Palette = {
+  ink: "#000000",
+  soft: "#444444",
+  line: "#dddddd",
+  paper: "#ffffff",
+  ground: "#d9dee4",
+  a: "#0b5394",
+  b: "#b45309",
+  velocity: "#0a7d55",
+  spin: "#8b3aa8",
+  impulse: "#000000",
+};

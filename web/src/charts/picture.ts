@@ -1,27 +1,38 @@
-/** What a chart shows, apart from how it is drawn: on the screen by uPlot, in a file as SVG. */
+/** What a chart shows, apart from how it is drawn. */
 
 import type { Lattice } from "../statistics";
 
+export interface Axis {
+  label: string;
+  low: number;
+  high: number;
+  log?: boolean;
+}
+
 export interface Curve {
   label: string;
-  /** Which set-up, and so which colour. */
-  of: "a" | "b";
+  /** Of set-up A or B, or of something that is computed otherwise. */
+  of: "a" | "b" | "ink";
+  /** Steps of bins, whose edges are one more than their values, a line, or dashes. */
+  kind: "steps" | "line" | "dashes";
+  x: ArrayLike<number>;
+  /** Where there is nothing, the line is broken. */
   y: (number | null)[];
-  /** Steps of bins, a line, or points. */
-  kind: "steps" | "line" | "points" | "dashes";
 }
 
 export interface Picture {
   title: string;
-  x: { label: string; low: number; high: number };
-  y: { label: string; low: number; high: number; log?: boolean };
-  /** Shared by all curves. */
-  at: number[];
+  x: Axis;
+  y: Axis;
   curves: Curve[];
-  /** Population, drawn below the curves. */
+  /** Population, drawn below the curves, with a colour bar. */
   lattice?: Lattice;
+  /** Horizontal lines with a name. */
+  levels?: { y: number; label: string }[];
   /** A vertical line that can be dragged, or marks a value. */
   mark?: number;
   /** A point to look at. */
   spot?: [number, number];
+  /** Why there is nothing to draw. */
+  note?: string;
 }

@@ -1,9 +1,10 @@
 /** The pictures of the page, from what was counted. */
 
 import { firstImpact } from "../first-impact";
-import { Bins, type Lattice, type Statistics } from "../statistics";
-import { fallSpeed } from "../setup";
+import { density as laplaceDensity, laplace } from "../laplace";
 import type { State } from "../link";
+import { fallSpeed } from "../setup";
+import { Bins, nice, quantile, type Statistics } from "../statistics";
 import type { Curve, Picture } from "./picture";
 
 export interface Both {
@@ -12,154 +13,188 @@ export interface Both {
 }
 
 const SPEED = "impact velocity v (m/s)";
-const FRACTION = "E_rot/E_tot before the impact";
-/** Bins of v in σ(v) and the mean of E_rot/E_tot: ten of the lattice's. */
-const COARSE = 10;
+const SHARE = "rotational share of the kinetic energy";
+/** On upright axes, which are short. */
+const SHARE_UP = "rotational share";
+const EPSILON_UP = "restitution ε";
+const EPSILON = "coefficient of restitution ε";
+/** Sites of the maps, about: two or three pixels each. */
+const SITES = { v: 220, other: 140 };
+/** Bins of v in σ(v) and the mean rotational share. */
+const PARTS = 36;
 /** Fewer impacts than this in a bin: no moment of them is drawn. */
 const LEAST = 20;
+/** Rounding scatters ε and the rotational share by less than this. */
+export const EXACT = 1e-9;
 
 const each = <T>({ a, b }: Both, make: (s: Statistics, of: "a" | "b") => T): T[] =>
   b ? [make(a, "a"), make(b, "b")] : [make(a, "a")];
-const label = (of: "a" | "b") => `set-up ${of.toUpperCase()}`;
+const label = ({ run }: Statistics, of: "a" | "b", both: Both) => {
+  const x = run.setup.elongation;
+  return both.b && both.b.run.setup.elongation !== both.a.run.setup.elongation ? `${of.toUpperCase()}: L/R = ${x}` : `set-up ${of.toUpperCase()}`;
+};
 
 /** The range of v and ε that is asked for; the paper's numbers, scaled with the speed of the fall. */
-export function rangeOf(state: State, s: Statistics): { v: [number, number]; epsilon: [number, number] } {
+function rangeOf(state: State, s: Statistics): { v: [number, number]; epsilon: [number, number] } {
   const fall = fallSpeed(s.run.setup);
   if (state.range === "fig7") return { v: [-0.024 * fall, 0.1 * fall], epsilon: [-3, 4] };
   if (state.range === "all") return { v: [s.v.low, s.v.high], epsilon: [-3, 4] };
-  return { v: [0, Math.min(1.1 * fall, s.v.high)], epsilon: [0.4, 1.6] };
+  const v: [number, number] = [0, Math.min(1.1 * fall, s.v.high)];
+  if (state.range === "fig2") return { v, epsilon: [0.4, 1.6] };
+  // What one impact each has is in a narrow window of v.
+  return { v: s.run.setup.impacts === 1 ? roomy(s.range("impact_velocity"), 0.02 * fall) : v, epsilon: roomy(s.range("restitution"), 1e-3) };
 }
+
+/** A range with some room, to round numbers, so that it stays as impacts arrive. */
+function roomy([low, high]: [number, number], least: number): [number, number] {
+  const width = Math.max(high - low, least);
+  const step = nice(width / 8);
+  return [Math.floor((low - 0.1 * width) / step) * step, Math.ceil((high + 0.1 * width) / step) * step];
+}
+
+const cover = ([low, high]: [number, number], many: number) => Bins.cover(low, high, many);
 
 /** Figs. 2 and 7: ε against v. */
 export function scatter(state: State, s: Statistics, of: "a" | "b"): Picture {
   const { v, epsilon } = rangeOf(state, s);
   const { columns, setup } = s.run;
   const place = state.particle * setup.impacts + state.impact;
+  const levels = [{ y: 1, label: "ε = 1" }, { y: setup.normal, label: "εₙ" }];
   return {
-    title: `Restitution against impact velocity, ${label(of)}`,
+    title: `Restitution against impact velocity, set-up ${of.toUpperCase()}`,
     x: { label: SPEED, low: v[0], high: v[1] },
-    y: { label: "coefficient of restitution ε", low: epsilon[0], high: epsilon[1] },
-    at: [v[0], v[1]],
+    y: { label: EPSILON_UP, low: epsilon[0], high: epsilon[1] },
     curves: [],
-    lattice: s.restitution,
-    mark: state.speed,
+    lattice: s.lattice("restitution", cover(v, SITES.v), cover(epsilon, SITES.other)),
+    levels: setup.normal === 1 ? levels.slice(0, 1) : levels,
+    ...(setup.impacts > 1 ? { mark: state.speed } : {}),
     ...(of === "a" && Number.isFinite(columns.restitution[place])
       ? { spot: [columns.impact_velocity[place], columns.restitution[place]] as [number, number] }
       : {}),
   };
 }
 
-/** Fig. 3: E_rot/E_tot against v, with its mean. */
+/** Fig. 3: the rotational share against v, with its mean. */
 export function reservoir(state: State, both: Both): Picture {
   const { v } = rangeOf(state, both.a);
-  const { at, curves } = byVelocity(both, (moments) => moments.share, "line");
-  return {
-    title: "Rotational over total kinetic energy, set-up A; lines: means",
-    x: { label: SPEED, low: v[0], high: v[1] },
-    y: { label: FRACTION, low: 0, high: Math.max(...each(both, (s) => top(s.fraction))) },
-    at,
-    curves,
-    lattice: both.a.fraction,
-    mark: state.speed,
-  };
-}
-
-/** Fig. 6: σ(ε) against v. */
-export function scatterWidth(state: State, both: Both): Picture {
-  const { v } = rangeOf({ ...state, range: state.range === "fig7" ? "fig7" : "fig2" }, both.a);
-  const { at, curves } = byVelocity(both, (moments) => moments.deviation, "line");
-  const seen = curves.flatMap((c) => c.y.filter((y, k) => y !== null && at[k] >= Math.max(v[0], 0.05 * v[1]))) as number[];
-  const high = Math.max(...seen, 1e-3);
-  return {
-    title: "Standard deviation of the restitution",
-    x: { label: SPEED, low: v[0], high: v[1] },
-    y: { label: "σ(ε)", low: 0, high: 1.15 * Math.min(high, 1) },
-    at,
-    curves,
-    mark: state.speed,
-  };
-}
-
-/** Fig. 4: p(ε | v); Fig. 5: p(E_rot/E_tot | v); Fig. 9: p(ε) of the first impact, with the exact density. */
-export function density(state: State, both: Both): Picture {
-  const fraction = state.density === "fraction";
-  const first = !fraction && both.a.run.setup.impacts === 1;
-  const lattice = (s: Statistics) => (fraction ? s.fraction : s.restitution);
-  const counted = each(both, (s, of) => ({ of, ...lattice(s).over(...(first ? ALL : s.window(state.speed))) }));
-  const fine = lattice(both.a).other;
-  const merged = Math.min(...counted.map(({ counts }) => merging(counts)));
-  const bins = new Bins(fine.low, fine.high, merged * fine.step);
-  const at = Array.from({ length: bins.count + 1 }, (_, k) => bins.edge(k));
-  const curves: Curve[] = counted.map(({ of, counts, total }) => {
-    const y = at.slice(1).map((_, k) => {
-      const count = counts.subarray(k * merged, (k + 1) * merged).reduce((sum, n) => sum + n, 0);
-      return count ? count / (total * bins.step) : null;
-    });
-    return { label: label(of), of, y: [...y, null], kind: "steps" };
-  });
-  if (first) {
-    const exact = firstImpact(both.a.run.setup, bins);
-    if (exact) curves.push({ label: "exact", of: "b", y: [...exact, null], kind: "steps" });
+  const top = Math.max(...each(both, (s) => s.rotation));
+  const axes = { x: { label: SPEED, low: v[0], high: v[1] }, title: "Rotational share of the kinetic energy, set-up A; lines: means" };
+  if (top < EXACT) {
+    const note = both.a.run.setup.impacts === 1 ? "Released without spin:\nbefore its first impact nothing rotates." : "Nothing rotates.";
+    return { ...axes, y: { label: SHARE_UP, low: 0, high: 1 }, curves: [], note };
   }
-  const seen = curves.flatMap((c) => c.y.filter((y): y is number => y !== null));
-  const high = Math.max(...seen, 1);
-  const filled = at.filter((_, k) => curves.some((c) => c.y[k] !== null));
-  const at_speed = first ? "of the first impact" : `at v = ${state.speed.toPrecision(3)} m/s`;
+  const high = Math.min(1, Math.max(...each(both, (s) => roomy(s.range("rotational_fraction"), 1e-6)[1])));
+  const edges = cover(v, PARTS).edges;
   return {
-    title: fraction ? `Density of E_rot/E_tot ${at_speed}` : `Density of the restitution ${at_speed}`,
-    x: { label: fraction ? FRACTION : "coefficient of restitution ε", ...around(filled, bins) },
-    y: { label: fraction ? "p(E_rot/E_tot | v)" : first ? "p(ε)" : "p(ε | v)", low: first ? 0 : decade(Math.max(high / 3000, Math.min(...seen))), high: 1.4 * high, log: !first },
-    at,
+    ...axes,
+    y: { label: SHARE_UP, low: 0, high },
+    curves: byVelocity(both, edges, (moments) => moments.share),
+    lattice: both.a.lattice("rotational_fraction", cover(v, SITES.v), cover([0, high], SITES.other)),
+    mark: state.speed,
+  };
+}
+
+/** Fig. 6: σ(ε) against v, both logarithmic. */
+export function scatterWidth(state: State, both: Both): Picture {
+  const fall = fallSpeed(both.a.run.setup);
+  const [low, high] = [0.03 * fall, Math.min(1.1 * fall, both.a.v.high)];
+  const picture = {
+    title: "Standard deviation of the restitution against impact velocity",
+    x: { label: SPEED, low, high, log: true },
+    y: { label: "standard deviation σ(ε)", low: 1e-4, high: 1, log: true },
+    curves: [],
+  };
+  if (both.a.run.setup.impacts === 1) return { ...picture, note: "One impact each, all at nearly one speed." };
+  if (both.a.run.impacts && Math.max(...each(both, (s) => s.scatter)) < EXACT) {
+    return { ...picture, note: "No scatter: σ(ε) = 0 at every speed." };
+  }
+  const edges = Array.from({ length: PARTS + 1 }, (_, k) => low * (high / low) ** (k / PARTS));
+  const curves = byVelocity(both, edges, (moments) => moments.deviation);
+  const seen = curves.flatMap((c) => c.y.filter((y): y is number => y !== null && y > 0));
+  if (!seen.length) return picture;
+  const [least, most] = [Math.min(...seen), Math.max(...seen)];
+  return { ...picture, y: { ...picture.y, low: least / 1.6, high: Math.max(most * 1.6, 10 * least) }, curves, mark: state.speed };
+}
+
+/** Fig. 4: p(ε | v) with an asymmetric Laplace density; Fig. 5: p of the rotational share; Fig. 9: p(ε) of the first impact, with the
+ * exact density. */
+export function density(state: State, both: Both): Picture {
+  const share = state.density === "fraction";
+  const first = both.a.run.setup.impacts === 1;
+  const where = first ? "of the first impact" : `at v = ${state.speed} m/s`;
+  const values = each(both, (s) => s.values(share ? "rotational_fraction" : "restitution", ...(first ? ALL : s.window(state.speed))));
+  const picture: Picture = {
+    title: `Density of ${share ? "the rotational share" : "the restitution"} ${where}`,
+    x: { label: share ? SHARE : EPSILON, low: 0, high: 1 },
+    y: { label: share ? "p(rotational share | v)" : first ? "p(ε)" : "p(ε | v)", low: 0.1, high: 100, log: !first },
+    curves: [],
+  };
+  const found = values.filter((x) => x.length >= LEAST);
+  if (!found.length) return { ...picture, note: both.a.run.impacts ? "Too few impacts at this speed." : "" };
+  const ends = (x: Float64Array, tail: number) => [quantile(x, tail), quantile(x, 1 - tail)];
+  if (found.every((x) => x.at(-1)! - x[0] < EXACT)) {
+    const [value] = found[0];
+    const name = share ? "rotational share" : "ε";
+    const text = share && value < EXACT ? "Nothing rotates." : `All ${found[0].length.toLocaleString("en")} impacts have ${name} = ${Number(value.toPrecision(6))}:\na line, not a distribution.`;
+    return { ...picture, x: { ...picture.x, ...between(value - 0.05, value + 0.05) }, mark: value, note: text };
+  }
+  const fits = share || first ? [] : values.map((x) => (x.length >= LEAST ? laplace(x) : undefined));
+  const bins = share || first ? Bins.cover(Math.min(...found.map((x) => x[0])), Math.max(...found.map((x) => ends(x, 0.001)[1])), 60) : cusped(found, both.a.run.setup.normal);
+  const curves = each(both, (s, of): Curve => steps(values[of === "a" ? 0 : 1], bins, label(s, of, both), of));
+  const high = Math.max(...curves.flatMap((c) => c.y.map((y) => y ?? 0)));
+  const low = Math.min(...curves.flatMap((c) => c.y.filter((y): y is number => !!y)));
+  for (const fit of fits) {
+    if (!fit || !(fit.above + fit.below > EXACT)) continue;
+    const x = Array.from({ length: 401 }, (_, k) => bins.low + ((bins.high - bins.low) * k) / 400).concat(fit.location).sort((p, q) => p - q);
+    curves.push({ label: "Laplace fit", of: "ink", kind: "line", x, y: x.map((at) => laplaceDensity(fit, at)) });
+  }
+  if (first && !share) {
+    const fine = new Bins(bins.low, bins.high, bins.step / 8);
+    const exact = firstImpact(both.a.run.setup, fine);
+    if (exact) curves.push({ label: "exact, Eq. 21", of: "ink", kind: "line", x: exact.map((_, k) => fine.middle(k)), y: exact });
+  }
+  const room = 0.03 * (bins.high - bins.low);
+  return {
+    ...picture,
+    x: { ...picture.x, ...between(bins.low - (share ? 0 : room), bins.high + room) },
+    y: { ...picture.y, low: first ? 0 : Math.max(low / 2, high / 1e4), high: first ? 1.15 * high : 4 * high },
     curves,
   };
 }
 
 const ALL: [number, number] = [-Infinity, Infinity];
-const decade = (x: number) => 10 ** Math.floor(Math.log10(x));
+const between = (low: number, high: number) => ({ low, high });
 
-/** How many bins to put together, so that some thirty show the bulk of these counts. */
-function merging(counts: Float64Array): number {
-  const total = counts.reduce((sum, n) => sum + n, 0);
-  const quantile = (share: number) => {
-    let [k, sum] = [0, 0];
-    while (k < counts.length - 1 && (sum += counts[k]) < share * total) k++;
-    return k;
-  };
-  const bulk = quantile(0.95) - quantile(0.05);
-  return [10, 5, 2].find((many) => bulk / many >= 30) ?? 1;
+/** Bins that show the cusp, with ε_n at an edge: a fraction of the decay length of the flanks, or so wide that the bin at the cusp has
+ * some hundred impacts. */
+function cusped(values: Float64Array[], normal: number): Bins {
+  const decay = Math.min(...values.map((x) => laplace(x)).map(({ above, below }) => (above + below) / 2));
+  const number = Math.min(...values.map((x) => x.length));
+  const low = Math.min(...values.map((x) => quantile(x, 0.0005)));
+  const high = Math.max(...values.map((x) => quantile(x, 0.9995)));
+  const step = nice(Math.max(decay / 15, (200 * decay) / number, (high - low) / 400));
+  const ends = [Math.floor((low - normal) / step) * step, Math.max(1, Math.ceil((high - normal) / step)) * step];
+  return new Bins(normal + ends[0], normal + ends[1], step);
 }
 
-/** A curve of moments for each set-up, over the bins of A. */
-function byVelocity(
-  both: Both,
-  moment: (m: ReturnType<Statistics["moments"]>) => number,
-  kind: Curve["kind"],
-): { at: number[]; curves: Curve[] } {
-  const bins = both.a.v;
-  const step = COARSE * bins.step;
-  const number = Math.floor(bins.count / COARSE);
-  const edges = Array.from({ length: number }, (_, k) => bins.low + k * step);
-  const curves = each(both, (s, of): Curve => {
-    const y = edges.map((low) => {
-      const found = s.moments(low, low + step);
+function steps(values: Float64Array, bins: Bins, label: string, of: "a" | "b"): Curve {
+  const counts = new Float64Array(bins.count);
+  for (const value of values) {
+    const k = bins.of(value);
+    if (k >= 0) counts[k]++;
+  }
+  const y = Array.from(counts, (n) => (n ? n / (values.length * bins.step) : null));
+  return { label, of, kind: "steps", x: bins.edges, y };
+}
+
+/** A moment against v, one curve for each set-up. */
+function byVelocity(both: Both, edges: number[], moment: (m: ReturnType<Statistics["moments"]>) => number): Curve[] {
+  const x = edges.slice(1).map((high, k) => (edges[k] + high) / 2);
+  return each(both, (s, of): Curve => {
+    const y = x.map((_, k) => {
+      const found = s.moments(edges[k], edges[k + 1]);
       return found.number >= LEAST ? moment(found) : null;
     });
-    return { label: label(of), of, y, kind };
+    return { label: label(s, of, both), of, kind: "line", x, y };
   });
-  return { at: edges.map((low) => low + step / 2), curves };
-}
-
-/** The range of the filled bins, with some room. */
-function around(filled: number[], bins: Bins): { low: number; high: number } {
-  if (!filled.length) return { low: 0, high: 1 };
-  const [low, high] = [Math.min(...filled), Math.max(...filled) + bins.step];
-  const room = 0.04 * (high - low) + bins.step;
-  return { low: low - room, high: high + room };
-}
-
-/** The largest populated E_rot/E_tot, with some room. */
-function top({ counts, other }: Lattice): number {
-  let most = 0;
-  for (let i = 0; i < counts.length; i++) if (counts[i]) most = Math.max(most, i % other.count);
-  return Math.min(1, Math.max(0.02, 1.08 * other.edge(most + 1)));
 }

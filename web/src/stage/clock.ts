@@ -12,6 +12,8 @@ export class Clock {
   time = 0;
   playing = false;
   pace: Pace = "even";
+  /** Where it stops and holds. */
+  until = Infinity;
 
   /** Goes on for some time of the viewer; stops at the end. */
   advance(path: Path, lasted: number): void {
@@ -22,21 +24,17 @@ export class Clock {
     this.time += rate * lasted;
     // A slow picture shall not skip impacts at even pace.
     if (this.pace === "even" && next && this.time > next.start) this.time = next.start;
-    const end = path.end + path.duration(path.flights.length - 1);
+    const end = Math.min(this.until, path.finish);
     if (this.time >= end) {
       this.time = end;
       this.playing = false;
     }
   }
 
-  /** Goes to shortly before an impact: half of the flight that leads to it. */
+  /** Goes to shortly before an impact, half of the flight that leads to it, and will hold at it. */
   before(path: Path, impact: number): void {
     const number = Math.min(impact, path.flights.length - 1);
     this.time = path.flights[number].start + 0.5 * path.duration(number);
-  }
-
-  /** Goes to the very impact. */
-  after(path: Path, impact: number): void {
-    this.time = path.flights[Math.min(impact + 1, path.flights.length - 1)].start;
+    this.until = path.impact(impact);
   }
 }

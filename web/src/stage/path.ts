@@ -60,9 +60,15 @@ export class Path {
     }
   }
 
-  /** Time of the last impact. */
-  get end(): number {
-    return this.flights.at(-1)!.start;
+  /** Time of an impact, counted from 0, or of the last. */
+  impact(number: number): number {
+    return this.flights[Math.min(number + 1, this.flights.length - 1)].start;
+  }
+
+  /** Time at which there is nothing more to show. */
+  get finish(): number {
+    const last = this.flights.length - 1;
+    return this.flights[last].start + this.duration(last);
   }
 
   /** Number of the flight under way at a time. */
@@ -88,11 +94,22 @@ export class Path {
     return next ? next.start - this.flights[k].start : (2 * Math.max(this.flights[k].velocity.z, 0)) / -this.gravity.z;
   }
 
-  /** Highest place of the centre of mass in a flight. */
-  peak(k: number): number {
-    const { place, velocity } = this.flights[k];
-    const rise = Math.max(velocity.z, 0);
-    return place.z + (rise * rise) / (-2 * this.gravity.z);
+  /** Highest places of the centre of mass: of the first flight, of this one and of the one before. */
+  peaks(k: number): number[] {
+    return [0, Math.max(k - 1, 0), k].map((number) => {
+      const { place, velocity } = this.flights[number];
+      return place.z + Math.max(velocity.z, 0) ** 2 / (-2 * this.gravity.z);
+    });
+  }
+
+  /** Speed of a body that has all energy of motion that this one has where it is lowest, in this flight or the one before. */
+  speed(k: number): number {
+    const energies = [Math.max(k - 1, 0), k].map((number) => {
+      const { place, velocity, rotation } = this.flights[number];
+      const fallen = number === 0 ? -this.gravity.z * (place.z - this.flights[Math.min(1, this.flights.length - 1)].place.z) : 0;
+      return velocity.lengthSq() / 2 + rotation + Math.max(fallen, 0);
+    });
+    return Math.sqrt(2 * Math.max(...energies)) || 1;
   }
 
   /** Place, velocity and attitude some time after the start of a flight: (3), (5). */
@@ -106,3 +123,17 @@ export class Path {
     return { place, velocity, attitude: turned.multiply(flight.attitude).multiply(rolled) };
   }
 }
+
+/** ω at a moment, in rad/s: the precession, and the roll about the axis. */
+export function spinOf({ attitude, flight }: Moment): Vector3 {
+  return flight.turning.clone().addScaledVector(UP.clone().applyQuaternion(attitude), flight.roll);
+}
+
+/** Velocity at the end of the flight before an impact, in m/s; the first impact has number 1. */
+export function arrivalOf(path: Path, impacts: number): Vector3 {
+  const [before, after] = [path.flights[impacts - 1], path.flights[impacts]];
+  return before.velocity.clone().addScaledVector(path.gravity, after.start - before.start);
+}
+
+/** P/m of an impact, in m/s: the change of the velocity. */
+export const impulseOf = (path: Path, impacts: number): Vector3 => path.flights[impacts].velocity.clone().sub(arrivalOf(path, impacts));

@@ -1,241 +1,312 @@
-/** The scene: bodies over the plane, their traces, contacts and impulses, in slow motion. Lengths in R of set-up A. */
+/** The scene: bodies over the plane, each with its trace, its arrows and a camera that follows it. Lengths in R of set-up A. */
 
 import {
   AmbientLight,
-  ArrowHelper,
   BufferGeometry,
   CircleGeometry,
   DirectionalLight,
+  Fog,
+  GridHelper,
   Group,
   Line,
   LineBasicMaterial,
+  LineSegments,
   Mesh,
   MeshBasicMaterial,
+  PCFShadowMap,
   PerspectiveCamera,
   PlaneGeometry,
   Scene,
+  ShadowMaterial,
   Vector3,
   WebGLRenderer,
-  GridHelper,
 } from "three";
 import { OrbitControls } from "three/addons/controls/OrbitControls.js";
 import { theme } from "../charts/colours";
 import type { Setup } from "../setup";
+import { nice } from "../statistics";
+import { Arrow } from "./arrow";
 import { bodyOf, contactArm } from "./body";
-import type { Moment, Path } from "./path";
+import { write, type Arrowhead } from "./overlay";
+import { impulseOf, spinOf, type Moment, type Path } from "./path";
 
 /** Points of the trace in a flight, and flights that it goes back. */
 const TRACE = { each: 40, flights: 6 };
+/** Lines of the grid to either side. */
+const LINES = 80;
+const ANGLE = 35;
+/** The body fills a third of the height of the picture. */
+const SHARE = 1 / 3;
+/** Lengths of arrows in lengths of the body: of a velocity that holds all energy of motion, and at most. */
+const ARROW = { whole: 1.3, most: 2 };
 
-/** Distance of the lines on the ground. */
-const GRID = 4;
-
-interface Actor {
+export interface Part {
   setup: Setup;
   path: Path;
-  group: Group;
-  axis: ArrowHelper;
-  impulse: ArrowHelper;
+  of: "a" | "b";
+}
+
+interface Actor extends Part {
+  /** Everything that moves as the view follows the body. */
+  world: Group;
+  body: Group;
+  velocity: Arrow;
+  spin: Arrow;
+  impulse: Arrow;
   contact: Mesh;
   trace: Line;
-  /** What stays on the ground, and so moves as the view follows the body. */
-  behind: Group;
-  /** Where it plays, across the view. */
-  aside: number;
-  /** The place along the plane that the view of this body follows, in R; each has its own, for they part. */
-  anchor: Vector3;
+  /** A staff with marks as far apart as the lines on the ground, beside the body. */
+  staff: LineSegments;
+  /** Length of the body, and its radius, in R of A. */
+  length: number;
+  scale: number;
   /** The flight that the trace was made for. */
   traced: number;
 }
 
 export class Stage {
   private readonly scene = new Scene();
-  private readonly camera = new PerspectiveCamera(35, 1, 0.1, 2000);
+  private readonly camera = new PerspectiveCamera(ANGLE, 1, 0.1, 2000);
   private readonly renderer: WebGLRenderer;
+  private readonly overlay = document.createElement("canvas");
   private readonly controls: OrbitControls;
-  private readonly ground = new Mesh(new PlaneGeometry(400, 400), new MeshBasicMaterial());
+  private readonly sun = new DirectionalLight("#ffffff", 2.2);
+  private readonly ground = new Mesh(new PlaneGeometry(2000, 2000), new MeshBasicMaterial());
+  private readonly shade = new Mesh(new PlaneGeometry(2000, 2000), new ShadowMaterial({ opacity: 0.45 }));
   private grid = new GridHelper();
+  private readonly floor = new Group();
+  /** Distance of the lines on the ground, in R of A. */
+  private spacing = 1;
   private actors: Actor[] = [];
-  private look = new Vector3(0, 0, 8);
-  private reach = 20;
-  private settled = false;
   private stale = true;
 
   constructor(private readonly host: HTMLElement) {
     this.renderer = new WebGLRenderer({ antialias: true, preserveDrawingBuffer: true });
     this.renderer.setPixelRatio(Math.min(devicePixelRatio, 2));
-    host.append(this.renderer.domElement);
-    this.renderer.domElement.setAttribute("aria-hidden", "true");
+    this.renderer.shadowMap.enabled = true;
+    this.renderer.shadowMap.type = PCFShadowMap;
+    this.renderer.setScissorTest(true);
+    this.overlay.className = "overlay";
+    for (const canvas of [this.renderer.domElement, this.overlay]) {
+      canvas.setAttribute("aria-hidden", "true");
+      host.append(canvas);
+    }
     this.camera.up.set(0, 0, 1);
-    this.camera.position.set(4, -36, 14);
-    const sun = new DirectionalLight("#ffffff", 2.2);
-    sun.position.set(-30, -50, 80);
-    this.scene.add(new AmbientLight("#ffffff", 1.3), sun, this.ground);
+    const distance = 1 / SHARE / 2 / Math.tan((ANGLE * Math.PI) / 360);
+    this.camera.position.set(0.12, -1, 0.24).setLength(distance);
+    this.sun.position.set(-4, -3, 12);
+    this.sun.castShadow = true;
+    this.sun.shadow.mapSize.set(1024, 1024);
+    Object.assign(this.sun.shadow.camera, { left: -6, right: 6, bottom: -6, top: 6, near: 0.1, far: 60 });
+    this.shade.receiveShadow = true;
+    this.shade.position.z = 0.002;
+    this.floor.add(this.ground, this.shade);
+    this.scene.add(new AmbientLight("#ffffff", 1.3), this.sun, this.sun.target, this.floor);
+    this.scene.fog = new Fog("#ffffff", 3 * distance, 14 * distance);
     this.controls = new OrbitControls(this.camera, this.renderer.domElement);
     this.controls.enablePan = false;
     this.controls.maxPolarAngle = Math.PI / 2 - 0.02;
+    this.controls.minDistance = distance / 4;
+    this.controls.maxDistance = distance * 8;
     this.controls.listenToKeyEvents(host);
     this.controls.addEventListener("change", () => (this.stale = true));
+    // The wheel and a finger that goes up or down scroll the page; who has chosen the scene comes nearer by the wheel.
+    this.controls.enableZoom = false;
+    this.renderer.domElement.style.touchAction = "pan-y";
+    host.addEventListener("focus", () => (this.controls.enableZoom = true));
+    host.addEventListener("blur", () => (this.controls.enableZoom = false));
     this.restyle();
     new ResizeObserver(() => this.resize()).observe(host);
   }
 
-  get canvas(): HTMLCanvasElement {
-    return this.renderer.domElement;
-  }
-
   /** Puts bodies on the stage, each on its path. */
-  show(cast: { setup: Setup; path: Path; of: "a" | "b" }[]): void {
-    for (const actor of this.actors) {
-      this.scene.remove(actor.group, actor.axis, actor.behind);
+  show(cast: Part[]): void {
+    for (const { world, velocity, spin, impulse } of this.actors) {
+      this.scene.remove(world);
+      for (const arrow of [velocity, spin, impulse]) arrow.dispose();
     }
-    const colours = theme();
-    const widest = Math.max(...cast.map(({ setup }) => 1 + setup.elongation / 2));
-    this.actors = cast.map(({ setup, path, of }, k) => {
-      const colour = colours[of];
-      const group = bodyOf(setup, colour);
-      const ink = new LineBasicMaterial({ color: colour, transparent: true, opacity: 0.75 });
-      const trace = new Line(new BufferGeometry(), ink);
-      trace.frustumCulled = false;
-      const contact = new Mesh(new CircleGeometry(0.28, 24), new MeshBasicMaterial({ color: colours.ink }));
-      const arrow = (hue: string) => new ArrowHelper(new Vector3(0, 0, 1), new Vector3(), 1, hue, 0.45, 0.28);
-      const actor: Actor = {
-        setup,
-        path,
-        group,
-        axis: arrow(colours.soft),
-        impulse: arrow(colours.ink),
-        contact,
-        trace,
-        behind: new Group(),
-        anchor: new Vector3(),
-        aside: cast.length > 1 ? (k - 0.5) * 3.6 * widest : 0,
-        traced: -1,
-      };
-      actor.behind.add(actor.impulse, contact, trace);
-      this.scene.add(group, actor.axis, actor.behind);
-      return actor;
-    });
-    this.settled = false;
+    const unit = cast[0]?.setup.radius ?? 1;
+    this.spacing = nice(unit) / unit;
+    this.actors = cast.map((part) => this.actor(part, unit));
+    this.ruled();
     this.stale = true;
   }
 
+  /** Takes the colours of the theme in force. */
   restyle(): void {
     const colours = theme();
     this.renderer.setClearColor(colours.paper);
-    (this.ground.material as MeshBasicMaterial).color.set(colours.line);
-    this.scene.remove(this.grid);
-    this.grid.dispose();
-    this.grid = new GridHelper(400, 400 / GRID, colours.soft, colours.soft);
-    this.grid.rotateX(Math.PI / 2);
-    this.grid.material.transparent = true;
-    this.grid.material.opacity = 0.35;
-    this.scene.add(this.grid);
-    this.stale = true;
+    this.scene.fog!.color.set(colours.paper);
+    (this.ground.material as MeshBasicMaterial).color.set(colours.ground);
+    this.show(this.actors);
   }
 
-  /** Draws the bodies at a time, given how long the picture before lasted, in s of the viewer; nothing if nothing moves. */
-  draw(time: number, lasted: number, moving: boolean): Moment | undefined {
+  /** Draws the bodies at a time, if something moves or has changed. */
+  draw(time: number, moving: boolean): Moment | undefined {
     const lead = this.actors[0]?.path.at(time);
     if (!lead || !(moving || this.stale)) return lead;
+    this.controls.update();
     this.stale = false;
-    const unit = this.actors[0].setup.radius;
-    const pace = this.settled ? 1 - Math.exp(-3 * lasted) : 1;
-    this.settled = true;
-    let peak = this.actors.length > 1 ? 6 * (1 + this.actors[0].setup.elongation / 2) : 3;
-    for (const actor of this.actors) {
+    const { clientWidth: width, clientHeight: height } = this.host;
+    const context = this.overlay.getContext("2d")!;
+    const scale = this.overlay.width / Math.max(width, 1);
+    context.setTransform(scale, 0, 0, scale, 0, 0);
+    context.clearRect(0, 0, width, height);
+    const font = 0.8 * parseFloat(getComputedStyle(this.host).fontSize);
+    const each = width / this.actors.length;
+    // In lengths of the body: the viewer's own choice.
+    const home = this.camera.position.clone();
+    this.actors.forEach((actor, k) => {
       const moment = actor.path.at(time);
-      this.pose(actor, moment, unit, pace);
-      peak = Math.max(peak, actor.path.peak(moment.impacts) / unit + 2 * (1 + actor.setup.elongation / 2));
-    }
-    this.follow(peak, pace);
-    this.renderer.render(this.scene, this.camera);
+      this.pose(actor, moment, each / height);
+      for (const other of this.actors) other.world.visible = other === actor;
+      this.camera.position.copy(home).multiplyScalar(actor.length);
+      this.camera.aspect = each / height;
+      this.camera.updateProjectionMatrix();
+      this.camera.updateMatrixWorld();
+      this.renderer.setViewport(k * each, 0, each, height);
+      this.renderer.setScissor(k * each, 0, each, height);
+      this.renderer.render(this.scene, this.camera);
+      const arrows = this.arrows(actor, moment).map((arrow) => ({ ...arrow, tip: arrow.tip && this.onScreen(arrow.tip, k * each, each, height) }));
+      const perMetre = height / (2 * Math.tan((ANGLE * Math.PI) / 360) * this.camera.position.length() * this.actors[0].setup.radius);
+      const most = Math.max(...actor.path.peaks(moment.impacts));
+      write(context, { left: k * each, width: each, height, of: actor.of, arrows, perMetre, now: moment.place.z, most, named: this.actors.length > 1 }, font);
+    });
+    this.camera.position.copy(home);
     return lead;
   }
 
-  private pose(actor: Actor, moment: Moment, unit: number, pace: number): void {
-    const { setup, path, group, anchor } = actor;
-    const scale = setup.radius / unit;
-    const at = (place: Vector3) => place.clone().divideScalar(unit);
-    const place = at(moment.place);
-    const ahead = new Vector3(place.x, place.y, 0).sub(anchor);
-    if (ahead.length() > 0.01) this.stale = true;
-    anchor.addScaledVector(ahead, pace);
-    actor.behind.position.set(actor.aside - anchor.x, -anchor.y, 0);
-    group.scale.setScalar(scale);
-    group.position.copy(place).add(actor.behind.position);
-    group.quaternion.copy(moment.attitude);
-    const axis = new Vector3(0, 0, 1).applyQuaternion(moment.attitude);
-    const long = scale * (1 + setup.elongation / 2);
-    actor.axis.position.copy(group.position).addScaledVector(axis, -1.5 * long);
-    actor.axis.setDirection(axis);
-    actor.axis.setLength(3 * long, 0.45 * scale, 0.28 * scale);
-    this.mark(actor, moment, at, unit, scale);
-    if (actor.traced !== moment.impacts) this.trace(actor, moment.impacts, at, path);
+  /** Scene and writing in one canvas, for a file. */
+  compose(canvas: HTMLCanvasElement): void {
+    const { width, height } = this.renderer.domElement;
+    if (canvas.width !== width || canvas.height !== height) [canvas.width, canvas.height] = [width, height];
+    const context = canvas.getContext("2d")!;
+    context.drawImage(this.renderer.domElement, 0, 0);
+    context.drawImage(this.overlay, 0, 0, width, height);
   }
 
-  /** The last contact and its impulse: its length is the change of the velocity over that of the fall. */
-  private mark(actor: Actor, moment: Moment, at: (v: Vector3) => Vector3, unit: number, scale: number): void {
+  private actor({ setup, path, of }: Part, unit: number): Actor {
+    const colours = theme();
+    const scale = setup.radius / unit;
+    const ink = new LineBasicMaterial({ color: colours[of], transparent: true, opacity: 0.8 });
+    const actor: Actor = {
+      setup,
+      path,
+      of,
+      world: new Group(),
+      body: bodyOf(setup, colours[of]),
+      velocity: new Arrow(colours.velocity),
+      spin: new Arrow(colours.spin),
+      impulse: new Arrow(colours.impulse),
+      contact: new Mesh(new CircleGeometry(0.12, 24), new MeshBasicMaterial({ color: colours.impulse })),
+      trace: new Line(new BufferGeometry(), ink),
+      staff: new LineSegments(new BufferGeometry(), new LineBasicMaterial({ color: colours.soft, transparent: true, opacity: 0.7 })),
+      length: scale * (2 + setup.elongation),
+      scale,
+      traced: -1,
+    };
+    actor.body.scale.setScalar(scale);
+    actor.body.traverse((part) => (part.castShadow = true));
+    actor.trace.frustumCulled = false;
+    actor.world.add(actor.body, actor.velocity, actor.spin, actor.impulse, actor.contact, actor.trace, actor.staff);
+    const top = (1.2 * Math.max(...path.peaks(path.flights.length - 1), ...path.peaks(0))) / unit;
+    const marks: Vector3[] = [new Vector3(), new Vector3(0, 0, top)];
+    for (let k = 0; k * this.spacing < top && k < 2000; k++) {
+      const wide = (k % 5 ? 0.08 : 0.2) * actor.length;
+      marks.push(new Vector3(-wide, 0, k * this.spacing), new Vector3(wide, 0, k * this.spacing));
+    }
+    actor.staff.geometry.setFromPoints(marks);
+    this.scene.add(actor.world);
+    return actor;
+  }
+
+  private pose(actor: Actor, moment: Moment, aspect: number): void {
+    const { world, body, length } = actor;
+    const unit = this.actors[0].setup.radius;
+    const place = moment.place.clone().divideScalar(unit);
+    // Near the plane the camera waits, so that one sees the body come down and leave.
+    const look = Math.max(place.z, 0.9 * length);
+    world.position.set(-place.x, -place.y, -look);
+    this.floor.position.set(0, 0, -look);
+    this.grid.position.set(-place.x % this.spacing, -place.y % this.spacing, 0.004);
+    actor.staff.position.set(place.x + Math.min(1.1, 1.1 * aspect) * length, place.y + 1.2 * length, 0);
+    this.sun.shadow.camera.top = this.sun.shadow.camera.right = 3 * length;
+    this.sun.shadow.camera.bottom = this.sun.shadow.camera.left = -3 * length;
+    this.sun.position.set(-1, -0.8, 3).multiplyScalar(2 * length);
+    this.sun.shadow.camera.far = 20 * length;
+    this.sun.shadow.camera.updateProjectionMatrix();
+    body.position.copy(place);
+    body.quaternion.copy(moment.attitude);
+    this.point(actor, moment, place, unit);
+    if (actor.traced !== moment.impacts) this.trace(actor, moment.impacts, unit);
+  }
+
+  private point(actor: Actor, moment: Moment, place: Vector3, unit: number): void {
+    const { length, setup } = actor;
+    const thick = 0.035 * length;
+    const whole = actor.path.speed(moment.impacts);
+    const arrow = (vector: Vector3, unit: number) => vector.multiplyScalar((ARROW.whole * length) / unit).clampLength(0, ARROW.most * length);
+    actor.velocity.point(place, arrow(moment.velocity.clone(), whole), thick);
+    // A surface that turns with a third of that speed has an arrow as long.
+    actor.spin.point(place, arrow(spinOf(moment), whole / (3 * setup.radius)), thick);
     const { flight, impacts } = moment;
     const hit = impacts > 0;
     actor.contact.visible = actor.impulse.visible = hit;
     if (!hit) return;
-    const before = actor.path.flights[impacts - 1];
-    const arm = contactArm(actor.setup, flight.axis, flight.sphere);
-    const place = at(flight.place.clone().add(arm));
-    actor.contact.position.set(place.x, place.y, 0.03);
-    actor.contact.scale.setScalar(scale);
-    const arrival = before.velocity.clone().addScaledVector(actor.path.gravity, flight.start - before.start);
-    const change = flight.velocity.clone().sub(arrival);
-    const fall = Math.sqrt(2 * -actor.path.gravity.z * Math.max(actor.path.flights[0].place.z, unit));
-    const size = change.length();
-    actor.impulse.visible = size > 0;
-    actor.impulse.position.set(place.x, place.y, 0.05);
-    actor.impulse.setDirection(change.clone().normalize());
-    actor.impulse.setLength(Math.max(1.2 * scale, (6 * scale * size) / fall), 0.5 * scale, 0.3 * scale);
+    const at = flight.place.clone().add(contactArm(setup, flight.axis, flight.sphere)).divideScalar(unit);
+    actor.contact.position.set(at.x, at.y, 0.01);
+    actor.contact.scale.setScalar(length / 2);
+    actor.impulse.point(at, arrow(impulseOf(actor.path, impacts), 2 * whole), thick);
   }
 
-  private trace(actor: Actor, impacts: number, at: (v: Vector3) => Vector3, path: Path): void {
+  private arrows(actor: Actor, moment: Moment): (Omit<Arrowhead, "tip"> & { tip: Vector3 | undefined })[] {
+    const tip = (arrow: Arrow) => (arrow.visible ? actor.world.localToWorld(arrow.tip.clone()) : undefined);
+    const impulse = moment.impacts > 0 ? impulseOf(actor.path, moment.impacts).length() : 0;
+    return [
+      { name: "v", hue: "velocity", value: moment.velocity.length(), unit: "m/s", words: "velocity of the centre of mass", tip: tip(actor.velocity) },
+      { name: "ω", hue: "spin", value: spinOf(moment).length(), unit: "rad/s", words: "angular velocity", tip: tip(actor.spin) },
+      { name: "P/m", hue: "impulse", value: impulse, unit: "m/s", words: "impulse of the last impact, over the mass", tip: tip(actor.impulse) },
+    ];
+  }
+
+  private onScreen(place: Vector3, left: number, width: number, height: number): [number, number] {
+    const { x, y } = place.clone().project(this.camera);
+    return [left + (width * (x + 1)) / 2, (height * (1 - y)) / 2];
+  }
+
+  private trace(actor: Actor, impacts: number, unit: number): void {
+    const { path } = actor;
     const points: Vector3[] = [];
-    const first = Math.max(0, impacts - TRACE.flights);
-    for (let k = first; k <= impacts; k++) {
+    for (let k = Math.max(0, impacts - TRACE.flights); k <= impacts; k++) {
       const { start } = path.flights[k];
-      const steps = TRACE.each;
       // A hair before the end: at the impact itself the next flight has begun.
-      for (let i = 0; i <= steps; i++) points.push(at(path.at(start + path.duration(k) * (i / steps) * (1 - 1e-9)).place));
+      for (let i = 0; i <= TRACE.each; i++) {
+        points.push(path.at(start + path.duration(k) * (i / TRACE.each) * (1 - 1e-9)).place.divideScalar(unit));
+      }
     }
     actor.trace.geometry.dispose();
     actor.trace.geometry = new BufferGeometry().setFromPoints(points);
     actor.traced = impacts;
   }
 
-  /** The camera is as near as the height of the flight allows; the grid passes below. */
-  private follow(peak: number, pace: number): void {
-    const old = this.look.clone();
-    this.look.lerp(new Vector3(0, 0, peak / 2), pace);
-    const reach = this.reach + (peak - this.reach) * pace;
-    const offset = this.camera.position.clone().sub(old);
-    // The viewer's own choices stay: the direction, and the distance in units of what is to be seen.
-    this.camera.position.copy(this.look).add(offset.multiplyScalar(reach / this.reach));
-    if (Math.abs(reach - peak) > 1e-3 * peak) this.stale = true;
-    this.reach = reach;
-    this.controls.target.copy(this.look);
-    const { x, y } = this.actors[0].anchor;
-    this.grid.position.set(-x % GRID, -y % GRID, 0.01);
-    const stale = this.stale;
-    this.controls.update();
-    this.stale = stale;
+  /** The lines on the ground. */
+  private ruled(): void {
+    const { soft } = theme();
+    this.floor.remove(this.grid);
+    this.grid.dispose();
+    this.grid = new GridHelper(2 * LINES * this.spacing, 2 * LINES, soft, soft);
+    this.grid.rotateX(Math.PI / 2);
+    this.grid.material.transparent = true;
+    this.grid.material.opacity = 0.35;
+    this.floor.add(this.grid);
   }
 
   private resize(): void {
     const { clientWidth: width, clientHeight: height } = this.host;
     if (!width || !height) return;
     this.renderer.setSize(width, height);
-    this.camera.aspect = width / height;
-    // Two bodies side by side need the width that a narrow window lacks.
-    this.camera.fov = 35 / Math.min(1, this.camera.aspect / 0.9);
-    this.camera.updateProjectionMatrix();
+    const scale = this.renderer.getPixelRatio();
+    [this.overlay.width, this.overlay.height] = [Math.round(width * scale), Math.round(height * scale)];
     this.stale = true;
   }
 }
-
