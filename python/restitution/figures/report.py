@@ -1,11 +1,19 @@
-"""The pieces of HTML that the report is made of; only `text` and `prose` let foreign text in."""
+"""Reports as one page of HTML that needs nothing else; only `text` and `prose` let foreign text in."""
 
 import re
+import tempfile
 from base64 import b64encode
 from collections.abc import Iterable, Sequence
 from html import escape
 from importlib.resources import files
 from pathlib import Path
+from typing import NamedTuple
+
+import xarray as xr
+from matplotlib.figure import Figure
+
+from restitution._internal.datasets import put
+from restitution.figures.style import save, styled
 
 _SCALE = 0.6
 """Pixels of the page for each of a figure."""
@@ -18,6 +26,64 @@ _BEFORE_UNIT = re.compile(r"(?<=\d) (?=(?:%|°|m/s²?|mm|m|kg|rad|ms|s|standard 
 _AROUND_SIGN = re.compile(r" ?([±=<>≤≥≈×]|&lt;|&gt;) (?=[\d.(−-])")
 _AFTER_NAME = re.compile(r"\b(Figs?\.|Eqs?\.|Secs?\.) (?=\(?[A-Z\d])")
 _OPEN_MINUS = re.compile(r"(?<=[\[(])−(?=[(|])")
+
+
+class Section(NamedTuple):
+    """A section of a page: the anchor that links point to, its title, and its pieces of HTML."""
+
+    anchor: str
+    title: str
+    pieces: Sequence[str]
+
+
+def page(title: str, header: str, sections: Sequence[Section], footer: str, *, contents: bool = False) -> str:
+    """Make the whole page, with a table of contents where it is asked for.
+
+    Parameters
+    ----------
+    title : str
+        What the browser shows as its name.
+    header : str
+        What stands above the sections, as HTML.
+    sections : sequence of Section
+        In this order.
+    footer : str
+        A line of text.
+    contents : bool
+        Whether the sections are listed first.
+    """
+    body = "\n".join(map(_section, sections))
+    entries = "\n".join(f'<li><a href="#{one.anchor}">{text(one.title)}</a></li>' for one in sections)
+    listed = f'<nav aria-label="Contents">\n<ol>\n{entries}\n</ol>\n</nav>\n' if contents else ""
+    return f"""<!DOCTYPE html>
+<html lang="en">
+<head>
+<meta charset="utf-8">
+<meta name="viewport" content="width=device-width, initial-scale=1">
+<meta name="color-scheme" content="light dark">
+<title>{text(title)}</title>
+<style>
+{files("restitution.figures").joinpath("report.css").read_text(encoding="utf-8")}</style>
+</head>
+<body>
+<header id="top">
+{header}
+</header>
+{listed}<main>
+{body}
+</main>
+<footer>
+<p>{text(footer)}</p>
+</footer>
+</body>
+</html>
+"""
+
+
+def _section(one: Section) -> str:
+    top = '<p class="top"><a href="#top">Back to the top</a></p>'
+    head = f'<section id="{one.anchor}">\n<h2>{text(one.title)}</h2>'
+    return "\n".join((head, *one.pieces, top, "</section>"))
 
 
 def text(value: object) -> str:
@@ -44,12 +110,6 @@ def _together(value: str) -> str:
     )
     value = value.replace(" − ", "\u00a0−\u00a0")
     return _OPEN_MINUS.sub("−\u2060", _AFTER_NAME.sub("\\1\u00a0", value))
-
-
-def section(anchor: str, title: str, *body: str) -> str:
-    """Make a section that the table of contents can point to."""
-    top = '<p class="top"><a href="#top">Back to the top</a></p>'
-    return "\n".join((f'<section id="{anchor}">\n<h2>{text(title)}</h2>', *body, top, "</section>"))
 
 
 def paragraph(value: str, style: str = "") -> str:
@@ -100,9 +160,33 @@ def image(path: Path, alternative: str) -> str:
     return f'<img src="data:image/png;base64,{data}" {size} alt="{text(alternative)}">'
 
 
-def style() -> str:
-    """Read the style sheet of reports."""
-    return files("restitution.figures").joinpath("report.css").read_text(encoding="utf-8")
+@styled
+def drawing(figure: Figure, caption: str) -> str:
+    """Embed a Matplotlib figure with its caption, which is also read to those who cannot see it."""
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder, "figure.png")
+        figure.savefig(path, dpi=200)
+        return f"<figure>{image(path, caption)}<figcaption>{text(caption)}</figcaption></figure>"
+
+
+def save_with_data(figure: Figure, data: xr.Dataset, path: Path, title: str, caption: str) -> Path:
+    """Save a figure as PNG and PDF, its caption as text and its data as netCDF; give the PNG.
+
+    All have the name that `path` ends with.
+    """
+    png, _ = save(figure, path, title, caption)
+    png.with_suffix(".txt").write_text(caption + "\n", encoding="utf-8")
+    about = data.assign_attrs(title=title, caption=caption)
+    for variable in about.variables.values():
+        if variable.ndim > 0 and variable.dtype.kind in "fiu":
+            variable.encoding["zlib"] = True
+    put(about, png.with_suffix(".nc"))
+    return png
+
+
+def grouped(number: int) -> str:
+    """Write a whole number with spaces between its thousands, which `prose` makes thin."""
+    return f"{number:,}".replace(",", " ")
 
 
 def _class(style: str) -> str:

@@ -1,1 +1,1 @@
-"""Papers, redrawn and judged claim by claim; one folder a paper."""
+"""Papers, redrawn and judged claim by claim: one machinery, and a folder with what is each paper's own."""

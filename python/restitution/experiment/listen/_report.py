@@ -1,11 +1,9 @@
 """The report as one page that needs nothing else, with a table and a netCDF file beside it."""
 
-import tempfile
 from importlib.metadata import version
 from pathlib import Path
 
 import numpy as np
-from matplotlib.figure import Figure
 
 from restitution import flight
 from restitution._internal.arrays import flag
@@ -17,8 +15,7 @@ from restitution.experiment.flight.times import DOUBLED, FLAGS
 from restitution.experiment.listen._analysis import Analysis, Series, Setting, analyse, checked
 from restitution.experiment.listen._figures import close_ups, drawn_shape, waveform
 from restitution.experiment.listen._shape import Shape
-from restitution.figures.report import image, paragraph, prose, section, style, table, text
-from restitution.figures.style import styled
+from restitution.figures.report import Section, drawing, page, paragraph, prose, table, text
 
 _FAR = 10.0
 """Laws that are worse by this, in Akaike's criterion, are in the table and not in the figure."""
@@ -52,43 +49,24 @@ def write(file: Path, out: Path, setting: Setting, *, replace: bool = False) -> 
 
 
 def _page(file: Path, analysis: Analysis) -> str:
-    sections = [section("recording", "The recording", *_recording(file, analysis))]
+    sections = [Section("recording", "The recording", _recording(file, analysis))]
     for one in analysis.series:
         title = "Coefficient of restitution" if len(analysis.series) == 1 else f"Series {one.number}"
-        sections.append(section(f"series-{one.number}", title, *_series(one, analysis.setting)))
+        sections.append(Section(f"series-{one.number}", title, _series(one, analysis.setting)))
         if one.shape is not None:
             of = "" if len(analysis.series) == 1 else f" (series {one.number})"
-            sections.append(section(f"shape-{one.number}", f"Shape of the ball{of}", *_shape(one.shape)))
-            sections.append(section(f"budget-{one.number}", f"Error budget{of}", *_budget(one.shape)))
-    sections.append(section("impacts", "All impacts", _impacts(analysis)))
-    body = "\n".join(sections)
+            sections.append(Section(f"shape-{one.number}", f"Shape of the ball{of}", _shape(one.shape)))
+            sections.append(Section(f"budget-{one.number}", f"Error budget{of}", _budget(one.shape)))
+    sections.append(Section("impacts", "All impacts", [_impacts(analysis)]))
     warnings = "".join(f"<li>{text(warning)}</li>" for warning in analysis.warnings)
     careful = f"<ul>{warnings}</ul>" if warnings else ""
     lead = "".join(paragraph(one.sentence(analysis.setting), "lead") for one in analysis.series)
-    return f"""<!DOCTYPE html>
-<html lang="en">
-<head>
-<meta charset="utf-8">
-<meta name="viewport" content="width=device-width, initial-scale=1">
-<title>{text(analysis.file)}: impacts and coefficient of restitution</title>
-<style>
-{style()}</style>
-</head>
-<body>
-<header id="top">
-<h1>{text(analysis.file)}</h1>
-{lead}
-{careful}
-</header>
-<main>
-{body}
-</main>
-<footer>
-<p>Made by restitution {text(version("restitution"))}.</p>
-</footer>
-</body>
-</html>
-"""
+    return page(
+        f"{analysis.file}: impacts and coefficient of restitution",
+        f"<h1>{text(analysis.file)}</h1>\n{lead}\n{careful}",
+        sections,
+        f"Made by restitution {version('restitution')}.",
+    )
 
 
 def _recording(file: Path, analysis: Analysis) -> list[str]:
@@ -111,8 +89,8 @@ def _recording(file: Path, analysis: Analysis) -> list[str]:
         speed = with_error(drag.terminal_velocity, drag.uncertainty)
         rows.append(["air drag", f"quadratic, terminal velocity {speed} m/s"])
     return [
-        _picture(waveform(file, analysis), "The sound against time, with a mark at each impact."),
-        _picture(
+        drawing(waveform(file, analysis), "The sound against time, with a mark at each impact."),
+        drawing(
             close_ups(file, analysis), "Onsets, from the first impact to the last, with their standard error."
         ),
         table(["", ""], rows, caption="Recording and set-up"),
@@ -123,7 +101,7 @@ def _series(one: Series, setting: Setting) -> list[str]:
     parts = []
     if one.coefficients:
         figure = flight.figure(one.data, *(fit for fit in one.fits if fit.aic < one.fits[0].aic + _FAR))
-        parts.append(_picture(figure, "ε against v with standard errors, and the laws with their bands."))
+        parts.append(drawing(figure, "ε against v with standard errors, and the laws with their bands."))
     if one.fits:
         best = one.fits[0].aic
         rows = []
@@ -158,7 +136,7 @@ def _shape(found: Shape) -> list[str]:
         words = _NAMES.get(str(name), str(name).replace("_", " "))
         rows.append([prose(words), *(f"{scale * x:.{digits}g}" for x in (middle, low, high))])
     parts += [
-        _picture(drawn_shape(found.draws), "Draws of the posterior, and the likelihood of the shape alone."),
+        drawing(drawn_shape(found.draws), "Draws of the posterior, and the likelihood of the shape alone."),
         table(
             ["", "median", "5 %", "95 %"], rows, caption="Posterior: median and quantiles", numbers=(1, 2, 3)
         ),
@@ -186,7 +164,7 @@ def _budget(found: Shape) -> list[str]:
     )
     parts += [
         table([text(cell) for cell in head], rows, caption=caption),
-        _picture(found.budget.figure(), "Root mean square error of one ε by its source, against the speed."),
+        drawing(found.budget.figure(), "Root mean square error of one ε by its source, against the speed."),
     ]
     return parts
 
@@ -211,11 +189,3 @@ def _impacts(analysis: Analysis) -> str:
         rows.append([str(place), str(int(one.series)), FLAGS[int(one.flag)], shown, error, *known])
     head = ["row", "series", "flag", "time (s)", "error (µs)", "v (m/s)", "ε"]
     return table(head, rows, caption="All impacts, with their standard errors", numbers=(3, 4, 5, 6))
-
-
-@styled
-def _picture(figure: Figure, caption: str) -> str:
-    with tempfile.TemporaryDirectory() as folder:
-        path = Path(folder, "figure.png")
-        figure.savefig(path, dpi=200)
-        return f"<figure>{image(path, caption)}<figcaption>{text(caption)}</figcaption></figure>"

@@ -2,11 +2,12 @@
 
 from pathlib import Path
 
-from restitution import figures as fg
-from restitution.figures.laws._caption import caption
+from restitution._internal.arrays import flag
+from restitution._internal.files import FOLDER, check_folder, path_for, whole_folder
 from restitution.figures.laws._draw import draw
 from restitution.figures.laws._measure import ELONGATIONS, LAWS, bound, coupling, growth, measure
-from restitution.figures.laws._table import table
+from restitution.figures.laws._words import caption, table
+from restitution.figures.report import save_with_data
 
 __all__ = ["ELONGATIONS", "LAWS", "bound", "coupling", "growth", "measure", "table", "write"]
 
@@ -43,18 +44,12 @@ def write(
     OSError
         If `out` cannot be written to, or holds anything and is not to be overwritten; before the work begins.
     """
-    from restitution._internal.arrays import flag
-    from restitution._internal.datasets import save
-    from restitution._internal.files import FOLDER, check_folder, path_for, whole_folder
-
     out, overwrite = path_for("out", out, FOLDER), flag("overwrite", overwrite)
     names = [f"laws.{kind}" for kind in ("png", "pdf", "nc", "txt", "md")]
     check_folder(out, replace=overwrite)
     with whole_folder(out, replace=overwrite, names=names) as folder:
         data = measure(impacts, seed, threads=threads, progress=progress)
-        text, rows = caption(data), table(data)
-        fg.save(draw(data), folder / "laws", TITLE, text)
-        save(data.assign_attrs(title=TITLE, caption=text), folder / "laws.nc")
-        (folder / "laws.txt").write_text(text + "\n", encoding="utf-8")
+        rows = table(data)
+        save_with_data(draw(data), data, folder / "laws", TITLE, caption(data))
         (folder / "laws.md").write_text(rows, encoding="utf-8")
     return out / "laws.png", rows

@@ -12,8 +12,6 @@ from matplotlib.ticker import LogLocator, MaxNLocator, NullFormatter
 
 from restitution import figures as fg
 
-FloatArray = npt.NDArray[np.float64]
-
 _LINES: tuple[Literal["-", "--", ":"], ...] = ("-", "-", "-", "--", ":", "-")
 _COLORS = ("#D55E00", "#000000", "#0072B2", "#56B4E9", "#009E73", "#CC79A7")
 _VELOCITY_TICKS = (0.03, 0.1, 0.3, 1.0)
@@ -94,7 +92,7 @@ def _by_velocity(
 ) -> None:
     top = 0.0
     for law in range(body.sizes["law"]):
-        values, error = _shown(body[name].isel(law=law)), body[f"{name}_error"].isel(law=law).to_numpy()
+        values, error = (body[each].isel(law=law).to_numpy() for each in (name, f"{name}_error"))
         if only_created and not np.nanmax(values) > 0:
             continue
         top = max(top, float(np.nanmax(values[_drawn(body)])))
@@ -114,13 +112,13 @@ def _gain(axes: Axes, body: xr.Dataset) -> None:
     lowest = 1e-4 * bound
     axes.axhline(bound, color="0.55", linewidth=0.8, linestyle="-.")
     for law in range(body.sizes["law"]):
-        gain = _shown(body["largest_energy_ratio"].isel(law=law)) - 1
+        gain = body["largest_energy_ratio"].isel(law=law) - 1
         axes.plot(body["velocity"], gain, color=_COLORS[law], linestyle=_LINES[law])
     axes.set_yscale("log")
     axes.set_ylim(lowest, 30 * bound)
     axes.yaxis.set_major_locator(LogLocator(numticks=6))
     axes.yaxis.set_minor_formatter(NullFormatter())
-    if not np.any((_shown(body["largest_energy_ratio"]) - 1 > lowest)[:, _drawn(body)]):
+    if not np.any((body["largest_energy_ratio"].to_numpy() - 1 > lowest)[:, _drawn(body)]):
         _say_none(axes)
 
 
@@ -132,8 +130,3 @@ def _drawn(body: xr.Dataset) -> npt.NDArray[np.bool_]:
     velocity = body["velocity"].to_numpy()
     chosen: npt.NDArray[np.bool_] = (velocity >= _RANGE[0]) & (velocity <= _RANGE[1])
     return chosen
-
-
-def _shown(values: xr.DataArray) -> FloatArray:
-    found: FloatArray = values.to_numpy()
-    return found

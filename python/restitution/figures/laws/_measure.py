@@ -125,61 +125,46 @@ def _reduced(batches: xr.Dataset, body: Dumbbell) -> xr.Dataset:
     def weighted(values: xr.DataArray) -> xr.DataArray:
         return (values.fillna(0) * number).sum("batch") / number.sum("batch")
 
-    def keep(name: str, pooled: xr.DataArray, each: xr.DataArray, text: str, **about: str) -> None:
-        error = each.std("batch", ddof=1, skipna=False) / sqrt(BATCHES)
-        found[name] = pooled.assign_attrs(long_name=text, **about)
-        found[f"{name}_error"] = error.assign_attrs(long_name=f"standard error of the {text}", **about)
+    def keep(name: str, pooled: xr.DataArray, each: xr.DataArray | None, text: str) -> None:
+        found[name] = pooled.assign_attrs(long_name=text, units="1")
+        if each is not None:
+            error = each.std("batch", ddof=1, skipna=False) / sqrt(BATCHES)
+            found[f"{name}_error"] = error.assign_attrs(long_name=f"standard error of the {text}", units="1")
+
+    def keep_share(name: str, some: xr.DataArray, all: xr.DataArray, text: str) -> None:
+        keep(name, some.sum("batch") / all.sum("batch"), some / all, f"share of {text}")
 
     spread = weighted(variance + (mean - weighted(mean)) ** 2)
-    keep("deviation", spread**0.5, variance**0.5, "standard deviation of restitution", units="1")
+    keep("deviation", spread**0.5, variance**0.5, "standard deviation of restitution")
     fraction = batches["mean_fraction"]
-    keep("mean_fraction", weighted(fraction), fraction, "mean of E_rot/E_tot before the impact", units="1")
-    happened = number + batches["undefined"]
-    created, factor = batches["energy_created"], batches["largest_energy_ratio"]
-    text = "share of impacts that create energy"
-    keep("created_share", created.sum("batch") / happened.sum("batch"), created / happened, text, units="1")
+    keep("mean_fraction", weighted(fraction), fraction, "mean of E_rot/E_tot before the impact")
+    happened, created = number + batches["undefined"], batches["energy_created"]
+    keep_share("created_share", created, happened, "impacts that create energy")
+    factor, of_all = batches["largest_energy_ratio"], batches["largest_energy_ratio_of_all"]
     text = "largest factor by which an impact multiplied the kinetic energy"
-    found["largest_energy_ratio"] = factor.max("batch").assign_attrs(long_name=text, units="1")
-    found["number"] = number.sum("batch").assign_attrs(long_name="impacts in the velocity bin")
+    keep("largest_energy_ratio", factor.max("batch"), None, text)
+    keep("number", number.sum("batch"), None, "impacts in the velocity bin")
 
-    row = batches.sel(velocity=SPEED, method="nearest")
-    width = float(batches["restitution"][1] - batches["restitution"][0])
-    total = row["number"].sum("batch")
-    density = row["restitution_count"].sum("batch") / (total * width)
-    found["density"] = _by_site(density).assign_attrs(
-        long_name="probability density of restitution", units="1"
-    )
-    found["restitution"] = _by_site(batches["restitution"]).assign_attrs(units="1")
-    found["density_error"] = _by_site(
-        (row["restitution_count"] / (row["number"] * width)).std("batch", ddof=1)
-    ) / sqrt(BATCHES)
+    row = batches.sel(velocity=SPEED, method="nearest").rename(restitution="site")
+    found["restitution"] = row["site"].drop_vars("site").assign_attrs(units="1")
+    row = row.drop_vars("site")
+    width = float(found["restitution"][1] - found["restitution"][0])
+    density = row["restitution_count"].sum("batch") / (row["number"].sum("batch") * width)
+    each = row["restitution_count"] / (row["number"] * width)
+    keep("density", density, each, "probability density of restitution")
 
-    fast = batches["velocity"] >= SLOWEST
-    text = f"share of energy-creating impacts at {SLOWEST:g} m/s and above"
+    fast, where = batches["velocity"] >= SLOWEST, f"at {SLOWEST:g} m/s and above"
     all_fast, fast_created = happened.where(fast).sum("velocity"), created.where(fast).sum("velocity")
-    keep("total_share", fast_created.sum("batch") / all_fast.sum("batch"), fast_created / all_fast, text)
-    text = f"largest factor of kinetic energy in an impact at {SLOWEST:g} m/s and above"
+    keep_share("total_share", fast_created, all_fast, f"energy-creating impacts {where}")
     largest = factor.where(fast).max(("batch", "velocity"))
-    found["total_factor"] = largest.assign_attrs(long_name=text, units="1")
-    impacts, gains = batches["all_impacts"], batches["energy_created_impacts"]
-    text = "share of energy-creating impacts among all"
-    keep("all_share", gains.sum("batch") / impacts.sum("batch"), gains / impacts, text)
-    found["all_factor"] = (
-        batches["largest_energy_ratio_of_all"].max("batch").assign_attrs(long_name="largest factor of all")
-    )
-    found["all_impacts"] = impacts.sum("batch").assign_attrs(long_name="all impacts")
-    found["total_impacts"] = all_fast.sum("batch").assign_attrs(
-        long_name=f"impacts at {SLOWEST:g} m/s and above"
-    )
-    found["bound"] = xr.DataArray(
-        bound(body, NORMAL, 1.0), attrs={"long_name": "no impact exceeds this factor"}
-    )
+    keep("total_factor", largest, None, f"largest factor of kinetic energy in an impact {where}")
+    keep("total_impacts", all_fast.sum("batch"), None, f"impacts {where}")
+    impacts = batches["all_impacts"]
+    keep_share("all_share", batches["energy_created_impacts"], impacts, "energy-creating impacts among all")
+    keep("all_factor", of_all.max("batch"), None, "largest factor of all")
+    keep("all_impacts", impacts.sum("batch"), None, "all impacts")
+    keep("bound", xr.DataArray(bound(body, NORMAL, 1.0)), None, "no impact exceeds this factor")
     return found.drop_vars("restitution_edges", errors="ignore")
-
-
-def _by_site(values: xr.DataArray) -> xr.DataArray:
-    """Let the bins of ε be numbered, as they differ from body to body."""
-    return values.rename(restitution="site").drop_vars("site", errors="ignore")
 
 
 def coupling(body: Dumbbell, angle: FloatArray) -> FloatArray:

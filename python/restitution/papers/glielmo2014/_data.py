@@ -1,7 +1,6 @@
 """What each figure shows, reduced from the runs to the numbers that are drawn."""
 
 from collections.abc import Mapping
-from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -9,8 +8,8 @@ import xarray as xr
 
 from restitution import analytic, fit
 from restitution.drop.reduce import reduce, standard_errors
-from restitution.papers.glielmo2014._counted import impacts_counted
-from restitution.papers.glielmo2014._misprints import printed_density
+from restitution.papers.figures import counted, recorded
+from restitution.papers.glielmo2014._checks import printed_density
 from restitution.papers.glielmo2014._runs import Runs
 from restitution.papers.glielmo2014._settings import Settings
 from restitution.papers.glielmo2014._windows import (
@@ -28,59 +27,53 @@ QUANTILES = (0.01, 0.5, 0.99)
 _FEWEST_FOR_QUANTILES = 200
 
 
-def restitution_map(runs: Runs, s: Settings) -> xr.Dataset:
-    """Fig. 2: ``restitution_count`` on the lattice of impact velocity and restitution."""
-    return runs.counted.lattice.assign_attrs(_about_counted(runs.counted.lattice))
+def lattice(runs: Runs, s: Settings) -> xr.Dataset:
+    """Figs. 2 and 3: counts on the lattices of impact velocity and restitution, and of it and E_rot/E_tot."""
+    return runs.lattice.assign_attrs(counted(runs.lattice))
 
 
-def fraction_map(runs: Runs, s: Settings) -> xr.Dataset:
-    """Fig. 3: ``fraction_count`` on the lattice of impact velocity and E_rot/E_tot."""
-    return runs.counted.lattice.assign_attrs(_about_counted(runs.counted.lattice))
-
-
-def low_velocity_map(runs: Runs, s: Settings) -> xr.Dataset:
+def slow(runs: Runs, s: Settings) -> xr.Dataset:
     """Fig. 7: as Fig. 2 at low and negative impact velocity."""
-    return runs.counted.slow.assign_attrs(_about_counted(runs.counted.slow))
+    return runs.slow.assign_attrs(counted(runs.slow))
 
 
 def restitution_histograms(runs: Runs, s: Settings) -> xr.Dataset:
     """Fig. 4: density of restitution at each speed with its asymmetric Laplace fit to recorded impacts."""
     parts = []
-    for counted, window, width in zip(
-        at_speeds(runs.counted.windows, s), s.speed_windows, s.histogram_widths, strict=True
-    ):
+    windows = zip(at_speeds(runs.windows, s), s.speed_windows, s.histogram_widths, strict=True)
+    for found, window, width in windows:
         particle, values = _window(runs.main, "restitution", window)
         edges = histogram_edges(s, width)
         fitted = fit.asymmetric_laplace(values)
         # The cusp itself is among the points, lest the curve cut it off.
         points = np.sort(np.append(np.linspace(edges[0], edges[-1], 400), fitted.parameters["location"]))
-        count = coarse(counted["restitution_count"].to_numpy(), s, width)
-        part = _histogram(count, int(counted["number"]), edges, _together(particle, values, edges))
+        count = coarse(found["restitution_count"].to_numpy(), s, width)
+        part = _histogram(count, int(found["number"]), edges, _together(particle, values, edges))
         part["fit_point"] = ("point", points)
         part["fit_density"] = ("point", fitted.pdf(points))
         part["fit_number"] = values.size
         for name, value in fitted.parameters.items():
             part[f"fit_{name}"] = value
         parts.append(part)
-    return _by_speed(parts, s).assign_attrs(_about(runs.main), **_about_counted(runs.counted.windows))
+    return _by_speed(parts, s).assign_attrs(recorded(runs.main), **counted(runs.windows))
 
 
 def fraction_histograms(runs: Runs, s: Settings) -> xr.Dataset:
     """Fig. 5: density of E_rot/E_tot at each speed."""
     edges = mesh(*s.fraction_range, s.fraction_mesh)
     parts = []
-    for counted, window in zip(at_speeds(runs.counted.windows, s), s.speed_windows, strict=True):
+    for found, window in zip(at_speeds(runs.windows, s), s.speed_windows, strict=True):
         together = _together(*_window(runs.main, "rotational_fraction", window), edges)
-        count = counted["fraction_count"].to_numpy()
-        parts.append(_histogram(count, int(counted["number"]), edges, together))
-    return _by_speed(parts, s).assign_attrs(_about(runs.main), **_about_counted(runs.counted.windows))
+        count = found["fraction_count"].to_numpy()
+        parts.append(_histogram(count, int(found["number"]), edges, together))
+    return _by_speed(parts, s).assign_attrs(recorded(runs.main), **counted(runs.windows))
 
 
 def bead_deviation(runs: Runs, s: Settings) -> xr.Dataset:
     """Fig. 6: standard deviation of restitution against impact velocity, by elongation."""
-    counted = runs.counted.beads
-    drawn = _deviations(runs.beads, "elongation", mesh(*s.deviation_range, s.deviation_mesh), counted)
-    return drawn.assign_attrs(_about_counted(*counted.values()))
+    edges = mesh(*s.deviation_range, s.deviation_mesh)
+    drawn = _deviations(runs.beads, "elongation", edges, runs.beads_counted)
+    return drawn.assign_attrs(counted(*runs.beads_counted.values()))
 
 
 def first_impact(runs: Runs, s: Settings) -> xr.Dataset:
@@ -106,7 +99,7 @@ def first_impact(runs: Runs, s: Settings) -> xr.Dataset:
     drawn["pull"] = ("bin", (drawn["impacts"].to_numpy() - values.size * chance) / deviation)
     drawn["negative"] = np.count_nonzero(values < 0) / values.size
     drawn["negative_exact"] = float(exact.cdf(0.0))
-    return drawn.assign_attrs(_about(runs.first))
+    return drawn.assign_attrs(recorded(runs.first))
 
 
 def map_sensitivity(runs: Runs, s: Settings) -> xr.Dataset:
@@ -118,7 +111,7 @@ def map_sensitivity(runs: Runs, s: Settings) -> xr.Dataset:
         sides.append(
             xr.concat(found, xr.DataArray(list(by), dims=axis, name=axis)).rename(quantile_value=f"by_{axis}")
         )
-    return xr.merge(sides).assign_attrs(_about(*_varied(runs, s.elongation)))
+    return xr.merge(sides).assign_attrs(recorded(*_varied(runs, s.elongation)))
 
 
 def deviation_sensitivity(runs: Runs, s: Settings) -> xr.Dataset:
@@ -129,31 +122,7 @@ def deviation_sensitivity(runs: Runs, s: Settings) -> xr.Dataset:
     for axis, by in (("radius", runs.by_radius), ("height", runs.by_height)):
         side = _deviations({value: pair[x] for value, pair in by.items()}, axis, edges)
         sides.append(side.rename({name: f"{name}_by_{axis}" for name in side.data_vars}))
-    return xr.merge(sides, combine_attrs="override").assign_attrs(_about(*_varied(runs, x)))
-
-
-def _about(*runs: xr.Dataset) -> dict[str, Any]:
-    """Attributes for a caption: what all runs have in common, their seeds, and what was recorded."""
-    common = {
-        name: value
-        for name, value in runs[0].attrs.items()
-        if name not in ("seed", "run") and all(run.attrs[name] == value for run in runs)
-    }
-    return {
-        **common,
-        "seeds": [int(run.attrs["seed"]) for run in runs],
-        "particles_recorded": runs[0].sizes["particle"],
-        "impacts_recorded": int(sum(run["impacts"].sum() for run in runs)),
-    }
-
-
-def _about_counted(*ensembles: xr.Dataset) -> dict[str, Any]:
-    """Attributes for a caption: seeds, and how many particles (of each) and impacts (of all) were counted."""
-    return {
-        "seeds": [int(found.attrs["seed"]) for found in ensembles],
-        "particles": ensembles[0].attrs["particles"],
-        "impacts_counted": sum(map(impacts_counted, ensembles)),
-    }
+    return xr.merge(sides, combine_attrs="override").assign_attrs(recorded(*_varied(runs, x)))
 
 
 def _varied(runs: Runs, elongation: float) -> list[xr.Dataset]:
@@ -219,7 +188,7 @@ def _deviations(
     by: Mapping[float, xr.Dataset],
     axis: str,
     edges: FloatArray,
-    counted: Mapping[float, xr.Dataset] | None = None,
+    ensembles: Mapping[float, xr.Dataset] | None = None,
 ) -> xr.Dataset:
     """Give, in each velocity bin and for each run, the standard deviation of restitution and its error.
 
@@ -228,7 +197,7 @@ def _deviations(
     """
     parts = []
     for value, data in by.items():
-        found = reduce(data, edges, [0.0, 1.0]) if counted is None else counted[value]
+        found = reduce(data, edges, [0.0, 1.0]) if ensembles is None else ensembles[value]
         deviation, error = found["variance"] ** 0.5, standard_errors(data, edges)
         ratio = found.attrs["particles"] / data.attrs["particles"]
         parts.append(
@@ -241,7 +210,7 @@ def _deviations(
             )
         )
     joined = xr.concat(parts, xr.DataArray(list(by), dims=axis, name=axis))
-    return joined.assign_attrs(_about(*by.values()))
+    return joined.assign_attrs(recorded(*by.values()))
 
 
 def _quantiles(data: xr.Dataset, edges: FloatArray) -> xr.Dataset:

@@ -1,33 +1,15 @@
-"""Every number the redrawn paper depends on, each marked as the paper's or as ours."""
+"""Every number that the figures depend on."""
 
-from collections.abc import Iterator
-from dataclasses import dataclass, field, fields
-from typing import Any, NamedTuple
+from dataclasses import dataclass
 
 from restitution.bodies import Dumbbell
 from restitution.laws import TangentialRestitution
-
-
-def _paper(value: Any, unit: str, text: str) -> Any:
-    return field(default=value, metadata={"source": "paper", "unit": unit, "text": text})
-
-
-def _ours(value: Any, unit: str, text: str) -> Any:
-    return field(default=value, metadata={"source": "ours", "unit": unit, "text": text})
-
-
-class Setting(NamedTuple):
-    """One row of the table of settings: ``source`` is "paper" or "ours"."""
-
-    name: str
-    value: Any
-    unit: str
-    source: str
-    text: str
+from restitution.papers import settings
+from restitution.papers.settings import chosen, stated
 
 
 @dataclass(frozen=True)
-class Settings:
+class Settings(settings.Settings):
     """What PRE 90, 052204 states, and what we chose where it is silent. SI units.
 
     The motion depends on L/R, the law, and release height and speed in units of R and √(gR): a body with
@@ -35,60 +17,62 @@ class Settings:
     """
 
     # The body and the law.
-    radius: float = _ours(3e-3, "m", "radius R of either sphere")
-    elongation: float = _paper(0.1, "1", "L/R of Figs. 2-5 and 7")
-    bead_elongations: tuple[float, ...] = _paper((0.01, 0.02), "1", "L/R of Fig. 6, average glass beads")
-    first_elongation: float = _paper(2.0, "1", "L/R of Fig. 9")
-    energy_elongations: tuple[float, ...] = _ours((0.1, 0.5, 2.0), "1", "L/R of the energy ledger")
-    normal: float = _paper(0.98, "1", "normal restitution of the contact point, Figs. 2-7")
-    first_normal: float = _paper(0.4, "1", "normal restitution of the contact point, Fig. 9")
-    tangential: float = _paper(1.0, "1", "tangential restitution of the contact point")
+    radius: float = chosen(3e-3, "m", "radius R of either sphere")
+    elongation: float = stated(0.1, "1", "L/R of Figs. 2-5 and 7")
+    bead_elongations: tuple[float, ...] = stated((0.01, 0.02), "1", "L/R of Fig. 6, average glass beads")
+    first_elongation: float = stated(2.0, "1", "L/R of Fig. 9")
+    energy_elongations: tuple[float, ...] = chosen((0.1, 0.5, 2.0), "1", "L/R of the energy ledger")
+    normal: float = stated(0.98, "1", "normal restitution of the contact point, Figs. 2-7")
+    first_normal: float = stated(0.4, "1", "normal restitution of the contact point, Fig. 9")
+    tangential: float = stated(1.0, "1", "tangential restitution of the contact point")
 
     # The experiment.
-    release_height: float = _ours(0.06, "m", "release height of the centre of mass")
-    gravity: float = _ours(9.81, "m/s²", "gravitational acceleration")
-    orientation: str = _paper("uniform-angle", "", "release angle θ uniform in [0, π)")
-    least_impacts: int = _paper(400_000, "1", "impacts in Fig. 2, the fewest to count")
-    recorded_impacts: int = _ours(
+    release_height: float = chosen(0.06, "m", "release height of the centre of mass")
+    gravity: float = chosen(9.81, "m/s²", "gravitational acceleration")
+    orientation: str = stated("uniform-angle", "", "release angle θ uniform in [0, π)")
+    least_impacts: int = stated(400_000, "1", "impacts in Fig. 2, the fewest to count")
+    recorded_impacts: int = chosen(
         4_000_000, "1", "impacts to record at most, main run: for the claims, fits and standard errors"
     )
     # Cut short, low speeds are seen only in unusual trajectories. With these numbers over 99 % of all
     # impacts at each speed of Figs. 2-6 are seen (with 400, 79 % at 0.05 m/s and 85 % at 0.1 m/s for L/R
     # = 0.1), and most trajectories end by themselves, from the 660th impact on.
-    impacts_per_particle: int = _ours(1200, "1", "impacts followed on each particle, main and secondary runs")
-    mean_impacts: int = _ours(980, "1", "impacts per particle of the main run, at least, on average")
-    bead_impacts_per_particle: int = _ours(400, "1", "impacts followed on each particle, L/R of Fig. 6")
-    sensitivity_impacts_per_particle: int = _ours(1600, "1", "impacts on each particle, other R and heights")
-    secondary_particles: int = _ours(1000, "1", "particles recorded in each secondary run")
-    first_particles: int = _ours(1_000_000, "1", "particles in Fig. 9, one impact each")
-    radii: tuple[float, ...] = _ours((1e-3, 3e-3, 10e-3), "m", "radii of the sensitivity figures")
-    heights: tuple[float, ...] = _ours((0.03, 0.06, 0.2), "m", "release heights of the sensitivity figures")
+    impacts_per_particle: int = chosen(
+        1200, "1", "impacts followed on each particle, main and secondary runs"
+    )
+    mean_impacts: int = chosen(980, "1", "impacts per particle of the main run, at least, on average")
+    bead_impacts_per_particle: int = chosen(400, "1", "impacts followed on each particle, L/R of Fig. 6")
+    sensitivity_impacts_per_particle: int = chosen(1600, "1", "impacts on each particle, other R and heights")
+    secondary_particles: int = chosen(1000, "1", "particles recorded in each secondary run")
+    first_particles: int = chosen(1_000_000, "1", "particles in Fig. 9, one impact each")
+    radii: tuple[float, ...] = chosen((1e-3, 3e-3, 10e-3), "m", "radii of the sensitivity figures")
+    heights: tuple[float, ...] = chosen((0.03, 0.06, 0.2), "m", "release heights of the sensitivity figures")
 
     # What is drawn.
-    velocity_mesh: float = _paper(0.002, "m/s", "lattice of Figs. 2, 3, 7, impact velocity, origin 0")
-    restitution_mesh: float = _paper(0.01, "1", "lattice of Figs. 2 and 7, restitution, origin 0")
-    fraction_mesh: float = _ours(
+    velocity_mesh: float = stated(0.002, "m/s", "lattice of Figs. 2, 3, 7, impact velocity, origin 0")
+    restitution_mesh: float = stated(0.01, "1", "lattice of Figs. 2 and 7, restitution, origin 0")
+    fraction_mesh: float = chosen(
         0.005, "1", "lattice of Fig. 3 and bins of Fig. 5, rotational fraction, origin 0"
     )
-    velocity_range: tuple[float, float] = _ours((0.05, 1.1), "m/s", "impact velocities in Figs. 2 and 3")
-    restitution_range: tuple[float, float] = _ours((0.4, 1.6), "1", "restitution in Fig. 2")
-    fraction_range: tuple[float, float] = _ours((0.0, 0.35), "1", "rotational fraction in Figs. 3 and 5")
-    low_velocity_range: tuple[float, float] = _ours((-0.024, 0.1), "m/s", "impact velocities in Fig. 7")
-    low_restitution_range: tuple[float, float] = _ours((-3.0, 4.0), "1", "restitution in Fig. 7")
-    lowest_speed: float = _paper(0.1, "m/s", "the one speed of Fig. 4 that the text names")
-    other_speeds: tuple[float, ...] = _ours((0.2, 0.4, 0.8), "m/s", "the other speeds of Figs. 4 and 5")
-    speed_tolerance: float = _ours(0.05, "1", "half-width of the speed windows, as a share of the speed")
-    histogram_widths: tuple[float, ...] = _ours(
+    velocity_range: tuple[float, float] = chosen((0.05, 1.1), "m/s", "impact velocities in Figs. 2 and 3")
+    restitution_range: tuple[float, float] = chosen((0.4, 1.6), "1", "restitution in Fig. 2")
+    fraction_range: tuple[float, float] = chosen((0.0, 0.35), "1", "rotational fraction in Figs. 3 and 5")
+    low_velocity_range: tuple[float, float] = chosen((-0.024, 0.1), "m/s", "impact velocities in Fig. 7")
+    low_restitution_range: tuple[float, float] = chosen((-3.0, 4.0), "1", "restitution in Fig. 7")
+    lowest_speed: float = stated(0.1, "m/s", "the one speed of Fig. 4 that the text names")
+    other_speeds: tuple[float, ...] = chosen((0.2, 0.4, 0.8), "m/s", "the other speeds of Figs. 4 and 5")
+    speed_tolerance: float = chosen(0.05, "1", "half-width of the speed windows, as a share of the speed")
+    histogram_widths: tuple[float, ...] = chosen(
         (0.024, 0.012, 0.006, 0.002), "1", "restitution bins of Fig. 4"
     )
-    histogram_bins: int = _ours(60, "1", "bins in each histogram of Fig. 4, half on either side of ε_n")
-    deviation_mesh: float = _ours(0.02, "m/s", "velocity bins of Fig. 6")
-    deviation_range: tuple[float, float] = _ours((0.02, 1.1), "m/s", "impact velocities in Fig. 6")
-    sensitivity_mesh: float = _ours(0.05, "m/s", "velocity bins, other R and heights")
-    sensitivity_range: tuple[float, float] = _ours(
+    histogram_bins: int = chosen(60, "1", "bins in each histogram of Fig. 4, half on either side of ε_n")
+    deviation_mesh: float = chosen(0.02, "m/s", "velocity bins of Fig. 6")
+    deviation_range: tuple[float, float] = chosen((0.02, 1.1), "m/s", "impact velocities in Fig. 6")
+    sensitivity_mesh: float = chosen(0.05, "m/s", "velocity bins, other R and heights")
+    sensitivity_range: tuple[float, float] = chosen(
         (0.1, 2.0), "m/s", "impact velocities, other R and heights"
     )
-    first_mesh: float = _ours(0.005, "1", "restitution bins of Fig. 9")
+    first_mesh: float = chosen(0.005, "1", "restitution bins of Fig. 9")
 
     @property
     def speeds(self) -> tuple[float, ...]:
@@ -99,6 +83,11 @@ class Settings:
     def speed_windows(self) -> tuple[tuple[float, float], ...]:
         """The half-open window of impact velocity [lo, hi) in m/s that stands for each of `speeds`."""
         return tuple((v * (1 - self.speed_tolerance), v * (1 + self.speed_tolerance)) for v in self.speeds)
+
+    @property
+    def labels(self) -> list[str]:
+        """The four speeds as text."""
+        return [f"{v:g} m/s" for v in self.speeds]
 
     @property
     def law(self) -> TangentialRestitution:
@@ -114,9 +103,3 @@ class Settings:
         """Dumbbell with this L/R; `radius` is `Settings.radius` unless given."""
         r = self.radius if radius is None else radius
         return Dumbbell(radius=r, separation=elongation * r)
-
-    def rows(self) -> Iterator[Setting]:
-        """Every setting with its unit, its source and what it means, in the order of this file."""
-        for item in fields(self):
-            about = item.metadata
-            yield Setting(item.name, getattr(self, item.name), about["unit"], about["source"], about["text"])

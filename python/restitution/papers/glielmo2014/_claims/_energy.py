@@ -7,11 +7,12 @@ import numpy as np
 import xarray as xr
 
 from restitution._internal.text import with_error
-from restitution.papers.glielmo2014._claims._claim import Claim, Measurement, verdict
-from restitution.papers.glielmo2014._claims._estimate import Array, in_bins
+from restitution.papers.claims import Claims, Finding, Measurement, verdict
+from restitution.papers.estimate import Array, in_bins
 from restitution.papers.glielmo2014._runs import Runs
 from restitution.papers.glielmo2014._settings import Settings
 
+CLAIMS: Claims[Runs, Settings] = Claims()
 GAIN = 1e-9
 """Relative gain of energy that counts. An energy ratio is rounded at 1e−15 or so; the share of impacts above
 1e−12 is recorded beside, and where the two agree the threshold decides nothing."""
@@ -73,8 +74,8 @@ def energies(data: xr.Dataset, gravity: float) -> Array:
     return energy
 
 
-def judge(runs: Runs, settings: Settings) -> list[Claim]:
-    """Judge the claim of Sec. III on energy."""
+@CLAIMS.add("no-dissipation", "ε_t = 1 (no energy dissipation in tangential direction)", "Sec. III")
+def no_dissipation(runs: Runs, settings: Settings) -> Finding:
     low, high = settings.velocity_range
     drawn = gains(runs.main, low, high)
     found = gains_by_elongation(runs)
@@ -91,21 +92,16 @@ def judge(runs: Runs, settings: Settings) -> list[Claim]:
         )
     ]
     none = most.share == 0
-    return [
-        Claim(
-            key="no-dissipation",
-            quote="ε_t = 1 (no energy dissipation in tangential direction)",
-            where="Sec. III",
-            measured=tuple(measured),
-            verdict=verdict(none, drawn.share < 0.01 and most.share < 0.5),
-            rule="The normal impulse takes energy in every impact, so where energy grows the tangential "
-            f"impulse has done positive work. Holds if no impact multiplies the kinetic energy by more than "
-            f"1 + {with_error(GAIN, None)}; in part if fewer than 1 % do in the range of Fig. 2 and fewer "
-            "than half at every L/R; fails otherwise.",
-            why="No impact creates energy."
-            if none
-            else "Keeping the tangential contact velocity takes a tangential impulse, and that creates "
-            f"kinetic energy in {100 * most.share:.3g} % of the impacts at the worst L/R, up to a factor "
-            f"{max(g.largest for g in found.values()):.3g}.",
-        )
-    ]
+    return Finding(
+        measured=tuple(measured),
+        verdict=verdict(none, drawn.share < 0.01 and most.share < 0.5),
+        rule="The normal impulse takes energy in every impact, so where energy grows the tangential "
+        f"impulse has done positive work. Holds if no impact multiplies the kinetic energy by more than "
+        f"1 + {with_error(GAIN, None)}; in part if fewer than 1 % do in the range of Fig. 2 and fewer "
+        "than half at every L/R; fails otherwise.",
+        why="No impact creates energy."
+        if none
+        else "Keeping the tangential contact velocity takes a tangential impulse, and that creates "
+        f"kinetic energy in {100 * most.share:.3g} % of the impacts at the worst L/R, up to a factor "
+        f"{max(g.largest for g in found.values()):.3g}.",
+    )

@@ -11,12 +11,14 @@ import xarray as xr
 from restitution.bodies import ball_grade, from_roundness
 from restitution.experiment.budget import error_budget
 from restitution.laws import Frictionless, TangentialRestitution
-from restitution.papers.glielmo2014._claims._claim import SIGNIFICANT, Claim, Measurement, listed, verdict
-from restitution.papers.glielmo2014._claims._dependence import followed, following
-from restitution.papers.glielmo2014._claims._estimate import in_windows
+from restitution.papers.claims import SIGNIFICANT, Claims, Finding, Measurement, listed, verdict
+from restitution.papers.estimate import in_windows
+from restitution.papers.glielmo2014._claims._scatter import by_elongation
+from restitution.papers.glielmo2014._claims._shape import followed, following
 from restitution.papers.glielmo2014._runs import Runs
 from restitution.papers.glielmo2014._settings import Settings
 
+CLAIMS: Claims[Runs, Settings] = Claims()
 TIMING, GRAVITY_ERROR, DROP_ERROR, TILT, SPIN = 10e-6, 0.01, 1e-3, 2e-3, 2.0
 """A careful experiment with a microphone: 10 µs, 0.01 m/s², 1 mm, 2 mrad, 2 rad/s at release."""
 DROP, COEFFICIENTS, NORMAL = 0.1, 20, 0.95
@@ -35,17 +37,6 @@ class Ball:
     diameter: float
     out_of_roundness: float
     density: float
-
-
-def judge(runs: Runs, settings: Settings) -> list[Claim]:
-    """Judge the claims on experiments."""
-    return [
-        _considerable(runs, settings),
-        _reservoir(runs, settings),
-        _regime(runs, settings),
-        _dominates(settings),
-        _may_dominate(settings),
-    ]
 
 
 def _balls(settings: Settings) -> tuple[Ball, ...]:
@@ -105,69 +96,26 @@ _EXPERIMENT = (
 )
 
 
-def _dominates(settings: Settings) -> Claim:
-    shares = _shares(settings)
-    single = [name for name, (one, _) in shares.items() if one > 0.5]
-    fitted = [name for name, (_, fit) in shares.items() if fit > 0.5]
-    return Claim(
-        key="eccentricity-dominates",
-        quote="for bouncing-ball experiments, the error originating from the eccentricity dominates the "
-        "total error of the experiment and cannot be disregarded",
-        where="Sec. III, with ref. 20 (unpublished)",
-        measured=tuple(
-            Measurement(f"share of the eccentricity in the variance of {what}", share, at=name)
-            for name, both in shares.items()
-            for what, share in zip(("ε at 0.5 m/s", "the fitted ε_n"), both, strict=True)
-        ),
-        verdict=verdict(len(single) == len(fitted) == len(shares), bool(single)),
-        rule=f"{_EXPERIMENT}It dominates with more than half of the variance. Holds if it does for every "
-        "ball and law, of one ε and of the fitted ε_n; in part if for some of one ε; fails otherwise.",
-        why=f"In one ε it dominates for {'; '.join(single) or 'no ball'}; in the fitted ε_n for "
-        f"{'; '.join(fitted) or 'none'}. A nearly round ball turns too slowly for its shape to show in "
-        "times of flight.",
-    )
-
-
-def _may_dominate(settings: Settings) -> Claim:
-    shares = {name: one for name, (one, _) in _shares(settings).items()}
-    beads = {name: share for name, share in shares.items() if name.startswith("glass")}
-    most, least = max(beads.values()), min(beads.values())
-    return Claim(
-        key="may-dominate",
-        quote="the deviation of the shape of the particle from the perfect sphere is one of the largest "
-        "sources of uncertainty and may even dominate the total error of the measurement",
-        where="Sec. V, with ref. 20 (unpublished)",
-        measured=tuple(
-            Measurement("share of the eccentricity in the variance of ε at 0.5 m/s", share, at=name)
-            for name, share in beads.items()
-        ),
-        verdict=verdict(most > 0.5 and least > 0.1, most > 0.5),
-        rule=f"{_EXPERIMENT}Of one ε of the average glass beads of Fig. 6: holds if it is more than half for "
-        "one bead and law, and more than a tenth for each; in part if only the first; fails otherwise.",
-        why=f"For glass beads the share is between {least:.2g} and {most:.2g}, depending on law and bead.",
-    )
-
-
-def _considerable(runs: Runs, settings: Settings) -> Claim:
-    labels = [f"{v:g} m/s" for v in settings.speeds]
+@CLAIMS.add(
+    "considerable-variance",
+    "the angular orientation at the instant of the collision whose variance is considerable, even for "
+    "small eccentricity […] even for rather small eccentricity, the coefficient of restitution reveals "
+    "significant fluctuations",
+    "Abstract; Sec. V",
+)
+def considerable(runs: Runs, settings: Settings) -> Finding:
     lost = 1.0 - settings.normal
-    sigma = {}
-    for elongation, data in (*runs.beads.items(), (settings.elongation, runs.main)):
-        impacts = in_windows(data["impact_velocity"], settings.speed_windows)
-        sigma[elongation] = impacts.deviations(impacts.of(data["restitution"]))
+    sigma = by_elongation(runs, settings)
     above = {x: bool(np.all(one.beyond(lost) > SIGNIFICANT)) for x, one in sigma.items()}
     some = {x: bool(np.any(one.beyond(lost) > SIGNIFICANT)) for x, one in sigma.items()}
     named, everywhere = (
         "L/R = " + ", ".join(f"{x:g}" for x, yes in those.items() if yes) if any(those.values()) else "no L/R"
         for those in (some, above)
     )
-    return Claim(
-        key="considerable-variance",
-        quote="the angular orientation at the instant of the collision whose variance is considerable, even "
-        "for small eccentricity […] even for rather small eccentricity, the coefficient of restitution "
-        "reveals significant fluctuations",
-        where="Abstract; Sec. V",
-        measured=tuple(item for x in sigma for item in listed(f"σ(ε), L/R = {x:g}", labels, sigma[x])),
+    return Finding(
+        measured=tuple(
+            item for x in sigma for item in listed(f"σ(ε), L/R = {x:g}", settings.labels, sigma[x])
+        ),
         verdict=verdict(all(above.values()), any(some.values())),
         rule=f"Considerable means more than 1 − ε_n = {lost:.2g}, the loss due to the material. Holds if "
         f"σ(ε) is larger, by more than {SIGNIFICANT:g} standard errors, at each of the four speeds for every "
@@ -177,7 +125,13 @@ def _considerable(runs: Runs, settings: Settings) -> Claim:
     )
 
 
-def _reservoir(runs: Runs, settings: Settings) -> Claim:
+@CLAIMS.add(
+    "rotation-explains-scatter",
+    "The substantial increase of the data scattering with the decrease of impact velocity is attributed to "
+    "the growing role of the rotational degrees of freedom in the energy partition",
+    "Sec. V",
+)
+def reservoir(runs: Runs, settings: Settings) -> Finding:
     """Whether σ(ε) at a given share of rotation is the same at every speed."""
     data = runs.main
     windows = in_windows(data["impact_velocity"], settings.speed_windows[1:])
@@ -200,11 +154,7 @@ def _reservoir(runs: Runs, settings: Settings) -> Claim:
     names = [
         f"{v:g} m/s, E_rot/E_tot from {a:g} to {b:g}" for v in settings.speeds[1:] for a, b in pairwise(edges)
     ]
-    return Claim(
-        key="rotation-explains-scatter",
-        quote="The substantial increase of the data scattering with the decrease of impact velocity is "
-        "attributed to the growing role of the rotational degrees of freedom in the energy partition",
-        where="Sec. V",
+    return Finding(
         measured=(
             *listed("σ(ε)", names, sigma),
             Measurement("σ(ε) at the lowest over that at the highest of these speeds", ratio),
@@ -220,24 +170,27 @@ def _reservoir(runs: Runs, settings: Settings) -> Claim:
     )
 
 
-def _regime(runs: Runs, settings: Settings) -> Claim:
+@CLAIMS.add(
+    "regime-not-relevant",
+    "We believe that for most bouncing-ball experiments reported in the literature, this regime is not "
+    "relevant",
+    "Sec. III",
+)
+def regime(runs: Runs, settings: Settings) -> Finding:
     """Whether beads' successive orientations are independent at the speeds that experiments have."""
     found = {}
     measured: list[Measurement] = []
-    labels = [f"{v:g} m/s" for v in settings.speeds]
     for elongation, data in runs.beads.items():
         impacts = followed(in_windows(data["impact_velocity"], settings.speed_windows), data)
         tilt = np.abs(np.cos(data["angle"].to_numpy()))
         one = impacts.correlations(impacts.of(tilt), following(impacts, tilt))
         found[elongation] = np.abs(one.beyond(0.0)) > SIGNIFICANT
-        measured += listed(f"correlation of |cos θ| at successive impacts, L/R = {elongation:g}", labels, one)
+        measured += listed(
+            f"correlation of |cos θ| at successive impacts, L/R = {elongation:g}", settings.labels, one
+        )
     slow = all(bool(one[0]) for one in found.values())
     fast = any(bool(one[1:].any()) for one in found.values())
-    return Claim(
-        key="regime-not-relevant",
-        quote="We believe that for most bouncing-ball experiments reported in the literature, this regime is "
-        "not relevant",
-        where="Sec. III",
+    return Finding(
         measured=tuple(measured),
         verdict=verdict(not fast, slow and not all(bool(one.all()) for one in found.values())),
         rule="The regime is that of successive impacts that are not independent, found at 0.1 m/s for L/R = "
@@ -247,7 +200,55 @@ def _regime(runs: Runs, settings: Settings) -> Claim:
         why="The rounder a bead, the less it turns from impact to impact, and the higher the speed up to "
         "which impacts are dependent: "
         + "; ".join(
-            f"L/R = {x:g} at {', '.join(np.array(labels)[one]) or 'no speed'}" for x, one in found.items()
+            f"L/R = {x:g} at {', '.join(np.array(settings.labels)[one]) or 'no speed'}"
+            for x, one in found.items()
         )
         + ".",
+    )
+
+
+@CLAIMS.add(
+    "eccentricity-dominates",
+    "for bouncing-ball experiments, the error originating from the eccentricity dominates the total error "
+    "of the experiment and cannot be disregarded",
+    "Sec. III, with ref. 20 (unpublished)",
+)
+def dominates(runs: Runs, settings: Settings) -> Finding:
+    shares = _shares(settings)
+    single = [name for name, (one, _) in shares.items() if one > 0.5]
+    fitted = [name for name, (_, fit) in shares.items() if fit > 0.5]
+    return Finding(
+        measured=tuple(
+            Measurement(f"share of the eccentricity in the variance of {what}", share, at=name)
+            for name, both in shares.items()
+            for what, share in zip(("ε at 0.5 m/s", "the fitted ε_n"), both, strict=True)
+        ),
+        verdict=verdict(len(single) == len(fitted) == len(shares), bool(single)),
+        rule=f"{_EXPERIMENT}It dominates with more than half of the variance. Holds if it does for every "
+        "ball and law, of one ε and of the fitted ε_n; in part if for some of one ε; fails otherwise.",
+        why=f"In one ε it dominates for {'; '.join(single) or 'no ball'}; in the fitted ε_n for "
+        f"{'; '.join(fitted) or 'none'}. A nearly round ball turns too slowly for its shape to show in "
+        "times of flight.",
+    )
+
+
+@CLAIMS.add(
+    "may-dominate",
+    "the deviation of the shape of the particle from the perfect sphere is one of the largest sources of "
+    "uncertainty and may even dominate the total error of the measurement",
+    "Sec. V, with ref. 20 (unpublished)",
+)
+def may_dominate(runs: Runs, settings: Settings) -> Finding:
+    shares = {name: one for name, (one, _) in _shares(settings).items()}
+    beads = {name: share for name, share in shares.items() if name.startswith("glass")}
+    most, least = max(beads.values()), min(beads.values())
+    return Finding(
+        measured=tuple(
+            Measurement("share of the eccentricity in the variance of ε at 0.5 m/s", share, at=name)
+            for name, share in beads.items()
+        ),
+        verdict=verdict(most > 0.5 and least > 0.1, most > 0.5),
+        rule=f"{_EXPERIMENT}Of one ε of the average glass beads of Fig. 6: holds if it is more than half for "
+        "one bead and law, and more than a tenth for each; in part if only the first; fails otherwise.",
+        why=f"For glass beads the share is between {least:.2g} and {most:.2g}, depending on law and bead.",
     )

@@ -8,13 +8,14 @@ import xarray as xr
 
 from restitution._core import STOP_REASONS
 from restitution._internal.text import with_error
-from restitution.papers.glielmo2014._claims._claim import SIGNIFICANT, Claim, Measurement, listed, verdict
+from restitution.papers.claims import SIGNIFICANT, Claims, Finding, Measurement, listed, verdict
+from restitution.papers.estimate import Array, Estimate, blocks, in_blocks, in_windows
 from restitution.papers.glielmo2014._claims._energy import energies
-from restitution.papers.glielmo2014._claims._estimate import Array, Estimate, blocks, in_blocks, in_windows
-from restitution.papers.glielmo2014._claims._trend import RISING_RULE, falling, trend
 from restitution.papers.glielmo2014._runs import Runs
 from restitution.papers.glielmo2014._settings import Settings
+from restitution.papers.trend import RISING_RULE, falling, trend
 
+CLAIMS: Claims[Runs, Settings] = Claims()
 SPEED_BINS = 20
 BLOCKS = (0, 1, 2, 5, 10, 20, 50, 100, 200, 400)
 DENSITY_BINS = 10
@@ -23,29 +24,21 @@ REST = 1e-6
 """Share of the energy that counts as none; that of the speed 1 mm/s after a fall at 1 m/s."""
 
 
-def judge(runs: Runs, settings: Settings) -> list[Claim]:
-    """Judge the claims of Sec. III on the reservoir of rotational energy."""
-    return [
-        _share_monotone(runs, settings),
-        _grows_with_bounces(runs, settings),
-        _ceases(runs, settings),
-        _decaying(runs, settings),
-    ]
-
-
-def _share_monotone(runs: Runs, settings: Settings) -> Claim:
+@CLAIMS.add(
+    "rotation-monotone",
+    "the ratio E_rot/(E_rot + E_tran) increases monotonously in Fig. 3",
+    "Sec. III, Fig. 3, Eq. 12",
+)
+def share_monotone(runs: Runs, settings: Settings) -> Finding:
     bins = falling(runs.main, 1e-3, SPEED_BINS)
     share = bins.impacts.means(bins.impacts.of(runs.main["rotational_fraction"]))
     found = trend(share)
     shown = slice(None, None, 3)
     rolling = _rolling(settings)
-    return Claim(
-        key="rotation-monotone",
-        quote="the ratio E_rot/(E_rot + E_tran) increases monotonously in Fig. 3",
-        where="Sec. III, Fig. 3, Eq. 12",
+    return Finding(
         measured=(
             *listed("mean E_rot/E_tot", bins.labels[shown], share.take(shown)),
-            Measurement("largest step against the trend", found.worst, unit=_ERRORS),
+            found.step,
             Measurement("E_rot/E_tot of rolling, J_xx/(J_xx + mR²)", rolling),
         ),
         verdict=found.verdict,
@@ -64,7 +57,12 @@ def _rolling(settings: Settings) -> float:
     return body.transverse_inertia / (body.transverse_inertia + body.mass * body.radii[0] ** 2)
 
 
-def _grows_with_bounces(runs: Runs, settings: Settings) -> Claim:
+@CLAIMS.add(
+    "rotation-grows",
+    "the amount of rotational energy of the particle which increases on average with the number of bounces",
+    "Sec. III",
+)
+def grows_with_bounces(runs: Runs, settings: Settings) -> Finding:
     fraction = runs.main["rotational_fraction"].to_numpy()
     total = energies(runs.main, settings.gravity)
     edges = blocks(runs.main, BLOCKS)
@@ -72,11 +70,7 @@ def _grows_with_bounces(runs: Runs, settings: Settings) -> Claim:
     grows, accumulates = trend(energy), trend(share)
     labels = [f"impacts {a + 1} to {b}" if b > a + 1 else f"impact {b}" for a, b in pairwise(edges)]
     peak = int(np.argmax(energy.value))
-    return Claim(
-        key="rotation-grows",
-        quote="the amount of rotational energy of the particle which increases on average with the number "
-        "of bounces",
-        where="Sec. III",
+    return Finding(
         measured=(
             *listed("mean E_rot, over E_tot at the first impact", labels, energy),
             Measurement("largest step down of it", grows.worst, unit=_ERRORS),
@@ -94,7 +88,12 @@ def _grows_with_bounces(runs: Runs, settings: Settings) -> Claim:
     )
 
 
-def _ceases(runs: Runs, settings: Settings) -> Claim:
+@CLAIMS.add(
+    "energy-ceases",
+    "asymptotically both components of the energy, translation and rotation, will cease",
+    "Sec. III",
+)
+def ceases(runs: Runs, settings: Settings) -> Finding:
     """Look at what is left where infinitely many impacts have happened, that is, after a collapse."""
     total = energies(runs.main, settings.gravity)
     last = runs.main["impacts"].to_numpy() - 1
@@ -102,10 +101,7 @@ def _ceases(runs: Runs, settings: Settings) -> Claim:
     fraction = runs.main["rotational_fraction"].to_numpy()[np.arange(last.size), last]
     ended = runs.main["stop_reason"].to_numpy() == STOP_REASONS.index("collapse")
     kept = int(np.count_nonzero(left[ended] > REST))
-    return Claim(
-        key="energy-ceases",
-        quote="asymptotically both components of the energy, translation and rotation, will cease",
-        where="Sec. III",
+    return Finding(
         measured=(
             Measurement("mean energy left at the last impact", *_mean(left), unit="of that at the first"),
             Measurement(
@@ -139,30 +135,31 @@ def _mean(values: Array) -> tuple[float, float]:
     return float(values.mean()), float(values.std() / np.sqrt(values.size))
 
 
-def _decaying(runs: Runs, settings: Settings) -> Claim:
+@CLAIMS.add(
+    "rotation-decays",
+    "we obtain decaying functions whose slope decreases with decreasing impact velocity",
+    "Sec. III, Fig. 5",
+)
+def decaying(runs: Runs, settings: Settings) -> Finding:
     windows = in_windows(runs.main["impact_velocity"], settings.speed_windows)
     fraction = windows.of(runs.main["rotational_fraction"])
     mean = windows.means(fraction)
     rate = Estimate(1 / mean.value, mean.covariance / np.outer(mean.value, mean.value) ** 2, mean.number)
-    labels = [f"{v:g} m/s" for v in settings.speeds]
     rises = _rises(runs.main, settings)
     flattens = trend(rate)
-    rising = [label for label, rise in zip(labels, rises, strict=True) if rise > SIGNIFICANT]
+    rising = [label for label, rise in zip(settings.labels, rises, strict=True) if rise > SIGNIFICANT]
     others = [
         Measurement(f"largest rise of the density, R = {1e3 * radius:g} mm", rise, unit=_ERRORS, at=label)
         for radius, by in runs.by_radius.items()
         if radius != settings.radius
-        for label, rise in zip(labels, _rises(by[settings.elongation], settings), strict=True)
+        for label, rise in zip(settings.labels, _rises(by[settings.elongation], settings), strict=True)
     ]
-    return Claim(
-        key="rotation-decays",
-        quote="we obtain decaying functions whose slope decreases with decreasing impact velocity",
-        where="Sec. III, Fig. 5",
+    return Finding(
         measured=(
-            *listed("decay rate 1/⟨E_rot/E_tot⟩", labels, rate),
+            *listed("decay rate 1/⟨E_rot/E_tot⟩", settings.labels, rate),
             *(
                 Measurement("largest rise of the density", rise, unit=_ERRORS, at=label)
-                for label, rise in zip(labels, rises, strict=True)
+                for label, rise in zip(settings.labels, rises, strict=True)
             ),
             *others,
         ),

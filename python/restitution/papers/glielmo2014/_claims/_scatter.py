@@ -3,42 +3,42 @@
 from itertools import pairwise
 
 import numpy as np
+import xarray as xr
 
 from restitution._internal.text import with_error
-from restitution.papers.glielmo2014._claims._claim import SIGNIFICANT, Claim, Measurement, listed, verdict
+from restitution.papers.claims import SIGNIFICANT, Claims, Finding, Measurement, listed, verdict
+from restitution.papers.estimate import Estimate, in_bins, in_windows
 from restitution.papers.glielmo2014._claims._energy import energies
-from restitution.papers.glielmo2014._claims._estimate import in_bins, in_windows
-from restitution.papers.glielmo2014._claims._trend import RISING_RULE, falling, trend
 from restitution.papers.glielmo2014._runs import Runs
 from restitution.papers.glielmo2014._settings import Settings
+from restitution.papers.trend import RISING_RULE, falling, trend
 
+CLAIMS: Claims[Runs, Settings] = Claims()
 SPEED_BINS = 15
 ROUND_OFF = 1e-12
 """ε at a first impact is a quotient of a few rounded numbers of order 1."""
 
 
-def judge(runs: Runs, settings: Settings) -> list[Claim]:
-    """Judge the claims of Sec. III on the scatter of ε."""
-    return [
-        _above_one(runs, settings),
-        _expense_of_rotation(runs, settings),
-        _first_impact(runs, settings),
-        _scatter_grows(runs),
-        _scatter_and_rotation(runs, settings),
-        _beads(runs, settings),
-    ]
+def deviations(data: xr.Dataset, settings: Settings) -> Estimate:
+    """σ(ε) in the windows of the four speeds."""
+    impacts = in_windows(data["impact_velocity"], settings.speed_windows)
+    return impacts.deviations(impacts.of(data["restitution"]))
 
 
-def _above_one(runs: Runs, settings: Settings) -> Claim:
+def by_elongation(runs: Runs, settings: Settings) -> dict[float, Estimate]:
+    """σ(ε) at the four speeds for each L/R of Figs. 2 and 6."""
+    data = {**runs.beads, settings.elongation: runs.main}
+    return {elongation: deviations(one, settings) for elongation, one in data.items()}
+
+
+@CLAIMS.add("above-one", "the coefficient of restitution may exceed unity", "Sec. III, Fig. 2")
+def above_one(runs: Runs, settings: Settings) -> Finding:
     impacts = in_bins(runs.main["impact_velocity"], np.array(settings.velocity_range))
     values = impacts.of(runs.main["restitution"])
     share = impacts.means((values > 1).astype(np.float64))
     value, error = float(share.value[0]), float(share.error[0])
     low, high = settings.velocity_range
-    return Claim(
-        key="above-one",
-        quote="the coefficient of restitution may exceed unity",
-        where="Sec. III, Fig. 2",
+    return Finding(
         measured=(
             Measurement("share of ε > 1", value, error, at=f"{low:g} to {high:g} m/s"),
             Measurement("largest ε there", float(values.max())),
@@ -50,7 +50,13 @@ def _above_one(runs: Runs, settings: Settings) -> Claim:
     )
 
 
-def _expense_of_rotation(runs: Runs, settings: Settings) -> Claim:
+@CLAIMS.add(
+    "expense-of-rotation",
+    "the postcollisional linear velocity perpendicular to the plane may be larger than the precollisional "
+    "value, at the expense of rotation",
+    "Sec. III, Fig. 2",
+)
+def expense_of_rotation(runs: Runs, settings: Settings) -> Finding:
     """Whether E_rot falls whenever ε > 1; the E_rot after an impact is that before the next one."""
     rotation = energies(runs.main, settings.gravity) * runs.main["rotational_fraction"].to_numpy()
     before, after = rotation[:, :-1], rotation[:, 1:]
@@ -58,11 +64,7 @@ def _expense_of_rotation(runs: Runs, settings: Settings) -> Claim:
     impacts = impacts.only((impacts.of(runs.main["restitution"]) > 1) & np.isfinite(impacts.of(after)))
     paid = impacts.means((impacts.of(after) < impacts.of(before)).astype(np.float64))
     value, error = float(paid.value[0]), float(paid.error[0])
-    return Claim(
-        key="expense-of-rotation",
-        quote="the postcollisional linear velocity perpendicular to the plane may be larger than the "
-        "precollisional value, at the expense of rotation",
-        where="Sec. III, Fig. 2",
+    return Finding(
         measured=(
             Measurement("impacts with ε > 1 in the range of Fig. 2", float(paid.number[0])),
             Measurement("share of them in which E_rot falls", value, error),
@@ -76,7 +78,13 @@ def _expense_of_rotation(runs: Runs, settings: Settings) -> Claim:
     )
 
 
-def _first_impact(runs: Runs, settings: Settings) -> Claim:
+@CLAIMS.add(
+    "first-impact",
+    "at the first impact, the particle can only gain but not lose rotational energy […] thus, to a "
+    "macroscopic (measured) coefficient of restitution ε < ε_n",
+    "Sec. III",
+)
+def first_impact(runs: Runs, settings: Settings) -> Finding:
     cases = (
         ("uniform angle", runs.main, settings.normal),
         ("isotropic", runs.isotropic, settings.normal),
@@ -85,11 +93,7 @@ def _first_impact(runs: Runs, settings: Settings) -> Claim:
     excess = {name: data["restitution"].to_numpy()[:, 0] - normal for name, data, normal in cases}
     above = sum(int(np.count_nonzero(x > ROUND_OFF)) for x in excess.values())
     number = sum(x.size for x in excess.values())
-    return Claim(
-        key="first-impact",
-        quote="at the first impact, the particle can only gain but not lose rotational energy […] thus, to "
-        "a macroscopic (measured) coefficient of restitution ε < ε_n",
-        where="Sec. III",
+    return Finding(
         measured=(
             *(Measurement("largest ε − ε_n", float(np.nanmax(x)), at=name) for name, x in excess.items()),
             Measurement("first impacts with ε > ε_n", float(above)),
@@ -104,18 +108,20 @@ def _first_impact(runs: Runs, settings: Settings) -> Claim:
     )
 
 
-def _scatter_grows(runs: Runs) -> Claim:
+@CLAIMS.add(
+    "scatter-grows",
+    "an increasing uncertainty of the data (enhanced scatter) with decreasing impact velocity",
+    "Sec. III, Fig. 2",
+)
+def scatter_grows(runs: Runs, settings: Settings) -> Finding:
     bins = falling(runs.main, 1e-3, SPEED_BINS)
     sigma = bins.impacts.deviations(bins.impacts.of(runs.main["restitution"]))
     found = trend(sigma)
     shown = slice(None, None, 2)
-    return Claim(
-        key="scatter-grows",
-        quote="an increasing uncertainty of the data (enhanced scatter) with decreasing impact velocity",
-        where="Sec. III, Fig. 2",
+    return Finding(
         measured=(
             *listed("σ(ε)", bins.labels[shown], sigma.take(shown)),
-            Measurement("largest step against the trend", found.worst, unit="standard errors"),
+            found.step,
         ),
         verdict=found.verdict,
         rule=f"{SPEED_BINS} logarithmic bins of impact velocity, fastest first. {RISING_RULE}",
@@ -124,7 +130,13 @@ def _scatter_grows(runs: Runs) -> Claim:
     )
 
 
-def _scatter_and_rotation(runs: Runs, settings: Settings) -> Claim:
+@CLAIMS.add(
+    "scatter-and-rotation",
+    "the absolute of fluctuations, |ε − ε_n|, is intimately related to the amount of rotational energy of "
+    "the particle",
+    "Sec. III",
+)
+def scatter_and_rotation(runs: Runs, settings: Settings) -> Finding:
     inside = in_bins(runs.main["impact_velocity"], np.array(settings.velocity_range))
     fraction = inside.of(runs.main["rotational_fraction"])
     edges = np.unique(np.quantile(fraction, np.linspace(0, 1, 11)))
@@ -133,14 +145,10 @@ def _scatter_and_rotation(runs: Runs, settings: Settings) -> Claim:
     distance = impacts.means(np.abs(inside.of(runs.main["restitution"]) - settings.normal))
     found = trend(distance)
     centres = [f"E_rot/E_tot from {low:.2g} to {high:.2g}" for low, high in pairwise(edges)]
-    return Claim(
-        key="scatter-and-rotation",
-        quote="the absolute of fluctuations, |ε − ε_n|, is intimately related to the amount of rotational "
-        "energy of the particle",
-        where="Sec. III",
+    return Finding(
         measured=(
             *listed("mean |ε − ε_n|", centres[::3], distance.take(slice(None, None, 3))),
-            Measurement("largest step against the trend", found.worst, unit="standard errors"),
+            found.step,
         ),
         verdict=found.verdict,
         rule=f"Tenths of the impacts in the range of Fig. 2 by E_rot/E_tot, lowest first. {RISING_RULE}",
@@ -149,21 +157,21 @@ def _scatter_and_rotation(runs: Runs, settings: Settings) -> Claim:
     )
 
 
-def _beads(runs: Runs, settings: Settings) -> Claim:
-    labels = [f"{v:g} m/s" for v in settings.speeds]
-    sigma = {}
-    for elongation, data in (*runs.beads.items(), (settings.elongation, runs.main)):
-        impacts = in_windows(data["impact_velocity"], settings.speed_windows)
-        sigma[elongation] = impacts.deviations(impacts.of(data["restitution"]))
+@CLAIMS.add(
+    "beads",
+    "the error is rather small for small deviations from the spherical shape",
+    "Sec. III, Fig. 6",
+)
+def beads(runs: Runs, settings: Settings) -> Finding:
+    sigma = by_elongation(runs, settings)
     ordered = [sigma[x] for x in sorted(sigma)]
     longer = np.array([b.apart(a) for a, b in pairwise(ordered)])
     slower = {x: trend(sigma[x].take(slice(None, None, -1))) for x in runs.beads}
     grows, scatters = bool(np.all(longer > SIGNIFICANT)), all(t.monotone for t in slower.values())
-    return Claim(
-        key="beads",
-        quote="the error is rather small for small deviations from the spherical shape",
-        where="Sec. III, Fig. 6",
-        measured=tuple(item for x in runs.beads for item in listed(f"σ(ε), L/R = {x:g}", labels, sigma[x])),
+    return Finding(
+        measured=tuple(
+            item for x in runs.beads for item in listed(f"σ(ε), L/R = {x:g}", settings.labels, sigma[x])
+        ),
         verdict=verdict(grows and scatters, grows or scatters),
         rule=f"Holds if σ(ε) grows with L/R (up to {settings.elongation:g}) at each of the four speeds, by "
         f"more than {SIGNIFICANT:g} standard errors, and for the beads with falling speed as well; in part "

@@ -1,17 +1,23 @@
-"""Claims on the density of ε at given speed: two exponentials, asymmetric, not at 0.1 m/s (Fig. 4)."""
+"""Claims on Fig. 4: the density of ε at given speed, and how successive impacts depend when slow."""
 
 from dataclasses import dataclass
 
 import numpy as np
+import xarray as xr
+from numpy.typing import NDArray
 
 from restitution import fit
-from restitution.papers.glielmo2014._claims._claim import SIGNIFICANT, Claim, Measurement, Verdict, verdict
-from restitution.papers.glielmo2014._claims._estimate import Array, Index, in_windows, jackknife
-from restitution.papers.glielmo2014._runs import Runs, derived_seed
+from restitution.papers.claims import SIGNIFICANT, Claims, Finding, Measurement, Verdict, listed, verdict
+from restitution.papers.estimate import Array, Impacts, Index, in_windows, jackknife
+from restitution.papers.glielmo2014._runs import Runs
 from restitution.papers.glielmo2014._settings import Settings
+from restitution.papers.runs import derived_seed
+from restitution.papers.trend import falling
 
+CLAIMS: Claims[Runs, Settings] = Claims()
 RIVALS = (fit.gaussian, fit.logistic, fit.student_t)
 RESAMPLES = 499
+SLOW_BINS = 12
 REJECTED = 0.002
 """p-value at which a density is rejected: no draw from it is as far off."""
 
@@ -69,14 +75,12 @@ LAPLACE_RULE = (
 )
 
 
-def judge(runs: Runs, settings: Settings) -> list[Claim]:
-    """Judge the claims of Sec. III on the density of ε."""
-    found = _shapes(runs, settings)
-    return [_laplace(found[1:]), _asymmetric(found[1:]), _deviates(found)]
-
-
 def _shapes(runs: Runs, settings: Settings) -> list[Shape]:
-    """Shapes at the four speeds, slowest first."""
+    """Shapes at the four speeds, slowest first, which three claims share."""
+    return runs.once("shapes", lambda: _each_shape(runs, settings))
+
+
+def _each_shape(runs: Runs, settings: Settings) -> list[Shape]:
     impacts = in_windows(runs.main["impact_velocity"], settings.speed_windows)
     seed = derived_seed(runs.seed, "goodness of fit")
     drawn = impacts.one_per_particle(seed)
@@ -125,7 +129,13 @@ def _tests(one: Shape) -> tuple[Measurement, ...]:
     )
 
 
-def _laplace(shapes: list[Shape]) -> Claim:
+@CLAIMS.add(
+    "laplace",
+    "a probability density composed of two exponential functions (asymmetric Laplace function)",
+    "Sec. III, Fig. 4; Sec. V",
+)
+def laplace(runs: Runs, settings: Settings) -> Finding:
+    shapes = _shapes(runs, settings)[1:]
     measured = []
     for one in shapes:
         good = one.goodness
@@ -144,10 +154,7 @@ def _laplace(shapes: list[Shape]) -> Claim:
         f"at {one.label} it {one.verdict} (flanks exp(−|x|^k) with k = {one.exponent[0]:.3g})"
         for one in shapes
     )
-    return Claim(
-        key="laplace",
-        quote="a probability density composed of two exponential functions (asymmetric Laplace function)",
-        where="Sec. III, Fig. 4; Sec. V",
+    return Finding(
         measured=tuple(measured),
         verdict=verdict(all(v == "holds" for v in verdicts), any(v != "fails" for v in verdicts)),
         rule=LAPLACE_RULE,
@@ -155,12 +162,11 @@ def _laplace(shapes: list[Shape]) -> Claim:
     )
 
 
-def _asymmetric(shapes: list[Shape]) -> Claim:
+@CLAIMS.add("asymmetric", "(asymmetric Laplace function)", "Sec. III, Fig. 4")
+def asymmetric(runs: Runs, settings: Settings) -> Finding:
+    shapes = _shapes(runs, settings)[1:]
     clear = [abs(value) > SIGNIFICANT * error for value, error in (one.asymmetry for one in shapes)]
-    return Claim(
-        key="asymmetric",
-        quote="(asymmetric Laplace function)",
-        where="Sec. III, Fig. 4",
+    return Finding(
         measured=tuple(Measurement("ln(a/b)", *one.asymmetry, at=one.label) for one in shapes),
         verdict=verdict(all(clear), any(clear)),
         rule="a, b: decay lengths above and below the fitted cusp. Holds if ln(a/b) differs from 0 by more "
@@ -172,14 +178,16 @@ def _asymmetric(shapes: list[Shape]) -> Claim:
     )
 
 
-def _deviates(shapes: list[Shape]) -> Claim:
-    lowest, others = shapes[0], shapes[1:]
+@CLAIMS.add(
+    "not-laplace-when-slow",
+    "For very small velocity, the probability density deviates from the Laplacian (data for v_G^n = 0.1 "
+    "m/s in Fig. 4)",
+    "Sec. III, Fig. 4",
+)
+def deviates(runs: Runs, settings: Settings) -> Finding:
+    lowest, *others = shapes = _shapes(runs, settings)
     farthest = all(lowest.distance > one.distance for one in others)
-    return Claim(
-        key="not-laplace-when-slow",
-        quote="For very small velocity, the probability density deviates from the Laplacian (data for v_G^n "
-        "= 0.1 m/s in Fig. 4)",
-        where="Sec. III, Fig. 4",
+    return Finding(
         measured=(
             *_tests(lowest),
             *(Measurement("distance sup|F − F_fit|", one.distance, at=one.label) for one in shapes),
@@ -192,4 +200,87 @@ def _deviates(shapes: list[Shape]) -> Claim:
         f"{'' if lowest.rejected else 'not '}rejected and is "
         f"{lowest.distance / max(one.distance for one in others):.2g} times as far from the impacts as at "
         "the worst of the other speeds.",
+    )
+
+
+def followed(impacts: Impacts, data: xr.Dataset) -> Impacts:
+    """Those impacts of a run that have a next one with a finite ε."""
+    e = data["restitution"].to_numpy()
+    follows = np.zeros(e.shape, dtype=np.bool_)
+    follows[:, :-1] = np.isfinite(e[:, 1:])
+    return impacts.only(follows[impacts.where] & np.isfinite(e[impacts.where]))
+
+
+def following(impacts: Impacts, values: NDArray[np.generic]) -> Array:
+    """Values at the impacts that follow."""
+    particle, impact = impacts.where
+    return Impacts((particle, impact + 1), impacts.cell, impacts.cells, impacts.particles).of(values)
+
+
+def _changes(impacts: Impacts, runs: Runs) -> Array:
+    """1.0 where the next impact is on the other sphere, else 0.0."""
+    contact = runs.main["contact"].to_numpy()
+    return np.not_equal(impacts.of(contact), following(impacts, contact)).astype(np.float64)
+
+
+@CLAIMS.add(
+    "independence",
+    "For such small velocities, the angular orientations of the particle at times of successive impact are "
+    "not statistically independent",
+    "Sec. III, Fig. 4 (0.1 m/s)",
+)
+def independent(runs: Runs, settings: Settings) -> Finding:
+    impacts = followed(in_windows(runs.main["impact_velocity"], settings.speed_windows), runs.main)
+    tilt = np.abs(np.cos(runs.main["angle"].to_numpy()))
+    e = runs.main["restitution"].to_numpy()
+    change = impacts.means(_changes(impacts, runs))
+    orientation = impacts.correlations(impacts.of(tilt), following(impacts, tilt))
+    restitution = impacts.correlations(impacts.of(e), following(impacts, e))
+    scores = np.array([change.beyond(0.5), orientation.beyond(0), restitution.beyond(0)])
+    dependent = np.max(np.abs(scores), axis=0) > SIGNIFICANT
+    slowest = settings.labels[0]
+    named = [label for label, yes in zip(settings.labels, dependent, strict=True) if yes]
+    return Finding(
+        measured=(
+            *listed("correlation of |cos θ| at successive impacts", settings.labels, orientation),
+            *listed("correlation of ε at successive impacts", settings.labels, restitution),
+            *listed("share on the other sphere next time", settings.labels, change),
+        ),
+        verdict=verdict(bool(dependent[0] and not dependent[1:].any()), bool(dependent[0])),
+        rule="Impacts are dependent at a speed if a correlation differs from 0, or the share on the other "
+        f"sphere from ½, by more than {SIGNIFICANT:g} standard errors. Holds if they are so at {slowest} and "
+        f"at none of the higher speeds; in part if at {slowest} and another; fails if not at {slowest}.",
+        why=f"Successive impacts are dependent at {', '.join(named) or 'no speed'}.",
+    )
+
+
+@CLAIMS.add(
+    "sphere-to-sphere",
+    "the height of the jumps is much smaller than R such that numerical experiments show that the particle "
+    "jumps from one sphere of the dumbbell to the other",
+    "Sec. III",
+)
+def sphere_to_sphere(runs: Runs, settings: Settings) -> Finding:
+    bins = falling(runs.main, 1e-3, SLOW_BINS)
+    impacts = followed(bins.impacts, runs.main)
+    change = impacts.means(_changes(impacts, runs))
+    low = settings.speed_windows[0][1]
+    slow = np.flatnonzero(bins.speeds < low)
+    shown = change.take(list(slow))
+    above = shown.beyond(0.5) > SIGNIFICANT
+    scale = settings.lowest_speed**2 / (2 * settings.gravity * settings.radius)
+    return Finding(
+        measured=(
+            *listed("share on the other sphere next time", [bins.labels[k] for k in slow], shown),
+            Measurement("height of a jump v²/2g", scale, unit="R", at=f"{settings.lowest_speed:g} m/s"),
+        ),
+        verdict=verdict(bool(above.size and above.all()), bool(above.any())),
+        rule=f"Bins of impact velocity up to {low:.3g} m/s. Holds if the share of impacts followed by one on "
+        f"the other sphere is above ½ by more than {SIGNIFICANT:g} standard errors in each; in part if in "
+        "some; fails otherwise.",
+        why="The particle comes down on the other sphere more often than not."
+        if above.size and above.all()
+        else "The slower the impact, the more often the next one is on the same sphere: "
+        f"{100 * (1 - shown.value[-1]):.3g} % at {bins.labels[slow[-1]]}. The body makes many small "
+        "jumps on one sphere, then on the other.",
     )

@@ -6,42 +6,34 @@ import numpy as np
 import xarray as xr
 from scipy import stats
 
-from restitution.papers.glielmo2014._claims._claim import SIGNIFICANT, Claim, Measurement, listed, verdict
-from restitution.papers.glielmo2014._claims._estimate import Estimate, in_blocks, in_windows
-from restitution.papers.glielmo2014._runs import Runs, derived_seed
+from restitution.papers.claims import SIGNIFICANT, Claims, Finding, Measurement, listed, verdict
+from restitution.papers.estimate import Estimate, in_blocks, in_windows
+from restitution.papers.glielmo2014._claims._scatter import deviations
+from restitution.papers.glielmo2014._runs import Runs
 from restitution.papers.glielmo2014._settings import Settings
+from restitution.papers.runs import derived_seed
+
+CLAIMS: Claims[Runs, Settings] = Claims()
 
 
-def judge(runs: Runs, settings: Settings) -> list[Claim]:
-    """Judge whether what Sec. III leaves open may be left open."""
-    return [_orientation(runs, settings), _size_and_height(runs, settings)]
-
-
-def deviations(data: xr.Dataset, settings: Settings) -> Estimate:
-    """σ(ε) in the windows of the four speeds."""
-    impacts = in_windows(data["impact_velocity"], settings.speed_windows)
-    return impacts.deviations(impacts.of(data["restitution"]))
-
-
-def _orientation(runs: Runs, settings: Settings) -> Claim:
-    labels = [f"{v:g} m/s" for v in settings.speeds]
+@CLAIMS.add("orientation-law", "Release a particle […] at random angular orientation", "Sec. III, step 1")
+def orientation(runs: Runs, settings: Settings) -> Finding:
     one, other = runs.main, runs.isotropic
     apart = deviations(other, settings).apart(deviations(one, settings))
     first = [_first(data) for data in (other, one)]
     first_apart = float(first[0].apart(first[1])[0])
     later, at_first = bool(np.all(np.abs(apart) <= SIGNIFICANT)), abs(first_apart) <= SIGNIFICANT
-    return Claim(
-        key="orientation-law",
-        quote="Release a particle […] at random angular orientation",
-        where="Sec. III, step 1",
+    return Finding(
         measured=(
             *listed("σ(ε), uniform angle", ["first impact"], first[1]),
             *listed("σ(ε), isotropic", ["first impact"], first[0]),
-            *listed("σ(ε), uniform angle", labels, deviations(one, settings)),
-            *listed("σ(ε), isotropic", labels, deviations(other, settings)),
+            *listed("σ(ε), uniform angle", settings.labels, deviations(one, settings)),
+            *listed("σ(ε), isotropic", settings.labels, deviations(other, settings)),
             *(
                 Measurement("p (Kolmogorov–Smirnov, same density)", p, at=label)
-                for label, p in zip(labels, _same_density(one, other, settings, runs.seed), strict=True)
+                for label, p in zip(
+                    settings.labels, _same_density(one, other, settings, runs.seed), strict=True
+                )
             ),
         ),
         verdict=verdict(later and at_first, later),
@@ -73,8 +65,13 @@ def _same_density(one: xr.Dataset, other: xr.Dataset, settings: Settings, seed: 
     ]
 
 
-def _size_and_height(runs: Runs, settings: Settings) -> Claim:
-    labels = [f"{v:g} m/s" for v in settings.speeds]
+@CLAIMS.add(
+    "size-and-height",
+    "System parameters are asphericity L/R = 0.1 and microscopic coefficient of restitution, ε_n = 0.98, "
+    "ε_t = 1",
+    "Sec. III",
+)
+def size_and_height(runs: Runs, settings: Settings) -> Finding:
     measured: list[Measurement] = []
     worst = {}
     for name, by, ours in (
@@ -83,14 +80,10 @@ def _size_and_height(runs: Runs, settings: Settings) -> Claim:
     ):
         found = {value: deviations(pair[settings.elongation], settings) for value, pair in by.items()}
         for value, sigma in found.items():
-            measured += listed(f"σ(ε), {name} {1e3 * value:g} mm", labels, sigma)
+            measured += listed(f"σ(ε), {name} {1e3 * value:g} mm", settings.labels, sigma)
         worst[name] = _worst(found, ours)
     free = {name: apart <= SIGNIFICANT for name, apart in worst.items()}
-    return Claim(
-        key="size-and-height",
-        quote="System parameters are asphericity L/R = 0.1 and microscopic coefficient of restitution, ε_n "
-        "= 0.98, ε_t = 1",
-        where="Sec. III",
+    return Finding(
         measured=tuple(measured),
         verdict=verdict(all(free.values()), any(free.values())),
         rule="Radius and release height may be left open if σ(ε) at given speed does not depend on them. "

@@ -5,8 +5,8 @@ from dataclasses import dataclass
 import numpy as np
 import xarray as xr
 
-from restitution.papers.glielmo2014._claims._claim import SIGNIFICANT, Verdict, verdict
-from restitution.papers.glielmo2014._claims._estimate import Array, Estimate, Impacts, in_bins, settled_speed
+from restitution.papers.claims import SIGNIFICANT, Measurement, Verdict, verdict
+from restitution.papers.estimate import Array, Estimate, Impacts, in_bins, settled_speed
 
 RISING_RULE = (
     f"Holds if the last value is above the first by more than {SIGNIFICANT:g} standard errors and no step "
@@ -44,6 +44,11 @@ class Trend:
     def verdict(self) -> Verdict:
         """By `RISING_RULE`."""
         return verdict(self.monotone, self.rises)
+
+    @property
+    def step(self) -> Measurement:
+        """The step that speaks most against it."""
+        return Measurement("largest step against the trend", self.worst, unit="standard errors")
 
 
 def trend(estimate: Estimate) -> Trend:

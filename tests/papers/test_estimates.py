@@ -5,8 +5,11 @@ import pytest
 import xarray as xr
 
 import restitution as rs
-from restitution.papers.glielmo2014._claims import Measurement, _energy, _estimate, with_error
-from restitution.papers.glielmo2014._claims._trend import trend
+from restitution._internal.text import with_error
+from restitution.papers import estimate
+from restitution.papers.claims import Measurement
+from restitution.papers.glielmo2014._claims import _energy
+from restitution.papers.trend import trend
 
 GRAVITY = 9.81
 
@@ -22,7 +25,7 @@ def test_errors_are_those_of_correlated_impacts() -> None:
     cell = np.zeros((40, 25), np.intp)
     values: dict[str, list[tuple[float, float]]] = {"mean": [], "deviation": [], "correlation": []}
     for _ in range(400):
-        impacts = _estimate.in_cells(cell, 1)
+        impacts = estimate.in_cells(cell, 1)
         x, y = (random.normal(size=(40, 1)) + random.normal(size=cell.shape) for _ in range(2))
         for name, found in (
             ("mean", impacts.means(impacts.of(x))),
@@ -38,7 +41,7 @@ def test_errors_are_those_of_correlated_impacts() -> None:
 def test_trend_knows_that_bins_of_one_run_are_correlated() -> None:
     """Bins that differ by exactly 1 for every particle: the step has no error, however particles differ."""
     level = np.random.default_rng(13).normal(size=(50, 1))
-    impacts = _estimate.in_cells(np.tile([0, 1], (50, 1)), 2)
+    impacts = estimate.in_cells(np.tile([0, 1], (50, 1)), 2)
     found = impacts.means(impacts.of(level + np.array([0.0, 1.0])))
     assert found.error[0] > 0.1
     assert found.steps()[0] > 1e6
@@ -53,7 +56,7 @@ def test_independent_draws() -> None:
     """
     cell = np.full((5, 4), -1)
     cell[0], cell[1:, 0] = 0, 0
-    impacts = _estimate.in_cells(cell, 1)
+    impacts = estimate.in_cells(cell, 1)
     count = np.zeros((5, 4))
     for seed in range(2000):
         drawn = impacts.one_per_particle(seed)
@@ -66,7 +69,7 @@ def test_independent_draws() -> None:
 def test_jackknife_of_a_mean_is_its_standard_error() -> None:
     """With one particle a group, the jackknife of the mean is s/√n exactly."""
     x = np.random.default_rng(14).normal(size=20)
-    value, error = _estimate.jackknife(lambda a: float(a.mean()), x, np.arange(20), groups=20)
+    value, error = estimate.jackknife(lambda a: float(a.mean()), x, np.arange(20), groups=20)
     assert value == pytest.approx(x.mean())
     assert error == pytest.approx(x.std(ddof=1) / np.sqrt(20))
 

@@ -1,47 +1,10 @@
-"""Where the paper's formulas, as printed, are not what its model says: each with a proof and with numbers.
+"""Where the paper's formulas, as printed, are not what its model says.
 
 The other formulas (Eqs. 1, 4, 5, 7–13, 15–17, 20, 22, A1–A4, A6, A8) are right as printed.
 """
 
-from collections.abc import Callable
-from dataclasses import dataclass
-from typing import Literal
-
-from restitution.papers.glielmo2014._misprints import _checks
-from restitution.papers.glielmo2014._misprints._checks import Check
-from restitution.papers.glielmo2014._misprints._density import printed_density
-
-__all__ = ["MISPRINTS", "Check", "Misprint", "printed_density"]
-
-
-@dataclass(frozen=True)
-class Misprint:
-    """A formula that is wrong as printed ("misprint"), or right only where the paper does not say ("caveat").
-
-    Attributes
-    ----------
-    equation : str
-        The paper's label.
-    kind : {"misprint", "caveat"}
-        Wrong, or of smaller range than it seems.
-    printed, corrected : str
-        The formula, in plain text.
-    proof : str
-        Why the printed formula cannot be right.
-    quantity : str
-        What `check` calculates.
-    check : callable
-        Gives that quantity by the printed formula, by the corrected one, and by independent means.
-    """
-
-    equation: str
-    kind: Literal["misprint", "caveat"]
-    printed: str
-    corrected: str
-    proof: str
-    quantity: str
-    check: Callable[[], Check]
-
+from restitution.papers.glielmo2014 import _checks as checks
+from restitution.papers.misprints import Misprint
 
 MISPRINTS = (
     Misprint(
@@ -53,7 +16,7 @@ MISPRINTS = (
         "upright; Sec. III releases it at random orientation. The turn starts at τᵢ, from the "
         "orientation at τᵢ.",
         quantity="cos θ at the first impact, released from rest at θ = 60°",
-        check=_checks.released_axis,
+        check=checks.released_axis,
     ),
     Misprint(
         equation="3",
@@ -65,7 +28,7 @@ MISPRINTS = (
         "Λ with it, unless Λ is parallel to ω. From rest, ω stays perpendicular to the axis under the "
         "paper's law, so that the paper's results are not touched.",
         quantity="e_z of the axis after 0.1 s, L = 2R, from e = (1, 0, 0), ω = (10, −10, 0) rad/s",
-        check=_checks.spinning_flight,
+        check=checks.spinning_flight,
     ),
     Misprint(
         equation="6",
@@ -75,7 +38,7 @@ MISPRINTS = (
         proof="The contact point lies in the plane. With the other sphere touching, [r_G − Âr]_z = R, so that"
         " the printed r_G + r_c is 2[Âr]_z above it.",
         quantity="height of the contact point in R, L = 2R, sphere at −r touching at θ = 60°",
-        check=_checks.contact_height,
+        check=checks.contact_height,
     ),
     Misprint(
         equation="14",
@@ -85,7 +48,7 @@ MISPRINTS = (
         proof="The bracket is v_c·n, negative in an approach, and the last component is positive: as printed,"
         " the plane would pull. Eq. 15 follows from Eq. 13 only with the minus sign.",
         quantity="P·n/(m|v_G|) from rest, L = 2R, ε_n = 0.4, θ = 60°",
-        check=_checks.normal_impulse,
+        check=checks.normal_impulse,
     ),
     Misprint(
         equation="18",
@@ -95,7 +58,7 @@ MISPRINTS = (
         proof="Each of the two intervals in the braces has length arccos s, so the sum is (2/π) arccos s. "
         "They are the angles with |cos θ| > s: the lower sphere touches, and only |cos θ| counts.",
         quantity="P(|cos θ| ≤ 1/2)",
-        check=_checks.cumulative_probability,
+        check=checks.cumulative_probability,
     ),
     Misprint(
         equation="19",
@@ -105,7 +68,7 @@ MISPRINTS = (
         proof="It follows from Eq. 18. On 0 ≤ s ≤ 1, where Eq. 17 holds and has one inverse, the printed "
         "density integrates to 1/2.",
         quantity="∫ p(s) ds over 0 ≤ s ≤ 1",
-        check=_checks.total_probability,
+        check=checks.total_probability,
     ),
     Misprint(
         equation="21",
@@ -117,7 +80,7 @@ MISPRINTS = (
         "Eq. 22. The factor 2 in front is that of Eq. 19. For L = 2R and ε_n = 0.4 the printed density "
         "integrates to 0.580.",
         quantity="P(ε < 0), L = 2R, ε_n = 0.4",
-        check=_checks.negative_restitution,
+        check=checks.negative_restitution,
     ),
     Misprint(
         equation="A5",
@@ -126,7 +89,7 @@ MISPRINTS = (
         corrected="J_zz = πρ(8/15 R⁵ + 1/2 R⁴L − 1/12 R²L³ + 1/160 L⁵)",
         proof="The last term of πρ∫ϱ⁴dz is L⁵/(5·2⁵). At L = 2R, J_zz must be that of two touching spheres.",
         quantity="J_zz/(πρR⁵) at L = 2R",
-        check=_checks.axial_inertia,
+        check=checks.axial_inertia,
     ),
     Misprint(
         equation="A7",
@@ -137,7 +100,7 @@ MISPRINTS = (
         "formula: the factor ½, the square and 2LR² (printed as 2Lz²) must be corrected. Eq. A8 is the "
         "integral of Eq. A6, not of Eq. A7 as printed.",
         quantity="J_xx/(πρR⁵) at L = 2R",
-        check=_checks.transverse_inertia,
+        check=checks.transverse_inertia,
     ),
 )
 """In the order of the paper."""

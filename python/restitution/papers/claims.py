@@ -1,0 +1,132 @@
+"""A paper's claims: what is measured for each, and the verdict by a stated rule."""
+
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
+from typing import Generic, Literal, NamedTuple, TypeVar
+
+from restitution._internal.text import with_error
+from restitution.papers.estimate import Estimate
+from restitution.papers.runs import Runs
+from restitution.papers.settings import Settings
+
+R = TypeVar("R", bound=Runs)
+S = TypeVar("S", bound=Settings)
+Verdict = Literal["holds", "holds in part", "fails"]
+
+SIGNIFICANT = 4.0
+"""Standard errors from which a difference counts: two-sided 6e−5, about 1 % for a whole report."""
+
+
+@dataclass(frozen=True)
+class Measurement:
+    """A measured number.
+
+    Attributes
+    ----------
+    name : str
+    value : float
+    error : float or None
+        Standard error; None for a count, an extreme or a p-value.
+    unit : str
+    at : str
+        Condition that distinguishes it from others of the same name, such as the impact velocity.
+    """
+
+    name: str
+    value: float
+    error: float | None = None
+    unit: str = ""
+    at: str = ""
+
+    @property
+    def number(self) -> str:
+        """Value ± error and unit, as text."""
+        return f"{with_error(self.value, self.error)} {self.unit}".rstrip()
+
+    def __str__(self) -> str:
+        return f"{self.name}{', ' if self.at else ''}{self.at} = {self.number}"
+
+
+class Finding(NamedTuple):
+    """What became of a claim.
+
+    Attributes
+    ----------
+    measured : tuple of Measurement
+    verdict : {"holds", "holds in part", "fails"}
+    rule : str
+        How the verdict follows from the numbers.
+    why : str
+        A sentence on what the numbers show.
+    """
+
+    measured: tuple[Measurement, ...]
+    verdict: Verdict
+    rule: str
+    why: str
+
+
+@dataclass(frozen=True)
+class Claim:
+    """A claim of a paper, judged.
+
+    Attributes
+    ----------
+    key : str
+        Short name, unique, usable as an anchor.
+    quote, where : str
+        What the paper says, and in which section, figure or equation.
+    finding : Finding
+    """
+
+    key: str
+    quote: str
+    where: str
+    finding: Finding
+
+
+class Claims(Generic[R, S]):
+    """Claims of a paper, each with the function that judges it from the runs and the settings.
+
+    Each verdict follows from the numbers by the claim's stated rule. Impacts of one particle are correlated,
+    so every standard error takes each particle as one draw, and every p-value rests on at most one impact of
+    each.
+    """
+
+    def __init__(self, *parts: "Claims[R, S]") -> None:
+        self._judges: dict[str, tuple[str, str, Callable[[R, S], Finding]]] = {}
+        for part in parts:
+            self._judges |= part._judges
+
+    def add(
+        self, key: str, quote: str, where: str
+    ) -> Callable[[Callable[[R, S], Finding]], Callable[[R, S], Finding]]:
+        """Add the claim that the decorated function judges."""
+
+        def decorate(find: Callable[[R, S], Finding]) -> Callable[[R, S], Finding]:
+            self._judges[key] = (quote, where, find)
+            return find
+
+        return decorate
+
+    def judge(self, runs: R, settings: S) -> list[Claim]:
+        """Judge every claim, in the order in which they were added."""
+        return [
+            Claim(key, quote, where, find(runs, settings))
+            for key, (quote, where, find) in self._judges.items()
+        ]
+
+    def find(self, key: str, runs: R, settings: S) -> Finding:
+        """Judge one claim."""
+        return self._judges[key][2](runs, settings)
+
+
+def verdict(holds: bool, in_part: bool) -> Verdict:
+    """Turn two conditions, the first of which is the stronger, into a verdict."""
+    return "holds" if holds else "holds in part" if in_part else "fails"
+
+
+def listed(name: str, labels: Iterable[str], estimate: Estimate) -> tuple[Measurement, ...]:
+    """Turn each value of an estimate into a measurement at its label."""
+    values = zip(labels, estimate.value, estimate.error, strict=True)
+    return tuple(Measurement(name, float(value), float(error), at=label) for label, value, error in values)

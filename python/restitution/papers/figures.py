@@ -1,0 +1,128 @@
+"""The figures of a redrawn paper: what each is made of, its files, and its caption with every parameter."""
+
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Generic, NamedTuple
+
+import xarray as xr
+from matplotlib.figure import Figure
+
+from restitution.figures.report import grouped, save_with_data
+from restitution.papers.claims import R, S
+from restitution.papers.runs import impacts_of
+
+
+class Caption(NamedTuple):
+    """What a figure shows, and which of its parameters are the paper's and which ours.
+
+    Attributes
+    ----------
+    text : str
+    paper, ours : list of str
+        The parameters that the paper states, and those that we chose.
+    each : str
+        What every one of several runs is for, such as "for each curve".
+    recorded : str
+        What the impacts are recorded for where others are counted.
+    """
+
+    text: str
+    paper: list[str]
+    ours: list[str]
+    each: str = ""
+    recorded: str = "the standard errors"
+
+    def written(self, about: dict[str, Any]) -> str:
+        """Write all of it, and the run that these attributes tell of (see `recorded` and `counted`)."""
+        each = f" {self.each}" if self.each else ""
+        impacts = about["impacts_counted" if "impacts_counted" in about else "impacts_recorded"]
+        run = (
+            f"{grouped(about['particles'])} particles{each}, each followed for at most "
+            f"{grouped(about['impacts'])} impacts (ours), {grouped(impacts)} in all"
+        )
+        if "impacts_counted" in about and "impacts_recorded" in about:
+            run += (
+                f"; recorded, for {self.recorded}, the first {grouped(about['particles_recorded'])} "
+                f"particles{each}, {grouped(about['impacts_recorded'])} impacts in all"
+            )
+        seeds = ", ".join(map(str, about["seeds"]))
+        order = "seed " + seeds if len(about["seeds"]) == 1 else f"seeds {seeds} in the order of the legend"
+        return (
+            f"{self.text} Stated in the paper: {'; '.join(self.paper)}. Our choice: {'; '.join(self.ours)}. "
+            f"Run: {run}; {order}; restitution {about['version']}."
+        )
+
+
+def recorded(*runs: xr.Dataset) -> dict[str, Any]:
+    """Attributes for a caption: what all runs have in common, their seeds, and what was recorded."""
+    common = {
+        name: value
+        for name, value in runs[0].attrs.items()
+        if name not in ("seed", "run") and all(run.attrs[name] == value for run in runs)
+    }
+    return {
+        **common,
+        "seeds": [int(run.attrs["seed"]) for run in runs],
+        "particles_recorded": runs[0].sizes["particle"],
+        "impacts_recorded": sum(map(impacts_of, runs)),
+    }
+
+
+def counted(*ensembles: xr.Dataset) -> dict[str, Any]:
+    """Attributes for a caption: seeds, and how many particles (of each) and impacts (of all) were counted."""
+    return {
+        "seeds": [int(found.attrs["seed"]) for found in ensembles],
+        "particles": ensembles[0].attrs["particles"],
+        "impacts_counted": sum(map(impacts_of, ensembles)),
+    }
+
+
+def listing(values: Iterable[float], factor: float = 1.0) -> str:
+    """Write numbers as a sentence lists them, each times a factor."""
+    *most, last = (f"{factor * value:g}" for value in values)
+    return f"{', '.join(most)} and {last}" if most else last
+
+
+@dataclass(frozen=True)
+class PaperFigure(Generic[R, S]):
+    """How one figure comes about: reduce the runs, draw what is left, say what it is.
+
+    Attributes
+    ----------
+    name, title : str
+    shows : str
+        What can be seen, for those who cannot see it.
+    reduce, draw, caption : callable
+        From the runs to the numbers that are drawn, with the attributes of `recorded` or `counted`; from
+        these numbers to the drawing; and from them to the caption.
+    stop : int, optional
+        Of the explorer's tour, where such a figure fills up.
+    """
+
+    name: str
+    title: str
+    shows: str
+    reduce: Callable[[R, S], xr.Dataset]
+    draw: Callable[[xr.Dataset], Figure]
+    caption: Callable[[xr.Dataset, S], Caption]
+    stop: int | None = None
+
+    def save(self, runs: R, settings: S, folder: Path) -> "SavedFigure":
+        """Write the figure (``name.png``, ``name.pdf``), its caption (``.txt``) and its data (``.nc``)."""
+        drawn = self.reduce(runs, settings)
+        caption = self.caption(drawn, settings).written(drawn.attrs)
+        png = save_with_data(self.draw(drawn), drawn, folder / self.name, self.title, caption)
+        return SavedFigure(self.name, self.title, self.shows, png, caption, self.stop)
+
+
+@dataclass(frozen=True)
+class SavedFigure:
+    """A figure on disk, with what the report says of it."""
+
+    name: str
+    title: str
+    shows: str
+    png: Path
+    caption: str
+    stop: int | None = None

@@ -1,0 +1,304 @@
+"""The report on a redrawn paper: every claim with its numbers, every figure, misprint, parameter and run."""
+
+from collections import Counter
+from collections.abc import Mapping, Sequence
+from typing import Any, get_args
+
+import numpy as np
+import xarray as xr
+
+from restitution._core import STOP_REASONS
+from restitution._internal.text import with_error
+from restitution.figures import report as html
+from restitution.figures.report import Section
+from restitution.papers.claims import SIGNIFICANT, Claim, Measurement, R, S, Verdict
+from restitution.papers.figures import SavedFigure
+from restitution.papers.misprints import Misprint
+from restitution.papers.paper import Paper
+from restitution.papers.runs import Runs, impacts_of, is_counted
+from restitution.papers.settings import Settings
+
+_CLASSES: dict[str, str] = {
+    "holds": "holds",
+    "holds in part": "part",
+    "fails": "fails",
+    "misprint": "fails",
+    "caveat": "part",
+}
+"""Verdicts and kinds of misprints, in the colours of their weight."""
+_COLUMNS, _CHARACTERS = 5, 50
+"""Size of a table head, above which conditions go down instead of across."""
+
+
+def report(
+    paper: Paper[R, S],
+    runs: R,
+    figures: Sequence[SavedFigure],
+    claims: Sequence[Claim],
+    *,
+    explorer: str = "",
+) -> str:
+    """Write the redrawn and judged paper as one self-contained page of HTML.
+
+    Parameters
+    ----------
+    paper : Paper
+    runs : Runs
+    figures : sequence of SavedFigure
+        Embedded in this order.
+    claims : sequence of Claim
+    explorer : str
+        Address of the explorer as seen from the report, to which each figure is then linked.
+
+    Raises
+    ------
+    ValueError
+        If a figure is not a PNG file.
+    OSError
+        If a file cannot be read.
+    """
+    source = f"restitution {runs.version}"
+    sections = [
+        Section("claims", "The claims of the paper, checked", [_summary(claims)]),
+        Section("figures", "The figures, redrawn", [_figure(figure, explorer) for figure in figures]),
+        Section("numbers", "The numbers behind each verdict", _details(claims)),
+        Section("misprints", "Misprints", _misprints(paper.misprints)),
+        *paper.sections(runs, paper.settings),
+        Section("parameters", "Parameters", _parameters(paper.settings)),
+        Section("runs", "Simulations", _simulations(runs, paper.columns)),
+        Section("reproduce", "How to reproduce this report", _reproduce(paper.command, runs, source)),
+        Section("cite", "How to cite", [_citation(paper.reference, runs)]),
+    ]
+    if not paper.misprints:
+        sections = [one for one in sections if one.anchor != "misprints"]
+    return html.page(paper.title, _heading(paper, claims, runs, source), sections, source, contents=True)
+
+
+def number(value: float, error: float | None) -> str:
+    """Write a number with its standard error as HTML."""
+    return html.prose(with_error(float(value), None if error is None else float(error)))
+
+
+def _heading(paper: Paper[R, S], claims: Sequence[Claim], runs: R, source: str) -> str:
+    numbers = Counter(claim.finding.verdict for claim in claims)
+    counts = "\n".join(_count(verdict, numbers[verdict]) for verdict in get_args(Verdict))
+    about = (
+        f"{paper.about(runs)} Each of the {len(claims)} quantitative claims of the paper is compared with "
+        "the number measured here, with its standard error and a verdict by a stated rule. Made by "
+        f"{source}, seed {runs.seed}."
+    )
+    return "\n".join(
+        (
+            f"<h1>{html.text(paper.title)}</h1>",
+            html.paragraph(f"{paper.reference}.", "lead"),
+            html.paragraph(about),
+            f'<ul class="counts">\n{counts}\n</ul>',
+        )
+    )
+
+
+def _count(verdict: Verdict, number: int) -> str:
+    """Say how many claims have this verdict, as a list item."""
+    words = verdict if number == 1 else verdict.replace("holds", "hold").replace("fails", "fail")
+    return f'<li class="{_CLASSES[verdict]}"><b>{number}</b> {html.text(words)}</li>'
+
+
+def _badge(kind: str) -> str:
+    """Name a verdict, or a kind of misprint, in its colour."""
+    return f'<span class="badge {_CLASSES[kind]}">{html.text(kind)}</span>'
+
+
+def _summary(claims: Sequence[Claim]) -> str:
+    """List every claim in a line, with its verdict."""
+    rows = "\n".join(
+        f'<tr><td><q>{html.prose(claim.quote)}</q> <span class="small">{html.prose(claim.where)}</span></td>'
+        f"<td>{html.prose(claim.finding.why)}</td>"
+        f'<td><a href="#{html.text(claim.key)}" title="the numbers">{_badge(claim.finding.verdict)}</a></td>'
+        "</tr>"
+        for claim in claims
+    )
+    return (
+        '<table class="summary"><caption>Claims in the order of the paper; each verdict links to its '
+        'numbers.</caption><thead><tr><th scope="col">The paper</th><th scope="col">What we find</th>'
+        f'<th scope="col">Verdict</th></tr></thead><tbody>\n{rows}\n</tbody></table>'
+    )
+
+
+def _figure(figure: SavedFigure, explorer: str) -> str:
+    """Show a figure with its caption, and where it can be made and looked into impact by impact."""
+    live = ""
+    if explorer and figure.stop is not None:
+        words = f"Watch it fill up, and replay any impact, at stop {figure.stop} of the explorer's tour."
+        live = f'\n<a class="live" href="{html.text(explorer)}#stop={figure.stop}">{html.text(words)}</a>'
+    return (
+        f'<figure id="{html.text(figure.name)}">\n<h3>{html.prose(figure.title)}</h3>\n'
+        f"{html.image(figure.png, figure.shows)}\n"
+        f"<figcaption>{html.prose(figure.caption)}{live}</figcaption>\n</figure>"
+    )
+
+
+def _details(claims: Sequence[Claim]) -> list[str]:
+    """Show every claim with its numbers and the rule of its verdict."""
+    how = html.paragraph(
+        "Numbers are given ± one standard error. Impacts of one particle are correlated, so each particle "
+        "counts as one draw in every standard error, and p-values rest on at most one impact of each "
+        f"particle at a speed. A difference is significant from {SIGNIFICANT:g} standard errors; about one "
+        "report in a hundred then contains a spurious finding."
+    )
+    cards = (
+        f'<article id="{html.text(claim.key)}">\n'
+        f"<h3><q>{html.prose(claim.quote)}</q> {_badge(claim.finding.verdict)}</h3>\n"
+        f"{html.paragraph(claim.where, 'small')}\n{html.paragraph(claim.finding.why, 'why')}\n"
+        f"{measured(claim.finding.measured)}\n"
+        f"{html.paragraph('Rule: ' + claim.finding.rule, 'rule')}\n</article>"
+        for claim in claims
+    )
+    return [how, *cards]
+
+
+def measured(measurements: Sequence[Measurement]) -> str:
+    """Make one table of the numbers without condition and one for each set of conditions, with captions.
+
+    Quantities measured under the same conditions (at the same speeds, say) share a table, conditions across
+    and quantities down, or the other way round where there are many conditions.
+    """
+    single = [m for m in measurements if not m.at]
+    by_name: dict[str, dict[str, str]] = {}
+    for m in measurements:
+        if m.at:
+            by_name.setdefault(_name(m), {})[m.at] = number(m.value, m.error)
+    shared: dict[tuple[str, ...], list[str]] = {}
+    for name, row in by_name.items():
+        shared.setdefault(tuple(row), []).append(name)
+    tables = [_matrix(conditions, names, by_name) for conditions, names in shared.items()]
+    if single:
+        rows = [(html.prose(_name(m)), number(m.value, m.error)) for m in single]
+        tables.append(html.table(("", ""), rows, caption=_title([m.name for m in single]), numbers=(1,)))
+    return "\n".join(tables)
+
+
+def _name(m: Measurement) -> str:
+    return f"{m.name} ({m.unit})" if m.unit else m.name
+
+
+def _title(names: Sequence[str]) -> str:
+    """Name what a table holds, or how much of it."""
+    return names[0] if len(names) == 1 else f"{names[0]}, and {len(names) - 1} more"
+
+
+def _matrix(conditions: tuple[str, ...], names: list[str], by_name: dict[str, dict[str, str]]) -> str:
+    first, last = conditions[0], conditions[-1]
+    where = first if len(conditions) == 1 else f"{first} to {last}"
+    caption = f"{_title(names)}: {where}"
+    if len(conditions) <= _COLUMNS and sum(map(len, conditions)) <= _CHARACTERS:
+        headers = ("quantity", *map(html.prose, conditions))
+        rows = [(html.prose(name), *(by_name[name][at] for at in conditions)) for name in names]
+    else:
+        headers = ("at", *map(html.prose, names))
+        rows = [(html.prose(at), *(by_name[name][at] for name in names)) for at in conditions]
+    return html.table(headers, rows, caption=caption, numbers=range(1, len(headers)))
+
+
+def _misprints(found: Sequence[Misprint]) -> list[str]:
+    """Show every formula that is not right as printed, with proof and numbers."""
+    how = html.paragraph(
+        "Formulas of the paper that are wrong as printed (misprint), or hold in a smaller range than it "
+        "seems (caveat). Each is checked on one number: by the printed formula, by the corrected one, and "
+        "by independent means."
+    )
+    return [how, *map(_misprint, found)]
+
+
+def _misprint(one: Misprint) -> str:
+    numbers = html.table(
+        ("", "as printed", "corrected", "independent"),
+        [(html.prose(one.quantity), *(html.prose(f"{round(value, 12) + 0.0:.6g}") for value in one.check()))],
+        caption=f"Eq. {one.equation}: one number three ways",
+        numbers=(1, 2, 3),
+    )
+    formulas = "".join(
+        f'<dt>{label}</dt><dd class="formula">{html.prose(formula)}</dd>'
+        for label, formula in (("printed", one.printed), ("right", one.corrected))
+    )
+    return (
+        f"<article>\n<h3>Eq. {html.text(one.equation)} {_badge(one.kind)}</h3>\n"
+        f'<dl class="pair">{formulas}</dl>\n{html.paragraph(one.proof)}\n{numbers}\n</article>'
+    )
+
+
+def _parameters(settings: Settings) -> list[str]:
+    """Tabulate every setting and whose it is."""
+    rows = [
+        (html.prose(text), html.prose(_plain(value)), html.text("" if unit == "1" else unit), source)
+        for _, value, unit, source, text in settings.rows()
+    ]
+    return [
+        html.paragraph("What the paper states is marked “paper”; where it is silent the choice is ours."),
+        html.table(("parameter", "value", "unit", "source"), rows, caption="Parameters of the figures"),
+    ]
+
+
+def _plain(value: Any) -> str:
+    """Write a setting's value."""
+    if isinstance(value, tuple):
+        return ", ".join(map(_plain, value))
+    if isinstance(value, int):
+        return html.grouped(value)
+    return f"{value:g}" if isinstance(value, float) else str(value)
+
+
+def _simulations(runs: Runs, columns: Mapping[str, Any]) -> list[str]:
+    """Tabulate every run, the recorded ones first: parameters, size, why trajectories ended, and seed."""
+    rows = []
+    for name, data in sorted(runs.all().items(), key=lambda run: is_counted(run[1])):
+        parameters = [str(parameter(data.attrs)) for parameter in columns.values()]
+        sizes = [html.grouped(data.attrs["particles"]), html.grouped(impacts_of(data))]
+        rows.append(
+            [html.prose(c) for c in (name, *parameters, *sizes, _ended(data), str(data.attrs["seed"]))]
+        )
+    headers = ("run", *columns, "particles", "impacts", "trajectories ended", "seed")
+    numeric = [k for k in range(1, len(columns) + 3) if rows[0][k][0].isdigit()]
+    caption = "Simulations: size, seed, and why trajectories ended"
+    return [
+        html.paragraph(
+            "A trajectory that collapses has infinitely many impacts in finite time; it ends there and "
+            "nothing is regularised. Counted impacts are not recorded; the recorded run consists of the "
+            "first particles of the run of the same seed."
+        ),
+        html.table(headers, rows, caption=caption, numbers=numeric),
+    ]
+
+
+def _ended(data: xr.Dataset) -> str:
+    """Say how many trajectories ended why."""
+    numbers = (
+        data["particles_ended"].to_numpy()
+        if is_counted(data)
+        else np.bincount(data["stop_reason"].to_numpy(), minlength=len(STOP_REASONS))
+    )
+    return ", ".join(
+        f"{html.grouped(int(n))} {reason.replace('_', ' ')}"
+        for reason, n in zip(STOP_REASONS, numbers, strict=True)
+        if n
+    )
+
+
+def _reproduce(command: str, runs: Runs, source: str) -> list[str]:
+    """Give the command that makes this report."""
+    line = f"{command} --impacts {runs.asked} --seed {runs.seed}"
+    return [
+        f'<pre tabindex="0"><code>{html.text(line)}</code></pre>',
+        html.paragraph(
+            f"with {source}. The same version and seed give the same numbers on any number of threads. "
+            "Beside this file are each figure as PNG and PDF, its caption, and the data drawn as netCDF."
+        ),
+    ]
+
+
+def _citation(reference: str, runs: Runs) -> str:
+    """Say what to cite."""
+    software = (
+        "The restitution developers, “restitution: the coefficient of restitution as a distribution, not a "
+        f"number”, version {runs.version}"
+    )
+    return f"<ul>\n<li>{html.prose(reference)}</li>\n<li>{html.text(software)}</li>\n</ul>"

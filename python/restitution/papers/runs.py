@@ -1,0 +1,120 @@
+"""The simulations behind a paper's figures and claims: each with a seed of its own, recorded or counted."""
+
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass, field
+from typing import Any, TypeVar
+
+import numpy as np
+import xarray as xr
+
+import restitution as rs
+from restitution.bodies import Body
+from restitution.drop.energy import reported_elsewhere
+from restitution.laws import Law
+
+T = TypeVar("T")
+
+
+@dataclass(frozen=True, eq=False)
+class Runs:
+    """What a paper's runs derive from: a dataclass of Datasets, and of mappings that end in Datasets.
+
+    A Dataset is recorded as from `restitution.simulate`, or counted as from `restitution.statistics`;
+    `Runner` makes both. Its attrs hold its own seed and, as ``run``, its name.
+
+    Attributes
+    ----------
+    seed
+        The seed that those of all runs derive from.
+    asked
+        The number of impacts that was asked for.
+    """
+
+    seed: int
+    asked: int
+    _found: dict[str, Any] = field(default_factory=dict, init=False, repr=False)
+
+    def all(self) -> dict[str, xr.Dataset]:
+        """Every run by its name, in the order of the fields; one that was counted in several bins once."""
+        return {str(data.attrs["run"]): data for data in _datasets(vars(self))}
+
+    @property
+    def version(self) -> str:
+        """The version of the package that made them."""
+        return str(next(iter(self.all().values())).attrs["version"])
+
+    def once(self, name: str, work: Callable[[], T]) -> T:
+        """Do what several claims need, and keep its result under this name as long as the runs are."""
+        if name not in self._found:
+            self._found[name] = work()
+        found: T = self._found[name]
+        return found
+
+
+def _datasets(value: Any) -> Iterator[xr.Dataset]:
+    if isinstance(value, xr.Dataset):
+        yield value
+    elif isinstance(value, Mapping):
+        for part in value.values():
+            yield from _datasets(part)
+
+
+def derived_seed(seed: int, name: str) -> int:
+    """Seed in [0, 2⁶³) of the run called `name`, which no other run's name or presence changes."""
+    sequence = np.random.SeedSequence(seed, spawn_key=tuple(name.encode()))
+    return int(sequence.generate_state(1, np.uint64)[0] >> np.uint64(1))
+
+
+@dataclass(frozen=True)
+class Runner:
+    """Runs simulations one after the other, each with the seed of its name.
+
+    Attributes
+    ----------
+    seed, threads
+        Of all runs.
+    done
+        Called after each.
+    """
+
+    seed: int
+    threads: int | None = None
+    done: Callable[[], object] = lambda: None
+
+    def record(self, name: str, body: Body, law: Law, **how: Any) -> xr.Dataset:
+        """Record every impact of a run; `how` as in `restitution.simulate`."""
+        with reported_elsewhere():  # by a claim, or a section of the report
+            seed = derived_seed(self.seed, name)
+            data = rs.simulate(body, law, seed=seed, threads=self.threads, **how)
+        self.done()
+        return data.assign_attrs(run=name)
+
+    def count(self, recorded: xr.Dataset, body: Body, law: Law, *, particles: int, **bins: Any) -> xr.Dataset:
+        """Count the impacts of at least so many particles, of which the recorded ones are the first."""
+        about = recorded.attrs
+        same = {name: about[name] for name in ("impacts", "release_height", "gravity", "orientation", "seed")}
+        with reported_elsewhere():
+            found = rs.statistics(
+                body,
+                law,
+                particles=max(particles, recorded.sizes["particle"]),
+                threads=self.threads,
+                batches=1,
+                **same,
+                **bins,
+            )
+        self.done()
+        return found.assign_attrs(run=f"{about['run']}, counted")
+
+
+def is_counted(data: xr.Dataset) -> bool:
+    """Tell whether a run's impacts were counted and not recorded."""
+    return "particles_ended" in data
+
+
+def impacts_of(data: xr.Dataset) -> int:
+    """Give the number of impacts of a run, in the bins or not."""
+    if not is_counted(data):
+        return int(data["impacts"].sum())
+    inside = data["number"].sum() + data["undefined"].sum()
+    return int(inside + data["velocity_underflow"] + data["velocity_overflow"])
