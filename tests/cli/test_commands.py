@@ -145,6 +145,19 @@ def test_a_fit_prints_what_the_functions_return(tmp_path: Path) -> None:
         assert f"{name} = {value:.6g} +- {found.standard_errors[name]:.2g}" in result.stdout
     assert re.search(r"Kolmogorov-Smirnov distance 0\.\d+, p = 0\.\d+", result.stdout)
     assert invoke(*words, "cauchy").stderr.startswith("error: family = 'cauchy': must be")
+    table = tmp_path / "fit.tex"
+    for family in ("asymmetric_laplace", "asymmetric_power", "cusp_mixture"):
+        given = (family.replace("_", "-"), "--location", 0.98, "--table", table, "--overwrite")
+        result = invoke(*words, *given)
+        assert "location = 0.98 (given)" in result.stdout
+        function = getattr(rs.fit, family)
+        found = rs.fit.bootstrap(function, data, velocity=(0.5, 0.6), resamples=20, location=0.98)
+        assert table.read_text(encoding="ascii") == found.to_latex()
+    assert invoke(*words, "laplace", "--location", 0.9).stderr.startswith(
+        "error: location = 0.9: must be for"
+    )
+    assert invoke(*words, "cusp-mixture").stderr.startswith("error: location: missing")
+    assert invoke(*words, "laplace", "--table", tmp_path / "fit.csv").stderr.startswith("error: table = ")
     bins: dict[str, Any] = {
         "velocity_bins": np.linspace(0.0, 1.0, 11),
         "restitution_bins": np.linspace(0, 2, 201),

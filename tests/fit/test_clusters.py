@@ -1,5 +1,7 @@
 """Errors, bands, criteria and p-values of correlated samples: against repetition and against theory."""
 
+import re
+from collections.abc import Callable
 from functools import partial
 from typing import Any
 
@@ -7,7 +9,7 @@ import numpy as np
 import pytest
 from scipy import stats
 
-from reference.flanks import ABOVE, BELOW, CUSP, binned, correlated, flanks
+from reference.flanks import ABOVE, BELOW, CUSP, Array, binned, correlated, flanks, mixed
 from restitution import fit
 
 
@@ -107,10 +109,76 @@ def test_p_values_are_uniform_under_correlation() -> None:
     assert np.mean(np.array(naive) <= 0.1) > 0.5
 
 
-def test_a_wrong_family_is_rejected_in_spite_of_the_correlation() -> None:
-    x, particle = correlated(400, 10, 1)
-    found = fit.goodness(fit.gaussian, x, clusters=particle, resamples=39)
-    assert found.kolmogorov_smirnov_p == found.anderson_darling_p == 1 / 40
+WRONG: dict[str, Callable[[Array], Array]] = {
+    "uniform": lambda u: 0.9 + 0.16 * u,
+    "two separate peaks": lambda u: np.where(u < 0.5, 0.85, 1.05) + 0.02 * stats.norm.ppf(2 * u % 1.0),
+    "normal": lambda u: 0.98 + 0.03 * stats.norm.ppf(u),
+}
+
+
+@pytest.mark.parametrize("truth", WRONG)
+@pytest.mark.parametrize(("particles", "each", "correlation"), [(120, 10, 0.5), (60, 20, 0.8), (240, 5, 0.0)])
+def test_wrong_densities_are_rejected_though_the_cusp_is_free(
+    truth: str, particles: int, each: int, correlation: float
+) -> None:
+    """1200 values of what has no cusp pass as asymmetric Laplace at 0.05 in one of 20 sets at most."""
+    level, found = stats.norm(scale=1.0), []
+    for seed in range(20):
+        rng = np.random.default_rng([seed, each])
+        score = np.sqrt(correlation) * rng.normal(size=(particles, 1))
+        score = score + np.sqrt(1.0 - correlation) * rng.normal(size=(particles, each))
+        x, particle = WRONG[truth](level.cdf(score)), np.repeat(np.arange(particles), each)
+        judged = fit.goodness(fit.asymmetric_laplace, x, clusters=particle, resamples=19, seed=seed)
+        found.append(min(judged.kolmogorov_smirnov_p, judged.anderson_darling_p))
+    assert np.mean(np.array(found) <= 0.05) >= 0.95
+
+
+def test_families_get_their_keywords() -> None:
+    """The location of the cusp reaches the family, of samples, of their bootstrap and of a mixture."""
+    x, particle = correlated(100, 5, 3)
+    how: dict[str, Any] = {"clusters": particle, "resamples": 9}
+    given = fit.goodness(fit.asymmetric_laplace, x, location=CUSP, **how)
+    assert given == fit.goodness(partial(fit.asymmetric_laplace, location=CUSP), x, **how)
+    assert given.fit.parameters["location"] == CUSP
+    assert fit.goodness(fit.cusp_mixture, x, location=CUSP, **how).fit.parameters["location"] == CUSP
+    found = fit.bootstrap(fit.asymmetric_laplace, x, location=CUSP, **how)
+    assert found.standard_errors["location"] == 0.0
+    with pytest.raises(ValueError, match="unexpected keyword argument 'locations'"):
+        fit.goodness(fit.asymmetric_laplace, x, locations=CUSP, **how)
+
+
+def test_a_parameter_that_ran_to_its_end_says_so() -> None:
+    rng = np.random.default_rng(5)
+    normal, one_sided = rng.normal(0.98, 0.03, 1000), 1.0 - rng.exponential(0.05, 1000)
+    edges = np.linspace(0.4, 1.2, 81)
+    for take in (lambda x: x, lambda x: binned(x, edges)):
+        assert "degrees of freedom ran to where" in str(fit.student_t(take(normal)))
+        assert "cusp is at the end of the samples" in str(fit.asymmetric_laplace(take(one_sided)))
+    assert "exponent ran" in fit.asymmetric_power(rng.random(1000)).limit
+    assert "one part is empty" in fit.cusp_mixture(normal, 0.98).limit
+    x = correlated(200, 5, 1)[0]
+    heavy = fit.student_t(rng.standard_t(4.0, 1000))
+    for found in (
+        fit.asymmetric_laplace(x),
+        fit.asymmetric_power(x),
+        fit.cusp_mixture(mixed(2000, 1), CUSP),
+        heavy,
+    ):
+        assert found.limit == ""
+
+
+def test_a_fit_writes_a_table_for_latex() -> None:
+    """Both columns of every row, and only characters that LaTeX has."""
+    x, particle = correlated(100, 5, 3)
+    found = fit.bootstrap(fit.asymmetric_laplace, x, particle, resamples=20, location=CUSP)
+    rows = dict(re.findall(r"^(.*) & \$(.*)\$ \\\\$", found.to_latex(), re.MULTILINE))
+    assert rows["location"] == "0.98"
+    value, error = (float(part) for part in rows["below"].split(r" \pm "))
+    assert value == pytest.approx(found.fit.parameters["below"], abs=error)
+    assert error == pytest.approx(found.standard_errors["below"], rel=0.05)
+    assert rows["samples"] == "500"
+    assert found.to_latex().isascii()
+    assert r"\pm" not in found.fit.to_latex()
 
 
 def test_runs_of_counts_take_the_place_of_particles() -> None:

@@ -243,3 +243,18 @@ def test_student_t_is_not_fitted_to_a_single_value() -> None:
     # The search is right to go there: half a degree, and ever more likely the nearer.
     likelihoods = [stats.t(0.5, 0.3, scale).logpdf(many).sum() for scale in (1e-3, 1e-6, 1e-9, 1e-12)]
     assert np.all(np.diff(likelihoods) > 100)
+
+
+def test_a_table_of_records_is_not_one_sample() -> None:
+    """Times, speeds and angles among the values would be fitted as well."""
+    table = rs.simulate(
+        rs.Dumbbell(radius=3e-3, separation=3e-4),
+        rs.TangentialRestitution(normal=0.98),
+        particles=2,
+        impacts=50,
+    ).to_dataframe()
+    text = r"^samples: a table of .*restitution.*; must be one column, such as that of restitution$"
+    for take in (fit.laplace, partial(fit.goodness, fit.gaussian), partial(fit.bootstrap, fit.gaussian)):
+        with pytest.raises(ValueError, match=text):
+            take(table)
+    assert fit.laplace(table["restitution"].dropna()).samples == 100

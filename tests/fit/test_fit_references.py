@@ -334,33 +334,32 @@ def test_a_cusp_fit_is_a_maximum_of_its_likelihood() -> None:
     assert equal.parameters["deviation"] < 0.01
 
 
-def test_goodness_with_clusters_redraws_particles() -> None:
-    """F_n and F at all samples, which are fewer than the grid; redrawn differences less the observed one."""
+def test_goodness_with_clusters_redraws_particles_of_samples_that_follow_the_fit() -> None:
+    """Each sample becomes the quantile at its rank; particles of these are drawn again, and fitted again."""
     rng = np.random.default_rng(13)
     x, labels = rng.normal(0.9, 0.1, 40), np.repeat(np.arange(8), 5)
     found = fit.goodness(fit.gaussian, x, clusters=labels, resamples=30, seed=6)
-    grid = np.sort(x)
 
-    def difference(samples: np.ndarray) -> list[float]:
-        one = stats.norm(np.mean(samples), np.std(samples))
-        return [float(np.mean(samples <= at) - one.cdf(at)) for at in grid]
+    def both(samples: np.ndarray) -> tuple[float, float]:
+        one, values = stats.norm(np.mean(samples), np.std(samples)), sorted(samples)
+        far = max(
+            max(np.mean(samples <= at) - one.cdf(at), one.cdf(at) - np.mean(samples < at)) for at in values
+        )
+        terms = [
+            (2 * i + 1) * (one.logcdf(low) + one.logsf(high))
+            for i, (low, high) in enumerate(zip(values, values[::-1], strict=True))
+        ]
+        return float(far), -len(values) - sum(terms) / len(values)
 
-    observed = difference(x)
-    inside = stats.norm(np.mean(x), np.std(x)).cdf(grid)
-    steps = np.diff(np.concatenate([[0.0], inside]))
-
-    def both(differences: list[float]) -> tuple[float, float]:
-        squares = [d * d / (f * (1 - f)) * w for d, f, w in zip(differences, inside, steps, strict=True)]
-        return max(map(abs, differences)), 40 * sum(squares)
-
-    ks, ad = both(observed)
+    ks, ad = both(x)
     assert found.kolmogorov_smirnov == pytest.approx(ks, rel=1e-10)
     assert found.anderson_darling == pytest.approx(ad, rel=1e-10)
+    rank = [int(np.sum(x < value)) for value in x]
+    null = stats.norm(np.mean(x), np.std(x)).ppf([(one + 0.5) / 40 for one in rank])
     draws, reached = np.random.default_rng(6), [1, 1]
+    draws.random(40)  # the order among equal samples
     for _ in range(30):
-        chosen = draws.integers(8, size=8)
-        again = difference(np.concatenate([x[5 * k : 5 * k + 5] for k in chosen]))
-        values = both([a - b for a, b in zip(again, observed, strict=True)])
-        reached = [n + (value >= top) for n, value, top in zip(reached, values, (ks, ad), strict=True)]
+        again = np.concatenate([null[5 * k : 5 * k + 5] for k in draws.integers(8, size=8)])
+        reached = [n + (value >= top) for n, value, top in zip(reached, both(again), (ks, ad), strict=True)]
     assert found.kolmogorov_smirnov_p == pytest.approx(reached[0] / 31, rel=1e-12)
     assert found.anderson_darling_p == pytest.approx(reached[1] / 31, rel=1e-12)

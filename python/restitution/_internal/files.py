@@ -26,12 +26,14 @@ from typing import Any, NoReturn
 from restitution._internal.parameters import ParameterError, wrong
 from restitution._internal.process import surely, undisturbed
 
-NETCDF, ZARR, HEADER, MODULE, IMAGE, FOLDER = (
+NETCDF, ZARR, HEADER, MODULE, IMAGE, TABLE, LATEX, FOLDER = (
     "a netCDF file, such as run.nc",
     "a Zarr store, such as study.zarr",
     "a header of C and C++, such as dist.h",
     "a Fortran source, such as dist.f90",
     "a figure, which is written as .png, .pdf or .svg",
+    "a table, which is written as .csv or .parquet",
+    "a LaTeX source, such as fit.tex",
     "a folder",
 )
 """What the package writes under names that are given, in the words of an error."""
@@ -42,12 +44,14 @@ _OWN = {
     HEADER: {".h", ".hh", ".hpp", ".hxx"},
     MODULE: {".f90", ".f95", ".f03", ".f08"},
     IMAGE: {".png", ".pdf", ".svg"},
+    TABLE: {".csv", ".parquet"},
+    LATEX: {".tex"},
     FOLDER: set(),
 }
 _OTHERS = {
     *(".c", ".cc", ".cpp", ".cxx", ".f", ".for", ".py", ".rs", ".jl", ".m", ".r", ".ipynb"),
-    *(".csv", ".tsv", ".txt", ".md", ".tex", ".html", ".htm", ".json", ".toml", ".yaml", ".yml", ".xml"),
-    *(".xls", ".xlsx", ".ods", ".parquet", ".feather", ".arrow", ".npy", ".npz", ".mat", ".pkl", ".pickle"),
+    *(".tsv", ".txt", ".md", ".html", ".htm", ".json", ".toml", ".yaml", ".yml", ".xml"),
+    *(".xls", ".xlsx", ".ods", ".feather", ".arrow", ".npy", ".npz", ".mat", ".pkl", ".pickle"),
     *(".jpg", ".jpeg", ".gif", ".tif", ".tiff", ".bmp", ".webp", ".eps", ".ps", ".mp4"),
     *(".wav", ".flac", ".ogg", ".mp3", ".aiff", ".zip", ".tar", ".gz", ".bz2", ".xz", ".7z", ".sqlite"),
 }
@@ -65,7 +69,7 @@ def check_name(argument: str, path: Path, kind: str) -> None:
     path : Path
         The name.
     kind : str
-        What is written: `NETCDF`, `ZARR`, `HEADER`, `MODULE`, `IMAGE` or `FOLDER`.
+        What is written: `NETCDF`, `ZARR`, `HEADER`, `MODULE`, `IMAGE`, `TABLE`, `LATEX` or `FOLDER`.
 
     Raises
     ------

@@ -7,9 +7,11 @@ from typing import Annotated, Any
 import typer
 
 from restitution._internal.process import say
-from restitution.cli._common import Quiet, errors_in_a_line
+from restitution.cli._common import Overwrite, Quiet, errors_in_a_line
 
-_FAMILIES = ("asymmetric-laplace", "laplace", "gaussian", "logistic", "student-t", "cusp-mixture")
+_CUSP = ("asymmetric-laplace", "asymmetric-power", "cusp-mixture")
+"""Families that take the location of the cusp."""
+_FAMILIES = (*_CUSP, "laplace", "gaussian", "logistic", "student-t")
 
 
 def fit(
@@ -24,10 +26,20 @@ def fit(
     family: Annotated[
         str, typer.Option(metavar="FAMILY", help=f"The density: {', '.join(_FAMILIES)}.")
     ] = "asymmetric-laplace",
+    location: Annotated[
+        float | None,
+        typer.Option(
+            metavar="X", help="The cusp, such as the law's normal coefficient; fitted unless given."
+        ),
+    ] = None,
+    table: Annotated[
+        Path | None, typer.Option(metavar="FILE.tex", help="Also a LaTeX table of the parameters.")
+    ] = None,
     resamples: Annotated[
         int, typer.Option(metavar="N", help="Number of resamples of the particles, for errors and p-values.")
     ] = 199,
     seed: Annotated[int, typer.Option(metavar="S", help="Seed of the resampling.")] = 1,
+    overwrite: Overwrite = False,
     quiet: Quiet = False,
 ) -> None:
     """Fit a density to the restitution at given impact velocity.
@@ -41,19 +53,31 @@ def fit(
     with errors_in_a_line("netCDF4", "scipy.stats"):
         from restitution import fit as fits
         from restitution._internal.datasets import load
+        from restitution._internal.files import LATEX, check, check_apart, check_name, write
         from restitution._internal.parameters import ParameterError, wrong
 
         if family not in _FAMILIES:
             raise ParameterError(wrong("family", family, " or ".join(_FAMILIES)))
+        if location is not None and family not in _CUSP:
+            raise ParameterError(wrong("location", location, f"for {' or '.join(_CUSP)} alone"))
+        if location is None and family == "cusp-mixture":
+            raise ValueError("location: missing; a cusp-mixture needs that of its cusp")
+        if table is not None:
+            check_apart([data], [table])
+            check_name("table", table, LATEX)
+            check(table, replace=overwrite)
         impacts = load(data)
         function = getattr(fits, family.replace("-", "_"))
-        how: dict[str, Any] = {"velocity": velocity, "resamples": resamples, "seed": seed}
+        where: dict[str, Any] = {} if location is None else {"location": location}
         if "restitution_count" in impacts:
-            lines = _counted(function(impacts, velocity=velocity))
+            found = function(impacts, velocity=velocity, **where)
+            lines = _counted(found)
         else:
-            lines = _recorded(
-                fits.bootstrap(function, impacts, **how), fits.goodness(function, impacts, **how)
-            )
+            where |= {"velocity": velocity, "resamples": resamples, "seed": seed}
+            found = fits.bootstrap(function, impacts, **where)
+            lines = _recorded(found, fits.goodness(function, impacts, **where))
+        if table is not None:
+            write(table, found.to_latex().encode(), replace=overwrite)
         for line in lines if not quiet else ():
             say(line)
 
@@ -62,6 +86,7 @@ def _counted(found: Any) -> Iterator[str]:
     yield f"{found.family}, {found.samples} impacts"
     for name, value in found.parameters.items():
         yield f"{name} = {value:.6g}"
+    yield from filter(None, [found.limit])
     yield "standard errors: not known, because counts do not say which particle an impact belongs to"
 
 
@@ -70,6 +95,7 @@ def _recorded(found: Any, judged: Any) -> Iterator[str]:
     for name, value in found.fit.parameters.items():
         error = found.standard_errors[name]
         yield f"{name} = {value:.6g} +- {error:.2g}" if error else f"{name} = {value:.6g} (given)"
+    yield from filter(None, [found.fit.limit])
     for name, distance, p in (
         ("Kolmogorov-Smirnov", judged.kolmogorov_smirnov, judged.kolmogorov_smirnov_p),
         ("Anderson-Darling", judged.anderson_darling, judged.anderson_darling_p),

@@ -14,7 +14,7 @@ from restitution._internal.arrays import generator, real, whole
 from restitution._internal.datasets import Content
 from restitution._internal.parameters import ParameterError, wrong
 from restitution._internal.text import table, value, with_error
-from restitution.fit._clusters import MOST_RESAMPLES, clustered, fitted_by, refitted
+from restitution.fit._clusters import MOST_RESAMPLES, clustered, fitted_by, refitted, specified
 from restitution.fit._counts import Counts
 from restitution.fit._result import Array, Fit
 from restitution.fit.source import Parts, Window
@@ -62,14 +62,19 @@ class Bootstrap(Content):
         rows += [("AIC", value(self.aic)), ("BIC", value(self.bic))]
         return table(f"{self.fit.family}, standard errors from {len(self.resampled)} resamples", rows)
 
+    def to_latex(self) -> str:
+        """Write a LaTeX table of the parameters with their standard errors, for the package booktabs."""
+        return self.fit.to_latex(self.standard_errors)
+
     def _estimates(self) -> list[tuple[str, str]]:
         errors = self.standard_errors
         return [(name, with_error(x, errors[name])) for name, x in self.fit.parameters.items()]
 
     @property
     def standard_errors(self) -> dict[str, float]:
-        """Standard error of each parameter."""
-        return {name: float(np.std(self.draws(name), ddof=1)) for name in self.fit.parameters}
+        """Standard error of each parameter, 0 of one that was given."""
+        drawn = {name: self.draws(name) for name in self.fit.parameters}
+        return {name: float(np.std(x, ddof=1)) if np.ptp(x) else 0.0 for name, x in drawn.items()}
 
     def draws(self, name: str) -> Array:
         """Give a parameter of all resampled fits, shape (resamples,)."""
@@ -116,13 +121,14 @@ class Bootstrap(Content):
 
 
 def bootstrap(
-    family: Callable[[Any], Fit],
+    family: Callable[..., Fit],
     samples: Parts,
     clusters: ArrayLike | None = None,
     *,
     velocity: Window | None = None,
     resamples: int = 199,
     seed: int = 1,
+    **keywords: Any,
 ) -> Bootstrap:
     """Fit, and fit again what redrawn particles give.
 
@@ -139,6 +145,8 @@ def bootstrap(
         For a Dataset, as in `asymmetric_laplace`.
     resamples : int, default 199
     seed : int, default 1
+    **keywords
+        Of the family, such as ``location=0.98``.
 
     Raises
     ------
@@ -158,6 +166,7 @@ def bootstrap(
     """
     resamples = whole("resamples", resamples, 2, MOST_RESAMPLES)
     random = generator("seed", seed)
+    family = specified(family, keywords)
     source = clustered(samples, clusters, velocity)
     pool = source.pool()
     fit = fitted_by(family, pool)

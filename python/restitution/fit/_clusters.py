@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 from typing import Any, cast
 
 import numpy as np
@@ -12,11 +13,9 @@ from numpy.typing import ArrayLike, NDArray
 
 from restitution._internal.arrays import check_each, reals
 from restitution._internal.parameters import ParameterError, Problem, shown, wrong
-from restitution.fit._counts import Counts, pooled
+from restitution.fit._counts import Counts
 from restitution.fit._result import Array, Fit, finite_samples
 from restitution.fit.source import Parts, Window, counted, no_window, recorded
-
-_GRID = 1000
 
 MOST_RESAMPLES = 1_000_000
 """Draws of a bootstrap, beyond which nothing is learned."""
@@ -53,10 +52,12 @@ class Clustered:
         offset = np.repeat(self.start[chosen] - np.concatenate([[0], np.cumsum(sizes)[:-1]]), sizes)
         return np.asarray(self.samples[offset + np.arange(offset.size)])
 
-    def grid(self) -> Array:
-        """Points at which distribution functions are compared."""
-        levels = (np.arange(_GRID) + 0.5) / _GRID
-        return np.unique(np.quantile(self.samples, levels, method="inverted_cdf"))
+    def following(self, fit: Fit, random: np.random.Generator) -> Clustered:
+        """Replace each sample by the quantile of the fit at its rank, at random among equal ones."""
+        order = np.lexsort((random.random(self.samples.size), self.samples))
+        mapped = np.empty(self.samples.size)
+        mapped[order] = fit.distribution.ppf((np.arange(order.size) + 0.5) / order.size)
+        return Clustered(mapped, self.start)
 
 
 @dataclass(frozen=True)
@@ -65,28 +66,36 @@ class Tallied:
 
     Parameters
     ----------
-    parts : sequence of Counts
-        With the same edges.
+    edges : ndarray, shape (bins + 1,)
+        Of the bins.
+    counts : ndarray, shape (runs, bins + 2)
+        Of each run, those below and above the bins included.
     """
 
-    parts: Sequence[Counts]
+    edges: Array
+    counts: Array
 
     @property
     def number(self) -> int:
         """Runs."""
-        return len(self.parts)
+        return len(self.counts)
 
     def pool(self) -> Counts:
         """All counts together."""
-        return pooled(self.parts)
+        below, *inside, above = self.counts.sum(axis=0)
+        return Counts(self.edges, np.array(inside), int(below), int(above))
 
     def redrawn(self, random: np.random.Generator) -> Counts:
         """Draw as many runs with replacement and give their counts."""
-        return pooled([self.parts[i] for i in random.integers(self.number, size=self.number)])
+        return Tallied(self.edges, self.counts[random.integers(self.number, size=self.number)]).pool()
 
-    def grid(self) -> Array:
-        """Points at which distribution functions are compared."""
-        return self.parts[0].edges
+    def following(self, fit: Fit, _: np.random.Generator) -> Tallied:
+        """Move the edges of the bins to the ranks that they have in the fit; each bin is filled evenly."""
+        one_by_one = np.cumsum(np.pad(self.counts, ((0, 0), (1, 0))), axis=1)
+        ranks = one_by_one.sum(axis=0) / self.counts.sum()
+        levels = np.concatenate([[0.0], fit.cdf(self.edges), [1.0]])
+        moved = [np.rint(np.interp(levels, ranks, numbers)) for numbers in one_by_one]
+        return Tallied(self.edges, np.diff(moved, axis=1))
 
 
 def clustered(samples: Parts, clusters: ArrayLike | None, velocity: Window | None) -> Clustered | Tallied:
@@ -113,8 +122,9 @@ def clustered(samples: Parts, clusters: ArrayLike | None, velocity: Window | Non
         if clusters is not None:
             raise ValueError("clusters: counts are drawn again run by run, and take none")
         _several(len(parts), "counts")
-        pooled(parts)
-        return Tallied(parts)
+        if any(not np.array_equal(part.edges, parts[0].edges) for part in parts):
+            raise ValueError("counts: must all have the same edges")
+        return Tallied(parts[0].edges, np.array([part.all for part in parts]))
     if isinstance(samples, Counts) or (isinstance(samples, xr.Dataset) and "restitution_count" in samples):
         raise ValueError(
             "samples: one set of counts, which do not distinguish particles; give those of several "
@@ -143,6 +153,11 @@ def _labels(clusters: ArrayLike) -> NDArray[np.int64]:
     check_each("clusters", labels, (labels == np.rint(labels)) & (np.abs(labels) < 2.0**63), allowed)
     # As given: doubles do not distinguish neighbours above 2**53.
     return np.asarray(clusters).ravel().astype(np.int64)
+
+
+def specified(family: Callable[..., Fit], keywords: dict[str, Any]) -> Callable[[Any], Fit]:
+    """Give a family with keywords of its own, such as the location of the cusp."""
+    return partial(family, **keywords) if callable(family) and keywords else family
 
 
 def refitted(
@@ -179,13 +194,6 @@ def fitted_by(family: Callable[[Any], Fit], samples: Array | Counts) -> Fit:
             wrong("family", family, f"a function from samples to a Fit; it gave {shown(fit)}")
         )
     return fit
-
-
-def empirical(samples: Array | Counts, grid: Array) -> Array:
-    """Share of the samples up to each point of the grid."""
-    if isinstance(samples, Counts):
-        return samples.cumulative()
-    return np.asarray(np.searchsorted(np.sort(samples), grid, side="right") / samples.size)
 
 
 def _several(number: int, name: str) -> None:

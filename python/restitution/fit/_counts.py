@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass
 from types import MappingProxyType
 from typing import Any, TypeAlias
@@ -136,19 +136,6 @@ class Counts(Content):
         return np.asarray(
             np.interp(reals("q", q, "probabilities", finite=False), self.cumulative(), self.edges)
         )
-
-
-def pooled(parts: Sequence[Counts]) -> Counts:
-    """Add counts that have the same edges."""
-    first = parts[0]
-    if any(not np.array_equal(part.edges, first.edges) for part in parts):
-        raise ValueError("counts: must all have the same edges")
-    return Counts(
-        first.edges,
-        np.sum([part.count for part in parts], axis=0),
-        sum(part.below for part in parts),
-        sum(part.above for part in parts),
-    )
 
 
 def fit_counts(family: str, counts: Counts, make: Maker, start: ArrayLike, *, fixed: int = 0) -> Fit:

@@ -8,25 +8,16 @@ from math import erfc, inf, sqrt
 from typing import Any
 
 import numpy as np
-import xarray as xr
 from numpy.typing import ArrayLike
 
 from restitution._internal.arrays import generator, whole
 from restitution._internal.datasets import Content
 from restitution._internal.parameters import ParameterError, wrong
 from restitution._internal.text import table, value, with_error
-from restitution.fit._clusters import (
-    MOST_RESAMPLES,
-    Clustered,
-    Tallied,
-    clustered,
-    empirical,
-    fitted_by,
-    refitted,
-)
+from restitution.fit._clusters import MOST_RESAMPLES, Clustered, clustered, fitted_by, refitted, specified
 from restitution.fit._counts import Counts
-from restitution.fit._result import Array, Fit, finite_samples
-from restitution.fit.source import Parts, Window, no_window
+from restitution.fit._result import Array, Fit
+from restitution.fit.source import Parts, Window
 
 
 @dataclass(frozen=True, eq=False)
@@ -78,23 +69,25 @@ class Goodness(Content):
 
 
 def goodness(
-    family: Callable[[Any], Fit],
+    family: Callable[..., Fit],
     samples: Parts,
     *,
     clusters: ArrayLike | None = None,
     velocity: Window | None = None,
     resamples: int = 199,
     seed: int = 1,
+    **keywords: Any,
 ) -> Goodness:
     """Fit `samples` and test the fit.
 
-    Independent samples are compared with draws from the fit, each fitted again, which makes the p-values
-    right: a fitted density lies closer to its samples than the true one does.
+    The distances of samples and fit are compared with those of other samples that follow the fit, each fitted
+    again: a fitted density lies closer to its samples than the true one does. Samples that are independent
+    are drawn from the fit.
 
-    With `clusters` the samples of a particle may be correlated in any way. Then particles are drawn again
-    with replacement and fitted again, and F*_n - F_θ* - (F_n - F_θ) is compared with F_n - F_θ (G. J. Babu
-    and C. R. Rao, Sankhyā 66, 63 (2004)); both statistics are taken at 1000 quantiles of the samples, or at
-    the edges of counts.
+    With `clusters` the samples of a particle may be correlated in any way. Each sample is then replaced by
+    the quantile of the fit at its rank, so that together they follow the fit and depend on each other as
+    before, and particles of these are drawn again with replacement. Of counts the edges take the place of the
+    samples.
 
     Parameters
     ----------
@@ -110,6 +103,8 @@ def goodness(
     resamples : int, default 199
         Draws for the bootstrap, ≥ 1; the p-value has the resolution 1/(resamples + 1).
     seed : int, default 1
+    **keywords
+        Of the family, such as ``location=0.98``.
 
     Raises
     ------
@@ -127,50 +122,32 @@ def goodness(
     """
     resamples = whole("resamples", resamples, 1, MOST_RESAMPLES)
     random = generator("seed", seed)
-    if clusters is not None or not _is_plain(samples):
-        return _clustered_goodness(family, clustered(samples, clusters, velocity), resamples, random)
-    no_window(samples, velocity)
-    x = finite_samples(samples)  # type: ignore[arg-type]
-    fit = fitted_by(family, x)
-    observed = distances(fit, x)
-    reached = np.ones(2)
-    for _ in range(resamples):
-        draw = fit.rvs(x.size, random)
-        reached += distances(family(draw), draw) >= observed
-    ks_p, ad_p = reached / (resamples + 1)
-    return Goodness(fit, float(observed[0]), float(ks_p), float(observed[1]), float(ad_p), resamples)
-
-
-def _is_plain(samples: Parts) -> bool:
-    """Whether these are values, and not counts or a Dataset, or several of them."""
-    first = samples[0] if isinstance(samples, list | tuple) and samples else samples
-    return not isinstance(first, Counts | xr.Dataset)
-
-
-def _clustered_goodness(
-    family: Callable[[Any], Fit], source: Clustered | Tallied, resamples: int, random: np.random.Generator
-) -> Goodness:
-    grid, pool = source.grid(), source.pool()
+    family = specified(family, keywords)
+    source = clustered(samples, clusters, velocity)
+    pool = source.pool()
     fit = fitted_by(family, pool)
-    fitted = fit.cdf(grid)
-    gap = empirical(pool, grid) - fitted
-    size = fit.samples
-    # A² = n ∫ (F_n - F)²/(F(1 - F)) dF over the grid.
-    weight = np.diff(fitted, prepend=0.0) / np.maximum(fitted * (1.0 - fitted), 1e-12)
-
-    def statistics(difference: Array) -> Array:
-        return np.array([np.max(np.abs(difference)), size * np.sum(difference**2 * weight)])
-
-    observed, reached = statistics(gap), np.ones(2)
+    observed, reached = distances(fit, pool), np.ones(2)
+    null = None if source.number == fit.samples else source.following(fit, random)
     for _ in range(resamples):
-        again, refit = refitted(family, source, random)
-        reached += statistics(empirical(again, grid) - refit.cdf(grid) - gap) >= observed
+        again, refit = refitted(family, null, random) if null else _drawn(family, fit, random)
+        reached += distances(refit, again) >= observed
     ks_p, ad_p = reached / (resamples + 1)
     return Goodness(fit, float(observed[0]), float(ks_p), float(observed[1]), float(ad_p), resamples)
 
 
-def distances(fit: Fit, samples: Array) -> Array:
-    """Kolmogorov–Smirnov D and Anderson–Darling A² between samples and fit, shape (2,)."""
+def _drawn(family: Callable[[Any], Fit], fit: Fit, random: np.random.Generator) -> tuple[Array, Fit]:
+    """Draw as many independent samples and fit them."""
+    draw = fit.rvs(fit.samples, random)
+    return draw, family(draw)
+
+
+def distances(fit: Fit, samples: Array | Counts) -> Array:
+    """Kolmogorov–Smirnov D and Anderson–Darling A² of samples and fit, shape (2,); of counts, at edges."""
+    if isinstance(samples, Counts):
+        share = fit.cdf(samples.edges)
+        gap = samples.cumulative() - share
+        weight = np.diff(share, prepend=0.0) / np.maximum(share * (1.0 - share), 1e-12)
+        return np.array([np.max(np.abs(gap)), samples.total * np.sum(gap**2 * weight)])
     x = np.sort(samples)
     n, rank = x.size, np.arange(1, x.size + 1)
     below, above = fit.cdf(x), np.asarray(fit.distribution.sf(x))
@@ -271,6 +248,6 @@ def compare(
         pool = source.pool()
         gain = pool.logshare(first.distribution) - pool.logshare(second.distribution)
         mean = float(pool.all @ gain) / pool.total
-        sums, size = np.array([one.all @ (gain - mean) for one in source.parts]), pool.total
+        sums, size = source.counts @ (gain - mean), pool.total
     groups = source.number
     return Comparison(mean, float(np.sqrt(np.sum(sums**2) * groups / (groups - 1))) / size)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from math import log
+from math import log, sqrt
 from types import MappingProxyType
 from typing import Any
 
@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike, NDArray
 from restitution._internal.arrays import generator, reals, whole
 from restitution._internal.datasets import Content
 from restitution._internal.resources import check_size
-from restitution._internal.text import table, value
+from restitution._internal.text import latex, table, value, with_error
 from restitution.fit import _in_parts as in_parts
 
 Array = NDArray[np.float64]
@@ -22,6 +22,8 @@ Array = NDArray[np.float64]
 _LARGEST = 1e100
 _NARROWEST = 1e-100
 _MOST_DRAWS = 10**9
+_BEYOND = 5
+"""Samples on one side of the cusp, as expected from the fit, that say nothing of a flank there."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -64,7 +66,41 @@ class Fit(Content):
 
     def __str__(self) -> str:
         numbers = ", ".join(f"{name} = {value(number)}" for name, number in self.parameters.items())
-        return f"{self.family}, by maximum likelihood of {self.samples} samples: {numbers}"
+        limit = f"; {self.limit}" if self.limit else ""
+        return f"{self.family}, by maximum likelihood of {self.samples} samples: {numbers}{limit}"
+
+    @property
+    def limit(self) -> str:
+        """What ran to the end of its range, where a simpler family fits as well; empty if nothing did."""
+        found, ends = self.parameters, []
+        sides = [found[name] for name in ("above", "below") if name in found]
+        if "share" not in found and sides and min(sides) * self.samples < _BEYOND * sum(sides):
+            ends += [f"the cusp is at the end of the samples, fewer than {_BEYOND} lie beyond it"]
+        # The excess kurtosis, 6/(degrees - 4), is less than its standard error in a Gaussian sample.
+        if found.get("degrees", 0.0) > 4.0 + 6.0 * sqrt(self.samples / 24.0):
+            ends += [
+                "the degrees of freedom ran to where the samples do not tell the density from a Gaussian"
+            ]
+        if not 0.51 < found.get("exponent", 1.0) < 19.9:
+            ends += ["the exponent ran to the end of its range, 0.5 to 20"]
+        share = found.get("share", 0.5)
+        if min(share, 1.0 - share) * self.samples < 1.0:
+            ends += ["the share ran to the end of its range, one part is empty"]
+        return "; ".join(ends)
+
+    def to_latex(self, errors: Mapping[str, float] | None = None) -> str:
+        """Write a LaTeX table of the parameters, for the package booktabs.
+
+        Parameters
+        ----------
+        errors : mapping of str to float, optional
+            Standard errors by the name of the parameter; `Bootstrap.to_latex` gives those of resampled
+            particles.
+        """
+        errors = {} if errors is None else errors
+        rows = [(name, with_error(number, errors.get(name))) for name, number in self.parameters.items()]
+        rows += [("samples", str(self.samples)), (r"$\ln L$", f"{self.loglikelihood:.1f}")]
+        return latex(self.family, rows)
 
     def _repr_html_(self) -> str:
         rows = [(name, value(number)) for name, number in self.parameters.items()]
@@ -73,6 +109,7 @@ class Fit(Content):
             ("ln L", value(self.loglikelihood)),
             ("AIC", value(self.aic)),
         ]
+        rows += [("limit", self.limit)] if self.limit else []
         return table(f"{self.family}, by maximum likelihood", rows)
 
     @property
@@ -122,6 +159,9 @@ def finite_samples(samples: ArrayLike, location: float | None = None) -> Array:
         at all (about `location`, where that is given), as the likelihood then has no maximum, or spread by
         less than 1e-100.
     """
+    if hasattr(samples, "columns"):  # of pandas or polars, with times and angles among the numbers
+        columns = ", ".join(map(str, samples.columns))
+        raise ValueError(f"samples: a table of {columns}; must be one column, such as that of restitution")
     x = reals("samples", samples, "numbers, Counts or a Dataset", finite=False).ravel()
     if x.size == 0:
         raise ValueError("samples: empty; at least one value is needed")
