@@ -1,4 +1,4 @@
-"""Commands and functions where something is missing: a part, drawn with a fixed seed, of `make hostile`."""
+"""Commands where something is missing: a part, drawn with a fixed seed, of `make hostile`."""
 
 import os
 import random
@@ -21,12 +21,12 @@ needs_the_explorer = pytest.mark.skipif(not BUILT, reason="the explorer is not b
 
 
 @needs_the_explorer
-def test_commands_and_functions_in_hostile_environments() -> None:
+def test_commands_in_hostile_environments() -> None:
     """Our error, or a right result, within a time; never an abort or a hang, and nothing is left behind."""
-    words = [sys.executable, str(TESTS / "manual" / "environments.py"), "--calls", "24", "--commands", "3"]
+    words = [sys.executable, str(TESTS / "manual" / "environments.py"), "--commands", "6"]
     env = os.environ | {"PYTHONPATH": str(TESTS), "OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1"}
     done = subprocess.run(words, capture_output=True, text=True, check=False, timeout=900, env=env)
-    assert done.stdout.splitlines()[-1:] == ["27 trials, 0 break the contract"], done.stdout + done.stderr
+    assert done.stdout.splitlines()[-1:] == ["6 trials, 0 break the contract"], done.stdout + done.stderr
 
 
 def test_every_command_is_tried() -> None:

@@ -1,6 +1,6 @@
 """One catalogue of hostile environments, beside that of hostile values. It grows with every find.
 
-Each is entered by a process that was forked for it, which then calls a function or becomes a command.
+Each is entered by a process that was forked for it, which then becomes a command.
 """
 
 import contextlib
@@ -25,7 +25,7 @@ class Environment:
     Attributes
     ----------
     enter : callable
-        Makes it, in the process itself; takes the address space that the call has without it, in bytes.
+        Makes it, in the process itself; takes the address space that a command has without it, in bytes.
     prepare : callable
         Makes it of the folder that the process works in, beforehand.
     signals : tuple of int
@@ -147,9 +147,7 @@ def _one_core(_: int) -> None:
 
 ENVIRONMENTS: dict[str, Environment] = {
     "nothing": Environment(),
-    "64 MiB": memory(64 * MIB),
     "512 MiB": memory(512 * MIB),
-    "data": Environment(_soft(resource.RLIMIT_DATA, 256 * MIB)),
     "no threads": Environment(_soft(resource.RLIMIT_NPROC, 0), ordinary=True),
     "no large files": Environment(_soft(resource.RLIMIT_FSIZE, 256), writes=False),
     "no files at all": Environment(_soft(resource.RLIMIT_FSIZE, 0), writes=False),

@@ -1,7 +1,6 @@
-"""Functions and commands in hostile environments: what must hold of a process that calls them."""
+"""Commands in hostile environments: what must hold of their processes, and of what they leave."""
 
 import contextlib
-import json
 import os
 import random
 import select
@@ -111,11 +110,6 @@ def place(environment: str) -> Iterator[Path | None]:
     finally:
         folder.chmod(0o777)
         shutil.rmtree(top, ignore_errors=True)
-
-
-def address_space() -> int:
-    """Give the address space of this process, in bytes."""
-    return int(Path("/proc/self/statm").read_text(encoding="ascii").split()[0]) * os.sysconf("SC_PAGESIZE")
 
 
 @cache
@@ -251,75 +245,6 @@ def _left(ended: Ended, before: set[str], after: set[str], files: set[str], mute
     if ended.status in (1, 2) and kept and not mute and not kept & {"study.zarr"}:
         return f"fails, and writes {', '.join(sorted(kept))}"
     return None
-
-
-def call(name: str, surroundings: str, draw: random.Random) -> str | None:
-    """Call a function in an environment; say what is wrong with what happens, if anything is."""
-    environment = ENVIRONMENTS[surroundings]
-    if set(environment.signals) - {signal.SIGINT}:
-        return None  # what these do to a program is its own
-    function, given, expected = reference(name)
-    with place(surroundings) as folder:
-        if folder is None:
-            return None
-        environment.prepare(folder)
-        answer, tell = os.pipe()
-
-        def act(say: int) -> None:
-            os.close(answer)
-            os.chdir(folder)
-            if environment.ordinary:
-                become_ordinary()
-            environment.enter(address_space())
-            os.write(say, b".")
-            found = _outcome(function, given, expected, environment)
-            os.write(tell, json.dumps(found).encode())
-            os._exit(0)
-
-        ended = forked(act, environment, draw.uniform(0.0, 0.05))
-        os.close(tell)
-        told = os.read(answer, 10_000)
-        os.close(answer)
-        left = [file.name for file in folder.iterdir() if file.name.endswith(".part")]
-        if ended.said == "hung":
-            return f"hangs: {ended.seconds:.0f} s"
-        if not told:
-            stopped = bool(environment.signals) and ended.status == 128 + signal.SIGINT
-            return None if stopped else f"ends with status {ended.status}: {ended.said[-1500:]}"
-        found: str | None = json.loads(told)
-        return found or (f"leaves {left}" if left else None)
-
-
-def _outcome(
-    function: Callable[..., Any], given: dict[str, Any], expected: Any, environment: Environment
-) -> str | None:
-    try:
-        found = function(**given)
-    except KeyboardInterrupt:
-        return None if environment.signals else "KeyboardInterrupt"
-    except MemoryError:
-        return None
-    except OSError as error:
-        named = error.filename is not None or error.errno is None
-        return None if named else f"names no file: {type(error).__name__}: {error}"
-    except (ValueError, RuntimeError) as error:
-        good = measuring.ENOUGH in str(error) or str(error).startswith("threads = ")
-        return None if good else f"{type(error).__name__}: {error}"
-    except Exception:
-        return traceback.format_exc()[-1200:]
-    return None if same(found, expected) else f"gives {found!r:.300} instead of {expected!r:.300}"
-
-
-@cache
-def reference(name: str) -> tuple[Callable[..., Any], dict[str, Any], Any]:
-    """Give a function, its arguments, and what it returns undisturbed; all that it imports is then there."""
-    function, make = CALLS[name]
-    with contextlib.chdir(tempfile.mkdtemp(prefix="reference-")):
-        try:
-            expected = function(**make())
-        except ValueError:
-            expected = None
-    return function, make(), expected
 
 
 def same(found: Any, expected: Any) -> bool:

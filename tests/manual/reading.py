@@ -17,10 +17,11 @@ import xarray as xr
 import xlwt
 
 import restitution as rs
+from manual.damage import BINARY, TEXT, Harm, harm_store, harmed
 from reference import measuring
 from reference.calls import folder, good
 from reference.command import SMALL, invoke
-from reference.damage import BINARY, TEXT, Harm, harm_dataset, harm_store, harmed
+from reference.harmed import harms
 from reference.processes import RUN, STUDY, same
 from restitution import flight, study
 from restitution.distribution._store import sealed
@@ -137,7 +138,8 @@ def _netcdf(path: Path, draw: Random, data: xr.Dataset, close: Callable[[xr.Data
     inside = draw.random() < 0.6
     if inside:
         try:
-            close(harm_dataset(data, draw)).to_netcdf(path, engine="netcdf4")
+            _, harm = draw.choice(list(harms(data, tuple(map(str, data.attrs)))))
+            close(harm(data)).to_netcdf(path, engine="netcdf4")
         except (ValueError, TypeError, RuntimeError):  # netCDF has no such thing
             inside = False
     if not inside:

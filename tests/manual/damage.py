@@ -7,9 +7,6 @@ from pathlib import Path
 from random import Random
 from typing import Any
 
-import numpy as np
-import xarray as xr
-
 _WORDS = (
     b"nan",
     b"inf",
@@ -172,44 +169,3 @@ def harm_store(folder: Path, draw: Random) -> None:
         file.write_bytes(harmed(whole, draw, BINARY))
     else:
         file.unlink()
-
-
-def harm_dataset(data: xr.Dataset, draw: Random) -> xr.Dataset:
-    """Change a variable, a dimension or an attribute."""
-    name = draw.choice(sorted(map(str, data.variables)))
-    one = data[name]
-    way = draw.randrange(7)
-    if way == 0:
-        return data.drop_vars(name)
-    if way == 1 and one.ndim:
-        dimension = draw.choice(one.dims)
-        return data.isel({dimension: slice(draw.randrange(3), draw.choice((None, 1, 2, -1)))})
-    if way == 2:
-        return data.assign({name: one.astype(draw.choice(("i1", "f4", "U8", "u8", "M8[ns]", ">f8")))})
-    if way == 3 and one.ndim > 1:
-        return data.assign({name: one.transpose()})
-    if way == 4:
-        whose, key = draw.choice([(data, key) for key in data.attrs] + [(one, key) for key in one.attrs])
-        attrs = {**whose.attrs, key: draw.choice(("", "x", 0, -1, 1e308, [1, 2], "{", "[[", np.nan))}
-        if draw.random() < 0.3:
-            del attrs[key]
-        return (
-            data.assign_attrs(attrs)
-            if whose is data
-            else data.assign({name: (one.dims, one.to_numpy(), attrs)})
-        )
-    if way == 5:
-        return data.assign(
-            {
-                name: (
-                    ("strange",) * one.ndim if one.ndim == 1 else (),
-                    one.to_numpy() if one.ndim == 1 else 0.0,
-                )
-            }
-        )
-    values = np.array(one.to_numpy(), dtype=float) if one.dtype.kind in "fiu" else np.zeros(one.shape)
-    if values.size:
-        values.flat[draw.randrange(values.size)] = draw.choice(
-            (np.nan, np.inf, -np.inf, -1.0, 0.0, 1e308, 1e-308, 2.0)
-        )
-    return data.assign({name: (one.dims, values, one.attrs)})
