@@ -107,7 +107,7 @@ def test_a_wrong_call_is_a_type_error(body: rs.Dumbbell, law: rs.TangentialResti
     with pytest.raises(TypeError, match="'particle'"):
         rs.simulate(body, law, particle=10)  # type: ignore[call-arg]
     with pytest.raises(TypeError, match="positional"):
-        rs.simulate(body, law, 10)  # type: ignore[call-arg]
+        rs.simulate(body, law, 10)  # type: ignore[call-arg, arg-type]
     with pytest.raises(TypeError, match="'velocity_bins' and 'restitution_bins'"):
         rs.compare([body], [law])
     with pytest.raises(TypeError, match=r"argument: 'restitution_bins'$"):

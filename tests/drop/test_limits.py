@@ -50,11 +50,9 @@ told(rs.simulate, body, law, particles=10_000, impacts=1000)
 wide = bins | {"restitution_bins": np.linspace(-1, 3, 10**6), "velocity_bins": np.linspace(0, 1, 101)}
 told(rs.statistics, body, law, threads=1, **wide)
 told(rs.simulate, body, law, particles=100, impacts=100)
-from restitution._internal import resources as _resources
-from restitution.drop import _simulate
-from restitution.drop import _statistics
-huge = lambda: 2**60
-_resources.available_memory = _statistics.available_memory = huge
+from restitution._internal import resources
+from restitution.drop import statistics
+resources.available_memory = statistics.available_memory = lambda: 2**60
 told(rs.simulate, body, law, particles=10**6, impacts=1000)
 told(rs.statistics, body, law, threads=1, **wide)
 told(rs.simulate, body, law, particles=100, impacts=100)
@@ -93,8 +91,8 @@ dist = rs.FluctuatingRestitution.learn(body, law, particles=200, impacts=400, ve
 used = int(open("/proc/self/statm").read().split()[0]) * resource.getpagesize()
 resource.setrlimit(resource.RLIMIT_AS, (used + 2**29, resource.RLIM_INFINITY))
 told(dist.rvs, 0.25, size=3 * 10**8)
-from restitution._internal import resources as _resources
-_resources.available_memory = lambda: 2**60
+from restitution._internal import resources
+resources.available_memory = lambda: 2**60
 told(dist.rvs, 0.25, size=3 * 10**8)
 told(dist.rvs, 0.25, size=10**5)
 """)
