@@ -118,8 +118,8 @@ def test_shape(fast: Noise, slow: Noise, verdict: str) -> None:
     The six p-values that must not reject do so with probability 0.002 each.
     """
     made_up = runs(main=run(noise=fast, slow_noise=slow))
-    for key in ("laplace", "asymmetric", "not-laplace-when-slow"):
-        assert CLAIMS.find(key, made_up, SETTINGS).verdict == verdict, key
+    keys = ("laplace", "asymmetric", "not-laplace-when-slow")
+    assert [claim.finding.verdict for claim in CLAIMS.judge(made_up, SETTINGS, *keys)] == 3 * [verdict]
 
 
 @pytest.mark.parametrize(

@@ -130,7 +130,7 @@ def runs(**chosen: Any) -> Runs:
 
 def judged(key: str, **chosen: Any) -> Finding:
     """The claim called `key`, judged on these runs."""
-    return CLAIMS.find(key, runs(**chosen), SETTINGS)
+    return CLAIMS.judge(runs(**chosen), SETTINGS, key)[0].finding
 
 
 def dip(v: Array) -> Array:

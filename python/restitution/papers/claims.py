@@ -19,24 +19,13 @@ SIGNIFICANT = 4.0
 
 @dataclass(frozen=True)
 class Measurement:
-    """A measured number.
-
-    Attributes
-    ----------
-    name : str
-    value : float
-    error : float or None
-        Standard error; None for a count, an extreme or a p-value.
-    unit : str
-    at : str
-        Condition that distinguishes it from others of the same name, such as the impact velocity.
-    """
+    """A measured number, with its standard error but for a count, an extreme or a p-value."""
 
     name: str
     value: float
     error: float | None = None
     unit: str = ""
-    at: str = ""
+    at: str = ""  # what distinguishes it from others of the same name, such as the impact velocity
 
     @property
     def number(self) -> str:
@@ -48,40 +37,21 @@ class Measurement:
 
 
 class Finding(NamedTuple):
-    """What became of a claim.
-
-    Attributes
-    ----------
-    measured : tuple of Measurement
-    verdict : {"holds", "holds in part", "fails"}
-    rule : str
-        How the verdict follows from the numbers.
-    why : str
-        A sentence on what the numbers show.
-    """
+    """What became of a claim."""
 
     measured: tuple[Measurement, ...]
     verdict: Verdict
-    rule: str
-    why: str
+    rule: str  # how the verdict follows from the numbers
+    why: str  # a sentence on what the numbers show
 
 
 @dataclass(frozen=True)
 class Claim:
-    """A claim of a paper, judged.
+    """A claim of a paper, judged."""
 
-    Attributes
-    ----------
-    key : str
-        Short name, unique, usable as an anchor.
-    quote, where : str
-        What the paper says, and in which section, figure or equation.
-    finding : Finding
-    """
-
-    key: str
+    key: str  # short, unique, an anchor of the report
     quote: str
-    where: str
+    where: str  # the section, figure or equation
     finding: Finding
 
 
@@ -109,16 +79,12 @@ class Claims(Generic[R, S]):
 
         return decorate
 
-    def judge(self, runs: R, settings: S) -> list[Claim]:
-        """Judge every claim, in the order in which they were added."""
+    def judge(self, runs: R, settings: S, *keys: str) -> list[Claim]:
+        """Judge the claims of these keys, or all in the order in which they were added."""
+        chosen = {key: self._judges[key] for key in keys or self._judges}
         return [
-            Claim(key, quote, where, find(runs, settings))
-            for key, (quote, where, find) in self._judges.items()
+            Claim(key, quote, where, find(runs, settings)) for key, (quote, where, find) in chosen.items()
         ]
-
-    def find(self, key: str, runs: R, settings: S) -> Finding:
-        """Judge one claim."""
-        return self._judges[key][2](runs, settings)
 
 
 def verdict(holds: bool, in_part: bool) -> Verdict:

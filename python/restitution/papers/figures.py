@@ -14,24 +14,13 @@ from restitution.papers.runs import impacts_of
 
 
 class Caption(NamedTuple):
-    """What a figure shows, and which of its parameters are the paper's and which ours.
-
-    Attributes
-    ----------
-    text : str
-    paper, ours : list of str
-        The parameters that the paper states, and those that we chose.
-    each : str
-        What every one of several runs is for, such as "for each curve".
-    recorded : str
-        What the impacts are recorded for where others are counted.
-    """
+    """What a figure shows, and which of its parameters the paper states and which we chose."""
 
     text: str
     paper: list[str]
     ours: list[str]
-    each: str = ""
-    recorded: str = "the standard errors"
+    each: str = ""  # what every one of several runs is for, such as "for each curve"
+    recorded: str = "the standard errors"  # what impacts are recorded for where others are counted
 
     def written(self, about: dict[str, Any]) -> str:
         """Write all of it, and the run that these attributes tell of (see `recorded` and `counted`)."""
@@ -86,27 +75,15 @@ def listing(values: Iterable[float], factor: float = 1.0) -> str:
 
 @dataclass(frozen=True)
 class PaperFigure(Generic[R, S]):
-    """How one figure comes about: reduce the runs, draw what is left, say what it is.
-
-    Attributes
-    ----------
-    name, title : str
-    shows : str
-        What can be seen, for those who cannot see it.
-    reduce, draw, caption : callable
-        From the runs to the numbers that are drawn, with the attributes of `recorded` or `counted`; from
-        these numbers to the drawing; and from them to the caption.
-    stop : int, optional
-        Of the explorer's tour, where such a figure fills up.
-    """
+    """How one figure comes about: reduce the runs, draw what is left, say what it is."""
 
     name: str
     title: str
-    shows: str
-    reduce: Callable[[R, S], xr.Dataset]
+    shows: str  # for those who cannot see it
+    reduce: Callable[[R, S], xr.Dataset]  # with the attributes of `recorded` or `counted`
     draw: Callable[[xr.Dataset], Figure]
     caption: Callable[[xr.Dataset, S], Caption]
-    stop: int | None = None
+    stop: int | None = None  # of the explorer's tour, where such a figure fills up
 
     def save(self, runs: R, settings: S, folder: Path) -> "SavedFigure":
         """Write the figure (``name.png``, ``name.pdf``), its caption (``.txt``) and its data (``.nc``)."""

@@ -15,28 +15,12 @@ class Check(NamedTuple):
 
 @dataclass(frozen=True)
 class Misprint:
-    """A formula that is wrong as printed ("misprint"), or right only where the paper does not say ("caveat").
+    """A formula that is not right as printed."""
 
-    Attributes
-    ----------
-    equation : str
-        The paper's label.
-    kind : {"misprint", "caveat"}
-        Wrong, or of smaller range than it seems.
-    printed, corrected : str
-        The formula, in plain text.
-    proof : str
-        Why the printed formula cannot be right.
-    quantity : str
-        What `check` calculates.
-    check : callable
-        Gives that quantity by the printed formula, by the corrected one, and by independent means.
-    """
-
-    equation: str
-    kind: Literal["misprint", "caveat"]
+    equation: str  # the paper's label
+    kind: Literal["misprint", "caveat"]  # wrong, or of smaller range than it seems
     printed: str
     corrected: str
-    proof: str
-    quantity: str
+    proof: str  # why the printed formula cannot be right
+    quantity: str  # what `check` calculates
     check: Callable[[], Check]

@@ -40,22 +40,7 @@ def report(
 ) -> str:
     """Write the redrawn and judged paper as one self-contained page of HTML.
 
-    Parameters
-    ----------
-    paper : Paper
-    runs : Runs
-    figures : sequence of SavedFigure
-        Embedded in this order.
-    claims : sequence of Claim
-    explorer : str
-        Address of the explorer as seen from the report, to which each figure is then linked.
-
-    Raises
-    ------
-    ValueError
-        If a figure is not a PNG file.
-    OSError
-        If a file cannot be read.
+    Each figure is linked to the explorer, whose address is as seen from the report, where there is one.
     """
     source = f"restitution {runs.version}"
     sections = [

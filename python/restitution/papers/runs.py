@@ -21,17 +21,10 @@ class Runs:
 
     A Dataset is recorded as from `restitution.simulate`, or counted as from `restitution.statistics`;
     `Runner` makes both. Its attrs hold its own seed and, as ``run``, its name.
-
-    Attributes
-    ----------
-    seed
-        The seed that those of all runs derive from.
-    asked
-        The number of impacts that was asked for.
     """
 
-    seed: int
-    asked: int
+    seed: int  # that those of all runs derive from
+    asked: int  # impacts
     _found: dict[str, Any] = field(default_factory=dict, init=False, repr=False)
 
     def all(self) -> dict[str, xr.Dataset]:
@@ -67,15 +60,7 @@ def derived_seed(seed: int, name: str) -> int:
 
 @dataclass(frozen=True)
 class Runner:
-    """Runs simulations one after the other, each with the seed of its name.
-
-    Attributes
-    ----------
-    seed, threads
-        Of all runs.
-    done
-        Called after each.
-    """
+    """Runs simulations one after the other, each with the seed of its name; `done` is called after each."""
 
     seed: int
     threads: int | None = None

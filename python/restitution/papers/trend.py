@@ -17,18 +17,10 @@ RISING_RULE = (
 
 @dataclass(frozen=True)
 class Trend:
-    """How an estimate changes along its bins, in standard errors of the change.
+    """How an estimate changes along its bins, in standard errors of the change."""
 
-    Attributes
-    ----------
-    span : float
-        Last − first value.
-    worst : float
-        The most negative step between neighbours; 0 if none is negative.
-    """
-
-    span: float
-    worst: float
+    span: float  # last − first value
+    worst: float  # the most negative step between neighbours; 0 if none is negative
 
     @property
     def rises(self) -> bool:
@@ -58,17 +50,10 @@ def trend(estimate: Estimate) -> Trend:
 
 @dataclass(frozen=True)
 class Falling:
-    """Impacts in bins of impact velocity, fastest bin first.
-
-    Attributes
-    ----------
-    impacts : Impacts
-    speeds : ndarray, shape (bins,)
-        Centres of the bins in m/s, decreasing.
-    """
+    """Impacts in bins of impact velocity, fastest bin first."""
 
     impacts: Impacts
-    speeds: Array
+    speeds: Array  # centres of the bins in m/s, decreasing
 
     @property
     def labels(self) -> list[str]:

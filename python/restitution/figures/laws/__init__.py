@@ -25,24 +25,8 @@ def write(
 ) -> tuple[Path, str]:
     """Measure, and write ``laws.png``, ``.pdf``, ``.nc``, ``.txt`` (the caption) and ``.md`` (the table).
 
-    Parameters
-    ----------
-    out : Path
-        The folder to write to, all or nothing.
-    impacts, seed, threads, progress
-        As in `measure`.
-    overwrite : bool
-        Whether files of an earlier call are replaced.
-
-    Returns
-    -------
-    tuple of Path and str
-        The PNG, and the table.
-
-    Raises
-    ------
-    OSError
-        If `out` cannot be written to, or holds anything and is not to be overwritten; before the work begins.
+    The folder `out` gets all files or none; one that cannot be written to, or that holds anything and is not
+    to be overwritten, is refused before the work begins. Give the PNG, and the table.
     """
     out, overwrite = path_for("out", out, FOLDER), flag("overwrite", overwrite)
     names = [f"laws.{kind}" for kind in ("png", "pdf", "nc", "txt", "md")]

@@ -57,16 +57,8 @@ RUN: dict[str, Any] = {
 def measure(impacts: int, seed: int, *, threads: int | None = None, progress: bool = False) -> xr.Dataset:
     """Run every law on every body.
 
-    Parameters
-    ----------
-    impacts : int
-        Impacts of a combination, roughly and on average over the combinations; all have the same particles.
-    seed : int
-        Seed of the random numbers, in [0, 2⁶³); every batch of particles derives its own.
-    threads : int, optional
-        As in `restitution.statistics`.
-    progress : bool
-        Show a progress bar.
+    Each combination has so many impacts roughly and on average over all; all have the same particles. Every
+    batch of them derives its seed from that given, which is in [0, 2⁶³).
 
     Returns
     -------
@@ -77,11 +69,6 @@ def measure(impacts: int, seed: int, *, threads: int | None = None, progress: bo
         from 0.05 m/s on, ``all_share`` and ``all_factor`` over all; ``bound``, which no factor under the
         paper's law can exceed. Standard errors are called ``…_error``; they come from the scatter of 16
         independent batches of particles.
-
-    Raises
-    ------
-    ValueError
-        If there would not be a particle in every batch.
     """
     impacts = whole("impacts", impacts, BATCHES * _MEAN_IMPACTS, 2**53)
     seed = whole("seed", seed, 0, 2**63 - 1)

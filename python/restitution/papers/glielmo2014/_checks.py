@@ -21,19 +21,7 @@ TILT = np.pi / 3
 def printed_density(restitution: ArrayLike, body: Dumbbell, law: TangentialRestitution) -> Floats:
     """Eq. 21 with Eq. 22 as printed, misprints included: to be compared with `restitution.analytic`, no more.
 
-    Parameters
-    ----------
-    restitution : array_like
-        ε, of any shape.
-    body : Dumbbell
-        With ``separation > 0``.
-    law : TangentialRestitution
-        Gives ε_n.
-
-    Returns
-    -------
-    ndarray
-        Of the shape of ``restitution``; 0 outside the support of Eq. 17, nan for nan.
+    It is 0 outside the support of Eq. 17, and nan for nan.
     """
     value = np.asarray(restitution, dtype=np.float64)
     low, high = first_impact(body, law).support()

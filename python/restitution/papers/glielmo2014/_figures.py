@@ -1,5 +1,6 @@
 """The redrawn figures in the paper's order: each is reduced in `_data`, drawn here, and explained here."""
 
+from collections.abc import Callable
 from functools import partial
 from typing import Any
 
@@ -108,30 +109,35 @@ def _first_impact(drawn: xr.Dataset) -> Figure:
 
 @fg.styled
 def _map_sensitivity(drawn: xr.Dataset) -> Figure:
-    figure, [panels] = fg.panels(fg.PAGE, 2.7, 1, 2, sharey=True)
-    for axes, axis, label, text in _sides(panels):
-        for k, value in enumerate(drawn[axis].to_numpy()):
-            by = drawn[f"by_{axis}"].isel({axis: k})
-            for q, style in zip(range(by.sizes["quantile"]), (":", "-", ":"), strict=True):
-                name = f"{label} = {1e3 * value:g} mm" if style == "-" else None
-                line = by.isel(quantile=q)
-                axes.plot(drawn["velocity"], line, color=fg.COLORS[k], linestyle=style, label=name)
-        fg.letter(axes, text, left=False)
-        axes.set_xlabel(_VELOCITY)
-        axes.legend(loc="lower right")
-    panels[0].set_ylabel(_RESTITUTION)
-    return figure
+    def quantiles(axes: Axes, axis: str, k: int, label: str) -> None:
+        for q, style in enumerate((":", "-", ":")):
+            line = drawn[f"by_{axis}"].isel({axis: k}, quantile=q)
+            name = label if style == "-" else None
+            axes.plot(drawn["velocity"], line, color=fg.COLORS[k], linestyle=style, label=name)
+
+    return _two_panels(drawn, quantiles, _RESTITUTION, "lower right")
 
 
 @fg.styled
 def _deviation_sensitivity(drawn: xr.Dataset) -> Figure:
+    def deviation(axes: Axes, axis: str, k: int, label: str) -> None:
+        _deviation(axes, drawn.isel({axis: k}), f"_by_{axis}", k, label)
+
+    return _two_panels(drawn, deviation, _DEVIATION, "lower left")
+
+
+def _two_panels(
+    drawn: xr.Dataset, draw: Callable[[Axes, str, int, str], None], quantity: str, legend: str
+) -> Figure:
+    """Draw a line for each radius in one panel, and for each release height in the other."""
     figure, [panels] = fg.panels(fg.PAGE, 2.7, 1, 2, sharey=True)
-    for axes, axis, label, text in _sides(panels):
+    for axes, axis, symbol, text in zip(panels, ("radius", "height"), "Rh", ("(a)", "(b)"), strict=True):
         for k, value in enumerate(drawn[axis].to_numpy()):
-            _deviation(axes, drawn.isel({axis: k}), f"_by_{axis}", k, f"{label} = {1e3 * value:g} mm")
+            draw(axes, axis, k, f"${symbol}$ = {1e3 * value:g} mm")
         fg.letter(axes, text, left=False)
-        axes.legend(loc="lower left")
-    panels[0].set_ylabel(_DEVIATION)
+        axes.set_xlabel(_VELOCITY)
+        axes.legend(loc=legend)
+    panels[0].set_ylabel(quantity)
     return figure
 
 
@@ -148,10 +154,6 @@ def _deviation(axes: Axes, drawn: xr.Dataset, suffix: str, k: int, label: str) -
     axes.set_xlabel(_VELOCITY)
     fg.plain_log(axes, _SPEED_TICKS)
     axes.set_yscale("log")
-
-
-def _sides(panels: list[Axes]) -> list[tuple[Axes, str, str, str]]:
-    return [(panels[0], "radius", "$R$", "(a)"), (panels[1], "height", "$h$", "(b)")]
 
 
 def _explain_map(drawn: xr.Dataset, s: Settings) -> Caption:

@@ -19,41 +19,21 @@ _KEPT = ["impact_velocity", "restitution", "rotational_fraction", "energy_ratio"
 
 @dataclass(frozen=True, eq=False)
 class Runs(runs.Runs):
-    """All data: recorded, or counted without being kept.
+    """All data: recorded, or counted without being kept."""
 
-    Attributes
-    ----------
-    main
-        L/R = 0.1, release angle uniform: fits and standard errors of Figs. 4 and 5.
-    beads
-        By L/R (0.01 and 0.02): standard errors of Fig. 6.
-    first
-        L = 2R, ε_n = 0.4, one impact: Fig. 9.
-    isotropic
-        As `main` with isotropic release orientation.
-    energy
-        By L/R: as `main` for other elongations.
-    by_radius, by_height
-        ``[radius][L/R]`` and ``[height][L/R]`` (m) for the L/R of Fig. 2 and the first of Fig. 6; only
-        some of the variables.
-    lattice, slow, windows
-        The ensemble that `main` is the first particles of, counted: on the lattices of Figs. 2 and 3, on that
-        of Fig. 7, and on that from which Figs. 4 and 5 are put together.
-    beads_counted
-        By L/R: the ensembles that `beads` are the first particles of, counted in the bins of Fig. 6.
-    """
-
-    main: xr.Dataset
-    beads: Mapping[float, xr.Dataset]
-    first: xr.Dataset
-    isotropic: xr.Dataset
-    energy: Mapping[float, xr.Dataset]
+    main: xr.Dataset  # L/R = 0.1, release angle uniform: fits and standard errors of Figs. 4 and 5
+    beads: Mapping[float, xr.Dataset]  # by L/R (0.01 and 0.02): standard errors of Fig. 6
+    first: xr.Dataset  # L = 2R, ε_n = 0.4, one impact: Fig. 9
+    isotropic: xr.Dataset  # as `main` with isotropic release orientation
+    energy: Mapping[float, xr.Dataset]  # by L/R: as `main` for other elongations
+    # [radius][L/R] and [height][L/R] (m) for the L/R of Fig. 2 and the first of Fig. 6
     by_radius: Mapping[float, Mapping[float, xr.Dataset]]
     by_height: Mapping[float, Mapping[float, xr.Dataset]]
-    lattice: xr.Dataset
-    slow: xr.Dataset
-    windows: xr.Dataset
-    beads_counted: Mapping[float, xr.Dataset]
+    # The ensembles that `main` and `beads` are the first particles of, counted in the bins of
+    lattice: xr.Dataset  # Figs. 2 and 3
+    slow: xr.Dataset  # Fig. 7
+    windows: xr.Dataset  # Figs. 4 and 5, put together from one lattice
+    beads_counted: Mapping[float, xr.Dataset]  # Fig. 6, by L/R
 
 
 def number(s: Settings) -> int:
@@ -64,17 +44,9 @@ def number(s: Settings) -> int:
 def simulate(s: Settings, impacts: int, runner: Runner) -> Runs:
     """Run every simulation that the figures and the claims need.
 
-    Parameters
-    ----------
-    s : Settings
-        What to simulate.
-    impacts : int
-        Impacts to count for each of Figs. 2-5 and 7 and each curve of Fig. 6. At most
-        ``s.recorded_impacts`` of them are recorded in the main run. A few more are made of both, because the
-        end of a trajectory is not known beforehand. Secondary runs have their own fixed sizes (see
-        `Settings`).
-    runner : Runner
-        Runs each of them.
+    So many impacts are counted for each of Figs. 2-5 and 7 and each curve of Fig. 6, and at most
+    ``s.recorded_impacts`` of them recorded in the main run. A few more are made of both, because the end of a
+    trajectory is not known beforehand. Secondary runs have their own fixed sizes.
     """
 
     def drop(

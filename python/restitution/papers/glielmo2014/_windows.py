@@ -33,15 +33,7 @@ def lattice(s: Settings) -> tuple[FloatArray, FloatArray]:
 
 
 def at_speeds(counted: xr.Dataset, s: Settings) -> Iterator[xr.Dataset]:
-    """For each speed ``count``, ``fraction_count`` and ``number`` of the impacts in its window.
-
-    Parameters
-    ----------
-    counted : xarray.Dataset
-        Statistics on the `lattice`.
-    s : Settings
-        The windows.
-    """
+    """From statistics on the `lattice`, yield the counts of the impacts in the window of each speed."""
     edges = counted["velocity_edges"].to_numpy()
     for window in s.speed_windows:
         low, high = (int(np.argmin(np.abs(edges - v))) for v in window)

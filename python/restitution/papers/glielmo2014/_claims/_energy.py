@@ -20,22 +20,12 @@ GAIN = 1e-9
 
 @dataclass(frozen=True)
 class Gains:
-    """Impacts of one run that create kinetic energy.
+    """Impacts of one run that create kinetic energy."""
 
-    Attributes
-    ----------
-    share, error : float
-        Share of the impacts with an energy ratio above 1 + `GAIN`, and its standard error.
-    share_above_round_off : float
-        Share above 1 + 1e−12.
-    largest : float
-        Largest energy ratio.
-    """
-
-    share: float
-    error: float
-    share_above_round_off: float
-    largest: float
+    share: float  # with an energy ratio above 1 + `GAIN`
+    error: float  # of it
+    share_above_round_off: float  # above 1 + 1e−12
+    largest: float  # energy ratio
 
 
 def gains(data: xr.Dataset, low: float = -np.inf, high: float = np.inf) -> Gains:

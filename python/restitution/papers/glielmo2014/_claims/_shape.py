@@ -24,30 +24,14 @@ REJECTED = 0.002
 
 @dataclass(frozen=True)
 class Shape:
-    """The density of ε at one speed beside the asymmetric Laplace distribution.
+    """The density of ε at one speed beside the asymmetric Laplace distribution."""
 
-    Attributes
-    ----------
-    label : str
-        The speed.
-    goodness : Goodness
-        Of the Laplace fit to independent draws, at most one of each particle.
-    distance : float
-        Kolmogorov–Smirnov distance between all impacts and their fit.
-    rivals : dict
-        By family: gain of the Laplace fit over it in log-likelihood an impact, with an error by particle.
-    exponent : (float, float)
-        k of the flanks exp(−|x|^k) with its standard error; 1 is Laplace, 2 is Gaussian.
-    asymmetry : (float, float)
-        ln(a/b) of the decay lengths above and below the cusp with its standard error; 0 is symmetric.
-    """
-
-    label: str
-    goodness: fit.Goodness
-    distance: float
-    rivals: dict[str, fit.Comparison]
-    exponent: tuple[float, float]
-    asymmetry: tuple[float, float]
+    label: str  # the speed
+    goodness: fit.Goodness  # of the Laplace fit to independent draws, at most one of each particle
+    distance: float  # of Kolmogorov and Smirnov, between all impacts and their fit
+    rivals: dict[str, fit.Comparison]  # gain of the Laplace fit in log-likelihood an impact, by family
+    exponent: tuple[float, float]  # k of the flanks exp(−|x|^k), and its error; 1 is Laplace, 2 Gaussian
+    asymmetry: tuple[float, float]  # ln(a/b) of the decay lengths above and below, and its error
 
     @property
     def rejected(self) -> bool:
