@@ -2,7 +2,7 @@
 
 from collections.abc import Callable
 from functools import partial
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 import xarray as xr
@@ -111,7 +111,7 @@ def _first_impact(drawn: xr.Dataset) -> Figure:
 def _map_sensitivity(drawn: xr.Dataset) -> Figure:
     def quantiles(axes: Axes, axis: str, k: int, label: str) -> None:
         for q, style in enumerate((":", "-", ":")):
-            line = drawn[f"by_{axis}"].isel({axis: k}, quantile=q)
+            line = drawn[f"by_{axis}"].isel({axis: k, "quantile": q})
             name = label if style == "-" else None
             axes.plot(drawn["velocity"], line, color=fg.COLORS[k], linestyle=style, label=name)
 
@@ -127,7 +127,10 @@ def _deviation_sensitivity(drawn: xr.Dataset) -> Figure:
 
 
 def _two_panels(
-    drawn: xr.Dataset, draw: Callable[[Axes, str, int, str], None], quantity: str, legend: str
+    drawn: xr.Dataset,
+    draw: Callable[[Axes, str, int, str], None],
+    quantity: str,
+    legend: Literal["lower left", "lower right"],
 ) -> Figure:
     """Draw a line for each radius in one panel, and for each release height in the other."""
     figure, [panels] = fg.panels(fg.PAGE, 2.7, 1, 2, sharey=True)
