@@ -40,10 +40,10 @@ test: lint  ## every check: Rust format, clippy, Rust tests, ruff, mypy, the exp
 	$(MAKE) test-web
 	$(BIN)/python -m pytest
 
-# The kept module must be of these sources: built anew here, it would pass where everybody else gets the old one.
+# The kept module and page must be of these sources: built anew here, they would pass where everybody else gets the old ones.
 test-web: $(STAMP) web/node_modules/.package-lock.json  ## the explorer: types, its engine beside the native one, the page in a real browser
 	$(PYTHON) web/module/build.py --check
-	cd web && npx tsc --project . && node build.mjs && node --test --test-reporter=spec tests/*.test.mjs
+	cd web && npx tsc --project . && node build.mjs --check && node --test --test-reporter=spec tests/*.test.mjs
 
 web: web/node_modules/.package-lock.json  ## the explorer: the core as WebAssembly, and the page around it
 	$(PYTHON) web/module/build.py
@@ -57,10 +57,10 @@ web/node_modules/.package-lock.json: web/package.json web/package-lock.json
 	touch $@
 
 # With fewer impacts than `make paper`: the verdicts rest on the recorded ones, which are as many.
-build/extra/paper/report.html: $(STAMP) | web
+build/extra/paper/report.html: $(STAMP)
 	$(BIN)/restitution paper --overwrite --quiet --impacts 4000000 --out $(@D)
 
-docs: $(STAMP) web build/extra/paper/report.html  ## the site, into build/site: no warning, every line of code run, every link followed
+docs: $(STAMP) web/node_modules/.package-lock.json build/extra/paper/report.html  ## the site, into build/site: no warning, every line of code run, every link followed
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check --upgrade 'pip>=25.1'
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check --group docs
 	rm -rf build/site
@@ -68,7 +68,7 @@ docs: $(STAMP) web build/extra/paper/report.html  ## the site, into build/site: 
 	$(BIN)/python docs/check.py build/site
 	$(BIN)/python -m pytest tests/project/test_import.py -q -k pages
 
-wheel: $(STAMP) web  ## wheels for Linux into dist/, each installed and run in an environment of its own
+wheel: $(STAMP)  ## wheels for Linux into dist/, each installed and run in an environment of its own
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check --upgrade 'pip>=25.1'
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check --group wheel
 	$(BIN)/python packaging/wheel.py $(MACHINE)
@@ -79,7 +79,7 @@ licences:  ## list the licences of what is compiled into the package and the pag
 fuzz:  ## random runs beside the oracle and between the SIMD levels, $(FUZZ) seconds each
 	RESTITUTION_FUZZ_SECONDS=$(FUZZ) cargo test -p restitution-core --locked --test agreement --test fuzz -- --nocapture
 
-hostile: $(STAMP) | web  ## every public function with every hostile value and every harmed Dataset, harmed files and random tables for $(FUZZ) seconds, every command in every hostile environment
+hostile: $(STAMP)  ## every public function with every hostile value and every harmed Dataset, harmed files and random tables for $(FUZZ) seconds, every command in every hostile environment
 	PYTHONPATH=tests $(BIN)/python tests/manual/hostile.py
 	PYTHONPATH=tests OPENBLAS_NUM_THREADS=1 OMP_NUM_THREADS=1 $(BIN)/python tests/manual/fuzz.py --seconds $(FUZZ)
 	PYTHONPATH=tests OPENBLAS_NUM_THREADS=1 OMP_NUM_THREADS=1 $(BIN)/python tests/manual/environments.py

@@ -4,7 +4,7 @@
     python packaging/wheel.py aarch64     that one, or what is missing
 
 The wheels come into dist/. zig links them against glibc 2.17, so that they run on any system since 2014.
-`make wheel` installs maturin and zig, builds the page and calls this.
+`make wheel` installs maturin and zig and calls this.
 """
 
 import json

@@ -5,7 +5,6 @@ import random
 import signal
 import subprocess
 import sys
-from importlib.resources import files
 from pathlib import Path
 
 import pytest
@@ -16,11 +15,8 @@ from reference.processes import COMMANDS, RUN, STUDY, command, inputs
 from restitution.cli import app
 
 TESTS = Path(__file__).parents[1]
-BUILT = files("restitution.explorer").joinpath("explorer.html").is_file()
-needs_the_explorer = pytest.mark.skipif(not BUILT, reason="the explorer is not built: make web")
 
 
-@needs_the_explorer
 def test_commands_in_hostile_environments() -> None:
     """Our error, or a right result, within a time; never an abort or a hang, and nothing is left behind."""
     words = [sys.executable, str(TESTS / "manual" / "environments.py"), "--commands", "6"]
@@ -77,9 +73,7 @@ ENDED = {
 }
 
 
-@pytest.mark.parametrize(
-    "name", [pytest.param(name, marks=[needs_the_explorer] * (name == "explore")) for name in ENDED]
-)
+@pytest.mark.parametrize("name", ENDED)
 def test_a_signal_ends_a_command(name: str, tmp_path: Path) -> None:
     """In the midst of work that would take hours: the status names the signal, and no draft is left."""
     line, number, files = ENDED[name]

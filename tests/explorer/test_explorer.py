@@ -1,5 +1,6 @@
 """The explorer outside the browser: its module, its links, its server, its widget."""
 
+import base64
 import hashlib
 import json
 import sys
@@ -13,7 +14,8 @@ import pytest
 
 import restitution as rs
 from restitution.drop.run import Run
-from restitution.explorer import _page, link, serve
+from restitution.explorer import link, page, serve
+from restitution.explorer._page import MOST_IMPACTS
 from restitution.explorer._widget import _run_of
 
 ROOT = Path(__file__).parents[2]
@@ -26,6 +28,12 @@ def test_the_module_in_the_repository_is_whole() -> None:
     stamp = json.loads((ROOT / "web/module/restitution_web.json").read_text())
     module = (ROOT / "web/module/restitution_web.wasm").read_bytes()
     assert (stamp["module"], stamp["size"]) == (hashlib.sha256(module).hexdigest(), len(module))
+
+
+def test_the_page_in_the_repository_holds_that_module() -> None:
+    # Whether all of it is of these sources, `make test-web` says.
+    module = (ROOT / "web/module/restitution_web.wasm").read_bytes()
+    assert base64.b64encode(module).decode() in page()
 
 
 def test_the_lock_file_names_no_registry() -> None:
@@ -85,7 +93,7 @@ def test_the_length_of_the_body_survives_the_way_over_the_elongation() -> None:
 
 def test_large_runs_are_shown_in_part() -> None:
     shown = values(Run(body=BODY, law=LAW, particles=10**6, impacts=400))
-    assert int(shown["particles"]) * 400 == _page.MOST_IMPACTS
+    assert int(shown["particles"]) * 400 == MOST_IMPACTS
 
 
 @pytest.mark.parametrize(
@@ -156,9 +164,3 @@ def test_the_page_is_served_to_this_machine(monkeypatch: pytest.MonkeyPatch) -> 
         urllib.request.urlopen(f"{address}other", timeout=10)
     with pytest.raises(ValueError, match="port = -1"):
         serve(port=-1)
-
-
-def test_without_the_page_the_error_says_what_to_do(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
-    monkeypatch.setattr(_page, "files", lambda _: tmp_path)
-    with pytest.raises(FileNotFoundError, match="make web"):
-        _page.page()

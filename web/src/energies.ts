@@ -45,8 +45,8 @@ export const duration = (seconds: number): string =>
 const ratio = (x: number) => (Math.abs(x - 1) < 1e-12 ? "1" : x.toFixed(4));
 
 const ROWS: [string, (run: Run, place: number) => string][] = [
-  ["impact velocity v", (run, i) => `${run.columns.impact_velocity[i].toPrecision(3)} m/s`],
-  ["restitution ε", (run, i) => run.columns.restitution[i].toPrecision(4)],
+  ["impact velocity v", (run, i) => `${run.columns.impact_velocity[i].toPrecision(3).replace("-", "−")} m/s`],
+  ["restitution ε", (run, i) => run.columns.restitution[i].toPrecision(4).replace("-", "−")],
   ["tilt θ of the axis", (run, i) => `${((run.columns.angle[i] * 180) / Math.PI).toFixed(1)}°`],
   ["rotational share", (run, i) => `${(100 * run.columns.rotational_fraction[i]).toPrecision(3)} %`],
   ["energy after/before", (run, i) => ratio(run.columns.energy_ratio[i])],

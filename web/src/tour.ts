@@ -32,7 +32,7 @@ export const TOUR: readonly Stop[] = [
   },
   {
     title: "Figs. 3 and 5: the reservoir fills",
-    text: "Released from rest, a body has no rotation. The slower it has become, the larger the share of its kinetic energy that rotates (colour and mean). Choose the density of the rotational share, and drag the line to another speed.",
+    text: "Released from rest, a body has no rotation. The slower it has become, the larger the share of its kinetic energy that rotates (colour and mean). Drag the line to another speed: the density of the rotational share, further down, follows.",
     view: { density: "fraction", speed: 0.2, chart: "reservoir" },
   },
   {

@@ -29,8 +29,6 @@ def serve(
     ------
     ValueError
         If `port` is out of range.
-    FileNotFoundError
-        If the page was not built.
     OSError
         If the port is taken.
     """

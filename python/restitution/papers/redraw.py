@@ -1,7 +1,6 @@
 """From nothing to the report: simulate, draw, judge, write, and only then put the files in place."""
 
 import os
-from contextlib import suppress
 from pathlib import Path
 
 from restitution._internal.arrays import flag, whole
@@ -49,8 +48,7 @@ def redraw(
     Returns
     -------
     Path
-        The report, an HTML file that needs no other. Its links to the explorer are left out if the package
-        was installed from a checkout where that page was not built.
+        The report, an HTML file that needs no other.
 
     Raises
     ------
@@ -79,9 +77,7 @@ def redraw(
         claims = paper.claims.judge(runs, settings)
         stages.update()
         html, explorer = PAGES
-        with suppress(FileNotFoundError):
-            (draft / explorer).write_text(page(), encoding="utf-8")
-        linked = explorer if (draft / explorer).exists() else ""
-        (draft / html).write_text(report(paper, runs, figures, claims, explorer=linked), encoding="utf-8")
+        (draft / explorer).write_text(page(), encoding="utf-8")
+        (draft / html).write_text(report(paper, runs, figures, claims, explorer=explorer), encoding="utf-8")
         stages.update()
     return folder / html

@@ -152,8 +152,13 @@ function bar(pen: Pen, most: number, box: Box, colours: Palette, font: number): 
     const top = height((k + 1) / steps);
     pen.rectangles([{ left, top, width, height: box.height / steps + 0.5 }], viridis((k + 0.5) / steps));
   }
-  for (let count = 1; count <= most; count *= 10) {
+  // Powers of ten first, then what fits between them.
+  const powers = Array.from({ length: 1 + Math.floor(Math.log10(most) + 1e-9) }, (_, k) => 10 ** k);
+  const taken: number[] = [];
+  for (const count of [...powers, ...powers.map((x) => 2 * x), ...powers.map((x) => 5 * x)]) {
     const place = height(population(count, most));
+    if (count > most || taken.some((other) => Math.abs(other - place) < 1.4 * font)) continue;
+    taken.push(place);
     pen.line([[left + width, place], [left + width + 4, place]], colours.soft, 1);
     const text = count >= 1e4 ? `${count / 1000}k` : String(count);
     pen.text(text, [left + width + 0.5 * font, place + 0.35 * font], { colour: colours.ink, size: 0.9 * font });

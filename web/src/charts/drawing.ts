@@ -33,6 +33,8 @@ export function drawing(path: Path, setup: Setup, impacts: number): Struck {
     .map(({ x, y }) => new Vector3(x, y, 0))
     .find((x) => x.length() > 1e-9)!
     .normalize();
+  // Seen as in the scene, whose camera looks along y.
+  if (along.x < 0) along.negate();
   const flat = (x: Vector3): Place => [x.dot(along), x.z];
   const normal = along.clone().cross(new Vector3(0, 0, 1));
   // The precession is constant in a flight; the rest of ω is along the axis, which lies in the plane of the drawing.
@@ -183,6 +185,7 @@ function turning(pen: Pen, spin: number, [x, y]: Place, radius: number, colour: 
   pen.line(Array.from({ length: 49 }, (_, k) => place(start + (sweep * k) / 48)), colour, 0.2 * font);
   const end = start + sweep;
   head(pen, place(end), -(end + (Math.sign(spin) * Math.PI) / 2), 0.8 * font, colour);
-  const [tx, ty] = place(Math.PI / 2);
-  pen.text("ω", [tx - 0.4 * font, ty - 0.5 * font], { colour, size: 1.15 * font, bold: true });
+  // Its name at its tail.
+  const [tx, ty] = [x + (radius + 0.9 * font) * Math.cos(start), y - (radius + 0.9 * font) * Math.sin(start)];
+  pen.text("ω", [tx, ty + 0.4 * font], { colour, size: 1.15 * font, bold: true, anchor: "middle" });
 }

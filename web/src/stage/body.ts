@@ -13,11 +13,12 @@ import {
 } from "three";
 import type { Setup } from "../setup";
 
-/** Longitudes of a sphere in two colours: four quarters, seen to roll. */
-function patch(radius: number, material: MeshStandardMaterial, second: MeshStandardMaterial, half: number): Group {
+/** Longitudes of a sphere in two colours: four quarters, seen to roll. `reach` is the angle from its pole that it goes to: what lies
+ * inside another sphere would shine through where they nearly coincide. */
+function patch(material: MeshStandardMaterial, second: MeshStandardMaterial, half: number, side: 1 | -1 = 1, reach = Math.PI): Group {
   const group = new Group();
   for (let k = 0; k < 4; k++) {
-    const geometry = new SphereGeometry(radius, 16, 32, (k * Math.PI) / 2, Math.PI / 2).rotateX(Math.PI / 2);
+    const geometry = new SphereGeometry(1, 16, 32, (k * Math.PI) / 2, Math.PI / 2, 0, reach).rotateX((side * Math.PI) / 2);
     group.add(new Mesh(geometry, k % 2 === half ? material : second));
   }
   return group;
@@ -30,14 +31,14 @@ export function bodyOf(s: Setup, colour: string): Group {
   const group = new Group();
   const half = s.elongation / 2;
   if (s.shape === "dumbbell") {
-    for (const side of [1, -1]) {
-      const ball = patch(1, base, side > 0 ? light : dark, side > 0 ? 0 : 1);
+    for (const side of [1, -1] as const) {
+      const ball = patch(base, side > 0 ? light : dark, side > 0 ? 0 : 1, side, Math.acos(-Math.min(half, 1)));
       ball.position.z = side * half;
       group.add(ball);
     }
     if (half > 1) group.add(new Mesh(upright(new CylinderGeometry(0.08, 0.08, 2 * half)), dark));
   } else if (s.shape === "spheroid") {
-    const ball = patch(1, base, light, 0);
+    const ball = patch(base, light, 0);
     ball.scale.z = 1 + half;
     group.add(ball);
   } else {

@@ -31,7 +31,7 @@ export interface Written {
 }
 
 /** Three digits; what is rounding is nothing. */
-export const short = (x: number): string => (Math.abs(x) < 1e-9 ? "0" : String(Number(x.toPrecision(3))));
+export const short = (x: number): string => (Math.abs(x) < 1e-9 ? "0" : String(Number(x.toPrecision(3))).replace("-", "−"));
 
 export function write(context: CanvasRenderingContext2D, written: Written, font: number): void {
   const colours = theme();
@@ -71,11 +71,13 @@ function scale(pen: CanvasPen, { left, height, width, perMetre }: Written, font:
 function altimeter(pen: CanvasPen, { left, width, height, now, most, of }: Written, font: number): void {
   const colours = theme();
   const x = left + width - 1.2 * font;
-  const [top, bottom] = [2.4 * font, height - 1.2 * font];
+  // In a narrow picture it begins below the key.
+  const narrow = width < 26 * font;
+  const [top, bottom] = [(narrow ? 6 : 2.4) * font, height - 1.2 * font];
   const at = (value: number) => bottom - (bottom - top) * Math.min(Math.max(value / most, 0), 1);
   pen.line([[x, top], [x, bottom]], colours.soft, 2);
   for (const y of [top, bottom]) pen.line([[x - 4, y], [x + 4, y]], colours.soft, 2);
   pen.ellipse([x, at(now)], [0.42 * font, 0.42 * font], 0, colours[of], "none", 0);
-  const text = `height ${short(now * 1e3)} mm`;
+  const text = `${narrow ? "" : "height "}${short(now * 1e3)} mm`;
   pen.text(text, [x - 0.8 * font, Math.min(Math.max(at(now) + 0.35 * font, top + 0.4 * font), bottom)], { colour: colours.ink, size: font, anchor: "end", rim: colours.paper });
 }
