@@ -197,17 +197,6 @@ def test_foreign_text_stays_text(source: str) -> None:
     assert Page(source).visible.count('alert("ε") & co') == 5  # quoted twice
 
 
-def test_without_the_explorer_nothing_leads_to_it(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """A package from a checkout where that page was not built still makes the report."""
-
-    def page() -> str:
-        raise FileNotFoundError
-
-    monkeypatch.setattr(machinery, "page", page)
-    report = machinery.redraw(PAPER, tmp_path, 100, progress=False)
-    assert "explorer" not in report.read_text(encoding="utf-8")
-
-
 def test_what_cannot_be_is_refused_before_the_work(tmp_path: Path) -> None:
     (tmp_path / "file").write_text("")
     cases: list[tuple[dict[str, Any], str]] = [
