@@ -49,7 +49,7 @@ def kicked(out_of_roundness: float, lobes: int, particles: int, impacts: int, se
 
     angle = np.random.default_rng(seed).uniform(0.0, 2.0 * np.pi, particles)
     spin = np.zeros(particles)
-    told = [np.full(particles, np.sqrt(2.0 * g * DROP))]
+    heard = [np.full(particles, np.sqrt(2.0 * g * DROP))]
     speed = np.sqrt(2.0 * g * (DROP - height(angle)))
     for _ in range(impacts):
         d = arm(angle)
@@ -62,10 +62,10 @@ def kicked(out_of_roundness: float, lobes: int, particles: int, impacts: int, se
         flight = flight - nearer / back
         later = angle + spin * flight
         speed = back - g * nearer / back + spin * (arm(later) - d)
-        told.append(0.5 * g * flight)
+        heard.append(0.5 * g * flight)
         angle = later
-    heard = np.array(told)
-    return np.asarray((heard[1:] / heard[:-1]).T)
+    times = np.array(heard)
+    return np.asarray((times[1:] / times[:-1]).T)
 
 
 def scatter(body: Body) -> tuple[float, float, float]:
@@ -74,18 +74,18 @@ def scatter(body: Body) -> tuple[float, float, float]:
     run = rs.simulate(
         body, LAW, particles=2000, impacts=IMPACTS, release_height=DROP + DIAMETER / 2.0, gravity=GRAVITY
     )
-    told = float(data.standard_deviation.sel(source="shape")[-1])
-    return told, float(run.restitution[:, -1].std()), float(data.turning_standard_deviation[-1])
+    heard = float(data.standard_deviation.sel(source="shape")[-1])
+    return heard, float(run.restitution[:, -1].std()), float(data.turning_standard_deviation[-1])
 
 
 @fg.styled
 def draw() -> Figure:
     """Draw the scatter of the last ε against the out-of-roundness."""
     deviations = DIAMETER * np.geomspace(3e-5, 3e-2, 16)
-    told, true, closed = np.array([scatter(rs.from_roundness(DIAMETER, t)) for t in deviations]).T
+    heard, true, closed = np.array([scatter(rs.from_roundness(DIAMETER, t)) for t in deviations]).T
     figure, [[axes]] = fg.panels(fg.COLUMN, 3.0)
     axes.loglog(1e6 * deviations, true, marker="s", color=fg.COLORS[1], label="Eq. 1")
-    axes.loglog(1e6 * deviations, told, marker="o", color=fg.COLORS[0], label="times of flight")
+    axes.loglog(1e6 * deviations, heard, marker="o", color=fg.COLORS[0], label="times of flight")
     axes.loglog(1e6 * deviations, closed, "--", color="0.3", label="closed form, angles independent")
     v, last = np.sqrt(2.0 * GRAVITY * DROP), IMPACTS - 1
     slope = 4.0 * (1.0 + NORMAL) * NORMAL * (v * NORMAL**last) ** 2 / (0.4 * (DIAMETER / 2.0) ** 2) / GRAVITY

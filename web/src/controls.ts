@@ -151,7 +151,7 @@ export class Controls {
   }
 }
 
-/** The set-up with one value changed, and whatever must change with it. */
+/** The set-up with one value changed, and all that must change with it. */
 export function changed(setup: Setup, key: Key, value: string | number): Setup {
   const next = { ...setup, [key]: value } as Setup;
   // The body must fit under its centre; radius and elongation push it up.

@@ -22,7 +22,7 @@ export const TOUR: readonly Stop[] = [
   },
   {
     title: "Fig. 2: ε of a slightly elongated body scatters",
-    text: "The dumbbell of the paper, L/R = 0.1: hardly to be told from a sphere by eye. ε depends on how it lies and spins when it touches. Slow impacts scatter most. Colour: how many impacts, on a logarithmic scale.",
+    text: "The dumbbell of the paper, L/R = 0.1: hardly distinguishable from a sphere by eye. ε depends on how it lies and spins when it touches. Slow impacts scatter most. Colour: how many impacts, on a logarithmic scale.",
   },
   {
     title: "ε > 1: rotation gives back",

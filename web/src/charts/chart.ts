@@ -39,7 +39,7 @@ export class Chart {
     this.draw();
   }
 
-  /** The picture as a file for print: on white, whatever the theme on the screen. */
+  /** The picture as a file for print: on white, for every theme on the screen. */
   svg(): string {
     const { width, height, font } = FILE;
     const pen = new SvgPen();
