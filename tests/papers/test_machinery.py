@@ -156,7 +156,14 @@ def test_a_paper_gives_only_what_is_its_own(folder: Path, text: str) -> None:
         assert text.count(str(data.attrs["seeds"])) == 2  # of the run, and in the caption
     for words in (
         *("One figure. Each of the 1 quantitative claims", "1 holds 0 hold in part 0 fail", "Only here."),
-        *("± 0.0012", "1 234 567", "Rule: Holds if the mean is below 1.", "Eq. 1", "By algebra."),
+        *(
+            "± 0.0012",
+            "1 234 567",
+            "Rule: Holds if the mean is below 1.",
+            "What to see: Points.",
+            "Eq. 1",
+            "By algebra.",
+        ),
         *("normal restitution 0.9 paper", "0.1 m ours", "main 100 20", "version " + rs.__version__),
         "restitution made-up --out made-up --impacts 200 --seed 5",
     ):
@@ -183,7 +190,7 @@ def test_it_is_well_formed(source: str) -> None:
     anchors = page.of("id")
     assert len(set(anchors)) == len(anchors)
     assert {target[1:] for target in page.of("href") if target.startswith("#")} <= set(anchors)
-    assert page.of("alt") == ["Points."]
+    assert page.of("alt") == [NASTY]
     tags = [tag for tag, _ in page.tags]
     assert tags.count("caption") == tags.count("table") == tags.count("details") + 1  # the claims stay open
     assert tags.count("section") == source.count('<a href="#top">Back to the top</a>')

@@ -79,7 +79,7 @@ class PaperFigure(Generic[R, S]):
 
     name: str
     title: str
-    shows: str  # for those who cannot see it
+    shows: str  # what there is to see
     reduce: Callable[[R, S], xr.Dataset]  # with the attributes of `recorded` or `counted`
     draw: Callable[[xr.Dataset], Figure]
     caption: Callable[[xr.Dataset, S], Caption]

@@ -83,9 +83,11 @@ def _heading(paper: Paper[R, S], claims: Sequence[Claim], runs: R, source: str) 
 
 
 def _count(verdict: Verdict, number: int) -> str:
-    """Say how many claims have this verdict, as a list item."""
+    """Say how many claims have this verdict, as a list item that leads to the first of them."""
     words = verdict if number == 1 else verdict.replace("holds", "hold").replace("fails", "fail")
-    return f'<li class="{_CLASSES[verdict]}"><b>{number}</b> {html.text(words)}</li>'
+    counted = f"<b>{number}</b> {html.text(words)}"
+    linked = f'<a href="#{_CLASSES[verdict]}">{counted}</a>' if number else counted
+    return f'<li class="{_CLASSES[verdict]}">{linked}</li>'
 
 
 def _badge(kind: str) -> str:
@@ -95,8 +97,11 @@ def _badge(kind: str) -> str:
 
 def _summary(claims: Sequence[Claim]) -> str:
     """List every claim in a line, with its verdict."""
+    first = {claim.finding.verdict: claim.key for claim in reversed(claims)}
+    anchors = {key: f' id="{_CLASSES[verdict]}"' for verdict, key in first.items()}
     rows = "\n".join(
-        f'<tr><td><q>{html.prose(claim.quote)}</q> <span class="small">{html.prose(claim.where)}</span></td>'
+        f"<tr{anchors.get(claim.key, '')}>"
+        f'<td><q>{html.prose(claim.quote)}</q> <span class="small">{html.prose(claim.where)}</span></td>'
         f"<td>{html.prose(claim.finding.why)}</td>"
         f'<td><a href="#{html.text(claim.key)}" title="the numbers">{_badge(claim.finding.verdict)}</a></td>'
         "</tr>"
@@ -117,8 +122,9 @@ def _figure(figure: SavedFigure, explorer: str) -> str:
         live = f'\n<a class="live" href="{html.text(explorer)}#stop={figure.stop}">{html.text(words)}</a>'
     return (
         f'<figure id="{html.text(figure.name)}">\n<h3>{html.prose(figure.title)}</h3>\n'
-        f"{html.image(figure.png, figure.shows)}\n"
-        f"<figcaption>{html.prose(figure.caption)}{live}</figcaption>\n</figure>"
+        f"{html.image(figure.png, figure.title)}\n<figcaption>\n"
+        f"{html.paragraph('What to see: ' + figure.shows, 'see')}\n"
+        f"{html.paragraph(figure.caption)}{live}</figcaption>\n</figure>"
     )
 
 

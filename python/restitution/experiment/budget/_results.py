@@ -89,29 +89,33 @@ class ErrorBudget(Content):
     def figure(self) -> Figure:
         """Draw the root mean square error √(bias² + variance) of one ε by source, against the speed.
 
-        Values that sampling cannot distinguish from 0 are not drawn.
+        Values that sampling cannot distinguish from 0 are not drawn, nor are those below a thousandth of the
+        largest; lines join those that are.
         """
-        from restitution.figures.style import COLORS, COLUMN, panels, styled
+        from restitution.figures.pieces import plain_log
+        from restitution.figures.style import COLUMN, panels, styled
 
         @styled
         def drawn() -> Figure:
             figure, [[axes]] = panels(COLUMN, 3.0)
             speed = self.data.impact_velocity.values
-            for number, source in enumerate(_SOURCES):
+            total = self.data.sel(source="total")
+            least = _DRAWN * float(np.hypot(total.standard_deviation, total.bias).max())
+            for source, (color, marker) in _LOOKS.items():
                 one = self.data.sel(source=source)
                 known = one.standard_deviation > 2.0 * one.standard_deviation_error
                 biased = np.abs(one.bias) > 2.0 * one.bias_error
-                squares = (
-                    np.where(known, one.standard_deviation, 0.0) ** 2 + np.where(biased, one.bias, 0.0) ** 2
+                error = np.hypot(
+                    np.where(known, one.standard_deviation, 0.0), np.where(biased, one.bias, 0.0)
                 )
-                shown = np.where(squares > _NOTHING**2, np.sqrt(squares), np.nan)
-                if np.isfinite(shown).any():
-                    marker = _MARKS[number % len(_MARKS)]
-                    color = "0.0" if source == "total" else COLORS[number % len(COLORS)]
-                    axes.loglog(speed, shown, color=color, marker=marker, label=self._named(source))
+                shown = error > least
+                if shown.any():
+                    name = self._named(source)
+                    axes.plot(speed[shown], error[shown], color=color, marker=marker, label=name)
+            axes.set_yscale("log")
+            plain_log(axes, [tick for tick in _TICKS if speed.min() <= tick <= speed.max()])
             axes.set_xlabel(r"impact velocity $v$ (m/s)")
             axes.set_ylabel(r"error of one $\varepsilon$")
-            axes.set_ylim(max(axes.get_ylim()[0], 1e-7), None)
             figure.legend(loc="outside upper center", ncols=3)
             return figure
 
@@ -132,7 +136,19 @@ def _cell(one: xr.Dataset, prefix: str) -> str:
     return f"{shown} ± {deviation:.1e}"
 
 
-_MARKS = ("o", "s", "^", "v", "D", "x", "+", "")
+_LOOKS = {
+    "shape": ("#0072B2", "o"),
+    "timing": ("#D55E00", "s"),
+    "gravity": ("#009E73", "^"),
+    "drop": ("#CC79A7", "v"),
+    "tilt": ("#56B4E9", "D"),
+    "spin": ("#8B5A2B", "x"),
+    "drag": ("0.55", "+"),
+    "total": ("0.0", ""),
+}
+"""Colour and marker of each source."""
+_TICKS = tuple(digit * 10.0**power for power in range(-3, 3) for digit in (1, 1.5, 2, 3, 4, 6, 8))
+_DRAWN = 1e-3
 _NOTHING = 1e-12
 """Errors that are below this are of rounding."""
 

@@ -361,8 +361,9 @@ FIGURES: tuple[PaperFigure[Runs, Settings], ...] = (
         "figure-4",
         "Fig. 4: histograms of restitution",
         "Four histograms of ε on a logarithmic axis, with asymmetric Laplace densities. At 0.8, 0.4 "
-        "and 0.2 m/s each is a peak at 0.98 with nearly straight flanks, narrower at higher velocity; "
-        "at 0.1 m/s the histogram is broad, with shoulders, and leaves the straight lines.",
+        "and 0.2 m/s each is a peak at 0.98 with nearly straight flanks, narrower at higher velocity, "
+        "which fall below the lines at their ends; at 0.1 m/s the histogram is broad, with shoulders, "
+        "and leaves the straight lines.",
         data.restitution_histograms,
         _restitution_histograms,
         _explain_restitution_histograms,

@@ -17,6 +17,7 @@ from restitution.papers.trend import falling
 CLAIMS: Claims[Runs, Settings] = Claims()
 RIVALS = (fit.gaussian, fit.logistic, fit.student_t)
 RESAMPLES = 499
+IN_TAILS = 100
 SLOW_BINS = 12
 REJECTED = 0.002
 """p-value at which a density is rejected: no draw from it is as far off."""
@@ -31,14 +32,15 @@ class Shape:
     distance: float  # of Kolmogorov and Smirnov, between all impacts and their fit
     rivals: dict[str, fit.Comparison]  # gain of the Laplace fit in log-likelihood an impact, by family
     exponent: tuple[float, float]  # k of the flanks exp(−|x|^k), and its error; 1 is Laplace, 2 Gaussian
+    tails: tuple[float, float]  # √ of the impacts in the tails over those of the fit, and its error
     asymmetry: tuple[float, float]  # ln(a/b) of the decay lengths above and below, and its error
 
     @property
     def rejected(self) -> bool:
-        """Whether a test or the exponent excludes the Laplace density."""
-        k, error = self.exponent
+        """Whether a test, the exponent or the tails exclude the Laplace density."""
         p = min(self.goodness.kolmogorov_smirnov_p, self.goodness.anderson_darling_p)
-        return p <= REJECTED or abs(k - 1) > SIGNIFICANT * error
+        far = (abs(value - 1) > SIGNIFICANT * error for value, error in (self.exponent, self.tails))
+        return p <= REJECTED or any(far)
 
     @property
     def verdict(self) -> Verdict:
@@ -50,8 +52,10 @@ class Shape:
 
 
 LAPLACE_RULE = (
-    "At one speed: holds if the Laplace density is not rejected (both p-values of independent draws above "
-    f"{REJECTED:g} and flank exponent within {SIGNIFICANT:g} standard errors of 1); in part if it is, but no "
+    f"Tails: farther from the cusp than the fit expects {IN_TAILS} impacts to be. At one speed: holds if the "
+    f"Laplace density is not rejected (both p-values of independent draws above {REJECTED:g}; flank "
+    f"exponent, and √ of the number in the tails over {IN_TAILS}, within {SIGNIFICANT:g} standard errors of "
+    "1); in part if it is, but no "
     f"rival (Gaussian, logistic, Student's t) is better by more than {SIGNIFICANT:g} standard errors of the "
     "log-likelihood and some rival is worse by as much; fails otherwise. Overall: holds if it holds at "
     f"every speed, fails if it fails at every one. The p-values come from {RESAMPLES} draws, so none is "
@@ -95,8 +99,17 @@ def _shape(label: str, values: Array, particle: Index, independent: Array, seed:
             for one in (rival(values) for rival in RIVALS)
         },
         jackknife(lambda x: fit.asymmetric_power(x).parameters["exponent"], values, particle),
+        jackknife(_tails, values, particle),
         jackknife(_log_ratio, values, particle),
     )
+
+
+def _tails(values: Array) -> float:
+    """Give √ of the number of impacts where the Laplace fit has `IN_TAILS`, over that of the fit."""
+    found = fit.asymmetric_laplace(values).parameters
+    away = values - found["location"]
+    lengths = np.where(away > 0, away / found["above"], -away / found["below"])
+    return float(np.sqrt(np.count_nonzero(lengths > np.log(values.size / IN_TAILS)) / IN_TAILS))
 
 
 def _log_ratio(values: Array) -> float:
@@ -110,6 +123,7 @@ def _tests(one: Shape) -> tuple[Measurement, ...]:
         Measurement("p (Kolmogorov–Smirnov)", one.goodness.kolmogorov_smirnov_p, at=one.label),
         Measurement("p (Anderson–Darling)", one.goodness.anderson_darling_p, at=one.label),
         Measurement("flank exponent k", *one.exponent, at=one.label),
+        Measurement("√(impacts in the tails over those of the fit)", *one.tails, at=one.label),
     )
 
 
@@ -135,7 +149,8 @@ def laplace(runs: Runs, settings: Settings) -> Finding:
         ]
     verdicts = [one.verdict for one in shapes]
     by_speed = "; ".join(
-        f"at {one.label} it {one.verdict} (flanks exp(−|x|^k) with k = {one.exponent[0]:.3g})"
+        f"at {one.label} it {one.verdict} (flanks exp(−|x|^k) with k = {one.exponent[0]:.3g}, in the tails "
+        f"{100 * one.tails[0] ** 2:.2g} % of the impacts that the fit has there)"
         for one in shapes
     )
     return Finding(
