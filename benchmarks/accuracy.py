@@ -67,7 +67,7 @@ CASES = {
 def measured(case: Case, scale: float) -> str:
     """Learn as `learn` does by default, compare with fresh particles, and give the cells of a row."""
     particles = round(scale * case.particles)
-    height = 0.06 if case.spread else [0.06]
+    height = None if case.spread else 0.06
     dist = rs.FluctuatingRestitution.learn(case.body, case.law, particles=particles, release_height=height)
     chosen = dist.data.attrs
     run = Run(

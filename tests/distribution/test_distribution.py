@@ -292,7 +292,7 @@ def test_conditions_outside_are_named(conditional: FluctuatingRestitution) -> No
         conditional.pdf(1.0, 0.4, given=[0.1, 1.5])
     with pytest.raises(ValueError, match=r"given\[1\] = 0.9: must be in \[.*\], what was seen"):
         conditional.pdf(1.0, 0.4, given=[0.1, 0.9])
-    assert "nodes, ks_distance up to 0.0" in repr(conditional)
+    assert "nodes, tails to 3e-4, ks_distance up to 0.0" in repr(conditional)
 
 
 def test_odd_arguments_are_named(learned: FluctuatingRestitution) -> None:

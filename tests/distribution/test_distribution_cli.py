@@ -65,7 +65,7 @@ def test_files_give_what_the_call_gives(run: Path) -> None:
     assert paths["figure"].read_bytes().startswith(b"\x89PNG")
     assert result.stdout.splitlines() == expected.summary().splitlines()
     worst = float(expected.data.ks_distance.max())
-    assert f"distance to fresh impacts: {worst:.4f} at most" in result.stdout
+    assert f"at most {worst:.4f} from fresh impacts" in result.stdout
 
 
 def test_a_file_may_list_heights_of_release(run: Path) -> None:

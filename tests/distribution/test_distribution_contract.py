@@ -84,7 +84,9 @@ def test_every_method_agrees_with_scipy(learned: FluctuatingRestitution, given: 
     np.testing.assert_allclose(learned.support(**at), (low, high))
     for name in ("mean", "var", "std", "median", "entropy"):
         assert getattr(learned, name)(**at) == pytest.approx(getattr(exact, name)(), rel=1e-9), name
-    np.testing.assert_allclose(learned.stats(**at, moments="mvsk"), exact.stats(moments="mvsk"), rtol=1e-7)
+    # Pearson's kurtosis, as everywhere in the package; SciPy has the excess.
+    expected = np.add(exact.stats(moments="mvsk"), [0.0, 0.0, 0.0, 3.0])
+    np.testing.assert_allclose(learned.stats(**at, moments="mvsk"), expected, rtol=1e-7)
     for order in range(6):
         assert learned.moment(order, **at) == pytest.approx(exact.moment(order), rel=1e-10)
     # By the trapezoidal rule over quantiles, which shares nothing with either.
@@ -167,5 +169,5 @@ def test_the_summary_is_text(learned: FluctuatingRestitution) -> None:
     summary = learned.summary()
     assert repr(summary) == str(summary)  # what a notebook shows
     lines = summary.splitlines()
-    assert lines[2] == "also given E_rot/E_tot before the impact (Eq. 12)"
-    assert lines[-1].startswith("Kolmogorov-Smirnov distance to fresh impacts")
+    assert lines[-2] == "also given E_rot/E_tot before the impact (Eq. 12)"
+    assert lines[-1].startswith("at most 0.")

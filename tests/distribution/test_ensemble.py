@@ -239,7 +239,7 @@ def test_empty_bins_at_the_ends_are_left_out() -> None:
     counter = Counter(np.array([1.0, 2.0]), [np.zeros(1)] * 2, [inner] * 2)
     counter.add(Impacts(np.ones((1, 3)), np.array([[0.3, 0.6, 0.8]]), EMPTY))
     counter.add(Impacts(np.full((1, 1), 1.5), np.array([[0.3]]), EMPTY))
-    histogram, shares, below = next(iter(counter.histograms()))
+    histogram, shares, below, _ = next(iter(counter.histograms()))
     assert histogram.edges.tolist() == [0.3, 0.5, 0.8, np.nextafter(0.8, 1)]
     assert (shares.size, below.size) == (3, 4)
     # A single batch does not scatter: that is not known, but for the ends.

@@ -24,7 +24,9 @@ WHOLE = [
 SHARE_ERRORS = [np.array([0.0]), np.array([0.03, 0.03]), np.array([0.02, 0.01, 0.04])]
 BELOW_ERRORS = [np.array([0.0, 0.0]), np.array([0.0, 0.03, 0.0]), np.array([0.0, 0.02, 0.05, 0.0])]
 MEAN_ERRORS, STD_ERRORS = np.array([0.01, 0.02, 0.04]), np.array([0.005, 0.015, 0.025])
+SHAPE_ERRORS = np.array([[0.0, 0.0], [0.1, 0.3], [0.2, 0.5]])
 CONDITIONS = [np.array([0.2, 0.6]), np.array([0.5]), np.array([0.1])]
+NO_GAPS: Floats = np.empty((0, 2))
 
 
 def counted(scale: float, conditions: list[Floats], order: list[int]) -> Counted:
@@ -38,11 +40,12 @@ def counted(scale: float, conditions: list[Floats], order: list[int]) -> Counted
         impacts=np.array([100.0, 200.0, 300.0, 400.0])[: len(order)],
         mean_errors=scale * MEAN_ERRORS[order],
         std_errors=scale * STD_ERRORS[order],
+        shape_errors=scale * SHAPE_ERRORS[order],
         seen=np.array([[0.1, 0.2, 0.05], [0.9, 0.8, 0.7]]),
     )
 
 
-def dataset(given: str | None) -> xr.Dataset:
+def dataset(given: str | None, gaps: Floats = NO_GAPS) -> xr.Dataset:
     """Components by condition: those of nodes 1 and 2 at the first node, then 0, then 2."""
     check: Any = SimpleNamespace(
         distances=lambda: np.array([0.01, 0.02]),
@@ -51,12 +54,12 @@ def dataset(given: str | None) -> xr.Dataset:
     )
     plain = counted(1.0, [np.zeros(1)] * 3, [0, 1, 2])
     conditional = None if given is None else counted(2.0, CONDITIONS, [1, 2, 0, 2])
-    return _store.assemble(plain, conditional, given, check, {"source": "here"})
+    return _store.assemble(plain, conditional, given, check, {"source": "here"}, gaps)
 
 
 @pytest.mark.parametrize("given", [None, "rotational_fraction", "previous"])
 def test_everything_that_was_counted_has_its_place(given: str | None) -> None:
-    data = dataset(given)
+    data = dataset(given, np.array([[0.7, 0.75], [1.5, 2.0]]))
     expected: dict[str, tuple[tuple[str, ...], list[float], str | None]] = {
         "velocity": (("node",), [0.5, 1.0, 3.0], "m s-1"),
         "impacts": (("node",), [100.0, 200.0, 300.0], "1"),
@@ -71,6 +74,10 @@ def test_everything_that_was_counted_has_its_place(given: str | None) -> None:
         "probability_below_error": (("edge",), [0.0, 0.0, 0.0, 0.03, 0.0, 0.0, 0.02, 0.05, 0.0], "1"),
         "mean_error": (("node",), MEAN_ERRORS.tolist(), "1"),
         "std_error": (("node",), STD_ERRORS.tolist(), "1"),
+        "skewness_error": (("node",), SHAPE_ERRORS[:, 0].tolist(), "1"),
+        "kurtosis_error": (("node",), SHAPE_ERRORS[:, 1].tolist(), "1"),
+        "gap_lowest": (("gap",), [0.7, 1.5], "m s-1"),
+        "gap_highest": (("gap",), [0.75, 2.0], "m s-1"),
         "ks_distance": (("interval",), [0.01, 0.02], None),
         "ks_scatter": (("interval",), [0.003, np.nan], None),
         "fresh_impacts": (("interval",), [50, 60], None),
@@ -97,6 +104,8 @@ def test_everything_that_was_counted_has_its_place(given: str | None) -> None:
             "given_probability_below_error": (edge, [2 * x for i in order for x in BELOW_ERRORS[i]], "1"),
             "given_mean_error": (component, (2 * MEAN_ERRORS[order]).tolist(), "1"),
             "given_std_error": (component, (2 * STD_ERRORS[order]).tolist(), "1"),
+            "given_skewness_error": (component, (2 * SHAPE_ERRORS[order, 0]).tolist(), "1"),
+            "given_kurtosis_error": (component, (2 * SHAPE_ERRORS[order, 1]).tolist(), "1"),
         }
     assert set(data.variables) == set(expected)
     for name, (dimensions, values, units) in expected.items():

@@ -165,7 +165,7 @@ def test_a_known_distribution_is_learned() -> None:
     counter = Counter(nodes, [np.zeros(1)] * nodes.size, edges)
     counter.add(Impacts(v.reshape(20, -1), e.reshape(20, -1), np.empty((0, 0))))
     assert counter.impacts().sum() == pytest.approx(v.size)
-    for node, (histogram, _, error) in zip(nodes, counter.histograms(), strict=True):
+    for node, (histogram, _, error, _) in zip(nodes, counter.histograms(), strict=True):
         exact = stats.norm.cdf(histogram.edges, 0.9, 0.02 / node)
         assert np.abs(histogram.cumulative - exact)[1:-1].max() < 0.02
         assert 0.5 < error.max() / (0.5 / np.sqrt(24_000)) < 2

@@ -244,13 +244,13 @@ def distances(distance: list[float], scatter: list[float], impacts: list[int]) -
 
 
 def test_a_distance_that_scatter_does_not_explain() -> None:
-    """The worst interval is named, among those that are far; others are farther, but scatter."""
+    """The largest distance is named, as in the summary, with its scatter; and how many are beyond theirs."""
     data = distances([0.06, 0.3, 0.2, np.nan], [0.01, 0.2, 0.02, np.nan], [900, 900, 900, 0])
     with pytest.warns(rs.DistanceWarning) as caught:
         warn_of_distance(data, stacklevel=1)
     told = str(caught[0].message)
-    assert "is 0.200 from fresh impacts at 0.3 to 0.4 m/s" in told
-    assert "of which 0.020 are due to their scatter; so are 2 of 4 intervals" in told
+    assert "is up to 0.3000 from fresh impacts (Kolmogorov-Smirnov), at 0.2 to 0.3 m/s" in told
+    assert "of which their own scatter explains 0.2000. 2 of 4 intervals between nodes are farther" in told
     assert caught[0].filename == __file__
 
 

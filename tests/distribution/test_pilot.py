@@ -180,7 +180,8 @@ def test_speeds_that_are_hardly_met_are_named() -> None:
     few: Any = SimpleNamespace(impacts=lambda: np.array([250, 249, 240]))
     told = (
         r"^velocities: 480 impacts between 0\.3 and 0\.123457 m/s; must be speeds with at least 500 impacts "
-        r"between any two nodes: more particles, more impacts of each, or another range$"
+        r"between any two nodes: more particles, more impacts of each, another range, or heights of release "
+        r"that are spread$"
     )
     with pytest.raises(ParameterError, match=told):
         _learn._enough(few, nodes, 2.0)

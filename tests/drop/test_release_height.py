@@ -81,7 +81,7 @@ def test_a_distribution_is_learned_from_it() -> None:
     dist = rs.FluctuatingRestitution.learn(BODY, LAW, release_height=height, **how)
     assert float(dist.data["ks_distance"].max()) < 0.05
     assert dist.data.attrs["release_height"] == "random"
-    assert "release_height_asked" not in dist.data.attrs
+    assert "heights_about" not in dist.data.attrs
 
 
 RUN_FILE = """

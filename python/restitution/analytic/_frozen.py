@@ -216,12 +216,15 @@ class FirstImpact(ABC):
         return self.std() ** 2
 
     def stats(self, moments: str = "mv") -> tuple[float, ...]:
-        """Mean "m", variance "v", skewness "s" and excess kurtosis "k", in the order of ``moments``."""
+        """Mean "m", variance "v", skewness "s" and kurtosis "k", in the order of ``moments``.
+
+        The kurtosis is Pearson's, 3 for a Gaussian, as everywhere in this package; SciPy's is less by 3.
+        """
         make: dict[str, Callable[[], float]] = {
             "m": self.mean,
             "v": self.var,
             "s": lambda: self._standardised(3),
-            "k": lambda: self._standardised(4) - 3.0,
+            "k": lambda: self._standardised(4),
         }
         if not isinstance(moments, str) or not set(moments) <= set(make):
             raise ParameterError(wrong("moments", moments, "letters of 'mvsk'"))

@@ -195,6 +195,7 @@ def distribution(
         from restitution.distribution import FluctuatingRestitution, image, image_format, sealed
         from restitution.distribution.c import header as c_header
         from restitution.distribution.fortran import module as fortran_module
+        from restitution.drop.energy import EnergyWarning
         from restitution.drop.toml import read_all
 
         study = read_all(run, single=True)
@@ -213,6 +214,7 @@ def distribution(
         (body,), (law,) = study.bodies.values(), study.laws.values()
         with warnings.catch_warnings(record=True) as doubts:
             warnings.simplefilter("always")
+            warnings.simplefilter("ignore", EnergyWarning)  # the summary says what it would
             found = FluctuatingRestitution.learn(body, law, **how, threads=threads, progress=progress(quiet))
         with whole_files(paths, replace=overwrite) as drafts:
             draft = dict(zip(paths, drafts, strict=True))

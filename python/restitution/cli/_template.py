@@ -67,6 +67,7 @@ restitution_range = [-1.0, 3.0]
 [distribution]                    # for distribution
 # velocities = [0.04, 0.4]        # m/s, from and to
 # given = "rotational_fraction"   # or "previous"
+# heights_about = 0.06            # spread about this one where no release_height is given
 # release_height = [0.05, 0.06]   # in equal parts from each, instead of the height of [run]
 """
 

@@ -107,7 +107,7 @@ class DistanceWarning(UserWarning):
 
 
 def warn_of_distance(data: xr.Dataset, *, stacklevel: int) -> None:
-    """Warn if the worst interval is too far; `stacklevel` is that of `warnings.warn`."""
+    """Warn if an interval is too far; `stacklevel` is that of `warnings.warn`."""
     distance, scatter, impacts = (
         data[name].to_numpy() for name in ("ks_distance", "ks_scatter", "fresh_impacts")
     )
@@ -115,16 +115,23 @@ def warn_of_distance(data: xr.Dataset, *, stacklevel: int) -> None:
     scatter = np.where(np.isfinite(scatter), scatter, 0.87 / np.sqrt(np.maximum(impacts, 1)))
     far = (distance > _FAR) & (distance > _TIMES * scatter)
     if far.any():
-        worst = int(np.nanargmax(np.where(far, distance, np.nan)))
-        low, high = data["velocity"].to_numpy()[worst : worst + 2]
         warnings.warn(
-            f"the learned distribution is {distance[worst]:.3f} from fresh impacts at {low:.4g} to "
-            f"{high:.4g} m/s (Kolmogorov-Smirnov), of which {scatter[worst]:.3f} are due to their "
-            f"scatter; so are {int(far.sum())} of {far.size} intervals. More particles, heights of release "
-            "spread over the loss of an impact, or another range of velocities reduce the distance",
+            f"the learned distribution is up to {largest_distance(data)}. {int(far.sum())} of {far.size} "
+            "intervals between nodes are farther than scatter explains. More particles reduce the scatter "
+            "alone; where lines or bands of p(ε | v) move with v by more than they are wide, heights of "
+            "release that are spread, or another range of velocities, help",
             DistanceWarning,
             stacklevel=stacklevel + 1,
         )
+
+
+def largest_distance(data: xr.Dataset) -> str:
+    """Say how far fresh impacts are at most, at what speeds, and how far their own scatter takes them."""
+    worst = int(np.nanargmax(data["ks_distance"].to_numpy()))
+    low, high = data["velocity"].to_numpy()[worst : worst + 2]
+    distance, scatter = (float(data[name][worst]) for name in ("ks_distance", "ks_scatter"))
+    text = f"{distance:.4f} from fresh impacts (Kolmogorov-Smirnov), at {low:.4g} to {high:.4g} m/s"
+    return f"{text}, of which their own scatter explains {scatter:.4f}"
 
 
 def _shares(count: Ints | Floats) -> Floats:

@@ -25,7 +25,9 @@ class Counted:
     share_errors, below_errors : list of ndarray
         Standard errors of the bins' shares and of `Histogram.cumulative`.
     impacts, mean_errors, std_errors : ndarray, shape (components,)
-        Weights added up, and standard errors of the moments.
+        Weights added up, and standard errors of mean and standard deviation.
+    shape_errors : ndarray, shape (components, 2)
+        Standard errors of skewness and kurtosis.
     seen : ndarray, shape (2, nodes)
         Least and greatest condition next to each node.
     """
@@ -38,6 +40,7 @@ class Counted:
     impacts: Floats
     mean_errors: Floats
     std_errors: Floats
+    shape_errors: Floats
     seen: Floats
 
 
@@ -87,7 +90,7 @@ class Counter:
 
     def counted(self) -> Counted:
         """Give what is wanted of the counts, which take more memory than all else."""
-        histograms, shares, below = zip(*self.histograms(), strict=True)
+        histograms, shares, below, shape = zip(*self.histograms(), strict=True)
         mean, deviation = self.moment_errors()
         return Counted(
             self.nodes,
@@ -98,6 +101,7 @@ class Counter:
             self.impacts(),
             mean,
             deviation,
+            np.array(shape),
             self._table["seen"],
         )
 
@@ -121,8 +125,8 @@ class Counter:
         batches = np.count_nonzero(self._table["count"].any(axis=1))
         return batches / (batches - 1.0) if batches > 1 else np.nan
 
-    def histograms(self) -> Iterator[tuple[Histogram, Floats, Floats]]:
-        """Yield each histogram with the standard errors of the bins' shares and of `cumulative`.
+    def histograms(self) -> Iterator[tuple[Histogram, Floats, Floats, Floats]]:
+        """Yield each histogram with the standard errors of bins' shares, of `cumulative`, and of its shape.
 
         The outermost bins end at the least and the greatest ε that were seen. A batch of particles is one
         draw; for a share p = Σc/Σn the standard error is √(B/(B - 1) Σ(c - pn)²)/Σn over B batches.
@@ -148,4 +152,7 @@ class Counter:
             cumulative[-1] = 1.0
             below = np.concatenate([[0.0], errors[1][low:high]])
             below[-1] = 0.0
-            yield Histogram(edges, cumulative), errors[0][low:high], below
+            found = Histogram(edges, cumulative)
+            moved = batches[:, low:high] @ found.shape_influence().T
+            shape = np.sqrt(correction * np.sum(moved**2, axis=0)) / total
+            yield found, errors[0][low:high], below, shape

@@ -49,6 +49,14 @@ class EstimatedDistribution(TabulatedDistribution):
         """Give the standard error of `std`, at most, as `pdf_error`."""
         return self._moment_error("std_error", v, given)
 
+    def skewness_error(self, v: npt.ArrayLike, given: npt.ArrayLike | None = None) -> Values:
+        """Give the standard error of `skewness`, at most, as `pdf_error`."""
+        return self._moment_error("skewness_error", v, given)
+
+    def kurtosis_error(self, v: npt.ArrayLike, given: npt.ArrayLike | None = None) -> Values:
+        """Give the standard error of `kurtosis`, at most, as `pdf_error`."""
+        return self._moment_error("kurtosis_error", v, given)
+
     def var_error(self, v: npt.ArrayLike, given: npt.ArrayLike | None = None) -> Values:
         """Give the standard error of `var`, at most: 2 σ times that of σ, as `pdf_error`."""
         return 2.0 * self.std(v, given) * self.std_error(v, given)

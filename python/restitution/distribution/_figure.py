@@ -4,10 +4,12 @@ import io
 
 import matplotlib as mpl
 import numpy as np
+import numpy.typing as npt
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from restitution.distribution._errors import EstimatedDistribution
+from restitution.distribution._table import Floats
 from restitution.figures import pieces
 from restitution.figures import style as fg
 
@@ -42,22 +44,25 @@ def draw(dist: EstimatedDistribution) -> Figure:
     )
     speeds = dist.data["velocity"].to_numpy()
     _quantiles(quantiles, dist)
-    for k, v in enumerate(np.geomspace(speeds[0], speeds[-1], 6)[1:-1]):
-        _density(densities, dist, float(v), fg.COLORS[k])
+    met = np.geomspace(speeds[0], speeds[-1], 251)
+    met = met[~_in_gaps(dist, met)]
+    for k in range(4):
+        _density(densities, dist, float(met[(k + 1) * (met.size - 1) // 5]), fg.COLORS[k])
     densities.set_yscale("log")
     densities.set_xlabel(_RESTITUTION)
     densities.set_ylabel(r"$p(\varepsilon\,|\,v)$")
     # What all but touches ε = -1, where chattering bodies are, may leave the panel at the top.
-    middle = max(0.5 / np.ptp(dist.ppf([0.25, 0.75], v)) for v in speeds)
+    middle = max(0.5 / np.ptp(dist.clamped().ppf([0.25, 0.75], v)) for v in speeds)
     densities.set_ylim(top=min(densities.get_ylim()[1], 100.0 * middle))
     low, high = densities.get_xlim()
     densities.set_xlim(low - 0.1 * (high - low), high + 0.25 * (high - low))  # for the letter, the legend
     densities.legend(title="m/s", loc="upper right")
-    sigma = dist.std(speeds)
-    band = _CONFIDENCE * dist.std_error(speeds) if dist.has_errors else np.zeros_like(sigma)
-    (drawn,) = deviation.plot(speeds, sigma)
+    v, known = _shown(dist)
+    sigma = known * dist.clamped().std(v)
+    band = _CONFIDENCE * dist.clamped().std_error(v) if dist.has_errors else np.zeros_like(sigma)
+    (drawn,) = deviation.plot(v, sigma)
     below = np.where(band < sigma, sigma - band, sigma)
-    deviation.fill_between(speeds, below, sigma + band, color=drawn.get_color(), alpha=0.3, linewidth=0)
+    deviation.fill_between(v, below, sigma + band, color=drawn.get_color(), alpha=0.3, linewidth=0)
     deviation.set_yscale("log")
     deviation.set_ylabel(r"standard deviation $\sigma(\varepsilon)$")
     if "ks_distance" in dist.data:
@@ -78,6 +83,19 @@ def draw(dist: EstimatedDistribution) -> Figure:
     return figure
 
 
+def _in_gaps(dist: EstimatedDistribution, v: npt.ArrayLike) -> npt.NDArray[np.bool_]:
+    """Whether no impact was seen near each speed."""
+    speeds = np.asarray(v)[..., None]
+    return np.asarray(np.any((speeds >= dist.gaps[:, 0]) & (speeds < dist.gaps[:, 1]), axis=-1))
+
+
+def _shown(dist: EstimatedDistribution) -> tuple[Floats, Floats]:
+    """Give the speeds of a curve, and 1 for each, NaN in gaps, where the curve is interrupted."""
+    inside = dist.gaps.mean(axis=1)
+    v = np.unique(np.concatenate([dist.data["velocity"].to_numpy(), dist.gaps.ravel(), inside]))
+    return v, np.where(_in_gaps(dist, v), np.nan, 1.0)
+
+
 def _given(row: list[Axes], dist: EstimatedDistribution) -> None:
     """Draw the middle half of ε at a small, a middle and a great condition, over v and over ε at one v."""
     names = {
@@ -92,6 +110,7 @@ def _given(row: list[Axes], dist: EstimatedDistribution) -> None:
     there = conditions[first[near] : first[near + 1]]
     for k, z in enumerate((there[0], there[there.size // 2], there[-1])):
         seen = (speeds >= 0) & (dist.data["given_lowest"] <= z) & (z <= dist.data["given_highest"]).to_numpy()
+        seen = seen & ~_in_gaps(dist, speeds)
         v = speeds[seen.to_numpy()]
         low, half, high = (dist.ppf(q, v, given=z) for q in (0.25, 0.5, 0.75))
         label = f"{z:.2g}"
@@ -116,13 +135,13 @@ def _given(row: list[Axes], dist: EstimatedDistribution) -> None:
 
 
 def _quantiles(axes: Axes, dist: EstimatedDistribution) -> None:
-    speeds = dist.data["velocity"].to_numpy()
+    v, known = _shown(dist)
     for q in _LEVELS:
-        x = dist.ppf(q, speeds)
-        (drawn,) = axes.plot(speeds, x, label=f"{100 * q:g} %")
+        x = known * dist.clamped().ppf(q, v)
+        (drawn,) = axes.plot(v, x, label=f"{100 * q:g} %")
         if dist.has_errors:
-            band = _CONFIDENCE * dist.ppf_error(q, speeds)
-            axes.fill_between(speeds, x - band, x + band, color=drawn.get_color(), alpha=0.3, linewidth=0)
+            band = _CONFIDENCE * dist.clamped().ppf_error(q, v)
+            axes.fill_between(v, x - band, x + band, color=drawn.get_color(), alpha=0.3, linewidth=0)
     axes.set_ylabel(_RESTITUTION)
     low, high = axes.get_ylim()
     axes.set_ylim(low, high + 0.3 * (high - low))  # room for the panel's letter and the legend

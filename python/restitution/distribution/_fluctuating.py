@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 import xarray as xr
 
-from restitution._internal.arrays import flag, reals, whole
+from restitution._internal.arrays import flag, real, reals, whole
 from restitution._internal.datasets import load, save
 from restitution._internal.files import HEADER, MODULE, NETCDF, path_for, path_from, write
 from restitution._internal.parameters import ParameterError, Problem, renamed, wrong
@@ -18,15 +18,17 @@ from restitution._internal.resources import checked_threads
 from restitution._internal.text import Text, table, value
 from restitution.bodies import Body
 from restitution.distribution import _defaults as defaults
-from restitution.distribution._check import Check, warn_of_distance
+from restitution.distribution._check import Check, largest_distance, warn_of_distance
 from restitution.distribution._ensemble import Ensemble, Impacts
 from restitution.distribution._errors import EstimatedDistribution
 from restitution.distribution._from_statistics import from_statistics
 from restitution.distribution._learn import Given, checked_speeds, condition, learn
 from restitution.distribution._memory import correlations
 from restitution.distribution._store import sealed, unsealed
+from restitution.distribution._text import released
 from restitution.distribution.c import header
 from restitution.distribution.fortran import module
+from restitution.drop import energy
 from restitution.drop.recorded import check_filled, check_successive, records
 from restitution.drop.release import RandomHeight
 from restitution.drop.run import Run, Surroundings, takes_run
@@ -49,7 +51,9 @@ class FluctuatingRestitution(EstimatedDistribution):
     both nodes beside them with the same weights. The support ends at the least and the greatest ε that were
     seen; ε < 0 and ε > 1 are as probable as they were found.
 
-    A speed outside `velocities` is refused, or taken as the nearest learned one by what `clamped` returns.
+    A speed outside `velocities` is refused, or taken as the nearest learned one by what `clamped` returns. So
+    is one in the `gaps`, ranges of a per cent and more in which no impact was seen; what `clamped` returns
+    goes on to interpolate there.
 
     With ``given``, p(ε | v, z) is known as well, see `learn`. A condition that no impact at that speed had is
     refused or taken as the nearest by the same rule.
@@ -58,7 +62,7 @@ class FluctuatingRestitution(EstimatedDistribution):
     ----------
     data : xarray.Dataset
         The tables, how they were learned (all parameters in the attributes, with the heights of release and
-        ``release_height_asked`` where those were spread about one), their standard errors, and
+        ``heights_about`` where those were spread about one), their standard errors, and
         ``ks_distance``, the Kolmogorov–Smirnov distance between each two nodes to a fresh ensemble with other
         random numbers.
 
@@ -82,7 +86,8 @@ class FluctuatingRestitution(EstimatedDistribution):
         *,
         particles: int = 20_000,
         impacts: int | None = None,
-        release_height: npt.ArrayLike | RandomHeight = 0.06,
+        release_height: npt.ArrayLike | RandomHeight | None = None,
+        heights_about: float | None = None,
         minimum_speed: float | None = None,
         velocities: npt.ArrayLike | None = None,
         given: Given | None = None,
@@ -106,12 +111,15 @@ class FluctuatingRestitution(EstimatedDistribution):
             The most impacts of a particle. By default, as many as it takes ninety-nine of a hundred
             particles to become slower than `minimum_speed`, 4096 at most: those that are slow early are
             unusual.
-        release_height : float, array_like or RandomHeight
-            Height of the centre of mass at release, in m. From a single height the first impacts have few
-            separate speeds, and p(ε | v) as fine a structure; particles are therefore released from heights
-            about the one asked for, one loss of energy to either side, dense in the middle and none at the
-            ends. An array of heights is taken as it is, in equal parts; ``[h]`` is one height. A
-            `RandomHeight` is taken as it is, too.
+        release_height : float, array_like or RandomHeight, optional
+            Height of the centre of mass at release, in m, as in `restitution.simulate` and
+            `restitution.statistics`, whose impacts then have the same distribution; of an array, equal parts
+            from each. From a single height the first impacts have few separate speeds, and p(ε | v) as fine
+            a structure.
+        heights_about : float, default 0.06
+            Instead of `release_height`: from heights about this one, in m, one loss of energy to either side,
+            dense in the middle and none at the ends, so that impacts of one number fade into those of the
+            next. Near the speed of the first impact σ(ε) may be twice that of one height.
         minimum_speed : float, optional
             As in `restitution.simulate`; by default the speed from which no learned impact velocity is
             reached.
@@ -133,6 +141,8 @@ class FluctuatingRestitution(EstimatedDistribution):
         DistanceWarning
             If fresh impacts are farther from the result than 0.05 in the sense of Kolmogorov and Smirnov, and
             than 3.5 times what their scatter explains. docs/theory.md says what to do.
+        EnergyWarning
+            If impacts created kinetic energy: a gas that is fed with this distribution heats itself.
 
         Examples
         --------
@@ -143,14 +153,21 @@ class FluctuatingRestitution(EstimatedDistribution):
         >>> dist.rvs(0.3, size=3, random_state=1).shape
         (3,)
         """
+        about = release_height is None
+        if not about and heights_about is not None:
+            allowed = "None where release_height is given, and the other way round"
+            raise ParameterError(wrong("heights_about", heights_about, allowed))
+        if release_height is None:
+            release_height = real(
+                "heights_about", 0.06 if heights_about is None else heights_about, "a height in m"
+            )
         heights = [release_height] if isinstance(release_height, RandomHeight) else _heights(release_height)
         arguments = run | {
             "particles": particles,
             "impacts": 1 if impacts is None else impacts,
             "minimum_speed": 0.0 if minimum_speed is None else minimum_speed,
         }
-        one_asked = not isinstance(release_height, RandomHeight) and np.ndim(release_height) == 0
-        several = not (one_asked or isinstance(release_height, RandomHeight))
+        several = not isinstance(release_height, RandomHeight) and np.ndim(release_height) > 0
         runs = list(_runs(body, law, arguments, heights, several))
         first = runs[0]
         nodes = checked_speeds(velocities, min(runs, key=lambda one: one.heights[0]))
@@ -159,13 +176,14 @@ class FluctuatingRestitution(EstimatedDistribution):
         if impacts is None:
             most = defaults.impacts(first, checked_threads(threads) or None)
             first = first.model_copy(update={"impacts": most})
-        spread = defaults.heights(first) if one_asked else tuple(one.release_height for one in runs)
+        spread = defaults.heights(first) if about else tuple(one.release_height for one in runs)
         ensemble = Ensemble(
             first, spread, threads, fraction=isinstance(given, str) and given == "rotational_fraction"
         )
         found = cls(learn(ensemble, nodes, given, progress))
-        if one_asked:
-            found.data.attrs["release_height_asked"] = first.release_height
+        if about:
+            found.data.attrs["heights_about"] = first.release_height
+        energy.warn(found.data, stacklevel=2)
         warn_of_distance(found.data, stacklevel=2)
         return found
 
@@ -204,10 +222,6 @@ class FluctuatingRestitution(EstimatedDistribution):
     def save(self, path: str | Path, *, replace: bool = False) -> None:
         """Write a netCDF file, whole or not at all; an existing one only with ``replace``."""
         save(sealed(self.data), path_for("path", path, NETCDF), replace=flag("replace", replace))
-
-    def clamped(self) -> FluctuatingRestitution:
-        """Give the same distribution, with speeds and conditions beyond the learned taken as the nearest."""
-        return FluctuatingRestitution(self.data.assign_attrs(beyond="clamp"))
 
     def to_c(self, path: str | Path, *, name: str = "restitution", replace: bool = False) -> None:
         """Write a C99 and C++ header with the table and ``double restitution_sample(v, u1, u2)``.
@@ -310,36 +324,48 @@ class FluctuatingRestitution(EstimatedDistribution):
         """Summarise in a few lines what was learned and how well; a notebook shows the text as it reads."""
         low, high = self.velocities
         lines = [f"{float(self.data['impacts'].sum()):.0f} impacts at {low:.4g} to {high:.4g} m/s"]
-        lines += [f"{self.data.sizes['node']} histograms, {self.data.sizes['edge']} edges"]
+        number = self.data["impacts"].to_numpy()
+        lines += [
+            f"{number.size} histograms of {number.min():.0f} to {number.max():.0f} impacts, {self._tails}, "
+            f"{self.data.sizes['edge']} edges"
+        ]
+        lines += [f"no impact at {start:.4g} to {end:.4g} m/s: refused there" for start, end in self.gaps]
+        if "release_height" in self.data.attrs:
+            lines += [released(self.data.attrs)]
+        if share := self.data.attrs.get("energy_created_share", 0.0):
+            lines += [
+                f"{energy.percent(share)} of the impacts created kinetic energy: a gas of it heats itself"
+            ]
         if self.given is not None:
             lines += [f"also given {self.data['given'].attrs['long_name']}"]
         if "ks_distance" in self.data:
-            worst = int(np.nanargmax(self.data["ks_distance"].to_numpy()))
-            speed, scatter = (float(self.data[name][worst]) for name in ("velocity", "ks_scatter"))
-            lines += [
-                "Kolmogorov-Smirnov distance to fresh impacts: "
-                f"{float(self.data['ks_distance'][worst]):.4f} at most, at {speed:.4g} m/s, "
-                f"of which their own scatter explains {scatter:.4f}"
-            ]
+            lines += [f"at most {largest_distance(self.data)}"]
         return Text("\n".join(lines))
 
     def _repr_html_(self) -> str:
         attrs, (low, high) = self.data.attrs, self.velocities
         rows = [(name, str(attrs[name])) for name in ("body", "law") if name in attrs]
         rows += [("impact velocity", value((low, high), "m/s")), ("nodes", str(self.data.sizes["node"]))]
-        rows += [("impacts", f"{float(self.data['impacts'].sum()):.0f}")]
+        rows += [("impacts", f"{float(self.data['impacts'].sum()):.0f}, {self._tails}")]
         if self.given is not None:
             rows += [("given", self.given)]
         if "ks_distance" in self.data:
             rows += [("largest ks_distance", value(float(self.data["ks_distance"].max())))]
         speeds = np.array([low, (low * high) ** 0.5, high])
-        for v, mean, std in zip(speeds, self.mean(speeds), self.std(speeds), strict=True):
+        dist = self.clamped()
+        for v, mean, std in zip(speeds, dist.mean(speeds), dist.std(speeds), strict=True):
             rows += [(f"ε at {v:.3g} m/s", f"{mean:.4g} ± {std:.2g}")]
         return table("FluctuatingRestitution", rows)
 
+    @property
+    def _tails(self) -> str:
+        digit, power = f"{1.0 / float(self.data['impacts'].min()):.0e}".split("e")
+        return f"tails to {digit}e{int(power)}"
+
     def __repr__(self) -> str:
         low, high = self.velocities
-        about = f"{low:.4g}–{high:.4g} m/s, {self._table.speeds.size} nodes"
+        about = f"{low:.4g}–{high:.4g} m/s, {self._table.speeds.size} nodes, {self._tails}"
+        about += f", {len(self.gaps)} gaps" if len(self.gaps) else ""
         if "ks_distance" in self.data:
             about += f", ks_distance up to {float(self.data['ks_distance'].max()):.4f}"
         return f"<FluctuatingRestitution: {about}>"

@@ -1,15 +1,16 @@
 """From an ensemble to the Dataset of a learned distribution."""
 
 from collections.abc import Iterator
-from typing import Literal, TypeAlias, get_args
+from typing import Any, Literal, TypeAlias, get_args
 
 import numpy as np
 import numpy.typing as npt
 import xarray as xr
 
+from restitution import _core
 from restitution._internal.arrays import check_each, reals
 from restitution._internal.parameters import ParameterError, Problem, wrong
-from restitution._internal.resources import progress_bar
+from restitution._internal.resources import checked_threads, progress_bar
 from restitution.distribution import _nodes
 from restitution.distribution._check import Check
 from restitution.distribution._count import Counter
@@ -19,10 +20,14 @@ from restitution.distribution._pilot import Pilot, Sample
 from restitution.distribution._store import assemble
 from restitution.distribution._table import Floats, Table
 from restitution.drop.dataset import attributes
+from restitution.drop.energy import LEDGER
 from restitution.drop.run import Run
+from restitution.drop.statistics import dataset_of, edges_of
 
 Given: TypeAlias = Literal["rotational_fraction", "previous"]
 
+_JUDGED = 256
+"""Particles whose impacts tell how much energy is created."""
 _SLOWEST, _FASTEST = 1e-100, 1e100
 """In m/s; squares and quotients of such speeds neither over- nor underflow."""
 
@@ -51,7 +56,8 @@ def learn(ensemble: Ensemble, nodes: Floats, given: Given | None, progress: bool
         edges = _edges(sample, pilot.scale, nodes, everywhere)
         del sample
         counter = Counter(nodes, everywhere, edges)
-        counter.add_all(pilot.whole(advance, last=given is None), _unconditional, ensemble.threads)
+        met = _nodes.Met(nodes[0], nodes[-1])
+        counter.add_all(met.watch(pilot.whole(advance, last=given is None)), _unconditional, ensemble.threads)
         counted = counter.counted()
         del counter
         table = Table.of(nodes, counted.histograms)
@@ -75,7 +81,21 @@ def learn(ensemble: Ensemble, nodes: Floats, given: Given | None, progress: bool
     )
     if len(ensemble.heights) > 1:
         attrs["release_height"] = list(ensemble.heights)
-    return assemble(counted, conditional, given, check, attrs)
+    return assemble(counted, conditional, given, check, attrs | _energy(ensemble), met.gaps())
+
+
+def _energy(ensemble: Ensemble) -> dict[str, Any]:
+    """Give the attributes on the kinetic energy that impacts create, as a few of the particles have it."""
+    few = ensemble.run.of(np.arange(min(ensemble.run.particles, _JUDGED)))
+    edges = edges_of([0.0, 1.0], [0.0, 1.0], None)
+    parts = [(0, few.particles)]
+    table, _, interrupted = _core.statistics(
+        few.parameters(), edges, checked_threads(ensemble.threads), None, parts
+    )
+    if interrupted:
+        raise KeyboardInterrupt from interrupted
+    found = dataset_of(few, edges, table).attrs
+    return {name: found[name] for name in LEDGER if name in found}
 
 
 def checked_speeds(velocities: npt.ArrayLike | None, run: Run) -> Floats:
@@ -137,8 +157,5 @@ def _enough(sample: Sample, nodes: Floats, scale: float) -> None:
         at = int(np.argmin(impacts))
         found = f": {impacts[at]:.0f} impacts between {nodes[at]:.6g} and {nodes[at + 1]:.6g} m/s; "
         allowed = f"must be speeds with at least {_nodes.LEAST_IMPACTS} impacts between any two nodes"
-        raise ParameterError(
-            Problem(
-                "velocities", found + allowed + ": more particles, more impacts of each, or another range"
-            )
-        )
+        how = ": more particles, more impacts of each, another range, or heights of release that are spread"
+        raise ParameterError(Problem("velocities", found + allowed + how))

@@ -1,10 +1,12 @@
 """Where the nodes are: speeds, conditions at each of them, and edges of bins that follow the data."""
 
 import math
+from collections.abc import Iterable, Iterator
 
 import numpy as np
 
 from restitution._internal.parameters import ParameterError, wrong
+from restitution.distribution._ensemble import Impacts
 from restitution.distribution._table import Floats
 
 POINT = 1e-9
@@ -14,6 +16,8 @@ LEAST_IMPACTS = 500
 _LEAST_INTERVALS, _CELLS = 8, 256
 _BALANCE = 0.23
 _CONDITIONS = 8
+_CELL, _GAP = 0.0025, 0.01
+"""In ln v: of the cells in which speeds are seen, and the least range without any that is a gap."""
 
 
 class Density:
@@ -77,6 +81,40 @@ class Density:
         nodes = self.low * np.exp(np.interp(points, intervals, self._width * np.arange(_CELLS + 1)))
         nodes[0], nodes[-1] = self.low, self.high
         return np.asarray(nodes)
+
+
+class Met:
+    """Which speeds of a range were met, to a quarter of a per cent.
+
+    Parameters
+    ----------
+    low, high : float
+        Ends of the range, in m/s.
+    """
+
+    def __init__(self, low: float, high: float) -> None:
+        self._low, self._high = low, high
+        self._number = np.zeros(math.ceil(math.log(high / low) / _CELL), dtype=np.int64)
+
+    def watch(self, blocks: Iterable[Impacts]) -> Iterator[Impacts]:
+        """Pass impacts on, and take note of their speeds."""
+        for block in blocks:
+            v = block.velocity
+            v = v[(v >= self._low) & (v < self._high)]
+            cell = (np.log(v / self._low) / math.log(self._high / self._low) * self._number.size).astype(
+                np.int64
+            )
+            cell = np.minimum(cell, self._number.size - 1)
+            self._number += np.bincount(cell, minlength=self._number.size)
+            yield block
+            del block  # before the next one is simulated
+
+    def gaps(self) -> Floats:
+        """Give the ends of the ranges of a per cent and more that no impact had; shape (gaps, 2), in m/s."""
+        empty = np.concatenate([[0], self._number == 0, [0]])
+        ends = np.flatnonzero(np.diff(empty)).reshape(-1, 2)
+        wide = ends[np.diff(ends, axis=1)[:, 0] * _CELL >= _GAP]
+        return np.asarray(self._low * (self._high / self._low) ** (wide / self._number.size))
 
 
 def conditions(values: Floats) -> Floats:

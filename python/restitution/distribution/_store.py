@@ -22,7 +22,12 @@ GIVEN = {
 
 
 def assemble(
-    counted: Counted, conditional: Counted | None, given: str | None, check: Check, attrs: dict[str, Any]
+    counted: Counted,
+    conditional: Counted | None,
+    given: str | None,
+    check: Check,
+    attrs: dict[str, Any],
+    gaps: Floats,
 ) -> xr.Dataset:
     """Lay a distribution out as a Dataset.
 
@@ -30,7 +35,9 @@ def assemble(
     each has. ``velocity`` (node) are the speeds of the histograms, ``restitution_edge`` and
     ``probability_below`` (edge) the histograms themselves. ``probability_error`` (edge) is the standard
     error of the probability of the bin that starts there, ``probability_below_error`` that of the one below,
-    ``mean_error`` and ``std_error`` (node) those of the moments. With a condition
+    ``mean_error``, ``std_error``, ``skewness_error`` and ``kurtosis_error`` (node) those of the moments.
+    ``gap_lowest`` and ``gap_highest`` (gap), where there are any, are speeds between which no impact was
+    seen. With a condition
     the tables and their errors again with the prefix ``given_``, for each of the ``given_components`` of a
     node at its ``given``, and the ``given_lowest`` and ``given_highest`` condition that a node has seen.
     ``ks_distance``, ``ks_scatter`` and ``fresh_impacts`` (interval) are how far a fresh ensemble is from this
@@ -58,6 +65,10 @@ def assemble(
             text = f"{name} condition that was seen at the node"
             data[f"given_{name}"] = ("node", values, {"long_name": text, "units": "1"})
         data.attrs["given"] = given
+    for name, values in zip(("lowest", "highest"), gaps.T, strict=True):
+        if values.size:
+            text = f"{name} of the speeds at which no impact was seen"
+            data[f"gap_{name}"] = ("gap", values, {"long_name": text, "units": "m s-1"})
     data["ks_distance"] = (
         "interval",
         check.distances(),
@@ -87,6 +98,8 @@ def _errors(counted: Counted, prefix: str, component: str) -> dict[str, Any]:
         ),
         "mean_error": (component, counted.mean_errors, "the mean"),
         "std_error": (component, counted.std_errors, "the standard deviation"),
+        "skewness_error": (component, counted.shape_errors[:, 0], "the skewness"),
+        "kurtosis_error": (component, counted.shape_errors[:, 1], "the kurtosis"),
     }
     return {
         f"{prefix}{name}": (dimension, values, {"long_name": about.format(text), "units": "1"})

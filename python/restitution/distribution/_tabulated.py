@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from functools import cached_property
-from typing import Any, Literal, TypeAlias
+from typing import Any, Literal, Self, TypeAlias
 
 import numpy as np
 import numpy.typing as npt
@@ -18,6 +18,7 @@ from restitution._internal.resources import check_size
 from restitution.distribution import _store
 from restitution.distribution._learn import Given
 from restitution.distribution._table import Floats, Table
+from restitution.distribution._text import gaps
 
 Values: TypeAlias = Any  # np.float64 for scalar arguments, an array of floats otherwise
 RandomState: TypeAlias = int | np.random.Generator | np.random.RandomState | None
@@ -52,6 +53,15 @@ class TabulatedDistribution:
     def velocities(self) -> tuple[float, float]:
         """Least and greatest learned speed, in m/s."""
         return float(self._table.speeds[0]), float(self._table.speeds[-1])
+
+    @property
+    def gaps(self) -> Floats:
+        """Ends of the ranges of speed between which no impact was seen, in m/s; shape (gaps, 2)."""
+        return gaps(self.data)
+
+    def clamped(self) -> Self:
+        """Give the same distribution, with speeds and conditions beyond the learned taken as the nearest."""
+        return type(self)(self.data.assign_attrs(beyond="clamp"))
 
     @property
     def given(self) -> Given | None:
@@ -122,16 +132,37 @@ class TabulatedDistribution:
         """Square root of the variance of ε."""
         return np.sqrt(self.var(v, given))
 
+    def skewness(self, v: npt.ArrayLike, given: npt.ArrayLike | None = None) -> Values:
+        """Skewness of ε, as in `restitution.statistics`."""
+        return self.stats(v, given, "s")[0]
+
+    def kurtosis(self, v: npt.ArrayLike, given: npt.ArrayLike | None = None) -> Values:
+        """Kurtosis of ε, as in `restitution.statistics`: 3 for a Gaussian, 6 for symmetric flanks."""
+        return self.stats(v, given, "k")[0]
+
+    def resolved(self, v: npt.ArrayLike, given: npt.ArrayLike | None = None) -> Values:
+        """Give the least probability of which something is known: that of one impact of those seen at v.
+
+        Tails that hold less are not in the histograms; `cdf` and `sf` are 0 there, and `rvs` does not draw
+        them.
+        """
+        table, speeds, z = self._at(v, given)
+        number = self.data["impacts" if given is None else "given_impacts"].to_numpy()
+        return np.asarray(sum(weight / number[i] for weight, i in table.parts(speeds, z)))[()]
+
     def stats(
         self, v: npt.ArrayLike, given: npt.ArrayLike | None = None, moments: str = "mv"
     ) -> tuple[Values, ...]:
-        """Mean "m", variance "v", skewness "s" and excess kurtosis "k", in the order of ``moments``."""
+        """Mean "m", variance "v", skewness "s" and kurtosis "k", in the order of ``moments``.
+
+        The kurtosis is Pearson's, 3 for a Gaussian, as everywhere in this package; SciPy's is less by 3.
+        """
         if not isinstance(moments, str) or not set(moments) <= set("mvsk"):
             raise ParameterError(wrong("moments", moments, "letters of 'mvsk'"))
         table, speeds, z = self._at(v, given)
         m2, m3, m4 = table.central(speeds, z)
         with np.errstate(divide="ignore", invalid="ignore"):
-            found = {"m": table.mean(speeds, z), "v": m2, "s": m3 / m2**1.5, "k": m4 / m2**2 - 3.0}
+            found = {"m": table.mean(speeds, z), "v": m2, "s": m3 / m2**1.5, "k": m4 / m2**2}
         return tuple(found[letter][()] for letter in moments)
 
     def moment(self, order: int, v: npt.ArrayLike, given: npt.ArrayLike | None = None) -> Values:
@@ -245,6 +276,11 @@ class TabulatedDistribution:
         else:
             allowed = f"in [{low!r}, {high!r}] m/s, the speeds that were learned; clamped() takes any"
             self._refuse("v", speeds, (speeds < low) | (speeds > high), allowed)
+            for start, end in self.gaps:
+                allowed = (
+                    f"outside [{start:.6g}, {end:.6g}) m/s, where no impact was seen; clamped() takes any"
+                )
+                self._refuse("v", speeds, (speeds >= start) & (speeds < end), allowed)
         if given is None:
             return self._table, speeds, np.zeros(())
         if self.given is None:

@@ -4,7 +4,7 @@ import xarray as xr
 
 from restitution.distribution import _store
 from restitution.distribution._table import Floats, Ints, Table
-from restitution.distribution._text import about, checked_name, chunks
+from restitution.distribution._text import about, checked_name, chunks, gaps
 
 _FUNCTIONS = """
 /* The last of n increasing points that is <= x, but not the last of all. */
@@ -79,6 +79,13 @@ _RANGE = """    if (!(v >= NAME_velocity[0] && v <= NAME_velocity[NAME_nodes - 1
         return (double)NAN;
     }"""
 
+_GAP = """
+    for (node = 0; node < GAPS; node++) {
+        if (v >= NAME_gap_lowest[node] && v < NAME_gap_highest[node]) {
+            return (double)NAN;
+        }
+    }"""
+
 _SEEN = """    node = NAME_below(NAME_velocity, NAME_nodes, v);
     if (!((z >= NAME_given_lowest[node] || z >= NAME_given_lowest[node + 1])
           && (z <= NAME_given_highest[node] || z <= NAME_given_highest[node + 1]))) {
@@ -106,7 +113,12 @@ def header(data: xr.Dataset, name: str) -> str:
         if checked:
             for key in ("given_lowest", "given_highest"):
                 lines += [_array(f"{name}_{key}", data[key].to_numpy())]
-    functions = functions.replace("RANGE\n", f"{_RANGE}\n" if checked else "")
+    range_ = _RANGE if checked else ""
+    if checked and len(gaps(data)):
+        for key, ends in zip(("gap_lowest", "gap_highest"), gaps(data).T, strict=True):
+            lines += [_array(f"{name}_{key}", ends)]
+        range_ += _GAP.replace("GAPS", str(len(gaps(data))))
+    functions = functions.replace("RANGE\n", f"{range_}\n" if checked else "")
     functions = functions.replace("SEEN\n", f"{_SEEN}\n" if checked else "").replace("NAME", name)
     return "\n".join(lines) + "\n" + functions + f"\n#endif /* {guard} */\n"
 

@@ -4,7 +4,7 @@ import xarray as xr
 
 from restitution.distribution import _store
 from restitution.distribution._table import Floats, Ints, Table
-from restitution.distribution._text import about, checked_name, chunks
+from restitution.distribution._text import about, checked_name, chunks, gaps
 
 _FUNCTIONS = """
 contains
@@ -92,6 +92,12 @@ _RANGE = """    if (.not. (v >= NAME_velocity(1) .and. v <= NAME_velocity(size(N
       return
     end if"""
 
+_GAP = """
+    if (any(v >= NAME_gap_lowest .and. v < NAME_gap_highest)) then
+      x = ieee_value(v, ieee_quiet_nan)
+      return
+    end if"""
+
 _PER_LINE, _PER_STATEMENT = 4, 400
 
 _SEEN = """    node = NAME_below(NAME_velocity, v)
@@ -117,13 +123,18 @@ def module(data: xr.Dataset, name: str) -> str:
         if checked:
             for key in ("given_lowest", "given_highest"):
                 declarations += _data(f"{name}_{key}", data[key].to_numpy())
+    range_ = _RANGE
+    if checked and len(gaps(data)):
+        for key, ends in zip(("gap_lowest", "gap_highest"), gaps(data).T, strict=True):
+            declarations += _data(f"{name}_{key}", ends)
+        range_ += _GAP
     lines += [f"module {name}"]
     if checked:
         lines += ["  use, intrinsic :: ieee_arithmetic, only: ieee_value, ieee_quiet_nan"]
     lines += ["  implicit none", "  private", f"  public :: {', '.join(public)}"]
     lines += ["  integer, parameter :: dp = kind(1.0d0)", *declarations]
     functions = functions.replace("SEEN\n", f"{_SEEN}\n" if checked else "")
-    functions = functions.replace("RANGE\n", f"{_RANGE}\n" if checked else "").replace("NAME", name)
+    functions = functions.replace("RANGE\n", f"{range_}\n" if checked else "").replace("NAME", name)
     return "\n".join(lines) + "\n" + functions + f"\nend module {name}\n"
 
 

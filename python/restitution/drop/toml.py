@@ -40,7 +40,7 @@ _COUNTING = (
 )
 _ALLOWED = {"normal": "a real number in [0, 1] or a table [law.normal]"}
 """Values that a file may hold for a parameter where a call takes an object."""
-_LEARNING = ("velocities", "given", "release_height")
+_LEARNING = ("velocities", "given", "release_height", "heights_about")
 
 P = TypeVar("P", bound=Parameters)
 _NESTED = re.compile(rb"(?:[\[{]\s*){100}")
