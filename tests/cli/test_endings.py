@@ -1,5 +1,6 @@
 """Signals, kills and streams: what is finished is kept, what is not leaves nothing behind."""
 
+import io
 import os
 import re
 import signal
@@ -65,39 +66,6 @@ def test_a_signal_ends_a_run_as_ctrl_c_does(long: Path, tmp_path: Path, number: 
     out.unlink()
 
 
-def test_hangup_that_is_ignored_stays_ignored(parameters: Path) -> None:
-    """As under nohup."""
-    code = "import signal; signal.signal(signal.SIGHUP, signal.SIG_IGN)\n"
-    code += "from restitution._internal.process import ending\nimport os\n"
-    code += "with ending() as came:\n    os.kill(os.getpid(), signal.SIGHUP)\nprint(came)"
-    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
-    assert done.stdout == "[]\n"
-
-
-def test_what_a_killed_process_left_is_removed(parameters: Path) -> None:
-    """By the next run to the same name, and only what the dead left: a draft of the living stays."""
-    folder = parameters.parent
-    dying = "import os, sys; from pathlib import Path\n"
-    dying += "from restitution._internal.files import whole_file, whole_folder\n"
-    dying += "with whole_file(Path(sys.argv[1]), replace=True) as draft, whole_folder(Path(sys.argv[2])):\n"
-    dying += "    draft.write_text('half'); os.kill(os.getpid(), 9)"
-    command = [sys.executable, "-c", dying, str(folder / "run.nc"), str(folder / "laws")]
-    assert subprocess.run(command, check=False).returncode == -signal.SIGKILL
-    left = {file.name for file in folder.iterdir() if file.name.endswith(".part")}
-    assert len(left) == 2
-    from restitution._internal.files import whole_file, whole_folder
-
-    with whole_file(folder / "other.nc"), whole_file(folder / "run.nc") as alive:
-        assert {name for name in left if name.startswith(".laws.")} < {f.name for f in folder.iterdir()}
-        with whole_file(folder / "run.nc", replace=True) as draft:
-            draft.write_text("whole")
-        assert alive.exists()
-        (folder / "run.nc").unlink()
-    with whole_folder(folder / "laws") as draft:
-        (draft / "laws.md").write_text("table")
-    assert {file.name for file in folder.iterdir()} == {"run.toml", "run.nc", "other.nc", "laws"}
-
-
 @pytest.mark.parametrize("closed", ["2>&-", ">&-", ">&- 2>&-", "<&- >&- 2>&-", "| true", "2>&1 | true"])
 def test_closed_streams_do_not_matter(parameters: Path, closed: str) -> None:
     """The file is written, whole: no other takes the place of a standard stream."""
@@ -109,12 +77,14 @@ def test_closed_streams_do_not_matter(parameters: Path, closed: str) -> None:
     assert load(out).sizes["particle"] == 7
 
 
-@pytest.mark.parametrize("stream", [None, open(os.devnull, encoding="utf-8")])  # noqa: SIM115
+@pytest.mark.parametrize("closed", [False, True])
 def test_progress_without_a_standard_error(
-    body: rs.Dumbbell, law: rs.TangentialRestitution, monkeypatch: pytest.MonkeyPatch, stream: object
+    body: rs.Dumbbell, law: rs.TangentialRestitution, monkeypatch: pytest.MonkeyPatch, closed: bool
 ) -> None:
-    """None, or one that takes nothing: as in a service, or under pythonw."""
-    monkeypatch.setattr(sys, "stderr", stream)
+    """None, or one that is closed: as in a service, or under pythonw."""
+    stream = io.StringIO()
+    stream.close()
+    monkeypatch.setattr(sys, "stderr", stream if closed else None)
     assert rs.simulate(body, law, particles=2, impacts=2, progress=True).sizes["particle"] == 2
 
 
@@ -140,10 +110,8 @@ def test_two_runs_to_one_name(tmp_path: Path) -> None:
     [
         ("run.toml", "is what is read: give another name to write to"),
         ("link.toml", "is what is read: give another name to write to"),
-        (b"\xff.nc", "the name is not UTF-8"),
         ("n" * 300, "File name too long"),
         ("folder", "not a file that can be written"),
-        ("circle", "Symlink loop"),
         ("none/run.nc", "No such file or directory"),
         ("run.toml/run.nc", "Not a directory"),
     ],
@@ -153,7 +121,6 @@ def test_names_that_are_refused_at_once(parameters: Path, name: str | bytes, tex
     """Before anything is computed, with --overwrite too, and nothing is touched."""
     folder = parameters.parent
     (folder / "link.toml").symlink_to(parameters)
-    (folder / "circle").symlink_to(folder / "circle")
     (folder / "folder").mkdir()
     before = sorted(folder.iterdir())
     path = os.fsencode(folder) + b"/" + os.fsencode(name)
@@ -176,45 +143,6 @@ def test_one_output_twice(parameters: Path) -> None:
         1,
         f"error: {out}: is to be written twice: give another name to write to\n",
     )
-
-
-def test_a_stream_that_lacks_a_letter(capfd: pytest.CaptureFixture[str]) -> None:
-    """In the C locale, µ: what was written to files stays written, and the line is said."""
-    words = [
-        sys.executable,
-        "-c",
-        "from restitution._internal.process import say, tell; say('1 µs'); tell('2 µs')",
-    ]
-    subprocess.run(words, check=True, env=os.environ | {"PYTHONIOENCODING": "ascii:strict"})
-    assert capfd.readouterr() == ("1 \\xb5s\n", "2 \\xb5s\n")
-
-
-LOSING = """
-import os, signal, time, typer
-from restitution.cli._common import errors_in_a_line
-
-class Losing:
-    def __del__(self):
-        os.kill(os.getpid(), signal.SIGTERM)
-
-def work():
-    with errors_in_a_line():
-        Losing()
-        try:
-            os.kill(os.getpid(), signal.SIGTERM)
-        except BaseException:
-            pass  # as libraries do
-        time.sleep(60)
-
-typer.run(work)
-"""
-
-
-def test_a_signal_is_not_lost() -> None:
-    """What it raises is dropped by Python in `__del__`, and by libraries; it comes again, in silence."""
-    command = [sys.executable, "-c", LOSING]
-    done = subprocess.run(command, capture_output=True, text=True, check=False, timeout=30)
-    assert (done.returncode, done.stderr) == (128 + signal.SIGTERM, "interrupted\n")
 
 
 BROKEN = """

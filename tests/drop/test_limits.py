@@ -11,7 +11,6 @@ import pytest
 
 import restitution as rs
 from reference.command import AMONG_TESTS, SMALL
-from restitution._internal.resources import available_memory
 
 SETUP = """
 import json, mmap, os, resource, signal, sys, threading, time, warnings
@@ -267,27 +266,3 @@ print(json.dumps([seconds, time.process_time() - began, kept]))
 """)
     assert seconds < 2.0 * touched
     assert kept > 0
-
-
-def test_what_bounds_the_memory(tmp_path: Path) -> None:
-    """The least of free memory and control groups, of either version and at any height, less what is used."""
-
-    def write(path: str, text: str) -> None:
-        (tmp_path / path).parent.mkdir(parents=True, exist_ok=True)
-        (tmp_path / path).write_text(text, encoding="ascii")
-
-    write("proc/meminfo", "MemTotal: 9 kB\nMemAvailable:    8000000 kB\n")
-    assert available_memory(tmp_path) == 8_192_000_000
-    write("proc/self/cgroup", "0::/user/job\n")
-    write("sys/fs/cgroup/user/job/memory.max", "max\n")
-    write("sys/fs/cgroup/user/job/memory.current", "100\n")
-    assert available_memory(tmp_path) == 8_192_000_000
-    write("sys/fs/cgroup/user/memory.max", "1000000\n")
-    write("sys/fs/cgroup/user/memory.current", "400000\n")
-    write("sys/fs/cgroup/user/memory.stat", "anon 1\ninactive_file 50000\n")
-    assert available_memory(tmp_path) == 650_000
-    write("proc/self/cgroup", "5:cpu,memory:/job\n")
-    write("sys/fs/cgroup/memory/job/memory.limit_in_bytes", "5000\n")
-    write("sys/fs/cgroup/memory/job/memory.usage_in_bytes", "6000\n")
-    assert available_memory(tmp_path) == 0
-    assert available_memory() > 0

@@ -2,7 +2,11 @@
 
 import contextlib
 import inspect
+import os
+import subprocess
+import sys
 from collections.abc import Iterator
+from pathlib import Path
 
 import pytest
 from hypothesis import given, settings
@@ -69,3 +73,14 @@ def test_a_hostile_argument(elsewhere: None, name: str, data: st.DataObject) -> 
     argument = data.draw(st.sampled_from(arguments(name)))
     value = data.draw(st.sampled_from(list(VALUES)))
     assert attack(name, argument, VALUES[value]()) is None
+
+
+TESTS = Path(__file__).parents[1]
+
+
+def test_harmed_files_and_random_tables() -> None:
+    """An error of ours that names the file or the argument, or a right result; never an abort or a hang."""
+    words = [sys.executable, str(TESTS / "manual" / "fuzz.py"), "--rounds", "3"]
+    env = os.environ | {"PYTHONPATH": str(TESTS), "OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1"}
+    done = subprocess.run(words, capture_output=True, text=True, check=False, timeout=900, env=env)
+    assert (done.returncode, done.stderr) == (0, ""), done.stdout

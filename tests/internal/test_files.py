@@ -1,19 +1,31 @@
-"""Files and folders appear whole or not at all, and never over what somebody else has put there."""
+"""Files appear whole or not at all, and never over what somebody else has put there; files have an end."""
 
 import errno
 import os
 import re
-import shutil
 import signal
+import threading
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
 import pytest
 
 from restitution._internal import files as _files
-from restitution._internal.files import check, draft_folder, prefix, whole_file, whole_folder, write
+from restitution._internal.files import (
+    check,
+    check_regular,
+    content,
+    draft_of,
+    path_from,
+    remove_old_drafts,
+    whole_file,
+    whole_folder,
+    write,
+)
+from restitution._internal.parameters import ParameterError
 
 
 def names(folder: Path) -> set[str]:
@@ -128,24 +140,6 @@ def test_a_folder_keeps_what_is_in_it(tmp_path: Path) -> None:
     assert (tmp_path / "figure.png").read_text() == "new"
 
 
-@pytest.mark.parametrize("replace", [False, True])
-def test_a_folder_that_cannot_take_all_takes_none(tmp_path: Path, replace: bool) -> None:
-    """Where something is in the way, here a folder, the files that were moved before are taken back."""
-    (tmp_path / "report.html").mkdir()
-    if replace:
-        (tmp_path / "figure.png").write_text("old")
-
-    def fill() -> None:
-        with whole_folder(tmp_path, replace=replace) as draft:
-            (draft / "figure.png").write_text("new")
-            (draft / "report.html").write_text("report")
-
-    with pytest.raises(OSError, match=r"report\.html"):
-        fill()
-    assert names(tmp_path) == ({"report.html", "figure.png"} if replace else {"report.html"})
-    assert not replace or (tmp_path / "figure.png").read_text() == "old"
-
-
 def test_a_folder_that_appears_meanwhile_is_not_written_over(tmp_path: Path) -> None:
     out = tmp_path / "paper"
 
@@ -171,17 +165,14 @@ def test_a_symbolic_link_stays_one(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("make", "number", "text"),
     [
-        (lambda folder: folder / os.fsdecode(b"\xff.nc"), errno.EILSEQ, "the name is not UTF-8"),
-        (lambda folder: folder / "circle", errno.EINVAL, "no name of a file: Symlink loop"),
         (lambda folder: folder / "folder", errno.EINVAL, "not a file that can be written"),
         (lambda folder: folder / "there", errno.EEXIST, "exists already"),
     ],
-    ids=["bytes", "circle", "folder", "there"],
+    ids=["folder", "there"],
 )
 def test_a_refusal_has_number_words_and_name(
     tmp_path: Path, make: Callable[[Path], Path], number: int, text: str
 ) -> None:
-    (tmp_path / "circle").symlink_to(tmp_path / "circle")
     (tmp_path / "folder").mkdir()
     (tmp_path / "there").touch()
     path = make(tmp_path)
@@ -207,80 +198,174 @@ def test_write_replaces_only_if_asked(tmp_path: Path) -> None:
     assert path.read_text() == "new"
 
 
-@pytest.mark.parametrize("folder", [False, True])
-def test_a_second_signal_leaves_no_draft(
-    folder: bool, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """It comes while the drafts are removed, after a first one, and counts when they are gone."""
-    handler = signal.signal(signal.SIGINT, signal.default_int_handler)
-    remove: Any = shutil.rmtree if folder else Path.unlink
+@contextmanager
+def naming(number: int, path: Path | str) -> Iterator[None]:
+    with pytest.raises(OSError, match=r"\w") as raised:
+        yield
+    error = raised.value
+    assert (error.errno, error.filename) == (number, str(path))
 
-    def removed(*what: Any, **how: Any) -> None:
-        os.kill(os.getpid(), signal.SIGINT)
-        time.sleep(0.01)
-        remove(*what, **how)
 
-    def work() -> None:
-        with (whole_folder if folder else whole_file)(tmp_path / "new"):
-            os.kill(os.getpid(), signal.SIGINT)
-            time.sleep(1.0)
+def test_other_files_keep_their_names(tmp_path: Path) -> None:
+    """Also those whose names begin as that of the file does."""
+    (tmp_path / "link").symlink_to(tmp_path / "run")
+    for name in ("run2", "run.toml", "my run"):
+        with naming(errno.ENOENT, tmp_path / name), whole_file(tmp_path / "link"):
+            (tmp_path / name).read_text()
 
-    monkeypatch.setattr(shutil if folder else Path, "rmtree" if folder else "unlink", removed)
+
+def test_an_error_that_is_not_of_the_system_stays(tmp_path: Path) -> None:
+    """As a time-out, which a program may raise when a signal comes."""
+
+    def late(*_: object) -> None:
+        raise TimeoutError("too late")
+
+    before = signal.signal(signal.SIGALRM, late)
     try:
-        with pytest.raises(KeyboardInterrupt):
-            work()
+        for block in (whole_file, whole_folder):
+            with pytest.raises(TimeoutError, match=r"^too late$"), block(tmp_path / "out"):
+                signal.raise_signal(signal.SIGALRM)
     finally:
-        signal.signal(signal.SIGINT, handler)
-    assert names(tmp_path) == set()
+        signal.signal(signal.SIGALRM, before)
 
 
-def test_a_draft_of_a_folder_is_known_as_one(tmp_path: Path) -> None:
-    """By its name and its place, so that the next process removes what a dead one left."""
-    draft = draft_folder(tmp_path / "study.zarr")
-    assert draft.parent == tmp_path
-    name = re.fullmatch(rf"\.study\.zarr\.([0-9a-f]{{8}})-{os.getpid()}\.\w+\.part", draft.name)
-    assert name
-    dead = tmp_path / f".study.zarr.{name[1]}-{2**22 + 1}.left.part"  # no process has such a number
-    dead.mkdir()
-    (dead / "zarr.json").touch()
-    other = draft_folder(tmp_path / "study.zarr")
-    assert names(tmp_path) == {draft.name, other.name}
+def test_a_link_that_leads_to_no_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The folder that is missing is named: beside the link nothing is."""
+    monkeypatch.chdir(tmp_path)
+    Path("link").symlink_to("nowhere/run.nc")
+    for path in (Path("link"), tmp_path / "link"):
+        with naming(errno.ENOENT, tmp_path / "nowhere"):
+            check(path, replace=False)
+        with naming(errno.ENOENT, tmp_path / "nowhere"), whole_file(path):
+            pytest.fail("the work began")
+    with naming(errno.ENOENT, "none"):
+        check(Path("none/run.nc"), replace=False)
 
 
-def test_files_that_are_replaced_are_kept_until_all_are_there(
+def test_a_pipe_is_no_file(tmp_path: Path) -> None:
+    """As /dev/stdout is one where the output goes to another program: it leads to no name of a file."""
+    reading, writing = os.pipe()
+    try:
+        for replace in (False, True):
+            with pytest.raises(OSError, match="not a file that can be written") as raised:
+                check(Path(f"/dev/fd/{writing}"), replace=replace)
+            assert raised.value.filename == f"/dev/fd/{writing}"
+    finally:
+        os.close(reading)
+        os.close(writing)
+
+
+@pytest.mark.parametrize("value", ["", ".", "a\0b", 3, None])
+def test_what_names_no_file_is_refused(value: Any) -> None:
+    with pytest.raises(ParameterError) as raised:
+        path_from("out", value)
+    text = str(raised.value)
+    assert text.startswith("out = ")
+    assert text.endswith("must be the path of a file")
+    assert repr(value)[:10] in text
+
+
+def told(error: OSError) -> tuple[int | None, str | None, Any]:
+    return error.errno, error.strerror, error.filename
+
+
+def test_a_file_in_the_way_of_a_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The folder is named as it was given, and so is a file that one of its own would replace."""
+    monkeypatch.chdir(tmp_path)
+    Path("taken").touch()
+    with pytest.raises(OSError, match="taken") as raised, whole_folder(Path("taken")):
+        pytest.fail("the work began")
+    assert told(raised.value) == (errno.ENOTDIR, "out cannot be written to: Not a directory", "taken")
+    Path("out").mkdir()
+    Path("out/laws.md").touch()
+    with pytest.raises(OSError, match="laws") as raised, whole_folder(Path("out"), names=["new", "laws.md"]):
+        pytest.fail("the work began")
+    assert told(raised.value) == (errno.EEXIST, "exists already", "out/laws.md")
+    with whole_folder(Path("out"), replace=True, names=["laws.md"]) as draft:
+        (draft / "laws.md").write_text("new")
+    assert Path("out/laws.md").read_text() == "new"
+
+
+def test_folders_above_are_made(tmp_path: Path) -> None:
+    """And a folder that is there already has its draft inside: it may be a file system of its own."""
+    out = tmp_path / "a" / "b" / "c"
+    with whole_folder(out) as draft:
+        assert draft.parent == tmp_path
+        (draft / "one").write_text("1")
+    with whole_folder(out) as draft:
+        assert draft.parent == out
+        (draft / "two").write_text("2")
+    assert sorted(file.name for file in out.iterdir()) == ["one", "two"]
+
+
+def test_an_error_without_a_number_keeps_its_words(tmp_path: Path) -> None:
+    """Libraries raise such; the file is named."""
+    path = tmp_path / "run.nc"
+    with pytest.raises(OSError, match="no room") as raised, whole_file(path):
+        raise OSError("no room")
+    assert told(raised.value) == (None, "no room", str(path))
+    with pytest.raises(OSError, match="disk full") as raised, whole_file(path):
+        raise OSError(errno.ENOSPC, "disk full")
+    assert told(raised.value) == (errno.ENOSPC, "disk full", str(path))
+
+
+def test_a_file_is_read_to_its_end_or_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A file of just the greatest length is read as it is, one of a byte more is not."""
+    monkeypatch.setattr(_files, "MOST", 3 << 20)
+    path = tmp_path / "table"
+    whole = os.urandom(3 << 20)
+    path.write_bytes(whole)
+    assert content(path) == whole
+    path.write_bytes(whole + b"\r")
+    with pytest.raises(OSError, match=r"^\[Errno \d+\] longer than 3 MiB: '") as raised:
+        content(path)
+    assert (raised.value.errno, raised.value.filename) == (errno.EFBIG, str(path))
+    path.write_bytes(b"a\r\n\x1a\x00\xff")  # as it is, without a view on its lines
+    assert content(path) == b"a\r\n\x1a\x00\xff"
+    with pytest.raises(FileNotFoundError) as missing:
+        content(tmp_path / "none")
+    assert missing.value.filename == str(tmp_path / "none")
+
+
+def test_a_file_without_end_is_read_no_farther_than_needed(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Beside their places, in folders that are known as drafts; pages come after all they show."""
-    order: list[str] = []
-    there: list[str] = []
+    """The byte beyond the greatest length is enough to refuse it, while its writer goes on."""
+    monkeypatch.setattr(_files, "MOST", 1000)
+    os.mkfifo(tmp_path / "pipe")
+    refused = threading.Event()
+    in_time = []
 
-    def put(draft: Path, target: Path, replace: bool) -> None:
-        order.append(target.name)
-        there.extend(names(tmp_path) - {draft.parent.name})
-        os.replace(draft, target)
+    def write() -> None:
+        with (tmp_path / "pipe").open("wb", buffering=0) as pipe:
+            pipe.write(bytes(1001))
+            in_time.append(refused.wait(10.0))
 
-    for name in ("a.html", "b.csv", "c.html"):
-        (tmp_path / name).write_text("old")
-    monkeypatch.setattr(_files, "_put", put)
-    with whole_folder(tmp_path, replace=True) as draft:
-        for name in ("a.html", "b.csv", "c.html"):
-            (draft / name).write_text("new")
-    assert (order[0], set(order[1:])) == ("b.csv", {"a.html", "c.html"})
-    kept = {name for name in there if name.startswith(".b.csv.")}
-    assert kept
-    assert all(f"-{os.getpid()}." in name and name.endswith(".part") for name in kept)
-    assert names(tmp_path) == {"a.html", "b.csv", "c.html"}
+    writer = threading.Thread(target=write)
+    writer.start()
+    with pytest.raises(OSError, match="longer than 0 MiB"):
+        content(tmp_path / "pipe")
+    refused.set()
+    writer.join()
+    assert in_time == [True]
 
 
-def test_a_folder_that_was_made_stays_if_something_was_put_there(tmp_path: Path) -> None:
-    def troubled() -> None:
-        with whole_folder(tmp_path / "above" / "laws"):
-            (tmp_path / "above" / "theirs").touch()
-            raise RuntimeError("trouble")
-
-    with pytest.raises(RuntimeError, match="trouble"):
-        troubled()
-    assert names(tmp_path / "above") == {"theirs"}
+def test_only_files_that_have_an_end_go_to_libraries(tmp_path: Path) -> None:
+    path = tmp_path / "run.nc"
+    with pytest.raises(FileNotFoundError) as missing:
+        check_regular(path)
+    assert missing.value.filename == str(path)
+    path.touch()
+    check_regular(path)
+    (tmp_path / "link.nc").symlink_to(path)
+    check_regular(tmp_path / "link.nc")
+    with pytest.raises(IsADirectoryError, match=r"^\[Errno \d+\] is a folder: '") as folder:
+        check_regular(tmp_path)
+    assert (folder.value.errno, folder.value.filename) == (errno.EISDIR, str(tmp_path))
+    os.mkfifo(tmp_path / "pipe")
+    with pytest.raises(OSError, match=r"^\[Errno \d+\] not a regular file: save it first: '") as pipe:
+        check_regular(tmp_path / "pipe")
+    assert (pipe.value.errno, pipe.value.filename) == (errno.EINVAL, str(tmp_path / "pipe"))
 
 
 @pytest.mark.parametrize("letter", ["n", "é"])
@@ -288,21 +373,72 @@ def test_the_longest_names_have_room_for_a_draft(tmp_path: Path, letter: str) ->
     """A draft's name is longer than that of its file, which may be as long as the file system allows."""
     name = letter * (252 // len(letter.encode())) + ".nc"
     check(tmp_path / name, replace=False)
-    left = tmp_path / f"{prefix(name)}x.part".replace(f"-{os.getpid()}.", f"-{2**22 + 1}.")
-    left.touch()  # of a process that is no more
     write(tmp_path / name, "all")
     assert [file.name for file in tmp_path.iterdir()] == [name]
-    assert prefix(name) != prefix(name.replace(".nc", ".cn"))
 
 
-def test_permissions_of_new_files_are_not_touched(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Between two calls of umask a signal would leave every later file of the process open to all."""
-    monkeypatch.setattr("os.umask", lambda mask: pytest.fail("another thread would see it"))
-    write(tmp_path / "one", "all")
-    monkeypatch.undo()
-    before = os.umask(0o027)
+def test_what_a_killed_process_left_goes_after_a_day(tmp_path: Path) -> None:
+    """Of the same name; a draft that is younger may be one of a process that is at work."""
+    left = [draft_of(tmp_path / name) for name in ("run.nc", "run.nc", "other.nc", "laws")]
+    for draft in left[:3]:
+        draft.touch()
+    left[3].mkdir()
+    (left[3] / "laws.nc").touch()
+    for draft in (left[0], left[2], left[3]):
+        os.utime(draft, (0, time.time() - 90_000))
+    write(tmp_path / "run.nc", "all")
+    assert names(tmp_path) == {"run.nc", *(draft.name for draft in left[1:])}
+    remove_old_drafts(tmp_path.parent)
+    assert names(tmp_path) == {"run.nc", left[1].name}
+
+
+@pytest.mark.parametrize("mask", [0o022, 0o077])
+def test_new_files_have_the_permissions_of_any(tmp_path: Path, mask: int) -> None:
+    before = os.umask(mask)
     try:
-        write(tmp_path / "two", "all")
+        write(tmp_path / "file", "all")
+        with whole_folder(tmp_path / "folder") as draft:
+            (draft / "file").touch()
     finally:
-        assert os.umask(before) == 0o027
-    assert (tmp_path / "two").stat().st_mode & 0o777 == 0o640
+        os.umask(before)
+    for path, mode in (("file", 0o666), ("folder", 0o777), ("folder/file", 0o666)):
+        assert (tmp_path / path).stat().st_mode & 0o777 == mode & ~mask
+
+
+def test_a_full_disk_in_a_folder_names_the_file_as_it_was_given(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    out, full = Path("laws"), os.strerror(errno.ENOSPC)
+    with naming(errno.ENOSPC, "laws/laws.nc"), whole_folder(out) as draft:
+        raise OSError(errno.ENOSPC, full, str(draft / "laws.nc"))
+    with naming(errno.ENOSPC, "laws/laws.png"), whole_folder(out) as draft, whole_file(draft / "laws.png"):
+        raise OSError(errno.ENOSPC, full)
+    with naming(errno.ENOSPC, "laws"), whole_folder(out):
+        raise OSError(errno.ENOSPC, full)
+    assert names(tmp_path) == set()
+
+
+def test_two_threads_that_write_to_one_name(tmp_path: Path) -> None:
+    """One of them gets it, the others are told, and the file is one of theirs."""
+    path, ready = tmp_path / "run.nc", threading.Barrier(8)
+    results: list[int] = []
+    told: list[str] = []
+
+    def work(number: int) -> None:
+        try:
+            with whole_file(path) as draft:
+                draft.write_text(f"{number}" * 1000)
+                ready.wait()
+            results.append(number)
+        except FileExistsError as error:
+            told.append(error.filename)
+
+    threads = [threading.Thread(target=work, args=(number,)) for number in range(8)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    assert told == [str(path)] * 7
+    assert [path.read_text()] == [f"{number}" * 1000 for number in results]
+    assert names(tmp_path) == {"run.nc"}

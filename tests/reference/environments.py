@@ -168,8 +168,6 @@ ENVIRONMENTS: dict[str, Environment] = {
     "SIGINT": Environment(signals=(signal.SIGINT,)),
     "SIGTERM": Environment(signals=(signal.SIGTERM,)),
     "SIGHUP": Environment(signals=(signal.SIGHUP,)),
-    "SIGINT twice": Environment(signals=(signal.SIGINT, signal.SIGINT)),
-    "SIGTERM and SIGHUP": Environment(signals=(signal.SIGTERM, signal.SIGHUP)),
     "stopped and continued": Environment(signals=(signal.SIGSTOP, signal.SIGCONT, signal.SIGINT)),
     "no assertions": variables(PYTHONOPTIMIZE="1"),
     "no home": variables(HOME=None, TMPDIR=None, XDG_CACHE_HOME=None, MPLCONFIGDIR=None),

@@ -1,7 +1,6 @@
 """One catalogue of hostile values: whatever once broke something, and its kin. It grows with every find."""
 
 import ctypes
-from collections import deque
 from collections.abc import Callable
 from decimal import Decimal
 from fractions import Fraction
@@ -95,8 +94,6 @@ VALUES: dict[str, Callable[[], Any]] = {
     "data array of no dimension": lambda: xr.DataArray(0.5),
     "table in memory": lambda: np.zeros((2, 2)).data,
     "masked whole number": lambda: np.ma.masked_array(3, mask=True),
-    "queue of bools": lambda: deque([0.0, True, 2.0]),
-    "bytes to be changed": lambda: bytearray(b"012"),
     "other units": lambda: xr.DataArray([0.5, 1.0], dims="x", attrs={"units": "furlong"}),
     "no dimension": lambda: np.array(0.5),
     "objects": lambda: np.array([0.0, 1.0], dtype=object),

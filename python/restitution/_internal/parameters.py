@@ -82,20 +82,8 @@ def listed(kinds: Iterable[type]) -> str:
     return f"{', '.join(others)} or {last}"
 
 
-_MOST_BITS = 256
 _MOST_ELEMENTS = 6
-
-
-class _Short(Repr):
-    """Values in at most a line; whole numbers may have more digits than Python writes."""
-
-    def repr_int(self, x: int, level: int) -> str:
-        if x.bit_length() > _MOST_BITS:
-            return f"an integer of {x.bit_length()} bits"
-        return super().repr_int(x, level)
-
-
-_SHORT = _Short()
+_SHORT = Repr()
 _SHORT.maxstring = _SHORT.maxother = 72
 
 
@@ -138,7 +126,7 @@ class Allowed:
     text: str
 
 
-class Parameters(BaseModel, metaclass=_text.Listed):
+class Parameters(BaseModel):
     """A frozen set of named parameters.
 
     Raises
@@ -197,7 +185,8 @@ class Parameters(BaseModel, metaclass=_text.Listed):
         raise AttributeError(f"{name}: {self!r} cannot be changed; make another")
 
     def __dir__(self) -> list[str]:
-        return sorted({*_text.public_names(type(self)), *type(self).model_fields})
+        hidden = dir(BaseModel)
+        return [name for name in super().__dir__() if name[0] != "_" and name not in hidden]
 
     def __str__(self) -> str:
         fields = (f"{name}={_text.short(getattr(self, name))}" for name in type(self).model_fields)
@@ -220,12 +209,9 @@ class Parameters(BaseModel, metaclass=_text.Listed):
 
 def _misplaced(kind: type[Parameters], values: tuple[Any, ...], named: dict[str, Any]) -> str:
     """Say how values without names should have been given."""
+    names = [name for name in kind.model_fields if name not in named]
     given = ", ".join(map(shown, values))
-    if kind.by_place:
-        given += "".join(f", {name}={shown(value)}" for name, value in named.items())
-        return f"{kind.__name__}({given}): must be {kind.__name__}({', '.join(kind.by_place)})"
-    meant = zip([name for name in kind.model_fields if name not in named], values, strict=False)
-    example = ", ".join(f"{name}={shown(value)}" for name, value in meant)
+    example = ", ".join(f"{name}={shown(value)}" for name, value in zip(names, values, strict=False))
     return f"{kind.__name__}({given}): parameters are given by name, as in {kind.__name__}({example})"
 
 

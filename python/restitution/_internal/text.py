@@ -5,33 +5,11 @@ import re
 from collections.abc import Iterable
 from html import escape
 from math import floor, isfinite, isnan, log10
-from typing import TYPE_CHECKING
 
 from pydantic import BaseModel
 
-if TYPE_CHECKING:
-    from pydantic._internal._model_construction import ModelMetaclass
-else:
-    ModelMetaclass = type(BaseModel)
-
-_OURS = {"model_config", "parameters", "attributes", "solid", "compiled", "by_place"}
-_HIDDEN = frozenset(dir(BaseModel)) | _OURS
-"""Internals of pydantic and of the core: they work, but are not listed."""
 _DIGITS, _RAISED = "-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹"
 _PLAIN = str.maketrans(_RAISED, _DIGITS)
-
-
-def public_names(cls: type) -> list[str]:
-    """Names of a class that `help` and completion show."""
-    found = {name for one in cls.__mro__ if one is not object for name in vars(one)}
-    return sorted(name for name in found - _HIDDEN if not name.startswith("_"))
-
-
-class Listed(ModelMetaclass):
-    """A metaclass that hides the internals of a class from `help` and completion."""
-
-    def __dir__(cls) -> list[str]:
-        return public_names(cls)
 
 
 class Text(str):

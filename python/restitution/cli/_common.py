@@ -26,11 +26,6 @@ _RUNNING = ContextVar("command", default="restitution")
 _LONGEST = 1000
 """Letters of a line of an error, which the name of a file can make longer than a terminal holds."""
 
-_ROOM = 600_000_000
-"""Bytes of address space that the libraries of a command take at most, and what they load besides."""
-_DATA = 400_000_000
-"""Bytes of data that a command with figures takes. With less OpenBLAS ends the process, drafts and all."""
-
 RunFile = Annotated[
     Path,
     typer.Argument(
@@ -92,20 +87,13 @@ def progress(quiet: bool) -> bool:
 
 
 @contextmanager
-def errors_in_a_line(*libraries: str, room: int = _ROOM) -> Iterator[None]:
+def errors_in_a_line(*libraries: str) -> Iterator[None]:
     """Show expected errors as one line each instead of a traceback; signals end the block in the same way.
 
-    The libraries are loaded first: the work would be lost if there were no room for what writes its result.
-    `room` is what they and the work take of address space, in bytes.
+    The libraries are loaded first: the work would be lost if what writes its result could not be loaded.
     """
     with ending() as came:
         try:
-            if libraries:
-                from restitution._internal.resources import check_address_space, check_data
-
-                check_address_space("this command", room)
-                if "matplotlib.figure" in libraries:
-                    check_data("this command", _DATA)
             for name in libraries:
                 import_module(name)
             # Of the files that Zarr reads at once the first that fails ends the command, in a line.

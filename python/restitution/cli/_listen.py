@@ -6,11 +6,7 @@ from typing import Annotated
 import typer
 
 from restitution._internal.process import say, tell
-from restitution._internal.resources import check_room
 from restitution.cli._common import Overwrite, Quiet, errors_in_a_line
-
-_ROOM, _ADDRESSES = 500_000_000, 800_000_000
-"""Bytes of memory and of address space that the libraries and the analysis of a minute of sound take."""
 
 
 def listen(
@@ -44,9 +40,7 @@ def listen(
     error budget; beside it a table of all impacts (CSV) and all numbers with their
     covariance (netCDF).
     """
-    with errors_in_a_line():
-        check_room("listen", _ROOM)  # before the libraries are there
-    with errors_in_a_line("netCDF4", "restitution.experiment.listen", room=_ADDRESSES):
+    with errors_in_a_line("netCDF4", "restitution.experiment.listen"):
         from restitution._internal.parameters import renamed
         from restitution.experiment.listen import Setting, write
 

@@ -2,6 +2,7 @@
 
 import warnings
 from collections.abc import Iterator
+from contextlib import ExitStack
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -189,7 +190,7 @@ def distribution(
             check,
             check_apart,
             check_name,
-            whole_files,
+            whole_file,
         )
         from restitution._internal.resources import checked_threads
         from restitution.distribution import FluctuatingRestitution, image, image_format, sealed
@@ -216,8 +217,8 @@ def distribution(
             warnings.simplefilter("always")
             warnings.simplefilter("ignore", EnergyWarning)  # the summary says what it would
             found = FluctuatingRestitution.learn(body, law, **how, threads=threads, progress=progress(quiet))
-        with whole_files(paths, replace=overwrite) as drafts:
-            draft = dict(zip(paths, drafts, strict=True))
+        with ExitStack() as files:
+            draft = {path: files.enter_context(whole_file(path, replace=overwrite)) for path in paths}
             put(sealed(found.data), draft[out])
             if header is not None:
                 draft[header].write_text(c_header(found.data, "restitution"), encoding="ascii")

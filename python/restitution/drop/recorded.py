@@ -8,8 +8,8 @@ import numpy as np
 import xarray as xr
 
 from restitution._internal.arrays import FloatArray, check_counts, check_each, real, reals
-from restitution._internal.datasets import check_dimensions, check_variables, variables
-from restitution._internal.parameters import ParameterError, Problem, wrong
+from restitution._internal.datasets import check_dimensions, check_has, variables
+from restitution._internal.parameters import ParameterError, Problem
 from restitution.drop.bins import increasing_edges
 
 RECORDS = ("particle", "impact")
@@ -18,13 +18,7 @@ _RUN = "restitution.simulate"
 
 
 def records(name: str, data: Any, *names: str) -> tuple[FloatArray, ...]:
-    """Take variables of recorded impacts, each of shape (particles, impacts).
-
-    Raises
-    ------
-    ParameterError
-        As `variables`.
-    """
+    """Take variables of recorded impacts, each of shape (particles, impacts)."""
     return variables(name, data, _RUN, dict.fromkeys(names, RECORDS))
 
 
@@ -40,16 +34,7 @@ def check_successive(name: str, data: xr.Dataset, *, start: int | None = None) -
     """Refuse impacts that do not follow one another, as their numbers in the coordinate ``impact`` say.
 
     Without that coordinate they are all impacts of a run only where they are as many as its attribute
-    ``impacts`` says.
-
-    Parameters
-    ----------
-    name : str
-        Of the argument, for the error.
-    data : xarray.Dataset
-        With a dimension ``impact``.
-    start : int, optional
-        What number the first must have; any unless given.
+    ``impacts`` says. `start` is the number that the first must have, if any.
     """
     if "impact" not in data.coords:
         every = data.attrs.get("impacts")
@@ -123,27 +108,16 @@ LATTICE = (
 _COUNTS = ("_count", "_underflow", "_overflow", "number")
 
 
-def counted(name: str, data: Any, names: tuple[str, ...] = LATTICE) -> xr.Dataset:
+def counted(name: str, data: xr.Dataset, names: tuple[str, ...] = LATTICE) -> xr.Dataset:
     """Take statistics in bins of velocity that have these variables.
 
-    Returns
-    -------
-    xarray.Dataset
-        The same, with velocity as the first dimension and bins of restitution or fraction as the last.
-
-    Raises
-    ------
-    ParameterError
-        If `data` is not a Dataset, lacks a variable, has one of other dimensions, edges that do not
-        increase or do not fit, counts that are not whole numbers in [0, 2**53], or other variables that are
-        no real numbers.
+    Velocity is the first dimension of what is returned, bins of restitution or fraction are the last. Edges
+    must increase and fit, counts be whole numbers in [0, 2**53], and other variables real numbers.
     """
-    if not isinstance(data, xr.Dataset):
-        raise ParameterError(wrong(name, data, "a Dataset from restitution.statistics or reduce"))
-    missing = [each for each in names if each not in data]
-    if missing:
-        raise ParameterError(Problem(name, f" lacks {', '.join(missing)}: must be {_origin(missing)}"))
-    check_variables(name, data, *names)
+    origin = "a Dataset from restitution.statistics or reduce, by velocity"
+    if not all(each in _OF_BINS or each.endswith(_COUNTS) for each in names):
+        origin += "; counts_only=True leaves the moments out"
+    check_has(name, data, origin, names)
     for each in names:
         check_dimensions(f"{name}.{each}", data[each], _OF_BINS.get(each, ("velocity",)))
     for each in names:
@@ -164,10 +138,3 @@ def counted(name: str, data: Any, names: tuple[str, ...] = LATTICE) -> xr.Datase
         inside = (speeds >= edges[:-1]) & (speeds <= edges[1:])
         check_each(f"{name}.velocity", speeds, inside, "the middles of the velocity bins")
     return data.transpose("velocity", ..., "restitution", "fraction", missing_dims="ignore")
-
-
-def _origin(missing: list[str]) -> str:
-    """Say what has the variables that are missing."""
-    if all(each in _OF_BINS or each.endswith(_COUNTS) for each in missing):
-        return "from restitution.statistics or reduce, by velocity"
-    return "from restitution.statistics or reduce, by velocity; counts_only=True leaves the moments out"

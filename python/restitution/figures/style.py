@@ -13,7 +13,7 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
 from restitution._internal.arrays import flag, real, whole
-from restitution._internal.files import IMAGE, path_for, whole_files
+from restitution._internal.files import IMAGE, path_for, whole_file
 from restitution._internal.parameters import ParameterError, wrong
 from restitution.figures.check import figure as checked_figure
 from restitution.figures.check import panel
@@ -193,14 +193,14 @@ def save(figure: Figure, name: str | Path, title: str = "", caption: str = "") -
     checked_text("caption", caption)
     single = path.suffix.lower() in _METADATA
     paths = (path,) if single else tuple(path.with_name(path.name + suffix) for suffix in (".png", ".pdf"))
-    with whole_files(paths, replace=True) as drafts:
-        for one, draft in zip(paths, drafts, strict=True):
-            suffix = one.suffix.lower()
-            about, dated = _METADATA[suffix]
-            metadata = {"Title": title, about: caption} | dated
-            dpi = 300 if suffix == ".png" else 600
+    for one in paths:
+        suffix = one.suffix.lower()
+        about, dated = _METADATA[suffix]
+        metadata = {"Title": title, about: caption} | dated
+        dpi = 300 if suffix == ".png" else 600
+        with whole_file(one, replace=True) as draft:
             figure.savefig(draft, format=suffix[1:], dpi=dpi, metadata=metadata)
-            figure.set_layout_engine("none")
+        figure.set_layout_engine("none")
     return paths
 
 

@@ -1,12 +1,13 @@
 """A new store of a study: its axes, the marks of its points and room for its tasks, in place in one step."""
 
 import os
+import shutil
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from restitution._internal.files import discarding, draft_folder, followed, permit
+from restitution._internal.files import draft_of
 from restitution._internal.parameters import unit_of
 from restitution._internal.process import undisturbed
 from restitution.drop.dataset import version_here
@@ -37,18 +38,19 @@ def create_or_open(path: Path, study: Study, words: int) -> tuple[Store, bool]:
 
 def _make(path: Path, study: Study, words: int) -> bool:
     """Put a new store in its place, unless another has taken it meanwhile."""
-    target = followed(path)
+    target = Path(os.path.realpath(path))
+    draft = draft_of(target)
     try:
-        target.parent.mkdir(parents=True, exist_ok=True)
-        draft = draft_folder(target)
-        with discarding(draft), threads_for(path):
+        draft.mkdir(parents=True)
+        with threads_for(path):
             _create(draft, study, words)
-            permit(draft, 0o777)
             os.rename(draft, target)
     except OSError as error:
         if not path.exists():
             raise OSError(error.errno, error.strerror or str(error), str(path)) from error
         return False
+    finally:
+        shutil.rmtree(draft, ignore_errors=True)
     return True
 
 

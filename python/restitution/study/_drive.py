@@ -16,7 +16,7 @@ import numpy as np
 import numpy.typing as npt
 import xarray as xr
 
-from restitution._internal.files import remove_all_leftovers
+from restitution._internal.files import remove_old_drafts
 from restitution.study._axes import Design
 from restitution.study._effort import Effort
 from restitution.study._point import Point, point_of
@@ -110,7 +110,7 @@ class Driver:
         """Do all that is to be done; `writes` says whether results are gathered, or left to a merge."""
         with _first_at(self.store) as alone:
             if alone:
-                remove_all_leftovers(self.store.path)
+                remove_old_drafts(self.store.path)
             waiting = iter(self.points if alone else random.sample(self.points, len(self.points)))
             shown = time.monotonic()
             pause = 0.0

@@ -22,7 +22,7 @@ import numpy as np
 import numpy.typing as npt
 import xarray as xr
 
-from restitution._internal.resources import check_address_space, check_data, check_room
+from restitution._internal.resources import check_room
 from restitution.study._axes import Design
 from restitution.study._identity import readable, threads_for
 from restitution.study._layout import check_array
@@ -37,15 +37,8 @@ _CHUNK = 4_000_000
 """Bytes of a chunk of the other variables, at most where the shape allows it."""
 
 
-_ROOM, _ADDRESSES, _OF_THREAD = 100_000_000, 250_000_000, 75_000_000
-"""Bytes of memory that Zarr takes; of address space, with the threads by which it reads, and of one thread.
-
-A thread that starts where memory ends is waited for without end.
-"""
-_BEGINNING = 20_000_000
-"""Bytes, of address space and of data, that a thread takes to begin: its stack, and what Python gives it."""
-_WRITERS = 6
-"""Threads by which Zarr writes, as many as it ever had in a study."""
+_ROOM = 100_000_000
+"""Bytes of memory that Zarr takes."""
 _FILES = 4
 """Files that Zarr opens at least: three for its loop, of which it leaves pieces otherwise, and a chunk's."""
 
@@ -56,11 +49,7 @@ def need_zarr(path: Path, threads: int | None = None) -> None:
     Where it is to be written, `threads` work on it, 0 if others do.
     """
     if "zarr" not in sys.modules:
-        more = 0 if threads is None else (threads + _WRITERS) * _OF_THREAD
         check_room("a study", _ROOM)
-        check_address_space("a study" if not threads else f"a study, threads = {threads}", _ADDRESSES + more)
-    check_address_space("a study", _BEGINNING)
-    check_data("a study", _BEGINNING)
     with contextlib.ExitStack() as files:
         try:
             for _ in range(_FILES):

@@ -8,7 +8,7 @@ import numpy as np
 from restitution import flight
 from restitution._internal.arrays import flag
 from restitution._internal.datasets import put
-from restitution._internal.files import check, check_apart, path_from, whole_files
+from restitution._internal.files import check, check_apart, path_from, whole_file
 from restitution._internal.parameters import ParameterError, wrong
 from restitution._internal.text import with_error
 from restitution.experiment.flight.times import DOUBLED, FLAGS
@@ -41,7 +41,8 @@ def write(file: Path, out: Path, setting: Setting, *, replace: bool = False) -> 
     for path in paths:
         check(path, replace=replace)
     analysis = analyse(file, setting)
-    with whole_files(paths, replace=replace) as (table, numbers, page):
+    csv, nc, html = (whole_file(path, replace=replace) for path in paths)
+    with html as page, nc as numbers, csv as table:  # the page takes its place last
         table.write_text(analysis.csv(), encoding="utf-8", newline="")
         put(analysis.dataset(), numbers)
         page.write_text(_page(file, analysis), encoding="utf-8", newline="")

@@ -1,7 +1,9 @@
-"""What a signal raises, in whom, and for how long: the handlers themselves, in this process."""
+"""What a signal raises, and for how long; what is said where a stream is closed or missing."""
 
+import json
 import os
 import signal
+import subprocess
 import sys
 import threading
 import time
@@ -11,11 +13,10 @@ from typing import Any
 
 import pytest
 
-from restitution._internal.process import ending, leaving, put_off, undisturbed
+from reference.command import AMONG_TESTS
+from restitution._internal.process import ending, is_terminal, leaving, put_off, say, tell, undisturbed
 
 ALL = [signal.SIGINT, signal.SIGTERM, signal.SIGHUP]
-PATIENCE = 20.0
-"""Seconds in which a signal that is sent again has come, on a busy machine too."""
 
 
 def handlers() -> list[Any]:
@@ -41,7 +42,7 @@ def struck(*numbers: int) -> None:
     """Be at work when signals come."""
     for number in numbers:
         send(number)
-    until = time.monotonic() + PATIENCE
+    until = time.monotonic() + 20.0
     while time.monotonic() < until:
         time.sleep(0.001)
     pytest.fail("no signal came")
@@ -138,99 +139,61 @@ def test_signals_are_of_the_main_thread(block: Callable[[], AbstractContextManag
     assert found == [before]
 
 
-def dropping(number: int) -> None:
-    """Send a signal where Python drops what it raises."""
-
-    class Losing:
-        def __del__(self) -> None:
-            send(number)
-            time.sleep(0.01)
-
-    Losing()
-
-
-def dropped_and_asleep(number: int, *before: int) -> None:
-    for other in before:
-        send(other)
-    dropping(number)
-    time.sleep(PATIENCE)  # in one piece, which a signal ends only if it is sent to this thread
-
-
-@pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGHUP])
-def test_a_signal_that_python_drops_comes_again(number: int, capfd: pytest.CaptureFixture[str]) -> None:
-    """As the same signal, until it has been seen, and without a word of what was dropped."""
-    until = time.monotonic() + PATIENCE
-    with pytest.raises(KeyboardInterrupt), ending() as came:
-        dropped_and_asleep(number)
-    assert time.monotonic() < until
-    assert came == [number, number]
-    assert capfd.readouterr() == ("", "")
-
-
-def test_a_signal_before_a_command_that_python_drops_comes_again() -> None:
-    """As the same signal, which the exit status tells."""
-    with pytest.raises(SystemExit) as raised, leaving():
-        dropped_and_asleep(signal.SIGHUP)
-    assert raised.value.code == 128 + signal.SIGHUP
+CODE = (
+    AMONG_TESTS
+    + """
+import json, os, signal, threading
+import restitution as rs
+from reference.signals import watched
+body, law = rs.Dumbbell(radius=3e-3, separation=3e-4), rs.TangentialRestitution(normal=0.98)
+how = {"particles": 4000, "impacts": 100, "threads": 1}
+begun, ended, found, alone = threading.Event(), threading.Event(), [], rs.simulate(body, law, **how)
+watched(lambda *_: begun.set())
+def work():
+    try:
+        found.append(rs.simulate(body, law, **how))
+    finally:
+        ended.set()
+worker = threading.Thread(target=work)
+worker.start()
+interrupted = False
+try:
+    begun.wait()
+    os.kill(os.getpid(), signal.SIGINT)
+    ended.wait()
+except KeyboardInterrupt:
+    interrupted = True
+ended.wait()
+print(json.dumps([interrupted, found[0].identical(alone)]))
+"""
+)
 
 
-def test_a_second_signal_that_python_drops_comes_again() -> None:
-    with pytest.raises(KeyboardInterrupt), put_off(lambda: None) as late:
-        dropped_and_asleep(signal.SIGHUP, signal.SIGTERM)
-    assert late == [signal.SIGTERM, signal.SIGHUP, signal.SIGHUP]
+def test_a_run_in_another_thread_goes_on_to_its_end() -> None:
+    """The main thread is interrupted at once; the run has the result of one that was never disturbed."""
+    done = subprocess.run(
+        [sys.executable, "-c", CODE], capture_output=True, text=True, check=True, timeout=60
+    )
+    assert json.loads(done.stdout) == [True, True]
 
 
-def test_a_signal_that_is_caught_does_not_come_again() -> None:
-    """While who caught it keeps it, however long the work after it takes."""
-    with ending() as came:
-        kept = caught(signal.SIGTERM)
-        time.sleep(0.2)
-    assert isinstance(kept, KeyboardInterrupt)
-    assert came == [signal.SIGTERM]
+def test_a_stream_that_lacks_a_letter() -> None:
+    """As ε in Latin-1: what was written to files stays written, and the line is said."""
+    code = "from restitution._internal.process import open_missing, say, tell\n"
+    code += "open_missing(); say('1 ε'); tell('2 ε\\x1b[31m')"
+    words = [sys.executable, "-c", code]
+    env = os.environ | {"PYTHONIOENCODING": "latin-1:strict"}
+    done = subprocess.run(words, capture_output=True, text=True, check=True, env=env)
+    assert (done.stdout, done.stderr) == ("1 \\u03b5\n", "2 \\u03b5\\x1b[31m\n")
 
 
-def test_a_signal_that_was_lost_gives_way_to_another() -> None:
-    """Which has come meanwhile, and is kept: the first is not sent once more."""
-    with ending() as came:
-        dropping(signal.SIGTERM)
-        kept = caught(signal.SIGHUP)
-        time.sleep(0.2)
-    assert isinstance(kept, KeyboardInterrupt)
-    assert came[0] == signal.SIGTERM
-    assert came[-1] == signal.SIGHUP
-    assert len(came) <= 3
-
-
-def test_a_signal_that_is_kept_stands_for_those_that_are_lost() -> None:
-    """Who keeps one knows that the process is to end."""
-    with ending() as came:
-        kept = caught(signal.SIGTERM)
-        dropping(signal.SIGHUP)
-        time.sleep(0.2)
-    assert isinstance(kept, KeyboardInterrupt)
-    assert came == [signal.SIGTERM, signal.SIGHUP]
-
-
-def test_nothing_comes_after_the_block() -> None:
-    """A signal that was lost in its last moment stays lost."""
-    came_after: list[int] = []
-    for number in ALL:
-        signal.signal(number, lambda number, _: came_after.append(number))
-    with ending() as came:
-        dropping(signal.SIGTERM)
-    time.sleep(0.2)
-    assert (came, came_after) == ([signal.SIGTERM], [])
-
-
-def test_a_thread_that_the_system_does_not_give(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Then a signal that was lost is lost, and nothing else goes wrong."""
-    import _thread
-
-    def refuse(*_: object) -> None:
-        raise RuntimeError("can't start new thread")
-
-    with ending() as came:
-        monkeypatch.setattr(_thread, "start_new_thread", refuse)
-        dropping(signal.SIGTERM)
-        monkeypatch.undo()
-    assert came == [signal.SIGTERM]
+@pytest.mark.parametrize("name", ["stdout", "stderr"])
+@pytest.mark.parametrize("stream", [None, open(os.devnull, encoding="utf-8")])  # noqa: SIM115
+def test_nobody_listens(name: str, stream: Any, monkeypatch: pytest.MonkeyPatch) -> None:
+    """As in a service, where a stream is missing or closed."""
+    if stream is not None:
+        stream.close()
+    monkeypatch.setattr(sys, name, stream)
+    assert not is_terminal(getattr(sys, name))
+    if name == "stderr" or stream is None:
+        (say if name == "stdout" else tell)("a line")
