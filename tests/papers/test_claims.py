@@ -30,6 +30,7 @@ from reference.made_up_runs import (
 )
 from restitution._core import STOP_REASONS
 from restitution.analytic import first_impact
+from restitution.papers.estimate import jackknife
 from restitution.papers.glielmo2014._claims import CLAIMS, _experiments, _negative, _shape
 
 ALL_LOW = {"restitution": np.minimum(MAIN["restitution"].to_numpy(), 0.99)}
@@ -120,6 +121,14 @@ def test_shape(fast: Noise, slow: Noise, verdict: str) -> None:
     made_up = runs(main=run(noise=fast, slow_noise=slow))
     keys = ("laplace", "asymmetric", "not-laplace-when-slow")
     assert [claim.finding.verdict for claim in CLAIMS.judge(made_up, SETTINGS, *keys)] == 3 * [verdict]
+
+
+def test_tails_that_end_are_found_out() -> None:
+    """A Laplace sample has the tails of its fit within four standard errors; one that is cut off has not."""
+    laplace = even(np.random.default_rng(15), (20_000,))
+    for values, ends in ((laplace, False), (laplace[np.abs(laplace) < 5 * 0.7], True)):
+        root, error = jackknife(_shape._tails, values, np.arange(values.size))
+        assert (abs(root - 1) > 4 * error) == ends
 
 
 @pytest.mark.parametrize(

@@ -1,6 +1,6 @@
 """A paper's claims: what is measured for each, and the verdict by a stated rule."""
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from typing import Generic, Literal, NamedTuple, TypeVar
 
@@ -92,7 +92,11 @@ def verdict(holds: bool, in_part: bool) -> Verdict:
     return "holds" if holds else "holds in part" if in_part else "fails"
 
 
-def listed(name: str, labels: Iterable[str], estimate: Estimate) -> tuple[Measurement, ...]:
-    """Turn each value of an estimate into a measurement at its label."""
-    values = zip(labels, estimate.value, estimate.error, strict=True)
-    return tuple(Measurement(name, float(value), float(error), at=label) for label, value, error in values)
+def listed(
+    name: str, labels: Iterable[str], values: Estimate | Sequence[float], unit: str = ""
+) -> tuple[Measurement, ...]:
+    """Turn each value of an estimate, or values without error, into measurements at their labels."""
+    if isinstance(values, Estimate):
+        each = zip(labels, values.value.tolist(), values.error.tolist(), strict=True)
+        return tuple(Measurement(name, value, error, unit, at) for at, value, error in each)
+    return tuple(Measurement(name, v, None, unit, at) for at, v in zip(labels, values, strict=True))

@@ -13,20 +13,11 @@ Index = NDArray[np.intp]
 
 @dataclass(frozen=True)
 class Estimate:
-    """Quantities estimated together from one run.
+    """Quantities estimated together from one run, each particle being one independent draw."""
 
-    Attributes
-    ----------
-    value : ndarray, shape (k,)
-    covariance : ndarray, shape (k, k)
-        Of the estimates, by linearisation, each particle being one independent draw.
-    number : ndarray, shape (k,)
-        Impacts that each value rests on.
-    """
-
-    value: Array
-    covariance: Array
-    number: Index
+    value: Array  # (k,)
+    covariance: Array  # (k, k), by linearisation
+    number: Index  # (k,), impacts that each value rests on
 
     @property
     def error(self) -> Array:
@@ -69,20 +60,10 @@ def clustered(value: Array, influence: Array, number: Index) -> Estimate:
 
 @dataclass(frozen=True)
 class Impacts:
-    """Some impacts of a run, each in a cell (a bin of speed, say).
+    """Some impacts of a run, each in a cell (a bin of speed, say)."""
 
-    Attributes
-    ----------
-    where : tuple of ndarray
-        Particle and impact number of each.
-    cell : ndarray, shape (impacts,)
-        Cell of each, 0 … cells−1.
-    cells, particles : int
-        Their numbers.
-    """
-
-    where: tuple[Index, Index]
-    cell: Index
+    where: tuple[Index, Index]  # particle and impact number of each
+    cell: Index  # of each, 0 … cells−1
     cells: int
     particles: int
 

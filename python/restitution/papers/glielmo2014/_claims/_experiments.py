@@ -243,9 +243,8 @@ def may_dominate(runs: Runs, settings: Settings) -> Finding:
     beads = {name: share for name, share in shares.items() if name.startswith("glass")}
     most, least = max(beads.values()), min(beads.values())
     return Finding(
-        measured=tuple(
-            Measurement("share of the eccentricity in the variance of ε at 0.5 m/s", share, at=name)
-            for name, share in beads.items()
+        measured=listed(
+            "share of the eccentricity in the variance of ε at 0.5 m/s", beads, [*beads.values()]
         ),
         verdict=verdict(most > 0.5 and least > 0.1, most > 0.5),
         rule=f"{_EXPERIMENT}Of one ε of the average glass beads of Fig. 6: holds if it is more than half for "

@@ -148,19 +148,15 @@ def decaying(runs: Runs, settings: Settings) -> Finding:
     rises = _rises(runs.main, settings)
     flattens = trend(rate)
     rising = [label for label, rise in zip(settings.labels, rises, strict=True) if rise > SIGNIFICANT]
-    others = [
-        Measurement(f"largest rise of the density, R = {1e3 * radius:g} mm", rise, unit=_ERRORS, at=label)
-        for radius, by in runs.by_radius.items()
-        if radius != settings.radius
-        for label, rise in zip(settings.labels, _rises(by[settings.elongation], settings), strict=True)
-    ]
+    others: list[Measurement] = []
+    for radius, by in runs.by_radius.items():
+        if radius != settings.radius:
+            name = f"largest rise of the density, R = {1e3 * radius:g} mm"
+            others += listed(name, settings.labels, _rises(by[settings.elongation], settings), _ERRORS)
     return Finding(
         measured=(
             *listed("decay rate 1/⟨E_rot/E_tot⟩", settings.labels, rate),
-            *(
-                Measurement("largest rise of the density", rise, unit=_ERRORS, at=label)
-                for label, rise in zip(settings.labels, rises, strict=True)
-            ),
+            *listed("largest rise of the density", settings.labels, rises, _ERRORS),
             *others,
         ),
         verdict=verdict(flattens.monotone and not rising, flattens.monotone),

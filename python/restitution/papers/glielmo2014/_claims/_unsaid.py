@@ -22,6 +22,7 @@ def orientation(runs: Runs, settings: Settings) -> Finding:
     apart = deviations(other, settings).apart(deviations(one, settings))
     first = [_first(data) for data in (other, one)]
     first_apart = float(first[0].apart(first[1])[0])
+    same = _same_density(one, other, settings, runs.seed)
     later, at_first = bool(np.all(np.abs(apart) <= SIGNIFICANT)), abs(first_apart) <= SIGNIFICANT
     return Finding(
         measured=(
@@ -29,12 +30,7 @@ def orientation(runs: Runs, settings: Settings) -> Finding:
             *listed("σ(ε), isotropic", ["first impact"], first[0]),
             *listed("σ(ε), uniform angle", settings.labels, deviations(one, settings)),
             *listed("σ(ε), isotropic", settings.labels, deviations(other, settings)),
-            *(
-                Measurement("p (Kolmogorov–Smirnov, same density)", p, at=label)
-                for label, p in zip(
-                    settings.labels, _same_density(one, other, settings, runs.seed), strict=True
-                )
-            ),
+            *listed("p (Kolmogorov–Smirnov, same density)", settings.labels, same),
         ),
         verdict=verdict(later and at_first, later),
         rule="The law of the orientation may be left open if the results do not depend on it. Holds if σ(ε) "
