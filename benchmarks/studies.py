@@ -20,8 +20,8 @@ import numpy as np
 import restitution as rs
 from restitution.study import study_of
 from restitution.study._drive import Driver, Progress
-from restitution.study._effort import TASK
 from restitution.study._sweep import opened
+from restitution.study._tables import TASK
 from restitution.study.engines import engine
 
 POINTS = 10_000
@@ -170,7 +170,7 @@ def _second_each(impacts: int) -> float:
 
 def _watch() -> None:
     """In a worker: keep the time that is spent dropping particles."""
-    work: Any = import_module("restitution.study._work")
+    work: Any = import_module("restitution.study._drive")
     count, spent = work.count, [0.0, 0.0, process_time()]
 
     def timed(*arguments: Any) -> Any:
@@ -186,7 +186,7 @@ def _watch() -> None:
 
 def _taken() -> tuple[float, float, float]:
     """In a worker: give that time, by the clock and of CPU, and the CPU time of all; and begin anew."""
-    work: Any = import_module("restitution.study._work")
+    work: Any = import_module("restitution.study._drive")
     found = work.spent[0], work.spent[1], process_time() - work.spent[2]
     work.spent[:] = 0.0, 0.0, process_time()
     return found

@@ -12,8 +12,8 @@ import restitution as rs
 from reference.command import SMALL
 from reference.studies import TINY
 from restitution.study import study_of, sweep
-from restitution.study._effort import Effort
 from restitution.study._study import Study
+from restitution.study._tables import Effort
 
 matplotlib.use("Agg")
 

@@ -38,7 +38,6 @@ def test_every_command_is_tried() -> None:
     ("name", "surroundings"),
     [
         ("laws", "four files"),  # which figures take for their fonts
-        ("sweep status", "two files"),  # fewer than Zarr's loop takes
         ("sweep", "six files"),
         ("simulate", "two files"),
         ("distribution", "ten files"),

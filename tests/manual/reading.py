@@ -28,7 +28,7 @@ from restitution.distribution._store import sealed
 from restitution.drop import toml as _toml
 from restitution.experiment import listen
 from restitution.experiment.listen._analysis import Setting
-from restitution.study._status import study_in
+from restitution.study._results import study_in
 
 
 @dataclass(frozen=True)

@@ -19,7 +19,7 @@ Process: TypeAlias = "subprocess.Popen[bytes]"
 # What a worker runs first: each batch takes longer, so that it can be killed at work.
 SLOWLY = """
 import time
-import restitution.study._work as work
+import restitution.study._drive as work
 if not hasattr(work, "plain_count"):  # a preload is run twice
     work.plain_count = work.count
 def slow_count(*arguments):
@@ -47,31 +47,13 @@ def cluster(folder: Path, workers: int) -> Iterator[tuple[str, Process, list[Pro
     preload.write_text(SLOWLY)
 
     def start(*words: object) -> Process:
-        command = [
-            sys.executable,
-            "-m",
-            "dask",
-            *map(str, words),
-            "--scheduler-file",
-            str(file),
-            "--no-dashboard",
-        ]
+        command = [sys.executable, "-m", "dask", *map(str, words), "--scheduler-file", str(file)]
         return subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, cwd=folder)
 
-    scheduler = start("scheduler", "--host", "127.0.0.1", "--port", 0)
-    worker = (
-        "worker",
-        "--host",
-        "127.0.0.1",
-        "--nthreads",
-        1,
-        "--no-nanny",
-        "--preload",
-        preload,
-        "--death-timeout",
-        60,
-    )
-    crew = [start(*worker) for _ in range(workers)]
+    here = ("--host", "127.0.0.1", "--no-dashboard")
+    scheduler = start("scheduler", *here, "--port", 0)
+    alone = ("--nthreads", 1, "--no-nanny", "--death-timeout", 60)
+    crew = [start("worker", *here, *alone, "--preload", preload) for _ in range(workers)]
     try:
         when(file.exists, None)
         yield str(file), scheduler, crew
@@ -88,7 +70,7 @@ def test_a_client_of_a_local_cluster(whole: dict[str, str], tmp_path: Path) -> N
     study, store = written(tmp_path, normals=4), tmp_path / "study.zarr"
     with (
         LocalCluster(  # type: ignore[no-untyped-call]
-            n_workers=2, threads_per_worker=2, processes=True, dashboard_address=None
+            n_workers=2, threads_per_worker=2, processes=True, dashboard_address=":0"
         ) as local,
         Client(local, set_as_default=False) as client,  # type: ignore[no-untyped-call]
     ):
@@ -124,15 +106,8 @@ def test_workers_and_the_scheduler_are_killed(whole: dict[str, str], tmp_path: P
 
 
 def test_a_scheduler_that_is_not_there(tmp_path: Path) -> None:
-    code, _, error = finished(
-        started(
-            written(tmp_path),
-            "--out",
-            tmp_path / "s.zarr",
-            "--scheduler",
-            "tcp://127.0.0.1:9",
-            env=IMPATIENT,
-        )
-    )
+    nobody = ("--scheduler", "tcp://127.0.0.1:9")
+    driver = started(written(tmp_path), "--out", tmp_path / "s.zarr", *nobody, env=IMPATIENT)
+    code, _, error = finished(driver)
     assert code == 1
     assert "no Dask scheduler answers there" in error

@@ -5,21 +5,21 @@ import resource
 import shutil
 import signal
 import subprocess
-import time
 from collections.abc import Callable
 from functools import partial
 from pathlib import Path
+from typing import Any
 
 import pytest
 
 from reference.studies import bits, chunks, finished, started, when, written
-from restitution._internal.files import draft_of
 from restitution.study import status, sweep
+from restitution.study._store import Store
 
 # Each batch takes 20 ms longer, so that there is a middle of the study to strike in.
 SLOWLY = """
 import time
-import restitution.study._work as work
+import restitution.study._drive as work
 count = work.count
 def slow_count(*arguments):
     time.sleep(0.02)
@@ -41,48 +41,31 @@ def has_chunks(store: Path, number: int) -> bool:
     return len(chunks(store)) >= number
 
 
+# The clock on the wall jumps back and forth by years at every look.
+JUMPS = """
+import itertools, time
+jumps = itertools.cycle((0.0, 1e9, -1e9, 5e8))
+wall = time.time
+time.time = lambda: wall() + next(jumps)
+time.time_ns = lambda: int(1e9 * time.time())
+"""
+
+
 def test_killed_drivers(whole: dict[str, str], tmp_path: Path) -> None:
-    """Two are killed, one after the other, and their work is not done again."""
+    """Two are killed, one after the other, and their work is not done again, whatever the clocks show."""
     study, store = written(tmp_path, normals=4), tmp_path / "study.zarr"
-    for target in (3, 7):
-        process = started(study, "--out", store, code=SLOWLY)
+    for target, code in ((3, SLOWLY), (7, SLOWLY + JUMPS)):
+        process = started(study, "--out", store, code=code)
         when(partial(has_chunks, store, target), process)
         os.killpg(process.pid, signal.SIGKILL)
         finished(process)
+        for i, path in enumerate(chunks(store)):
+            at = (0, 4_000_000_000)[i % 2]
+            os.utime(path, (at, at))
     there = {path: path.stat().st_mtime_ns for path in chunks(store)}
     assert 7 <= len(there) < 12
     sweep(study, store)
     assert {path: path.stat().st_mtime_ns for path in there} == there
-    assert bits(store) == whole
-
-
-# Killed when the third file of the store itself is complete and has not yet taken its place.
-DYING = """
-import os
-from pathlib import Path
-replace, written = Path.replace, []
-def dying(draft, target):
-    if not any(part.endswith(".part") for part in draft.parent.parts):
-        written.append(draft)
-        if len(written) == 3:
-            os.kill(os.getpid(), 9)
-    return replace(draft, target)
-Path.replace = dying
-"""
-
-
-def test_what_a_killed_driver_left_is_removed(whole: dict[str, str], tmp_path: Path) -> None:
-    """By the next one, after a day; what another process is about to write stays."""
-    study, store = written(tmp_path, normals=4), tmp_path / "study.zarr"
-    assert finished(started(study, "--out", store, code=DYING))[0] == -signal.SIGKILL
-    for left in (drafts := list(store.rglob(".*.part"))):
-        os.utime(left, (0, time.time() - 90_000))
-    assert drafts  # more than one where others were being written at the same time
-    alive = draft_of(store / "zarr.json")
-    alive.touch()
-    sweep(study, store)
-    assert list(store.rglob(".*.part")) == [alive]
-    alive.unlink()
     assert bits(store) == whole
 
 
@@ -104,30 +87,24 @@ def test_ctrl_c_leaves_a_store_that_can_be_read(whole: dict[str, str], tmp_path:
     assert bits(store) == whole
 
 
-def cut(path: Path) -> None:
-    path.write_bytes(path.read_bytes()[: path.stat().st_size // 2])
+def flip(data: bytes) -> bytes:
+    at = 2 * len(data) // 3
+    return data[:at] + bytes([data[at] ^ 4]) + data[at + 1 :]
 
 
-def flip(path: Path) -> None:
-    data = bytearray(path.read_bytes())
-    data[2 * len(data) // 3] ^= 4
-    path.write_bytes(data)
+HARMS: dict[str, Callable[[Path], object]] = {
+    "cut": lambda path: path.write_bytes(path.read_bytes()[: path.stat().st_size // 2]),
+    "a flipped bit": lambda path: path.write_bytes(flip(path.read_bytes())),
+    "empty": lambda path: path.write_bytes(b""),
+    "vanished": Path.unlink,
+}
 
 
-def empty(path: Path) -> None:
-    path.write_bytes(b"")
-
-
-def vanish(path: Path) -> None:
-    path.unlink()
-
-
-@pytest.mark.parametrize("harm", [cut, flip, empty, vanish])
-def test_damaged_chunks(whole: dict[str, str], tmp_path: Path, harm: Callable[[Path], None]) -> None:
+@pytest.mark.parametrize("harm", HARMS)
+def test_damaged_chunks(whole: dict[str, str], tmp_path: Path, harm: str) -> None:
     """Of the tasks and of every array of results; of the tasks only what is damaged is done again."""
     study, store = written(tmp_path, normals=4), tmp_path / "study.zarr"
-    if not store.exists():
-        sweep(study, store)
+    sweep(study, store)
     arrays = sorted({path.parent for path in store.rglob("zarr.json")} - {store, store / "tasks"})
     files = [
         sorted(path for path in array.rglob("*") if path.is_file() and path.name != "zarr.json")
@@ -137,7 +114,7 @@ def test_damaged_chunks(whole: dict[str, str], tmp_path: Path, harm: Callable[[P
     assert len(struck) > 20
     kept = {path: path.stat().st_mtime_ns for path in chunks(store)}
     for path in struck:
-        harm(path)
+        HARMS[harm](path)
     sweep(study, store)
     assert bits(store) == whole
     changed = {path for path, at in kept.items() if path.stat().st_mtime_ns != at}
@@ -149,6 +126,27 @@ def test_a_chunk_of_another_point_is_not_taken_for_its_own(whole: dict[str, str]
     sweep(study, store)
     words = store / "tasks" / "words" / "c"
     shutil.copyfile(words / "3" / "0" / "0", words / "4" / "0" / "0")
+    sweep(study, store)
+    assert bits(store) == whole
+
+
+def test_a_task_that_is_damaged_again(
+    whole: dict[str, str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """As on a bad disk: the study ends with an error that names the file, and goes on on a good one."""
+    study, store = written(tmp_path, normals=4), tmp_path / "study.zarr"
+    file, write = store / "tasks" / "words" / "c" / "5" / "0" / "0", Store.write
+
+    def spoilt(store: Store, point: int, first: int, rows: Any) -> None:
+        write(store, point, first, rows)
+        if point == 5:
+            HARMS["cut"](file)
+
+    monkeypatch.setattr(Store, "write", spoilt)
+    with pytest.raises(OSError, match="damaged when it was read back; what is finished is in") as raised:
+        sweep(study, store)
+    assert raised.value.filename == str(file)
+    monkeypatch.undo()
     sweep(study, store)
     assert bits(store) == whole
 
@@ -202,29 +200,4 @@ def test_two_drivers_on_one_store(whole: dict[str, str], tmp_path: Path) -> None
         code, out, error = finished(process)
         assert code == 0, error
         assert "12 of 12 points finished" in out
-    assert bits(store) == whole
-
-
-# The clock on the wall jumps back and forth by years at every look.
-JUMPS = """
-import itertools, time
-jumps = itertools.cycle((0.0, 1e9, -1e9, 5e8))
-wall = time.time
-time.time = lambda: wall() + next(jumps)
-time.time_ns = lambda: int(1e9 * time.time())
-"""
-
-
-def test_a_clock_that_jumps(whole: dict[str, str], tmp_path: Path) -> None:
-    """In the driver, and between what is in the store and the time when it goes on."""
-    study, store = written(tmp_path, normals=4), tmp_path / "study.zarr"
-    process = started(study, "--out", store, code=SLOWLY)
-    when(lambda: len(chunks(store)) >= 5, process)
-    os.killpg(process.pid, signal.SIGKILL)
-    finished(process)
-    for i, path in enumerate(chunks(store)):
-        at = (0, 4_000_000_000)[i % 2]
-        os.utime(path, (at, at))
-    code, _, error = finished(started(study, "--out", store, code=JUMPS))
-    assert code == 0, error
     assert bits(store) == whole

@@ -185,7 +185,6 @@ HUGE = 10**5000
             {"sweep": {"law.normal": [HUGE]}},
             r"sweep\.law\.normal = \[an integer of 16610 bits\]: must be a list of",
         ),
-        (_ranged(to=HUGE), r"sweep\.law\.normal = .*an integer of 16610 bits.*: must be a list of"),
         (_ranged(scale=np.array([1, 2])), r"sweep\.law\.normal\.scale = .*: must be 'linear' or 'log'"),
         (
             {"sweep": {"law.normal": [0.1], "design": np.array([1, 2])}},
@@ -216,28 +215,17 @@ def test_what_is_said(change: dict[str, Any], told: str) -> None:
 
 # What TOML has; of whole numbers those, too, whose decimal digits Python neither reads nor writes.
 WRITTEN: tuple[Any, ...] = (
-    *(True, 0, -1, 2**63, 16**5000, -0.0, math.nan, math.inf, -math.inf, 1.7e308, 5e-324),
-    *("", "fast", "1 %", "nan %", datetime.date(2020, 1, 1), datetime.time(1), datetime.datetime(2020, 1, 1)),
-    *(
-        [],
-        [0.5],
-        [1.0, 1.0],
-        [True],
-        ["a"],
-        [16**5000],
-        [[0.0, 1.0]],
-        [{"a": 1}],
-        [math.nan],
-        [-1.7e308, 1.7e308],
-    ),
-    *({}, {"a": 1}, {"from": 0, "to": math.inf, "bins": 3}, {"from": "a", "to": 1, "points": 3}),
+    *(True, -1, 16**5000, math.nan, math.inf, 1.7e308, 5e-324, "", "nan %"),
+    *(datetime.date(2020, 1, 1), datetime.datetime(2020, 1, 1)),
+    *([], [1.0, 1.0], [True], [16**5000], [[0.0, 1.0]], [{"a": 1}], [math.nan], [-1.7e308, 1.7e308]),
+    *({}, {"a": 1}, {"from": "a", "to": 1, "points": 3}),
 )
 
 
 def test_every_hostile_value_at_every_place_of_a_file(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Lines that begin with the name of the file, or a study; the command, too, is given every 12th."""
+    """Lines that begin with the name of the file, or a study; the command, too, is given every 60th."""
     monkeypatch.setattr("restitution.study.estimate", lambda *_: "good")
     path = tmp_path / "study.toml"
     asked = 0
@@ -256,7 +244,7 @@ def test_every_hostile_value_at_every_place_of_a_file(
                 assert lines, here
                 assert all(line.startswith(f"{path}: ") for line in lines), (*here, lines)
             asked += 1
-            if asked % 12 == 0:
+            if asked % 60 == 0:
                 result = invoke("sweep", path, "--out", tmp_path / "s.zarr", "--dry-run")
                 assert result.exit_code == (2 if lines else 0), (*here, result.exception)
                 assert len(result.stderr.splitlines()) == len(lines), here

@@ -12,7 +12,7 @@ from scipy import integrate
 
 import restitution as rs
 from restitution.drop.toml import tables_in
-from restitution.study import learned, study_of, sweep
+from restitution.study import Refused, learned, study_of, sweep
 
 ROOT = Path(__file__).parents[2]
 PAGE = (ROOT / "docs" / "studies.md").read_text(encoding="utf-8")
@@ -140,6 +140,29 @@ def test_a_point_is_a_learned_distribution(store: Path) -> None:
     assert found.std(v) == pytest.approx(float(point["std_restitution"]), abs=2e-3)
     with pytest.raises(ValueError, match="values of separation: must be those of separation, normal"):
         learned(store, separation=3e-4)
+
+
+def test_a_single_height_leaves_speeds_without_impacts(tmp_path: Path) -> None:
+    """Of a round body, which loses as much in every impact: the error says what to do, and that helps."""
+    study = {
+        "body": rs.Dumbbell(radius=3e-3, separation=3e-6),
+        "law": rs.TangentialRestitution(normal=0.9),
+        "run": {"particles": 2000, "impacts": 30},
+        "sweep": {"law.normal": [0.9]},
+        "statistics": {
+            "velocity_bins": {"from": 0.0, "to": 1.2, "bins": 24},
+            "restitution_bins": {"from": -1.0, "to": 3.0, "bins": 400},
+        },
+    }
+    sweep(study, tmp_path / "one.zarr")
+    told = (
+        r"one\.zarr: nothing can be learned from it: .*say run\.release_height = \{ lowest = \.\.\., highest"
+    )
+    with pytest.raises(Refused, match=told):
+        learned(tmp_path / "one.zarr", normal=0.9)
+    study["run"] = {"particles": 2000, "impacts": 30, "release_height": {"lowest": 0.02, "highest": 0.08}}
+    sweep(study, tmp_path / "all.zarr")
+    assert learned(tmp_path / "all.zarr", normal=0.9).mean(0.725) == pytest.approx(0.9, abs=0.01)
 
 
 def test_the_catalogue(tmp_path: Path) -> None:

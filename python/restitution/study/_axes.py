@@ -10,53 +10,28 @@ import numpy.typing as npt
 
 from restitution._internal.arrays import whole
 from restitution._internal.parameters import ParameterError, Problem, wrong
-from restitution.study._tables import check_keys, number, word
+from restitution.study._tables import number, table, word
 
 _VALUES = (
     "a list of different numbers, or a table { from, to, points } with finite from < to"
     ' and perhaps scale = "linear" or "log"'
 )
-_KEYS = ("from", "to", "scale")
-_SCALES = ("linear", "log")
 DESIGNS = ("grid", "latin-hypercube", "sobol")
 _MOST_POINTS = 10_000_000
 
 # Dimensions and variables that results have of their own.
-_TAKEN = [
-    "release_velocity",
-    "restitution",
-    "fraction",
-    "impact",
-    "stop_reason",
-    "point",
-    "batch",
-    "status",
-    "particles",
-    "digest",
-    "level",
-    "number",
-    "variance",
-    "density",
-    "skewness",
-    "kurtosis",
-    "minimum",
-    "maximum",
-    "undefined",
-]
+_TAKEN = {
+    *("release_velocity", "restitution", "fraction", "impact", "stop_reason", "point", "batch", "status"),
+    *("particles", "digest", "level", "number", "variance", "density", "skewness", "kurtosis"),
+    *("minimum", "maximum", "undefined"),
+}
 
 
 @dataclass(frozen=True)
 class Axis:
-    """One parameter that is varied.
+    """One parameter that is varied: its place in a file, as ``body.separation``, its name in the results.
 
-    Attributes
-    ----------
-    parameter : str
-        Its place in a file: ``body.separation``.
-    name : str
-        What it is called in the results.
-    values : tuple of float
-        In increasing or any other order; of a design that is not a grid those of all points.
+    Its values are those of all points where the design is not a grid.
     """
 
     parameter: str
@@ -66,15 +41,7 @@ class Axis:
 
 @dataclass(frozen=True)
 class Design:
-    """The points of a study.
-
-    Attributes
-    ----------
-    kind : str
-        One of `DESIGNS`.
-    axes : tuple of Axis
-        With a grid, the points are all combinations, the last axis varying fastest.
-    """
+    """The points of a study; on a grid they are all combinations, the last axis varying fastest."""
 
     kind: str
     axes: tuple[Axis, ...]
@@ -106,27 +73,17 @@ class Design:
         return {axis.parameter: axis.values[i] for axis, i in zip(self.axes, index, strict=True)}
 
 
-def design(table: Any, seed: Any) -> Design:
-    """Make the points of the table ``[sweep]``.
+def design(given: Any, seed: Any) -> Design:
+    """Make the points of the table ``[sweep]``; the seed is that of a design that is drawn.
 
-    Parameters
-    ----------
-    table : mapping
-        Parameters by their place, ``"body.separation"``, each with a list of values or ``{from, to, points,
-        scale}``; and perhaps ``design``, with the number of ``points`` if it is not a grid.
-    seed : int
-        Seed of a design that is drawn.
-
-    Raises
-    ------
-    ValueError
-        If a value is not allowed.
+    Parameters are named by their place, each with a list of values or ``{from, to, points, scale}``; a design
+    that is not a grid has a number of ``points`` for all of them.
     """
-    if not isinstance(table, Mapping):
-        raise ParameterError(wrong("sweep", table, "a table [sweep]"))
-    options = {key: table[key] for key in ("design", "points") if key in table}
+    if not isinstance(given, Mapping):
+        raise ParameterError(wrong("sweep", given, "a table [sweep]"))
+    options = {key: given[key] for key in ("design", "points") if key in given}
     kind = word("sweep.design", options.get("design", "grid"), DESIGNS)
-    varied = _each_once({key: value for key, value in table.items() if key not in options})
+    varied = _each_once({key: value for key, value in given.items() if key not in options})
     if not varied:
         text = ': nothing is varied; name parameters, as in "body.separation" = [3e-5, 1e-4]'
         raise ParameterError(Problem("sweep", text))
@@ -139,9 +96,8 @@ def design(table: Any, seed: Any) -> Design:
     else:
         points = whole("sweep.points", options.get("points"), 1, _MOST_POINTS)
         if kind == "sobol" and points & (points - 1):
-            raise ParameterError(
-                wrong("sweep.points", points, "a power of 2, or a Sobol set loses its balance")
-            )
+            allowed = "a power of 2, or a Sobol set loses its balance"
+            raise ParameterError(wrong("sweep.points", points, allowed))
         unit = _spread(kind, points, len(varied), whole("run.seed", seed, 0, 2**64 - 1))
         axes = tuple(
             Axis(key, name, tuple(_between(key, varied[key], unit[:, i]).tolist()))
@@ -153,39 +109,38 @@ def design(table: Any, seed: Any) -> Design:
     return found
 
 
-def design_again(table: Any) -> Design:
+def design_again(given: Any) -> Design:
     """Make the points of `Study.identity` again, which has the values of those that were drawn."""
-    if not isinstance(table, Mapping):
-        raise ParameterError(wrong("sweep", table, "a table [sweep]"))
-    kind = word("sweep.design", table.get("design"), DESIGNS)
-    varied = {key: value for key, value in table.items() if key != "design"}
+    if not isinstance(given, Mapping):
+        raise ParameterError(wrong("sweep", given, "a table [sweep]"))
+    kind = word("sweep.design", given.get("design"), DESIGNS)
+    varied = {key: value for key, value in given.items() if key != "design"}
     axes = tuple(Axis(key, name, _on_grid(key, varied[key])) for key, name in _names(list(varied)).items())
     sizes = {len(axis.values) for axis in axes}
     if not sizes or (kind != "grid" and len(sizes) > 1):
-        raise ParameterError(wrong("sweep", table, "parameters, with a value of each for every point"))
+        raise ParameterError(wrong("sweep", given, "parameters, with a value of each for every point"))
     return Design(kind, axes)
 
 
-def _each_once(table: Mapping[str, Any]) -> dict[str, Any]:
+def _each_once(given: Mapping[str, Any]) -> dict[str, Any]:
     """Name what is varied by its place, and refuse what would replace something else that is asked for."""
     varied: dict[str, Any] = {}
-    for key, value in _varied(table):
+    for key, value in _varied(given):
         if key in varied:
             text = ": is there twice; must be there once, in quotes or as a table"
             raise ParameterError(Problem(f"sweep.{key}", text))
         varied[key] = value
-    for key in varied:
-        parts = key.split(".")
-        for outer in (".".join(parts[:i]) for i in range(1, len(parts))):
-            if outer in varied:
+    for outer in varied:
+        for key in varied:
+            if key.startswith(f"{outer}."):
                 text = f": must be left out, or sweep.{outer}, which it is a part of"
                 raise ParameterError(Problem(f"sweep.{key}", text))
     return varied
 
 
-def _varied(table: Mapping[str, Any], prefix: str = "") -> Iterator[tuple[str, Any]]:
+def _varied(given: Mapping[str, Any], prefix: str = "") -> Iterator[tuple[str, Any]]:
     """Flatten tables, so that quoted and bare keys mean the same; an empty one is a wrong value."""
-    for key, value in table.items():
+    for key, value in given.items():
         if isinstance(value, Mapping) and value and not set(value) & {"from", "to"}:
             yield from _varied(value, f"{prefix}{key}.")
         else:
@@ -232,14 +187,13 @@ def _numbers(key: str, value: Any, given: tuple[Any, ...]) -> tuple[int | float,
 def _between(key: str, value: Any, unit: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
     """Map [0, 1] to the range of a parameter, its ends to its ends exactly."""
     if not isinstance(value, Mapping):
-        raise ParameterError(
-            wrong(f"sweep.{key}", value, "a table { from, to } in a design that is not a grid")
-        )
-    check_keys(f"sweep.{key}", value, _KEYS, f"sweep.{key}")
+        allowed = "a table { from, to } in a design that is not a grid"
+        raise ParameterError(wrong(f"sweep.{key}", value, allowed))
+    table(f"sweep.{key}", value, ("from", "to", "scale"))
     low, high = _numbers(key, value, (value.get("from"), value.get("to")))
     if not low < high:
         raise ParameterError(wrong(f"sweep.{key}", value, _VALUES))
-    scale = word(f"sweep.{key}.scale", value.get("scale", "linear"), _SCALES)
+    scale = word(f"sweep.{key}.scale", value.get("scale", "linear"), ("linear", "log"))
     if scale == "log" and low <= 0:
         raise ParameterError(wrong(f"sweep.{key}.from", low, "> 0 where the scale is logarithmic"))
     width = high / low if scale == "log" else high - low
@@ -259,7 +213,5 @@ def _between(key: str, value: Any, unit: npt.NDArray[np.float64]) -> npt.NDArray
 def _spread(kind: str, number: int, dimensions: int, seed: int) -> npt.NDArray[np.float64]:
     from scipy.stats import qmc
 
-    random = np.random.default_rng(seed)
-    if kind == "sobol":
-        return np.asarray(qmc.Sobol(dimensions, rng=random).random(number))
-    return np.asarray(qmc.LatinHypercube(dimensions, rng=random).random(number))
+    sampler = qmc.Sobol if kind == "sobol" else qmc.LatinHypercube
+    return np.asarray(sampler(dimensions, rng=np.random.default_rng(seed)).random(number))

@@ -1,45 +1,76 @@
 """Whose store it is: the study and the version of the physics that it was made for, as the store says."""
 
-import errno
+import hashlib
 import json
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
+from functools import cache
 from pathlib import Path
 from typing import Any
 
-from restitution._internal.files import check_regular, content
+import numpy as np
+
+from restitution import _core
 from restitution._internal.parameters import ParameterError
-from restitution.study._physics import fingerprint
+from restitution.bodies import Body, Dumbbell, LoadedSphere, Spheroid
+from restitution.drop.dataset import version_here
+from restitution.drop.run import Run
+from restitution.laws import ChatterjeeRuina, Coulomb, Frictionless, Law, TangentialRestitution
 from restitution.study._study import Study
 
-_NAME = "restitution_study"
-"""Of the attribute."""
+_NAME = "restitution_study"  # of the attribute
+_MOST_LINES = 12  # of what differs between two studies
+
+_BODIES: tuple[Body, ...] = (
+    Dumbbell(radius=1.0, separation=0.1),
+    Dumbbell(radius=1.0, separation=3.0),
+    LoadedSphere(radius=1.0, density=1.0, load=2.0, offset=0.3),
+    Spheroid(equatorial=1.0, polar=1.5, density=1.0),
+)
+_LAWS: tuple[Law, ...] = (
+    TangentialRestitution(normal=0.95, tangential=0.7),
+    Frictionless(normal=0.9),
+    Coulomb(normal=0.9, friction=0.2),
+    ChatterjeeRuina(normal=0.9, tangential=0.2, friction=0.3),
+)
 
 
 class Refused(ValueError):
-    """A store that belongs to something else.
+    """A store that belongs to something else, or is damaged.
 
     Examples
     --------
     >>> import tempfile
     >>> import restitution as rs
-    >>> study = {
-    ...     "body": rs.Dumbbell(radius=3e-3, separation=3e-4),
-    ...     "law": rs.TangentialRestitution(normal=0.98),
-    ...     "run": {"particles": 32, "impacts": 50},
-    ...     "statistics": {"velocity_bins": {"from": 0.0, "to": 1.1, "bins": 11},
-    ...                    "restitution_bins": {"from": -1.0, "to": 3.0, "bins": 40}},
-    ...     "sweep": {"law.normal": [0.9, 0.98]},
-    ... }
-    >>> out = tempfile.mkdtemp() + "/study.zarr"
-    >>> found = rs.sweep(study, out=out)
-    >>> study["run"] = {"particles": 64, "impacts": 50}
     >>> try:
-    ...     rs.sweep(study, out=out)
+    ...     rs.study.status(tempfile.mkdtemp())
     ... except rs.study.Refused as error:
-    ...     print("another study")
-    another study
+    ...     print("not the store of a study")
+    not the store of a study
     """
+
+
+@cache
+def fingerprint() -> dict[str, str]:
+    """Give the version, and SHA-256 of what the impacts of short runs of several bodies and laws add up to.
+
+    Takes milliseconds. Runs at rest and with spin go through both engines of the core.
+    """
+    edges = {
+        "velocity": np.linspace(0.0, 8.0, 9),
+        "restitution": np.linspace(-1.0, 3.0, 41),
+        "fraction": np.linspace(0.0, 1.0, 11),
+    }
+    digest = hashlib.sha256()
+    for body in _BODIES:
+        for law in _LAWS:
+            for spin in ((0.0, 0.0, 0.0), (0.3, 0.2, 0.1)):
+                run = Run(
+                    body=body, law=law, particles=4, impacts=12, release_height=20.0, gravity=1.0, spin=spin
+                )
+                tally, _ = _core.tally(run.parameters(), edges, 1, None)
+                digest.update(tally.words().tobytes())
+    return {"version": version_here(), "runs": digest.hexdigest()}
 
 
 def attribute(study: Study) -> dict[str, str]:
@@ -47,66 +78,48 @@ def attribute(study: Study) -> dict[str, str]:
     return {_NAME: json.dumps(_wanted(study))}
 
 
-@contextmanager
-def threads_for(path: Path) -> Iterator[None]:
-    """Name the store where the system gives no thread, of which Zarr needs some to read or write anything."""
+def identity(path: Path) -> dict[str, Any]:
+    """Read what a store says that it is."""
     try:
-        yield
-    except RuntimeError as error:
-        if "new thread" not in str(error):
-            raise
-        raise OSError(errno.EAGAIN, "the system gives no thread to work on it", str(path)) from error
-
-
-@contextmanager
-def readable(path: Path) -> Iterator[None]:
-    """Name the store if it cannot be read: a damaged one makes Zarr and its decoders raise anything."""
-    try:
-        with threads_for(path):
-            yield
-    except (Refused, ParameterError, MemoryError):
+        found = json.loads(json.loads((path / "zarr.json").read_text("utf-8"))["attributes"][_NAME])
+    except PermissionError:
         raise
-    except Exception as error:
-        if isinstance(error, OSError) and error.errno is not None:  # of the system, and not of Zarr
-            raise
-        raise Refused(f"{path}: is damaged ({type(error).__name__}: {error})") from error
+    except (OSError, ValueError, LookupError, TypeError, RecursionError):
+        found = None
+    if not isinstance(found, dict):
+        raise Refused(f"{path}: is not the store of a study, or its zarr.json is damaged; give another path")
+    return found
 
 
 def check(path: Path, study: Study) -> None:
     """Refuse a store that does not belong to a study, and say what differs."""
-    found = identity(path)
-    wanted = _wanted(study)
-    differences = list(_differences(found, wanted))
+    differences = list(_differences(identity(path), _wanted(study)))
     if not differences:
         return
-    most = 12
-    lines = [f"  {name}: {there} in the store, {here} here" for name, there, here in differences[:most]]
-    if len(differences) > most:
-        lines.append(f"  and {len(differences) - most} more")
+    lines = [f"  {name}: {there} in the store, {here} here" for name, there, here in differences]
+    if len(lines) > _MOST_LINES:
+        lines[_MOST_LINES:] = [f"  and {len(lines) - _MOST_LINES} more"]
     physics = any(name.startswith("physics") for name, _, _ in differences)
-    advice = (
-        "install that version to go on with it, or write to a new store"
-        if physics
-        else "write to a new store"
-    )
-    raise Refused(f"{path}: is the store of another study; {advice}. What differs:\n" + "\n".join(lines))
+    advice = "install that version to go on with it, or " if physics else ""
+    told = f"{path}: is the store of another study; {advice}write to a new store. What differs:"
+    raise Refused("\n".join([told, *lines]))
 
 
-def identity(path: Path) -> dict[str, Any]:
-    """Read what a store says that it is."""
+@contextmanager
+def readable(path: Path) -> Iterator[None]:
+    """Name the store in the error if it cannot be read or written; of a damaged one Zarr raises anything."""
     try:
-        check_regular(path / "zarr.json")
-        text = content(path / "zarr.json").decode()
-        found = json.loads(json.loads(text)["attributes"][_NAME])
-    except PermissionError:
+        yield
+    except (Refused, ParameterError, MemoryError):
         raise
-    except (OSError, ValueError, LookupError, TypeError, RecursionError):
-        raise Refused(
-            f"{path}: is not the store of a study, or its zarr.json is damaged; give another path"
-        ) from None
-    if not isinstance(found, dict):
-        raise Refused(f"{path}: is not the store of a study; give another path")
-    return found
+    except OSError as error:
+        if error.errno is None:  # of Zarr, and not of the system
+            raise Refused(f"{path}: is damaged ({type(error).__name__}: {error})") from error
+        if error.filename is None or str(error.filename).endswith(".partial"):  # a draft of Zarr
+            raise OSError(error.errno, error.strerror, str(path)) from error
+        raise
+    except Exception as error:
+        raise Refused(f"{path}: is damaged ({type(error).__name__}: {error})") from error
 
 
 def _wanted(study: Study) -> dict[str, Any]:

@@ -10,134 +10,166 @@ import contextlib
 import hashlib
 import math
 import os
-import sys
-import threading
+import shutil
 import warnings
-from collections.abc import Callable, Iterator, Mapping
-from functools import wraps
+from collections.abc import Iterator, Mapping
 from pathlib import Path
-from typing import Any, TypeVar, cast
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 import xarray as xr
 
-from restitution._internal.resources import check_room
+from restitution._internal.files import draft_of
+from restitution._internal.parameters import unit_of
+from restitution.drop.dataset import version_here
 from restitution.study._axes import Design
-from restitution.study._identity import readable, threads_for
-from restitution.study._layout import check_array
+from restitution.study._identity import attribute, check, readable
 from restitution.study._point import Words
+from restitution.study._study import Study
 
-F = TypeVar("F", bound=Callable[..., Any])
-DIGEST = 4
-"""Words of a digest."""
-_LARGE = 4096
-"""Numbers of a variable at a point from which on each point has a chunk of its own."""
-_CHUNK = 4_000_000
-"""Bytes of a chunk of the other variables, at most where the shape allows it."""
+DIGEST = 4  # words of it
+_LARGE = 4096  # numbers of a variable at a point, from which on each point has a chunk of its own
+_CHUNK = 4_000_000  # bytes of a chunk of the other variables, at most where the shape allows it
 
 
-_ROOM = 100_000_000
-"""Bytes of memory that Zarr takes."""
-_FILES = 4
-"""Files that Zarr opens at least: three for its loop, of which it leaves pieces otherwise, and a chunk's."""
-
-
-def need_zarr(path: Path, threads: int | None = None) -> None:
-    """Say what to install; refuse a store where there is no room for Zarr, no thread, or no file to open.
-
-    Where it is to be written, `threads` work on it, 0 if others do.
-    """
-    if "zarr" not in sys.modules:
-        check_room("a study", _ROOM)
-    with contextlib.ExitStack() as files:
-        try:
-            for _ in range(_FILES):
-                files.callback(os.close, os.open(os.devnull, os.O_RDONLY))
-        except OSError as error:
-            raise OSError(
-                error.errno, f"a study takes {_FILES} open files: {error.strerror}", str(path)
-            ) from None
-    with threads_for(path):  # before Zarr fails to start its own, which it then cannot end either
-        thread = threading.Thread(target=bool)
-        thread.start()
-        thread.join()
+def need_zarr() -> None:
+    """Say what to install where Zarr is missing or too old."""
+    install = "pip install 'restitution[sweep]'"
     try:
         import zarr
     except ImportError:
-        raise ImportError("parameter studies need zarr: pip install 'restitution[sweep]'") from None
+        raise ImportError(f"parameter studies need zarr: {install}") from None
     if int(zarr.__version__.partition(".")[0]) < 3:
-        raise ImportError(
-            f"parameter studies need zarr 3, here is {zarr.__version__}: pip install 'restitution[sweep]'"
-        )
-    if not __debug__:
-        _try(zarr)
+        raise ImportError(f"parameter studies need zarr 3, here is {zarr.__version__}: {install}")
+    if not __debug__:  # it reads metadata of groups in assertions
+        raise RuntimeError("parameter studies: zarr does not work under python -O or PYTHONOPTIMIZE")
 
 
-def _try(zarr: Any) -> None:
-    """Make groups in memory and open them: Zarr may do in assertions what is left out under `python -O`."""
-    memory = zarr.storage.MemoryStore()
+def create_or_open(path: Path, study: Study, words: int) -> "Store":
+    """Open the store of a study, whose batches have so many words; make it first if nothing is there.
+
+    Another study, another version of the physics, and what is no store are `Refused`.
+    """
+    if not path.exists():
+        _make(path, study, words + DIGEST)
+    check(path, study)
+    store = Store(path, study.digest)
+    store.check_layout(study, words + DIGEST)
+    return store
+
+
+def _make(path: Path, study: Study, width: int) -> None:
+    """Put a new store in its place in one step, unless another has taken it meanwhile."""
+    target = Path(os.path.realpath(path))
+    draft = draft_of(target)
     try:
-        group = zarr.create_group(memory, zarr_format=3)
-        group.create_group("tasks")
-        group["tasks"]
-        with warnings.catch_warnings(action="ignore"):
-            zarr.consolidate_metadata(memory, zarr_format=3)
-        zarr.open_group(memory, mode="r")
-    except Exception:
-        text = f"zarr {zarr.__version__} does not work under python -O or PYTHONOPTIMIZE: leave that out"
-        raise RuntimeError(f"parameter studies: {text}") from None
+        target.parent.mkdir(parents=True, exist_ok=True)
+        with readable(path):
+            _fill(draft, study, width)
+        os.rename(draft, target)
+    except OSError as error:
+        if not path.exists():
+            raise OSError(error.errno, error.strerror, str(path)) from error
+    finally:
+        shutil.rmtree(draft, ignore_errors=True)
 
 
-def _naming(method: F) -> F:
-    """Name the store in the error of a method, whatever Zarr raises."""
+def _fill(path: Path, study: Study, width: int) -> None:
+    """Write the axes, the marks of the points, and room for the tasks."""
+    import zarr
 
-    @wraps(method)
-    def named(store: "Store", *args: Any) -> Any:
-        with readable(store.path):
-            return method(store, *args)
+    effort, design = study.effort, study.design
+    about = {
+        "title": "Parameter study of the coefficient of restitution of bouncing aspherical bodies",
+        "Conventions": "CF-1.11",
+        "source": f"restitution {version_here()}",
+        "references": "A. Glielmo, N. Gunkelmann, T. Pöschel, Phys. Rev. E 90, 052204 (2014)",
+        **attribute(study),
+    }
+    group = zarr.create_group(str(path), zarr_format=3, attributes=about)
+    for axis in design.axes:
+        group.create_array(
+            axis.name,
+            data=np.array(axis.values, dtype=np.float64),
+            chunks=(len(axis.values),),
+            dimension_names=(axis.name,) if design.kind == "grid" else ("point",),
+            attributes={"long_name": axis.parameter, "units": unit_at(study, axis.parameter)},
+            fill_value=np.nan,
+        )
+    states: dict[str, Any] = {"flag_values": [0, 1], "flag_meanings": "unfinished finished"}
+    group.create_array(
+        "status",
+        data=np.zeros(design.shape, dtype=np.uint8),
+        chunks=design.shape,
+        dimension_names=design.dims,
+        attributes={"long_name": "state of the point", **states},
+    )
+    group.create_group("tasks").create_array(
+        "words",
+        shape=(design.points, effort.blocks * effort.batches, width),
+        chunks=(1, effort.task_batches, width),
+        dtype=np.uint64,
+        dimension_names=("point", "batch", "word"),
+        compressors=_fast(8),
+        attributes={"long_name": "what each batch of particles counted, and its digest"},
+        fill_value=0,
+    )
+    Store(path, study.digest).consolidate()
 
-    return cast(F, named)
+
+def unit_at(study: Study, parameter: str) -> str:
+    """Give the unit of a parameter, as its description has it."""
+    target: Any = study.base
+    *parts, last = parameter.split(".")
+    for part in parts:
+        target = target if part == "run" else getattr(target, part)
+    return unit_of(type(target), last)
 
 
 class Store:
-    """A store that is open.
-
-    Parameters
-    ----------
-    path : Path
-        A directory, which every worker can reach under this name.
-    study : bytes
-        The digest of the study.
-    """
+    """A store that is open: a directory, which every worker can reach under this name."""
 
     def __init__(self, path: Path, study: bytes) -> None:
         import zarr
 
-        from restitution.study._folder import Folder
-
         self.path, self.study = path, study
         self._ensured: set[str] = set()
         self._arrays: dict[str, Any] = {}  # those that were seen; what they are does not change
+        self.group: Any
+        self.words: Any
         with readable(path):
             path.stat()  # Zarr would make a folder that is not there
-            self.group: Any = zarr.open_group(Folder(path), mode="r+", zarr_format=3, use_consolidated=False)
-            words: Any = self.group["tasks/words"]
-            self.words = words
-            self.task_batches = int(words.chunks[1])
+            self.group = zarr.open_group(str(path), mode="r+", zarr_format=3, use_consolidated=False)
+            self.words = self.group["tasks/words"]
+            self.task_batches = int(self.words.chunks[1])
 
-    def points_there(self) -> list[int]:
-        """Name the points that have a chunk, of those that the study has."""
-        try:
-            names = os.listdir(self.path / "tasks" / "words" / "c")
-        except FileNotFoundError:
-            return []
-        numbers = (int(name) for name in names if name.isdecimal())
-        return [number for number in numbers if number < self.words.shape[0]]
+    def check_layout(self, study: Study, width: int) -> None:
+        """Refuse tasks of other than `width` words, or other marks or axes than those of the study."""
+        with readable(self.path):
+            effort, design = study.effort, study.design
+            _check_array(self.words, (design.points, effort.blocks * effort.batches, width), np.uint64)
+            _check_array(self.group["status"], design.shape, np.uint8)
+            for axis in design.axes:
+                _check_array(self.group[axis.name], (len(axis.values),), np.float64)
+            if self.words.chunks != (1, effort.task_batches, width):
+                raise ValueError(f"the chunks of tasks/words are {self.words.chunks}")
 
-    def valid(self, point: int, first: int, count: int) -> npt.NDArray[np.bool_]:
-        """Return which batches of a point are there, undamaged."""
-        return self.read(point, first, count)[1]
+    def there(self, point: int) -> set[int]:
+        """Return which tasks of a point have a chunk, whatever is in it."""
+        return {int(file.parent.name) for file in self._chunks(str(point))}
+
+    def number_there(self) -> int:
+        """Count the tasks that have a chunk."""
+        return sum(1 for _ in self._chunks("*"))
+
+    def _chunks(self, point: str) -> Iterator[Path]:
+        files = (self.path / "tasks" / "words" / "c").glob(f"{point}/*/0")
+        return (file for file in files if file.parent.name.isdecimal())
+
+    def file(self, point: int, task: int) -> Path:
+        """Name the chunk of a task; the words of a batch are never divided."""
+        return self.path / "tasks" / "words" / "c" / str(point) / str(task) / "0"
 
     def read(self, point: int, first: int, count: int) -> tuple[Words, npt.NDArray[np.bool_], bytes]:
         """Read rows of whole tasks of a point, return which are undamaged, and their digests."""
@@ -155,35 +187,19 @@ class Store:
                 good[i] = rows[i, -DIGEST:].tobytes() == self._digest(point, first + i, rows[i, :-DIGEST])
         return rows[:, :-DIGEST], good, rows[:, -DIGEST:].tobytes()
 
-    def fault(self, point: int, task: int) -> tuple[Path, str]:
-        """Name the file of a task's chunk, and say why it is not taken."""
+    def has(self, point: int, task: int) -> bool:
+        """Find out whether a task is there, undamaged."""
         first = task * self.task_batches
-        # The last part of the name is that of the words, which are never divided.
-        file = self.path / "tasks" / "words" / "c" / str(point) / str(task) / "0"
-        try:
-            self.words[point, first : first + self.task_batches]
-        except Exception as error:  # as in `read`
-            return file, f"{type(error).__name__}: {error}"
-        if not file.exists():
-            return file, "there is no such file"
-        return file, "its digest is not that of the numbers in it"
+        return self.file(point, task).exists() and bool(self.read(point, first, self.task_batches)[1].all())
 
-    @_naming
     def write(self, point: int, first: int, rows: Words) -> None:
         """Commit the rows of a task, in one step."""
-        signed = [
-            np.concatenate([row, np.frombuffer(self._digest(point, first + i, row), np.uint64)])
-            for i, row in enumerate(rows)
-        ]
-        self.words[point, first : first + len(rows)] = np.stack(signed)
-
-    def there(self, point: int) -> set[int]:
-        """Return which tasks of a point have a chunk, whatever is in it."""
-        folder = self.path / "tasks" / "words" / "c" / str(point)
-        try:
-            return {int(entry.name) for entry in os.scandir(folder) if entry.name.isdecimal()}
-        except FileNotFoundError:
-            return set()
+        with readable(self.path):
+            signed = [
+                np.concatenate([row, np.frombuffer(self._digest(point, first + i, row), np.uint64)])
+                for i, row in enumerate(rows)
+            ]
+            self.words[point, first : first + len(rows)] = np.stack(signed)
 
     def _digest(self, point: int, batch: int, row: Words) -> bytes:
         place = point.to_bytes(8, "little") + batch.to_bytes(8, "little")
@@ -191,115 +207,133 @@ class Store:
         digest.update(np.ascontiguousarray(row).data)
         return digest.digest()
 
-    @_naming
     def ensure(self, found: xr.Dataset, design: Design) -> None:
-        """Make the arrays of the results, if they are not there, from what was found at a point."""
-        for name, variable in found.variables.items():
-            if name in self._ensured:
-                continue
-            own = name in found.data_vars and not _is_common(str(name), variable)
-            dims = (*design.dims, *map(str, variable.dims)) if own else tuple(map(str, variable.dims))
-            shape = (*design.shape, *variable.shape) if own else variable.shape
-            if str(name) in self.group:
-                check_array(self.group, str(name), shape, variable.dtype, "same_kind")
-                self._ensured.add(str(name))
-                continue
-            chunks = _chunks(design, variable) if own else shape
-            with contextlib.suppress(FileExistsError, ValueError):  # another worker was faster
-                array = self.group.create_array(
-                    str(name),
-                    shape=shape,
-                    chunks=tuple(max(1, n) for n in chunks),
-                    dtype=variable.dtype,
-                    dimension_names=dims,
-                    attributes={**_plain(variable.attrs), "coordinates": " ".join(_coordinates(design))}
-                    if own and _coordinates(design)
-                    else _plain(variable.attrs),
-                    compressors=fast(variable.dtype.itemsize),
-                    fill_value=np.nan if variable.dtype.kind == "f" else 0,
-                )
+        """Have an array for each variable of a point, and what is the same at every point as it should be."""
+        with readable(self.path):
+            for axis in design.axes:
+                if axis.name not in self._ensured:
+                    self._correct(axis.name, np.array(axis.values, dtype=np.float64))
+                    self._ensured.add(axis.name)
+            for name, variable in ((str(name), v) for name, v in found.variables.items()):
+                if name in self._ensured:
+                    continue
+                own = name in found.data_vars and not _is_common(name, variable)
+                shape = (*design.shape, *variable.shape) if own else variable.shape
+                if name not in self.group:
+                    attrs = _plain(variable.attrs)
+                    if (
+                        own and design.kind != "grid"
+                    ):  # parameters are coordinates, which Xarray has to be told
+                        attrs["coordinates"] = " ".join(axis.name for axis in design.axes)
+                    with contextlib.suppress(FileExistsError, ValueError):  # another worker was faster
+                        self.group.create_array(
+                            name,
+                            shape=shape,
+                            chunks=tuple(max(1, n) for n in (chunks(design, variable) if own else shape)),
+                            dtype=variable.dtype,
+                            dimension_names=(*(design.dims if own else ()), *map(str, variable.dims)),
+                            attributes=attrs,
+                            compressors=_fast(variable.dtype.itemsize),
+                            fill_value=np.nan if variable.dtype.kind == "f" else 0,
+                        )
+                _check_array(self.group[name], shape, variable.dtype)
                 if not own:
-                    array[...] = variable.to_numpy()
+                    self._correct(name, variable.to_numpy())
+                self._ensured.add(name)
 
-    @_naming
-    def restore(self, found: xr.Dataset, design: Design) -> None:
-        """Write what is the same at every point again, where it is not what it should be."""
-        wanted = {axis.name: np.array(axis.values, dtype=np.float64) for axis in design.axes}
-        for name, variable in found.variables.items():
-            if name not in found.data_vars or _is_common(str(name), variable):
-                wanted[str(name)] = variable.to_numpy()
-        for name, values in wanted.items():
-            try:
-                same = np.array_equal(np.asarray(self.group[name][...]), values)
-            except (PermissionError, KeyError):
-                raise
-            except Exception:  # cut or spoilt
-                same = False
-            if not same:
-                self.group[name][...] = values
+    def _correct(self, name: str, values: npt.NDArray[Any]) -> None:
+        """Write an array again where it is not what it should be."""
+        there = self._values(name)
+        if there is None or not np.array_equal(there, values):
+            self.group[name][...] = values
 
-    @_naming
     def write_large(self, found: xr.Dataset, place: tuple[int, ...]) -> None:
         """Write the variables that have a chunk for each point."""
-        for name in large(found):
-            self.group[name][place] = found.variables[name].to_numpy()
+        with readable(self.path):
+            for name in large(found):
+                self.group[name][place] = found.variables[name].to_numpy()
 
     def read_large(self, names: list[str], place: tuple[int, ...]) -> dict[str, npt.NDArray[Any]] | None:
-        """Read them back; None if they are not there, or damaged."""
-        try:
-            return {name: np.asarray(self.group[name][place]) for name in names}
-        except PermissionError:
-            raise
-        except Exception:
-            return None
+        """Read them back; None if one is damaged."""
+        found = {name: self._values(name, place) for name in names}
+        whole = {name: values for name, values in found.items() if values is not None}
+        return whole if len(whole) == len(found) else None
 
-    def arrays(self) -> Iterator[tuple[str, Any]]:
-        """Give the arrays and their names; what else is in the folder is passed over."""
+    def read_small(self, design: Design) -> dict[str, npt.NDArray[Any]]:
+        """Read the smaller variables of all points, but for those that are damaged."""
+        with readable(self.path):
+            own, other = len(design.shape), {*self.large_arrays(design), *(axis.name for axis in design.axes)}
+            found = {}
+            for name, array in self._by_point(design):
+                values = None if name in other else self._values(name)
+                if values is not None:
+                    found[name] = values.reshape(design.points, *array.shape[own:])
+            return found
+
+    def write_small(self, values: Mapping[str, npt.NDArray[Any]]) -> None:
+        """Write them, the marks of what is finished last."""
+        with readable(self.path):
+            for name in sorted(values, key=lambda name: (name == "status", name)):
+                array = self.group[name]
+                array[...] = values[name].reshape(array.shape)
+            self.consolidate()
+
+    def large_arrays(self, design: Design) -> list[str]:
+        """Name the arrays that have a chunk for each point."""
+        with readable(self.path):
+            own = len(design.shape)
+            return [name for name, array in self._by_point(design) if math.prod(array.shape[own:]) >= _LARGE]
+
+    def _by_point(self, design: Design) -> Iterator[tuple[str, Any]]:
+        """Give the arrays that have a value for each point; what else is in the folder is passed over."""
         import zarr
 
+        own = len(design.shape)
         for name in sorted(os.listdir(self.path)):
             if name not in self._arrays and (self.path / name / "zarr.json").is_file():
                 self._arrays[name] = self.group[name]
-            if isinstance(self._arrays.get(name), zarr.Array):
-                yield name, self._arrays[name]
+            array = self._arrays.get(name)
+            if isinstance(array, zarr.Array) and array.shape[:own] == design.shape:
+                names: Any = array.metadata.dimension_names or ()  # type: ignore[union-attr]
+                if tuple(names[:own]) == design.dims:
+                    yield name, array
 
-    @_naming
-    def large_arrays(self, design: Design) -> list[str]:
-        """Name the arrays that have a chunk for each point."""
-        own = len(design.shape)
-        return [
-            name
-            for name, array in self.arrays()
-            if array.shape[:own] == design.shape and math.prod(array.shape[own:]) >= _LARGE
-        ]
+    def _values(self, name: str, place: Any = ...) -> npt.NDArray[Any] | None:
+        """Read an array, or what it has at a point; None if its chunk is cut or spoilt."""
+        array = self.group[name]
+        try:
+            return np.asarray(array[place])
+        except PermissionError:
+            raise
+        except Exception:  # in any way that a decoder can fail
+            return None
 
-    @_naming
     def consolidate(self) -> None:
         """Put the metadata of all arrays in one place, so that the store opens at once."""
-        import zarr
+        with readable(self.path):
+            import zarr
 
-        from restitution.study._folder import Folder
+            with warnings.catch_warnings():
+                # Consolidation is not in the specification of format 3, and Xarray uses it.
+                warnings.simplefilter("ignore")
+                zarr.consolidate_metadata(str(self.path), zarr_format=3)
 
-        with warnings.catch_warnings():
-            warnings.simplefilter(
-                "ignore"
-            )  # consolidation is not in the specification of format 3, and Xarray uses it
-            zarr.consolidate_metadata(Folder(self.path), zarr_format=3)
+
+def _check_array(array: Any, shape: tuple[int, ...], kind: npt.DTypeLike) -> None:
+    """Raise a ValueError for an array of another shape, or of another kind of numbers."""
+    if array.shape != shape or array.dtype.kind != np.dtype(kind).kind:
+        about = f"{array.dtype} of shape {array.shape} instead of {np.dtype(kind)} of shape {shape}"
+        raise ValueError(f"{array.path} is {about}")
 
 
 def large(found: xr.Dataset) -> list[str]:
     """Name the variables that have a chunk for each point."""
-    return sorted(name for name, v in _own(found) if _is_large(v))
+    return sorted(name for name, v in _own(found) if v.size >= _LARGE)
 
 
 def small(found: xr.Dataset) -> list[str]:
     """Name the other variables that every point has."""
-    return sorted(name for name, v in _own(found) if not _is_large(v) and not _is_common(name, v))
-
-
-def common(found: xr.Dataset) -> list[str]:
-    """Name the variables that are the same at every point."""
-    return sorted(name for name, v in _own(found) if _is_common(name, v))
+    return sorted(name for name, v in _own(found) if v.size < _LARGE and not _is_common(name, v))
 
 
 def _own(found: xr.Dataset) -> Iterator[tuple[str, xr.Variable]]:
@@ -307,24 +341,21 @@ def _own(found: xr.Dataset) -> Iterator[tuple[str, xr.Variable]]:
     return ((str(name), v) for name, v in found.variables.items() if name not in found.coords)
 
 
-def fast(size: int) -> Any:
+def _is_common(name: str, variable: Any) -> bool:
+    """Find out whether a variable is the same at every point: edges of bins are."""
+    return name.endswith("_edges") and variable.dims == (f"{name[:-1]}",)
+
+
+def _fast(size: int) -> Any:
     """Choose a compressor that costs next to nothing; most of what is stored are small numbers and zeros."""
     from zarr.codecs import BloscCodec
 
     return BloscCodec(cname="lz4", clevel=5, shuffle="shuffle", typesize=size)
 
 
-def _is_common(name: str, variable: Any) -> bool:
-    """Whether a variable is the same at every point: edges of bins."""
-    return name.endswith("_edges") and variable.dims == (f"{name[:-1]}",)
-
-
-def _is_large(variable: Any) -> bool:
-    return bool(variable.size >= _LARGE)
-
-
-def _chunks(design: Design, variable: Any) -> tuple[int, ...]:
-    if _is_large(variable):
+def chunks(design: Design, variable: Any) -> tuple[int, ...]:
+    """Choose the chunks of a variable: a point each where it is large, else as many points as fit."""
+    if variable.size >= _LARGE:
         return (*(1 for _ in design.shape), *variable.shape)
     room = _CHUNK // max(1, variable.size * variable.dtype.itemsize)
     sizes = []
@@ -332,11 +363,6 @@ def _chunks(design: Design, variable: Any) -> tuple[int, ...]:
         sizes.append(min(size, room))
         room = max(1, room // size)
     return (*reversed(sizes), *variable.shape)
-
-
-def _coordinates(design: Design) -> list[str]:
-    """Name what Xarray must treat as coordinates: parameters of a design that is not a grid."""
-    return [] if design.kind == "grid" else [axis.name for axis in design.axes]
 
 
 def _plain(attrs: Mapping[Any, Any]) -> dict[str, Any]:

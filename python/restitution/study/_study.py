@@ -3,12 +3,13 @@
 import hashlib
 import inspect
 import json
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import cached_property
 from importlib import import_module
 from pathlib import Path
-from typing import Any
+from typing import Any, cast
 
 import xarray as xr
 
@@ -30,10 +31,7 @@ from restitution.drop.statistics import Edges, edges_of
 from restitution.drop.toml import run_of, table_of, tables_in, tables_of
 from restitution.laws import Material
 from restitution.study._axes import Design, design
-from restitution.study._effort import Effort, effort
-from restitution.study._forms import Form, forms_of
-from restitution.study._named import with_errors
-from restitution.study._tables import check_keys, copied, table, word
+from restitution.study._tables import Effort, Forms, copied, effort, forms_of, table, with_errors, word
 
 Measure = Callable[[xr.Dataset], xr.Dataset]
 """A function of what `restitution.statistics` or `restitution.simulate` returns."""
@@ -54,7 +52,7 @@ class Study:
         The points.
     edges : dict or None
         Bins of the impacts that are counted, as `restitution.drop.statistics.edges_of` gives them.
-    forms : tuple of Form
+    forms : dict of str to Learn or Fitted
         What is taken from the statistics of a point by name: quantiles, a fit.
     measure : callable or None
         A function of a Dataset that is measured besides.
@@ -68,14 +66,8 @@ class Study:
     Examples
     --------
     >>> import restitution as rs
-    >>> study = {
-    ...     "body": rs.Dumbbell(radius=3e-3, separation=3e-4),
-    ...     "law": rs.TangentialRestitution(normal=0.98),
-    ...     "run": {"particles": 32, "impacts": 50},
-    ...     "statistics": {"velocity_bins": {"from": 0.0, "to": 1.1, "bins": 11},
-    ...                    "restitution_bins": {"from": -1.0, "to": 3.0, "bins": 40}},
-    ...     "sweep": {"law.normal": [0.9, 0.98]},
-    ... }
+    >>> body, law = rs.Dumbbell(radius=3e-3, separation=3e-4), rs.Frictionless(normal=0.9)
+    >>> study = {"body": body, "law": law, "sweep": {"law.normal": [0.8, 0.9]}, "first_impact": {}}
     >>> rs.study.study_of(study).design.points
     2
     """
@@ -83,41 +75,38 @@ class Study:
     base: Run
     design: Design
     edges: Edges | None
-    forms: tuple[Form, ...]
+    forms: Forms
     measure: Measure | None
     of: str
     first_impact: bool
     effort: Effort
 
     def run(self, point: int) -> Run:
-        """Give the run at a point.
-
-        Raises
-        ------
-        ValueError
-            If its parameters do not go together.
-        """
+        """Give the run at a point; raises a ValueError if its parameters do not go together."""
         values = self.design.values(whole("point", point, 0, self.design.points - 1))
         try:
             return _changed(self.base, values)
         except ParameterError as error:
-            here = ", ".join(f"{key} = {value!r}" for key, value in values.items())
-            raise ParameterError(*(Problem(f"at {here}: ", str(one)) for one in error.problems)) from None
+            here = self.where(point)
+            raise ParameterError(*(Problem(f"{here}: ", str(one)) for one in error.problems)) from None
+
+    def where(self, point: int) -> str:
+        """Name a point by what is varied, in an error."""
+        return "at " + ", ".join(f"{key} = {value!r}" for key, value in self.design.values(point).items())
 
     @cached_property
     def identity(self) -> dict[str, Any]:
         """Everything that the results depend on, as plain values."""
-        tables = tables_of(self.base)
         edges = self.edges or {}
         bins = {f"{name}_bins": own.tolist() for name, own in edges.items() if own is not None}
         return {
-            **tables,
+            **tables_of(self.base),
             "sweep": {
                 "design": self.design.kind,
                 **{axis.parameter: list(axis.values) for axis in self.design.axes},
             },
             **({"statistics": bins} if self.edges else {}),
-            **{form.name: form.table() for form in self.forms},
+            **{name: form.model_dump(mode="json", exclude_none=True) for name, form in self.forms.items()},
             **({"measure": {"of": self.of, **_named(self.measure)}} if self.measure else {}),
             **({"first_impact": {}} if self.first_impact else {}),
             "effort": self.effort.table(),
@@ -152,17 +141,11 @@ def study_of(source: Any) -> Study:
     Examples
     --------
     >>> import restitution as rs
-    >>> study = {
-    ...     "body": rs.Dumbbell(radius=3e-3, separation=3e-4),
-    ...     "law": rs.TangentialRestitution(normal=0.98),
-    ...     "run": {"particles": 32, "impacts": 50},
-    ...     "statistics": {"velocity_bins": {"from": 0.0, "to": 1.1, "bins": 11},
-    ...                    "restitution_bins": {"from": -1.0, "to": 3.0, "bins": 40}},
-    ...     "sweep": {"law.normal": [0.9, 0.98]},
-    ... }
+    >>> body, law = rs.Dumbbell(radius=3e-3, separation=3e-4), rs.Frictionless(normal=0.9)
+    >>> study = {"body": body, "law": law, "sweep": {"law.normal": [0.8, 0.9]}, "first_impact": {}}
     >>> wanted = rs.study.study_of(study)
     >>> wanted.base.particles, wanted.design.points
-    (32, 2)
+    (1000, 2)
     """
     if isinstance(source, Study):
         return source
@@ -173,16 +156,27 @@ def study_of(source: Any) -> Study:
     raise ParameterError(wrong("study", source, "a path of a TOML file, or its tables as a mapping"))
 
 
-def _study(given: Mapping[str, Any], source: str) -> Study:
+@contextmanager
+def _naming(source: str) -> Iterator[None]:
+    """Begin each line of an error with the name of the file."""
     try:
+        yield
+    except ValueError as error:
+        problems = error.problems if isinstance(error, ParameterError) else [error]
+        raise ValueError("\n".join(f"{source}: {problem}" for problem in problems)) from None
+
+
+def _study(given: Mapping[str, Any], source: str) -> Study:
+    """Read the tables one after the other, what is measured after the run that it is measured of."""
+    with _naming(source):
         tables = copied("study", given)
         for name in tables:
             if name not in _TABLES:
                 raise ParameterError(unknown(name, "a study", _TABLES))
         own = {name: tables.pop(name) for name in _TABLES[3:] if name in tables}
-        run = tables.get("run")
         points = own.get("sweep", {})
         if not isinstance(points, Design):  # as a store has it
+            run = tables.get("run")
             points = design(points, run.get("seed", 1) if isinstance(run, dict) else 1)
         plain = {
             name: table_of(table) if isinstance(table, Parameters) else table
@@ -190,37 +184,37 @@ def _study(given: Mapping[str, Any], source: str) -> Study:
         }
         for parameter, value in points.values(0).items():
             _set(plain, parameter, value)
-    except ParameterError as error:
-        raise ValueError("\n".join(f"{source}: {problem}" for problem in error.problems)) from None
     base = run_of(plain, source)
-    try:
+    with _naming(source):
         measure, of = _measure(own.get("measure"))
         edges = _edges(own["statistics"]) if "statistics" in own else None
         forms = forms_of(own, edges, base)
-        first = "first_impact" in own
-        if first and not (isinstance(own["first_impact"], Mapping) and len(own["first_impact"]) == 0):
-            raise ParameterError(wrong("first_impact", own["first_impact"], "an empty table"))
-        if first and isinstance(base.release_height, RandomHeight) and isinstance(base.law.normal, Material):
-            allowed = "a number, for the closed form of [first_impact] where the coefficient varies"
-            raise ParameterError(wrong("run.release_height", base.release_height, allowed))
+        first = _first_impact(own, base)
         if measure is not None and of == "statistics" and edges is None:
             raise ParameterError(Problem("statistics", ": missing; the measure is a function of them"))
         if edges is None and measure is None and not first:
-            tables_of_measures = "[statistics], [measure] or [first_impact]"
-            raise ParameterError(
-                Problem("statistics", f": nothing is measured; there must be {tables_of_measures}")
-            )
+            needed = "[statistics], [measure] or [first_impact]"
+            raise ParameterError(Problem("statistics", f": nothing is measured; there must be {needed}"))
         amount = effort(own.get("effort", {}), base)
         if measure is None:  # else its own variables are known when it has been called
-            amount.check(with_errors(edges, forms))
+            amount.check(with_errors(edges, forms.values()))
         found = Study(base, points, edges, forms, measure, of, first, amount)
         for point in range(points.points):
             found.run(point)
-    except ParameterError as error:
-        raise ValueError("\n".join(f"{source}: {problem}" for problem in error.problems)) from None
-    except ValueError as error:
-        raise ValueError(f"{source}: {error}") from None
     return found
+
+
+def _first_impact(own: Mapping[str, Any], run: Run) -> bool:
+    """Read ``[first_impact]``, which is an empty table."""
+    if "first_impact" not in own:
+        return False
+    given = own["first_impact"]
+    if not isinstance(given, Mapping) or len(given) > 0:
+        raise ParameterError(wrong("first_impact", given, "an empty table"))
+    if isinstance(run.release_height, RandomHeight) and isinstance(run.law.normal, Material):
+        allowed = "a number, for the closed form of [first_impact] where the coefficient varies"
+        raise ParameterError(wrong("run.release_height", run.release_height, allowed))
+    return True
 
 
 def _set(tables: dict[str, Any], parameter: str, value: float) -> None:
@@ -233,28 +227,22 @@ def _set(tables: dict[str, Any], parameter: str, value: float) -> None:
     for part in parts:
         table = table.setdefault(part, {})
         if not isinstance(table, dict):
-            raise ParameterError(
-                Problem(f"sweep.{parameter}", f": {part} is {shown(table)} and has no parameters")
-            )
+            text = f": {part} is {shown(table)} and has no parameters"
+            raise ParameterError(Problem(f"sweep.{parameter}", text))
     table[last] = value
 
 
-def _changed(parameters: Run, values: Mapping[str, float]) -> Run:
+def _changed(run: Run, values: Mapping[str, float]) -> Run:
     """Make a run with other values, checked as any other."""
-    fields = {name: getattr(parameters, name) for name in type(parameters).model_fields}
-    tree: dict[str, Any] = {}
+    tree: dict[str, Any] = {"run": {}}
     for parameter, value in values.items():
         _set(tree, parameter, value)
-    for name in ("body", "law"):
-        fields[name] = _with(fields[name], tree.get(name, {}))
-    for name, value in tree.get("run", {}).items():
-        fields[name] = _with(fields[name], value) if isinstance(value, dict) else value
-    return Run(**fields)
+    own = tree.pop("run")
+    return cast(Run, _with(run, tree | own))
 
 
 def _with(parameters: Any, changes: Mapping[str, Any]) -> Any:
-    if not changes:
-        return parameters
+    """Make parameters with other values, of which tables are those of parameters within."""
     fields = {name: getattr(parameters, name) for name in type(parameters).model_fields}
     for name, value in changes.items():
         fields[name] = _with(fields[name], value) if isinstance(value, dict) else value
@@ -267,9 +255,8 @@ def _edges(given: Any) -> Edges:
     spans = tuple(name.replace("_bins", "_range") for name in names)
     own = table("statistics", given, (*names, *spans))
     if "restitution_bins" not in own:
-        raise ParameterError(
-            Problem("statistics.restitution_bins", ": missing; must be { from, to, bins } or edges")
-        )
+        text = ": missing; must be { from, to, bins } or edges"
+        raise ParameterError(Problem("statistics.restitution_bins", text))
     bins = {"velocity_bins": None, "fraction_bins": {"from": 0.0, "to": 1.0, "bins": 50}, **own}
     return edges_of(
         *(_bins(name, bins[name], own.get(span)) for name, span in zip(names, spans, strict=True))
@@ -284,9 +271,8 @@ def _bins(name: str, value: Any, span: Any) -> Any:
         kind = name.removesuffix("_bins")
         raise ParameterError(wrong(f"statistics.{kind}_range", span, f"left out: {name} has its own ends"))
     if set(value) != {"from", "to", "bins"}:
-        raise ParameterError(
-            wrong(f"statistics.{name}", value, "{ from, to, bins } with bins >= 1, or edges")
-        )
+        allowed = "{ from, to, bins } with bins >= 1, or edges"
+        raise ParameterError(wrong(f"statistics.{name}", value, allowed))
     number = whole(f"statistics.{name}.bins", value["bins"], 1)
     with in_terms_of(**{f"statistics.{name}": value}):
         return edges_from(number, (value["from"], value["to"]), name)
@@ -298,10 +284,8 @@ def _measure(given: Any) -> tuple[Measure | None, str]:
         return None, _OF[0]
     if callable(given):
         return given, _OF[0]
-    if not isinstance(given, Mapping):
-        raise ParameterError(wrong("measure", given, "a function of a Dataset, or a table [measure]"))
-    check_keys("measure", given, ("function", "of"), "[measure]")
-    of, function = word("measure.of", given.get("of", _OF[0]), _OF), given.get("function")
+    own = table("measure", given, ("function", "of"))
+    of, function = word("measure.of", own.get("of", _OF[0]), _OF), own.get("function")
     if isinstance(function, str):
         module, _, name = function.partition(":")
         try:

@@ -1,26 +1,33 @@
-"""`sweep`: a study from its file to its results."""
+"""`sweep` and `merge`: a study from its file to its results, on one machine or many; `estimate`: its cost."""
 
+import random
+import tempfile
+import time
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import xarray as xr
 
-from restitution._internal.arrays import flag
+from restitution._internal.arrays import flag, several, whole
 from restitution._internal.files import ZARR, check_name, path_from
-from restitution._internal.parameters import ParameterError, wrong
-from restitution._internal.process import tell as say
+from restitution._internal.parameters import ParameterError, Problem, shown, wrong
 from restitution._internal.resources import bar as bar_of
-from restitution.study._create import create_or_open
+from restitution.study._axes import Design
 from restitution.study._drive import Driver, Progress
-from restitution.study._estimate import estimate
 from restitution.study._identity import check
 from restitution.study._point import count, point_of, with_template
-from restitution.study._status import open_store
-from restitution.study._store import Store, need_zarr
+from restitution.study._results import Status, open_store, status, study_in
+from restitution.study._store import Store, create_or_open, need_zarr
 from restitution.study._study import Study, study_of
-from restitution.study.engines import engine, width
+from restitution.study.engines import engine
+
+# Of an estimate: points that are tried, seconds in which particles of a point are timed, and seconds that all
+# particles of these points may take, so that they are tried whole.
+_POINTS, _ENOUGH, _WHOLE = 12, 0.05, 2.0
 
 
 def sweep(
@@ -54,7 +61,7 @@ def sweep(
     shard : (int, int), optional
         (3, 64) computes the third of 64 parts of the points, without a scheduler; `merge` joins them.
     progress : bool
-        Show an estimate of the cost and a progress bar on standard error.
+        Show a progress bar on standard error, with the time that is left.
 
     Returns
     -------
@@ -93,22 +100,90 @@ def sweep(
     wanted = study_of(study)
     points = _shard(shard, wanted.design.points)
     path = path_from("out", out)
-    need_zarr(path, width(client, threads))
+    need_zarr()
     if path.exists():
         check(path, wanted)
     else:
         check_name("out", path, ZARR)
     with engine(client, threads) as work:
-        if progress:
-            say(str(estimate(wanted, max(1, work.room // 2 - 1), len(points))))
         store, template = opened(path, wanted)
         with _bar(len(points) * wanted.effort.block_tasks, show=progress) as tell:
-            driver = Driver(wanted, store, work, template, points, tell=tell)
-            driver.run(writes=shard is None)
+            Driver(wanted, store, work, template, points, tell=tell).run(writes=shard is None)
     return open_store(path)
 
 
+def merge(
+    out: str | Path, parts: Sequence[str | Path] = (), *, study: Any = None, threads: int | None = None
+) -> Status:
+    """Put the tasks of several stores into one, and work out the results of all points that are complete.
+
+    Parameters
+    ----------
+    out : str or Path
+        The store; it is made if it is not there. One that several shards wrote to needs no other parts.
+    parts : sequence of str or Path
+        Other stores of the same study; they are left as they are. What is damaged in them is left out.
+    study : optional
+        As in `sweep`; needed where the study has a function that no file can name.
+    threads : int, optional
+        As in `sweep`.
+
+    Returns
+    -------
+    Status
+        What the store holds now.
+
+    Raises
+    ------
+    ValueError
+        If the stores are not of one study and one version of the physics, with what differs.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> import restitution as rs
+    >>> body, law = rs.Dumbbell(radius=3e-3, separation=3e-4), rs.Frictionless(normal=0.9)
+    >>> study = {"body": body, "law": law, "sweep": {"law.normal": [0.8, 0.9]}, "first_impact": {}}
+    >>> folder = tempfile.mkdtemp()
+    >>> parts = [f"{folder}/{number}.zarr" for number in (1, 2)]
+    >>> for number, part in enumerate(parts, start=1):  # as on two machines
+    ...     found = rs.sweep(study, out=part, shard=(number, 2))
+    >>> rs.study.merge(folder + "/both.zarr", parts).finished
+    2
+    """
+    if isinstance(parts, str | bytes) or not isinstance(parts, Sequence):
+        raise ParameterError(wrong("parts", parts, "a list of paths"))
+    path = path_from("out", out)
+    others = several("parts", parts, "a list of paths", lambda i, part: path_from(f"parts[{i}]", part))
+    need_zarr()
+    if not path.exists():
+        if not others:
+            text = f" = {shown(out)}: there is no such store, and no parts for it"
+            raise ParameterError(Problem("out", text))
+        check_name("out", path, ZARR)
+    wanted = study_of(study if study is not None else study_in(path if path.exists() else others[0]))
+    for part in others:
+        check(part, wanted)
+    points = range(wanted.design.points)
+    with engine(None, threads) as work:
+        store, template = opened(path, wanted)
+        for part in others:
+            other = Store(part, wanted.digest)
+            other.check_layout(wanted, store.words.shape[2])
+            _copy(other, store, wanted)
+        Driver(wanted, store, work, template, points, compute=False).run(writes=True)
+    return status(path)
+
+
+def opened(path: Path, wanted: Study) -> tuple[Store, xr.Dataset | None]:
+    """Open the store of a study or make it; give what a measure of recorded impacts gives, too."""
+    first = with_template(point_of(wanted, 0))
+    words = count(first, (0, 1)).size
+    return create_or_open(path, wanted, words), first.template
+
+
 def _shard(shard: tuple[int, int] | None, points: int) -> Sequence[int]:
+    """Take the points of a shard."""
     if shard is None:
         return range(points)
     good = isinstance(shard, tuple | list) and len(shard) == 2 and all(type(n) is int for n in shard)
@@ -117,16 +192,20 @@ def _shard(shard: tuple[int, int] | None, points: int) -> Sequence[int]:
     return range(shard[0] - 1, points, shard[1])
 
 
-def opened(path: Path, wanted: Study) -> tuple[Store, xr.Dataset | None]:
-    """Open the store of a study or make it; give what a measure of recorded impacts gives, too."""
-    first = with_template(point_of(wanted, 0))
-    words = count(first, (0, 1), None).size
-    store, _ = create_or_open(path, wanted, words)
-    return store, first.template
+def _copy(part: Store, store: Store, wanted: Study) -> None:
+    """Copy the tasks that are undamaged in one store and not in the other."""
+    number = wanted.effort.task_batches
+    for point in range(wanted.design.points):
+        for task in sorted(part.there(point)):
+            if not store.has(point, task):
+                rows, good, _ = part.read(point, task * number, number)
+                if good.all():
+                    store.write(point, task * number, rows)
 
 
 @contextmanager
 def _bar(total: int, *, show: bool) -> Iterator[Any]:
+    """Show a bar of the tasks; yield what takes the progress, or None."""
     if not show:
         yield None
         return
@@ -136,10 +215,142 @@ def _bar(total: int, *, show: bool) -> Iterator[Any]:
             bar.total = progress.tasks
             # The time left follows from what was computed, not from what was there.
             bar.initial = progress.resumed
-            more = {"points": f"{progress.ended}/{progress.points}", "resumed": progress.resumed}
-            if progress.damaged:
-                more["damaged"] = progress.damaged
-            bar.set_postfix(more, refresh=False)
+            points = f"{progress.ended}/{progress.points}"
+            bar.set_postfix(points=points, resumed=progress.resumed, damaged=progress.damaged, refresh=False)
             bar.update(progress.computed + progress.resumed - bar.n)
 
         yield tell
+
+
+@dataclass(frozen=True)
+class Estimate:
+    """The cost of a study.
+
+    Attributes
+    ----------
+    points, tasks, particles : int
+        Of all points; with `until`, what each of them begins with.
+    seconds : float
+        Processor time of these particles, on a machine like this one.
+    threads : int
+        Threads that will share it.
+    store : int or None
+        Bytes of the store; None where a point is too large to be tried whole.
+    most : int
+        How many times as many particles a point may get until a standard error is reached.
+
+    Examples
+    --------
+    >>> import restitution as rs
+    >>> body, law = rs.Dumbbell(radius=3e-3, separation=3e-4), rs.Frictionless(normal=0.9)
+    >>> study = {"body": body, "law": law, "sweep": {"law.normal": [0.8, 0.9]}, "first_impact": {}}
+    >>> cost = rs.study.estimate(rs.study.study_of(study), threads=2)
+    >>> cost.points, cost.particles, cost.seconds > 0
+    (2, 2000, True)
+    """
+
+    points: int
+    tasks: int
+    particles: int
+    seconds: float
+    threads: int
+    store: int | None
+    most: int
+
+    def __str__(self) -> str:
+        size = "" if self.store is None else f"; store: {self.store / 1e6:.2g} MB"
+        more = f"; at most {self.most} times as many until the standard error is reached"
+        return (
+            f"{self.points} points, {self.tasks} tasks, {self.particles} particles"
+            f"{more if self.most > 1 else ''}\n"
+            f"of these, {duration(self.seconds)} of processor time for {self.threads} threads to share{size}"
+        )
+
+
+def estimate(study: Study, threads: int) -> Estimate:
+    """Try a few points, spread over the design, in a store that is thrown away.
+
+    Parameters
+    ----------
+    study : Study
+        The study.
+    threads : int
+        Threads that will share the work.
+
+    Examples
+    --------
+    >>> import restitution as rs
+    >>> body, law = rs.Dumbbell(radius=3e-3, separation=3e-4), rs.Frictionless(normal=0.9)
+    >>> study = {"body": body, "law": law, "sweep": {"law.normal": [0.8, 0.9]}, "first_impact": {}}
+    >>> rs.study.estimate(rs.study.study_of(study), threads=2).points
+    2
+    """
+    if not isinstance(study, Study):
+        raise ParameterError(wrong("study", study, "a Study, as from study_of"))
+    threads = whole("threads", threads, 1)
+    need_zarr()
+    points, particles = study.design.points, study.effort.particles
+    part = replace(study, design=_some(study.design))
+    tried = part.design.points
+    each = float(np.mean([_particle(part, number) for number in range(tried)]))
+    given = study.base.angles is not None or study.base.spins is not None  # one for each particle
+    whole_ones = given or tried * particles * each < _WHOLE
+    some = particles if whole_ones else max(2 * study.effort.batches, int(_WHOLE / (tried * each)))
+    _done(part, 1, some)  # the first one loads what all need
+    first, _, _ = _done(part, 1, some)
+    seconds, results, other = _done(part, tried, some)
+    more = max(0.0, seconds - first) / max(1, tried - 1) + each * (particles - some)
+    return Estimate(
+        points=points,
+        tasks=points * study.effort.block_tasks,
+        particles=points * particles,
+        seconds=first + each * (particles - some) + (points - 1) * more,
+        threads=threads,
+        store=round(results * points / tried + other) if whole_ones else None,
+        most=study.effort.blocks,
+    )
+
+
+def _some(design: Design) -> Design:
+    """Choose points by chance, the same ones always."""
+    chosen = random.Random(1).sample(range(design.points), min(design.points, _POINTS))
+    values = [design.values(point) for point in chosen]
+    return Design(
+        "points",
+        tuple(replace(axis, values=tuple(one[axis.parameter] for one in values)) for axis in design.axes),
+    )
+
+
+def _particle(study: Study, number: int) -> float:
+    """Give the processor time of a particle of a point."""
+    point, particles = with_template(point_of(study, number)), 2
+    while True:
+        start = time.process_time()
+        count(point, (0, particles))
+        took = time.process_time() - start
+        if took >= _ENOUGH or particles == study.effort.particles:
+            return took / particles
+        particles = min(study.effort.particles, 4 * particles)
+
+
+def _done(study: Study, points: int, particles: int) -> tuple[float, int, int]:
+    """Do points with so many particles; give processor time, bytes of results, and bytes of all else."""
+    effort = replace(study.effort, particles=particles, blocks=1, until=())
+    study = replace(study, base=study.base.model_copy(update={"particles": particles}), effort=effort)
+    with tempfile.TemporaryDirectory() as folder, engine(None, 1) as work:
+        path = Path(folder) / "study.zarr"
+        start = time.process_time()
+        store, template = opened(path, study)
+        Driver(study, store, work, template, range(points)).run(writes=True)
+        took = time.process_time() - start
+        sizes = {file: file.stat().st_size for file in path.rglob("*") if file.is_file()}
+        other = sum(size for file, size in sizes.items() if file.name == "zarr.json")
+        return took, sum(sizes.values()) - other, other
+
+
+def duration(seconds: float) -> str:
+    """Write a time as a person would."""
+    for unit, size in (("d", 86400.0), ("h", 3600.0), ("min", 60.0)):
+        if seconds >= 2 * size:
+            return f"{seconds / size:.3g} {unit}"
+    return f"{seconds:.2g} s" if seconds < 100 else f"{seconds:.0f} s"

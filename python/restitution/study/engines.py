@@ -4,6 +4,7 @@ import threading
 from collections.abc import Callable, Iterator
 from concurrent.futures import Executor, Future, ThreadPoolExecutor
 from contextlib import contextmanager, suppress
+from dataclasses import dataclass
 from typing import Any
 
 from restitution import _core
@@ -11,63 +12,38 @@ from restitution._internal.parameters import ParameterError, wrong
 from restitution._internal.resources import checked_threads
 
 
+@dataclass(frozen=True)
 class Engine:
     """Takes calls and gives futures.
 
-    Parameters
-    ----------
-    executor : concurrent.futures.Executor
-        Who does the work.
-    width : callable
-        Gives the number of calls that run at a time, now.
-    stop : threading.Event or None
-        Signals running calls to stop, where it reaches them.
+    The width is the number of calls that run at a time, now; the event asks running calls to stop.
     """
 
-    def __init__(self, executor: Executor, width: Callable[[], int], stop: threading.Event | None) -> None:
-        self._executor, self._width, self._stop = executor, width, stop
+    executor: Executor
+    width: Callable[[], int]
+    event: threading.Event | None = None
 
     @property
     def room(self) -> int:
-        """How many calls should be under way: enough for no worker to wait for the next one."""
-        return 2 * max(1, self._width()) + 2
+        """Return how many calls should be under way: enough for no worker to wait for the next one."""
+        return 2 * max(1, self.width()) + 2
 
     def submit(self, function: Callable[..., Any], *arguments: Any, stoppable: bool = False) -> "Future[Any]":
         """Have a function called."""
-        more = (self._stop,) if stoppable and self._stop is not None else ()
-        try:
-            return self._executor.submit(function, *arguments, *more)
-        except RuntimeError as error:
-            if "new thread" not in str(error):
-                raise
-            raise RuntimeError(f"threads = {self._width()}: the system gives no thread") from error
+        more = (self.event,) if stoppable and self.event is not None else ()
+        return self.executor.submit(function, *arguments, *more)
 
     def stop(self) -> None:
         """Ask running calls to stop."""
-        if self._stop is not None:
-            self._stop.set()
-
-
-def width(client: Any, threads: int | None) -> int:
-    """Give the number of threads of this machine that work; none where workers of a client do."""
-    if client is not None:
-        return 0
-    return checked_threads(threads) or int(_core.build_info()["threads"])
+        if self.event is not None:
+            self.event.set()
 
 
 @contextmanager
 def engine(client: Any, threads: int | None) -> Iterator[Engine]:
-    """Open the engine of a client, or of this machine.
-
-    Parameters
-    ----------
-    client : distributed.Client or None
-        Of a Dask cluster.
-    threads : int or None
-        Number of threads without a client; one per core by default.
-    """
+    """Open the engine of a Dask client or, without one, of threads of this machine: one for each core."""
     if client is None:
-        number = width(client, threads)
+        number = checked_threads(threads) or int(_core.build_info()["threads"])
         stop = threading.Event()
         with ThreadPoolExecutor(number, thread_name_prefix="restitution-sweep") as pool:
             try:
@@ -83,7 +59,7 @@ def engine(client: Any, threads: int | None) -> Iterator[Engine]:
         raise ParameterError(wrong("client", client, "a dask.distributed.Client or None"))
     executor = client.get_executor(pure=False)
     try:
-        yield Engine(executor, lambda: sum(client.nthreads().values()), None)
+        yield Engine(executor, lambda: sum(client.nthreads().values()))
     except Exception as error:
         if client.status == "running":
             raise

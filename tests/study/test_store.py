@@ -1,10 +1,12 @@
 """The store of a study, by itself: what is written, and what is read back."""
 
 import hashlib
+import os
 import re
 import shutil
 import struct
-from functools import partial
+import subprocess
+import sys
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any, cast
@@ -15,11 +17,11 @@ import xarray as xr
 import zarr
 
 import restitution as rs
-from reference.studies import TINY
-from restitution.study import Refused, _create, _store, study_of, sweep
+from reference.command import COMMAND
+from reference.studies import TINY, written
+from restitution.study import Refused, _store, merge, status, study_of, sweep
 from restitution.study._axes import Design
-from restitution.study._create import create_or_open
-from restitution.study._store import Store
+from restitution.study._store import Store, create_or_open, need_zarr, unit_at
 from restitution.study._study import Study
 
 WORDS = 5
@@ -32,7 +34,7 @@ pytestmark = pytest.mark.usefixtures("small_tasks")
 
 @pytest.fixture
 def store(tiny: Study, tmp_path: Path) -> Store:
-    return create_or_open(tmp_path / "new.zarr", tiny, WORDS)[0]
+    return create_or_open(tmp_path / "new.zarr", tiny, WORDS)
 
 
 def rows(number: int = 2) -> Any:
@@ -42,8 +44,10 @@ def rows(number: int = 2) -> Any:
 def test_a_new_store(tiny: Study, tmp_path: Path) -> None:
     """Its axes, with their units; no point is finished, no task is there, and no draft beside it."""
     path = tmp_path / "a" / "b" / "new.zarr"
-    made, existed = create_or_open(path, tiny, WORDS)
-    assert (existed, made.path, made.study, made.task_batches) == (False, path, tiny.digest, 2)
+    with zarr.config.set({"default_zarr_format": 2}):
+        made = create_or_open(path, tiny, WORDS)
+    assert (made.path, made.study, made.task_batches) == (path, tiny.digest, 2)
+    assert made.group.metadata.zarr_format == 3
     assert [file.name for file in path.parent.iterdir()] == ["new.zarr"]
     (tmp_path / "fresh").mkdir()
     assert path.stat().st_mode == (tmp_path / "fresh").stat().st_mode
@@ -62,35 +66,75 @@ def test_a_new_store(tiny: Study, tmp_path: Path) -> None:
     assert made.words.shape == (6, 4, WORDS + 4)
     assert made.words.chunks == (1, 2, WORDS + 4)
     assert made.words.dtype == np.uint64
-    assert made.points_there() == []
+    assert made.number_there() == 0
     assert made.words.metadata.dimension_names == ("point", "batch", "word")
-    assert all(array.attrs["long_name"] for array in (made.words, *(array for _, array in made.arrays())))
-    again, existed = create_or_open(path, tiny, WORDS)
-    assert (existed, again.path) == (True, path)
+    assert all(array.attrs["long_name"] for _, array in made.group.arrays())
+    units = {"run.release_height": "m", "run.gravity": "m s-2", "run.seed": "1", "body.density": "kg m-3"}
+    assert {parameter: unit_at(tiny, parameter) for parameter in units} == units
+    made.write(0, 0, rows())
+    again = create_or_open(path, tiny, WORDS)
+    assert (again.path, again.number_there()) == (path, 1)
+    with pytest.raises(Refused, match=rf"^{re.escape(str(path))}: is damaged \(ValueError: tasks/words is "):
+        create_or_open(path, tiny, WORDS + 1)
 
 
-def test_the_format_of_a_store_is_not_that_of_the_settings(tiny: Study, tmp_path: Path) -> None:
-    with zarr.config.set({"default_zarr_format": 2}):
+def test_what_zarr_needs(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The library, in its version."""
+    monkeypatch.setattr(zarr, "__version__", "2.18.3")
+    with pytest.raises(ImportError, match=r"^parameter studies need zarr 3, here is 2\.18\.3: pip install"):
+        need_zarr()
+    monkeypatch.setitem(sys.modules, "zarr", None)
+    for action in (lambda: status("store"), lambda: merge("store", ["store"]), lambda: sweep(TINY, "store")):
+        with pytest.raises(ImportError, match=r"^parameter studies need zarr: pip install 'restitution\[sw"):
+            action()
+
+
+def test_python_without_assertions(tmp_path: Path) -> None:
+    """In one of which Zarr reads the metadata of a group."""
+    words = ["sweep", str(written(tmp_path)), "--out", str(tmp_path / "s.zarr")]
+    command = [sys.executable, "-O", *COMMAND[1:], *words]
+    done = subprocess.run(command, capture_output=True, text=True, check=False)
+    assert done.returncode == 1
+    assert done.stderr == "error: parameter studies: zarr does not work under python -O or PYTHONOPTIMIZE\n"
+
+
+def test_a_store_that_appears_meanwhile(
+    done: Path, tiny: Study, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """As that of another driver: it is taken, and no draft is left."""
+    rename, path = os.rename, tmp_path / "new.zarr"
+
+    def late(source: Path, target: Path) -> None:
+        shutil.copytree(done, path)
+        rename(source, target)
+
+    monkeypatch.setattr(os, "rename", late)
+    store = create_or_open(path, tiny, Store(done, b"").words.shape[2] - 4)
+    assert store.there(0) == {0, 1}
+    assert [file.name for file in tmp_path.iterdir()] == ["new.zarr"]
+
+
+@pytest.mark.parametrize("step", ["_fill", "os.rename"])
+def test_a_store_that_cannot_be_made(
+    step: str, tiny: Study, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Is named, and nothing is left of it."""
+
+    def refuse(*_: object) -> None:
+        raise OSError(28, "No space left on device", "draft")
+
+    monkeypatch.setattr(f"restitution.study._store.{step}", refuse)
+    with pytest.raises(OSError, match="No space left") as raised:
         create_or_open(tmp_path / "new.zarr", tiny, WORDS)
-    assert zarr.open_group(tmp_path / "new.zarr", mode="r").metadata.zarr_format == 3
-
-
-def test_a_design_without_a_grid(tmp_path: Path) -> None:
-    """Its parameters are coordinates of the points."""
-    axes = {"body.separation": {"from": 1e-4, "to": 1e-3}, "law.normal": {"from": 0.8, "to": 0.9}}
-    found = sweep(
-        TINY | {"sweep": axes | {"design": "sobol", "points": 2}}, tmp_path / "points.zarr", threads=1
-    )
-    assert found["separation"].dims == found["normal"].dims == ("point",)
-    assert found["mean_restitution"].dims == ("point", "velocity")
-    assert {"separation", "normal"} <= set(found["mean_restitution"].coords)
+    assert (raised.value.errno, raised.value.filename) == (28, str(tmp_path / "new.zarr"))
+    assert not list(tmp_path.iterdir())
 
 
 def test_rows_come_back_with_their_digests(store: Store) -> None:
     assert store.there(1) == set()
     store.write(1, 2, rows())
     assert store.there(1) == {1}
-    assert store.valid(1, 0, 4).tolist() == [False, False, True, True]
+    assert (store.has(1, 0), store.has(1, 1)) == (False, True)
     found, good, digests = store.read(1, 2, 2)
     assert np.array_equal(found, rows())
     assert found.dtype == np.uint64
@@ -100,8 +144,8 @@ def test_rows_come_back_with_their_digests(store: Store) -> None:
     assert digests[:32] != digests[32:]
     store.write(1, 0, rows())
     assert store.there(1) == {0, 1}
-    assert store.valid(1, 0, 4).all()
-    assert not store.valid(0, 0, 4).any()
+    assert store.read(1, 0, 4)[1].tolist() == [True] * 4
+    assert not store.has(0, 0)
     assert store.read(1, 0, 2)[2] != digests, "the same words of another batch have another digest"
 
 
@@ -112,43 +156,6 @@ def test_a_digest_is_that_of_the_study_the_place_and_the_words(store: Store) -> 
         place = struct.pack("<QQ", 3, 2 + i)
         digest = hashlib.blake2b(store.study + place + row.tobytes(), digest_size=32).digest()
         assert store.words[3, 2 + i].tobytes() == row.tobytes() + digest
-
-
-def test_what_is_there(store: Store) -> None:
-    """Points of the study that have a chunk; folders of others are passed over."""
-    for point in (0, 5):
-        store.write(point, 0, rows())
-    words = store.path / "tasks" / "words" / "c"
-    for name in ("6", "-1", "x", ".nfs01"):
-        (words / name).mkdir()
-    assert sorted(store.points_there()) == [0, 5]
-
-
-def test_why_a_chunk_is_not_taken(store: Store) -> None:
-    for point in (1, 2):
-        store.write(point, 2, rows())
-    file = store.path / "tasks" / "words" / "c" / "1" / "1" / "0"
-    file.write_bytes((words := file.parents[2] / "2" / "1" / "0").read_bytes())
-    assert store.fault(1, 1) == (file, "its digest is not that of the numbers in it")
-    words.write_bytes(b"cut")
-    named, told = store.fault(2, 1)
-    assert named == words
-    assert re.match(r"\w+: .", told)
-    assert "None" not in told
-    assert store.fault(1, 0) == (file.parents[1] / "0" / "0", "there is no such file")
-
-
-def test_rows_of_many_tasks(tmp_path: Path) -> None:
-    """Each stands at its place, from wherever they are read."""
-    study = study_of(TINY | {"effort": {"batches": 8}})
-    store = create_or_open(tmp_path / "new.zarr", study, WORDS)[0]
-    whole = rows(8)
-    for first in (0, 4, 6):
-        store.write(0, first, whole[first : first + 2])
-    found, good, _ = store.read(0, 2, 6)
-    assert good.tolist() == [False, False, True, True, True, True]
-    assert np.array_equal(found[2:], whole[4:])
-    assert store.valid(0, 0, 8).tolist() == [True, True, False, False, True, True, True, True]
 
 
 def test_what_is_no_store(tmp_path: Path) -> None:
@@ -163,6 +170,22 @@ def test_what_is_no_store(tmp_path: Path) -> None:
         Store(old, b"")
 
 
+def test_what_is_there_may_not_be_readable(store: Store, monkeypatch: pytest.MonkeyPatch) -> None:
+    """It is not called damaged, or it would be computed again, and overwritten."""
+
+    class Forbidden:
+        shape = (1, 1, 1)
+
+        def __getitem__(self, _: object) -> None:
+            raise PermissionError(13, "Permission denied", "chunk")
+
+    monkeypatch.setattr(store, "words", Forbidden())
+    monkeypatch.setattr(store, "group", {"large": Forbidden()})
+    for read in (lambda: store.read(0, 0, 2), lambda: store.read_large(["large"], (0,))):
+        with pytest.raises(PermissionError):
+            read()
+
+
 @pytest.mark.parametrize("chunk", [b"", b"\0" * 40, None])
 def test_a_chunk_that_cannot_be_read_is_damaged(store: Store, chunk: bytes | None) -> None:
     """Others of the point are not; and the digest is that of the study, the point and the batch."""
@@ -173,44 +196,9 @@ def test_a_chunk_that_cannot_be_read_is_damaged(store: Store, chunk: bytes | Non
         file.unlink()
     else:
         file.write_bytes(chunk)
-    assert store.valid(2, 0, 4).tolist() == [False, False, True, True]
+    assert store.read(2, 0, 4)[1].tolist() == [False, False, True, True]
     other = Store(store.path, b"another study")
-    assert not other.valid(2, 0, 4).any()
-
-
-def test_what_is_no_task_is_passed_over(store: Store) -> None:
-    """Folders that Zarr or a file system puts there."""
-    store.write(0, 0, rows())
-    (store.path / "tasks" / "words" / "c" / "0" / ".nfs01").mkdir()
-    assert store.there(0) == {0}
-
-
-@pytest.mark.parametrize("method", ["words", "results", "large"])
-def test_what_may_not_be_read_is_not_taken_as_damaged(
-    store: Store, method: str, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """Else it would be computed again, and overwritten."""
-
-    class Forbidden:
-        shape = (1, 1, 1)
-
-        def __getitem__(self, _: object) -> None:
-            raise PermissionError(13, "Permission denied", "chunk")
-
-    if method == "words":
-        monkeypatch.setattr(store, "words", Forbidden())
-        with pytest.raises(PermissionError):
-            store.read(0, 0, 2)
-        return
-    monkeypatch.setattr(store, "group", {"large": Forbidden(), "separation": Forbidden()})
-    design = study_of(TINY).design
-    read = (
-        partial(store.read_large, ["large"], (0,))
-        if method == "large"
-        else partial(store.restore, xr.Dataset(), design)
-    )
-    with pytest.raises(PermissionError):
-        read()
+    assert not other.read(2, 0, 4)[1].any()
 
 
 def found_at_a_point() -> xr.Dataset:
@@ -233,7 +221,6 @@ def test_results_have_a_place_for_every_point(store: Store, tiny: Study) -> None
     found = found_at_a_point()
     assert _store.large(found) == ["grid"]
     assert _store.small(found) == ["cells", "count", "mean", "nothing", "wide_edges"]
-    assert _store.common(found) == ["velocity_edges"]
     store.ensure(found.drop_vars("count"), tiny.design)
     for _ in range(2):
         store.ensure(found, tiny.design)
@@ -256,9 +243,9 @@ def test_results_have_a_place_for_every_point(store: Store, tiny: Study) -> None
     again = store.read_large(["grid"], (1, 2))
     assert again is not None
     assert np.array_equal(again["grid"], found["grid"].to_numpy())
-    assert store.read_large(["none"], (1, 2)) is None
+    (store.path / "grid" / "c" / "1" / "2" / "0" / "0").write_bytes(b"spoilt")
+    assert store.read_large(["grid"], (1, 2)) is None
     assert store.large_arrays(tiny.design) == ["grid"]
-    assert [name for name, _ in store.arrays()] == sorted({*map(str, found.variables), *AXES, "status"})
     store.consolidate()
     assert set(xr.open_zarr(store.path, chunks=None).variables) == {*found.variables, *AXES, "status"}
 
@@ -273,81 +260,34 @@ def test_results_of_another_kind_have_no_place(store: Store, tiny: Study) -> Non
         store.ensure(found_at_a_point().rename(mean="other"), tiny.design)
 
 
-def test_a_worker_that_was_faster(store: Store, tiny: Study, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Has made the array that another is about to make."""
-    found = found_at_a_point()[["mean"]]
-    Store(store.path, store.study).ensure(found, tiny.design)
-    monkeypatch.setattr(type(store.group), "__contains__", lambda *_: False)
-    store.ensure(found, tiny.design)
-    monkeypatch.undo()
-    assert store.group["mean"].shape == (2, 3, 2)
-
-
-def test_a_worker_that_makes_the_same_array(
-    store: Store, tiny: Study, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """At the same time, so that Zarr finds its files, is no error."""
-
-    def there(*_: object, **__: object) -> None:
-        raise FileExistsError(17, "File exists", "zarr.json")
-
-    monkeypatch.setattr(type(store.group), "create_array", there)
-    store.ensure(found_at_a_point()[["mean"]], tiny.design)
-
-
-def test_what_is_lost_is_not_taken_for_a_result(store: Store, tiny: Study) -> None:
-    """A chunk that vanished leaves points unfinished, and axes without values until they are restored."""
-    store.group["status"][...] = 1
-    for file in ("status/c/0/0", "separation/c/0"):
-        (store.path / file).unlink()
-    assert not store.group["status"][...].any()
-    assert np.isnan(store.group["separation"][...]).all()
-    store.restore(xr.Dataset(), tiny.design)
-    assert store.group["separation"][...].tolist() == [1e-4, 2e-3]
-    shutil.rmtree(store.path / "separation")
-    with pytest.raises(Refused, match="KeyError: 'separation'"):
-        store.restore(xr.Dataset(), tiny.design)
-
-
-@pytest.mark.parametrize(
-    ("parameter", "unit"),
-    [
-        ("run.release_height", "m"),
-        ("run.gravity", "m s-2"),
-        ("run.incline", "rad"),
-        ("run.minimum_speed", "m s-1"),
-        ("run.seed", "1"),
-        ("body.density", "kg m-3"),
-        ("law.normal", "1"),
-    ],
-)
-def test_axes_have_units(parameter: str, unit: str, tiny: Study) -> None:
-    assert _create._unit(tiny, parameter) == unit
-
-
 def test_what_all_points_share_is_restored(store: Store, tiny: Study) -> None:
-    """Where it is not what it should be, and is left alone where it is."""
+    """Where it is not what it should be, by whoever opens the store anew; else it is left alone."""
     found = found_at_a_point()
     store.ensure(found, tiny.design)
+    store.group["status"][...] = 1
     store.group["velocity_edges"][0] = -1.0
     (store.path / "separation" / "c" / "0").write_bytes(b"spoilt")
+    for file in ("status/c/0/0", "normal/c/0"):
+        (store.path / file).unlink()
+    assert not store.group["status"][...].any(), "a chunk that vanished leaves points unfinished"
     before = (store.path / "velocity" / "c" / "0").stat().st_mtime_ns
-    store.restore(found, tiny.design)
+    Store(store.path, store.study).ensure(found, tiny.design)
     assert store.group["velocity_edges"][...].tolist() == [0.0, 1.0, 2.0]
     assert store.group["separation"][...].tolist() == [1e-4, 2e-3]
+    assert store.group["normal"][...].tolist() == [0.9, 0.95, 0.98]
     assert (store.path / "velocity" / "c" / "0").stat().st_mtime_ns == before
 
 
 def test_chunks_hold_many_points_up_to_four_megabytes(tiny: Study) -> None:
     variable = xr.Variable(("velocity",), np.zeros(4000))
-    assert _store._chunks(tiny.design, variable) == (2, 3, 4000)
+    assert _store.chunks(tiny.design, variable) == (2, 3, 4000)
     wide = study_of(TINY | {"sweep": {"law.normal": {"from": 0.1, "to": 0.9, "points": 300}}}).design
-    assert _store._chunks(wide, variable) == (125, 4000)
+    assert _store.chunks(wide, variable) == (125, 4000)
     tall = {"body.separation": [1e-4, 2e-3], "law.normal": {"from": 0.1, "to": 0.9, "points": 100}}
-    assert _store._chunks(study_of(TINY | {"sweep": tall}).design, variable) == (1, 100, 4000)
-    found = _store._chunks(wide, xr.Variable(("velocity",), np.zeros(3000)))
+    assert _store.chunks(study_of(TINY | {"sweep": tall}).design, variable) == (1, 100, 4000)
+    found = _store.chunks(wide, xr.Variable(("velocity",), np.zeros(3000)))
     assert found == (166, 3000)
     assert all(isinstance(size, int) for size in found)
-    assert _store._chunks(wide, xr.Variable(("cell",), np.zeros(4096))) == (1, 4096)
+    assert _store.chunks(wide, xr.Variable(("cell",), np.zeros(4096))) == (1, 4096)
     many = cast(Design, SimpleNamespace(shape=(3_000_000,)))
-    assert _store._chunks(many, xr.Variable((), np.int8(1))) == (3_000_000,)
+    assert _store.chunks(many, xr.Variable((), np.int8(1))) == (3_000_000,)
