@@ -17,9 +17,8 @@ from reference.processes import same
 from reference.refused import message
 from restitution import analytic, flight
 from restitution._internal.arrays import check_units, real, reals, shape, whole
-from restitution._internal.datasets import _UNITS, check_variables
 from restitution.drop.bins import increasing_edges
-from restitution.drop.recorded import counted, records
+from restitution.drop.recorded import _UNITS, check_variables, counted, records
 
 
 class Quantity:

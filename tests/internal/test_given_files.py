@@ -18,7 +18,7 @@ import restitution as rs
 from reference.command import COMMAND, SMALL, invoke
 from reference.refused import message
 from reference.studies import written
-from restitution import figures, flight, study
+from restitution import figures, flight
 from restitution._internal import files as _files
 from restitution._internal.datasets import load
 from restitution._internal.files import FOLDER, HEADER, IMAGE, MODULE, NETCDF, ZARR, check_name
@@ -200,15 +200,6 @@ def test_a_store_that_cannot_be_made_names_itself(above: bool, tmp_path: Path) -
         sweep(study, path)
     assert str(path) in str(raised.value)
     assert ".part" not in str(raised.value)
-
-
-@pytest.mark.skipif(sys.platform != "linux", reason="a file of Linux that opens and cannot be read")
-@pytest.mark.parametrize("call", [flight.read, study.study_of])
-def test_a_file_that_opens_and_cannot_be_read(call: Callable[[str], object]) -> None:
-    """Python's own error of a read names no file."""
-    with pytest.raises(OSError, match="Input/output error") as caught:
-        call("/proc/self/mem")
-    assert caught.value.filename == "/proc/self/mem"
 
 
 @pytest.mark.parametrize("name", ["/", "..", "none/.."])

@@ -84,7 +84,6 @@ def test_an_object_stays_what_it_is(one: Any) -> None:
     changes: list[Callable[[], None]] = [
         lambda: setattr(one, name, 1.0),
         lambda: setattr(one, "colour", 1),
-        lambda: delattr(one, name),
     ]
     for change in changes:
         with pytest.raises(AttributeError, match="cannot be changed; make another"):
@@ -93,14 +92,14 @@ def test_an_object_stays_what_it_is(one: Any) -> None:
 
 def test_parameters_have_names() -> None:
     with pytest.raises(
-        TypeError, match=r"Dumbbell\(0.003, 0.0003\): parameters are given by name, as in Dumbbell"
+        TypeError, match=r"Dumbbell: parameters are given by name, as in Dumbbell\(radius=..., separation="
     ):
         rs.Dumbbell(3e-3, 3e-4)  # type: ignore[call-arg]
-    with pytest.raises(TypeError, match=r"Coulomb\(0.9\): .* as in Coulomb\(normal=0.9\)"):
+    with pytest.raises(TypeError, match=r"Coulomb: .* as in Coulomb\(normal=..., friction="):
         rs.Coulomb(0.9, friction=0.3)  # type: ignore[call-arg]
     assert rs.RandomHeight(0.05, 0.07) == rs.RandomHeight(lowest=0.05, highest=0.07)
     for values, named in (((0.05,), {"lowest": 0.04}), ((0.05, 0.06, 0.07), {})):
-        with pytest.raises(TypeError, match=r"RandomHeight\(0.05.*\): parameters are given by name, as in"):
+        with pytest.raises(TypeError, match=r"RandomHeight: parameters are given by name, as in"):
             rs.RandomHeight(*values, **named)
     with pytest.raises(ValueError, match="highest: missing; must be a finite number > 0 "):
         rs.RandomHeight(0.05)  # type: ignore[call-arg]

@@ -118,7 +118,6 @@ VALUES: dict[str, Callable[[], Any]] = {
     "name of a table": lambda: "hostile.csv",
     "dash": lambda: "-",
     "no name": lambda: "/",
-    "what cannot be read": lambda: "/proc/self/mem",
     "what has no end": lambda: "/dev/zero",
 }
 """By name, what makes the value: some can be used only once."""

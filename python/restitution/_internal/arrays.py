@@ -1,6 +1,7 @@
 """Numbers from outside, checked in one place: real, unmasked, without units; the error names the argument."""
 
 import math
+import re
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
 from operator import index
 from typing import Any, TypeVar
@@ -20,14 +21,10 @@ from restitution._internal.parameters import (
 FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.int64]
 
-FARTHEST = 1e100
-"""Of any edge, so that widths and centres are finite."""
+FARTHEST = 1e100  # of any edge, so that widths and centres are finite
 T = TypeVar("T")
 
-_MOST_COUNTED = 2.0**53
-"""Beyond it doubles do not count."""
-_QUANTITY = ("to_value", "dimensionality")
-"""Attributes that identify the quantities of astropy, unyt and pint, whose units NumPy drops silently."""
+_QUANTITY = ("to_value", "dimensionality")  # of astropy, unyt and pint, whose units NumPy drops silently
 
 
 def reals(
@@ -41,26 +38,9 @@ def reals(
 ) -> FloatArray:
     """Take an array of real numbers as doubles, without a copy where it is one already.
 
-    Parameters
-    ----------
-    name : str
-        Of the argument, for the error.
-    value : Any
-        A number, an array, or anything that NumPy makes real numbers of. Booleans, complex numbers, dates,
-        strings, objects, masked values and quantities with units are refused, inside lists too.
-    allowed : str
-        What is allowed, in words.
-    unit : str, optional
-        What the numbers are in, for `check_units`; None where that does not matter.
-    dimensions : collection of int, optional
-        Numbers of dimensions that are allowed.
-    finite : bool
-        Whether NaN and infinities are refused.
-
-    Raises
-    ------
-    ParameterError
-        Naming the argument, or the first element of it, that is wrong.
+    Booleans, complex numbers, dates, strings, objects, masked values and quantities with units are refused,
+    inside lists too; NaN and infinities where they are to be `finite`. `unit` is what the numbers are in, for
+    `check_units` (None: any), `dimensions` how many dimensions there may be.
     """
     try:
         reason = next(filter(None, map(_stray, _parts(value))), "")
@@ -136,16 +116,6 @@ def shape(name: str, value: Any) -> tuple[int, ...]:
         raise ParameterError(wrong(name, value, "a whole number >= 0 or a tuple of them")) from None
 
 
-def check_shapes(**arrays: np.ndarray) -> None:
-    """Refuse arrays whose shapes do not broadcast, naming them all."""
-    try:
-        np.broadcast_shapes(*(array.shape for array in arrays.values()))
-    except ValueError:
-        given = ", ".join(f"{name} of shape {array.shape}" for name, array in arrays.items() if array.ndim)
-        names = ", ".join(name for name, array in arrays.items() if array.ndim)
-        raise ParameterError(Problem(names, f": {given}; must broadcast to one shape")) from None
-
-
 def several(name: str, value: Any, allowed: str, take: Callable[[int, Any], T]) -> list[T]:
     """Take one after the other what can be gone through, with the number of each, and stop at a wrong one."""
     try:
@@ -180,10 +150,8 @@ def flag(name: str, value: Any) -> bool:
 
 def generator(name: str, seed: Any) -> np.random.Generator:
     """Take a seed, or the generator itself."""
-    if isinstance(seed, np.random.Generator):
-        return seed
     try:
-        return np.random.default_rng(whole(name, seed, 0))
+        return seed if isinstance(seed, np.random.Generator) else np.random.default_rng(whole(name, seed, 0))
     except ParameterError:
         allowed = "a whole number >= 0 or a numpy.random.Generator"
         raise ParameterError(wrong(name, seed, allowed)) from None
@@ -197,27 +165,20 @@ def check_each(name: str, array: FloatArray, good: npt.NDArray[np.bool_], allowe
         raise ParameterError(wrong(f"{name}{place}", float(array[at]), allowed))
 
 
-def check_counts(name: str, counts: FloatArray) -> None:
-    """Name the first that is no whole number, or is so large that doubles do not count."""
-    good = (counts >= 0) & (counts <= _MOST_COUNTED) & (counts == np.rint(counts))
-    check_each(name, counts, good, "a whole number in [0, 2**53]")
-
-
-def _per_second(short: str, *long: str) -> set[str]:
-    exponents = ("s-1", "s^-1", "s**-1", "s⁻¹")
-    found = {f"{short}{sign}{one}" for one in exponents for sign in (" ", ".", "·", "*")}
-    return found | {f"{short}/s", f"{short} / s"} | {f"{one} / second" for one in long}
-
-
-_SPELLINGS = {
-    "m": {"m", "meter", "meters", "metre", "metres"},
-    "m s-1": _per_second("m", "meter", "metre"),
-    "rad": {"rad", "radian", "radians"},
-    "rad s-1": _per_second("rad", "radian") | {"s-1", "1/s"},
-    "s": {"s", "sec", "second", "seconds"},
-    "Hz": {"Hz", "hertz", "s-1", "1/s"},
-    "1": {"1", "", "dimensionless"},
+_NAMES = {
+    **dict.fromkeys(("meter", "meters", "metre", "metres"), "m"),
+    **dict.fromkeys(("sec", "second", "seconds"), "s"),
+    **dict.fromkeys(("radian", "radians"), "rad"),
+    "hertz": "Hz",
+    "dimensionless": "1",
 }
+
+
+def _spelt(units: str) -> str:
+    """Spell units as the CF conventions do: m s-1 for m/s, m·s⁻¹, m s**-1 and metre / second."""
+    plain = re.sub(r"\s*/\s*(\w+)", r" \1-1", re.sub(r"\^|\*\*", "", units.replace("⁻¹", "-1")))
+    words = re.sub(r"[^\W\d]+", lambda word: _NAMES.get(word[0], word[0]), plain)
+    return " ".join(re.sub(r"[·.*]", " ", words).split()).replace("1 s-1", "s-1") or "1"
 
 
 def check_units(name: str, value: Any, unit: str) -> None:
@@ -227,7 +188,8 @@ def check_units(name: str, value: Any, unit: str) -> None:
     """
     attributes = getattr(value, "attrs", None)
     said = attributes.get("units") if isinstance(attributes, Mapping) else None
-    if said is not None and str(said).strip() not in _SPELLINGS.get(unit, {unit}):
+    alike = {unit, "s-1"} if unit in ("rad s-1", "Hz") else {unit}
+    if said is not None and _spelt(str(said)) not in alike:
         text = (
             f" has units {shown(said)}: must be in {unit}; drop_attrs() removes units that xarray handed on"
         )

@@ -2,7 +2,7 @@
 
 import errno
 import os
-from collections.abc import Iterable, Mapping, Set
+from collections.abc import Mapping, Set
 from dataclasses import fields
 from functools import cached_property
 from inspect import getattr_static
@@ -13,22 +13,11 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from restitution._internal.arrays import FloatArray, check_units, reals
 from restitution._internal.files import check_regular, whole_file
-from restitution._internal.parameters import ParameterError, Problem, wrong
+from restitution._internal.parameters import ParameterError, Problem
 from restitution._internal.resources import check_room
 
-_BESIDE = 2**20
-"""Bytes that HDF5 keeps beside the numbers of a file, at most."""
-_UNITS = {
-    "m": "position height release_height",
-    "s": "time uncertainty",
-    "rad": "angle release_angle release_azimuth",
-    "m s-1": "impact_velocity impact_velocity_error rebound_velocity velocity velocity_before velocity_after "
-    "velocity_edges",
-    "rad s-1": "release_spin angular_velocity_before angular_velocity_after",
-}
-"""Which variables of Datasets are in these units; all others are pure numbers."""
+_BESIDE = 2**20  # bytes that HDF5 keeps beside the numbers of a file, at most
 
 
 class Content:
@@ -50,7 +39,7 @@ class Content:
         return self.__dict__ | views
 
     def __setstate__(self, state: dict[str, Any]) -> None:
-        check_state(self, state)
+        check_state(type(self), {one.name for one in fields(self)}, state)  # type: ignore[arg-type]
         views = {name: MappingProxyType(v) for name, v in state.items() if isinstance(v, dict)}
         self.__dict__.update(state | views)
         if again := getattr(self, "__post_init__", None):
@@ -77,16 +66,10 @@ def same(one: Any, other: Any) -> bool:
     return bool(one == other) or bool(one != one and other != other)
 
 
-def check_state(thing: Any, state: Mapping[str, Any]) -> None:
-    """Refuse what a pickle of a dataclass holds if the class had other fields in the version that made it."""
-    kind = type(thing)
+def check_state(kind: type, wanted: Set[str], state: Mapping[str, Any]) -> None:
+    """Refuse what a pickle holds if another version made it, whose class had other fields."""
     kept = {name for name in state if isinstance(getattr_static(kind, name, None), cached_property)}
-    check_names(kind, {one.name for one in fields(kind)}, state.keys() - kept)
-
-
-def check_names(kind: type, wanted: Set[str], found: Set[str]) -> None:
-    """Refuse what a pickle holds if it is not what this version of a class keeps there."""
-    if other := wanted ^ found:
+    if other := wanted ^ (state.keys() - kept):
         text = f": pickled by another version, whose {kind.__name__} differs in {', '.join(sorted(other))}"
         raise ParameterError(Problem(kind.__name__, f"{text}; make it again"))
 
@@ -120,61 +103,3 @@ def put(data: xr.Dataset, draft: Path) -> None:
             with draft.open("ab") as file:  # the system says whether the disk is full
                 os.posix_fallocate(file.fileno(), file.tell(), data.nbytes + _BESIDE)
         raise OSError(errno.EIO, f"cannot be written: {error}", str(draft)) from error
-
-
-def variables(
-    name: str, data: Any, origin: str, dimensions: Mapping[str, tuple[str, ...]]
-) -> tuple[FloatArray, ...]:
-    """Take variables of a Dataset as arrays of these dimensions, in their order.
-
-    Parameters
-    ----------
-    name : str
-        Of the argument, for the error.
-    data : Any
-        What was given.
-    origin : str
-        What such a Dataset comes from, for the error.
-    dimensions : mapping of str to tuple of str
-        Of each variable that is needed.
-
-    Raises
-    ------
-    ParameterError
-        If `data` is not a Dataset, lacks a variable, or has one of other dimensions, in other units or of
-        no real numbers.
-    """
-    check_has(name, data, f"a Dataset from {origin}", dimensions)
-    found = []
-    for each, needed in dimensions.items():
-        check_dimensions(f"{name}.{each}", data[each], needed)
-        numbers = data[each].transpose(*needed).to_numpy()
-        found.append(reals(f"{name}.{each}", numbers, "real numbers, NaN for none", finite=False))
-    return tuple(found)
-
-
-def check_has(name: str, data: Any, allowed: str, needed: Iterable[str]) -> None:
-    """Refuse what is no Dataset, lacks a variable, or has one in other units."""
-    if not isinstance(data, xr.Dataset):
-        raise ParameterError(wrong(name, data, allowed))
-    missing = [each for each in needed if each not in data]
-    if missing:
-        raise ParameterError(Problem(name, f" lacks {', '.join(missing)}: must be {allowed}"))
-    check_variables(name, data, *needed)
-
-
-def check_variables(name: str, data: xr.Dataset, *variables: str) -> None:
-    """Refuse a Dataset in which one of these variables, if it is there, says that it has other units."""
-    for each in variables:
-        if each in data:
-            unit = next((unit for unit, names in _UNITS.items() if each in names.split()), "1")
-            check_units(f"{name}.{each}", data[each], unit)
-
-
-def check_dimensions(name: str, variable: xr.DataArray, needed: tuple[str, ...]) -> None:
-    """Refuse a variable of other dimensions; their order does not matter."""
-    if set(variable.dims) != set(needed):
-        several = [each for each in ("body", "law") if each in variable.dims]
-        one = f"; take one with sel({', '.join(f'{each}=...' for each in several)})" if several else ""
-        text = f" has dimensions ({', '.join(map(str, variable.dims))}): must be ({', '.join(needed)}){one}"
-        raise ParameterError(Problem(name, text))

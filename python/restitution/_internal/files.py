@@ -17,33 +17,20 @@ from typing import Any, NoReturn
 
 from restitution._internal.parameters import ParameterError, wrong
 
-MOST = 2**28
-"""Bytes of a file that is read as a whole; tables of times and parameters of runs are far below it."""
-_DAY = 86_400.0
-"""Seconds after which a draft is one of a process that was killed."""
-_LONGEST = 50
-"""Letters of a name that a draft's contains: most file systems allow 255 bytes in all."""
+MOST = 2**28  # bytes of a file that is read as a whole: far above tables of times and parameters of runs
+_DAY = 86_400.0  # seconds, after which a draft is one of a process that was killed
+_LONGEST = 50  # letters of a name that a draft's contains: most file systems allow 255 bytes in all
 
-NETCDF, ZARR, HEADER, MODULE, IMAGE, TABLE, LATEX, FOLDER = (
-    "a netCDF file, such as run.nc",
-    "a Zarr store, such as study.zarr",
-    "a header of C and C++, such as dist.h",
-    "a Fortran source, such as dist.f90",
-    "a figure, which is written as .png, .pdf or .svg",
-    "a table, which is written as .csv or .parquet",
-    "a LaTeX source, such as fit.tex",
-    "a folder",
-)
-"""What the package writes under names that are given, in the words of an error."""
-_OWN = {
-    NETCDF: ".nc .nc3 .nc4 .netcdf .cdf .h5 .hdf5",
-    ZARR: ".zarr",
-    HEADER: ".h .hh .hpp .hxx",
-    MODULE: ".f90 .f95 .f03 .f08",
-    IMAGE: ".png .pdf .svg",
-    TABLE: ".csv .parquet",
-    LATEX: ".tex",
-    FOLDER: "",
+# What the package writes under names that are given, in the words of an error, and how such names end.
+NETCDF, ZARR, HEADER, MODULE, IMAGE, TABLE, LATEX, FOLDER = _OWN = {
+    "a netCDF file, such as run.nc": ".nc .nc3 .nc4 .netcdf .cdf .h5 .hdf5",
+    "a Zarr store, such as study.zarr": ".zarr",
+    "a header of C and C++, such as dist.h": ".h .hh .hpp .hxx",
+    "a Fortran source, such as dist.f90": ".f90 .f95 .f03 .f08",
+    "a figure, which is written as .png, .pdf or .svg": ".png .pdf .svg",
+    "a table, which is written as .csv or .parquet": ".csv .parquet",
+    "a LaTeX source, such as fit.tex": ".tex",
+    "a folder": "",
 }
 _OTHERS = (
     ".c .cc .cpp .f .for .py .rs .jl .m .r .ipynb .tsv .txt .md .html .htm .json .toml .yaml .yml "
@@ -64,10 +51,8 @@ def path_from(name: str, value: Any) -> Path:
 
 
 def check_name(argument: str, path: Path, kind: str) -> None:
-    """Refuse the name of another format than `kind`, and a dash, which to other programs is standard output.
-
-    Any other name will do: what follows the last dot may be part of a number.
-    """
+    """Refuse the name of another format than `kind`, and a dash, to other programs the standard output."""
+    # Any other name will do: what follows the last dot may be part of a number.
     strange = " ".join([_OTHERS, *(own for other, own in _OWN.items() if other != kind)]).split()
     nameless = path.name in ("", "..") and kind != FOLDER
     if nameless or path.suffix.lower() in strange or path.name == "-":
@@ -83,11 +68,8 @@ def path_for(argument: str, value: Any, kind: str) -> Path:
 
 def content(path: Path) -> bytes:
     """Read a file as a whole; an OSError that names it if it cannot be read, or is longer than any table."""
-    try:
-        with path.open("rb") as file:
-            found = file.read(MOST + 1)
-    except OSError as error:  # while it is read, it names no file
-        raise OSError(error.errno, error.strerror, str(path)) from error
+    with path.open("rb") as file:
+        found = file.read(MOST + 1)
     if len(found) > MOST:
         raise OSError(errno.EFBIG, f"longer than {MOST >> 20} MiB", str(path))
     return found
@@ -158,14 +140,8 @@ def whole_folder(path: Path, *, replace: bool = False, names: Collection[str] = 
     A folder that was not there appears in one step. Into one that was, files move one by one, HTML last:
     where a report is, all that it shows is. Other files in it stay.
 
-    Parameters
-    ----------
-    path : Path
-        The folder; it is made with those above it.
-    replace : bool
-        Whether files of the same names are replaced.
-    names : collection of str
-        Names of the files, as far as they are known: what is in their way is found out first.
+    Files of the same names are replaced if that is asked for; what is in the way of those `names` that are
+    known is found out first. The folder is made with those above it.
     """
     for name in names:
         _target(path / name, replace)

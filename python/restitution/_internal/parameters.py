@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Callable, Iterable, Iterator
-from contextlib import contextmanager
+from contextlib import AbstractContextManager, contextmanager
 from dataclasses import dataclass
 from difflib import get_close_matches
 from reprlib import Repr
@@ -48,25 +48,25 @@ def wrong(name: str, value: Any, allowed: str) -> Problem:
 
 
 @contextmanager
-def renamed(rename: Callable[[str], str]) -> Iterator[None]:
+def _reworded(change: Callable[[Problem], Problem]) -> Iterator[None]:
+    try:
+        yield
+    except ParameterError as error:
+        kind = type(error)  # too large stays too large
+        raise kind(*map(change, error.problems)) from None
+
+
+def renamed(rename: Callable[[str], str]) -> AbstractContextManager[None]:
     """Name parameters as whoever gave them knows them, where they are wrong."""
-    try:
-        yield
-    except ParameterError as error:
-        kind = type(error)  # too large stays too large
-        raise kind(*(one._replace(name=rename(one.name)) for one in error.problems)) from None
+    return _reworded(lambda one: one._replace(name=rename(one.name)))
 
 
-@contextmanager
-def in_terms_of(**given: Any) -> Iterator[None]:
+def in_terms_of(**given: Any) -> AbstractContextManager[None]:
     """Name the arguments where something that follows from them is wrong."""
-    try:
-        yield
-    except ParameterError as error:
-        words = ", ".join(f"{name} = {shown(value)}" for name, value in given.items())
-        first, _, rest = words.partition(" = ")
-        kind = type(error)  # too large stays too large
-        raise kind(*(Problem(first, f" = {rest}: gives {one}") for one in error.problems)) from None
+    first, *others = (f"{name} = {shown(value)}" for name, value in given.items())
+    name, _, value = first.partition(" = ")
+    words = ", ".join([value, *others])
+    return _reworded(lambda one: Problem(name, f" = {words}: gives {one}"))
 
 
 def unknown(name: str, taker: str, allowed: Iterable[str], prefix: str = "") -> Problem:
@@ -82,7 +82,6 @@ def listed(kinds: Iterable[type]) -> str:
     return f"{', '.join(others)} or {last}"
 
 
-_MOST_ELEMENTS = 6
 _SHORT = Repr()
 _SHORT.maxstring = _SHORT.maxother = 72
 
@@ -90,7 +89,7 @@ _SHORT.maxstring = _SHORT.maxother = 72
 def shown(value: Any) -> str:
     """Write a value in at most a line, however large it is."""
     value = plain_number(value)
-    if isinstance(value, np.ndarray) and value.size > _MOST_ELEMENTS:
+    if isinstance(value, np.ndarray) and value.size > 6:
         return f"an array of shape {value.shape}"
     return " ".join(_SHORT.repr(value).split())
 
@@ -129,16 +128,11 @@ class Allowed:
 class Parameters(BaseModel):
     """A frozen set of named parameters.
 
-    Raises
-    ------
-    ValueError
-        Naming each argument that is wrong, its value, and what is allowed.
-    TypeError
-        If parameters are given without their names, but for those in `by_place`.
+    A ValueError names each argument that is wrong, its value, and what is allowed; a TypeError says that they
+    are given by name, but for those in `by_place`.
     """
 
-    by_place: ClassVar[tuple[str, ...]] = ()
-    """Fields that may be given without their names, in this order: the two ends of a range, and no others."""
+    by_place: ClassVar[tuple[str, ...]] = ()  # the two ends of a range, and no others
 
     model_config: ClassVar[ConfigDict] = ConfigDict(frozen=True, extra="forbid", arbitrary_types_allowed=True)
 
@@ -147,7 +141,8 @@ class Parameters(BaseModel):
         if values:
             placed = dict(zip(self.by_place, values, strict=False))
             if len(values) > len(placed) or placed.keys() & named:
-                raise TypeError(_misplaced(type(self), values, named))
+                kind, names = type(self).__name__, "=..., ".join(type(self).model_fields)
+                raise TypeError(f"{kind}: parameters are given by name, as in {kind}({names}=...)")
             named |= placed
         try:
             super().__init__(**named)
@@ -181,9 +176,6 @@ class Parameters(BaseModel):
     def __setattr__(self, name: str, value: Any) -> None:
         raise AttributeError(f"{name}: {self!r} cannot be changed; make another")
 
-    def __delattr__(self, name: str) -> None:
-        raise AttributeError(f"{name}: {self!r} cannot be changed; make another")
-
     def __dir__(self) -> list[str]:
         hidden = dir(BaseModel)
         return [name for name in super().__dir__() if name[0] != "_" and name not in hidden]
@@ -207,14 +199,6 @@ class Parameters(BaseModel):
                 yield name, _text.value(value, field.description)
 
 
-def _misplaced(kind: type[Parameters], values: tuple[Any, ...], named: dict[str, Any]) -> str:
-    """Say how values without names should have been given."""
-    names = [name for name in kind.model_fields if name not in named]
-    given = ", ".join(map(shown, values))
-    example = ", ".join(f"{name}={shown(value)}" for name, value in zip(names, values, strict=False))
-    return f"{kind.__name__}({given}): parameters are given by name, as in {kind.__name__}({example})"
-
-
 def _problems(model: type[BaseModel], error: ValidationError) -> Iterator[Problem]:
     for problem in error.errors(include_url=False):
         name = ".".join(str(part) for part in problem["loc"])
@@ -236,44 +220,28 @@ def _problems(model: type[BaseModel], error: ValidationError) -> Iterator[Proble
 
 
 def _allowed(model: type[BaseModel], name: str) -> str:
-    """Say in words what the field of a model may hold."""
+    """Say in words what the field of a model may hold; every number here is bounded from below."""
     field = model.model_fields[name]
-    for rule in field.metadata:
-        if isinstance(rule, Allowed):
-            return rule.text
+    words = ("text", "gt", "ge", "lt", "le")
+    rules: dict[str, Any] = {
+        key: getattr(one, key) for one in field.metadata for key in words if hasattr(one, key)
+    }
+    if "text" in rules:
+        return str(rules["text"])
     about = f" ({field.description})" if field.description else ""
     if field.annotation not in (int, float):
         return f"a {getattr(field.annotation, '__name__', field.annotation)}{about}"
-    bounds = {key: getattr(rule, key) for rule in field.metadata for key in _BOUNDS if hasattr(rule, key)}
-    below = "le" in bounds or "lt" in bounds
-    kind = "whole" if field.annotation is int else "real" if below else "finite"
-    return f"a {kind} number {_interval(bounds)}{about}"
+    low, high = (_bound(rules.get(f"{side}e", rules.get(f"{side}t"))) for side in "gl")
+    kind = "whole" if field.annotation is int else "real" if high else "finite"
+    if high:
+        left, right = "[" if "ge" in rules else "(", "]" if "le" in rules else ")"
+        return f"a {kind} number in {left}{low}, {high}{right}{about}"
+    return f"a {kind} number {'>=' if 'ge' in rules else '>'} {low}{about}"
 
 
-_UNITS = {"m/s": "m s-1", "m/s²": "m s-2", "rad/s": "rad s-1", "kg/m³": "kg m-3"}
-_UNITS |= {unit: unit for unit in ("m", "s", "rad", "kg", "Pa")}
-
-
-def unit_of(kind: type[BaseModel], name: str) -> str:
-    """Give the unit of a parameter as the CF conventions write it; "1" of pure numbers."""
-    return _UNITS.get((kind.model_fields[name].description or "").partition(";")[0], "1")
-
-
-_BOUNDS = ("gt", "ge", "lt", "le")
-
-
-def _interval(bounds: dict[str, float]) -> str:
-    """Write bounds as an interval; every number here is bounded from below."""
-    low = _bound(bounds.get("ge", bounds.get("gt", 0)))
-    high = _bound(bounds.get("le", bounds.get("lt", 0)))
-    if "le" in bounds or "lt" in bounds:
-        return f"in {'[' if 'ge' in bounds else '('}{low}, {high}{']' if 'le' in bounds else ')'}"
-    return f"{'>=' if 'ge' in bounds else '>'} {low}"
-
-
-def _bound(value: float) -> str:
+def _bound(value: float | None) -> str:
     """Write large powers of two as such, and a right angle."""
-    if value == math.pi / 2:
-        return "π/2"
+    if value is None or value == math.pi / 2:
+        return "" if value is None else "π/2"
     power = int(value).bit_length() - 1
     return f"2**{power}" if power >= 20 and value == 2**power else f"{value}"

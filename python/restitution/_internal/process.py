@@ -9,8 +9,8 @@ from contextlib import contextmanager, suppress
 from typing import Any
 
 _ENDING = [getattr(signal, name) for name in ("SIGINT", "SIGTERM", "SIGHUP") if hasattr(signal, name)]
+# What a terminal would obey, as it may stand in the name of a file.
 _CONTROLS = {code: f"\\x{code:02x}" for code in (*range(32), *range(127, 160)) if chr(code) not in "\n\t"}
-"""What a terminal would obey, as it may stand in the name of a file."""
 
 
 @contextmanager
@@ -107,10 +107,7 @@ def tell(line: str) -> None:
 
 
 def open_missing() -> None:
-    """Put the null device where a standard stream is missing: a file would be opened in its place.
-
-    What a stream has no letter for, as µ in ASCII, is escaped.
-    """
+    """Put the null device where a standard stream is missing; escape what the others have no letter for."""
     for number, name in enumerate(("stdin", "stdout", "stderr")):
         stream: Any = getattr(sys, name)
         if stream is None:

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from restitution._internal.arrays import flag, whole
-from restitution._internal.parameters import ParameterError, Problem, TooLargeError, wrong
+from restitution._internal.parameters import ParameterError, TooLargeError, wrong
 
 _MOST_THREADS = 1024
 
@@ -61,14 +61,8 @@ def check_room(what: str, needed: int) -> None:
 
 
 def check_memory(impacts: int, bytes_per_impact: int) -> None:
-    """Refuse tables that this process cannot hold; raises a TooLargeError that names what was asked for."""
-    needed, available = impacts * bytes_per_impact, available_memory()
-    if needed > available:
-        allowed = (
-            f"at most {available // bytes_per_impact:.4g} here; the records take {needed / 1e9:.3g} GB "
-            f"and this process can have {available / 1e9:.3g} GB"
-        )
-        raise TooLargeError(Problem("particles * impacts", f" = {impacts:.4g}: must be {allowed}"))
+    """Refuse records that this process cannot hold; raises a TooLargeError that names what was asked for."""
+    check_size("particles * impacts", impacts, impacts, bytes_per_impact, "impacts")
 
 
 def check_size(name: str, value: Any, number: int, bytes_of_each: int, what: str) -> None:
@@ -81,10 +75,8 @@ def check_size(name: str, value: Any, number: int, bytes_of_each: int, what: str
 
 def checked_threads(threads: int | None) -> int:
     """Give the number of threads to the core, where 0 means one for each core that this process may use."""
-    if threads is None:
-        return 0
     try:
-        return whole("threads", threads, 1, _MOST_THREADS)
+        return 0 if threads is None else whole("threads", threads, 1, _MOST_THREADS)
     except ParameterError:
         allowed = f"a whole number in [1, {_MOST_THREADS}] or None"
         raise ParameterError(wrong("threads", threads, allowed)) from None

@@ -22,10 +22,7 @@ class Text(str):
 
 
 def signature(cls: type[BaseModel], by_place: tuple[str, ...]) -> inspect.Signature:
-    """Give the fields of a class as its arguments, with annotations that can be read.
-
-    They are keyword arguments, but for those in `by_place`.
-    """
+    """Give the fields of a class as its arguments, by keyword but for those in `by_place`."""
     keyword, positional = inspect.Parameter.KEYWORD_ONLY, inspect.Parameter.POSITIONAL_OR_KEYWORD
     parameters = []
     for name, field in cls.model_fields.items():

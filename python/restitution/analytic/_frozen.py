@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from abc import ABC, abstractmethod
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from typing import Any, TypeAlias
 
 import numpy as np
@@ -57,7 +57,7 @@ class FirstImpact(ABC):
     orientation: OrientationName
 
     def __setstate__(self, state: dict[str, Any]) -> None:
-        check_state(self, state)
+        check_state(type(self), {one.name for one in fields(self)}, state)
         self.__dict__.update(state)
 
     def _repr_html_(self) -> str:

@@ -8,11 +8,11 @@ import numpy as np
 import xarray as xr
 
 from restitution._internal.arrays import check_each, reals
-from restitution._internal.datasets import check_variables
 from restitution._internal.parameters import ParameterError, Problem, wrong
 from restitution.distribution._check import Check
 from restitution.distribution._count import Counted
 from restitution.distribution._table import Floats, Histogram, Table
+from restitution.drop.recorded import check_variables
 
 _TABLE = ("edges", "restitution_edge", "probability_below")
 GIVEN = {

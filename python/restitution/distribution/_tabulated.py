@@ -11,9 +11,9 @@ import numpy as np
 import numpy.typing as npt
 import xarray as xr
 
-from restitution._internal.arrays import check_each, check_shapes, flag, function, real, reals, shape, whole
-from restitution._internal.datasets import check_names
-from restitution._internal.parameters import ParameterError, plain_number, wrong
+from restitution._internal.arrays import check_each, flag, function, real, reals, shape, whole
+from restitution._internal.datasets import check_state
+from restitution._internal.parameters import ParameterError, Problem, plain_number, wrong
 from restitution._internal.resources import check_size
 from restitution.distribution import _store
 from restitution.distribution._learn import Given
@@ -45,7 +45,7 @@ class TabulatedDistribution:
 
     def __setstate__(self, state: dict[str, Any]) -> None:
         """Check the data: they may be of another version."""
-        check_names(type(self), {"data"}, state.keys())
+        check_state(type(self), {"data"}, state)
         _store.check(state["data"])
         self.data = state["data"]
 
@@ -264,7 +264,7 @@ class TabulatedDistribution:
     ) -> Values:
         table, speeds, z = self._at(v, given)
         points = numbers(name, x)
-        check_shapes(**{name: points, "v": speeds, "given": z})
+        _check_shapes(**{name: points, "v": speeds, "given": z})
         return table.value(what, points, speeds, z)[()]
 
     def _at(self, v: npt.ArrayLike, given: npt.ArrayLike | None) -> tuple[Table, Floats, Floats]:
@@ -288,7 +288,7 @@ class TabulatedDistribution:
                 wrong("given", given, "None: the distribution was learned without a condition")
             )
         z = numbers("given", given)
-        check_shapes(v=speeds, given=z)
+        _check_shapes(v=speeds, given=z)
         self._refuse("given", z, (z < 0.0) | (z > 1.0), f"in [0, 1], {self.given}")
         if not self._clamps:
             self._seen(speeds, z)
@@ -346,3 +346,13 @@ def _seed(random_state: RandomState) -> int:
     if not 0 <= random_state < 2**64:
         raise ParameterError(wrong("random_state", random_state, "a seed in [0, 2**64)"))
     return int(random_state)
+
+
+def _check_shapes(**arrays: np.ndarray) -> None:
+    """Refuse arrays whose shapes do not broadcast, naming them all."""
+    try:
+        np.broadcast_shapes(*(array.shape for array in arrays.values()))
+    except ValueError:
+        given = ", ".join(f"{name} of shape {array.shape}" for name, array in arrays.items() if array.ndim)
+        names = ", ".join(name for name, array in arrays.items() if array.ndim)
+        raise ParameterError(Problem(names, f": {given}; must broadcast to one shape")) from None

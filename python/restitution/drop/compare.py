@@ -12,7 +12,7 @@ import numpy as np
 import xarray as xr
 
 from restitution._internal.arrays import several
-from restitution._internal.parameters import ParameterError, Parameters, Problem, shown, unit_of, wrong
+from restitution._internal.parameters import ParameterError, Parameters, Problem, shown, wrong
 from restitution._internal.resources import progress_bar
 from restitution.bodies import Body
 from restitution.drop.energy import LEDGER, WHY, EnergyWarning, factor, percent, reported_elsewhere
@@ -261,3 +261,12 @@ def _warn(found: xr.Dataset) -> None:
             EnergyWarning,
             stacklevel=3,
         )
+
+
+_UNITS = {"m/s": "m s-1", "m/s²": "m s-2", "rad/s": "rad s-1", "kg/m³": "kg m-3"}
+_UNITS |= {unit: unit for unit in ("m", "s", "rad", "kg", "Pa")}
+
+
+def unit_of(kind: type[Parameters], name: str) -> str:
+    """Give the unit of a parameter as the CF conventions write it; "1" of pure numbers."""
+    return _UNITS.get((kind.model_fields[name].description or "").partition(";")[0], "1")

@@ -1,20 +1,72 @@
 """Datasets from outside, checked in one place: recorded impacts, and counts in bins."""
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterable, Mapping
 from typing import Any
 
 import numpy as np
 import xarray as xr
 
-from restitution._internal.arrays import FloatArray, check_counts, check_each, real, reals
-from restitution._internal.datasets import check_dimensions, check_has, variables
-from restitution._internal.parameters import ParameterError, Problem
+from restitution._internal.arrays import FloatArray, check_each, check_units, real, reals
+from restitution._internal.parameters import ParameterError, Problem, wrong
 from restitution.drop.bins import increasing_edges
 
 RECORDS = ("particle", "impact")
 """Dimensions of what is recorded of each impact."""
 _RUN = "restitution.simulate"
+_UNITS = {
+    "m": "position height release_height",
+    "s": "time uncertainty",
+    "rad": "angle release_angle release_azimuth",
+    "m s-1": "impact_velocity impact_velocity_error rebound_velocity velocity velocity_before velocity_after "
+    "velocity_edges",
+    "rad s-1": "release_spin angular_velocity_before angular_velocity_after",
+}
+"""Which variables of Datasets are in these units; all others are pure numbers."""
+
+
+def variables(
+    name: str, data: Any, origin: str, dimensions: Mapping[str, tuple[str, ...]]
+) -> tuple[FloatArray, ...]:
+    """Take variables of a Dataset as arrays of these dimensions, in their order.
+
+    `origin` says what such a Dataset comes from. A ParameterError says what is wrong: no Dataset, a variable
+    that is missing, or one of other dimensions, in other units or of no real numbers.
+    """
+    check_has(name, data, f"a Dataset from {origin}", dimensions)
+    found = []
+    for each, needed in dimensions.items():
+        check_dimensions(f"{name}.{each}", data[each], needed)
+        numbers = data[each].transpose(*needed).to_numpy()
+        found.append(reals(f"{name}.{each}", numbers, "real numbers, NaN for none", finite=False))
+    return tuple(found)
+
+
+def check_has(name: str, data: Any, allowed: str, needed: Iterable[str]) -> None:
+    """Refuse what is no Dataset, lacks a variable, or has one in other units."""
+    if not isinstance(data, xr.Dataset):
+        raise ParameterError(wrong(name, data, allowed))
+    missing = [each for each in needed if each not in data]
+    if missing:
+        raise ParameterError(Problem(name, f" lacks {', '.join(missing)}: must be {allowed}"))
+    check_variables(name, data, *needed)
+
+
+def check_variables(name: str, data: xr.Dataset, *variables: str) -> None:
+    """Refuse a Dataset in which one of these variables, if it is there, says that it has other units."""
+    for each in variables:
+        if each in data:
+            unit = next((unit for unit, names in _UNITS.items() if each in names.split()), "1")
+            check_units(f"{name}.{each}", data[each], unit)
+
+
+def check_dimensions(name: str, variable: xr.DataArray, needed: tuple[str, ...]) -> None:
+    """Refuse a variable of other dimensions; their order does not matter."""
+    if set(variable.dims) != set(needed):
+        several = [each for each in ("body", "law") if each in variable.dims]
+        one = f"; take one with sel({', '.join(f'{each}=...' for each in several)})" if several else ""
+        text = f" has dimensions ({', '.join(map(str, variable.dims))}): must be ({', '.join(needed)}){one}"
+        raise ParameterError(Problem(name, text))
 
 
 def records(name: str, data: Any, *names: str) -> tuple[FloatArray, ...]:
@@ -86,6 +138,12 @@ def released_from(name: str, data: xr.Dataset) -> FloatArray:
         check_each(f"{name}.release_height", heights, np.isfinite(heights), allowed)
         return heights
     return np.asarray(attribute(name, data, "release_height", "a finite number"))
+
+
+def check_counts(name: str, counts: FloatArray) -> None:
+    """Name the first that is no whole number, or is so large that doubles do not count."""
+    good = (counts >= 0) & (counts <= 2.0**53) & (counts == np.rint(counts))
+    check_each(name, counts, good, "a whole number in [0, 2**53]")
 
 
 _OF_BINS = {

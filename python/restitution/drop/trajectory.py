@@ -8,9 +8,8 @@ import numpy as np
 import numpy.typing as npt
 
 from restitution._internal.arrays import FloatArray, check_each, reals, whole
-from restitution._internal.datasets import variables
 from restitution._internal.parameters import ParameterError, Problem, wrong
-from restitution.drop.recorded import RECORDS, attribute, check_successive, pull, released_from
+from restitution.drop.recorded import RECORDS, attribute, check_successive, pull, released_from, variables
 
 if TYPE_CHECKING:
     import xarray as xr

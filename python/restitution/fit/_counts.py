@@ -12,11 +12,11 @@ import xarray as xr
 from numpy.typing import ArrayLike
 from scipy import optimize
 
-from restitution._internal.arrays import check_counts, real, reals, whole
+from restitution._internal.arrays import real, reals, whole
 from restitution._internal.datasets import Content
 from restitution._internal.parameters import ParameterError, wrong
 from restitution.drop.bins import increasing_edges
-from restitution.drop.recorded import counted
+from restitution.drop.recorded import check_counts, counted
 from restitution.fit._result import Array, Fit
 
 Maker: TypeAlias = Callable[[Array, float, float], tuple[Any, dict[str, float]]]

@@ -21,7 +21,7 @@ import numpy.typing as npt
 import xarray as xr
 
 from restitution._internal.files import draft_of
-from restitution._internal.parameters import unit_of
+from restitution.drop.compare import unit_of
 from restitution.drop.dataset import version_here
 from restitution.study._axes import Design
 from restitution.study._identity import attribute, check, readable

@@ -6,9 +6,8 @@ import numpy as np
 import xarray as xr
 
 from restitution._internal.arrays import check_each
-from restitution._internal.datasets import variables
 from restitution._internal.parameters import ParameterError, wrong
-from restitution.drop.recorded import RECORDS, check_successive, pull
+from restitution.drop.recorded import RECORDS, check_successive, pull, variables
 
 
 def clock(data: xr.Dataset) -> xr.Dataset:

@@ -7,8 +7,8 @@ import numpy as np
 import xarray as xr
 
 from restitution._internal.arrays import check_each
-from restitution._internal.datasets import variables
 from restitution._internal.parameters import ParameterError, wrong
+from restitution.drop.recorded import variables
 
 
 def series_of(data: Any, *needed: str) -> dict[str, xr.Dataset]:

@@ -8,9 +8,8 @@ import numpy.typing as npt
 import xarray as xr
 
 from restitution._internal.arrays import reals
-from restitution._internal.datasets import check_variables
 from restitution._internal.parameters import ParameterError, Problem, wrong
-from restitution.drop.recorded import check_successive
+from restitution.drop.recorded import check_successive, check_variables
 
 Array = npt.NDArray[np.float64]
 
