@@ -6,6 +6,7 @@ STAMP := $(VENV)/.installed
 IMPACTS ?= 100000000
 OUT ?= paper
 FUZZ ?= 300
+JOBS ?= 2
 CORE := $(shell find crates -name '*.rs' -o -name 'Cargo.toml') Cargo.toml Cargo.lock pyproject.toml
 
 .PHONY: help install pages paper calibrate test fuzz hostile audit mutants test-arm test-web bench-web look web docs wheel licences coverage lint bench clean
@@ -38,7 +39,7 @@ lint: $(STAMP)
 test: lint  ## every check: Rust format, clippy, Rust tests, ruff, mypy, the explorer, pytest
 	cargo test --workspace --locked
 	$(MAKE) test-web
-	$(BIN)/python -m pytest
+	$(BIN)/python -m pytest -n $(JOBS) --dist loadfile
 
 # The kept module and page must be of these sources: built anew here, they would pass where everybody else gets the old ones.
 test-web: $(STAMP) web/node_modules/.package-lock.json  ## the explorer: types, its engine beside the native one, the page in a real browser
@@ -94,7 +95,7 @@ mutants: $(STAMP)  ## which changes of the sources does no test notice? RUST="--
 	-cargo mutants --output build $(RUST)
 	mkdir -p build/mutants
 	ln -sfn ../../python build/mutants/src
-	ln -sfn ../../tests ../../pyproject.toml build/mutants
+	cd build/mutants && ln -sfn $(addprefix ../../,tests crates examples docs benchmarks pyproject.toml) .
 	cd build/mutants && $(CURDIR)/$(BIN)/mutmut run $(NAMES)
 
 test-arm:  ## the digests on AArch64, under qemu-user; installs nothing and says what it needs

@@ -1,6 +1,7 @@
 """What all tests share."""
 
 import signal
+from collections import Counter
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -24,6 +25,17 @@ signal.signal(signal.SIGHUP, signal.SIG_DFL)
 # The same examples in every run, however busy the machine: a test that fails once fails always.
 settings.register_profile("repeatable", derandomize=True, deadline=None, database=None)
 settings.load_profile("repeatable")
+
+
+def pytest_terminal_summary(terminalreporter: pytest.TerminalReporter) -> None:
+    """Say where the time goes, folder by folder."""
+    seconds: Counter[str] = Counter()
+    for reports in terminalreporter.stats.values():
+        for one in reports:
+            if isinstance(one, pytest.TestReport):
+                seconds[Path(one.nodeid.partition("::")[0]).parent.name] += one.duration
+    parts = ", ".join(f"{folder} {spent:.0f}" for folder, spent in seconds.most_common())
+    terminalreporter.write_line(f"Seconds by folder: {parts}")
 
 
 @pytest.fixture

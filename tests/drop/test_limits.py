@@ -106,7 +106,7 @@ def test_tables_that_no_memory_holds() -> None:
     found = run("""
 x, e = np.linspace(0.1, 1, 10**6), np.linspace(0.9, 0.8, 10**6)
 rs.Tabulated(v=x[:2], e=e[:2]).compiled
-for room in range(4, 200, 12):
+for room in range(4, 200, 32):
     child = os.fork()
     if child == 0:
         used = int(open("/proc/self/statm").read().split()[0]) * resource.getpagesize()

@@ -90,13 +90,6 @@ def test_beside_it_stand_all_numbers(report: tuple[Path, str]) -> None:
     assert again.uncertainty.values == pytest.approx(data.uncertainty.values, rel=1e-6)
 
 
-def test_pictures_need_no_latex(ball: Path, tmp_path: Path) -> None:
-    """Whatever the user's own settings of matplotlib ask for."""
-    with mpl.rc_context({"text.usetex": True}):
-        code, said = listen(ball, "--diameter", 0.02, "--out", tmp_path / "a.html")
-    assert code == 0, said
-
-
 def test_nothing_is_replaced_unless_asked(ball: Path, report: tuple[Path, str]) -> None:
     code, said = listen(ball, "--diameter", 0.02, "--out", report[0])
     assert code == 1
@@ -104,7 +97,9 @@ def test_nothing_is_replaced_unless_asked(ball: Path, report: tuple[Path, str]) 
 
 
 def test_mass_accounts_for_drag(ball: Path, tmp_path: Path) -> None:
-    code, said = listen(ball, "--diameter", 0.04, "--mass", 2.7e-3, "--out", tmp_path / "a.html")
+    """And pictures need no LaTeX, whatever the user's own settings of matplotlib ask for."""
+    with mpl.rc_context({"text.usetex": True}):
+        code, said = listen(ball, "--diameter", 0.04, "--mass", 2.7e-3, "--out", tmp_path / "a.html")
     assert code == 0
     assert "air drag is accounted for" in said
     assert "quadratic, terminal velocity 8.8" in (tmp_path / "a.html").read_text(encoding="utf-8")
