@@ -1,9 +1,10 @@
 """What all tests share."""
 
 import signal
-from collections import Counter
+from collections import defaultdict
 from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
 
 import matplotlib
 import pytest
@@ -27,14 +28,15 @@ settings.register_profile("repeatable", derandomize=True, deadline=None, databas
 settings.load_profile("repeatable")
 
 
-def pytest_terminal_summary(terminalreporter: pytest.TerminalReporter) -> None:
+def pytest_terminal_summary(terminalreporter: Any) -> None:
     """Say where the time goes, folder by folder."""
-    seconds: Counter[str] = Counter()
+    seconds: defaultdict[str, float] = defaultdict(float)
     for reports in terminalreporter.stats.values():
         for one in reports:
             if isinstance(one, pytest.TestReport):
                 seconds[Path(one.nodeid.partition("::")[0]).parent.name] += one.duration
-    parts = ", ".join(f"{folder} {spent:.0f}" for folder, spent in seconds.most_common())
+    longest = sorted(seconds, key=seconds.__getitem__, reverse=True)
+    parts = ", ".join(f"{folder} {seconds[folder]:.0f}" for folder in longest)
     terminalreporter.write_line(f"Seconds by folder: {parts}")
 
 

@@ -80,11 +80,13 @@ def test_every_kind_is_entered() -> None:
 def test_a_run_is_asked_for_alike_everywhere(function: Callable[..., Any]) -> None:
     """Each call has the parameters of `Run`, in its order, with its defaults; None stands for no motion.
 
-    `learn` follows more particles, and chooses for itself how far.
+    `learn` follows more particles, and chooses for itself from which heights and how far.
     """
     found = inspect.signature(function).parameters
     assert [name for name in found if name in Run.model_fields] == list(Run.model_fields)
-    own = {"particles": 20_000, "impacts": None} if function == rs.FluctuatingRestitution.learn else {}
+    own: dict[str, int | None] = {}
+    if function == rs.FluctuatingRestitution.learn:
+        own = {"particles": 20_000, "impacts": None, "release_height": None, "minimum_speed": None}
     for name, field in Run.model_fields.items():
         default = found[name].default
         if field.is_required():
