@@ -75,7 +75,8 @@ def _methods(home: str, kind: type) -> Iterator[tuple[str, Callable[..., Any]]]:
     for name in dir(kind):
         method = getattr(kind, name)
         ours = getattr(method, "__module__", None) or ""
-        if not name.startswith("_") and callable(method) and ours.startswith("restitution"):
+        workings = name.startswith("_") or name in ("attributes", "parameters")  # as the core takes an object
+        if not workings and callable(method) and ours.startswith("restitution"):
             yield f"{home}.{name}", method
 
 

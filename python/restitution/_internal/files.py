@@ -18,7 +18,6 @@ from typing import Any, NoReturn
 from restitution._internal.parameters import ParameterError, wrong
 
 MOST = 2**28  # bytes of a file that is read as a whole: far above tables of times and parameters of runs
-_DAY = 86_400.0  # seconds, after which a draft is one of a process that was killed
 _LONGEST = 50  # letters of a name that a draft's contains: most file systems allow 255 bytes in all
 
 # What the package writes under names that are given, in the words of an error, and how such names end.
@@ -137,11 +136,8 @@ def write(path: Path, content: str | bytes, *, replace: bool = False) -> None:
 def whole_folder(path: Path, *, replace: bool = False, names: Collection[str] = ()) -> Iterator[Path]:
     """Yield a draft folder whose files stand in `path` when the block ends well, else none of them.
 
-    A folder that was not there appears in one step. Into one that was, files move one by one, HTML last:
-    where a report is, all that it shows is. Other files in it stay.
-
-    Files of the same names are replaced if that is asked for; what is in the way of those `names` that are
-    known is found out first. The folder is made with those above it.
+    A folder that was not there appears in one step, with those above it. Into one that was, files move one by
+    one, HTML last: where a report is, all that it shows is. What is in the way of `names` is found out first.
     """
     for name in names:
         _target(path / name, replace)
@@ -149,11 +145,14 @@ def whole_folder(path: Path, *, replace: bool = False, names: Collection[str] = 
     place = next(folder for folder in (target, *target.parents) if folder.exists())
     remove_old_drafts(place, target.name)
     draft = draft_of(place / target.name)
+    spare = [
+        os.open(os.devnull, os.O_RDONLY) for _ in range(2)
+    ]  # to list the draft where no more may be open
     try:
-        draft.mkdir()
-    except OSError as error:
-        raise OSError(error.errno, f"out cannot be written to: {error.strerror}", str(path)) from None
-    try:
+        try:
+            draft.mkdir()
+        except OSError as error:
+            raise OSError(error.errno, f"out cannot be written to: {error.strerror}", str(path)) from None
         yield draft
         files = sorted(draft.iterdir(), key=lambda file: file.suffix == ".html")
         for file in files:
@@ -167,6 +166,8 @@ def whole_folder(path: Path, *, replace: bool = False, names: Collection[str] = 
     except OSError as error:
         _raise_named(error, draft, path)
     finally:
+        for handle in spare:
+            os.close(handle)
         shutil.rmtree(draft, ignore_errors=True)
 
 
@@ -180,7 +181,7 @@ def remove_old_drafts(folder: Path, name: str | None = None) -> None:
     pattern = "**/.*.part" if name is None else f".{glob.escape(name[:_LONGEST])}.*.part"
     for draft in list(folder.glob(pattern)):
         with suppress(OSError):
-            if time.time() - draft.stat().st_mtime > _DAY:
+            if time.time() - draft.stat().st_mtime > 86_400.0:  # nobody writes for a day
                 shutil.rmtree(draft) if draft.is_dir() else draft.unlink()
 
 
