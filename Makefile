@@ -88,7 +88,7 @@ hostile: $(STAMP)  ## every public function with every hostile value and every h
 audit:  ## known weaknesses of dependencies; says of each check whether it ran
 	sh tests/manual/audit.sh
 
-# Hours for a file of the core, a day for a folder of the package; what each missed stays in mutants.out and build/mutants.
+# Hours for a file of the core, a day for a folder of the package; what each missed stays in build/mutants.out and build/mutants.
 mutants: $(STAMP)  ## which changes of the sources does no test notice? RUST="--file FILE" and NAMES='restitution.laws.*' take a part
 	@command -v cargo-mutants >/dev/null || { echo "It takes cargo-mutants (cargo install --locked cargo-mutants)." >&2; exit 1; }
 	@test -x $(BIN)/mutmut || { echo "It takes mutmut ($(BIN)/python -m pip install 'mutmut>=3.8')." >&2; exit 1; }
