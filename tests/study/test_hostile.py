@@ -175,16 +175,9 @@ def _ranged(**more: Any) -> dict[str, Any]:
     return {"sweep": {"law.normal": {"from": 0.1, "to": 0.2, "points": 3} | more}}
 
 
-HUGE = 10**5000
-
-
 @pytest.mark.parametrize(
     ("change", "told"),
     [
-        (
-            {"sweep": {"law.normal": [HUGE]}},
-            r"sweep\.law\.normal = \[an integer of 16610 bits\]: must be a list of",
-        ),
         (_ranged(scale=np.array([1, 2])), r"sweep\.law\.normal\.scale = .*: must be 'linear' or 'log'"),
         (
             {"sweep": {"law.normal": [0.1], "design": np.array([1, 2])}},
@@ -203,7 +196,7 @@ HUGE = 10**5000
         ),
         (
             {"statistics": {"restitution_bins": {"from": 10**400, "to": 1.0, "bins": 3}}},
-            r"statistics\.restitution_bins = \{.*an integer of 1329 bits.*: must be \(low, high\)",
+            r"statistics\.restitution_bins = \{.*1000.*: must be \(low, high\)",
         ),
     ],
 )
@@ -213,11 +206,11 @@ def test_what_is_said(change: dict[str, Any], told: str) -> None:
         study_of(TINY | change)
 
 
-# What TOML has; of whole numbers those, too, whose decimal digits Python neither reads nor writes.
+# What TOML has.
 WRITTEN: tuple[Any, ...] = (
-    *(True, -1, 16**5000, math.nan, math.inf, 1.7e308, 5e-324, "", "nan %"),
+    *(True, -1, 10**400, math.nan, math.inf, 1.7e308, 5e-324, "", "nan %"),
     *(datetime.date(2020, 1, 1), datetime.datetime(2020, 1, 1)),
-    *([], [1.0, 1.0], [True], [16**5000], [[0.0, 1.0]], [{"a": 1}], [math.nan], [-1.7e308, 1.7e308]),
+    *([], [1.0, 1.0], [True], [10**400], [[0.0, 1.0]], [{"a": 1}], [math.nan], [-1.7e308, 1.7e308]),
     *({}, {"a": 1}, {"from": "a", "to": 1, "points": 3}),
 )
 

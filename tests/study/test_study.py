@@ -14,7 +14,7 @@ from reference.command import invoke
 from reference.studies import bits, written
 from restitution.study import Refused, estimate, merge, status, study_of, sweep
 
-NORMALS = [round(0.5 + 0.025 * i, 3) for i in range(18)]
+NORMALS = [round(0.5 + 0.03 * i, 3) for i in range(14)]
 BINS = {
     "velocity_bins": {"from": 0.0, "to": 1.1, "bins": 11},
     "restitution_bins": {"from": -1.0, "to": 3.0, "bins": 40},
@@ -251,8 +251,8 @@ def test_the_cost_is_foretold(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -
 
     Other work on the machine makes one of both slower than the other: the best of three tries counts.
     """
-    study = study_of(tables(run={"particles": 4096, "impacts": 100}, sweep={"law.normal": NORMALS}))
-    off: dict[float, list[float]] = {2.0: [], 0.1: []}
+    study = study_of(tables(run={"particles": 2048, "impacts": 100}, sweep={"law.normal": NORMALS}))
+    off: dict[float, list[float]] = {2.0: [], 0.05: []}
     for path in (tmp_path / f"{i}.zarr" for i in range(3)):
         start = time.process_time()
         sweep(study, path, threads=1)
@@ -261,7 +261,7 @@ def test_the_cost_is_foretold(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -
         for seconds, found in off.items():
             monkeypatch.setattr("restitution.study._sweep._WHOLE", seconds)
             cost = estimate(study, 2)
-            assert (cost.points, cost.tasks, cost.particles, cost.most) == (18, 18, 18 * 4096, 1)
+            assert (cost.points, cost.tasks, cost.particles, cost.most) == (14, 14, 14 * 2048, 1)
             assert (cost.store is None) == (seconds < 1)
             assert cost.store is None or abs(np.log(cost.store / size)) < np.log(1.3)
             found.append(abs(np.log(cost.seconds / took)))
