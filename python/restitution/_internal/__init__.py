@@ -1,1 +1,1 @@
-"""What every folder needs and no physics: parameters, arrays, files, processes, text."""
+"""Code without physics that every folder uses: parameters, arrays, files, processes, text."""

@@ -65,7 +65,7 @@ def reals(
 
 
 def _parts(value: Any) -> Iterator[Any]:
-    """Yield a value and what is in it, if it is a list of anything but plain numbers."""
+    """Yield a value and the elements in it, if it is a list of anything but plain numbers."""
     yield value
     if isinstance(value, list | tuple) and not set(map(type, value)) <= {float, int}:
         for part in value:
@@ -73,7 +73,7 @@ def _parts(value: Any) -> Iterator[Any]:
 
 
 def _stray(value: Any) -> str:
-    """Say what NumPy would silently convert to a number, or drop."""
+    """Name a kind of value that NumPy would silently convert to a number, or drop."""
     if isinstance(value, np.ma.MaskedArray) and np.ma.is_masked(value):
         return "holds masked values"
     if isinstance(value, bool) or getattr(getattr(value, "dtype", None), "kind", "") == "b":
@@ -117,7 +117,7 @@ def shape(name: str, value: Any) -> tuple[int, ...]:
 
 
 def several(name: str, value: Any, allowed: str, take: Callable[[int, Any], T]) -> list[T]:
-    """Take one after the other what can be gone through, with the number of each, and stop at a wrong one."""
+    """Yield the elements of an iterable with their numbers, and stop at a wrong one."""
     try:
         return [take(number, one) for number, one in enumerate(value)]
     except (ParameterError, MemoryError):  # of one of them, or of what makes them
@@ -127,7 +127,7 @@ def several(name: str, value: Any, allowed: str, take: Callable[[int, Any], T]) 
 
 
 def function(name: str, value: Any) -> Callable[[float], float]:
-    """Take a function of one number; what it raises, or gives that is no number, names it."""
+    """Check a function of one number; an error that it raises, or a value that is no number, names it."""
     if not callable(value):
         raise ParameterError(wrong(name, value, "a function of one number"))
 

@@ -34,7 +34,7 @@ class Content:
         return hash((type(self), *(part for part in plain if part == part)))
 
     def __getstate__(self) -> dict[str, Any]:
-        """Let a read-only view of a dictionary travel as the dictionary."""
+        """Pickle a read-only view of a dictionary as the dictionary."""
         views = {name: dict(v) for name, v in self.__dict__.items() if isinstance(v, MappingProxyType)}
         return self.__dict__ | views
 
@@ -50,7 +50,7 @@ class Content:
 
 
 def same(one: Any, other: Any) -> bool:
-    """Whether two parts are of one kind and hold the same."""
+    """Compare two parts: True if they are of one type and have equal values."""
     kinds = (xr.Dataset, xr.DataTree, np.ndarray, Mapping, tuple)
     if any(isinstance(one, kind) != isinstance(other, kind) for kind in kinds):
         return False  # what such a part says of one of another kind has no truth value, or a wrong one

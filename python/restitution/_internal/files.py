@@ -39,7 +39,7 @@ _OTHERS = (
 
 
 def path_from(name: str, value: Any) -> Path:
-    """Take what names a file; raises a ParameterError for what does not."""
+    """Check the name of a file; raises a ParameterError for any other value."""
     try:
         path = Path(value)
     except TypeError:
@@ -59,7 +59,7 @@ def check_name(argument: str, path: Path, kind: str) -> None:
 
 
 def path_for(argument: str, value: Any, kind: str) -> Path:
-    """Take what names a file of this kind that is to be written."""
+    """Check the name of a file of this kind that is to be written."""
     path = path_from(argument, value)
     check_name(argument, path, kind)
     return path
@@ -172,7 +172,7 @@ def whole_folder(path: Path, *, replace: bool = False, names: Collection[str] = 
 
 
 def draft_of(path: Path) -> Path:
-    """Name a draft beside `path`, which nothing has yet."""
+    """Choose an unused name for a draft beside `path`."""
     return path.with_name(f".{path.name[:_LONGEST]}.{secrets.token_hex(8)}.part")
 
 
@@ -236,6 +236,6 @@ def _raise_named(error: OSError, draft: Path, path: Path) -> NoReturn:
 
 
 def _flush(path: Path) -> None:
-    """Bring a file to the disk."""
+    """Flush a file to the disk."""
     with path.open("rb") as file:
         os.fsync(file.fileno())

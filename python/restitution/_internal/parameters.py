@@ -17,7 +17,7 @@ from restitution._internal import text as _text
 
 
 class Problem(NamedTuple):
-    """What is wrong with one parameter; the name, the text after it and what is allowed make a sentence."""
+    """Error in one parameter; its name, the text after it and the values allowed make a sentence."""
 
     name: str
     text: str
@@ -39,7 +39,7 @@ class ParameterError(ValueError):
 
 
 class TooLargeError(ParameterError, MemoryError):
-    """What is asked for takes more memory than this process can have; a ValueError and a MemoryError."""
+    """Error for a run that needs more memory than this process can have; a ValueError and a MemoryError."""
 
 
 def wrong(name: str, value: Any, allowed: str) -> Problem:
@@ -57,12 +57,12 @@ def _reworded(change: Callable[[Problem], Problem]) -> Iterator[None]:
 
 
 def renamed(rename: Callable[[str], str]) -> AbstractContextManager[None]:
-    """Name parameters as whoever gave them knows them, where they are wrong."""
+    """Name wrong parameters as the caller knows them."""
     return _reworded(lambda one: one._replace(name=rename(one.name)))
 
 
 def in_terms_of(**given: Any) -> AbstractContextManager[None]:
-    """Name the arguments where something that follows from them is wrong."""
+    """Name the arguments from which a wrong value follows."""
     first, *others = (f"{name} = {shown(value)}" for name, value in given.items())
     name, _, value = first.partition(" = ")
     words = ", ".join([value, *others])

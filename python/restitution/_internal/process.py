@@ -1,4 +1,4 @@
-"""What ends a command, and where it speaks: signals, and standard streams that may be closed or missing."""
+"""Signals that end a command, and standard streams, which may be closed or missing."""
 
 import os
 import signal
@@ -15,7 +15,7 @@ _CONTROLS = {code: f"\\x{code:02x}" for code in (*range(32), *range(127, 160)) i
 
 @contextmanager
 def _handled(handle: Callable[[int], None]) -> Iterator[None]:
-    """Give signals that end a process to `handle`, but for those that are ignored, as under nohup."""
+    """Pass signals that end a process to `handle`, except those that are ignored, as under nohup."""
     before: dict[int, Any] = {}
     if threading.current_thread() is threading.main_thread():  # which alone has handlers
         found = {number: signal.getsignal(number) for number in _ENDING}
@@ -55,7 +55,7 @@ def leaving() -> Iterator[None]:
 
 @contextmanager
 def put_off(notify: Callable[[], None]) -> Iterator[list[int]]:
-    """Let the block end before a signal counts, which is put into the list; a second one ends the block."""
+    """Defer a signal to the end of the block and put it into the list; a second one ends the block."""
     late: list[int] = []
 
     def wait(number: int) -> None:
@@ -70,7 +70,7 @@ def put_off(notify: Callable[[], None]) -> Iterator[list[int]]:
 
 @contextmanager
 def undisturbed() -> Iterator[None]:
-    """Let a short block end before a signal counts."""
+    """Defer signals to the end of a short block."""
     late: list[int] = []
     try:
         with _handled(late.append):
@@ -81,7 +81,7 @@ def undisturbed() -> Iterator[None]:
 
 
 def is_terminal(stream: Any) -> bool:
-    """Whether somebody watches a stream."""
+    """Test whether a stream is a terminal; one that is closed or missing is not."""
     try:
         return bool(stream.isatty())
     except (AttributeError, OSError, ValueError):  # there is none, or it is closed
@@ -107,7 +107,7 @@ def tell(line: str) -> None:
 
 
 def open_missing() -> None:
-    """Put the null device where a standard stream is missing; escape what the others have no letter for."""
+    """Replace missing standard streams by the null device; escape letters that the others cannot encode."""
     for number, name in enumerate(("stdin", "stdout", "stderr")):
         stream: Any = getattr(sys, name)
         if stream is None:

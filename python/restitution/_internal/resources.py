@@ -26,7 +26,7 @@ def available_memory() -> int:
 
 
 def control_groups(root: Path) -> Iterator[int]:
-    """Yield what is left under the memory limits of the control groups, of either version, up to the root."""
+    """Yield the memory left under the limits of the control groups, of either version, up to the root."""
     for line in _lines(root / "proc/self/cgroup"):
         _, controllers, path = line.split(":", 2)
         if controllers and "memory" not in controllers.split(","):
@@ -74,7 +74,7 @@ def check_size(name: str, value: Any, number: int, bytes_of_each: int, what: str
 
 
 def checked_threads(threads: int | None) -> int:
-    """Give the number of threads to the core, where 0 means one for each core that this process may use."""
+    """Return the number of threads as the core takes it: 0 is one for each core that this process may use."""
     try:
         return 0 if threads is None else whole("threads", threads, 1, _MOST_THREADS)
     except ParameterError:

@@ -1,4 +1,4 @@
-"""How objects and numbers are shown: in `help`, printed, in a notebook, and with their errors."""
+"""Text of objects and numbers: in `help`, printed, in a notebook, and with their errors."""
 
 import inspect
 import re
@@ -22,7 +22,7 @@ class Text(str):
 
 
 def signature(cls: type[BaseModel], by_place: tuple[str, ...]) -> inspect.Signature:
-    """Give the fields of a class as its arguments, by keyword but for those in `by_place`."""
+    """Return the fields of a class as its arguments, by keyword but for those in `by_place`."""
     keyword, positional = inspect.Parameter.KEYWORD_ONLY, inspect.Parameter.POSITIONAL_OR_KEYWORD
     parameters = []
     for name, field in cls.model_fields.items():

@@ -122,7 +122,7 @@ class BranchedFirstImpact(FirstImpact):
         return float(total), float(part)
 
     def entropy(self) -> float:
-        """Differential entropy, -∫ p ln p dε, to 1e-7."""
+        """Return the differential entropy, -∫ p ln p dε, to 1e-7."""
         branches = self._curve.branches
         levels = np.unique([value for branch in branches for value in (branch.first, branch.last)])
         nodes, weights = np.polynomial.legendre.leggauss(128)
@@ -157,7 +157,7 @@ class BranchedFirstImpact(FirstImpact):
         return total
 
     def _density(self, x: Floats, without: Branch | None = None) -> Floats:
-        """Density at ε = x, of all branches but one."""
+        """Return the density at ε = x, of all branches but one."""
         total = np.where(np.isnan(x), np.nan, 0.0)
         for branch in self._curve.branches:
             if branch is without:
@@ -167,7 +167,7 @@ class BranchedFirstImpact(FirstImpact):
         return total
 
     def _branch_density(self, branch: Branch, theta: Floats) -> Floats:
-        """p(θ)/|dε/dθ|."""
+        """Return p(θ)/|dε/dθ|."""
         if self.orientation == "isotropic":  # 0/0 where the axis is vertical; the limit is as good as reached
             theta = np.clip(theta, _NEARLY_VERTICAL, np.pi - _NEARLY_VERTICAL)
         with np.errstate(divide="ignore", over="ignore"):
@@ -195,13 +195,13 @@ class BranchedFirstImpact(FirstImpact):
         return scalar(np.where(np.isnan(q), np.nan, found))
 
     def _is_top(self, branch: Branch) -> bool:
-        """Tell if no other branch goes on from the upper end."""
+        """Test whether no other branch goes on from the upper end."""
         most = max(branch.first, branch.last)
         starts = [min(other.first, other.last) for other in self._curve.branches]
         return not np.any(np.abs(np.array(starts) - most) <= 4.0 * np.finfo(float).eps)
 
     def _sum(self, function: Callable[[Floats], Floats], order: int) -> float:
-        """Mean of a function of ε that is a polynomial of this order."""
+        """Return the mean of a function of ε that is a polynomial of this order."""
         total = 0.0
         for piece, edges in zip(self._curve.pieces, self._curve.edges, strict=True):
             theta, weights = nodes(edges, order)

@@ -68,13 +68,13 @@ class Piece:
     mode: Mode = "stuck"
 
     def state(self, theta: Number) -> tuple[Number, Number, Number]:
-        """Give normal coefficient, height and lever arm."""
+        """Return normal coefficient, height and lever arm."""
         height, arm = self.hull.contact(*turned(theta))
         squared = self.fall.squared_speed(self.unit * height)
         return coefficient(self.impulse.law.normal, squared, self.among), height, arm
 
     def restitution(self, theta: Number) -> Number:
-        """ε at θ."""
+        """Return ε at θ."""
         state = self.state(theta)
         return state[0] - self.impulse.loss(self.mode, *state)
 
@@ -87,7 +87,7 @@ class Piece:
         return self.impulse.raised(self.mode, *self.state(theta))
 
     def slope(self, theta: Floats) -> Floats:
-        """dε/dθ."""
+        """Return dε/dθ."""
         return np.asarray(np.imag(self.restitution(theta + 1j * _STEP)) / _STEP)
 
 
@@ -148,7 +148,7 @@ class Curve:
         return tuple(panels(piece.restitution, piece.low, piece.high) for piece in self.pieces)
 
     def restitution(self, theta: Floats) -> Floats:
-        """ε at angles from 0 to ``limit``; nan for nan."""
+        """Return ε at angles from 0 to ``limit``; nan for nan."""
         inner = [piece.low for piece in self.pieces[1:]]
         number = np.searchsorted(inner, theta, side="right")
         value = np.full(np.shape(theta), np.nan)
@@ -158,7 +158,7 @@ class Curve:
         return value
 
     def angle(self, branch: Branch, restitution: Floats) -> Floats:
-        """θ on a branch that gives ε, or the end of the branch nearest to it; nan for nan."""
+        """Return θ on a branch that gives ε, or the end of the branch nearest to it; nan for nan."""
         least, most = min(branch.first, branch.last), max(branch.first, branch.last)
         target = np.clip(restitution, least, most)
         inside = (target > least) & (target < most)
@@ -181,7 +181,7 @@ def _limits(piece: Piece) -> list[float]:
 
 
 def _between(low: float, high: float, cuts: list[float]) -> list[tuple[float, float]]:
-    """Intervals that the cuts make of one."""
+    """Return the intervals into which the cuts divide one."""
     inner = [cut for cut in distinct(cuts, _NARROW) if low + _NARROW < cut < high - _NARROW]
     edges = [low, *inner, high]
     return list(pairwise(edges))

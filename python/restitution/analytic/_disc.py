@@ -68,7 +68,7 @@ class Disc:
         return self.reciprocal().__mul__(other)
 
     def reciprocal(self) -> "Disc":
-        """1/z."""
+        """Return 1/z."""
         size = np.abs(self.centre)
         away = self.radius < size
         gap = np.where(away, size - self.radius, 1.0)
@@ -76,7 +76,7 @@ class Disc:
         return Disc(1.0 / centre, np.where(away, self.radius / (np.abs(centre) * gap), np.inf))
 
     def __pow__(self, exponent: float) -> "Disc":
-        """z^p for -1 < p < 1: the Taylor coefficients of (1 + x)^p but the first alternate in sign."""
+        """Return z^p for -1 < p < 1: the Taylor coefficients of (1 + x)^p but the first alternate in sign."""
         away = self.radius < self.centre
         centre = np.where(away, self.centre, 1.0)
         share = np.where(away, self.radius, 0.0) / centre
@@ -85,7 +85,7 @@ class Disc:
 
 
 def turned(theta: Number) -> tuple[Number, Number]:
-    """Sine and cosine of an angle."""
+    """Return the sine and cosine of an angle."""
     if not isinstance(theta, Disc):
         return np.sin(theta), np.cos(theta)
     sine, cosine = np.sin(theta.centre), np.cos(theta.centre)

@@ -77,15 +77,15 @@ class FirstImpact(ABC):
 
     @abstractmethod
     def support(self) -> tuple[float, float]:
-        """Least and greatest ε."""
+        """Return the least and greatest ε."""
 
     @abstractmethod
     def restitution(self, cos_theta: ArrayLike) -> Values:
-        """ε at the angle θ between symmetry axis and plane normal; nan unless -1 <= cos θ <= 1."""
+        """Return ε at the angle θ between symmetry axis and plane normal; nan unless -1 <= cos θ <= 1."""
 
     @abstractmethod
     def cos_theta(self, restitution: ArrayLike) -> Values:
-        """Greatest |cos θ| that gives ε; nan outside the support."""
+        """Return the greatest |cos θ| that gives ε; nan outside the support."""
 
     @property
     def probability_above_normal(self) -> float:
@@ -102,31 +102,31 @@ class FirstImpact(ABC):
 
     @abstractmethod
     def pdf(self, x: ArrayLike) -> Values:
-        """Probability density at ε = x."""
+        """Return the probability density at ε = x."""
 
     @abstractmethod
     def cdf(self, x: ArrayLike) -> Values:
-        """Probability that ε <= x; ``cdf(0)`` is the probability that the body goes on downwards."""
+        """Return the probability that ε <= x; ``cdf(0)`` is that of a body that goes on downwards."""
 
     @abstractmethod
     def sf(self, x: ArrayLike) -> Values:
-        """Probability that ε > x, accurate also where it is small."""
+        """Return the probability that ε > x, accurate also where it is small."""
 
     @abstractmethod
     def ppf(self, q: ArrayLike) -> Values:
-        """Quantile: the ε with ``cdf(ε) = q``; nan unless ``0 <= q <= 1``."""
+        """Return the quantile: the ε with ``cdf(ε) = q``; nan unless ``0 <= q <= 1``."""
 
     @abstractmethod
     def isf(self, q: ArrayLike) -> Values:
-        """Upper quantile: the ε with ``sf(ε) = q``; nan unless ``0 <= q <= 1``."""
+        """Return the upper quantile: the ε with ``sf(ε) = q``; nan unless ``0 <= q <= 1``."""
 
     @abstractmethod
     def mean(self) -> float:
-        """Mean of ε."""
+        """Return the mean of ε."""
 
     @abstractmethod
     def std(self) -> float:
-        """Square root of the variance of ε."""
+        """Return the square root of the variance of ε."""
 
     def expect(
         self,
@@ -139,7 +139,7 @@ class FirstImpact(ABC):
         epsrel: float = 1.49e-8,
         limit: int = 50,
     ) -> float:
-        """Mean of ``func(ε)``, of ε itself if left out, by `scipy.integrate.quad` without a singularity.
+        """Return the mean of ``func(ε)``, by default of ε, by `scipy.integrate.quad` without a singularity.
 
         Parameters
         ----------
@@ -171,32 +171,32 @@ class FirstImpact(ABC):
     def _expected(
         self, func: Callable[[float], float], low: float, high: float, options: dict[str, Any]
     ) -> tuple[float, float]:
-        """Integral of ``func(ε)`` over the ε in [low, high], and the probability of these."""
+        """Return the integral of ``func(ε)`` over the ε in [low, high], and the probability of these."""
 
     @abstractmethod
     def entropy(self) -> float:
-        """Differential entropy, -∫ p ln p dε."""
+        """Return the differential entropy, -∫ p ln p dε."""
 
     @abstractmethod
     def _raw(self, order: int) -> float:
-        """Mean of ε to a power."""
+        """Return the mean of ε to a power."""
 
     @abstractmethod
     def _standardised(self, order: int) -> float:
-        """Mean of (ε - mean)/std to a power."""
+        """Return the mean of (ε - mean)/std to a power."""
 
     def logpdf(self, x: ArrayLike) -> Values:
-        """Logarithm of `pdf`; -inf outside the support."""
+        """Return the logarithm of `pdf`; -inf outside the support."""
         with np.errstate(divide="ignore"):
             return scalar(np.log(self.pdf(x)))
 
     def logcdf(self, x: ArrayLike) -> Values:
-        """Logarithm of `cdf`."""
+        """Return the logarithm of `cdf`."""
         with np.errstate(divide="ignore"):
             return scalar(np.log(self.cdf(x)))
 
     def logsf(self, x: ArrayLike) -> Values:
-        """Logarithm of `sf`."""
+        """Return the logarithm of `sf`."""
         with np.errstate(divide="ignore"):
             return scalar(np.log(self.sf(x)))
 
@@ -208,15 +208,15 @@ class FirstImpact(ABC):
         return self._drawn(np.asarray(generator(random_state).random(lengths)))
 
     def _drawn(self, uniform: Floats) -> Values:
-        """Give the ε that numbers from [0, 1) stand for."""
+        """Return the ε at uniform random numbers from [0, 1)."""
         return self.ppf(uniform)
 
     def var(self) -> float:
-        """Variance of ε."""
+        """Return the variance of ε."""
         return self.std() ** 2
 
     def stats(self, moments: str = "mv") -> tuple[float, ...]:
-        """Mean "m", variance "v", skewness "s" and kurtosis "k", in the order of ``moments``.
+        """Return the mean "m", variance "v", skewness "s" and kurtosis "k", in the order of ``moments``.
 
         The kurtosis is Pearson's, 3 for a Gaussian, as everywhere in this package; SciPy's is less by 3.
         """
@@ -231,15 +231,15 @@ class FirstImpact(ABC):
         return tuple(make[letter]() for letter in moments)
 
     def moment(self, order: int) -> float:
-        """Mean of ε to the power ``order`` (a whole number >= 0)."""
+        """Return the mean of ε to the power ``order`` (a whole number >= 0)."""
         return self._raw(whole("order", order, 0, 1000))
 
     def median(self) -> float:
-        """Median of ε."""
+        """Return the median of ε."""
         return float(self.ppf(0.5))
 
     def interval(self, confidence: ArrayLike) -> tuple[Values, Values]:
-        """Both ends of the range that leaves out equal probability on either side."""
+        """Return both ends of the range that leaves out equal probability on either side."""
         tail = 0.5 * (1.0 - probability(confidence, "confidence"))
         return self.ppf(tail), self.isf(tail)
 

@@ -21,7 +21,7 @@ class Ball:
     place: float
 
     def contact(self, sine: Number, cosine: Number) -> tuple[Number, Number]:
-        """Height h and lever arm a."""
+        """Return the height h and lever arm a."""
         return self.radius - self.place * cosine, abs(self.place) * sine
 
     def cosine(self, height: float) -> float:
@@ -37,7 +37,7 @@ class Ellipsoid:
     polar: float
 
     def contact(self, sine: Number, cosine: Number) -> tuple[Number, Number]:
-        """Height h and lever arm a."""
+        """Return the height h and lever arm a."""
         across, along = self.equatorial * sine, self.polar * cosine
         height = (across * across + along * along) ** 0.5
         excess = abs((self.polar - self.equatorial) * (self.polar + self.equatorial))
@@ -78,7 +78,7 @@ class Outline:
 
     @classmethod
     def of(cls, body: Body) -> "Outline":
-        """Take it from a body."""
+        """Make the hull of a body."""
         unit = body.solid.farthest()
         inertia = body.transverse_inertia / unit / body.mass / unit
         return cls(unit, inertia, _sides(body, unit))

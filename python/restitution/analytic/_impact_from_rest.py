@@ -44,11 +44,11 @@ class ImpactFromRest(ABC):
     greatest_loss: float
 
     def restitution(self, cosine: Floats, sine: Floats) -> Floats:
-        """ε at given c and sin θ."""
+        """Return ε at given c and sin θ."""
         return self.normal - self.greatest_loss * self.relative_loss(cosine, sine)
 
     def share(self, restitution: Floats) -> tuple[Floats, Floats]:
-        """Give t = (ε_n - ε)/w, and 1 - t, at ε inside the support."""
+        """Return t = (ε_n - ε)/w, and 1 - t, at ε inside the support."""
         part = np.clip(
             (self.normal - restitution) / self.greatest_loss, 0.0, 1.0
         )  # ε_n - w is a rounded number
@@ -56,7 +56,7 @@ class ImpactFromRest(ABC):
 
     @abstractmethod
     def nodes(self, order: int) -> int:
-        """Give the number of Gauss nodes that integrate ε to this power over its quantile function.
+        """Return the number of Gauss nodes that integrate ε to this power over its quantile function.
 
         That function is analytic inside the ellipse with foci 0 and 1 and some ρ, where |ε| < G times the
         greatest |ε| of the support. So n nodes leave less than (64/15) G^order ρ^(-2n)/(1 - ρ^-2), in units
@@ -66,15 +66,15 @@ class ImpactFromRest(ABC):
 
     @abstractmethod
     def relative_loss(self, cosine: Floats, sine: Floats) -> Floats:
-        """(ε_n - ε)/w, in [0, 1]; keeps its digits where ε is one ulp from ε_n."""
+        """Return (ε_n - ε)/w, in [0, 1]; keeps its digits where ε is one ulp from ε_n."""
 
     @abstractmethod
     def angle(self, restitution: Floats) -> tuple[Floats, Floats]:
-        """(c, sin θ) at given ε inside the support."""
+        """Return (c, sin θ) at given ε inside the support."""
 
     @abstractmethod
     def relative_slope(self, cosine: Floats) -> Floats:
-        """(dε/dc)/w."""
+        """Return (dε/dc)/w."""
 
 
 @dataclass(frozen=True)

@@ -40,7 +40,7 @@ class Impulse:
     inertia: float
 
     def modes(self) -> tuple[Mode, Mode]:
-        """Modes where `margin` is not positive, and where it is."""
+        """Return the modes where `margin` is not positive, and where it is."""
         match self.law:
             case Frictionless():
                 return "free", "free"
@@ -65,7 +65,7 @@ class Impulse:
         return 0.0
 
     def loss(self, mode: Mode, normal: Number, height: Number, arm: Number) -> Number:
-        """λ = ε_n - ε, ε_n = normal."""
+        """Return λ = ε_n - ε, ε_n = normal."""
         square, inertia = arm * arm, self.inertia
         if mode == "stuck":  # (17)
             return (1.0 + normal) * square / (inertia + square + height * height)
@@ -85,7 +85,7 @@ class Impulse:
         return -1.0
 
     def threshold(self, mode: Mode, height: Number, arm: Number) -> Number:
-        """Constant ε_n at which ε = 0 in this mode."""
+        """Return the constant ε_n at which ε = 0 in this mode."""
         square, inertia = arm * arm, self.inertia
         if mode == "stuck":
             return square / (inertia + height * height)

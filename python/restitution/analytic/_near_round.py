@@ -31,7 +31,7 @@ def near_round(
     gravity: float = 9.81,
     angles: int = 4000,
 ) -> xr.Dataset:
-    """Moments of ε by impact velocity for a nearly round dumbbell released from rest, by a map.
+    """Return the moments of ε by impact velocity for a nearly round dumbbell released from rest, by a map.
 
     The impulse (Eqs. 6–11) is exact, at the angle that the axis has at the end of the flight, and the flight
     takes (v' + v'')/g, with v' and v'' the speeds after an impact and before the next. The two ends of a body
@@ -148,7 +148,7 @@ def _impacts(run: Run, slowest: float, angles: int) -> tuple[Floats, Floats]:
 
 
 def _most(run: Run, slowest: float) -> int:
-    """Impacts after which every body is slower: a spin may give speed back, hence three times as many."""
+    """Return a number of impacts after which all bodies are slower: three times that without spin."""
     assert isinstance(run.law.normal, float)
     fastest = np.sqrt(2 * run.gravity * run.release_height)
     return 10 + int(3 * max(0.0, np.log(fastest / slowest)) / -np.log(max(run.law.normal, 1e-3)))

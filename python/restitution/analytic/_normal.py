@@ -21,16 +21,16 @@ class Fall(Parameters):
     gravity: Annotated[Number, Field(gt=0, description="m/s²")]
 
     def squared_speed(self, height: _disc.Number) -> _disc.Number:
-        """v² when the centre of mass has come down to a height."""
+        """Return v² when the centre of mass has come down to a height."""
         return 2.0 * self.gravity * (self.release_height - height)
 
     def height(self, speed: float) -> float:
-        """Height of the centre of mass at a speed."""
+        """Return the height of the centre of mass at a speed."""
         return self.release_height - 0.5 * speed * speed / self.gravity
 
 
 def kinks(normal: float | Viscoelastic | Plastic | Tabulated) -> tuple[float, ...]:
-    """Speeds in m/s at which the formula of ε_n changes."""
+    """Return speeds in m/s at which the formula of ε_n changes."""
     match normal:
         case Plastic():
             return (normal.yield_speed,)
@@ -42,7 +42,7 @@ def kinks(normal: float | Viscoelastic | Plastic | Tabulated) -> tuple[float, ..
 def coefficient(
     normal: float | Viscoelastic | Plastic | Tabulated, squared: _disc.Number, among: float
 ) -> _disc.Number:
-    """ε_n at v², complex or a disc, by the formula that holds about the speed ``among``.
+    """Return ε_n at v², complex or a disc, by the formula that holds about the speed ``among``.
 
     For real speeds this is what the core computes; between its kinks it is continued into the complex plane.
     """

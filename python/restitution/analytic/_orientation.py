@@ -25,13 +25,13 @@ class Orientation(Protocol):
         """Differential entropy of c."""
 
     def density(self, cosine: Floats, sine: Floats) -> Floats:
-        """Probability density of c."""
+        """Return the probability density of c."""
 
     def below(self, cosine: Floats, sine: Floats) -> Floats:
-        """Probability that |cos θ| <= c."""
+        """Return the probability that |cos θ| <= c."""
 
     def above(self, cosine: Floats, sine: Floats) -> Floats:
-        """Probability that |cos θ| > c."""
+        """Return the probability that |cos θ| > c."""
 
     def quantile(self, below: Floats, above: Floats) -> tuple[Floats, Floats]:
         """Return (c, sin θ) where |cos θ| <= c has probability ``below``; ``above = 1 - below``."""

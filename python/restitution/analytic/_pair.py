@@ -53,11 +53,11 @@ class PairFirstImpact(FirstImpact):
         return ORIENTATIONS[self.orientation]
 
     def support(self) -> tuple[float, float]:
-        """Least and greatest ε: axis horizontal and axis vertical (ε_n)."""
+        """Return the least and greatest ε: axis horizontal and axis vertical (ε_n)."""
         return self._impact.normal - self._impact.greatest_loss, self._impact.normal
 
     def restitution(self, cos_theta: ArrayLike) -> Values:
-        """ε at the angle θ between symmetry axis and plane normal (Eq. 17); nan unless -1 <= cos θ <= 1.
+        """Return ε at the angle θ between axis and plane normal (Eq. 17); nan unless -1 <= cos θ <= 1.
 
         The contact is with the lower sphere, hence the same value at cos θ and -cos θ.
         """
@@ -66,13 +66,13 @@ class PairFirstImpact(FirstImpact):
         return scalar(self._impact.restitution(cosine, np.sqrt((1.0 - cosine) * (1.0 + cosine))))
 
     def cos_theta(self, restitution: ArrayLike) -> Values:
-        """|cos θ| in [0, 1] that gives ε, the inverse of `restitution`; nan outside the support."""
+        """Return |cos θ| in [0, 1] that gives ε, the inverse of `restitution`; nan outside the support."""
         value = floats(restitution, "restitution")
         cosine, _ = self._angle(value)
         return scalar(np.where(self._outside(value), np.nan, cosine))
 
     def pdf(self, x: ArrayLike) -> Values:
-        """Probability density at ε = x (Eq. 21 without its misprints)."""
+        """Return the probability density at ε = x (Eq. 21 without its misprints)."""
         with np.errstate(over="ignore"):
             return scalar(self._relative_density(x) / self._impact.greatest_loss)
 
@@ -127,7 +127,7 @@ class PairFirstImpact(FirstImpact):
         return (restitution < low) | (restitution > high)
 
     def _angle(self, restitution: Floats) -> tuple[Floats, Floats]:
-        """(c, sin θ) at ε, of the nearer end outside the support; exact at both ends."""
+        """Return (c, sin θ) at ε, of the nearer end outside the support; exact at both ends."""
         low, high = self.support()
         cosine, sine = self._impact.angle(np.clip(restitution, low, high))
         lowest = (restitution <= low) & (restitution < high)  # the rounded ε_n - w may differ from ε at c = 0
@@ -148,7 +148,7 @@ class PairFirstImpact(FirstImpact):
         return float(weights @ self._impact.relative_loss(*self._orientation.quantile(q, 1.0 - q)))
 
     def _central(self, order: int) -> float:
-        """Central moment of (ε_n - ε)/w."""
+        """Return the central moment of (ε_n - ε)/w."""
         q, weights = _gauss(self._impact.nodes(order))
         loss = self._impact.relative_loss(*self._orientation.quantile(q, 1.0 - q))
         return float(weights @ (loss - self._mean_loss) ** order)
@@ -156,6 +156,6 @@ class PairFirstImpact(FirstImpact):
 
 @lru_cache(maxsize=16)
 def _gauss(number: int) -> tuple[Floats, Floats]:
-    """Nodes and weights on [0, 1]."""
+    """Return nodes and weights on [0, 1]."""
     nodes, weights = np.polynomial.legendre.leggauss(number)
     return 0.5 * (1.0 + nodes), 0.5 * weights

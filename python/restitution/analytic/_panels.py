@@ -28,7 +28,7 @@ Function = Callable[[Number], Number]
 
 
 def panels(function: Function, low: float, high: float) -> Floats:
-    """Edges of panels on which the error bounds above hold, from low to high, ascending.
+    """Return edges of panels on which the error bounds above hold, from low to high, ascending.
 
     Raises
     ------
@@ -57,12 +57,12 @@ def panels(function: Function, low: float, high: float) -> Floats:
 
 
 def roots(function: Function, low: float, high: float) -> list[float]:
-    """Angles strictly between low and high at which the function is 0, ascending."""
+    """Return angles strictly between low and high at which the function is 0, ascending."""
     return _zeros(function, low, high, derivative=False)
 
 
 def extremes(function: Function, low: float, high: float) -> list[float]:
-    """Angles strictly between low and high at which the derivative is 0, ascending."""
+    """Return angles strictly between low and high at which the derivative is 0, ascending."""
     return _zeros(function, low, high, derivative=True)
 
 
@@ -83,7 +83,7 @@ def _zeros(function: Function, low: float, high: float, *, derivative: bool) -> 
 
 
 def distinct(values: list[float], apart: float) -> list[float]:
-    """Sorted, without those that are nearer to the one before than ``apart``."""
+    """Sort angles, without those that are nearer to the one before than ``apart``."""
     kept: list[float] = []
     for value in sorted(map(float, values)):
         if not kept or value - kept[-1] > apart:
@@ -92,7 +92,7 @@ def distinct(values: list[float], apart: float) -> list[float]:
 
 
 def nodes(edges: Floats, order: int) -> tuple[Floats, Floats]:
-    """Gauss nodes and weights on all panels, for the power ``order`` of the function."""
+    """Return the Gauss nodes and weights on all panels, for the power ``order`` of the function."""
     points, weights = _gauss(20 + 2 * order)
     half = 0.5 * np.diff(edges)[:, None]
     return (edges[:-1, None] + half * (1.0 + points)).ravel(), (half * weights).ravel()
@@ -105,7 +105,7 @@ def _gauss(number: int) -> tuple[Floats, Floats]:
 
 
 def solve(function: Callable[[Floats], Floats], low: Floats, high: Floats) -> Floats:
-    """Roots of many functions, each with a change of sign between its low and high, side by side.
+    """Return roots of many functions, each with a change of sign between its low and high, side by side.
 
     T. R. Chandrupatla, Adv. Eng. Softw. 28, 145 (1997): inverse quadratic interpolation where it is safe,
     else bisection. Where there is no change of sign, some point of the interval.

@@ -14,7 +14,7 @@ from restitution.laws import Law
 
 
 def negative_threshold(body: Body, law: Law) -> float:
-    """ε_n below which ε < 0 occurs at the first impact from rest; from it on ε >= 0 at every angle.
+    """Return ε_n below which ε < 0 occurs at the first impact from rest; from it on ε >= 0 at every angle.
 
     In each mode of the contact ε rises with ε_n and is 0 at a closed form in height h and lever arm a; where
     a law has two modes, the one that holds has the greater of the two. Their maximum over all angles is at

@@ -24,25 +24,25 @@ class Tilt:
     limit: float
 
     def below(self, theta: ArrayLike) -> Floats:
-        """Probability of angles up to θ."""
+        """Return the probability of angles up to θ."""
         angle = np.asarray(theta, dtype=np.float64)
         if self.orientation == "uniform-angle":
             return np.asarray(angle / self.limit)
         return np.asarray((np.sin(0.5 * angle) / np.sin(0.5 * self.limit)) ** 2)
 
     def between(self, low: float, high: float) -> float:
-        """Probability of angles from low to high."""
+        """Return the probability of angles from low to high."""
         return float(self.below(high) - self.below(low))
 
     def density(self, theta: ArrayLike) -> Floats:
-        """Probability density of θ, per rad."""
+        """Return the probability density of θ, per rad."""
         angle = np.asarray(theta, dtype=np.float64)
         if self.orientation == "uniform-angle":
             return np.full_like(angle, 1.0 / self.limit)
         return np.asarray(np.sin(angle) / (2.0 * np.sin(0.5 * self.limit) ** 2))
 
     def quantile(self, share: Floats) -> Floats:
-        """Angle up to which the probability is ``share``."""
+        """Return the angle up to which the probability is ``share``."""
         if self.orientation == "uniform-angle":
             return share * self.limit
         return np.asarray(2.0 * np.arcsin(np.sqrt(share) * np.sin(0.5 * self.limit)))

@@ -14,7 +14,7 @@ class LengthWidth(Parameters):
     width: Annotated[Number, Field(gt=0, description="m")]
 
     def elongated(self) -> "LengthWidth":
-        """Give the same, or raise `ValueError` where the length is below the width."""
+        """Return these sizes, or raise `ValueError` if the length is below the width."""
         if self.length < self.width:
             raise ParameterError(wrong("length", self.length, f">= width = {self.width!r} (m)"))
         return self

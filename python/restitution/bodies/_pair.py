@@ -49,5 +49,5 @@ PositivePair = Annotated[float | tuple[float, float], Allowed(_ALLOWED), BeforeV
 
 
 def both(value: float | tuple[float, float]) -> tuple[float, float]:
-    """Give each sphere its number."""
+    """Number the spheres."""
     return value if isinstance(value, tuple) else (value, value)

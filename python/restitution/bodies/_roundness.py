@@ -135,7 +135,7 @@ def _body(asked: _Asked, t: float) -> Body:
 
 
 def ball_grade(grade: int) -> float:
-    """Give the largest out-of-roundness of a ball of a grade, in m.
+    """Return the largest out-of-roundness of a ball of a grade, in m.
 
     The number of a grade is the deviation from spherical form in millionths of an inch, rounded: ISO 3290-1
     for grades 3 to 200, ANSI/ABMA 10 for 48, 500 and 1000.

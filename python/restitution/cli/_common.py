@@ -82,7 +82,7 @@ class Group(_Flags, TyperGroup):
 
 
 def progress(quiet: bool) -> bool:
-    """Tell if a progress bar is to be shown."""
+    """Test whether a progress bar is to be shown."""
     return not quiet and is_terminal(sys.stderr)
 
 

@@ -245,12 +245,12 @@ _OPTIONS = (
 
 
 def _given(options: dict[str, Any]) -> dict[str, Any]:
-    """Give those options that were used."""
+    """Return the options that were used."""
     return {name: options[name] for name in _OPTIONS if options.get(name) is not None}
 
 
 def _bins(run: Path, how: dict[str, Any]) -> dict[str, Any]:
-    """Give the arguments of a count, or say which bins neither the file nor the options have."""
+    """Return the arguments of a count; an error names bins that neither the file nor the options have."""
     missing = [name for name in ("velocity_bins", "restitution_bins") if name not in how]
     if missing:
         options = ", ".join(f"--{name.replace('_', '-')}" for name in missing)
@@ -262,7 +262,7 @@ def _bins(run: Path, how: dict[str, Any]) -> dict[str, Any]:
 
 
 def _counted(count: Any, run: Path, out: Path, *, overwrite: bool, quiet: bool) -> None:
-    """Count, write what was counted, and say what it is."""
+    """Count impacts, write the statistics, and print a summary."""
     from restitution._internal.datasets import save
     from restitution._internal.files import NETCDF, check, check_apart, check_name
     from restitution.drop.simulate import SimulationInterrupted
@@ -302,7 +302,7 @@ def _counts(found: "xr.Dataset") -> Iterator[str]:
 
 
 def _summary(data: "xr.Dataset") -> Iterator[str]:
-    """Say what a run holds: impacts, why the particles stopped, and whether energy was created."""
+    """Summarise a run: its impacts, the reasons why particles stopped, and any energy created."""
     from restitution._core import STOP_REASONS
 
     impacts = int(data.impacts.sum())

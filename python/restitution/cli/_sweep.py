@@ -131,7 +131,7 @@ def merge(
     threads: Threads = None,
     quiet: Quiet = False,
 ) -> None:
-    """Put the shards of a study together.
+    """Merge the shards of a study.
 
     What is damaged or missing is left out and reported; the command that made the
     shards, without --shard, computes it.

@@ -1,4 +1,4 @@
-"""How far a learned distribution is from impacts that it was not learned from."""
+"""Distance of a learned distribution from impacts that it was not learned from."""
 
 import warnings
 from collections.abc import Iterable
@@ -50,7 +50,7 @@ class Check:
             raise KeyboardInterrupt from interrupted
 
     def count(self, interval: int) -> Ints:
-        """Impacts in an interval and each of 4096 equal parts of [0, 1] that u is in."""
+        """Count the impacts of an interval in each of 4096 equal parts of [0, 1] that u falls into."""
         return self._levels.fine(interval)
 
     @property
@@ -58,11 +58,11 @@ class Check:
         return range(self.table.speeds.size - 1)
 
     def impacts(self) -> Ints:
-        """Impacts in each interval."""
+        """Count the impacts in each interval."""
         return np.array([self.count(interval).sum() for interval in self._intervals])
 
     def distances(self) -> Floats:
-        """Upper bounds: the distance at 4096 equidistant u, and 1/4096; NaN where there are no impacts."""
+        """Bound the distance: its value at 4096 equidistant u, and 1/4096; NaN without impacts."""
         found = []
         for interval in self._intervals:
             count = self.count(interval)
@@ -126,7 +126,7 @@ def warn_of_distance(data: xr.Dataset, *, stacklevel: int) -> None:
 
 
 def largest_distance(data: xr.Dataset) -> str:
-    """Say how far fresh impacts are at most, at what speeds, and how far their own scatter takes them."""
+    """Report the largest distance of fresh impacts, its speeds, and the distance due to their scatter."""
     worst = int(np.nanargmax(data["ks_distance"].to_numpy()))
     low, high = data["velocity"].to_numpy()[worst : worst + 2]
     distance, scatter = (float(data[name][worst]) for name in ("ks_distance", "ks_scatter"))

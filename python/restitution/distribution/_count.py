@@ -14,7 +14,7 @@ from restitution.distribution._table import Floats, Histogram, starts
 
 @dataclass(frozen=True)
 class Counted:
-    """What was counted, without the batches.
+    """Counts of all batches together.
 
     Parameters
     ----------
@@ -85,11 +85,11 @@ class Counter:
 
     @cached_property
     def _table(self) -> dict[str, Floats]:
-        """What was counted: Σw of the bins, over batches; Σw, Σwx and Σwx², x above an edge in the middle."""
+        """Sums over batches: Σw of each bin; Σw, Σwx and Σwx² of all, with x above an edge in the middle."""
         return self._counter.table()
 
     def counted(self) -> Counted:
-        """Give what is wanted of the counts, which take more memory than all else."""
+        """Return the results that follow from the counts, which take more memory than all else."""
         histograms, shares, below, shape = zip(*self.histograms(), strict=True)
         mean, deviation = self.moment_errors()
         return Counted(
@@ -106,11 +106,11 @@ class Counter:
         )
 
     def impacts(self) -> Floats:
-        """Weights added up at each component."""
+        """Return the sum of weights at each component."""
         return np.add.reduceat(self._table["count"].sum(axis=0), self.start[:-1])
 
     def moment_errors(self) -> tuple[Floats, Floats]:
-        """Give standard errors of mean and standard deviation at each component, as in `histograms`."""
+        """Return standard errors of mean and standard deviation at each component, as in `histograms`."""
         n, first, second = self._table["powers"]
         total, correction = n.sum(axis=0), self._correction()
         mean = first.sum(axis=0) / total

@@ -1,4 +1,4 @@
-"""How an ensemble is released and followed where nothing else is asked for."""
+"""Defaults of an ensemble: its release, and how long its particles are followed."""
 
 import math
 
@@ -18,13 +18,13 @@ _LEAST_IMPACTS, _MOST_IMPACTS = 256, 4096
 
 
 def lowest_position(run: Run) -> float:
-    """Height in m of the centre of mass of the body in its lowest position on the plane."""
+    """Return the height in m of the centre of mass of the body in its lowest position on the plane."""
     # Upright either way or level: in one of these the centre of mass comes lowest.
     return min(run.body.solid.lowest(np.array([cosine])) for cosine in (-1.0, 0.0, 1.0))
 
 
 def speeds(run: Run) -> Floats:
-    """Give the least and the greatest speed to learn, in m/s."""
+    """Return the least and the greatest speed to learn, in m/s."""
     return np.array(RANGE) * run.fall_speed(run.heights[0] - lowest_position(run))
 
 
@@ -52,7 +52,7 @@ def heights(run: Run) -> tuple[float, ...]:
 
 
 def minimum_speed(run: Run, slowest: float) -> float:
-    """Give the speed in m/s below which a particle no longer reaches the slowest learned impact velocity.
+    """Return the speed in m/s below which a particle no longer reaches the slowest learned impact velocity.
 
     Until the next impact the centre of mass may come down from the highest to the lowest position on the
     plane. Impacts can create energy, hence never more than half of the slowest speed.
@@ -63,7 +63,7 @@ def minimum_speed(run: Run, slowest: float) -> float:
 
 
 def impacts(run: Run, threads: int | None) -> int:
-    """Give the least power of two of impacts after which one particle in a hundred still is faster, or fewer.
+    """Return the least power of two of impacts after which at most 1 % of the particles are faster.
 
     4096 where there is none: some trajectories rattle without end.
     """

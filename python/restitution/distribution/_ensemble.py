@@ -1,4 +1,4 @@
-"""What a distribution is learned from: an ensemble of particles, simulated block by block."""
+"""Ensemble of particles that a distribution is learned from, simulated block by block."""
 
 import math
 from collections.abc import Callable, Iterator
@@ -88,7 +88,7 @@ class Ensemble:
             raise ParameterError(wrong("particles", self.run.particles, allowed))
 
     def rounds(self) -> list[list[tuple[int, int]]]:
-        """Give number of the height and particles of each run, round by round; a round spans the heights."""
+        """Yield the number of the height and the particles of each run; a round spans the heights."""
         number, heights = self.run.particles * self.run.impacts // _IMPACTS_PER_ROUND + 1, len(self.heights)
         pieces = -(-number // heights)
         share, rest = divmod(self.run.particles, heights)

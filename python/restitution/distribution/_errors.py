@@ -18,7 +18,7 @@ class EstimatedDistribution(TabulatedDistribution):
     """
 
     def pdf_error(self, x: npt.ArrayLike, v: npt.ArrayLike, given: npt.ArrayLike | None = None) -> Values:
-        """Give the standard error of `pdf`, at most.
+        """Return the standard error of `pdf`, at most.
 
         Raises
         ------
@@ -28,11 +28,11 @@ class EstimatedDistribution(TabulatedDistribution):
         return self._error("probability_error", numbers("x", x), v, given)
 
     def cdf_error(self, x: npt.ArrayLike, v: npt.ArrayLike, given: npt.ArrayLike | None = None) -> Values:
-        """Give the standard error of `cdf` and `sf`, at most, as `pdf_error`."""
+        """Return the standard error of `cdf` and `sf`, at most, as `pdf_error`."""
         return self._error("probability_below_error", numbers("x", x), v, given)
 
     def ppf_error(self, q: npt.ArrayLike, v: npt.ArrayLike, given: npt.ArrayLike | None = None) -> Values:
-        """Give the standard error of `ppf`, at most: that of `cdf` over the density there, as `pdf_error`.
+        """Return the standard error of `ppf`, at most: that of `cdf` over the density there, as `pdf_error`.
 
         It is 0 at both ends, which are the least and the greatest ε that were seen.
         """
@@ -42,28 +42,28 @@ class EstimatedDistribution(TabulatedDistribution):
             return np.where(below == 0.0, 0.0, below / density)[()]
 
     def mean_error(self, v: npt.ArrayLike, given: npt.ArrayLike | None = None) -> Values:
-        """Give the standard error of `mean`, at most, as `pdf_error`."""
+        """Return the standard error of `mean`, at most, as `pdf_error`."""
         return self._moment_error("mean_error", v, given)
 
     def std_error(self, v: npt.ArrayLike, given: npt.ArrayLike | None = None) -> Values:
-        """Give the standard error of `std`, at most, as `pdf_error`."""
+        """Return the standard error of `std`, at most, as `pdf_error`."""
         return self._moment_error("std_error", v, given)
 
     def skewness_error(self, v: npt.ArrayLike, given: npt.ArrayLike | None = None) -> Values:
-        """Give the standard error of `skewness`, at most, as `pdf_error`."""
+        """Return the standard error of `skewness`, at most, as `pdf_error`."""
         return self._moment_error("skewness_error", v, given)
 
     def kurtosis_error(self, v: npt.ArrayLike, given: npt.ArrayLike | None = None) -> Values:
-        """Give the standard error of `kurtosis`, at most, as `pdf_error`."""
+        """Return the standard error of `kurtosis`, at most, as `pdf_error`."""
         return self._moment_error("kurtosis_error", v, given)
 
     def var_error(self, v: npt.ArrayLike, given: npt.ArrayLike | None = None) -> Values:
-        """Give the standard error of `var`, at most: 2 σ times that of σ, as `pdf_error`."""
+        """Return the standard error of `var`, at most: 2 σ times that of σ, as `pdf_error`."""
         return 2.0 * self.std(v, given) * self.std_error(v, given)
 
     @property
     def has_errors(self) -> bool:
-        """Whether standard errors are known: not where the distribution was made from counts."""
+        """True if standard errors are known; they are not if the distribution was made from counts."""
         return "probability_error" in self.data
 
     def _errors(self, name: str, given: npt.ArrayLike | None) -> Floats:

@@ -84,13 +84,13 @@ def draw(dist: EstimatedDistribution) -> Figure:
 
 
 def _in_gaps(dist: EstimatedDistribution, v: npt.ArrayLike) -> npt.NDArray[np.bool_]:
-    """Whether no impact was seen near each speed."""
+    """Mark the speeds near which no impact was seen."""
     speeds = np.asarray(v)[..., None]
     return np.asarray(np.any((speeds >= dist.gaps[:, 0]) & (speeds < dist.gaps[:, 1]), axis=-1))
 
 
 def _shown(dist: EstimatedDistribution) -> tuple[Floats, Floats]:
-    """Give the speeds of a curve, and 1 for each, NaN in gaps, where the curve is interrupted."""
+    """Return the speeds of a curve, and 1 for each, NaN in gaps, where the curve is interrupted."""
     inside = dist.gaps.mean(axis=1)
     v = np.unique(np.concatenate([dist.data["velocity"].to_numpy(), dist.gaps.ravel(), inside]))
     return v, np.where(_in_gaps(dist, v), np.nan, 1.0)

@@ -47,7 +47,7 @@ def from_statistics(statistics: xr.Dataset) -> xr.Dataset:
 
 
 def quantiles(statistics: xr.Dataset, levels: Floats) -> Floats:
-    """Give quantiles of restitution in each velocity bin, shape (velocities, levels).
+    """Return quantiles of restitution in each velocity bin, shape (velocities, levels).
 
     They are those of the learned distribution at the middle of the bin; NaN where there are fewer impacts
     than it needs.
@@ -63,7 +63,7 @@ def quantiles(statistics: xr.Dataset, levels: Floats) -> Floats:
 
 
 def _counts(statistics: xr.Dataset) -> tuple[Floats, Floats]:
-    """Give the counts of each velocity bin with those beyond the bins first and last, and their sum."""
+    """Return the counts of each velocity bin with those beyond the bins first and last, and their sum."""
     names = ("restitution_underflow", "restitution_count", "restitution_overflow")
     below, inside, above = (statistics[name].to_numpy() for name in names)
     counts = np.concatenate([below[:, None], inside, above[:, None]], axis=1).astype(np.float64)

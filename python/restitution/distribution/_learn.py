@@ -85,7 +85,7 @@ def learn(ensemble: Ensemble, nodes: Floats, given: Given | None, progress: bool
 
 
 def _energy(ensemble: Ensemble) -> dict[str, Any]:
-    """Give the attributes on the kinetic energy that impacts create, as a few of the particles have it."""
+    """Return the attributes on the kinetic energy that impacts create, as a few of the particles have it."""
     few = ensemble.run.of(np.arange(min(ensemble.run.particles, _JUDGED)))
     edges = edges_of([0.0, 1.0], [0.0, 1.0], None)
     parts = [(0, few.particles)]
@@ -99,7 +99,7 @@ def _energy(ensemble: Ensemble) -> dict[str, Any]:
 
 
 def checked_speeds(velocities: npt.ArrayLike | None, run: Run) -> Floats:
-    """Give the least and the greatest speed to learn, or all nodes, in m/s."""
+    """Return the least and the greatest speed to learn, or all nodes, in m/s."""
     if velocities is None:
         return speeds(run)
     allowed = "the least and the greatest speed, or all nodes, finite, in m/s"
@@ -138,7 +138,7 @@ def _unconditional(_: Impacts) -> None:
 
 
 def condition(given: Given, block: Impacts, table: Table, threads: int | None = None) -> Floats:
-    """Give z for each impact, in the shape of the block.
+    """Return z for each impact, in the shape of the block.
 
     The quantile level of the impact before is NaN for the first impact. Where that one was slower or faster
     than all nodes, its level is that at the nearest.

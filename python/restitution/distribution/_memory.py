@@ -1,4 +1,4 @@
-"""How successive impacts of a particle depend on each other, with and without a condition."""
+"""Dependence of successive impacts of a particle on each other, with and without a condition."""
 
 import numpy as np
 import xarray as xr

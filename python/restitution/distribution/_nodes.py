@@ -1,4 +1,4 @@
-"""Where the nodes are: speeds, conditions at each of them, and edges of bins that follow the data."""
+"""Nodes of a distribution: speeds, conditions at each of them, and edges of bins that follow the data."""
 
 import math
 from collections.abc import Iterable, Iterator
@@ -21,7 +21,7 @@ _CELL, _GAP = 0.0025, 0.01
 
 
 class Density:
-    """How impacts are distributed over a range of speeds, and how many of them tell something new.
+    """Density of impacts over a range of speeds, and how many of them are independent.
 
     Parameters
     ----------
@@ -84,7 +84,7 @@ class Density:
 
 
 class Met:
-    """Which speeds of a range were met, to a quarter of a per cent.
+    """Speeds of a range at which impacts were seen, to a quarter of a per cent.
 
     Parameters
     ----------
@@ -110,7 +110,7 @@ class Met:
             del block  # before the next one is simulated
 
     def gaps(self) -> Floats:
-        """Give the ends of the ranges of a per cent and more that no impact had; shape (gaps, 2), in m/s."""
+        """Return the ends of ranges of at least 1 % without an impact; shape (gaps, 2), in m/s."""
         empty = np.concatenate([[0], self._number == 0, [0]])
         ends = np.flatnonzero(np.diff(empty)).reshape(-1, 2)
         wide = ends[np.diff(ends, axis=1)[:, 0] * _CELL >= _GAP]

@@ -71,13 +71,13 @@ class Pilot:
             before, share = share, min(1.0, share * IMPACTS / max(density.impacts, 1))
 
     def blocks(self) -> Iterator[Impacts]:
-        """Give what is kept, and simulate the rest again."""
+        """Yield the blocks that are kept, and simulate the rest again."""
         yield from self.held
         if self.kept < self.share:
             yield from self.ensemble.blocks(LEARNING, share=(self.kept, self.share))
 
     def whole(self, tell: Callable[[int], None], *, last: bool) -> Iterator[Impacts]:
-        """Give all impacts of the ensemble; the `last` time nothing is kept any longer."""
+        """Yield all impacts of the ensemble; the `last` time nothing is kept any longer."""
         held = self.held if last else self.held.copy()
         held.reverse()
         while held:

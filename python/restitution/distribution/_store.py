@@ -110,7 +110,7 @@ def _errors(counted: Counted, prefix: str, component: str) -> dict[str, Any]:
 def of_histograms(
     nodes: Floats, histograms: list[Histogram], impacts: Floats, attrs: dict[str, Any]
 ) -> xr.Dataset:
-    """Lay out what every learned distribution has."""
+    """Lay out the variables that every learned distribution has."""
     speed = {"long_name": "impact velocity", "units": "m s-1"}
     number = {"long_name": "impacts at the node, each counted as the mixture weights it", "units": "1"}
     return xr.Dataset(

@@ -32,7 +32,7 @@ class Histogram:
     cumulative: Floats
 
     def moments(self) -> tuple[float, Floats, Floats]:
-        """Give the mean, the central moments 1 to 4, and what each bin has of these, shape (4, bins).
+        """Return the mean, the central moments 1 to 4, and what each bin has of these, shape (4, bins).
 
         Within a bin the density is constant.
         """
@@ -43,7 +43,7 @@ class Histogram:
         return mean, np.array(powers) @ share, np.array(powers)
 
     def shape_influence(self) -> Floats:
-        """Give by how much one impact more in a bin moves skewness and kurtosis, times all; shape (2, bins).
+        """Return the change of skewness and kurtosis by one more impact in a bin, times all; shape (2, bins).
 
         To first order; 0 where there is no spread.
         """
@@ -143,13 +143,13 @@ class Table:
         return found.reshape(shape)
 
     def weights(self, v: Floats) -> tuple[Ints, Floats]:
-        """Give the node below each v and the weight of the one above; beyond the nodes the nearest alone."""
+        """Return the node below each v and the weight of the one above; beyond the nodes only the nearest."""
         left = np.clip(np.searchsorted(self.speeds, v, side="right") - 1, 0, self.speeds.size - 2)
         low, high = self.speeds[left], self.speeds[left + 1]
         return left, (np.clip(v, low, high) - low) / (high - low)
 
     def parts(self, v: Floats, z: Floats) -> list[tuple[Floats, Ints]]:
-        """Give the components that make up the mixture at v and z, each with its weight."""
+        """Return the components that make up the mixture at v and z, each with its weight."""
         left, right_share = self.weights(v)
         found = []
         for node, share in ((left, 1.0 - right_share), (left + 1, right_share)):
@@ -157,11 +157,11 @@ class Table:
         return found
 
     def mean(self, v: Floats, z: Floats) -> Floats:
-        """Mean at v and z."""
+        """Return the mean at v and z."""
         return np.asarray(sum(weight * self._moments[0][i] for weight, i in self.parts(v, z)))
 
     def central(self, v: Floats, z: Floats) -> tuple[Floats, Floats, Floats]:
-        """Second, third and fourth central moment at v and z."""
+        """Return the second, third and fourth central moment at v and z."""
         mean = self.mean(v, z)
         sums = [np.zeros(mean.shape) for _ in range(3)]
         for weight, i in self.parts(v, z):
@@ -175,7 +175,7 @@ class Table:
     def expectation(
         self, function: Callable[[Floats], Floats], v: Floats, z: Floats, low: float, high: float, order: int
     ) -> Floats:
-        """Mean of a function that is 0 outside [low, high]; exact where it is a polynomial of this order.
+        """Return the mean of a function that is 0 outside [low, high], exactly for polynomials of this order.
 
         Gauss's rule on the part of every bin that lies in [low, high].
         """
@@ -196,7 +196,7 @@ class Table:
         return np.where(np.isnan(v + z), np.nan, total)
 
     def entropy(self, v: float, z: float) -> float:
-        """Differential entropy of the mixture, whose density is constant between edges; NaN for NaN."""
+        """Return the differential entropy of the mixture, of constant density between edges; NaN for NaN."""
         if np.isnan(v + z):
             return np.nan
         components = {int(i) for weight, i in self.parts(np.float64(v), np.float64(z)) if weight > 0.0}  # type: ignore[arg-type]
@@ -230,12 +230,12 @@ class Table:
 
 
 def starts(sizes: Iterable[int]) -> Ints:
-    """Give where ranges of these sizes start that follow each other, and finally where the last one ends."""
+    """Return the starts of adjoining ranges of these sizes, and the end of the last one."""
     return np.concatenate([[0], np.cumsum(list(sizes))]).astype(np.int64)
 
 
 def _flat(values: Floats, shape: tuple[int, ...]) -> Floats:
-    """One value for all, or one for each element of `shape`."""
+    """Return one value for all, or one for each element of `shape`."""
     if values.size == 1:
         return values.ravel()
     return np.broadcast_to(values, shape).ravel()

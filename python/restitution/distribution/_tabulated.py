@@ -25,7 +25,7 @@ RandomState: TypeAlias = int | np.random.Generator | np.random.RandomState | Non
 
 
 class TabulatedDistribution:
-    """What `FluctuatingRestitution` evaluates and draws."""
+    """Tables that `FluctuatingRestitution` evaluates and draws from."""
 
     def __init__(self, data: xr.Dataset) -> None:
         _store.check(data)
@@ -40,7 +40,7 @@ class TabulatedDistribution:
         return hash((type(self), self.velocities, *sorted(self.data.sizes.values())))
 
     def __getstate__(self) -> dict[str, Any]:
-        """Leave behind what follows from the data."""
+        """Pickle without values that follow from the data."""
         return {"data": self.data}
 
     def __setstate__(self, state: dict[str, Any]) -> None:
@@ -60,88 +60,88 @@ class TabulatedDistribution:
         return gaps(self.data)
 
     def clamped(self) -> Self:
-        """Give the same distribution, with speeds and conditions beyond the learned taken as the nearest."""
+        """Return the same distribution, with speeds and conditions clamped to the learned range."""
         return type(self)(self.data.assign_attrs(beyond="clamp"))
 
     @property
     def given(self) -> Given | None:
-        """What `given` stands for in the methods."""
+        """Variable that the argument `given` of the methods stands for."""
         found: Given | None = self.data.attrs.get("given")
         return found
 
     def pdf(self, x: npt.ArrayLike, v: npt.ArrayLike, given: npt.ArrayLike | None = None) -> Values:
-        """Probability density at ε = x, at impact velocity v."""
+        """Return the probability density at ε = x, at impact velocity v."""
         return self._value("pdf", "x", x, v, given)
 
     def logpdf(self, x: npt.ArrayLike, v: npt.ArrayLike, given: npt.ArrayLike | None = None) -> Values:
-        """Logarithm of `pdf`; -inf outside the support."""
+        """Return the logarithm of `pdf`; -inf outside the support."""
         return _log(self.pdf(x, v, given))
 
     def cdf(self, x: npt.ArrayLike, v: npt.ArrayLike, given: npt.ArrayLike | None = None) -> Values:
-        """Probability that ε <= x."""
+        """Return the probability that ε <= x."""
         return self._value("cdf", "x", x, v, given)
 
     def logcdf(self, x: npt.ArrayLike, v: npt.ArrayLike, given: npt.ArrayLike | None = None) -> Values:
-        """Logarithm of `cdf`."""
+        """Return the logarithm of `cdf`."""
         return _log(self.cdf(x, v, given))
 
     def sf(self, x: npt.ArrayLike, v: npt.ArrayLike, given: npt.ArrayLike | None = None) -> Values:
-        """Probability that ε > x."""
+        """Return the probability that ε > x."""
         return (1.0 - np.asarray(self.cdf(x, v, given)))[()]
 
     def logsf(self, x: npt.ArrayLike, v: npt.ArrayLike, given: npt.ArrayLike | None = None) -> Values:
-        """Logarithm of `sf`."""
+        """Return the logarithm of `sf`."""
         return _log(self.sf(x, v, given))
 
     def ppf(self, q: npt.ArrayLike, v: npt.ArrayLike, given: npt.ArrayLike | None = None) -> Values:
-        """Quantile: the ε with ``cdf(ε, v) = q``; nan unless ``0 <= q <= 1``."""
+        """Return the quantile: the ε with ``cdf(ε, v) = q``; nan unless ``0 <= q <= 1``."""
         return self._value("ppf", "q", q, v, given)
 
     def isf(self, q: npt.ArrayLike, v: npt.ArrayLike, given: npt.ArrayLike | None = None) -> Values:
-        """Upper quantile: the ε with ``sf(ε, v) = q``; nan unless ``0 <= q <= 1``."""
+        """Return the upper quantile: the ε with ``sf(ε, v) = q``; nan unless ``0 <= q <= 1``."""
         return self.ppf(1.0 - numbers("q", q), v, given)
 
     def interval(
         self, confidence: npt.ArrayLike, v: npt.ArrayLike, given: npt.ArrayLike | None = None
     ) -> tuple[Values, Values]:
-        """Both ends of the range that leaves out equal probability on either side."""
+        """Return both ends of the range that leaves out equal probability on either side."""
         level = numbers("confidence", confidence)
         tail = 0.5 * (1.0 - np.where((level >= 0.0) & (level <= 1.0), level, np.nan))
         low, high = (self._value("ppf", "confidence", q, v, given) for q in (tail, 1.0 - tail))
         return low, high
 
     def median(self, v: npt.ArrayLike, given: npt.ArrayLike | None = None) -> Values:
-        """Median of ε."""
+        """Return the median of ε."""
         return self.ppf(0.5, v, given)
 
     def support(self, v: npt.ArrayLike, given: npt.ArrayLike | None = None) -> tuple[Values, Values]:
-        """Least and greatest ε."""
+        """Return the least and greatest ε."""
         return self.ppf(0.0, v, given), self.ppf(1.0, v, given)
 
     def mean(self, v: npt.ArrayLike, given: npt.ArrayLike | None = None) -> Values:
-        """Mean of ε."""
+        """Return the mean of ε."""
         table, speeds, z = self._at(v, given)
         return table.mean(speeds, z)[()]
 
     def var(self, v: npt.ArrayLike, given: npt.ArrayLike | None = None) -> Values:
-        """Variance of ε."""
+        """Return the variance of ε."""
         table, speeds, z = self._at(v, given)
         return table.central(speeds, z)[0][()]
 
     def std(self, v: npt.ArrayLike, given: npt.ArrayLike | None = None) -> Values:
-        """Square root of the variance of ε."""
+        """Return the square root of the variance of ε."""
         return np.sqrt(self.var(v, given))
 
     def skewness(self, v: npt.ArrayLike, given: npt.ArrayLike | None = None) -> Values:
-        """Skewness of ε, as in `restitution.statistics`."""
+        """Return the skewness of ε, as in `restitution.statistics`."""
         return self.stats(v, given, "s")[0]
 
     def kurtosis(self, v: npt.ArrayLike, given: npt.ArrayLike | None = None) -> Values:
-        """Kurtosis of ε, as in `restitution.statistics`: 3 for a Gaussian, 6 for symmetric flanks."""
+        """Return the kurtosis of ε, not its excess: 3 for a Gaussian, 6 for symmetric flanks."""
         return self.stats(v, given, "k")[0]
 
     def resolved(self, v: npt.ArrayLike, given: npt.ArrayLike | None = None) -> Values:
-        """Give the least probability of which something is known: that of one impact of those seen at v.
+        """Return the least probability that can be estimated at v: that of one of the impacts seen there.
 
         Tails that hold less are not in the histograms; `cdf` and `sf` are 0 there, and `rvs` does not draw
         them.
@@ -153,7 +153,7 @@ class TabulatedDistribution:
     def stats(
         self, v: npt.ArrayLike, given: npt.ArrayLike | None = None, moments: str = "mv"
     ) -> tuple[Values, ...]:
-        """Mean "m", variance "v", skewness "s" and kurtosis "k", in the order of ``moments``.
+        """Return the mean "m", variance "v", skewness "s" and kurtosis "k", in the order of ``moments``.
 
         The kurtosis is Pearson's, 3 for a Gaussian, as everywhere in this package; SciPy's is less by 3.
         """
@@ -166,7 +166,7 @@ class TabulatedDistribution:
         return tuple(found[letter][()] for letter in moments)
 
     def moment(self, order: int, v: npt.ArrayLike, given: npt.ArrayLike | None = None) -> Values:
-        """Mean of ε to the power ``order`` (a whole number >= 0)."""
+        """Return the mean of ε to the power ``order`` (a whole number >= 0)."""
         order = whole("order", order, 0, 1000)
         table, speeds, z = self._at(v, given)
         return table.expectation(lambda x: x**order, speeds, z, -np.inf, np.inf, order)[()]
@@ -180,7 +180,7 @@ class TabulatedDistribution:
         ub: float | None = None,
         conditional: bool = False,
     ) -> Values:
-        """Mean of ``func(ε)``, of ε itself if that is None.
+        """Return the mean of ``func(ε)``, of ε itself if that is None.
 
         Gauss's rule with eight points in every bin of the histograms: exact for polynomials of order 15.
 
@@ -208,7 +208,7 @@ class TabulatedDistribution:
         return found[()]
 
     def entropy(self, v: npt.ArrayLike, given: npt.ArrayLike | None = None) -> Values:
-        """Differential entropy, -∫ p ln p dε."""
+        """Return the differential entropy, -∫ p ln p dε."""
         table, speeds, z = self._at(v, given)
         return np.asarray(np.vectorize(table.entropy, otypes=[np.float64])(speeds, z))[()]
 
@@ -268,7 +268,7 @@ class TabulatedDistribution:
         return table.value(what, points, speeds, z)[()]
 
     def _at(self, v: npt.ArrayLike, given: npt.ArrayLike | None) -> tuple[Table, Floats, Floats]:
-        """Give the table to use, with speeds and conditions inside its range or clamped to it."""
+        """Return the table to use, with speeds and conditions inside its range or clamped to it."""
         speeds = numbers("v", v, "m s-1")
         low, high = self.velocities
         if self._clamps:
@@ -325,12 +325,12 @@ def _log(values: Values) -> Values:
 
 
 def numbers(name: str, values: npt.ArrayLike, unit: str = "1") -> Floats:
-    """Give real numbers as an array; nan is one."""
+    """Return real numbers as an array; nan is one."""
     return reals(name, values, "a number or an array of numbers", unit=unit, finite=False)
 
 
 def _reaches(own: tuple[int, ...], larger: tuple[int, ...]) -> bool:
-    """Whether an array of the first shape can be broadcast to the second, of which NumPy may have none."""
+    """Test whether the first shape broadcasts to the second, which may be too large for NumPy."""
     last = larger[len(larger) - len(own) :]
     return len(own) <= len(larger) and all(a in (1, b) for a, b in zip(own, last, strict=True))
 

@@ -1,4 +1,4 @@
-"""What the exported sources have in common: the comment at the top, and names."""
+"""Text common to the exported sources: the comment at the top, and names."""
 
 import re
 from collections.abc import Iterator, Mapping
@@ -66,14 +66,14 @@ def about(data: xr.Dataset) -> Iterator[str]:
 
 
 def gaps(data: xr.Dataset) -> Floats:
-    """Give the ends of the ranges of speed between which no impact was seen, in m/s; shape (gaps, 2)."""
+    """Return the ends of the ranges of speed between which no impact was seen, in m/s; shape (gaps, 2)."""
     if "gap_lowest" not in data:
         return np.empty((0, 2))
     return np.stack([data[f"gap_{name}"].to_numpy() for name in ("lowest", "highest")], axis=1)
 
 
 def image_format(path: Path) -> str:
-    """Give the format of a figure by the end of its name."""
+    """Return the format of a figure by the end of its name."""
     if path.suffix.lower() not in _IMAGES:
         raise ParameterError(wrong("figure", path.name, f"a name that ends in {', '.join(_IMAGES)}"))
     return path.suffix[1:].lower()
@@ -91,7 +91,7 @@ def _ascii(value: object) -> str:
 
 
 def _short(value: object) -> object:
-    """Give a long list by its number, its least and its greatest."""
+    """Abbreviate a long list to its number of values, the least and the greatest."""
     numbers = np.asarray(value)
     if numbers.size <= _FEW or numbers.dtype.kind not in "fiu":
         return value

@@ -39,7 +39,7 @@ def origin(found: int, particles: int, batches: int) -> str:
 
 
 def standard_errors(parts: Sequence[dict[str, FloatArray]]) -> dict[str, Any]:
-    """Give the standard errors of the moments in each row, by the jackknife over batches of particles.
+    """Return the standard errors of the moments in each row, by the jackknife over batches of particles.
 
     The impacts of a particle are correlated, particles are not. With θ_(b) a moment of all batches but b the
     error is √((n - 1)/n Σ_b (θ_(b) - θ̄)²) (B. Efron, The Jackknife, the Bootstrap and Other Resampling Plans,

@@ -30,7 +30,7 @@ _MOMENTS = {
 
 
 def _unit(name: str) -> str | None:
-    """Give the unit of bins by their name; None of the edges of a lattice that is drawn."""
+    """Return the unit of bins by their name; None of the edges of a lattice that is drawn."""
     if name in ("x_edges", "y_edges"):
         return None
     return "m s-1" if "velocity" in name else "1"
@@ -63,13 +63,13 @@ def _check_bins(name: str, edges: FloatArray, good: npt.NDArray[np.bool_], allow
 
 
 def _wide_enough(widths: FloatArray) -> npt.NDArray[np.bool_]:
-    """Tell if the density of bins, by which a number finds its own, is finite."""
+    """Test whether the density of bins, by which a number finds its own, is finite."""
     with np.errstate(divide="ignore", over="ignore"):
         return np.isfinite(1.0 / widths)
 
 
 def edges_from(bins: npt.ArrayLike | None, span: npt.ArrayLike | None, name: str) -> npt.ArrayLike | None:
-    """Give the edges of bins that are a number with a range, as `numpy.histogram` takes them; else `bins`."""
+    """Return the edges of a number of bins in a range, as `numpy.histogram` does; else `bins`."""
     kind = name.removesuffix("_bins")
     # To NumPy the type of a duration is one of whole numbers.
     if isinstance(bins, bool | np.timedelta64) or not isinstance(bins, int | np.integer):
@@ -96,7 +96,7 @@ def edges_from(bins: npt.ArrayLike | None, span: npt.ArrayLike | None, name: str
 
 
 def all_edges_from(**asked: tuple[npt.ArrayLike | None, npt.ArrayLike | None]) -> list[Any]:
-    """Give `edges_from` for bins and ranges by the names of the bins; one error has all that is wrong."""
+    """Return `edges_from` for bins and ranges by the names of the bins; one error has all that is wrong."""
     found: list[Any] = []
     problems: list[Problem] = []
     for name, (bins, span) in asked.items():
@@ -110,7 +110,7 @@ def all_edges_from(**asked: tuple[npt.ArrayLike | None, npt.ArrayLike | None]) -
 
 
 def centres(edges: FloatArray) -> FloatArray:
-    """Give the middle of each bin."""
+    """Return the middle of each bin."""
     return 0.5 * (edges[:-1] + edges[1:])
 
 

@@ -118,7 +118,7 @@ def compare(
 def _finished(
     runs: list[xr.Dataset], begun: xr.Dataset, bodies: Mapping[str, Body], laws: Mapping[str, Law]
 ) -> xr.Dataset:
-    """Put the finished runs side by side, with nothing in the places of the others."""
+    """Put the finished runs side by side, with blanks in the places of the others."""
     example = runs[0] if runs else begun  # what had only begun may lack standard errors
     empty = xr.zeros_like(example)
     for name, variable in example.data_vars.items():
@@ -138,7 +138,7 @@ def _finished(
 
 
 def _named(what: str, given: Mapping[str, T] | Iterable[T], kind: type[Any]) -> dict[str, T]:
-    """Give every body or law its name."""
+    """Name every body or law."""
     allowed = f"a dict or list of {kind.__name__}"
     if isinstance(given, Mapping):
         named = dict(given)
@@ -211,7 +211,7 @@ def _side_by_side(runs: list[xr.Dataset], bodies: Mapping[str, Body], laws: Mapp
 
 
 def _parameters(axis: str, objects: Iterable[Parameters]) -> dict[str, Any]:
-    """Give the parameters in which objects differ, each as a coordinate: numbers as numbers, NaN for none."""
+    """Return the parameters in which objects differ as coordinates: numbers as numbers, NaN for none."""
     rows: list[dict[str, Any]] = []
     units: dict[str, str] = {}
     for one in objects:
@@ -268,5 +268,5 @@ _UNITS |= {unit: unit for unit in ("m", "s", "rad", "kg", "Pa")}
 
 
 def unit_of(kind: type[Parameters], name: str) -> str:
-    """Give the unit of a parameter as the CF conventions write it; "1" of pure numbers."""
+    """Return the unit of a parameter as the CF conventions write it; "1" of pure numbers."""
     return _UNITS.get((kind.model_fields[name].description or "").partition(";")[0], "1")

@@ -54,7 +54,7 @@ def version_here() -> str:
 
 
 def attributes(run: Run, title: str) -> dict[str, Any]:
-    """Give what every result carries: title, conventions, version, all parameters and the seed."""
+    """Return the attributes of every result: title, conventions, version, all parameters and the seed."""
     return {
         "title": title,
         "Conventions": "CF-1.11",

@@ -42,7 +42,7 @@ LEDGER = ("all_impacts", "energy_created_impacts", "energy_created_share", "larg
 
 
 def ledger(impacts: int, created: int, largest: float) -> dict[str, Any]:
-    """Give the attributes that say how many impacts created energy, their share, and the largest factor.
+    """Return the attributes that say how many impacts created energy, their share, and the largest factor.
 
     Parameters
     ----------
@@ -67,7 +67,7 @@ def ledger_of(energy_ratio: FloatArray) -> dict[str, Any]:
 
 
 def by_row(row: str, created: IntArray, largest: FloatArray) -> dict[str, Any]:
-    """Give the variables on energy of each row of statistics.
+    """Return the variables on energy of each row of statistics.
 
     Parameters
     ----------
@@ -115,7 +115,7 @@ def factor(largest: float) -> str:
 
 @contextmanager
 def reported_elsewhere() -> Iterator[None]:
-    """Let no `EnergyWarning` through, for what reports the created energy itself; also a decorator."""
+    """Silence `EnergyWarning` for code that reports the created energy itself; also a decorator."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", EnergyWarning)
         yield

@@ -22,7 +22,7 @@ _UNITS = {
     "velocity_edges",
     "rad s-1": "release_spin angular_velocity_before angular_velocity_after",
 }
-"""Which variables of Datasets are in these units; all others are pure numbers."""
+"""Variables of Datasets by unit; all others are pure numbers."""
 
 
 def variables(
@@ -141,7 +141,7 @@ def released_from(name: str, data: xr.Dataset) -> FloatArray:
 
 
 def check_counts(name: str, counts: FloatArray) -> None:
-    """Name the first that is no whole number, or is so large that doubles do not count."""
+    """Name the first value that is no whole number, or is too large for doubles to count exactly."""
     good = (counts >= 0) & (counts <= 2.0**53) & (counts == np.rint(counts))
     check_each(name, counts, good, "a whole number in [0, 2**53]")
 

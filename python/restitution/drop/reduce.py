@@ -146,7 +146,7 @@ def reduce(
 
 
 def standard_errors(data: xr.Dataset, velocity_bins: npt.ArrayLike, *, block: int = 1024) -> xr.Dataset:
-    """Give cluster-robust standard errors of the mean and variance of restitution in each velocity bin.
+    """Return cluster-robust standard errors of the mean and variance of restitution in each velocity bin.
 
     Impacts of one particle are correlated, those of different particles are not, so each particle is one
     draw. The errors are linearised: with ψ the influence of one impact (ε − mean, or (ε − mean)² −
@@ -216,7 +216,7 @@ def standard_errors(data: xr.Dataset, velocity_bins: npt.ArrayLike, *, block: in
 
 
 def _without_ledger(data: xr.Dataset) -> dict[Hashable, Any]:
-    """Give the attributes of impacts but those on energy, which are of the whole run, not of a part of it."""
+    """Return the attributes of impacts without those on energy, which belong to the whole run."""
     return {name: value for name, value in data.attrs.items() if name not in LEDGER}
 
 
@@ -244,7 +244,7 @@ def _mean(values: FloatArray, bins: IntArray, size: int) -> FloatArray:
 
 
 def _moments(values: FloatArray, bins: IntArray, size: int) -> dict[str, FloatArray]:
-    """Moments about the mean of each bin, in two passes so that nothing cancels."""
+    """Return the moments about the mean of each bin, in two passes so that nothing cancels."""
     empty = np.bincount(bins, minlength=size) == 0
     minimum, maximum = np.full(size, np.inf), np.full(size, -np.inf)
     np.minimum.at(minimum, bins, values)

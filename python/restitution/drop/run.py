@@ -240,7 +240,7 @@ class Run(Parameters):
         return self.spin if isinstance(self.spin, np.ndarray) else None
 
     def of(self, rows: npt.NDArray[np.int64]) -> Self:
-        """Give the run of these of its particles; what is drawn for them depends on their new numbers."""
+        """Return the run of these of its particles; what is drawn for them depends on their new numbers."""
         changed: dict[str, Any] = {"particles": rows.size}
         if self.angles is not None:
             changed["orientation"] = self.orientation[rows]
@@ -249,7 +249,7 @@ class Run(Parameters):
         return self.model_copy(update=changed)
 
     def fall_speed(self, drop: float) -> float:
-        """Give the normal velocity in m/s after the centre of mass has come nearer by `drop`, in m."""
+        """Return the normal velocity in m/s after the centre of mass has come nearer by `drop`, in m."""
         fall = 2.0 * self.gravity * math.cos(self.incline) * drop
         return math.sqrt(fall + self.release_velocity[2] ** 2)
 
@@ -266,7 +266,7 @@ class Run(Parameters):
         return {name: compiled.get(name, getattr(self, name)) for name in type(self).model_fields}
 
     def attributes(self) -> dict[str, Any]:
-        """Every parameter under its own name, as plain values that a netCDF file can hold."""
+        """Return every parameter under its own name, as plain values that a netCDF file can hold."""
         written = {
             "body": {"body": type(self.body).__name__, **self.body.model_dump()},
             "law": {"law": type(self.law).__name__, **self.law.attributes()},

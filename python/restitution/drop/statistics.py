@@ -140,7 +140,7 @@ def statistics(
 
 
 def _moments(edges: Edges, table: Table) -> dict[str, Any]:
-    """Take the rows that a result has, and of them what standard errors are made of."""
+    """Select the rows of the result, and the columns from which standard errors follow."""
     inner = slice(None) if edges["velocity"] is None else slice(1, -1)
     return {name: table[key][inner] for name, key in (MOMENTS | {"number": "number"}).items()}
 

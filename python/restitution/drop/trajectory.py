@@ -43,7 +43,7 @@ def with_positions(data: xr.Dataset) -> xr.Dataset:
 
 
 def trajectory(data: xr.Dataset, particle: int, times: npt.ArrayLike) -> xr.Dataset:
-    """Give the exact motion of a particle at any times, from its release to its last recorded impact.
+    """Return the exact motion of a particle at any times, from its release to its last recorded impact.
 
     Between impacts the centre of mass moves on a parabola, and a free body of revolution turns about its
     angular momentum **Λ** at the constant rate Λ/J', its moment of inertia across the axis being J'; the
@@ -152,7 +152,7 @@ def _check(data: xr.Dataset) -> None:
 
 
 def _slender(data: xr.Dataset) -> float:
-    """Give 1 - J/J'; of no body J is above 2J'."""
+    """Return 1 - J/J'; of no body J is above 2J'."""
     across = attribute("data", data, "transverse_inertia", "a finite number > 0", lambda j: 0.0 < j < np.inf)
     most = 2.0 * across * (1.0 + 1e-9)  # rounding
     allowed = f"a finite number in (0, 2 transverse_inertia = {2.0 * across:g}]"
@@ -160,12 +160,12 @@ def _slender(data: xr.Dataset) -> float:
 
 
 def _heights(data: xr.Dataset) -> tuple[str, FloatArray]:
-    """Give every particle its height of release."""
+    """Return the height of release of every particle."""
     return "particle", np.broadcast_to(released_from("data", data), data.sizes["particle"])
 
 
 def times_of(time: FloatArray) -> FloatArray:
-    """Take the times of the impacts of a particle that happened: NaN comes after the last one only."""
+    """Return the times of a particle's impacts: NaN comes only after the last one."""
     happened = time[: np.count_nonzero(~np.isnan(time))]
     allowed = "a finite time >= 0, not before the impact before it"
     check_each("data.time", happened, np.isfinite(happened), allowed)
@@ -174,12 +174,12 @@ def times_of(time: FloatArray) -> FloatArray:
 
 
 def _gravity(gravity: float, incline: float) -> tuple[float, float, float]:
-    """Give the acceleration of free flight in the frame of the plane."""
+    """Return the acceleration of free flight in the frame of the plane."""
     return gravity * float(np.sin(incline)), 0.0, -gravity * float(np.cos(incline))
 
 
 def _begin(one: xr.Dataset, impacts: int) -> dict[str, FloatArray]:
-    """Give the states from which the flights begin: the release, then what each impact left."""
+    """Return the states from which the flights begin: the release, then the state after each impact."""
     angle = float(one["release_angle"])
     azimuth = float(one["release_azimuth"]) if "release_azimuth" in one else 0.0
     level = np.sin(angle)
@@ -198,7 +198,7 @@ def _begin(one: xr.Dataset, impacts: int) -> dict[str, FloatArray]:
 
 
 def _states(one: xr.Dataset, name: str) -> FloatArray:
-    """Give a variable of all impacts, a row each."""
+    """Return a variable of all impacts, a row each."""
     values: FloatArray = one[name].transpose("impact", ...).to_numpy()
     return values
 

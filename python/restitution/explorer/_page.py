@@ -25,12 +25,12 @@ _LAWS = {
 
 
 def page() -> str:
-    """Give the page: one HTML file that needs nothing else."""
+    """Return the page: one HTML file that needs nothing else."""
     return files("restitution.explorer").joinpath("explorer.html").read_text(encoding="utf-8")
 
 
 def link(run: Run) -> str:
-    """Give what follows # in the address of the page that shows a run.
+    """Return the part after # in the address of the page that shows a run.
 
     Parameters
     ----------

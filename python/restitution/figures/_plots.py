@@ -255,7 +255,7 @@ def _heights(
     gravity: float,
     start: float,
 ) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.float64]]:
-    """Give times and heights of the centre of mass, forty to a flight, to the end of the last one."""
+    """Return times and heights of the centre of mass, forty to a flight, to the end of the last one."""
     begin = np.concatenate([[0.0], time[:-1]])
     duration = time - begin
     upward = np.concatenate([gravity * duration[:1] - fall[:1], rise[:-1]])
@@ -283,7 +283,7 @@ def _moment(axes: Axes, found: xr.Dataset, name: str, **style: Any) -> None:
 
 
 def _lines(found: xr.Dataset | Mapping[str, xr.Dataset]) -> dict[str, xr.Dataset]:
-    """Give every set of statistics its name."""
+    """Name every set of statistics."""
     if isinstance(found, xr.DataArray) or not isinstance(found, Mapping) or not found:
         raise ParameterError(wrong("found", found, "a Dataset of restitution.statistics, or several"))
     if not isinstance(found, xr.Dataset):
@@ -304,7 +304,7 @@ def _lines(found: xr.Dataset | Mapping[str, xr.Dataset]) -> dict[str, xr.Dataset
 
 
 def _bin_density(found: xr.Dataset, name: str, v: float) -> tuple[Any, Any, str]:
-    """Give edges and density of the velocity bin that holds v, and the bin in words."""
+    """Return edges and density of the velocity bin that holds v, and the bin in words."""
     found = counted("found", found, ("restitution_count", "velocity_edges", "restitution_edges", "number"))
     ends = found["velocity_edges"].to_numpy()
     row = int(np.searchsorted(ends, v, side="right")) - 1

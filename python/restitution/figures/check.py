@@ -12,28 +12,28 @@ from restitution._internal.parameters import ParameterError, Problem, wrong
 
 
 def panel(name: str, value: Any) -> Axes:
-    """Take a panel."""
+    """Check a panel."""
     if not isinstance(value, Axes):
         raise ParameterError(wrong(name, value, "a panel, matplotlib.axes.Axes"))
     return value
 
 
 def figure(name: str, value: Any) -> Figure:
-    """Take a figure."""
+    """Check a figure."""
     if not isinstance(value, Figure):
         raise ParameterError(wrong(name, value, "a matplotlib.figure.Figure"))
     return value
 
 
 def colours(name: str, value: Any) -> ScalarMappable:
-    """Take what a colour bar is for."""
+    """Check the argument that a colour bar belongs to."""
     if not isinstance(value, ScalarMappable) or value.get_array() is None:
         raise ParameterError(wrong(name, value, "what `population` returns"))
     return value
 
 
 def text(name: str, value: Any) -> str:
-    """Take words, as files can hold them: a lone surrogate is half a character."""
+    """Check a text that files can hold: a lone surrogate is half a character."""
     if not isinstance(value, str) or any("\ud800" <= one <= "\udfff" for one in value):
         raise ParameterError(wrong(name, value, "text, without lone surrogates"))
     return value

@@ -77,18 +77,18 @@ class Bootstrap(Content):
         return {name: float(np.std(x, ddof=1)) if np.ptp(x) else 0.0 for name, x in drawn.items()}
 
     def draws(self, name: str) -> Array:
-        """Give a parameter of all resampled fits, shape (resamples,)."""
+        """Return a parameter of all resampled fits, shape (resamples,)."""
         if not isinstance(name, str) or name not in self.fit.parameters:
             raise ParameterError(wrong("name", name, " or ".join(map(repr, self.fit.parameters))))
         return np.array([one.parameters[name] for one in self.resampled])
 
     def interval(self, name: str, confidence: float = 0.95) -> tuple[float, float]:
-        """Percentile interval of a parameter."""
+        """Return the percentile interval of a parameter."""
         low, high = np.quantile(self.draws(name), _levels(confidence))
         return float(low), float(high)
 
     def band(self, x: ArrayLike, confidence: float = 0.95) -> tuple[Array, Array]:
-        """Pointwise percentile band of the fitted density at `x`; two arrays of its shape."""
+        """Return the pointwise percentile band of the fitted density at `x`; two arrays of its shape."""
         low, high = np.quantile([one.pdf(x) for one in self.resampled], _levels(confidence), axis=0)
         return low, high
 
@@ -130,7 +130,7 @@ def bootstrap(
     seed: int = 1,
     **keywords: Any,
 ) -> Bootstrap:
-    """Fit, and fit again what redrawn particles give.
+    """Fit the samples, and again the samples of redrawn particles.
 
     Parameters
     ----------

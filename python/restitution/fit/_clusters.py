@@ -42,7 +42,7 @@ class Clustered:
         return int(self.start.size - 1)
 
     def pool(self) -> Array:
-        """All samples."""
+        """Return all samples."""
         return self.samples
 
     def redrawn(self, random: np.random.Generator) -> Array:
@@ -81,7 +81,7 @@ class Tallied:
         return len(self.counts)
 
     def pool(self) -> Counts:
-        """All counts together."""
+        """Return the counts of all particles together."""
         below, *inside, above = self.counts.sum(axis=0)
         return Counts(self.edges, np.array(inside), int(below), int(above))
 
@@ -156,7 +156,7 @@ def _labels(clusters: ArrayLike) -> NDArray[np.int64]:
 
 
 def specified(family: Callable[..., Fit], keywords: dict[str, Any]) -> Callable[[Any], Fit]:
-    """Give a family with keywords of its own, such as the location of the cusp."""
+    """Return a family with keywords of its own, such as the location of the cusp."""
     return partial(family, **keywords) if callable(family) and keywords else family
 
 
@@ -179,7 +179,7 @@ def refitted(
 
 
 def fitted_by(family: Callable[[Any], Fit], samples: Array | Counts) -> Fit:
-    """Fit, if `family` does that."""
+    """Fit by `family`, if it can."""
     if not callable(family):
         raise ParameterError(wrong("family", family, "a function from samples to a Fit"))
     try:

@@ -28,7 +28,7 @@ _IMPOSSIBLE = 1e-300
 
 @dataclass(frozen=True, eq=False)
 class Counts(Content):
-    """How many samples are in each bin; taken by every fit in the place of the samples.
+    """Number of samples in each bin, which every fit accepts in place of the samples.
 
     Parameters
     ----------
@@ -113,11 +113,11 @@ class Counts(Content):
         return np.concatenate([[self.below], self.count, [self.above]])
 
     def cumulative(self) -> Array:
-        """Share of the samples below each edge, shape (bins + 1,)."""
+        """Return the share of the samples below each edge, shape (bins + 1,)."""
         return np.asarray(np.cumsum(self.all)[:-1] / self.total)
 
     def logshare(self, distribution: Any) -> Array:
-        """Logarithm of the probability of each bin, the open ones first and last, shape (bins + 2,)."""
+        """Return ln of the probability of each bin, the open ones first and last, shape (bins + 2,)."""
         if not all(callable(getattr(distribution, name, None)) for name in ("cdf", "sf")):
             allowed = "a distribution, with methods cdf and sf"
             raise ParameterError(wrong("distribution", distribution, allowed))
@@ -128,11 +128,11 @@ class Counts(Content):
         return np.asarray(np.log(np.maximum(share, _IMPOSSIBLE)))
 
     def loglikelihood(self, distribution: Any) -> float:
-        """Logarithm of the probability of the counts, less what does not depend on the distribution."""
+        """Return ln of the probability of the counts, without terms independent of the distribution."""
         return float(self.all @ self.logshare(distribution))
 
     def quantile(self, q: Array | list[float]) -> Array:
-        """Quantiles, linear inside the bins, at the outermost edges for the open ones; shape of `q`."""
+        """Return quantiles, linear inside the bins, the outermost edges for the open ones; shape of `q`."""
         return np.asarray(
             np.interp(reals("q", q, "probabilities", finite=False), self.cumulative(), self.edges)
         )

@@ -1,4 +1,4 @@
-"""How far successive impacts are from independent: autocorrelation, alternation between the spheres, runs."""
+"""Dependence of successive impacts: autocorrelation, alternation between the spheres, runs of one sphere."""
 
 from __future__ import annotations
 

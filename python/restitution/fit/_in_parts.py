@@ -23,7 +23,7 @@ def values(function: Callable[[Array], Any], x: Array) -> Array:
 
 
 def draws(draw: Callable[[int], Any], number: int) -> Array:
-    """Call what gives so many numbers, drawn one after the other; shape (number,)."""
+    """Draw in parts with a function that takes the number of draws; shape (number,)."""
     if number <= PART:
         return np.asarray(draw(number))
     found = np.empty(number)

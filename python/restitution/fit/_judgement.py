@@ -1,4 +1,4 @@
-"""Whether a fit is good, and whether it is better than another one."""
+"""Goodness of a fit, and comparison of two fits to the same samples."""
 
 from __future__ import annotations
 

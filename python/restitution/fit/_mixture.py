@@ -51,26 +51,26 @@ class Mixture(Content):
         return np.asarray(self.share * one + (1.0 - self.share) * other)
 
     def pdf(self, x: ArrayLike) -> Array:
-        """Probability density."""
+        """Return the probability density."""
         return self._both("pdf", x)
 
     def logpdf(self, x: ArrayLike) -> Array:
-        """Logarithm of the density, also where that underflows."""
+        """Return the logarithm of the density, also where that underflows."""
         logs = np.array([self.first.logpdf(x), self.second.logpdf(x)])
         with np.errstate(divide="ignore"):
             weights = np.log([self.share, 1.0 - self.share]).reshape(2, *[1] * (logs.ndim - 1))
         return np.asarray(special.logsumexp(logs + weights, axis=0))
 
     def cdf(self, x: ArrayLike) -> Array:
-        """Probability of a value up to x."""
+        """Return the probability of a value up to x."""
         return self._both("cdf", x)
 
     def sf(self, x: ArrayLike) -> Array:
-        """Probability of a larger value."""
+        """Return the probability of a larger value."""
         return self._both("sf", x)
 
     def ppf(self, q: ArrayLike) -> Array:
-        """Quantile, by bisection between the quantiles of the parts."""
+        """Return the quantile, by bisection between the quantiles of the parts."""
         levels = np.asarray(q, dtype=np.float64)
         ends = np.array([self.first.ppf(levels), self.second.ppf(levels)])
         low, high = ends.min(axis=0), ends.max(axis=0)
@@ -81,7 +81,7 @@ class Mixture(Content):
         return np.asarray(0.5 * (low + high))
 
     def rvs(self, size: int, random_state: np.random.Generator) -> Array:
-        """Independent draws, shape (size,)."""
+        """Draw independent values, shape (size,)."""
         chosen = draws(random_state.random, size) < self.share
         first, second = (drawn(part, size, random_state) for part in (self.first, self.second))
         return np.asarray(np.where(chosen, first, second))
@@ -137,7 +137,7 @@ def _spread(x: Array, location: float) -> float:
 
 
 def _search(x: Array, spread: float, location: float) -> Array:
-    """Point of the largest likelihood: logit of the share, ln of the widths, the Gaussian's mean."""
+    """Maximise the likelihood: logit of the share, ln of the widths, the Gaussian's mean."""
     start = asymmetric_laplace(x, location).parameters
     widths = [log(max(start[side] / spread, 10 * _NARROWEST)) for side in ("above", "below")]
     centre = (float(np.mean(x)) - location) / spread
@@ -152,7 +152,7 @@ def _search(x: Array, spread: float, location: float) -> Array:
 
 
 def _cost(point: Array, y: Array) -> tuple[float, Array]:
-    """Negative mean log-likelihood of y, distances from the cusp over the spread, and its gradient."""
+    """Return -mean ln p of y, distances from the cusp over the spread, and its gradient."""
     share = special.expit(point[0])
     a, b, deviation = np.exp(point[[1, 2, 4]])
     up, down = np.maximum(y, 0.0), np.maximum(-y, 0.0)

@@ -1,4 +1,4 @@
-"""What every fit returns, and the check of what every fit is given."""
+"""Result of a fit, and the check of the samples that a fit is given."""
 
 from __future__ import annotations
 
@@ -71,7 +71,7 @@ class Fit(Content):
 
     @property
     def limit(self) -> str:
-        """What ran to the end of its range, where a simpler family fits as well; empty if nothing did."""
+        """Parameters at an end of their range, where a simpler family fits as well; empty if none is."""
         found, ends = self.parameters, []
         sides = [found[name] for name in ("above", "below") if name in found]
         if "share" not in found and sides and min(sides) * self.samples < _BEYOND * sum(sides):
@@ -123,15 +123,15 @@ class Fit(Content):
         return self.free_parameters * log(self.samples) - 2 * self.loglikelihood
 
     def pdf(self, x: ArrayLike) -> Array:
-        """Probability density at `x`, in 1/unit of the samples; shape of `x`."""
+        """Return the probability density at `x`, in 1/unit of the samples; shape of `x`."""
         return self._at(self.distribution.pdf, x)
 
     def logpdf(self, x: ArrayLike) -> Array:
-        """Natural logarithm of the density at `x`; shape of `x`."""
+        """Return the natural logarithm of the density at `x`; shape of `x`."""
         return self._at(self.distribution.logpdf, x)
 
     def cdf(self, x: ArrayLike) -> Array:
-        """Probability of a value up to `x`; shape of `x`."""
+        """Return the probability of a value up to `x`; shape of `x`."""
         return self._at(self.distribution.cdf, x)
 
     def _at(self, function: Any, x: ArrayLike) -> Array:
@@ -140,7 +140,7 @@ class Fit(Content):
             return in_parts.values(function, points)
 
     def rvs(self, size: int, seed: int | np.random.Generator = 1) -> Array:
-        """`size` independent draws, shape (size,)."""
+        """Draw `size` independent values, shape (size,)."""
         number, random = whole("size", size, 0, _MOST_DRAWS), generator("seed", seed)
         if hasattr(self.distribution, "dist"):  # SciPy's own
             check_size("size", size, number, 8, "draws")

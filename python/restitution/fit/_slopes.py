@@ -168,7 +168,7 @@ class Slopes(Content):
         )
 
     def fails_below(self, distance: float = 0.03, high: float = np.inf) -> float:
-        """Give the speed above which no fit has a Kolmogorov–Smirnov distance larger than `distance`.
+        """Return the speed above which no fit has a Kolmogorov–Smirnov distance larger than `distance`.
 
         It is the lower edge of a velocity bin, the last one for which this holds; nan if even the fastest bin
         is farther away. Any form fails a test of significance if the samples are many enough; a distance is

@@ -1,4 +1,4 @@
-"""What may be fitted: an array, binned counts, recorded impacts or statistics at an impact velocity."""
+"""Samples for a fit: from an array, binned counts, recorded impacts or statistics at an impact velocity."""
 
 from collections.abc import Sequence
 from typing import Any, TypeAlias
@@ -21,7 +21,7 @@ Parts: TypeAlias = Samples | Sequence[Counts] | Sequence[xr.Dataset]
 
 
 def taken(samples: Samples, velocity: Window | None, location: float | None = None) -> Array | Counts:
-    """Give what a family fits: a flat array or counts.
+    """Return the samples that a family fits: a flat array or counts.
 
     Parameters
     ----------

@@ -75,7 +75,7 @@ class Law(Parameters):
         return self.normal
 
     def attributes(self) -> dict[str, Any]:
-        """Every parameter under its own name, those of a material after `normal_`, as plain values."""
+        """Return every parameter under its own name, those of a material after `normal_`, as plain values."""
         material = self.normal
         if not isinstance(material, Material):
             return self.model_dump()

@@ -30,7 +30,7 @@ class Material(Parameters):
     """A normal coefficient of restitution ε_n that depends on the speed; call it to see it."""
 
     def __call__(self, speed: "npt.ArrayLike") -> "Floats":
-        """ε_n at normal contact speeds.
+        """Return ε_n at normal contact speeds.
 
         Parameters
         ----------
@@ -272,7 +272,7 @@ def tabulated(name: str, function: Callable[[float], float]) -> Tabulated:
 def _points(
     name: str, function: Callable[[float], float], fastest: float, tolerance: float
 ) -> tuple[list[float], list[float]]:
-    """Give speeds, and the function there; see `Tabulated.from_function`."""
+    """Return speeds, and the function there; see `Tabulated.from_function`."""
     if not callable(function):
         raise ParameterError(wrong(name, function, "a function of the speed"))
     fastest = real(

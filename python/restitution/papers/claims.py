@@ -37,7 +37,7 @@ class Measurement:
 
 
 class Finding(NamedTuple):
-    """What became of a claim."""
+    """Outcome of a claim: the numbers measured and the verdict that follows from them."""
 
     measured: tuple[Measurement, ...]
     verdict: Verdict

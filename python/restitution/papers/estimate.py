@@ -25,24 +25,24 @@ class Estimate:
         return np.sqrt(np.diag(self.covariance))
 
     def take(self, chosen: Sequence[int] | slice) -> "Estimate":
-        """Only some of the quantities."""
+        """Select some of the quantities."""
         return Estimate(self.value[chosen], self.covariance[chosen][:, chosen], self.number[chosen])
 
     def steps(self) -> Array:
-        """Give value[i+1] − value[i] in standard errors of that difference, shape (k−1,)."""
+        """Return value[i+1] − value[i] in standard errors of that difference, shape (k−1,)."""
         variance = np.diag(self.covariance)
         return _in_errors(np.diff(self.value), variance[1:] + variance[:-1] - 2 * np.diag(self.covariance, 1))
 
     def span(self) -> float:
-        """Last value − first value, in standard errors of that difference."""
+        """Return last value − first value, in standard errors of that difference."""
         return float(self.take([0, -1]).steps()[0])
 
     def beyond(self, reference: float) -> Array:
-        """Give value − `reference` in standard errors, shape (k,)."""
+        """Return value − `reference` in standard errors, shape (k,)."""
         return _in_errors(self.value - reference, np.diag(self.covariance))
 
     def apart(self, other: "Estimate") -> Array:
-        """Difference self − other of two independent runs, in its standard errors; shape (k,)."""
+        """Return the difference self − other of two independent runs, in its standard errors; shape (k,)."""
         return _in_errors(self.value - other.value, np.diag(self.covariance) + np.diag(other.covariance))
 
 
@@ -68,15 +68,15 @@ class Impacts:
     particles: int
 
     def of(self, values: xr.DataArray | NDArray[np.generic]) -> Array:
-        """Values of a (particle, impact) variable at these impacts."""
+        """Return values of a (particle, impact) variable at these impacts."""
         return np.asarray(np.asarray(values)[self.where], dtype=np.float64)
 
     def number(self) -> Index:
-        """Impacts in each cell."""
+        """Count the impacts in each cell."""
         return np.bincount(self.cell, minlength=self.cells)
 
     def means(self, values: Array) -> Estimate:
-        """Mean of `values`, one per impact, in each cell; NaN in an empty one."""
+        """Return the mean of `values`, one per impact, in each cell; NaN in an empty one."""
         mean = self._mean(values)
         return self._estimate(mean, values - mean[self.cell])
 
@@ -88,13 +88,13 @@ class Impacts:
         return self._estimate(sigma, (square / width - sigma[self.cell]) / 2)
 
     def correlations(self, first: Array, second: Array) -> Estimate:
-        """Correlation ρ of two values per impact in each cell; the influence is z₁z₂ − ρ(z₁² + z₂²)/2."""
+        """Correlate two values per impact in each cell; the influence on ρ is z₁z₂ − ρ(z₁² + z₂²)/2."""
         z1, z2 = (self._standardised(values) for values in (first, second))
         rho = self._mean(z1 * z2)
         return self._estimate(rho, z1 * z2 - rho[self.cell] * (z1**2 + z2**2) / 2)
 
     def shares(self, label: Index, labels: int) -> Estimate:
-        """Share of the impacts that have each label 0 … labels−1, all cells together; shape (labels,)."""
+        """Return the share of impacts with each label 0 … labels−1, all cells together; shape (labels,)."""
         count = np.bincount(self.where[0] * labels + label, minlength=self.particles * labels)
         by_particle = count.reshape(self.particles, labels).astype(np.float64)
         share = by_particle.sum(axis=0) / label.size
@@ -109,12 +109,12 @@ class Impacts:
         return Impacts(self.where, cell, cells, self.particles)
 
     def only(self, chosen: NDArray[np.bool_]) -> "Impacts":
-        """Those impacts for which `chosen`, one value per impact, is true."""
+        """Select the impacts for which `chosen`, one value per impact, is true."""
         where = (self.where[0][chosen], self.where[1][chosen])
         return Impacts(where, self.cell[chosen], self.cells, self.particles)
 
     def one_per_particle(self, seed: int) -> "Impacts":
-        """At most one impact of each particle in each cell, so that those of a cell are independent draws.
+        """Keep at most one impact of a particle in each cell: those of a cell are then independent draws.
 
         A particle with n of the cell's impacts is kept with probability n/max n and then gives one of them at
         random: every impact of the cell is equally likely to be drawn, as in a histogram of all of them.
@@ -149,31 +149,31 @@ class Impacts:
 
 
 def in_cells(cell: NDArray[np.integer], cells: int) -> Impacts:
-    """Impacts by their cell, shape (particle, impact); those with a cell < 0 or ≥ `cells` are left out."""
+    """Group impacts by cell, shape (particle, impact), without those of a cell < 0 or ≥ `cells`."""
     particle, impact = np.nonzero((cell >= 0) & (cell < cells))
     return Impacts((particle, impact), cell[particle, impact].astype(np.intp), cells, cell.shape[0])
 
 
 def in_bins(values: xr.DataArray | Array, edges: Array) -> Impacts:
-    """Impacts by the bin edges[k] ≤ value < edges[k+1] of a (particle, impact) variable; NaN is in none."""
+    """Group impacts by the bin edges[k] ≤ value < edges[k+1] of a (particle, impact) variable without NaN."""
     return in_cells(np.searchsorted(edges, np.asarray(values), side="right") - 1, edges.size - 1)
 
 
 def in_windows(values: xr.DataArray | Array, windows: Sequence[tuple[float, float]]) -> Impacts:
-    """Impacts by the window lo ≤ value < hi; the windows increase and do not overlap."""
+    """Group impacts by the window lo ≤ value < hi; the windows increase and do not overlap."""
     gaps = in_bins(values, np.array(windows, dtype=np.float64).ravel())
     inside = gaps.only(gaps.cell % 2 == 0)
     return inside.regrouped(inside.cell // 2, len(windows))
 
 
 def in_blocks(happened: NDArray[np.bool_], edges: Sequence[int]) -> Impacts:
-    """Impacts by the block edges[k] ≤ number < edges[k+1] of their number on the particle, from 0."""
+    """Group impacts by the block edges[k] ≤ number < edges[k+1] of their number on the particle, from 0."""
     block = np.searchsorted(np.asarray(edges), np.arange(happened.shape[1]), side="right") - 1
     return in_cells(np.where(happened, block, -1), len(edges) - 1)
 
 
 def blocks(data: xr.Dataset, edges: Sequence[int], share: float = 0.95) -> list[int]:
-    """Those `edges` of impact numbers that so large a share of the particles reached, and the last they did.
+    """Return the `edges` of impact numbers that this share of the particles reached, and the last one.
 
     Later impacts are those of unusual particles, since most trajectories end by themselves.
     """
@@ -182,7 +182,7 @@ def blocks(data: xr.Dataset, edges: Sequence[int], share: float = 0.95) -> list[
 
 
 def settled_speed(data: xr.Dataset, share: float = 0.95) -> float:
-    """Speed in m/s that so large a share of the particles came below before their record ended.
+    """Return the speed in m/s that so large a share of the particles came below before their record ended.
 
     At higher speeds the statistics are complete; at lower ones they are those of the particles that got there
     early.

@@ -14,7 +14,7 @@ from restitution.papers.runs import impacts_of
 
 
 class Caption(NamedTuple):
-    """What a figure shows, and which of its parameters the paper states and which we chose."""
+    """Caption of a figure, with the parameters that the paper states and those that we chose."""
 
     text: str
     paper: list[str]
@@ -44,7 +44,7 @@ class Caption(NamedTuple):
 
 
 def recorded(*runs: xr.Dataset) -> dict[str, Any]:
-    """Attributes for a caption: what all runs have in common, their seeds, and what was recorded."""
+    """Return attributes for a caption: what all runs have in common, their seeds, and what was recorded."""
     common = {
         name: value
         for name, value in runs[0].attrs.items()
@@ -59,7 +59,7 @@ def recorded(*runs: xr.Dataset) -> dict[str, Any]:
 
 
 def counted(*ensembles: xr.Dataset) -> dict[str, Any]:
-    """Attributes for a caption: seeds, and how many particles (of each) and impacts (of all) were counted."""
+    """Return attributes for a caption: seeds, particles (of each) and counted impacts (of all)."""
     return {
         "seeds": [int(found.attrs["seed"]) for found in ensembles],
         "particles": ensembles[0].attrs["particles"],
@@ -75,7 +75,7 @@ def listing(values: Iterable[float], factor: float = 1.0) -> str:
 
 @dataclass(frozen=True)
 class PaperFigure(Generic[R, S]):
-    """How one figure comes about: reduce the runs, draw what is left, say what it is."""
+    """Steps that make one figure: reduce the runs, draw the reduced data, write the caption."""
 
     name: str
     title: str

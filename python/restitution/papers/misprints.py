@@ -1,4 +1,4 @@
-"""Where a paper's formulas, as printed, are not what its model says: each with a proof and with numbers."""
+"""Misprints in a paper: formulas that disagree with its own model, each with a proof and with numbers."""
 
 from collections.abc import Callable
 from dataclasses import dataclass

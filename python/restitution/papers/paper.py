@@ -1,4 +1,4 @@
-"""What a paper gives to the machinery that redraws and judges it."""
+"""Description of a paper, from which it is redrawn and judged."""
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass

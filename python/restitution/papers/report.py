@@ -83,7 +83,7 @@ def _heading(paper: Paper[R, S], claims: Sequence[Claim], runs: R, source: str) 
 
 
 def _count(verdict: Verdict, number: int) -> str:
-    """Say how many claims have this verdict, as a list item that leads to the first of them."""
+    """Count the claims with this verdict, in a list item that links to the first of them."""
     words = verdict if number == 1 else verdict.replace("holds", "hold").replace("fails", "fail")
     counted = f"<b>{number}</b> {html.text(words)}"
     linked = f'<a href="#{_CLASSES[verdict]}">{counted}</a>' if number else counted
@@ -173,7 +173,7 @@ def _name(m: Measurement) -> str:
 
 
 def _title(names: Sequence[str]) -> str:
-    """Name what a table holds, or how much of it."""
+    """Name the first quantity of a table, and the number of the others."""
     return names[0] if len(names) == 1 else f"{names[0]}, and {len(names) - 1} more"
 
 
@@ -261,7 +261,7 @@ def _simulations(runs: Runs, columns: Mapping[str, Any]) -> list[str]:
 
 
 def _ended(data: xr.Dataset) -> str:
-    """Say how many trajectories ended why."""
+    """Count the trajectories by the reason why they ended."""
     numbers = (
         data["particles_ended"].to_numpy()
         if is_counted(data)
@@ -275,7 +275,7 @@ def _ended(data: xr.Dataset) -> str:
 
 
 def _reproduce(command: str, runs: Runs, source: str) -> list[str]:
-    """Give the command that makes this report."""
+    """Return the command that makes this report."""
     line = f"{command} --impacts {runs.asked} --seed {runs.seed}"
     return [
         f'<pre tabindex="0"><code>{html.text(line)}</code></pre>',
@@ -287,7 +287,7 @@ def _reproduce(command: str, runs: Runs, source: str) -> list[str]:
 
 
 def _citation(reference: str, runs: Runs) -> str:
-    """Say what to cite."""
+    """List the works to cite."""
     software = (
         "The restitution developers, “restitution: the coefficient of restitution as a distribution, not a "
         f"number”, version {runs.version}"

@@ -17,7 +17,7 @@ T = TypeVar("T")
 
 @dataclass(frozen=True, eq=False)
 class Runs:
-    """What a paper's runs derive from: a dataclass of Datasets, and of mappings that end in Datasets.
+    """Base of a paper's runs: a dataclass of Datasets, and of mappings that end in Datasets.
 
     A Dataset is recorded as from `restitution.simulate`, or counted as from `restitution.statistics`;
     `Runner` makes both. Its attrs hold its own seed and, as ``run``, its name.
@@ -28,7 +28,7 @@ class Runs:
     _found: dict[str, Any] = field(default_factory=dict, init=False, repr=False)
 
     def all(self) -> dict[str, xr.Dataset]:
-        """Every run by its name, in the order of the fields; one that was counted in several bins once."""
+        """Return the runs by name, in the order of the fields; one that was counted in several bins once."""
         return {str(data.attrs["run"]): data for data in _datasets(vars(self))}
 
     @property
@@ -37,7 +37,7 @@ class Runs:
         return str(next(iter(self.all().values())).attrs["version"])
 
     def once(self, name: str, work: Callable[[], T]) -> T:
-        """Do what several claims need, and keep its result under this name as long as the runs are."""
+        """Compute a result that several claims need the first time only; `name` identifies it."""
         if name not in self._found:
             self._found[name] = work()
         found: T = self._found[name]
@@ -53,7 +53,7 @@ def _datasets(value: Any) -> Iterator[xr.Dataset]:
 
 
 def derived_seed(seed: int, name: str) -> int:
-    """Seed in [0, 2⁶³) of the run called `name`, which no other run's name or presence changes."""
+    """Return the seed in [0, 2⁶³) of the run called `name`, which no other run's name or presence changes."""
     sequence = np.random.SeedSequence(seed, spawn_key=tuple(name.encode()))
     return int(sequence.generate_state(1, np.uint64)[0] >> np.uint64(1))
 
@@ -93,12 +93,12 @@ class Runner:
 
 
 def is_counted(data: xr.Dataset) -> bool:
-    """Tell whether a run's impacts were counted and not recorded."""
+    """Test whether a run's impacts were counted and not recorded."""
     return "particles_ended" in data
 
 
 def impacts_of(data: xr.Dataset) -> int:
-    """Give the number of impacts of a run, in the bins or not."""
+    """Return the number of impacts of a run, in the bins or not."""
     if not is_counted(data):
         return int(data["impacts"].sum())
     inside = data["number"].sum() + data["undefined"].sum()

@@ -27,10 +27,10 @@ class Setting(NamedTuple):
 
 @dataclass(frozen=True)
 class Settings:
-    """What a paper's settings derive from: a frozen dataclass of fields that are `stated` or `chosen`."""
+    """Base of a paper's settings: a frozen dataclass of fields that are `stated` or `chosen`."""
 
     def rows(self) -> Iterator[Setting]:
-        """Every setting with its unit, its source and what it means, in the order of declaration."""
+        """Yield every setting with its unit, source and meaning, in the order of declaration."""
         for item in fields(self):
             about = item.metadata
             yield Setting(item.name, getattr(self, item.name), about["unit"], about["source"], about["text"])

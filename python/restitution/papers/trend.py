@@ -1,4 +1,4 @@
-"""Whether a quantity rises along its bins, and quantities in bins of falling impact velocity."""
+"""Trends of a quantity along its bins, and quantities in bins of falling impact velocity."""
 
 from dataclasses import dataclass
 
@@ -17,19 +17,19 @@ RISING_RULE = (
 
 @dataclass(frozen=True)
 class Trend:
-    """How an estimate changes along its bins, in standard errors of the change."""
+    """Changes of an estimate along its bins, in standard errors of the change."""
 
     span: float  # last − first value
     worst: float  # the most negative step between neighbours; 0 if none is negative
 
     @property
     def rises(self) -> bool:
-        """Whether the last value is significantly above the first."""
+        """True if the last value is significantly above the first."""
         return self.span > SIGNIFICANT
 
     @property
     def monotone(self) -> bool:
-        """Whether it rises and no step down is significant."""
+        """True if it rises and no step down is significant."""
         return self.rises and self.worst > -SIGNIFICANT
 
     @property
@@ -44,7 +44,7 @@ class Trend:
 
 
 def trend(estimate: Estimate) -> Trend:
-    """Trend of an estimate from its first bin to its last."""
+    """Return the trend of an estimate from its first bin to its last."""
     return Trend(estimate.span(), float(min(0.0, *estimate.steps())))
 
 
@@ -62,7 +62,7 @@ class Falling:
 
 
 def falling(data: xr.Dataset, lowest: float, bins: int) -> Falling:
-    """Logarithmic bins from the fastest impact down to `lowest`, or to where the data become incomplete."""
+    """Make logarithmic bins from the fastest impact down to `lowest`, or to where data become incomplete."""
     fastest = float(data["impact_velocity"].max())
     # The fastest impact itself is inside.
     edges = np.geomspace(max(lowest, settled_speed(data)), fastest * (1 + 1e-12), bins + 1)

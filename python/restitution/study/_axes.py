@@ -1,4 +1,4 @@
-"""What is varied in a study: values of named parameters, on a grid or spread over their ranges."""
+"""Axes of a study: values of named parameters, on a grid or spread over their ranges."""
 
 import math
 from collections.abc import Iterator, Mapping
@@ -67,7 +67,7 @@ class Design:
         return tuple(int(i) for i in np.unravel_index(point, self.shape))
 
     def values(self, point: int) -> dict[str, float]:
-        """Parameters of a point by their place in a file."""
+        """Return parameters of a point by their place in a file."""
         place = self.place(point)
         index = place if self.kind == "grid" else place * len(self.axes)
         return {axis.parameter: axis.values[i] for axis, i in zip(self.axes, index, strict=True)}
@@ -123,7 +123,7 @@ def design_again(given: Any) -> Design:
 
 
 def _each_once(given: Mapping[str, Any]) -> dict[str, Any]:
-    """Name what is varied by its place, and refuse what would replace something else that is asked for."""
+    """Name varied parameters by their place, and refuse one that would replace another value in use."""
     varied: dict[str, Any] = {}
     for key, value in _varied(given):
         if key in varied:

@@ -87,7 +87,7 @@ def end_point(path: str, point: Point, design: Design, blocks: int, known: bytes
 
 
 def digest_of(arrays: Mapping[str, npt.NDArray[Any]]) -> bytes:
-    """Give a digest of names and values."""
+    """Return a digest of names and values."""
     digest = hashlib.blake2b(digest_size=32)
     for name in sorted(arrays):
         digest.update(name.encode())
@@ -169,7 +169,7 @@ class Driver:
         self._ended: SimpleQueue[Future[Any]] = SimpleQueue()
 
     def run(self, *, writes: bool) -> None:
-        """Do all that is to be done; `writes` says whether results are gathered, or left to a merge."""
+        """Run all tasks; with `writes` results are gathered, else they are left to a merge."""
         with _first_at(self.store) as alone:
             waiting = iter(self.points if alone else random.sample(self.points, len(self.points)))
             shown, pause = time.monotonic(), 0.0
@@ -193,7 +193,7 @@ class Driver:
                     self.table.write()
 
     def _wait(self) -> "list[Future[Any]]":
-        """Give what has ended since; nothing after a second.
+        """Return the tasks that have ended since; none after a second.
 
         `concurrent.futures.wait` takes a lock of each future, and a signal between two of them leaves it
         locked: the worker then waits for ever, and who stops the workers for the worker.
@@ -240,7 +240,7 @@ class Driver:
         self._need(opened, self.store.there(number))
 
     def _need(self, opened: _Open, there: set[int]) -> None:
-        """Have the tasks done that a point lacks, or end it if it lacks none."""
+        """Submit the tasks that a point lacks, or end the point if it lacks none."""
         needed = set(range(opened.blocks * self.study.effort.block_tasks))
         self.progress.resumed += len((needed & there) - opened.done)
         opened.done |= needed & there
@@ -252,7 +252,7 @@ class Driver:
             self._ready.extendleft((opened, task) for task in sorted(lacking, reverse=True))
 
     def _take(self, opened: _Open, task: int | None, future: "Future[Any]") -> None:
-        """Take what a worker has done."""
+        """Store the result of a worker."""
         try:
             result = future.result()
         except (CancelledError, Stopped):
@@ -303,7 +303,7 @@ class Table:
         self._changed = False
 
     def known(self, point: int, effort: Effort) -> tuple[bytes, int]:
-        """Give the digest of a point that is finished, and its number of blocks."""
+        """Return the digest of a point that is finished, and its number of blocks."""
         values = self._values
         if not {"status", "digest", "particles"} <= values.keys() or values["status"][point] != 1:
             return b"", 1
@@ -312,12 +312,12 @@ class Table:
         return (values["digest"][point].tobytes(), blocks) if good else (b"", 1)
 
     def digest(self, point: int) -> bytes:
-        """Give the digest of what is known of a point."""
+        """Return the digest of the results of a point."""
         extra = ("status", "digest")
         return digest_of({name: values[point] for name, values in self._values.items() if name not in extra})
 
     def set(self, point: int, found: xr.Dataset, digest: bytes) -> None:
-        """Take what was found at a point."""
+        """Store the results of a point."""
         words = np.frombuffer(digest, np.uint64)
         if self._template is None:
             about = {"long_name": "digest of the results of the point and of what they rest on"}

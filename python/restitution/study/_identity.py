@@ -1,4 +1,4 @@
-"""Whose store it is: the study and the version of the physics that it was made for, as the store says."""
+"""Identity of a store: the study and the version of the physics that it was made for."""
 
 import hashlib
 import json
@@ -52,7 +52,7 @@ class Refused(ValueError):
 
 @cache
 def fingerprint() -> dict[str, str]:
-    """Give the version, and SHA-256 of what the impacts of short runs of several bodies and laws add up to.
+    """Return the version, and SHA-256 of what the impacts of short runs of several bodies and laws add up to.
 
     Takes milliseconds. Runs at rest and with spin go through both engines of the core.
     """

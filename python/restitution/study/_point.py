@@ -25,7 +25,7 @@ Tell = Callable[[int], None]
 
 @dataclass(frozen=True)
 class Point:
-    """What a worker needs to know of a point: its number in the design, its run, and what is measured.
+    """One point of a study, as a worker needs it: its number in the design, its run and the measure.
 
     The study is without the other points, of which there may be millions; the digest is that of the whole
     one. The template is what a measure of recorded impacts gives: names, dimensions and coordinates.
@@ -44,7 +44,7 @@ class Point:
 
     @property
     def records(self) -> bool:
-        """Whether the measure is one of recorded impacts."""
+        """True if the measure is one of recorded impacts."""
         return self.study.measure is not None and self.study.of == "simulate"
 
 
@@ -71,7 +71,7 @@ def with_template(point: Point) -> Point:
 
 
 def count(point: Point, part: tuple[int, int], tell: Tell | None = None) -> Words:
-    """Drop the particles of a part, and write down what their impacts add up to."""
+    """Run the particles of a part, and store the sums over their impacts."""
     words, edges = [np.empty(0, np.uint64)], point.edges
     if edges is not None:
         tally, interrupted = _core.tally(_parameters(point.run, part), edges, 1, tell, part)
@@ -85,7 +85,7 @@ def count(point: Point, part: tuple[int, int], tell: Tell | None = None) -> Word
 
 
 def evaluate(point: Point, rows: Words) -> xr.Dataset:
-    """Give everything that is measured at a point, from its batches.
+    """Return all results at a point, from its batches.
 
     Standard errors are those of a jackknife: the batches make groups, each group is left out in turn, and
     √((G - 1)/G Σ (θ_g - <θ>)²) is the standard error of θ over G groups. Batches share no particle, so that
@@ -147,7 +147,7 @@ def _measured(point: Point, data: xr.Dataset) -> xr.Dataset:
 
 
 def _real(measured: xr.Dataset) -> list[Hashable]:
-    """Name what gets standard errors of what a form or a measure of statistics gives."""
+    """Name the floating-point variables, which are those with standard errors."""
     return [name for name, variable in measured.data_vars.items() if variable.dtype.kind == "f"]
 
 
@@ -195,7 +195,7 @@ def _with_errors(point: Point, total: _core.Tally, without: Sequence[_core.Tally
 
 
 def _derived(table: Table, edges: Edges) -> dict[str, FloatArray]:
-    """Give what has a standard error, by row."""
+    """Return the variables that have a standard error, by row."""
     inner = slice(None) if edges["velocity"] is None else slice(1, -1)
     count, bins = table["count"][inner], edges["restitution"]
     assert bins is not None
@@ -209,7 +209,7 @@ def _derived(table: Table, edges: Edges) -> dict[str, FloatArray]:
 
 
 def _errors(parts: Sequence[dict[str, FloatArray]]) -> dict[str, FloatArray]:
-    """Give the standard errors of a jackknife from the estimates with one group left out."""
+    """Return the standard errors of a jackknife from the estimates with one group left out."""
     found = {}
     for name in parts[0]:
         left = np.stack([part[name] for part in parts])
@@ -219,7 +219,7 @@ def _errors(parts: Sequence[dict[str, FloatArray]]) -> dict[str, FloatArray]:
 
 
 def _means(template: xr.Dataset, rows: Words, groups: int) -> xr.Dataset:
-    """Give means over batches of recorded impacts, and their standard errors over groups."""
+    """Return means over batches of recorded impacts, and their standard errors over groups."""
     found, start = {}, 0
     for name in sorted(map(str, template.data_vars)):
         variable = template[name]
@@ -241,7 +241,7 @@ def _about_error(name: Hashable, about: Mapping[Any, Any]) -> dict[str, Any]:
 
 
 def _first_impact(run: Run) -> xr.Dataset:
-    """Give mean and standard deviation of the first impact from their closed form."""
+    """Return mean and standard deviation of the first impact from their closed form."""
     from restitution.analytic import first_impact
 
     fall = {"release_height": run.release_height, "gravity": run.gravity}

@@ -1,4 +1,4 @@
-"""What is read from a store: how far its study is, results, a learned distribution, the study itself."""
+"""Reading of a store: progress of its study, results, a learned distribution, the study itself."""
 
 import math
 from dataclasses import dataclass
@@ -22,7 +22,7 @@ _POOLED = "release_height"
 
 @dataclass(frozen=True)
 class Status:
-    """How much of a study is done.
+    """Progress of a study.
 
     Attributes
     ----------

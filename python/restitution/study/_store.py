@@ -34,7 +34,7 @@ _CHUNK = 4_000_000  # bytes of a chunk of the other variables, at most where the
 
 
 def need_zarr() -> None:
-    """Say what to install where Zarr is missing or too old."""
+    """Name the package to install where Zarr is missing or too old."""
     install = "pip install 'restitution[sweep]'"
     try:
         import zarr
@@ -60,7 +60,7 @@ def create_or_open(path: Path, study: Study, words: int) -> "Store":
 
 
 def _make(path: Path, study: Study, width: int) -> None:
-    """Put a new store in its place in one step, unless another has taken it meanwhile."""
+    """Move a new store to its place in one step, unless another has taken it meanwhile."""
     target = Path(os.path.realpath(path))
     draft = draft_of(target)
     try:
@@ -119,7 +119,7 @@ def _fill(path: Path, study: Study, width: int) -> None:
 
 
 def unit_at(study: Study, parameter: str) -> str:
-    """Give the unit of a parameter, as its description has it."""
+    """Return the unit of a parameter, as its description has it."""
     target: Any = study.base
     *parts, last = parameter.split(".")
     for part in parts:
@@ -208,7 +208,7 @@ class Store:
         return digest.digest()
 
     def ensure(self, found: xr.Dataset, design: Design) -> None:
-        """Have an array for each variable of a point, and what is the same at every point as it should be."""
+        """Create an array for each variable of a point, and check the values common to all points."""
         with readable(self.path):
             for axis in design.axes:
                 if axis.name not in self._ensured:
@@ -285,7 +285,7 @@ class Store:
             return [name for name, array in self._by_point(design) if math.prod(array.shape[own:]) >= _LARGE]
 
     def _by_point(self, design: Design) -> Iterator[tuple[str, Any]]:
-        """Give the arrays that have a value for each point; what else is in the folder is passed over."""
+        """Return the arrays that have a value for each point; other files in the folder are ignored."""
         import zarr
 
         own = len(design.shape)
@@ -337,7 +337,7 @@ def small(found: xr.Dataset) -> list[str]:
 
 
 def _own(found: xr.Dataset) -> Iterator[tuple[str, xr.Variable]]:
-    """Give the variables that are not coordinates, as they are: a DataArray of each takes longer to make."""
+    """Return the variables that are not coordinates; a DataArray of each would take longer to make."""
     return ((str(name), v) for name, v in found.variables.items() if name not in found.coords)
 
 

@@ -42,7 +42,7 @@ _TABLES = ("body", "law", "run", "sweep", "statistics", "learn", "fit", "measure
 
 @dataclass(frozen=True, eq=False)
 class Study:
-    """What a study is. Two studies with the same `identity` have the same results, to the bit.
+    """Description of a study. Two studies with the same `identity` have the same results, to the bit.
 
     Attributes
     ----------
@@ -82,7 +82,7 @@ class Study:
     effort: Effort
 
     def run(self, point: int) -> Run:
-        """Give the run at a point; raises a ValueError if its parameters do not go together."""
+        """Return the run at a point; raises a ValueError if its parameters do not go together."""
         values = self.design.values(whole("point", point, 0, self.design.points - 1))
         try:
             return _changed(self.base, values)
@@ -218,7 +218,7 @@ def _first_impact(own: Mapping[str, Any], run: Run) -> bool:
 
 
 def _set(tables: dict[str, Any], parameter: str, value: float) -> None:
-    """Put a value in its place; the table need not name it."""
+    """Set a value in a table, which need not name it yet."""
     *parts, last = parameter.split(".")
     if not parts or parts[0] not in _TABLES[:3]:
         allowed = "the table and the name of a parameter of [body], [law] or [run], as body.separation"
@@ -264,7 +264,7 @@ def _edges(given: Any) -> Edges:
 
 
 def _bins(name: str, value: Any, span: Any) -> Any:
-    """Give edges, written as such, as a number with a range, or as a table."""
+    """Return edges, written as such, as a number with a range, or as a table."""
     if not isinstance(value, Mapping):
         return None if value is None and span is None else edges_from(value, span, name)
     if span is not None:

@@ -115,7 +115,7 @@ def sweep(
 def merge(
     out: str | Path, parts: Sequence[str | Path] = (), *, study: Any = None, threads: int | None = None
 ) -> Status:
-    """Put the tasks of several stores into one, and work out the results of all points that are complete.
+    """Merge the tasks of several stores into one, and compute the results of all points that are complete.
 
     Parameters
     ----------
@@ -322,7 +322,7 @@ def _some(design: Design) -> Design:
 
 
 def _particle(study: Study, number: int) -> float:
-    """Give the processor time of a particle of a point."""
+    """Return the processor time of a particle of a point."""
     point, particles = with_template(point_of(study, number)), 2
     while True:
         start = time.process_time()
@@ -334,7 +334,7 @@ def _particle(study: Study, number: int) -> float:
 
 
 def _done(study: Study, points: int, particles: int) -> tuple[float, int, int]:
-    """Do points with so many particles; give processor time, bytes of results, and bytes of all else."""
+    """Run points with so many particles; return processor time, bytes of results and of all else."""
     effort = replace(study.effort, particles=particles, blocks=1, until=())
     study = replace(study, base=study.base.model_copy(update={"particles": particles}), effort=effort)
     with tempfile.TemporaryDirectory() as folder, engine(None, 1) as work:

@@ -105,7 +105,7 @@ class Effort:
     velocities: tuple[float, float] | None
 
     def part(self, batch: int) -> tuple[int, int]:
-        """First particle of a batch, and the one after its last."""
+        """Return the first particle of a batch, and the one after its last."""
         block, number = divmod(batch, self.batches)
         start = block * self.particles
         cut = [start + i * self.particles // self.batches for i in (number, number + 1)]
@@ -123,7 +123,7 @@ class Effort:
         return self.batches // self.task_batches
 
     def table(self) -> dict[str, Any]:
-        """Give everything that results depend on, as plain values."""
+        """Return all values that results depend on, as plain values."""
         return {
             "batches": self.batches,
             "until": dict(self.until),
@@ -261,11 +261,11 @@ class Learn(Parameters):
     levels: Annotated[tuple[float, ...], BeforeValidator(_levels), Allowed(_LEVELS)] = _levels(33)
 
     def variables(self) -> list[str]:
-        """Name what it gives."""
+        """Name the variables of this form."""
         return ["restitution_quantile"]
 
     def __call__(self, run: Run, statistics: xr.Dataset) -> xr.Dataset:
-        """Give ``restitution_quantile`` (velocity, level); NaN where there are too few impacts."""
+        """Return ``restitution_quantile`` (velocity, level); NaN where there are too few impacts."""
         from restitution.distribution import quantiles
 
         level = xr.Variable("level", np.array(self.levels), {"long_name": "probability of a smaller one"})
@@ -307,7 +307,7 @@ class Fitted(Parameters):
             raise ParameterError(Problem("fit.location", text))
 
     def __call__(self, run: Run, statistics: xr.Dataset) -> xr.Dataset:
-        """Give ``fit_…`` for each parameter, and ``fit_distance``; NaN where no density can be fitted."""
+        """Return ``fit_…`` for each parameter, and ``fit_distance``; NaN where no density can be fitted."""
         from restitution import fit
         from restitution.fit.source import counted
 
@@ -347,7 +347,7 @@ def forms_of(tables: Mapping[str, Any], edges: Edges | None, run: Run) -> Forms:
 
 
 def with_errors(edges: Edges | None, forms: Iterable[Learn | Fitted]) -> list[str]:
-    """Name the variables of statistics, and of what is taken from them, that have a standard error."""
+    """Name the variables of statistics and of their forms that have a standard error."""
     if edges is None:
         return []
     derived = MOVED + tuple(DERIVED) if edges["fraction"] is not None else ("density",)

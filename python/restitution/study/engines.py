@@ -1,4 +1,4 @@
-"""Where tasks run: threads of this machine, or workers of a Dask cluster. Nothing else of a study knows."""
+"""Engines that run tasks: threads of this machine, or workers of a Dask cluster."""
 
 import threading
 from collections.abc import Callable, Iterator
@@ -29,7 +29,7 @@ class Engine:
         return 2 * max(1, self.width()) + 2
 
     def submit(self, function: Callable[..., Any], *arguments: Any, stoppable: bool = False) -> "Future[Any]":
-        """Have a function called."""
+        """Submit a call of a function."""
         more = (self.event,) if stoppable and self.event is not None else ()
         return self.executor.submit(function, *arguments, *more)
 

@@ -34,7 +34,7 @@ def error_budget(
     particles: int = 1000,
     seed: int = 1,
 ) -> ErrorBudget:
-    """Errors that each part of a bouncing-ball experiment causes in its results.
+    """Return errors that each part of a bouncing-ball experiment causes in its results.
 
     The ball falls from rest and the times of its impacts are heard. From these come n coefficients, the
     first by the height of the drop. Each source of error gives them a bias and a covariance, and these are
@@ -144,7 +144,7 @@ def _force(drag: object, body: Body, setting: Setting) -> Drag | None:
 
 
 def weights(experiment: Experiment, shape: Source) -> Array:
-    """Covariance that a fit assumes: of times, g and drop, and one scatter of ε for all impacts."""
+    """Return the covariance that a fit assumes: times, g and drop, and one scatter of ε for all impacts."""
     setting = experiment.setting
     known = experiment.covariance(setting.timing, setting.gravity_uncertainty, setting.drop_uncertainty)
     # Without any error all impacts have equal weight.
@@ -217,7 +217,7 @@ _LONG = {
 
 
 def _carried(sources: list[Source], by: Array) -> dict[str, Array]:
-    """Errors of m quantities by every source, and by all together; each array of shape (sources + 1, m)."""
+    """Return the errors of m quantities by each source, and by all; arrays of shape (sources + 1, m)."""
     every = [one.carried(by) for one in sources]
     bias, deviation, bias_error, deviation_error = (np.stack(parts) for parts in zip(*every, strict=True))
     total = np.sqrt(np.sum(deviation**2, axis=0))

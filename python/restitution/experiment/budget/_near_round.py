@@ -46,7 +46,7 @@ class NearRound:
 
 
 def near_round(experiment: Experiment, body: Body) -> NearRound | None:
-    """Give the limit, or None for laws and bodies for which they are not worked out here."""
+    """Return the limit, or None for laws and bodies for which they are not worked out here."""
     radius = mean_radius(body)
     match experiment.law:
         case Frictionless():

@@ -190,7 +190,7 @@ class RequiredRoundness(Content):
         return max(good) if good else None
 
     def allowed(self, precision: float, quantity: str = "mean") -> float:
-        """Largest out-of-roundness in m for another precision, or another quantity.
+        """Return the largest out-of-roundness in m for another precision, or another quantity.
 
         Raises
         ------

@@ -71,7 +71,7 @@ class Carried(NamedTuple):
 
 
 def nothing(n: int) -> Source:
-    """Give no error."""
+    """Return a source without error."""
     return Source(np.zeros(n), np.zeros((n, n)))
 
 
@@ -112,7 +112,7 @@ def drag(experiment: Experiment, force: Drag, corrected: bool) -> Source:
 
 
 def _with_drag(experiment: Experiment, terminal: float) -> Array:
-    """ε from times of flight without drag correction, minus the law at the speed inferred from them."""
+    """Return ε from times of flight without drag correction, minus the law at the inferred speed."""
     g = experiment.setting.gravity
     speed = fall(experiment.setting.drop, g, terminal).speed
     told = [math.sqrt(2.0 * g * experiment.setting.drop)]
@@ -156,7 +156,7 @@ def _source(errors: Array) -> Source:
 
 @reported_elsewhere()
 def simulated(experiment: Experiment, body: Body, *, spin: bool, tilt: bool) -> npt.NDArray[np.float64]:
-    """Errors of ε of many drops by times alone, shape (particles, n); NaN for those that are left out.
+    """Return errors of ε of many drops by times alone, shape (particles, n); NaN for those that are left out.
 
     Raises
     ------

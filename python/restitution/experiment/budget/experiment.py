@@ -51,7 +51,7 @@ class Setting(Parameters):
 
 
 def mean_radius(body: Body) -> float:
-    """Half the mean of the largest and the smallest diameter, in m."""
+    """Return half the mean of the largest and the smallest diameter, in m."""
     match body:
         case Spheroid():
             return 0.5 * (body.equatorial + body.polar)
@@ -100,7 +100,7 @@ class Experiment:
 
     @classmethod
     def of(cls, law: Law, setting: Setting) -> "Experiment":
-        """Let the ball bounce."""
+        """Follow the bouncing ball."""
         speed, coefficient = [math.sqrt(2.0 * setting.gravity * setting.drop)], []
         for _ in range(setting.impacts):
             coefficient.append(float(at(law, np.array(speed[-1]))))
@@ -128,12 +128,12 @@ class Experiment:
             raise ParameterError(wrong("law", self.law, allowed))
 
     def measured(self, timing: float, gravity: float, drop: float) -> Measured:
-        """Give what is measured, with these standard errors of each time, of g and of the drop."""
+        """Return the measured times, g and drop, with these standard errors."""
         variances = np.array([*np.full(self.times.size, timing), gravity, drop, 0.0]) ** 2
         return Measured(self.times, self.setting.gravity, self.setting.drop, None, variances)
 
     def covariance(self, timing: float = 0.0, gravity: float = 0.0, drop: float = 0.0) -> Array:
-        """Covariance of ε less the law at the measured speed, shape (n, n), from these standard errors."""
+        """Return the covariance of ε less the law at the measured speed, shape (n, n), by standard errors."""
         given = self.measured(timing, gravity, drop)
         links = chain(given)
         n = self.speed.size
@@ -177,7 +177,7 @@ class Experiment:
         return by_parameters(self.form, self.speed, self.parameters)
 
     def fitted(self, covariance: Array) -> tuple[Array, Array]:
-        """Give what a generalised least-squares fit makes of changes of ε.
+        """Return the derivatives of a generalised least-squares fit by the coefficients.
 
         Returns
         -------
@@ -191,7 +191,7 @@ class Experiment:
 
 
 def at(law: Law, speed: Array) -> Array:
-    """ε_n of a law at speeds; shape of `speed`."""
+    """Return ε_n of a law at speeds; shape of `speed`."""
     if isinstance(law.normal, Material):
         return law.normal(speed)
     return np.full_like(speed, law.normal)

@@ -77,11 +77,11 @@ class LawFit(Content):
         return 2.0 * free - 2.0 * self.loglikelihood
 
     def __call__(self, speed: npt.ArrayLike) -> Array:
-        """ε_n at speeds in m/s, > 0; shape of `speed`."""
+        """Return ε_n at speeds in m/s, > 0; shape of `speed`."""
         return self._form.coefficient(_speeds(speed), self._values)
 
     def error(self, speed: npt.ArrayLike) -> Array:
-        """Give the standard error of ε_n at speeds in m/s, from that of the parameters; shape of `speed`."""
+        """Return the standard error of ε_n at speeds in m/s, from those of the parameters."""
         v = _speeds(speed)
         slopes = by_parameters(self._form, v, self._values)
         return np.asarray(np.sqrt(np.einsum("...i,ij,...j", slopes, self.covariance, slopes)))
@@ -91,7 +91,7 @@ class LawFit(Content):
         return np.array(list(self.parameters.values()))
 
     def _estimates(self) -> list[tuple[str, str]]:
-        """Parameters with their errors and units, as text."""
+        """Return parameters with their errors and units, as text."""
         units = {name: "" if unit == "1" else f" {unit}" for name, unit in self.units.items()}
         return [
             (name, with_error(value, self.errors[name]) + units[name])

@@ -51,7 +51,7 @@ def joined(experiments: list[Measured], shift: Array | None) -> Chain:
 
 
 def _spread(logarithm: float) -> float:
-    """Give a scatter of 1e-10 to 150: none that matters to any that could be."""
+    """Return a scatter limited to 1e-10 to 150, from none that matters to more than any series has."""
     return float(np.exp(np.clip(logarithm, -23.0, 5.0)))
 
 
@@ -93,7 +93,7 @@ class Misfit:
         return np.asarray(there - self.jacobian(values) @ self.shift)
 
     def covariance(self, values: Array, scatter: float) -> Array:
-        """Covariance of the residuals, shape (n, n)."""
+        """Return the covariance of the residuals, shape (n, n)."""
         by = self.jacobian(values)
         return np.asarray((by * self.variances) @ by.T + np.diag((scatter * self.before) ** 2))
 
@@ -190,7 +190,7 @@ class Misfit:
         return values[:-1], _spread(values[-1])
 
     def _scatter_error(self, values: Array, scatter: float) -> float:
-        """From the information on the scatter, (1/2) tr (C⁻¹ dC/dσ)²."""
+        """Return the standard error of the scatter, from its information (1/2) tr (C⁻¹ dC/dσ)²."""
         weighted = cho_solve(
             cho_factor(self.covariance(values, scatter), lower=True), np.diag(2.0 * scatter * self.before**2)
         )

@@ -28,7 +28,7 @@ def restitution(
     drop_height_uncertainty: float = 0.0,
     drag: Drag | None = None,
 ) -> xr.Dataset:
-    """Impact velocity and coefficient of restitution of each impact of a bouncing ball, from their times.
+    """Return impact velocity and coefficient of restitution of each impact of a ball, from their times.
 
     Between the impacts i and i + 1 the ball flies for Δt_i = t_{i+1} - t_i. A flight that ends at the height
     where it began has g Δt_i/2 at both ends, so that impact i + 1 comes with v_{i+1} = g Δt_i/2 and

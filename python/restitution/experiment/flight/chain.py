@@ -65,7 +65,7 @@ class Measured:
     variances: Array
 
     def moved(self, shift: Array) -> "Measured":
-        """Give the same with other numbers, which differ by `shift`, shape (n + 3,)."""
+        """Return the chain with other numbers, which differ by `shift`, shape (n + 3,)."""
         n = self.times.size
         return replace(
             self,

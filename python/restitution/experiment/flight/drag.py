@@ -47,7 +47,7 @@ class Drag(Parameters):
         air_density: float = 1.2,
         gravity: float = 9.81,
     ) -> "Drag":
-        """Drag of a sphere.
+        """Return the drag of a sphere.
 
         Parameters
         ----------
@@ -110,7 +110,7 @@ class Speeds(NamedTuple):
 
 
 def speeds(interval: Array, gravity: float, terminal: float | None) -> Speeds:
-    """Give the speeds of flights that begin and end at the same height, from how long they took.
+    """Return the speeds of flights that begin and end at the same height, from how long they took.
 
     Without drag both are g Δt/2. With it, in units of V and V/g, a body that starts with q rises for arctan q
     and falls for arsinh q, and lands with q/√(1 + q²): the flight takes arctan q + arsinh q.
@@ -152,7 +152,7 @@ class Fall(NamedTuple):
 
 
 def fall(height: float, gravity: float, terminal: float | None) -> Fall:
-    """Give the speed after a fall from rest: √(2 g h), or with drag V √(1 - exp(-2 g h/V²))."""
+    """Return the speed after a fall from rest: √(2 g h), or with drag V √(1 - exp(-2 g h/V²))."""
     if terminal is None:
         speed = math.sqrt(2.0 * gravity * height)
         return Fall(speed, (height / speed, gravity / speed, 0.0))
@@ -173,7 +173,7 @@ class Launched(NamedTuple):
 
 
 def launched(speed: float, gravity: float, terminal: float) -> Launched:
-    """Give the flight that begins upwards with a speed, up to where it ends at the same height."""
+    """Return the flight that begins upwards with a speed, up to where it ends at the same height."""
     q = speed / terminal
     duration = terminal / gravity * (math.atan(q) + math.asinh(q))
     return Launched(duration, speed / math.sqrt(1.0 + q * q))

@@ -40,7 +40,7 @@ class LawOfSpeed:
     start: Callable[[Array, Array], Array]
 
     def __reduce__(self) -> tuple[Any, tuple[str]]:
-        """Travel by name: functions do not."""
+        """Pickle by name, because functions cannot be pickled."""
         return law_named, (self.name,)
 
 
@@ -137,13 +137,13 @@ _STEP = 1e-6
 
 
 def by_speed(form: LawOfSpeed, speed: Array, values: Array) -> Array:
-    """dε_n/dv."""
+    """Return dε_n/dv."""
     step = _STEP * speed
     return (form.coefficient(speed + step, values) - form.coefficient(speed - step, values)) / (2.0 * step)
 
 
 def by_parameters(form: LawOfSpeed, speed: Array, values: Array) -> Array:
-    """dε_n/dθ, with the parameters along the last axis."""
+    """Return dε_n/dθ, with the parameters along the last axis."""
     slopes = []
     for place, value in enumerate(values):
         step = _STEP * max(abs(value), _STEP)

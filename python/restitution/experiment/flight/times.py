@@ -23,7 +23,7 @@ GOOD, DOUBTFUL, MISSED, DOUBLED = range(len(FLAGS))
 
 
 def flag_attributes() -> dict[str, Any]:
-    """CF attributes of a variable that holds flags."""
+    """Return the CF attributes of a variable that holds flags."""
     return {
         "long_name": "what is known of the impact",
         "flag_values": np.arange(len(FLAGS), dtype=np.int8),
@@ -32,7 +32,7 @@ def flag_attributes() -> dict[str, Any]:
 
 
 def checked(times: npt.ArrayLike | xr.Dataset, uncertainty: npt.ArrayLike | None) -> tuple[Array, Array]:
-    """Give times and standard errors, shapes (n,), n >= 2; NaN where an impact was missed.
+    """Return times and standard errors, shapes (n,), n >= 2; NaN where an impact was missed.
 
     Raises
     ------
@@ -56,7 +56,7 @@ def checked(times: npt.ArrayLike | xr.Dataset, uncertainty: npt.ArrayLike | None
 
 
 def check_series(instants: Array, errors: Array, times: str, uncertainty: str) -> tuple[Array, Array]:
-    """Give times that increase and their standard errors, of the arguments of these names.
+    """Return times that increase and their standard errors, of the arguments of these names.
 
     Raises
     ------

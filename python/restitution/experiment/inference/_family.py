@@ -52,12 +52,12 @@ class Family:
         return (0.0, 1.0) if self.parameter == "normal" else (0.0, np.inf)
 
     def body(self, elongation: float) -> Body:
-        """Give the ball of an L/R, with L = 2t."""
+        """Return the ball of an L/R, with L = 2t."""
         t = 0.25 * elongation * self.diameter
         return from_roundness(self.diameter, t, form=self.form, lobes=self.lobes)
 
     def law_of(self, parameter: float, friction: float | None) -> Law:
-        """Give the law of a parameter of ε_n and, where it is inferred, of a friction."""
+        """Return the law of a parameter of ε_n and, where it is inferred, of a friction."""
         changed: dict[str, object] = {"normal": self._normal(parameter)}
         if friction is not None:
             changed["friction"] = friction

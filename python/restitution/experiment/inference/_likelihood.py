@@ -46,7 +46,7 @@ class Density:
         self.norm = -0.5 * d * math.log(2.0 * math.pi) - float(np.log(np.diag(self.root)).sum())
 
     def __call__(self, numbers: Array, truths: Array) -> Array:
-        """Give ln p of the numbers, shape (3,), were these the true parameters, shape (m,)."""
+        """Return ln p of the numbers, shape (3,), were these the true parameters, shape (m,)."""
         if not self.enough:
             return np.full(truths.shape, IMPOSSIBLE)
         u = (numbers[0] - truths - self.middle) / self.scale

@@ -173,7 +173,7 @@ def _pair(name: str, value: object, *, least: float) -> tuple[float, float]:
 
 
 def _sampled(emcee: Any, found: Table, setting: Setting) -> tuple[Array, Array]:
-    """Give draws of walkers that start in the table: shapes (chains, draws, p) and (chains, draws)."""
+    """Return draws of walkers that start in the table: shapes (chains, draws, p) and (chains, draws)."""
     rng = np.random.default_rng(setting.seed)
     between = found.between()
     lower = np.array([axis[0] for axis in found.axes])

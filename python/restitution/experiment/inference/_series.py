@@ -29,7 +29,7 @@ _SHORTEST = 0.1
 
 
 def _negative(covariance: Array) -> bool:
-    """Tell if a combination of the numbers has a negative variance, beyond rounding."""
+    """Test whether a combination of the numbers has a negative variance, beyond rounding."""
     variances = np.linalg.eigvalsh(covariance)
     return bool(variances[0] < -_ROUNDING * np.abs(variances).max())
 
@@ -152,7 +152,7 @@ class Series:
         return cls(drop, gravity, errors, known, reference, form, estimator, whiten, observed)
 
     def numbers(self, speed: Array, ratio: Array) -> Array:
-        """Give the three numbers of series with these speeds and coefficients, shape (m, k)."""
+        """Return the three numbers of series with these speeds and coefficients, shape (m, k)."""
         residual = ratio - self.form.coefficient(speed, np.array([self.reference]))
         squares = (residual @ self.whiten.T) ** 2
         half = self.known.size // 2

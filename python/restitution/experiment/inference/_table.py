@@ -95,7 +95,7 @@ def table(
 
 
 def _widths(series: Sequence[Series], densities: list[list[Density]], middle: float) -> tuple[float, float]:
-    """Give the largest and the smallest scale of the parameter among balls that the series allow."""
+    """Return the largest and the smallest scale of the parameter among balls that the series allow."""
     offsets = np.linspace(-3.0, 3.0, 25)
     best, scales = [], []
     for each in densities:

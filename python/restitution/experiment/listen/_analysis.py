@@ -112,7 +112,7 @@ class Series(Content):
         return int(np.isfinite(self.data.restitution).sum())
 
     def sentence(self, setting: Setting) -> str:
-        """Say in a sentence what was measured, as a paper would."""
+        """State the result in a sentence, as a paper would."""
         checked(setting)
         flags = self.heard.flag.values
         known = np.isfinite(self.data.restitution.values)

@@ -97,7 +97,7 @@ def shape(
 def _law(
     fits: tuple[flight.LawFit, ...], speed: npt.NDArray[np.float64]
 ) -> tuple[Frictionless, float] | None:
-    """Take the best law that a ball may have, and the most by which ε is off the best of all there."""
+    """Return the best law that is physical, and the largest difference of its ε from the best of all."""
     known = speed[np.isfinite(speed)]
     for fit in fits:
         apart = float(np.abs(fit(known) - fits[0](known)).max())
@@ -134,7 +134,7 @@ def _roundness(
 
 
 def _drop(data: xr.Dataset, law: Frictionless) -> float:
-    """Height of the drop, as measured or as it follows from the first flight."""
+    """Return the height of the drop, as measured or as it follows from the first flight."""
     if "drop_height" in data.attrs:
         return float(data.attrs["drop_height"])
     intervals = np.diff(data.time.values)

@@ -73,7 +73,7 @@ def _without_outliers(picks: Picks) -> Array:
 
 
 def _by_consensus(found: list[Picks]) -> Choice:
-    """Take the rule that is nearest to the median of all, each less its own mean delay."""
+    """Choose the rule that is nearest to the median of all, each less its own mean delay."""
     times = np.array([one.times for one in found])
     centre = np.median(times, axis=0)
     off = times - centre
@@ -101,7 +101,7 @@ def _by_consensus(found: list[Picks]) -> Choice:
 
 
 def _spread(values: Array) -> float:
-    """Give the standard deviation, to which values that are far off count as if they were five off."""
+    """Return the standard deviation, to which values that are far off count as if they were five off."""
     middle = 1.4826 * float(np.median(np.abs(values)))
     return (
         float(np.sqrt(np.mean(np.minimum(values**2, 25.0 * middle**2))))

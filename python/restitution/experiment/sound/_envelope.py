@@ -49,21 +49,21 @@ class Envelope:
     width: float
 
     def candidates(self, least: float) -> tuple[Array, Array]:
-        """Give times in s and rises in dB of all maxima of the rise over `least` times the spread."""
+        """Return times in s and rises in dB of all maxima of the rise over `least` times the spread."""
         apart = max(int(_APART * self.width / self.step), 1)
         peaks, _ = find_peaks(self.rise, height=least * self.spread, distance=apart)
         return np.asarray(peaks * self.step, dtype=np.float64), self.rise[peaks]
 
 
 def bands(rate: float) -> list[tuple[float, float]]:
-    """Give the bands that a rate in Hz leaves."""
+    """Return the bands that a rate in Hz leaves."""
     top = 0.45 * rate
     inside = [(low, min(high, top)) for low, high in BANDS if low < 0.6 * top]
     return [(inside[0][0], top), *inside]
 
 
 def rounding(samples: Array) -> float:
-    """Give the power of the noise of rounding to the recording's depth: a twelfth of a step squared."""
+    """Return the power of the noise of rounding to the recording's depth: a twelfth of a step squared."""
     steps = np.diff(np.unique(samples))
     return max(float(steps.min()) ** 2 / 12.0 if steps.size else 0.0, 1e-30)
 

@@ -98,7 +98,7 @@ def variants(samples: Array, rate: float, band: tuple[float, float]) -> list[tup
 
 
 def _crossing(values: Array, level: float) -> float:
-    """First place, with fraction, at which values reach a level."""
+    """Return the first place, with fraction, at which values reach a level."""
     first = int(np.argmax(values >= level))
     if first == 0:
         return 0.0

@@ -70,7 +70,7 @@ def _ratios(times: Array) -> _Ratios | None:
 
 
 def _spread_out(times: Array, places: Whole) -> Array:
-    """Put times at their places in the series, with NaN where an impact was missed."""
+    """Place the times in the series, with NaN where an impact was missed."""
     every = np.full(int(places[-1]) + 1, np.nan)
     every[places] = times
     return every
@@ -144,13 +144,13 @@ def told_apart(times: Array, places: Whole) -> Parts | None:
 
 
 def _small(covariance: Array) -> Array:
-    """Give what makes a covariance invertible that is so but for rounding."""
+    """Return a small diagonal that makes a covariance invertible in spite of rounding."""
     n = covariance.shape[0]
     return np.asarray(1e-9 * np.trace(covariance) / n * np.eye(n))
 
 
 def _whitened(z: Array, design: Array, covariance: Array) -> tuple[Array, float, float]:
-    """Give residuals with unit variance, and the logarithms of both determinants of the likelihood."""
+    """Return residuals with unit variance, and the logarithms of both determinants of the likelihood."""
     lower = np.linalg.cholesky(covariance)
     y, x = np.linalg.solve(lower, z), np.linalg.solve(lower, design)
     q, r = np.linalg.qr(x)

@@ -109,6 +109,6 @@ def best_series(times: Array, rewards: Array, jitter: float) -> Series | None:
 
 
 def strongest(times: Array, rewards: Array) -> tuple[Array, Array]:
-    """Leave the strongest candidates, in the order of time."""
+    """Keep the strongest candidates, in the order of time."""
     kept = np.sort(np.argsort(rewards)[-_MOST:])
     return times[kept], rewards[kept]

@@ -57,7 +57,7 @@ class Track:
         return np.arange(self.times.size) + skipped
 
     def levels_at(self, times: Array) -> Array:
-        """Level in dB over the noise within a smoothing time after each of the times."""
+        """Return the level in dB over the noise within a smoothing time after each of the times."""
         level, step = self.envelope.level, self.envelope.step
         reach = max(int(2.0 * self.envelope.width / step), 1)
         starts = np.clip((times / step).astype(np.int64), 0, level.size - 1)
@@ -70,7 +70,7 @@ class Track:
 
 
 def followed(track: Track, bands: list[Envelope]) -> Track:
-    """Look for impacts after the last, band by band, and for what was missed or doubled within the series."""
+    """Search for impacts after the last, band by band, and for missed and doubled ones within the series."""
     times, faint = list(track.times), [False] * track.times.size
     weak = [one.candidates(_FAINT) for one in bands]
     while True:
@@ -85,7 +85,7 @@ def followed(track: Track, bands: list[Envelope]) -> Track:
 
 
 def _ratio(times: Array) -> float:
-    """Ratio of successive flights, the mean of the last few."""
+    """Return the ratio of successive flights, the mean of the last few."""
     flights = np.diff(times[-7:])
     return float(np.exp(np.mean(np.log(flights[1:] / flights[:-1]))))
 

@@ -29,7 +29,7 @@ _SOURCE = "a path, or samples of shape (n,) or (n, channels)"
 
 
 def load(source: str | PathLike[str] | npt.ArrayLike, rate: float | None) -> tuple[Array, float]:
-    """Give samples, shape (n, channels), full scale being 1, and their rate in Hz.
+    """Return samples, shape (n, channels), full scale being 1, and their rate in Hz.
 
     Raises
     ------

@@ -28,7 +28,7 @@ LAWS: dict[str, Law] = {
 }
 RADIUS = 3e-3
 SPEED = 0.4
-"""Where p(ε | v) is drawn, in m/s: the middle of a velocity bin."""
+"""Impact velocity at which p(ε | v) is drawn, in m/s: the middle of a velocity bin."""
 SLOWEST = 0.05
 """Shares are given for all impacts and for those from here on, in m/s, an edge of the velocity bins: a body
 rattles before it rests."""
@@ -155,7 +155,7 @@ def _reduced(batches: xr.Dataset, body: Dumbbell) -> xr.Dataset:
 
 
 def coupling(body: Dumbbell, angle: FloatArray) -> FloatArray:
-    """Give κ² = K_nu²/(K_nn K_uu) of two equal spheres that touch with their axis at `angle` (rad)."""
+    """Return κ² = K_nu²/(K_nn K_uu) of two equal spheres that touch with their axis at `angle` (rad)."""
     inertia = body.transverse_inertia / body.mass
     half = body.separation / 2
     across, down = half * np.sin(angle), half * np.abs(np.cos(angle)) + body.radii[0]
@@ -164,7 +164,7 @@ def coupling(body: Dumbbell, angle: FloatArray) -> FloatArray:
 
 
 def growth(coupling: FloatArray, normal: float, tangential: float) -> FloatArray:
-    """Give the largest factor by which Eq. 9 can multiply the energy that the contact can reach.
+    """Return the largest factor by which Eq. 9 can multiply the energy that the contact can reach.
 
     It is the larger eigenvalue of K D K⁻¹ D, D = diag(-ε_n, ε_t), whose trace is
     (ε_n² + ε_t² + 2κ²ε_nε_t)/(1 - κ²) and whose determinant is ε_n²ε_t². See docs/energy.md.
@@ -175,7 +175,7 @@ def growth(coupling: FloatArray, normal: float, tangential: float) -> FloatArray
 
 
 def bound(body: Dumbbell, normal: float, tangential: float) -> float:
-    """Give the largest `growth` over all angles, to a part in 10⁷, and 1 where energy never grows."""
+    """Return the largest `growth` over all angles, to a part in 10⁷, and 1 where energy never grows."""
     return max(
         1.0, float(growth(coupling(body, np.linspace(0, np.pi / 2, 20_001)), normal, tangential).max())
     )

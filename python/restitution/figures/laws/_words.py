@@ -8,7 +8,7 @@ from restitution.figures.report import grouped
 
 
 def caption(data: xr.Dataset) -> str:
-    """Caption of the figure."""
+    """Return the caption of the figure."""
     about = data.attrs
     elongations = ", ".join(f"{x:g}" for x in data["elongation"].values)
     created = data["all_share"].max("elongation")
@@ -76,5 +76,5 @@ def _with_error(value: xr.DataArray, error: xr.DataArray) -> str:
 
 
 def _digits(error: float) -> int:
-    """Decimals that show two digits of an error."""
+    """Return the decimals that show two digits of an error."""
     return max(0, 1 - int(np.floor(np.log10(error)))) if error > 0 else 3

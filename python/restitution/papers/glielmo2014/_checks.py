@@ -41,7 +41,7 @@ def printed_density(restitution: ArrayLike, body: Dumbbell, law: TangentialResti
 
 
 def fall(theta: float) -> Floats:
-    """P/m of a body that arrives at 1 m/s without spin: Eq. 10 as a system of three linear equations."""
+    """Solve Eq. 10, three linear equations, for P/m of a body that arrives at 1 m/s without spin."""
     axis = np.array([np.sin(theta), 0.0, -np.cos(theta)])  # of the lower sphere (Fig. 8, Eq. 16)
     up = np.array([0.0, 0.0, 1.0])
     contact = 0.5 * BODY.separation * axis - BODY.radius * up
@@ -54,7 +54,7 @@ def fall(theta: float) -> Floats:
 
 
 def axial_inertia() -> Check:
-    """J_zz/(πρR⁵) at L = 2R (Eq. A5)."""
+    """Return J_zz/(πρR⁵) at L = 2R (Eq. A5)."""
 
     def bracket(divisor: float) -> float:
         return 8 / 15 + 2 / 2 - 2**3 / 12 + 2**5 / divisor
@@ -64,7 +64,7 @@ def axial_inertia() -> Check:
 
 
 def transverse_inertia() -> Check:
-    """J_xx/(πρR⁵) at L = 2R from the integrand of Eq. A7."""
+    """Return J_xx/(πρR⁵) at L = 2R from the integrand of Eq. A7."""
     nodes, weights = np.polynomial.legendre.leggauss(3)  # exact up to degree 5
     z = 1 + nodes  # 0 <= z <= R + L/2
     tail = (2 + 2**2 / 2) * z**2 + 2 * 2 * z**3 - 3 * z**4
@@ -76,7 +76,7 @@ def transverse_inertia() -> Check:
 
 
 def normal_impulse() -> Check:
-    """P·n/(m|v_G|) at θ = 60° (Eq. 14)."""
+    """Return P·n/(m|v_G|) at θ = 60° (Eq. 14)."""
     inertia = BODY.transverse_inertia / BODY.mass
     x, z = BODY.separation / 2 * np.sin(TILT), -BODY.separation / 2 * np.cos(TILT) - BODY.radius  # (16)
     factor = (1 + LAW.constant) * (inertia + z**2) / (x**2 + z**2 + inertia)
@@ -85,21 +85,21 @@ def normal_impulse() -> Check:
 
 
 def cumulative_probability() -> Check:
-    """Probability that |cos θ| <= 1/2 (Eq. 18)."""
+    """Return the probability that |cos θ| <= 1/2 (Eq. 18)."""
     angles = np.pi * (np.arange(300_000) + 0.5) / 300_000
     part = np.arccos(0.5) / np.pi
     return Check(float(1 - part), float(1 - 2 * part), float(np.mean(np.abs(np.cos(angles)) <= 0.5)))
 
 
 def total_probability() -> Check:
-    """Integral of Eq. 19 over 0 <= cos θ <= 1."""
+    """Return the integral of Eq. 19 over 0 <= cos θ <= 1."""
     # The weight is (1 - s)^(-1/2).
     integral, _ = quad(lambda s: 1 / np.sqrt(1 + s), 0, 1, weight="alg", wvar=(0, -0.5))
     return Check(integral / np.pi, 2 * integral / np.pi, 1.0)
 
 
 def negative_restitution() -> Check:
-    """Probability that ε < 0 for Fig. 9 (Eq. 21)."""
+    """Return the probability that ε < 0 for Fig. 9 (Eq. 21)."""
     distribution = first_impact(BODY, LAW)
     low, _ = distribution.support()
     printed, _ = quad(lambda s: float(printed_density(s, BODY, LAW)), low, 0)
@@ -110,7 +110,7 @@ def negative_restitution() -> Check:
 
 
 def spinning_flight() -> Check:
-    """Height e_z of the axis' end 0.1 s after e = (1, 0, 0), ω = (10, -10, 0) rad/s (Eq. 3)."""
+    """Return the height e_z of the axis' end 0.1 s after e = (1, 0, 0), ω = (10, -10, 0) rad/s (Eq. 3)."""
     axis, spin, time = np.array([1.0, 0.0, 0.0]), np.array([10.0, -10.0, 0.0]), 0.1
     inertia = np.array([BODY.axial_inertia, BODY.transverse_inertia, BODY.transverse_inertia])
 
@@ -131,14 +131,14 @@ def spinning_flight() -> Check:
 
 
 def released_axis() -> Check:
-    """Cosine of the axis at the first impact after release from rest at θ = 60° (Eqs. 2, 3)."""
+    """Return the cosine of the axis at the first impact after release from rest at θ = 60° (Eqs. 2, 3)."""
     unit_matrix = np.eye(3)  # (3) at ω = 0
     upright, released = np.array([0.0, 0.0, 1.0]), np.array([np.sin(TILT), 0.0, np.cos(TILT)])
     return Check(float((unit_matrix @ upright)[2]), float((unit_matrix @ released)[2]), 0.5)
 
 
 def contact_height() -> Check:
-    """Height of the point r_G + r_c, in R, when the sphere at -r touches at θ = 60° (Eq. 6)."""
+    """Return the height of the point r_G + r_c, in R, when the sphere at -r touches at θ = 60° (Eq. 6)."""
     offset = BODY.separation / 2 * np.cos(TILT)
     centre = BODY.radius + offset  # (2), second line
     polar = np.linspace(0, np.pi, 1001)

@@ -1,4 +1,4 @@
-"""What each figure shows, reduced from the runs to the numbers that are drawn."""
+"""Data of each figure: the runs, reduced to the numbers that are drawn."""
 
 from collections.abc import Mapping
 
@@ -130,7 +130,7 @@ def _varied(runs: Runs, elongation: float) -> list[xr.Dataset]:
 
 
 def _window(data: xr.Dataset, name: str, window: tuple[float, float]) -> tuple[IntArray, FloatArray]:
-    """Particle and value of `name` for each impact with impact velocity in [lo, hi), both of shape (n,)."""
+    """Return particle and value of `name` of impacts with impact velocity in [lo, hi), shapes (n,)."""
     velocity = data["impact_velocity"].to_numpy()
     particle, impact = np.nonzero((velocity >= window[0]) & (velocity < window[1]))
     return particle, data[name].to_numpy()[particle, impact]
@@ -156,13 +156,13 @@ def _together(particle: IntArray, values: FloatArray, edges: FloatArray) -> Floa
 
 
 def _bins(values: FloatArray, edges: FloatArray) -> tuple[IntArray, npt.NDArray[np.bool_]]:
-    """Half-open bin of each value, and whether there is one."""
+    """Find the half-open bin of each value, and whether there is one."""
     bins = np.searchsorted(edges, values, side="right").astype(np.int64) - 1
     return bins, (bins >= 0) & (bins < edges.size - 1)
 
 
 def _histogram(count: IntArray, number: int, edges: FloatArray, together: FloatArray | float) -> xr.Dataset:
-    """Density of `number` impacts, and its standard error where `together` impacts make one draw."""
+    """Return the density of `number` impacts, and its standard error if `together` impacts are one draw."""
     scale = 1 / (number * np.diff(edges))
     error = np.sqrt(count * together)
     return xr.Dataset(

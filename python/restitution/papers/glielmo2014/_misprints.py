@@ -1,4 +1,4 @@
-"""Where the paper's formulas, as printed, are not what its model says.
+"""Misprints in the paper: formulas that disagree with its own model.
 
 The other formulas (Eqs. 1, 4, 5, 7–13, 15–17, 20, 22, A1–A4, A6, A8) are right as printed.
 """

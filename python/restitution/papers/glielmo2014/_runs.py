@@ -37,7 +37,7 @@ class Runs(runs.Runs):
 
 
 def number(s: Settings) -> int:
-    """Give the number of runs that `simulate` makes."""
+    """Return the number of runs that `simulate` makes."""
     return 6 + 2 * len(s.bead_elongations) + len(s.energy_elongations) + 2 * len(s.radii + s.heights)
 
 

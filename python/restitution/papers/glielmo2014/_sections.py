@@ -1,4 +1,4 @@
-"""What this paper's report has beside the usual: what radius and height change, and created energy."""
+"""Sections of this paper's report alone: effects of radius and height, and created energy."""
 
 import numpy as np
 
@@ -12,7 +12,7 @@ from restitution.papers.report import number
 
 
 def sections(runs: Runs, settings: Settings) -> list[Section]:
-    """Give both sections."""
+    """Return both sections."""
     return [
         Section("sensitivity", "What radius and release height change", _sensitivity(runs, settings)),
         Section("energy", "Not in the paper: impacts that create energy", _energy(runs)),

@@ -10,7 +10,7 @@ from restitution.papers.settings import chosen, stated
 
 @dataclass(frozen=True)
 class Settings(settings.Settings):
-    """What PRE 90, 052204 states, and what we chose where it is silent. SI units.
+    """Settings that PRE 90, 052204 states, and our choices where it states none, in SI units.
 
     The motion depends on L/R, the law, and release height and speed in units of R and √(gR): a body with
     another radius is one released from another height, with speeds rescaled.
@@ -100,6 +100,6 @@ class Settings(settings.Settings):
         return TangentialRestitution(normal=self.first_normal, tangential=self.tangential)
 
     def body(self, elongation: float, radius: float | None = None) -> Dumbbell:
-        """Dumbbell with this L/R; `radius` is `Settings.radius` unless given."""
+        """Make the dumbbell with this L/R; `radius` is `Settings.radius` unless given."""
         r = self.radius if radius is None else radius
         return Dumbbell(radius=r, separation=elongation * r)

@@ -13,18 +13,18 @@ IntArray = npt.NDArray[np.int64]
 
 
 def mesh(low: float, high: float, step: float) -> FloatArray:
-    """Edges of the lattice with origin 0 and this step, from `low` to `high`, shape (n + 1,)."""
+    """Return edges of the lattice with origin 0 and this step, from `low` to `high`, shape (n + 1,)."""
     return step * np.arange(round(low / step), round(high / step) + 1, dtype=np.float64)
 
 
 def histogram_edges(s: Settings, width: float) -> FloatArray:
-    """Edges of the histogram of Fig. 4 that has bins of this width, half of them on either side of ε_n."""
+    """Return edges of Fig. 4's histogram with bins of this width, half of them on either side of ε_n."""
     half = s.histogram_bins // 2
     return s.normal + width * np.arange(-half, half + 1, dtype=np.float64)
 
 
 def lattice(s: Settings) -> tuple[FloatArray, FloatArray]:
-    """Edges of velocity (m/s) and restitution among which are those of every window and histogram."""
+    """Return edges of velocity (m/s) and restitution among which are those of every window and histogram."""
     windows = np.ravel(s.speed_windows)
     widths = s.histogram_widths
     bins = s.histogram_bins // 2 * _multiple(max(widths), _finest(widths))
@@ -50,7 +50,7 @@ def coarse(count: IntArray, s: Settings, width: float) -> IntArray:
 
 
 def _finest(values: Iterable[float]) -> float:
-    """Give the largest step of which all values are multiples, if all are whole millionths."""
+    """Return the largest step of which all values are multiples, if all are whole millionths."""
     return float(np.gcd.reduce(np.rint(1e6 * np.array(list(values))).astype(np.int64))) / 1e6
 
 

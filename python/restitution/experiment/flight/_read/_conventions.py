@@ -26,7 +26,7 @@ class Found:
 
 
 def _split(header: str) -> tuple[str, str]:
-    """Take a column's heading apart into name and unit, both in lower case."""
+    """Split a column's heading into name and unit, both in lower case."""
     match = _NAME.match(header.strip().strip('"'))
     if match is None:
         return header.lower(), ""
@@ -34,7 +34,7 @@ def _split(header: str) -> tuple[str, str]:
 
 
 def _scale(table: Table, row: Row, column: int, unit: str) -> float:
-    """Give the seconds of a heading's unit, or of the one that the caller named."""
+    """Return the seconds of a heading's unit, or of the one that the caller named."""
     own = _split(row.cells[column])[1]
     if not own:
         return _SECONDS[unit]
@@ -44,7 +44,7 @@ def _scale(table: Table, row: Row, column: int, unit: str) -> float:
 
 
 def _is_heading(row: Row) -> bool:
-    """Tell if a cell is a word and not a number; a missing number is neither."""
+    """Test whether a cell is a word and not a number; a missing number is neither."""
     values = [as_number(cell) for cell in row.cells]
     return any(value is None for value in values)
 

@@ -42,12 +42,12 @@ def gains(data: xr.Dataset, low: float = -np.inf, high: float = np.inf) -> Gains
 
 
 def gains_by_elongation(runs: Runs) -> Mapping[float, Gains]:
-    """Energy-creating impacts for each L/R of the energy runs."""
+    """Return the energy-creating impacts for each L/R of the energy runs."""
     return {elongation: gains(data) for elongation, data in runs.energy.items()}
 
 
 def energies(data: xr.Dataset, gravity: float) -> Array:
-    """Kinetic energy per mass before each impact in m²/s², shape (particle, impact), NaN where there is none.
+    """Return the kinetic energy per mass before each impact in m²/s², shape (particle, impact), or NaN.
 
     At the first impact, from rest, it is v²/2. An impact multiplies it by the energy ratio, and the flight to
     the next one changes it by g times the drop of the centre of mass.

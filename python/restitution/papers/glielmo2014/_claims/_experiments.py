@@ -52,7 +52,7 @@ def _balls(settings: Settings) -> tuple[Ball, ...]:
 
 @cache
 def _shares(settings: Settings) -> dict[str, tuple[float, float]]:
-    """Share of the eccentricity in the variance of one late ε, and of the fitted ε_n, by ball and law.
+    """Return the eccentricity's share of the variance of a late ε and of the fitted ε_n, by ball and law.
 
     The effects of spin and of a tilted plate are attributed to the eccentricity: a sphere has none.
     """
@@ -132,7 +132,7 @@ def considerable(runs: Runs, settings: Settings) -> Finding:
     "Sec. V",
 )
 def reservoir(runs: Runs, settings: Settings) -> Finding:
-    """Whether σ(ε) at a given share of rotation is the same at every speed."""
+    """Compare σ(ε) at a given share of rotation between speeds."""
     data = runs.main
     windows = in_windows(data["impact_velocity"], settings.speed_windows[1:])
     fraction = windows.of(data["rotational_fraction"])
@@ -177,7 +177,7 @@ def reservoir(runs: Runs, settings: Settings) -> Finding:
     "Sec. III",
 )
 def regime(runs: Runs, settings: Settings) -> Finding:
-    """Whether beads' successive orientations are independent at the speeds that experiments have."""
+    """Test whether beads' successive orientations are independent at the speeds of experiments."""
     found = {}
     measured: list[Measurement] = []
     for elongation, data in runs.beads.items():

@@ -52,7 +52,7 @@ def share_monotone(runs: Runs, settings: Settings) -> Finding:
 
 
 def _rolling(settings: Settings) -> float:
-    """E_rot/E_tot of rolling end over end, the centre of mass at height R."""
+    """Return E_rot/E_tot of rolling end over end, the centre of mass at height R."""
     body = settings.body(settings.elongation)
     return body.transverse_inertia / (body.transverse_inertia + body.mass * body.radii[0] ** 2)
 
@@ -94,7 +94,7 @@ def grows_with_bounces(runs: Runs, settings: Settings) -> Finding:
     "Sec. III",
 )
 def ceases(runs: Runs, settings: Settings) -> Finding:
-    """Look at what is left where infinitely many impacts have happened, that is, after a collapse."""
+    """Measure the energy left after infinitely many impacts, that is, after a collapse."""
     total = energies(runs.main, settings.gravity)
     last = runs.main["impacts"].to_numpy() - 1
     left = total[np.arange(last.size), last] / total[:, 0]
@@ -129,7 +129,7 @@ def _blocks(values: Array, edges: Sequence[int]) -> Estimate:
 
 
 def _mean(values: Array) -> tuple[float, float]:
-    """Mean of independent values and its standard error; NaN without values."""
+    """Return the mean of independent values and its standard error; NaN without values."""
     if values.size == 0:
         return float("nan"), float("nan")
     return float(values.mean()), float(values.std() / np.sqrt(values.size))
@@ -173,7 +173,7 @@ def decaying(runs: Runs, settings: Settings) -> Finding:
 
 
 def _rises(data: xr.Dataset, settings: Settings) -> list[float]:
-    """Largest rise of the density of E_rot/E_tot between neighbouring bins at each speed, in its errors."""
+    """Return the largest rise of the density of E_rot/E_tot between bins at each speed, in its errors."""
     windows = in_windows(data["impact_velocity"], settings.speed_windows)
     found = []
     for k in range(windows.cells):

@@ -20,13 +20,13 @@ ROUND_OFF = 1e-12
 
 
 def deviations(data: xr.Dataset, settings: Settings) -> Estimate:
-    """σ(ε) in the windows of the four speeds."""
+    """Return σ(ε) in the windows of the four speeds."""
     impacts = in_windows(data["impact_velocity"], settings.speed_windows)
     return impacts.deviations(impacts.of(data["restitution"]))
 
 
 def by_elongation(runs: Runs, settings: Settings) -> dict[float, Estimate]:
-    """σ(ε) at the four speeds for each L/R of Figs. 2 and 6."""
+    """Return σ(ε) at the four speeds for each L/R of Figs. 2 and 6."""
     data = {**runs.beads, settings.elongation: runs.main}
     return {elongation: deviations(one, settings) for elongation, one in data.items()}
 
@@ -57,7 +57,7 @@ def above_one(runs: Runs, settings: Settings) -> Finding:
     "Sec. III, Fig. 2",
 )
 def expense_of_rotation(runs: Runs, settings: Settings) -> Finding:
-    """Whether E_rot falls whenever ε > 1; the E_rot after an impact is that before the next one."""
+    """Test whether E_rot falls when ε > 1; the E_rot after an impact is that before the next one."""
     rotation = energies(runs.main, settings.gravity) * runs.main["rotational_fraction"].to_numpy()
     before, after = rotation[:, :-1], rotation[:, 1:]
     impacts = in_bins(runs.main["impact_velocity"][:, :-1], np.array(settings.velocity_range))

@@ -37,7 +37,7 @@ class Shape:
 
     @property
     def rejected(self) -> bool:
-        """Whether a test, the exponent or the tails exclude the Laplace density."""
+        """True if a test, the exponent or the tails exclude the Laplace density."""
         p = min(self.goodness.kolmogorov_smirnov_p, self.goodness.anderson_darling_p)
         far = (abs(value - 1) > SIGNIFICANT * error for value, error in (self.exponent, self.tails))
         return p <= REJECTED or any(far)
@@ -64,7 +64,7 @@ LAPLACE_RULE = (
 
 
 def _shapes(runs: Runs, settings: Settings) -> list[Shape]:
-    """Shapes at the four speeds, slowest first, which three claims share."""
+    """Return the shapes at the four speeds, slowest first, which three claims share."""
     return runs.once("shapes", lambda: _each_shape(runs, settings))
 
 
@@ -105,7 +105,7 @@ def _shape(label: str, values: Array, particle: Index, independent: Array, seed:
 
 
 def _tails(values: Array) -> float:
-    """Give √ of the number of impacts where the Laplace fit has `IN_TAILS`, over that of the fit."""
+    """Return √ of the number of impacts where the Laplace fit has `IN_TAILS`, over that of the fit."""
     found = fit.asymmetric_laplace(values).parameters
     away = values - found["location"]
     lengths = np.where(away > 0, away / found["above"], -away / found["below"])
@@ -118,7 +118,7 @@ def _log_ratio(values: Array) -> float:
 
 
 def _tests(one: Shape) -> tuple[Measurement, ...]:
-    """Give what decides whether the Laplace density is rejected."""
+    """Return the measures by which the Laplace density may be rejected."""
     return (
         Measurement("p (Kolmogorov–Smirnov)", one.goodness.kolmogorov_smirnov_p, at=one.label),
         Measurement("p (Anderson–Darling)", one.goodness.anderson_darling_p, at=one.label),
@@ -203,7 +203,7 @@ def deviates(runs: Runs, settings: Settings) -> Finding:
 
 
 def followed(impacts: Impacts, data: xr.Dataset) -> Impacts:
-    """Those impacts of a run that have a next one with a finite ε."""
+    """Select the impacts of a run that have a next one with a finite ε."""
     e = data["restitution"].to_numpy()
     follows = np.zeros(e.shape, dtype=np.bool_)
     follows[:, :-1] = np.isfinite(e[:, 1:])
@@ -211,7 +211,7 @@ def followed(impacts: Impacts, data: xr.Dataset) -> Impacts:
 
 
 def following(impacts: Impacts, values: NDArray[np.generic]) -> Array:
-    """Values at the impacts that follow."""
+    """Return values at the impacts that follow."""
     particle, impact = impacts.where
     return Impacts((particle, impact + 1), impacts.cell, impacts.cells, impacts.particles).of(values)
 

@@ -1,4 +1,4 @@
-"""What the paper leaves open: the law of the orientation, the radius and the release height."""
+"""Claims on choices that the paper leaves open: distribution of the orientation, radius, release height."""
 
 from collections.abc import Mapping
 
@@ -92,7 +92,7 @@ def size_and_height(runs: Runs, settings: Settings) -> Finding:
 
 
 def _worst(found: Mapping[float, Estimate], ours: float) -> float:
-    """Largest difference from our choice in standard errors, over what was measured at both."""
+    """Return the largest difference from our choice in standard errors, over what was measured at both."""
     return max(
         float(np.nanmax(np.abs(sigma.apart(found[ours])), initial=0.0))
         for value, sigma in found.items()
