@@ -281,7 +281,7 @@ def test_wrong_arguments_of_the_threshold_are_named() -> None:
         ("lb = 'x': must be a number or None", lambda d: d.expect(lb="x")),
         ("ub = 'x': must be a number or None", lambda d: d.expect(ub="x")),
         (
-            "x has units 's': must be in 1; drop_attrs() removes units that xarray handed on",
+            "x has units 's': must be in 1; drop_attrs() removes units that xarray copied",
             lambda d: d.pdf(xr.DataArray(0.5, attrs={"units": "s"})),
         ),
     ],

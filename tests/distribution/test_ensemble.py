@@ -140,9 +140,9 @@ def test_what_would_be_learned_and_checked_alike_is_refused() -> None:
     """Orientation, spin and height all given: both streams would have the same trajectories."""
     angles = np.linspace(0.1, 1.5, 4)
     told = (
-        "^orientation, spin, release_height: orientations, spins and the height are all given; must be "
-        "random in one of them, or the fresh impacts that a distribution is held against are those that it "
-        "was learned from$"
+        "^orientation, spin, release_height: orientations, spins and the height are all given; one of them "
+        "must be random, or the fresh impacts that test a distribution are the same as those that it was "
+        "learned from$"
     )
     with pytest.raises(ParameterError, match=told):
         ensemble_of(particles=4, orientation=angles)

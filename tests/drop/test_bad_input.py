@@ -55,7 +55,7 @@ def test_angles(body: rs.Dumbbell, law: rs.TangentialRestitution) -> None:
     assert refused([]) == expected.format(0)
     assert refused([[0.1, 0.2]]) == expected.format(1)
     told = message(lambda: rs.simulate(body, law, particles=3, spin=np.zeros((7, 3))))
-    assert told == "spin has 7 of them: must have one for each of particles = 3"
+    assert told == "spin has 7 vectors: must have one for each of particles = 3"
 
 
 def test_a_tilted_body_may_start_lower(body: rs.Dumbbell, law: rs.TangentialRestitution) -> None:

@@ -83,7 +83,7 @@ def test_how_successive_impacts_depend_on_each_other() -> None:
         measure(flown.isel(impact=slice(5, None)))
         for given, text in (
             (flown.isel(impact=slice(None, None, 2)), r"\.impact\[1\] = 2\.0: must be whole numbers >= 0"),
-            (flown.drop_vars("impact").isel(impact=slice(5, None)), " lacks the coordinate impact: must say"),
+            (flown.drop_vars("impact").isel(impact=slice(5, None)), " lacks the coordinate impact: must have"),
         ):
             with pytest.raises(ValueError, match=rf"^data{text}"):
                 measure(given)
@@ -237,7 +237,7 @@ def test_impacts_without_their_numbers() -> None:
         lambda: flight.clock(second),
         lambda: flight.fit(MEASURED.isel(impact=slice(3, 8)).drop_vars("impact")),
     ):
-        with pytest.raises(ValueError, match=r"^data lacks the coordinate impact: must say by number which"):
+        with pytest.raises(ValueError, match=r"^data lacks the coordinate impact: must have the numbers"):
             call()
 
 
@@ -270,7 +270,7 @@ def test_a_drawing_of_coefficients_needs_their_speeds() -> None:
 def test_a_posterior_of_what_no_ball_does() -> None:
     """A coefficient of nothing after which balls fly on, and errors that leave nothing to weigh."""
     for name, value, said in (
-        ("restitution", 5e-324, r"^data: balls of no such shape bounce as often"),
+        ("restitution", 5e-324, r"^data: no ball of these shapes bounces as often"),
         ("restitution_covariance", 1e308, r"^data\.restitution_covariance = .*: must be a covariance"),
         ("restitution_covariance", 1e30, r"^data\.restitution_covariance = .*: must be a covariance"),
     ):

@@ -171,7 +171,7 @@ def test_a_series_is_no_longer_than_its_covariance_can_be() -> None:
     """Of 100 000 impacts it has 80 GB, which NumPy asked for; of 20 000 no Ctrl-C was heard for 16 s."""
     times = np.cumsum(0.3 * 0.9997 ** np.arange(3001))
     assert check_series(times[:3000], np.zeros(3000), "times", "uncertainty")[0].size == 3000
-    many = "3001 impacts; must be at most 3000, which have a covariance with one another"
+    many = "3001 impacts; must be at most 3000, all of which are correlated"
     with pytest.raises(ValueError, match=f"^times: {many}"):
         flight.restitution(times)
     given = xr.Dataset({"time": ("impact", times), "uncertainty": ("impact", np.full(3001, 1e-6))})

@@ -152,9 +152,9 @@ def test_a_parameter_that_ran_to_its_end_says_so() -> None:
     normal, one_sided = rng.normal(0.98, 0.03, 1000), 1.0 - rng.exponential(0.05, 1000)
     edges = np.linspace(0.4, 1.2, 81)
     for take in (lambda x: x, lambda x: binned(x, edges)):
-        assert "degrees of freedom ran to where" in str(fit.student_t(take(normal)))
+        assert "degrees of freedom are so many that" in str(fit.student_t(take(normal)))
         assert "cusp is at the end of the samples" in str(fit.asymmetric_laplace(take(one_sided)))
-    assert "exponent ran" in fit.asymmetric_power(rng.random(1000)).limit
+    assert "exponent is at the end" in fit.asymmetric_power(rng.random(1000)).limit
     assert "one part is empty" in fit.cusp_mixture(normal, 0.98).limit
     x = correlated(200, 5, 1)[0]
     heavy = fit.student_t(rng.standard_t(4.0, 1000))

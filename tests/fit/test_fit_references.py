@@ -266,7 +266,7 @@ def test_the_words_of_clusters() -> None:
     data = impacts()
     letters, zero = cast(Any, ["a", 1, 2, 3]), cast(Any, int)
     wrong: list[tuple[Any, str]] = [
-        (lambda: fit.bootstrap(fit.gaussian, [counts, counts], [0, 1]), "clusters: counts are drawn again"),
+        (lambda: fit.bootstrap(fit.gaussian, [counts, counts], [0, 1]), "clusters: must be left out"),
         (lambda: fit.bootstrap(fit.gaussian, data, [0, 1]), "clusters: a Dataset knows its particles"),
         (lambda: fit.bootstrap(fit.gaussian, counts), "several independent runs in a list"),
         (lambda: fit.bootstrap(fit.gaussian, x, letters), "clusters.*whole numbers, one for each"),

@@ -169,7 +169,7 @@ def test_the_engine_needs_no_power_function() -> None:
         (rs.Tabulated, {"v": [[0.1]], "e": [1]}, "v = [[0.1]]: must be a 1-D array"),
         (rs.Tabulated, {"v": [0.1, math.nan], "e": [1, 1]}, "v[1] = nan: must be a finite number >= 0 (m/s)"),
         (rs.Tabulated, {"v": [0.1, 0.1], "e": [1, 1]}, "v[1] = 0.1: must be greater than v[0] = 0.1"),
-        (rs.Tabulated, {"v": [0.1, 0.2], "e": [1]}, "v, e: 2 speeds and 1 coefficients; must be as many"),
+        (rs.Tabulated, {"v": [0.1, 0.2], "e": [1]}, "v, e: 2 speeds and 1 coefficients; must match"),
         (rs.Tabulated, {"v": [0.1], "e": [1.1]}, "e[0] = 1.1: must be a real number in [0, 1]"),
         (
             rs.Frictionless,
@@ -353,7 +353,7 @@ def test_bounds_of_a_tabulated_function_belong_to_what_is_allowed() -> None:
         (lambda: rs.Plastic(yield_speed=1.0)("x"), "speed = 'x': must be real numbers (m/s), or nan"),
         (
             lambda: rs.Plastic(yield_speed=1.0)(xr.DataArray(1.0, attrs={"units": "km/h"})),
-            "speed has units 'km/h': must be in m s-1; drop_attrs() removes units that xarray handed on",
+            "speed has units 'km/h': must be in m s-1; drop_attrs() removes units that xarray copied",
         ),
         (
             lambda: rs.Tabulated(v=[0.1, 0.3, 0.2], e=[0.9, 0.8, 0.7]),

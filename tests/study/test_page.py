@@ -156,7 +156,7 @@ def test_a_single_height_leaves_speeds_without_impacts(tmp_path: Path) -> None:
     }
     sweep(study, tmp_path / "one.zarr")
     told = (
-        r"one\.zarr: nothing can be learned from it: .*say run\.release_height = \{ lowest = \.\.\., highest"
+        r"one\.zarr: nothing can be learned from it: .*set run\.release_height = \{ lowest = \.\.\., highest"
     )
     with pytest.raises(Refused, match=told):
         learned(tmp_path / "one.zarr", normal=0.9)

@@ -81,7 +81,7 @@ def test_a_new_store(tiny: Study, tmp_path: Path) -> None:
 def test_what_zarr_needs(monkeypatch: pytest.MonkeyPatch) -> None:
     """The library, in its version."""
     monkeypatch.setattr(zarr, "__version__", "2.18.3")
-    with pytest.raises(ImportError, match=r"^parameter studies need zarr 3, here is 2\.18\.3: pip install"):
+    with pytest.raises(ImportError, match=r"^parameter studies need zarr 3, not zarr 2\.18\.3: pip install"):
         need_zarr()
     monkeypatch.setitem(sys.modules, "zarr", None)
     for action in (lambda: status("store"), lambda: merge("store", ["store"]), lambda: sweep(TINY, "store")):

@@ -223,7 +223,7 @@ def test_the_store_of_another_study_is_refused_with_what_differs(
         ({"statistics": {**BINS, "velocity": 3}}, "statistics.velocity: unknown; did you mean"),
         ({"effort": {"batches": 1}}, r"effort.batches = 1: must be a whole number in \[2, 64\]"),
         ({"effort": {"until": {"std": -1}}}, "effort.until.std = -1: must be a number > 0"),
-        ({"effort": {"most_particles": 128}}, "is for `until`"),
+        ({"effort": {"most_particles": 128}}, "is used with `until` only"),
         ({"measure": {"function": "no_such_module:f"}}, "importable where the study runs"),
         ({"measures": {}}, "measures: unknown; did you mean measure?"),
         ({"first_impact": {"mean": True}}, "an empty table"),

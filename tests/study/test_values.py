@@ -27,8 +27,8 @@ def varied(**tables: Any) -> tuple[float, ...]:
 @pytest.mark.parametrize(
     ("sweep", "name"),
     [
-        ({"law.normal": [0.9], "law": {"normal": [0.1, 0.2]}}, "law.normal: is there twice"),
-        ({"law": {"normal": [0.9]}, "law.normal": [0.1]}, "law.normal: is there twice"),
+        ({"law.normal": [0.9], "law": {"normal": [0.1, 0.2]}}, "law.normal: appears twice"),
+        ({"law": {"normal": [0.9]}, "law.normal": [0.1]}, "law.normal: appears twice"),
         ({"law.normal.yield_speed": [0.1], "law.normal": [0.9]}, "law.normal.yield_speed: must be left out"),
         ({"body.separation": [1e-4], "law.normal": {}}, "law.normal = {}: must be a list"),
         ({"body.separation": [1e-4], "law": {}}, "law = {}: must be a list"),

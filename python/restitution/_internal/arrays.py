@@ -190,7 +190,5 @@ def check_units(name: str, value: Any, unit: str) -> None:
     said = attributes.get("units") if isinstance(attributes, Mapping) else None
     alike = {unit, "s-1"} if unit in ("rad s-1", "Hz") else {unit}
     if said is not None and _spelt(str(said)) not in alike:
-        text = (
-            f" has units {shown(said)}: must be in {unit}; drop_attrs() removes units that xarray handed on"
-        )
+        text = f" has units {shown(said)}: must be in {unit}; drop_attrs() removes units that xarray copied"
         raise ParameterError(Problem(name, text))

@@ -49,5 +49,5 @@ PositivePair = Annotated[float | tuple[float, float], Allowed(_ALLOWED), BeforeV
 
 
 def both(value: float | tuple[float, float]) -> tuple[float, float]:
-    """Number the spheres."""
+    """Return one value for each sphere."""
     return value if isinstance(value, tuple) else (value, value)

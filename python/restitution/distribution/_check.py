@@ -117,9 +117,9 @@ def warn_of_distance(data: xr.Dataset, *, stacklevel: int) -> None:
     if far.any():
         warnings.warn(
             f"the learned distribution is up to {largest_distance(data)}. {int(far.sum())} of {far.size} "
-            "intervals between nodes are farther than scatter explains. More particles reduce the scatter "
-            "alone; where lines or bands of p(ε | v) move with v by more than they are wide, heights of "
-            "release that are spread, or another range of velocities, help",
+            "intervals between nodes are farther than scatter explains. More particles reduce only the "
+            "scatter; where lines or bands of p(ε | v) move with v by more than their width, spread the "
+            "heights of release, or learn another range of velocities",
             DistanceWarning,
             stacklevel=stacklevel + 1,
         )

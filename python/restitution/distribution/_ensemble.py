@@ -79,8 +79,8 @@ class Ensemble:
         spread = len(self.heights) > 1 or isinstance(self.heights[0], RandomHeight)
         if self.run.angles is not None and not isinstance(self.run.spin, RandomSpin) and not spread:
             text = (
-                ": orientations, spins and the height are all given; must be random in one of them, or the "
-                "fresh impacts that a distribution is held against are those that it was learned from"
+                ": orientations, spins and the height are all given; one of them must be random, or the "
+                "fresh impacts that test a distribution are the same as those that it was learned from"
             )
             raise ParameterError(Problem("orientation, spin, release_height", text))
         if self.run.particles < 2 * len(self.heights):

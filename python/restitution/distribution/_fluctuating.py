@@ -142,7 +142,7 @@ class FluctuatingRestitution(EstimatedDistribution):
             If fresh impacts are farther from the result than 0.05 in the sense of Kolmogorov and Smirnov, and
             than 3.5 times what their scatter explains. docs/theory.md says what to do.
         EnergyWarning
-            If impacts created kinetic energy: a gas that is fed with this distribution heats itself.
+            If impacts created kinetic energy: a gas with this distribution may heat itself.
 
         Examples
         --------
@@ -155,7 +155,7 @@ class FluctuatingRestitution(EstimatedDistribution):
         """
         about = release_height is None
         if not about and heights_about is not None:
-            allowed = "None where release_height is given, and the other way round"
+            allowed = "None, because release_height is given"
             raise ParameterError(wrong("heights_about", heights_about, allowed))
         if release_height is None:
             release_height = real(
@@ -334,7 +334,7 @@ class FluctuatingRestitution(EstimatedDistribution):
             lines += [released(self.data.attrs)]
         if share := self.data.attrs.get("energy_created_share", 0.0):
             lines += [
-                f"{energy.percent(share)} of the impacts created kinetic energy: a gas of it heats itself"
+                f"{energy.percent(share)} of the impacts created kinetic energy: a gas of it may heat itself"
             ]
         if self.given is not None:
             lines += [f"also given {self.data['given'].attrs['long_name']}"]

@@ -50,7 +50,7 @@ def assemble(
         about = {"long_name": GIVEN[given], "units": "1"}
         data["given_components"] = ("node", sizes, {"long_name": "conditions of the node"})
         data["given"] = ("given_component", np.concatenate(conditional.conditions), about)
-        about = {"long_name": "impacts at the condition, counted likewise", "units": "1"}
+        about = {"long_name": "impacts at the condition, each by its weight in the mixture", "units": "1"}
         data["given_impacts"] = ("given_component", conditional.impacts, about)
         data = data.assign(_ragged(conditional.histograms, "given_")).assign(
             _errors(conditional, "given_", "given_component")
@@ -112,7 +112,7 @@ def of_histograms(
 ) -> xr.Dataset:
     """Lay out the variables that every learned distribution has."""
     speed = {"long_name": "impact velocity", "units": "m s-1"}
-    number = {"long_name": "impacts at the node, each counted as the mixture weights it", "units": "1"}
+    number = {"long_name": "impacts at the node, each by its weight in the mixture", "units": "1"}
     return xr.Dataset(
         {"velocity": ("node", nodes, speed), "impacts": ("node", impacts, number), **_ragged(histograms, "")},
         attrs={**attrs, "beyond": "raise"},

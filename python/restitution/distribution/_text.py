@@ -48,7 +48,7 @@ def about(data: xr.Dataset) -> Iterator[str]:
     if "release_height" in attrs:
         yield f"Particles were {released(attrs)}."
     if share := attrs.get("energy_created_share", 0.0):
-        yield f"{percent(share)} of the impacts created kinetic energy: a gas that uses this heats itself."
+        yield f"{percent(share)} of the impacts created kinetic energy: a gas of it may heat itself."
     yield ""
     low, high = float(data["velocity"][0]), float(data["velocity"][-1])
     clamps = attrs["beyond"] == "clamp"
@@ -57,10 +57,11 @@ def about(data: xr.Dataset) -> Iterator[str]:
     for start, end in gaps(data):
         between = "speeds there are interpolated" if clamps else "speeds there give NaN"
         yield f"No impact was seen between {start:.6g} and {end:.6g} m/s; {between}."
-    yield "u1 and u2 are independent uniform random numbers in [0, 1) of yours."
+    yield "u1 and u2 are independent uniform random numbers in [0, 1), which the caller draws."
     if "given" in attrs:
         yield f"z in [0, 1] is the condition: {_ascii(data['given'].attrs['long_name'])}."
-        yield f"What no impact at that speed had {'is' if clamps else 'gives NaN, not'} taken as the nearest."
+        unseen = "is taken as the nearest one seen" if clamps else "gives NaN"
+        yield f"A z that no impact had at that speed {unseen}."
     if "ks_distance" in data:
         yield from wrap(f"At most {largest_distance(data)}.", 90)
 

@@ -131,7 +131,7 @@ def _finished(
     missing = len(bodies) * len(laws) - len(runs)
     found = _side_by_side([*runs, *[empty] * missing], bodies, laws)
     finished = np.arange(len(bodies) * len(laws)) < len(runs)
-    about = {"long_name": "whether the run was finished; there is nothing of the others"}
+    about = {"long_name": "whether the run was finished; all else is blank where it was not"}
     found["finished"] = (("body", "law"), finished.reshape(len(bodies), len(laws)), about)
     incomplete = f"interrupted: {len(runs)} of {finished.size} combinations are finished"
     return found.assign_attrs(incomplete=incomplete)
@@ -148,7 +148,7 @@ def _named(what: str, given: Mapping[str, T] | Iterable[T], kind: type[Any]) -> 
         named = dict(zip(names, values, strict=True))
         if len(named) < len(values):
             twice = next(name for name in names if names.count(name) > 1)
-            text = f": {twice} is there twice; all must differ, or have names: a dict"
+            text = f": {twice} appears twice; all must differ, or have names in a dict"
             raise ParameterError(Problem(what, text))
     else:
         raise ParameterError(wrong(what, given, allowed))

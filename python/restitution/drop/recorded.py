@@ -91,7 +91,7 @@ def check_successive(name: str, data: xr.Dataset, *, start: int | None = None) -
     if "impact" not in data.coords:
         every = data.attrs.get("impacts")
         if not isinstance(every, int | np.integer) or every != data.sizes["impact"]:
-            text = " lacks the coordinate impact: must say by number which impacts it has"
+            text = " lacks the coordinate impact: must have the numbers of its impacts"
             raise ParameterError(Problem(name, text))
         return
     rule = "whole numbers >= 0 that rise by one from impact to impact"

@@ -185,7 +185,7 @@ class Run(Parameters):
         least = min(solid.lowest(np.array([cosine])) for cosine in (-1.0, 0.0, 1.0))
         highest = self.heights[1]
         if highest > _BEYOND * least:
-            of = "the least height of the centre of mass over the plane"
+            of = f"{_BEYOND:g} times the least height of the centre of mass over the plane"
             raise ParameterError(wrong("release_height", highest, self._beyond(_BEYOND * least, "m", of)))
         falling = self.gravity * math.cos(self.incline)
         if self.incline > math.pi / 2 - 1.0 / _BEYOND:
@@ -194,11 +194,12 @@ class Run(Parameters):
             )
             raise ParameterError(wrong("incline", self.incline, allowed))
         fastest = math.sqrt(_BEYOND) * math.sqrt(falling) * math.sqrt(least)
-        of = "the square of what a fall from the body's own height gives"
+        of = f"{math.sqrt(_BEYOND):g} times √(g h), h being the least height of the centre of mass"
         self._check_within("release_velocity", self.release_velocity, fastest, "m/s", of)
         most = math.sqrt(_BEYOND) * math.sqrt(falling) / math.sqrt(solid.farthest())
         spins = self.spin.rates[1] if isinstance(self.spin, RandomSpin) else self.spin
-        self._check_within("spin", spins, most, "rad/s", "gravity over the body's size, of the square")
+        of = f"{math.sqrt(_BEYOND):g} times √(g/r), r being the radius of the body about its centre of mass"
+        self._check_within("spin", spins, most, "rad/s", of)
         return self
 
     def _check_within(self, name: str, values: Any, most: float, unit: str, of: str) -> None:
@@ -209,14 +210,14 @@ class Run(Parameters):
 
     @staticmethod
     def _beyond(most: float, unit: str, of: str) -> str:
-        allowed = f"at most {most:.6g} {unit}, {_BEYOND:g} times {of}"
+        allowed = f"at most {most:.6g} {unit}, {of}"
         return f"{allowed}; beyond, a double has no digits left for the body"
 
     @model_validator(mode="after")
     def _one_spin_per_particle(self) -> "Run":
         spins = self.spins
         if spins is not None and len(spins) != self.particles:
-            text = f" has {len(spins)} of them: must have one for each of particles = {self.particles}"
+            text = f" has {len(spins)} vectors: must have one for each of particles = {self.particles}"
             raise ParameterError(Problem("spin", text))
         return self
 

@@ -111,5 +111,5 @@ def _run_of(data: "xr.Dataset") -> Run:
             )
     except (KeyError, AttributeError) as error:
         raise ValueError(
-            f"data: not a Dataset from restitution.simulate, or of a law without numbers: {error}"
+            f"data: must be a Dataset from restitution.simulate, with the numbers of its law: {error}"
         ) from None

@@ -120,7 +120,7 @@ def clustered(samples: Parts, clusters: ArrayLike | None, velocity: Window | Non
     if several and isinstance(samples[0], Counts | xr.Dataset):  # type: ignore[index]
         parts = [one if isinstance(one, Counts) else counted(one, velocity) for one in samples]  # type: ignore[arg-type, union-attr]
         if clusters is not None:
-            raise ValueError("clusters: counts are drawn again run by run, and take none")
+            raise ValueError("clusters: must be left out, because counts are drawn again run by run")
         _several(len(parts), "counts")
         if any(not np.array_equal(part.edges, parts[0].edges) for part in parts):
             raise ValueError("counts: must all have the same edges")

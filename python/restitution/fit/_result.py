@@ -79,13 +79,13 @@ class Fit(Content):
         # The excess kurtosis, 6/(degrees - 4), is less than its standard error in a Gaussian sample.
         if found.get("degrees", 0.0) > 4.0 + 6.0 * sqrt(self.samples / 24.0):
             ends += [
-                "the degrees of freedom ran to where the samples do not tell the density from a Gaussian"
+                "the degrees of freedom are so many that the samples do not distinguish it from a Gaussian"
             ]
         if not 0.51 < found.get("exponent", 1.0) < 19.9:
-            ends += ["the exponent ran to the end of its range, 0.5 to 20"]
+            ends += ["the exponent is at the end of its range, 0.5 to 20"]
         share = found.get("share", 0.5)
         if min(share, 1.0 - share) * self.samples < 1.0:
-            ends += ["the share ran to the end of its range, one part is empty"]
+            ends += ["the share is at the end of its range, one part is empty"]
         return "; ".join(ends)
 
     def to_latex(self, errors: Mapping[str, float] | None = None) -> str:

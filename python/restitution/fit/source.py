@@ -90,7 +90,7 @@ def recorded(data: xr.Dataset, velocity: Window | None) -> tuple[Array, NDArray[
     low, high = window(velocity)
     particle, impact = np.nonzero((speed >= low) & (speed < high) & (np.abs(restitution) < LARGEST))
     if particle.size == 0:
-        raise ParameterError(wrong("velocity", velocity, "where there are impacts; none is there"))
+        raise ParameterError(wrong("velocity", velocity, "a window that holds an impact"))
     return restitution[particle, impact], particle
 
 

@@ -212,7 +212,7 @@ class Tabulated(Material):
                 allowed = f"greater than v[{i - 1}] = {self.v[i - 1]}"
                 raise ParameterError(wrong(f"v[{i}]", self.v[i], allowed))
         if len(self.e) != len(self.v):
-            text = f": {len(self.v)} speeds and {len(self.e)} coefficients; must be as many"
+            text = f": {len(self.v)} speeds and {len(self.e)} coefficients; must match"
             raise ParameterError(Problem("v, e", text))
         return self
 

@@ -96,7 +96,7 @@ def design(given: Any, seed: Any) -> Design:
     else:
         points = whole("sweep.points", options.get("points"), 1, _MOST_POINTS)
         if kind == "sobol" and points & (points - 1):
-            allowed = "a power of 2, or a Sobol set loses its balance"
+            allowed = "a power of 2, for which a Sobol set is balanced"
             raise ParameterError(wrong("sweep.points", points, allowed))
         unit = _spread(kind, points, len(varied), whole("run.seed", seed, 0, 2**64 - 1))
         axes = tuple(
@@ -127,7 +127,7 @@ def _each_once(given: Mapping[str, Any]) -> dict[str, Any]:
     varied: dict[str, Any] = {}
     for key, value in _varied(given):
         if key in varied:
-            text = ": is there twice; must be there once, in quotes or as a table"
+            text = ": appears twice; must appear once, in quotes or as a table"
             raise ParameterError(Problem(f"sweep.{key}", text))
         varied[key] = value
     for outer in varied:

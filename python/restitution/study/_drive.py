@@ -320,7 +320,7 @@ class Table:
         """Store the results of a point."""
         words = np.frombuffer(digest, np.uint64)
         if self._template is None:
-            about = {"long_name": "digest of the results of the point and of what they rest on"}
+            about = {"long_name": "digest of the results of the point and of the counts behind them"}
             self._template = found.assign(digest=("digest_word", words, about))
             self.store.ensure(self._template, self.design)
         for name in small(found):

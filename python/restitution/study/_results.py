@@ -174,7 +174,7 @@ def learned(out: str | Path, **values: float) -> FluctuatingRestitution:
         told = f"{path}: nothing can be learned from it: {error}"
         if isinstance(run.release_height, float) and np.ndim(attrs[_POOLED]) == 0:
             told += "; after a fall from a single height many speeds have no impacts"
-            told += ": say run.release_height = { lowest = ..., highest = ... } in the study"
+            told += ": set run.release_height = { lowest = ..., highest = ... } in the study"
         raise Refused(told) from error
 
 

@@ -41,7 +41,7 @@ def need_zarr() -> None:
     except ImportError:
         raise ImportError(f"parameter studies need zarr: {install}") from None
     if int(zarr.__version__.partition(".")[0]) < 3:
-        raise ImportError(f"parameter studies need zarr 3, here is {zarr.__version__}: {install}")
+        raise ImportError(f"parameter studies need zarr 3, not zarr {zarr.__version__}: {install}")
     if not __debug__:  # it reads metadata of groups in assertions
         raise RuntimeError("parameter studies: zarr does not work under python -O or PYTHONOPTIMIZE")
 

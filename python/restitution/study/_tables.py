@@ -161,7 +161,7 @@ def effort(given: Any, run: Run) -> Effort:
     """Read the table ``[effort]``."""
     own = table("effort", given, ("batches", "until", "velocities", "most_particles"))
     if run.particles < 2:
-        text = f" = {run.particles}: must be at least 2, of which batches for standard errors are made"
+        text = f" = {run.particles}: must be at least 2, because standard errors need two batches"
         raise ParameterError(Problem("run.particles", text))
     batches = own.get("batches", min(_BATCHES, run.particles))
     batches = whole("effort.batches", batches, 2, min(run.particles, 4096))
@@ -172,7 +172,7 @@ def effort(given: Any, run: Run) -> Effort:
     usual = min(_MOST_PARTICLES, 2**_MOST_DOUBLINGS * run.particles) if until else run.particles
     most = whole("effort.most_particles", own.get("most_particles", usual), run.particles, _MOST_PARTICLES)
     if not until and most != run.particles:
-        text = ": is for `until`; without it run.particles decides"
+        text = ": is used with `until` only; without it run.particles is the number"
         raise ParameterError(Problem("effort.most_particles", text))
     if until and (run.angles is not None or run.spins is not None):
         text = ": particles cannot be added where orientation or spin are given one by one"

@@ -66,7 +66,7 @@ def check_series(instants: Array, errors: Array, times: str, uncertainty: str) -
     if instants.size < 2:
         raise ParameterError(Problem(times, f": {instants.size} impacts; must be at least two"))
     if instants.size > MOST:
-        text = f": {instants.size} impacts; must be at most {MOST}, which have a covariance with one another"
+        text = f": {instants.size} impacts; must be at most {MOST}, all of which are correlated"
         raise ParameterError(Problem(times, text))
     if errors.shape != instants.shape:
         allowed = f"one number, or one for each of the {instants.size} times"

@@ -108,7 +108,7 @@ def _widths(series: Sequence[Series], densities: list[list[Density]], middle: fl
         best.append(float(np.max(total)))
         scales.append(scale + abs(shift) / 3.0)
     if not best:
-        text = ": balls of no such shape bounce as often as this under the law, at the coefficients it has"
+        text = ": no ball of these shapes bounces as often as this under the law, with its coefficients"
         raise ParameterError(Problem("data", text))
     allowed = [scale for scale, value in zip(scales, best, strict=True) if value > max(best) - 12.0]
     return max(allowed), min(allowed)

@@ -34,7 +34,7 @@ def read(
         A phyphox export (csv, zip, xls or xlsx) of "Acoustic Stopwatch" or "(In)elastic collision"; labels
         that Audacity exported; a table of Tracker with t and y, of which impacts are where the parabolas of
         successive flights meet; or a table with a column "time" or "t" and perhaps one "uncertainty", or
-        without headings. Cells are parted by tab, semicolon, comma or spaces; decimals have a point or a
+        without headings. Cells are separated by tab, semicolon, comma or spaces; decimals have a point or a
         comma.
     format : {"phyphox", "audacity", "tracker", "csv"}, optional
         Whose conventions these are; found from the content if not given.
@@ -95,7 +95,7 @@ def _contents(found: list[Table], format: str | None) -> str:
     )
     expected = {
         "phyphox": "a column 'Event time (s)', or columns 'Bounce 0 (s)', 'Bounce 1 (s)', ...",
-        "audacity": "start and end of each label, parted by a tab",
+        "audacity": "start and end of each label, separated by a tab",
         "tracker": "columns t and y",
     }.get(format or "", "a column 'time' or 't'")
     return f"must have {expected}; its first line is: {heads}"
