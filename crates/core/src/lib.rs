@@ -59,7 +59,7 @@ pub use law::{
     ChatterjeeRuina, Coulomb, Frictionless, Hypothesis, Law, Normal, Plastic, Points, Rule,
     Tabulated, TangentialRestitution, Viscoelastic,
 };
-pub use math::Vector;
+pub use math::{Symmetric, Vector};
 pub use memory::{collected, copied};
 pub use motion::State;
 pub use record::{Columns, PER_IMPACT, PER_PARTICLE, Records, Values, Variable, When};

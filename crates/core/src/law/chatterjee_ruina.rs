@@ -15,8 +15,8 @@ use pulp::Simd;
 /// Without friction (μ = 0) or for e_t = −1 the law is [`super::Frictionless`].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ChatterjeeRuina {
-    tangential: f64,
-    friction: f64,
+    pub(super) tangential: f64,
+    pub(super) friction: f64,
 }
 
 impl ChatterjeeRuina {

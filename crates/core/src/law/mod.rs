@@ -6,17 +6,21 @@
 //! (`Contacts`); terms along **w** are omitted where all motion is in the plane of **n** and **u**.
 
 mod chatterjee_ruina;
+mod compliance;
 mod contact;
 mod coulomb;
 mod frictionless;
+mod full;
 mod normal;
 mod rule;
 mod tangential;
 
 pub use chatterjee_ruina::ChatterjeeRuina;
+pub use compliance::Compliance;
 pub(crate) use contact::{Contacts, Late, Responses};
 pub use coulomb::{Coulomb, Hypothesis, MOST_FRICTION};
 pub use frictionless::Frictionless;
+pub use full::Answer;
 pub use normal::{Normal, PADE_ABOVE, PADE_BELOW, Plastic, Points, Tabulated, Viscoelastic};
 pub(crate) use rule::{Gradual, Respond};
 pub use rule::{Law, Rule};

@@ -12,7 +12,7 @@ use pulp::Simd;
 /// the friction cone of any coefficient of friction.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct TangentialRestitution {
-    tangential: f64,
+    pub(super) tangential: f64,
 }
 
 impl TangentialRestitution {

@@ -33,6 +33,8 @@ struct Motion<'a> {
 #[derive(Clone, Copy)]
 enum End {
     Compressed,
+    /// The contact approaches again.
+    Pressed,
     Speed(f64),
     Impulse(f64),
     Work(f64),
@@ -44,7 +46,9 @@ impl End {
         let speed = path[NORMAL_VELOCITY];
         match self {
             Self::Impulse(impulse) => impulse - p,
+            Self::Pressed if stiffness < 0.0 => -speed / stiffness,
             _ if stiffness <= 0.0 => f64::INFINITY, // the contact jams
+            Self::Pressed => f64::INFINITY,
             Self::Compressed => -speed / stiffness,
             Self::Speed(wanted) => (wanted - speed) / stiffness,
             Self::Work(work) => {
@@ -58,6 +62,7 @@ impl End {
     fn lack(&self, p: f64, path: &Path) -> f64 {
         match self {
             Self::Compressed => path[NORMAL_VELOCITY],
+            Self::Pressed => -path[NORMAL_VELOCITY],
             Self::Speed(speed) => path[NORMAL_VELOCITY] - speed,
             Self::Impulse(impulse) => p - impulse,
             Self::Work(work) => path[WORK] - work,
@@ -114,7 +119,7 @@ impl Motion<'_> {
         let angle = |i: usize| start + std::f64::consts::TAU * i as f64 / PARTS as f64;
         for i in 0..PARTS {
             let (mut low, mut high) = (angle(i), angle(i + 1));
-            if along(low).1 <= 0.0 || along(low).0 * along(high).0 > 0.0 {
+            if along(low).0 * along(high).0 > 0.0 {
                 continue;
             }
             for _ in 0..100 {
@@ -125,7 +130,10 @@ impl Motion<'_> {
                     high = middle;
                 }
             }
-            return along(high).2.map(|x| -self.friction * x);
+            let (_, growth, direction) = along(high);
+            if growth > 0.0 {
+                return direction.map(|x| -self.friction * x);
+            }
         }
         panic!("no direction to slip in: {k:?}")
     }
@@ -230,6 +238,7 @@ impl Motion<'_> {
             }
             let slope = match end {
                 End::Compressed | End::Speed(_) => self.slipping(&there)[NORMAL_VELOCITY],
+                End::Pressed => -self.slipping(&there)[NORMAL_VELOCITY],
                 End::Impulse(_) => 1.0,
                 End::Work(_) => there[NORMAL_VELOCITY],
             };
@@ -332,28 +341,50 @@ pub fn follow(
             return answer(p, &path, 0.0);
         }
     }
+    let jams = friction * k[0][2].hypot(k[1][2]) > k[2][2];
+    // Goes on to this end, or to where the contact is pressed together again: whether that comes first.
     let run = |p: &mut f64, path: &mut Path, end: End| {
+        let watch = jams && matches!(end, End::Impulse(_) | End::Work(_));
         for _ in 0..100_000 {
-            let over;
-            (*p, *path, over) = motion.piece(*p, path, end);
+            let (there, after, over) = motion.piece(*p, path, end);
+            if watch {
+                let (back, turned, pressed) = motion.piece(*p, path, End::Pressed);
+                if pressed && back <= there {
+                    (*p, *path) = (back, turned);
+                    return true;
+                }
+            }
+            (*p, *path) = (there, after);
             if over {
-                return;
+                return false;
             }
         }
         panic!("the impact did not end: {contact:?}, {friction}");
     };
-    run(&mut p, &mut path, End::Compressed);
-    let taken = -path[WORK];
-    path[NORMAL_VELOCITY] = 0.0;
-    path[WORK] = 0.0;
-    if restitution == 0.0 {
-        return answer(p, &path, 0.0);
+    // Impulse and work of all compressions, and of all restitutions before the last.
+    let (mut pressed, mut taken, mut pushed, mut given) = (0.0, 0.0, 0.0, 0.0);
+    loop {
+        let start = p;
+        run(&mut p, &mut path, End::Compressed);
+        pressed += p - start;
+        taken -= path[WORK];
+        path[NORMAL_VELOCITY] = 0.0;
+        path[WORK] = 0.0;
+        if restitution == 0.0 {
+            return answer(p, &path, 0.0);
+        }
+        let start = p;
+        let end = match hypothesis {
+            Hypothesis::Newton => End::Speed(restitution * approach),
+            Hypothesis::Poisson => End::Impulse(p + (restitution * pressed - pushed)),
+            Hypothesis::Stronge => End::Work(restitution * restitution * taken - given),
+        };
+        if !run(&mut p, &mut path, end) {
+            return answer(p, &path, path[NORMAL_VELOCITY]);
+        }
+        pushed += p - start;
+        given += path[WORK];
+        path[NORMAL_VELOCITY] = 0.0;
+        path[WORK] = 0.0;
     }
-    let end = match hypothesis {
-        Hypothesis::Newton => End::Speed(restitution * approach),
-        Hypothesis::Poisson => End::Impulse((1.0 + restitution) * p),
-        Hypothesis::Stronge => End::Work(restitution * restitution * taken),
-    };
-    run(&mut p, &mut path, end);
-    answer(p, &path, path[NORMAL_VELOCITY])
 }

@@ -6,11 +6,13 @@
 //! both cases dP_u/dp = −K_nu/K_uu, limited to ±μ. In planar motion the contact velocity is therefore linear in p on either side
 //! of the impulse p_s at which the slip velocity vanishes.
 
+mod general;
 mod planar;
 pub(super) mod turning;
 
-use super::{Contacts, Late, Responses};
+use super::{Answer, Compliance, Contacts, Late, Responses};
 use crate::Error;
+use crate::math::Vector;
 use crate::simd::Pack;
 use planar::Path;
 use pulp::Simd;
@@ -70,6 +72,16 @@ impl Coulomb {
             friction,
             hypothesis,
         })
+    }
+
+    /// The impulse for any compliance and ε_n, where μ > 0.
+    pub(super) fn answer(
+        &self,
+        compliance: &Compliance,
+        velocity: Vector,
+        restitution: f64,
+    ) -> Answer {
+        general::answer(self, compliance, velocity, restitution)
     }
 
     /// μ.
