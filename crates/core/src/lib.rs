@@ -59,9 +59,9 @@ pub use law::{
     ChatterjeeRuina, Coulomb, Frictionless, Hypothesis, Law, Normal, Plastic, Points, Rule,
     Tabulated, TangentialRestitution, Viscoelastic,
 };
-pub use math::{Symmetric, Vector};
+pub use math::{Quaternion, Symmetric, Vector};
 pub use memory::{collected, copied};
-pub use motion::State;
+pub use motion::{Rotation, State, Top};
 pub use record::{Columns, PER_IMPACT, PER_PARTICLE, Records, Values, Variable, When};
 pub use shape::{
     Body, Dumbbell, LoadedSphere, Shape, Solid, Sphere, Spherocylinder, Spheroid, Surface,

@@ -1,8 +1,10 @@
-//! Vectors, of one particle or of one in each lane, and symmetric matrices.
+//! Vectors, of one particle or of one in each lane, symmetric matrices and rotations.
 
+mod quaternion;
 mod symmetric;
 mod vector;
 
+pub use quaternion::Quaternion;
 pub use symmetric::Symmetric;
 pub use vector::Vector;
 pub(crate) use vector::Vectors;

@@ -1,0 +1,32 @@
+//! Bounds on what a body that moves freely can do, for certified steps.
+
+/// The largest |ω|² of a flight, from the principal moments and ω.
+///
+/// With J₁ ≤ J₂ ≤ J₃, J₁J₃|ω|² − 2E(J₁ + J₃) + Λ² = Σω_i²(J_i − J₁)(J_i − J₃) = −ω₂²(J₂ − J₁)(J₃ − J₂) ≤ 0. The energy and Λ² are constant, so
+/// that |ω| is largest where ω₂ = 0: Ω² = |ω|² + ω₂²(J₂ − J₁)(J₃ − J₂)/(J₁J₃) with what it is now.
+pub fn largest_spin(moments: [f64; 3], spin: [f64; 3]) -> f64 {
+    let [x, y, z] = spin.map(|w| w * w);
+    let [a, b, c] = moments;
+    let (squares, [least, middle, most]) = if (a - b) * (b - c) >= 0.0 {
+        (y, [a, b, c])
+    } else if (b - a) * (a - c) >= 0.0 {
+        (x, [b, a, c])
+    } else {
+        (z, [a, c, b])
+    };
+    x + y + z + squares * ((middle - least) * (most - middle) / (least * most))
+}
+
+/// The largest |J_j − J_k|/J_i, in [0, 1] for the moments of any body. |ω̇| ≤ that times |ω|²/√3, for |ω̇_i| ≤ |J_j − J_k||ω_jω_k|/J_i by
+/// Euler's equations, and ω₂²ω₃² + ω₃²ω₁² + ω₁²ω₂² ≤ |ω|⁴/3.
+pub fn asymmetry([a, b, c]: [f64; 3]) -> f64 {
+    ((b - c).abs() / a)
+        .max((c - a).abs() / b)
+        .max((a - b).abs() / c)
+}
+
+/// The largest acceleration of a point of the body relative to the centre of mass, per distance from it: ω̇ × **p** + ω × (ω × **p**) is no
+/// longer than (|ω̇| + |ω|²)|**p**|.
+pub fn acceleration(asymmetry: f64, largest_spin: f64) -> f64 {
+    (1.0 + asymmetry / 3.0_f64.sqrt()) * largest_spin
+}
