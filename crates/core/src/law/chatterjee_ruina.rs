@@ -1,9 +1,10 @@
 //! The law of A. Chatterjee and A. Ruina, *A new algebraic rigid-body collision law based on impulse space considerations*,
 //! J. Appl. Mech. **65**, 939 (1998).
 
-use super::{Contacts, Responses};
+use super::{Answer, Compliance, Contacts, Responses};
 use crate::Error;
-use crate::simd::Pack;
+use crate::math::Vector;
+use crate::simd::{Pack, one};
 use pulp::Simd;
 
 /// **P** = (1 + e) **P**_I + κ (**P**_II − **P**_I), with e = ε_n, **P**_I the impulse of a perfectly plastic impact without
@@ -15,8 +16,8 @@ use pulp::Simd;
 /// Without friction (μ = 0) or for e_t = −1 the law is [`super::Frictionless`].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ChatterjeeRuina {
-    pub(super) tangential: f64,
-    pub(super) friction: f64,
+    tangential: f64,
+    friction: f64,
 }
 
 impl ChatterjeeRuina {
@@ -36,6 +37,38 @@ impl ChatterjeeRuina {
             tangential,
             friction,
         })
+    }
+
+    /// The impulse for any compliance.
+    pub(super) fn answer(
+        &self,
+        compliance: &Compliance,
+        velocity: Vector,
+        restitution: f64,
+    ) -> Answer {
+        let k = compliance.entries();
+        let speed = velocity.z.abs();
+        let frictionless = speed / k.zz; // P_I
+        let left = Vector::new(
+            -(velocity.x + k.xz * frictionless),
+            -(velocity.y + k.yz * frictionless),
+            0.0,
+        );
+        let stop = compliance.impulse(left); // P_II − P_I
+        let most = (1.0 + restitution) * frictionless;
+        let tangential = length(one(stop.x), one(stop.y)).as_slice()[0];
+        let excess = tangential - self.friction * stop.z;
+        let wanted = 1.0 + self.tangential;
+        let outside = self.friction * most < excess * wanted;
+        let share = if outside {
+            self.friction * most / excess
+        } else {
+            wanted
+        }; // κ
+        Answer {
+            impulse: Vector::new(0.0, 0.0, most) + stop * share,
+            separation_speed: restitution * speed,
+        }
     }
 
     #[inline(always)]

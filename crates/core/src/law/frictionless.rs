@@ -1,6 +1,7 @@
 //! The law without friction: **P** ∥ **n**.
 
-use super::{Contacts, Responses};
+use super::{Answer, Compliance, Contacts, Responses};
+use crate::math::Vector;
 use crate::simd::Pack;
 use pulp::Simd;
 
@@ -12,6 +13,21 @@ use pulp::Simd;
 pub struct Frictionless;
 
 impl Frictionless {
+    /// The impulse for any compliance.
+    pub(super) fn answer(
+        &self,
+        compliance: &Compliance,
+        velocity: Vector,
+        restitution: f64,
+    ) -> Answer {
+        let speed = velocity.z.abs();
+        let change = (1.0 + restitution) * speed;
+        Answer {
+            impulse: Vector::new(0.0, 0.0, change / compliance.normal()),
+            separation_speed: restitution * speed,
+        }
+    }
+
     #[inline(always)]
     pub(super) fn respond<S: Simd, const K: usize>(
         &self,

@@ -10,7 +10,6 @@ mod compliance;
 mod contact;
 mod coulomb;
 mod frictionless;
-mod full;
 mod normal;
 mod rule;
 mod tangential;
@@ -20,12 +19,12 @@ pub use compliance::Compliance;
 pub(crate) use contact::{Contacts, Late, Responses};
 pub use coulomb::{Coulomb, Hypothesis, MOST_FRICTION};
 pub use frictionless::Frictionless;
-pub use full::Answer;
 pub use normal::{Normal, PADE_ABOVE, PADE_BELOW, Plastic, Points, Tabulated, Viscoelastic};
 pub(crate) use rule::{Gradual, Respond};
 pub use rule::{Law, Rule};
 pub use tangential::TangentialRestitution;
 
+use crate::math::Vector;
 use crate::simd::one;
 use pulp::Scalar;
 
@@ -92,6 +91,15 @@ impl Contact {
 pub struct Response {
     /// Impulse **P** on the particle (10).
     pub impulse: Components,
+    /// Normal velocity of the point of contact after the impact, ≥ 0.
+    pub separation_speed: f64,
+}
+
+/// The outcome of a collision law for any compliance, in the units of compliance and velocity.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Answer {
+    /// Impulse **P** on the body (10).
+    pub impulse: Vector,
     /// Normal velocity of the point of contact after the impact, ≥ 0.
     pub separation_speed: f64,
 }

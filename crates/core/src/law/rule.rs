@@ -1,10 +1,11 @@
 //! The choice of a law.
 
 use super::{
-    ChatterjeeRuina, Components, Contact, Contacts, Coulomb, Frictionless, Late, Normal, Response,
-    Responses, TangentialRestitution, tangential::Steady,
+    Answer, ChatterjeeRuina, Compliance, Components, Contact, Contacts, Coulomb, Frictionless,
+    Late, Normal, Response, Responses, TangentialRestitution, tangential::Steady,
 };
 use crate::Error;
+use crate::math::Vector;
 use pulp::{Simd, WithSimd};
 
 /// A collision law: a normal coefficient, which may borrow a table, and a rule for the impulse.
@@ -59,6 +60,19 @@ impl<'a> Law<'a> {
                 across: found.across.as_slice()[0],
             },
             separation_speed: found.separation_speed.as_slice()[0],
+        }
+    }
+
+    /// The impulse for any compliance, of a contact that arrives with this velocity in the frame whose z axis is the normal, z ≤ 0.
+    pub fn answer(&self, compliance: &Compliance, velocity: Vector) -> Answer {
+        // One that leaves only touches.
+        let velocity = Vector::new(velocity.x, velocity.y, velocity.z.min(0.0));
+        let normal = self.normal.at(velocity.z.abs());
+        match &self.rule {
+            Rule::TangentialRestitution(rule) => rule.answer(compliance, velocity, normal),
+            Rule::Frictionless(rule) => rule.answer(compliance, velocity, normal),
+            Rule::Coulomb(rule) => rule.answer(compliance, velocity, normal),
+            Rule::ChatterjeeRuina(rule) => rule.answer(compliance, velocity, normal),
         }
     }
 

@@ -1,7 +1,8 @@
 //! The paper's law, (9): both components of the contact velocity change by a fixed factor.
 
-use super::{Contacts, Gradual, Respond, Responses};
+use super::{Answer, Compliance, Contacts, Gradual, Respond, Responses};
 use crate::Error;
+use crate::math::Vector;
 use crate::simd::{Operand, Pack};
 use pulp::Simd;
 
@@ -12,7 +13,7 @@ use pulp::Simd;
 /// the friction cone of any coefficient of friction.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct TangentialRestitution {
-    pub(super) tangential: f64,
+    tangential: f64,
 }
 
 impl TangentialRestitution {
@@ -28,6 +29,23 @@ impl TangentialRestitution {
             "in [-1, 1]",
         )?;
         Ok(Self { tangential })
+    }
+
+    /// The impulse for any compliance.
+    pub(super) fn answer(
+        &self,
+        compliance: &Compliance,
+        velocity: Vector,
+        restitution: f64,
+    ) -> Answer {
+        let lost = self.tangential - 1.0;
+        let speed = velocity.z.abs();
+        let gained = (1.0 + restitution) * speed;
+        let change = Vector::new(lost * velocity.x, lost * velocity.y, gained); // (9)
+        Answer {
+            impulse: compliance.impulse(change), // (10)
+            separation_speed: restitution * speed,
+        }
     }
 
     #[inline(always)]

@@ -36,7 +36,7 @@ const MOST_PIECES: usize = 2000;
 
 /// The impulse under Coulomb's law with μ > 0.
 pub(super) fn answer(rule: &Coulomb, k: &Compliance, velocity: Vector, restitution: f64) -> Answer {
-    let approach = (-velocity.z).max(0.0);
+    let approach = velocity.z.abs();
     let size = approach + velocity.x.abs() + velocity.y.abs();
     if size == 0.0 {
         return Answer {

@@ -10,7 +10,7 @@ mod general;
 mod planar;
 pub(super) mod turning;
 
-use super::{Answer, Compliance, Contacts, Late, Responses};
+use super::{Answer, Compliance, Contacts, Frictionless, Late, Responses};
 use crate::Error;
 use crate::math::Vector;
 use crate::simd::Pack;
@@ -74,13 +74,16 @@ impl Coulomb {
         })
     }
 
-    /// The impulse for any compliance and ε_n, where μ > 0.
+    /// The impulse for any compliance.
     pub(super) fn answer(
         &self,
         compliance: &Compliance,
         velocity: Vector,
         restitution: f64,
     ) -> Answer {
+        if self.friction == 0.0 {
+            return Frictionless.answer(compliance, velocity, restitution);
+        }
         general::answer(self, compliance, velocity, restitution)
     }
 
