@@ -42,6 +42,7 @@ export class Player {
   /** Shows a particle of the runs, shortly before an impact, at which it holds, or from its release. */
   async show(runs: Run[], particle: number, impact: number | undefined, play: boolean): Promise<void> {
     const asked = ++this.asked;
+    this.film?.finish();
     const rows = await Promise.all(runs.map((run) => run.follow(Math.min(particle, run.particles - 1))));
     if (asked !== this.asked) return;
     this.paths = rows.map((row, k) => new Path(row, runs[k].setup.gravity, runs[k].setup.incline));
@@ -83,13 +84,14 @@ export class Player {
   /** A film of an impact: the flight that leads to it, and half of the next. */
   async record(impact: number): Promise<Film> {
     const path = this.paths[0];
-    const number = Math.min(impact, path.flights.length - 2);
+    const last = path.flights.length - 1;
+    const number = Math.max(Math.min(impact, last - 1), 0);
     this.clock.time = path.flights[number].start;
     this.awaited = number;
     const canvas = document.createElement("canvas");
     this.stage!.compose(canvas);
     const end = record(canvas);
-    this.clock.until = path.impact(number) + 0.5 * path.duration(number + 1);
+    this.clock.until = path.impact(number) + 0.5 * path.duration(Math.min(number + 1, last));
     this.clock.playing = true;
     this.stopped();
     await new Promise<void>((finish) => (this.film = { canvas, finish }));

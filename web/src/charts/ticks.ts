@@ -25,7 +25,7 @@ export function ticks({ low, high, log }: Axis, most: number): Tick[] {
 function linear(low: number, high: number, most: number): Tick[] {
   const rough = (high - low) / Math.max(most, 1);
   const unit = 10 ** Math.floor(Math.log10(rough));
-  const step = [1, 2, 5, 10].map((k) => k * unit).find((x) => x >= rough * (1 - 1e-9))!;
+  const step = [1, 2, 5, 10].map((k) => k * unit).find((x) => x >= 0.8 * rough)!;
   // As many decimals as the step needs: neighbours never read alike.
   const decimals = Math.max(0, -Math.floor(Math.log10(step) + 1e-9));
   const first = Math.ceil(low / step - 1e-9);
