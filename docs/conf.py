@@ -109,7 +109,16 @@ def _page_from_above(app: object, name: str, source: list[str]) -> None:
         source[0] = text
 
 
+def _explorer_leads_back(app: object, error: Exception | None) -> None:
+    """Give the explorer, which may stand anywhere, a link to the pages beside it."""
+    page = Path(app.outdir) / "explorer.html"  # type: ignore[attr-defined]
+    if error is None and page.exists():
+        back = '<a href="index.html">Documentation</a>'
+        page.write_text(page.read_text(encoding="utf-8").replace("<!--SITE-->", back, 1), encoding="utf-8")
+
+
 def setup(app: object) -> None:
     """Let Sphinx know."""
+    app.connect("build-finished", _explorer_leads_back)  # type: ignore[attr-defined]
     app.connect("source-read", _page_from_above)  # type: ignore[attr-defined]
     app.connect("autodoc-process-docstring", _plain_bars)  # type: ignore[attr-defined]

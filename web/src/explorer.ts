@@ -13,10 +13,9 @@ import { Player } from "./player";
 import type { Setup } from "./setup";
 import { Statistics } from "./statistics";
 
-const MAPS = ["scatter-a", "scatter-b", "density", "sigma", "reservoir"] as const;
 /** While impacts arrive the charts are drawn no more often than this, in ms. */
 const PATIENCE = 80;
-export type ChartName = (typeof MAPS)[number];
+export type ChartName = "scatter-a" | "scatter-b" | "density" | "sigma" | "reservoir";
 
 export class Explorer {
   state: State = initial();
@@ -157,6 +156,12 @@ export class Explorer {
     this.redraw();
   }
 
+  /** Draws also what is outside the window, for paper. */
+  drawAll(): void {
+    for (const chart of Object.values(this.charts)) chart.draw();
+    this.paper.draw();
+  }
+
   /** Draws everything in the colours and the size in force. */
   restyle(): void {
     this.player.stage?.restyle();
@@ -189,11 +194,11 @@ export class Explorer {
     if (!a) return;
     const started = performance.now();
     const [both, { state, charts }] = [{ a, b }, this];
-    charts["scatter-a"].show(pictures.scatter(state, a, "a"));
-    if (b) charts["scatter-b"].show(pictures.scatter(state, b, "b"));
-    charts.density.show(pictures.density(state, both));
-    charts.sigma.show(pictures.scatterWidth(state, both));
-    charts.reservoir.show(pictures.reservoir(state, both));
+    charts["scatter-a"].show(() => pictures.scatter(state, a, "a"));
+    if (b) charts["scatter-b"].show(() => pictures.scatter(state, b, "b"));
+    charts.density.show(() => pictures.density(state, both));
+    charts.sigma.show(() => pictures.scatterWidth(state, both));
+    charts.reservoir.show(() => pictures.reservoir(state, both));
     this.paper.show(this.player.struck);
     this.describe();
     // For those who wait for the page: how long this took, and whether all of it is there to be seen.
@@ -214,11 +219,6 @@ export class Explorer {
       return `${name}: ${found.number.toLocaleString("en")} ${first ? "first impacts" : `impacts within ±5 % of ${speed} m/s`}; ${what}.`;
     });
     part("density-text").textContent = words.join(" ");
-    for (const name of MAPS) {
-      const picture = this.charts[name].picture;
-      const host = this.charts[name].host;
-      if (picture) host.setAttribute("aria-label", `${picture.title}. ${words.join(" ")}`);
-    }
     part("summary").innerHTML = summary([["A", a], ["B", b]]);
   }
 }

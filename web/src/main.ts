@@ -278,6 +278,7 @@ function dress(explorer: Explorer): void {
   addEventListener("beforeprint", () => {
     on = document.documentElement.dataset.theme === "dark";
     if (on) put(false);
+    explorer.drawAll();
   });
   addEventListener("afterprint", () => {
     if (on) put(true);

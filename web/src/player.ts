@@ -110,7 +110,8 @@ export class Player {
     const path = this.paths[0];
     if (!path) return;
     const was = this.clock.playing;
-    this.clock.advance(path, lasted);
+    // A film takes twice the time: what takes a second or two is over before one has looked.
+    this.clock.advance(path, this.film ? lasted / 2 : lasted);
     if (was !== this.clock.playing) this.stopped();
     const moment = this.stage ? this.stage.draw(this.clock.time, was || this.shown !== path.flightAt(this.clock.time)) : path.at(this.clock.time);
     if (!moment) return;

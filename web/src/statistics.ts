@@ -91,6 +91,7 @@ export class Statistics {
   private readonly first: Float64Array;
   private readonly second: Float64Array;
   private readonly share: Float64Array;
+  private found = { impacts: -1, values: new Map<string, Float64Array>() };
   private readonly views = new Map<string, { column: Counted; lattice: Lattice }>();
   /** Impacts that multiplied the kinetic energy by more than 1 + 10⁻¹², and the largest factor. */
   created = 0;
@@ -148,26 +149,29 @@ export class Statistics {
 
   /** The values of a column where v is in [low, high), in order. */
   values(column: Counted, low: number, high: number): Float64Array {
-    const { columns, particles } = this.run;
-    const found: number[] = [];
-    this.each(0, particles, (i) => {
-      const v = columns.impact_velocity[i];
-      if (v >= low && v < high && Number.isFinite(columns[column][i])) found.push(columns[column][i]);
+    return this.kept(`${column} ${low} ${high}`, () => {
+      const { impact_velocity: v, [column]: values } = this.run.columns;
+      const found: number[] = [];
+      this.each(0, this.run.particles, (i) => {
+        if (v[i] >= low && v[i] < high && Number.isFinite(values[i])) found.push(values[i]);
+      });
+      return Float64Array.from(found).sort();
     });
-    return Float64Array.from(found).sort();
   }
 
   /** Where nearly all values of a column are, of the impacts faster than a twentieth of the fall. */
   range(column: Counted | "impact_velocity"): [number, number] {
-    const { columns, particles } = this.run;
-    const slow = 0.05 * fallSpeed(this.run.setup);
-    const every = Math.max(1, Math.floor(this.run.impacts / SAMPLE));
-    const found: number[] = [];
-    let k = 0;
-    this.each(0, particles, (i) => {
-      if (k++ % every === 0 && columns.impact_velocity[i] > slow && Number.isFinite(columns[column][i])) found.push(columns[column][i]);
+    const sorted = this.kept(column, () => {
+      const { impact_velocity: v, [column]: values } = this.run.columns;
+      const slow = 0.05 * fallSpeed(this.run.setup);
+      const every = Math.max(1, Math.floor(this.run.impacts / SAMPLE));
+      const found: number[] = [];
+      let k = 0;
+      this.each(0, this.run.particles, (i) => {
+        if (k++ % every === 0 && v[i] > slow && Number.isFinite(values[i])) found.push(values[i]);
+      });
+      return Float64Array.from(found).sort();
     });
-    const sorted = Float64Array.from(found).sort();
     return sorted.length ? [quantile(sorted, TAIL), quantile(sorted, 1 - TAIL)] : [0, 1];
   }
 
@@ -191,6 +195,14 @@ export class Statistics {
   window(speed: number): [number, number] {
     const half = Math.max(WINDOW * Math.abs(speed), 0.75 * this.v.step);
     return [speed - half, speed + half];
+  }
+
+  /** What was found among the impacts that are there, until there are more. */
+  private kept(key: string, find: () => Float64Array): Float64Array {
+    if (this.found.impacts !== this.run.impacts || this.found.values.size > 2 * VIEWS) this.found = { impacts: this.run.impacts, values: new Map() };
+    const values = this.found.values.get(key) ?? find();
+    this.found.values.set(key, values);
+    return values;
   }
 
   private count(column: Counted, lattice: Lattice, first: number, count: number): void {

@@ -19,24 +19,37 @@ const FILE = { width: 640, height: 420, font: 13 };
 const NEAR = 9;
 
 export class Chart {
-  picture: Picture | undefined;
+  private make: (() => Picture) | undefined;
+  private made: Picture | undefined;
+  /** Whether it is in the window, or nearly: what is not is drawn when it comes. */
+  private near = true;
   readonly canvas = document.createElement("canvas");
   /** What is inside the axes: it takes the presses. */
   private readonly plot = document.createElement("div");
   private at: Frame | undefined;
   /** The drawing of the population, which is long, and what it is of. */
-  private population: { canvas: HTMLCanvasElement; of: Lattice; seen: number; box: string } | undefined;
+  private readonly population = { canvas: document.createElement("canvas"), of: undefined as Lattice | undefined, seen: 0, box: "" };
 
   constructor(readonly host: HTMLElement, private readonly touch: Touch = {}) {
     this.plot.className = "plot";
     host.append(this.canvas, this.plot);
     this.listen();
     new ResizeObserver(() => this.draw()).observe(host);
+    new IntersectionObserver(([entry]) => {
+      this.near = entry.isIntersecting;
+      if (this.near) this.draw();
+    }, { rootMargin: "200px" }).observe(host);
   }
 
-  show(picture: Picture): void {
-    this.picture = picture;
-    this.draw();
+  /** Shows a picture, which is made when it is looked at. */
+  show(make: () => Picture): void {
+    this.make = make;
+    this.made = undefined;
+    if (this.near) this.draw();
+  }
+
+  get picture(): Picture | undefined {
+    return (this.made ??= this.make?.());
   }
 
   /** The picture as a file for print: on white, for every theme on the screen. */
@@ -54,33 +67,29 @@ export class Chart {
   /** Draws again: another size, other colours. */
   draw(): void {
     const { clientWidth: width, clientHeight: height } = this.host;
-    if (!this.picture || !width || !height) return;
-    const { canvas, picture, plot } = this;
+    if (!this.make || !width || !height) return;
+    const { canvas, plot } = this;
+    const picture = this.picture!;
     const scale = devicePixelRatio;
-    [canvas.width, canvas.height] = [Math.round(width * scale), Math.round(height * scale)];
+    const context = cleared(canvas, width, height);
+    this.host.setAttribute("aria-label", picture.title);
     const font = 0.8 * parseFloat(getComputedStyle(this.host).fontSize);
     this.at = frame(picture, width, height, font);
     const { box } = this.at;
     for (const side of ["left", "top", "width", "height"] as const) plot.style[side] = `${box[side]}px`;
-    const context = canvas.getContext("2d")!;
     const [pen, colours] = [new CanvasPen(context), theme()];
-    context.scale(scale, scale);
     grid(pen, picture, this.at, colours, font);
     if (picture.lattice) context.drawImage(this.populated(picture.lattice, this.at, scale), 0, 0, width, height);
     draw(pen, picture, this.at, colours, font);
   }
 
   private populated(lattice: Lattice, at: Frame, scale: number): HTMLCanvasElement {
+    const { population, host } = this;
     const box = JSON.stringify([at.box, scale]);
-    const old = this.population;
-    if (old && old.of === lattice && old.seen === lattice.seen && old.box === box) return old.canvas;
-    const canvas = document.createElement("canvas");
-    [canvas.width, canvas.height] = [this.canvas.width, this.canvas.height];
-    const context = canvas.getContext("2d")!;
-    context.scale(scale, scale);
-    sites(new CanvasPen(context), this.picture!, at);
-    this.population = { canvas, of: lattice, seen: lattice.seen, box };
-    return canvas;
+    if (population.of === lattice && population.seen === lattice.seen && population.box === box) return population.canvas;
+    sites(new CanvasPen(cleared(population.canvas, host.clientWidth, host.clientHeight)), this.picture!, at);
+    Object.assign(population, { of: lattice, seen: lattice.seen, box });
+    return population.canvas;
   }
 
   /** A press near the line drags it; any other one picks. */
@@ -109,6 +118,17 @@ export class Chart {
     });
     for (const end of ["pointerup", "pointercancel"]) plot.addEventListener(end, () => (dragging = false));
   }
+}
+
+/** An empty canvas of this size, whose unit is that of the page. One that has the size already is not made anew, which takes long. */
+export function cleared(canvas: HTMLCanvasElement, width: number, height: number): CanvasRenderingContext2D {
+  const scale = devicePixelRatio;
+  const [across, down] = [Math.round(width * scale), Math.round(height * scale)];
+  if (canvas.width !== across || canvas.height !== down) [canvas.width, canvas.height] = [across, down];
+  const context = canvas.getContext("2d")!;
+  context.setTransform(scale, 0, 0, scale, 0, 0);
+  context.clearRect(0, 0, width, height);
+  return context;
 }
 
 /** A canvas on a ground of this colour, for a PNG file. */

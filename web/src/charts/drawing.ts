@@ -5,6 +5,7 @@ import { contactArm } from "../stage/body";
 import { short } from "../stage/overlay";
 import { arrivalOf, impulseOf, type Path } from "../stage/path";
 import { Vector3 } from "three";
+import { cleared } from "./chart";
 import { PRINT, theme, type Palette } from "./colours";
 import { CanvasPen, SvgPen, type Pen, type Place } from "./pen";
 
@@ -70,10 +71,7 @@ export class Paper {
   draw(): void {
     const { clientWidth: width, clientHeight: height } = this.host;
     if (!width || !height) return;
-    const scale = devicePixelRatio;
-    [this.canvas.width, this.canvas.height] = [Math.round(width * scale), Math.round(height * scale)];
-    const context = this.canvas.getContext("2d")!;
-    context.scale(scale, scale);
+    const context = cleared(this.canvas, width, height);
     const font = 0.8 * parseFloat(getComputedStyle(this.host).fontSize);
     draw(new CanvasPen(context), this.struck, width, height, theme(), font);
   }

@@ -6,17 +6,24 @@ const UP = new Vector3(0, 0, 1);
 const SHAFT = new CylinderGeometry(1, 1, 1, 12).rotateX(Math.PI / 2).translate(0, 0, 0.5);
 const HEAD = new ConeGeometry(1, 1, 20).rotateX(Math.PI / 2).translate(0, 0, -0.5);
 
+/** One of each colour: a material that is made anew is compiled anew. */
+const MATERIALS = new Map<string, MeshBasicMaterial>();
+
+function materialOf(colour: string): MeshBasicMaterial {
+  const found = MATERIALS.get(colour) ?? new MeshBasicMaterial({ color: colour, depthTest: false, transparent: true, fog: false });
+  MATERIALS.set(colour, found);
+  return found;
+}
+
 export class Arrow extends Group {
-  private readonly material: MeshBasicMaterial;
   private readonly shaft: Mesh;
   private readonly head: Mesh;
   readonly tip = new Vector3();
 
   constructor(colour: string) {
     super();
-    this.material = new MeshBasicMaterial({ color: colour, depthTest: false, transparent: true, fog: false });
-    this.shaft = new Mesh(SHAFT, this.material);
-    this.head = new Mesh(HEAD, this.material);
+    this.shaft = new Mesh(SHAFT, materialOf(colour));
+    this.head = new Mesh(HEAD, materialOf(colour));
     this.shaft.renderOrder = this.head.renderOrder = 10;
     this.add(this.shaft, this.head);
   }
@@ -33,9 +40,5 @@ export class Arrow extends Group {
     this.shaft.scale.set(thick / 2, thick / 2, length - 0.9 * head);
     this.head.position.z = length;
     this.head.scale.set(0.4 * head, 0.4 * head, head);
-  }
-
-  override dispose(): void {
-    this.material.dispose();
   }
 }

@@ -6,16 +6,18 @@ import {
   CylinderGeometry,
   Group,
   Mesh,
-  MeshStandardMaterial,
+  MeshPhongMaterial,
   SphereGeometry,
   Vector3,
   type BufferGeometry,
 } from "three";
 import type { Setup } from "../setup";
 
+const SHINE = { shininess: 40, specular: "#333333" };
+
 /** Longitudes of a sphere in two colours: four quarters, seen to roll. `reach` is the angle from its pole that it goes to: what lies
  * inside another sphere would shine through where they nearly coincide. */
-function patch(material: MeshStandardMaterial, second: MeshStandardMaterial, half: number, side: 1 | -1 = 1, reach = Math.PI): Group {
+function patch(material: MeshPhongMaterial, second: MeshPhongMaterial, half: number, side: 1 | -1 = 1, reach = Math.PI): Group {
   const group = new Group();
   for (let k = 0; k < 4; k++) {
     const geometry = new SphereGeometry(1, 16, 32, (k * Math.PI) / 2, Math.PI / 2, 0, reach).rotateX((side * Math.PI) / 2);
@@ -25,9 +27,9 @@ function patch(material: MeshStandardMaterial, second: MeshStandardMaterial, hal
 }
 
 export function bodyOf(s: Setup, colour: string): Group {
-  const base = new MeshStandardMaterial({ color: colour, roughness: 0.45, metalness: 0.05 });
-  const light = new MeshStandardMaterial({ color: new Color(colour).lerp(new Color("#ffffff"), 0.45), roughness: 0.45 });
-  const dark = new MeshStandardMaterial({ color: new Color(colour).lerp(new Color("#000000"), 0.35), roughness: 0.45 });
+  const base = new MeshPhongMaterial({ color: colour, ...SHINE });
+  const light = new MeshPhongMaterial({ color: new Color(colour).lerp(new Color("#ffffff"), 0.45), ...SHINE });
+  const dark = new MeshPhongMaterial({ color: new Color(colour).lerp(new Color("#000000"), 0.35), ...SHINE });
   const group = new Group();
   const half = s.elongation / 2;
   if (s.shape === "dumbbell") {

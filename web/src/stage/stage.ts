@@ -13,7 +13,7 @@ import {
   LineSegments,
   Mesh,
   MeshBasicMaterial,
-  PCFShadowMap,
+  BasicShadowMap,
   PerspectiveCamera,
   PlaneGeometry,
   Scene,
@@ -83,8 +83,10 @@ export class Stage {
   constructor(private readonly host: HTMLElement) {
     this.renderer = new WebGLRenderer({ antialias: true, preserveDrawingBuffer: true });
     this.renderer.setPixelRatio(Math.min(devicePixelRatio, 2));
+    // Asking whether a shader is right waits for it.
+    this.renderer.debug.checkShaderErrors = false;
     this.renderer.shadowMap.enabled = true;
-    this.renderer.shadowMap.type = PCFShadowMap;
+    this.renderer.shadowMap.type = BasicShadowMap;
     this.renderer.setScissorTest(true);
     this.overlay.className = "overlay";
     for (const canvas of [this.renderer.domElement, this.overlay]) {
@@ -121,14 +123,14 @@ export class Stage {
 
   /** Puts bodies on the stage, each on its path. */
   show(cast: Part[]): void {
-    for (const { world, velocity, spin, impulse } of this.actors) {
+    for (const { world, body, trace, staff } of this.actors) {
       this.scene.remove(world);
-      for (const arrow of [velocity, spin, impulse]) arrow.dispose();
+      for (const part of [body, trace, staff]) part.traverse((x) => (x as Mesh).geometry?.dispose());
     }
     const unit = cast[0]?.setup.radius ?? 1;
     this.spacing = nice(unit) / unit;
     this.actors = cast.map((part) => this.actor(part, unit));
-    this.ruled();
+    this.grid.scale.setScalar(this.spacing);
     this.stale = true;
   }
 
@@ -138,6 +140,7 @@ export class Stage {
     this.renderer.setClearColor(colours.paper);
     this.scene.fog!.color.set(colours.paper);
     (this.ground.material as MeshBasicMaterial).color.set(colours.ground);
+    this.rule();
     this.show(this.actors);
   }
 
@@ -289,12 +292,12 @@ export class Stage {
     actor.traced = impacts;
   }
 
-  /** The lines on the ground. */
-  private ruled(): void {
+  /** The lines on the ground, one apart: other distances are another scale, for what is made anew is compiled anew. */
+  private rule(): void {
     const { soft } = theme();
     this.floor.remove(this.grid);
     this.grid.dispose();
-    this.grid = new GridHelper(2 * LINES * this.spacing, 2 * LINES, soft, soft);
+    this.grid = new GridHelper(2 * LINES, 2 * LINES, soft, soft);
     this.grid.rotateX(Math.PI / 2);
     this.grid.material.transparent = true;
     this.grid.material.opacity = 0.35;
