@@ -25,9 +25,9 @@ from restitution.study._store import Store, create_or_open, need_zarr
 from restitution.study._study import Study, study_of
 from restitution.study.engines import engine
 
-# Of an estimate: points that are tried, seconds in which particles of a point are timed, and seconds that all
-# particles of these points may take, so that they are tried whole.
-_POINTS, _ENOUGH, _WHOLE = 12, 0.05, 2.0
+# Of an estimate: points that are tried at first; seconds in which particles of a point are timed, in which all
+# particles of these points must be done to be tried whole, and after which no more points are tried.
+_POINTS, _ENOUGH, _WHOLE, _LONG = 12, 0.05, 2.0, 1.0
 
 
 def sweep(
@@ -290,15 +290,17 @@ def estimate(study: Study, threads: int) -> Estimate:
     threads = whole("threads", threads, 1)
     need_zarr()
     points, particles = study.design.points, study.effort.particles
-    part = replace(study, design=_some(study.design))
-    tried = part.design.points
-    each = float(np.mean([_particle(part, number) for number in range(tried)]))
+    tried = min(points, _POINTS)
+    each = float(np.mean([_particle(_some(study, tried), number) for number in range(tried)]))
     given = study.base.angles is not None or study.base.spins is not None  # one for each particle
     whole_ones = given or tried * particles * each < _WHOLE
     some = particles if whole_ones else max(2 * study.effort.batches, int(_WHOLE / (tried * each)))
-    _done(part, 1, some)  # the first one loads what all need
-    first, _, _ = _done(part, 1, some)
-    seconds, results, other = _done(part, tried, some)
+    _done(_some(study, 1), some)  # the first one loads what all need
+    first, _, _ = _done(_some(study, 1), some)
+    seconds, results, other = _done(_some(study, tried), some)
+    while seconds - first < _LONG and tried < points:
+        tried = min(points, 3 * tried)
+        seconds, results, other = _done(_some(study, tried), some)
     more = max(0.0, seconds - first) / max(1, tried - 1) + each * (particles - some)
     return Estimate(
         points=points,
@@ -311,14 +313,12 @@ def estimate(study: Study, threads: int) -> Estimate:
     )
 
 
-def _some(design: Design) -> Design:
-    """Choose points by chance, the same ones always."""
-    chosen = random.Random(1).sample(range(design.points), min(design.points, _POINTS))
-    values = [design.values(point) for point in chosen]
-    return Design(
-        "points",
-        tuple(replace(axis, values=tuple(one[axis.parameter] for one in values)) for axis in design.axes),
-    )
+def _some(study: Study, number: int) -> Study:
+    """Make a study of points that are chosen by chance, the same ones always."""
+    design = study.design
+    chosen = [design.values(i) for i in random.Random(1).sample(range(design.points), number)]
+    axes = (replace(axis, values=tuple(one[axis.parameter] for one in chosen)) for axis in design.axes)
+    return replace(study, design=Design("points", tuple(axes)))
 
 
 def _particle(study: Study, number: int) -> float:
@@ -333,15 +333,15 @@ def _particle(study: Study, number: int) -> float:
         particles = min(study.effort.particles, 4 * particles)
 
 
-def _done(study: Study, points: int, particles: int) -> tuple[float, int, int]:
-    """Run points with so many particles; return processor time, bytes of results and of all else."""
+def _done(study: Study, particles: int) -> tuple[float, int, int]:
+    """Run a study with so many particles; return processor time, bytes of results and of all else."""
     effort = replace(study.effort, particles=particles, blocks=1, until=())
     study = replace(study, base=study.base.model_copy(update={"particles": particles}), effort=effort)
     with tempfile.TemporaryDirectory() as folder, engine(None, 1) as work:
         path = Path(folder) / "study.zarr"
         start = time.process_time()
         store, template = opened(path, study)
-        Driver(study, store, work, template, range(points)).run(writes=True)
+        Driver(study, store, work, template, range(study.design.points)).run(writes=True)
         took = time.process_time() - start
         sizes = {file: file.stat().st_size for file in path.rglob("*") if file.is_file()}
         other = sum(size for file, size in sizes.items() if file.name == "zarr.json")
