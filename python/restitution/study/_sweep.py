@@ -25,8 +25,8 @@ from restitution.study._store import Store, create_or_open, need_zarr
 from restitution.study._study import Study, study_of
 from restitution.study.engines import engine
 
-# Of an estimate: points that are tried at first; seconds in which particles of a point are timed, in which all
-# particles of these points must be done to be tried whole, and after which no more points are tried.
+# Of an estimate: points that are tried at first; seconds in which particles of a point are timed, in which
+# all particles of these points must be done to be tried whole, and after which no more points are tried.
 _POINTS, _ENOUGH, _WHOLE, _LONG = 12, 0.05, 2.0, 1.0
 
 
