@@ -55,7 +55,7 @@ def reals(
     except MemoryError as error:
         allowed = "as many numbers as this process has the memory for"
         raise TooLargeError(wrong(name, value, allowed)) from error
-    except Exception:  # lists of different lengths, or whatever the object itself raises
+    except Exception:  # lists of different lengths, or any error of the object itself
         good, reason, numbers = False, "", np.empty(0)
     if not good:
         raise ParameterError(wrong(name, value, f"{allowed}; it {reason}" if reason else allowed))
@@ -100,7 +100,7 @@ def whole(name: str, value: Any, least: int, most: int | None = None) -> int:
     plain = plain_number(value)
     try:
         number = index(plain)
-    except Exception:  # whatever the object raises
+    except Exception:  # any error of the object
         raise ParameterError(wrong(name, value, allowed)) from None
     stray = isinstance(plain, bool) or np.ma.is_masked(plain)
     if stray or number < least or (most is not None and number > most):
@@ -122,7 +122,7 @@ def several(name: str, value: Any, allowed: str, take: Callable[[int, Any], T]) 
         return [take(number, one) for number, one in enumerate(value)]
     except (ParameterError, MemoryError):  # of one of them, or of what makes them
         raise
-    except Exception as error:  # whatever the object raises
+    except Exception as error:  # any error of the object
         raise ParameterError(wrong(name, value, allowed)) from error
 
 

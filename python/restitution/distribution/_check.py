@@ -21,7 +21,7 @@ class Check:
     """Kolmogorov–Smirnov distances between a table and impacts, one for each interval between two nodes.
 
     If ε has the learned distribution at its own v, the probability of a smaller one, u = F(ε | v), is uniform
-    on [0, 1] at whatever speeds the impacts are. So the distance of u from uniform is that of the learned
+    on [0, 1] at any speeds of the impacts. So the distance of u from uniform is that of the learned
     distribution from the true one, averaged over the interval.
     """
 

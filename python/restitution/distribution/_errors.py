@@ -1,4 +1,4 @@
-"""Standard errors of what a learned distribution says."""
+"""Standard errors of the quantities that a learned distribution returns."""
 
 from __future__ import annotations
 

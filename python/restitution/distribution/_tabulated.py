@@ -230,7 +230,7 @@ class TabulatedDistribution:
             Shape of the result, which `v` and `given` broadcast to; theirs by default.
         random_state : int, numpy.random.Generator, numpy.random.RandomState, optional
             A seed in [0, 2⁶⁴), or what to draw one from. The same seed gives the same bits with any number of
-            threads, and the same first draws whatever the size.
+            threads, and the same first draws for any size.
         given : array_like, optional
             Condition.
         threads : int, optional

@@ -1,4 +1,4 @@
-"""Half-open bins, and the Dataset in which statistics are handed over."""
+"""Half-open bins, and the Dataset of statistics."""
 
 from collections.abc import Mapping
 from typing import Any

@@ -184,7 +184,7 @@ def fitted_by(family: Callable[[Any], Fit], samples: Array | Counts) -> Fit:
         raise ParameterError(wrong("family", family, "a function from samples to a Fit"))
     try:
         fit = family(samples)
-    except ValueError:  # of ours, or that of a family for the samples that it cannot take
+    except ValueError:  # by this package, or by a family for samples that it cannot fit
         raise
     except Exception as error:
         text = f" = {shown(family)} gave {type(error).__name__}: {error}: must be a function to a Fit"

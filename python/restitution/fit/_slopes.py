@@ -141,7 +141,7 @@ class Slopes(Content):
                 f"release_speed = {release_speed!r}: must be above {v.max():g} m/s, the fastest bin"
             )
         x = np.log(v)
-        if release_speed is not None:  # ln √(v₀²/v² − 1), whatever the speeds
+        if release_speed is not None:  # ln √(v₀²/v² − 1), for any speeds
             x = np.log(release_speed) - x + 0.5 * np.log1p(-((v / release_speed) ** 2))
         error = self.table[f"{side}_error"].to_numpy()[chosen] / y
         known = bool(np.all(np.isfinite(error) & (error > 0)))

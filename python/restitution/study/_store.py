@@ -156,7 +156,7 @@ class Store:
                 raise ValueError(f"the chunks of tasks/words are {self.words.chunks}")
 
     def there(self, point: int) -> set[int]:
-        """Return which tasks of a point have a chunk, whatever is in it."""
+        """Return which tasks of a point have a chunk, damaged or not."""
         return {int(file.parent.name) for file in self._chunks(str(point))}
 
     def number_there(self) -> int:
@@ -221,9 +221,7 @@ class Store:
                 shape = (*design.shape, *variable.shape) if own else variable.shape
                 if name not in self.group:
                     attrs = _plain(variable.attrs)
-                    if (
-                        own and design.kind != "grid"
-                    ):  # parameters are coordinates, which Xarray has to be told
+                    if own and design.kind != "grid":  # Xarray must be given the names of the coordinates
                         attrs["coordinates"] = " ".join(axis.name for axis in design.axes)
                     with contextlib.suppress(FileExistsError, ValueError):  # another worker was faster
                         self.group.create_array(

@@ -290,7 +290,7 @@ def _measure(given: Any) -> tuple[Measure | None, str]:
         module, _, name = function.partition(":")
         try:
             function = getattr(import_module(module), name)
-        except (Exception, SystemExit) as error:  # whatever a module raises that is imported
+        except (Exception, SystemExit) as error:  # any error of the imported module
             said = " ".join(str(error).split())[:200]
             text = f"{said}; must be 'module:function', importable where the study runs"
             raise ParameterError(Problem("measure.function", f" = {shown(function)}: {text}")) from None

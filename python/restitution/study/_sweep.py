@@ -42,9 +42,9 @@ def sweep(
     """Run a study: a run whose parameters are varied, and what is measured at every point.
 
     Every task, a point and a range of its particles, is in the store as soon as it is done. The same call
-    resumes a study that was stopped, for whatever reason; tasks that are missing or damaged are computed
-    again. The result has the same bits as that of an uninterrupted study, whatever the engine, the number of
-    workers and the order in which they finish. Several calls may work on one store at a time.
+    resumes a study that was stopped for any reason; tasks that are missing or damaged are computed
+    again. The result has the same bits as that of an uninterrupted study, for any engine, number of
+    workers and order in which they finish. Several calls may work on one store at a time.
 
     Parameters
     ----------

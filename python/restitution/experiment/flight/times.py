@@ -18,7 +18,7 @@ FLAGS = ("good", "doubtful", "missed", "doubled")
 LEAST, LARGEST = 1e-30, 1e30
 """Products of measured numbers between them are numbers that a double holds."""
 MOST = 3000
-"""Impacts of a series: a product with its covariance takes half a second, in which no signal is heard."""
+"""Impacts of a series: a product with its covariance takes half a second, in which no signal is handled."""
 GOOD, DOUBTFUL, MISSED, DOUBLED = range(len(FLAGS))
 
 

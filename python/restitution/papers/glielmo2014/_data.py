@@ -45,7 +45,7 @@ def restitution_histograms(runs: Runs, s: Settings) -> xr.Dataset:
         particle, values = _window(runs.main, "restitution", window)
         edges = histogram_edges(s, width)
         fitted = fit.asymmetric_laplace(values)
-        # The cusp itself is among the points, lest the curve cut it off.
+        # The cusp itself is among the points, so that the curve does not cut it off.
         points = np.sort(np.append(np.linspace(edges[0], edges[-1], 400), fitted.parameters["location"]))
         count = coarse(found["restitution_count"].to_numpy(), s, width)
         part = _histogram(count, int(found["number"]), edges, _together(particle, values, edges))
