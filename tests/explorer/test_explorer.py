@@ -123,7 +123,7 @@ def test_a_dataset_knows_its_run() -> None:
     assert run == Run(body=BODY, law=law, particles=3, impacts=5, spin=(0.0, 2.0, 0.0), seed=7)
     one = rs.simulate(BODY, LAW, particles=1, impacts=2, orientation=[0.75])
     assert float(values(_run_of(one))["angle"]) == pytest.approx(0.75, abs=1e-15)
-    with pytest.raises(ValueError, match="data: not a Dataset"):
+    with pytest.raises(ValueError, match="data: must be a Dataset"):
         rs.explore(data.drop_attrs())
 
 
