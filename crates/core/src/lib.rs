@@ -13,7 +13,7 @@
 //! | paper | here |
 //! |---|---|
 //! | n (plane normal), z | `z`, upward |
-//! | r_G, v_G | [`State::lift`], [`State::velocity`] |
+//! | r_G, v_G | [`State::height`], [`State::velocity`] |
 //! | ω | derived from the precession vector **Λ**/J_xx, [`State::precession`] |
 //! | Â(t)·(0, 0, 1) | [`State::axis`], from sphere 2 to sphere 1 |
 //! | L/2, J_xx, J_zz | [`Body::half_separation`], [`Body::transverse`], [`Body::axial`] |
@@ -26,7 +26,7 @@
 //! | (1), (12) | `drop/lanes/impact.rs` |
 //! | (2) | `shape/revolution/hull/`, `contact/` |
 //! | (3)–(5) | `motion/` |
-//! | (6)–(8), (11) | `drop/lanes/strike.rs` |
+//! | (6)–(8), (11) | `drop/lanes/collision.rs` |
 //! | (9), (10) | `law/tangential.rs` |
 //! | (18) | `drop/release/orientation.rs` |
 //! | (A1)–(A8) | `shape/revolution/dumbbell.rs` |
@@ -51,8 +51,8 @@ pub mod statistics;
 mod threads;
 
 pub use drop::{
-    About, COLLAPSE_RUN, Departure, Followed, Height, Landing, Limits, NoConvergence, Orientation,
-    Run, Scales, SingleImpact, Spin, StopReason, collide, first_contact, trajectory,
+    About, COLLAPSE_RUN, FlightEnd, FlightStart, Followed, Height, Limits, NoConvergence,
+    Orientation, Run, Scales, SingleImpact, Spin, StopReason, collide, first_contact, trajectory,
 };
 pub use error::{Error, Value};
 pub use law::{
@@ -68,4 +68,4 @@ pub use shape::{
 };
 pub use simd::{Level, elementary};
 pub use simulate::simulate_series;
-pub use threads::{Means, Monitor, STACK, default_threads};
+pub use threads::{Monitor, Resources, STACK, default_threads};

@@ -42,7 +42,7 @@ pub fn collected<T>(
     Ok(vector)
 }
 
-/// A copy of `values`, likewise.
+/// A copy of `values`; `what` is for the error.
 ///
 /// # Errors
 /// [`Error::Memory`].

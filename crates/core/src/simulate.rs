@@ -4,8 +4,10 @@ use crate::Error;
 use crate::drop::{BLOCK, Plan, Run, Series, Source, bounce_block, even, share};
 use crate::record::Table;
 use crate::record::{Columns, Records};
-use crate::statistics::{Bins, By, Counter, Counts, Rows, Tally, Tallying, UNSPOILT};
-use crate::threads::{Means, Monitor};
+use crate::statistics::{
+    Bins, By, CountSink, Histogram, HistogramSink, MomentSink, Rows, UNSPOILT,
+};
+use crate::threads::{Monitor, Resources};
 use std::ops::Range;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -16,18 +18,18 @@ impl Run<'_> {
     /// # Errors
     /// [`Error::Parameter`] or [`Error::Magnitude`] for a parameter out of range, [`Error::Memory`], [`Error::Threads`], and
     /// [`Error::Numerical`] if a contact search does not converge.
-    pub fn simulate(&self, means: Means, monitor: &Monitor) -> Result<Records, Error> {
-        self.simulate_part(0..self.particles, means, monitor)
+    pub fn simulate(&self, resources: Resources, monitor: &Monitor) -> Result<Records, Error> {
+        self.simulate_part(0..self.particles, resources, monitor)
     }
 
     /// As [`Run::simulate`], for some of the particles of the run.
     pub fn simulate_part(
         &self,
         part: Range<usize>,
-        means: Means,
+        resources: Resources,
         monitor: &Monitor,
     ) -> Result<Records, Error> {
-        self.simulate_columns(part, &Columns::usual(&self.law, false), means, monitor)
+        self.simulate_columns(part, &Columns::usual(&self.law, false), resources, monitor)
     }
 
     /// As [`Run::simulate_part`], recording the variables in `columns`.
@@ -35,12 +37,12 @@ impl Run<'_> {
         &self,
         part: Range<usize>,
         columns: &Columns,
-        means: Means,
+        resources: Resources,
         monitor: &Monitor,
     ) -> Result<Records, Error> {
         let plan = Plan::new(self)?;
         plan.check_part(&part)?;
-        let mut records = recorded(&plan, part.clone(), |_| BLOCK, columns, means, monitor)?;
+        let mut records = recorded(&plan, part.clone(), |_| BLOCK, columns, resources, monitor)?;
         records.add_release(&plan, part.start)?;
         Ok(records)
     }
@@ -49,30 +51,35 @@ impl Run<'_> {
     ///
     /// # Errors
     /// As [`Run::simulate`], and [`Error::Parameter`] for bins that do not fit the run.
-    pub fn statistics(&self, bins: &Bins, means: Means, monitor: &Monitor) -> Result<Tally, Error> {
-        self.statistics_of_part(0..self.particles, bins, means, monitor)
+    pub fn statistics(
+        &self,
+        bins: &Bins,
+        resources: Resources,
+        monitor: &Monitor,
+    ) -> Result<Histogram, Error> {
+        self.statistics_of_part(0..self.particles, bins, resources, monitor)
     }
 
-    /// As [`Run::statistics`], for some of the particles of the run. The tallies of all parts merge to the tally of the run.
+    /// As [`Run::statistics`], for some of the particles of the run. The histograms of all parts merge to the histogram of the run.
     pub fn statistics_of_part(
         &self,
         part: Range<usize>,
         bins: &Bins,
-        means: Means,
+        resources: Resources,
         monitor: &Monitor,
-    ) -> Result<Tally, Error> {
-        self.statistics_of_parts(&[part], bins, means, monitor, |_| Ok(()))
+    ) -> Result<Histogram, Error> {
+        self.statistics_of_parts(&[part], bins, resources, monitor, |_| Ok(()))
     }
 
-    /// As [`Run::statistics_of_part`], for several parts, one after the other; `tell` has what is summed by row of each that was begun.
+    /// As [`Run::statistics_of_part`], for several parts, one after the other; `report` receives the sums by row of each that was begun.
     pub fn statistics_of_parts(
         &self,
         parts: &[Range<usize>],
         bins: &Bins,
-        means: Means,
+        resources: Resources,
         monitor: &Monitor,
-        mut tell: impl FnMut(&Rows) -> Result<(), Error>,
-    ) -> Result<Tally, Error> {
+        mut report: impl FnMut(&Rows) -> Result<(), Error>,
+    ) -> Result<Histogram, Error> {
         let plan = Plan::new(self)?;
         parts.iter().try_for_each(|part| plan.check_part(part))?;
         bins.check()?;
@@ -80,12 +87,12 @@ impl Run<'_> {
             let allowed = "at most the number of rows";
             Error::unless(self.impacts <= rows, "impacts", self.impacts, allowed)?;
         }
-        let mut total = Tally::new(bins, self.origin())?;
+        let mut total = Histogram::new(bins, self.origin())?;
         for part in parts {
             let shared = Mutex::new(total);
-            let rows = Self::rows(&plan, part.clone(), bins, means, monitor, &shared)?;
+            let rows = Self::rows(&plan, part.clone(), bins, resources, monitor, &shared)?;
             total = shared.into_inner().expect(UNSPOILT);
-            tell(&rows)?;
+            report(&rows)?;
             total.rows.merge(&rows);
             if monitor.is_cancelled() {
                 break;
@@ -94,28 +101,28 @@ impl Run<'_> {
         Ok(total)
     }
 
-    /// Counts the impacts of a part in the grids of a tally, and returns what else is summed of them.
+    /// CountSink the impacts of a part in the grids of a histogram, and returns what else is summed of them.
     fn rows(
         plan: &Plan<'_>,
         part: Range<usize>,
         bins: &Bins,
-        means: Means,
+        resources: Resources,
         monitor: &Monitor,
-        shared: &Mutex<Tally>,
+        shared: &Mutex<Histogram>,
     ) -> Result<Rows, Error> {
         let even = bins.are_even();
         let found = match &bins.fraction {
-            Some(fractions) if even => Self::each(plan, part, means, monitor, || {
-                Counter::<true>::new(bins, fractions, plan, shared)
+            Some(fractions) if even => Self::each(plan, part, resources, monitor, || {
+                MomentSink::<true>::new(bins, fractions, plan, shared)
             }),
-            Some(fractions) => Self::each(plan, part, means, monitor, || {
-                Counter::<false>::new(bins, fractions, plan, shared)
+            Some(fractions) => Self::each(plan, part, resources, monitor, || {
+                MomentSink::<false>::new(bins, fractions, plan, shared)
             }),
-            None if even => Self::each(plan, part, means, monitor, || {
-                Counts::<true>::new(bins, plan, shared)
+            None if even => Self::each(plan, part, resources, monitor, || {
+                CountSink::<true>::new(bins, plan, shared)
             }),
-            None => Self::each(plan, part, means, monitor, || {
-                Counts::<false>::new(bins, plan, shared)
+            None => Self::each(plan, part, resources, monitor, || {
+                CountSink::<false>::new(bins, plan, shared)
             }),
         };
         let mut sum = Rows::new(bins, plan.run.origin())?;
@@ -127,15 +134,15 @@ impl Run<'_> {
 
     /// What every thread has summed. Which thread takes which block does not matter, because integer sums do not depend on the
     /// order.
-    fn each<T: Tallying>(
+    fn each<T: HistogramSink>(
         plan: &Plan<'_>,
         part: Range<usize>,
-        means: Means,
+        resources: Resources,
         monitor: &Monitor,
         counter: impl Fn() -> Result<T, Error> + Sync,
     ) -> Result<Vec<Result<Rows, Error>>, Error> {
         let next = AtomicUsize::new(part.start);
-        means.each_thread(part.len().div_ceil(BLOCK), |threads| {
+        resources.each_thread(part.len().div_ceil(BLOCK), |threads| {
             let mut counter = counter()?;
             while !monitor.is_cancelled() {
                 let next = next.fetch_update(Ordering::Relaxed, Ordering::Relaxed, |first| {
@@ -144,7 +151,7 @@ impl Run<'_> {
                 });
                 let Ok(first) = next else { break };
                 let particles = first..first + share(part.end - first, threads);
-                bounce_block(plan, particles, means.level, monitor, &mut counter)?;
+                bounce_block(plan, particles, resources.level, monitor, &mut counter)?;
             }
             Ok(counter.finish())
         })
@@ -160,13 +167,13 @@ impl Run<'_> {
 pub fn simulate_series(
     runs: &[(Run<'_>, Range<usize>)],
     columns: &Columns,
-    means: Means,
+    resources: Resources,
     monitor: &Monitor,
 ) -> Result<Records, Error> {
     let series = Series::new(runs)?;
     let particles = series.particles();
     let block = |threads| even(particles, threads);
-    recorded(&series, 0..particles, block, columns, means, monitor)
+    recorded(&series, 0..particles, block, columns, resources, monitor)
 }
 
 /// The impacts of a range of particles, which threads take in blocks of as many as `block` says for their number.
@@ -175,7 +182,7 @@ fn recorded(
     part: Range<usize>,
     block: impl Fn(usize) -> usize + Sync,
     columns: &Columns,
-    means: Means,
+    resources: Resources,
     monitor: &Monitor,
 ) -> Result<Records, Error> {
     let impacts = source.plan().run.impacts;
@@ -189,7 +196,7 @@ fn recorded(
     let started = AtomicUsize::new(part.start);
     let rows = Mutex::new(records.block());
     // Free threads take blocks in order, so that the particles begun before a cancellation are contiguous.
-    let ended = means.each_thread(part.len().div_ceil(BLOCK), |threads| {
+    let ended = resources.each_thread(part.len().div_ceil(BLOCK), |threads| {
         let size = block(threads);
         while !monitor.is_cancelled() {
             let mut rows = rows.lock().expect("no thread panics while it takes rows");
@@ -202,7 +209,7 @@ fn recorded(
             }
             let particles = first..first + count;
             let mut table = Table::new(block, source, first);
-            bounce_block(source, particles, means.level, monitor, &mut table)?;
+            bounce_block(source, particles, resources.level, monitor, &mut table)?;
             table.finish(monitor);
         }
         Ok(())

@@ -6,7 +6,7 @@ use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
 /// Threads and vector instructions of a run; the result does not depend on them.
 #[derive(Debug, Clone, Copy)]
-pub struct Means {
+pub struct Resources {
     /// Number of threads; 0 means one for each core.
     pub threads: usize,
     /// Level of the vector instructions.
@@ -56,7 +56,7 @@ impl Monitor {
     }
 }
 
-/// Bytes of the stack of a thread of ours, whatever `RUST_MIN_STACK` says.
+/// Bytes of the stack of a thread that the core or the binding starts, independent of `RUST_MIN_STACK`.
 pub const STACK: usize = 2 << 20;
 
 /// The default number of threads: one for each core that the process may use. Environment variables are not read.
@@ -64,7 +64,7 @@ pub fn default_threads() -> usize {
     std::thread::available_parallelism().map_or(1, usize::from)
 }
 
-impl Means {
+impl Resources {
     /// Runs `work` on every thread, with the number of threads, which is not larger than that of blocks, and returns one result for
     /// each thread. A single thread is the caller's own.
     #[cfg(feature = "threads")]

@@ -12,14 +12,14 @@ use oracle::random::Random;
 use oracle::solid::Shape;
 use oracle::{Noise, Particle, World};
 use restitution_core::statistics::{Axis, Bins, By};
-use restitution_core::{Level, Means, Monitor, Orientation, Spin};
+use restitution_core::{Level, Monitor, Orientation, Resources, Spin};
 use std::time::{Duration, Instant};
 
 /// Rounds through all bodies and laws where no time is given.
 const ROUNDS: u64 = 2;
 
-fn means(level: Level, threads: usize) -> Means {
-    Means { threads, level }
+fn resources(level: Level, threads: usize) -> Resources {
+    Resources { threads, level }
 }
 
 fn kinds() -> impl Iterator<Item = (usize, usize, bool)> {
@@ -47,9 +47,9 @@ fn every_impact_is_the_oracles() {
         for (shape, law, planar) in kinds() {
             let seed = ((round * 100 + shape as u64) * 100 + law as u64) * 2 + u64::from(planar);
             let case = case(&mut Random(seed), shape, law, planar);
-            let records = case.records(means(Level::Scalar, 1));
+            let records = case.records(resources(Level::Scalar, 1));
             for level in Level::available() {
-                let other = case.records(means(level, 2));
+                let other = case.records(resources(level, 2));
                 assert!(
                     all_bits(&records) == all_bits(&other),
                     "{level:?}: {case:#?}"
@@ -89,7 +89,7 @@ fn lossy(start: Start, impacts: usize) -> Case {
     }
 }
 
-/// The tally by the number of the impact: how many impacts have which ε, and their mean, are what the oracle counts. An ε within 10⁻⁹
+/// The histogram by the number of the impact: how many impacts have which ε, and their mean, are what the oracle counts. An ε within 10⁻⁹
 /// of an edge may be counted on either side of it.
 #[test]
 fn the_statistics_count_what_the_oracle_counts() {
@@ -108,11 +108,11 @@ fn the_statistics_count_what_the_oracle_counts() {
             restitution: Axis::new("edges", &edges).unwrap(),
             fraction: Some(Axis::new("edges", &[0.0, 1.0]).unwrap()),
         };
-        let tally = case.with_run(|run| {
-            run.statistics(&bins, means(Level::best(), 2), &Monitor::default())
+        let histogram = case.with_run(|run| {
+            run.statistics(&bins, resources(Level::best(), 2), &Monitor::default())
                 .unwrap()
         });
-        let records = case.records(means(Level::best(), 2));
+        let records = case.records(resources(Level::best(), 2));
         let body = case.world.shape.body();
         let mut found = vec![Vec::new(); case.impacts];
         for particle in 0..records.particles() {
@@ -123,14 +123,14 @@ fn the_statistics_count_what_the_oracle_counts() {
             }
         }
         for (row, found) in found.iter().enumerate() {
-            assert_eq!(tally.rows.number(row), found.len() as u64);
+            assert_eq!(histogram.rows.number(row), found.len() as u64);
             let mean = found.iter().sum::<f64>() / found.len() as f64;
-            let counted = tally.rows.moments(row).unwrap().mean;
+            let counted = histogram.rows.moments(row).unwrap().mean;
             assert!(
                 (counted - mean).abs() <= QUANTUM,
                 "{counted} in {row}: {mean}"
             );
-            let counts = &tally.restitution.counts()[row * tally.restitution.columns()..];
+            let counts = &histogram.restitution.counts()[row * histogram.restitution.columns()..];
             for (bin, edges) in edges.windows(2).enumerate() {
                 let within = |slack: f64| {
                     let inside = |x: &&f64| edges[0] - slack <= **x && **x < edges[1] + slack;
@@ -177,7 +177,7 @@ fn long_runs_have_the_oracles_statistics() {
             separation: 1e-3,
             density: [2500.0; 2],
         };
-        let product = case.records(means(Level::best(), 2));
+        let product = case.records(resources(Level::best(), 2));
         let product = product
             .restitution
             .chunks(last)
@@ -187,7 +187,7 @@ fn long_runs_have_the_oracles_statistics() {
             impacts: 1,
             ..case.clone()
         };
-        let records = releases.records(means(Level::best(), 2));
+        let records = releases.records(resources(Level::best(), 2));
         let body = case.world.shape.body();
         let oracle = (0..records.particles()).map(|particle| {
             let release = releases.release(&records, particle);
@@ -211,9 +211,9 @@ fn mean(sample: &[Vec<f64>], power: i32) -> (f64, f64) {
         let sum: f64 = numbers.iter().map(|x| x.powi(power)).sum();
         (!numbers.is_empty()).then(|| sum / numbers.len() as f64)
     };
-    let means: Vec<f64> = sample.iter().filter_map(own).collect();
-    let number = means.len() as f64;
-    let mean = means.iter().sum::<f64>() / number;
-    let variance = means.iter().map(|x| (x - mean).powi(2)).sum::<f64>() / (number - 1.0);
+    let resources: Vec<f64> = sample.iter().filter_map(own).collect();
+    let number = resources.len() as f64;
+    let mean = resources.iter().sum::<f64>() / number;
+    let variance = resources.iter().map(|x| (x - mean).powi(2)).sum::<f64>() / (number - 1.0);
     (mean, (variance / number).sqrt())
 }

@@ -1,17 +1,17 @@
 //! Every impact in its bin, none lost, and moments that are those of the impacts.
 
 mod common;
-mod tallies;
+mod histograms;
 
 use common::*;
+use histograms::*;
 use proptest::prelude::*;
 use restitution_core::statistics::{
-    Axis, Bins, By, CREATES_ENERGY, Gains, Grid, Moments, Sums, Tally,
+    Axis, Bins, By, CREATES_ENERGY, Gains, Grid, Histogram, Moments, Sums,
 };
-use restitution_core::{Level, Means, Monitor, Records, Run};
-use tallies::*;
+use restitution_core::{Level, Monitor, Records, Resources, Run};
 
-/// What a tally should say, worked out from the table of impacts, one at a time.
+/// What a histogram should say, worked out from the table of impacts, one at a time.
 struct Expected {
     restitution: Vec<u64>,
     fraction: Vec<u64>,
@@ -95,20 +95,20 @@ impl Expected {
         Self::new(records, run, run.impacts, edges, |_, number| number)
     }
 
-    fn agrees(&self, tally: &Tally, origin: f64) -> Result<(), TestCaseError> {
-        prop_assert_eq!(tally.restitution.counts(), &self.restitution[..]);
-        prop_assert_eq!(tally.fraction.counts(), &self.fraction[..]);
-        prop_assert_eq!(&tally.rows.gains, &self.gains);
-        prop_assert_eq!(tally.rows.stops, self.stops);
+    fn agrees(&self, histogram: &Histogram, origin: f64) -> Result<(), TestCaseError> {
+        prop_assert_eq!(histogram.restitution.counts(), &self.restitution[..]);
+        prop_assert_eq!(histogram.fraction.counts(), &self.fraction[..]);
+        prop_assert_eq!(&histogram.rows.gains, &self.gains);
+        prop_assert_eq!(histogram.rows.stops, self.stops);
         for (row, values) in self.values.iter().enumerate() {
             let number = values.len();
-            prop_assert_eq!(tally.rows.number(row), number as u64);
-            let found = tally.rows.moments(row).unwrap();
-            let mean_fraction = tally.rows.mean_fraction(row).unwrap();
+            prop_assert_eq!(histogram.rows.number(row), number as u64);
+            let found = histogram.rows.moments(row).unwrap();
+            let mean_fraction = histogram.rows.mean_fraction(row).unwrap();
             if number == 0 {
                 prop_assert!(mean_fraction.is_nan());
                 prop_assert!(
-                    bits(tally, row + 1)[7 * row..]
+                    bits(histogram, row + 1)[7 * row..]
                         .iter()
                         .all(|&x| f64::from_bits(x).is_nan())
                 );
@@ -218,7 +218,7 @@ proptest! {
         jitter in prop::collection::vec(-3e-8..3e-8_f64, 21), level in level(),
     ) {
         let run = Run { particles: 40, impacts: 30, ..paper(elongation, law(0.9, 0.5)) };
-        let records = run.simulate(Means { threads: 1, level }, &Monitor::default()).unwrap();
+        let records = run.simulate(Resources { threads: 1, level }, &Monitor::default()).unwrap();
         let i = pick.index(run.particles) * run.impacts;
         let i = i + pick.index(records.impacts[i / run.impacts] as usize);
         let around = |axis: usize, value: f64| -> Vec<f64> {
@@ -236,14 +236,14 @@ proptest! {
             restitution: around(1, records.restitution[i]),
             fraction: around(2, records.rotational_fraction[i]),
         };
-        let tally = statistics(&run, &edges.by_velocity(), level, 1);
-        Expected::by_velocity(&records, &run, &edges).agrees(&tally, run.origin())?;
+        let histogram = statistics(&run, &edges.by_velocity(), level, 1);
+        Expected::by_velocity(&records, &run, &edges).agrees(&histogram, run.origin())?;
     }
 }
 
 fn counts_and_sums_what_simulate_records(run: &Run<'_>, level: Level) -> Result<(), TestCaseError> {
     let records = run
-        .simulate(Means { threads: 1, level }, &Monitor::default())
+        .simulate(Resources { threads: 1, level }, &Monitor::default())
         .unwrap();
     let edges = Edges::coarse();
     let origin = run.origin();
@@ -254,10 +254,13 @@ fn counts_and_sums_what_simulate_records(run: &Run<'_>, level: Level) -> Result<
 
     let impacts = records.impacts.iter().sum::<i64>() as u64;
     let total = |grid: &Grid| grid.counts().iter().sum::<u64>();
-    for tally in [&by_velocity, &by_number] {
-        prop_assert_eq!(total(&tally.restitution), impacts);
-        prop_assert_eq!(total(&tally.fraction), impacts);
-        prop_assert_eq!(tally.rows.stops.iter().sum::<u64>(), run.particles as u64);
+    for histogram in [&by_velocity, &by_number] {
+        prop_assert_eq!(total(&histogram.restitution), impacts);
+        prop_assert_eq!(total(&histogram.fraction), impacts);
+        prop_assert_eq!(
+            histogram.rows.stops.iter().sum::<u64>(),
+            run.particles as u64
+        );
     }
     Ok(())
 }
@@ -299,8 +302,8 @@ fn bins_of_different_widths_hold_what_is_between_their_edges() {
                 (by_velocity, By::Velocity(axis(&edges.velocity))),
                 (by_number, By::Number(run.impacts)),
             ] {
-                let tally = statistics(&run, &edges.bins(by), level, 1);
-                expected.agrees(&tally, run.origin()).unwrap();
+                let histogram = statistics(&run, &edges.bins(by), level, 1);
+                expected.agrees(&histogram, run.origin()).unwrap();
             }
         }
     }
@@ -325,8 +328,8 @@ fn minus_zero_is_zero() {
                 fraction: Some(axis(&edges)),
             };
             for level in Level::available() {
-                let tally = statistics(&run, &bins, level, 1);
-                for grid in [&tally.restitution, &tally.fraction] {
+                let histogram = statistics(&run, &bins, level, 1);
+                for grid in [&histogram.restitution, &histogram.fraction] {
                     assert_eq!(grid.counts()[column], run.particles as u64, "{edges:?}");
                     assert_eq!(grid.counts().iter().sum::<u64>(), run.particles as u64);
                 }
@@ -346,9 +349,9 @@ fn many_bins_are_as_exact_as_few() {
         restitution: edges(-0.3, 1.9, 1 << 20),
         fraction: edges(0.0, 1.0, 1 << 20),
     };
-    let tally = statistics(&run, &edges.bins(By::Number(3)), Level::best(), 1);
+    let histogram = statistics(&run, &edges.bins(By::Number(3)), Level::best(), 1);
     Expected::by_number(&records, &run, &edges)
-        .agrees(&tally, run.origin())
+        .agrees(&histogram, run.origin())
         .unwrap();
 }
 

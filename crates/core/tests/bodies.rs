@@ -7,7 +7,7 @@ use common::*;
 use proptest::prelude::*;
 use restitution_core::collide;
 use restitution_core::{
-    Body, Dumbbell, Landing, Law, LoadedSphere, Shape, Solid, Sphere, Spherocylinder, Spheroid,
+    Body, Dumbbell, FlightEnd, Law, LoadedSphere, Shape, Solid, Sphere, Spherocylinder, Spheroid,
     State, Surface, Vector,
 };
 use scalar::*;
@@ -80,13 +80,13 @@ impl Case {
                 + about.cross(start.axis) * sin
                 + about * (about.dot(start.axis) * (1.0 - cos))
         };
-        let height = start.lift + self.body.hull.level() + time * (start.velocity.z - 0.5 * time);
+        let height = start.height + self.body.hull.level() + time * (start.velocity.z - 0.5 * time);
         self.clearance(height, axis)
     }
 
     /// Sixteen roundings of the largest terms of [`Case::flying`] and of the engine's own.
     fn tolerance(&self, start: &State, time: f64, fastest: f64) -> f64 {
-        let path = start.velocity.z.abs() * time + time * time + start.lift.abs();
+        let path = start.velocity.z.abs() * time + time * time + start.height.abs();
         let turning = self.size() * (1.0 + start.precession.norm() * time);
         16.0 * f64::EPSILON * (1.0 + turning + path + fastest)
     }
@@ -209,7 +209,7 @@ proptest! {
             let there = case.flying(start, leg.time);
             prop_assert!(there.abs() <= allowed, "{there:e}, {allowed:e} at the contact of {leg:?}");
             let at = &impact.before;
-            let height = at.lift + case.body.hull.level();
+            let height = at.height + case.body.hull.level();
             let depth = case.clearance(height, at.axis);
             prop_assert!(depth.abs() <= 1e-12, "{depth:e}");
             let approach = case.contact_velocity(at, impact.sphere).z;
@@ -227,8 +227,8 @@ proptest! {
     ) {
         let body = &case.body;
         let (law, sphere) = (law(normal, tangential), Sphere::Two);
-        let mut before = State { lift: body.hull.lift(sphere, free.axis.z), ..free };
-        let arm = case.arm(before.axis, if let Surface::Single(_) = body.hull { body.hull.name(sphere, 0.0) } else { sphere });
+        let mut before = State { height: body.hull.touching_height(sphere, free.axis.z), ..free };
+        let arm = case.arm(before.axis, if let Surface::OneBall(_) = body.hull { body.hull.name(sphere, 0.0) } else { sphere });
         let velocity = |state: &State| state.velocity + state.spin(body).cross(arm);
         if velocity(&before).z > 0.0 {
             before.velocity = before.velocity * -1.0;
@@ -261,7 +261,7 @@ proptest! {
     fn a_flight_conserves_energy((case, law, release) in motion_of(shape())) {
         for leg in legs(&case.body, &law, release, 6) {
             let (e, f) = (energy(&leg.start, &case.body), energy(&leg.impact.before, &case.body));
-            let scale = leg.start.kinetic_energy(&case.body) + leg.start.lift.abs() + leg.time * leg.time;
+            let scale = leg.start.kinetic_energy(&case.body) + leg.start.height.abs() + leg.time * leg.time;
             let turning = case.size() * (1.0 + leg.start.precession.norm() * leg.time);
             let allowed = 16.0 * f64::EPSILON * (scale + 1.0 + turning);
             prop_assert!((e - f).abs() <= allowed, "{:e} of {scale:e}", e - f);
@@ -277,7 +277,7 @@ proptest! {
         let Outside::Spheroid(e, c) = case.outside else { unreachable!() };
         let (k, a) = (about.dot(axis) * about.z, about.horizontal() * about.cross(axis).norm());
         let reach = k.abs() + a;
-        let bound = case.body.hull.sway(a, reach);
+        let bound = case.body.hull.curvature_bound(a, reach);
         let excess = (c - e) * (c + e);
         let mut largest = 0.0_f64;
         for i in 0..=2000 {
@@ -335,8 +335,8 @@ fn an_engulfed_sphere_is_not_there() {
         assert!((body.mass() / sphere.mass() - 1.0).abs() < 1e-15);
         assert!((body.transverse_inertia() / sphere.transverse_inertia() - 1.0).abs() < 1e-15);
         let start = at_rest(&body.scaled(), 10.0 / body.unit(), 0.3);
-        let Landing::Impact { sphere, time, .. } =
-            landing(start, &body.scaled(), restitution_core::Departure::Free)
+        let FlightEnd::Impact { sphere, time, .. } =
+            landing(start, &body.scaled(), restitution_core::FlightStart::Free)
         else {
             panic!("it falls");
         };
@@ -382,7 +382,7 @@ fn a_spherocylinder_touches_like_a_dumbbell() {
         assert_eq!(a.hull, b.hull);
         assert!(elongation == 0.1 || a.transverse != b.transverse);
         for angle in [0.0, 0.5, 1.5, 3.0] {
-            let departure = restitution_core::Departure::Free;
+            let departure = restitution_core::FlightStart::Free;
             let (a, b) = (
                 landing(at_rest(&a, 10.0, angle), &a, departure),
                 landing(at_rest(&b, 10.0, angle), &b, departure),

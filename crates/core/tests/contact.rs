@@ -5,7 +5,7 @@ mod scalar;
 
 use common::*;
 use proptest::prelude::*;
-use restitution_core::{Body, Departure, Landing, Sphere, State, StopReason, Vector};
+use restitution_core::{Body, FlightEnd, FlightStart, Sphere, State, StopReason, Vector};
 use scalar::*;
 
 /// The smallest gap under a sphere within a flight: sampled, and refined around every local minimum.
@@ -66,7 +66,7 @@ proptest! {
     #[test]
     fn no_impact_is_found_twice((body, law, release) in motion()) {
         for leg in legs(&body, &law, release, 12) {
-            let Departure::Touching { sphere, speed } = leg.departure else { continue };
+            let FlightStart::Contact { sphere, speed } = leg.departure else { continue };
             if leg.impact.sphere == sphere {
                 let rate = leg.start.precession.norm();
                 let bound = 1.0 + body.half_separation * rate * rate;
@@ -106,11 +106,11 @@ proptest! {
         prop_assume!(lifted(-depth).gaps(&body).iter().all(|&gap| gap > 0.0));
         let window = 1.0 / rate;
 
-        let Landing::Impact { time, .. } = landing(lifted(depth), &body, Departure::Free) else {
+        let FlightEnd::Impact { time, .. } = landing(lifted(depth), &body, FlightStart::Free) else {
             panic!("it falls");
         };
         prop_assert!(time > bottom + 0.1 * window || (time - bottom).abs() > window, "hit at {time}, bottom {bottom}");
-        let Landing::Impact { time, sphere: touched, state } = landing(lifted(-depth), &body, Departure::Free) else {
+        let FlightEnd::Impact { time, sphere: touched, state } = landing(lifted(-depth), &body, FlightStart::Free) else {
             panic!("it falls");
         };
         prop_assert_eq!(touched, sphere);
@@ -161,7 +161,7 @@ proptest! {
         let angle = 0.5 * std::f64::consts::PI + lean - rate * (2.0 * drop).sqrt();
         let axis = Vector::new(angle.sin(), 0.0, angle.cos());
         let start = State::with_spin(&body, 1.0 + drop, Vector::default(), axis, Vector::new(0.0, rate, 0.0));
-        let Landing::Impact { time, .. } = landing(start, &body, Departure::Free) else {
+        let FlightEnd::Impact { time, .. } = landing(start, &body, FlightStart::Free) else {
             panic!("it falls");
         };
         let allowed = gap_tolerance(&start, &body, time, 1.0 + drop);
@@ -200,13 +200,13 @@ proptest! {
         let (sin, cos) = (-rate * time).sin_cos();
         let earlier = axis * cos + pole.cross(axis) * sin + pole * (pole.dot(axis) * (1.0 - cos));
         let start = State {
-            lift: half * tilt - below - (climb + 0.5 * time) * time,
+            height: half * tilt - below - (climb + 0.5 * time) * time,
             velocity: Vector::new(0.0, 0.0, climb + time),
             axis: earlier,
             precession: pole * rate,
         };
         prop_assume!(Sphere::BOTH.iter().all(|&sphere| gap(&start, &body, 0.0, sphere) > 0.0));
-        let Landing::Impact { time: end, .. } = landing(start, &body, Departure::Free) else {
+        let FlightEnd::Impact { time: end, .. } = landing(start, &body, FlightStart::Free) else {
             panic!("it falls");
         };
         let allowed = gap_tolerance(&start, &body, end, energy(&start, &body));
@@ -275,7 +275,8 @@ fn a_level_body_that_turns_into_the_plane_is_hit_at_once() {
                 let axis = Vector::new(1.0, 0.0, tilt);
                 let spin = Vector::new(0.0, rate, 0.0);
                 let start = State::with_spin(&body, 1.0, Vector::default(), axis, spin);
-                let Landing::Impact { time, sphere, .. } = landing(start, &body, Departure::Free)
+                let FlightEnd::Impact { time, sphere, .. } =
+                    landing(start, &body, FlightStart::Free)
                 else {
                     panic!("it hits");
                 };
@@ -299,7 +300,7 @@ fn a_body_thrown_up_from_the_plane_flies() {
                 velocity: Vector::new(0.0, 0.0, speed),
                 ..rest
             };
-            let Landing::Impact { time, .. } = landing(start, &body, Departure::Free) else {
+            let FlightEnd::Impact { time, .. } = landing(start, &body, FlightStart::Free) else {
                 panic!("it comes back");
             };
             assert!(
@@ -324,12 +325,12 @@ fn a_contact_without_speed_is_left_if_the_rotation_lifts_it() {
             let rate = (pull / half).sqrt();
             let spin = Vector::new(0.0, rate, 0.0);
             let start = State::with_spin(&body, 1.0 + half, Vector::default(), axis, spin);
-            let found = landing(start, &body, Departure::Touching { sphere, speed: 0.0 });
+            let found = landing(start, &body, FlightStart::Contact { sphere, speed: 0.0 });
             if pull < 1.0 {
-                assert_eq!(found, Landing::Resting, "{sphere:?}, {pull}");
+                assert_eq!(found, FlightEnd::Resting, "{sphere:?}, {pull}");
                 continue;
             }
-            let Landing::Impact {
+            let FlightEnd::Impact {
                 time, sphere: next, ..
             } = found
             else {

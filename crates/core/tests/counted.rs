@@ -5,9 +5,9 @@ mod common;
 use common::cases;
 use proptest::prelude::*;
 use restitution_core::distribution::{
-    At, COARSE, Counter, FINE, Impacts, Layout, Levels, Mixture, Nodes, Values,
+    At, Broadcast, COARSE, Counter, FINE, Impacts, Layout, Levels, Mixture, Nodes,
 };
-use restitution_core::{Error, Level, Means, Monitor};
+use restitution_core::{Error, Level, Monitor, Resources};
 
 const BATCHES: usize = 3;
 const SPEEDS: [f64; 4] = [0.1, 0.2, 0.25, 0.7];
@@ -15,8 +15,8 @@ const SPEEDS: [f64; 4] = [0.1, 0.2, 0.25, 0.7];
 const FIRST: [i64; 5] = [0, 1, 3, 6, 7];
 const CONDITIONS: [f64; 7] = [0.0, 0.2, 0.6, 0.1, 0.5, 0.9, 0.4];
 
-fn on(threads: usize) -> Means {
-    Means {
+fn on(threads: usize) -> Resources {
+    Resources {
         threads,
         level: Level::best(),
     }
@@ -161,10 +161,10 @@ proptest! {
             }
             let (mut u, x, v_alone) = ([0.0], [e], [v]);
             let at = At {
-                speed: Values::new(&v_alone, "v", 1).unwrap(),
-                condition: Values::new(&[0.0], "z", 1).unwrap(),
+                speed: Broadcast::new(&v_alone, "v", 1).unwrap(),
+                condition: Broadcast::new(&[0.0], "z", 1).unwrap(),
             };
-            let x = Values::new(&x, "x", 1).unwrap();
+            let x = Broadcast::new(&x, "x", 1).unwrap();
             mixture.cdf(x, at, &mut u, on(1), &Monitor::default()).unwrap();
             let interval = SPEEDS.iter().position(|&node| node > v).unwrap() - 1;
             let share = |parts: usize| ((u[0] * parts as f64).floor() as usize).min(parts - 1);

@@ -10,8 +10,8 @@ mod digested;
 
 use common::*;
 use digested::{angles, jobs, kinds};
-use restitution_core::statistics::{Axis, Bins, By, Grid, Tally};
-use restitution_core::{Level, Means, Monitor, Orientation, Records, Run};
+use restitution_core::statistics::{Axis, Bins, By, Grid, Histogram};
+use restitution_core::{Level, Monitor, Orientation, Records, Resources, Run};
 use std::collections::BTreeMap;
 
 const FILE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/digests.txt");
@@ -56,17 +56,17 @@ impl Digest {
         }
     }
 
-    fn tally(&mut self, tally: &Tally, rows: usize) {
-        let grids: [&Grid; 2] = [&tally.restitution, &tally.fraction];
+    fn histogram(&mut self, histogram: &Histogram, rows: usize) {
+        let grids: [&Grid; 2] = [&histogram.restitution, &histogram.fraction];
         for count in grids
             .into_iter()
             .flat_map(Grid::counts)
-            .chain(&tally.rows.stops)
+            .chain(&histogram.rows.stops)
         {
             self.word(*count);
         }
         for row in 0..rows {
-            let m = tally.rows.moments(row).unwrap();
+            let m = histogram.rows.moments(row).unwrap();
             let numbers = [
                 m.mean,
                 m.variance,
@@ -74,7 +74,7 @@ impl Digest {
                 m.kurtosis,
                 m.minimum,
                 m.maximum,
-                tally.rows.mean_fraction(row).unwrap(),
+                histogram.rows.mean_fraction(row).unwrap(),
             ];
             numbers.into_iter().for_each(|x| self.number(x));
         }
@@ -96,31 +96,33 @@ fn bins(by: By) -> Bins {
 }
 
 /// Digest of the table, and its number of impacts.
-fn simulate(run: &Run<'_>, means: Means) -> (u64, i64) {
+fn simulate(run: &Run<'_>, resources: Resources) -> (u64, i64) {
     let mut digest = Digest::new();
-    let records = run.simulate(means, &Monitor::default()).unwrap();
+    let records = run.simulate(resources, &Monitor::default()).unwrap();
     digest.records(&records, run.impacts);
     (digest.0, records.impacts.iter().sum())
 }
 
 /// Digest of the statistics by velocity and by number.
-fn statistics(run: &Run<'_>, means: Means) -> u64 {
+fn statistics(run: &Run<'_>, resources: Resources) -> u64 {
     let mut digest = Digest::new();
     for by in [By::Velocity(edges(0.0, 0.01, 120)), By::Number(run.impacts)] {
         let bins = bins(by);
-        let tally = run.statistics(&bins, means, &Monitor::default()).unwrap();
-        digest.tally(&tally, bins.rows());
+        let histogram = run
+            .statistics(&bins, resources, &Monitor::default())
+            .unwrap();
+        digest.histogram(&histogram, bins.rows());
     }
     digest.0
 }
 
-fn best(threads: usize) -> Means {
+fn best(threads: usize) -> Resources {
     let level = Level::best();
-    Means { threads, level }
+    Resources { threads, level }
 }
 
-fn every_level(threads: usize) -> impl Iterator<Item = Means> {
-    Level::available().map(move |level| Means { threads, level })
+fn every_level(threads: usize) -> impl Iterator<Item = Resources> {
+    Level::available().map(move |level| Resources { threads, level })
 }
 
 /// The digests that are written down, by name.
@@ -169,33 +171,33 @@ fn the_bits_are_those_that_are_written_down() {
     let jobs = jobs(&angles).into_iter();
     let jobs = jobs.map(|(name, run)| (name.to_owned(), run));
     for (name, run) in jobs.chain(kinds()) {
-        let one = Means {
+        let one = Resources {
             threads: 1,
             level: Level::Scalar,
         };
         let (table, count) = simulate(&run, one);
-        let tally = statistics(&run, one);
-        for means in every_level(3).chain([best(1)]) {
+        let histogram = statistics(&run, one);
+        for resources in every_level(3).chain([best(1)]) {
             assert_eq!(
-                simulate(&run, means).0,
+                simulate(&run, resources).0,
                 table,
-                "{name} table with {means:?}"
+                "{name} table with {resources:?}"
             );
             assert_eq!(
-                statistics(&run, means),
-                tally,
-                "{name} statistics with {means:?}"
+                statistics(&run, resources),
+                histogram,
+                "{name} statistics with {resources:?}"
             );
         }
         found.insert(format!("{name}/table"), table);
-        found.insert(format!("{name}/statistics"), tally);
+        found.insert(format!("{name}/statistics"), histogram);
         impacts += count;
     }
     assert!(impacts > 1_000_000, "{impacts} impacts");
     agrees_with_the_file(&found);
 }
 
-/// A run in portions, one after the other: the tables put together and the tallies merged have the digests of the whole.
+/// A run in portions, one after the other: the tables put together and the histograms merged have the digests of the whole.
 #[test]
 fn portions_have_the_digests_of_the_whole() {
     let angles = angles();
@@ -205,9 +207,9 @@ fn portions_have_the_digests_of_the_whole() {
         .find(|(name, _)| *name == "given-angles")
         .unwrap();
     let bins = bins(By::Velocity(edges(0.0, 0.01, 120)));
-    let digests = |portion: usize, means: Means| {
+    let digests = |portion: usize, resources: Resources| {
         let (mut table, mut statistics) = (Digest::new(), Digest::new());
-        let mut total = Tally::new(&bins, whole.origin()).unwrap();
+        let mut total = Histogram::new(&bins, whole.origin()).unwrap();
         for angles in angles.chunks(portion) {
             let run = Run {
                 particles: angles.len(),
@@ -215,17 +217,17 @@ fn portions_have_the_digests_of_the_whole() {
                 ..*whole
             };
             let monitor = Monitor::default();
-            table.records(&run.simulate(means, &monitor).unwrap(), run.impacts);
-            total.merge(&run.statistics(&bins, means, &monitor).unwrap());
+            table.records(&run.simulate(resources, &monitor).unwrap(), run.impacts);
+            total.merge(&run.statistics(&bins, resources, &monitor).unwrap());
         }
-        statistics.tally(&total, bins.rows());
+        statistics.histogram(&total, bins.rows());
         (table.0, statistics.0)
     };
     let expected = digests(angles.len(), best(1));
     for portion in [1, 7, 96, 97, 449] {
         assert_eq!(digests(portion, best(2)), expected, "{portion} at a time");
     }
-    for means in every_level(1) {
-        assert_eq!(digests(60, means), expected, "{means:?}");
+    for resources in every_level(1) {
+        assert_eq!(digests(60, resources), expected, "{resources:?}");
     }
 }

@@ -4,8 +4,8 @@ mod common;
 
 use common::cases;
 use proptest::prelude::*;
-use restitution_core::distribution::{At, Layout, Mixture, Nodes, Values, values};
-use restitution_core::{Error, Level, Means, Monitor};
+use restitution_core::distribution::{At, Broadcast, Layout, Mixture, Nodes, values};
+use restitution_core::{Error, Level, Monitor, Resources};
 
 /// Histograms at increasing speeds, each with as many conditions as it has entries in `conditions`.
 #[derive(Debug, Clone)]
@@ -38,7 +38,7 @@ impl Table {
         let mut out = vec![0.0; x.len()];
         let (v, z) = ([v], [z]);
         let at = at(&v, &z, x.len());
-        let x = Values::new(x, "x", x.len()).unwrap();
+        let x = Broadcast::new(x, "x", x.len()).unwrap();
         let monitor = Monitor::default();
         match what {
             Question::Cdf => mixture.cdf(x, at, &mut out, on(1), &monitor),
@@ -69,13 +69,13 @@ enum Question {
 
 fn at<'a>(v: &'a [f64], z: &'a [f64], size: usize) -> At<'a> {
     At {
-        speed: Values::new(v, "v", size).unwrap(),
-        condition: Values::new(z, "given", size).unwrap(),
+        speed: Broadcast::new(v, "v", size).unwrap(),
+        condition: Broadcast::new(z, "given", size).unwrap(),
     }
 }
 
-fn on(threads: usize) -> Means {
-    Means {
+fn on(threads: usize) -> Resources {
+    Resources {
         threads,
         level: Level::best(),
     }
@@ -230,7 +230,7 @@ fn every_element_has_its_own_arguments() {
     let (x, v, z) = (of(0.01, 0.99, 997), of(0.05, 0.35, 1009), of(0.1, 0.7, 31));
     let mixture = table.mixture().unwrap();
     let monitor = Monitor::default();
-    let values = Values::new(&x, "x", size).unwrap();
+    let values = Broadcast::new(&x, "x", size).unwrap();
     let mut out = [(); 3].map(|()| vec![0.0; size]);
     let [cdf, pdf, ppf] = &mut out;
     mixture
@@ -324,7 +324,7 @@ fn tables_that_are_no_distributions_are_refused() {
             }
         ));
     }
-    assert!(Values::new(&[1.0, 2.0], "v", 3).is_err());
+    assert!(Broadcast::new(&[1.0, 2.0], "v", 3).is_err());
 }
 
 /// Ctrl-C leaves what was not begun as it was.

@@ -6,7 +6,7 @@ use common::*;
 use restitution_core::statistics::{Axis, Bins, By};
 use restitution_core::{
     About, ChatterjeeRuina, Coulomb, Dumbbell, Error, Frictionless, Height, Hypothesis, Law, Level,
-    LoadedSphere, Means, Monitor, Orientation, Plastic, Run, Spherocylinder, Spheroid, Spin,
+    LoadedSphere, Monitor, Orientation, Plastic, Resources, Run, Spherocylinder, Spheroid, Spin,
     Tabulated, TangentialRestitution, Vector, Viscoelastic,
 };
 
@@ -359,13 +359,13 @@ fn bins() {
             restitution: axis(restitution),
             fraction: Some(axis(fraction)),
         };
-        let means = Means {
+        let resources = Resources {
             threads: 1,
             level: Level::best(),
         };
         let run = paper(0.1, law(0.9, 1.0));
         culprit(
-            &run.statistics(&bins, means, &Monitor::default())
+            &run.statistics(&bins, resources, &Monitor::default())
                 .unwrap_err(),
         )
     };

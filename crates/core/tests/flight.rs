@@ -5,7 +5,7 @@ mod scalar;
 
 use common::*;
 use proptest::prelude::*;
-use restitution_core::{Body, Departure, Landing, State, Vector};
+use restitution_core::{Body, FlightEnd, FlightStart, State, Vector};
 use scalar::*;
 
 proptest! {
@@ -134,7 +134,7 @@ proptest! {
         let body = dumbbell(elongation);
         let height = 1.0 + body.half_separation + drop;
         let start = State::with_spin(&body, height, Vector::default(), axis, w * rate);
-        let Landing::Impact { time, state, .. } = landing(start, &body, Departure::Free) else {
+        let FlightEnd::Impact { time, state, .. } = landing(start, &body, FlightStart::Free) else {
             panic!("a body must fall");
         };
         let top = integrate(&body, &start, time);

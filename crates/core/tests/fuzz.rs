@@ -9,7 +9,7 @@ use common::*;
 use proptest::prelude::*;
 use proptest::test_runner::{Config, RngSeed, TestError, TestRunner};
 use restitution_core::{
-    Dumbbell, Law, Level, Means, Monitor, Orientation, Run, Shape, Spin, Vector,
+    Dumbbell, Law, Level, Monitor, Orientation, Resources, Run, Shape, Spin, Vector,
 };
 use std::f64::consts::{FRAC_PI_2, PI};
 use std::time::{Duration, Instant};
@@ -137,7 +137,7 @@ fn case() -> impl Strategy<Value = Case> {
 fn compare(case: &Case) -> Result<u64, TestCaseError> {
     let run = case.run();
     let table = |level: Level, threads: usize| {
-        let records = run.simulate(Means { threads, level }, &Monitor::default());
+        let records = run.simulate(Resources { threads, level }, &Monitor::default());
         records.map_err(|error| TestCaseError::fail(format!("{}: {error}", level.name())))
     };
     let records = table(Level::Scalar, 1)?;

@@ -10,7 +10,9 @@ use oracle::compare::{Case, Seen, Start};
 use oracle::impact::Rule;
 use oracle::normal::Restitution;
 use oracle::solid::Shape;
-use restitution_core::{Coulomb, Law, Level, Means, Monitor, Orientation, Run, Spin, StopReason};
+use restitution_core::{
+    Coulomb, Law, Level, Monitor, Orientation, Resources, Run, Spin, StopReason,
+};
 
 /// Enough for a vector and a part of the next one at every level.
 const PARTICLES: usize = 11;
@@ -39,11 +41,11 @@ fn case(elongation: f64, rule: Rule, normal: Restitution) -> Case {
 }
 
 fn agrees(case: &Case) -> Seen {
-    let means = Means {
+    let resources = Resources {
         threads: 1,
         level: Level::best(),
     };
-    let found = case.compare(&case.records(means));
+    let found = case.compare(&case.records(resources));
     found.unwrap_or_else(|why| panic!("{why}: {case:#?}"))
 }
 
@@ -122,8 +124,8 @@ fn every_level_and_thread_count_gives_the_same_bits() {
         ..paper(0.5, law(0.9, 0.5))
     };
     let at = |level: Level, threads: usize| {
-        let means = Means { threads, level };
-        run.simulate(means, &Monitor::default()).unwrap()
+        let resources = Resources { threads, level };
+        run.simulate(resources, &Monitor::default()).unwrap()
     };
     let reference = at(Level::Scalar, 1);
     let slow = StopReason::SpeedBelowThreshold as i8;
@@ -150,8 +152,8 @@ fn turning_contacts_have_the_same_bits_in_every_lane() {
                 ..paper(elongation, law)
             };
             let at = |level: Level| {
-                let means = Means { threads: 1, level };
-                all_bits(&run.simulate(means, &Monitor::default()).unwrap())
+                let resources = Resources { threads: 1, level };
+                all_bits(&run.simulate(resources, &Monitor::default()).unwrap())
             };
             let alone = at(Level::Scalar);
             for level in Level::available() {

@@ -4,8 +4,8 @@ mod common;
 
 use common::*;
 use restitution_core::{
-    About, Columns, Height, Level, Means, Monitor, PER_IMPACT, PER_PARTICLE, Plastic, Records, Run,
-    Spin, StopReason, Values, Vector, When,
+    About, Columns, Height, Level, Monitor, PER_IMPACT, PER_PARTICLE, Plastic, Records, Resources,
+    Run, Spin, StopReason, Values, Vector, When,
 };
 use std::ops::Range;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -15,7 +15,7 @@ fn recorded() -> Columns {
     Columns::named(["time", "restitution", "contact"]).unwrap()
 }
 
-const ONE: Means = Means {
+const ONE: Resources = Resources {
     threads: 1,
     level: Level::Scalar,
 };

@@ -5,8 +5,8 @@ mod scalar;
 
 use common::*;
 use restitution_core::{
-    About, Frictionless, Law, Level, Limits, LoadedSphere, Means, Monitor, Orientation, Plastic,
-    Records, Run, Scales, SingleImpact, Solid, Spheroid, Spin, State, StopReason, Vector,
+    About, Frictionless, Law, Level, Limits, LoadedSphere, Monitor, Orientation, Plastic, Records,
+    Resources, Run, Scales, SingleImpact, Solid, Spheroid, Spin, State, StopReason, Vector,
     trajectory,
 };
 use scalar::Observed;
@@ -134,7 +134,7 @@ fn what_a_frictionless_plane_conserves() {
                     assert_eq!(after.velocity.y, before.velocity.y);
                     assert!((after.precession.z - release.precession.z).abs() <= small);
                     way = 0.5 * gained * flight + left.velocity.x * flight;
-                    let fallen = left.lift - before.lift + slope * way;
+                    let fallen = left.height - before.height + slope * way;
                     let energy = left.kinetic_energy(&body) + fallen;
                     assert!((before.kinetic_energy(&body) - energy).abs() <= 10.0 * small);
                     let ratio = impact.energy_ratio(&body);
@@ -170,8 +170,8 @@ fn the_same_bits_on_any_number_of_threads() {
         let run = thrown(body, law(0.6, 0.3));
         let one = simulate_on(&run, 1, &Monitor::default());
         for (threads, level) in [(2, Level::best()), (3, Level::Scalar)] {
-            let means = Means { threads, level };
-            let other = run.simulate(means, &Monitor::default()).unwrap();
+            let resources = Resources { threads, level };
+            let other = run.simulate(resources, &Monitor::default()).unwrap();
             assert!(same(&one, &other));
         }
     }

@@ -11,11 +11,11 @@ use oracle::normal::Restitution;
 use oracle::solid::Shape;
 use restitution_core::statistics::{Axis, Bins, By};
 use restitution_core::{
-    Dumbbell, Level, LoadedSphere, Means, Monitor, Orientation, Run, Solid, Spheroid, Spin,
+    Dumbbell, Level, LoadedSphere, Monitor, Orientation, Resources, Run, Solid, Spheroid, Spin,
     StopReason,
 };
 
-const MEANS: Means = Means {
+const MEANS: Resources = Resources {
     threads: 2,
     level: Level::Scalar,
 };
@@ -110,10 +110,10 @@ fn every_impact_is_counted() {
             restitution: axis(&[-1.0, 0.0, 1.0]),
             fraction: Some(axis(&[0.0, 0.5, 1.0])),
         };
-        let tally = run.statistics(&bins, MEANS, &Monitor::default()).unwrap();
-        let counted: u64 = (0..run.impacts).map(|row| tally.rows.number(row)).sum();
+        let histogram = run.statistics(&bins, MEANS, &Monitor::default()).unwrap();
+        let counted: u64 = (0..run.impacts).map(|row| histogram.rows.number(row)).sum();
         assert_eq!(counted, records.impacts.iter().sum::<i64>() as u64);
-        let stops: u64 = tally.rows.stops.iter().sum();
+        let stops: u64 = histogram.rows.stops.iter().sum();
         assert_eq!(stops, run.particles as u64);
     }
 }

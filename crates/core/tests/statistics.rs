@@ -1,20 +1,20 @@
-//! Sums without rounding: tallies merged in any order, of any portions of a run, have the same bits.
+//! Sums without rounding: histograms merged in any order, of any portions of a run, have the same bits.
 
 mod common;
-mod tallies;
+mod histograms;
 
 use common::*;
+use histograms::*;
 use proptest::prelude::*;
-use restitution_core::statistics::{Bins, By, Tally};
+use restitution_core::statistics::{Bins, By, Histogram};
 use restitution_core::{
-    Error, Law, Level, Means, Monitor, Orientation, Run, Spheroid, Spin, Vector,
+    Error, Law, Level, Monitor, Orientation, Resources, Run, Spheroid, Spin, Vector,
 };
 use std::collections::BTreeSet;
 use std::sync::LazyLock;
-use tallies::*;
 
-/// Tallies of bodies of all kinds, with the same bins and origin: ε from ordinary to 2³³ and undefined.
-static PIECES: LazyLock<Vec<Tally>> = LazyLock::new(|| {
+/// Histograms of bodies of all kinds, with the same bins and origin: ε from ordinary to 2³³ and undefined.
+static PIECES: LazyLock<Vec<Histogram>> = LazyLock::new(|| {
     let bins = Edges::coarse().bins(By::Number(ROWS));
     let angles = nearly_level();
     let extreme = nearly_at_rest(2.0, 0.0, &angles);
@@ -32,18 +32,18 @@ static PIECES: LazyLock<Vec<Tally>> = LazyLock::new(|| {
         .collect()
 });
 
-/// An empty tally that goes with [`PIECES`].
-fn nothing(law: &Law<'_>) -> Tally {
-    Tally::new(&Edges::coarse().bins(By::Number(ROWS)), law.normal.at(1.0)).unwrap()
+/// An empty histogram that goes with [`PIECES`].
+fn nothing(law: &Law<'_>) -> Histogram {
+    Histogram::new(&Edges::coarse().bins(By::Number(ROWS)), law.normal.at(1.0)).unwrap()
 }
 
 /// The pieces cover what merging has to cope with: sums beyond 128 bits, and impacts without a place.
 #[test]
 fn the_pieces_are_as_different_as_they_should_be() {
     let extreme = PIECES.last().unwrap();
-    let largest = |tally: &Tally| {
+    let largest = |histogram: &Histogram| {
         let largest = |row| {
-            tally
+            histogram
                 .rows
                 .moments(row)
                 .map_or(0.0, |m| m.maximum.max(-m.minimum))
@@ -52,8 +52,8 @@ fn the_pieces_are_as_different_as_they_should_be() {
     };
     assert!(largest(&PIECES[0]) < 1.0 && largest(extreme) > 1e9);
     let columns = extreme.restitution.columns();
-    let undefined = |tally: &Tally| {
-        let last = tally
+    let undefined = |histogram: &Histogram| {
+        let last = histogram
             .restitution
             .counts()
             .iter()
@@ -62,7 +62,14 @@ fn the_pieces_are_as_different_as_they_should_be() {
         last.sum::<u64>()
     };
     assert!(undefined(extreme) > 0);
-    let gains = |tally: &Tally| tally.rows.gains.iter().map(|row| row.count).sum::<u64>();
+    let gains = |histogram: &Histogram| {
+        histogram
+            .rows
+            .gains
+            .iter()
+            .map(|row| row.count)
+            .sum::<u64>()
+    };
     let creating = PIECES.iter().filter(|piece| gains(piece) > 0).count();
     assert!(0 < creating && creating < PIECES.len());
 }
@@ -83,11 +90,12 @@ fn full_grids_merge() {
             seed,
             ..paper(0.1, law(0.98, 1.0))
         };
-        let means = Means {
+        let resources = Resources {
             threads: 1,
             level: Level::best(),
         };
-        run.statistics(&bins, means, &Monitor::default()).unwrap()
+        run.statistics(&bins, resources, &Monitor::default())
+            .unwrap()
     };
     let (first, second) = (part(1), part(2));
     let full = |counts: &[u64]| {
@@ -113,12 +121,12 @@ fn full_grids_merge() {
 #[test]
 fn copies_and_counts_are_what_was_counted() {
     let fine = Edges::coarse().bins(By::Number(ROWS));
-    for tally in PIECES.iter().chain([&Tally::new(&fine, 0.98).unwrap()]) {
-        let copy = tally.copied().unwrap();
-        assert_eq!(&copy, tally);
+    for histogram in PIECES.iter().chain([&Histogram::new(&fine, 0.98).unwrap()]) {
+        let copy = histogram.copied().unwrap();
+        assert_eq!(&copy, histogram);
         for (copied, grid) in [
-            (copy.restitution, &tally.restitution),
-            (copy.fraction, &tally.fraction),
+            (copy.restitution, &histogram.restitution),
+            (copy.fraction, &histogram.fraction),
         ] {
             let counts = copied.into_counts();
             let counts = counts.iter().map(|&count| count as u64);
@@ -130,7 +138,7 @@ fn copies_and_counts_are_what_was_counted() {
 proptest! {
     #![proptest_config(cases(200))]
 
-    /// Any pieces, put together in any order and any nesting, make the same tally: counts, sums and extremes are compared,
+    /// Any pieces, put together in any order and any nesting, make the same histogram: counts, sums and extremes are compared,
     /// and then the bits of what is computed from them.
     #[test]
     fn merging_is_associative_and_commutative_to_the_bit(
@@ -140,7 +148,7 @@ proptest! {
         for &piece in &pieces[1..] {
             one_by_one.merge(&PIECES[piece]);
         }
-        let mut heap: Vec<Tally> = pieces.iter().map(|&piece| PIECES[piece].clone()).collect();
+        let mut heap: Vec<Histogram> = pieces.iter().map(|&piece| PIECES[piece].clone()).collect();
         for [into, from] in picks {
             if heap.len() > 1 {
                 let from = heap.swap_remove(usize::from(from) % heap.len());
@@ -153,7 +161,7 @@ proptest! {
         prop_assert_eq!(bits(&heap[0], ROWS), bits(&one_by_one, ROWS));
     }
 
-    /// A tally of nothing changes nothing, from either side.
+    /// A histogram of nothing changes nothing, from either side.
     #[test]
     fn an_empty_tally_is_neutral(piece in 0..12_usize) {
         let nothing = nothing(&nearly_at_rest(2.0, 0.0, &[0.0]).law);
@@ -170,7 +178,7 @@ proptest! {
     #![proptest_config(cases(50))]
 
     /// A run cut into any portions of its particles, each on another level and number of threads, merged in the order in
-    /// which they are given or backwards: the tally of the whole run.
+    /// which they are given or backwards: the histogram of the whole run.
     #[test]
     fn a_run_in_portions_is_the_run(
         elongation in elongation(), (normal, tangential) in coefficients(), angles in prop::collection::vec(0.0..3.1_f64, 1..150),
@@ -192,7 +200,7 @@ proptest! {
         if backwards {
             portions.reverse();
         }
-        let mut total = Tally::new(&bins, normal).unwrap();
+        let mut total = Histogram::new(&bins, normal).unwrap();
         for portion in portions {
             total.merge(&statistics(&run(portion), &bins, level, threads));
         }
@@ -205,7 +213,7 @@ proptest! {
     #![proptest_config(cases(30))]
 
     /// Parts of a run with random releases that are counted apart, written down as whole numbers, read back and merged in any
-    /// order: the tally of the whole run. Words of other bins and of sums about another origin are refused.
+    /// order: the histogram of the whole run. Words of other bins and of sums about another origin are refused.
     #[test]
     fn parts_that_were_written_down_are_the_run(
         elongation in elongation(), seed in any::<u64>(), cut in 1..199_usize, second in 1..199_usize, level in level(),
@@ -214,16 +222,16 @@ proptest! {
         let bins = Edges::coarse().by_velocity();
         let whole = statistics(&run, &bins, level, 2);
         let (low, high) = (cut.min(second), cut.max(second));
-        let mut total = Tally::new(&bins, run.origin()).unwrap();
+        let mut total = Histogram::new(&bins, run.origin()).unwrap();
         for part in [high..200, 0..low, low..high] {
             if !part.is_empty() {
-                let means = Means { threads: 1, level };
-                let tally = run.statistics_of_part(part, &bins, means, &Monitor::default()).unwrap();
-                let words = tally.to_words().unwrap();
-                prop_assert_eq!(&Tally::from_words(&bins, run.origin(), &words).unwrap(), &tally);
-                prop_assert!(Tally::from_words(&bins, run.origin(), &words[1..]).is_err());
-                prop_assert!(Tally::from_words(&bins, 0.5, &words).is_err());
-                total.merge(&tally);
+                let resources = Resources { threads: 1, level };
+                let histogram = run.statistics_of_part(part, &bins, resources, &Monitor::default()).unwrap();
+                let words = histogram.to_words().unwrap();
+                prop_assert_eq!(&Histogram::from_words(&bins, run.origin(), &words).unwrap(), &histogram);
+                prop_assert!(Histogram::from_words(&bins, run.origin(), &words[1..]).is_err());
+                prop_assert!(Histogram::from_words(&bins, 0.5, &words).is_err());
+                total.merge(&histogram);
             }
         }
         prop_assert_eq!(&total, &whole);
@@ -244,7 +252,7 @@ fn long_runs_are_emptied_in_time() {
     let bins = Edges::coarse().by_velocity();
     let whole = statistics(&run(&angles), &bins, Level::best(), 1);
     assert!(whole.restitution.counts().iter().sum::<u64>() > 1 << 19);
-    let mut total = Tally::new(&bins, 0.98).unwrap();
+    let mut total = Histogram::new(&bins, 0.98).unwrap();
     for portion in angles.chunks(400) {
         total.merge(&statistics(&run(portion), &bins, Level::best(), 1));
     }
@@ -275,9 +283,9 @@ fn every_impact_and_every_end_is_counted_once() {
         let bins = Edges::coarse().bins(By::Number(run.impacts));
         for level in Level::available() {
             for threads in [1, 2] {
-                let tally = statistics(&run, &bins, level, threads);
-                let columns = tally.restitution.columns();
-                for (number, counts) in tally.restitution.counts().chunks(columns).enumerate() {
+                let histogram = statistics(&run, &bins, level, threads);
+                let columns = histogram.restitution.columns();
+                for (number, counts) in histogram.restitution.counts().chunks(columns).enumerate() {
                     let reached = |&&impacts: &&i64| impacts > number as i64;
                     let expected = records.impacts.iter().filter(reached).count();
                     assert_eq!(
@@ -286,7 +294,7 @@ fn every_impact_and_every_end_is_counted_once() {
                         "{number} {level:?}"
                     );
                 }
-                for (reason, &count) in tally.rows.stops.iter().enumerate() {
+                for (reason, &count) in histogram.rows.stops.iter().enumerate() {
                     let ended = |&&stop: &&i8| stop as usize == reason;
                     let expected = records.stop_reason.iter().filter(ended).count();
                     assert_eq!(count, expected as u64, "{reason} {level:?}");
@@ -309,24 +317,24 @@ fn sites_that_have_no_number_are_refused() {
         impacts: 1,
         ..paper(0.1, law(0.98, 1.0))
     };
-    let means = Means {
+    let resources = Resources {
         threads: 1,
         level: Level::best(),
     };
-    let refused = run.statistics(&bins, means, &Monitor::default());
+    let refused = run.statistics(&bins, resources, &Monitor::default());
     assert!(matches!(refused, Err(Error::Parameter { .. })));
 }
 
-/// Rows of a tally that is read have the numbers of impacts with a defined ε that they had, where others have none.
+/// Rows of a histogram that is read have the numbers of impacts with a defined ε that they had, where others have none.
 #[test]
 fn a_tally_that_is_read_is_the_one_that_was_written() {
     let extreme = nearly_at_rest(2.0, 0.0, &[]);
     let bins = Edges::coarse().bins(By::Number(ROWS));
-    for tally in PIECES.iter() {
-        let words = tally.to_words().unwrap();
+    for histogram in PIECES.iter() {
+        let words = histogram.to_words().unwrap();
         assert_eq!(
-            &Tally::from_words(&bins, extreme.origin(), &words).unwrap(),
-            tally
+            &Histogram::from_words(&bins, extreme.origin(), &words).unwrap(),
+            histogram
         );
     }
 }
@@ -335,11 +343,11 @@ fn a_tally_that_is_read_is_the_one_that_was_written() {
 #[test]
 fn every_word_of_a_tally_is_kept() {
     let bins = Edges::coarse().bins(By::Number(ROWS));
-    let empty = Tally::new(&bins, 0.98).unwrap().to_words().unwrap();
+    let empty = Histogram::new(&bins, 0.98).unwrap().to_words().unwrap();
     let number = |i: usize| (i as u64 + 1).wrapping_mul(0x9e37_79b9_7f4a_7c15);
     let words: Vec<u64> = (0..empty.len())
         .map(|i| if i == 0 { empty[0] } else { number(i) })
         .collect();
-    let tally = Tally::from_words(&bins, 0.98, &words).unwrap();
-    assert_eq!(tally.to_words().unwrap(), words);
+    let histogram = Histogram::from_words(&bins, 0.98, &words).unwrap();
+    assert_eq!(histogram.to_words().unwrap(), words);
 }

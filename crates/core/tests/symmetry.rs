@@ -7,7 +7,7 @@ mod scalar;
 use common::*;
 use proptest::prelude::*;
 use restitution_core::{
-    Dumbbell, Landing, Orientation, Run, SingleImpact as Impact, Sphere, State, Vector, collide,
+    Dumbbell, FlightEnd, Orientation, Run, SingleImpact as Impact, Sphere, State, Vector, collide,
 };
 use scalar::*;
 use std::f64::consts::PI;
@@ -127,7 +127,7 @@ proptest! {
         prop_assume!(release.gaps(&body).iter().all(|&gap| gap > 1e-9));
         for leg in legs(&body, &law, release, 8) {
             let speed = -contact_velocity(&leg.impact.before, &body, leg.impact.sphere).z;
-            let Landing::Impact { time, state, sphere } = landing(turned(&leg.start, phi), &body, leg.departure) else {
+            let FlightEnd::Impact { time, state, sphere } = landing(turned(&leg.start, phi), &body, leg.departure) else {
                 return Err(TestCaseError::fail("a rotated body must land, too"));
             };
             let rate = leg.start.precession.norm();

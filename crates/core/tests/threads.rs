@@ -4,7 +4,7 @@ mod common;
 
 use common::*;
 use restitution_core::{
-    Columns, Error, Level, Means, Monitor, Orientation, Records, Run, Spin, Vector,
+    Columns, Error, Level, Monitor, Orientation, Records, Resources, Run, Spin, Vector,
     default_threads, simulate_series,
 };
 use std::collections::HashSet;
@@ -96,7 +96,7 @@ fn series(
 ) -> Result<Records, Error> {
     let level = Level::best();
     let columns = Columns::usual(&runs[0].0.law, false);
-    simulate_series(runs, &columns, Means { threads, level }, monitor)
+    simulate_series(runs, &columns, Resources { threads, level }, monitor)
 }
 
 /// Parts of several runs simulated as one have the bits of each run by itself, one after the other.
@@ -189,11 +189,11 @@ fn runs_that_differ_are_no_series() {
     ];
     let refused = |runs: &[(Run<'_>, std::ops::Range<usize>)]| {
         let columns = Columns::NONE;
-        let means = Means {
+        let resources = Resources {
             threads: 1,
             level: Level::Scalar,
         };
-        match simulate_series(runs, &columns, means, &Monitor::default()) {
+        match simulate_series(runs, &columns, resources, &Monitor::default()) {
             Err(Error::Parameter { name, .. }) => name,
             other => panic!("{other:?}"),
         }

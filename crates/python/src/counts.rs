@@ -2,7 +2,7 @@
 
 use crate::distribution::{Mixture, nodes, owned};
 use crate::errors::python_error;
-use crate::{means, watch};
+use crate::{resources, watch};
 use numpy::ndarray::{ArrayD, IxDyn};
 use numpy::{Element, IntoPyArray, PyArrayDyn, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
@@ -81,8 +81,8 @@ impl Counter {
         threads: usize,
     ) -> PyResult<Option<PyErr>> {
         let impacts = impacts(&velocity, &restitution, condition.as_ref(), first)?;
-        let (counter, means) = (&mut self.counter, means(threads)?);
-        let work = |monitor: &Monitor| counter.add(&impacts, means, monitor);
+        let (counter, resources) = (&mut self.counter, resources(threads)?);
+        let work = |monitor: &Monitor| counter.add(&impacts, resources, monitor);
         Ok(watch::run(py, None, work)?.1)
     }
 
@@ -136,8 +136,8 @@ impl Levels {
         threads: usize,
     ) -> PyResult<Option<PyErr>> {
         let impacts = impacts(&velocity, &restitution, None, first)?;
-        let (levels, mixture, means) = (&mut self.levels, &mixture.0, means(threads)?);
-        let work = |monitor: &Monitor| levels.add(mixture, point, &impacts, means, monitor);
+        let (levels, mixture, resources) = (&mut self.levels, &mixture.0, resources(threads)?);
+        let work = |monitor: &Monitor| levels.add(mixture, point, &impacts, resources, monitor);
         Ok(watch::run(py, None, work)?.1)
     }
 

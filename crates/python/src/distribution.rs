@@ -1,11 +1,11 @@
 //! A learned distribution of the coefficient of restitution, checked when it is made: arrays in, arrays out.
 
 use crate::errors::python_error;
-use crate::{means, watch};
+use crate::{resources, watch};
 use numpy::{Element, IntoPyArray, PyArray1, PyReadonlyArray1};
 use pyo3::prelude::*;
-use restitution_core::distribution::{At, BLOCK, Layout, Nodes, Values};
-use restitution_core::{Error, Means, Monitor, copied};
+use restitution_core::distribution::{At, BLOCK, Broadcast, Layout, Nodes};
+use restitution_core::{Error, Monitor, Resources, copied};
 
 /// The table of a distribution.
 #[pyclass(frozen, module = "restitution._core")]
@@ -13,7 +13,7 @@ pub struct Mixture(pub(crate) restitution_core::distribution::Mixture);
 
 type Array<'py> = PyReadonlyArray1<'py, f64>;
 
-/// Values, and the `KeyboardInterrupt` that cut them short, if any.
+/// Broadcast, and the `KeyboardInterrupt` that cut them short, if any.
 type Filled<'py> = (Bound<'py, PyArray1<f64>>, Option<PyErr>);
 
 /// Speeds, the first component of each, and the conditions of the components.
@@ -33,10 +33,10 @@ pub(crate) fn owned<T: Element + Copy>(values: &PyReadonlyArray1<'_, T>) -> PyRe
 /// A function of the table that is evaluated at many points.
 type Function = fn(
     &restitution_core::distribution::Mixture,
-    Values<'_>,
+    Broadcast<'_>,
     At<'_>,
     &mut [f64],
-    Means,
+    Resources,
     &Monitor,
 ) -> Result<(), Error>;
 
@@ -47,16 +47,16 @@ impl Mixture {
         py: Python<'py>,
         (v, z): (&Array<'py>, &Array<'py>),
         (size, threads): (usize, usize),
-        work: impl FnOnce(At<'_>, &mut [f64], Means, &Monitor) -> Result<(), Error> + Send,
+        work: impl FnOnce(At<'_>, &mut [f64], Resources, &Monitor) -> Result<(), Error> + Send,
     ) -> PyResult<Filled<'py>> {
-        let means = means(threads)?;
+        let resources = resources(threads)?;
         let at = At {
-            speed: Values::new(v.as_slice()?, "v", size).map_err(python_error)?,
-            condition: Values::new(z.as_slice()?, "given", size).map_err(python_error)?,
+            speed: Broadcast::new(v.as_slice()?, "v", size).map_err(python_error)?,
+            condition: Broadcast::new(z.as_slice()?, "given", size).map_err(python_error)?,
         };
         let compute = |monitor: &Monitor| {
             let mut out = restitution_core::distribution::values(size)?;
-            work(at, &mut out, means, monitor)?;
+            work(at, &mut out, resources, monitor)?;
             Ok(out)
         };
         let (out, interrupted) = if size <= BLOCK {
@@ -78,13 +78,13 @@ impl Mixture {
         threads: usize,
     ) -> PyResult<Filled<'py>> {
         let x = x.as_slice()?;
-        self.fill(py, at, (x.len(), threads), |at, out, means, monitor| {
+        self.fill(py, at, (x.len(), threads), |at, out, resources, monitor| {
             function(
                 &self.0,
-                Values::new(x, "x", x.len())?,
+                Broadcast::new(x, "x", x.len())?,
                 at,
                 out,
-                means,
+                resources,
                 monitor,
             )
         })
@@ -162,8 +162,8 @@ impl Mixture {
         seed: u64,
         threads: usize,
     ) -> PyResult<Filled<'py>> {
-        let draw = |at: At<'_>, out: &mut [f64], means, monitor: &Monitor| {
-            self.0.rvs(at, seed, out, means, monitor)
+        let draw = |at: At<'_>, out: &mut [f64], resources, monitor: &Monitor| {
+            self.0.rvs(at, seed, out, resources, monitor)
         };
         self.fill(py, (&v, &z), (size, threads), draw)
     }

@@ -17,7 +17,7 @@ use numpy::{Element, IntoPyArray};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use restitution_core::statistics::{CREATES_ENERGY, Sums};
-use restitution_core::{About, Level, Means, Orientation, Run, StopReason, Vector};
+use restitution_core::{About, Level, Orientation, Resources, Run, StopReason, Vector};
 use std::ops::Range;
 
 /// The SIMD level that the environment variable RESTITUTION_SIMD names, or the best of this machine.
@@ -67,8 +67,8 @@ fn range(part: Option<(usize, usize)>, particles: usize) -> Range<usize> {
     part.map_or(0..particles, |(first, end)| first..end)
 }
 
-fn means(threads: usize) -> PyResult<Means> {
-    Ok(Means {
+fn resources(threads: usize) -> PyResult<Resources> {
+    Ok(Resources {
         threads,
         level: level()?,
     })

@@ -2,7 +2,7 @@
 
 use crate::errors::python_error;
 use crate::laws::Law;
-use crate::{Parameters, means, range, watch};
+use crate::{Parameters, range, resources, watch};
 use numpy::{Element, IntoPyArray, PyArray1, PyArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PySlice, PyTuple};
@@ -39,14 +39,14 @@ fn simulate<'py>(
     columns: Option<Vec<String>>,
 ) -> PyResult<(Bound<'py, PyDict>, Option<PyErr>)> {
     let run = run.run()?;
-    let means = means(threads)?;
+    let resources = resources(threads)?;
     let columns = match columns {
         Some(names) => named(&names)?,
         None => Columns::usual(&run.law, false),
     };
     let part = range(part, run.particles);
     let (records, interrupted) = watch::run(py, progress, |monitor| {
-        run.simulate_columns(part, &columns, means, monitor)
+        run.simulate_columns(part, &columns, resources, monitor)
     })?;
     Ok((table(py, records, run.impacts)?, interrupted))
 }
@@ -64,9 +64,9 @@ fn simulate_series<'py>(
         .iter()
         .map(|(run, part)| Ok((run.run()?, part.0..part.1)));
     let parts: Vec<_> = parts.collect::<PyResult<_>>()?;
-    let (means, columns) = (means(threads)?, named(&columns)?);
+    let (resources, columns) = (resources(threads)?, named(&columns)?);
     let (records, interrupted) = watch::run(py, None, |monitor| {
-        restitution_core::simulate_series(&parts, &columns, means, monitor)
+        restitution_core::simulate_series(&parts, &columns, resources, monitor)
     })?;
     Ok((table(py, records, parts[0].0.impacts)?, interrupted))
 }

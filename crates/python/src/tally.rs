@@ -1,7 +1,7 @@
 //! Counts and sums of a run or a part of it; those of all parts merge to the same bits as the whole run.
 
 use crate::errors::python_error;
-use crate::{Parameters, means, range, set, watch};
+use crate::{Parameters, range, resources, set, watch};
 use numpy::{Element, IntoPyArray, PyArray1, PyReadonlyArray1};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
@@ -46,7 +46,7 @@ impl Edges<'_> {
 struct Tally {
     bins: Bins,
     origin: f64,
-    tally: core::Tally,
+    tally: core::Histogram,
 }
 
 #[pymethods]
@@ -60,7 +60,7 @@ impl Tally {
     ) -> PyResult<Self> {
         let run = run.run()?;
         let (bins, origin) = (edges.bins(run.impacts)?, run.origin());
-        let tally = core::Tally::from_words(&bins, origin, words.as_slice()?);
+        let tally = core::Histogram::from_words(&bins, origin, words.as_slice()?);
         Ok(Self {
             tally: tally.map_err(python_error)?,
             bins,
@@ -76,7 +76,7 @@ impl Tally {
 
     /// The sum of this tally and others.
     fn merged(&self, others: Vec<PyRef<'_, Self>>) -> PyResult<Self> {
-        let mut total = core::Tally::new(&self.bins, self.origin).map_err(python_error)?;
+        let mut total = core::Histogram::new(&self.bins, self.origin).map_err(python_error)?;
         total.merge(&self.tally);
         for other in others {
             if other.bins != self.bins || other.origin.to_bits() != self.origin.to_bits() {
@@ -100,8 +100,8 @@ impl Tally {
 }
 
 /// What was counted, by name. The counts themselves are handed over, not a copy: a fine grid is large.
-fn table(py: Python<'_>, tally: core::Tally) -> PyResult<Bound<'_, PyDict>> {
-    let core::Tally {
+fn table(py: Python<'_>, tally: core::Histogram) -> PyResult<Bound<'_, PyDict>> {
+    let core::Histogram {
         restitution,
         fraction,
         rows,
@@ -184,11 +184,11 @@ fn tally<'py>(
     part: Option<(usize, usize)>,
 ) -> PyResult<(Tally, Option<PyErr>)> {
     let run = run.run()?;
-    let means = means(threads)?;
+    let resources = resources(threads)?;
     let bins = edges.bins(run.impacts)?;
     let part = range(part, run.particles);
     let (tally, interrupted) = watch::run(py, progress, |monitor: &Monitor| {
-        run.statistics_of_part(part, &bins, means, monitor)
+        run.statistics_of_part(part, &bins, resources, monitor)
     })?;
     let origin = run.origin();
     Ok((
@@ -215,12 +215,12 @@ fn statistics<'py>(
     parts: Vec<(usize, usize)>,
 ) -> PyResult<Counted<'py>> {
     let run = run.run()?;
-    let means = means(threads)?;
+    let resources = resources(threads)?;
     let bins = edges.bins(run.impacts)?;
     let parts: Vec<Range<usize>> = parts.into_iter().map(|(first, end)| first..end).collect();
     let mut measured = Vec::new();
     let (tally, interrupted) = watch::run(py, progress, |monitor: &Monitor| {
-        run.statistics_of_parts(&parts, &bins, means, monitor, |rows| {
+        run.statistics_of_parts(&parts, &bins, resources, monitor, |rows| {
             measured.push(Measured::of(rows)?);
             Ok(())
         })

@@ -29,7 +29,7 @@ fn row(run: &Run<'_>, scales: &Scales, time: f64, state: &State, sphere: f64) ->
     let roll = (state.spin(body) - turning).dot(axis);
     [
         time * scales.time,
-        (state.lift + body.hull.level()) * scales.length,
+        (state.height + body.hull.level()) * scales.length,
         velocity.x * scales.speed,
         velocity.y * scales.speed,
         velocity.z * scales.speed,

@@ -1,16 +1,16 @@
 //! The impacts of some particles of a run, in SI units.
 
-use restitution_core::{Error, Level, Means, Monitor, Run};
+use restitution_core::{Error, Level, Monitor, Resources, Run};
 
 /// Eight columns of shape (count, impacts): time, impact velocity, rebound velocity, restitution, rotational fraction, energy
 /// ratio, angle, contact; NaN, or 0 in the last, where there was no impact. Then three numbers per particle: number of impacts,
 /// stop reason, and angle at release.
 pub fn simulate(run: &Run<'_>, first: usize, count: usize) -> Result<Vec<f64>, Error> {
-    let means = Means {
+    let resources = Resources {
         threads: 1,
         level: Level::best(),
     };
-    let records = run.simulate_part(first..first + count, means, &Monitor::default())?;
+    let records = run.simulate_part(first..first + count, resources, &Monitor::default())?;
     let mut table = Vec::with_capacity(8 * records.time.len() + 3 * count);
     for column in [
         &records.time,

@@ -2,4 +2,6 @@
 
 mod lanes;
 
-pub(crate) use lanes::{Arrival, Departure, Leap, Look, MOST_STEPS, Residue, Search};
+pub(crate) use lanes::{
+    GapEvaluation, LastContact, LocatedContact, MOST_STEPS, Prediction, Search, Steps,
+};

@@ -1,6 +1,6 @@
-//! Impacts that are counted in batches of particles, whose scatter tells how certain the counts are.
+//! Impacts that are counted in batches of particles, whose scatter gives the uncertainty of the counts.
 
-use crate::{Error, Means, Monitor};
+use crate::{Error, Monitor, Resources};
 use std::ops::Range;
 use std::sync::Mutex;
 
@@ -62,7 +62,7 @@ impl<'a> Impacts<'a> {
     pub(super) fn count_in<B: Send, T>(
         &self,
         batches: &mut [B],
-        (means, monitor): (Means, &Monitor),
+        (resources, monitor): (Resources, &Monitor),
         own: impl Fn() -> Result<T, Error> + Sync,
         give: impl Fn(T) + Sync,
         count: impl Fn(&mut B, &mut T, Range<usize>) + Sync,
@@ -70,7 +70,7 @@ impl<'a> Impacts<'a> {
         let number = batches.len();
         let rows = self.velocity.len() / self.columns;
         let queue = Mutex::new(batches.iter_mut().enumerate());
-        let ended = means.each_thread(number, |_| {
+        let ended = resources.each_thread(number, |_| {
             let mut mine = own()?;
             while !monitor.is_cancelled() {
                 let next = queue.lock().expect("nobody panics who holds it").next();

@@ -4,7 +4,7 @@ use super::batches::{Impacts, STRIDE};
 use super::guide::Guide;
 use super::nodes::{Nodes, divides, rises};
 use crate::memory::{empty, filled, zeros};
-use crate::{Error, Means, Monitor};
+use crate::{Error, Monitor, Resources};
 
 /// What the memory of the counts follows from.
 const ROOM: &str = "velocities";
@@ -87,7 +87,7 @@ impl Counter {
     pub fn add(
         &mut self,
         impacts: &Impacts<'_>,
-        means: Means,
+        resources: Resources,
         monitor: &Monitor,
     ) -> Result<(), Error> {
         let Self {
@@ -100,7 +100,7 @@ impl Counter {
         let own = || empty(ROOM, 4 * STRIDE);
         impacts.count_in(
             batches,
-            (means, monitor),
+            (resources, monitor),
             own,
             drop,
             |batch, shares, cells| {

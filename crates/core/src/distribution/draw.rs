@@ -3,7 +3,7 @@
 use super::guide::Guide;
 use super::{At, Mixture, in_blocks};
 use crate::random::pair;
-use crate::{Error, Means, Monitor};
+use crate::{Error, Monitor, Resources};
 
 /// A histogram, with a guide to its distribution function where there are many draws.
 struct Inverse<'a> {
@@ -58,7 +58,7 @@ impl Mixture {
         at: At,
         seed: u64,
         out: &mut [f64],
-        means: Means,
+        resources: Resources,
         monitor: &Monitor,
     ) -> Result<(), Error> {
         let (layout, nodes) = (&self.layout, &self.layout.nodes);
@@ -68,7 +68,7 @@ impl Mixture {
         let inverses: Vec<_> = (0..components)
             .map(|component| Inverse::guided(self.histogram(component)))
             .collect::<Result<_, Error>>()?;
-        in_blocks(out, means, monitor, |first, block| {
+        in_blocks(out, resources, monitor, |first, block| {
             let (mut speed, mut site) = (f64::NAN, (0, 0.0));
             for (i, out) in block.iter_mut().enumerate() {
                 let v = at.speed.at(first + i);

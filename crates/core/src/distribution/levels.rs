@@ -4,7 +4,7 @@ use super::Mixture;
 use super::batches::{Impacts, STRIDE};
 use crate::memory::{empty, zeros};
 use crate::random::pair;
-use crate::{Error, Means, Monitor};
+use crate::{Error, Monitor, Resources};
 use std::ops::Range;
 use std::sync::Mutex;
 
@@ -69,7 +69,7 @@ impl Levels {
         mixture: &Mixture,
         point: f64,
         impacts: &Impacts<'_>,
-        means: Means,
+        resources: Resources,
         monitor: &Monitor,
     ) -> Result<(), Error> {
         let nodes = &mixture.layout.nodes;
@@ -94,7 +94,7 @@ impl Levels {
         };
         impacts.count_in(
             batches,
-            (means, monitor),
+            (resources, monitor),
             own,
             give,
             |batch, (fine, places), cells| {

@@ -2,8 +2,8 @@
 
 use super::guide::Guide;
 use super::nodes::{Nodes, Parts, divides, rises};
-use super::{Values, in_blocks};
-use crate::{Error, Means, Monitor};
+use super::{Broadcast, in_blocks};
+use crate::{Error, Monitor, Resources};
 
 /// The table, in ragged arrays.
 #[derive(Debug)]
@@ -153,37 +153,37 @@ impl Mixture {
     /// Cumulative distribution function at each `x`.
     pub fn cdf(
         &self,
-        x: Values,
+        x: Broadcast,
         at: At,
         out: &mut [f64],
-        means: Means,
+        resources: Resources,
         monitor: &Monitor,
     ) -> Result<(), Error> {
-        self.each(x, at, out, means, monitor, Self::below)
+        self.each(x, at, out, resources, monitor, Self::below)
     }
 
     /// Probability density at each `x`; bins are half-open, lo ≤ x < hi.
     pub fn pdf(
         &self,
-        x: Values,
+        x: Broadcast,
         at: At,
         out: &mut [f64],
-        means: Means,
+        resources: Resources,
         monitor: &Monitor,
     ) -> Result<(), Error> {
-        self.each(x, at, out, means, monitor, Self::density)
+        self.each(x, at, out, resources, monitor, Self::density)
     }
 
     /// Quantile for each probability `q`; NaN unless 0 ≤ q ≤ 1.
     pub fn ppf(
         &self,
-        q: Values,
+        q: Broadcast,
         at: At,
         out: &mut [f64],
-        means: Means,
+        resources: Resources,
         monitor: &Monitor,
     ) -> Result<(), Error> {
-        self.each(q, at, out, means, monitor, |mixture, parts, q| {
+        self.each(q, at, out, resources, monitor, |mixture, parts, q| {
             if (0.0..=1.0).contains(&q) {
                 mixture.quantile(parts, q)
             } else {
@@ -194,15 +194,15 @@ impl Mixture {
 
     fn each(
         &self,
-        x: Values,
+        x: Broadcast,
         at: At,
         out: &mut [f64],
-        means: Means,
+        resources: Resources,
         monitor: &Monitor,
         value: impl Fn(&Self, &Parts, f64) -> f64 + Sync,
     ) -> Result<(), Error> {
         let nodes = &self.layout.nodes;
-        in_blocks(out, means, monitor, |first, block| {
+        in_blocks(out, resources, monitor, |first, block| {
             for (i, out) in block.iter_mut().enumerate() {
                 let (x, v, z) = (
                     x.at(first + i),
@@ -223,7 +223,7 @@ impl Mixture {
 #[derive(Debug, Clone, Copy)]
 pub struct At<'a> {
     /// Impact velocity, in m/s.
-    pub speed: Values<'a>,
+    pub speed: Broadcast<'a>,
     /// Condition; ignored where the nodes have one component.
-    pub condition: Values<'a>,
+    pub condition: Broadcast<'a>,
 }

@@ -14,7 +14,7 @@ pub use levels::{COARSE, FINE, Levels};
 pub use mixture::{At, Layout, Mixture};
 pub use nodes::Nodes;
 
-use crate::{Error, Means, Monitor};
+use crate::{Error, Monitor, Resources};
 use std::sync::Mutex;
 
 /// Number of values that a thread computes at a time; up to this many are computed on the caller's thread.
@@ -22,9 +22,9 @@ pub const BLOCK: usize = 1 << 14;
 
 /// One value for all elements, or one for each.
 #[derive(Debug, Clone, Copy)]
-pub struct Values<'a>(&'a [f64]);
+pub struct Broadcast<'a>(&'a [f64]);
 
-impl<'a> Values<'a> {
+impl<'a> Broadcast<'a> {
     /// From a slice of one value, or of `length` values; `name` is for the error.
     ///
     /// # Errors
@@ -49,7 +49,7 @@ pub fn values(size: usize) -> Result<Vec<f64>, Error> {
 /// Fills `out` block by block with `fill(first, block)`. The result does not depend on the number of threads.
 fn in_blocks(
     out: &mut [f64],
-    means: Means,
+    resources: Resources,
     monitor: &Monitor,
     fill: impl Fn(usize, &mut [f64]) + Sync,
 ) -> Result<(), Error> {
@@ -64,7 +64,7 @@ fn in_blocks(
     }
     let number = out.len().div_ceil(BLOCK);
     let blocks = Mutex::new(out.chunks_mut(BLOCK).enumerate());
-    means.each_thread(number, |_| {
+    resources.each_thread(number, |_| {
         loop {
             let next = blocks.lock().expect("nobody panics who holds it").next();
             let Some(block) = next else { break };

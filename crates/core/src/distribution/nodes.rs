@@ -92,7 +92,7 @@ impl Nodes {
         between(&self.speeds, self.guide.reached(&self.speeds, v), v)
     }
 
-    /// The component of a node below z, and the weight of the one above, likewise.
+    /// The component of a node below z, and the weight of the one above.
     #[inline]
     pub(super) fn given(&self, node: usize, z: f64) -> (usize, f64) {
         let components = self.components_of(node);

@@ -1,7 +1,9 @@
 //! A block of particles, and the choice of the bounce loop for their motion, hull and law.
 
 use super::Source;
-use super::lanes::{Apart, GROUPS, Legs, Planar, Sink, Spatial, Stuck, Together, Turn, bounce};
+use super::lanes::{
+    Advance, Dimension, GROUPS, General, Inlined, Planar, Sink, Spatial, Unconverged, bounce,
+};
 use crate::Error;
 use crate::shape::Surface;
 use crate::simd::Level;
@@ -70,27 +72,27 @@ impl<R: Source, T: Sink> WithSimd for Block<'_, R, T> {
         // held up by memory.
         let steady = plan.law.steady();
         match (&body.hull, plan.at_rest, &steady) {
-            (Surface::EqualPair(hull), true, Some(law)) if T::TOGETHER => {
-                self.run::<S, Planar>(simd, &Together::new(body, hull, law, slope))
+            (Surface::EqualBalls(hull), true, Some(law)) if T::TOGETHER => {
+                self.run::<S, Planar>(simd, &Inlined::new(body, hull, law, slope))
             }
-            (Surface::EqualPair(hull), true, None) if T::TOGETHER => {
-                self.run::<S, Planar>(simd, &Together::new(body, hull, law, slope))
+            (Surface::EqualBalls(hull), true, None) if T::TOGETHER => {
+                self.run::<S, Planar>(simd, &Inlined::new(body, hull, law, slope))
             }
             (Surface::Ellipsoid(hull), true, Some(law)) if T::COMMON => {
-                self.run::<S, Planar>(simd, &Together::new(body, hull, law, slope))
+                self.run::<S, Planar>(simd, &Inlined::new(body, hull, law, slope))
             }
             (Surface::Ellipsoid(hull), false, _) if T::COMMON => {
-                self.run::<S, Spatial>(simd, &Together::new(body, hull, law, slope))
+                self.run::<S, Spatial>(simd, &Inlined::new(body, hull, law, slope))
             }
-            (_, true, _) => self.run::<S, Planar>(simd, &Apart { body, law, slope }),
-            (_, false, _) => self.run::<S, Spatial>(simd, &Apart { body, law, slope }),
+            (_, true, _) => self.run::<S, Planar>(simd, &General { body, law, slope }),
+            (_, false, _) => self.run::<S, Spatial>(simd, &General { body, law, slope }),
         }
     }
 }
 
 impl<R: Source, T: Sink> Block<'_, R, T> {
     #[inline(always)]
-    fn run<S: Simd, K: Turn>(self, simd: S, legs: &impl Legs<S, K>) -> Result<(), Error> {
+    fn run<S: Simd, K: Dimension>(self, simd: S, cycle: &impl Advance<S, K>) -> Result<(), Error> {
         let Self {
             source,
             particles,
@@ -100,12 +102,12 @@ impl<R: Source, T: Sink> Block<'_, R, T> {
         bounce::<S, K, _, GROUPS>(
             simd,
             (&source.plan().body, source.plan().limits()),
-            legs,
+            cycle,
             (source, particles),
             sink,
             || !monitor.is_cancelled(),
         )
-        .map_err(|Stuck { particle, impacts }| {
+        .map_err(|Unconverged { particle, impacts }| {
             let (plan, number) = source.origin(particle);
             Error::Numerical {
                 particle: number as u64,

@@ -18,7 +18,7 @@ pub use release::{About, Height, Orientation, Spin};
 pub use scales::Scales;
 pub(crate) use series::{Series, Source};
 pub use single::{
-    Departure, Landing, NoConvergence, SingleImpact, collide, first_contact, trajectory,
+    FlightEnd, FlightStart, NoConvergence, SingleImpact, collide, first_contact, trajectory,
 };
 pub use stop::{COLLAPSE_RUN, Limits, StopReason};
 

@@ -145,7 +145,7 @@ impl<'a> Plan<'a> {
         let height = self.height(particle);
         if self.at_rest {
             return State {
-                lift: height - self.body.hull.level(),
+                height: height - self.body.hull.level(),
                 velocity: Vector::default(),
                 axis: Vector::new(sine, 0.0, cosine),
                 precession: Vector::default(),

@@ -2,8 +2,8 @@
 //! impact, or the states of a trajectory.
 
 use super::lanes::{
-    Apart, Found, Group, Idle, Impact, Meanwhile, Planar, Release, Sink, Spatial, Strike, Touch,
-    bounce, find,
+    Collide, ContactPoint, Found, General, Group, Idle, Impact, Meanwhile, Planar, Release, Sink,
+    Spatial, bounce, find,
 };
 use super::stop::{Limits, StopReason};
 use crate::contact;
@@ -16,11 +16,11 @@ use std::cell::Cell;
 
 /// The start of a flight.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Departure {
+pub enum FlightStart {
     /// A release; a part of the body may be on the plane, at rest or moving up.
     Free,
     /// An impact: a part of the body is on the plane, and its point of contact leaves at `speed` ≥ 0.
-    Touching {
+    Contact {
         /// The sphere on the plane.
         sphere: Sphere,
         /// Normal speed of the point of contact, in √(gR).
@@ -30,7 +30,7 @@ pub enum Departure {
 
 /// The end of a flight.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Landing {
+pub enum FlightEnd {
     /// The body touches the plane.
     Impact {
         /// Flight time, in √(R/g).
@@ -72,14 +72,14 @@ pub fn first_contact(
     start: &State,
     slope: f64,
     body: &Body,
-    departure: Departure,
-) -> Result<Landing, NoConvergence> {
+    departure: FlightStart,
+) -> Result<FlightEnd, NoConvergence> {
     with_hull!(&body.hull, hull => {
         let simd = Scalar::new();
         let mut groups = [Group::<Scalar, Spatial>::empty(simd, hull)];
-        groups[0].occupy(&Single(*start), &mut (0..1), slope, hull);
-        if let Departure::Touching { sphere, speed } = departure {
-            groups[0].depart_from(contact::Departure {
+        groups[0].occupy(&Lone(*start), &mut (0..1), slope, hull);
+        if let FlightStart::Contact { sphere, speed } = departure {
+            groups[0].depart_from(contact::LastContact {
                 sphere: one(sphere.sign()),
                 speed: one(speed),
             });
@@ -89,13 +89,13 @@ pub fn first_contact(
         let [mut group] = groups;
         group.land(hull);
         Ok(match group.found() {
-            Ok(Found { time, state, sphere }) => Landing::Impact {
+            Ok(Found { time, state, sphere }) => FlightEnd::Impact {
                 time: time.as_slice()[0],
                 state: state.lane(0),
                 sphere: Sphere::of(sphere.as_slice()[0]),
             },
-            Err(StopReason::NeverLands) => Landing::Never,
-            Err(_) => Landing::Resting,
+            Err(StopReason::NeverLands) => FlightEnd::Never,
+            Err(_) => FlightEnd::Resting,
         })
     })
 }
@@ -106,9 +106,9 @@ pub fn collide(body: &Body, law: &Law<'_>, before: &State, sphere: Sphere) -> (S
     with_hull!(&body.hull, hull => {
         let state = before.in_lane();
         let part = hull.part(one(sphere.sign()).eq(1.0));
-        let struck = state.strike(body, law, Touch::of(hull, &part, state.axis.z));
-        let after = crate::motion::States::moving(state, struck.motion);
-        (after.lane(0), struck.separation.as_slice()[0])
+        let collided = state.collide(body, law, ContactPoint::of(hull, &part, state.axis.z));
+        let after = crate::motion::SymmetricState::with_motion(state, collided.motion);
+        (after.lane(0), collided.separation.as_slice()[0])
     })
 }
 
@@ -130,44 +130,44 @@ pub fn trajectory(
         return Ok(StopReason::ImpactsReached);
     }
     let go_on = Cell::new(true);
-    let mut told = Told {
+    let mut reporter = Reporter {
         record,
         go_on: &go_on,
         ended: StopReason::Interrupted,
     };
     let (simd, job) = (Scalar::new(), (body, limits));
-    let legs = Apart { body, law, slope };
-    let release = (&Single(start), 0..1);
+    let cycle = General { body, law, slope };
+    let release = (&Lone(start), 0..1);
     if start.is_at_rest() && slope == 0.0 {
-        bounce::<_, Planar, _, 1>(simd, job, &legs, release, &mut told, || go_on.get())
+        bounce::<_, Planar, _, 1>(simd, job, &cycle, release, &mut reporter, || go_on.get())
     } else {
-        bounce::<_, Spatial, _, 1>(simd, job, &legs, release, &mut told, || go_on.get())
+        bounce::<_, Spatial, _, 1>(simd, job, &cycle, release, &mut reporter, || go_on.get())
     }
     .map_err(|_| NoConvergence)?;
-    Ok(told.ended)
+    Ok(reporter.ended)
 }
 
 /// The release of a single particle.
-struct Single(State);
+struct Lone(State);
 
-impl Release for Single {
+impl Release for Lone {
     fn start(&self, _: usize) -> State {
         self.0
     }
 }
 
 /// The sink that hands the impacts to `record`.
-struct Told<'a, F> {
+struct Reporter<'a, F> {
     record: F,
     go_on: &'a Cell<bool>,
     ended: StopReason,
 }
 
-impl<F> Meanwhile for Told<'_, F> {
+impl<F> Meanwhile for Reporter<'_, F> {
     fn meanwhile(&mut self, _: usize) {}
 }
 
-impl<F: FnMut(&SingleImpact) -> bool> Sink for Told<'_, F> {
+impl<F: FnMut(&SingleImpact) -> bool> Sink for Reporter<'_, F> {
     const TOGETHER: bool = false;
     const COMMON: bool = false;
 

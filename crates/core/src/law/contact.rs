@@ -46,7 +46,7 @@ pub(crate) struct Late<S: Simd> {
 impl<S: Simd> Late<S> {
     /// Responses of no contact.
     #[inline(always)]
-    pub fn nothing(simd: S) -> Self {
+    pub fn none(simd: S) -> Self {
         let zero = Pack::splat(simd, 0.0);
         Self {
             response: Responses {
@@ -56,7 +56,7 @@ impl<S: Simd> Late<S> {
                 separation_speed: zero,
             },
             open: zero,
-            slipping: Slipping::nothing(simd),
+            slipping: Slipping::none(simd),
         }
     }
 

@@ -7,6 +7,6 @@ mod symmetric;
 pub use asymmetric::{Rotation, Top};
 pub use symmetric::State;
 pub(crate) use symmetric::{
-    Attitude, Flight, PlanarMotion, PlanarStates, SpatialFlight, SpatialMotion, SpatialStates,
-    States,
+    Attitude, Flight, PlanarMotion, PlanarState, SpatialFlight, SpatialMotion, SpatialState,
+    SymmetricState,
 };

@@ -90,7 +90,7 @@ macro_rules! columns {
             pub release_height: Vec<f64>,
             /// Azimuth of the axis at release in rad, per particle; empty if all were released at rest over a level plane.
             pub release_azimuth: Vec<f64>,
-            /// Angular velocity at release in rad/s, likewise.
+            /// Angular velocity at release in rad/s, per particle; empty in the same case.
             pub release_spin: Vec<[f64; 3]>,
         }
 
@@ -281,7 +281,7 @@ columns! {
         text: "height of the centre of mass over the plane at the impact",
         unit: Some("m"),
         when: When::StateAsked
-    } = |impact, plan| (impact.before.lift + plan.body.hull.level()) * plan.scales.length;
+    } = |impact, plan| (impact.before.height + plan.body.hull.level()) * plan.scales.length;
 
     /// Symmetry axis at the impact, a unit vector from sphere 2 to sphere 1.
     axis: [f64; 3] {

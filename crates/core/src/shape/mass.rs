@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 
 /// Mass, centre of mass and moments of inertia of a solid of revolution, in any coherent units.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Part {
+pub(super) struct MassProperties {
     pub mass: f64,
     /// Position of the centre of mass on the axis.
     pub centre: f64,
@@ -14,7 +14,7 @@ pub(super) struct Part {
     pub axial: f64,
 }
 
-impl Part {
+impl MassProperties {
     /// A point mass on the axis.
     pub fn point(mass: f64, centre: f64) -> Self {
         Self {

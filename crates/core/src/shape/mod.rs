@@ -3,7 +3,7 @@
 mod mass;
 mod revolution;
 
+pub(crate) use revolution::{AxisMotion, Hull, HullPart, with_hull};
 pub use revolution::{
     Body, Dumbbell, LoadedSphere, Shape, Solid, Sphere, Spherocylinder, Spheroid, Surface,
 };
-pub(crate) use revolution::{Hull, Part, Swing, with_hull};

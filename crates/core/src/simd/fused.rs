@@ -94,7 +94,7 @@ fn halves<S: Simd>(simd: S, x: S::f64s) -> (S::f64s, S::f64s) {
     (upper, simd.sub_f64s(x, upper))
 }
 
-/// a + b rounded, and its rounding error, likewise (D. E. Knuth).
+/// a + b rounded, and its rounding error (D. E. Knuth).
 #[inline(always)]
 fn sum<S: Simd>(simd: S, a: S::f64s, b: S::f64s) -> (S::f64s, S::f64s) {
     let sum = simd.add_f64s(a, b);
@@ -103,7 +103,7 @@ fn sum<S: Simd>(simd: S, a: S::f64s, b: S::f64s) -> (S::f64s, S::f64s) {
     (sum, simd.add_f64s(from_a, simd.sub_f64s(part, b)))
 }
 
-/// a − b rounded, and its rounding error, likewise.
+/// a − b rounded, and its rounding error.
 #[inline(always)]
 fn difference<S: Simd>(simd: S, a: S::f64s, b: S::f64s) -> (S::f64s, S::f64s) {
     let difference = simd.sub_f64s(a, b);

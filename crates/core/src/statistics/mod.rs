@@ -2,26 +2,26 @@
 
 mod axis;
 mod cells;
-mod counter;
-mod counts;
+mod count_sink;
+mod histogram;
+mod moment_sink;
 mod moments;
 mod narrow;
 mod places;
 mod recent;
 mod rows;
-mod tally;
 mod words;
 
 pub use axis::Axis;
-pub(crate) use counter::Counter;
-pub(crate) use counts::Counts;
+pub(crate) use count_sink::CountSink;
+pub(crate) use histogram::UNSPOILT;
+pub use histogram::{Bins, By, Grid, Histogram};
+pub(crate) use moment_sink::MomentSink;
 pub use moments::{Moments, Sums};
 pub use rows::{CREATES_ENERGY, Gains, Rows};
-pub(crate) use tally::UNSPOILT;
-pub use tally::{Bins, By, Grid, Tally};
 
-/// A sink that counts the impacts that it receives in the grids of a [`Tally`], which is shared with others.
-pub(crate) trait Tallying: crate::drop::Sink {
+/// A sink that counts the impacts that it receives in the grids of a [`Histogram`], which is shared with others.
+pub(crate) trait HistogramSink: crate::drop::Sink {
     /// What else is summed of the impacts, all of which are then in the grids.
     fn finish(self) -> Rows;
 }

@@ -169,7 +169,7 @@ mod tests {
     use crate::simd::one;
 
     /// Sums of the largest values there are, of either sign, with energy created or not, are exact until there is no room left, and
-    /// that is told with the last value for which there is.
+    /// the last value for which there is room says so.
     #[test]
     fn sums_are_exact_as_long_as_there_is_room() {
         for (offset, fraction, gaining) in [

@@ -1,8 +1,8 @@
 //! What is summed of the impacts in each row: moments of ε and of E_rot/E_tot, created energy; and how the particles ended.
 
+use super::histogram::{Bins, WHAT};
 use super::moments::{Moments, Sums};
 use super::recent::FRACTION_QUANTA;
-use super::tally::{Bins, WHAT};
 use crate::Error;
 use crate::memory::{copied, filled, zeros};
 

@@ -1,12 +1,12 @@
-//! A tally as a list of integers. Parts of a run that were counted at different times or places are stored in this form, and merge to
+//! A histogram as a list of integers. Parts of a run that were counted at different times or places are stored in this form, and merge to
 //! the same bits as the whole run.
 
-use super::tally::{Bins, Tally, WHAT};
+use super::histogram::{Bins, Histogram, WHAT};
 use crate::Error;
 use crate::memory::empty;
 
-impl Tally {
-    /// All numbers of the tally, in an order that depends on the bins alone: origin, grids, sums, created energy, particles by stop
+impl Histogram {
+    /// All numbers of the histogram, in an order that depends on the bins alone: origin, grids, sums, created energy, particles by stop
     /// reason.
     ///
     /// # Errors
@@ -24,29 +24,29 @@ impl Tally {
         number
     }
 
-    /// The tally with these bins from its words.
+    /// The histogram with these bins from its words.
     ///
     /// # Errors
     /// [`Error::Parameter`] for words that belong to another number of rows or columns, or to sums about another origin.
     pub fn from_words(bins: &Bins, origin: f64, words: &[u64]) -> Result<Self, Error> {
-        let mut tally = Self::new(bins, origin)?;
-        let needed = tally.number_of_words();
+        let mut histogram = Self::new(bins, origin)?;
+        let needed = histogram.number_of_words();
         let allowed = "as many as these bins have";
         Error::unless(words.len() == needed, "words", words.len() as f64, allowed)?;
         let mut words = words.iter();
-        tally.visit(&mut |word| {
+        histogram.visit(&mut |word| {
             if let Some(&given) = words.next() {
                 *word = given;
             }
         });
-        let (allowed, found) = ("that of this run", tally.rows.origin);
+        let (allowed, found) = ("that of this run", histogram.rows.origin);
         let same = found.to_bits() == origin.to_bits();
         Error::unless(same, "origin of the words", found, allowed)?;
-        let numbers = tally.rows.numbers.iter_mut();
-        for (number, counted) in numbers.zip(tally.restitution.numbers()) {
+        let numbers = histogram.rows.numbers.iter_mut();
+        for (number, counted) in numbers.zip(histogram.restitution.numbers()) {
             *number = counted;
         }
-        Ok(tally)
+        Ok(histogram)
     }
 
     /// Calls `visit` with every word, which it may change.

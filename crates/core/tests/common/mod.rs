@@ -4,8 +4,8 @@
 use proptest::prelude::*;
 use proptest::test_runner::{Config, RngSeed};
 use restitution_core::{
-    Body, ChatterjeeRuina, Coulomb, Dumbbell, Frictionless, Hypothesis, Law, Level, Means, Monitor,
-    Normal, Orientation, Plastic, Records, Rule, Run, Shape, Spin, Tabulated,
+    Body, ChatterjeeRuina, Coulomb, Dumbbell, Frictionless, Hypothesis, Law, Level, Monitor,
+    Normal, Orientation, Plastic, Records, Resources, Rule, Run, Shape, Spin, Tabulated,
     TangentialRestitution, Vector, Viscoelastic,
 };
 use std::f64::consts::PI;
@@ -56,15 +56,15 @@ pub fn simulate(run: &Run<'_>) -> Records {
 
 pub fn simulate_on(run: &Run<'_>, threads: usize, monitor: &Monitor) -> Records {
     let level = Level::best();
-    run.simulate(Means { threads, level }, monitor).unwrap()
+    run.simulate(Resources { threads, level }, monitor).unwrap()
 }
 
 pub fn error_of(run: &Run<'_>) -> restitution_core::Error {
-    let means = Means {
+    let resources = Resources {
         threads: 1,
         level: Level::Scalar,
     };
-    run.simulate(means, &Monitor::default()).unwrap_err()
+    run.simulate(resources, &Monitor::default()).unwrap_err()
 }
 
 /// The columns of doubles, with their names.

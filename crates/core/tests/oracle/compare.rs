@@ -3,7 +3,7 @@
 use super::impact::Rule;
 use super::random::Random;
 use super::{Impact, Noise, Particle, Release, World};
-use restitution_core::{Means, Monitor, Orientation, Records, Run, Spin, Vector};
+use restitution_core::{Monitor, Orientation, Records, Resources, Run, Spin, Vector};
 
 /// Relative size of the noise: 32 units in the last place. Far above what either side rounds in one stage of an impact, so that it is the noise
 /// that spreads the copies, and small enough to follow ten or twenty impacts.
@@ -123,8 +123,8 @@ impl Case {
     }
 
     /// The product's records.
-    pub fn records(&self, means: Means) -> Records {
-        self.with_run(|run| run.simulate(means, &Monitor::default()))
+    pub fn records(&self, resources: Resources) -> Records {
+        self.with_run(|run| run.simulate(resources, &Monitor::default()))
             .unwrap_or_else(|error| panic!("{error}: {self:#?}"))
     }
 

@@ -16,7 +16,7 @@ pub struct State {
 /// The part that was hit, and the speed at which it leaves the plane.
 pub type Leaving = Option<(usize, f64)>;
 
-pub enum Landing {
+pub enum FlightEnd {
     Contact {
         time: f64,
         part: usize,
@@ -114,7 +114,7 @@ impl Flight<'_> {
     }
 
     /// First contact. f ≥ f₀ + f₀′τ − Mτ²/2 is positive up to its zero, so that a step to there passes no contact; nothing else is used.
-    pub fn first_contact(&self, leaving: Leaving) -> Landing {
+    pub fn first_contact(&self, leaving: Leaving) -> FlightEnd {
         let bound = self.bound();
         let certified = |(gap, rate): (f64, f64)| {
             let gap = gap.max(0.0);
@@ -141,7 +141,7 @@ impl Flight<'_> {
                     other != part && gap <= 0.0 && rate < 0.0
                 });
                 if !hit {
-                    return Landing::Resting;
+                    return FlightEnd::Resting;
                 }
                 f64::INFINITY
             } else {
@@ -151,7 +151,7 @@ impl Flight<'_> {
         }
         for _ in 0..10_000_000 {
             if self.rate() * time > FOLLOWED {
-                return Landing::Never;
+                return FlightEnd::Never;
             }
             let (mut step, mut nearest) = (f64::INFINITY, 0);
             for part in 0..self.body.parts() {
@@ -166,7 +166,7 @@ impl Flight<'_> {
                 }
             }
             if time + step == time || step == 0.0 {
-                return Landing::Contact {
+                return FlightEnd::Contact {
                     time,
                     part: nearest,
                 };

@@ -4,7 +4,7 @@
 //! of the top by Rodrigues' formula with the platform's sine, contacts by certified steps alone, K from the full tensor of
 //! inertia by elimination, and each law from its definition; Coulomb's path is integrated step by step.
 //!
-//! Single impacts of a chaotic motion can only be compared as long as rounding has not grown too far. How far it has is
+//! OneBall impacts of a chaotic motion can only be compared as long as rounding has not grown too far. How far it has is
 //! measured: [`Noise`] makes every number of the motion that is kept from one stage of an impact to the next wrong at random, in
 //! several particles beside the one that is compared.
 #![allow(dead_code, reason = "each test file uses its own part")]
@@ -20,7 +20,7 @@ pub mod random;
 pub mod solid;
 
 use algebra::{Vector, cross, norm, plus, times};
-use flight::{Flight, Landing, Leaving, State, energies, spin};
+use flight::{Flight, FlightEnd, Leaving, State, energies, spin};
 use impact::{Answer, Contact, Rule, response};
 use normal::Restitution;
 use random::Random;
@@ -144,9 +144,9 @@ impl<'a> Particle<'a> {
             bumps: [0; 2].map(|_| world.shape.size() * (self.noise.factor() - 1.0)),
         };
         let (time, part) = match flight.first_contact(self.leaving) {
-            Landing::Contact { time, part } => (time, part),
-            Landing::Resting => return Err(StopReason::Collapse),
-            Landing::Never => return Err(StopReason::NeverLands),
+            FlightEnd::Contact { time, part } => (time, part),
+            FlightEnd::Resting => return Err(StopReason::Collapse),
+            FlightEnd::Never => return Err(StopReason::NeverLands),
         };
         self.clock += time;
         let before = blurred(&mut self.noise, flight.at(time));

@@ -4,7 +4,7 @@
 use crate::common::*;
 use proptest::prelude::*;
 use restitution_core::{
-    Body, Departure, Landing, Law, Limits, SingleImpact as Impact, Sphere, State, StopReason,
+    Body, FlightEnd, FlightStart, Law, Limits, SingleImpact as Impact, Sphere, State, StopReason,
     Vector, collide, first_contact,
 };
 
@@ -43,23 +43,23 @@ pub fn at_rest(body: &Body, height: f64, angle: f64) -> State {
 /// The same state at another height.
 pub fn at_height(state: &State, height: f64) -> State {
     State {
-        lift: height - 1.0,
+        height: height - 1.0,
         ..*state
     }
 }
 
 /// Height of the centre of mass above R.
 pub fn lift(state: &State) -> f64 {
-    state.lift
+    state.height
 }
 
 /// Kinetic and potential energy.
 pub fn energy(state: &State, body: &Body) -> f64 {
-    state.kinetic_energy(body) + state.lift
+    state.kinetic_energy(body) + state.height
 }
 
 /// The first contact of a flight, which must be found.
-pub fn landing(state: State, body: &Body, departure: Departure) -> Landing {
+pub fn landing(state: State, body: &Body, departure: FlightStart) -> FlightEnd {
     first_contact(&state, 0.0, body, departure).unwrap()
 }
 
@@ -86,7 +86,7 @@ pub fn trajectory(
 #[derive(Debug)]
 pub struct Leg {
     pub start: State,
-    pub departure: Departure,
+    pub departure: FlightStart,
     pub time: f64,
     pub impact: Impact,
 }
@@ -94,10 +94,10 @@ pub struct Leg {
 /// The first flights of a trajectory.
 pub fn legs(body: &Body, law: &Law<'_>, release: State, most: usize) -> Vec<Leg> {
     let mut start = release;
-    let mut departure = Departure::Free;
+    let mut departure = FlightStart::Free;
     let mut legs = Vec::new();
     while legs.len() < most {
-        let Landing::Impact {
+        let FlightEnd::Impact {
             time,
             state: before,
             sphere,
@@ -117,7 +117,7 @@ pub fn legs(body: &Body, law: &Law<'_>, release: State, most: usize) -> Vec<Leg>
                 sphere,
             },
         });
-        departure = Departure::Touching { sphere, speed };
+        departure = FlightStart::Contact { sphere, speed };
         start = after;
     }
     legs
@@ -136,14 +136,14 @@ pub fn gap(start: &State, body: &Body, time: f64, sphere: Sphere) -> f64 {
         let along = about.dot(start.axis) * about.z;
         start.axis.z * cos + about.cross(start.axis).z * sin + along * (1.0 - cos)
     };
-    (start.lift + side * tilt) + time * (start.velocity.z - 0.5 * time)
+    (start.height + side * tilt) + time * (start.velocity.z - 0.5 * time)
 }
 
 /// What sixteen roundings of the largest term of [`gap`] amount to, the rounding of the time included: the engine's and
 /// the test's own. `fastest` is the largest energy so far: an earlier landing was as inexact as that.
 pub fn gap_tolerance(start: &State, body: &Body, time: f64, fastest: f64) -> f64 {
     let turning = body.half_separation * start.precession.norm() * time;
-    let path = start.velocity.z.abs() * time + time * time + start.lift.abs();
+    let path = start.velocity.z.abs() * time + time * time + start.height.abs();
     16.0 * f64::EPSILON * (1.0 + body.half_separation + path + turning + fastest)
 }
 

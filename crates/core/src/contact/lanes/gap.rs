@@ -1,15 +1,15 @@
 //! The gap at a time of the flight, and the step from there that cannot pass a contact.
 
 use super::{SHORTEST, TOUCHING};
-use crate::motion::{Attitude, Flight, States};
-use crate::shape::{Hull, Part, Swing};
+use crate::motion::{Attitude, Flight, SymmetricState};
+use crate::shape::{AxisMotion, Hull, HullPart};
 use crate::simd::elementary::RANGE;
 use crate::simd::{Mask, Pack};
 use pulp::Simd;
 
 /// The contact from which the flight starts.
 #[derive(Clone, Copy)]
-pub(crate) struct Departure<S: Simd, const K: usize> {
+pub(crate) struct LastContact<S: Simd, const K: usize> {
     /// +1 or −1: sphere 1 or 2 is on the plane; 0: no part of the body is.
     pub sphere: Pack<S, K>,
     /// The normal speed at which the point of contact leaves the plane.
@@ -18,21 +18,25 @@ pub(crate) struct Departure<S: Simd, const K: usize> {
 
 /// Height, axis and their time derivatives at one time of the flight.
 #[derive(Clone, Copy)]
-pub(super) struct Moment<S: Simd, const K: usize> {
+pub(super) struct Instant<S: Simd, const K: usize> {
     time: Pack<S, K>,
-    lift: Pack<S, K>,
-    climb: Pack<S, K>,
-    swing: Swing<S, K>,
+    height: Pack<S, K>,
+    vz: Pack<S, K>,
+    axis_motion: AxisMotion<S, K>,
 }
 
-impl<S: Simd, const K: usize> Moment<S, K> {
+impl<S: Simd, const K: usize> Instant<S, K> {
     /// The gap f under a part of the hull (2), negative where they overlap, and f′.
     #[inline(always)]
-    pub(super) fn opening(&self, part: &Part<S, K>, hull: &impl Hull) -> (Pack<S, K>, Pack<S, K>) {
-        let Swing { tilt, rate, .. } = self.swing;
+    pub(super) fn opening(
+        &self,
+        part: &HullPart<S, K>,
+        hull: &impl Hull,
+    ) -> (Pack<S, K>, Pack<S, K>) {
+        let AxisMotion { cos_tilt, rate, .. } = self.axis_motion;
         (
-            hull.gap(part, tilt, self.lift), // (2)
-            hull.lever(part, tilt).mul_add(rate, self.climb),
+            hull.gap(part, cos_tilt, self.height), // (2)
+            hull.lever(part, cos_tilt).mul_add(rate, self.vz),
         )
     }
 }
@@ -40,7 +44,7 @@ impl<S: Simd, const K: usize> Moment<S, K> {
 /// The gap under a part of the hull.
 #[derive(Clone, Copy)]
 pub(crate) struct Gap<S: Simd, const K: usize> {
-    pub part: Part<S, K>,
+    pub part: HullPart<S, K>,
     /// f ≥ 0; an overlap, which is rounding, counts as 0.
     pub width: Pack<S, K>,
     /// f′.
@@ -52,7 +56,7 @@ pub(crate) struct Gap<S: Simd, const K: usize> {
 /// The evaluation of a pass of the search: the gap that may close first.
 #[derive(Clone, Copy)]
 #[repr(align(64))]
-pub(crate) struct Look<S: Simd, const K: usize> {
+pub(crate) struct GapEvaluation<S: Simd, const K: usize> {
     pub attitude: Attitude<S, K>,
     /// The gap that may close first.
     pub gap: Gap<S, K>,
@@ -60,10 +64,10 @@ pub(crate) struct Look<S: Simd, const K: usize> {
     pub never: Mask<S, K>,
 }
 
-impl<S: Simd, const K: usize> Look<S, K> {
+impl<S: Simd, const K: usize> GapEvaluation<S, K> {
     /// Before the first evaluation.
     #[inline(always)]
-    pub fn nothing(part: Part<S, K>) -> Self {
+    pub fn none(part: HullPart<S, K>) -> Self {
         let simd = part.own.simd();
         let zero = Pack::splat(simd, 0.0);
         Self {
@@ -85,60 +89,61 @@ impl<S: Simd, const K: usize> Look<S, K> {
 pub(crate) struct Search<S: Simd, F, const K: usize> {
     pub flight: F,
     /// The contact from which the flight starts.
-    pub departure: Departure<S, K>,
+    pub last_contact: LastContact<S, K>,
     /// S, the bound on the contribution of rotation to f″: (L/2)AΩ² for a dumbbell.
-    pub sway: Pack<S, K>,
+    pub rotation_bound: Pack<S, K>,
     /// M, the bound on −f″.
-    pub bound: Pack<S, K>,
+    pub curvature_bound: Pack<S, K>,
     /// From `up` to `down` the centre of mass is higher than the hull can reach.
     up: Pack<S, K>,
     down: Pack<S, K>,
 }
 
 impl<S: Simd, F: Flight<S, K>, const K: usize> Search<S, F, K> {
-    /// The search along a flight that starts from this departure.
+    /// The search along a flight that starts from this contact.
     #[inline(always)]
-    pub fn new(flight: F, departure: Departure<S, K>, hull: &impl Hull) -> Self {
+    pub fn new(flight: F, last_contact: LastContact<S, K>, hull: &impl Hull) -> Self {
         let zero = Pack::splat(flight.rate().simd(), 0.0);
         let mut search = Self {
             flight,
-            departure,
-            sway: zero,
-            bound: zero,
+            last_contact,
+            rotation_bound: zero,
+            curvature_bound: zero,
             up: zero,
             down: zero,
         };
-        search.survey(hull);
+        search.compute_bounds(hull);
         search
     }
 
     /// Continues with the flight that starts where the last one ended.
     #[inline(always)]
-    pub fn depart(
+    pub fn continue_with(
         &mut self,
-        motion: <F::State as States<S, K>>::Motion,
+        motion: <F::State as SymmetricState<S, K>>::Motion,
         slope: f64,
         hull: &impl Hull,
     ) {
         self.flight.depart(motion, slope);
-        self.survey(hull);
+        self.compute_bounds(hull);
     }
 
     /// Computes the bounds on the gap.
     #[inline(always)]
-    fn survey(&mut self, hull: &impl Hull) {
+    fn compute_bounds(&mut self, hull: &impl Hull) {
         let flight = &self.flight;
         let start = flight.start();
-        let (lift, climb) = (start.lift(), start.climb());
-        let reach = flight.reach();
-        let sway = hull.sway(flight.amplitude(), reach) * flight.square();
-        let above = climb.mul_add(climb, 2.0 * (lift - hull.ceiling(reach)));
+        let (height, vz) = (start.height(), start.vz());
+        let max_cos_tilt = flight.max_cos_tilt();
+        let rotation_bound =
+            hull.curvature_bound(flight.amplitude(), max_cos_tilt) * flight.square();
+        let above = vz.mul_add(vz, 2.0 * (height - hull.ceiling(max_cos_tilt)));
         let root = above.sqrt();
         let reaches = !above.le(0.0);
-        self.sway = sway;
-        self.bound = 1.0 + sway;
-        self.up = reaches.select(climb - root, f64::INFINITY);
-        self.down = reaches.select(climb + root, f64::INFINITY);
+        self.rotation_bound = rotation_bound;
+        self.curvature_bound = 1.0 + rotation_bound;
+        self.up = reaches.select(vz - root, f64::INFINITY);
+        self.down = reaches.select(vz + root, f64::INFINITY);
     }
 
     /// The search along a flight from a release: a part may be on the plane, at rest or moving up. A part on the plane that moves
@@ -147,20 +152,20 @@ impl<S: Simd, F: Flight<S, K>, const K: usize> Search<S, F, K> {
     pub fn released(flight: F, hull: &impl Hull) -> Self {
         let simd = flight.rate().simd();
         let zero = Pack::splat(simd, 0.0);
-        let free = Departure {
+        let free = LastContact {
             sphere: zero,
             speed: zero,
         };
         let mut search = Self::new(flight, free, hull);
-        let moment = search.beginning();
+        let instant = search.beginning();
         for first in [false, true] {
-            let gap = search.gap(&moment, hull.part(Mask::splat(simd, first)), hull);
-            let width = hull.gap(&gap.part, moment.swing.tilt, moment.lift);
+            let gap = search.gap(&instant, hull.part(Mask::splat(simd, first)), hull);
+            let width = hull.gap(&gap.part, instant.axis_motion.cos_tilt, instant.height);
             let on = width.le(0.0) & zero.le(gap.rate);
-            let departure = &mut search.departure;
+            let last_contact = &mut search.last_contact;
             let sphere = if first { 1.0 } else { -1.0 };
-            departure.sphere = on.select(sphere, departure.sphere);
-            departure.speed = on.select(gap.rate, departure.speed);
+            last_contact.sphere = on.select(sphere, last_contact.sphere);
+            last_contact.speed = on.select(gap.rate, last_contact.speed);
         }
         search
     }
@@ -171,13 +176,13 @@ impl<S: Simd, F: Flight<S, K>, const K: usize> Search<S, F, K> {
     /// one is in both, and is all that there is where the two parts touch at the same place.
     #[inline(always)]
     pub fn rests<H: Hull>(&self, hull: &H) -> Mask<S, K> {
-        let moment = self.beginning();
-        let on = self.departure.sphere;
+        let instant = self.beginning();
+        let on = self.last_contact.sphere;
         let part = hull.part(!on.lt(0.0));
-        let held = !on.eq(0.0) & hull.bend(&part, &moment.swing, -1.0).le(0.0);
+        let held = !on.eq(0.0) & hull.curvature(&part, &instant.axis_motion, -1.0).le(0.0);
         if H::TWO {
-            let (_, still) = moment.opening(&part, hull);
-            let other = self.gap(&moment, hull.part(on.lt(0.0)), hull);
+            let (_, still) = instant.opening(&part, hull);
+            let other = self.gap(&instant, hull.part(on.lt(0.0)), hull);
             held & !(other.rate.lt(still) & other.width.le(TOUCHING))
         } else {
             held
@@ -186,23 +191,23 @@ impl<S: Simd, F: Flight<S, K>, const K: usize> Search<S, F, K> {
 
     /// The time of the first evaluation, certified for both parts, of which one may be leaving the plane.
     #[inline(always)]
-    pub fn departed<H: Hull>(&self, hull: &H) -> Pack<S, K> {
-        let moment = self.beginning();
-        let on = self.departure.sphere;
+    pub fn first_evaluation<H: Hull>(&self, hull: &H) -> Pack<S, K> {
+        let instant = self.beginning();
+        let on = self.last_contact.sphere;
         let step = if on.eq(0.0).any() {
             let all = Mask::splat(on.simd(), true);
-            let one = self.exact(&moment, self.gap(&moment, hull.part(all), hull), hull);
+            let one = self.exact(&instant, self.gap(&instant, hull.part(all), hull), hull);
             if H::TWO {
-                let two = self.exact(&moment, self.gap(&moment, hull.part(!all), hull), hull);
+                let two = self.exact(&instant, self.gap(&instant, hull.part(!all), hull), hull);
                 self.certified(&one).min(self.certified(&two))
             } else {
                 self.certified(&one)
             }
         } else {
             // For a gap of 0, √(f′² + 2Mf) is f′.
-            let leaves = (2.0 * self.departure.speed).max(SHORTEST) / self.bound;
+            let leaves = (2.0 * self.last_contact.speed).max(SHORTEST) / self.curvature_bound;
             if H::TWO {
-                let other = self.gap(&moment, hull.part(on.lt(0.0)), hull);
+                let other = self.gap(&instant, hull.part(on.lt(0.0)), hull);
                 self.certified(&other).min(leaves)
             } else {
                 leaves
@@ -218,25 +223,30 @@ impl<S: Simd, F: Flight<S, K>, const K: usize> Search<S, F, K> {
         self.flight.rate() * time
     }
 
-    /// The gap that may close first, evaluated at `time`; `turned` is sine and cosine of the angle turned through.
+    /// Evaluates, at `time`, the gap that may close first; `turned` is sine and cosine of the angle turned through.
     #[inline(always)]
-    pub fn look<H: Hull>(
+    pub fn evaluate<H: Hull>(
         &self,
         time: Pack<S, K>,
         turned: (Pack<S, K>, Pack<S, K>),
         hull: &H,
-    ) -> Look<S, K> {
+    ) -> GapEvaluation<S, K> {
         let never = !self.angle(time).abs().le(RANGE);
         let attitude = self.flight.attitude(turned);
-        let moment = self.moment(time, attitude);
-        let part = hull.nearer(moment.lift, moment.climb, &moment.swing, self.bound);
-        let mut gap = self.gap(&moment, part, hull);
+        let instant = self.instant(time, attitude);
+        let part = hull.nearer(
+            instant.height,
+            instant.vz,
+            &instant.axis_motion,
+            self.curvature_bound,
+        );
+        let mut gap = self.gap(&instant, part, hull);
         // A part that touches but does not approach, or the start: one comparison, because operations on masks are slower.
         let leaving = (gap.width - TOUCHING).max(-gap.rate);
         if leaving.min(time).le(0.0).any() {
-            gap = self.careful(&moment, gap, hull);
+            gap = self.nearest_in_rare_cases(&instant, gap, hull);
         }
-        Look {
+        GapEvaluation {
             attitude,
             gap,
             never,
@@ -244,20 +254,20 @@ impl<S: Simd, F: Flight<S, K>, const K: usize> Search<S, F, K> {
     }
 
     #[inline(always)]
-    fn beginning(&self) -> Moment<S, K> {
+    fn beginning(&self) -> Instant<S, K> {
         let start = self.flight.start();
-        Moment {
-            time: Pack::splat(start.lift().simd(), 0.0),
-            lift: start.lift(),
-            climb: start.climb(),
-            swing: self.flight.beginning(),
+        Instant {
+            time: Pack::splat(start.height().simd(), 0.0),
+            height: start.height(),
+            vz: start.vz(),
+            axis_motion: self.flight.axis_motion_at_start(),
         }
     }
 
     /// The gap of a part.
     #[inline(always)]
-    fn gap(&self, moment: &Moment<S, K>, part: Part<S, K>, hull: &impl Hull) -> Gap<S, K> {
-        let (width, rate) = moment.opening(&part, hull);
+    fn gap(&self, instant: &Instant<S, K>, part: HullPart<S, K>, hull: &impl Hull) -> Gap<S, K> {
+        let (width, rate) = instant.opening(&part, hull);
         let width = width.max(0.0);
         Gap {
             part,
@@ -269,34 +279,40 @@ impl<S: Simd, F: Flight<S, K>, const K: usize> Search<S, F, K> {
 
     /// Height, axis and their derivatives at `time`, with this attitude.
     #[inline(always)]
-    pub(super) fn moment(&self, time: Pack<S, K>, attitude: Attitude<S, K>) -> Moment<S, K> {
-        Moment {
+    pub(super) fn instant(&self, time: Pack<S, K>, attitude: Attitude<S, K>) -> Instant<S, K> {
+        Instant {
             time,
-            lift: self.flight.lift_at(time),
-            climb: self.flight.climb_at(time),
-            swing: self.flight.swing(attitude),
+            height: self.flight.height_at(time),
+            vz: self.flight.vz_at(time),
+            axis_motion: self.flight.axis_motion(attitude),
         }
     }
 
     #[inline(always)]
     fn root(&self, width: Pack<S, K>, rate: Pack<S, K>) -> Pack<S, K> {
-        rate.mul_add(rate, 2.0 * self.bound * width).sqrt()
+        rate.mul_add(rate, 2.0 * self.curvature_bound * width)
+            .sqrt()
     }
 
     /// The gap that may close first in the cases that [`Hull::nearer`] does not decide: at the start the part on the plane is known
     /// exactly, and a part that touches and leaves may return later than the other comes down.
     #[inline(always)]
-    fn careful<H: Hull>(&self, moment: &Moment<S, K>, nearer: Gap<S, K>, hull: &H) -> Gap<S, K> {
-        let gap = self.exact(moment, nearer, hull);
+    fn nearest_in_rare_cases<H: Hull>(
+        &self,
+        instant: &Instant<S, K>,
+        nearer: Gap<S, K>,
+        hull: &H,
+    ) -> Gap<S, K> {
+        let gap = self.exact(instant, nearer, hull);
         if !H::TWO {
             return gap;
         }
-        let other = self.gap(moment, hull.part(!gap.part.one), hull);
-        let other = self.exact(moment, other, hull);
+        let other = self.gap(instant, hull.part(!gap.part.one), hull);
+        let other = self.exact(instant, other, hull);
         let leaving = gap.width.le(TOUCHING) & !gap.rate.lt(0.0);
         let swap = leaving & self.certified(&other).lt(self.certified(&gap));
         Gap {
-            part: Part {
+            part: HullPart {
                 one: gap.part.one ^ swap,
                 own: swap.select(other.part.own, gap.part.own),
             },
@@ -307,16 +323,16 @@ impl<S: Simd, F: Flight<S, K>, const K: usize> Search<S, F, K> {
     }
 
     #[inline(always)]
-    fn exact<H: Hull>(&self, moment: &Moment<S, K>, gap: Gap<S, K>, _: &H) -> Gap<S, K> {
-        let on = self.departure.sphere;
+    fn exact<H: Hull>(&self, instant: &Instant<S, K>, gap: Gap<S, K>, _: &H) -> Gap<S, K> {
+        let on = self.last_contact.sphere;
         let there = if H::TWO {
             gap.part.one.select(1.0, -1.0_f64).eq(on)
         } else {
             !on.eq(0.0)
         };
-        let touching = there & moment.time.eq(0.0);
+        let touching = there & instant.time.eq(0.0);
         let width = touching.select(0.0, gap.width);
-        let rate = touching.select(self.departure.speed, gap.rate);
+        let rate = touching.select(self.last_contact.speed, gap.rate);
         Gap {
             width,
             rate,
@@ -332,7 +348,7 @@ impl<S: Simd, F: Flight<S, K>, const K: usize> Search<S, F, K> {
         let approaching = gap.rate.lt(0.0);
         let speed = gap.rate.abs() + gap.root;
         let numerator = approaching.select(2.0 * gap.width, speed.max(SHORTEST));
-        let denominator = approaching.select(speed, self.bound);
+        let denominator = approaching.select(speed, self.curvature_bound);
         numerator / denominator
     }
 

@@ -14,11 +14,11 @@
 //! before the contact predicted by the expansions of the previous pass. There it checks, by the same bound backwards in time, that no
 //! contact was passed. Where this check fails, the pass is repeated from the end of the last certified step.
 
-mod arrival;
 mod gap;
+mod locate;
 
-pub(crate) use arrival::{Arrival, Leap, Residue};
-pub(crate) use gap::{Departure, Look, Search};
+pub(crate) use gap::{GapEvaluation, LastContact, Search};
+pub(crate) use locate::{LocatedContact, Prediction, Steps};
 
 /// A pass begins about this angle, in rad, divided by the sharpness of the hull, or this fraction of the speed of approach divided
 /// by S before the contact that was predicted, whichever is nearer.

@@ -1,9 +1,9 @@
 //! The bounce loop: flight to the next contact, impact, and again, for several groups of particles in alternation.
 
-use super::group::{Group, Release, Stuck};
+use super::advance::Advance;
+use super::collision::Dimension;
+use super::group::{Group, Release, Unconverged};
 use super::impact::Sink;
-use super::leg::Legs;
-use super::strike::Turn;
 use crate::drop::stop::{Limits, StopReason};
 use crate::shape::Body;
 use crate::simd::Pack;
@@ -13,17 +13,17 @@ use std::ops::Range;
 
 /// Simulates the `particles` of a release, as many at a time as N groups have lanes. Calls `go_on` before every impact.
 ///
-/// `legs` takes the groups from one impact to the next; this function passes the impacts on and ends the trajectories.
+/// `cycle` takes the groups from one impact to the next; this function passes the impacts on and ends the trajectories.
 #[inline(always)]
-pub(crate) fn bounce<S: Simd, T: Turn, L: Legs<S, T>, const N: usize>(
+pub(crate) fn bounce<S: Simd, T: Dimension, L: Advance<S, T>, const N: usize>(
     simd: S,
     (body, limits): (&Body, Limits),
-    legs: &L,
+    cycle: &L,
     (release, mut particles): (&impl Release, Range<usize>),
     sink: &mut impl Sink,
     go_on: impl Fn() -> bool,
-) -> Result<(), Stuck> {
-    let mut groups = legs.groups::<N>(simd);
+) -> Result<(), Unconverged> {
+    let mut groups = cycle.groups::<N>(simd);
     let width = Pack::<S, 1>::WIDTH;
     let count = particles.len().div_ceil(width).min(N);
     // Of a slice that it knows to be short the compiler would write out every stage for each group, which then do not fit into the
@@ -33,7 +33,7 @@ pub(crate) fn bounce<S: Simd, T: Turn, L: Legs<S, T>, const N: usize>(
     sink.begin();
     loop {
         if ended {
-            legs.occupy(groups, release, &mut particles);
+            cycle.occupy(groups, release, &mut particles);
             let before = groups.len();
             groups = in_use(groups);
             if L::TOGETHER {
@@ -46,8 +46,8 @@ pub(crate) fn bounce<S: Simd, T: Turn, L: Legs<S, T>, const N: usize>(
         if !go_on() {
             break;
         }
-        legs.fly(groups, sink)?;
-        ended = simd.vectorize(Tell {
+        cycle.advance(groups, sink)?;
+        ended = simd.vectorize(Report {
             groups: &mut *groups,
             body,
             limits,
@@ -66,7 +66,7 @@ pub(crate) fn bounce<S: Simd, T: Turn, L: Legs<S, T>, const N: usize>(
 }
 
 /// The groups that have particles, which the others make way for.
-fn in_use<S: Simd, T: Turn>(groups: &mut [Group<S, T>]) -> &mut [Group<S, T>] {
+fn in_use<S: Simd, T: Dimension>(groups: &mut [Group<S, T>]) -> &mut [Group<S, T>] {
     let mut count = 0;
     for i in 0..groups.len() {
         if groups[i].active.any() {
@@ -81,7 +81,7 @@ fn in_use<S: Simd, T: Turn>(groups: &mut [Group<S, T>]) -> &mut [Group<S, T>] {
 
 /// Hands an impact of all groups to the sink, and returns whether some particle has ended. Compiled separately, because the rare
 /// branches of the sinks would take registers from the other stages.
-struct Tell<'a, S: Simd, T: Turn, K> {
+struct Report<'a, S: Simd, T: Dimension, K> {
     groups: &'a mut [Group<S, T>],
     body: &'a Body,
     limits: Limits,
@@ -90,7 +90,7 @@ struct Tell<'a, S: Simd, T: Turn, K> {
     settle: bool,
 }
 
-impl<S: Simd, T: Turn, K: Sink> WithSimd for Tell<'_, S, T, K> {
+impl<S: Simd, T: Dimension, K: Sink> WithSimd for Report<'_, S, T, K> {
     type Output = bool;
 
     #[inline(always)]
@@ -98,7 +98,7 @@ impl<S: Simd, T: Turn, K: Sink> WithSimd for Tell<'_, S, T, K> {
         let width = Pack::<S, 1>::WIDTH;
         let mut ended = false;
         for (i, group) in self.groups.iter_mut().enumerate() {
-            ended |= group.tell(i, self.body, self.limits, self.sink);
+            ended |= group.report(i, self.body, self.limits, self.sink);
         }
         if self.settle {
             self.sink.settle(0..width * self.groups.len());

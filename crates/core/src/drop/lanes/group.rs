@@ -1,23 +1,23 @@
 //! A group of particles, as many as a vector has lanes, and the stages from one impact to the next.
 
-mod tell;
+mod report;
 
-use super::strike::{Strike, Touch, Turn};
-use crate::contact::{Arrival, Departure, Leap, Look, Residue, Search};
+use super::collision::{Collide, ContactPoint, Dimension};
+use crate::contact::{GapEvaluation, LastContact, LocatedContact, Prediction, Search, Steps};
 use crate::drop::stop::StopReason;
 use crate::law::{Contacts, Respond, Responses};
-use crate::motion::{Flight, State, States};
+use crate::motion::{Flight, State, SymmetricState};
 use crate::shape::{Body, Hull};
 use crate::simd::{LANES, Mask, Pack};
 use pulp::Simd;
 use std::ops::Range;
 
 /// The flight of a group with planar or spatial motion T.
-type FlightOf<S, T> = <T as Turn>::Flight<S, 1>;
+type FlightOf<S, T> = <T as Dimension>::Flight<S, 1>;
 /// The state of a group.
 pub(crate) type StateOf<S, T> = <FlightOf<S, T> as Flight<S, 1>>::State;
 /// Velocity and angular momentum of a group, which an impact changes.
-type MotionOf<S, T> = <StateOf<S, T> as States<S, 1>>::Motion;
+type MotionOf<S, T> = <StateOf<S, T> as SymmetricState<S, 1>>::Motion;
 
 /// Number of groups that alternate: enough to keep the arithmetic units busy, few enough to leave room in the first-level cache.
 pub(crate) const GROUPS: usize = 6;
@@ -30,13 +30,13 @@ pub(crate) trait Release {
 
 /// The particle whose contact search did not converge.
 #[derive(Debug)]
-pub(crate) struct Stuck {
+pub(crate) struct Unconverged {
     pub particle: usize,
     pub impacts: usize,
 }
 
 /// A contact that was located, in each lane.
-pub(crate) struct Found<S: Simd, T: Turn> {
+pub(crate) struct Found<S: Simd, T: Dimension> {
     /// Flight time.
     pub time: Pack<S, 1>,
     /// The state just before the impact.
@@ -49,17 +49,17 @@ pub(crate) struct Found<S: Simd, T: Turn> {
 /// of the others. Aligned to a cache line, so that no vector straddles two lines.
 #[derive(Clone, Copy)]
 #[repr(align(64))]
-pub(crate) struct Group<S: Simd, T: Turn> {
+pub(crate) struct Group<S: Simd, T: Dimension> {
     /// The search along the flight. The start of the flight is later replaced by the state before the impact.
     search: Search<S, FlightOf<S, T>, 1>,
     /// The time of the evaluation, with sine and cosine of the angle turned through by then.
     pub time: Pack<S, 1>,
     pub turned: (Pack<S, 1>, Pack<S, 1>),
     /// The gap there, and the results of the stages that follow.
-    look: Look<S, 1>,
-    leap: Leap<S, 1>,
-    residue: Residue<S, 1>,
-    arrival: Arrival<S, 1>,
+    evaluation: GapEvaluation<S, 1>,
+    steps: Steps<S, 1>,
+    prediction: Prediction<S, 1>,
+    located: LocatedContact<S, 1>,
     /// The time up to which a contact is ruled out, and the lanes in which it is ruled out up to the evaluation as well.
     certain: Pack<S, 1>,
     clear: Mask<S, 1>,
@@ -91,23 +91,23 @@ pub(crate) struct Group<S: Simd, T: Turn> {
     reasons: [StopReason; LANES],
 }
 
-impl<S: Simd, T: Turn> Group<S, T> {
+impl<S: Simd, T: Dimension> Group<S, T> {
     /// A group without particles; its lanes hold a body at rest.
     #[inline(always)]
     pub fn empty(simd: S, hull: &impl Hull) -> Self {
         let zero = Pack::splat(simd, 0.0);
         let state = StateOf::<S, T>::resting(simd, 1.0);
-        let departure = Departure {
+        let last_contact = LastContact {
             sphere: zero,
             speed: zero,
         };
         let part = hull.part(Mask::splat(simd, false));
         Self {
-            search: Search::new(FlightOf::<S, T>::new(state, 0.0), departure, hull),
-            look: Look::nothing(part),
-            leap: Leap::none(simd),
-            residue: Residue::none(simd),
-            arrival: Arrival::none(simd),
+            search: Search::new(FlightOf::<S, T>::new(state, 0.0), last_contact, hull),
+            evaluation: GapEvaluation::none(part),
+            steps: Steps::none(simd),
+            prediction: Prediction::none(simd),
+            located: LocatedContact::none(simd),
             certain: zero,
             clear: Mask::splat(simd, true),
             waiting: Mask::splat(simd, false),
@@ -139,7 +139,7 @@ impl<S: Simd, T: Turn> Group<S, T> {
         slope: f64,
         hull: &impl Hull,
     ) {
-        let mut state = self.before().moving(self.after);
+        let mut state = self.before().with_motion(self.after);
         let mut fresh = 0.0 * self.particle;
         (!self.active).each(|lane| {
             if let Some(particle) = particles.next() {
@@ -155,11 +155,11 @@ impl<S: Simd, T: Turn> Group<S, T> {
         self.unresolved = fresh.select(0.0, self.unresolved);
         self.idle = fresh.select(self.rounds, self.idle);
         self.due = self.rounds;
-        let released = Search::released(FlightOf::<S, T>::new(state, slope), hull).departure;
-        let departure = &mut self.search.departure;
-        departure.sphere = fresh.select(released.sphere, departure.sphere);
-        departure.speed = fresh.select(released.speed, departure.speed);
-        self.search.flight.end(state, state.lift());
+        let released = Search::released(FlightOf::<S, T>::new(state, slope), hull).last_contact;
+        let last_contact = &mut self.search.last_contact;
+        last_contact.sphere = fresh.select(released.sphere, last_contact.sphere);
+        last_contact.speed = fresh.select(released.speed, last_contact.speed);
+        self.search.flight.end(state, state.height());
         self.after = state.motion();
     }
 
@@ -170,17 +170,17 @@ impl<S: Simd, T: Turn> Group<S, T> {
     }
 
     /// Replaces the departure of the release by that of an impact.
-    pub fn depart_from(&mut self, departure: Departure<S, 1>) {
-        self.search.departure = departure;
+    pub fn depart_from(&mut self, last_contact: LastContact<S, 1>) {
+        self.search.last_contact = last_contact;
     }
 
     /// The contact of lane 0, or the stop reason if there is none.
     pub fn found(&self) -> Result<Found<S, T>, StopReason> {
         if self.active.any() {
             Ok(Found {
-                time: self.arrival.time,
+                time: self.located.time,
                 state: self.before(),
-                sphere: self.search.departure.sphere,
+                sphere: self.search.last_contact.sphere,
             })
         } else {
             Err(self.reasons[0])
@@ -195,13 +195,13 @@ impl<S: Simd, T: Turn> Group<S, T> {
 
     /// Determines the time of the first evaluation of the flights that begin, and ends the particles that rest.
     #[inline(always)]
-    pub fn depart(&mut self, hull: &impl Hull) {
-        let still = self.search.departure.speed.le(0.0);
+    pub fn begin_search(&mut self, hull: &impl Hull) {
+        let still = self.search.last_contact.speed.le(0.0);
         if still.any() {
             let rests = still & self.search.rests(hull);
             self.end(rests, StopReason::Collapse);
         }
-        let first = self.search.departed(hull);
+        let first = self.search.first_evaluation(hull);
         if self.is_behind {
             self.time = self.waiting.select(self.time, first);
             self.certain = self.waiting.select(self.certain, first);
@@ -211,40 +211,42 @@ impl<S: Simd, T: Turn> Group<S, T> {
     }
 
     #[inline(always)]
-    pub fn look(&mut self, hull: &impl Hull) {
-        self.look = self.search.look(self.time, self.turned, hull);
+    pub fn evaluate(&mut self, hull: &impl Hull) {
+        self.evaluation = self.search.evaluate(self.time, self.turned, hull);
     }
 
     #[inline(always)]
-    pub fn leap(&mut self, hull: &impl Hull) {
-        self.leap = self.search.leap(&self.look, hull);
+    pub fn propose(&mut self, hull: &impl Hull) {
+        self.steps = self.search.steps(&self.evaluation, hull);
     }
 
     #[inline(always)]
-    pub fn residue(&mut self, hull: &impl Hull) {
-        self.residue = self.search.residue(self.time, &self.look, &self.leap, hull);
-    }
-
-    #[inline(always)]
-    pub fn arrive(&mut self, hull: &impl Hull) {
-        self.arrival = self
+    pub fn predict(&mut self, hull: &impl Hull) {
+        self.prediction = self
             .search
-            .arrival(&self.look, &self.leap, &self.residue, hull);
+            .predict(self.time, &self.evaluation, &self.steps, hull);
     }
 
-    /// Looks at the gap again where the contact was found, in the lanes in which it is not located yet.
     #[inline(always)]
-    pub fn look_closer(&mut self, hull: &impl Hull) {
-        self.leap = self.leap.on_to(&self.arrival, self.time);
-        self.residue(hull);
-        self.arrive(hull);
+    pub fn locate(&mut self, hull: &impl Hull) {
+        self.located = self
+            .search
+            .locate(&self.evaluation, &self.steps, &self.prediction, hull);
+    }
+
+    /// Predicts the contact again, from where it was found, in the lanes in which it is not located yet.
+    #[inline(always)]
+    pub fn predict_again(&mut self, hull: &impl Hull) {
+        self.steps = self.steps.on_to(&self.located, self.time);
+        self.predict(hull);
+        self.locate(hull);
     }
 
     /// Whether the contact of some particle was not located before this pass, or is not by this one: rare after the first pass, except
     /// for spinning smooth hulls.
     #[inline(always)]
     pub fn takes_another_pass(&self) -> bool {
-        self.is_behind || (self.active & !self.arrival.done).any()
+        self.is_behind || (self.active & !self.located.done).any()
     }
 
     /// 1 in each lane that waits, otherwise 0.
@@ -262,35 +264,36 @@ impl<S: Simd, T: Turn> Group<S, T> {
     /// Ends the particles that never land.
     #[inline(always)]
     pub fn end_those_that_never_land(&mut self) {
-        self.end(self.look.never, StopReason::NeverLands);
+        self.end(self.evaluation.never, StopReason::NeverLands);
     }
 
     /// Ends the search in the lanes whose certified step leaves a gap below the resolution.
     #[inline(always)]
-    pub fn graze(&mut self) {
+    pub fn accept_grazing(&mut self) {
         if !self.takes_another_pass() {
             return;
         }
         let Self {
             time,
-            look,
-            leap,
+            evaluation,
+            steps,
             clear,
-            arrival,
+            located,
             ..
         } = self;
-        self.search.graze(*time, look, leap, *clear, arrival);
+        self.search
+            .accept_grazing(*time, evaluation, steps, *clear, located);
     }
 
     /// Determines the lanes that go on, and the time of their next evaluation. The others keep theirs and repeat the same result.
     #[inline(always)]
     pub fn go_on(&mut self, hull: &impl Hull) {
-        let (clear, done) = (self.clear, self.arrival.done);
-        let certain = self.search.certain(self.time, &self.leap);
+        let (clear, done) = (self.clear, self.located.done);
+        let certain = self.search.certain(self.time, &self.steps);
         let certain = clear.select(certain, self.certain);
         let aim = self
             .search
-            .aim(certain, &self.leap, &self.residue, &self.arrival, hull);
+            .aim(certain, &self.steps, &self.prediction, &self.located, hull);
         let next = clear.select(aim, certain);
         self.time = done.select(self.time, next);
         self.certain = done.select(self.time, certain);
@@ -305,8 +308,8 @@ impl<S: Simd, T: Turn> Group<S, T> {
         if self.is_behind {
             self.clear = self
                 .search
-                .is_clear(self.certain, self.time, &self.look, hull);
-            self.arrival.done = self.arrival.done & self.clear;
+                .is_clear(self.certain, self.time, &self.evaluation, hull);
+            self.located.done = self.located.done & self.clear;
         } else {
             self.clear = Mask::splat(self.time.simd(), true);
         }
@@ -314,55 +317,58 @@ impl<S: Simd, T: Turn> Group<S, T> {
 
     /// Replaces the start of the flight by the state at the contact; returns the sphere that touches like the hull there.
     #[inline(always)]
-    pub fn land(&mut self, hull: &impl Hull) -> Touch<S, 1> {
-        let Arrival { time, attitude, .. } = self.arrival;
+    pub fn land(&mut self, hull: &impl Hull) -> ContactPoint<S, 1> {
+        let LocatedContact { time, attitude, .. } = self.located;
         let state = self.search.flight.state(time, attitude);
-        let (part, tilt) = (&self.look.gap.part, state.tilt());
-        let (sphere, lift) = (hull.name(part, tilt), hull.lift(part, tilt)); // (2)
-        let touch = Touch::of(hull, part, tilt);
-        let departure = &mut self.search.departure;
+        let (part, cos_tilt) = (&self.evaluation.gap.part, state.cos_tilt());
+        let (sphere, height) = (
+            hull.name(part, cos_tilt),
+            hull.touching_height(part, cos_tilt),
+        ); // (2)
+        let point = ContactPoint::of(hull, part, cos_tilt);
+        let last_contact = &mut self.search.last_contact;
         if self.is_behind {
             let before = self.search.flight.start();
-            let (state, lift) = (
+            let (state, height) = (
                 state.or(self.waiting, before),
-                self.waiting.select(before.lift(), lift),
+                self.waiting.select(before.height(), height),
             );
-            self.search.flight.end(state, lift);
-            departure.sphere = self.waiting.select(departure.sphere, sphere);
-            touch.but_not(self.waiting)
+            self.search.flight.end(state, height);
+            last_contact.sphere = self.waiting.select(last_contact.sphere, sphere);
+            point.but_not(self.waiting)
         } else {
-            self.search.flight.end(state, lift);
-            departure.sphere = sphere;
-            touch
+            self.search.flight.end(state, height);
+            last_contact.sphere = sphere;
+            point
         }
     }
 
     /// Applies the collision law.
     #[inline(always)]
-    pub fn collide(&mut self, body: &Body, law: &impl Respond, touch: Touch<S, 1>) {
-        let struck = self.before().strike(body, law, touch);
-        self.leave(struck.motion, struck.approach, struck.separation);
+    pub fn collide(&mut self, body: &Body, law: &impl Respond, point: ContactPoint<S, 1>) {
+        let collided = self.before().collide(body, law, point);
+        self.leave(collided.motion, collided.approach, collided.separation);
     }
 
     /// Takes the motion after an impact, and the normal speeds of its contact.
     #[inline(always)]
     fn leave(&mut self, after: MotionOf<S, T>, approach: Pack<S, 1>, separation: Pack<S, 1>) {
-        let departure = &mut self.search.departure;
+        let last_contact = &mut self.search.last_contact;
         self.approach = approach;
         if self.is_behind {
             let before = *self.search.flight.start();
-            self.after = before.moving(after).or(self.waiting, &before).motion();
-            departure.speed = self.waiting.select(departure.speed, separation);
+            self.after = before.with_motion(after).or(self.waiting, &before).motion();
+            last_contact.speed = self.waiting.select(last_contact.speed, separation);
         } else {
             self.after = after;
-            departure.speed = separation;
+            last_contact.speed = separation;
         }
     }
 
     /// The contact as a law sees it, and the lanes that have one.
     #[inline(always)]
-    pub fn contact(&self, body: &Body, touch: Touch<S, 1>) -> (Contacts<S, 1>, Mask<S, 1>) {
-        (self.before().contact(body, touch), self.landing())
+    pub fn contact(&self, body: &Body, point: ContactPoint<S, 1>) -> (Contacts<S, 1>, Mask<S, 1>) {
+        (self.before().contact(body, point), self.landing())
     }
 
     /// Applies what a law answered.
@@ -370,17 +376,17 @@ impl<S: Simd, T: Turn> Group<S, T> {
     pub fn respond(
         &mut self,
         body: &Body,
-        touch: Touch<S, 1>,
+        point: ContactPoint<S, 1>,
         approach: Pack<S, 1>,
         response: &Responses<S, 1>,
     ) {
-        let after = self.before().respond(body, touch, response);
+        let after = self.before().respond(body, point, response);
         self.leave(after, approach, response.separation_speed);
     }
 
     /// Starts the next flight.
     #[inline(always)]
     pub fn start(&mut self, slope: f64, hull: &impl Hull) {
-        self.search.depart(self.after, slope, hull);
+        self.search.continue_with(self.after, slope, hull);
     }
 }

@@ -1,7 +1,7 @@
 //! An impact as the bounce loop reports it, and the trait of its receivers.
 
 use crate::drop::StopReason;
-use crate::motion::SpatialStates;
+use crate::motion::SpatialState;
 use crate::simd::{Mask, Pack};
 use pulp::Simd;
 use std::ops::Range;
@@ -30,8 +30,8 @@ pub(crate) struct Impact<S: Simd, const K: usize> {
     /// Speed at which the point of contact approached the plane, −v_c^n.
     pub approach: Pack<S, K>,
     /// The states before and after the impact.
-    pub before: SpatialStates<S, K>,
-    pub after: SpatialStates<S, K>,
+    pub before: SpatialState<S, K>,
+    pub after: SpatialState<S, K>,
     /// The lanes that have an impact.
     pub active: Mask<S, K>,
 }
@@ -64,7 +64,7 @@ pub(crate) trait Meanwhile {
 
 /// A receiver of impacts, which records or counts them.
 pub(crate) trait Sink: Meanwhile {
-    /// Whether bounce loops are compiled for this sink ([`super::Together`]). Sinks that write records are limited by memory and
+    /// Whether bounce loops are compiled for this sink ([`super::Inlined`]). Sinks that write records are limited by memory and
     /// gain nothing from it.
     const TOGETHER: bool;
     /// Whether it is among the most common ones, for which more of them are compiled.

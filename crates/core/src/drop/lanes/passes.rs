@@ -1,8 +1,8 @@
 //! Further passes of the contact search.
 
-use super::group::{Group, Stuck};
-use super::leg::{Idle, pass};
-use super::strike::Turn;
+use super::advance::{Idle, pass};
+use super::collision::Dimension;
+use super::group::{Group, Unconverged};
 use crate::shape::Hull;
 use crate::simd::Pack;
 use pulp::{Simd, WithSimd};
@@ -13,13 +13,13 @@ const SHARE: f64 = 0.4;
 
 /// Decides which lanes are done, and continues with passes of all groups, stage by stage as in the first one, until few lanes wait.
 /// Compiled separately: inlined, it would use up the registers of every bounce loop.
-pub(super) struct SearchOn<'a, S: Simd, T: Turn, H> {
+pub(super) struct SearchOn<'a, S: Simd, T: Dimension, H> {
     pub groups: &'a mut [Group<S, T>],
     pub hull: &'a H,
 }
 
-impl<S: Simd, T: Turn, H: Hull> WithSimd for SearchOn<'_, S, T, H> {
-    type Output = Result<(), Stuck>;
+impl<S: Simd, T: Dimension, H: Hull> WithSimd for SearchOn<'_, S, T, H> {
+    type Output = Result<(), Unconverged>;
 
     #[inline(always)]
     fn with_simd<U: Simd>(self, _: U) -> Self::Output {
@@ -27,19 +27,19 @@ impl<S: Simd, T: Turn, H: Hull> WithSimd for SearchOn<'_, S, T, H> {
         loop {
             for group in groups.iter_mut() {
                 if group.takes_another_pass() {
-                    group.look_closer(hull);
+                    group.predict_again(hull);
                 }
             }
             for group in groups.iter_mut() {
                 group.clear(hull);
             }
             for group in groups.iter_mut() {
-                group.graze();
+                group.accept_grazing();
             }
             for group in groups.iter_mut() {
                 if group.takes_another_pass() {
                     group.go_on(hull);
-                    group.stuck()?;
+                    group.converged()?;
                 }
             }
             if are_few_behind(groups) {
@@ -51,7 +51,7 @@ impl<S: Simd, T: Turn, H: Hull> WithSimd for SearchOn<'_, S, T, H> {
 }
 
 #[inline(always)]
-fn are_few_behind<S: Simd, T: Turn>(groups: &[Group<S, T>]) -> bool {
+fn are_few_behind<S: Simd, T: Dimension>(groups: &[Group<S, T>]) -> bool {
     let mut behind = groups[0].behind();
     for group in &groups[1..] {
         behind = behind + group.behind();

@@ -4,7 +4,7 @@
 //! angular momentum **Λ**. The paper's (3) turns it about **ω**, which is the same only while **ω** is perpendicular to the
 //! axis; in general **ω** itself precesses, but the axis moves as in (3) with **Λ**/J_xx in the place of **ω**.
 //!
-//! The motion is planar ([`PlanarStates`]) after every release from rest over a level plane, otherwise spatial
+//! The motion is planar ([`PlanarState`]) after every release from rest over a level plane, otherwise spatial
 //! ([`SpatialFlight`]). The contact search is the same for both, because the vertical component of the axis is always
 //! e_z = c + A cos(Ωt + φ): it needs one sine and one cosine.
 
@@ -12,13 +12,11 @@ mod planar;
 mod spatial;
 mod state;
 
-pub(crate) use planar::{Motion as PlanarMotion, States as PlanarStates};
-pub(crate) use spatial::{
-    Motion as SpatialMotion, Motions as SpatialFlight, States as SpatialStates,
-};
+pub(crate) use planar::{PlanarMotion, PlanarState};
+pub(crate) use spatial::{SpatialFlight, SpatialMotion, SpatialState};
 pub use state::State;
 
-use crate::shape::{Body, Swing};
+use crate::shape::{AxisMotion, Body};
 use crate::simd::elementary::moderate_sincos_in_lanes;
 use crate::simd::{Mask, Pack};
 use pulp::Simd;
@@ -66,40 +64,40 @@ impl<S: Simd, const K: usize> Attitude<S, K> {
 }
 
 /// Position and motion in each lane. The horizontal position is omitted, because the motion does not depend on it.
-pub(crate) trait States<S: Simd, const K: usize>: Copy {
+pub(crate) trait SymmetricState<S: Simd, const K: usize>: Copy {
     /// Velocity and angular momentum, which an impact changes.
     type Motion: Copy;
 
     /// A body at rest with a vertical axis, this high above the hull's level, in every lane.
-    fn resting(simd: S, lift: f64) -> Self;
+    fn resting(simd: S, height: f64) -> Self;
     /// Puts the state of a particle into a lane.
     fn put(&mut self, lane: usize, start: &State);
     /// Height of the centre of mass above the hull's level.
-    fn lift(&self) -> Pack<S, K>;
+    fn height(&self) -> Pack<S, K>;
     /// Vertical velocity of the centre of mass.
-    fn climb(&self) -> Pack<S, K>;
+    fn vz(&self) -> Pack<S, K>;
     /// Sine of the angle between the axis and the plane normal: signed in planar motion, ≥ 0 in space.
     fn sine(&self) -> Pack<S, K>;
     /// Cosine of that angle, e_z.
-    fn tilt(&self) -> Pack<S, K>;
+    fn cos_tilt(&self) -> Pack<S, K>;
     /// Velocity and angular momentum.
     fn motion(&self) -> Self::Motion;
     /// The same states, but those of `other` in the lanes of the mask.
     fn or(self, mask: Mask<S, K>, other: &Self) -> Self;
     /// The same position with another motion.
-    fn moving(self, motion: Self::Motion) -> Self;
+    fn with_motion(self, motion: Self::Motion) -> Self;
     /// The same state with three-dimensional vectors.
-    fn in_space(&self) -> SpatialStates<S, K>;
+    fn in_space(&self) -> SpatialState<S, K>;
     /// Kinetic energy of the rotation, in m g R.
     fn rotational_energy(&self, body: &Body) -> Pack<S, K>;
     /// Kinetic energy, in m g R.
     fn kinetic_energy(&self, body: &Body) -> Pack<S, K>;
 }
 
-/// A flight that starts from a [`States`] at time 0.
+/// A flight that starts from a [`SymmetricState`] at time 0.
 pub(crate) trait Flight<S: Simd, const K: usize>: Copy {
     /// Position and motion.
-    type State: States<S, K>;
+    type State: SymmetricState<S, K>;
 
     /// The flight from `start`, over a plane that descends along x with this slope, tan α.
     fn new(start: Self::State, slope: f64) -> Self;
@@ -112,32 +110,29 @@ pub(crate) trait Flight<S: Simd, const K: usize>: Copy {
     /// A bound on the amplitude A of e_z.
     fn amplitude(&self) -> Pack<S, K>;
     /// A bound on |e_z|, |c| + A, for any flight time.
-    fn reach(&self) -> Pack<S, K>;
+    fn max_cos_tilt(&self) -> Pack<S, K>;
     /// The attitude after a rotation by Ωt, of which sine and cosine are given.
     fn attitude(&self, turned: (Pack<S, K>, Pack<S, K>)) -> Attitude<S, K>;
     /// e_z and its time derivatives at an attitude (3).
-    fn swing(&self, attitude: Attitude<S, K>) -> Swing<S, K>;
+    fn axis_motion(&self, attitude: Attitude<S, K>) -> AxisMotion<S, K>;
     /// e_z and its time derivatives at the start.
-    fn beginning(&self) -> Swing<S, K>;
+    fn axis_motion_at_start(&self) -> AxisMotion<S, K>;
     /// Replaces the flight by one that starts at the same position with another motion.
-    fn depart(&mut self, motion: <Self::State as States<S, K>>::Motion, slope: f64);
-    /// The state at `time`. Its lift is left at that of the start, because at a contact the hull gives it more accurately.
+    fn depart(&mut self, motion: <Self::State as SymmetricState<S, K>>::Motion, slope: f64);
+    /// The state at `time`. Its height is left at that of the start, because at a contact the hull gives it more accurately.
     fn state(&self, time: Pack<S, K>, attitude: Attitude<S, K>) -> Self::State;
-    /// Ends the flight: `state`, with the `lift` at which the body touches, replaces the start.
-    fn end(&mut self, state: Self::State, lift: Pack<S, K>);
+    /// Ends the flight: `state`, with the `height` at which the body touches, replaces the start.
+    fn end(&mut self, state: Self::State, height: Pack<S, K>);
 
     /// Height of the centre of mass above the hull's level at `time` (5).
     #[inline(always)]
-    fn lift_at(&self, time: Pack<S, K>) -> Pack<S, K> {
-        time.mul_add(
-            time.mul_add(-0.5, self.start().climb()),
-            self.start().lift(),
-        ) // (5)
+    fn height_at(&self, time: Pack<S, K>) -> Pack<S, K> {
+        time.mul_add(time.mul_add(-0.5, self.start().vz()), self.start().height()) // (5)
     }
 
     /// Its vertical velocity at `time`.
     #[inline(always)]
-    fn climb_at(&self, time: Pack<S, K>) -> Pack<S, K> {
-        self.start().climb() - time // (5)
+    fn vz_at(&self, time: Pack<S, K>) -> Pack<S, K> {
+        self.start().vz() - time // (5)
     }
 }

@@ -1,41 +1,41 @@
-//! Motion in one vertical plane: the axis is (s, 0, c), the velocity (v_x, 0, v_z) and the angular velocity (0, ω, 0).
+//! PlanarMotion in one vertical plane: the axis is (s, 0, c), the velocity (v_x, 0, v_z) and the angular velocity (0, ω, 0).
 
-use super::{Attitude, Flight, SpatialMotion, SpatialStates, State};
+use super::{Attitude, Flight, SpatialMotion, SpatialState, State, SymmetricState};
 use crate::math::Vectors;
-use crate::shape::{Body, Swing};
+use crate::shape::{AxisMotion, Body};
 use crate::simd::{Mask, Pack};
 use pulp::Simd;
 
-/// Position and motion. They also represent the flight that starts from them, since nothing needs to be computed in advance.
+/// Position and motion. They also represent the flight that starts from them, for which nothing needs to be computed in advance.
 #[derive(Clone, Copy)]
-pub(crate) struct States<S: Simd, const K: usize> {
-    pub lift: Pack<S, K>,
+pub(crate) struct PlanarState<S: Simd, const K: usize> {
+    pub height: Pack<S, K>,
     pub sine: Pack<S, K>,
     pub cosine: Pack<S, K>,
-    pub motion: Motion<S, K>,
+    pub motion: PlanarMotion<S, K>,
 }
 
 /// v_x, v_z and ω.
 #[derive(Clone, Copy)]
-pub(crate) struct Motion<S: Simd, const K: usize> {
-    pub glide: Pack<S, K>,
-    pub climb: Pack<S, K>,
+pub(crate) struct PlanarMotion<S: Simd, const K: usize> {
+    pub vx: Pack<S, K>,
+    pub vz: Pack<S, K>,
     pub spin: Pack<S, K>,
 }
 
-impl<S: Simd, const K: usize> super::States<S, K> for States<S, K> {
-    type Motion = Motion<S, K>;
+impl<S: Simd, const K: usize> SymmetricState<S, K> for PlanarState<S, K> {
+    type Motion = PlanarMotion<S, K>;
 
     #[inline(always)]
-    fn resting(simd: S, lift: f64) -> Self {
+    fn resting(simd: S, height: f64) -> Self {
         let zero = Pack::splat(simd, 0.0);
         Self {
-            lift: Pack::splat(simd, lift),
+            height: Pack::splat(simd, height),
             sine: zero,
             cosine: Pack::splat(simd, 1.0),
-            motion: Motion {
-                glide: zero,
-                climb: zero,
+            motion: PlanarMotion {
+                vx: zero,
+                vz: zero,
                 spin: zero,
             },
         }
@@ -43,22 +43,22 @@ impl<S: Simd, const K: usize> super::States<S, K> for States<S, K> {
 
     #[inline(always)]
     fn put(&mut self, lane: usize, start: &State) {
-        self.lift.as_mut_slice()[lane] = start.lift;
+        self.height.as_mut_slice()[lane] = start.height;
         self.sine.as_mut_slice()[lane] = start.axis.x;
         self.cosine.as_mut_slice()[lane] = start.axis.z;
-        self.motion.glide.as_mut_slice()[lane] = start.velocity.x;
-        self.motion.climb.as_mut_slice()[lane] = start.velocity.z;
+        self.motion.vx.as_mut_slice()[lane] = start.velocity.x;
+        self.motion.vz.as_mut_slice()[lane] = start.velocity.z;
         self.motion.spin.as_mut_slice()[lane] = start.precession.y;
     }
 
     #[inline(always)]
-    fn lift(&self) -> Pack<S, K> {
-        self.lift
+    fn height(&self) -> Pack<S, K> {
+        self.height
     }
 
     #[inline(always)]
-    fn climb(&self) -> Pack<S, K> {
-        self.motion.climb
+    fn vz(&self) -> Pack<S, K> {
+        self.motion.vz
     }
 
     #[inline(always)]
@@ -67,44 +67,44 @@ impl<S: Simd, const K: usize> super::States<S, K> for States<S, K> {
     }
 
     #[inline(always)]
-    fn tilt(&self) -> Pack<S, K> {
+    fn cos_tilt(&self) -> Pack<S, K> {
         self.cosine
     }
 
     #[inline(always)]
-    fn motion(&self) -> Motion<S, K> {
+    fn motion(&self) -> PlanarMotion<S, K> {
         self.motion
     }
 
     #[inline(always)]
     fn or(self, mask: Mask<S, K>, other: &Self) -> Self {
         Self {
-            lift: mask.select(other.lift, self.lift),
+            height: mask.select(other.height, self.height),
             sine: mask.select(other.sine, self.sine),
             cosine: mask.select(other.cosine, self.cosine),
-            motion: Motion {
-                glide: mask.select(other.motion.glide, self.motion.glide),
-                climb: mask.select(other.motion.climb, self.motion.climb),
+            motion: PlanarMotion {
+                vx: mask.select(other.motion.vx, self.motion.vx),
+                vz: mask.select(other.motion.vz, self.motion.vz),
                 spin: mask.select(other.motion.spin, self.motion.spin),
             },
         }
     }
 
     #[inline(always)]
-    fn moving(self, motion: Motion<S, K>) -> Self {
+    fn with_motion(self, motion: PlanarMotion<S, K>) -> Self {
         Self { motion, ..self }
     }
 
     #[inline(always)]
-    fn in_space(&self) -> SpatialStates<S, K> {
-        let Motion { glide, climb, spin } = self.motion;
-        let zero = Pack::splat(self.lift.simd(), 0.0);
+    fn in_space(&self) -> SpatialState<S, K> {
+        let PlanarMotion { vx, vz, spin } = self.motion;
+        let zero = Pack::splat(self.height.simd(), 0.0);
         let vector = |x, y, z| Vectors { x, y, z };
-        SpatialStates {
-            lift: self.lift,
+        SpatialState {
+            height: self.height,
             axis: vector(self.sine, zero, self.cosine),
             motion: SpatialMotion {
-                velocity: vector(glide, zero, climb),
+                velocity: vector(vx, zero, vz),
                 precession: vector(zero, spin, zero),
             },
         }
@@ -118,12 +118,12 @@ impl<S: Simd, const K: usize> super::States<S, K> for States<S, K> {
 
     #[inline(always)]
     fn kinetic_energy(&self, body: &Body) -> Pack<S, K> {
-        let Motion { glide, climb, .. } = self.motion;
-        0.5 * glide.mul_add(glide, climb * climb) + self.rotational_energy(body)
+        let PlanarMotion { vx, vz, .. } = self.motion;
+        0.5 * vx.mul_add(vx, vz * vz) + self.rotational_energy(body)
     }
 }
 
-impl<S: Simd, const K: usize> Flight<S, K> for States<S, K> {
+impl<S: Simd, const K: usize> Flight<S, K> for PlanarState<S, K> {
     type State = Self;
 
     /// The slope is 0: over an incline the motion is spatial, because gravity has a component outside the plane of the axis.
@@ -133,7 +133,7 @@ impl<S: Simd, const K: usize> Flight<S, K> for States<S, K> {
     }
 
     #[inline(always)]
-    fn depart(&mut self, motion: Motion<S, K>, _: f64) {
+    fn depart(&mut self, motion: PlanarMotion<S, K>, _: f64) {
         self.motion = motion;
     }
 
@@ -154,12 +154,12 @@ impl<S: Simd, const K: usize> Flight<S, K> for States<S, K> {
 
     #[inline(always)]
     fn amplitude(&self) -> Pack<S, K> {
-        Pack::splat(self.lift.simd(), 1.0)
+        Pack::splat(self.height.simd(), 1.0)
     }
 
     #[inline(always)]
-    fn reach(&self) -> Pack<S, K> {
-        Pack::splat(self.lift.simd(), 1.0)
+    fn max_cos_tilt(&self) -> Pack<S, K> {
+        Pack::splat(self.height.simd(), 1.0)
     }
 
     #[inline(always)]
@@ -169,10 +169,10 @@ impl<S: Simd, const K: usize> Flight<S, K> for States<S, K> {
     }
 
     #[inline(always)]
-    fn swing(&self, attitude: Attitude<S, K>) -> Swing<S, K> {
+    fn axis_motion(&self, attitude: Attitude<S, K>) -> AxisMotion<S, K> {
         let square = self.square();
-        Swing {
-            tilt: attitude.cosine,
+        AxisMotion {
+            cos_tilt: attitude.cosine,
             rate: -self.motion.spin * attitude.sine,
             acceleration: -square * attitude.cosine,
             square,
@@ -180,8 +180,8 @@ impl<S: Simd, const K: usize> Flight<S, K> for States<S, K> {
     }
 
     #[inline(always)]
-    fn beginning(&self) -> Swing<S, K> {
-        self.swing(Attitude {
+    fn axis_motion_at_start(&self) -> AxisMotion<S, K> {
+        self.axis_motion(Attitude {
             sine: self.sine,
             cosine: self.cosine,
         })
@@ -193,18 +193,18 @@ impl<S: Simd, const K: usize> Flight<S, K> for States<S, K> {
         // One Newton step to unit length; rounding would otherwise accumulate over the impacts.
         let length = sine.mul_add(sine, cosine * cosine).mul_add(-0.5, 1.5);
         Self {
-            lift: self.lift,
+            height: self.height,
             sine: sine * length,
             cosine: cosine * length,
-            motion: Motion {
-                climb: self.climb_at(time),
+            motion: PlanarMotion {
+                vz: self.vz_at(time),
                 ..self.motion
             },
         }
     }
 
     #[inline(always)]
-    fn end(&mut self, state: Self, lift: Pack<S, K>) {
-        *self = Self { lift, ..state };
+    fn end(&mut self, state: Self, height: Pack<S, K>) {
+        *self = Self { height, ..state };
     }
 }

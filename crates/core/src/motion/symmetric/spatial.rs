@@ -1,36 +1,36 @@
-//! Motion in three dimensions.
+//! SpatialMotion in three dimensions.
 //!
 //! With **p** = **Λ**/J_xx and Ω = |**p**| the axis is **e**(t) = **k** + (**e** − **k**) cos Ωt + (**p** × **e**)/Ω sin Ωt,
 //! where **k** = **p**(**p**·**e**)/Ω² and **e** is the axis at the start (3).
 
-use super::{Attitude, Flight, State};
+use super::{Attitude, Flight, State, SymmetricState};
 use crate::math::Vectors;
-use crate::shape::{Body, Swing};
+use crate::shape::{AxisMotion, Body};
 use crate::simd::{Mask, Pack};
 use pulp::Simd;
 
 /// Position and motion.
 #[derive(Clone, Copy)]
-pub(crate) struct States<S: Simd, const K: usize> {
-    pub lift: Pack<S, K>,
+pub(crate) struct SpatialState<S: Simd, const K: usize> {
+    pub height: Pack<S, K>,
     /// Unit vector of the symmetry axis, from sphere 2 to sphere 1.
     pub axis: Vectors<S, K>,
-    pub motion: Motion<S, K>,
+    pub motion: SpatialMotion<S, K>,
 }
 
 /// v_G and **p** = **Λ**/J_xx.
 #[derive(Clone, Copy)]
-pub(crate) struct Motion<S: Simd, const K: usize> {
+pub(crate) struct SpatialMotion<S: Simd, const K: usize> {
     pub velocity: Vectors<S, K>,
     pub precession: Vectors<S, K>,
 }
 
-impl<S: Simd, const K: usize> States<S, K> {
+impl<S: Simd, const K: usize> SpatialState<S, K> {
     /// The state in a lane.
     #[inline(always)]
     pub fn lane(&self, lane: usize) -> State {
         State {
-            lift: self.lift.as_slice()[lane],
+            height: self.height.as_slice()[lane],
             velocity: self.motion.velocity.lane(lane),
             axis: self.axis.lane(lane),
             precession: self.motion.precession.lane(lane),
@@ -47,11 +47,11 @@ impl<S: Simd, const K: usize> States<S, K> {
     }
 }
 
-impl<S: Simd, const K: usize> super::States<S, K> for States<S, K> {
-    type Motion = Motion<S, K>;
+impl<S: Simd, const K: usize> SymmetricState<S, K> for SpatialState<S, K> {
+    type Motion = SpatialMotion<S, K>;
 
     #[inline(always)]
-    fn resting(simd: S, lift: f64) -> Self {
+    fn resting(simd: S, height: f64) -> Self {
         let lane = |x| Pack::splat(simd, x);
         let zero = Vectors {
             x: lane(0.0),
@@ -59,12 +59,12 @@ impl<S: Simd, const K: usize> super::States<S, K> for States<S, K> {
             z: lane(0.0),
         };
         Self {
-            lift: lane(lift),
+            height: lane(height),
             axis: Vectors {
                 z: lane(1.0),
                 ..zero
             },
-            motion: Motion {
+            motion: SpatialMotion {
                 velocity: zero,
                 precession: zero,
             },
@@ -73,19 +73,19 @@ impl<S: Simd, const K: usize> super::States<S, K> for States<S, K> {
 
     #[inline(always)]
     fn put(&mut self, lane: usize, start: &State) {
-        self.lift.as_mut_slice()[lane] = start.lift;
+        self.height.as_mut_slice()[lane] = start.height;
         self.axis.put(lane, start.axis);
         self.motion.velocity.put(lane, start.velocity);
         self.motion.precession.put(lane, start.precession);
     }
 
     #[inline(always)]
-    fn lift(&self) -> Pack<S, K> {
-        self.lift
+    fn height(&self) -> Pack<S, K> {
+        self.height
     }
 
     #[inline(always)]
-    fn climb(&self) -> Pack<S, K> {
+    fn vz(&self) -> Pack<S, K> {
         self.motion.velocity.z
     }
 
@@ -96,12 +96,12 @@ impl<S: Simd, const K: usize> super::States<S, K> for States<S, K> {
     }
 
     #[inline(always)]
-    fn tilt(&self) -> Pack<S, K> {
+    fn cos_tilt(&self) -> Pack<S, K> {
         self.axis.z
     }
 
     #[inline(always)]
-    fn motion(&self) -> Motion<S, K> {
+    fn motion(&self) -> SpatialMotion<S, K> {
         self.motion
     }
 
@@ -109,9 +109,9 @@ impl<S: Simd, const K: usize> super::States<S, K> for States<S, K> {
     fn or(self, mask: Mask<S, K>, other: &Self) -> Self {
         let (own, motion) = (self.motion, other.motion);
         Self {
-            lift: mask.select(other.lift, self.lift),
+            height: mask.select(other.height, self.height),
             axis: self.axis.or(mask, other.axis),
-            motion: Motion {
+            motion: SpatialMotion {
                 velocity: own.velocity.or(mask, motion.velocity),
                 precession: own.precession.or(mask, motion.precession),
             },
@@ -119,7 +119,7 @@ impl<S: Simd, const K: usize> super::States<S, K> for States<S, K> {
     }
 
     #[inline(always)]
-    fn moving(self, motion: Motion<S, K>) -> Self {
+    fn with_motion(self, motion: SpatialMotion<S, K>) -> Self {
         Self { motion, ..self }
     }
 
@@ -144,8 +144,8 @@ impl<S: Simd, const K: usize> super::States<S, K> for States<S, K> {
 
 /// A flight: the state at its start, and the constants of its rotation.
 #[derive(Clone, Copy)]
-pub(crate) struct Motions<S: Simd, const K: usize> {
-    start: States<S, K>,
+pub(crate) struct SpatialFlight<S: Simd, const K: usize> {
+    start: SpatialState<S, K>,
     slope: f64,
     /// Ω and Ω².
     rate: Pack<S, K>,
@@ -163,11 +163,11 @@ pub(crate) struct Motions<S: Simd, const K: usize> {
 /// Ω² below which a body is treated as not rotating.
 const SLOWEST: f64 = 1e-300;
 
-impl<S: Simd, const K: usize> Flight<S, K> for Motions<S, K> {
-    type State = States<S, K>;
+impl<S: Simd, const K: usize> Flight<S, K> for SpatialFlight<S, K> {
+    type State = SpatialState<S, K>;
 
     #[inline(always)]
-    fn new(start: States<S, K>, slope: f64) -> Self {
+    fn new(start: SpatialState<S, K>, slope: f64) -> Self {
         let (axis, precession) = (start.axis, start.motion.precession);
         let square = precession.dot(precession);
         let rate = square.sqrt();
@@ -193,12 +193,12 @@ impl<S: Simd, const K: usize> Flight<S, K> for Motions<S, K> {
     }
 
     #[inline(always)]
-    fn depart(&mut self, motion: Motion<S, K>, slope: f64) {
-        *self = Self::new(super::States::moving(self.start, motion), slope);
+    fn depart(&mut self, motion: SpatialMotion<S, K>, slope: f64) {
+        *self = Self::new(self.start.with_motion(motion), slope);
     }
 
     #[inline(always)]
-    fn start(&self) -> &States<S, K> {
+    fn start(&self) -> &SpatialState<S, K> {
         &self.start
     }
 
@@ -218,7 +218,7 @@ impl<S: Simd, const K: usize> Flight<S, K> for Motions<S, K> {
     }
 
     #[inline(always)]
-    fn reach(&self) -> Pack<S, K> {
+    fn max_cos_tilt(&self) -> Pack<S, K> {
         self.centre.abs() + self.amplitude
     }
 
@@ -228,11 +228,11 @@ impl<S: Simd, const K: usize> Flight<S, K> for Motions<S, K> {
     }
 
     #[inline(always)]
-    fn swing(&self, Attitude { sine, cosine }: Attitude<S, K>) -> Swing<S, K> {
+    fn axis_motion(&self, Attitude { sine, cosine }: Attitude<S, K>) -> AxisMotion<S, K> {
         let turning = self.cosine.mul_add(cosine, self.sine * sine); // (3)
         let leading = self.sine.mul_add(cosine, -(self.cosine * sine)); // a quarter of a turn later
-        Swing {
-            tilt: turning + self.centre,
+        AxisMotion {
+            cos_tilt: turning + self.centre,
             rate: self.rate * leading,
             acceleration: -self.square * turning,
             square: self.square,
@@ -240,9 +240,9 @@ impl<S: Simd, const K: usize> Flight<S, K> for Motions<S, K> {
     }
 
     #[inline(always)]
-    fn beginning(&self) -> Swing<S, K> {
-        Swing {
-            tilt: self.start.axis.z,
+    fn axis_motion_at_start(&self) -> AxisMotion<S, K> {
+        AxisMotion {
+            cos_tilt: self.start.axis.z,
             rate: self.rate * self.sine,
             acceleration: -self.square * self.cosine,
             square: self.square,
@@ -250,8 +250,12 @@ impl<S: Simd, const K: usize> Flight<S, K> for Motions<S, K> {
     }
 
     #[inline(always)]
-    fn state(&self, time: Pack<S, K>, attitude: Attitude<S, K>) -> States<S, K> {
-        let States { axis, motion, lift } = self.start;
+    fn state(&self, time: Pack<S, K>, attitude: Attitude<S, K>) -> SpatialState<S, K> {
+        let SpatialState {
+            axis,
+            motion,
+            height,
+        } = self.start;
         let constant = motion.precession.times(self.share);
         let leading = motion.precession.cross(axis).times(self.inverse);
         let axis = leading.mul_add(
@@ -261,14 +265,14 @@ impl<S: Simd, const K: usize> Flight<S, K> for Motions<S, K> {
         // One Newton step to unit length; rounding would otherwise accumulate over the impacts.
         let axis = axis.times(axis.dot(axis).mul_add(-0.5, 1.5));
         let Vectors { x, y, .. } = motion.velocity;
-        States {
-            lift,
+        SpatialState {
+            height,
             axis,
-            motion: Motion {
+            motion: SpatialMotion {
                 velocity: Vectors {
                     x: time.mul_add(self.slope, x), // (5)
                     y,
-                    z: self.climb_at(time),
+                    z: self.vz_at(time),
                 },
                 ..motion
             },
@@ -276,7 +280,7 @@ impl<S: Simd, const K: usize> Flight<S, K> for Motions<S, K> {
     }
 
     #[inline(always)]
-    fn end(&mut self, state: States<S, K>, lift: Pack<S, K>) {
-        self.start = States { lift, ..state };
+    fn end(&mut self, state: SpatialState<S, K>, height: Pack<S, K>) {
+        self.start = SpatialState { height, ..state };
     }
 }

@@ -1,6 +1,6 @@
 //! The state of one particle, in the core's units.
 
-use super::{SpatialMotion, SpatialStates, States};
+use super::{SpatialMotion, SpatialState, SymmetricState};
 use crate::math::{Vector, Vectors};
 use crate::shape::{Body, Sphere};
 use crate::simd::{elementary, one};
@@ -11,8 +11,8 @@ use pulp::Scalar;
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct State {
     /// Height of the centre of mass minus the hull's level, which is the height at which both spheres of a dumbbell lie on the
-    /// plane: R for equal spheres. At a contact the lift is ∓(L/2)e_z, so that the gap of the touching sphere is exactly 0.
-    pub lift: f64,
+    /// plane: R for equal spheres. At a contact it is ∓(L/2)e_z, so that the gap of the touching sphere is exactly 0.
+    pub height: f64,
     /// Velocity of the centre of mass, v_G.
     pub velocity: Vector,
     /// Unit vector of the symmetry axis, from sphere 2 to sphere 1.
@@ -35,7 +35,7 @@ impl State {
     ) -> Self {
         let axial = body.axial / body.transverse - 1.0;
         Self {
-            lift: height - body.hull.level(),
+            height: height - body.hull.level(),
             velocity,
             axis,
             precession: axis.mul_add(axial * spin.dot(axis), spin), // Λ/J_xx = Ĵω/J_xx
@@ -70,18 +70,18 @@ impl State {
 
     /// Gaps between the plane and spheres 1 and 2, in R; two equal values if only one part of the body can touch.
     pub fn gaps(&self, body: &Body) -> [f64; 2] {
-        Sphere::BOTH.map(|sphere| body.hull.gap(sphere, self.axis.z, self.lift)) // (2)
+        Sphere::BOTH.map(|sphere| body.hull.gap(sphere, self.axis.z, self.height)) // (2)
     }
 
     /// The state in a single lane.
-    pub(crate) fn in_lane(&self) -> SpatialStates<Scalar, 1> {
+    pub(crate) fn in_lane(&self) -> SpatialState<Scalar, 1> {
         let vector = |v: Vector| Vectors {
             x: one(v.x),
             y: one(v.y),
             z: one(v.z),
         };
-        SpatialStates {
-            lift: one(self.lift),
+        SpatialState {
+            height: one(self.height),
             axis: vector(self.axis),
             motion: SpatialMotion {
                 velocity: vector(self.velocity),

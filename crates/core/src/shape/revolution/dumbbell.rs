@@ -1,11 +1,11 @@
 //! Two spheres on an axis. Equal ones are the paper's homogeneous dumbbell (A1)–(A8).
 
 use super::{
-    Ball, Body, EqualPair, Pair, Shape, Single, Surface, check_density, check_distance,
+    Ball, Body, EqualBalls, OneBall, Shape, Surface, TwoBalls, check_density, check_distance,
     check_length, representable, seen,
 };
 use crate::Error;
-use crate::shape::mass::Part;
+use crate::shape::mass::MassProperties;
 use std::f64::consts::PI;
 
 /// Two spheres whose centres are `separation` apart, in SI units. The axis points from sphere 2 to sphere 1.
@@ -60,15 +60,15 @@ impl Dumbbell {
 
     /// Mass, centre and inertia of unequal spheres, in units of R and of the density of sphere 1; the origin is the centre of
     /// sphere 1.
-    fn whole(&self) -> Part {
+    fn whole(&self) -> MassProperties {
         let l = self.elongation();
         let [one, two] = self.radii();
         let density = self.density[1] / self.density[0];
         if one > two && one - two >= l {
-            return Part::sphere(one, 1.0);
+            return MassProperties::sphere(one, 1.0);
         }
         if two > one && two - one >= l {
-            return Part::sphere(two, density).upside_down(-l);
+            return MassProperties::sphere(two, density).upside_down(-l);
         }
         // Height of a spherical segment above the plane of intersection.
         let height = |own: f64, other: f64| {
@@ -80,8 +80,8 @@ impl Dumbbell {
             };
             (0.5 * (1.0 + lean) * (own + other + l)).min(2.0 * own)
         };
-        let upper = Part::segment(one, height(one, two), 1.0);
-        let lower = Part::segment(two, height(two, one), density);
+        let upper = MassProperties::segment(one, height(one, two), 1.0);
+        let lower = MassProperties::segment(two, height(two, one), density);
         upper.and(lower.upside_down(-l))
     }
 
@@ -169,7 +169,7 @@ impl Shape for Dumbbell {
             let half_separation = 0.5 * elongation;
             let mass = self.mass_factor();
             return Body {
-                hull: Surface::EqualPair(EqualPair::new(half_separation)),
+                hull: Surface::EqualBalls(EqualBalls::new(half_separation)),
                 half_separation,
                 transverse: self.transverse_factor() / mass,
                 axial: self.axial_factor() / mass,
@@ -183,12 +183,12 @@ impl Shape for Dumbbell {
         let [one, two] = self.radii();
         let balls = [ball(0.0, one), ball(-elongation, two)];
         let (hull, half_separation) = if one - two >= elongation {
-            (Surface::Single(Single::new(balls[0], true)), 0.0)
+            (Surface::OneBall(OneBall::new(balls[0], true)), 0.0)
         } else if two - one >= elongation {
-            (Surface::Single(Single::new(balls[1], false)), 0.0)
+            (Surface::OneBall(OneBall::new(balls[1], false)), 0.0)
         } else {
-            let pair = Pair::new(balls, elongation);
-            (Surface::Pair(pair), 0.5 * elongation)
+            let pair = TwoBalls::new(balls, elongation);
+            (Surface::TwoBalls(pair), 0.5 * elongation)
         };
         Body {
             hull,

@@ -1,10 +1,10 @@
 //! A sphere with a point mass inside: it is round, but its centre of mass is not its centre.
 
 use super::{
-    Ball, Body, Shape, Single, Surface, check_density, check_distance, check_length, representable,
+    Ball, Body, OneBall, Shape, Surface, check_density, check_distance, check_length, representable,
 };
 use crate::Error;
-use crate::shape::mass::Part;
+use crate::shape::mass::MassProperties;
 
 /// A homogeneous sphere with a point mass on its axis, in SI units. The axis points from the centre to the load.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -38,8 +38,9 @@ impl LoadedSphere {
     }
 
     /// Mass, centre and inertia of sphere and load.
-    fn whole(&self) -> Part {
-        Part::sphere(self.radius, self.density).and(Part::point(self.load, self.offset))
+    fn whole(&self) -> MassProperties {
+        MassProperties::sphere(self.radius, self.density)
+            .and(MassProperties::point(self.load, self.offset))
     }
 }
 
@@ -72,7 +73,7 @@ impl Shape for LoadedSphere {
             radius: 1.0,
         };
         Body {
-            hull: Surface::Single(Single::new(ball, true)),
+            hull: Surface::OneBall(OneBall::new(ball, true)),
             half_separation: 0.0,
             transverse: part.transverse / part.mass / square,
             axial: part.axial / part.mass / square,

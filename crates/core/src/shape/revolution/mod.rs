@@ -10,8 +10,8 @@ mod spherocylinder;
 mod spheroid;
 
 pub use dumbbell::Dumbbell;
-pub use hull::{Ball, Ellipsoid, EqualPair, Pair, Single, Sphere, Surface};
-pub(crate) use hull::{Hull, Part, Swing, with_hull};
+pub(crate) use hull::{AxisMotion, Hull, HullPart, with_hull};
+pub use hull::{Ball, Ellipsoid, EqualBalls, OneBall, Sphere, Surface, TwoBalls};
 pub use loaded_sphere::LoadedSphere;
 pub use spherocylinder::Spherocylinder;
 pub use spheroid::Spheroid;

@@ -1,7 +1,7 @@
 //! A cylinder with hemispherical caps: its contact is that of a dumbbell, but it has more mass in the middle.
 
 use super::{
-    Body, EqualPair, Shape, Surface, check_density, check_distance, check_length, representable,
+    Body, EqualBalls, Shape, Surface, check_density, check_distance, check_length, representable,
     seen,
 };
 use crate::Error;
@@ -76,7 +76,7 @@ impl Shape for Spherocylinder {
         let mass = self.mass_factor();
         let half_separation = 0.5 * seen(self.elongation());
         Body {
-            hull: Surface::EqualPair(EqualPair::new(half_separation)),
+            hull: Surface::EqualBalls(EqualBalls::new(half_separation)),
             half_separation,
             transverse: self.transverse_factor() / mass,
             axial: self.axial_factor() / mass,

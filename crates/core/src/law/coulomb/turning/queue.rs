@@ -1,12 +1,13 @@
 //! Contacts that take more than one step, out of many vectors: they wait in a queue for a lane, so that no lane is idle while others
 //! are under way. Those whose direction hardly turns any more go on in lanes of their own, where all take the same steps.
 
-use super::lanes::Lanes;
+use super::{Impacts, Slipping};
 use crate::law::{Hypothesis, Late};
-use crate::simd::Pack;
+use crate::simd::{LANES, Mask, Pack};
 use pulp::{Simd, WithSimd};
 
 /// The lanes that have not had their turn.
+#[derive(Default)]
 pub(super) struct Waiting {
     vector: usize,
     lane: usize,
@@ -27,6 +28,190 @@ impl Waiting {
             }
         }
         None
+    }
+}
+
+impl<S: Simd> Slipping<S, 1> {
+    /// No contact.
+    #[inline(always)]
+    pub(in crate::law) fn none(simd: S) -> Self {
+        let zero = Pack::splat(simd, 0.0);
+        Self {
+            speed: zero,
+            along: zero,
+            across: zero,
+            nn: zero,
+            nu: zero,
+            uu: zero,
+            ww: zero,
+            restitution: zero,
+        }
+    }
+
+    /// Puts lane k of another one into a lane.
+    #[inline(always)]
+    fn put(&mut self, lane: usize, other: &Self, k: usize) {
+        for (to, from) in [
+            (&mut self.speed, other.speed),
+            (&mut self.along, other.along),
+            (&mut self.across, other.across),
+            (&mut self.nn, other.nn),
+            (&mut self.nu, other.nu),
+            (&mut self.uu, other.uu),
+            (&mut self.ww, other.ww),
+            (&mut self.restitution, other.restitution),
+        ] {
+            to.as_mut_slice()[lane] = from.as_slice()[k];
+        }
+    }
+}
+
+impl<S: Simd> Impacts<S> {
+    /// Puts lane k of others into a lane.
+    #[inline(always)]
+    fn put(&mut self, lane: usize, others: &mut Self, k: usize) {
+        for (to, from) in self.packs().into_iter().zip(others.packs()) {
+            to.as_mut_slice()[lane] = from.as_slice()[k];
+        }
+        for (to, from) in self.masks().into_iter().zip(others.masks()) {
+            to.set(lane, from.get(k));
+        }
+    }
+
+    /// Takes others in the lanes of the mask.
+    #[inline(always)]
+    fn take(&mut self, mask: Mask<S, 1>, others: &mut Self) {
+        for (to, from) in self.packs().into_iter().zip(others.packs()) {
+            *to = mask.select(*from, *to);
+        }
+        for (to, from) in self.masks().into_iter().zip(others.masks()) {
+            *to = mask & *from | !mask & *to;
+        }
+    }
+}
+
+/// Contacts under way.
+#[derive(Clone, Copy)]
+pub(super) struct Lanes<S: Simd> {
+    pub impacts: Impacts<S>,
+    friction: f64,
+    hypothesis: Hypothesis,
+    /// Vector and lane from which each has come; of lanes without one, none.
+    places: [Option<(usize, usize)>; LANES],
+}
+
+impl<S: Simd> Lanes<S> {
+    /// No contact, of the law of those that are late.
+    #[inline(always)]
+    pub fn new(late: &[Late<S>], friction: f64, hypothesis: Hypothesis) -> Self {
+        let nothing = Slipping::none(late[0].open.simd());
+        Self {
+            impacts: Impacts::new(&nothing, friction, hypothesis),
+            friction,
+            hypothesis,
+            places: [None; LANES],
+        }
+    }
+
+    #[inline(always)]
+    pub fn is_empty(&self) -> bool {
+        self.impacts.course.over.all()
+    }
+
+    /// Puts contacts that wait into free lanes.
+    #[inline(always)]
+    pub fn begin(&mut self, waiting: &mut Waiting, late: &[Late<S>]) {
+        let simd = late[0].open.simd();
+        let mut fresh = Slipping::none(simd);
+        let mut taken = Pack::splat(simd, 0.0);
+        let mut any = false;
+        for (lane, place) in self.places[..Pack::<S, 1>::WIDTH].iter_mut().enumerate() {
+            if place.is_some() {
+                continue;
+            }
+            *place = waiting.next(late);
+            let Some((i, k)) = *place else { break };
+            fresh.put(lane, &late[i].slipping, k);
+            taken.as_mut_slice()[lane] = 1.0;
+            any = true;
+        }
+        if any {
+            let mut new = Impacts::new(&fresh, self.friction, self.hypothesis);
+            self.impacts.take(taken.eq(1.0), &mut new);
+        }
+    }
+
+    /// Answers the contacts that are over.
+    #[inline(always)]
+    pub fn end(&mut self, late: &mut [Late<S>]) {
+        let over = self.impacts.course.over;
+        if !over.any() {
+            return;
+        }
+        let answer = self.impacts.answer();
+        let over = over.select(1.0, 0.0);
+        for (lane, place) in self.places.iter_mut().enumerate() {
+            if let Some((i, k)) = *place
+                && over.as_slice()[lane] == 1.0
+            {
+                *place = None;
+                let response = &mut late[i].response;
+                response.normal.as_mut_slice()[k] = answer.normal.as_slice()[lane];
+                response.along.as_mut_slice()[k] = answer.along.as_slice()[lane];
+                response.across.as_mut_slice()[k] = answer.across.as_slice()[lane];
+                let speed = answer.separation_speed.as_slice()[lane];
+                response.separation_speed.as_mut_slice()[k] = speed;
+            }
+        }
+    }
+
+    /// Hands the contacts whose direction hardly turns any more over to other lanes, which go on whenever all are taken.
+    #[inline(always)]
+    pub fn hand_over(&mut self, others: &mut Self, late: &mut [Late<S>]) {
+        let straight = self.impacts.is_straight();
+        if !straight.any() {
+            return;
+        }
+        straight.each(|lane| {
+            if others.places.iter().flatten().count() == Pack::<S, 1>::WIDTH {
+                others.finish(late);
+            }
+            let free = others.places.iter().position(Option::is_none);
+            let free = free.expect("contacts that are finished leave their lanes");
+            others.places[free] = self.places[lane].take();
+            others.impacts.put(free, &mut self.impacts, lane);
+        });
+        self.impacts.course.over = self.impacts.course.over | straight;
+    }
+
+    /// Takes all contacts to their ends.
+    #[inline(never)]
+    pub fn finish(&mut self, late: &mut [Late<S>]) {
+        let simd = late[0].open.simd();
+        simd.vectorize(FinishLanes { lanes: self, late });
+    }
+}
+
+/// [`Lanes::finish`], to be compiled once.
+struct FinishLanes<'a, S: Simd> {
+    lanes: &'a mut Lanes<S>,
+    late: &'a mut [Late<S>],
+}
+
+impl<S: Simd> WithSimd for FinishLanes<'_, S> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<T: Simd>(self, _: T) {
+        let Self { lanes, late } = self;
+        while !lanes.is_empty() {
+            lanes.impacts.follow();
+            if !lanes.is_empty() {
+                lanes.impacts.advance();
+                lanes.impacts.stop();
+            }
+            lanes.end(late);
+        }
     }
 }
 
@@ -59,7 +244,7 @@ impl<S: Simd> WithSimd for Finish<'_, S> {
             friction,
             hypothesis,
         } = self;
-        let mut waiting = Waiting { vector: 0, lane: 0 };
+        let mut waiting = Waiting::default();
         let mut turning = Lanes::new(late, friction, hypothesis);
         let mut straight = turning;
         loop {
@@ -76,70 +261,5 @@ impl<S: Simd> WithSimd for Finish<'_, S> {
             }
         }
         straight.finish(late);
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::super::testing::{Case, value};
-    use super::*;
-    use crate::simd::one;
-    use pulp::Scalar;
-
-    /// Two contacts with this angle between the slip and the direction that attracts it.
-    fn contacts(direction: f64) -> (Vec<Late<Scalar>>, f64) {
-        let case = Case {
-            friction: 0.3,
-            nn: 1.5,
-            nu: 0.2,
-            uu: 1.3,
-            ww: 2.1,
-            direction,
-        };
-        let nothing = Late::nothing(Scalar::new());
-        let late = Late {
-            open: one(1.0),
-            slipping: case.contact(0.8, 0.3),
-            ..nothing
-        };
-        (vec![late; 2], case.friction)
-    }
-
-    /// A contact whose direction hardly turns goes to the other lanes and leaves its own; these begin when they are needed for another
-    /// one, or nothing else is left.
-    #[test]
-    fn straight_contacts_wait_for_one_another() {
-        let hypothesis = Hypothesis::Poisson;
-        let (mut late, friction) = contacts(0.01);
-        let (mut both, _) = contacts(0.01);
-        let answers = |late: &[Late<Scalar>]| [0, 1].map(|i| value(late[i].response.normal));
-        let mut waiting = Waiting { vector: 0, lane: 0 };
-        let mut turning = Lanes::new(&late, friction, hypothesis);
-        let mut straight = turning;
-        for answered in [false, true] {
-            turning.begin(&mut waiting, &late);
-            turning.impacts.stop();
-            turning.hand_over(&mut straight, &mut late);
-            assert!(turning.is_empty() && !straight.is_empty());
-            assert_eq!(answers(&late).map(|normal| normal > 0.0), [answered, false]);
-        }
-        straight.finish(&mut late);
-        assert!(straight.is_empty());
-        let [one, other] = answers(&late);
-        assert_eq!(one, other);
-        finish(&mut both, friction, hypothesis);
-        assert_eq!(answers(&both), [one, one]);
-    }
-
-    #[test]
-    fn turning_contacts_are_not_handed_over() {
-        let (mut late, friction) = contacts(1.0);
-        let mut waiting = Waiting { vector: 0, lane: 0 };
-        let mut turning = Lanes::new(&late, friction, Hypothesis::Poisson);
-        let mut straight = turning;
-        turning.begin(&mut waiting, &late);
-        turning.impacts.stop();
-        turning.hand_over(&mut straight, &mut late);
-        assert!(!turning.is_empty() && straight.is_empty());
     }
 }

@@ -1,6 +1,6 @@
 //! Hulls that consist of one or two spheres on the axis.
 
-use super::{Hull, Part, Swing};
+use super::{AxisMotion, Hull, HullPart};
 use crate::simd::{Mask, Pack};
 use pulp::Simd;
 
@@ -11,11 +11,11 @@ pub(super) trait Balls: Copy {
     /// The levers s of spheres 1 and 2.
     fn levers(&self) -> [f64; 2];
     /// e_z minus its value where both spheres touch: negative where sphere 1 is the lower one.
-    fn lean<S: Simd, const K: usize>(&self, tilt: Pack<S, K>) -> Pack<S, K>;
-    /// Height of the centre of mass at which the lift is 0.
+    fn lean<S: Simd, const K: usize>(&self, cos_tilt: Pack<S, K>) -> Pack<S, K>;
+    /// [`Hull::level`].
     fn level(&self) -> f64;
-    /// Lift above which no part can touch while |e_z| ≤ `reach`.
-    fn ceiling<S: Simd, const K: usize>(&self, reach: Pack<S, K>) -> Pack<S, K>;
+    /// Height above which no part can touch while |e_z| ≤ `max_cos_tilt`.
+    fn ceiling<S: Simd, const K: usize>(&self, max_cos_tilt: Pack<S, K>) -> Pack<S, K>;
     /// The radius of sphere 1 where `one`, else of sphere 2.
     fn radius<S: Simd, const K: usize>(&self, one: Mask<S, K>) -> Pack<S, K>;
     /// +1 or −1 for a contact of sphere 1 or 2.
@@ -34,20 +34,24 @@ impl<B: Balls> Hull for B {
     }
 
     #[inline(always)]
-    fn ceiling<S: Simd, const K: usize>(&self, reach: Pack<S, K>) -> Pack<S, K> {
-        Balls::ceiling(self, reach)
+    fn ceiling<S: Simd, const K: usize>(&self, max_cos_tilt: Pack<S, K>) -> Pack<S, K> {
+        Balls::ceiling(self, max_cos_tilt)
     }
 
     #[inline(always)]
-    fn sway<S: Simd, const K: usize>(&self, amplitude: Pack<S, K>, _: Pack<S, K>) -> Pack<S, K> {
+    fn curvature_bound<S: Simd, const K: usize>(
+        &self,
+        amplitude: Pack<S, K>,
+        _: Pack<S, K>,
+    ) -> Pack<S, K> {
         let [one, two] = self.levers();
         one.abs().max(two.abs()) * amplitude
     }
 
     #[inline(always)]
-    fn part<S: Simd, const K: usize>(&self, one: Mask<S, K>) -> Part<S, K> {
+    fn part<S: Simd, const K: usize>(&self, one: Mask<S, K>) -> HullPart<S, K> {
         let [first, second] = self.levers();
-        Part {
+        HullPart {
             one,
             own: one.select(first, second),
         }
@@ -58,82 +62,86 @@ impl<B: Balls> Hull for B {
     #[inline(always)]
     fn nearer<S: Simd, const K: usize>(
         &self,
-        lift: Pack<S, K>,
-        climb: Pack<S, K>,
-        swing: &Swing<S, K>,
+        height: Pack<S, K>,
+        vz: Pack<S, K>,
+        axis_motion: &AxisMotion<S, K>,
         bound: Pack<S, K>,
-    ) -> Part<S, K> {
+    ) -> HullPart<S, K> {
         if !B::TWO {
-            return self.part(Mask::splat(lift.simd(), true));
+            return self.part(Mask::splat(height.simd(), true));
         }
-        let (lean, rate) = (self.lean(swing.tilt), swing.rate);
-        // Both lower bounds at that time, lift + climb t − Mt²/2 with t = −lean/rate, times rate².
+        let (lean, rate) = (self.lean(axis_motion.cos_tilt), axis_motion.rate);
+        // Both lower bounds at that time, height + v_z t − Mt²/2 with t = −lean/rate, times rate².
         let level = rate.mul_add(
-            lift.mul_add(rate, -(climb * lean)),
+            height.mul_add(rate, -(vz * lean)),
             -(0.5 * bound * (lean * lean)),
         );
         // If both bounds are positive there, the sphere that the rotation moves down is the one whose bound reaches 0 first.
-        let swings = Pack::splat(lift.simd(), 0.0).le(level);
+        let swings = Pack::splat(height.simd(), 0.0).le(level);
         self.part(swings.select(rate, lean).lt(0.0))
     }
 
     #[inline(always)]
     fn gap<S: Simd, const K: usize>(
         &self,
-        part: &Part<S, K>,
-        tilt: Pack<S, K>,
-        lift: Pack<S, K>,
+        part: &HullPart<S, K>,
+        cos_tilt: Pack<S, K>,
+        height: Pack<S, K>,
     ) -> Pack<S, K> {
-        part.own.mul_add(self.lean(tilt), lift) // (2)
+        part.own.mul_add(self.lean(cos_tilt), height) // (2)
     }
 
     #[inline(always)]
-    fn lift<S: Simd, const K: usize>(&self, part: &Part<S, K>, tilt: Pack<S, K>) -> Pack<S, K> {
-        -(part.own * self.lean(tilt)) // (2)
+    fn touching_height<S: Simd, const K: usize>(
+        &self,
+        part: &HullPart<S, K>,
+        cos_tilt: Pack<S, K>,
+    ) -> Pack<S, K> {
+        -(part.own * self.lean(cos_tilt)) // (2)
     }
 
     #[inline(always)]
-    fn lever<S: Simd, const K: usize>(&self, part: &Part<S, K>, _: Pack<S, K>) -> Pack<S, K> {
+    fn lever<S: Simd, const K: usize>(&self, part: &HullPart<S, K>, _: Pack<S, K>) -> Pack<S, K> {
         part.own
     }
 
     #[inline(always)]
-    fn radius<S: Simd, const K: usize>(&self, part: &Part<S, K>, _: Pack<S, K>) -> Pack<S, K> {
+    fn radius<S: Simd, const K: usize>(&self, part: &HullPart<S, K>, _: Pack<S, K>) -> Pack<S, K> {
         Balls::radius(self, part.one)
     }
 
     #[inline(always)]
-    fn bend<S: Simd, const K: usize>(
+    fn curvature<S: Simd, const K: usize>(
         &self,
-        part: &Part<S, K>,
-        swing: &Swing<S, K>,
+        part: &HullPart<S, K>,
+        axis_motion: &AxisMotion<S, K>,
         addend: f64,
     ) -> Pack<S, K> {
-        part.own.mul_add(swing.acceleration, addend)
+        part.own.mul_add(axis_motion.acceleration, addend)
     }
 
     #[inline(always)]
-    fn bends<S: Simd, const K: usize>(
+    fn derivatives<S: Simd, const K: usize>(
         &self,
-        part: &Part<S, K>,
-        swing: &Swing<S, K>,
+        part: &HullPart<S, K>,
+        axis_motion: &AxisMotion<S, K>,
     ) -> [Pack<S, K>; 3] {
-        linear_bends(part.own, swing)
+        linear_derivatives(part.own, axis_motion)
     }
 
     #[inline(always)]
-    fn name<S: Simd, const K: usize>(&self, part: &Part<S, K>, _: Pack<S, K>) -> Pack<S, K> {
+    fn name<S: Simd, const K: usize>(&self, part: &HullPart<S, K>, _: Pack<S, K>) -> Pack<S, K> {
         Balls::name(self, part.one)
     }
 }
 
 /// The second to fourth time derivatives of −h for a gap that is linear in e_z.
 #[inline(always)]
-fn linear_bends<S: Simd, const K: usize>(
+fn linear_derivatives<S: Simd, const K: usize>(
     lever: Pack<S, K>,
-    swing: &Swing<S, K>,
+    axis_motion: &AxisMotion<S, K>,
 ) -> [Pack<S, K>; 3] {
-    let second = lever * swing.acceleration;
-    let third = -(lever * swing.square) * swing.rate;
-    [second, third, -swing.square * second]
+    let second = lever * axis_motion.acceleration;
+    let third = -(lever * axis_motion.square) * axis_motion.rate;
+    [second, third, -axis_motion.square * second]
 }

@@ -1,6 +1,8 @@
-//! What a hull says of its support function h, beside h itself: differences in e_z and in time.
+//! The derivatives and bounds of each hull's support function h, compared with differences in e_z and in time.
 
-use super::{Ball, Ellipsoid, EqualPair, Hull, Pair, Single, Sphere, Surface, Swing, named};
+use super::{
+    AxisMotion, Ball, Ellipsoid, EqualBalls, Hull, OneBall, Sphere, Surface, TwoBalls, named,
+};
 use crate::simd::one;
 use pulp::Scalar;
 
@@ -8,11 +10,11 @@ use pulp::Scalar;
 fn surfaces() -> [Surface; 8] {
     let ball = |offset, radius| Ball { offset, radius };
     [
-        Surface::EqualPair(EqualPair::new(0.7)),
-        Surface::Pair(Pair::new([ball(0.3, 1.0), ball(-0.6, 0.5)], 0.9)),
-        Surface::Pair(Pair::new([ball(1.1, 0.4), ball(-0.2, 1.0)], 1.3)),
-        Surface::Single(Single::new(ball(-0.4, 1.0), true)),
-        Surface::Single(Single::new(ball(0.6, 1.0), false)),
+        Surface::EqualBalls(EqualBalls::new(0.7)),
+        Surface::TwoBalls(TwoBalls::new([ball(0.3, 1.0), ball(-0.6, 0.5)], 0.9)),
+        Surface::TwoBalls(TwoBalls::new([ball(1.1, 0.4), ball(-0.2, 1.0)], 1.3)),
+        Surface::OneBall(OneBall::new(ball(-0.4, 1.0), true)),
+        Surface::OneBall(OneBall::new(ball(0.6, 1.0), false)),
         Surface::Ellipsoid(Ellipsoid::new(0.6, 1.0)),
         Surface::Ellipsoid(Ellipsoid::new(1.0, 0.7)),
         Surface::Ellipsoid(Ellipsoid::new(1.0, 1.0)),
@@ -20,27 +22,27 @@ fn surfaces() -> [Surface; 8] {
 }
 
 /// e_z = c + A cos(Ωt + φ), as in a flight.
-struct Nod {
+struct Oscillation {
     middle: f64,
     amplitude: f64,
     rate: f64,
     phase: f64,
 }
 
-const NODS: [Nod; 3] = [
-    Nod {
+const OSCILLATIONS: [Oscillation; 3] = [
+    Oscillation {
         middle: 0.2,
         amplitude: 0.6,
         rate: 1.3,
         phase: 0.4,
     },
-    Nod {
+    Oscillation {
         middle: -0.5,
         amplitude: 0.3,
         rate: -0.8,
         phase: 2.0,
     },
-    Nod {
+    Oscillation {
         middle: 0.0,
         amplitude: 0.9,
         rate: 2.1,
@@ -48,16 +50,16 @@ const NODS: [Nod; 3] = [
     },
 ];
 
-impl Nod {
-    fn tilt(&self, time: f64) -> f64 {
+impl Oscillation {
+    fn cos_tilt(&self, time: f64) -> f64 {
         self.middle + self.amplitude * self.rate.mul_add(time, self.phase).cos()
     }
 
     /// At time 0.
-    fn swing(&self) -> Swing<Scalar, 1> {
+    fn axis_motion(&self) -> AxisMotion<Scalar, 1> {
         let (sin, cos) = self.phase.sin_cos();
-        Swing {
-            tilt: one(self.tilt(0.0)),
+        AxisMotion {
+            cos_tilt: one(self.cos_tilt(0.0)),
             rate: one(-self.amplitude * self.rate * sin),
             acceleration: one(-self.amplitude * self.rate * self.rate * cos),
             square: one(self.rate * self.rate),
@@ -88,32 +90,32 @@ fn close(found: f64, expected: f64, digits: i32) {
     );
 }
 
-/// The gap above a part is the lift minus h; s = −dh/de_z; and with all its derivatives in time, by which a step to the contact is
-/// proposed.
+/// The gap above a part is the height minus h; s = −dh/de_z; and the derivatives in time, from which a step to the contact is
+/// proposed, are those of h.
 #[test]
-fn what_a_hull_tells_of_its_derivatives() {
-    for (surface, nod) in surfaces()
+fn derivatives_are_those_of_the_support_function() {
+    for (surface, axis) in surfaces()
         .iter()
-        .flat_map(|s| NODS.iter().map(move |n| (s, n)))
+        .flat_map(|s| OSCILLATIONS.iter().map(move |n| (s, n)))
     {
         for sphere in Sphere::BOTH {
-            let height = |tilt| surface.lift(sphere, tilt);
-            let here = nod.tilt(0.0);
+            let height = |cos_tilt| surface.touching_height(sphere, cos_tilt);
+            let here = axis.cos_tilt(0.0);
             close(surface.gap(sphere, here, 0.3), 0.3 - height(here), 14);
             let slope = derivatives(|step| height(here + step))[0];
             close(surface.lever(sphere, here), -slope, 7);
-            let [_, second, third, fourth] = derivatives(|time| height(nod.tilt(time)));
+            let [_, second, third, fourth] = derivatives(|time| height(axis.cos_tilt(time)));
             with_hull!(surface, hull => {
-                let swing = nod.swing();
+                let axis_motion = axis.axis_motion();
                 let part = match surface {
-                    Surface::Ellipsoid(_) => hull.nearer(one(0.3), one(0.0), &swing, one(1.0)),
+                    Surface::Ellipsoid(_) => hull.nearer(one(0.3), one(0.0), &axis_motion, one(1.0)),
                     _ => named(hull, sphere),
                 };
-                let [a, b, c] = hull.bends(&part, &swing).map(|pack| pack.as_slice()[0]);
+                let [a, b, c] = hull.derivatives(&part, &axis_motion).map(|pack| pack.as_slice()[0]);
                 close(a, -second, 6);
                 close(b, -third, 3);
                 close(c, -fourth, 2);
-                close(hull.bend(&part, &swing, -1.0).as_slice()[0], -1.0 - second, 6);
+                close(hull.curvature(&part, &axis_motion, -1.0).as_slice()[0], -1.0 - second, 6);
                 let radius = hull.radius(&part, one(here)).as_slice()[0];
                 close(radius, hull.level() + height(here) - here * slope, 7);
             });
@@ -121,23 +123,26 @@ fn what_a_hull_tells_of_its_derivatives() {
     }
 }
 
-/// No part reaches above the ceiling, and some part reaches it; the curvature of h stays within the sway.
+/// No part reaches above the ceiling, and some part reaches it; the curvature of h stays within its bound.
 #[test]
-fn what_bounds_a_hull() {
+fn bounds_hold() {
     for surface in surfaces() {
-        for nod in &NODS {
-            let reach = nod.middle.abs() + nod.amplitude;
-            let heights = |tilt| Sphere::BOTH.map(|sphere| surface.lift(sphere, tilt));
-            let all = (-100..=100).flat_map(|i| heights(reach * f64::from(i) / 100.0));
-            let ceiling = with_hull!(surface, hull => hull.ceiling(one(reach)).as_slice()[0]);
+        for axis in &OSCILLATIONS {
+            let max_cos_tilt = axis.middle.abs() + axis.amplitude;
+            let heights =
+                |cos_tilt| Sphere::BOTH.map(|sphere| surface.touching_height(sphere, cos_tilt));
+            let all = (-100..=100).flat_map(|i| heights(max_cos_tilt * f64::from(i) / 100.0));
+            let ceiling =
+                with_hull!(surface, hull => hull.ceiling(one(max_cos_tilt)).as_slice()[0]);
             close(ceiling, all.fold(f64::NEG_INFINITY, f64::max), 14);
-            let bound = surface.sway(nod.amplitude, reach) * nod.rate * nod.rate;
+            let bound =
+                surface.curvature_bound(axis.amplitude, max_cos_tilt) * axis.rate * axis.rate;
             for (sphere, i) in Sphere::BOTH
                 .iter()
                 .flat_map(|s| (0..100).map(move |i| (s, i)))
             {
-                let later = f64::from(i) / nod.rate / 15.0;
-                let height = |time| surface.lift(*sphere, nod.tilt(later + time));
+                let later = f64::from(i) / axis.rate / 15.0;
+                let height = |time| surface.touching_height(*sphere, axis.cos_tilt(later + time));
                 assert!(derivatives(height)[1].abs() <= bound + 1e-6);
             }
         }

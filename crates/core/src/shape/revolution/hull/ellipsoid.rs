@@ -13,7 +13,7 @@
 //! A test checks that |d²h/dt²| has the same bound. The derivatives follow from hh′ = De_z e_z′ by Leibniz's rule: with (n) for the
 //! n-th time derivative, h h⁽ⁿ⁾ = D(e_z²/2)⁽ⁿ⁾ minus products of lower derivatives of h.
 
-use super::{Hull, Part, Swing};
+use super::{AxisMotion, Hull, HullPart};
 use crate::simd::{Mask, Pack};
 use pulp::Simd;
 
@@ -40,35 +40,35 @@ impl Ellipsoid {
 
     /// h, from h² = a²(1 − e_z²) + c²e_z²: a sum of positive terms, in which no digits cancel.
     #[inline(always)]
-    fn support<S: Simd, const K: usize>(&self, tilt: Pack<S, K>) -> Pack<S, K> {
+    fn support<S: Simd, const K: usize>(&self, cos_tilt: Pack<S, K>) -> Pack<S, K> {
         let a2 = self.equatorial * self.equatorial;
-        let across = a2 * ((1.0 - tilt) * (1.0 + tilt)).max(0.0);
+        let across = a2 * ((1.0 - cos_tilt) * (1.0 + cos_tilt)).max(0.0);
         let along = self.excess + a2; // c²
-        (tilt * tilt).mul_add(along, across).sqrt()
+        (cos_tilt * cos_tilt).mul_add(along, across).sqrt()
     }
 
     /// 1/h and h − a, the latter as De_z²/(h + a), which does not subtract nearly equal numbers; with one quotient for both.
     #[inline(always)]
-    fn profile<S: Simd, const K: usize>(&self, tilt: Pack<S, K>) -> [Pack<S, K>; 2] {
-        let support = self.support(tilt);
+    fn profile<S: Simd, const K: usize>(&self, cos_tilt: Pack<S, K>) -> [Pack<S, K>; 2] {
+        let support = self.support(cos_tilt);
         let sum = self.equatorial + support;
         let quotient = 1.0 / (support * sum);
         [
             quotient * sum,
-            self.excess * (tilt * tilt) * (quotient * support),
+            self.excess * (cos_tilt * cos_tilt) * (quotient * support),
         ]
     }
 
     /// 1/h.
     #[inline(always)]
-    fn inverse<S: Simd, const K: usize>(&self, tilt: Pack<S, K>) -> Pack<S, K> {
-        self.profile(tilt)[0]
+    fn inverse<S: Simd, const K: usize>(&self, cos_tilt: Pack<S, K>) -> Pack<S, K> {
+        self.profile(cos_tilt)[0]
     }
 
     /// h − a.
     #[inline(always)]
-    fn rise<S: Simd, const K: usize>(&self, tilt: Pack<S, K>) -> Pack<S, K> {
-        self.profile(tilt)[1]
+    fn rise<S: Simd, const K: usize>(&self, cos_tilt: Pack<S, K>) -> Pack<S, K> {
+        self.profile(cos_tilt)[1]
     }
 }
 
@@ -84,31 +84,31 @@ impl Hull for Ellipsoid {
     }
 
     #[inline(always)]
-    fn ceiling<S: Simd, const K: usize>(&self, reach: Pack<S, K>) -> Pack<S, K> {
+    fn ceiling<S: Simd, const K: usize>(&self, max_cos_tilt: Pack<S, K>) -> Pack<S, K> {
         if self.excess > 0.0 {
-            self.rise(reach.min(1.0))
+            self.rise(max_cos_tilt.min(1.0))
         } else {
-            0.0 * reach
+            0.0 * max_cos_tilt
         }
     }
 
     #[inline(always)]
-    fn sway<S: Simd, const K: usize>(
+    fn curvature_bound<S: Simd, const K: usize>(
         &self,
         amplitude: Pack<S, K>,
-        reach: Pack<S, K>,
+        max_cos_tilt: Pack<S, K>,
     ) -> Pack<S, K> {
-        let reach = (reach * (1.0 + 4.0 * f64::EPSILON)).min(1.0);
+        let max_cos_tilt = (max_cos_tilt * (1.0 + 4.0 * f64::EPSILON)).min(1.0);
         if self.excess > 0.0 {
-            self.excess / self.equatorial * (amplitude * reach)
+            self.excess / self.equatorial * (amplitude * max_cos_tilt)
         } else {
-            -self.excess * (amplitude * reach) / self.support(reach)
+            -self.excess * (amplitude * max_cos_tilt) / self.support(max_cos_tilt)
         }
     }
 
     #[inline(always)]
-    fn part<S: Simd, const K: usize>(&self, one: Mask<S, K>) -> Part<S, K> {
-        Part {
+    fn part<S: Simd, const K: usize>(&self, one: Mask<S, K>) -> HullPart<S, K> {
+        HullPart {
             one,
             own: Pack::splat(one.simd(), 0.0),
         }
@@ -119,63 +119,79 @@ impl Hull for Ellipsoid {
         &self,
         _: Pack<S, K>,
         _: Pack<S, K>,
-        swing: &Swing<S, K>,
+        axis_motion: &AxisMotion<S, K>,
         _: Pack<S, K>,
-    ) -> Part<S, K> {
-        Part {
-            one: Mask::splat(swing.tilt.simd(), true),
-            own: self.inverse(swing.tilt),
+    ) -> HullPart<S, K> {
+        HullPart {
+            one: Mask::splat(axis_motion.cos_tilt.simd(), true),
+            own: self.inverse(axis_motion.cos_tilt),
         }
     }
 
     #[inline(always)]
     fn gap<S: Simd, const K: usize>(
         &self,
-        _: &Part<S, K>,
-        tilt: Pack<S, K>,
-        lift: Pack<S, K>,
+        _: &HullPart<S, K>,
+        cos_tilt: Pack<S, K>,
+        height: Pack<S, K>,
     ) -> Pack<S, K> {
-        lift - self.rise(tilt)
+        height - self.rise(cos_tilt)
     }
 
     #[inline(always)]
-    fn lift<S: Simd, const K: usize>(&self, _: &Part<S, K>, tilt: Pack<S, K>) -> Pack<S, K> {
-        self.rise(tilt)
-    }
-
-    #[inline(always)]
-    fn lever<S: Simd, const K: usize>(&self, _: &Part<S, K>, tilt: Pack<S, K>) -> Pack<S, K> {
-        (-self.excess * tilt) * self.inverse(tilt)
-    }
-
-    #[inline(always)]
-    fn radius<S: Simd, const K: usize>(&self, _: &Part<S, K>, tilt: Pack<S, K>) -> Pack<S, K> {
-        self.equatorial * self.equatorial * self.inverse(tilt)
-    }
-
-    #[inline(always)]
-    fn bend<S: Simd, const K: usize>(
+    fn touching_height<S: Simd, const K: usize>(
         &self,
-        _: &Part<S, K>,
-        swing: &Swing<S, K>,
+        _: &HullPart<S, K>,
+        cos_tilt: Pack<S, K>,
+    ) -> Pack<S, K> {
+        self.rise(cos_tilt)
+    }
+
+    #[inline(always)]
+    fn lever<S: Simd, const K: usize>(
+        &self,
+        _: &HullPart<S, K>,
+        cos_tilt: Pack<S, K>,
+    ) -> Pack<S, K> {
+        (-self.excess * cos_tilt) * self.inverse(cos_tilt)
+    }
+
+    #[inline(always)]
+    fn radius<S: Simd, const K: usize>(
+        &self,
+        _: &HullPart<S, K>,
+        cos_tilt: Pack<S, K>,
+    ) -> Pack<S, K> {
+        self.equatorial * self.equatorial * self.inverse(cos_tilt)
+    }
+
+    #[inline(always)]
+    fn curvature<S: Simd, const K: usize>(
+        &self,
+        _: &HullPart<S, K>,
+        axis_motion: &AxisMotion<S, K>,
         addend: f64,
     ) -> Pack<S, K> {
-        let inverse = self.inverse(swing.tilt);
-        let (e, v) = (swing.tilt, swing.rate);
+        let inverse = self.inverse(axis_motion.cos_tilt);
+        let (e, v) = (axis_motion.cos_tilt, axis_motion.rate);
         let first = self.excess * (e * v) * inverse; // h′
-        let second = self.excess * e.mul_add(swing.acceleration, v * v); // D(e²/2)″
+        let second = self.excess * e.mul_add(axis_motion.acceleration, v * v); // D(e²/2)″
         (first.mul_add(first, -second)).mul_add(inverse, addend)
     }
 
     #[inline(always)]
-    fn bends<S: Simd, const K: usize>(
+    fn derivatives<S: Simd, const K: usize>(
         &self,
-        part: &Part<S, K>,
-        swing: &Swing<S, K>,
+        part: &HullPart<S, K>,
+        axis_motion: &AxisMotion<S, K>,
     ) -> [Pack<S, K>; 3] {
         let inverse = part.own;
-        let (e, v, a) = (swing.tilt, swing.rate, swing.acceleration);
-        let (j, s) = (-swing.square * v, -swing.square * a); // e_z‴ and e_z⁗
+        let (e, v, a) = (
+            axis_motion.cos_tilt,
+            axis_motion.rate,
+            axis_motion.acceleration,
+        );
+        let (j, s) = (-axis_motion.square * v, -axis_motion.square * a); // e_z‴ and e_z⁗
         let first = self.excess * (e * v) * inverse; // h′
         let second = self.excess * e.mul_add(a, v * v);
         let second = first.mul_add(-first, second) * inverse; // h″
@@ -188,7 +204,11 @@ impl Hull for Ellipsoid {
     }
 
     #[inline(always)]
-    fn name<S: Simd, const K: usize>(&self, _: &Part<S, K>, tilt: Pack<S, K>) -> Pack<S, K> {
-        tilt.lt(0.0).select(1.0, -1.0_f64)
+    fn name<S: Simd, const K: usize>(
+        &self,
+        _: &HullPart<S, K>,
+        cos_tilt: Pack<S, K>,
+    ) -> Pack<S, K> {
+        cos_tilt.lt(0.0).select(1.0, -1.0_f64)
     }
 }

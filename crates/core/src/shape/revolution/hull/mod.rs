@@ -13,8 +13,8 @@ mod one_ball;
 mod two_balls;
 
 pub use ellipsoid::Ellipsoid;
-pub use one_ball::Single;
-pub use two_balls::{EqualPair, Pair};
+pub use one_ball::OneBall;
+pub use two_balls::{EqualBalls, TwoBalls};
 
 use crate::simd::{Mask, Pack, one};
 use pulp::{Scalar, Simd};
@@ -64,7 +64,7 @@ pub struct Ball {
 
 /// The part of a hull whose gap is evaluated, in each lane.
 #[derive(Clone, Copy)]
-pub(crate) struct Part<S: Simd, const K: usize> {
+pub(crate) struct HullPart<S: Simd, const K: usize> {
     /// Whether it is sphere 1; ignored where only one part can touch.
     pub one: Mask<S, K>,
     /// What its gap depends on besides e_z: the lever s of a sphere. For a smooth hull it is 1/h where [`Hull::nearer`] was asked for
@@ -75,9 +75,9 @@ pub(crate) struct Part<S: Simd, const K: usize> {
 /// The vertical component of the axis, e_z, and its time derivatives. Since e_z = c + A cos(Ωt + φ), each derivative from the third
 /// on is −Ω² times the one two orders below.
 #[derive(Clone, Copy)]
-pub(crate) struct Swing<S: Simd, const K: usize> {
+pub(crate) struct AxisMotion<S: Simd, const K: usize> {
     /// e_z.
-    pub tilt: Pack<S, K>,
+    pub cos_tilt: Pack<S, K>,
     /// de_z/dt.
     pub rate: Pack<S, K>,
     /// d²e_z/dt².
@@ -91,79 +91,98 @@ pub(crate) trait Hull: Copy {
     /// Whether it has two parts, either of which may touch first.
     const TWO: bool;
 
-    /// Height of the centre of mass at which the lift is 0.
+    /// Height of the centre of mass above the plane from which heights are counted in flight, and 0 there.
     fn level(&self) -> f64;
 
     /// Factor ≥ 1 by which the support function h may vary faster than e_z: while the axis turns by an angle much smaller than its
     /// inverse, the Taylor expansion of h converges quickly.
     fn sharpness(&self) -> f64;
 
-    /// Lift above which no part can touch while |e_z| ≤ `reach`.
-    fn ceiling<S: Simd, const K: usize>(&self, reach: Pack<S, K>) -> Pack<S, K>;
+    /// Height above which no part can touch while |e_z| ≤ `max_cos_tilt`.
+    fn ceiling<S: Simd, const K: usize>(&self, max_cos_tilt: Pack<S, K>) -> Pack<S, K>;
 
     /// A bound on |d²h/dt²|/Ω² for e_z = c + A cos(Ωt + φ): the contribution of rotation to the second derivative of a gap.
-    /// `amplitude` is A, `reach` is |c| + A.
-    fn sway<S: Simd, const K: usize>(&self, amplitude: Pack<S, K>, reach: Pack<S, K>)
-    -> Pack<S, K>;
+    /// `amplitude` is A, `max_cos_tilt` is |c| + A.
+    fn curvature_bound<S: Simd, const K: usize>(
+        &self,
+        amplitude: Pack<S, K>,
+        max_cos_tilt: Pack<S, K>,
+    ) -> Pack<S, K>;
 
     /// Sphere 1 where `one`, else sphere 2; the whole hull if it has only one part.
-    fn part<S: Simd, const K: usize>(&self, one: Mask<S, K>) -> Part<S, K>;
+    fn part<S: Simd, const K: usize>(&self, one: Mask<S, K>) -> HullPart<S, K>;
 
     /// The part whose gap has the lower bound that reaches 0 first. `bound` is M: f″ ≥ −M for the gap f of either part.
     fn nearer<S: Simd, const K: usize>(
         &self,
-        lift: Pack<S, K>,
-        climb: Pack<S, K>,
-        swing: &Swing<S, K>,
+        height: Pack<S, K>,
+        vz: Pack<S, K>,
+        axis_motion: &AxisMotion<S, K>,
         bound: Pack<S, K>,
-    ) -> Part<S, K>;
+    ) -> HullPart<S, K>;
 
     /// The gap f between a part and the plane, (2), negative where they overlap.
     fn gap<S: Simd, const K: usize>(
         &self,
-        part: &Part<S, K>,
-        tilt: Pack<S, K>,
-        lift: Pack<S, K>,
+        part: &HullPart<S, K>,
+        cos_tilt: Pack<S, K>,
+        height: Pack<S, K>,
     ) -> Pack<S, K>;
 
-    /// Lift at which a part touches.
-    fn lift<S: Simd, const K: usize>(&self, part: &Part<S, K>, tilt: Pack<S, K>) -> Pack<S, K>;
+    /// Height at which a part touches.
+    fn touching_height<S: Simd, const K: usize>(
+        &self,
+        part: &HullPart<S, K>,
+        cos_tilt: Pack<S, K>,
+    ) -> Pack<S, K>;
 
     /// The lever s = −dh/de_z.
-    fn lever<S: Simd, const K: usize>(&self, part: &Part<S, K>, tilt: Pack<S, K>) -> Pack<S, K>;
+    fn lever<S: Simd, const K: usize>(
+        &self,
+        part: &HullPart<S, K>,
+        cos_tilt: Pack<S, K>,
+    ) -> Pack<S, K>;
 
     /// The radius ϱ = h − e_z dh/de_z of the sphere that touches like this part.
-    fn radius<S: Simd, const K: usize>(&self, part: &Part<S, K>, tilt: Pack<S, K>) -> Pack<S, K>;
+    fn radius<S: Simd, const K: usize>(
+        &self,
+        part: &HullPart<S, K>,
+        cos_tilt: Pack<S, K>,
+    ) -> Pack<S, K>;
 
     /// −d²h/dt² + `addend`.
-    fn bend<S: Simd, const K: usize>(
+    fn curvature<S: Simd, const K: usize>(
         &self,
-        part: &Part<S, K>,
-        swing: &Swing<S, K>,
+        part: &HullPart<S, K>,
+        axis_motion: &AxisMotion<S, K>,
         addend: f64,
     ) -> Pack<S, K>;
 
     /// −d²h/dt², −d³h/dt³ and −d⁴h/dt⁴ where [`Hull::nearer`] was asked for the part.
-    fn bends<S: Simd, const K: usize>(
+    fn derivatives<S: Simd, const K: usize>(
         &self,
-        part: &Part<S, K>,
-        swing: &Swing<S, K>,
+        part: &HullPart<S, K>,
+        axis_motion: &AxisMotion<S, K>,
     ) -> [Pack<S, K>; 3];
 
     /// The end that a contact is recorded under, +1 or −1 for sphere 1 or 2; for a smooth hull, +1 if the half touches to which
     /// the axis points.
-    fn name<S: Simd, const K: usize>(&self, part: &Part<S, K>, tilt: Pack<S, K>) -> Pack<S, K>;
+    fn name<S: Simd, const K: usize>(
+        &self,
+        part: &HullPart<S, K>,
+        cos_tilt: Pack<S, K>,
+    ) -> Pack<S, K>;
 }
 
 /// The hull of a body.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Surface {
     /// Two equal spheres with the centre of mass between them.
-    EqualPair(EqualPair),
+    EqualBalls(EqualBalls),
     /// Two spheres, neither of which contains the other.
-    Pair(Pair),
+    TwoBalls(TwoBalls),
     /// One sphere, whose centre need not be the centre of mass.
-    Single(Single),
+    OneBall(OneBall),
     /// An ellipsoid of revolution centred at the centre of mass.
     Ellipsoid(Ellipsoid),
 }
@@ -172,9 +191,9 @@ pub enum Surface {
 macro_rules! with_hull {
     ($surface:expr, $hull:ident => $result:expr) => {
         match $surface {
-            $crate::shape::Surface::EqualPair($hull) => $result,
-            $crate::shape::Surface::Pair($hull) => $result,
-            $crate::shape::Surface::Single($hull) => $result,
+            $crate::shape::Surface::EqualBalls($hull) => $result,
+            $crate::shape::Surface::TwoBalls($hull) => $result,
+            $crate::shape::Surface::OneBall($hull) => $result,
             $crate::shape::Surface::Ellipsoid($hull) => $result,
         }
     };
@@ -182,14 +201,14 @@ macro_rules! with_hull {
 pub(crate) use with_hull;
 
 impl Surface {
-    /// Height of the centre of mass at which the lift is 0.
+    /// Height of the centre of mass above the plane from which heights are counted in flight, and 0 there.
     pub fn level(&self) -> f64 {
         with_hull!(self, hull => hull.level())
     }
 
-    /// The support function h: height of the centre of mass when the body touches the plane, at e_z = `tilt`.
-    pub fn support(&self, tilt: f64) -> f64 {
-        let [one, two] = Sphere::BOTH.map(|sphere| self.lift(sphere, tilt));
+    /// The support function h: height of the centre of mass when the body touches the plane, at e_z = `cos_tilt`.
+    pub fn support(&self, cos_tilt: f64) -> f64 {
+        let [one, two] = Sphere::BOTH.map(|sphere| self.touching_height(sphere, cos_tilt));
         self.level() + one.max(two)
     }
 
@@ -198,33 +217,33 @@ impl Surface {
         with_hull!(self, hull => hull.level() + hull.ceiling(one(1.0)).as_slice()[0])
     }
 
-    /// The gap between a sphere and the plane, (2), at this e_z and lift; that of the whole body if only one part can touch.
-    pub fn gap(&self, sphere: Sphere, tilt: f64, lift: f64) -> f64 {
-        with_hull!(self, hull => hull.gap(&named(hull, sphere), one(tilt), one(lift)).as_slice()[0])
+    /// The gap between a sphere and the plane, (2), at this e_z and height; that of the whole body if only one part can touch.
+    pub fn gap(&self, sphere: Sphere, cos_tilt: f64, height: f64) -> f64 {
+        with_hull!(self, hull => hull.gap(&named(hull, sphere), one(cos_tilt), one(height)).as_slice()[0])
     }
 
-    /// Lift at which a sphere touches.
-    pub fn lift(&self, sphere: Sphere, tilt: f64) -> f64 {
-        with_hull!(self, hull => hull.lift(&named(hull, sphere), one(tilt)).as_slice()[0])
+    /// Height at which a sphere touches.
+    pub fn touching_height(&self, sphere: Sphere, cos_tilt: f64) -> f64 {
+        with_hull!(self, hull => hull.touching_height(&named(hull, sphere), one(cos_tilt)).as_slice()[0])
     }
 
     /// The lever s of the point of contact.
-    pub fn lever(&self, sphere: Sphere, tilt: f64) -> f64 {
-        with_hull!(self, hull => hull.lever(&named(hull, sphere), one(tilt)).as_slice()[0])
+    pub fn lever(&self, sphere: Sphere, cos_tilt: f64) -> f64 {
+        with_hull!(self, hull => hull.lever(&named(hull, sphere), one(cos_tilt)).as_slice()[0])
     }
 
     /// The end that a contact is recorded under.
-    pub fn name(&self, sphere: Sphere, tilt: f64) -> Sphere {
-        with_hull!(self, hull => Sphere::of(hull.name(&named(hull, sphere), one(tilt)).as_slice()[0]))
+    pub fn name(&self, sphere: Sphere, cos_tilt: f64) -> Sphere {
+        with_hull!(self, hull => Sphere::of(hull.name(&named(hull, sphere), one(cos_tilt)).as_slice()[0]))
     }
 
     /// The bound on |d²h/dt²|/Ω² for this amplitude A of e_z and this largest |e_z|.
-    pub fn sway(&self, amplitude: f64, reach: f64) -> f64 {
-        with_hull!(self, hull => hull.sway(one(amplitude), one(reach)).as_slice()[0])
+    pub fn curvature_bound(&self, amplitude: f64, max_cos_tilt: f64) -> f64 {
+        with_hull!(self, hull => hull.curvature_bound(one(amplitude), one(max_cos_tilt)).as_slice()[0])
     }
 }
 
-fn named(hull: &impl Hull, sphere: Sphere) -> Part<Scalar, 1> {
+fn named(hull: &impl Hull, sphere: Sphere) -> HullPart<Scalar, 1> {
     hull.part(Mask::splat(Scalar::new(), sphere == Sphere::One))
 }
 

@@ -7,13 +7,13 @@ use pulp::Simd;
 
 /// One sphere, recorded as sphere 1 or 2 of the body.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Single {
+pub struct OneBall {
     ball: Ball,
     /// +1 for sphere 1, −1 for sphere 2.
     name: f64,
 }
 
-impl Single {
+impl OneBall {
     /// The hull `ball`, recorded as sphere 1 if `first`, else as sphere 2.
     pub(in crate::shape) fn new(ball: Ball, first: bool) -> Self {
         Self {
@@ -23,7 +23,7 @@ impl Single {
     }
 }
 
-impl Balls for Single {
+impl Balls for OneBall {
     const TWO: bool = false;
 
     #[inline(always)]
@@ -32,8 +32,8 @@ impl Balls for Single {
     }
 
     #[inline(always)]
-    fn lean<S: Simd, const K: usize>(&self, tilt: Pack<S, K>) -> Pack<S, K> {
-        tilt
+    fn lean<S: Simd, const K: usize>(&self, cos_tilt: Pack<S, K>) -> Pack<S, K> {
+        cos_tilt
     }
 
     fn level(&self) -> f64 {
@@ -41,8 +41,8 @@ impl Balls for Single {
     }
 
     #[inline(always)]
-    fn ceiling<S: Simd, const K: usize>(&self, reach: Pack<S, K>) -> Pack<S, K> {
-        self.ball.offset.abs() * reach
+    fn ceiling<S: Simd, const K: usize>(&self, max_cos_tilt: Pack<S, K>) -> Pack<S, K> {
+        self.ball.offset.abs() * max_cos_tilt
     }
 
     #[inline(always)]

@@ -5,36 +5,36 @@ use super::balls::Balls;
 use crate::simd::{Mask, Pack};
 use pulp::Simd;
 
-/// Spheres 1 and 2, whose centres are on the axis. Both touch the plane at once when e_z is `tilt` and the height of the centre of
-/// mass is `level`. The lift is the height above that level, and the gaps are lift + s(e_z − tilt), (2).
+/// Spheres 1 and 2, whose centres are on the axis. Both touch the plane at once when e_z is `cos_tilt` and the centre of mass is at
+/// the level; the gaps are height + s(e_z − `cos_tilt`), (2).
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Pair {
+pub struct TwoBalls {
     balls: [Ball; 2],
     /// ℓ = (ϱ₁ − ϱ₂)/(s₁ − s₂), in (−1, 1).
-    tilt: f64,
+    cos_tilt: f64,
     level: f64,
 }
 
-impl Pair {
+impl TwoBalls {
     /// Two spheres, neither of which contains the other, with centres `separation` apart.
     pub(in crate::shape) fn new(balls: [Ball; 2], separation: f64) -> Self {
         let [one, two] = balls;
-        let tilt = (one.radius - two.radius) / separation;
+        let cos_tilt = (one.radius - two.radius) / separation;
         Self {
             balls,
-            tilt,
-            level: one.offset.mul_add(-tilt, one.radius),
+            cos_tilt,
+            level: one.offset.mul_add(-cos_tilt, one.radius),
         }
     }
 }
 
-/// Spheres of radius 1 at ±`lever`: the [`Pair`] with ℓ = 0, kept apart because half of the arithmetic then drops out.
+/// Spheres of radius 1 at ±`lever`: the [`TwoBalls`] with ℓ = 0, kept apart because half of the arithmetic then drops out.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct EqualPair {
+pub struct EqualBalls {
     lever: f64,
 }
 
-impl EqualPair {
+impl EqualBalls {
     pub(in crate::shape) fn new(half_separation: f64) -> Self {
         Self {
             lever: half_separation,
@@ -42,7 +42,7 @@ impl EqualPair {
     }
 }
 
-impl Balls for EqualPair {
+impl Balls for EqualBalls {
     const TWO: bool = true;
 
     #[inline(always)]
@@ -51,8 +51,8 @@ impl Balls for EqualPair {
     }
 
     #[inline(always)]
-    fn lean<S: Simd, const K: usize>(&self, tilt: Pack<S, K>) -> Pack<S, K> {
-        tilt
+    fn lean<S: Simd, const K: usize>(&self, cos_tilt: Pack<S, K>) -> Pack<S, K> {
+        cos_tilt
     }
 
     fn level(&self) -> f64 {
@@ -60,8 +60,8 @@ impl Balls for EqualPair {
     }
 
     #[inline(always)]
-    fn ceiling<S: Simd, const K: usize>(&self, reach: Pack<S, K>) -> Pack<S, K> {
-        self.lever * reach
+    fn ceiling<S: Simd, const K: usize>(&self, max_cos_tilt: Pack<S, K>) -> Pack<S, K> {
+        self.lever * max_cos_tilt
     }
 
     #[inline(always)]
@@ -75,7 +75,7 @@ impl Balls for EqualPair {
     }
 }
 
-impl Balls for Pair {
+impl Balls for TwoBalls {
     const TWO: bool = true;
 
     #[inline(always)]
@@ -84,8 +84,8 @@ impl Balls for Pair {
     }
 
     #[inline(always)]
-    fn lean<S: Simd, const K: usize>(&self, tilt: Pack<S, K>) -> Pack<S, K> {
-        tilt - self.tilt
+    fn lean<S: Simd, const K: usize>(&self, cos_tilt: Pack<S, K>) -> Pack<S, K> {
+        cos_tilt - self.cos_tilt
     }
 
     fn level(&self) -> f64 {
@@ -93,10 +93,10 @@ impl Balls for Pair {
     }
 
     #[inline(always)]
-    fn ceiling<S: Simd, const K: usize>(&self, reach: Pack<S, K>) -> Pack<S, K> {
+    fn ceiling<S: Simd, const K: usize>(&self, max_cos_tilt: Pack<S, K>) -> Pack<S, K> {
         let [one, two] = self.levers();
-        let first = reach.mul_add(one.abs(), one * self.tilt);
-        first.max(reach.mul_add(two.abs(), two * self.tilt))
+        let first = max_cos_tilt.mul_add(one.abs(), one * self.cos_tilt);
+        first.max(max_cos_tilt.mul_add(two.abs(), two * self.cos_tilt))
     }
 
     #[inline(always)]

@@ -1,7 +1,8 @@
-//! The sink that counts impacts for a [`Tally`] and sums their moments.
+//! The sink that counts impacts for a [`Histogram`] and sums their moments.
 
-use super::Tallying;
+use super::HistogramSink;
 use super::axis::{Axis, ROUND};
+use super::histogram::{Bins, By, Histogram, UNSPOILT, WHAT};
 use super::moments::Sums;
 use super::narrow::Recently;
 use super::places::{all_sites, last, nowhere, sites, whole};
@@ -9,7 +10,6 @@ use super::recent::{
     COARSE, Extremes, Half, LARGEST, QUANTA, Recent, fraction_quanta, quanta, words,
 };
 use super::rows::{CREATES_ENERGY, Rows};
-use super::tally::{Bins, By, Tally, UNSPOILT, WHAT};
 use crate::Error;
 use crate::drop::Plan;
 use crate::drop::StopReason;
@@ -23,12 +23,12 @@ use std::sync::Mutex;
 /// Length of the queue: a place for each lane of every group.
 const LENGTH: usize = GROUPS * LANES;
 
-/// Counts impacts in narrow integers, which are emptied before they can overflow. The bins of an impact are computed in all lanes at
+/// CountSink impacts in narrow integers, which are emptied before they can overflow. The bins of an impact are computed in all lanes at
 /// once and queued; the queue is counted lane by lane while other arithmetic waits for its results. Lanes without an impact, or with
 /// one that cannot be summed there, are counted in an additional site or row that is never read, so that no branch is needed.
-pub(crate) struct Counter<'a, const EVEN: bool> {
+pub(crate) struct MomentSink<'a, const EVEN: bool> {
     /// Whose grids this counter and others fill.
-    shared: &'a Mutex<Tally>,
+    shared: &'a Mutex<Histogram>,
     /// What else is summed here.
     own: Rows,
     by: &'a By,
@@ -40,9 +40,9 @@ pub(crate) struct Counter<'a, const EVEN: bool> {
     /// Sums since they were last moved to `own`: one for each row, one for the large values of each row, and some that are never
     /// read.
     rows: Vec<Recent>,
-    /// Extremes of ε, likewise.
+    /// Extremes of ε, for the same rows.
     extremes: Vec<Extremes>,
-    /// The largest energy ratio above [`CREATES_ENERGY`], likewise.
+    /// The largest energy ratio above [`CREATES_ENERGY`], for the same rows.
     largest: Vec<f64>,
     recently: Recently,
     queue: Queue,
@@ -58,7 +58,7 @@ struct Queue {
 }
 
 impl Queue {
-    /// Counts the impact at place `i` in the grids, in the recent sums and extremes of its row, and, if there is no room left
+    /// CountSink the impact at place `i` in the grids, in the recent sums and extremes of its row, and, if there is no room left
     /// there, in `own`.
     #[inline(always)]
     fn count<G, R, E>(
@@ -113,13 +113,13 @@ fn empty_row(all: &mut Rows, row: &mut Recent, number: usize) {
     }
 }
 
-impl<'a, const EVEN: bool> Counter<'a, EVEN> {
-    /// A counter without impacts, for a tally with these bins; `fractions` is their axis of E_rot/E_tot.
+impl<'a, const EVEN: bool> MomentSink<'a, EVEN> {
+    /// A counter without impacts, for a histogram with these bins; `fractions` is their axis of E_rot/E_tot.
     pub fn new(
         bins: &'a Bins,
         fractions: &'a Axis,
         plan: &'a Plan<'a>,
-        shared: &'a Mutex<Tally>,
+        shared: &'a Mutex<Histogram>,
     ) -> Result<Self, Error> {
         let rows = bins.rows();
         Ok(Self {
@@ -146,8 +146,8 @@ impl<'a, const EVEN: bool> Counter<'a, EVEN> {
     fn empty(&mut self) {
         let mut shared = self.shared.lock().expect(UNSPOILT);
         let numbers = &mut self.own.numbers;
-        let tell = |row: usize, number| numbers[row] += number;
-        shared.restitution.absorb(&mut self.restitution, tell);
+        let report = |row: usize, number| numbers[row] += number;
+        shared.restitution.absorb(&mut self.restitution, report);
         shared.fraction.absorb(&mut self.fraction, |_, _| {});
         drop(shared);
         for (number, row) in self.rows.iter_mut().enumerate() {
@@ -171,7 +171,7 @@ impl<'a, const EVEN: bool> Counter<'a, EVEN> {
     }
 }
 
-impl<const EVEN: bool> Meanwhile for Counter<'_, EVEN> {
+impl<const EVEN: bool> Meanwhile for MomentSink<'_, EVEN> {
     #[inline(always)]
     fn meanwhile(&mut self, place: usize) {
         let (grids, rows) = (
@@ -182,7 +182,7 @@ impl<const EVEN: bool> Meanwhile for Counter<'_, EVEN> {
     }
 }
 
-impl<const EVEN: bool> Sink for Counter<'_, EVEN> {
+impl<const EVEN: bool> Sink for MomentSink<'_, EVEN> {
     const TOGETHER: bool = true;
     const COMMON: bool = EVEN;
 
@@ -291,7 +291,7 @@ impl<const EVEN: bool> Sink for Counter<'_, EVEN> {
     }
 }
 
-impl<const EVEN: bool> Tallying for Counter<'_, EVEN> {
+impl<const EVEN: bool> HistogramSink for MomentSink<'_, EVEN> {
     fn finish(mut self) -> Rows {
         self.empty();
         self.own

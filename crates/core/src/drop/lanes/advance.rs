@@ -1,14 +1,14 @@
 //! From one impact to the next.
 //!
-//! A leg, the flight to the next impact and the impact itself, is divided into stages. Each stage is carried out for all groups
+//! The flight to the next impact, and the impact itself, are divided into stages. Each stage is carried out for all groups
 //! before the next begins: its operands are then available, and the processor executes the same stage of several groups in
 //! parallel. All stages of one group in a row would be a single chain of dependent operations.
 
+use super::collision::Dimension;
 use super::gradual::Collide;
-use super::group::{Group, Release, Stuck};
+use super::group::{Group, Release, Unconverged};
 use super::impact::Meanwhile;
 use super::passes::SearchOn;
-use super::strike::Turn;
 use crate::law::{Law, Respond};
 use crate::shape::{Body, Hull, Surface, with_hull};
 use crate::simd::Pack;
@@ -16,12 +16,12 @@ use crate::simd::elementary::sincos_in_lanes;
 use pulp::{Simd, WithSimd};
 use std::ops::Range;
 
-/// Vectors whose sines and cosines are computed side by side, with nothing else in the registers.
+/// Vectors whose sines and cosines are computed side by side, with the registers to themselves.
 const WIDE: usize = 6;
 
 /// The motion of groups of particles from one impact to the next.
-pub(crate) trait Legs<S: Simd, T: Turn> {
-    /// Whether the work of the sink is interleaved with that of [`Legs::fly`].
+pub(crate) trait Advance<S: Simd, T: Dimension> {
+    /// Whether the work of the sink is interleaved with that of [`Advance::advance`].
     const TOGETHER: bool;
 
     /// Groups without particles.
@@ -36,20 +36,23 @@ pub(crate) trait Legs<S: Simd, T: Turn> {
     );
 
     /// Moves all groups on until enough lanes have a contact, and through its impact.
-    fn fly(&self, groups: &mut [Group<S, T>], sink: &mut impl Meanwhile) -> Result<(), Stuck>;
+    fn advance(
+        &self,
+        groups: &mut [Group<S, T>],
+        sink: &mut impl Meanwhile,
+    ) -> Result<(), Unconverged>;
 }
 
-/// Legs with hull and law inlined in the bounce loop, and the work of the sink interleaved with the stages; used for the most common
-/// runs.
-pub(crate) struct Together<'a, H, L> {
+/// Hull and law inlined in the bounce loop, and the work of the sink interleaved with the stages; used for the most common runs.
+pub(crate) struct Inlined<'a, H, L> {
     body: &'a Body,
     hull: &'a H,
     law: &'a L,
     slope: f64,
 }
 
-impl<'a, H, L> Together<'a, H, L> {
-    /// Legs over a plane that descends along x with this slope, tan α.
+impl<'a, H, L> Inlined<'a, H, L> {
+    /// The motion over a plane that descends along x with this slope, tan α.
     pub fn new(body: &'a Body, hull: &'a H, law: &'a L, slope: f64) -> Self {
         Self {
             body,
@@ -60,15 +63,15 @@ impl<'a, H, L> Together<'a, H, L> {
     }
 }
 
-/// Legs for every hull and law, compiled once for all sinks.
-pub(crate) struct Apart<'a, 'b> {
+/// Every hull and law, compiled once for all sinks.
+pub(crate) struct General<'a, 'b> {
     pub body: &'a Body,
     pub law: &'a Law<'b>,
     /// tan α, α the inclination of the plane.
     pub slope: f64,
 }
 
-impl<S: Simd, T: Turn, H: Hull, L: Respond> Legs<S, T> for Together<'_, H, L> {
+impl<S: Simd, T: Dimension, H: Hull, L: Respond> Advance<S, T> for Inlined<'_, H, L> {
     const TOGETHER: bool = true;
 
     #[inline(always)]
@@ -94,7 +97,11 @@ impl<S: Simd, T: Turn, H: Hull, L: Respond> Legs<S, T> for Together<'_, H, L> {
     }
 
     #[inline(always)]
-    fn fly(&self, groups: &mut [Group<S, T>], sink: &mut impl Meanwhile) -> Result<(), Stuck> {
+    fn advance(
+        &self,
+        groups: &mut [Group<S, T>],
+        sink: &mut impl Meanwhile,
+    ) -> Result<(), Unconverged> {
         let Self {
             body, hull, law, ..
         } = *self;
@@ -119,8 +126,8 @@ impl<S: Simd, T: Turn, H: Hull, L: Respond> Legs<S, T> for Together<'_, H, L> {
             return Ok(());
         }
         for (i, group) in groups.iter_mut().enumerate() {
-            let touch = group.land(hull);
-            group.collide(body, law, touch);
+            let point = group.land(hull);
+            group.collide(body, law, point);
             work_up::<S>(sink, i, 7);
         }
         Ok(())
@@ -137,13 +144,13 @@ fn work_up<S: Simd>(sink: &mut impl Meanwhile, group: usize, lane: usize) {
 
 /// Searches for the next contact of all groups until few of their lanes still wait for one.
 #[inline(always)]
-pub(crate) fn find<S: Simd, T: Turn>(
+pub(crate) fn find<S: Simd, T: Dimension>(
     groups: &mut [Group<S, T>],
     hull: &impl Hull,
     sink: &mut impl Meanwhile,
-) -> Result<(), Stuck> {
+) -> Result<(), Unconverged> {
     for (i, group) in groups.iter_mut().enumerate() {
-        group.depart(hull);
+        group.begin_search(hull);
         work_up::<S>(sink, i, 1);
     }
     pass(groups, hull, sink);
@@ -162,33 +169,33 @@ pub(crate) fn find<S: Simd, T: Turn>(
 
 /// A pass of the search.
 #[inline(always)]
-pub(super) fn pass<S: Simd, T: Turn>(
+pub(super) fn pass<S: Simd, T: Dimension>(
     groups: &mut [Group<S, T>],
     hull: &impl Hull,
     sink: &mut impl Meanwhile,
 ) {
     turn(groups, sink);
     for (i, group) in groups.iter_mut().enumerate() {
-        group.look(hull);
+        group.evaluate(hull);
         work_up::<S>(sink, i, 3);
     }
     for (i, group) in groups.iter_mut().enumerate() {
-        group.leap(hull);
+        group.propose(hull);
         work_up::<S>(sink, i, 4);
     }
     for (i, group) in groups.iter_mut().enumerate() {
-        group.residue(hull);
+        group.predict(hull);
         work_up::<S>(sink, i, 5);
     }
     for (i, group) in groups.iter_mut().enumerate() {
-        group.arrive(hull);
+        group.locate(hull);
         work_up::<S>(sink, i, 6);
     }
 }
 
 /// Computes sine and cosine of the angle turned through at the evaluation of each group.
 #[inline(always)]
-fn turn<S: Simd, T: Turn>(groups: &mut [Group<S, T>], sink: &mut impl Meanwhile) {
+fn turn<S: Simd, T: Dimension>(groups: &mut [Group<S, T>], sink: &mut impl Meanwhile) {
     for (first, chunk) in groups.chunks_mut(WIDE).enumerate() {
         let mut angle = Pack::<S, WIDE>::splat(chunk[0].time.simd(), 0.0);
         for (i, group) in chunk.iter().enumerate() {
@@ -202,9 +209,9 @@ fn turn<S: Simd, T: Turn>(groups: &mut [Group<S, T>], sink: &mut impl Meanwhile)
     }
 }
 
-impl<'a, 'b> Apart<'a, 'b> {
-    fn with<H>(&self, hull: &'a H) -> Together<'a, H, Law<'b>> {
-        Together::new(self.body, hull, self.law, self.slope)
+impl<'a, 'b> General<'a, 'b> {
+    fn with<H>(&self, hull: &'a H) -> Inlined<'a, H, Law<'b>> {
+        Inlined::new(self.body, hull, self.law, self.slope)
     }
 
     fn surface(&self) -> &'a Surface {
@@ -212,7 +219,7 @@ impl<'a, 'b> Apart<'a, 'b> {
     }
 }
 
-impl<S: Simd, T: Turn> Legs<S, T> for Apart<'_, '_> {
+impl<S: Simd, T: Dimension> Advance<S, T> for General<'_, '_> {
     const TOGETHER: bool = false;
 
     #[inline(always)]
@@ -231,17 +238,21 @@ impl<S: Simd, T: Turn> Legs<S, T> for Apart<'_, '_> {
     }
 
     #[inline(always)]
-    fn fly(&self, groups: &mut [Group<S, T>], _: &mut impl Meanwhile) -> Result<(), Stuck> {
+    fn advance(
+        &self,
+        groups: &mut [Group<S, T>],
+        _: &mut impl Meanwhile,
+    ) -> Result<(), Unconverged> {
         let simd = groups[0].active.simd();
-        with_hull!(self.surface(), hull => simd.vectorize(Fly {
-            legs: self.with(hull),
+        with_hull!(self.surface(), hull => simd.vectorize(AdvanceApart {
+            cycle: self.with(hull),
             groups,
         }))
     }
 }
 
-/// [`Legs::occupy`], compiled separately for each SIMD level.
-struct Occupy<'a, S: Simd, T: Turn, H, R> {
+/// [`Advance::occupy`], compiled separately for each SIMD level.
+struct Occupy<'a, S: Simd, T: Dimension, H, R> {
     groups: &'a mut [Group<S, T>],
     release: &'a R,
     particles: &'a mut Range<usize>,
@@ -249,7 +260,7 @@ struct Occupy<'a, S: Simd, T: Turn, H, R> {
     hull: &'a H,
 }
 
-impl<S: Simd, T: Turn, H: Hull, R: Release> WithSimd for Occupy<'_, S, T, H, R> {
+impl<S: Simd, T: Dimension, H: Hull, R: Release> WithSimd for Occupy<'_, S, T, H, R> {
     type Output = ();
 
     #[inline(always)]
@@ -262,18 +273,18 @@ impl<S: Simd, T: Turn, H: Hull, R: Release> WithSimd for Occupy<'_, S, T, H, R> 
     }
 }
 
-/// [`Legs::fly`], compiled separately for each SIMD level.
-struct Fly<'a, S: Simd, T: Turn, L> {
-    legs: L,
+/// [`Advance::advance`], compiled separately for each SIMD level.
+struct AdvanceApart<'a, S: Simd, T: Dimension, L> {
+    cycle: L,
     groups: &'a mut [Group<S, T>],
 }
 
-impl<S: Simd, T: Turn, L: Legs<S, T>> WithSimd for Fly<'_, S, T, L> {
-    type Output = Result<(), Stuck>;
+impl<S: Simd, T: Dimension, L: Advance<S, T>> WithSimd for AdvanceApart<'_, S, T, L> {
+    type Output = Result<(), Unconverged>;
 
     #[inline(always)]
     fn with_simd<U: Simd>(self, _: U) -> Self::Output {
-        self.legs.fly(self.groups, &mut Idle)
+        self.cycle.advance(self.groups, &mut Idle)
     }
 }
 

@@ -6,10 +6,10 @@ use crate::Error;
 use crate::memory::zeros;
 use bytemuck_alloc::allocation::cast_vec;
 
-/// The parameters that the size of a tally follows from.
+/// The parameters that the size of a histogram follows from.
 pub(super) const WHAT: &str = "velocity_bins or impacts, times restitution_bins and fraction_bins";
-/// Why a lock on the tally that threads share is never poisoned.
-pub(crate) const UNSPOILT: &str = "no thread panics while it adds to the tally";
+/// Why a lock on the histogram that threads share is never poisoned.
+pub(crate) const UNSPOILT: &str = "no thread panics while it adds to the histogram";
 /// Number of sites that are examined together when grids are merged: most sites of a fine grid are empty, and pages that are never
 /// written to take no memory.
 const PART: usize = 512;
@@ -66,9 +66,9 @@ impl Bins {
     }
 }
 
-/// Counts and sums of the impacts of any number of particles. Tallies with the same bins merge exactly.
+/// Counts and sums of the impacts of any number of particles. Histograms with the same bins merge exactly.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Tally {
+pub struct Histogram {
     /// Impacts by row and bin of ε; the last column counts those for which ε is not finite or |ε| is at least 2³³.
     pub restitution: Grid,
     /// Impacts by row and bin of E_rot/E_tot; the last column as above. It has no columns if [`Bins::fraction`] is `None`.
@@ -115,8 +115,8 @@ impl Grid {
         &self.counts
     }
 
-    /// Moves recent counts here, and tells of each row with any how many of them have defined values.
-    pub(super) fn absorb(&mut self, recent: &mut [u32], mut tell: impl FnMut(usize, u64)) {
+    /// Moves recent counts here, and reports how many of them have defined values, for each row that has any.
+    pub(super) fn absorb(&mut self, recent: &mut [u32], mut report: impl FnMut(usize, u64)) {
         let columns = self.columns;
         let rows = self.counts.chunks_mut(columns);
         for (row, (counts, recent)) in rows.zip(recent.chunks_mut(columns)).enumerate() {
@@ -133,7 +133,7 @@ impl Grid {
                 }
             }
             if number > 0 {
-                tell(row, number - u64::from(undefined));
+                report(row, number - u64::from(undefined));
             }
         }
     }
@@ -157,8 +157,8 @@ impl Grid {
     }
 }
 
-impl Tally {
-    /// A tally of no impacts, whose sums are relative to `origin`.
+impl Histogram {
+    /// A histogram of no impacts, whose sums are relative to `origin`.
     pub fn new(bins: &Bins, origin: f64) -> Result<Self, Error> {
         let rows = bins.rows();
         let columns = bins.fraction.as_ref().map_or(0, |axis| axis.bins() + 1);
@@ -181,7 +181,7 @@ impl Tally {
         })
     }
 
-    /// Adds another tally, which must have the same bins and origin.
+    /// Adds another histogram, which must have the same bins and origin.
     pub fn merge(&mut self, other: &Self) {
         self.restitution.merge(&other.restitution);
         self.fraction.merge(&other.fraction);

@@ -3,16 +3,16 @@
 use crate::law::{Contacts, Respond, Responses};
 use crate::math::Vectors;
 use crate::motion::{
-    Flight, PlanarMotion, PlanarStates, SpatialFlight, SpatialMotion, SpatialStates, States,
+    Flight, PlanarMotion, PlanarState, SpatialFlight, SpatialMotion, SpatialState, SymmetricState,
 };
-use crate::shape::{Body, Hull, Part};
+use crate::shape::{Body, Hull, HullPart};
 use crate::simd::{Mask, Pack};
 use pulp::Simd;
 
 /// Planar or spatial motion.
-pub(crate) trait Turn: Copy {
+pub(crate) trait Dimension: Copy {
     /// The flight of as many particles as there are lanes.
-    type Flight<S: Simd, const K: usize>: Flight<S, K, State: Strike<S, K>>;
+    type Flight<S: Simd, const K: usize>: Flight<S, K, State: Collide<S, K>>;
     /// Whether a contact may slip across the plane of the axis.
     const SPACE: bool;
 }
@@ -25,27 +25,27 @@ pub(crate) struct Planar;
 #[derive(Clone, Copy)]
 pub(crate) struct Spatial;
 
-impl Turn for Planar {
-    type Flight<S: Simd, const K: usize> = PlanarStates<S, K>;
+impl Dimension for Planar {
+    type Flight<S: Simd, const K: usize> = PlanarState<S, K>;
     const SPACE: bool = false;
 }
 
-impl Turn for Spatial {
+impl Dimension for Spatial {
     type Flight<S: Simd, const K: usize> = SpatialFlight<S, K>;
     const SPACE: bool = true;
 }
 
 /// The sphere that touches like the hull at the contact: its lever s and its radius ϱ.
 #[derive(Clone, Copy)]
-pub(crate) struct Touch<S: Simd, const K: usize> {
+pub(crate) struct ContactPoint<S: Simd, const K: usize> {
     pub lever: Pack<S, K>,
     pub radius: Pack<S, K>,
 }
 
-impl<S: Simd, const K: usize> Touch<S, K> {
+impl<S: Simd, const K: usize> ContactPoint<S, K> {
     /// Before the first contact.
     #[inline(always)]
-    pub fn nothing(simd: S) -> Self {
+    pub fn none(simd: S) -> Self {
         let zero = Pack::splat(simd, 0.0);
         Self {
             lever: zero,
@@ -64,16 +64,16 @@ impl<S: Simd, const K: usize> Touch<S, K> {
 
     /// That of a part of a hull at this e_z.
     #[inline(always)]
-    pub fn of(hull: &impl Hull, part: &Part<S, K>, tilt: Pack<S, K>) -> Self {
+    pub fn of(hull: &impl Hull, part: &HullPart<S, K>, cos_tilt: Pack<S, K>) -> Self {
         Self {
-            lever: hull.lever(part, tilt),
-            radius: hull.radius(part, tilt),
+            lever: hull.lever(part, cos_tilt),
+            radius: hull.radius(part, cos_tilt),
         }
     }
 }
 
 /// The result of an impact.
-pub(crate) struct Struck<M, S: Simd, const K: usize> {
+pub(crate) struct Collided<M, S: Simd, const K: usize> {
     /// The motion after the impact.
     pub motion: M,
     /// Normal speeds of the point of contact: of approach before, of separation after the impact.
@@ -81,29 +81,34 @@ pub(crate) struct Struck<M, S: Simd, const K: usize> {
     pub separation: Pack<S, K>,
 }
 
-/// States to which an impact can be applied.
-pub(crate) trait Strike<S: Simd, const K: usize>: States<S, K> {
+/// SymmetricState to which an impact can be applied.
+pub(crate) trait Collide<S: Simd, const K: usize>: SymmetricState<S, K> {
     /// The contact of the part of the hull that touches.
-    fn contact(&self, body: &Body, touch: Touch<S, K>) -> Contacts<S, K>;
+    fn contact(&self, body: &Body, point: ContactPoint<S, K>) -> Contacts<S, K>;
 
     /// The response of a law to it.
     fn response(law: &impl Respond, contact: &Contacts<S, K>) -> Responses<S, K>;
 
     /// The motion after the impact.
-    fn respond(&self, body: &Body, touch: Touch<S, K>, response: &Responses<S, K>) -> Self::Motion;
+    fn respond(
+        &self,
+        body: &Body,
+        point: ContactPoint<S, K>,
+        response: &Responses<S, K>,
+    ) -> Self::Motion;
 
     /// The impact of the part of the hull that touches.
     #[inline(always)]
-    fn strike(
+    fn collide(
         &self,
         body: &Body,
         law: &impl Respond,
-        touch: Touch<S, K>,
-    ) -> Struck<Self::Motion, S, K> {
-        let contact = self.contact(body, touch);
+        point: ContactPoint<S, K>,
+    ) -> Collided<Self::Motion, S, K> {
+        let contact = self.contact(body, point);
         let response = Self::response(law, &contact);
-        Struck {
-            motion: self.respond(body, touch, &response),
+        Collided {
+            motion: self.respond(body, point, &response),
             approach: contact.approach_speed(),
             separation: response.separation_speed,
         }
@@ -113,20 +118,20 @@ pub(crate) trait Strike<S: Simd, const K: usize>: States<S, K> {
 /// **r**_c (6) in the plane of the axis, along x and z.
 #[inline(always)]
 fn planar_arm<S: Simd, const K: usize>(
-    state: &PlanarStates<S, K>,
-    Touch { lever, radius }: Touch<S, K>,
+    state: &PlanarState<S, K>,
+    ContactPoint { lever, radius }: ContactPoint<S, K>,
 ) -> [Pack<S, K>; 2] {
     [state.sine * lever, state.cosine.mul_add(lever, -radius)]
 }
 
-impl<S: Simd, const K: usize> Strike<S, K> for PlanarStates<S, K> {
+impl<S: Simd, const K: usize> Collide<S, K> for PlanarState<S, K> {
     #[inline(always)]
-    fn contact(&self, body: &Body, touch: Touch<S, K>) -> Contacts<S, K> {
-        let PlanarMotion { glide, climb, spin } = self.motion;
-        let [arm_x, arm_z] = planar_arm(self, touch);
+    fn contact(&self, body: &Body, point: ContactPoint<S, K>) -> Contacts<S, K> {
+        let PlanarMotion { vx, vz, spin } = self.motion;
+        let [arm_x, arm_z] = planar_arm(self, point);
         let slip = [
-            (climb - spin * arm_x).min(0.0), // v_c (7); at a grazing contact it may have changed sign within the last step
-            glide + spin * arm_z,            // v_c (7)
+            (vz - spin * arm_x).min(0.0), // v_c (7); at a grazing contact it may have changed sign within the last step
+            vx + spin * arm_z,            // v_c (7)
         ];
         Contacts::in_plane(slip, body.transverse, [arm_z, arm_x])
     }
@@ -140,15 +145,15 @@ impl<S: Simd, const K: usize> Strike<S, K> for PlanarStates<S, K> {
     fn respond(
         &self,
         body: &Body,
-        touch: Touch<S, K>,
+        point: ContactPoint<S, K>,
         response: &Responses<S, K>,
     ) -> PlanarMotion<S, K> {
-        let PlanarMotion { glide, climb, spin } = self.motion;
-        let [arm_x, arm_z] = planar_arm(self, touch);
+        let PlanarMotion { vx, vz, spin } = self.motion;
+        let [arm_x, arm_z] = planar_arm(self, point);
         let torque = arm_z.mul_add(response.along, -(arm_x * response.normal));
         PlanarMotion {
-            glide: glide + response.along,                     // (11)
-            climb: climb + response.normal,                    // (11)
+            vx: vx + response.along,                           // (11)
+            vz: vz + response.normal,                          // (11)
             spin: torque.mul_add(1.0 / body.transverse, spin), // (11)
         }
     }
@@ -170,7 +175,7 @@ struct Frame<S: Simd, const K: usize> {
 
 impl<S: Simd, const K: usize> Frame<S, K> {
     #[inline(always)]
-    fn new(state: &SpatialStates<S, K>, Touch { lever, radius }: Touch<S, K>) -> Self {
+    fn new(state: &SpatialState<S, K>, ContactPoint { lever, radius }: ContactPoint<S, K>) -> Self {
         let axis = state.axis;
         let sine = state.sine();
         let upright = sine.le(UPRIGHT);
@@ -188,17 +193,17 @@ impl<S: Simd, const K: usize> Frame<S, K> {
     }
 }
 
-impl<S: Simd, const K: usize> Strike<S, K> for SpatialStates<S, K> {
+impl<S: Simd, const K: usize> Collide<S, K> for SpatialState<S, K> {
     #[inline(always)]
-    fn contact(&self, body: &Body, touch: Touch<S, K>) -> Contacts<S, K> {
+    fn contact(&self, body: &Body, point: ContactPoint<S, K>) -> Contacts<S, K> {
         let velocity = self.motion.velocity;
-        let Touch { lever, radius } = touch;
+        let ContactPoint { lever, radius } = point;
         let Frame {
             arm,
             sine,
             along_x,
             along_y,
-        } = Frame::new(self, touch);
+        } = Frame::new(self, point);
         let turning = self.spin(body).cross(arm);
         let (x, y) = (velocity.x + turning.x, velocity.y + turning.y); // v_c (7)
 
@@ -225,7 +230,7 @@ impl<S: Simd, const K: usize> Strike<S, K> for SpatialStates<S, K> {
     fn respond(
         &self,
         body: &Body,
-        touch: Touch<S, K>,
+        point: ContactPoint<S, K>,
         response: &Responses<S, K>,
     ) -> SpatialMotion<S, K> {
         let SpatialMotion {
@@ -237,7 +242,7 @@ impl<S: Simd, const K: usize> Strike<S, K> for SpatialStates<S, K> {
             along_x,
             along_y,
             ..
-        } = Frame::new(self, touch);
+        } = Frame::new(self, point);
         let impulse = Vectors {
             x: response
                 .along

@@ -1,20 +1,20 @@
 //! Impacts are handed to the sink, and particles end.
 
-use super::{Group, Stuck};
+use super::{Group, Unconverged};
 use crate::contact::MOST_STEPS;
+use crate::drop::lanes::collision::Dimension;
 use crate::drop::lanes::impact::{Impact, Sink};
-use crate::drop::lanes::strike::Turn;
 use crate::drop::stop::{COLLAPSE_RUN, Limits, StopReason, UNRESOLVED};
-use crate::motion::States;
+use crate::motion::SymmetricState;
 use crate::shape::Body;
 use crate::simd::{Mask, Pack};
 use pulp::{Simd, WithSimd};
 
-impl<S: Simd, T: Turn> Group<S, T> {
+impl<S: Simd, T: Dimension> Group<S, T> {
     /// Hands the impact to the sink, and ends the particles for which it was the last; returns whether any has ended since the last
     /// impact.
     #[inline(always)]
-    pub fn tell(
+    pub fn report(
         &mut self,
         number: usize,
         body: &Body,
@@ -27,21 +27,21 @@ impl<S: Simd, T: Turn> Group<S, T> {
         }
         let landing = self.landing();
         let before = self.before();
-        let after = before.moving(self.after);
-        let clock = self.clock + self.arrival.time;
+        let after = before.with_motion(self.after);
+        let clock = self.clock + self.located.time;
         let energy_after = after.kinetic_energy(body);
         let impact = Impact {
             particle: self.particle,
             number: self.impacts(),
             time: clock,
-            fall: -before.climb(),
-            rise: after.climb(),
+            fall: -before.vz(),
+            rise: after.vz(),
             rotation: before.rotational_energy(body),
             energy_before: before.kinetic_energy(body),
             energy_after,
             sine: before.sine(),
-            cosine: before.tilt(),
-            sphere: self.search.departure.sphere,
+            cosine: before.cos_tilt(),
+            sphere: self.search.last_contact.sphere,
             approach: self.approach,
             before: before.in_space(),
             after: after.in_space(),
@@ -57,7 +57,8 @@ impl<S: Simd, T: Turn> Group<S, T> {
             let slow = (2.0 * energy_after).lt(limits.minimum_speed * limits.minimum_speed);
             self.end(slow & landing, StopReason::SpeedBelowThreshold);
         }
-        let low = (self.search.bound * (self.arrival.time * self.arrival.time)).lt(UNRESOLVED);
+        let low =
+            (self.search.curvature_bound * (self.located.time * self.located.time)).lt(UNRESOLVED);
         if low.any() {
             let unresolved = low.select(self.unresolved + 1.0, 0.0);
             self.unresolved = landing.select(unresolved, self.unresolved);
@@ -131,27 +132,27 @@ impl<S: Simd, T: Turn> Group<S, T> {
 
     /// An error if the search of some particle takes too many passes.
     #[inline(always)]
-    pub fn stuck(&self) -> Result<(), Stuck> {
+    pub fn converged(&self) -> Result<(), Unconverged> {
         let lost = !self.passes.lt(f64::from(MOST_STEPS));
         if lost.any() {
-            let mut stuck = Ok(());
+            let mut converged = Ok(());
             lost.each(|lane| {
                 let (particle, impacts) = self.trajectory(lane);
-                stuck = Err(Stuck { particle, impacts });
+                converged = Err(Unconverged { particle, impacts });
             });
-            return stuck;
+            return converged;
         }
         Ok(())
     }
 }
 
 /// [`Group::end_those_with_all_impacts`], compiled separately for each SIMD level, because it is rare.
-struct Due<'a, S: Simd, T: Turn> {
+struct Due<'a, S: Simd, T: Dimension> {
     group: &'a mut Group<S, T>,
     most: f64,
 }
 
-impl<S: Simd, T: Turn> WithSimd for Due<'_, S, T> {
+impl<S: Simd, T: Dimension> WithSimd for Due<'_, S, T> {
     type Output = ();
 
     #[inline(always)]

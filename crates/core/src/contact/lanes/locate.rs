@@ -1,6 +1,6 @@
 //! The end of the search: from the last certified step to the contact. [`super`] explains why this is the first contact.
 
-use super::gap::{Look, Search};
+use super::gap::{GapEvaluation, Search};
 use super::{FAR, INVISIBLE, LAST, NEAR, SMALL};
 use crate::motion::{Attitude, Flight};
 use crate::shape::Hull;
@@ -10,17 +10,17 @@ use pulp::Simd;
 /// The two next steps of the search.
 #[derive(Clone, Copy)]
 #[repr(align(64))]
-pub(crate) struct Leap<S: Simd, const K: usize> {
+pub(crate) struct Steps<S: Simd, const K: usize> {
     /// The certified step.
-    step: Pack<S, K>,
+    certified: Pack<S, K>,
     /// The step to where the contact is looked for next: at first to the zero of an expansion.
-    ahead: Pack<S, K>,
+    expanded: Pack<S, K>,
 }
 
 /// The gap that remains at the zero of an expansion.
 #[derive(Clone, Copy)]
 #[repr(align(64))]
-pub(crate) struct Residue<S: Simd, const K: usize> {
+pub(crate) struct Prediction<S: Simd, const K: usize> {
     time: Pack<S, K>,
     attitude: Attitude<S, K>,
     width: Pack<S, K>,
@@ -32,7 +32,7 @@ pub(crate) struct Residue<S: Simd, const K: usize> {
 /// The result of a pass of the search.
 #[derive(Clone, Copy)]
 #[repr(align(64))]
-pub(crate) struct Arrival<S: Simd, const K: usize> {
+pub(crate) struct LocatedContact<S: Simd, const K: usize> {
     /// Time and attitude of the contact.
     pub time: Pack<S, K>,
     pub attitude: Attitude<S, K>,
@@ -40,29 +40,29 @@ pub(crate) struct Arrival<S: Simd, const K: usize> {
     pub done: Mask<S, K>,
 }
 
-impl<S: Simd, const K: usize> Leap<S, K> {
+impl<S: Simd, const K: usize> Steps<S, K> {
     /// Before the first evaluation.
     #[inline(always)]
     pub fn none(simd: S) -> Self {
         let zero = Pack::splat(simd, 0.0);
         Self {
-            step: zero,
-            ahead: zero,
+            certified: zero,
+            expanded: zero,
         }
     }
 
-    /// The step to the contact that was found from `time`, to look at the gap there again; that of the lanes that are done stays as it
+    /// The step to the contact that was found from `time`, to predict it again from there; that of the lanes that are done stays as it
     /// is, so that they repeat the same result.
     #[inline(always)]
-    pub fn on_to(self, arrival: &Arrival<S, K>, time: Pack<S, K>) -> Self {
+    pub fn on_to(self, located: &LocatedContact<S, K>, time: Pack<S, K>) -> Self {
         Self {
-            ahead: arrival.done.select(self.ahead, arrival.time - time),
+            expanded: located.done.select(self.expanded, located.time - time),
             ..self
         }
     }
 }
 
-impl<S: Simd, const K: usize> Residue<S, K> {
+impl<S: Simd, const K: usize> Prediction<S, K> {
     /// Before the first evaluation.
     #[inline(always)]
     pub fn none(simd: S) -> Self {
@@ -77,7 +77,7 @@ impl<S: Simd, const K: usize> Residue<S, K> {
     }
 }
 
-impl<S: Simd, const K: usize> Arrival<S, K> {
+impl<S: Simd, const K: usize> LocatedContact<S, K> {
     /// Before the first evaluation.
     #[inline(always)]
     pub fn none(simd: S) -> Self {
@@ -92,107 +92,113 @@ impl<S: Simd, const K: usize> Arrival<S, K> {
 impl<S: Simd, F: Flight<S, K>, const K: usize> Search<S, F, K> {
     /// The next steps, from the gap as evaluated.
     #[inline(always)]
-    pub fn leap(&self, look: &Look<S, K>, hull: &impl Hull) -> Leap<S, K> {
-        let step = self.certified(&look.gap);
-        Leap {
-            step,
-            ahead: self.expanded(look, step, hull),
+    pub fn steps(&self, evaluation: &GapEvaluation<S, K>, hull: &impl Hull) -> Steps<S, K> {
+        let step = self.certified(&evaluation.gap);
+        Steps {
+            certified: step,
+            expanded: self.expanded(evaluation, step, hull),
         }
     }
 
     /// The gap that remains after the step ahead, from an evaluation at `time`.
     #[inline(always)]
-    pub fn residue(
+    pub fn predict(
         &self,
         time: Pack<S, K>,
-        look: &Look<S, K>,
-        leap: &Leap<S, K>,
+        evaluation: &GapEvaluation<S, K>,
+        steps: &Steps<S, K>,
         hull: &impl Hull,
-    ) -> Residue<S, K> {
-        let time = time + leap.ahead;
-        let attitude = look.attitude.turned(self.flight.rate() * leap.ahead);
-        let part = &look.gap.part;
-        let (width, rate) = self.moment(time, attitude).opening(part, hull);
-        Residue {
+    ) -> Prediction<S, K> {
+        let time = time + steps.expanded;
+        let attitude = evaluation
+            .attitude
+            .turned(self.flight.rate() * steps.expanded);
+        let part = &evaluation.gap.part;
+        let (width, rate) = self.instant(time, attitude).opening(part, hull);
+        Prediction {
             time,
             attitude,
             width,
             rate,
-            curvature: hull.bend(part, &self.flight.swing(attitude), -1.0),
+            curvature: hull.curvature(part, &self.flight.axis_motion(attitude), -1.0),
         }
     }
 
     /// The contact, valid where it is located and neither part can have touched before.
     #[inline(always)]
-    pub fn arrival<H: Hull>(
+    pub fn locate<H: Hull>(
         &self,
-        look: &Look<S, K>,
-        leap: &Leap<S, K>,
-        residue: &Residue<S, K>,
+        evaluation: &GapEvaluation<S, K>,
+        steps: &Steps<S, K>,
+        prediction: &Prediction<S, K>,
         hull: &H,
-    ) -> Arrival<S, K> {
-        let part = &look.gap.part;
+    ) -> LocatedContact<S, K> {
+        let part = &evaluation.gap.part;
         // A step of third order closes the remaining gap.
-        let inverse = -1.0 / residue.rate;
-        let newton = residue.width * inverse;
-        let rest = newton.mul_add(0.5 * residue.curvature * newton * inverse, newton);
-        let attitude = residue.attitude.advanced(self.flight.rate() * rest);
+        let inverse = -1.0 / prediction.rate;
+        let newton = prediction.width * inverse;
+        let rest = newton.mul_add(0.5 * prediction.curvature * newton * inverse, newton);
+        let attitude = prediction.attitude.advanced(self.flight.rate() * rest);
 
         // A zero before the end of the step, which is certified, can only be that of the contact at the start, within its rounding.
-        let beyond = self.least_fall(leap.ahead, residue.rate);
-        let before = leap.step.mul_add(0.5, -leap.ahead);
+        let beyond = self.least_fall(steps.expanded, prediction.rate);
+        let before = steps.certified.mul_add(0.5, -steps.expanded);
         let far = FAR.min(1.0 / hull.sharpness());
-        let turned = (self.flight.rate() * leap.ahead).abs() - far;
+        let turned = (self.flight.rate() * steps.expanded).abs() - far;
         let first = beyond.max(turned).max(before).le(0.0);
-        let mut found = first & newton.abs().le(SMALL * leap.step);
+        let mut found = first & newton.abs().le(SMALL * steps.certified);
         if H::TWO {
             // If the other part had touched after `step`, its gap could have grown since by at most ½S·since².
-            let since = (leap.ahead - leap.step) + rest;
-            let tilt = self.flight.swing(attitude).tilt;
-            let other = hull.gap(&hull.part(!part.one), tilt, hull.lift(part, tilt));
-            found = found & (0.5 * self.sway * (since * since)).le(other);
+            let since = (steps.expanded - steps.certified) + rest;
+            let cos_tilt = self.flight.axis_motion(attitude).cos_tilt;
+            let other = hull.gap(
+                &hull.part(!part.one),
+                cos_tilt,
+                hull.touching_height(part, cos_tilt),
+            );
+            found = found & (0.5 * self.rotation_bound * (since * since)).le(other);
         }
-        Arrival {
-            time: residue.time + rest,
+        LocatedContact {
+            time: prediction.time + rest,
             attitude,
-            done: look.never | found,
+            done: evaluation.never | found,
         }
     }
 
     /// Ends the search in those of the `clear` lanes whose certified step from `time` leaves a gap below the resolution.
     #[inline(always)]
-    pub fn graze(
+    pub fn accept_grazing(
         &self,
         time: Pack<S, K>,
-        look: &Look<S, K>,
-        leap: &Leap<S, K>,
+        evaluation: &GapEvaluation<S, K>,
+        steps: &Steps<S, K>,
         clear: Mask<S, K>,
-        arrival: &mut Arrival<S, K>,
+        located: &mut LocatedContact<S, K>,
     ) {
-        let step = leap.step;
+        let step = steps.certified;
         let end = time + step;
         let late = end.mul_add(-LAST, step);
         let turned = self.flight.rate().abs().mul_add(step, -LAST);
-        let visible = self.bound.mul_add(step * step, -INVISIBLE);
+        let visible = self.curvature_bound.mul_add(step * step, -INVISIBLE);
         // The largest excess must be ≤ 0: one comparison, because operations on masks are slower than those on numbers.
         let invisible = late.max(turned).max(visible).le(0.0);
-        let last = look.gap.rate.lt(0.0) & invisible & clear & !arrival.done;
+        let last = evaluation.gap.rate.lt(0.0) & invisible & clear & !located.done;
         if !last.any() {
             return;
         }
-        let there = look.attitude.turned(self.flight.rate() * step);
-        let attitude = &mut arrival.attitude;
-        arrival.time = last.select(end, arrival.time);
+        let there = evaluation.attitude.turned(self.flight.rate() * step);
+        let attitude = &mut located.attitude;
+        located.time = last.select(end, located.time);
         attitude.sine = last.select(there.sine, attitude.sine);
         attitude.cosine = last.select(there.cosine, attitude.cosine);
-        arrival.done = arrival.done | last;
+        located.done = located.done | last;
     }
 
     /// The time up to which a pass that evaluated the gap at `time` rules out a contact.
     #[inline(always)]
-    pub fn certain(&self, time: Pack<S, K>, leap: &Leap<S, K>) -> Pack<S, K> {
+    pub fn certain(&self, time: Pack<S, K>, steps: &Steps<S, K>) -> Pack<S, K> {
         // The time must increase by at least one rounding unit, however short the step.
-        self.skip(time + leap.step.max(f64::EPSILON * time))
+        self.skip(time + steps.certified.max(f64::EPSILON * time))
     }
 
     /// The time of the next evaluation: just before the contact that the expansions predict, or else `certain`, up to which a
@@ -201,18 +207,18 @@ impl<S: Simd, F: Flight<S, K>, const K: usize> Search<S, F, K> {
     pub fn aim(
         &self,
         certain: Pack<S, K>,
-        leap: &Leap<S, K>,
-        residue: &Residue<S, K>,
-        arrival: &Arrival<S, K>,
+        steps: &Steps<S, K>,
+        prediction: &Prediction<S, K>,
+        located: &LocatedContact<S, K>,
         hull: &impl Hull,
     ) -> Pack<S, K> {
-        let rate = residue.rate;
-        let beyond = self.least_fall(arrival.time - certain, rate);
+        let rate = prediction.rate;
+        let beyond = self.least_fall(located.time - certain, rate);
         // So near to the contact a pass ends the search, and the gap is larger than its rounding error.
         let turning = self.flight.rate().abs() * hull.sharpness();
-        let margin = NEAR * rate / turning.mul_add(-rate, self.sway);
-        let aim = (arrival.time + margin).max(certain);
-        let led = (self.flight.rate() * leap.ahead).abs().le(FAR);
+        let margin = NEAR * rate / turning.mul_add(-rate, self.rotation_bound);
+        let aim = (located.time + margin).max(certain);
+        let led = (self.flight.rate() * steps.expanded).abs().le(FAR);
         (led & beyond.le(0.0) & rate.lt(0.0)).select(aim, certain)
     }
 
@@ -225,14 +231,16 @@ impl<S: Simd, F: Flight<S, K>, const K: usize> Search<S, F, K> {
         &self,
         certain: Pack<S, K>,
         time: Pack<S, K>,
-        look: &Look<S, K>,
+        evaluation: &GapEvaluation<S, K>,
         hull: &H,
     ) -> Mask<S, K> {
         let since = time - certain;
-        let least = self.least_gap(since, look.gap.width, look.gap.rate);
+        let least = self.least_gap(since, evaluation.gap.width, evaluation.gap.rate);
         let least = if H::TWO {
-            let other = hull.part(!look.gap.part.one);
-            let (width, rate) = self.moment(time, look.attitude).opening(&other, hull);
+            let other = hull.part(!evaluation.gap.part.one);
+            let (width, rate) = self
+                .instant(time, evaluation.attitude)
+                .opening(&other, hull);
             least.min(self.least_gap(since, width, rate))
         } else {
             least
@@ -251,19 +259,24 @@ impl<S: Simd, F: Flight<S, K>, const K: usize> Search<S, F, K> {
     /// is negative, the gap was wider before: of a contact, for at least 2|f′|/M.
     #[inline(always)]
     fn least_fall(&self, since: Pack<S, K>, rate: Pack<S, K>) -> Pack<S, K> {
-        since.mul_add(0.5 * self.bound, rate)
+        since.mul_add(0.5 * self.curvature_bound, rate)
     }
 
     /// The step to the zero of the fourth-order expansion of the gap, found by a step of third order from the end of `step`.
     #[inline(always)]
-    fn expanded(&self, look: &Look<S, K>, step: Pack<S, K>, hull: &impl Hull) -> Pack<S, K> {
-        let swing = self.flight.swing(look.attitude);
-        let [second, third, fourth] = hull.bends(&look.gap.part, &swing); // f″ without gravity, f‴, f⁗
-        let slack = second + self.sway; // f″ + M, which the lower bound neglects
+    fn expanded(
+        &self,
+        evaluation: &GapEvaluation<S, K>,
+        step: Pack<S, K>,
+        hull: &impl Hull,
+    ) -> Pack<S, K> {
+        let axis_motion = self.flight.axis_motion(evaluation.attitude);
+        let [second, third, fourth] = hull.derivatives(&evaluation.gap.part, &axis_motion); // f″ without gravity, f‴, f⁗
+        let slack = second + self.rotation_bound; // f″ + M, which the lower bound neglects
         // The gap after the step, and the speed at which it closes there.
         let bend = (step * fourth).mul_add(1.0 / 12.0, third * (1.0 / 3.0));
         let left = 0.5 * (step * step) * step.mul_add(bend, slack);
-        let speed = step.mul_add(-step.mul_add(0.5 * third, slack), look.gap.root);
+        let speed = step.mul_add(-step.mul_add(0.5 * third, slack), evaluation.gap.root);
         let inverse = 1.0 / speed;
         let newton = left * inverse;
         let curvature = step.mul_add(third, second - 1.0); // f″

@@ -1,12 +1,12 @@
 //! The sink that counts impacts by row and ε, without moments.
 
-use super::Tallying;
+use super::HistogramSink;
 use super::axis::{Axis, ROUND};
+use super::histogram::{Bins, By, Histogram, UNSPOILT, WHAT};
 use super::moments::Sums;
 use super::narrow::Recently;
 use super::places::{all_sites, last, sites, whole};
 use super::rows::{CREATES_ENERGY, Rows};
-use super::tally::{Bins, By, Tally, UNSPOILT, WHAT};
 use crate::Error;
 use crate::drop::Plan;
 use crate::drop::StopReason;
@@ -19,10 +19,10 @@ use std::sync::Mutex;
 /// Length of the queue: a place for each lane of every group.
 const LENGTH: usize = GROUPS * LANES;
 
-/// Counts impacts in the grid of ε, and those that create energy, as [`super::Counter`] does, and nothing else.
-pub(crate) struct Counts<'a, const EVEN: bool> {
+/// Counts impacts in the grid of ε, and those that create energy, as [`super::MomentSink`] does, and nothing else.
+pub(crate) struct CountSink<'a, const EVEN: bool> {
     /// Whose grids this counter and others fill.
-    shared: &'a Mutex<Tally>,
+    shared: &'a Mutex<Histogram>,
     /// What else is summed here.
     own: Rows,
     bins: &'a Bins,
@@ -33,11 +33,11 @@ pub(crate) struct Counts<'a, const EVEN: bool> {
     queue: [f64; LENGTH],
 }
 
-impl<'a, const EVEN: bool> Counts<'a, EVEN> {
+impl<'a, const EVEN: bool> CountSink<'a, EVEN> {
     pub fn new(
         bins: &'a Bins,
         plan: &'a Plan<'a>,
-        shared: &'a Mutex<Tally>,
+        shared: &'a Mutex<Histogram>,
     ) -> Result<Self, Error> {
         let sites = bins.rows() * (bins.restitution.bins() + 1);
         Ok(Self {
@@ -51,7 +51,7 @@ impl<'a, const EVEN: bool> Counts<'a, EVEN> {
         })
     }
 
-    /// Counts the impact at place `i` of the queue.
+    /// CountSink the impact at place `i` of the queue.
     #[inline(always)]
     fn count(&mut self, i: usize) {
         self.restitution[whole(self.queue[i])] += 1;
@@ -59,20 +59,20 @@ impl<'a, const EVEN: bool> Counts<'a, EVEN> {
 
     fn empty(&mut self) {
         let numbers = &mut self.own.numbers;
-        let tell = |row: usize, number| numbers[row] += number;
+        let report = |row: usize, number| numbers[row] += number;
         let mut shared = self.shared.lock().expect(UNSPOILT);
-        shared.restitution.absorb(&mut self.restitution, tell);
+        shared.restitution.absorb(&mut self.restitution, report);
     }
 }
 
-impl<const EVEN: bool> Meanwhile for Counts<'_, EVEN> {
+impl<const EVEN: bool> Meanwhile for CountSink<'_, EVEN> {
     #[inline(always)]
     fn meanwhile(&mut self, place: usize) {
         self.count(place);
     }
 }
 
-impl<const EVEN: bool> Sink for Counts<'_, EVEN> {
+impl<const EVEN: bool> Sink for CountSink<'_, EVEN> {
     const TOGETHER: bool = true;
     const COMMON: bool = EVEN;
 
@@ -126,7 +126,7 @@ impl<const EVEN: bool> Sink for Counts<'_, EVEN> {
     }
 }
 
-impl<const EVEN: bool> Tallying for Counts<'_, EVEN> {
+impl<const EVEN: bool> HistogramSink for CountSink<'_, EVEN> {
     fn finish(mut self) -> Rows {
         self.empty();
         self.own

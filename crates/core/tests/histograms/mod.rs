@@ -3,8 +3,8 @@
 
 use crate::common::*;
 use proptest::prelude::*;
-use restitution_core::statistics::{Axis, Bins, By, Moments, Tally};
-use restitution_core::{Level, Means, Monitor, Orientation, Run};
+use restitution_core::statistics::{Axis, Bins, By, Histogram, Moments};
+use restitution_core::{Level, Monitor, Orientation, Resources, Run};
 use std::f64::consts::FRAC_PI_2;
 
 pub const ROWS: usize = 40;
@@ -49,14 +49,14 @@ impl Edges {
     }
 }
 
-/// A tally, after a look at the one with counts alone: they must be the same counts.
-pub fn statistics(run: &Run<'_>, bins: &Bins, level: Level, threads: usize) -> Tally {
-    let tally = |bins: &Bins| {
-        run.statistics(bins, Means { threads, level }, &Monitor::default())
+/// A histogram, after a look at the one with counts alone: they must be the same counts.
+pub fn statistics(run: &Run<'_>, bins: &Bins, level: Level, threads: usize) -> Histogram {
+    let histogram = |bins: &Bins| {
+        run.statistics(bins, Resources { threads, level }, &Monitor::default())
             .unwrap()
     };
-    let found = tally(bins);
-    let counts = tally(&Bins {
+    let found = histogram(bins);
+    let counts = histogram(&Bins {
         fraction: None,
         ..bins.clone()
     });
@@ -71,11 +71,15 @@ pub fn level() -> impl Strategy<Value = Level> {
     prop::sample::select(Level::available().collect::<Vec<_>>())
 }
 
-/// Every number of a row of a tally, as bits.
-pub fn bits(tally: &Tally, rows: usize) -> Vec<u64> {
+/// Every number of a row of a histogram, as bits.
+pub fn bits(histogram: &Histogram, rows: usize) -> Vec<u64> {
     let moments = |row| {
-        let m: Moments = tally.rows.moments(row).unwrap();
-        let extremes = [m.minimum, m.maximum, tally.rows.mean_fraction(row).unwrap()];
+        let m: Moments = histogram.rows.moments(row).unwrap();
+        let extremes = [
+            m.minimum,
+            m.maximum,
+            histogram.rows.mean_fraction(row).unwrap(),
+        ];
         [m.mean, m.variance, m.skewness, m.kurtosis]
             .into_iter()
             .chain(extremes)

@@ -1,0 +1,1896 @@
+//! Coulomb friction where the slip turns: the contact slips across the plane of the axis, too. All lanes at once.
+//!
+//! With the slip **s** = (u, w), u taken along it, let A = (|**s**| + u)/2 and B = (|**s**| − u)/2, so that w² = 4AB, and
+//! y = B/A = tan²(φ/2) with φ the direction of the slip. In θ with dp = |**s**|(1 + y) dθ the equation of the slip
+//! d**s**/dp = K_nu **u** − μ K_t **s**/|**s**| reads
+//!
+//! dy/dθ = −2y(ρ₊ + ρ₋y), d ln A/dθ = −λ − κy, ρ± = K_nu ± μ(K_ww − K_uu), λ = μK_uu − K_nu, κ = μK_ww − ρ₋:
+//!
+//! 1/y is an exponential function of θ, ∫y dθ a logarithm, and A the exponential function of −∫(λ + κy) dθ. What is left are
+//! quadratures of functions that are analytic next to the path ([`integrate_panel`]), and where the slip vanishes, a continued fraction
+//! ([`Stop`]). The ends of compression and restitution follow from power series about a point next to
+//! them ([`Near`]), and where the direction hardly turns any more, from sums of exponential functions ([`Tail`]). Wherever
+//! the slip has come to rest the rest of the impact is a straight line in p.
+
+mod queue;
+#[cfg(test)]
+mod tests;
+
+use super::Hypothesis;
+use crate::simd::elementary::{exp_in_lanes, exp_m1_in_lanes, polynomial};
+use crate::simd::{Mask, Pack};
+use pulp::Simd;
+pub(in crate::law) use queue::finish;
+use std::f64::consts::PI;
+
+/// A contact, and what of it enters Coulomb's law.
+#[derive(Clone, Copy)]
+pub(crate) struct Slipping<S: Simd, const K: usize> {
+    /// −v_c^n ≥ 0.
+    pub speed: Pack<S, K>,
+    /// v_c^u and v_c^w.
+    pub along: Pack<S, K>,
+    pub across: Pack<S, K>,
+    pub nn: Pack<S, K>,
+    pub nu: Pack<S, K>,
+    pub uu: Pack<S, K>,
+    pub ww: Pack<S, K>,
+    /// ε_n.
+    pub restitution: Pack<S, K>,
+}
+
+/// Impulse along **n**, **u** and **w**, and v_c^n after the impact.
+#[derive(Clone, Copy)]
+pub(crate) struct Answer<S: Simd, const K: usize> {
+    pub normal: Pack<S, K>,
+    pub along: Pack<S, K>,
+    pub across: Pack<S, K>,
+    pub separation_speed: Pack<S, K>,
+}
+
+// ========================================================================================================
+// The rates of the slip
+//
+// K, in the frame of the slip, with friction.
+// ========================================================================================================
+
+/// K in the plane of **n** and the direction **u** along which the slip is positive, times μ where friction is.
+#[derive(Clone, Copy)]
+struct Rates<S: Simd, const K: usize> {
+    pub friction: f64,
+    pub nn: Pack<S, K>,
+    pub nu: Pack<S, K>,
+    pub uu: Pack<S, K>,
+    pub ww: Pack<S, K>,
+    /// K_nn − K_nu²/K_uu.
+    pub sticking: Pack<S, K>,
+    /// μK_ww.
+    pub brake: Pack<S, K>,
+    /// ρ₊, ρ₋, λ, κ.
+    pub plus: Pack<S, K>,
+    pub minus: Pack<S, K>,
+    pub decay: Pack<S, K>,
+    pub kappa: Pack<S, K>,
+}
+
+impl<S: Simd, const K: usize> Rates<S, K> {
+    #[inline(always)]
+    pub fn new(contact: &Slipping<S, K>, friction: f64) -> Self {
+        let Slipping { nn, nu, uu, ww, .. } = *contact;
+        let square = nu * nu;
+        let lost = nu.mul_add(nu, -square);
+        let determinant = nn.mul_add(uu, -square) - lost;
+        let mut rates = Self {
+            friction,
+            nn,
+            nu,
+            uu,
+            ww,
+            sticking: determinant / uu,
+            brake: ww * friction,
+            plus: nu,
+            minus: nu,
+            decay: nu,
+            kappa: nu,
+        };
+        rates.turn(nu);
+        rates
+    }
+
+    /// Takes **u** so that this is K_nu.
+    #[inline(always)]
+    pub fn turn(&mut self, nu: Pack<S, K>) {
+        let (a, b) = (self.uu * self.friction, self.brake);
+        self.nu = nu;
+        self.plus = nu + (b - a);
+        self.minus = nu - (b - a);
+        self.decay = a - nu;
+        self.kappa = b - self.minus;
+    }
+
+    /// Sum of the rates at which direction and size of the slip change in θ.
+    #[inline(always)]
+    pub fn pace(&self, y: Pack<S, K>) -> Pack<S, K> {
+        let turning = self.minus.abs().mul_add(y, self.plus.abs());
+        let growing = self.kappa.abs().mul_add(y, self.decay.abs());
+        turning.mul_add(2.0, growing + 1e-30)
+    }
+
+    /// Δv_c^n after ∫A dθ, ∫Ay dθ and ∫Ay² dθ.
+    #[inline(always)]
+    pub fn velocity(&self, [x, y, z]: [Pack<S, K>; 3]) -> Pack<S, K> {
+        let jam = self.nu * self.friction;
+        let twice = 2.0 * self.nn;
+        x.mul_add(self.nn - jam, y.mul_add(twice, z * (self.nn + jam)))
+    }
+
+    /// dv_c^n/dp times 1 + y.
+    #[inline(always)]
+    pub fn slope(&self, y: Pack<S, K>) -> Pack<S, K> {
+        let jam = self.nu * self.friction;
+        (self.nn + jam).mul_add(y, self.nn - jam)
+    }
+}
+
+// ========================================================================================================
+// Where an impact has come to
+//
+// Where an impact with turning slip has come to, what ends it, and its end once the slip has come to rest.
+// ========================================================================================================
+
+/// Slip at which it counts as vanished, relative to the contact velocity; the impulse is of the order of that.
+const VANISHED: f64 = 1.0 / 18_014_398_509_481_984.0; // 2⁻⁵⁴
+
+/// Where the impacts have come to.
+#[derive(Clone, Copy)]
+struct Course<S: Simd, const K: usize> {
+    /// Slip u and w ≥ 0, |**s**|, A, y.
+    pub u: Pack<S, K>,
+    pub w: Pack<S, K>,
+    pub slip: Pack<S, K>,
+    pub a: Pack<S, K>,
+    pub y: Pack<S, K>,
+    /// ±1: whether **u** is that of the contact.
+    pub mirror: Pack<S, K>,
+    /// v_c^n.
+    pub v: Pack<S, K>,
+    /// Impulse so far.
+    pub normal: Pack<S, K>,
+    pub along: Pack<S, K>,
+    pub across: Pack<S, K>,
+    /// Work of the normal force since the beginning or the last end of a compression.
+    pub work: Pack<S, K>,
+    /// Before the end of the compression, which in a jam may come more than once.
+    pub compressing: Mask<S, K>,
+    /// Impulse at its last end, and work of the normal force until then.
+    pub compression: Pack<S, K>,
+    pub balance: Pack<S, K>,
+    /// The most work that was taken so far, and the work that the restitution is to give back.
+    pub taken: Pack<S, K>,
+    pub due: Pack<S, K>,
+    pub over: Mask<S, K>,
+    /// Most by which to go on: a longer step was too long.
+    pub limit: Pack<S, K>,
+}
+
+/// What ends the restitution.
+#[derive(Clone, Copy)]
+struct Goal<S: Simd, const K: usize> {
+    pub hypothesis: Hypothesis,
+    pub restitution: Pack<S, K>,
+    /// |v_c^n| before the impact.
+    pub approach: Pack<S, K>,
+    /// ε_n|v_c^n|, Newton's goal.
+    pub rebound: Pack<S, K>,
+}
+
+impl<S: Simd, const K: usize> Goal<S, K> {
+    /// What is missing of the restitution: < 0 once it is over.
+    #[inline(always)]
+    pub fn missing(&self, at: &Course<S, K>) -> Pack<S, K> {
+        match self.hypothesis {
+            Hypothesis::Newton => self.rebound - at.v,
+            Hypothesis::Poisson => {
+                self.restitution.mul_add(at.compression, at.compression) - at.normal
+            }
+            Hypothesis::Stronge => at.due - at.work,
+        }
+    }
+}
+
+impl<S: Simd, const K: usize> Course<S, K> {
+    /// Lane by lane one or the other.
+    #[inline(always)]
+    pub fn choose(mask: Mask<S, K>, a: &Self, b: &Self) -> Self {
+        Self {
+            u: mask.select(a.u, b.u),
+            w: mask.select(a.w, b.w),
+            slip: mask.select(a.slip, b.slip),
+            a: mask.select(a.a, b.a),
+            y: mask.select(a.y, b.y),
+            mirror: mask.select(a.mirror, b.mirror),
+            v: mask.select(a.v, b.v),
+            normal: mask.select(a.normal, b.normal),
+            along: mask.select(a.along, b.along),
+            across: mask.select(a.across, b.across),
+            work: mask.select(a.work, b.work),
+            compressing: mask & a.compressing | !mask & b.compressing,
+            compression: mask.select(a.compression, b.compression),
+            balance: mask.select(a.balance, b.balance),
+            taken: mask.select(a.taken, b.taken),
+            due: mask.select(a.due, b.due),
+            over: mask & a.over | !mask & b.over,
+            limit: mask.select(a.limit, b.limit),
+        }
+    }
+
+    /// |**s**|, A and y from u and w.
+    #[inline(always)]
+    pub fn direction(&mut self) {
+        self.slip = self.u.mul_add(self.u, self.w * self.w).sqrt();
+        let sum = self.slip + self.u.abs();
+        let tangent = self.w / sum;
+        let square = sum.eq(0.0).select(0.0, tangent * tangent);
+        let back = self.u.lt(0.0);
+        self.a = 0.5 * sum * back.select(square, 1.0);
+        self.y = back.select(1.0 / square, square);
+        self.w = self.w.le(self.slip * VANISHED).select(0.0, self.w);
+    }
+
+    /// Turns **u** round in the lanes of the mask.
+    #[inline(always)]
+    pub fn turn_round(&mut self, mask: Mask<S, K>, rates: &mut Rates<S, K>) {
+        self.u = mask.select(-self.u, self.u);
+        self.along = mask.select(-self.along, self.along);
+        self.mirror = mask.select(-self.mirror, self.mirror);
+        rates.turn(mask.select(-rates.nu, rates.nu));
+    }
+
+    /// Whether it has gone beyond the next event.
+    #[inline(always)]
+    pub fn is_late(&self, goal: &Goal<S, K>) -> Mask<S, K> {
+        let zero = Pack::splat(self.v.simd(), 0.0);
+        let done = self.v.lt(0.0) | goal.missing(self).le(0.0);
+        self.compressing & zero.le(self.v) | !self.compressing & done
+    }
+
+    /// Ends the compression, of the lanes in the mask, where v_c^n = 0.
+    #[inline(always)]
+    pub fn turn_back(&mut self, mask: Mask<S, K>, goal: &Goal<S, K>) {
+        // The balance begins anew, so that a little restitution is not lost in a large compression.
+        let balance = self.balance + self.work;
+        let taken = self.taken.max(-balance);
+        let e = goal.restitution;
+        let due = (e * e).mul_add(taken, -(taken + balance));
+        self.balance = mask.select(balance, self.balance);
+        self.taken = mask.select(taken, self.taken);
+        self.due = mask.select(due, self.due);
+        self.work = mask.select(0.0, self.work);
+        self.v = mask.select(0.0, self.v);
+        self.compression = mask.select(self.normal, self.compression);
+        self.compressing = self.compressing & !mask;
+    }
+
+    /// The end of the impact, where the slip has come to rest: it sticks, or slips on the way that K_nu drives it.
+    #[inline(always)]
+    pub fn finish(&mut self, rates: &Rates<S, K>, goal: &Goal<S, K>) {
+        let friction = (-rates.nu / rates.uu)
+            .max(-rates.friction)
+            .min(rates.friction);
+        let sticks = rates.nu.abs().le(rates.uu * rates.friction);
+        let slope = sticks.select(
+            rates.sticking,
+            rates.nu.abs().mul_add(-rates.friction, rates.nn),
+        );
+        let inverse = 1.0 / slope;
+        let start = self.normal;
+
+        let further = self.compressing.select(-self.v * inverse, 0.0);
+        self.work = (0.5 * self.v).mul_add(further, self.work);
+        self.normal = self.normal + further;
+        self.turn_back(self.compressing, goal);
+        let missing = goal.missing(self).max(0.0);
+        let (v, rest) = match goal.hypothesis {
+            Hypothesis::Newton => (self.v + missing, missing * inverse),
+            Hypothesis::Poisson => (slope.mul_add(missing, self.v), missing),
+            Hypothesis::Stronge => {
+                let twice = 2.0 * missing;
+                let v = self.v.mul_add(self.v, twice * slope).sqrt();
+                let sum = v + self.v;
+                (v, sum.eq(0.0).select(0.0, twice / sum))
+            }
+        };
+        self.v = v;
+        self.normal = self.normal + rest;
+        self.along = (self.normal - start).mul_add(friction, self.along);
+    }
+}
+
+// ========================================================================================================
+// The direction of the slip
+//
+// The direction and size of a slip that turns, in closed form, and how far they are resolved by the nodes of a panel.
+//
+// The direction has fixed points: y* = 0 and y* = −ρ₊/ρ₋, if that is positive. About the nearer one, with D = y − y*, σ = ρ₊ or −ρ₊
+// and λ* = λ + κy*,
+//
+// dD/dθ = −2D(σ + ρ₋D), d ln A/dθ = −λ* − κD,
+//
+// and with ζ = D₀(1 − exp(−2σθ))/σ: D₀ − D = (σ + ρ₋D₀)ζ/(1 + ρ₋ζ), ∫D dθ = ln(1 + ρ₋ζ)/2ρ₋. About the other one ζ would grow
+// exponentially where D vanishes.
+//
+// A and y are analytic but for the poles of y, where 1 + ρ₋ζ = 0. Gauss's quadrature of n nodes is off by the order of r⁻²ⁿ of the
+// functions, where the ellipse whose foci are the ends of the panel and that goes through the nearest pole has the axes (r ± 1/r)/2
+// in half lengths of the panel. The distances of the pole from both ends together are then (r + 1/r)/2 times its length.
+// ========================================================================================================
+
+/// Least sum of the distances of a pole from the ends of a panel, over its length: r = 2.85, and twenty nodes are off by 10⁻¹⁸.
+const ASIDE: f64 = 1.6;
+/// Most by which ln A changes on a panel, of it six times what the direction contributes: twenty nodes integrate an exponential
+/// function that falls by e⁻²⁸, A², to rounding. Twice as much where the slip is so small that half the digits count.
+const DECAY: f64 = 14.0;
+const SHARPER: f64 = 6.0;
+const FADED: f64 = 1.0 / 524_288.0; // 2⁻¹⁹
+/// Most by which ln |D| changes by itself, where D is tiny, small, and where it is not.
+const LONG_TURN: f64 = 30.0;
+const TURN: f64 = 14.0;
+const SHARP_TURN: f64 = 8.0;
+/// Up to there |D| is small, and tiny; below the last it does not count beside 1.
+const SMALL: f64 = 1.0 / 16.0;
+const TINY: f64 = 1.0 / 1_048_576.0; // 2⁻²⁰
+const NOTHING: f64 = 1.0 / 18_014_398_509_481_984.0; // 2⁻⁵⁴
+/// Most by which y grows on a panel, for beyond 1 it is looked at from the other side.
+const GROWN: f64 = 8.0;
+/// |σ| below which the direction does not turn by it, |ρ₋D| below which it has no poles, and the least |σ| in quotients.
+const STEADY: f64 = 1e-200;
+/// Largest ratio of which a logarithm is bounded.
+const FAR: f64 = 1e30;
+
+/// Largest |s| in the series of artanh.
+const STEEP: f64 = 0.45;
+/// artanh(s)/s as a polynomial in s², |s| ≤ 0.45; error 10⁻¹⁷ (`tests/turning/tables.py`).
+const ARTANH: [f64; 13] = [
+    1.0,
+    0.3333333333333263,
+    0.20000000000191967,
+    0.14285714265083493,
+    0.1111111226052913,
+    0.0909087109137827,
+    0.07693110878969374,
+    0.0665535339972996,
+    0.05990548274556982,
+    0.045616124173821285,
+    0.07768094615369141,
+    -0.036188137220939005,
+    0.15022352089177232,
+];
+
+/// The hodograph from a point on.
+struct Hodograph<S: Simd, const K: usize> {
+    /// y, y* and D.
+    y: Pack<S, K>,
+    pub limit: Pack<S, K>,
+    distance: Pack<S, K>,
+    sigma: Pack<S, K>,
+    minus: Pack<S, K>,
+    /// λ + κy* and κ.
+    decay: Pack<S, K>,
+    kappa: Pack<S, K>,
+    /// −D/σ and σ + ρ₋D.
+    scale: Pack<S, K>,
+    gamma: Pack<S, K>,
+}
+
+/// A point of it.
+struct Point<S: Simd, const K: usize> {
+    /// What y has lost.
+    pub lost: Pack<S, K>,
+    /// ∫D dθ, and ln A less its first value.
+    pub turn: Pack<S, K>,
+    pub growth: Pack<S, K>,
+}
+
+impl<S: Simd, const K: usize> Hodograph<S, K> {
+    #[inline(always)]
+    pub fn new(rates: &Rates<S, K>, y: Pack<S, K>) -> Self {
+        let (plus, minus) = (rates.plus, rates.minus);
+        let bend = minus * y;
+        let gamma = minus.mul_add(y, plus);
+        let oblique = gamma.abs().lt(bend.abs());
+        let limit = oblique.select(-plus / minus, 0.0);
+        let distance = oblique.select(gamma / minus, y);
+        let sigma = oblique.select(-plus, plus);
+        let gone = distance.abs().le(NOTHING) & Pack::splat(y.simd(), 0.0).le(sigma);
+        let straight = gone | sigma.abs().le(STEADY);
+        let sigma = straight.select(STEADY, sigma);
+        let distance = gone.select(0.0, distance);
+        Self {
+            y,
+            limit,
+            distance,
+            sigma,
+            minus,
+            decay: rates.kappa.mul_add(limit, rates.decay),
+            kappa: rates.kappa,
+            scale: -distance / sigma,
+            gamma: oblique.select(bend, gamma),
+        }
+    }
+
+    /// With ζ = D₀(1 − exp(−2σθ))/σ: D₀ − D = (σ + ρ₋D₀)ζ/(1 + ρ₋ζ) and ∫D dθ = ln(1 + ρ₋ζ)/2ρ₋.
+    #[inline(always)]
+    pub fn at(&self, theta: Pack<S, K>) -> Point<S, K> {
+        let zeta = exp_m1_in_lanes(-2.0 * self.sigma * theta) * self.scale;
+        let q = self.minus * zeta;
+        let (m, n) = (q + 1.0, q + 2.0);
+        // One division for both; ln(1 + q) = 2 artanh(q/(2 + q)).
+        let inverse = zeta / (m * n);
+        let half = m * inverse;
+        let s = self.minus * half;
+        let turn = half * polynomial(ARTANH, s * s);
+        Point {
+            lost: self.gamma * n * inverse,
+            turn,
+            growth: -self.decay.mul_add(theta, self.kappa * turn),
+        }
+    }
+
+    /// How far it is, in θ, until ρ₋ζ is too large for the series of artanh, or y has grown too much: infinitely far if it never does.
+    #[inline(always)]
+    fn steep(&self) -> Pack<S, K> {
+        let bend = self.minus * self.distance;
+        let (most, least) = (2.0 * STEEP / (1.0 - STEEP), -2.0 * STEEP / (1.0 + STEEP));
+        let steep = bend * bend.lt(0.0).select(1.0 / least, 1.0 / most);
+        let grown = self.sigma * self.distance * (-1.0 / GROWN);
+        let one = Pack::splat(bend.simd(), 1.0);
+        reach(self.sigma, one, one / steep.max(grown))
+    }
+
+    /// How far it may be followed, in θ: where 1/y vanishes next to the path the functions have poles.
+    #[inline(always)]
+    fn resolved(&self) -> Pack<S, K> {
+        // 1 + ρ₋ζ = 0 where exp(−2σθ) = E = 1 + σ/ρ₋D; |ln E| ≥ 16|q − 1|/(q + 1) with q⁸ = |E|.
+        let bend = self.minus * self.distance;
+        let ratio = self.gamma / bend;
+        let q = ratio.abs().min(FAR).sqrt().sqrt().sqrt();
+        let sum = (q + 1.0) * (q + 1.0);
+        let square = q * q;
+        // On the path, ahead of or behind its start, or beside it by π/2|σ|.
+        let on = 8.0 / (sum * (square + 1.0) * square.mul_add(square, 1.0));
+        let on = -on / bend;
+        let beside = (q - 1.0) * (-8.0 / (q + 1.0)) / self.sigma;
+        let away = (0.5 * PI) / self.sigma;
+        let aside = ratio.lt(0.0);
+        let real = aside.select(beside, on);
+        let distance = aside.select(beside.mul_add(beside, away * away).sqrt(), on.abs());
+        // |θ − θ_p| summed over both ends is ASIDE times the length.
+        let length = distance.mul_add(ASIDE, -real) * (2.0 / (ASIDE * ASIDE - 1.0));
+        bend.abs().le(STEADY).select(f64::INFINITY, length)
+    }
+
+    /// The longest panel on which the functions are resolved.
+    #[inline(always)]
+    pub fn longest(&self, rates: &Rates<S, K>, at: &Course<S, K>) -> Pack<S, K> {
+        let y = self.y;
+        let size = self.distance.abs();
+        let still = size.eq(0.0);
+        let singular = self.resolved().min(self.steep());
+        let singular = still.select(f64::INFINITY, singular);
+        let turn = size.lt(SMALL).select(2.0 / TURN, 2.0 / SHARP_TURN);
+        let turn = size.lt(TINY).select(2.0 / LONG_TURN, turn);
+        let turning = still.select(0.0, self.sigma.abs() * turn);
+        let braked = rates.brake.mul_add(y.max(1.0), rates.brake);
+        let growing = (rates.kappa.abs() * size).mul_add(SHARPER, self.decay.abs());
+        let growing = growing * at.slip.le(FADED).select(0.5 / DECAY, 1.0 / DECAY);
+        let braked = y.lt(TINY).select(0.0, braked * (1.0 / BRAKE));
+        singular.min(1.0 / turning.max(growing).max(braked))
+    }
+}
+
+impl<S: Simd> Hodograph<S, 1> {
+    /// For several points of it.
+    #[inline(always)]
+    pub fn repeat<const N: usize>(&self) -> Hodograph<S, N> {
+        Hodograph {
+            y: self.y.repeat(),
+            limit: self.limit.repeat(),
+            distance: self.distance.repeat(),
+            sigma: self.sigma.repeat(),
+            minus: self.minus.repeat(),
+            decay: self.decay.repeat(),
+            kappa: self.kappa.repeat(),
+            scale: self.scale.repeat(),
+            gamma: self.gamma.repeat(),
+        }
+    }
+}
+
+/// Least way, in θ, on which ζ becomes so large: infinite if it never does.
+#[inline(always)]
+fn reach<S: Simd, const K: usize>(
+    sigma: Pack<S, K>,
+    distance: Pack<S, K>,
+    zeta: Pack<S, K>,
+) -> Pack<S, K> {
+    // −ln(1 − t)/2σ with t = σζ/D; −ln(1 − t) ≥ 8(1 − q)/(1 + q) with q⁴ = 1 − t.
+    let fourth = 1.0 - sigma * zeta / distance;
+    let q = fourth.max(0.0).sqrt().sqrt();
+    let least = 4.0 * zeta / ((q + 1.0) * (q + 1.0) * q.mul_add(q, 1.0) * distance);
+    Pack::splat(sigma.simd(), 0.0)
+        .lt(fourth)
+        .select(least, f64::INFINITY)
+}
+
+// ========================================================================================================
+// A panel
+//
+// A part of the way of a slip that turns, by quadrature over its nodes.
+//
+// With ∫A dθ, ∫Ay dθ and ∫Ay² dθ everything is known: dp = A(1 + y)² dθ, |**s**|-weighted friction −μA(1 − y²) dθ along
+// **u**, dA = −A(λ + κy) dθ and dw = −μK_ww w(1 + y) dθ. With v_c^n as it follows from p and u, the work of the normal force is
+//
+// ∫v_c^n dp = v p + (K_nn − K_nu²/K_uu) p²/2 + (K_nu/K_uu) ∫(u − u₀) dp.
+// ========================================================================================================
+
+/// Most by which ln w changes on a panel.
+const BRAKE: f64 = 32.0;
+
+/// Nodes side by side, for the chain of operations at one of them is long.
+const WIDE: usize = 10;
+
+/// Sum over the vectors.
+#[inline(always)]
+fn sum<S: Simd>(terms: &Pack<S, WIDE>) -> Pack<S, 1> {
+    let mut sum = terms.part(0);
+    for k in 1..WIDE {
+        sum = sum + terms.part(k);
+    }
+    sum
+}
+
+/// Goes on by θ = `length`, integrated by quadrature.
+#[inline(always)]
+fn integrate_panel<S: Simd>(
+    (rates, path): (&Rates<S, 1>, &Hodograph<S, 1>),
+    goal: &Goal<S, 1>,
+    at: &Course<S, 1>,
+    length: Pack<S, 1>,
+) -> Course<S, 1> {
+    let end_turn = path.limit.mul_add(length, path.at(length).turn);
+    let path = path.repeat::<WIDE>();
+    let start = at.y.repeat::<WIDE>();
+    let zero = Pack::<S, WIDE>::splat(at.y.simd(), 0.0);
+    let [mut x, mut y, mut z, mut moment] = [zero; 4];
+    for chunk in NODES.chunks_exact(WIDE) {
+        let (mut theta, mut weight) = (zero, zero);
+        for (k, &(node, share)) in chunk.iter().enumerate() {
+            theta.set_part(k, &(length * node));
+            weight.set_part(k, &Pack::<S, 1>::splat(length.simd(), share));
+        }
+        let point = path.at(theta);
+        let change = exp_m1_in_lanes(point.growth);
+        let tangent = start - point.lost;
+        let first = change.mul_add(weight, weight);
+        let second = first * tangent;
+        let third = second * tangent;
+        (x, y, z) = (x + first, y + second, z + third);
+        if goal.hypothesis == Hypothesis::Stronge {
+            let gained = (1.0 - tangent).mul_add(change, point.lost); // of u, over A
+            moment = (2.0_f64 * second + (first + third)).mul_add(gained, moment);
+        }
+    }
+    let [x, y, z, moment] = [sum(&x), sum(&y), sum(&z), sum(&moment)];
+    let size = at.a * length;
+    let moments = [x * size, y * size, z * size];
+    let mut end = *at;
+    arrive(rates, &mut end, moments, length, end_turn);
+    end.v = at.v + rates.velocity(moments);
+    let p = moments[0] + moments[2] + 2.0 * moments[1];
+    let mean = (0.5 * rates.sticking).mul_add(p, at.v);
+    end.work = at.work + mean.mul_add(p, moment * (at.a * size) * rates.nu / rates.uu);
+    end
+}
+
+/// The slip and the impulse after ∫A dθ, ∫Ay dθ, ∫Ay² dθ, θ and ∫y dθ.
+#[inline(always)]
+fn arrive<S: Simd, const K: usize>(
+    rates: &Rates<S, K>,
+    at: &mut Course<S, K>,
+    [x, y, z]: [Pack<S, K>; 3],
+    theta: Pack<S, K>,
+    turn: Pack<S, K>,
+) {
+    let exponent = -rates.decay.mul_add(theta, rates.kappa * turn);
+    let braked = (-(rates.brake * (theta + turn))).max(-BRAKE);
+    let a = at.a * exp_in_lanes(exponent);
+    let lost = at.w * exp_m1_in_lanes(braked); // Δw
+    at.w = at.w * exp_in_lanes(braked);
+    at.a = a;
+    at.u = a - at.w * at.w / (4.0 * a);
+    at.normal = at.normal + (x + z + 2.0 * y);
+    at.along = at.along - (x - z) * rates.friction;
+    at.across = at.across + lost / rates.ww;
+}
+
+/// Nodes and weights of the Gauss–Legendre quadrature of 20 nodes on [0, 1] (`tests/turning/tables.py`).
+const NODES: [(f64, f64); 20] = [
+    (0.0034357004074525377, 0.008807003569576059),
+    (0.018014036361043106, 0.02030071490019347),
+    (0.04388278587433705, 0.031336024167054534),
+    (0.0804415140888906, 0.04163837078835238),
+    (0.1268340467699246, 0.05096505990862022),
+    (0.1819731596367425, 0.059097265980759206),
+    (0.24456649902458646, 0.06584431922458832),
+    (0.3131469556422902, 0.07104805465919102),
+    (0.38610707442917747, 0.07458649323630187),
+    (0.46173673943325133, 0.07637669356536292),
+    (0.5382632605667487, 0.07637669356536292),
+    (0.6138929255708225, 0.07458649323630187),
+    (0.6868530443577098, 0.07104805465919102),
+    (0.7554335009754135, 0.06584431922458832),
+    (0.8180268403632576, 0.059097265980759206),
+    (0.8731659532300754, 0.05096505990862022),
+    (0.9195584859111094, 0.04163837078835238),
+    (0.956117214125663, 0.031336024167054534),
+    (0.9819859636389568, 0.02030071490019347),
+    (0.9965642995925474, 0.008807003569576059),
+];
+
+// ========================================================================================================
+// Power series
+//
+// Power series in x, one in each lane, and where they take a value.
+// ========================================================================================================
+
+/// Terms.
+const ORDER: usize = 6;
+/// Newton's steps towards a value.
+const NEWTON_STEPS: usize = 2;
+
+/// Coefficients of x, x², ...
+#[derive(Clone, Copy)]
+struct Series<S: Simd, const K: usize>(pub [Pack<S, K>; ORDER]);
+
+/// Where a series takes a value.
+struct Root<S: Simd, const K: usize> {
+    pub x: Pack<S, K>,
+    /// The slope there, and Newton's last step.
+    pub slope: Pack<S, K>,
+    pub step: Pack<S, K>,
+}
+
+impl<S: Simd, const K: usize> Series<S, K> {
+    #[inline(always)]
+    pub fn at(&self, x: Pack<S, K>) -> Pack<S, K> {
+        let mut sum = self.0[ORDER - 1];
+        for k in (0..ORDER - 1).rev() {
+            sum = sum.mul_add(x, self.0[k]);
+        }
+        sum * x
+    }
+
+    /// Where it is `value`, beyond `from`, where its slope is `slope`.
+    #[inline(always)]
+    pub fn reaches(&self, value: Pack<S, K>, from: Pack<S, K>, slope: Pack<S, K>) -> Root<S, K> {
+        let rest = value - self.at(from);
+        let mut x = from + parabola(slope, self.0[1], rest);
+        let mut step = x;
+        let mut slope = slope;
+        for _ in 0..NEWTON_STEPS {
+            let mut sum = self.0[ORDER - 1];
+            let mut derivative = Pack::splat(x.simd(), 0.0);
+            for k in (0..ORDER - 1).rev() {
+                derivative = derivative.mul_add(x, sum);
+                sum = sum.mul_add(x, self.0[k]);
+            }
+            slope = derivative.mul_add(x, sum);
+            let off = sum.mul_add(x, -value);
+            step = off.eq(0.0).select(0.0, off / slope);
+            x = x - step;
+        }
+        Root { x, slope, step }
+    }
+
+    /// Size of what is left out at 1.
+    #[inline(always)]
+    pub fn rest(&self) -> Pack<S, K> {
+        self.0[ORDER - 1].abs() + self.0[ORDER - 2].abs()
+    }
+}
+
+/// Where bx + cx² = `value`: the root next to 0, or the positive one where b = 0.
+#[inline(always)]
+fn parabola<S: Simd, const K: usize>(
+    b: Pack<S, K>,
+    c: Pack<S, K>,
+    value: Pack<S, K>,
+) -> Pack<S, K> {
+    let root = b.mul_add(b, 4.0 * c * value).max(0.0).sqrt();
+    let sum = b + b.lt(0.0).select(-root, root);
+    sum.eq(0.0).select(0.0, 2.0 * value / sum)
+}
+
+/// |x| to the power of the first term left out.
+#[inline(always)]
+fn power<S: Simd, const K: usize>(x: Pack<S, K>) -> Pack<S, K> {
+    let cube = x * x * x;
+    (cube * cube * x).abs()
+}
+
+// ========================================================================================================
+// The next event
+//
+// How far to go on: to the next event, as far as one can tell from here, and back where that was too far.
+// ========================================================================================================
+
+/// Guess of x up to which the series are asked.
+const NEAR: f64 = 3.0;
+/// Length over which v_c^n may have an extremum between its ends, times R.
+const SHORT: f64 = 1.0 / 1_048_576.0; // 2⁻²⁰
+
+/// The way to the next event if the velocity is linear in p and A(1 + y)² exponential in θ; backwards where that is behind.
+struct Way<S: Simd, const K: usize> {
+    /// In p and in θ.
+    pub impulse: Pack<S, K>,
+    pub length: Pack<S, K>,
+    /// v_c^n rises, or falls towards an end of the restitution.
+    leads: Mask<S, K>,
+    /// > 0 unless the slip would have vanished before.
+    pub fourth: Pack<S, K>,
+}
+
+/// How far the next event is, in θ; infinitely far if there is none.
+#[inline(always)]
+fn guess<S: Simd, const K: usize>(
+    rates: &Rates<S, K>,
+    goal: &Goal<S, K>,
+    at: &Course<S, K>,
+) -> Pack<S, K> {
+    let way = way(rates, goal, at);
+    let zero = Pack::splat(at.v.simd(), 0.0);
+    let ahead = way.leads & zero.le(way.impulse) & zero.lt(way.fourth);
+    ahead.select(way.length, f64::INFINITY)
+}
+
+/// The way to the next event.
+#[inline(always)]
+fn way<S: Simd, const K: usize>(
+    rates: &Rates<S, K>,
+    goal: &Goal<S, K>,
+    at: &Course<S, K>,
+) -> Way<S, K> {
+    let whole = 1.0 + at.y;
+    let stiff = rates.slope(at.y) / whole;
+    let zero = Pack::splat(at.v.simd(), 0.0);
+    let missing = goal.missing(at);
+    let restitution = match goal.hypothesis {
+        Hypothesis::Newton => missing / stiff,
+        Hypothesis::Poisson => missing,
+        Hypothesis::Stronge => parabola(at.v, 0.5 * stiff, missing),
+    };
+    // In a jam v_c^n falls to 0, perhaps before that.
+    let falls = zero.le(at.v) & stiff.lt(0.0);
+    let rest = -at.v / stiff;
+    let soon = match goal.hypothesis {
+        Hypothesis::Newton => rest,
+        _ => rest.min(restitution),
+    };
+    let p = at.compressing.select(rest, falls.select(soon, restitution));
+    let gamma = rates.minus.mul_add(at.y, rates.plus);
+    let growth = -(4.0 * at.y * gamma) / whole - rates.kappa.mul_add(at.y, rates.decay);
+    let share = p / (at.slip * whole);
+    let fourth = growth.mul_add(share, 1.0);
+    let q = fourth.max(0.0).sqrt().sqrt();
+    // ln(1 + t) = 8(q − 1)/(q + 1), nearly, with q⁴ = 1 + t.
+    let theta = 8.0 * share / ((q + 1.0) * (q + 1.0) * q.mul_add(q, 1.0));
+    Way {
+        impulse: p,
+        length: theta,
+        leads: zero.lt(stiff) | !at.compressing,
+        fourth,
+    }
+}
+
+/// How far it is certain, in θ, that v_c^n has no extremum, or all but none.
+#[inline(always)]
+fn crest<S: Simd, const K: usize>(rates: &Rates<S, K>, at: &Course<S, K>) -> Pack<S, K> {
+    let zero = Pack::splat(at.y.simd(), 0.0);
+    let (now, jam) = (rates.slope(at.y), rates.nu * rates.friction);
+    // There y = c, and y₀ − y = (ρ₊ + ρ₋y₀)ζ/(1 + ρ₋ζ).
+    let c = (jam - rates.nn) / (jam + rates.nn);
+    let zeta = now / (rates.nn + jam) / rates.minus.mul_add(c, rates.plus);
+    let certain = reach(rates.plus, at.y, zeta).max(SHORT / rates.pace(at.y));
+    (zero.lt(at.y) & zero.lt(c) & zero.lt(zeta)).select(certain, f64::INFINITY)
+}
+
+/// Goes through the events that are near, and says how far the next one is, in θ: infinitely far if there is none.
+#[inline(always)]
+fn events<S: Simd, const K: usize>(
+    rates: &Rates<S, K>,
+    goal: &Goal<S, K>,
+    at: &mut Course<S, K>,
+) -> Pack<S, K> {
+    let far = guess(rates, goal, at);
+    let crest = crest(rates, at);
+    let near = (at.is_late(goal) | (far * rates.pace(at.y)).le(NEAR)) & !at.over;
+    if !near.any() {
+        return far.min(crest);
+    }
+    let wanted = Near::new(rates, at).pass(rates, goal, near, crest, at);
+    near.select(wanted, far).min(crest)
+}
+
+/// Which lanes have gone too far on the way from `at` to `end`, and how far they should have gone.
+#[inline(always)]
+fn beyond<S: Simd, const K: usize>(
+    rates: &Rates<S, K>,
+    goal: &Goal<S, K>,
+    at: &Course<S, K>,
+    end: &Course<S, K>,
+    length: Pack<S, K>,
+) -> (Mask<S, K>, Pack<S, K>) {
+    let zero = Pack::splat(at.v.simd(), 0.0);
+    let y = end.w * end.w / (4.0 * end.a * end.a);
+    let slip = end.a * (1.0 + y);
+    let inverse = 1.0 / rates.pace(y);
+    let (before, after) = (rates.slope(at.y), rates.slope(y));
+    // v_c^n = 0: what was missing, how far it is beyond, and both slopes.
+    let sign = at.compressing.select(1.0, zero - 1.0);
+    let rests = Beyond {
+        value: -sign * at.v,
+        off: sign * end.v,
+        early: sign * at.slip * before * length,
+        late: sign * slip * after * inverse,
+    };
+    // The end of the restitution.
+    let (early, late) = match goal.hypothesis {
+        Hypothesis::Newton => (at.slip * before, slip * after),
+        Hypothesis::Poisson => (at.slip * (1.0 + at.y), slip * (1.0 + y)),
+        Hypothesis::Stronge => (at.v * at.slip * (1.0 + at.y), end.v * slip * (1.0 + y)),
+    };
+    let ends = Beyond {
+        value: goal.missing(at),
+        off: -goal.missing(end),
+        early: early * length,
+        late: late * inverse,
+    };
+    let forward = zero.lt(length);
+    let (at_rest, at_end) = (
+        rests.is_far() & forward,
+        ends.is_far() & forward & !at.compressing,
+    );
+    let rest = at_rest.select(rests.share(), 1.0);
+    let share = at_end.select(ends.share(), 1.0).min(rest);
+    (at_rest | at_end, share.max(1.0 / 64.0).min(0.9) * length)
+}
+
+/// An event that is behind the end of a way.
+struct Beyond<S: Simd, const K: usize> {
+    value: Pack<S, K>,
+    off: Pack<S, K>,
+    early: Pack<S, K>,
+    late: Pack<S, K>,
+}
+
+impl<S: Simd, const K: usize> Beyond<S, K> {
+    /// Whether it is too far behind for the series.
+    #[inline(always)]
+    fn is_far(&self) -> Mask<S, K> {
+        Pack::splat(self.off.simd(), 0.0).lt(self.off) & !self.off.le(0.5 * self.late)
+    }
+
+    /// At which share of the way it is, on a parabola.
+    #[inline(always)]
+    fn share(&self) -> Pack<S, K> {
+        parabola(self.early, self.off + self.value - self.early, self.value)
+    }
+}
+
+// ========================================================================================================
+// Events that are near
+//
+// The impact as power series about where it has come to: what happens there, and how far the next event is.
+//
+// The variable is x = Rθ with R the sum of the rates, so that the series converge for x of the order of 1. Where their last terms do
+// not count, an event is found to rounding; else the series say how far to go for it to be near.
+// ========================================================================================================
+
+/// Last of them at which it is found, relative to the way: the next one would be its square; and at which it is a guess.
+const FOUND: f64 = 1e-8;
+const GUESSED: f64 = 0.1;
+/// What the terms left out may be of the impact, and of the way to an event that is a guess.
+const EXACT: f64 = 1.0 / 9_007_199_254_740_992.0; // 2⁻⁵³
+const ROUGH: f64 = 1.0 / 128.0;
+
+/// The series.
+struct Near<S: Simd, const K: usize> {
+    /// 1/R.
+    unit: Pack<S, K>,
+    /// ∫A dθ, ∫Ay dθ, ∫Ay² dθ, ∫y dθ.
+    first: Series<S, K>,
+    second: Series<S, K>,
+    third: Series<S, K>,
+    turn: Series<S, K>,
+    /// Impulse along **n**, v_c^n, work of the normal force, as they change.
+    impulse: Series<S, K>,
+    velocity: Series<S, K>,
+    work: Series<S, K>,
+}
+
+impl<S: Simd, const K: usize> Near<S, K> {
+    #[inline(always)]
+    pub fn new(rates: &Rates<S, K>, at: &Course<S, K>) -> Self {
+        let zero = Pack::splat(at.y.simd(), 0.0);
+        let unit = 1.0 / rates.pace(at.y);
+        let (plus, minus) = (-2.0 * rates.plus * unit, -2.0 * rates.minus * unit);
+        let (decay, kappa) = (-rates.decay * unit, -rates.kappa * unit);
+        let empty = Series([zero; ORDER]);
+        let mut near = Self {
+            unit,
+            first: empty,
+            second: empty,
+            third: empty,
+            turn: empty,
+            impulse: empty,
+            velocity: empty,
+            work: empty,
+        };
+        // y and A/R, Ay/R; dp/dx and v_c^n.
+        let (mut y, mut a, mut b) = ([zero; ORDER], [zero; ORDER], [zero; ORDER]);
+        let (mut p, mut v) = ([zero; ORDER], [zero; ORDER]);
+        (y[0], a[0], v[0]) = (at.y, at.a * unit, at.v);
+        for k in 0..ORDER {
+            let (mut square, mut third, mut power) = (zero, zero, zero);
+            for i in 0..=k {
+                b[k] = y[k - i].mul_add(a[i], b[k]);
+            }
+            for i in 0..=k {
+                square = y[i].mul_add(y[k - i], square);
+                third = b[i].mul_add(y[k - i], third);
+            }
+            p[k] = a[k] + third + 2.0 * b[k];
+            for i in 0..=k {
+                power = v[i].mul_add(p[k - i], power);
+            }
+            let change = rates.velocity([a[k], b[k], third]);
+            let share = 1.0 / (k + 1) as f64;
+            near.first.0[k] = a[k] * share;
+            near.second.0[k] = b[k] * share;
+            near.third.0[k] = third * share;
+            near.turn.0[k] = y[k] * unit * share;
+            near.impulse.0[k] = p[k] * share;
+            near.velocity.0[k] = change * share;
+            near.work.0[k] = power * share;
+            if k + 1 < ORDER {
+                y[k + 1] = (plus * y[k] + minus * square) * share;
+                a[k + 1] = (decay * a[k] + kappa * b[k]) * share;
+                v[k + 1] = change * share;
+            }
+        }
+        near
+    }
+
+    /// What the terms left out are, as a velocity.
+    #[inline(always)]
+    fn error(&self, rates: &Rates<S, K>, x: Pack<S, K>) -> Pack<S, K> {
+        let rest = self.impulse.rest().mul_add(rates.nn, self.velocity.rest());
+        power(x) * rest
+    }
+
+    /// Whether an event beyond `from` is found to rounding, of which the velocity `allowed` is left.
+    #[inline(always)]
+    fn exact(
+        &self,
+        rates: &Rates<S, K>,
+        root: &Root<S, K>,
+        from: Pack<S, K>,
+        allowed: Pack<S, K>,
+    ) -> Mask<S, K> {
+        let small = root.step.abs().le((root.x - from).abs() * FOUND);
+        small & self.error(rates, root.x).le(allowed)
+    }
+
+    /// Whether what is `due` is a work that the series from here resolve.
+    #[inline(always)]
+    fn keeps(&self, x: Pack<S, K>, from: Pack<S, K>, due: Pack<S, K>) -> Mask<S, K> {
+        (self.work.rest() * power(x)).le(due * EXACT) & self.work.at(from).abs().le(16.0 * due)
+    }
+
+    /// Whether it is found roughly.
+    #[inline(always)]
+    fn rough(&self, rates: &Rates<S, K>, root: &Root<S, K>, from: Pack<S, K>) -> Mask<S, K> {
+        let small = root.step.abs().le((root.x - from).abs() * GUESSED);
+        let pace = self.impulse.0[0].mul_add(rates.nn, self.velocity.0[0].abs());
+        let way = pace * root.x.abs();
+        small & self.error(rates, root.x).le(way * ROUGH)
+    }
+
+    /// Goes through the events that are near, and says how far the next one is, in θ: infinitely far if nobody knows.
+    #[inline(always)]
+    pub fn pass(
+        &self,
+        rates: &Rates<S, K>,
+        goal: &Goal<S, K>,
+        near: Mask<S, K>,
+        crest: Pack<S, K>,
+        at: &mut Course<S, K>,
+    ) -> Pack<S, K> {
+        let zero = Pack::splat(at.v.simd(), 0.0);
+        let allowed = rates.nn.mul_add(at.normal, goal.approach) * EXACT;
+        let crest = crest / self.unit;
+        let rest = self.velocity.reaches(-at.v, zero, self.velocity.0[0]);
+        let met = (rest.x * at.v).le(0.0) & rest.x.le(crest);
+        let rests = near & at.compressing & zero.lt(rest.slope) & met;
+        let ends = rests & self.exact(rates, &rest, zero, allowed);
+        let from = ends.select(rest.x, 0.0);
+        let mut now = *at;
+        now.normal = at.normal + self.impulse.at(from);
+        now.work = at.work + self.work.at(from);
+        now.turn_back(ends, goal);
+
+        let restoring = near & !now.compressing;
+        let (path, value) = match goal.hypothesis {
+            Hypothesis::Newton => (&self.velocity, goal.rebound - at.v),
+            Hypothesis::Poisson => (
+                &self.impulse,
+                goal.restitution.mul_add(now.compression, now.compression) - at.normal,
+            ),
+            Hypothesis::Stronge => (&self.work, now.due - now.work + self.work.at(from)),
+        };
+        let slope = match goal.hypothesis {
+            Hypothesis::Stronge => ends.select(0.0, path.0[0]),
+            _ => path.0[0],
+        };
+        let last = path.reaches(value, from, slope.max(0.0));
+        let ahead = zero.le((last.x - from) * (value - path.at(from)));
+        let goes = restoring & zero.lt(last.slope) & last.x.le(crest) & ahead;
+        let mut over = goes & self.exact(rates, &last, from, allowed);
+        let mut end = last.x;
+        if goal.hypothesis == Hypothesis::Stronge {
+            let none = ends & (now.due - now.work).le(0.0); // is given back
+            over = over & self.keeps(last.x, from, now.due) | none;
+            end = none.select(from, end);
+        }
+        // In a jam the restitution may turn into another compression first.
+        let falls = restoring & !ends & rest.slope.lt(0.0) & zero.le(rest.x * at.v);
+        let falls = falls & rest.x.le(crest) & !(goes & last.x.lt(rest.x));
+        let fallen = falls & self.exact(rates, &rest, zero, allowed);
+        over = over & !falls;
+
+        let to = over.select(end, fallen.select(rest.x, from));
+        let theta = to * self.unit;
+        let moments = [self.first.at(to), self.second.at(to), self.third.at(to)];
+        now.normal = at.normal;
+        arrive(rates, &mut now, moments, theta, self.turn.at(to));
+        now.v = (ends & !over | fallen).select(0.0, at.v + self.velocity.at(to));
+        now.work = (ends & !over).select(now.work, at.work + self.work.at(to));
+        now.compressing = now.compressing | fallen;
+        now.over = now.over | over;
+        let moved = over | ends | fallen;
+        *at = Course::choose(moved, &now, at);
+
+        let rests = rests & !ends & self.rough(rates, &rest, zero);
+        let falls = falls & !fallen & self.rough(rates, &rest, zero);
+        let goes = goes & !over & !falls & self.rough(rates, &last, from);
+        let x = (rests | falls).select(rest.x, last.x - from);
+        let known = rests | falls | goes;
+        known.select(x * self.unit, guess(rates, goal, at))
+    }
+}
+
+// ========================================================================================================
+// Where the slip vanishes
+//
+// Where the slip vanishes: the impulse until then as a continued fraction.
+//
+// With **u** taken the right way the direction tends to a fixed one, y → y*: to y* = 0 where ρ₊ ≥ 0, else to y* = −ρ₊/ρ₋. With
+// D = y − y*, σ = |ρ₊| and λ* = λ + κy*
+//
+// dD/dθ = −2D(σ + ρ₋D), d ln A/dθ = −λ* − κD,
+//
+// and the integrals ∫A Dʲ dθ over the rest of the way are hypergeometric functions of −ρ₋D/σ; ∫A dθ, for one, is
+// (A/λ*) ₂F₁(κ/2ρ₋, 1; λ*/2σ + 1; −ρ₋D/σ). C. F. Gauss's continued fraction of it, multiplied by its denominators so that none
+// can vanish, consists of
+//
+// G_k = λ* + 2σk, N_k = G_k N_{k+1} + n_{k+1} N_{k+2}, n_{2m} = 2mD(λ*ρ₋ − κσ + 2mσρ₋), n_{2m+1} = D(κ + 2mρ₋)(λ* + 2mσ).
+//
+// With M = N₁ + κDN₂ and by d(ADʲ)/dθ, which relates these integrals to one another,
+//
+// ∫A dθ = A N₁/(λ*M), ∫AD dθ = A D N₂/M, ∫AD² dθ = A D²G₁(N₃ + κDN₄)/M,
+// ∫AD³ dθ = A D³G₁G₂(N₄ + D(κ + 2ρ₋)(N₅ + κDN₆))/M.
+//
+// The impulse is ∫A(1 + y)² dθ. With A², 2λ* and 2κ for A, λ* and κ they give ∫u dp, and with it the work.
+// ========================================================================================================
+
+/// Pairs of levels of the fraction.
+const PAIRS: usize = 12;
+/// Most that the impulse may change, as a share of it, if the fraction is cut off instead of closed: it is then five to fifty times as
+/// far off.
+const SETTLED: f64 = 1.0 / 281_474_976_710_656.0; // 2⁻⁴⁸
+/// Share by which a direction may turn until the slip vanishes and yet count as constant.
+const STRAIGHT: f64 = 2.0 * f64::EPSILON;
+
+/// The way of a slip that vanishes.
+struct Stop<S: Simd, const K: usize> {
+    /// Whether the slip vanishes, unless the impact is over before.
+    pub reached: Mask<S, K>,
+    /// Whether **u** is taken the other way.
+    back: Mask<S, K>,
+    /// A, y*, D.
+    a: Pack<S, K>,
+    limit: Pack<S, K>,
+    distance: Pack<S, K>,
+    /// 1/G₁, and times that ρ₋, σ, λ*, κ.
+    unit: Pack<S, K>,
+    minus: Pack<S, K>,
+    sigma: Pack<S, K>,
+    decay: Pack<S, K>,
+    kappa: Pack<S, K>,
+}
+
+/// N₁ to N₆ with a common factor.
+struct Levels<S: Simd, const K: usize>([Pack<S, K>; 6]);
+
+/// What the fraction is made of: λ*, κ, 2σ, 2ρ₋, D, and D(λ*ρ₋ − κσ) and 2Dσρ₋.
+struct Terms<S: Simd, const K: usize> {
+    decay: Pack<S, K>,
+    kappa: Pack<S, K>,
+    twice: Pack<S, K>,
+    bend: Pack<S, K>,
+    distance: Pack<S, K>,
+    mixed: Pack<S, K>,
+    curl: Pack<S, K>,
+}
+
+impl<S: Simd, const K: usize> Terms<S, K> {
+    #[inline(always)]
+    fn new(stop: &Stop<S, K>, order: f64) -> Self {
+        let d = stop.distance;
+        let (decay, kappa) = (stop.decay * order, stop.kappa * order);
+        let twice = 2.0 * stop.sigma;
+        Self {
+            decay,
+            kappa,
+            twice,
+            bend: 2.0 * stop.minus,
+            distance: d,
+            mixed: (decay * stop.minus - kappa * stop.sigma) * d,
+            curl: twice * stop.minus * d,
+        }
+    }
+
+    /// G_k.
+    #[inline(always)]
+    fn ground(&self, k: f64) -> Pack<S, K> {
+        self.twice.mul_add(k, self.decay)
+    }
+
+    /// n_{2m}.
+    #[inline(always)]
+    fn even(&self, m: f64) -> Pack<S, K> {
+        self.curl.mul_add(m, self.mixed) * (2.0 * m)
+    }
+
+    /// n_{2m+1}.
+    #[inline(always)]
+    fn odd(&self, m: f64) -> Pack<S, K> {
+        self.bend.mul_add(m, self.kappa) * self.distance * self.ground(m)
+    }
+}
+
+impl<S: Simd, const K: usize> Stop<S, K> {
+    #[inline(always)]
+    pub fn new(rates: &Rates<S, K>, at: &Course<S, K>) -> Self {
+        let y = at.y;
+        let zero = Pack::splat(y.simd(), 0.0);
+        let gamma = rates.minus.mul_add(y, rates.plus);
+        // A direction that is left must be the right one from the start.
+        let weight = zero.lt(gamma).select(y, 1.0);
+        let straight = (gamma.abs() * weight).le(rates.kappa.mul_add(y, rates.decay) * STRAIGHT);
+        let aside = rates.plus.lt(0.0) & zero.le(rates.nu);
+        let forward = zero.le(rates.plus) & zero.lt(gamma);
+        let back = !(straight | aside | forward);
+        let plus = back.select(-rates.minus, rates.plus);
+        let minus = back.select(-rates.plus, rates.minus);
+        let kappa = rates.brake - minus;
+        let decay = back.select(rates.nu.mul_add(2.0, rates.decay), rates.decay);
+        let y = back.select(1.0 / y, y);
+        let limit = plus.lt(0.0).select(-plus / minus, 0.0);
+        let limit = straight.select(y, limit);
+        let sigma = plus.abs();
+        let decay = kappa.mul_add(limit, decay);
+        let unit = 1.0 / sigma.mul_add(2.0, decay);
+        Self {
+            reached: zero.lt(decay),
+            back,
+            a: back.select(at.a * at.y, at.a),
+            limit,
+            distance: y - limit,
+            unit,
+            minus: minus * unit,
+            sigma: sigma * unit,
+            decay: decay * unit,
+            kappa: kappa * unit,
+        }
+    }
+
+    /// The fraction for A to the power of `order`: closed as if it went on without change, and cut off.
+    #[inline(always)]
+    fn levels(&self, order: f64) -> [Levels<S, K>; 2] {
+        let terms = Terms::new(self, order);
+        let top = (PAIRS + 1) as f64;
+        let (g, n, o) = (
+            terms.ground(2.0 * top - 1.0),
+            terms.even(top),
+            terms.odd(top),
+        );
+        // t = g + n/(g + o/t).
+        let square = g * g;
+        let half = square + (n - o);
+        let root = half.mul_add(half, 4.0 * square * o).max(0.0).sqrt();
+        let one = Pack::splat(g.simd(), 1.0);
+        let mut found = [Levels([one; 6]), Levels([one; 6])];
+        let mut pairs = [(half + root, 2.0 * g), (g, one)];
+        for m in (1..=PAIRS).rev() {
+            let (n, o) = (terms.even(m as f64), terms.odd(m as f64));
+            let (low, high) = (
+                terms.ground((2 * m - 1) as f64),
+                terms.ground((2 * m) as f64),
+            );
+            for i in 0..2 {
+                let second = high.mul_add(pairs[i].0, o * pairs[i].1);
+                let first = low.mul_add(second, n * pairs[i].0);
+                pairs[i] = (first, second);
+                if m <= 3 {
+                    found[i].0[2 * m - 1] = second;
+                    found[i].0[2 * m - 2] = first;
+                }
+            }
+        }
+        found
+    }
+
+    /// ∫(1 + y)² A dθ from the levels for A, over A/G₁, as a fraction.
+    #[inline(always)]
+    fn impulse(&self, Levels(n): &Levels<S, K>) -> (Pack<S, K>, Pack<S, K>) {
+        let (d, q) = (self.distance, 1.0 + self.limit);
+        let pull = self.kappa * d;
+        let whole = pull.mul_add(n[1], n[0]) * self.decay;
+        let outer = (2.0 * q).mul_add(n[1], d * pull.mul_add(n[3], n[2]));
+        ((q * q).mul_add(n[0], outer * (d * self.decay)), whole)
+    }
+
+    /// ∫(1 − y)(1 + y)² A² dθ from the levels for A², over A²/G₁, as a fraction.
+    #[inline(always)]
+    fn moment(&self, Levels(n): &Levels<S, K>) -> (Pack<S, K>, Pack<S, K>) {
+        let (d, q) = (self.distance, 1.0 + self.limit);
+        let (decay, pull) = (2.0 * self.decay, 2.0 * self.kappa * d);
+        let whole = pull.mul_add(n[1], n[0]) * decay;
+        let first = self.sigma.mul_add(2.0, decay);
+        let second = self.sigma.mul_add(4.0, decay);
+        let tilt = (2.0 * d).mul_add(self.minus, pull);
+        let square = pull.mul_add(n[3], n[2]) * first;
+        let cube = pull.mul_add(n[5], n[4]).mul_add(tilt, n[3]) * (first * second);
+        // (1 − y)(1 + y)² = (s − D)(q + D)².
+        let s = 1.0 - self.limit;
+        let inner = (s - 2.0 * q).mul_add(square, -(d * cube));
+        let outer = (q * (2.0 * s - q)).mul_add(n[1], d * inner);
+        ((s * (q * q)).mul_add(n[0], outer * (d * decay)), whole)
+    }
+
+    /// Goes to where the slip vanishes, if nothing happens before: of which lanes that is true.
+    #[inline(always)]
+    pub fn pass(
+        &self,
+        rates: &Rates<S, K>,
+        goal: &Goal<S, K>,
+        at: &mut Course<S, K>,
+    ) -> Mask<S, K> {
+        let zero = Pack::splat(at.y.simd(), 0.0);
+        if !(self.reached & !at.over).any() {
+            return self.reached & zero.lt(zero);
+        }
+        let scale = self.a * self.unit;
+        let [closed, open] = self.levels(1.0);
+        let ((impulse, whole), (crude, cut)) = (self.impulse(&closed), self.impulse(&open));
+        let off = (impulse * cut - crude * whole).abs() * scale;
+        let impulse = scale * impulse / whole;
+        let mut settled = off.le((impulse + at.normal) * (whole * cut).abs() * SETTLED);
+        let along = -impulse.mul_add(rates.nu, at.u) / rates.uu;
+        let v = rates.nn.mul_add(impulse, rates.nu.mul_add(along, at.v));
+        if goal.hypothesis == Hypothesis::Stronge {
+            let scale = self.a * scale;
+            let [closed, open] = self.levels(2.0);
+            let ((moment, whole), (crude, cut)) = (self.moment(&closed), self.moment(&open));
+            let off = (moment * cut - crude * whole).abs() * scale;
+            settled = settled & off.le(at.slip * impulse * (whole * cut).abs() * SETTLED);
+            let moment = scale * moment / whole;
+            let moment = self.back.select(-moment, moment);
+            let mean = (0.5 * rates.sticking).mul_add(impulse, at.v);
+            let share = (-at.u).mul_add(impulse, moment) * rates.nu / rates.uu;
+            at.work = at.work + mean.mul_add(impulse, share);
+        }
+        let jam = rates.nu * rates.friction;
+        let jam = self.back.select(-jam, jam);
+        let now = rates.slope(at.y);
+        let then = (rates.nn + jam).mul_add(self.limit, rates.nn - jam);
+        let crest = zero.lt(now) & then.lt(0.0);
+        at.normal = at.normal + impulse;
+        at.along = at.along + along;
+        at.across = at.across - at.w / rates.ww;
+        at.v = v;
+        let compressing = at.compressing & v.lt(0.0);
+        let restoring = !at.compressing & zero.le(v) & zero.lt(goal.missing(at));
+        self.reached & settled & (compressing | restoring) & !crest
+    }
+}
+
+// ========================================================================================================
+// The last part of a slip
+//
+// The last part of a slip, whose direction hardly turns any more: impulse and work are sums of exponential functions.
+//
+// About a fixed direction y* that attracts, with D, σ and λ* as in the hodograph, ζ = D/(1 + ρ₋D/σ) falls
+// as E = exp(−2σθ). With w = ρ₋ζ₀/σ and η = κζ₀/2σ
+//
+// D = ζ₀E/(1 − wE), A = A₀ exp(−λ*θ) S(E)/S(1), S(E) = (1 − wE)^{−κ/2ρ₋} = Σ a_k Eᵏ, a_{k+1} = a_k (η + kw)/(k + 1),
+//
+// and S(E)(1 − wE)⁻ʲ, of which ADʲ consists, has η + jw for η. So dp/dθ = A(1 + y)² is a sum of exponential functions with the rates
+// λ* + 2σk, and u dp/dθ, for the work, one with 2λ* + 2σk. Both are integrated term by term, with 1 − e^{−λ*θ}Eᵏ from one k to the next.
+// The rest follows from p and the slip at the end, and the ends of compression and restitution by steps of third order.
+// ========================================================================================================
+
+/// Terms of the series: with what follows, those left out are below 10⁻¹⁷.
+const TERMS: usize = 12;
+/// Largest |w| and |η|.
+const BEND: f64 = 1.0 / 48.0;
+const PULL: f64 = 1.0 / 24.0;
+/// Most by which ln A and ln E^½ change.
+const LARGE: f64 = 32.0;
+/// Steps towards an event, and the last of them, relative to the way, at which it is found: a few roundings.
+const EVENT_STEPS: usize = 7;
+/// Most by which ln A changes in a step.
+const FOLDS: f64 = 8.0;
+const CLOSE: f64 = 1.0 / 562_949_953_421_312.0; // 2⁻⁴⁹
+
+/// Largest speed that the slip's coupling may lend to the normal motion, over that of the approach.
+const SLIDES: f64 = 16.0;
+
+/// artanh(s)/s in powers of s².
+const FEW_ARTANH: [f64; 5] = [1.0, 1.0 / 3.0, 1.0 / 5.0, 1.0 / 7.0, 1.0 / 9.0];
+
+/// The slip from a point on.
+struct Tail<S: Simd, const K: usize> {
+    /// Whether its direction turns so little.
+    straight: Mask<S, K>,
+    /// y*, ζ₀, w, σ, λ*.
+    limit: Pack<S, K>,
+    zeta: Pack<S, K>,
+    bend: Pack<S, K>,
+    sigma: Pack<S, K>,
+    decay: Pack<S, K>,
+    /// η.
+    pull: Pack<S, K>,
+}
+
+/// What the sums consist of, in units of A/S(1), and of its square for the work.
+struct Sums<S: Simd, const K: usize> {
+    /// a_k.
+    size: [Pack<S, K>; TERMS],
+    /// The coefficients of dp/dθ, of the impulse along **u**, and of u dp/dθ, over their rates.
+    impulse: [Pack<S, K>; TERMS],
+    along: [Pack<S, K>; TERMS],
+    moment: [Pack<S, K>; TERMS],
+}
+
+impl<S: Simd, const K: usize> Tail<S, K> {
+    #[inline(always)]
+    pub fn new(rates: &Rates<S, K>, y: Pack<S, K>) -> Self {
+        let zero = Pack::splat(y.simd(), 0.0);
+        let (plus, minus) = (rates.plus, rates.minus);
+        let oblique = plus.lt(0.0);
+        let sigma = plus.abs().max(STEADY);
+        let inverse = 1.0 / oblique.select(minus * sigma, sigma);
+        // y* = −ρ₊/ρ₋.
+        let limit = oblique.select(sigma * sigma * inverse, 0.0);
+        let scale = oblique.select(minus * inverse, inverse);
+        let distance = y - limit;
+        let gamma = minus.mul_add(distance * scale, 1.0);
+        let zeta = distance / gamma;
+        let bend = minus * zeta * scale;
+        let pull = rates.kappa * zeta * (0.5 * scale);
+        let decay = rates.kappa.mul_add(limit, rates.decay);
+        let steady = oblique.select(minus, 1.0);
+        let straight = zero.lt(steady)
+            & bend.abs().le(BEND)
+            & pull.abs().le(PULL)
+            & zero.le(decay.mul_add(2.0, sigma));
+        let even = decay.abs().max(STEADY);
+        Self {
+            straight,
+            limit,
+            zeta,
+            bend,
+            sigma,
+            decay: decay.lt(0.0).select(-even, even),
+            pull,
+        }
+    }
+
+    /// Of which lanes it is known where the next event is.
+    #[inline(always)]
+    pub fn leads(&self, rates: &Rates<S, K>, goal: &Goal<S, K>, at: &Course<S, K>) -> Mask<S, K> {
+        let zero = Pack::splat(at.y.simd(), 0.0);
+        // v_c^n rises all the way, and the work keeps its digits beside that of the slip.
+        let rises = zero.lt(rates.slope(at.y)) & zero.lt(rates.slope(self.limit));
+        let lanes = self.straight & rises & !at.over & !at.is_late(goal);
+        if goal.hypothesis != Hypothesis::Stronge {
+            return lanes;
+        }
+        lanes & (at.slip * rates.nu.abs()).le(goal.approach * rates.uu * SLIDES)
+    }
+
+    /// The coefficients of S(E)ᵒ(1 − wE)⁻ʲ.
+    #[inline(always)]
+    fn series(&self, order: f64, j: f64) -> [Pack<S, K>; TERMS] {
+        let first = self.bend.mul_add(j, order * self.pull);
+        let mut terms = [Pack::splat(self.zeta.simd(), 1.0); TERMS];
+        for k in 1..TERMS {
+            let factor = self.bend.mul_add((k - 1) as f64, first);
+            terms[k] = terms[k - 1] * factor * (1.0 / k as f64);
+        }
+        terms
+    }
+
+    /// The sums from here on.
+    #[inline(always)]
+    fn sums(&self, rates: &Rates<S, K>, hypothesis: Hypothesis) -> Sums<S, K> {
+        let zero = Pack::splat(self.zeta.simd(), 0.0);
+        let (z, y) = (self.zeta, self.limit);
+        let (q, s) = (1.0 + y, 1.0 - y);
+        // (1 + y)², −μ(1 − y²), and (1 − y)(1 + y)² in powers of D.
+        let impulse = [q * q, 2.0 * q, 1.0 + zero];
+        let mu = rates.friction;
+        let along = [-mu * (q * s), 2.0 * mu * y, mu + zero];
+        let moment = [s * (q * q), q * (2.0 * s - q), s - 2.0 * q, zero - 1.0];
+        let powers = [1.0 + zero, z, z * z, z * (z * z)];
+        let single = [0.0, 1.0, 2.0].map(|j| self.series(1.0, j));
+        let mut sums = Sums {
+            size: single[0],
+            impulse: [zero; TERMS],
+            along: [zero; TERMS],
+            moment: [zero; TERMS],
+        };
+        for k in 0..TERMS {
+            let inverse = 1.0 / (2.0 * self.sigma).mul_add(k as f64, self.decay);
+            for j in 0..=k.min(2) {
+                let term = powers[j] * single[j][k - j] * inverse;
+                sums.impulse[k] = impulse[j].mul_add(term, sums.impulse[k]);
+                sums.along[k] = along[j].mul_add(term, sums.along[k]);
+            }
+        }
+        if hypothesis == Hypothesis::Stronge {
+            let double = [0.0, 1.0, 2.0, 3.0].map(|j| self.series(2.0, j));
+            for k in 0..TERMS {
+                let rate = 2.0 * self.sigma.mul_add(k as f64, self.decay);
+                for j in 0..=k.min(3) {
+                    let term = powers[j] * double[j][k - j] / rate;
+                    sums.moment[k] = moment[j].mul_add(term, sums.moment[k]);
+                }
+            }
+        }
+        sums
+    }
+
+    /// Where the slip has come to after θ.
+    #[inline(always)]
+    fn at(
+        &self,
+        rates: &Rates<S, K>,
+        goal: &Goal<S, K>,
+        sums: &Sums<S, K>,
+        from: &Course<S, K>,
+        theta: Pack<S, K>,
+    ) -> Course<S, K> {
+        let half = self.half(theta);
+        let (e, turned) = ((1.0 + half) * (1.0 + half), -(half * (2.0 + half)));
+        let lost = -exp_m1_in_lanes((-(self.decay * theta)).max(-LARGE).min(LARGE));
+        let x = 1.0 - lost;
+        let [zero, one] = [0.0, 1.0].map(|value| Pack::splat(theta.simd(), value));
+        let (mut size, mut power) = (zero, one);
+        let (mut impulse, mut along, mut moment) = (size, size, size);
+        // 1 − e^{−λ*θ}Eᵏ, and for A².
+        let (mut first, mut second) = (lost, lost * (2.0 - lost));
+        for k in 0..TERMS {
+            size = sums.size[k].mul_add(power, size);
+            impulse = sums.impulse[k].mul_add(first, impulse);
+            along = sums.along[k].mul_add(first, along);
+            let step = x * power * turned;
+            first = first + step;
+            if goal.hypothesis == Hypothesis::Stronge {
+                moment = sums.moment[k].mul_add(second, moment);
+                second = x.mul_add(step, second);
+            }
+            power = power * e;
+        }
+        let unit = from.a / sums.whole();
+        let (impulse, along) = (impulse * unit, along * unit);
+        let a = size * x * unit;
+        let distance = self.zeta * e / (1.0 - self.bend * e);
+        let y = (self.limit + distance).max(0.0);
+
+        let mut at = *from;
+        at.y = y;
+        at.a = a;
+        at.slip = a * (1.0 + y);
+        at.u = a * (1.0 - y);
+        at.v = rates.nn.mul_add(impulse, rates.nu.mul_add(along, from.v));
+        at.normal = from.normal + impulse;
+        at.along = from.along + along;
+        if goal.hypothesis == Hypothesis::Stronge {
+            let mean = (0.5 * rates.sticking).mul_add(impulse, from.v);
+            let gained = moment * (unit * unit) - from.u * impulse;
+            at.work = from.work + mean.mul_add(impulse, gained * rates.nu / rates.uu);
+        }
+        at
+    }
+
+    /// Δw after θ, from d ln w/dθ = −μK_ww(1 + y): ∫D dθ = artanh(s)/ρ₋ with s = w(1 − E)/(2 − w(1 + E)).
+    #[inline(always)]
+    fn braked(&self, rates: &Rates<S, K>, w: Pack<S, K>, theta: Pack<S, K>) -> Pack<S, K> {
+        let half = self.half(theta);
+        let (e, turned) = ((1.0 + half) * (1.0 + half), -(half * (2.0 + half)));
+        let part = turned / (2.0 - self.bend * (1.0 + e));
+        let s = self.bend * part;
+        let turn = self.zeta / self.sigma * part * polynomial(FEW_ARTANH, s * s);
+        let whole = (1.0 + self.limit).mul_add(theta, turn);
+        let half = exp_m1_in_lanes((-0.5 * rates.brake * whole).max(-LARGE));
+        w * (half * (2.0 + half))
+    }
+
+    /// E^½ − 1 after θ.
+    #[inline(always)]
+    fn half(&self, theta: Pack<S, K>) -> Pack<S, K> {
+        exp_m1_in_lanes((-(self.sigma * theta)).max(-LARGE))
+    }
+
+    /// Goes through the next events, in the lanes of the mask, as far as they are before the slip vanishes.
+    #[inline(always)]
+    pub fn pass(
+        mut self,
+        rates: &Rates<S, K>,
+        goal: &Goal<S, K>,
+        mut lanes: Mask<S, K>,
+        at: &mut Course<S, K>,
+    ) {
+        let zero = Pack::splat(at.y.simd(), 0.0);
+        let mut sums = self.sums(rates, goal.hypothesis);
+        // The ends of compression and restitution.
+        for _ in 0..2 {
+            let from = *at;
+            let mut theta = zero;
+            let longest = FOLDS / self.decay.abs();
+            // Of the others the slip vanishes first.
+            lanes = lanes & zero.lt(way(rates, goal, at).fourth);
+            let mut found = !lanes;
+            for _ in 0..EVENT_STEPS {
+                let way = way(rates, goal, at);
+                let done = way.impulse.abs().le((at.normal - from.normal) * CLOSE);
+                found = found | done & zero.lt(theta);
+                if found.all() {
+                    break;
+                }
+                theta = found.select(theta, theta + way.length.min(longest).max(-longest));
+                let there = self.at(rates, goal, &sums, &from, theta);
+                *at = Course::choose(found, at, &there);
+            }
+            let lost = self.braked(rates, from.w, theta);
+            at.w = from.w + lost;
+            at.across = from.across + lost / rates.ww;
+            let far = (self.decay.abs() * theta).le(LARGE);
+            lanes = lanes & found & far;
+            let compressed = lanes & at.compressing;
+            at.turn_back(compressed, goal);
+            let done = lanes & !compressed | compressed & goal.missing(at).le(0.0);
+            at.over = at.over | done;
+            *at = Course::choose(lanes, at, &from);
+            lanes = lanes & !done;
+            if !lanes.any() {
+                return;
+            }
+            self.forward(&mut sums, theta);
+        }
+    }
+
+    /// Goes on by θ.
+    #[inline(always)]
+    fn forward(&mut self, sums: &mut Sums<S, K>, theta: Pack<S, K>) {
+        let root = 1.0 + self.half(theta);
+        let e = root * root;
+        self.zeta = self.zeta * e;
+        self.bend = self.bend * e;
+        sums.forward(e);
+    }
+}
+
+impl<S: Simd, const K: usize> Sums<S, K> {
+    /// S(1).
+    #[inline(always)]
+    fn whole(&self) -> Pack<S, K> {
+        let mut sum = self.size[TERMS - 1];
+        for k in (0..TERMS - 1).rev() {
+            sum = sum + self.size[k];
+        }
+        sum
+    }
+
+    /// The sums from where E has fallen so far.
+    #[inline(always)]
+    fn forward(&mut self, e: Pack<S, K>) {
+        let mut power = e;
+        for k in 1..TERMS {
+            for terms in [
+                &mut self.size,
+                &mut self.impulse,
+                &mut self.along,
+                &mut self.moment,
+            ] {
+                terms[k] = terms[k] * power;
+            }
+            power = power * e;
+        }
+    }
+}
+
+// ========================================================================================================
+// The whole impact
+// ========================================================================================================
+
+/// Least y of a slip that comes round to be looked at from the other side.
+const ROUND: f64 = 1.0 / 4.0;
+/// Panels after which the slip is taken to have vanished.
+const MOST_PANELS: f64 = 1000.0;
+
+/// Impacts under way, one in each lane.
+#[derive(Clone, Copy)]
+struct Impacts<S: Simd> {
+    rates: Rates<S, 1>,
+    goal: Goal<S, 1>,
+    course: Course<S, 1>,
+    /// Panels so far.
+    panels: Pack<S, 1>,
+    /// What the velocities are measured in.
+    scale: Pack<S, 1>,
+    /// By symmetry such a slip does not turn.
+    aside: Mask<S, 1>,
+    /// On which side **w** is.
+    left: Mask<S, 1>,
+}
+
+impl<S: Simd> Impacts<S> {
+    #[inline(always)]
+    fn new(contact: &Slipping<S, 1>, friction: f64, hypothesis: Hypothesis) -> Self {
+        let simd = contact.speed.simd();
+        let zero = Pack::splat(simd, 0.0);
+        let (along, across) = (contact.along, contact.across);
+        let size = contact.speed + (along.abs() + across.abs());
+        let scale = size.eq(0.0).select(1.0, size);
+        let unit = 1.0 / scale;
+
+        // Lanes without a particle may hold anything, and no end.
+        let responses = contact.nn + (contact.uu + contact.ww);
+        let strikes =
+            zero.le(contact.speed) & (size + responses).lt(f64::INFINITY) & !across.eq(0.0);
+        let course = Course {
+            u: along * unit,
+            w: across.abs() * unit,
+            slip: zero,
+            a: zero,
+            y: zero,
+            mirror: zero + 1.0,
+            v: -contact.speed * unit,
+            normal: zero,
+            along: zero,
+            across: zero,
+            work: zero,
+            compressing: Mask::splat(simd, true),
+            compression: zero,
+            balance: zero,
+            taken: zero,
+            due: zero,
+            over: !strikes,
+            limit: zero + f64::INFINITY,
+        };
+        Self {
+            rates: Rates::new(contact, friction),
+            goal: Goal {
+                hypothesis,
+                restitution: contact.restitution,
+                approach: contact.speed * unit,
+                rebound: contact.restitution * contact.speed * unit,
+            },
+            course,
+            panels: zero,
+            scale,
+            aside: along.eq(0.0) & contact.nu.eq(0.0),
+            left: across.lt(0.0),
+        }
+    }
+
+    /// Ends the impacts whose slip vanishes before anything else happens.
+    #[inline(always)]
+    fn stop(&mut self) {
+        let Self {
+            rates,
+            goal,
+            course,
+            panels,
+            ..
+        } = self;
+        // **u** along the slip, or the way that K_nu drives it.
+        let back = course.u.lt(0.0) | course.u.eq(0.0) & rates.nu.lt(0.0);
+        course.turn_round(back, rates);
+        course.direction();
+        // Or against it, where it comes round and is nearer to the direction to which it turns: y then falls.
+        let ahead = rates.plus.lt(0.0) & (rates.minus * course.y).le(rates.plus);
+        let comes = ahead & !course.y.lt(ROUND);
+        if comes.any() {
+            course.turn_round(comes, rates);
+            course.direction();
+        }
+
+        // What is left is a straight line in p where the slip has vanished, or goes on along **u** for ever.
+        let straight = course.w.le(VANISHED) & rates.decay.le(0.0) & course.y.lt(1.0);
+        let straight = straight & !course.is_late(goal);
+        let vanished = course.slip.le(VANISHED) | straight | !panels.lt(MOST_PANELS);
+        let stop = Stop::new(rates, course);
+        let candidates = (stop.reached | vanished) & !course.over;
+        if candidates.any() {
+            let mut stopped = *course;
+            let stops = stop.pass(rates, goal, &mut stopped) | vanished;
+            let last = stops & candidates;
+            let mut end = Course::choose(vanished, course, &stopped);
+            end.finish(rates, goal);
+            end.over = Mask::splat(panels.simd(), true);
+            *course = Course::choose(last, &end, course);
+        }
+    }
+
+    /// Contacts that are under way and whose slip hardly changes its direction any more.
+    #[inline(always)]
+    fn is_straight(&self) -> Mask<S, 1> {
+        let Self {
+            rates,
+            goal,
+            course,
+            ..
+        } = self;
+        Tail::new(rates, course.y).leads(rates, goal, course)
+    }
+
+    /// Goes through the events of those.
+    #[inline(always)]
+    fn follow(&mut self) {
+        let Self {
+            rates,
+            goal,
+            course,
+            ..
+        } = self;
+        let tail = Tail::new(rates, course.y);
+        let lanes = tail.leads(rates, goal, course);
+        if lanes.any() {
+            tail.pass(rates, goal, lanes, course);
+        }
+    }
+
+    /// Goes through the events that are near, and on by a panel.
+    #[inline(always)]
+    fn advance(&mut self) {
+        let Self {
+            rates,
+            goal,
+            course,
+            ..
+        } = self;
+        let wanted = events(rates, goal, course);
+        if course.over.all() {
+            return;
+        }
+        course.direction();
+        let path = Hodograph::new(rates, course.y);
+        let length = wanted.min(course.limit).min(path.longest(rates, course));
+        let mut next = integrate_panel((rates, &path), goal, course, length);
+        let (back, limit) = beyond(rates, goal, course, &next, length);
+        next.limit = Pack::splat(limit.simd(), f64::INFINITY);
+        let mut again = *course;
+        again.limit = limit;
+        let next = Course::choose(back, &again, &next);
+        *course = Course::choose(course.over, course, &next);
+        self.panels = self.panels + 1.0;
+    }
+
+    /// All numbers of them.
+    #[inline(always)]
+    fn packs(&mut self) -> [&mut Pack<S, 1>; 31] {
+        let Self {
+            rates: r,
+            goal: g,
+            course: c,
+            panels,
+            scale,
+            ..
+        } = self;
+        [
+            &mut r.nn,
+            &mut r.nu,
+            &mut r.uu,
+            &mut r.ww,
+            &mut r.sticking,
+            &mut r.brake,
+            &mut r.plus,
+            &mut r.minus,
+            &mut r.decay,
+            &mut r.kappa,
+            &mut g.restitution,
+            &mut g.approach,
+            &mut g.rebound,
+            &mut c.u,
+            &mut c.w,
+            &mut c.slip,
+            &mut c.a,
+            &mut c.y,
+            &mut c.mirror,
+            &mut c.v,
+            &mut c.normal,
+            &mut c.along,
+            &mut c.across,
+            &mut c.work,
+            &mut c.compression,
+            &mut c.balance,
+            &mut c.taken,
+            &mut c.due,
+            &mut c.limit,
+            panels,
+            scale,
+        ]
+    }
+
+    /// All that is either so or not.
+    #[inline(always)]
+    fn masks(&mut self) -> [&mut Mask<S, 1>; 4] {
+        let course = &mut self.course;
+        [
+            &mut course.compressing,
+            &mut course.over,
+            &mut self.aside,
+            &mut self.left,
+        ]
+    }
+
+    /// What came of them.
+    #[inline(always)]
+    fn answer(&self) -> Answer<S, 1> {
+        let (course, scale) = (&self.course, self.scale);
+        // A plastic contact is not left: rounding must not end its stay.
+        let plastic = self.goal.restitution.eq(0.0);
+        Answer {
+            normal: course.normal * scale,
+            along: self.aside.select(0.0, course.along * course.mirror * scale),
+            across: self.left.select(-course.across, course.across) * scale,
+            separation_speed: plastic.select(0.0, course.v.max(0.0)) * scale,
+        }
+    }
+}
+
+/// The impulse of contacts that slip in any direction, μ > 0, unless it takes long: the lanes in which it is not known yet.
+#[inline(always)]
+pub(crate) fn begin<S: Simd>(
+    contact: &Slipping<S, 1>,
+    friction: f64,
+    hypothesis: Hypothesis,
+) -> (Answer<S, 1>, Mask<S, 1>) {
+    let mut impacts = Impacts::new(contact, friction, hypothesis);
+    impacts.stop();
+    (impacts.answer(), !impacts.course.over)
+}
