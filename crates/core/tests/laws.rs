@@ -4,7 +4,7 @@
 mod contacts;
 
 use contacts::*;
-use restitution_core::law::{Components, Contact, Response};
+use restitution_core::law::{AxialCompliance, Components, Contact, Response};
 use restitution_core::{Hypothesis, Law, Rule, TangentialRestitution};
 
 const CONTACTS: usize = 20_000;
@@ -45,8 +45,8 @@ fn an_impulse_makes_the_change_that_it_is_for() {
             along: part(),
             across: part(),
         };
-        let impulse = contact.impulse(wanted);
-        let made = contact.change(impulse);
+        let impulse = contact.compliance.impulse(wanted);
+        let made = contact.compliance.change(impulse);
         let response = Response {
             impulse,
             separation_speed: 0.0,
@@ -98,7 +98,7 @@ fn the_normal_velocity_obeys_newton() {
             let left = after(contact, &response).normal;
             let allowed = 32.0 * rounding(contact, &response);
             assert!(
-                (left + e * contact.slip.normal).abs() <= allowed,
+                (left + e * contact.velocity.normal).abs() <= allowed,
                 "{law:?} {contact:?}"
             );
         }
@@ -147,15 +147,17 @@ fn without_friction_there_is_one_law() {
 fn spheres_slide_or_stick_as_in_the_textbook() {
     each_contact(4, |random, contact| {
         let sphere = Contact {
-            inertia: 0.4,
-            arm_normal: -1.0,
-            arm_along: 0.0,
-            across: 3.5,
+            compliance: AxialCompliance {
+                inertia: 0.4,
+                arm_normal: -1.0,
+                arm_along: 0.0,
+                ww: 3.5,
+            },
             ..*contact
         };
         let (e, mu) = (random.coefficient(), random.friction());
-        let normal = -(1.0 + e) * sphere.slip.normal;
-        let slip = tangential(sphere.slip);
+        let normal = -(1.0 + e) * sphere.velocity.normal;
+        let slip = tangential(sphere.velocity);
         let share = if 3.5 * mu * normal < slip {
             mu * normal / slip
         } else {
@@ -164,10 +166,10 @@ fn spheres_slide_or_stick_as_in_the_textbook() {
         let expected = Response {
             impulse: Components {
                 normal,
-                along: -share * sphere.slip.along,
-                across: -share * sphere.slip.across,
+                along: -share * sphere.velocity.along,
+                across: -share * sphere.velocity.across,
             },
-            separation_speed: -e * sphere.slip.normal,
+            separation_speed: -e * sphere.velocity.normal,
         };
         let mut laws = HYPOTHESES
             .map(|hypothesis| coulomb(e, mu, hypothesis))
@@ -191,14 +193,12 @@ fn endless_friction_sticks() {
     let never_slips = 1e12;
     each_contact(5, |random, contact| {
         let e = random.coefficient();
-        let central = Contact {
-            arm_along: 0.0,
-            ..*contact
-        };
+        let mut central = *contact;
+        central.compliance.arm_along = 0.0;
         let reference = chatterjee_ruina(e, 0.0, never_slips).respond(&central);
         for hypothesis in HYPOTHESES {
             let found = coulomb(e, never_slips, hypothesis).respond(&central);
-            if central.slip.normal < -1e-6 {
+            if central.velocity.normal < -1e-6 {
                 assert!(
                     agree(&central, &found, &reference, 1e6),
                     "{central:?} {found:?} {reference:?}"
@@ -206,10 +206,10 @@ fn endless_friction_sticks() {
             }
         }
         // P_II pulls where stopping the slip alone would already lift the contact.
-        let sticking = contact.impulse(Components {
-            normal: -contact.slip.normal,
-            along: -contact.slip.along,
-            across: -contact.slip.across,
+        let sticking = contact.compliance.impulse(Components {
+            normal: -contact.velocity.normal,
+            along: -contact.velocity.along,
+            across: -contact.velocity.across,
         });
         if sticking.normal > 1e-3 * size(sticking) {
             let reference = chatterjee_ruina(0.0, 0.0, never_slips).respond(contact);
@@ -231,9 +231,13 @@ fn endless_friction_sticks() {
 /// Poisson's hypothesis in the closed form of Y. Wang and M. T. Mason, J. Appl. Mech. 59, 635 (1992), Table 1, in their
 /// notation: five modes of contact.
 fn wang_and_mason(contact: &Contact, e: f64, mu: f64) -> (usize, f64, f64) {
-    let (n, u, j) = (contact.arm_normal, contact.arm_along, contact.inertia);
+    let (n, u, j) = (
+        contact.compliance.arm_normal,
+        contact.compliance.arm_along,
+        contact.compliance.inertia,
+    );
     let (b1, b2, b3) = (1.0 + n * n / j, 1.0 + u * u / j, n * u / j);
-    let (s0, c0) = (contact.slip.along, contact.slip.normal);
+    let (s0, c0) = (contact.velocity.along, contact.velocity.normal);
     let s = if s0 < 0.0 { -1.0 } else { 1.0 };
     let pd = (b2 + s * mu * b3) * s * s0;
     let pq = (mu * b1 + s * b3) * -c0;
@@ -263,8 +267,8 @@ fn poisson_is_the_closed_form_of_wang_and_mason() {
     let mut modes = [0; 5];
     for _ in 0..CONTACTS {
         let mut contact = random.planar();
-        contact.slip.normal = -random.between(0.01, 2.0);
-        contact.slip.along = random.between(-2.0, 2.0);
+        contact.velocity.normal = -random.between(0.01, 2.0);
+        contact.velocity.along = random.between(-2.0, 2.0);
         let (e, mu) = (random.coefficient(), random.between(0.0, 1.5));
         let (mode, normal, along) = wang_and_mason(&contact, e, mu);
         let found = coulomb(e, mu, Hypothesis::Poisson).respond(&contact);
@@ -285,19 +289,22 @@ fn grazing_contacts_have_an_answer() {
     each_contact(7, |random, contact| {
         for law in laws(random) {
             for (normal, slips) in [(0.0, 1.0), (-0.0, 1.0), (1.0, 0.0), (0.0, 0.0)] {
-                let slip = Components {
-                    normal: contact.slip.normal * normal,
-                    along: contact.slip.along * slips,
-                    across: contact.slip.across * slips,
+                let velocity = Components {
+                    normal: contact.velocity.normal * normal,
+                    along: contact.velocity.along * slips,
+                    across: contact.velocity.across * slips,
                 };
-                let grazing = Contact { slip, ..*contact };
+                let grazing = Contact {
+                    velocity,
+                    ..*contact
+                };
                 let response = law.respond(&grazing);
                 assert!(
                     size(response.impulse).is_finite(),
                     "{law:?} {grazing:?} {response:?}"
                 );
                 assert!(response.separation_speed >= 0.0, "{law:?} {grazing:?}");
-                if size(slip) == 0.0 {
+                if size(velocity) == 0.0 {
                     assert_eq!(size(response.impulse), 0.0, "{law:?} {grazing:?}");
                 }
             }
@@ -313,18 +320,18 @@ fn the_law_in_space_tends_to_that_in_the_plane() {
     let mut random = Random::new(8);
     for _ in 0..CONTACTS / 10 {
         let mut contact = random.planar();
-        contact.slip.normal = -random.between(0.01, 2.0);
+        contact.velocity.normal = -random.between(0.01, 2.0);
         let (e, mu) = (random.coefficient(), random.between(0.0, 2.0));
         for hypothesis in HYPOTHESES {
             let law = coulomb(e, mu, hypothesis);
             let flat = law.respond(&contact);
             for across in [1e-4, 1e-7, 1e-10, 1e-13, 1e-16, 1e-30, 1e-300] {
                 let mut tilted = contact;
-                tilted.slip.across = across;
+                tilted.velocity.across = across;
                 let found = law.respond(&tilted);
                 let off = (found.impulse.normal - flat.impulse.normal).abs()
                     + (found.impulse.along - flat.impulse.along).abs();
-                let scale = size(contact.slip) + size(flat.impulse);
+                let scale = size(contact.velocity) + size(flat.impulse);
                 assert!(
                     off <= 1e3 * across + 1e-14 * scale,
                     "{law:?} {contact:?} across {across}: {found:?} {flat:?}"
@@ -341,12 +348,12 @@ fn mirrored_contacts_have_mirrored_impulses() {
         for law in laws(random) {
             let response = law.respond(contact);
             let mut mirrored = *contact;
-            mirrored.slip.across = -contact.slip.across;
+            mirrored.velocity.across = -contact.velocity.across;
             let mut expected = response;
             expected.impulse.across = -response.impulse.across;
             assert_eq!(law.respond(&mirrored), expected, "{law:?} {contact:?}");
-            mirrored.slip.along = -contact.slip.along;
-            mirrored.arm_along = -contact.arm_along;
+            mirrored.velocity.along = -contact.velocity.along;
+            mirrored.compliance.arm_along = -contact.compliance.arm_along;
             expected.impulse.along = -response.impulse.along;
             assert_eq!(law.respond(&mirrored), expected, "{law:?} {contact:?}");
         }

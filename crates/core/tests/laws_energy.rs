@@ -21,7 +21,7 @@ fn growing(seed: u64, mut law: impl FnMut(&mut Random) -> Law<'static>) -> (u64,
         assert!(gain.is_finite(), "{law:?} {contact:?} {response:?}");
         if gain > allowed {
             count += 1;
-            most = most.max(gain / (scale * size(contact.slip)));
+            most = most.max(gain / (scale * size(contact.velocity)));
         }
     };
     for number in 0..IMPACTS {

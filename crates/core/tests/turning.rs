@@ -1,6 +1,6 @@
 //! Slip that turns, beside contacts solved with 28 digits by Taylor series of the slip's own equation (`turning/reference.py`).
 
-use restitution_core::law::{Components, Contact};
+use restitution_core::law::{AxialCompliance, Components, Contact};
 use restitution_core::{Coulomb, Hypothesis, Law};
 
 /// Of the 155 hard impacts, 24 of them the hardest of 240 000 for an earlier quadrature, seven next to poles or fixed points of the
@@ -30,15 +30,17 @@ fn compare(text: &str) {
             _ => Hypothesis::Newton,
         };
         let contact = Contact {
-            slip: Components {
+            velocity: Components {
                 normal: -x[0],
                 along: x[1],
                 across: x[2],
             },
-            inertia: x[3],
-            arm_normal: x[4],
-            arm_along: x[5],
-            across: x[6],
+            compliance: AxialCompliance {
+                inertia: x[3],
+                arm_normal: x[4],
+                arm_along: x[5],
+                ww: x[6],
+            },
         };
         let law = Law::new(x[8], Coulomb::new(x[7], hypothesis).unwrap()).unwrap();
         let found = law.respond(&contact).impulse;

@@ -3,7 +3,9 @@
 use crate::errors::python_error;
 use numpy::{IntoPyArray, PyArray1, PyReadonlyArray1};
 use pyo3::prelude::*;
-use restitution_core::law::{Components, Contact, MOST_FRICTION, PADE_ABOVE, PADE_BELOW};
+use restitution_core::law::{
+    AxialCompliance, Components, Contact, MOST_FRICTION, PADE_ABOVE, PADE_BELOW,
+};
 use restitution_core::{
     ChatterjeeRuina, Coulomb, Error, Frictionless, Hypothesis, Normal, Plastic, Points, Rule,
     TangentialRestitution, Viscoelastic, collected,
@@ -118,15 +120,17 @@ impl Law {
     fn respond(&self, slip: Triple, arm: (f64, f64), inertia: f64, across: f64) -> (Triple, f64) {
         let (normal, along, w) = slip;
         let response = self.law().respond(&Contact {
-            slip: Components {
+            velocity: Components {
                 normal,
                 along,
                 across: w,
             },
-            inertia,
-            arm_normal: arm.0,
-            arm_along: arm.1,
-            across,
+            compliance: AxialCompliance {
+                inertia,
+                arm_normal: arm.0,
+                arm_along: arm.1,
+                ww: across,
+            },
         });
         let p = response.impulse;
         ((p.normal, p.along, p.across), response.separation_speed)

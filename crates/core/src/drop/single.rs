@@ -7,8 +7,8 @@ use super::lanes::{
 };
 use super::stop::{Limits, StopReason};
 use crate::contact;
-use crate::law::Law;
-use crate::motion::State;
+use crate::law::{Law, Respond, Response};
+use crate::motion::{State, SymmetricState};
 use crate::shape::{Body, Hull, Sphere, with_hull};
 use crate::simd::one;
 use pulp::{Scalar, Simd};
@@ -106,9 +106,11 @@ pub fn collide(body: &Body, law: &Law<'_>, before: &State, sphere: Sphere) -> (S
     with_hull!(&body.hull, hull => {
         let state = before.in_lane();
         let part = hull.part(one(sphere.sign()).eq(1.0));
-        let collided = state.collide(body, law, ContactPoint::of(hull, &part, state.axis.z));
-        let after = crate::motion::SymmetricState::with_motion(state, collided.motion);
-        (after.lane(0), collided.separation.as_slice()[0])
+        let point = ContactPoint::of(hull, &part, state.axis.z);
+        let mut response = [Response::none(Scalar::new())];
+        law.respond_all::<_, true>(&[state.contact(body, point)], &mut response);
+        let after = state.with_motion(state.after(body, point, &response[0]));
+        (after.lane(0), response[0].separation_speed.as_slice()[0])
     })
 }
 

@@ -1,7 +1,7 @@
 //! The law of A. Chatterjee and A. Ruina, *A new algebraic rigid-body collision law based on impulse space considerations*,
 //! J. Appl. Mech. **65**, 939 (1998).
 
-use super::{Answer, Compliance, Contacts, Responses};
+use super::{Answer, Compliance, Components, Contact, Response};
 use crate::Error;
 use crate::math::Vector;
 use crate::simd::{Pack, one};
@@ -72,32 +72,38 @@ impl ChatterjeeRuina {
     }
 
     #[inline(always)]
-    pub(super) fn respond<S: Simd, const K: usize, const SPACE: bool>(
+    pub(super) fn respond<S: Simd, const SPACE: bool>(
         &self,
-        contact: &Contacts<S, K>,
-        restitution: Pack<S, K>,
-    ) -> Responses<S, K> {
+        contact: &Contact<Pack<S, 1>>,
+        restitution: Pack<S, 1>,
+    ) -> Response<Pack<S, 1>> {
         let speed = contact.approach_speed();
         let zero = Pack::splat(speed.simd(), 0.0);
 
-        let frictionless = speed / contact.normal_response(); // P_I
-        let left = contact.coupling().mul_add(frictionless, contact.slip_along); // tangential contact velocity after P_I
-        let (normal, along) = contact.impulse(zero, -left); // P_II − P_I
-        let (across, tangential) = if SPACE {
-            let across = -contact.slip_across / contact.across_response();
-            (across, length(along, across))
+        let (k, velocity) = (&contact.compliance, contact.velocity);
+        let frictionless = speed / k.nn(); // P_I
+        let left = k.nu().mul_add(frictionless, velocity.along); // tangential contact velocity after P_I
+        let stop = k.impulse::<SPACE>(Components {
+            normal: zero,
+            along: -left,
+            across: -velocity.across,
+        }); // P_II − P_I
+        let tangential = if SPACE {
+            length(stop.along, stop.across)
         } else {
-            (zero, along.abs())
+            stop.along.abs()
         };
         let most = restitution.mul_add(frictionless, frictionless);
-        let excess = normal.mul_add(-self.friction, tangential);
+        let excess = stop.normal.mul_add(-self.friction, tangential);
         let wanted = 1.0 + self.tangential;
         let outside = (most * self.friction).lt(excess * wanted);
         let share = outside.select(most * self.friction / excess, wanted); // κ
-        Responses {
-            normal: share.mul_add(normal, most),
-            along: share * along,
-            across: share * across,
+        Response {
+            impulse: Components {
+                normal: share.mul_add(stop.normal, most),
+                along: share * stop.along,
+                across: share * stop.across,
+            },
             separation_speed: restitution * speed, // P_II − P_I does not change the normal contact velocity
         }
     }
@@ -105,7 +111,7 @@ impl ChatterjeeRuina {
 
 /// √(a² + b²), also where the squares would underflow.
 #[inline(always)]
-fn length<S: Simd, const K: usize>(a: Pack<S, K>, b: Pack<S, K>) -> Pack<S, K> {
+fn length<S: Simd>(a: Pack<S, 1>, b: Pack<S, 1>) -> Pack<S, 1> {
     let (a, b) = (a.abs(), b.abs());
     let (most, least) = (a.max(b), a.min(b));
     let ratio = least / most;

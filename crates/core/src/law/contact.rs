@@ -1,161 +1,145 @@
-//! Contacts as a law sees them, and the impulses that it returns, in all lanes. A law depends on the contact velocity and the
-//! matrix K (see [`super`]), and not on the body otherwise.
+//! A contact as a law sees it: a velocity and a compliance; and the impulse that a law answers with.
 
-use super::coulomb::turning::Slipping;
-use crate::simd::Pack;
-use pulp::Simd;
+use super::AxialCompliance;
+use crate::math::Vector;
+use crate::simd::{Mask, Pack, one};
+use pulp::{Scalar, Simd};
 
-/// A contact in each lane.
-#[derive(Clone, Copy)]
-pub(crate) struct Contacts<S: Simd, const K: usize> {
-    /// Velocity **v**_c of the point of contact (7), (8); `slip_normal` ≤ 0.
-    pub slip_normal: Pack<S, K>,
-    pub slip_along: Pack<S, K>,
-    /// 0 in planar motion.
-    pub slip_across: Pack<S, K>,
-    /// J_xx.
-    pub(super) inertia: f64,
-    /// **r**_c along **n** and **u**.
-    pub(super) arm_normal: Pack<S, K>,
-    pub(super) arm_along: Pack<S, K>,
-    /// K_ww; not used in planar motion.
-    pub(super) across: Pack<S, K>,
+/// Components along **n**, **u** and **w**: numbers, or one in each lane.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Components<T = f64> {
+    /// Along the plane normal.
+    pub normal: T,
+    /// Along the horizontal direction of the symmetry axis.
+    pub along: T,
+    /// Perpendicular to both.
+    pub across: T,
 }
 
-/// The outcome of a law in each lane.
-#[derive(Clone, Copy)]
-pub(crate) struct Responses<S: Simd, const K: usize> {
-    /// Components of the impulse **P** on the particle along **n**, **u** and **w** (10).
-    pub normal: Pack<S, K>,
-    pub along: Pack<S, K>,
-    /// 0 in planar motion.
-    pub across: Pack<S, K>,
+/// A contact, in the core's units.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Contact<T = f64> {
+    /// Velocity **v**_c of the point of contact (7), (8); `normal` ≤ 0.
+    pub velocity: Components<T>,
+    /// The matrix K (10).
+    pub compliance: AxialCompliance<T>,
+}
+
+/// The answer of a law to a contact, in the core's units.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Response<T = f64> {
+    /// Impulse **P** on the particle (10).
+    pub impulse: Components<T>,
     /// Normal velocity of the point of contact after the impact, ≥ 0.
-    pub separation_speed: Pack<S, K>,
+    pub separation_speed: T,
 }
 
-/// Responses of which some take long, and are not known yet.
-#[derive(Clone, Copy)]
-pub(crate) struct Late<S: Simd> {
-    pub response: Responses<S, 1>,
-    /// 1 in the lanes in which it is not known, else 0.
-    pub open: Pack<S, 1>,
-    pub(super) slipping: Slipping<S, 1>,
+/// The answer of a law for any compliance, in the units of compliance and velocity.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Answer {
+    /// Impulse **P** on the body (10).
+    pub impulse: Vector,
+    /// Normal velocity of the point of contact after the impact, ≥ 0.
+    pub separation_speed: f64,
 }
 
-impl<S: Simd> Late<S> {
-    /// Responses of no contact.
+impl<T: Copy> Components<T> {
+    /// The same function of every component.
+    #[inline(always)]
+    pub(crate) fn map<U>(self, f: impl Fn(T) -> U) -> Components<U> {
+        Components {
+            normal: f(self.normal),
+            along: f(self.along),
+            across: f(self.across),
+        }
+    }
+}
+
+impl Contact {
+    /// The contact in a single lane.
+    pub(crate) fn in_lane(&self) -> Contact<Pack<Scalar, 1>> {
+        Contact {
+            velocity: self.velocity.map(one),
+            compliance: self.compliance.in_lane(),
+        }
+    }
+}
+
+impl<S: Simd> Contact<Pack<S, 1>> {
+    /// No contact.
     #[inline(always)]
     pub fn none(simd: S) -> Self {
         let zero = Pack::splat(simd, 0.0);
         Self {
-            response: Responses {
+            velocity: Components {
                 normal: zero,
                 along: zero,
                 across: zero,
-                separation_speed: zero,
             },
-            open: zero,
-            slipping: Slipping::none(simd),
-        }
-    }
-
-    /// −v_c^n of the contacts.
-    #[inline(always)]
-    pub fn approach(&self) -> Pack<S, 1> {
-        self.slipping.speed
-    }
-}
-
-impl<S: Simd, const K: usize> Contacts<S, K> {
-    /// A contact whose velocity is in the vertical plane of the axis. `inertia` is J_xx, `arm` is **r**_c along **n** and **u**.
-    #[inline(always)]
-    pub fn in_plane(slip: [Pack<S, K>; 2], inertia: f64, arm: [Pack<S, K>; 2]) -> Self {
-        let zero = Pack::splat(slip[0].simd(), 0.0);
-        Self::in_space([slip[0], slip[1], zero], inertia, arm, zero)
-    }
-
-    /// A contact whose velocity has any direction, with `across` = K_ww.
-    #[inline(always)]
-    pub fn in_space(
-        [slip_normal, slip_along, slip_across]: [Pack<S, K>; 3],
-        inertia: f64,
-        [arm_normal, arm_along]: [Pack<S, K>; 2],
-        across: Pack<S, K>,
-    ) -> Self {
-        Self {
-            slip_normal,
-            slip_along,
-            slip_across,
-            inertia,
-            arm_normal,
-            arm_along,
-            across,
-        }
-    }
-
-    /// Vector k of them.
-    #[inline(always)]
-    pub fn part(&self, k: usize) -> Contacts<S, 1> {
-        Contacts {
-            slip_normal: self.slip_normal.part(k),
-            slip_along: self.slip_along.part(k),
-            slip_across: self.slip_across.part(k),
-            inertia: self.inertia,
-            arm_normal: self.arm_normal.part(k),
-            arm_along: self.arm_along.part(k),
-            across: self.across.part(k),
+            compliance: AxialCompliance {
+                inertia: 1.0,
+                arm_normal: zero,
+                arm_along: zero,
+                ww: zero,
+            },
         }
     }
 
     /// The speed of approach, −v_c^n ≥ 0.
     #[inline(always)]
-    pub fn approach_speed(&self) -> Pack<S, K> {
-        self.slip_normal.abs()
+    pub fn approach_speed(&self) -> Pack<S, 1> {
+        self.velocity.normal.abs()
+    }
+}
+
+impl<S: Simd> Response<Pack<S, 1>> {
+    /// The answer to no contact.
+    #[inline(always)]
+    pub fn none(simd: S) -> Self {
+        let zero = Pack::splat(simd, 0.0);
+        Self {
+            impulse: Components {
+                normal: zero,
+                along: zero,
+                across: zero,
+            },
+            separation_speed: zero,
+        }
     }
 
-    /// The impulse along **n** and **u** that changes the contact velocity by this much: K P = Δ**v**_c (10), solved as in
-    /// (14).
+    /// The same answers, but those of `other` in the lanes of the mask.
     #[inline(always)]
-    pub fn impulse(&self, normal: Pack<S, K>, along: Pack<S, K>) -> (Pack<S, K>, Pack<S, K>) {
-        let (n, u, j) = (self.arm_normal, self.arm_along, self.inertia);
-        let nn = n.mul_add(n, j);
-        let inverse = 1.0 / u.mul_add(u, nn); // 1/(J_xx/m + r_c²)
-        let cross = n * u;
-        (
-            nn.mul_add(normal, cross * along) * inverse, // (14)
-            u.mul_add(u, j).mul_add(along, cross * normal) * inverse, // (14)
-        )
+    pub(super) fn or(self, mask: Mask<S, 1>, other: &Self) -> Self {
+        let (own, others) = (self.impulse, other.impulse);
+        Self {
+            impulse: Components {
+                normal: mask.select(others.normal, own.normal),
+                along: mask.select(others.along, own.along),
+                across: mask.select(others.across, own.across),
+            },
+            separation_speed: mask.select(other.separation_speed, self.separation_speed),
+        }
     }
 
-    /// K_nn.
+    /// Puts the answer in lane k of `other` into a lane.
     #[inline(always)]
-    pub fn normal_response(&self) -> Pack<S, K> {
-        (self.arm_along * self.arm_along).mul_add(1.0 / self.inertia, 1.0)
+    pub(super) fn put(&mut self, lane: usize, other: &Self, k: usize) {
+        let own = &mut self.impulse;
+        for (to, from) in [
+            (&mut own.normal, other.impulse.normal),
+            (&mut own.along, other.impulse.along),
+            (&mut own.across, other.impulse.across),
+            (&mut self.separation_speed, other.separation_speed),
+        ] {
+            to.as_mut_slice()[lane] = from.as_slice()[k];
+        }
     }
 
-    /// K_uu.
-    #[inline(always)]
-    pub fn along_response(&self) -> Pack<S, K> {
-        (self.arm_normal * self.arm_normal).mul_add(1.0 / self.inertia, 1.0)
-    }
-
-    /// K_nu.
-    #[inline(always)]
-    pub fn coupling(&self) -> Pack<S, K> {
-        -(self.arm_normal * self.arm_along) * (1.0 / self.inertia)
-    }
-
-    /// K_ww.
-    #[inline(always)]
-    pub fn across_response(&self) -> Pack<S, K> {
-        self.across
-    }
-
-    /// K_nn − K_nu²/K_uu: change of the normal contact velocity per normal impulse while the contact sticks.
-    #[inline(always)]
-    pub fn sticking_response(&self) -> Pack<S, K> {
-        let nn = self.arm_normal.mul_add(self.arm_normal, self.inertia);
-        self.arm_along.mul_add(self.arm_along, nn) / nn
+    /// The answer in a lane.
+    pub fn lane(&self, lane: usize) -> Response {
+        Response {
+            impulse: self.impulse.map(|component| component.as_slice()[lane]),
+            separation_speed: self.separation_speed.as_slice()[lane],
+        }
     }
 }

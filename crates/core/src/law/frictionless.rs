@@ -1,6 +1,6 @@
 //! The law without friction: **P** ∥ **n**.
 
-use super::{Answer, Compliance, Contacts, Responses};
+use super::{Answer, Compliance, Components, Contact, Response};
 use crate::math::Vector;
 use crate::simd::Pack;
 use pulp::Simd;
@@ -29,16 +29,18 @@ impl Frictionless {
     }
 
     #[inline(always)]
-    pub(super) fn respond<S: Simd, const K: usize>(
+    pub(super) fn respond<S: Simd>(
         &self,
-        contact: &Contacts<S, K>,
-        normal: Pack<S, K>,
-    ) -> Responses<S, K> {
+        contact: &Contact<Pack<S, 1>>,
+        normal: Pack<S, 1>,
+    ) -> Response<Pack<S, 1>> {
         let speed = contact.approach_speed();
-        Responses {
-            normal: normal.mul_add(speed, speed) / contact.normal_response(),
-            along: speed * 0.0,
-            across: speed * 0.0,
+        Response {
+            impulse: Components {
+                normal: normal.mul_add(speed, speed) / contact.compliance.nn(),
+                along: speed * 0.0,
+                across: speed * 0.0,
+            },
             separation_speed: normal * speed,
         }
     }

@@ -1,12 +1,13 @@
 //! The choice of a law.
 
 use super::{
-    Answer, ChatterjeeRuina, Compliance, Components, Contact, Contacts, Coulomb, Frictionless,
-    Late, Normal, Response, Responses, TangentialRestitution, tangential::Steady,
+    Answer, ChatterjeeRuina, Compliance, Contact, Coulomb, Frictionless, Normal, Response,
+    TangentialRestitution, tangential::Steady,
 };
 use crate::Error;
 use crate::math::Vector;
-use pulp::{Simd, WithSimd};
+use crate::simd::Pack;
+use pulp::{Scalar, Simd, WithSimd};
 
 /// A collision law: a normal coefficient, which may borrow a table, and a rule for the impulse.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -52,15 +53,9 @@ impl<'a> Law<'a> {
 
     /// The impulse of a contact, and its normal velocity after the impact.
     pub fn respond(&self, contact: &Contact) -> Response {
-        let found = Respond::respond::<_, 1, true>(self, &contact.in_lane());
-        Response {
-            impulse: Components {
-                normal: found.normal.as_slice()[0],
-                along: found.along.as_slice()[0],
-                across: found.across.as_slice()[0],
-            },
-            separation_speed: found.separation_speed.as_slice()[0],
-        }
+        let mut found = [Response::none(Scalar::new())];
+        self.respond_all::<_, true>(&[contact.in_lane()], &mut found);
+        found[0].lane(0)
     }
 
     /// The impulse for any compliance, of a contact that arrives with this velocity in the frame whose z axis is the normal, z ≤ 0.
@@ -87,101 +82,78 @@ impl<'a> Law<'a> {
     }
 }
 
-/// A law in the form that the bounce loop uses.
+/// Largest number of vectors of contacts that a law is given at once.
+pub(crate) const MOST_CONTACTS: usize = 6;
+
+/// A law in the form that the bounce loop uses: it answers all contacts at once, so that those that take long can share the lanes.
 pub(crate) trait Respond {
-    /// The responses to contacts. Without `SPACE` the contact velocity has no component along **w**.
-    fn respond<S: Simd, const K: usize, const SPACE: bool>(
+    /// Answers up to [`MOST_CONTACTS`] vectors of contacts. Without `SPACE` no contact velocity has a component along **w**.
+    fn respond_all<S: Simd, const SPACE: bool>(
         &self,
-        contact: &Contacts<S, K>,
-    ) -> Responses<S, K>;
-
-    /// The law in two steps, if in space some responses take much longer than others.
-    fn takes_long(&self) -> Option<Gradual<'_>>;
-}
-
-/// A law whose responses may take long, in two steps.
-#[derive(Clone, Copy)]
-pub(crate) struct Gradual<'a> {
-    normal: &'a Normal<'a>,
-    rule: &'a Coulomb,
-}
-
-impl Gradual<'_> {
-    /// The responses that do not take long.
-    #[inline(always)]
-    pub fn begin<S: Simd>(&self, contact: &Contacts<S, 1>) -> Late<S> {
-        let simd = contact.slip_normal.simd();
-        simd.vectorize(Begin {
-            law: *self,
-            contact,
-        })
-    }
-
-    /// The others, of as many vectors as there are.
-    #[inline(always)]
-    pub fn finish<S: Simd>(&self, late: &mut [Late<S>]) {
-        self.rule.finish(late);
-    }
-}
-
-/// [`Gradual::begin`], to be compiled once for all hulls.
-struct Begin<'a, S: Simd> {
-    law: Gradual<'a>,
-    contact: &'a Contacts<S, 1>,
-}
-
-impl<S: Simd> WithSimd for Begin<'_, S> {
-    type Output = Late<S>;
-
-    #[inline(always)]
-    fn with_simd<T: Simd>(self, _: T) -> Late<S> {
-        let Self { law, contact } = self;
-        let normal = law.normal.in_lanes(contact.approach_speed());
-        law.rule.begin(contact, normal)
-    }
+        contacts: &[Contact<Pack<S, 1>>],
+        responses: &mut [Response<Pack<S, 1>>],
+    );
 }
 
 impl Respond for Law<'_> {
     /// Chooses the law in a function of its own: inlined, all laws together would use up the registers of the bounce loop.
     #[inline(always)]
-    fn respond<S: Simd, const K: usize, const SPACE: bool>(
+    fn respond_all<S: Simd, const SPACE: bool>(
         &self,
-        contact: &Contacts<S, K>,
-    ) -> Responses<S, K> {
-        let simd = contact.slip_normal.simd();
-        simd.vectorize(Choice::<S, K, SPACE> { law: self, contact })
-    }
-
-    #[inline(always)]
-    fn takes_long(&self) -> Option<Gradual<'_>> {
-        match &self.rule {
-            Rule::Coulomb(rule) if rule.friction() > 0.0 => Some(Gradual {
-                normal: &self.normal,
-                rule,
-            }),
-            _ => None,
-        }
+        contacts: &[Contact<Pack<S, 1>>],
+        responses: &mut [Response<Pack<S, 1>>],
+    ) {
+        let Some(first) = contacts.first() else {
+            return;
+        };
+        first.velocity.normal.simd().vectorize(Choice::<S, SPACE> {
+            law: self,
+            contacts,
+            responses,
+        });
     }
 }
 
 /// A law and the contacts that it is applied to, compiled for each SIMD level.
-struct Choice<'a, 'b, S: Simd, const K: usize, const SPACE: bool> {
+struct Choice<'a, 'b, S: Simd, const SPACE: bool> {
     law: &'a Law<'b>,
-    contact: &'a Contacts<S, K>,
+    contacts: &'a [Contact<Pack<S, 1>>],
+    responses: &'a mut [Response<Pack<S, 1>>],
 }
 
-impl<S: Simd, const K: usize, const SPACE: bool> WithSimd for Choice<'_, '_, S, K, SPACE> {
-    type Output = Responses<S, K>;
+impl<S: Simd, const SPACE: bool> WithSimd for Choice<'_, '_, S, SPACE> {
+    type Output = ();
 
     #[inline(always)]
-    fn with_simd<T: Simd>(self, _: T) -> Self::Output {
-        let Self { law, contact } = self;
-        let normal = law.normal.in_lanes(contact.approach_speed());
+    fn with_simd<T: Simd>(self, _: T) {
+        let Self {
+            law,
+            contacts,
+            responses,
+        } = self;
+        let simd = contacts[0].velocity.normal.simd();
+        let mut normal = [Pack::splat(simd, 0.0); MOST_CONTACTS];
+        for (normal, contact) in normal.iter_mut().zip(contacts) {
+            *normal = law.normal.in_lanes(contact.approach_speed());
+        }
+        let all = contacts.iter().zip(&normal).zip(&mut *responses);
         match &law.rule {
-            Rule::TangentialRestitution(rule) => rule.respond::<S, K, SPACE>(contact, normal),
-            Rule::Frictionless(rule) => rule.respond(contact, normal),
-            Rule::Coulomb(rule) => rule.respond::<S, K, SPACE>(contact, normal),
-            Rule::ChatterjeeRuina(rule) => rule.respond::<S, K, SPACE>(contact, normal),
+            Rule::TangentialRestitution(rule) => {
+                for ((contact, &normal), response) in all {
+                    *response = rule.respond::<S, SPACE>(contact, normal);
+                }
+            }
+            Rule::Frictionless(rule) => {
+                for ((contact, &normal), response) in all {
+                    *response = rule.respond(contact, normal);
+                }
+            }
+            Rule::Coulomb(rule) => rule.respond::<S, SPACE>(contacts, &normal, responses),
+            Rule::ChatterjeeRuina(rule) => {
+                for ((contact, &normal), response) in all {
+                    *response = rule.respond::<S, SPACE>(contact, normal);
+                }
+            }
         }
     }
 }

@@ -1,6 +1,6 @@
 //! The paper's law, (9): both components of the contact velocity change by a fixed factor.
 
-use super::{Answer, Compliance, Contacts, Gradual, Respond, Responses};
+use super::{Answer, Compliance, Components, Contact, Respond, Response};
 use crate::Error;
 use crate::math::Vector;
 use crate::simd::{Operand, Pack};
@@ -49,36 +49,30 @@ impl TangentialRestitution {
     }
 
     #[inline(always)]
-    pub(super) fn respond<S: Simd, const K: usize, const SPACE: bool>(
+    pub(super) fn respond<S: Simd, const SPACE: bool>(
         &self,
-        contact: &Contacts<S, K>,
-        normal: Pack<S, K>,
-    ) -> Responses<S, K> {
-        self.with::<S, K, SPACE>(-normal, -(normal + 1.0), contact)
+        contact: &Contact<Pack<S, 1>>,
+        normal: Pack<S, 1>,
+    ) -> Response<Pack<S, 1>> {
+        self.with::<S, SPACE>(-normal, -(normal + 1.0), contact)
     }
 
     /// The response for `rebound` = −ε_n and `change` = −(1 + ε_n).
     #[inline(always)]
-    fn with<S: Simd, const K: usize, const SPACE: bool>(
+    fn with<S: Simd, const SPACE: bool>(
         &self,
-        rebound: impl Operand<S, K>,
-        change: impl Operand<S, K>,
-        contact: &Contacts<S, K>,
-    ) -> Responses<S, K> {
-        let (normal, along) = contact.impulse(
-            contact.slip_normal * change,                 // (9), (10)
-            (self.tangential - 1.0) * contact.slip_along, // (9), (10)
-        );
-        let across = if SPACE {
-            (self.tangential - 1.0) * contact.slip_across / contact.across_response() // (9), (10)
-        } else {
-            Pack::splat(normal.simd(), 0.0)
-        };
-        Responses {
-            normal,
-            along,
-            across,
-            separation_speed: contact.slip_normal * rebound, // (9)
+        rebound: impl Operand<S, 1>,
+        change: impl Operand<S, 1>,
+        contact: &Contact<Pack<S, 1>>,
+    ) -> Response<Pack<S, 1>> {
+        let velocity = contact.velocity;
+        Response {
+            impulse: contact.compliance.impulse::<SPACE>(Components {
+                normal: velocity.normal * change,                  // (9), (10)
+                along: (self.tangential - 1.0) * velocity.along,   // (9), (10)
+                across: (self.tangential - 1.0) * velocity.across, // (9), (10)
+            }),
+            separation_speed: velocity.normal * rebound, // (9)
         }
     }
 }
@@ -91,16 +85,15 @@ pub(crate) struct Steady {
 
 impl Respond for Steady {
     #[inline(always)]
-    fn respond<S: Simd, const K: usize, const SPACE: bool>(
+    fn respond_all<S: Simd, const SPACE: bool>(
         &self,
-        contact: &Contacts<S, K>,
-    ) -> Responses<S, K> {
-        self.rule
-            .with::<S, K, SPACE>(-self.normal, -(1.0 + self.normal), contact)
-    }
-
-    #[inline(always)]
-    fn takes_long(&self) -> Option<Gradual<'_>> {
-        None
+        contacts: &[Contact<Pack<S, 1>>],
+        responses: &mut [Response<Pack<S, 1>>],
+    ) {
+        for (contact, response) in contacts.iter().zip(responses) {
+            *response = self
+                .rule
+                .with::<S, SPACE>(-self.normal, -(1.0 + self.normal), contact);
+        }
     }
 }

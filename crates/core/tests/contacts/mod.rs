@@ -1,7 +1,7 @@
 //! What the tests of the laws share: random contacts, with the corners of the laws among them, and the energy of an impulse.
 #![allow(dead_code, reason = "each test file uses its own part")]
 
-use restitution_core::law::{Components, Contact, Response};
+use restitution_core::law::{AxialCompliance, Components, Contact, Response};
 use restitution_core::{ChatterjeeRuina, Coulomb, Frictionless, Hypothesis, Law};
 
 pub const HYPOTHESES: [Hypothesis; 3] =
@@ -67,26 +67,28 @@ impl Random {
         // The farther away the mass is, the larger is J_xx: |r_c|² ≲ 4 J_xx/m in every body of revolution that we know.
         let reach = 2.0 * inertia.sqrt();
         Contact {
-            slip: Components {
+            velocity: Components {
                 normal: -normal,
                 along: slip,
                 across: 0.0,
             },
-            inertia,
-            arm_normal: -self.between(0.0, 1.0) * reach,
-            arm_along: if self.uniform() < 0.05 {
-                0.0
-            } else {
-                self.between(-reach, reach)
+            compliance: AxialCompliance {
+                inertia,
+                arm_normal: -self.between(0.0, 1.0) * reach,
+                arm_along: if self.uniform() < 0.05 {
+                    0.0
+                } else {
+                    self.between(-reach, reach)
+                },
+                ww: 1.0 + self.between(0.0, 4.0),
             },
-            across: 1.0 + self.between(0.0, 4.0),
         }
     }
 
     /// One that slips across it, too.
     pub fn spatial(&mut self) -> Contact {
         let mut contact = self.planar();
-        contact.slip.across = if self.uniform() < 0.8 {
+        contact.velocity.across = if self.uniform() < 0.8 {
             self.between(-2.0, 2.0)
         } else {
             self.magnitude(-8.0, 2.0)
@@ -110,11 +112,11 @@ pub fn chatterjee_ruina(normal: f64, tangential: f64, friction: f64) -> Law<'sta
 
 /// Contact velocity after the impact.
 pub fn after(contact: &Contact, response: &Response) -> Components {
-    let change = contact.change(response.impulse);
+    let change = contact.compliance.change(response.impulse);
     Components {
-        normal: contact.slip.normal + change.normal,
-        along: contact.slip.along + change.along,
-        across: contact.slip.across + change.across,
+        normal: contact.velocity.normal + change.normal,
+        along: contact.velocity.along + change.along,
+        across: contact.velocity.across + change.across,
     }
 }
 
@@ -129,14 +131,14 @@ pub fn tangential(v: Components) -> f64 {
 /// What an impulse and the velocities it makes are rounded to, over its own size: K enlarges both.
 pub fn rounding(contact: &Contact, response: &Response) -> f64 {
     let impulse = size(response.impulse);
-    let square = contact.arm_normal.powi(2) + contact.arm_along.powi(2);
-    let largest = 1.0 + square / contact.inertia + contact.across;
-    f64::EPSILON * (size(contact.slip) + largest * impulse)
+    let square = contact.compliance.arm_normal.powi(2) + contact.compliance.arm_along.powi(2);
+    let largest = 1.0 + square / contact.compliance.inertia + contact.compliance.ww;
+    f64::EPSILON * (size(contact.velocity) + largest * impulse)
 }
 
 /// The work of the impulse, P·(v_c + v_c′)/2.
 pub fn gain(contact: &Contact, response: &Response) -> f64 {
-    let (p, v, w) = (response.impulse, contact.slip, after(contact, response));
+    let (p, v, w) = (response.impulse, contact.velocity, after(contact, response));
     0.5 * (p.normal * (v.normal + w.normal)
         + p.along * (v.along + w.along)
         + p.across * (v.across + w.across))

@@ -4,8 +4,7 @@
 //! before the next begins: its operands are then available, and the processor executes the same stage of several groups in
 //! parallel. All stages of one group in a row would be a single chain of dependent operations.
 
-use super::collision::Dimension;
-use super::gradual::Collide;
+use super::collision::{Collisions, Dimension};
 use super::group::{Group, Release, Unconverged};
 use super::impact::Meanwhile;
 use super::passes::SearchOn;
@@ -39,6 +38,7 @@ pub(crate) trait Advance<S: Simd, T: Dimension> {
     fn advance(
         &self,
         groups: &mut [Group<S, T>],
+        collisions: &mut Collisions<S>,
         sink: &mut impl Meanwhile,
     ) -> Result<(), Unconverged>;
 }
@@ -100,6 +100,7 @@ impl<S: Simd, T: Dimension, H: Hull, L: Respond> Advance<S, T> for Inlined<'_, H
     fn advance(
         &self,
         groups: &mut [Group<S, T>],
+        collisions: &mut Collisions<S>,
         sink: &mut impl Meanwhile,
     ) -> Result<(), Unconverged> {
         let Self {
@@ -110,24 +111,24 @@ impl<S: Simd, T: Dimension, H: Hull, L: Respond> Advance<S, T> for Inlined<'_, H
             work_up::<S>(sink, i, 0);
         }
         find::<S, T>(groups, hull, sink)?;
-        if T::SPACE
-            && let Some(law) = law.takes_long()
-        {
-            let simd = groups[0].active.simd();
-            simd.vectorize(Collide {
-                groups: &mut *groups,
-                body,
-                hull,
-                law,
-            });
-            for i in 0..groups.len() {
-                work_up::<S>(sink, i, 7);
-            }
-            return Ok(());
+        let count = groups.len();
+        let Collisions {
+            points,
+            contacts,
+            responses,
+        } = collisions;
+        let (contacts, responses) = (&mut contacts[..count], &mut responses[..count]);
+        for (i, group) in groups.iter_mut().enumerate() {
+            points[i] = group.land(hull);
+            contacts[i] = group.contact(body, points[i]);
+        }
+        if T::SPACE {
+            law.respond_all::<S, true>(contacts, responses);
+        } else {
+            law.respond_all::<S, false>(contacts, responses);
         }
         for (i, group) in groups.iter_mut().enumerate() {
-            let point = group.land(hull);
-            group.collide(body, law, point);
+            group.leave(body, points[i], &contacts[i], &responses[i]);
             work_up::<S>(sink, i, 7);
         }
         Ok(())
@@ -241,12 +242,14 @@ impl<S: Simd, T: Dimension> Advance<S, T> for General<'_, '_> {
     fn advance(
         &self,
         groups: &mut [Group<S, T>],
+        collisions: &mut Collisions<S>,
         _: &mut impl Meanwhile,
     ) -> Result<(), Unconverged> {
         let simd = groups[0].active.simd();
         with_hull!(self.surface(), hull => simd.vectorize(AdvanceApart {
             cycle: self.with(hull),
             groups,
+            collisions,
         }))
     }
 }
@@ -277,6 +280,7 @@ impl<S: Simd, T: Dimension, H: Hull, R: Release> WithSimd for Occupy<'_, S, T, H
 struct AdvanceApart<'a, S: Simd, T: Dimension, L> {
     cycle: L,
     groups: &'a mut [Group<S, T>],
+    collisions: &'a mut Collisions<S>,
 }
 
 impl<S: Simd, T: Dimension, L: Advance<S, T>> WithSimd for AdvanceApart<'_, S, T, L> {
@@ -284,7 +288,7 @@ impl<S: Simd, T: Dimension, L: Advance<S, T>> WithSimd for AdvanceApart<'_, S, T
 
     #[inline(always)]
     fn with_simd<U: Simd>(self, _: U) -> Self::Output {
-        self.cycle.advance(self.groups, &mut Idle)
+        self.cycle.advance(self.groups, self.collisions, &mut Idle)
     }
 }
 

@@ -1,7 +1,7 @@
 //! The bounce loop: flight to the next contact, impact, and again, for several groups of particles in alternation.
 
 use super::advance::Advance;
-use super::collision::Dimension;
+use super::collision::{Collisions, Dimension};
 use super::group::{Group, Release, Unconverged};
 use super::impact::Sink;
 use crate::drop::stop::{Limits, StopReason};
@@ -24,6 +24,7 @@ pub(crate) fn bounce<S: Simd, T: Dimension, L: Advance<S, T>, const N: usize>(
     go_on: impl Fn() -> bool,
 ) -> Result<(), Unconverged> {
     let mut groups = cycle.groups::<N>(simd);
+    let mut collisions = Collisions::none(simd);
     let width = Pack::<S, 1>::WIDTH;
     let count = particles.len().div_ceil(width).min(N);
     // Of a slice that it knows to be short the compiler would write out every stage for each group, which then do not fit into the
@@ -46,7 +47,7 @@ pub(crate) fn bounce<S: Simd, T: Dimension, L: Advance<S, T>, const N: usize>(
         if !go_on() {
             break;
         }
-        cycle.advance(groups, sink)?;
+        cycle.advance(groups, &mut collisions, sink)?;
         ended = simd.vectorize(Report {
             groups: &mut *groups,
             body,

@@ -1,6 +1,7 @@
 //! The impact of a body: the contact that a law is applied to, (6)–(8), and the motion afterwards, (11).
 
-use crate::law::{Contacts, Respond, Responses};
+use super::group::GROUPS;
+use crate::law::{AxialCompliance, Components, Contact, Response};
 use crate::math::Vectors;
 use crate::motion::{
     Flight, PlanarMotion, PlanarState, SpatialFlight, SpatialMotion, SpatialState, SymmetricState,
@@ -12,7 +13,7 @@ use pulp::Simd;
 /// Planar or spatial motion.
 pub(crate) trait Dimension: Copy {
     /// The flight of as many particles as there are lanes.
-    type Flight<S: Simd, const K: usize>: Flight<S, K, State: Collide<S, K>>;
+    type Flight<S: Simd>: Flight<S, 1, State: Collide<S>>;
     /// Whether a contact may slip across the plane of the axis.
     const SPACE: bool;
 }
@@ -26,23 +27,23 @@ pub(crate) struct Planar;
 pub(crate) struct Spatial;
 
 impl Dimension for Planar {
-    type Flight<S: Simd, const K: usize> = PlanarState<S, K>;
+    type Flight<S: Simd> = PlanarState<S, 1>;
     const SPACE: bool = false;
 }
 
 impl Dimension for Spatial {
-    type Flight<S: Simd, const K: usize> = SpatialFlight<S, K>;
+    type Flight<S: Simd> = SpatialFlight<S, 1>;
     const SPACE: bool = true;
 }
 
 /// The sphere that touches like the hull at the contact: its lever s and its radius ϱ.
 #[derive(Clone, Copy)]
-pub(crate) struct ContactPoint<S: Simd, const K: usize> {
-    pub lever: Pack<S, K>,
-    pub radius: Pack<S, K>,
+pub(crate) struct ContactPoint<S: Simd> {
+    pub lever: Pack<S, 1>,
+    pub radius: Pack<S, 1>,
 }
 
-impl<S: Simd, const K: usize> ContactPoint<S, K> {
+impl<S: Simd> ContactPoint<S> {
     /// Before the first contact.
     #[inline(always)]
     pub fn none(simd: S) -> Self {
@@ -55,7 +56,7 @@ impl<S: Simd, const K: usize> ContactPoint<S, K> {
 
     /// The same, but of no size in the lanes of the mask, which have no contact.
     #[inline(always)]
-    pub fn but_not(self, mask: Mask<S, K>) -> Self {
+    pub fn but_not(self, mask: Mask<S, 1>) -> Self {
         Self {
             lever: mask.select(0.0, self.lever),
             radius: mask.select(0.0, self.radius),
@@ -64,7 +65,7 @@ impl<S: Simd, const K: usize> ContactPoint<S, K> {
 
     /// That of a part of a hull at this e_z.
     #[inline(always)]
-    pub fn of(hull: &impl Hull, part: &HullPart<S, K>, cos_tilt: Pack<S, K>) -> Self {
+    pub fn of(hull: &impl Hull, part: &HullPart<S, 1>, cos_tilt: Pack<S, 1>) -> Self {
         Self {
             lever: hull.lever(part, cos_tilt),
             radius: hull.radius(part, cos_tilt),
@@ -72,88 +73,82 @@ impl<S: Simd, const K: usize> ContactPoint<S, K> {
     }
 }
 
-/// The result of an impact.
-pub(crate) struct Collided<M, S: Simd, const K: usize> {
-    /// The motion after the impact.
-    pub motion: M,
-    /// Normal speeds of the point of contact: of approach before, of separation after the impact.
-    pub approach: Pack<S, K>,
-    pub separation: Pack<S, K>,
+/// The impacts of all groups: where each body touches, what a law is asked, and what it answers.
+pub(crate) struct Collisions<S: Simd> {
+    pub points: [ContactPoint<S>; GROUPS],
+    pub contacts: [Contact<Pack<S, 1>>; GROUPS],
+    pub responses: [Response<Pack<S, 1>>; GROUPS],
 }
 
-/// SymmetricState to which an impact can be applied.
-pub(crate) trait Collide<S: Simd, const K: usize>: SymmetricState<S, K> {
-    /// The contact of the part of the hull that touches.
-    fn contact(&self, body: &Body, point: ContactPoint<S, K>) -> Contacts<S, K>;
-
-    /// The response of a law to it.
-    fn response(law: &impl Respond, contact: &Contacts<S, K>) -> Responses<S, K>;
-
-    /// The motion after the impact.
-    fn respond(
-        &self,
-        body: &Body,
-        point: ContactPoint<S, K>,
-        response: &Responses<S, K>,
-    ) -> Self::Motion;
-
-    /// The impact of the part of the hull that touches.
-    #[inline(always)]
-    fn collide(
-        &self,
-        body: &Body,
-        law: &impl Respond,
-        point: ContactPoint<S, K>,
-    ) -> Collided<Self::Motion, S, K> {
-        let contact = self.contact(body, point);
-        let response = Self::response(law, &contact);
-        Collided {
-            motion: self.respond(body, point, &response),
-            approach: contact.approach_speed(),
-            separation: response.separation_speed,
+impl<S: Simd> Collisions<S> {
+    /// Before the first impact.
+    pub fn none(simd: S) -> Self {
+        Self {
+            points: [ContactPoint::none(simd); GROUPS],
+            contacts: [Contact::none(simd); GROUPS],
+            responses: [Response::none(simd); GROUPS],
         }
     }
 }
 
+/// A state to which an impact can be applied.
+pub(crate) trait Collide<S: Simd>: SymmetricState<S, 1> {
+    /// The contact of the part of the hull that touches.
+    fn contact(&self, body: &Body, point: ContactPoint<S>) -> Contact<Pack<S, 1>>;
+
+    /// The motion after the impact.
+    fn after(
+        &self,
+        body: &Body,
+        point: ContactPoint<S>,
+        response: &Response<Pack<S, 1>>,
+    ) -> Self::Motion;
+}
+
 /// **r**_c (6) in the plane of the axis, along x and z.
 #[inline(always)]
-fn planar_arm<S: Simd, const K: usize>(
-    state: &PlanarState<S, K>,
-    ContactPoint { lever, radius }: ContactPoint<S, K>,
-) -> [Pack<S, K>; 2] {
+fn planar_arm<S: Simd>(
+    state: &PlanarState<S, 1>,
+    ContactPoint { lever, radius }: ContactPoint<S>,
+) -> [Pack<S, 1>; 2] {
     [state.sine * lever, state.cosine.mul_add(lever, -radius)]
 }
 
-impl<S: Simd, const K: usize> Collide<S, K> for PlanarState<S, K> {
+impl<S: Simd> Collide<S> for PlanarState<S, 1> {
     #[inline(always)]
-    fn contact(&self, body: &Body, point: ContactPoint<S, K>) -> Contacts<S, K> {
+    fn contact(&self, body: &Body, point: ContactPoint<S>) -> Contact<Pack<S, 1>> {
         let PlanarMotion { vx, vz, spin } = self.motion;
         let [arm_x, arm_z] = planar_arm(self, point);
-        let slip = [
-            (vz - spin * arm_x).min(0.0), // v_c (7); at a grazing contact it may have changed sign within the last step
-            vx + spin * arm_z,            // v_c (7)
-        ];
-        Contacts::in_plane(slip, body.transverse, [arm_z, arm_x])
+        let zero = Pack::splat(vx.simd(), 0.0);
+        Contact {
+            velocity: Components {
+                normal: (vz - spin * arm_x).min(0.0), // (7); at a grazing contact it may have changed sign within the last step
+                along: vx + spin * arm_z,             // (7)
+                across: zero,
+            },
+            compliance: AxialCompliance {
+                inertia: body.transverse,
+                arm_normal: arm_z,
+                arm_along: arm_x,
+                ww: zero,
+            },
+        }
     }
 
     #[inline(always)]
-    fn response(law: &impl Respond, contact: &Contacts<S, K>) -> Responses<S, K> {
-        law.respond::<S, K, false>(contact)
-    }
-
-    #[inline(always)]
-    fn respond(
+    fn after(
         &self,
         body: &Body,
-        point: ContactPoint<S, K>,
-        response: &Responses<S, K>,
-    ) -> PlanarMotion<S, K> {
+        point: ContactPoint<S>,
+        response: &Response<Pack<S, 1>>,
+    ) -> PlanarMotion<S, 1> {
         let PlanarMotion { vx, vz, spin } = self.motion;
         let [arm_x, arm_z] = planar_arm(self, point);
-        let torque = arm_z.mul_add(response.along, -(arm_x * response.normal));
+        let impulse = &response.impulse;
+        let torque = arm_z.mul_add(impulse.along, -(arm_x * impulse.normal));
         PlanarMotion {
-            vx: vx + response.along,                           // (11)
-            vz: vz + response.normal,                          // (11)
+            vx: vx + impulse.along,                            // (11)
+            vz: vz + impulse.normal,                           // (11)
             spin: torque.mul_add(1.0 / body.transverse, spin), // (11)
         }
     }
@@ -164,18 +159,18 @@ impl<S: Simd, const K: usize> Collide<S, K> for PlanarState<S, K> {
 const UPRIGHT: f64 = 1e-150;
 
 /// The frame of a contact in space.
-struct Frame<S: Simd, const K: usize> {
+struct Frame<S: Simd> {
     /// **r**_c (6).
-    arm: Vectors<S, K>,
-    sine: Pack<S, K>,
+    arm: Vectors<S, 1>,
+    sine: Pack<S, 1>,
     /// **u** along x and y.
-    along_x: Pack<S, K>,
-    along_y: Pack<S, K>,
+    along_x: Pack<S, 1>,
+    along_y: Pack<S, 1>,
 }
 
-impl<S: Simd, const K: usize> Frame<S, K> {
+impl<S: Simd> Frame<S> {
     #[inline(always)]
-    fn new(state: &SpatialState<S, K>, ContactPoint { lever, radius }: ContactPoint<S, K>) -> Self {
+    fn new(state: &SpatialState<S, 1>, ContactPoint { lever, radius }: ContactPoint<S>) -> Self {
         let axis = state.axis;
         let sine = state.sine();
         let upright = sine.le(UPRIGHT);
@@ -193,9 +188,9 @@ impl<S: Simd, const K: usize> Frame<S, K> {
     }
 }
 
-impl<S: Simd, const K: usize> Collide<S, K> for SpatialState<S, K> {
+impl<S: Simd> Collide<S> for SpatialState<S, 1> {
     #[inline(always)]
-    fn contact(&self, body: &Body, point: ContactPoint<S, K>) -> Contacts<S, K> {
+    fn contact(&self, body: &Body, point: ContactPoint<S>) -> Contact<Pack<S, 1>> {
         let velocity = self.motion.velocity;
         let ContactPoint { lever, radius } = point;
         let Frame {
@@ -209,30 +204,32 @@ impl<S: Simd, const K: usize> Collide<S, K> for SpatialState<S, K> {
 
         // Components of r_c × w perpendicular to the axis and along it, which give K_ww.
         let (twist, roll) = (radius * self.axis.z - lever, radius * sine);
-        let across = (twist * twist).mul_add(
+        let ww = (twist * twist).mul_add(
             1.0 / body.transverse,
             (roll * roll).mul_add(1.0 / body.axial, 1.0),
         );
-        let slip = [
-            (velocity.z + turning.z).min(0.0), // at a grazing contact it may have changed sign within the last step
-            x.mul_add(along_x, y * along_y),
-            y.mul_add(along_x, -(x * along_y)),
-        ];
-        Contacts::in_space(slip, body.transverse, [arm.z, lever * sine], across)
+        Contact {
+            velocity: Components {
+                normal: (velocity.z + turning.z).min(0.0), // (7); as in the plane
+                along: x.mul_add(along_x, y * along_y),
+                across: y.mul_add(along_x, -(x * along_y)),
+            },
+            compliance: AxialCompliance {
+                inertia: body.transverse,
+                arm_normal: arm.z,
+                arm_along: lever * sine,
+                ww,
+            },
+        }
     }
 
     #[inline(always)]
-    fn response(law: &impl Respond, contact: &Contacts<S, K>) -> Responses<S, K> {
-        law.respond::<S, K, true>(contact)
-    }
-
-    #[inline(always)]
-    fn respond(
+    fn after(
         &self,
         body: &Body,
-        point: ContactPoint<S, K>,
-        response: &Responses<S, K>,
-    ) -> SpatialMotion<S, K> {
+        point: ContactPoint<S>,
+        response: &Response<Pack<S, 1>>,
+    ) -> SpatialMotion<S, 1> {
         let SpatialMotion {
             velocity,
             precession,
@@ -243,12 +240,15 @@ impl<S: Simd, const K: usize> Collide<S, K> for SpatialState<S, K> {
             along_y,
             ..
         } = Frame::new(self, point);
+        let Components {
+            normal,
+            along,
+            across,
+        } = response.impulse;
         let impulse = Vectors {
-            x: response
-                .along
-                .mul_add(along_x, -(response.across * along_y)),
-            y: response.along.mul_add(along_y, response.across * along_x),
-            z: response.normal,
+            x: along.mul_add(along_x, -(across * along_y)),
+            y: along.mul_add(along_y, across * along_x),
+            z: normal,
         };
         SpatialMotion {
             velocity: Vectors {

@@ -5,7 +5,7 @@ mod report;
 use super::collision::{Collide, ContactPoint, Dimension};
 use crate::contact::{GapEvaluation, LastContact, LocatedContact, Prediction, Search, Steps};
 use crate::drop::stop::StopReason;
-use crate::law::{Contacts, Respond, Responses};
+use crate::law::{Contact, MOST_CONTACTS, Response};
 use crate::motion::{Flight, State, SymmetricState};
 use crate::shape::{Body, Hull};
 use crate::simd::{LANES, Mask, Pack};
@@ -13,7 +13,7 @@ use pulp::Simd;
 use std::ops::Range;
 
 /// The flight of a group with planar or spatial motion T.
-type FlightOf<S, T> = <T as Dimension>::Flight<S, 1>;
+type FlightOf<S, T> = <T as Dimension>::Flight<S>;
 /// The state of a group.
 pub(crate) type StateOf<S, T> = <FlightOf<S, T> as Flight<S, 1>>::State;
 /// Velocity and angular momentum of a group, which an impact changes.
@@ -21,6 +21,7 @@ type MotionOf<S, T> = <StateOf<S, T> as SymmetricState<S, 1>>::Motion;
 
 /// Number of groups that alternate: enough to keep the arithmetic units busy, few enough to leave room in the first-level cache.
 pub(crate) const GROUPS: usize = 6;
+const _: () = assert!(GROUPS <= MOST_CONTACTS);
 
 /// The initial conditions of particles.
 pub(crate) trait Release {
@@ -317,7 +318,7 @@ impl<S: Simd, T: Dimension> Group<S, T> {
 
     /// Replaces the start of the flight by the state at the contact; returns the sphere that touches like the hull there.
     #[inline(always)]
-    pub fn land(&mut self, hull: &impl Hull) -> ContactPoint<S, 1> {
+    pub fn land(&mut self, hull: &impl Hull) -> ContactPoint<S> {
         let LocatedContact { time, attitude, .. } = self.located;
         let state = self.search.flight.state(time, attitude);
         let (part, cos_tilt) = (&self.evaluation.gap.part, state.cos_tilt());
@@ -343,45 +344,38 @@ impl<S: Simd, T: Dimension> Group<S, T> {
         }
     }
 
-    /// Applies the collision law.
+    /// The contact that a law is asked about. Of lanes that have none it does not slip along **w**, which takes long.
     #[inline(always)]
-    pub fn collide(&mut self, body: &Body, law: &impl Respond, point: ContactPoint<S, 1>) {
-        let collided = self.before().collide(body, law, point);
-        self.leave(collided.motion, collided.approach, collided.separation);
+    pub fn contact(&self, body: &Body, point: ContactPoint<S>) -> Contact<Pack<S, 1>> {
+        let mut contact = self.before().contact(body, point);
+        if T::SPACE {
+            let across = &mut contact.velocity.across;
+            *across = self.landing().select(*across, 0.0);
+        }
+        contact
     }
 
-    /// Takes the motion after an impact, and the normal speeds of its contact.
+    /// Takes the motion after an impact.
     #[inline(always)]
-    fn leave(&mut self, after: MotionOf<S, T>, approach: Pack<S, 1>, separation: Pack<S, 1>) {
+    pub fn leave(
+        &mut self,
+        body: &Body,
+        point: ContactPoint<S>,
+        contact: &Contact<Pack<S, 1>>,
+        response: &Response<Pack<S, 1>>,
+    ) {
+        let before = *self.search.flight.start();
+        let after = before.after(body, point, response);
+        let separation = response.separation_speed;
         let last_contact = &mut self.search.last_contact;
-        self.approach = approach;
+        self.approach = contact.approach_speed();
         if self.is_behind {
-            let before = *self.search.flight.start();
             self.after = before.with_motion(after).or(self.waiting, &before).motion();
             last_contact.speed = self.waiting.select(last_contact.speed, separation);
         } else {
             self.after = after;
             last_contact.speed = separation;
         }
-    }
-
-    /// The contact as a law sees it, and the lanes that have one.
-    #[inline(always)]
-    pub fn contact(&self, body: &Body, point: ContactPoint<S, 1>) -> (Contacts<S, 1>, Mask<S, 1>) {
-        (self.before().contact(body, point), self.landing())
-    }
-
-    /// Applies what a law answered.
-    #[inline(always)]
-    pub fn respond(
-        &mut self,
-        body: &Body,
-        point: ContactPoint<S, 1>,
-        approach: Pack<S, 1>,
-        response: &Responses<S, 1>,
-    ) {
-        let after = self.before().respond(body, point, response);
-        self.leave(after, approach, response.separation_speed);
     }
 
     /// Starts the next flight.

@@ -4,7 +4,6 @@
 mod advance;
 mod bounce;
 mod collision;
-mod gradual;
 mod group;
 mod impact;
 mod passes;

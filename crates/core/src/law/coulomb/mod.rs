@@ -8,15 +8,14 @@
 
 mod general;
 mod planar;
-pub(super) mod turning;
+mod turning;
 
-use super::{Answer, Compliance, Contacts, Frictionless, Late, Responses};
+use super::{Answer, Compliance, Components, Contact, Frictionless, Response};
 use crate::Error;
 use crate::math::Vector;
 use crate::simd::Pack;
 use planar::Path;
 use pulp::Simd;
-use turning::Slipping;
 
 /// The condition that ends the phase of restitution, after that of compression. The three hypotheses agree as long as the slip
 /// velocity neither vanishes nor changes its direction.
@@ -87,94 +86,39 @@ impl Coulomb {
         general::answer(self, compliance, velocity, restitution)
     }
 
-    /// μ.
-    pub(super) fn friction(&self) -> f64 {
-        self.friction
+    #[inline(always)]
+    pub(super) fn respond<S: Simd, const SPACE: bool>(
+        &self,
+        contacts: &[Contact<Pack<S, 1>>],
+        restitution: &[Pack<S, 1>],
+        responses: &mut [Response<Pack<S, 1>>],
+    ) {
+        if SPACE && self.friction > 0.0 {
+            turning::respond(self, contacts, restitution, responses);
+        } else {
+            let all = contacts.iter().zip(restitution).zip(responses);
+            for ((contact, &restitution), response) in all {
+                *response = self.in_plane(contact, restitution);
+            }
+        }
     }
 
+    /// The response to contacts that do not slip along **w**.
     #[inline(always)]
-    pub(super) fn respond<S: Simd, const K: usize, const SPACE: bool>(
+    fn in_plane<S: Simd>(
         &self,
-        contact: &Contacts<S, K>,
-        restitution: Pack<S, K>,
-    ) -> Responses<S, K> {
-        let mut answer = self.in_plane(contact, restitution);
-        if !SPACE || self.friction == 0.0 || contact.slip_across.eq(0.0).all() {
-            return answer;
-        }
-        for k in 0..K {
-            let mut late = [self.begin(&contact.part(k), restitution.part(k))];
-            self.finish(&mut late);
-            let found = late[0].response;
-            answer.normal.set_part(k, &found.normal);
-            answer.along.set_part(k, &found.along);
-            answer.across.set_part(k, &found.across);
-            answer.separation_speed.set_part(k, &found.separation_speed);
-        }
-        answer
-    }
-
-    /// The responses that do not take long, in space, μ > 0.
-    #[inline(always)]
-    pub(super) fn begin<S: Simd>(
-        &self,
-        contact: &Contacts<S, 1>,
+        contact: &Contact<Pack<S, 1>>,
         restitution: Pack<S, 1>,
-    ) -> Late<S> {
-        let turns = !contact.slip_across.eq(0.0);
-        let slipping = Slipping {
-            speed: contact.approach_speed(),
-            along: contact.slip_along,
-            across: contact.slip_across,
-            nn: contact.normal_response(),
-            nu: contact.coupling(),
-            uu: contact.along_response(),
-            ww: contact.across_response(),
-            restitution,
-        };
-        let (found, open) = turning::begin(&slipping, self.friction, self.hypothesis);
-        let mut response = Responses {
-            normal: found.normal,
-            along: found.along,
-            across: found.across,
-            separation_speed: found.separation_speed,
-        };
-        if !turns.all() {
-            let straight = self.in_plane(contact, restitution);
-            response = Responses {
-                normal: turns.select(response.normal, straight.normal),
-                along: turns.select(response.along, straight.along),
-                across: turns.select(response.across, straight.across),
-                separation_speed: turns
-                    .select(response.separation_speed, straight.separation_speed),
-            };
-        }
-        Late {
-            response,
-            open: (open & turns).select(1.0, 0.0),
-            slipping,
-        }
-    }
-
-    /// Finds the responses that take long.
-    #[inline(always)]
-    pub(super) fn finish<S: Simd>(&self, late: &mut [Late<S>]) {
-        turning::finish(late, self.friction, self.hypothesis);
-    }
-
-    #[inline(always)]
-    fn in_plane<S: Simd, const K: usize>(
-        &self,
-        contact: &Contacts<S, K>,
-        restitution: Pack<S, K>,
-    ) -> Responses<S, K> {
+    ) -> Response<Pack<S, 1>> {
         let speed = contact.approach_speed();
         let path = Path::new(contact, self.friction);
         let (normal, separation_speed) = path.end(speed, restitution, self.hypothesis);
-        Responses {
-            normal,
-            along: path.friction(normal),
-            across: normal * 0.0,
+        Response {
+            impulse: Components {
+                normal,
+                along: path.friction(normal),
+                across: normal * 0.0,
+            },
             separation_speed,
         }
     }

@@ -1,31 +1,32 @@
 //! Slip along a line: the contact velocity is piecewise linear in the normal impulse.
 
 use super::Hypothesis;
-use crate::law::Contacts;
+use crate::law::Contact;
 use crate::simd::Pack;
 use pulp::Simd;
 
 /// The contact velocity as a function of the normal impulse p: piecewise linear, with a kink at `stop`.
-pub(super) struct Path<S: Simd, const K: usize> {
+pub(super) struct Path<S: Simd> {
     /// Impulse p_s at which the slip velocity vanishes; infinite if it never does.
-    stop: Pack<S, K>,
+    stop: Pack<S, 1>,
     /// dv_c^n/dp before and after p_s. The first may be negative (jamming): the contact then sticks before it separates.
-    first: Pack<S, K>,
-    second: Pack<S, K>,
+    first: Pack<S, 1>,
+    second: Pack<S, 1>,
     /// dP_u/dp before and after p_s.
-    first_friction: Pack<S, K>,
-    second_friction: Pack<S, K>,
+    first_friction: Pack<S, 1>,
+    second_friction: Pack<S, 1>,
 }
 
-impl<S: Simd, const K: usize> Path<S, K> {
+impl<S: Simd> Path<S> {
     #[inline(always)]
-    pub fn new(contact: &Contacts<S, K>, friction: f64) -> Self {
-        let slip = contact.slip_along.abs();
+    pub fn new(contact: &Contact<Pack<S, 1>>, friction: f64) -> Self {
+        let (k, along) = (&contact.compliance, contact.velocity.along);
+        let slip = along.abs();
         let zero = Pack::splat(slip.simd(), 0.0);
-        let (nn, uu) = (contact.normal_response(), contact.along_response());
-        let coupling = contact.coupling();
+        let (nn, uu) = (k.nn(), k.uu());
+        let coupling = k.nu();
 
-        let backward = contact.slip_along.lt(0.0);
+        let backward = along.lt(0.0);
         let ahead = backward.select(-coupling, coupling); // K_nu, with u in the direction of the slip velocity
         let braking = uu.mul_add(friction, -ahead); // −d|slip|/dp
         let stop = zero.lt(braking).select(slip / braking, f64::INFINITY);
@@ -33,10 +34,7 @@ impl<S: Simd, const K: usize> Path<S, K> {
         Self {
             stop: slip.eq(0.0).select(0.0, stop),
             first: ahead.mul_add(-friction, nn),
-            second: sticks.select(
-                contact.sticking_response(),
-                coupling.abs().mul_add(-friction, nn),
-            ),
+            second: sticks.select(k.sticking(), coupling.abs().mul_add(-friction, nn)),
             first_friction: backward.select(friction, -friction),
             second_friction: (-coupling / uu).max(-friction).min(friction),
         }
@@ -46,10 +44,10 @@ impl<S: Simd, const K: usize> Path<S, K> {
     #[inline(always)]
     pub fn end(
         &self,
-        speed: Pack<S, K>,
-        restitution: Pack<S, K>,
+        speed: Pack<S, 1>,
+        restitution: Pack<S, 1>,
         hypothesis: Hypothesis,
-    ) -> (Pack<S, K>, Pack<S, K>) {
+    ) -> (Pack<S, 1>, Pack<S, 1>) {
         let rebound = restitution * speed;
         let turn = self.stop.mul_add(self.first, -speed); // normal velocity at p_s
         let early = turn.le(0.0); // the slip velocity vanishes during the compression
@@ -95,7 +93,7 @@ impl<S: Simd, const K: usize> Path<S, K> {
 
     /// Tangential impulse P_u at a normal impulse p.
     #[inline(always)]
-    pub fn friction(&self, normal: Pack<S, K>) -> Pack<S, K> {
+    pub fn friction(&self, normal: Pack<S, 1>) -> Pack<S, 1> {
         let slipping = normal.min(self.stop);
         slipping.mul_add(
             self.first_friction,

@@ -16,16 +16,17 @@ mod queue;
 #[cfg(test)]
 mod tests;
 
-use super::Hypothesis;
+use super::{Coulomb, Hypothesis};
+use crate::law::{Components, Contact, MOST_CONTACTS, Response};
 use crate::simd::elementary::{exp_in_lanes, exp_m1_in_lanes, polynomial};
 use crate::simd::{Mask, Pack};
-use pulp::Simd;
-pub(in crate::law) use queue::finish;
+use pulp::{Simd, WithSimd};
+use queue::Pending;
 use std::f64::consts::PI;
 
 /// A contact, and what of it enters Coulomb's law.
 #[derive(Clone, Copy)]
-pub(crate) struct Slipping<S: Simd, const K: usize> {
+struct Slipping<S: Simd, const K: usize> {
     /// −v_c^n ≥ 0.
     pub speed: Pack<S, K>,
     /// v_c^u and v_c^w.
@@ -39,13 +40,21 @@ pub(crate) struct Slipping<S: Simd, const K: usize> {
     pub restitution: Pack<S, K>,
 }
 
-/// Impulse along **n**, **u** and **w**, and v_c^n after the impact.
-#[derive(Clone, Copy)]
-pub(crate) struct Answer<S: Simd, const K: usize> {
-    pub normal: Pack<S, K>,
-    pub along: Pack<S, K>,
-    pub across: Pack<S, K>,
-    pub separation_speed: Pack<S, K>,
+impl<S: Simd> Slipping<S, 1> {
+    #[inline(always)]
+    fn new(contact: &Contact<Pack<S, 1>>, restitution: Pack<S, 1>) -> Self {
+        let (k, velocity) = (&contact.compliance, contact.velocity);
+        Self {
+            speed: contact.approach_speed(),
+            along: velocity.along,
+            across: velocity.across,
+            nn: k.nn(),
+            nu: k.nu(),
+            uu: k.uu(),
+            ww: k.ww(),
+            restitution,
+        }
+    }
 }
 
 // ========================================================================================================
@@ -1868,29 +1877,90 @@ impl<S: Simd> Impacts<S> {
         ]
     }
 
-    /// What came of them.
+    /// The answers to those that are over.
     #[inline(always)]
-    fn answer(&self) -> Answer<S, 1> {
+    fn answer(&self) -> Response<Pack<S, 1>> {
         let (course, scale) = (&self.course, self.scale);
         // A plastic contact is not left: rounding must not end its stay.
         let plastic = self.goal.restitution.eq(0.0);
-        Answer {
-            normal: course.normal * scale,
-            along: self.aside.select(0.0, course.along * course.mirror * scale),
-            across: self.left.select(-course.across, course.across) * scale,
+        Response {
+            impulse: Components {
+                normal: course.normal * scale,
+                along: self.aside.select(0.0, course.along * course.mirror * scale),
+                across: self.left.select(-course.across, course.across) * scale,
+            },
             separation_speed: plastic.select(0.0, course.v.max(0.0)) * scale,
         }
     }
 }
 
-/// The impulse of contacts that slip in any direction, μ > 0, unless it takes long: the lanes in which it is not known yet.
+/// Answers contacts that may slip in any direction, μ > 0.
 #[inline(always)]
-pub(crate) fn begin<S: Simd>(
-    contact: &Slipping<S, 1>,
-    friction: f64,
-    hypothesis: Hypothesis,
-) -> (Answer<S, 1>, Mask<S, 1>) {
-    let mut impacts = Impacts::new(contact, friction, hypothesis);
-    impacts.stop();
-    (impacts.answer(), !impacts.course.over)
+pub(super) fn respond<S: Simd>(
+    rule: &Coulomb,
+    contacts: &[Contact<Pack<S, 1>>],
+    restitution: &[Pack<S, 1>],
+    responses: &mut [Response<Pack<S, 1>>],
+) {
+    let simd = contacts[0].velocity.normal.simd();
+    simd.vectorize(Turning {
+        rule,
+        contacts,
+        restitution,
+        responses,
+    });
+}
+
+/// [`respond`], compiled in a function of its own: it is long.
+struct Turning<'a, S: Simd> {
+    rule: &'a Coulomb,
+    contacts: &'a [Contact<Pack<S, 1>>],
+    restitution: &'a [Pack<S, 1>],
+    responses: &'a mut [Response<Pack<S, 1>>],
+}
+
+impl<S: Simd> WithSimd for Turning<'_, S> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<T: Simd>(self, _: T) {
+        let Self {
+            rule,
+            contacts,
+            restitution,
+            responses,
+        } = self;
+        let simd = contacts[0].velocity.normal.simd();
+        let mut pending = [Pending::none(simd); MOST_CONTACTS];
+        let mut places = [0; MOST_CONTACTS];
+        let mut count = 0;
+        for (i, (contact, &restitution)) in contacts.iter().zip(restitution).enumerate() {
+            let turns = !contact.velocity.across.eq(0.0);
+            let slipping = Slipping::new(contact, restitution);
+            let mut impacts = Impacts::new(&slipping, rule.friction, rule.hypothesis);
+            impacts.stop();
+            let mut response = impacts.answer();
+            if !turns.all() {
+                let straight = rule.in_plane(contact, restitution);
+                response = response.or(!turns, &straight);
+            }
+            let open = (!impacts.course.over & turns).select(1.0, 0.0);
+            responses[i] = response;
+            if open.eq(1.0).any() {
+                pending[count] = Pending {
+                    slipping,
+                    open,
+                    response,
+                };
+                places[count] = i;
+                count += 1;
+            }
+        }
+        if count > 0 {
+            queue::finish(&mut pending[..count], rule.friction, rule.hypothesis);
+            for (&i, pending) in places[..count].iter().zip(&pending) {
+                responses[i] = pending.response;
+            }
+        }
+    }
 }

@@ -2,9 +2,30 @@
 //! are under way. Those whose direction hardly turns any more go on in lanes of their own, where all take the same steps.
 
 use super::{Impacts, Slipping};
-use crate::law::{Hypothesis, Late};
+use crate::law::{Hypothesis, Response};
 use crate::simd::{LANES, Mask, Pack};
 use pulp::{Simd, WithSimd};
+
+/// A vector of contacts, and the answers of which some are not known yet.
+#[derive(Clone, Copy)]
+pub(super) struct Pending<S: Simd> {
+    pub slipping: Slipping<S, 1>,
+    /// 1 in the lanes whose answer is not known, else 0.
+    pub open: Pack<S, 1>,
+    pub response: Response<Pack<S, 1>>,
+}
+
+impl<S: Simd> Pending<S> {
+    /// No contacts.
+    #[inline(always)]
+    pub fn none(simd: S) -> Self {
+        Self {
+            slipping: Slipping::none(simd),
+            open: Pack::splat(simd, 0.0),
+            response: Response::none(simd),
+        }
+    }
+}
 
 /// The lanes that have not had their turn.
 #[derive(Default)]
@@ -16,14 +37,14 @@ pub(super) struct Waiting {
 impl Waiting {
     /// The next one: vector and lane.
     #[inline(always)]
-    pub fn next<S: Simd>(&mut self, late: &[Late<S>]) -> Option<(usize, usize)> {
-        while self.vector < late.len() {
+    pub fn next<S: Simd>(&mut self, pending: &[Pending<S>]) -> Option<(usize, usize)> {
+        while self.vector < pending.len() {
             let at = (self.vector, self.lane);
             self.lane += 1;
             if self.lane == Pack::<S, 1>::WIDTH {
                 (self.vector, self.lane) = (self.vector + 1, 0);
             }
-            if late[at.0].open.as_slice()[at.1] == 1.0 {
+            if pending[at.0].open.as_slice()[at.1] == 1.0 {
                 return Some(at);
             }
         }
@@ -34,7 +55,7 @@ impl Waiting {
 impl<S: Simd> Slipping<S, 1> {
     /// No contact.
     #[inline(always)]
-    pub(in crate::law) fn none(simd: S) -> Self {
+    fn none(simd: S) -> Self {
         let zero = Pack::splat(simd, 0.0);
         Self {
             speed: zero,
@@ -101,10 +122,10 @@ pub(super) struct Lanes<S: Simd> {
 }
 
 impl<S: Simd> Lanes<S> {
-    /// No contact, of the law of those that are late.
+    /// No contact, of the law of those that are pending.
     #[inline(always)]
-    pub fn new(late: &[Late<S>], friction: f64, hypothesis: Hypothesis) -> Self {
-        let nothing = Slipping::none(late[0].open.simd());
+    pub fn new(pending: &[Pending<S>], friction: f64, hypothesis: Hypothesis) -> Self {
+        let nothing = Slipping::none(pending[0].open.simd());
         Self {
             impacts: Impacts::new(&nothing, friction, hypothesis),
             friction,
@@ -120,8 +141,8 @@ impl<S: Simd> Lanes<S> {
 
     /// Puts contacts that wait into free lanes.
     #[inline(always)]
-    pub fn begin(&mut self, waiting: &mut Waiting, late: &[Late<S>]) {
-        let simd = late[0].open.simd();
+    pub fn begin(&mut self, waiting: &mut Waiting, pending: &[Pending<S>]) {
+        let simd = pending[0].open.simd();
         let mut fresh = Slipping::none(simd);
         let mut taken = Pack::splat(simd, 0.0);
         let mut any = false;
@@ -129,9 +150,9 @@ impl<S: Simd> Lanes<S> {
             if place.is_some() {
                 continue;
             }
-            *place = waiting.next(late);
+            *place = waiting.next(pending);
             let Some((i, k)) = *place else { break };
-            fresh.put(lane, &late[i].slipping, k);
+            fresh.put(lane, &pending[i].slipping, k);
             taken.as_mut_slice()[lane] = 1.0;
             any = true;
         }
@@ -143,7 +164,7 @@ impl<S: Simd> Lanes<S> {
 
     /// Answers the contacts that are over.
     #[inline(always)]
-    pub fn end(&mut self, late: &mut [Late<S>]) {
+    pub fn end(&mut self, pending: &mut [Pending<S>]) {
         let over = self.impacts.course.over;
         if !over.any() {
             return;
@@ -155,26 +176,22 @@ impl<S: Simd> Lanes<S> {
                 && over.as_slice()[lane] == 1.0
             {
                 *place = None;
-                let response = &mut late[i].response;
-                response.normal.as_mut_slice()[k] = answer.normal.as_slice()[lane];
-                response.along.as_mut_slice()[k] = answer.along.as_slice()[lane];
-                response.across.as_mut_slice()[k] = answer.across.as_slice()[lane];
-                let speed = answer.separation_speed.as_slice()[lane];
-                response.separation_speed.as_mut_slice()[k] = speed;
+                let response = &mut pending[i].response;
+                response.put(k, &answer, lane);
             }
         }
     }
 
     /// Hands the contacts whose direction hardly turns any more over to other lanes, which go on whenever all are taken.
     #[inline(always)]
-    pub fn hand_over(&mut self, others: &mut Self, late: &mut [Late<S>]) {
+    pub fn hand_over(&mut self, others: &mut Self, pending: &mut [Pending<S>]) {
         let straight = self.impacts.is_straight();
         if !straight.any() {
             return;
         }
         straight.each(|lane| {
             if others.places.iter().flatten().count() == Pack::<S, 1>::WIDTH {
-                others.finish(late);
+                others.finish(pending);
             }
             let free = others.places.iter().position(Option::is_none);
             let free = free.expect("contacts that are finished leave their lanes");
@@ -186,16 +203,19 @@ impl<S: Simd> Lanes<S> {
 
     /// Takes all contacts to their ends.
     #[inline(never)]
-    pub fn finish(&mut self, late: &mut [Late<S>]) {
-        let simd = late[0].open.simd();
-        simd.vectorize(FinishLanes { lanes: self, late });
+    pub fn finish(&mut self, pending: &mut [Pending<S>]) {
+        let simd = pending[0].open.simd();
+        simd.vectorize(FinishLanes {
+            lanes: self,
+            pending,
+        });
     }
 }
 
 /// [`Lanes::finish`], to be compiled once.
 struct FinishLanes<'a, S: Simd> {
     lanes: &'a mut Lanes<S>,
-    late: &'a mut [Late<S>],
+    pending: &'a mut [Pending<S>],
 }
 
 impl<S: Simd> WithSimd for FinishLanes<'_, S> {
@@ -203,25 +223,25 @@ impl<S: Simd> WithSimd for FinishLanes<'_, S> {
 
     #[inline(always)]
     fn with_simd<T: Simd>(self, _: T) {
-        let Self { lanes, late } = self;
+        let Self { lanes, pending } = self;
         while !lanes.is_empty() {
             lanes.impacts.follow();
             if !lanes.is_empty() {
                 lanes.impacts.advance();
                 lanes.impacts.stop();
             }
-            lanes.end(late);
+            lanes.end(pending);
         }
     }
 }
 
 /// Finds the responses that are open.
 #[inline(always)]
-pub(crate) fn finish<S: Simd>(late: &mut [Late<S>], friction: f64, hypothesis: Hypothesis) {
-    let Some(first) = late.first() else { return };
+pub(super) fn finish<S: Simd>(pending: &mut [Pending<S>], friction: f64, hypothesis: Hypothesis) {
+    let Some(first) = pending.first() else { return };
     let simd = first.open.simd();
     simd.vectorize(Finish {
-        late,
+        pending,
         friction,
         hypothesis,
     });
@@ -229,7 +249,7 @@ pub(crate) fn finish<S: Simd>(late: &mut [Late<S>], friction: f64, hypothesis: H
 
 /// [`finish`], to be compiled once.
 struct Finish<'a, S: Simd> {
-    late: &'a mut [Late<S>],
+    pending: &'a mut [Pending<S>],
     friction: f64,
     hypothesis: Hypothesis,
 }
@@ -240,26 +260,26 @@ impl<S: Simd> WithSimd for Finish<'_, S> {
     #[inline(always)]
     fn with_simd<T: Simd>(self, _: T) {
         let Self {
-            late,
+            pending,
             friction,
             hypothesis,
         } = self;
         let mut waiting = Waiting::default();
-        let mut turning = Lanes::new(late, friction, hypothesis);
+        let mut turning = Lanes::new(pending, friction, hypothesis);
         let mut straight = turning;
         loop {
-            turning.begin(&mut waiting, late);
+            turning.begin(&mut waiting, pending);
             if turning.is_empty() {
                 break;
             }
             turning.impacts.stop();
-            turning.end(late);
-            turning.hand_over(&mut straight, late);
+            turning.end(pending);
+            turning.hand_over(&mut straight, pending);
             if !turning.is_empty() {
                 turning.impacts.advance();
-                turning.end(late);
+                turning.end(pending);
             }
         }
-        straight.finish(late);
+        straight.finish(pending);
     }
 }

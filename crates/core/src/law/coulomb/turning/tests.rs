@@ -913,9 +913,9 @@ mod tail {
 mod queue_of_contacts {
     use super::super::queue::*;
     use super::*;
-    use crate::law::Late;
+
     /// Two contacts with this angle between the slip and the direction that attracts it.
-    fn contacts(direction: f64) -> (Vec<Late<Scalar>>, f64) {
+    fn contacts(direction: f64) -> (Vec<Pending<Scalar>>, f64) {
         let case = Case {
             friction: 0.3,
             nn: 1.5,
@@ -924,13 +924,13 @@ mod queue_of_contacts {
             ww: 2.1,
             direction,
         };
-        let nothing = Late::none(Scalar::new());
-        let late = Late {
+        let nothing = Pending::none(Scalar::new());
+        let pending = Pending {
             open: one(1.0),
             slipping: case.contact(0.8, 0.3),
             ..nothing
         };
-        (vec![late; 2], case.friction)
+        (vec![pending; 2], case.friction)
     }
 
     /// A contact whose direction hardly turns goes to the other lanes and leaves its own; these begin when they are needed for another
@@ -938,22 +938,26 @@ mod queue_of_contacts {
     #[test]
     fn straight_contacts_wait_for_one_another() {
         let hypothesis = Hypothesis::Poisson;
-        let (mut late, friction) = contacts(0.01);
+        let (mut pending, friction) = contacts(0.01);
         let (mut both, _) = contacts(0.01);
-        let answers = |late: &[Late<Scalar>]| [0, 1].map(|i| value(late[i].response.normal));
+        let answers =
+            |pending: &[Pending<Scalar>]| [0, 1].map(|i| value(pending[i].response.impulse.normal));
         let mut waiting = Waiting::default();
-        let mut turning = Lanes::new(&late, friction, hypothesis);
+        let mut turning = Lanes::new(&pending, friction, hypothesis);
         let mut straight = turning;
         for answered in [false, true] {
-            turning.begin(&mut waiting, &late);
+            turning.begin(&mut waiting, &pending);
             turning.impacts.stop();
-            turning.hand_over(&mut straight, &mut late);
+            turning.hand_over(&mut straight, &mut pending);
             assert!(turning.is_empty() && !straight.is_empty());
-            assert_eq!(answers(&late).map(|normal| normal > 0.0), [answered, false]);
+            assert_eq!(
+                answers(&pending).map(|normal| normal > 0.0),
+                [answered, false]
+            );
         }
-        straight.finish(&mut late);
+        straight.finish(&mut pending);
         assert!(straight.is_empty());
-        let [one, other] = answers(&late);
+        let [one, other] = answers(&pending);
         assert_eq!(one, other);
         finish(&mut both, friction, hypothesis);
         assert_eq!(answers(&both), [one, one]);
@@ -961,13 +965,13 @@ mod queue_of_contacts {
 
     #[test]
     fn turning_contacts_are_not_handed_over() {
-        let (mut late, friction) = contacts(1.0);
+        let (mut pending, friction) = contacts(1.0);
         let mut waiting = Waiting::default();
-        let mut turning = Lanes::new(&late, friction, Hypothesis::Poisson);
+        let mut turning = Lanes::new(&pending, friction, Hypothesis::Poisson);
         let mut straight = turning;
-        turning.begin(&mut waiting, &late);
+        turning.begin(&mut waiting, &pending);
         turning.impacts.stop();
-        turning.hand_over(&mut straight, &mut late);
+        turning.hand_over(&mut straight, &mut pending);
         assert!(!turning.is_empty() && straight.is_empty());
     }
 }

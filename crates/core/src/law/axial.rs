@@ -1,0 +1,103 @@
+//! The compliance of a body of revolution that touches a plane.
+
+use super::Components;
+use crate::simd::{Pack, one};
+use pulp::{Scalar, Simd};
+
+/// The matrix K = I/m + \[**r**_c\]ᵀĴ⁻¹\[**r**_c\], which turns an impulse into the change of contact velocity (10), in units of 1/m:
+/// a block for **n** and **u** and an entry for **w**. It is stored as what it follows from, so that a law solves it as in (14).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct AxialCompliance<T = f64> {
+    /// Moment of inertia J_xx across the symmetry axis.
+    pub inertia: f64,
+    /// **r**_c along **n**.
+    pub arm_normal: T,
+    /// **r**_c along **u**.
+    pub arm_along: T,
+    /// K_ww; not used in planar motion.
+    pub ww: T,
+}
+
+impl AxialCompliance {
+    /// The impulse that changes the contact velocity by `change`: K P = Δ**v**_c (10).
+    pub fn impulse(&self, change: Components) -> Components {
+        let solved = self.in_lane().impulse::<true>(change.map(one));
+        solved.map(|component| component.as_slice()[0])
+    }
+
+    /// The change of the contact velocity by an impulse, K P (10).
+    pub fn change(&self, impulse: Components) -> Components {
+        let (n, u, j) = (self.arm_normal, self.arm_along, self.inertia);
+        let torque = n.mul_add(impulse.along, -(u * impulse.normal)) / j;
+        Components {
+            normal: u.mul_add(-torque, impulse.normal),
+            along: n.mul_add(torque, impulse.along),
+            across: self.ww * impulse.across,
+        }
+    }
+
+    /// The compliance in a single lane.
+    pub(crate) fn in_lane(&self) -> AxialCompliance<Pack<Scalar, 1>> {
+        AxialCompliance {
+            inertia: self.inertia,
+            arm_normal: one(self.arm_normal),
+            arm_along: one(self.arm_along),
+            ww: one(self.ww),
+        }
+    }
+}
+
+impl<S: Simd> AxialCompliance<Pack<S, 1>> {
+    /// The impulse that changes the contact velocity by `change`: K P = Δ**v**_c (10), solved as in (14). Without `SPACE` nothing
+    /// happens along **w**.
+    #[inline(always)]
+    pub fn impulse<const SPACE: bool>(
+        &self,
+        change: Components<Pack<S, 1>>,
+    ) -> Components<Pack<S, 1>> {
+        let (n, u, j) = (self.arm_normal, self.arm_along, self.inertia);
+        let nn = n.mul_add(n, j);
+        let inverse = 1.0 / u.mul_add(u, nn); // 1/(J_xx/m + r_c²)
+        let cross = n * u;
+        Components {
+            normal: nn.mul_add(change.normal, cross * change.along) * inverse, // (14)
+            along: u.mul_add(u, j).mul_add(change.along, cross * change.normal) * inverse, // (14)
+            across: if SPACE {
+                change.across / self.ww
+            } else {
+                Pack::splat(n.simd(), 0.0)
+            },
+        }
+    }
+
+    /// K_nn.
+    #[inline(always)]
+    pub fn nn(&self) -> Pack<S, 1> {
+        (self.arm_along * self.arm_along).mul_add(1.0 / self.inertia, 1.0)
+    }
+
+    /// K_uu.
+    #[inline(always)]
+    pub fn uu(&self) -> Pack<S, 1> {
+        (self.arm_normal * self.arm_normal).mul_add(1.0 / self.inertia, 1.0)
+    }
+
+    /// K_nu.
+    #[inline(always)]
+    pub fn nu(&self) -> Pack<S, 1> {
+        -(self.arm_normal * self.arm_along) * (1.0 / self.inertia)
+    }
+
+    /// K_ww.
+    #[inline(always)]
+    pub fn ww(&self) -> Pack<S, 1> {
+        self.ww
+    }
+
+    /// K_nn − K_nu²/K_uu: change of the normal contact velocity per normal impulse while the contact sticks.
+    #[inline(always)]
+    pub fn sticking(&self) -> Pack<S, 1> {
+        let nn = self.arm_normal.mul_add(self.arm_normal, self.inertia);
+        self.arm_along.mul_add(self.arm_along, nn) / nn
+    }
+}
