@@ -1,5 +1,6 @@
 //! The next contact of a body with the plane.
 
+mod certify;
 mod lanes;
 
 pub(crate) use lanes::{

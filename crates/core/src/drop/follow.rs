@@ -51,7 +51,7 @@ impl<'a> Followed<'a> {
         trajectory(
             &plan.body,
             &plan.law,
-            plan.slope,
+            plan.gravity.along,
             self.release,
             limits,
             counted,

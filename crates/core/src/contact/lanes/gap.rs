@@ -1,7 +1,8 @@
 //! The gap at a time of the flight, and the step from there that cannot pass a contact.
 
-use super::{SHORTEST, TOUCHING};
-use crate::motion::{Attitude, Flight, SymmetricState};
+use super::TOUCHING;
+use crate::contact::certify::{SHORTEST, closing_speed, first_zero};
+use crate::motion::{Attitude, Flight, Gravity, SymmetricState};
 use crate::shape::{AxisMotion, Hull, HullPart};
 use crate::simd::elementary::RANGE;
 use crate::simd::{Mask, Pack};
@@ -49,8 +50,8 @@ pub(crate) struct Gap<S: Simd, const K: usize> {
     pub width: Pack<S, K>,
     /// f′.
     pub rate: Pack<S, K>,
-    /// √(f′² + 2Mf): the speed of approach at the zero of the lower bound.
-    pub root: Pack<S, K>,
+    /// [`closing_speed`].
+    pub closing: Pack<S, K>,
 }
 
 /// The evaluation of a pass of the search: the gap that may close first.
@@ -76,7 +77,7 @@ impl<S: Simd, const K: usize> GapEvaluation<S, K> {
                 part,
                 width: zero,
                 rate: zero,
-                root: zero,
+                closing: zero,
             },
             never: Mask::splat(simd, false),
         }
@@ -121,10 +122,10 @@ impl<S: Simd, F: Flight<S, K>, const K: usize> Search<S, F, K> {
     pub fn continue_with(
         &mut self,
         motion: <F::State as SymmetricState<S, K>>::Motion,
-        slope: f64,
+        gravity: Gravity,
         hull: &impl Hull,
     ) {
-        self.flight.depart(motion, slope);
+        self.flight.depart(motion, gravity);
         self.compute_bounds(hull);
     }
 
@@ -137,11 +138,13 @@ impl<S: Simd, F: Flight<S, K>, const K: usize> Search<S, F, K> {
         let max_cos_tilt = flight.max_cos_tilt();
         let rotation_bound =
             hull.curvature_bound(flight.amplitude(), max_cos_tilt) * flight.square();
-        let above = vz.mul_add(vz, 2.0 * (height - hull.ceiling(max_cos_tilt)));
+        let gravity = flight.gravity();
+        // v_z² at the ceiling. Without gravity a body that rises does not come back, and nothing is skipped.
+        let above = vz.mul_add(vz, 2.0 * gravity * (height - hull.ceiling(max_cos_tilt))) * gravity;
         let root = above.sqrt();
         let reaches = !above.le(0.0);
         self.rotation_bound = rotation_bound;
-        self.curvature_bound = 1.0 + rotation_bound;
+        self.curvature_bound = gravity + rotation_bound;
         self.up = reaches.select(vz - root, f64::INFINITY);
         self.down = reaches.select(vz + root, f64::INFINITY);
     }
@@ -179,7 +182,10 @@ impl<S: Simd, F: Flight<S, K>, const K: usize> Search<S, F, K> {
         let instant = self.beginning();
         let on = self.last_contact.sphere;
         let part = hull.part(!on.lt(0.0));
-        let held = !on.eq(0.0) & hull.curvature(&part, &instant.axis_motion, -1.0).le(0.0);
+        let held = !on.eq(0.0)
+            & hull
+                .curvature(&part, &instant.axis_motion, -self.flight.gravity())
+                .le(0.0);
         if H::TWO {
             let (_, still) = instant.opening(&part, hull);
             let other = self.gap(&instant, hull.part(on.lt(0.0)), hull);
@@ -273,7 +279,7 @@ impl<S: Simd, F: Flight<S, K>, const K: usize> Search<S, F, K> {
             part,
             width,
             rate,
-            root: self.root(width, rate),
+            closing: closing_speed(width, rate, self.curvature_bound),
         }
     }
 
@@ -286,12 +292,6 @@ impl<S: Simd, F: Flight<S, K>, const K: usize> Search<S, F, K> {
             vz: self.flight.vz_at(time),
             axis_motion: self.flight.axis_motion(attitude),
         }
-    }
-
-    #[inline(always)]
-    fn root(&self, width: Pack<S, K>, rate: Pack<S, K>) -> Pack<S, K> {
-        rate.mul_add(rate, 2.0 * self.curvature_bound * width)
-            .sqrt()
     }
 
     /// The gap that may close first in the cases that [`Hull::nearer`] does not decide: at the start the part on the plane is known
@@ -318,7 +318,7 @@ impl<S: Simd, F: Flight<S, K>, const K: usize> Search<S, F, K> {
             },
             width: swap.select(other.width, gap.width),
             rate: swap.select(other.rate, gap.rate),
-            root: swap.select(other.root, gap.root),
+            closing: swap.select(other.closing, gap.closing),
         }
     }
 
@@ -336,20 +336,15 @@ impl<S: Simd, F: Flight<S, K>, const K: usize> Search<S, F, K> {
         Gap {
             width,
             rate,
-            root: self.root(width, rate),
+            closing: closing_speed(width, rate, self.curvature_bound),
             ..gap
         }
     }
 
-    /// The first zero τ ≥ 0 of f + f′τ − Mτ²/2, before which there is no contact, in that of the two forms of the root in which no
-    /// digits cancel.
+    /// The time before which there is no contact of a part with this gap.
     #[inline(always)]
     pub fn certified(&self, gap: &Gap<S, K>) -> Pack<S, K> {
-        let approaching = gap.rate.lt(0.0);
-        let speed = gap.rate.abs() + gap.root;
-        let numerator = approaching.select(2.0 * gap.width, speed.max(SHORTEST));
-        let denominator = approaching.select(speed, self.curvature_bound);
-        numerator / denominator
+        first_zero(gap.width, gap.rate, gap.closing, self.curvature_bound)
     }
 
     /// The given time, or, if the centre of mass is then higher than the hull can reach, the time at which it comes back down.

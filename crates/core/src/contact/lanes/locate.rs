@@ -2,6 +2,7 @@
 
 use super::gap::{GapEvaluation, Search};
 use super::{FAR, INVISIBLE, LAST, NEAR, SMALL};
+use crate::contact::certify::{least_before, mean_rate_before};
 use crate::motion::{Attitude, Flight};
 use crate::shape::Hull;
 use crate::simd::{Mask, Pack};
@@ -120,7 +121,11 @@ impl<S: Simd, F: Flight<S, K>, const K: usize> Search<S, F, K> {
             attitude,
             width,
             rate,
-            curvature: hull.curvature(part, &self.flight.axis_motion(attitude), -1.0),
+            curvature: hull.curvature(
+                part,
+                &self.flight.axis_motion(attitude),
+                -self.flight.gravity(),
+            ),
         }
     }
 
@@ -141,7 +146,7 @@ impl<S: Simd, F: Flight<S, K>, const K: usize> Search<S, F, K> {
         let attitude = prediction.attitude.advanced(self.flight.rate() * rest);
 
         // A zero before the end of the step, which is certified, can only be that of the contact at the start, within its rounding.
-        let beyond = self.least_fall(steps.expanded, prediction.rate);
+        let beyond = mean_rate_before(steps.expanded, prediction.rate, self.curvature_bound);
         let before = steps.certified.mul_add(0.5, -steps.expanded);
         let far = FAR.min(1.0 / hull.sharpness());
         let turned = (self.flight.rate() * steps.expanded).abs() - far;
@@ -213,7 +218,7 @@ impl<S: Simd, F: Flight<S, K>, const K: usize> Search<S, F, K> {
         hull: &impl Hull,
     ) -> Pack<S, K> {
         let rate = prediction.rate;
-        let beyond = self.least_fall(located.time - certain, rate);
+        let beyond = mean_rate_before(located.time - certain, rate, self.curvature_bound);
         // So near to the contact a pass ends the search, and the gap is larger than its rounding error.
         let turning = self.flight.rate().abs() * hull.sharpness();
         let margin = NEAR * rate / turning.mul_add(-rate, self.rotation_bound);
@@ -223,9 +228,6 @@ impl<S: Simd, F: Flight<S, K>, const K: usize> Search<S, F, K> {
     }
 
     /// Whether no part can have touched between `certain`, up to which a contact is ruled out, and the `time` of the evaluation.
-    ///
-    /// The bound f″ ≥ −M holds backwards in time as well: a time s before the evaluation of f and f′ the gap was at least
-    /// f − f′s − Ms²/2, which is concave in s, and therefore positive in between if it is positive at both ends.
     #[inline(always)]
     pub fn is_clear<H: Hull>(
         &self,
@@ -234,32 +236,18 @@ impl<S: Simd, F: Flight<S, K>, const K: usize> Search<S, F, K> {
         evaluation: &GapEvaluation<S, K>,
         hull: &H,
     ) -> Mask<S, K> {
-        let since = time - certain;
-        let least = self.least_gap(since, evaluation.gap.width, evaluation.gap.rate);
+        let (since, bound) = (time - certain, self.curvature_bound);
+        let least = least_before(since, evaluation.gap.width, evaluation.gap.rate, bound);
         let least = if H::TWO {
             let other = hull.part(!evaluation.gap.part.one);
             let (width, rate) = self
                 .instant(time, evaluation.attitude)
                 .opening(&other, hull);
-            least.min(self.least_gap(since, width, rate))
+            least.min(least_before(since, width, rate, bound))
         } else {
             least
         };
         !certain.lt(time) | (0.0 * since).lt(least)
-    }
-
-    /// A lower bound on the gap of a part during the interval of length `since` before its evaluation.
-    #[inline(always)]
-    fn least_gap(&self, since: Pack<S, K>, width: Pack<S, K>, rate: Pack<S, K>) -> Pack<S, K> {
-        let fallen = self.least_fall(since, rate);
-        since.mul_add(-fallen, width).min(width)
-    }
-
-    /// An upper bound on the mean f′ during the interval of length `since` before a time at which f′ is `rate`, f′ + ½M·since. Where it
-    /// is negative, the gap was wider before: of a contact, for at least 2|f′|/M.
-    #[inline(always)]
-    fn least_fall(&self, since: Pack<S, K>, rate: Pack<S, K>) -> Pack<S, K> {
-        since.mul_add(0.5 * self.curvature_bound, rate)
     }
 
     /// The step to the zero of the fourth-order expansion of the gap, found by a step of third order from the end of `step`.
@@ -276,10 +264,10 @@ impl<S: Simd, F: Flight<S, K>, const K: usize> Search<S, F, K> {
         // The gap after the step, and the speed at which it closes there.
         let bend = (step * fourth).mul_add(1.0 / 12.0, third * (1.0 / 3.0));
         let left = 0.5 * (step * step) * step.mul_add(bend, slack);
-        let speed = step.mul_add(-step.mul_add(0.5 * third, slack), evaluation.gap.root);
+        let speed = step.mul_add(-step.mul_add(0.5 * third, slack), evaluation.gap.closing);
         let inverse = 1.0 / speed;
         let newton = left * inverse;
-        let curvature = step.mul_add(third, second - 1.0); // f″
+        let curvature = step.mul_add(third, second - self.flight.gravity()); // f″
         step + newton.mul_add(0.5 * curvature * newton * inverse, newton)
     }
 }

@@ -34,9 +34,6 @@ const SMALL: f64 = 1.0 / 262_144.0;
 const LAST: f64 = 1.0 / 2048.0;
 /// ...and leaves a gap of at most this, the resolution: 2⁻⁵² R.
 const INVISIBLE: f64 = 1.0 / 4_503_599_627_370_496.0;
-/// The shortest certified step for a part that is not approaching is this over M, 2⁻²⁶/M: rotation and gravity change its gap by
-/// less than the resolution in that time.
-const SHORTEST: f64 = 1.0 / 67_108_864.0;
 /// Gaps up to this may be rounding errors: 2⁻⁴⁸ R.
 const TOUCHING: f64 = 1.0 / 281_474_976_710_656.0;
 /// Largest number of passes. Grazing contacts need up to two or three dozen, fast spins a few hundred.

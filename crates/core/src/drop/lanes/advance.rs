@@ -9,6 +9,7 @@ use super::group::{Group, Release, Unconverged};
 use super::impact::Meanwhile;
 use super::passes::SearchOn;
 use crate::law::{Law, Respond};
+use crate::motion::Gravity;
 use crate::shape::{Body, Hull, Surface, with_hull};
 use crate::simd::Pack;
 use crate::simd::elementary::sincos_in_lanes;
@@ -48,17 +49,17 @@ pub(crate) struct Inlined<'a, H, L> {
     body: &'a Body,
     hull: &'a H,
     law: &'a L,
-    slope: f64,
+    gravity: Gravity,
 }
 
 impl<'a, H, L> Inlined<'a, H, L> {
-    /// The motion over a plane that descends along x with this slope, tan α.
-    pub fn new(body: &'a Body, hull: &'a H, law: &'a L, slope: f64) -> Self {
+    /// The motion in this gravity.
+    pub fn new(body: &'a Body, hull: &'a H, law: &'a L, gravity: Gravity) -> Self {
         Self {
             body,
             hull,
             law,
-            slope,
+            gravity,
         }
     }
 }
@@ -67,8 +68,7 @@ impl<'a, H, L> Inlined<'a, H, L> {
 pub(crate) struct General<'a, 'b> {
     pub body: &'a Body,
     pub law: &'a Law<'b>,
-    /// tan α, α the inclination of the plane.
-    pub slope: f64,
+    pub gravity: Gravity,
 }
 
 impl<S: Simd, T: Dimension, H: Hull, L: Respond> Advance<S, T> for Inlined<'_, H, L> {
@@ -91,7 +91,7 @@ impl<S: Simd, T: Dimension, H: Hull, L: Respond> Advance<S, T> for Inlined<'_, H
             groups,
             release,
             particles,
-            slope: self.slope,
+            gravity: self.gravity,
             hull: self.hull,
         });
     }
@@ -107,7 +107,7 @@ impl<S: Simd, T: Dimension, H: Hull, L: Respond> Advance<S, T> for Inlined<'_, H
             body, hull, law, ..
         } = *self;
         for (i, group) in groups.iter_mut().enumerate() {
-            group.start(self.slope, hull);
+            group.start(self.gravity, hull);
             work_up::<S>(sink, i, 0);
         }
         find::<S, T>(groups, hull, sink)?;
@@ -212,7 +212,7 @@ fn turn<S: Simd, T: Dimension>(groups: &mut [Group<S, T>], sink: &mut impl Meanw
 
 impl<'a, 'b> General<'a, 'b> {
     fn with<H>(&self, hull: &'a H) -> Inlined<'a, H, Law<'b>> {
-        Inlined::new(self.body, hull, self.law, self.slope)
+        Inlined::new(self.body, hull, self.law, self.gravity)
     }
 
     fn surface(&self) -> &'a Surface {
@@ -259,7 +259,7 @@ struct Occupy<'a, S: Simd, T: Dimension, H, R> {
     groups: &'a mut [Group<S, T>],
     release: &'a R,
     particles: &'a mut Range<usize>,
-    slope: f64,
+    gravity: Gravity,
     hull: &'a H,
 }
 
@@ -270,7 +270,7 @@ impl<S: Simd, T: Dimension, H: Hull, R: Release> WithSimd for Occupy<'_, S, T, H
     fn with_simd<U: Simd>(self, _: U) {
         for group in self.groups {
             if !group.active.all() {
-                group.occupy(self.release, self.particles, self.slope, self.hull);
+                group.occupy(self.release, self.particles, self.gravity, self.hull);
             }
         }
     }

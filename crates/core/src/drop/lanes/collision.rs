@@ -4,7 +4,8 @@ use super::group::GROUPS;
 use crate::law::{AxialCompliance, Components, Contact, Response};
 use crate::math::Vectors;
 use crate::motion::{
-    Flight, PlanarMotion, PlanarState, SpatialFlight, SpatialMotion, SpatialState, SymmetricState,
+    Flight, PlanarFlight, PlanarMotion, PlanarState, SpatialFlight, SpatialMotion, SpatialState,
+    SymmetricState,
 };
 use crate::shape::{Body, Hull, HullPart};
 use crate::simd::{Mask, Pack};
@@ -27,7 +28,7 @@ pub(crate) struct Planar;
 pub(crate) struct Spatial;
 
 impl Dimension for Planar {
-    type Flight<S: Simd> = PlanarState<S, 1>;
+    type Flight<S: Simd> = PlanarFlight<S, 1>;
     const SPACE: bool = false;
 }
 

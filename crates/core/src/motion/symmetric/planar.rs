@@ -2,11 +2,12 @@
 
 use super::{Attitude, Flight, SpatialMotion, SpatialState, State, SymmetricState};
 use crate::math::Vectors;
+use crate::motion::Gravity;
 use crate::shape::{AxisMotion, Body};
 use crate::simd::{Mask, Pack};
 use pulp::Simd;
 
-/// Position and motion. They also represent the flight that starts from them, for which nothing needs to be computed in advance.
+/// Position and motion.
 #[derive(Clone, Copy)]
 pub(crate) struct PlanarState<S: Simd, const K: usize> {
     pub height: Pack<S, K>,
@@ -123,49 +124,64 @@ impl<S: Simd, const K: usize> SymmetricState<S, K> for PlanarState<S, K> {
     }
 }
 
-impl<S: Simd, const K: usize> Flight<S, K> for PlanarState<S, K> {
-    type State = Self;
+/// A flight: the state at its start.
+#[derive(Clone, Copy)]
+pub(crate) struct PlanarFlight<S: Simd, const K: usize> {
+    start: PlanarState<S, K>,
+    /// Acceleration towards the plane.
+    gravity: f64,
+}
 
-    /// The slope is 0: over an incline the motion is spatial, because gravity has a component outside the plane of the axis.
+impl<S: Simd, const K: usize> Flight<S, K> for PlanarFlight<S, K> {
+    type State = PlanarState<S, K>;
+
+    /// Gravity has no component along the plane: over an incline the motion is spatial.
     #[inline(always)]
-    fn new(start: Self, _: f64) -> Self {
-        start
+    fn new(start: PlanarState<S, K>, gravity: Gravity) -> Self {
+        Self {
+            start,
+            gravity: gravity.normal,
+        }
     }
 
     #[inline(always)]
-    fn depart(&mut self, motion: PlanarMotion<S, K>, _: f64) {
-        self.motion = motion;
+    fn gravity(&self) -> f64 {
+        self.gravity
     }
 
     #[inline(always)]
-    fn start(&self) -> &Self {
-        self
+    fn depart(&mut self, motion: PlanarMotion<S, K>, _: Gravity) {
+        self.start.motion = motion;
+    }
+
+    #[inline(always)]
+    fn start(&self) -> &PlanarState<S, K> {
+        &self.start
     }
 
     #[inline(always)]
     fn rate(&self) -> Pack<S, K> {
-        self.motion.spin
+        self.start.motion.spin
     }
 
     #[inline(always)]
     fn square(&self) -> Pack<S, K> {
-        self.motion.spin * self.motion.spin
+        self.rate() * self.rate()
     }
 
     #[inline(always)]
     fn amplitude(&self) -> Pack<S, K> {
-        Pack::splat(self.height.simd(), 1.0)
+        Pack::splat(self.start.height.simd(), 1.0)
     }
 
     #[inline(always)]
     fn max_cos_tilt(&self) -> Pack<S, K> {
-        Pack::splat(self.height.simd(), 1.0)
+        Pack::splat(self.start.height.simd(), 1.0)
     }
 
     #[inline(always)]
     fn attitude(&self, (sin, cos): (Pack<S, K>, Pack<S, K>)) -> Attitude<S, K> {
-        let Self { sine, cosine, .. } = *self;
-        Attitude { sine, cosine }.after(sin, cos)
+        self.start.attitude().after(sin, cos)
     }
 
     #[inline(always)]
@@ -173,7 +189,7 @@ impl<S: Simd, const K: usize> Flight<S, K> for PlanarState<S, K> {
         let square = self.square();
         AxisMotion {
             cos_tilt: attitude.cosine,
-            rate: -self.motion.spin * attitude.sine,
+            rate: -self.rate() * attitude.sine,
             acceleration: -square * attitude.cosine,
             square,
         }
@@ -181,30 +197,37 @@ impl<S: Simd, const K: usize> Flight<S, K> for PlanarState<S, K> {
 
     #[inline(always)]
     fn axis_motion_at_start(&self) -> AxisMotion<S, K> {
-        self.axis_motion(Attitude {
-            sine: self.sine,
-            cosine: self.cosine,
-        })
+        self.axis_motion(self.start.attitude())
     }
 
     #[inline(always)]
-    fn state(&self, time: Pack<S, K>, attitude: Attitude<S, K>) -> Self {
+    fn state(&self, time: Pack<S, K>, attitude: Attitude<S, K>) -> PlanarState<S, K> {
         let Attitude { sine, cosine } = attitude;
         // One Newton step to unit length; rounding would otherwise accumulate over the impacts.
         let length = sine.mul_add(sine, cosine * cosine).mul_add(-0.5, 1.5);
-        Self {
-            height: self.height,
+        PlanarState {
+            height: self.start.height,
             sine: sine * length,
             cosine: cosine * length,
             motion: PlanarMotion {
                 vz: self.vz_at(time),
-                ..self.motion
+                ..self.start.motion
             },
         }
     }
 
     #[inline(always)]
-    fn end(&mut self, state: Self, height: Pack<S, K>) {
-        *self = Self { height, ..state };
+    fn end(&mut self, state: PlanarState<S, K>, height: Pack<S, K>) {
+        self.start = PlanarState { height, ..state };
+    }
+}
+
+impl<S: Simd, const K: usize> PlanarState<S, K> {
+    #[inline(always)]
+    fn attitude(&self) -> Attitude<S, K> {
+        Attitude {
+            sine: self.sine,
+            cosine: self.cosine,
+        }
     }
 }

@@ -5,6 +5,7 @@
 
 use super::{Attitude, Flight, State, SymmetricState};
 use crate::math::Vectors;
+use crate::motion::Gravity;
 use crate::shape::{AxisMotion, Body};
 use crate::simd::{Mask, Pack};
 use pulp::Simd;
@@ -146,7 +147,7 @@ impl<S: Simd, const K: usize> SymmetricState<S, K> for SpatialState<S, K> {
 #[derive(Clone, Copy)]
 pub(crate) struct SpatialFlight<S: Simd, const K: usize> {
     start: SpatialState<S, K>,
-    slope: f64,
+    gravity: Gravity,
     /// Ω and Ω².
     rate: Pack<S, K>,
     square: Pack<S, K>,
@@ -167,7 +168,7 @@ impl<S: Simd, const K: usize> Flight<S, K> for SpatialFlight<S, K> {
     type State = SpatialState<S, K>;
 
     #[inline(always)]
-    fn new(start: SpatialState<S, K>, slope: f64) -> Self {
+    fn new(start: SpatialState<S, K>, gravity: Gravity) -> Self {
         let (axis, precession) = (start.axis, start.motion.precession);
         let square = precession.dot(precession);
         let rate = square.sqrt();
@@ -180,7 +181,7 @@ impl<S: Simd, const K: usize> Flight<S, K> for SpatialFlight<S, K> {
         let amplitude = cosine.mul_add(cosine, sine * sine).sqrt();
         Self {
             start,
-            slope,
+            gravity,
             rate,
             square,
             share,
@@ -193,8 +194,13 @@ impl<S: Simd, const K: usize> Flight<S, K> for SpatialFlight<S, K> {
     }
 
     #[inline(always)]
-    fn depart(&mut self, motion: SpatialMotion<S, K>, slope: f64) {
-        *self = Self::new(self.start.with_motion(motion), slope);
+    fn depart(&mut self, motion: SpatialMotion<S, K>, gravity: Gravity) {
+        *self = Self::new(self.start.with_motion(motion), gravity);
+    }
+
+    #[inline(always)]
+    fn gravity(&self) -> f64 {
+        self.gravity.normal
     }
 
     #[inline(always)]
@@ -270,7 +276,7 @@ impl<S: Simd, const K: usize> Flight<S, K> for SpatialFlight<S, K> {
             axis,
             motion: SpatialMotion {
                 velocity: Vectors {
-                    x: time.mul_add(self.slope, x), // (5)
+                    x: time.mul_add(self.gravity.along, x), // (5)
                     y,
                     z: self.vz_at(time),
                 },
