@@ -35,6 +35,7 @@
 #![forbid(unsafe_code)]
 
 mod contact;
+pub mod describe;
 pub mod distribution;
 mod drop;
 mod error;
@@ -56,15 +57,15 @@ pub use drop::{
 };
 pub use error::{Error, Value};
 pub use law::{
-    ChatterjeeRuina, Coulomb, Frictionless, Hypothesis, Law, Normal, Plastic, Points, Rule,
-    Tabulated, TangentialRestitution, Viscoelastic,
+    ChatterjeeRuina, Coulomb, Frictionless, Hypothesis, LAWS, Law, MATERIALS, Material, Normal,
+    Plastic, Points, Rule, Tabulated, TangentialRestitution, Viscoelastic,
 };
 pub use math::{Quaternion, Symmetric, Vector};
 pub use memory::{collected, copied};
 pub use motion::{Rotation, State, Top};
 pub use record::{Columns, PER_IMPACT, PER_PARTICLE, Records, Values, Variable, When};
 pub use shape::{
-    Body, Dumbbell, LoadedSphere, Shape, Solid, Sphere, Spherocylinder, Spheroid, Surface,
+    BODIES, Body, Dumbbell, LoadedSphere, Shape, Solid, Sphere, Spherocylinder, Spheroid, Surface,
 };
 pub use simd::{Level, elementary};
 pub use simulate::simulate_series;

@@ -12,24 +12,9 @@ use restitution_core::{
 };
 use std::sync::Arc;
 
-/// A normal coefficient, with the table that it owns.
-enum Coefficient {
-    Closed(Normal<'static>),
-    Measured(Points),
-}
-
-impl Coefficient {
-    fn normal(&self) -> Normal<'_> {
-        match self {
-            Self::Closed(normal) => *normal,
-            Self::Measured(points) => points.coefficient().into(),
-        }
-    }
-}
-
 /// A normal coefficient that depends on the speed.
 #[pyclass(frozen, module = "restitution._core")]
-pub struct Material(Arc<Coefficient>);
+pub struct Material(Arc<restitution_core::Material>);
 
 #[pymethods]
 impl Material {
@@ -57,7 +42,9 @@ impl Material {
 
 fn closed(normal: Result<impl Into<Normal<'static>>, Error>) -> PyResult<Material> {
     let normal = normal.map_err(python_error)?.into();
-    Ok(Material(Arc::new(Coefficient::Closed(normal))))
+    Ok(Material(Arc::new(restitution_core::Material::Closed(
+        normal,
+    ))))
 }
 
 #[pyfunction]
@@ -85,7 +72,9 @@ fn plastic(yield_speed: f64) -> PyResult<Material> {
 #[pyfunction]
 fn tabulated(v: PyReadonlyArray1<'_, f64>, e: PyReadonlyArray1<'_, f64>) -> PyResult<Material> {
     let points = Points::new(v.as_slice()?, e.as_slice()?).map_err(python_error)?;
-    Ok(Material(Arc::new(Coefficient::Measured(points))))
+    Ok(Material(Arc::new(restitution_core::Material::Measured(
+        points,
+    ))))
 }
 
 /// A constant normal coefficient, or a material.
@@ -98,7 +87,7 @@ enum Given<'py> {
 /// A collision law, ready for a run.
 #[pyclass(frozen, module = "restitution._core")]
 pub struct Law {
-    coefficient: Arc<Coefficient>,
+    coefficient: Arc<restitution_core::Material>,
     rule: Rule,
 }
 
@@ -144,7 +133,7 @@ fn law(normal: Given<'_>, rule: Result<impl Into<Rule>, Error>) -> PyResult<Law>
     let coefficient = match normal {
         Given::Constant(value) => {
             let law = restitution_core::Law::new(value, rule).map_err(python_error)?;
-            Arc::new(Coefficient::Closed(law.normal))
+            Arc::new(law.normal.into())
         }
         Given::Material(material) => Arc::clone(&material.0),
     };

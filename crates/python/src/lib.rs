@@ -2,6 +2,7 @@
 
 mod bodies;
 mod counts;
+mod describe;
 mod distribution;
 mod errors;
 mod laws;
@@ -120,6 +121,7 @@ fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add("AXES", About::NAMED.map(|(name, _)| name))?;
     module.add("STOP_REASONS", StopReason::NAMES)?;
     errors::add_to(module)?;
+    describe::add_to(module)?;
     bodies::add_to(module)?;
     laws::add_to(module)?;
     distribution::add_to(module)?;

@@ -1,6 +1,7 @@
 //! The law without friction: **P** ∥ **n**.
 
-use super::{Answer, Compliance, Components, Contact, Response};
+use super::{Answer, Compliance, Components, Contact, Response, Rule};
+use crate::describe::Kind;
 use crate::math::Vector;
 use crate::simd::Pack;
 use pulp::Simd;
@@ -13,6 +14,14 @@ use pulp::Simd;
 pub struct Frictionless;
 
 impl Frictionless {
+    /// Its entry in the table of laws.
+    pub(crate) const KIND: Kind<Rule> = Kind {
+        name: "Frictionless",
+        text: "an impulse along the plane normal only",
+        parameters: &[],
+        make: |_| Ok(Self.into()),
+    };
+
     /// The impulse for any compliance.
     pub(super) fn answer(
         &self,

@@ -21,7 +21,9 @@ pub use compliance::Compliance;
 pub use contact::{Answer, Components, Contact, Response};
 pub use coulomb::{Coulomb, Hypothesis, MOST_FRICTION};
 pub use frictionless::Frictionless;
-pub use normal::{Normal, PADE_ABOVE, PADE_BELOW, Plastic, Points, Tabulated, Viscoelastic};
-pub use rule::{Law, Rule};
+pub use normal::{
+    MATERIALS, Material, Normal, PADE_ABOVE, PADE_BELOW, Plastic, Points, Tabulated, Viscoelastic,
+};
+pub use rule::{Creation, LAWS, Law, LawKind, Rule};
 pub(crate) use rule::{MOST_CONTACTS, Respond};
 pub use tangential::TangentialRestitution;

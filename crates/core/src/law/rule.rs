@@ -5,6 +5,7 @@ use super::{
     TangentialRestitution, tangential::Steady,
 };
 use crate::Error;
+use crate::describe::Kind;
 use crate::math::Vector;
 use crate::simd::Pack;
 use pulp::{Scalar, Simd, WithSimd};
@@ -30,6 +31,46 @@ pub enum Rule {
     /// The law of Chatterjee and Ruina, within the friction cone.
     ChatterjeeRuina(ChatterjeeRuina),
 }
+
+/// A law in the table of laws.
+#[derive(Debug, Clone, Copy)]
+pub struct LawKind {
+    /// Its description, whose parameters come after the normal coefficient, which all laws have.
+    pub kind: Kind<Rule>,
+    /// Whether it can create kinetic energy.
+    pub creates_energy: Creation,
+}
+
+/// Whether a law can create kinetic energy.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Creation {
+    /// It cannot.
+    Never,
+    /// It can.
+    Possible,
+    /// It can where the parameter has this value.
+    Where(&'static str, &'static str),
+}
+
+/// Every law.
+pub const LAWS: &[LawKind] = &[
+    LawKind {
+        kind: TangentialRestitution::KIND,
+        creates_energy: Creation::Possible,
+    },
+    LawKind {
+        kind: Frictionless::KIND,
+        creates_energy: Creation::Never,
+    },
+    LawKind {
+        kind: Coulomb::KIND,
+        creates_energy: Creation::Where("hypothesis", "newton"),
+    },
+    LawKind {
+        kind: ChatterjeeRuina::KIND,
+        creates_energy: Creation::Never,
+    },
+];
 
 impl<'a> Law<'a> {
     /// The law with ε_n, a constant in [0, 1] or a function of the normal contact speed, and a rule.

@@ -1,7 +1,8 @@
 //! The paper's law, (9): both components of the contact velocity change by a fixed factor.
 
-use super::{Answer, Compliance, Components, Contact, Respond, Response};
+use super::{Answer, Compliance, Components, Contact, Respond, Response, Rule};
 use crate::Error;
+use crate::describe::{Allowed, Arguments, Interval, Kind, Parameter};
 use crate::math::Vector;
 use crate::simd::{Operand, Pack};
 use pulp::Simd;
@@ -17,6 +18,19 @@ pub struct TangentialRestitution {
 }
 
 impl TangentialRestitution {
+    /// Its entry in the table of laws.
+    pub(crate) const KIND: Kind<Rule> = Kind {
+        name: "TangentialRestitution",
+        text: "both components of the contact velocity change by a fixed factor",
+        parameters: &[Parameter::new(
+            "tangential",
+            "tangential coefficient of restitution",
+            Some("1"),
+            Allowed::Number(Interval::from(-1.0, 1.0)),
+        )],
+        make: |given| Ok(Self::new(given.number(0))?.into()),
+    };
+
     /// The law with ε_t in [−1, 1].
     ///
     /// # Errors

@@ -5,5 +5,5 @@ mod revolution;
 
 pub(crate) use revolution::{AxisMotion, Hull, HullPart, with_hull};
 pub use revolution::{
-    Body, Dumbbell, LoadedSphere, Shape, Solid, Sphere, Spherocylinder, Spheroid, Surface,
+    BODIES, Body, Dumbbell, LoadedSphere, Shape, Solid, Sphere, Spherocylinder, Spheroid, Surface,
 };

@@ -10,8 +10,9 @@ mod general;
 mod planar;
 mod turning;
 
-use super::{Answer, Compliance, Components, Contact, Frictionless, Response};
+use super::{Answer, Compliance, Components, Contact, Frictionless, Response, Rule};
 use crate::Error;
+use crate::describe::{Allowed, Argument, Arguments, Interval, Kind, Parameter};
 use crate::math::Vector;
 use crate::simd::Pack;
 use planar::Path;
@@ -61,6 +62,31 @@ pub struct Coulomb {
 }
 
 impl Coulomb {
+    /// Its entry in the table of laws.
+    pub(crate) const KIND: Kind<Rule> = Kind {
+        name: "Coulomb",
+        text: "dry friction, with slip that may stop, turn or reverse",
+        parameters: &[
+            Parameter::new(
+                "friction",
+                "coefficient of friction",
+                Some("1"),
+                Allowed::Number(Interval::from(0.0, MOST_FRICTION)),
+            ),
+            Parameter::new(
+                "hypothesis",
+                "the condition that ends the impact",
+                None,
+                Allowed::Name(&["stronge", "poisson", "newton"]),
+            )
+            .or(Argument::Name("stronge")),
+        ],
+        make: |given| {
+            let hypothesis = Hypothesis::named(given.name(1))?;
+            Ok(Self::new(given.number(0), hypothesis)?.into())
+        },
+    };
+
     /// The law with the coefficient of friction μ and a hypothesis.
     ///
     /// # Errors

@@ -9,6 +9,7 @@ pub use tabulated::{Points, Tabulated};
 pub use viscoelastic::{PADE_ABOVE, PADE_BELOW, Viscoelastic};
 
 use crate::Error;
+use crate::describe::Kind;
 use crate::simd::Pack;
 use pulp::{Scalar, Simd, WithSimd};
 
@@ -24,6 +25,34 @@ pub enum Normal<'a> {
     /// Interpolated in a table, for example of measured values.
     Tabulated(Tabulated<'a>),
 }
+
+/// A normal coefficient, with the table that it may own.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Material {
+    /// A function in closed form.
+    Closed(Normal<'static>),
+    /// Points of a table.
+    Measured(Points),
+}
+
+impl Material {
+    /// The normal coefficient.
+    pub fn normal(&self) -> Normal<'_> {
+        match self {
+            Self::Closed(normal) => *normal,
+            Self::Measured(points) => points.coefficient().into(),
+        }
+    }
+}
+
+impl<T: Into<Normal<'static>>> From<T> for Material {
+    fn from(normal: T) -> Self {
+        Self::Closed(normal.into())
+    }
+}
+
+/// Every material.
+pub const MATERIALS: &[Kind<Material>] = &[Viscoelastic::KIND, Plastic::KIND, Points::KIND];
 
 impl Normal<'_> {
     /// The coefficient at a speed ≥ 0, in m/s, or in the core's unit of speed if it was scaled.

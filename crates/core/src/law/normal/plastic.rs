@@ -1,7 +1,9 @@
 //! ε_n of elastic–perfectly plastic spheres: C. Thornton, *Coefficient of restitution for collinear collisions of
 //! elastic-perfectly plastic spheres*, J. Appl. Mech. **64**, 383 (1997).
 
+use super::Material;
 use crate::Error;
+use crate::describe::{Allowed, Arguments, Interval, Kind, Parameter};
 use crate::simd::Pack;
 use pulp::Simd;
 
@@ -13,6 +15,19 @@ pub struct Plastic {
 }
 
 impl Plastic {
+    /// Its entry in the table of materials.
+    pub(crate) const KIND: Kind<Material> = Kind {
+        name: "Plastic",
+        text: "elastic–perfectly plastic spheres",
+        parameters: &[Parameter::new(
+            "yield_speed",
+            "speed at which yield begins",
+            Some("m s-1"),
+            Allowed::Number(Interval::POSITIVE),
+        )],
+        make: |given| Ok(Self::new(given.number(0))?.into()),
+    };
+
     /// The coefficient for a yield speed v_y, in m/s, below which the spheres remain elastic.
     ///
     /// # Errors

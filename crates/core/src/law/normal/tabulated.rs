@@ -1,6 +1,8 @@
 //! A normal coefficient that is interpolated in a table, for example of measured values.
 
+use super::Material;
 use crate::Error;
+use crate::describe::{Allowed, Arguments, Interval, Kind, Parameter};
 use crate::memory::copied;
 use crate::simd::Pack;
 use pulp::Simd;
@@ -22,6 +24,32 @@ pub struct Points {
 }
 
 impl Points {
+    /// Its entry in the table of materials.
+    pub(crate) const KIND: Kind<Material> = Kind {
+        name: "Tabulated",
+        text: "interpolated in a table, for example of measured values",
+        parameters: &[
+            Parameter::new(
+                "v",
+                "normal speeds, increasing",
+                Some("m s-1"),
+                Allowed::Numbers(Interval::NOT_NEGATIVE),
+            ),
+            Parameter::new(
+                "e",
+                "coefficients at these speeds",
+                Some("1"),
+                Allowed::Numbers(Interval::from(0.0, 1.0)),
+            ),
+        ],
+        make: |given| {
+            Ok(Material::Measured(Self::new(
+                given.numbers(0),
+                given.numbers(1),
+            )?))
+        },
+    };
+
     /// A copy of points; parameters and errors as for [`Tabulated::new`], and [`Error::Memory`].
     pub fn new(speeds: &[f64], values: &[f64]) -> Result<Self, Error> {
         Tabulated::new(speeds, values)?;

@@ -1,7 +1,9 @@
 //! ε_n of viscoelastic spheres: P. Müller and T. Pöschel, *Collision of viscoelastic spheres: Compact expressions for the
 //! coefficient of normal restitution*, Phys. Rev. E **84**, 021302 (2011).
 
+use super::Material;
 use crate::Error;
+use crate::describe::{Allowed, Arguments, Interval, Kind, Parameter};
 use crate::simd::Pack;
 use crate::simd::elementary::{fifth_root, polynomial};
 use pulp::Simd;
@@ -25,6 +27,53 @@ pub const PADE_BELOW: [f64; 7] = [
 ];
 
 impl Viscoelastic {
+    /// Its entry in the table of materials.
+    pub(crate) const KIND: Kind<Material> = Kind {
+        name: "Viscoelastic",
+        text: "viscoelastic spheres",
+        parameters: &[
+            Parameter::new(
+                "young_modulus",
+                "Young modulus",
+                Some("Pa"),
+                Allowed::Number(Interval::POSITIVE),
+            ),
+            Parameter::new(
+                "poisson_ratio",
+                "Poisson ratio",
+                Some("1"),
+                Allowed::Number(Interval {
+                    low: -1.0,
+                    high: 0.5,
+                    closed: false,
+                }),
+            ),
+            Parameter::new(
+                "dissipation",
+                "dissipative constant A",
+                Some("s"),
+                Allowed::Number(Interval::NOT_NEGATIVE),
+            ),
+            Parameter::new(
+                "density",
+                "density",
+                Some("kg m-3"),
+                Allowed::Number(Interval::POSITIVE),
+            ),
+            Parameter::new(
+                "radius",
+                "radius",
+                Some("m"),
+                Allowed::Number(Interval::POSITIVE),
+            ),
+        ],
+        make: |given| {
+            let [young, poisson, dissipation, density, radius] =
+                std::array::from_fn(|i| given.number(i));
+            Ok(Self::new(young, poisson, dissipation, density, radius)?.into())
+        },
+    };
+
     /// The coefficient from Young's modulus Y (Pa), Poisson's ratio ν, the dissipative constant A (s), and density (kg/m³) and
     /// radius R (m) of the sphere.
     ///

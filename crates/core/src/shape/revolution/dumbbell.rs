@@ -1,10 +1,11 @@
 //! Two spheres on an axis. Equal ones are the paper's homogeneous dumbbell (A1)–(A8).
 
 use super::{
-    Ball, Body, EqualBalls, OneBall, Shape, Surface, TwoBalls, check_density, check_distance,
-    check_length, representable, seen,
+    Ball, Body, EqualBalls, OneBall, Shape, Solid, Surface, TwoBalls, check_density,
+    check_distance, check_length, representable, seen,
 };
 use crate::Error;
+use crate::describe::{Allowed, Argument, Arguments, Interval, Kind, Parameter};
 use crate::shape::mass::MassProperties;
 use std::f64::consts::PI;
 
@@ -22,6 +23,34 @@ pub struct Dumbbell {
 }
 
 impl Dumbbell {
+    /// Its entry in the table of bodies.
+    pub(crate) const KIND: Kind<Solid> = Kind {
+        name: "Dumbbell",
+        text: "two spheres on an axis",
+        parameters: &[
+            Parameter::new(
+                "radius",
+                "radius of either sphere, or of each",
+                Some("m"),
+                Allowed::Pair(Interval::POSITIVE),
+            ),
+            Parameter::new(
+                "separation",
+                "distance between the centres",
+                Some("m"),
+                Allowed::Number(Interval::NOT_NEGATIVE),
+            ),
+            Parameter::new(
+                "density",
+                "density of both spheres, or of each",
+                Some("kg m-3"),
+                Allowed::Pair(Interval::POSITIVE),
+            )
+            .or(Argument::Number(2500.0)),
+        ],
+        make: |given| Ok(Self::unequal(given.pair(0), given.number(1), given.pair(2))?.into()),
+    };
+
     /// Equal spheres of `radius` (m) and `density` (kg/m³), their centres `separation` (m) apart.
     ///
     /// # Errors

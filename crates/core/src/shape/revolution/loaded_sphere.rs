@@ -1,9 +1,11 @@
 //! A sphere with a point mass inside: it is round, but its centre of mass is not its centre.
 
 use super::{
-    Ball, Body, OneBall, Shape, Surface, check_density, check_distance, check_length, representable,
+    Ball, Body, OneBall, Shape, Solid, Surface, check_density, check_distance, check_length,
+    representable,
 };
 use crate::Error;
+use crate::describe::{Allowed, Argument, Arguments, Interval, Kind, Parameter};
 use crate::shape::mass::MassProperties;
 
 /// A homogeneous sphere with a point mass on its axis, in SI units. The axis points from the centre to the load.
@@ -16,6 +18,43 @@ pub struct LoadedSphere {
 }
 
 impl LoadedSphere {
+    /// Its entry in the table of bodies.
+    pub(crate) const KIND: Kind<Solid> = Kind {
+        name: "LoadedSphere",
+        text: "a sphere with a point mass inside",
+        parameters: &[
+            Parameter::new(
+                "radius",
+                "radius of the sphere",
+                Some("m"),
+                Allowed::Number(Interval::POSITIVE),
+            ),
+            Parameter::new(
+                "density",
+                "density of the sphere",
+                Some("kg m-3"),
+                Allowed::Number(Interval::POSITIVE),
+            )
+            .or(Argument::Number(2500.0)),
+            Parameter::new(
+                "load",
+                "mass of the point",
+                Some("kg"),
+                Allowed::Number(Interval::NOT_NEGATIVE),
+            ),
+            Parameter::new(
+                "offset",
+                "distance of the point from the centre, at most the radius",
+                Some("m"),
+                Allowed::Number(Interval::NOT_NEGATIVE),
+            ),
+        ],
+        make: |given| {
+            let [radius, density, load, offset] = std::array::from_fn(|i| given.number(i));
+            Ok(Self::new(radius, density, load, offset)?.into())
+        },
+    };
+
     /// A sphere of `radius` (m) and `density` (kg/m³) with a point mass `load` (kg) at the distance `offset` (m) from its centre.
     ///
     /// # Errors

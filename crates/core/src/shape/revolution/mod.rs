@@ -17,6 +17,15 @@ pub use spherocylinder::Spherocylinder;
 pub use spheroid::Spheroid;
 
 use crate::Error;
+use crate::describe::Kind;
+
+/// Every body.
+pub const BODIES: &[Kind<Solid>] = &[
+    Dumbbell::KIND,
+    LoadedSphere::KIND,
+    Spherocylinder::KIND,
+    Spheroid::KIND,
+];
 
 /// A body of revolution in the core's units (lengths in R, masses in m).
 #[derive(Debug, Clone, Copy, PartialEq)]

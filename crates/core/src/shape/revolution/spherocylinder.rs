@@ -1,10 +1,11 @@
 //! A cylinder with hemispherical caps: its contact is that of a dumbbell, but it has more mass in the middle.
 
 use super::{
-    Body, EqualBalls, Shape, Surface, check_density, check_distance, check_length, representable,
-    seen,
+    Body, EqualBalls, Shape, Solid, Surface, check_density, check_distance, check_length,
+    representable, seen,
 };
 use crate::Error;
+use crate::describe::{Allowed, Argument, Arguments, Interval, Kind, Parameter};
 use std::f64::consts::PI;
 
 /// A homogeneous cylinder with hemispherical caps whose centres are `separation` apart, in SI units.
@@ -16,6 +17,34 @@ pub struct Spherocylinder {
 }
 
 impl Spherocylinder {
+    /// Its entry in the table of bodies.
+    pub(crate) const KIND: Kind<Solid> = Kind {
+        name: "Spherocylinder",
+        text: "a cylinder with hemispherical caps",
+        parameters: &[
+            Parameter::new(
+                "radius",
+                "radius of cylinder and caps",
+                Some("m"),
+                Allowed::Number(Interval::POSITIVE),
+            ),
+            Parameter::new(
+                "separation",
+                "length of the cylinder",
+                Some("m"),
+                Allowed::Number(Interval::NOT_NEGATIVE),
+            ),
+            Parameter::new(
+                "density",
+                "density",
+                Some("kg m-3"),
+                Allowed::Number(Interval::POSITIVE),
+            )
+            .or(Argument::Number(2500.0)),
+        ],
+        make: |given| Ok(Self::new(given.number(0), given.number(1), given.number(2))?.into()),
+    };
+
     /// A spherocylinder of `radius` (m) and `density` (kg/m³), the centres of its caps `separation` (m) apart.
     ///
     /// # Errors

@@ -1,7 +1,8 @@
 //! An ellipsoid of revolution: prolate, oblate, or a sphere.
 
-use super::{Body, Ellipsoid, Shape, Surface, check_density, check_length, representable};
+use super::{Body, Ellipsoid, Shape, Solid, Surface, check_density, check_length, representable};
 use crate::Error;
+use crate::describe::{Allowed, Argument, Arguments, Interval, Kind, Parameter};
 use std::f64::consts::PI;
 
 /// Largest ratio of the semi-axes; beyond it the relative rounding error of the contact exceeds 10⁻¹².
@@ -16,6 +17,34 @@ pub struct Spheroid {
 }
 
 impl Spheroid {
+    /// Its entry in the table of bodies.
+    pub(crate) const KIND: Kind<Solid> = Kind {
+        name: "Spheroid",
+        text: "an ellipsoid of revolution",
+        parameters: &[
+            Parameter::new(
+                "equatorial",
+                "semi-axis across the axis of revolution",
+                Some("m"),
+                Allowed::Number(Interval::POSITIVE),
+            ),
+            Parameter::new(
+                "polar",
+                "semi-axis along the axis of revolution, between 1/1000 and 1000 times the other",
+                Some("m"),
+                Allowed::Number(Interval::POSITIVE),
+            ),
+            Parameter::new(
+                "density",
+                "density",
+                Some("kg m-3"),
+                Allowed::Number(Interval::POSITIVE),
+            )
+            .or(Argument::Number(2500.0)),
+        ],
+        make: |given| Ok(Self::new(given.number(0), given.number(1), given.number(2))?.into()),
+    };
+
     /// A spheroid with the semi-axes `equatorial` and `polar` (m), across and along the axis of revolution, and `density` (kg/m³).
     ///
     /// # Errors

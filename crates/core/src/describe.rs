@@ -1,0 +1,156 @@
+//! How bodies, laws and materials describe themselves: lists, forms, files and tests follow from one entry for each.
+
+use crate::Error;
+
+/// A body, a law or a material, and how it is made.
+#[derive(Debug, Clone, Copy)]
+pub struct Kind<T> {
+    /// Its name, as in `Dumbbell`.
+    pub name: &'static str,
+    /// What it is, in one line.
+    pub text: &'static str,
+    /// Its parameters, in the order in which it is given them.
+    pub parameters: &'static [Parameter],
+    /// Makes it from its parameters, one for each.
+    pub make: fn(&[Argument<'_>]) -> Result<T, Error>,
+}
+
+/// A parameter.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Parameter {
+    /// Its name.
+    pub name: &'static str,
+    /// What it is.
+    pub text: &'static str,
+    /// Its unit; "1" for a ratio, none for a name.
+    pub unit: Option<&'static str>,
+    /// The values that it may have by itself; together they may be restricted further.
+    pub allowed: Allowed,
+    /// Its value unless one is given; it must be given if there is none.
+    pub default: Option<Argument<'static>>,
+}
+
+/// The values that a parameter may have.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Allowed {
+    /// A finite number.
+    Number(Interval),
+    /// A finite number, or one for each of two spheres.
+    Pair(Interval),
+    /// Numbers in a row.
+    Numbers(Interval),
+    /// One of these names.
+    Name(&'static [&'static str]),
+}
+
+/// An interval; its upper end belongs to it unless it is infinite.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Interval {
+    /// The lower end.
+    pub low: f64,
+    /// The upper end.
+    pub high: f64,
+    /// Whether the lower end belongs to it.
+    pub closed: bool,
+}
+
+/// The value of a parameter.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Argument<'a> {
+    /// A number.
+    Number(f64),
+    /// A number for each of two spheres.
+    Pair([f64; 2]),
+    /// Numbers in a row.
+    Numbers(&'a [f64]),
+    /// A name.
+    Name(&'a str),
+}
+
+impl Interval {
+    /// All positive numbers.
+    pub const POSITIVE: Self = Self {
+        low: 0.0,
+        high: f64::INFINITY,
+        closed: false,
+    };
+    /// All numbers that are not negative.
+    pub const NOT_NEGATIVE: Self = Self {
+        closed: true,
+        ..Self::POSITIVE
+    };
+
+    /// The numbers from `low` to `high`, both included.
+    pub const fn from(low: f64, high: f64) -> Self {
+        Self {
+            low,
+            high,
+            closed: true,
+        }
+    }
+}
+
+impl Parameter {
+    /// A parameter that must be given.
+    pub(crate) const fn new(
+        name: &'static str,
+        text: &'static str,
+        unit: Option<&'static str>,
+        allowed: Allowed,
+    ) -> Self {
+        Self {
+            name,
+            text,
+            unit,
+            allowed,
+            default: None,
+        }
+    }
+
+    /// The same with a default.
+    pub(crate) const fn or(self, default: Argument<'static>) -> Self {
+        Self {
+            default: Some(default),
+            ..self
+        }
+    }
+}
+
+/// Numbers, pairs and names out of arguments, in the order of the parameters.
+pub(crate) trait Arguments {
+    fn number(&self, place: usize) -> f64;
+    fn pair(&self, place: usize) -> [f64; 2];
+    fn numbers(&self, place: usize) -> &[f64];
+    fn name(&self, place: usize) -> &str;
+}
+
+/// An argument that is missing or of another type reads as NaN, as no numbers or as no name, which every constructor refuses.
+impl Arguments for [Argument<'_>] {
+    fn number(&self, place: usize) -> f64 {
+        match self.get(place) {
+            Some(Argument::Number(number)) => *number,
+            _ => f64::NAN,
+        }
+    }
+
+    fn pair(&self, place: usize) -> [f64; 2] {
+        match self.get(place) {
+            Some(Argument::Pair(pair)) => *pair,
+            _ => [self.number(place); 2],
+        }
+    }
+
+    fn numbers(&self, place: usize) -> &[f64] {
+        match self.get(place) {
+            Some(Argument::Numbers(numbers)) => numbers,
+            _ => &[],
+        }
+    }
+
+    fn name(&self, place: usize) -> &str {
+        match self.get(place) {
+            Some(Argument::Name(name)) => name,
+            _ => "",
+        }
+    }
+}
