@@ -6,9 +6,12 @@ import numpy.typing as npt
 
 __all__ = [
     "AXES",
+    "BODIES",
     "CREATES_ENERGY",
     "HYPOTHESES",
     "LARGEST_RESTITUTION",
+    "LAWS",
+    "MATERIALS",
     "MOST_FRICTION",
     "MOST_RADIANS",
     "ORIENTATIONS",
@@ -50,6 +53,9 @@ MOST_RADIANS: float
 ORIENTATIONS: list[str]
 AXES: list[str]
 HYPOTHESES: list[str]
+BODIES: list[dict[str, Any]]
+LAWS: list[dict[str, Any]]
+MATERIALS: list[dict[str, Any]]
 STOP_REASONS: list[str]
 
 MOST_FRICTION: float

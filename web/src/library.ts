@@ -1,7 +1,7 @@
 /** What the tests import: parts of the page that need no browser. */
 
 export { Engine } from "./engine/module";
-export { COLUMNS, numbers } from "./engine/layout";
+export { BODIES, COLUMNS, numbers } from "./engine/layout";
 export { DIGESTED } from "./engine/run";
 export { python, toml } from "./export/text";
 export { restitution, transverseInertia } from "./first-impact";
@@ -9,7 +9,7 @@ export { density as laplaceDensity, laplace } from "./laplace";
 export * as pictures from "./charts/pictures";
 export { ticks } from "./charts/ticks";
 export { fromHash, initial, toHash } from "./link";
-export { DEFAULT, particlesOf } from "./setup";
+export { DEFAULT, HYPOTHESES, LAWS, LAW_PARAMETERS, SHAPES, particlesOf } from "./setup";
 export { Path } from "./stage/path";
 export { contactArm } from "./stage/body";
 export { Statistics } from "./statistics";

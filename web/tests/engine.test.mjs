@@ -48,6 +48,23 @@ test("portions of a run are the run", () => {
   assert.deepEqual(part.subarray(0, 60), columns.time.subarray(90, 150));
 });
 
+test("bodies and laws have the order, the names and the parameters of the core's tables", () => {
+  const hyphened = ({ name }) => name.replace(/(?<!^)(?=[A-Z])/g, "-").toLowerCase();
+  const { bodies, laws } = engine.describe();
+  assert.deepEqual(bodies.map(hyphened), [...page.BODIES]);
+  assert.deepEqual(laws.map(hyphened), [...page.LAWS]);
+  for (const shape of page.SHAPES) {
+    const { parameters } = bodies[page.BODIES.indexOf(shape)];
+    assert.equal(parameters.length, 3, "radius, length and density are given");
+  }
+  for (const law of laws) {
+    const names = law.parameters.map(({ name }) => name);
+    assert.deepEqual(page.LAW_PARAMETERS[hyphened(law)], ["normal", ...names]);
+    const hypothesis = law.parameters.find(({ name }) => name === "hypothesis");
+    if (hypothesis) assert.deepEqual(hypothesis.names, [...page.HYPOTHESES]);
+  }
+});
+
 test("a set-up that cannot be is refused in the engine's words", () => {
   const refused = (change, words) =>
     assert.throws(() => engine.simulate(page.numbers({ ...page.DEFAULT, ...change }), 0, 1), words);

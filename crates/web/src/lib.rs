@@ -2,9 +2,11 @@
 //! and no unsafe block; only the functions that the page calls are exported.
 //!
 //! The page writes `parameters::COUNT` numbers at [`run_parameters`], calls [`simulate`] or [`follow`], and reads the table
-//! at [`table`], of as many numbers as the call returned. A call that fails returns −1, and [`message`] says why.
+//! at [`table`], of as many numbers as the call returned. A call that fails returns −1, and [`message`] says why. What bodies and laws
+//! there are, and with which parameters, [`describe`] says.
 #![deny(unsafe_code)]
 
+mod catalogue;
 mod parameters;
 mod path;
 mod records;
@@ -67,7 +69,14 @@ pub extern "C" fn table() -> *const f64 {
     TABLE.with_borrow(Vec::as_ptr)
 }
 
-/// Address of the error message of the last call that failed, in UTF-8.
+/// Writes the table of bodies, laws and materials, as JSON, where [`message`] is.
+#[allow(unsafe_code)]
+#[unsafe(no_mangle)]
+pub extern "C" fn describe() {
+    MESSAGE.set(catalogue::json());
+}
+
+/// Address of the error message of the last call that failed, or of what [`describe`] wrote, in UTF-8.
 #[allow(unsafe_code)]
 #[unsafe(no_mangle)]
 pub extern "C" fn message() -> *const u8 {

@@ -1,69 +1,117 @@
 //! The parameters of a run as a row of numbers, in SI units, written by the page.
 
-use restitution_core::{
-    ChatterjeeRuina, Coulomb, Dumbbell, Error, Frictionless, Hypothesis, Law, LoadedSphere,
-    Orientation, Rule, Run, Solid, Spherocylinder, Spheroid, Spin, TangentialRestitution, Vector,
-};
+use restitution_core::describe::{Allowed, Argument, Kind};
+use restitution_core::{BODIES, Error, LAWS, Law, Orientation, Run, Solid, Spin, Vector};
 
-/// Number of parameters.
-pub const COUNT: usize = 28;
+/// Places for the parameters of a body, and of a law beside its normal coefficient.
+pub const OF_BODY: usize = 4;
+pub const OF_LAW: usize = 2;
 
-/// The parameters, in the order of `web/src/engine/layout.ts`.
+/// Number of parameters: body and law with theirs, the normal coefficient, and sixteen of the run.
+pub const COUNT: usize = 1 + OF_BODY + 1 + 1 + OF_LAW + 16;
+
+/// The parameters, in the order of `web/src/engine/layout.ts`: the number of the body in the table of bodies, its parameters in their
+/// order, and the same of the law; a name is given as its number. Places that are not needed may hold anything.
 pub struct Parameters(pub [f64; COUNT]);
+
+/// The numbers that are not read yet.
+struct Row<'a>(&'a [f64]);
+
+impl<'a> Row<'a> {
+    /// The next N of them.
+    fn next<const N: usize>(&mut self) -> &'a [f64; N] {
+        let (next, rest) = self
+            .0
+            .split_first_chunk()
+            .expect("the row has COUNT numbers");
+        self.0 = rest;
+        next
+    }
+
+    fn number(&mut self) -> f64 {
+        self.next::<1>()[0]
+    }
+
+    fn vector(&mut self) -> Vector {
+        let &[x, y, z] = self.next();
+        Vector::new(x, y, z)
+    }
+}
+
+/// The entry of a table that a number names; the last one for all that are too large.
+fn chosen<T>(table: &[T], number: f64) -> &T {
+    &table[(number as usize).min(table.len() - 1)]
+}
+
+/// Makes a body or a law from numbers.
+fn make<T>(kind: &Kind<T>, numbers: &[f64]) -> Result<T, Error> {
+    let given = kind.parameters.iter().zip(numbers);
+    let arguments: Vec<_> = given
+        .map(|(about, &number)| match about.allowed {
+            Allowed::Name(names) => Argument::Name(chosen::<&'static str>(names, number)),
+            _ => Argument::Number(number),
+        })
+        .collect();
+    (kind.make)(&arguments)
+}
 
 impl Parameters {
     /// The run, if the parameters of body and law are valid. The others are checked when the run starts.
     pub fn run(&self) -> Result<Run<'_>, Error> {
-        let p = &self.0;
+        let mut row = Row(&self.0);
         Ok(Run {
-            body: self.body()?,
-            law: self.law()?,
-            particles: p[10] as usize,
-            impacts: p[11] as usize,
-            release_height: p[12].into(),
-            gravity: p[13],
-            orientation: match p[14] as u32 {
-                0 => Orientation::UniformAngle,
-                1 => Orientation::Isotropic,
-                _ => Orientation::Given(&p[15..16]),
+            body: body(&mut row)?,
+            law: law(&mut row)?,
+            particles: row.number() as usize,
+            impacts: row.number() as usize,
+            release_height: row.number().into(),
+            gravity: row.number(),
+            orientation: {
+                let (kind, angle) = (row.number() as u32, row.next::<1>());
+                match kind {
+                    0 => Orientation::UniformAngle,
+                    1 => Orientation::Isotropic,
+                    _ => Orientation::Given(angle),
+                }
             },
-            spin: Spin::Fixed(Vector::new(p[16], p[17], p[18])),
-            release_velocity: Vector::new(p[19], p[20], p[21]),
-            incline: p[22],
-            minimum_speed: p[23],
+            spin: Spin::Fixed(row.vector()),
+            release_velocity: row.vector(),
+            incline: row.number(),
+            minimum_speed: row.number(),
             // Two halves, because a double holds integers of 53 bits only.
-            seed: (p[24] as u64) << 32 | p[25] as u64,
+            seed: (row.number() as u64) << 32 | row.number() as u64,
         })
     }
+}
 
-    fn body(&self) -> Result<Solid, Error> {
-        let [shape, radius, length, density, load, offset] =
-            std::array::from_fn(|i| self.0[[0, 1, 2, 3, 26, 27][i]]);
-        Ok(match shape as u32 {
-            0 => Dumbbell::unequal([radius; 2], length, [density; 2])?.into(),
-            1 => Spherocylinder::new(radius, length, density)?.into(),
-            2 => Spheroid::new(radius, length, density)?.into(),
-            _ => LoadedSphere::new(radius, density, load, offset)?.into(),
-        })
+fn body(row: &mut Row<'_>) -> Result<Solid, Error> {
+    make(chosen(BODIES, row.number()), row.next::<OF_BODY>())
+}
+
+fn law(row: &mut Row<'_>) -> Result<Law<'static>, Error> {
+    let kind = &chosen(LAWS, row.number()).kind;
+    let normal = row.number();
+    Law::new(normal, make(kind, row.next::<OF_LAW>())?)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// There are places for the parameters of every body and of every law.
+    #[test]
+    fn rows_are_wide_enough() {
+        assert!(BODIES.iter().all(|kind| kind.parameters.len() <= OF_BODY));
+        assert!(LAWS.iter().all(|law| law.kind.parameters.len() <= OF_LAW));
     }
 
-    fn law(&self) -> Result<Law<'static>, Error> {
-        let [law, normal, tangential, friction, hypothesis] =
-            std::array::from_fn(|i| self.0[4 + i]);
-        let rule: Rule = match law as u32 {
-            0 => TangentialRestitution::new(tangential)?.into(),
-            1 => Frictionless.into(),
-            2 => Coulomb::new(
-                friction,
-                match hypothesis as u32 {
-                    0 => Hypothesis::Stronge,
-                    1 => Hypothesis::Poisson,
-                    _ => Hypothesis::Newton,
-                },
-            )?
-            .into(),
-            _ => ChatterjeeRuina::new(tangential, friction)?.into(),
-        };
-        Law::new(normal, rule)
+    /// Every number of the row is read.
+    #[test]
+    fn rows_are_read_to_the_end() {
+        let mut row = [1.0; COUNT];
+        row[COUNT - 1] = 7.0;
+        row[COUNT - 2] = 3.0;
+        let parameters = Parameters(row);
+        assert_eq!(parameters.run().unwrap().seed, 3 << 32 | 7);
     }
 }

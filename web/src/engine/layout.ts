@@ -1,8 +1,7 @@
 /** A run as the row of numbers that crates/web/src/parameters.rs reads. */
 
-import { DENSITY, HYPOTHESES, LAWS, SHAPES, lengthOf, particlesOf, type Setup } from "../setup";
+import { DENSITY, HYPOTHESES, LAWS, LAW_PARAMETERS, lengthOf, particlesOf, type Setup } from "../setup";
 
-export const PARAMETERS = 28;
 /** Columns of the table of impacts, as in crates/web/src/records.rs. */
 export const COLUMNS = [
   "time",
@@ -16,13 +15,25 @@ export const COLUMNS = [
 ] as const;
 export type Column = (typeof COLUMNS)[number];
 
+/** Bodies and laws in the order of the core's tables, under the names of a set-up. */
+export const BODIES = ["dumbbell", "loaded-sphere", "spherocylinder", "spheroid"] as const;
+/** Places for the parameters of a body, and of a law beside its normal coefficient. */
+const OF_BODY = 4;
+const OF_LAW = 2;
+
 export function numbers(s: Setup): Float64Array {
-  const row = new Float64Array(PARAMETERS);
-  row.set([SHAPES.indexOf(s.shape), s.radius, lengthOf(s), DENSITY], 0);
-  row.set([LAWS.indexOf(s.law), s.normal, s.tangential, s.friction, HYPOTHESES.indexOf(s.hypothesis)], 4);
-  row.set([particlesOf(s), s.impacts, s.release_height, s.gravity], 10);
-  row.set([["uniform-angle", "isotropic", "given"].indexOf(s.orientation), s.angle], 14);
-  row.set([0, s.spin_y, s.spin_z, s.velocity_x, 0, s.velocity_z, s.incline, s.minimum_speed], 16);
-  row.set([Math.floor(s.seed / 2 ** 32), s.seed % 2 ** 32], 24);
-  return row;
+  const [normal, ...rest] = LAW_PARAMETERS[s.law];
+  const body = [s.radius, lengthOf(s), DENSITY];
+  const law = rest.map((key) => (key === "hypothesis" ? HYPOTHESES.indexOf(s.hypothesis) : (s[key] as number)));
+  const row = [
+    ...[BODIES.indexOf(s.shape), ...filled(body, OF_BODY)],
+    ...[LAWS.indexOf(s.law), s[normal as "normal"], ...filled(law, OF_LAW)],
+    ...[particlesOf(s), s.impacts, s.release_height, s.gravity],
+    ...[["uniform-angle", "isotropic", "given"].indexOf(s.orientation), s.angle],
+    ...[0, s.spin_y, s.spin_z, s.velocity_x, 0, s.velocity_z, s.incline, s.minimum_speed],
+    ...[Math.floor(s.seed / 2 ** 32), s.seed % 2 ** 32],
+  ];
+  return Float64Array.from(row);
 }
+
+const filled = (numbers: number[], length: number): number[] => Object.assign(Array<number>(length).fill(0), numbers);

@@ -1,13 +1,12 @@
 /** The core, compiled to WebAssembly: one instance, in the thread that calls it. */
 
-import { PARAMETERS } from "./layout";
-
 interface Exports {
   memory: WebAssembly.Memory;
   run_parameters(): number;
   simulate(first: number, count: number): number;
   follow(particle: number): number;
   table(): number;
+  describe(): void;
   message(): number;
   message_length(): number;
 }
@@ -31,12 +30,20 @@ export class Engine {
 
   private call(parameters: Float64Array, work: () => number): Float64Array {
     const core = this.core;
-    new Float64Array(core.memory.buffer, core.run_parameters(), PARAMETERS).set(parameters);
+    new Float64Array(core.memory.buffer, core.run_parameters(), parameters.length).set(parameters);
     const size = work();
-    if (size < 0) {
-      const text = new Uint8Array(core.memory.buffer, core.message(), core.message_length());
-      throw new Error(new TextDecoder().decode(text));
-    }
+    if (size < 0) throw new Error(this.message());
     return new Float64Array(core.memory.buffer, core.table(), size).slice();
+  }
+
+  /** The table of bodies, laws and materials; see crates/web/src/catalogue.rs. */
+  describe(): unknown {
+    this.core.describe();
+    return JSON.parse(this.message());
+  }
+
+  private message(): string {
+    const text = new Uint8Array(this.core.memory.buffer, this.core.message(), this.core.message_length());
+    return new TextDecoder().decode(text);
   }
 }

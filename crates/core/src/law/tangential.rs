@@ -2,7 +2,7 @@
 
 use super::{Answer, Compliance, Components, Contact, Respond, Response, Rule};
 use crate::Error;
-use crate::describe::{Allowed, Arguments, Interval, Kind, Parameter};
+use crate::describe::{Allowed, Argument, Arguments, Interval, Kind, Parameter};
 use crate::math::Vector;
 use crate::simd::{Operand, Pack};
 use pulp::Simd;
@@ -27,7 +27,8 @@ impl TangentialRestitution {
             "tangential coefficient of restitution",
             Some("1"),
             Allowed::Number(Interval::from(-1.0, 1.0)),
-        )],
+        )
+        .or(Argument::Number(1.0))],
         make: |given| Ok(Self::new(given.number(0))?.into()),
     };
 

@@ -8,13 +8,14 @@ use super::collision::{Collisions, Dimension};
 use super::group::{Group, Release, Unconverged};
 use super::impact::Meanwhile;
 use super::passes::SearchOn;
-use crate::law::{Law, Respond};
+use crate::law::{Law, Respond, Response};
 use crate::motion::Gravity;
 use crate::shape::{Body, Hull, Surface, with_hull};
 use crate::simd::Pack;
 use crate::simd::elementary::sincos_in_lanes;
 use pulp::{Simd, WithSimd};
 use std::ops::Range;
+use std::slice::{from_mut, from_ref};
 
 /// Vectors whose sines and cosines are computed side by side, with the registers to themselves.
 const WIDE: usize = 6;
@@ -111,25 +112,33 @@ impl<S: Simd, T: Dimension, H: Hull, L: Respond> Advance<S, T> for Inlined<'_, H
             work_up::<S>(sink, i, 0);
         }
         find::<S, T>(groups, hull, sink)?;
-        let count = groups.len();
-        let Collisions {
-            points,
-            contacts,
-            responses,
-        } = collisions;
-        let (contacts, responses) = (&mut contacts[..count], &mut responses[..count]);
-        for (i, group) in groups.iter_mut().enumerate() {
-            points[i] = group.land(hull);
-            contacts[i] = group.contact(body, points[i]);
-        }
         if T::SPACE {
+            let count = groups.len();
+            let Collisions {
+                points,
+                contacts,
+                responses,
+            } = collisions;
+            let (contacts, responses) = (&mut contacts[..count], &mut responses[..count]);
+            for (i, group) in groups.iter_mut().enumerate() {
+                points[i] = group.land(hull);
+                contacts[i] = group.contact(body, points[i]);
+            }
             law.respond_all::<S, true>(contacts, responses);
+            for (i, group) in groups.iter_mut().enumerate() {
+                group.leave(body, points[i], &contacts[i], &responses[i]);
+                work_up::<S>(sink, i, 7);
+            }
         } else {
-            law.respond_all::<S, false>(contacts, responses);
-        }
-        for (i, group) in groups.iter_mut().enumerate() {
-            group.leave(body, points[i], &contacts[i], &responses[i]);
-            work_up::<S>(sink, i, 7);
+            // In the plane no law takes long, and one contact after the other stays in the registers.
+            for (i, group) in groups.iter_mut().enumerate() {
+                let point = group.land(hull);
+                let contact = group.contact(body, point);
+                let mut response = Response::none(contact.velocity.normal.simd());
+                law.respond_all::<S, false>(from_ref(&contact), from_mut(&mut response));
+                group.leave(body, point, &contact, &response);
+                work_up::<S>(sink, i, 7);
+            }
         }
         Ok(())
     }
