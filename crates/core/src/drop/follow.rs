@@ -51,7 +51,7 @@ impl<'a> Followed<'a> {
         trajectory(
             &plan.body,
             &plan.law,
-            plan.gravity.along,
+            plan.slope,
             self.release,
             limits,
             counted,

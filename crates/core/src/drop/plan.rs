@@ -5,7 +5,7 @@ use crate::Error;
 use crate::drop::Limits;
 use crate::law::Law;
 use crate::math::Vector;
-use crate::motion::{Gravity, State};
+use crate::motion::State;
 use crate::shape::{Body, Solid};
 use crate::simd::elementary::sincos;
 use std::f64::consts::FRAC_PI_2;
@@ -21,7 +21,8 @@ pub(crate) struct Plan<'a> {
     height: Height,
     /// Velocity of the centre of mass at release.
     velocity: Vector,
-    pub gravity: Gravity,
+    /// tan α.
+    pub slope: f64,
     /// [`Run::is_at_rest`].
     pub at_rest: bool,
 }
@@ -71,7 +72,7 @@ impl<'a> Plan<'a> {
             scales,
             height: run.release_height.scaled(scales.length),
             velocity: velocity / scales.speed,
-            gravity: Gravity::inclined(sine / cosine),
+            slope: sine / cosine,
             at_rest: run.is_at_rest(),
         };
         run.release_height.check()?;

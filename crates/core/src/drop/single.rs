@@ -8,7 +8,7 @@ use super::lanes::{
 use super::stop::{Limits, StopReason};
 use crate::contact;
 use crate::law::{Law, Respond, Response};
-use crate::motion::{Gravity, State, SymmetricState};
+use crate::motion::{State, SymmetricState};
 use crate::shape::{Body, Hull, Sphere, with_hull};
 use crate::simd::one;
 use pulp::{Scalar, Simd};
@@ -76,16 +76,15 @@ pub fn first_contact(
 ) -> Result<FlightEnd, NoConvergence> {
     with_hull!(&body.hull, hull => {
         let simd = Scalar::new();
-        let gravity = Gravity::inclined(slope);
         let mut groups = [Group::<Scalar, Spatial>::empty(simd, hull)];
-        groups[0].occupy(&Lone(*start), &mut (0..1), gravity, hull);
+        groups[0].occupy(&Lone(*start), &mut (0..1), slope, hull);
         if let FlightStart::Contact { sphere, speed } = departure {
             groups[0].depart_from(contact::LastContact {
                 sphere: one(sphere.sign()),
                 speed: one(speed),
             });
         }
-        groups[0].start(gravity, hull);
+        groups[0].start(slope, hull);
         find::<Scalar, Spatial>(&mut groups, hull, &mut Idle).map_err(|_| NoConvergence)?;
         let [mut group] = groups;
         group.land(hull);
@@ -139,11 +138,7 @@ pub fn trajectory(
         ended: StopReason::Interrupted,
     };
     let (simd, job) = (Scalar::new(), (body, limits));
-    let cycle = General {
-        body,
-        law,
-        gravity: Gravity::inclined(slope),
-    };
+    let cycle = General { body, law, slope };
     let release = (&Lone(start), 0..1);
     if start.is_at_rest() && slope == 0.0 {
         bounce::<_, Planar, _, 1>(simd, job, &cycle, release, &mut reporter, || go_on.get())
@@ -176,7 +171,6 @@ impl<F> Meanwhile for Reporter<'_, F> {
 
 impl<F: FnMut(&SingleImpact) -> bool> Sink for Reporter<'_, F> {
     const TOGETHER: bool = false;
-    const COMMON: bool = false;
 
     fn begin(&mut self) {}
 

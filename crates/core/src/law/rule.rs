@@ -172,29 +172,25 @@ impl<S: Simd, const SPACE: bool> WithSimd for Choice<'_, '_, S, SPACE> {
             contacts,
             responses,
         } = self;
-        let simd = contacts[0].velocity.normal.simd();
-        let mut normal = [Pack::splat(simd, 0.0); MOST_CONTACTS];
-        for (normal, contact) in normal.iter_mut().zip(contacts) {
-            *normal = law.normal.in_lanes(contact.approach_speed());
+        if let (true, Rule::Coulomb(rule)) = (SPACE, &law.rule)
+            && rule.takes_long()
+        {
+            let simd = contacts[0].velocity.normal.simd();
+            let mut normal = [Pack::splat(simd, 0.0); MOST_CONTACTS];
+            for (normal, contact) in normal.iter_mut().zip(contacts) {
+                *normal = law.normal.in_lanes(contact.approach_speed());
+            }
+            rule.respond_in_space(contacts, &normal, responses);
+            return;
         }
-        let all = contacts.iter().zip(&normal).zip(&mut *responses);
-        match &law.rule {
-            Rule::TangentialRestitution(rule) => {
-                for ((contact, &normal), response) in all {
-                    *response = rule.respond::<S, SPACE>(contact, normal);
-                }
-            }
-            Rule::Frictionless(rule) => {
-                for ((contact, &normal), response) in all {
-                    *response = rule.respond(contact, normal);
-                }
-            }
-            Rule::Coulomb(rule) => rule.respond::<S, SPACE>(contacts, &normal, responses),
-            Rule::ChatterjeeRuina(rule) => {
-                for ((contact, &normal), response) in all {
-                    *response = rule.respond::<S, SPACE>(contact, normal);
-                }
-            }
+        for (contact, response) in contacts.iter().zip(responses) {
+            let normal = law.normal.in_lanes(contact.approach_speed());
+            *response = match &law.rule {
+                Rule::TangentialRestitution(rule) => rule.respond::<S, SPACE>(contact, normal),
+                Rule::Frictionless(rule) => rule.respond(contact, normal),
+                Rule::Coulomb(rule) => rule.respond_in_plane(contact, normal),
+                Rule::ChatterjeeRuina(rule) => rule.respond::<S, SPACE>(contact, normal),
+            };
         }
     }
 }

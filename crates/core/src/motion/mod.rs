@@ -2,11 +2,9 @@
 
 mod asymmetric;
 mod bounds;
-mod gravity;
 mod symmetric;
 
 pub use asymmetric::{Rotation, Top};
-pub(crate) use gravity::Gravity;
 pub use symmetric::State;
 pub(crate) use symmetric::{
     Attitude, Flight, PlanarFlight, PlanarMotion, PlanarState, SpatialFlight, SpatialMotion,

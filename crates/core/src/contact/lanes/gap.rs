@@ -2,7 +2,7 @@
 
 use super::TOUCHING;
 use crate::contact::certify::{SHORTEST, closing_speed, first_zero};
-use crate::motion::{Attitude, Flight, Gravity, SymmetricState};
+use crate::motion::{Attitude, Flight, SymmetricState};
 use crate::shape::{AxisMotion, Hull, HullPart};
 use crate::simd::elementary::RANGE;
 use crate::simd::{Mask, Pack};
@@ -122,10 +122,10 @@ impl<S: Simd, F: Flight<S, K>, const K: usize> Search<S, F, K> {
     pub fn continue_with(
         &mut self,
         motion: <F::State as SymmetricState<S, K>>::Motion,
-        gravity: Gravity,
+        slope: f64,
         hull: &impl Hull,
     ) {
-        self.flight.depart(motion, gravity);
+        self.flight.depart(motion, slope);
         self.compute_bounds(hull);
     }
 
@@ -138,13 +138,12 @@ impl<S: Simd, F: Flight<S, K>, const K: usize> Search<S, F, K> {
         let max_cos_tilt = flight.max_cos_tilt();
         let rotation_bound =
             hull.curvature_bound(flight.amplitude(), max_cos_tilt) * flight.square();
-        let gravity = flight.gravity();
-        // v_z² at the ceiling. Without gravity a body that rises does not come back, and nothing is skipped.
-        let above = vz.mul_add(vz, 2.0 * gravity * (height - hull.ceiling(max_cos_tilt))) * gravity;
+        let above = vz.mul_add(vz, 2.0 * F::GRAVITY * (height - hull.ceiling(max_cos_tilt)));
         let root = above.sqrt();
-        let reaches = !above.le(0.0);
+        // Without gravity a body that rises does not come back, and nothing is skipped.
+        let reaches = !above.le(0.0) & Mask::splat(above.simd(), F::GRAVITY > 0.0);
         self.rotation_bound = rotation_bound;
-        self.curvature_bound = gravity + rotation_bound;
+        self.curvature_bound = F::GRAVITY + rotation_bound;
         self.up = reaches.select(vz - root, f64::INFINITY);
         self.down = reaches.select(vz + root, f64::INFINITY);
     }
@@ -184,7 +183,7 @@ impl<S: Simd, F: Flight<S, K>, const K: usize> Search<S, F, K> {
         let part = hull.part(!on.lt(0.0));
         let held = !on.eq(0.0)
             & hull
-                .curvature(&part, &instant.axis_motion, -self.flight.gravity())
+                .curvature(&part, &instant.axis_motion, -F::GRAVITY)
                 .le(0.0);
         if H::TWO {
             let (_, still) = instant.opening(&part, hull);

@@ -121,11 +121,7 @@ impl<S: Simd, F: Flight<S, K>, const K: usize> Search<S, F, K> {
             attitude,
             width,
             rate,
-            curvature: hull.curvature(
-                part,
-                &self.flight.axis_motion(attitude),
-                -self.flight.gravity(),
-            ),
+            curvature: hull.curvature(part, &self.flight.axis_motion(attitude), -F::GRAVITY),
         }
     }
 
@@ -267,7 +263,7 @@ impl<S: Simd, F: Flight<S, K>, const K: usize> Search<S, F, K> {
         let speed = step.mul_add(-step.mul_add(0.5 * third, slack), evaluation.gap.closing);
         let inverse = 1.0 / speed;
         let newton = left * inverse;
-        let curvature = step.mul_add(third, second - self.flight.gravity()); // f″
+        let curvature = step.mul_add(third, second - F::GRAVITY); // f″
         step + newton.mul_add(0.5 * curvature * newton * inverse, newton)
     }
 }

@@ -9,7 +9,6 @@ use super::group::{Group, Release, Unconverged};
 use super::impact::Meanwhile;
 use super::passes::SearchOn;
 use crate::law::{Law, Respond, Response};
-use crate::motion::Gravity;
 use crate::shape::{Body, Hull, Surface, with_hull};
 use crate::simd::Pack;
 use crate::simd::elementary::sincos_in_lanes;
@@ -50,17 +49,17 @@ pub(crate) struct Inlined<'a, H, L> {
     body: &'a Body,
     hull: &'a H,
     law: &'a L,
-    gravity: Gravity,
+    slope: f64,
 }
 
 impl<'a, H, L> Inlined<'a, H, L> {
-    /// The motion in this gravity.
-    pub fn new(body: &'a Body, hull: &'a H, law: &'a L, gravity: Gravity) -> Self {
+    /// The motion over a plane that descends along x with this slope, tan α.
+    pub fn new(body: &'a Body, hull: &'a H, law: &'a L, slope: f64) -> Self {
         Self {
             body,
             hull,
             law,
-            gravity,
+            slope,
         }
     }
 }
@@ -69,7 +68,8 @@ impl<'a, H, L> Inlined<'a, H, L> {
 pub(crate) struct General<'a, 'b> {
     pub body: &'a Body,
     pub law: &'a Law<'b>,
-    pub gravity: Gravity,
+    /// tan α.
+    pub slope: f64,
 }
 
 impl<S: Simd, T: Dimension, H: Hull, L: Respond> Advance<S, T> for Inlined<'_, H, L> {
@@ -92,7 +92,7 @@ impl<S: Simd, T: Dimension, H: Hull, L: Respond> Advance<S, T> for Inlined<'_, H
             groups,
             release,
             particles,
-            gravity: self.gravity,
+            slope: self.slope,
             hull: self.hull,
         });
     }
@@ -108,7 +108,7 @@ impl<S: Simd, T: Dimension, H: Hull, L: Respond> Advance<S, T> for Inlined<'_, H
             body, hull, law, ..
         } = *self;
         for (i, group) in groups.iter_mut().enumerate() {
-            group.start(self.gravity, hull);
+            group.start(self.slope, hull);
             work_up::<S>(sink, i, 0);
         }
         find::<S, T>(groups, hull, sink)?;
@@ -221,7 +221,7 @@ fn turn<S: Simd, T: Dimension>(groups: &mut [Group<S, T>], sink: &mut impl Meanw
 
 impl<'a, 'b> General<'a, 'b> {
     fn with<H>(&self, hull: &'a H) -> Inlined<'a, H, Law<'b>> {
-        Inlined::new(self.body, hull, self.law, self.gravity)
+        Inlined::new(self.body, hull, self.law, self.slope)
     }
 
     fn surface(&self) -> &'a Surface {
@@ -268,7 +268,7 @@ struct Occupy<'a, S: Simd, T: Dimension, H, R> {
     groups: &'a mut [Group<S, T>],
     release: &'a R,
     particles: &'a mut Range<usize>,
-    gravity: Gravity,
+    slope: f64,
     hull: &'a H,
 }
 
@@ -279,7 +279,7 @@ impl<S: Simd, T: Dimension, H: Hull, R: Release> WithSimd for Occupy<'_, S, T, H
     fn with_simd<U: Simd>(self, _: U) {
         for group in self.groups {
             if !group.active.all() {
-                group.occupy(self.release, self.particles, self.gravity, self.hull);
+                group.occupy(self.release, self.particles, self.slope, self.hull);
             }
         }
     }

@@ -134,7 +134,6 @@ mod tests {
 
     impl Sink for Cancelling<'_> {
         const TOGETHER: bool = true;
-        const COMMON: bool = false;
 
         fn begin(&mut self) {}
 

@@ -6,7 +6,7 @@ use super::collision::{Collide, ContactPoint, Dimension};
 use crate::contact::{GapEvaluation, LastContact, LocatedContact, Prediction, Search, Steps};
 use crate::drop::stop::StopReason;
 use crate::law::{Contact, MOST_CONTACTS, Response};
-use crate::motion::{Flight, Gravity, State, SymmetricState};
+use crate::motion::{Flight, State, SymmetricState};
 use crate::shape::{Body, Hull};
 use crate::simd::{LANES, Mask, Pack};
 use pulp::Simd;
@@ -104,11 +104,7 @@ impl<S: Simd, T: Dimension> Group<S, T> {
         };
         let part = hull.part(Mask::splat(simd, false));
         Self {
-            search: Search::new(
-                FlightOf::<S, T>::new(state, Gravity::inclined(0.0)),
-                last_contact,
-                hull,
-            ),
+            search: Search::new(FlightOf::<S, T>::new(state, 0.0), last_contact, hull),
             evaluation: GapEvaluation::none(part),
             steps: Steps::none(simd),
             prediction: Prediction::none(simd),
@@ -141,7 +137,7 @@ impl<S: Simd, T: Dimension> Group<S, T> {
         &mut self,
         release: &impl Release,
         particles: &mut Range<usize>,
-        gravity: Gravity,
+        slope: f64,
         hull: &impl Hull,
     ) {
         let mut state = self.before().with_motion(self.after);
@@ -160,7 +156,7 @@ impl<S: Simd, T: Dimension> Group<S, T> {
         self.unresolved = fresh.select(0.0, self.unresolved);
         self.idle = fresh.select(self.rounds, self.idle);
         self.due = self.rounds;
-        let released = Search::released(FlightOf::<S, T>::new(state, gravity), hull).last_contact;
+        let released = Search::released(FlightOf::<S, T>::new(state, slope), hull).last_contact;
         let last_contact = &mut self.search.last_contact;
         last_contact.sphere = fresh.select(released.sphere, last_contact.sphere);
         last_contact.speed = fresh.select(released.speed, last_contact.speed);
@@ -384,7 +380,7 @@ impl<S: Simd, T: Dimension> Group<S, T> {
 
     /// Starts the next flight.
     #[inline(always)]
-    pub fn start(&mut self, gravity: Gravity, hull: &impl Hull) {
-        self.search.continue_with(self.after, gravity, hull);
+    pub fn start(&mut self, slope: f64, hull: &impl Hull) {
+        self.search.continue_with(self.after, slope, hull);
     }
 }

@@ -112,26 +112,25 @@ impl Coulomb {
         general::answer(self, compliance, velocity, restitution)
     }
 
+    /// Whether some contacts take much longer than others where they slip in any direction.
+    pub(super) fn takes_long(&self) -> bool {
+        self.friction > 0.0
+    }
+
+    /// The responses to contacts that may slip in any direction, μ > 0.
     #[inline(always)]
-    pub(super) fn respond<S: Simd, const SPACE: bool>(
+    pub(super) fn respond_in_space<S: Simd>(
         &self,
         contacts: &[Contact<Pack<S, 1>>],
         restitution: &[Pack<S, 1>],
         responses: &mut [Response<Pack<S, 1>>],
     ) {
-        if SPACE && self.friction > 0.0 {
-            turning::respond(self, contacts, restitution, responses);
-        } else {
-            let all = contacts.iter().zip(restitution).zip(responses);
-            for ((contact, &restitution), response) in all {
-                *response = self.in_plane(contact, restitution);
-            }
-        }
+        turning::respond(self, contacts, restitution, responses);
     }
 
-    /// The response to contacts that do not slip along **w**.
+    /// The response to a contact that does not slip along **w**.
     #[inline(always)]
-    fn in_plane<S: Simd>(
+    pub(super) fn respond_in_plane<S: Simd>(
         &self,
         contact: &Contact<Pack<S, 1>>,
         restitution: Pack<S, 1>,

@@ -16,7 +16,6 @@ pub(crate) use planar::{PlanarFlight, PlanarMotion, PlanarState};
 pub(crate) use spatial::{SpatialFlight, SpatialMotion, SpatialState};
 pub use state::State;
 
-use super::Gravity;
 use crate::shape::{AxisMotion, Body};
 use crate::simd::elementary::moderate_sincos_in_lanes;
 use crate::simd::{Mask, Pack};
@@ -97,13 +96,14 @@ pub(crate) trait SymmetricState<S: Simd, const K: usize>: Copy {
 
 /// A flight that starts from a [`SymmetricState`] at time 0.
 pub(crate) trait Flight<S: Simd, const K: usize>: Copy {
+    /// Acceleration towards the plane: 1, the core's unit, or 0 for a flight without gravity.
+    const GRAVITY: f64;
+
     /// Position and motion.
     type State: SymmetricState<S, K>;
 
-    /// The flight from `start`.
-    fn new(start: Self::State, gravity: Gravity) -> Self;
-    /// Acceleration towards the plane.
-    fn gravity(&self) -> f64;
+    /// The flight from `start`, over a plane that descends along x with this slope, tan α.
+    fn new(start: Self::State, slope: f64) -> Self;
     /// The state at its start.
     fn start(&self) -> &Self::State;
     /// Angular velocity Ω of the axis, up to its sign.
@@ -121,7 +121,7 @@ pub(crate) trait Flight<S: Simd, const K: usize>: Copy {
     /// e_z and its time derivatives at the start.
     fn axis_motion_at_start(&self) -> AxisMotion<S, K>;
     /// Replaces the flight by one that starts at the same position with another motion.
-    fn depart(&mut self, motion: <Self::State as SymmetricState<S, K>>::Motion, gravity: Gravity);
+    fn depart(&mut self, motion: <Self::State as SymmetricState<S, K>>::Motion, slope: f64);
     /// The state at `time`. Its height is left at that of the start, because at a contact the hull gives it more accurately.
     fn state(&self, time: Pack<S, K>, attitude: Attitude<S, K>) -> Self::State;
     /// Ends the flight: `state`, with the `height` at which the body touches, replaces the start.
@@ -131,7 +131,7 @@ pub(crate) trait Flight<S: Simd, const K: usize>: Copy {
     #[inline(always)]
     fn height_at(&self, time: Pack<S, K>) -> Pack<S, K> {
         time.mul_add(
-            time.mul_add(-0.5 * self.gravity(), self.start().vz()),
+            time.mul_add(-0.5 * Self::GRAVITY, self.start().vz()),
             self.start().height(),
         ) // (5)
     }
@@ -139,6 +139,6 @@ pub(crate) trait Flight<S: Simd, const K: usize>: Copy {
     /// Its vertical velocity at `time`.
     #[inline(always)]
     fn vz_at(&self, time: Pack<S, K>) -> Pack<S, K> {
-        time.mul_add(-self.gravity(), self.start().vz()) // (5)
+        time.mul_add(-Self::GRAVITY, self.start().vz()) // (5)
     }
 }

@@ -2,7 +2,6 @@
 
 use super::{Attitude, Flight, SpatialMotion, SpatialState, State, SymmetricState};
 use crate::math::Vectors;
-use crate::motion::Gravity;
 use crate::shape::{AxisMotion, Body};
 use crate::simd::{Mask, Pack};
 use pulp::Simd;
@@ -128,29 +127,21 @@ impl<S: Simd, const K: usize> SymmetricState<S, K> for PlanarState<S, K> {
 #[derive(Clone, Copy)]
 pub(crate) struct PlanarFlight<S: Simd, const K: usize> {
     start: PlanarState<S, K>,
-    /// Acceleration towards the plane.
-    gravity: f64,
 }
 
 impl<S: Simd, const K: usize> Flight<S, K> for PlanarFlight<S, K> {
+    const GRAVITY: f64 = 1.0;
+
     type State = PlanarState<S, K>;
 
-    /// Gravity has no component along the plane: over an incline the motion is spatial.
+    /// The slope is 0: over an incline the motion is spatial, because gravity has a component outside the plane of the axis.
     #[inline(always)]
-    fn new(start: PlanarState<S, K>, gravity: Gravity) -> Self {
-        Self {
-            start,
-            gravity: gravity.normal,
-        }
+    fn new(start: PlanarState<S, K>, _: f64) -> Self {
+        Self { start }
     }
 
     #[inline(always)]
-    fn gravity(&self) -> f64 {
-        self.gravity
-    }
-
-    #[inline(always)]
-    fn depart(&mut self, motion: PlanarMotion<S, K>, _: Gravity) {
+    fn depart(&mut self, motion: PlanarMotion<S, K>, _: f64) {
         self.start.motion = motion;
     }
 

@@ -5,7 +5,6 @@
 
 use super::{Attitude, Flight, State, SymmetricState};
 use crate::math::Vectors;
-use crate::motion::Gravity;
 use crate::shape::{AxisMotion, Body};
 use crate::simd::{Mask, Pack};
 use pulp::Simd;
@@ -147,7 +146,7 @@ impl<S: Simd, const K: usize> SymmetricState<S, K> for SpatialState<S, K> {
 #[derive(Clone, Copy)]
 pub(crate) struct SpatialFlight<S: Simd, const K: usize> {
     start: SpatialState<S, K>,
-    gravity: Gravity,
+    slope: f64,
     /// Ω and Ω².
     rate: Pack<S, K>,
     square: Pack<S, K>,
@@ -165,10 +164,12 @@ pub(crate) struct SpatialFlight<S: Simd, const K: usize> {
 const SLOWEST: f64 = 1e-300;
 
 impl<S: Simd, const K: usize> Flight<S, K> for SpatialFlight<S, K> {
+    const GRAVITY: f64 = 1.0;
+
     type State = SpatialState<S, K>;
 
     #[inline(always)]
-    fn new(start: SpatialState<S, K>, gravity: Gravity) -> Self {
+    fn new(start: SpatialState<S, K>, slope: f64) -> Self {
         let (axis, precession) = (start.axis, start.motion.precession);
         let square = precession.dot(precession);
         let rate = square.sqrt();
@@ -181,7 +182,7 @@ impl<S: Simd, const K: usize> Flight<S, K> for SpatialFlight<S, K> {
         let amplitude = cosine.mul_add(cosine, sine * sine).sqrt();
         Self {
             start,
-            gravity,
+            slope,
             rate,
             square,
             share,
@@ -194,13 +195,8 @@ impl<S: Simd, const K: usize> Flight<S, K> for SpatialFlight<S, K> {
     }
 
     #[inline(always)]
-    fn depart(&mut self, motion: SpatialMotion<S, K>, gravity: Gravity) {
-        *self = Self::new(self.start.with_motion(motion), gravity);
-    }
-
-    #[inline(always)]
-    fn gravity(&self) -> f64 {
-        self.gravity.normal
+    fn depart(&mut self, motion: SpatialMotion<S, K>, slope: f64) {
+        *self = Self::new(self.start.with_motion(motion), slope);
     }
 
     #[inline(always)]
@@ -276,7 +272,7 @@ impl<S: Simd, const K: usize> Flight<S, K> for SpatialFlight<S, K> {
             axis,
             motion: SpatialMotion {
                 velocity: Vectors {
-                    x: time.mul_add(self.gravity.along, x), // (5)
+                    x: time.mul_add(self.slope, x), // (5)
                     y,
                     z: self.vz_at(time),
                 },
