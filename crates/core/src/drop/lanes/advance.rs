@@ -87,7 +87,7 @@ impl<S: Simd, T: Dimension, H: Hull, L: Respond> Advance<S, T> for Inlined<'_, H
         release: &impl Release,
         particles: &mut Range<usize>,
     ) {
-        let simd = groups[0].active.simd();
+        let simd = groups[0].particles.active.simd();
         simd.vectorize(Occupy {
             groups,
             release,
@@ -165,7 +165,7 @@ pub(crate) fn find<S: Simd, T: Dimension>(
     }
     pass(groups, hull, sink);
     if groups.iter().any(Group::takes_another_pass) {
-        let simd = groups[0].active.simd();
+        let simd = groups[0].particles.active.simd();
         simd.vectorize(SearchOn {
             groups: &mut *groups,
             hull,
@@ -254,7 +254,7 @@ impl<S: Simd, T: Dimension> Advance<S, T> for General<'_, '_> {
         collisions: &mut Collisions<S>,
         _: &mut impl Meanwhile,
     ) -> Result<(), Unconverged> {
-        let simd = groups[0].active.simd();
+        let simd = groups[0].particles.active.simd();
         with_hull!(self.surface(), hull => simd.vectorize(AdvanceApart {
             cycle: self.with(hull),
             groups,
@@ -278,7 +278,7 @@ impl<S: Simd, T: Dimension, H: Hull, R: Release> WithSimd for Occupy<'_, S, T, H
     #[inline(always)]
     fn with_simd<U: Simd>(self, _: U) {
         for group in self.groups {
-            if !group.active.all() {
+            if !group.particles.active.all() {
                 group.occupy(self.release, self.particles, self.slope, self.hull);
             }
         }

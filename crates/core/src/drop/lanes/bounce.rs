@@ -60,8 +60,10 @@ pub(crate) fn bounce<S: Simd, T: Dimension, L: Advance<S, T>, const N: usize>(
         sink.settle(0..width * groups.len());
     }
     for group in groups {
-        group.end(group.active, StopReason::Interrupted);
-        group.close(sink);
+        group
+            .particles
+            .end(group.particles.active, StopReason::Interrupted);
+        group.particles.close(sink);
     }
     Ok(())
 }
@@ -70,7 +72,7 @@ pub(crate) fn bounce<S: Simd, T: Dimension, L: Advance<S, T>, const N: usize>(
 fn in_use<S: Simd, T: Dimension>(groups: &mut [Group<S, T>]) -> &mut [Group<S, T>] {
     let mut count = 0;
     for i in 0..groups.len() {
-        if groups[i].active.any() {
+        if groups[i].particles.active.any() {
             if i > count {
                 groups.swap(i, count);
             }

@@ -1,14 +1,16 @@
 //! A group of particles, as many as a vector has lanes, and the stages from one impact to the next.
 
-mod report;
-
 use super::collision::{Collide, ContactPoint, Dimension};
-use crate::contact::{GapEvaluation, LastContact, LocatedContact, Prediction, Search, Steps};
-use crate::drop::stop::StopReason;
+use super::impact::{Impact, Sink};
+use super::particles::Particles;
+use crate::contact::{
+    GapEvaluation, LastContact, LocatedContact, MOST_STEPS, Prediction, Search, Steps,
+};
+use crate::drop::stop::{Limits, StopReason};
 use crate::law::{Contact, MOST_CONTACTS, Response};
 use crate::motion::{Flight, State, SymmetricState};
 use crate::shape::{Body, Hull};
-use crate::simd::{LANES, Mask, Pack};
+use crate::simd::{Mask, Pack};
 use pulp::Simd;
 use std::ops::Range;
 
@@ -46,8 +48,8 @@ pub(crate) struct Found<S: Simd, T: Dimension> {
     pub sphere: Pack<S, 1>,
 }
 
-/// As many particles as a vector has lanes, each in a flight of its own: a lane whose contact is not located yet sits out the impacts
-/// of the others. Aligned to a cache line, so that no vector straddles two lines.
+/// The flights of as many particles as a vector has lanes, and the search for their contacts: a lane whose contact is not located yet
+/// sits out the impacts of the others. Aligned to a cache line, so that no vector straddles two lines.
 #[derive(Clone, Copy)]
 #[repr(align(64))]
 pub(crate) struct Group<S: Simd, T: Dimension> {
@@ -72,24 +74,7 @@ pub(crate) struct Group<S: Simd, T: Dimension> {
     after: MotionOf<S, T>,
     /// Speed at which the point of contact approached the plane.
     approach: Pack<S, 1>,
-    /// Time since release.
-    clock: Pack<S, 1>,
-    /// Unresolved flights in a row.
-    unresolved: Pack<S, 1>,
-    /// Number of the particle in the run.
-    particle: Pack<S, 1>,
-    /// Number of rounds so far, each of which has an impact in the lanes that do not wait.
-    rounds: f64,
-    /// Number of rounds in which the particle of the lane had none: those before its release, and those in which it waited.
-    idle: Pack<S, 1>,
-    /// The first round after which a particle may have all its impacts.
-    due: f64,
-    /// The lanes whose particle has not stopped.
-    pub active: Mask<S, 1>,
-    /// The lanes whose particle has stopped, which the sink does not know yet, and why.
-    ended: Mask<S, 1>,
-    has_ended: bool,
-    reasons: [StopReason; LANES],
+    pub particles: Particles<S>,
 }
 
 impl<S: Simd, T: Dimension> Group<S, T> {
@@ -118,16 +103,7 @@ impl<S: Simd, T: Dimension> Group<S, T> {
             turned: (zero, zero),
             after: state.motion(),
             approach: zero,
-            clock: zero,
-            unresolved: zero,
-            particle: zero,
-            rounds: 0.0,
-            idle: zero,
-            due: 0.0,
-            active: Mask::splat(simd, false),
-            ended: Mask::splat(simd, false),
-            has_ended: false,
-            reasons: [StopReason::Interrupted; LANES],
+            particles: Particles::none(simd),
         }
     }
 
@@ -141,21 +117,10 @@ impl<S: Simd, T: Dimension> Group<S, T> {
         hull: &impl Hull,
     ) {
         let mut state = self.before().with_motion(self.after);
-        let mut fresh = 0.0 * self.particle;
-        (!self.active).each(|lane| {
-            if let Some(particle) = particles.next() {
-                state.put(lane, &release.start(particle));
-                self.particle.as_mut_slice()[lane] = particle as f64;
-                fresh.as_mut_slice()[lane] = 1.0;
-            }
+        let fresh = self.particles.occupy(particles, |lane, particle| {
+            state.put(lane, &release.start(particle));
         });
-        let fresh = fresh.eq(1.0);
-        self.active = self.active | fresh;
         self.waiting = self.waiting & !fresh;
-        self.clock = fresh.select(0.0, self.clock);
-        self.unresolved = fresh.select(0.0, self.unresolved);
-        self.idle = fresh.select(self.rounds, self.idle);
-        self.due = self.rounds;
         let released = Search::released(FlightOf::<S, T>::new(state, slope), hull).last_contact;
         let last_contact = &mut self.search.last_contact;
         last_contact.sphere = fresh.select(released.sphere, last_contact.sphere);
@@ -177,14 +142,14 @@ impl<S: Simd, T: Dimension> Group<S, T> {
 
     /// The contact of lane 0, or the stop reason if there is none.
     pub fn found(&self) -> Result<Found<S, T>, StopReason> {
-        if self.active.any() {
+        if self.particles.active.any() {
             Ok(Found {
                 time: self.located.time,
                 state: self.before(),
                 sphere: self.search.last_contact.sphere,
             })
         } else {
-            Err(self.reasons[0])
+            Err(self.particles.reasons[0])
         }
     }
 
@@ -200,7 +165,7 @@ impl<S: Simd, T: Dimension> Group<S, T> {
         let still = self.search.last_contact.speed.le(0.0);
         if still.any() {
             let rests = still & self.search.rests(hull);
-            self.end(rests, StopReason::Collapse);
+            self.particles.end(rests, StopReason::Collapse);
         }
         let first = self.search.first_evaluation(hull);
         if self.is_behind {
@@ -247,7 +212,7 @@ impl<S: Simd, T: Dimension> Group<S, T> {
     /// for spinning smooth hulls.
     #[inline(always)]
     pub fn takes_another_pass(&self) -> bool {
-        self.is_behind || (self.active & !self.located.done).any()
+        self.is_behind || (self.particles.active & !self.located.done).any()
     }
 
     /// 1 in each lane that waits, otherwise 0.
@@ -259,13 +224,14 @@ impl<S: Simd, T: Dimension> Group<S, T> {
     /// The lanes that have an impact.
     #[inline(always)]
     fn landing(&self) -> Mask<S, 1> {
-        self.active & !self.waiting
+        self.particles.active & !self.waiting
     }
 
     /// Ends the particles that never land.
     #[inline(always)]
     pub fn end_those_that_never_land(&mut self) {
-        self.end(self.evaluation.never, StopReason::NeverLands);
+        self.particles
+            .end(self.evaluation.never, StopReason::NeverLands);
     }
 
     /// Ends the search in the lanes whose certified step leaves a gap below the resolution.
@@ -299,7 +265,7 @@ impl<S: Simd, T: Dimension> Group<S, T> {
         self.time = done.select(self.time, next);
         self.certain = done.select(self.time, certain);
         self.passes = self.waiting.select(self.passes, 0.0) + 1.0;
-        self.waiting = self.active & !done;
+        self.waiting = self.particles.active & !done;
         self.is_behind = self.waiting.any();
     }
 
@@ -382,5 +348,69 @@ impl<S: Simd, T: Dimension> Group<S, T> {
     #[inline(always)]
     pub fn start(&mut self, slope: f64, hull: &impl Hull) {
         self.search.continue_with(self.after, slope, hull);
+    }
+
+    /// Hands the impact to the sink, and ends the particles for which it was the last; returns whether any has ended since the last
+    /// impact.
+    #[inline(always)]
+    pub fn report(
+        &mut self,
+        number: usize,
+        body: &Body,
+        limits: Limits,
+        sink: &mut impl Sink,
+    ) -> bool {
+        let mut ended = self.particles.has_ended;
+        if ended {
+            self.particles.close(sink);
+        }
+        let landing = self.landing();
+        let before = self.before();
+        let after = before.with_motion(self.after);
+        let clock = self.particles.clock + self.located.time;
+        let energy_after = after.kinetic_energy(body);
+        let impact = Impact {
+            particle: self.particles.number,
+            number: self.particles.impacts(),
+            time: clock,
+            fall: -before.vz(),
+            rise: after.vz(),
+            rotation: before.rotational_energy(body),
+            energy_before: before.kinetic_energy(body),
+            energy_after,
+            sine: before.sine(),
+            cosine: before.cos_tilt(),
+            sphere: self.search.last_contact.sphere,
+            approach: self.approach,
+            before: before.in_space(),
+            after: after.in_space(),
+            active: landing,
+        };
+        sink.impact(number, &impact);
+        let waiting = self.is_behind.then(|| self.behind());
+        self.particles.count(landing, clock, waiting);
+        if limits.minimum_speed > 0.0 {
+            let slow = (2.0 * energy_after).lt(limits.minimum_speed * limits.minimum_speed);
+            self.particles
+                .end(slow & landing, StopReason::SpeedBelowThreshold);
+        }
+        let size = self.search.curvature_bound * (self.located.time * self.located.time);
+        self.particles.end_collapsed(size, landing, self.waiting);
+        self.particles.end_complete(limits.impacts);
+        if self.particles.has_ended {
+            self.particles.close(sink);
+            ended = true;
+        }
+        ended
+    }
+
+    /// An error if the search of some particle takes too many passes.
+    #[inline(always)]
+    pub fn converged(&self) -> Result<(), Unconverged> {
+        let lost = !self.passes.lt(f64::from(MOST_STEPS));
+        if lost.any() {
+            return self.particles.unconverged(lost);
+        }
+        Ok(())
     }
 }

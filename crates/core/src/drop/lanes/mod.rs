@@ -6,6 +6,7 @@ mod bounce;
 mod collision;
 mod group;
 mod impact;
+mod particles;
 mod passes;
 
 pub(super) use advance::{Advance, General, Idle, Inlined, find};
