@@ -133,6 +133,7 @@ impl Meanwhile for Table<'_> {
 
 impl Sink for Table<'_> {
     const TOGETHER: bool = false;
+    const COMMON: bool = false;
 
     fn begin(&mut self) {}
 

@@ -136,6 +136,7 @@ mod tests {
 
     impl Sink for Cancelling<'_> {
         const TOGETHER: bool = true;
+        const COMMON: bool = false;
 
         fn begin(&mut self) {}
 
