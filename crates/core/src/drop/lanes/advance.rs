@@ -104,14 +104,38 @@ impl<S: Simd, T: Dimension, H: Hull, L: Respond> Advance<S, T> for Inlined<'_, H
         collisions: &mut Collisions<S>,
         sink: &mut impl Meanwhile,
     ) -> Result<(), Unconverged> {
+        self.take_off(groups, sink);
+        find(groups, self.hull, sink)?;
+        self.collide(groups, collisions, sink);
+        Ok(())
+    }
+}
+
+impl<H: Hull, L: Respond> Inlined<'_, H, L> {
+    /// Starts the flights.
+    #[inline(always)]
+    fn take_off<S: Simd, T: Dimension>(
+        &self,
+        groups: &mut [Group<S, T>],
+        sink: &mut impl Meanwhile,
+    ) {
+        for (i, group) in groups.iter_mut().enumerate() {
+            group.start(self.slope, self.hull);
+            work_up::<S>(sink, i, 0);
+        }
+    }
+
+    /// Moves the bodies to their contacts, and applies the law.
+    #[inline(always)]
+    fn collide<S: Simd, T: Dimension>(
+        &self,
+        groups: &mut [Group<S, T>],
+        collisions: &mut Collisions<S>,
+        sink: &mut impl Meanwhile,
+    ) {
         let Self {
             body, hull, law, ..
         } = *self;
-        for (i, group) in groups.iter_mut().enumerate() {
-            group.start(self.slope, hull);
-            work_up::<S>(sink, i, 0);
-        }
-        find::<S, T>(groups, hull, sink)?;
         if T::SPACE {
             let count = groups.len();
             let Collisions {
@@ -140,7 +164,6 @@ impl<S: Simd, T: Dimension, H: Hull, L: Respond> Advance<S, T> for Inlined<'_, H
                 work_up::<S>(sink, i, 7);
             }
         }
-        Ok(())
     }
 }
 
