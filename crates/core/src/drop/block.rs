@@ -68,21 +68,10 @@ impl<R: Source, T: Sink> WithSimd for Block<'_, R, T> {
     fn with_simd<S: Simd>(self, simd: S) -> Self::Output {
         let plan = self.source.plan();
         let (body, law, slope) = (&plan.body, &plan.law, plan.slope);
-        // The paper's body, and in the most common runs the one that takes longest, have bounce loops of their own where these are not
-        // held up by memory.
-        let steady = plan.law.steady();
-        match (&body.hull, plan.at_rest, &steady) {
+        // The paper's runs have a bounce loop of their own where they are not held up by memory.
+        match (&body.hull, plan.at_rest, &plan.law.steady()) {
             (Surface::EqualBalls(hull), true, Some(law)) if T::TOGETHER => {
                 self.run::<S, Planar>(simd, &Inlined::new(body, hull, law, slope))
-            }
-            (Surface::EqualBalls(hull), true, None) if T::TOGETHER => {
-                self.run::<S, Planar>(simd, &Inlined::new(body, hull, law, slope))
-            }
-            (Surface::Ellipsoid(hull), true, Some(law)) if T::COMMON => {
-                self.run::<S, Planar>(simd, &Inlined::new(body, hull, law, slope))
-            }
-            (Surface::Ellipsoid(hull), false, _) if T::COMMON => {
-                self.run::<S, Spatial>(simd, &Inlined::new(body, hull, law, slope))
             }
             (_, true, _) => self.run::<S, Planar>(simd, &General { body, law, slope }),
             (_, false, _) => self.run::<S, Spatial>(simd, &General { body, law, slope }),

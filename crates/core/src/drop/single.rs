@@ -171,7 +171,6 @@ impl<F> Meanwhile for Reporter<'_, F> {
 
 impl<F: FnMut(&SingleImpact) -> bool> Sink for Reporter<'_, F> {
     const TOGETHER: bool = false;
-    const COMMON: bool = false;
 
     fn begin(&mut self) {}
 

@@ -133,7 +133,6 @@ impl Meanwhile for Table<'_> {
 
 impl Sink for Table<'_> {
     const TOGETHER: bool = false;
-    const COMMON: bool = false;
 
     fn begin(&mut self) {}
 

@@ -74,7 +74,6 @@ impl<const EVEN: bool> Meanwhile for CountSink<'_, EVEN> {
 
 impl<const EVEN: bool> Sink for CountSink<'_, EVEN> {
     const TOGETHER: bool = true;
-    const COMMON: bool = EVEN;
 
     fn begin(&mut self) {
         self.queue.fill(last(&self.restitution));

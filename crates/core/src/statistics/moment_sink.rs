@@ -184,7 +184,6 @@ impl<const EVEN: bool> Meanwhile for MomentSink<'_, EVEN> {
 
 impl<const EVEN: bool> Sink for MomentSink<'_, EVEN> {
     const TOGETHER: bool = true;
-    const COMMON: bool = EVEN;
 
     fn begin(&mut self) {
         let nowhere = [

@@ -48,13 +48,11 @@ pub(crate) fn bounce<S: Simd, T: Dimension, L: Advance<S, T>, const N: usize>(
             break;
         }
         cycle.advance(groups, &mut collisions, sink)?;
-        ended = simd.vectorize(Report {
-            groups: &mut *groups,
-            body,
-            limits,
-            sink: &mut *sink,
-            settle: !L::TOGETHER,
-        });
+        ended = if L::TOGETHER {
+            report::<S, T, _, false>(simd, groups, (body, limits), sink)
+        } else {
+            report::<S, T, _, true>(simd, groups, (body, limits), sink)
+        };
     }
     if L::TOGETHER {
         sink.settle(0..width * groups.len());
@@ -82,18 +80,33 @@ fn in_use<S: Simd, T: Dimension>(groups: &mut [Group<S, T>]) -> &mut [Group<S, T
     &mut groups[..count]
 }
 
-/// Hands an impact of all groups to the sink, and returns whether some particle has ended. Compiled separately, because the rare
-/// branches of the sinks would take registers from the other stages.
-struct Report<'a, S: Simd, T: Dimension, K> {
+/// Compiles [`Report`] for the SIMD level, and calls it.
+#[inline(always)]
+fn report<S: Simd, T: Dimension, K: Sink, const SETTLE: bool>(
+    simd: S,
+    groups: &mut [Group<S, T>],
+    (body, limits): (&Body, Limits),
+    sink: &mut K,
+) -> bool {
+    simd.vectorize(Report::<S, T, K, SETTLE> {
+        groups,
+        body,
+        limits,
+        sink,
+    })
+}
+
+/// Hands an impact of all groups to the sink, which works the impacts up if it is to `SETTLE` them; returns whether some particle has
+/// ended. Compiled separately, and for either case by itself, because the rare branches of the sinks would take registers from the other
+/// stages.
+struct Report<'a, S: Simd, T: Dimension, K, const SETTLE: bool> {
     groups: &'a mut [Group<S, T>],
     body: &'a Body,
     limits: Limits,
     sink: &'a mut K,
-    /// Whether the sink works the impacts up here.
-    settle: bool,
 }
 
-impl<S: Simd, T: Dimension, K: Sink> WithSimd for Report<'_, S, T, K> {
+impl<S: Simd, T: Dimension, K: Sink, const SETTLE: bool> WithSimd for Report<'_, S, T, K, SETTLE> {
     type Output = bool;
 
     #[inline(always)]
@@ -103,7 +116,7 @@ impl<S: Simd, T: Dimension, K: Sink> WithSimd for Report<'_, S, T, K> {
         for (i, group) in self.groups.iter_mut().enumerate() {
             ended |= group.report(i, self.body, self.limits, self.sink);
         }
-        if self.settle {
+        if SETTLE {
             self.sink.settle(0..width * self.groups.len());
         }
         ended
@@ -136,7 +149,6 @@ mod tests {
 
     impl Sink for Cancelling<'_> {
         const TOGETHER: bool = true;
-        const COMMON: bool = false;
 
         fn begin(&mut self) {}
 

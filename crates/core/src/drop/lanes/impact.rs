@@ -67,8 +67,6 @@ pub(crate) trait Sink: Meanwhile {
     /// Whether bounce loops are compiled for this sink ([`super::Inlined`]). Sinks that write records are limited by memory and
     /// gain nothing from it.
     const TOGETHER: bool;
-    /// Whether it is among the most common ones, for which more of them are compiled.
-    const COMMON: bool;
 
     /// Announces a release: at no place is there an impact to be worked up.
     fn begin(&mut self);
