@@ -27,7 +27,7 @@ def bounds(field: FieldInfo) -> dict[str, Any]:
 
 @pytest.mark.parametrize(("kind", "entry"), KINDS)
 def test_a_class_has_the_parameters_that_the_core_describes(kind: type[Any], entry: dict[str, Any]) -> None:
-    """Names, order and defaults are the same; so are the ends of intervals where the class says them as numbers."""
+    """Names, order and defaults are the same; so are the ends of intervals, where the class has numbers."""
     assert kind.__name__ == entry["name"]
     fields = dict(kind.model_fields)
     if issubclass(kind, laws.Law):
