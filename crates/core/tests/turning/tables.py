@@ -1,4 +1,4 @@
-"""Tables of nodes.rs and hodograph.rs in src/collision/turning, with 40 digits: `python tables.py`."""
+"""Tables of src/law/coulomb/turning.rs, with 40 digits: `python tables.py`."""
 
 from mpmath import atanh, cos, diff, findroot, legendre, mp, mpf, pi, sqrt
 from numpy.polynomial.legendre import leggauss
