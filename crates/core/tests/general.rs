@@ -286,14 +286,22 @@ fn axial_compliances_have_the_law_of_bodies_of_revolution() {
     let (mut worst, mut again): (f64, usize) = (0.0, 0);
     for _ in 0..20_000 {
         let axial = random.spatial();
-        let (n, u, j) = (axial.arm_normal, axial.arm_along, axial.inertia);
+        let (n, u, j) = (
+            axial.compliance.arm_normal,
+            axial.compliance.arm_along,
+            axial.compliance.inertia,
+        );
         let contact = Contact {
             response: [
                 [1.0 + n * n / j, 0.0, -n * u / j],
-                [0.0, axial.across, 0.0],
+                [0.0, axial.compliance.ww, 0.0],
                 [-n * u / j, 0.0, 1.0 + u * u / j],
             ],
-            velocity: [axial.slip.along, axial.slip.across, axial.slip.normal],
+            velocity: [
+                axial.velocity.along,
+                axial.velocity.across,
+                axial.velocity.normal,
+            ],
         };
         let (restitution, friction) = (random.coefficient(), random.friction().min(10.0));
         let tangential = random.between(-1.0, 1.0);
