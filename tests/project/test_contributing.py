@@ -122,5 +122,5 @@ def test_the_glossary_is_of_names_in_the_core() -> None:
     section = section.split("\n###")[0]
     names = re.findall(r"`(\w+)`", "".join(row.split("|")[1] for row in section.splitlines() if "|" in row))
     source = "".join(path.read_text(encoding="utf-8") for path in SOURCES if path.suffix == ".rs")
-    assert len(names) > 20
+    assert 0 < section.count("\n| `") <= 5  # for the rest the field has words
     assert [name for name in names if not re.search(rf"\b{name}\b", source)] == []
