@@ -238,7 +238,6 @@ def test_a_pair_in_any_form(pair: Any) -> None:
         ("a", r"^radius = 'a': must be a finite number > 0 \(or one for each sphere\)$"),
         (True, r"^radius = True: must be a finite number > 0 \(or"),
         (0.0, r"^radius = 0\.0: must be a finite number > 0 \(or"),
-        (10**400, r"^radius = an integer of 1329 bits: must be a finite number > 0 \(or"),
         ((1e-3, 2e-3, 3e-3), r"^radius = \(0\.001, 0\.002, 0\.003\): must be"),
         ((3e-3, True), r"^radius\[1\] = True: must be a finite number > 0$"),
         (("a", 3e-3), r"^radius\[0\] = 'a': must be a finite number > 0$"),

@@ -90,14 +90,6 @@ def test_more_draws_than_memory(learned: rs.FluctuatingRestitution, size: Any) -
             draw(size=size)
 
 
-@pytest.mark.parametrize("size", [(2**62, 0), (0, 2**62), (2**62, 2**62, 0), (2**21, 2**21, 2**21, 0)])
-def test_no_draws_of_a_shape_that_is_too_large(learned: rs.FluctuatingRestitution, size: Any) -> None:
-    """NumPy has no array of such a shape, although it would hold nothing."""
-    for draw in _draws(learned):
-        with pytest.raises(ParameterError, match=r"^size = .*: must be such that its lengths that are not 0"):
-            draw(size=size)
-
-
 def test_no_draws_of_a_large_shape(learned: rs.FluctuatingRestitution) -> None:
     for draw in _draws(learned):
         assert draw(size=(10**12, 0)).shape == (10**12, 0)

@@ -257,7 +257,7 @@ def test_counts_without_a_distribution_are_refused() -> None:
         ({"velocities": "ab"}, "velocities = 'ab': must be the least and the greatest speed"),
         ({"velocities": (2.0, 3.0)}, r"velocities: 0 impacts between 2 and .* m/s; must be .* 500"),
         ({"given": "spin"}, "given = 'spin': must be 'rotational_fraction' or 'previous' or None"),
-        ({"orientation": [0.1, 0.2]}, r"orientation, spin, release_height: .*; must be random in one"),
+        ({"orientation": [0.1, 0.2]}, r"orientation, spin, release_height: .*; one of them must be random"),
         ({"particles": 1}, "particles = 1: must be at least 2"),
         ({"release_height": [0.06, -1.0]}, r"release_height\[1\] = -1.0: must be a finite number > 0"),
         ({"release_height": []}, r"release_height = .*: must be a height or several"),

@@ -45,6 +45,7 @@ WORKINGS = {
     "distribution.sealed",
     "laws.Material",
     "listen.Setting",
+    "study.Study.where",
 }
 """What other folders call, with what they have checked, and types of arguments."""
 

@@ -44,7 +44,8 @@ _FROZEN |= dict.fromkeys(("ppf", "isf"), "q") | dict.fromkeys(("mean", "median",
 _FROZEN |= {"entropy": "", "support": "", "interval": "confidence", "moment": "order", "stats": "moments"}
 _FROZEN |= {"rvs": "size random_state"}
 _ERRORS = {"cdf_error": "x", "pdf_error": "x", "ppf_error": "q", "mean_error": "", "std_error": ""}
-_ERRORS |= {"var_error": ""}
+_ERRORS |= dict.fromkeys(("var_error", "skewness_error", "kurtosis_error"), "")
+_LEARNED = _FROZEN | dict.fromkeys(("skewness", "kurtosis", "resolved"), "")
 
 FIRST, LEARNED = analytic.FirstImpact, rs.FluctuatingRestitution
 CALLS: dict[str, Call] = {
@@ -52,7 +53,7 @@ CALLS: dict[str, Call] = {
     "analytic.FirstImpact.expect": (_own(FIRST, "expect"), of("first", func=_wave)),
     "analytic.FirstImpact.cos_theta": (_own(FIRST, "cos_theta"), of("first", restitution=0.8)),
     "analytic.FirstImpact.restitution": (_own(FIRST, "restitution"), of("first", cos_theta=0.5)),
-    **_methods("FluctuatingRestitution", LEARNED, "dist", _FROZEN, v=0.8),
+    **_methods("FluctuatingRestitution", LEARNED, "dist", _LEARNED, v=0.8),
     **_methods("FluctuatingRestitution", LEARNED, "given", _ERRORS, v=0.5, given=0.1),
     "FluctuatingRestitution": (LEARNED, lambda: {"data": good()["dist"].data}),
     "FluctuatingRestitution.expect": (LEARNED.expect, of("dist", func=_wave, v=0.8)),
@@ -91,6 +92,8 @@ CALLS: dict[str, Call] = {
     "fit.Fit.pdf": (fit.Fit.pdf, of("fit", x=0.9)),
     "fit.Fit.logpdf": (fit.Fit.logpdf, of("fit", x=0.9)),
     "fit.Fit.cdf": (fit.Fit.cdf, of("fit", x=0.9)),
+    "fit.Fit.to_latex": (fit.Fit.to_latex, of("fit", errors={"scale": 0.1})),
+    "fit.Bootstrap.to_latex": (fit.Bootstrap.to_latex, of("bootstrap")),
     "fit.Fit.rvs": (fit.Fit.rvs, of("fit", size=3, seed=1)),
     "fit.Bootstrap.interval": (fit.Bootstrap.interval, of("bootstrap", name="scale", confidence=0.9)),
     "fit.Bootstrap.draws": (fit.Bootstrap.draws, of("bootstrap", name="scale")),

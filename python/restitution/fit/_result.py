@@ -11,8 +11,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from restitution._internal.arrays import generator, reals, whole
+from restitution._internal.arrays import generator, real, reals, whole
 from restitution._internal.datasets import Content
+from restitution._internal.parameters import ParameterError, wrong
 from restitution._internal.resources import check_size
 from restitution._internal.text import latex, table, value, with_error
 from restitution.fit import _in_parts as in_parts
@@ -98,7 +99,13 @@ class Fit(Content):
             particles.
         """
         errors = {} if errors is None else errors
-        rows = [(name, with_error(number, errors.get(name))) for name, number in self.parameters.items()]
+        if not isinstance(errors, Mapping):
+            raise ParameterError(wrong("errors", errors, "a mapping of parameters to their standard errors"))
+        known = {
+            name: real(f"errors[{name!r}]", x, "a number >= 0", lambda e: e >= 0)
+            for name, x in errors.items()
+        }
+        rows = [(name, with_error(number, known.get(name))) for name, number in self.parameters.items()]
         rows += [("samples", str(self.samples)), (r"$\ln L$", f"{self.loglikelihood:.1f}")]
         return latex(self.family, rows)
 
