@@ -207,12 +207,3 @@ def test_a_figure_without_a_name(name: str) -> None:
     """There is nothing that an ending could be put to."""
     text = message(lambda: figures.save(figures.panels(3.0, 2.0)[0], name))
     assert text.startswith(f"name = {name!r}: must be the name of a figure")
-
-
-@pytest.mark.parametrize("argument", ["title", "caption"])
-def test_half_a_character_in_the_words_of_a_figure(tmp_path: Path, argument: str) -> None:
-    """Refused before a file is written."""
-    given: dict[str, Any] = {argument: "a \ud800"}
-    text = message(lambda: figures.save(figures.panels(3.0, 2.0)[0], tmp_path / "figure", **given))
-    assert text == f"{argument} = 'a \\ud800': must be text, without lone surrogates"
-    assert not list(tmp_path.iterdir())

@@ -13,14 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 from scipy.integrate import quad
 
 from restitution.analytic._curve import Branch, Curve
-from restitution.analytic._frozen import (
-    FirstImpact,
-    Values,
-    cosine_of,
-    floats,
-    probability,
-    scalar,
-)
+from restitution.analytic._frozen import FirstImpact, Values, cosine_of, floats, probability, scalar
 from restitution.analytic._normal import Fall
 from restitution.analytic._orientation import Floats
 from restitution.analytic._panels import nodes, roots, solve
@@ -37,16 +30,9 @@ class BranchedFirstImpact(FirstImpact):
     between the roots of ε(θ) = x, one on each branch, found to rounding; the density is the sum of
     p(θ)/|dε/dθ| over them, and infinite at an extreme of ε(θ). Moments are Gauss sums over panels on which a
     bound in the complex plane proves them exact to rounding.
-
-    Parameters
-    ----------
-    body, law, orientation
-        As in `first_impact`.
-    fall : Fall
-        From where; without effect on a law with a number for ``normal``.
     """
 
-    fall: Fall
+    fall: Fall  # without effect on a law with a number for ``normal``
 
     @cached_property
     def _curve(self) -> Curve:

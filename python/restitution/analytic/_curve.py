@@ -40,31 +40,15 @@ class Branch(NamedTuple):
 
 @dataclass(frozen=True)
 class Piece:
-    """Part of the curve with one formula.
-
-    Parameters
-    ----------
-    low, high : float
-        Where it is, in rad.
-    hull, impulse
-        What touches, and what the law does; lengths in units of ``unit``.
-    unit : float
-        In m.
-    fall : Fall
-        From where.
-    among : float
-        A speed of the piece in m/s; determines which formula of a material holds.
-    mode : Mode
-        What the contact does.
-    """
+    """Part of the curve with one formula, from ``low`` to ``high`` in rad; lengths in units of ``unit``."""
 
     low: float
     high: float
     hull: Ball | Ellipsoid
     impulse: Impulse
-    unit: float
+    unit: float  # in m
     fall: Fall
-    among: float
+    among: float  # a speed of the piece in m/s, which determines the formula of a material that holds
     mode: Mode = "stuck"
 
     def state(self, theta: Number) -> tuple[Number, Number, Number]:
@@ -93,19 +77,11 @@ class Piece:
 
 @dataclass(frozen=True)
 class Curve:
-    """ε as a function of θ from 0 to ``limit``.
-
-    Parameters
-    ----------
-    body, law
-        The body and the collision law.
-    fall : Fall
-        From where; without effect on a law with a number for ``normal``.
-    """
+    """ε as a function of θ from 0 to ``limit``."""
 
     body: Body
     law: Law
-    fall: Fall
+    fall: Fall  # without effect on a law with a number for ``normal``
 
     @cached_property
     def pieces(self) -> tuple[Piece, ...]:
@@ -121,7 +97,9 @@ class Curve:
                 height, _ = side.hull.contact(*turned(0.5 * (low + high)))
                 among = float(self.fall.squared_speed(outline.unit * height) ** 0.5)
                 plain = Piece(low, high, side.hull, impulse, outline.unit, self.fall, among)
-                for start, stop in _between(low, high, _limits(plain)):
+                one_mode = len(set(impulse.modes())) == 1
+                limits = [] if one_mode else roots(plain.margin, low, high)
+                for start, stop in _between(low, high, limits):
                     beyond = bool(plain.margin(0.5 * (start + stop)) > 0.0)
                     found.append(replace(plain, low=start, high=stop, mode=impulse.modes()[beyond]))
         return tuple(found)
@@ -174,14 +152,7 @@ class Curve:
         return theta
 
 
-def _limits(piece: Piece) -> list[float]:
-    if len(set(piece.impulse.modes())) == 1:
-        return []
-    return roots(piece.margin, piece.low, piece.high)
-
-
 def _between(low: float, high: float, cuts: list[float]) -> list[tuple[float, float]]:
     """Return the intervals into which the cuts divide one."""
     inner = [cut for cut in distinct(cuts, _NARROW) if low + _NARROW < cut < high - _NARROW]
-    edges = [low, *inner, high]
-    return list(pairwise(edges))
+    return list(pairwise([low, *inner, high]))

@@ -18,16 +18,10 @@ Number: TypeAlias = Any
 
 @dataclass(frozen=True, eq=False)
 class Disc:
-    """Discs with centres on the real axis.
-
-    Parameters
-    ----------
-    centre, radius : ndarray, shape (n,)
-        The latter is infinite where nothing is known.
-    """
+    """Discs with centres on the real axis."""
 
     centre: Floats
-    radius: Floats
+    radius: Floats  # infinite where nothing is known
 
     __array_ufunc__ = None  # NumPy leaves the operators below alone
 

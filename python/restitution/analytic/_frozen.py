@@ -161,8 +161,17 @@ class FirstImpact(ABC):
         if lb is not None and ub is not None and low > high:
             raise ParameterError(wrong("lb", lb, f"at most ub = {high!r}"))
         divide = flag("conditional", conditional)
-        options = _options(epsabs, epsrel, limit)
-        total, share = self._expected(_itself if func is None else function("func", func), low, high, options)
+
+        def error(name: str, given: float, least: float) -> float:
+            return real(name, given, f"a finite number >= {least:.3g}", lambda x: least <= x < math.inf)
+
+        options = {
+            "epsabs": error("epsabs", epsabs, 0.0),
+            "epsrel": error("epsrel", epsrel, _DIGITS),
+            "limit": whole("limit", limit, 1, _MOST_INTERVALS),
+        }
+        func = (lambda x: x) if func is None else function("func", func)
+        total, share = self._expected(func, low, high, options)
         if not divide:
             return total
         return total / share if share else math.nan
@@ -242,23 +251,6 @@ class FirstImpact(ABC):
         """Return both ends of the range that leaves out equal probability on either side."""
         tail = 0.5 * (1.0 - probability(confidence, "confidence"))
         return self.ppf(tail), self.isf(tail)
-
-
-def _options(epsabs: float, epsrel: float, limit: int) -> dict[str, Any]:
-    """Check the options that `scipy.integrate.quad` is given."""
-    return {
-        "epsabs": _error("epsabs", epsabs, 0.0),
-        "epsrel": _error("epsrel", epsrel, _DIGITS),
-        "limit": whole("limit", limit, 1, _MOST_INTERVALS),
-    }
-
-
-def _error(name: str, given: float, least: float) -> float:
-    return real(name, given, f"a finite number >= {least:.3g}", lambda x: least <= x < math.inf)
-
-
-def _itself(x: float) -> float:
-    return x
 
 
 def check(body: Body, law: Law) -> None:

@@ -60,21 +60,11 @@ class Side(NamedTuple):
 
 @dataclass(frozen=True)
 class Outline:
-    """All that the first impact needs of a body's shape; lengths in units of ``unit``.
+    """All that the first impact needs of a body's shape; lengths in units of ``unit``."""
 
-    Parameters
-    ----------
-    unit : float
-        Greatest height of the centre of mass above the plane, in m.
-    inertia : float
-        J = J_xx/m.
-    sides : tuple of Side
-        From θ = 0 to π/2 if the body looks the same upside down, else to π.
-    """
-
-    unit: float
-    inertia: float
-    sides: tuple[Side, ...]
+    unit: float  # the greatest height of the centre of mass above the plane, in m
+    inertia: float  # J = J_xx/m
+    sides: tuple[Side, ...]  # from θ = 0 to π/2 if the body looks the same upside down, else to π
 
     @classmethod
     def of(cls, body: Body) -> "Outline":

@@ -30,18 +30,10 @@ from restitution.laws import Frictionless, Law
 
 @dataclass(frozen=True)
 class ImpactFromRest(ABC):
-    """ε as a function of the angle for a body that falls without spin.
+    """ε as a function of the angle for a body that falls without spin."""
 
-    Parameters
-    ----------
-    normal : float
-        ε_n.
-    greatest_loss : float
-        w, the loss ε_n - ε of an impact with horizontal axis.
-    """
-
-    normal: float
-    greatest_loss: float
+    normal: float  # ε_n
+    greatest_loss: float  # w, the loss ε_n - ε of an impact with horizontal axis
 
     def restitution(self, cosine: Floats, sine: Floats) -> Floats:
         """Return ε at given c and sin θ."""
@@ -49,9 +41,8 @@ class ImpactFromRest(ABC):
 
     def share(self, restitution: Floats) -> tuple[Floats, Floats]:
         """Return t = (ε_n - ε)/w, and 1 - t, at ε inside the support."""
-        part = np.clip(
-            (self.normal - restitution) / self.greatest_loss, 0.0, 1.0
-        )  # ε_n - w is a rounded number
+        # ε_n - w is a rounded number.
+        part = np.clip((self.normal - restitution) / self.greatest_loss, 0.0, 1.0)
         return part, 1.0 - part
 
     @abstractmethod
@@ -79,15 +70,9 @@ class ImpactFromRest(ABC):
 
 @dataclass(frozen=True)
 class TangentialImpact(ImpactFromRest):
-    """The paper's law, Eq. 17 and its inverse h⁻¹ of Eqs. 20–22.
+    """The paper's law, Eq. 17 and its inverse h⁻¹ of Eqs. 20–22."""
 
-    Parameters
-    ----------
-    asymmetry : float
-        b, in (0, 1): how much the loss departs from w sin²θ.
-    """
-
-    asymmetry: float
+    asymmetry: float  # b, in (0, 1): how much the loss departs from w sin²θ
 
     def nodes(self, order: int) -> int:
         """ρ = 4, G = 10.8: the pole is at ρ > 6, at q = -1/b or -1 ± i (2/π) arcosh(1/b), b < 0.624."""
@@ -109,15 +94,9 @@ class TangentialImpact(ImpactFromRest):
 
 @dataclass(frozen=True)
 class FrictionlessImpact(ImpactFromRest):
-    """The law without friction.
+    """The law without friction."""
 
-    Parameters
-    ----------
-    leverage : float
-        q = L²/(4J), in (0, 3).
-    """
-
-    leverage: float
+    leverage: float  # q = L²/(4J), in (0, 3)
 
     def nodes(self, order: int) -> int:
         """ρ = 2, G = 11.5: the nearest pole is that of a long spherocylinder at c = √(4/3)."""

@@ -26,18 +26,10 @@ Mode: TypeAlias = Literal["free", "stuck", "sliding", "part"]
 
 @dataclass(frozen=True)
 class Impulse:
-    """The impulse of an impact from rest.
-
-    Parameters
-    ----------
-    law : Law
-        The collision law.
-    inertia : float
-        J, in the square of the unit of h and a.
-    """
+    """The impulse of an impact from rest."""
 
     law: Law
-    inertia: float
+    inertia: float  # J, in the square of the unit of h and a
 
     def modes(self) -> tuple[Mode, Mode]:
         """Return the modes where `margin` is not positive, and where it is."""

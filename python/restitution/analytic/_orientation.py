@@ -6,7 +6,7 @@ a probability together with its complement for the same reason.
 """
 
 import math
-from typing import Literal, Protocol, TypeAlias
+from typing import Literal, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,48 +17,32 @@ OrientationName: TypeAlias = Literal["uniform-angle", "isotropic"]
 QUARTER_TURN = 0.5 * np.pi
 
 
-class Orientation(Protocol):
-    """The law of c = |cos θ|."""
-
-    @property
-    def entropy(self) -> float:
-        """Differential entropy of c."""
-
-    def density(self, cosine: Floats, sine: Floats) -> Floats:
-        """Return the probability density of c."""
-
-    def below(self, cosine: Floats, sine: Floats) -> Floats:
-        """Return the probability that |cos θ| <= c."""
-
-    def above(self, cosine: Floats, sine: Floats) -> Floats:
-        """Return the probability that |cos θ| > c."""
-
-    def quantile(self, below: Floats, above: Floats) -> tuple[Floats, Floats]:
-        """Return (c, sin θ) where |cos θ| <= c has probability ``below``; ``above = 1 - below``."""
-
-
 class UniformAngle:
     """θ uniform in [0, π), the paper's choice: an axis at random in one vertical plane."""
 
-    entropy = math.log(math.pi / 4.0)
+    entropy = math.log(math.pi / 4.0)  # differential, of c
 
-    def density(self, cosine: Floats, sine: Floats) -> Floats:  # Eq. 19 with its factor 2 put right
+    def density(self, cosine: Floats, sine: Floats) -> Floats:
+        """Return the probability density of c: Eq. 19 with its factor 2 put right."""
         with np.errstate(divide="ignore"):
             return 1.0 / (QUARTER_TURN * sine)
 
-    def below(self, cosine: Floats, sine: Floats) -> Floats:  # Eq. 18: 1 - (2/π) arccos c
+    def below(self, cosine: Floats, sine: Floats) -> Floats:
+        """Return the probability that |cos θ| <= c, Eq. 18: 1 - (2/π) arccos c."""
         return np.arctan2(cosine, sine) / QUARTER_TURN
 
     def above(self, cosine: Floats, sine: Floats) -> Floats:
+        """Return the probability that |cos θ| > c."""
         return np.arctan2(sine, cosine) / QUARTER_TURN
 
     def quantile(self, below: Floats, above: Floats) -> tuple[Floats, Floats]:
+        """Return (c, sin θ) where |cos θ| <= c has probability ``below``; ``above = 1 - below``."""
         # sin of the complement, not cos: exactly 0 at the end of the support
         return np.sin(QUARTER_TURN * below), np.sin(QUARTER_TURN * above)
 
 
 class Isotropic:
-    """The axis uniform on the sphere: c uniform on [0, 1]."""
+    """The axis uniform on the sphere: c uniform on [0, 1]; all as in `UniformAngle`."""
 
     entropy = 0.0
 
@@ -75,4 +59,5 @@ class Isotropic:
         return below, np.sqrt(above * (1.0 + below))
 
 
+Orientation: TypeAlias = UniformAngle | Isotropic
 ORIENTATIONS: dict[str, Orientation] = {"uniform-angle": UniformAngle(), "isotropic": Isotropic()}

@@ -29,19 +29,10 @@ class PairFirstImpact(FirstImpact):
     without friction at the lower end, too. Where L/R is so small that the support is only a few ulp of ε_n
     wide, `std`, `var`, `stats` and `entropy` keep all digits; an ε that is given or returned is a rounded
     number.
-
-    Parameters
-    ----------
-    body : Dumbbell of equal spheres, or Spherocylinder
-        With ``separation > 0``.
-    law : TangentialRestitution or Frictionless
-        With a number for ``normal``.
-    orientation : {"uniform-angle", "isotropic"}
-        Law of the angle between symmetry axis and plane normal.
     """
 
-    body: Dumbbell | Spherocylinder
-    law: TangentialRestitution | Frictionless
+    body: Dumbbell | Spherocylinder  # of equal spheres, separation > 0
+    law: TangentialRestitution | Frictionless  # with a number for ``normal``
     orientation: OrientationName = "uniform-angle"
 
     @cached_property

@@ -10,18 +10,10 @@ from restitution.analytic._orientation import Floats, OrientationName
 
 @dataclass(frozen=True)
 class Tilt:
-    """θ between symmetry axis and plane normal, from 0 to ``limit``, which is π/2 or π.
-
-    Parameters
-    ----------
-    orientation : {"uniform-angle", "isotropic"}
-        θ uniform, or the axis uniform on the sphere.
-    limit : float
-        π/2 where θ and π - θ are taken as one, else π.
-    """
+    """θ between symmetry axis and plane normal, from 0 to ``limit``."""
 
     orientation: OrientationName
-    limit: float
+    limit: float  # π/2 where θ and π - θ are taken as one, else π
 
     def below(self, theta: ArrayLike) -> Floats:
         """Return the probability of angles up to θ."""

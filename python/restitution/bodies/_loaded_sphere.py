@@ -39,7 +39,6 @@ class LoadedSphere(Body):
     offset: Annotated[Number, Field(ge=0, description="m")]
 
     def _compile(self) -> _core.Solid:
-        """Make the body as the core knows it."""
         if self.offset > self.radius:
             text = f" = {shown(self.offset)}, radius = {shown(self.radius)}: must be "
             raise ParameterError(Problem("offset", text, "at most the radius (m)"))

@@ -36,7 +36,6 @@ class Spherocylinder(Body):
     density: Annotated[Number, Field(gt=0, description="kg/m³")] = 2500.0
 
     def _compile(self) -> _core.Solid:
-        """Make the body as the core knows it."""
         return _core.spherocylinder(self.radius, self.separation, self.density)
 
     @property

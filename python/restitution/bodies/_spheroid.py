@@ -35,7 +35,6 @@ class Spheroid(Body):
     density: Annotated[Number, Field(gt=0, description="kg/m³")] = 2500.0
 
     def _compile(self) -> _core.Solid:
-        """Make the body as the core knows it."""
         return _core.spheroid(self.equatorial, self.polar, self.density)
 
     @classmethod

@@ -1,8 +1,9 @@
 """The commands that drop particles: `simulate`, `statistics`, `compare` and `distribution`."""
 
 import warnings
-from collections.abc import Iterator
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import ExitStack
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -49,32 +50,19 @@ def simulate(
     Python xarray.open_dataset reads it. Ctrl-C ends the run early; the impacts so
     far are written, and the attribute "incomplete" of the file says so.
     """
-    interrupted: KeyboardInterrupt | None = None  # kept: what is caught has not been lost
     with errors_in_a_line("netCDF4"):
-        from restitution._internal.datasets import save
-        from restitution._internal.files import NETCDF, check, check_apart, check_name
-        from restitution._internal.resources import checked_threads
-        from restitution.drop.simulate import SimulationInterrupted, checked_record, simulate_run
+        from restitution.drop.simulate import checked_record, simulate_run
         from restitution.drop.toml import read
 
         parameters = read(run)
-        checked_threads(threads)
-        check_apart([run], [out])
-        check_name("out", out, NETCDF)
-        check(out, replace=overwrite)
-        try:
-            data = simulate_run(
-                parameters, threads=threads, progress=progress(quiet), record=checked_record(record)
-            )
-        except SimulationInterrupted as stop:
-            data, interrupted = stop.data, stop
-            tell("interrupted; writing the impacts so far")
-        with put_off(press_again) as late:
-            save(data, out, replace=overwrite)
-        for line in _summary(data) if not quiet else ():
-            say(line)
-        if interrupted or late:
-            raise Kept(late) from interrupted
+        how = {"threads": threads, "progress": progress(quiet)}
+        _written(
+            lambda: simulate_run(parameters, record=checked_record(record), **how),  # type: ignore[arg-type]
+            lambda data: () if quiet else _summary(data),
+            run,
+            out,
+            overwrite=overwrite,
+        )
 
 
 def statistics(
@@ -94,21 +82,7 @@ def statistics(
     energy. The bins are those of the table \[statistics] of RUN.toml, or of the
     options. Ctrl-C ends the run early; what was counted until then is written.
     """
-    given = _given(locals())
-    with errors_in_a_line("netCDF4"):
-        import restitution as rs
-        from restitution.drop.toml import read_all
-
-        study = read_all(run, single=True)
-        how = _bins(run, study.statistics | given)
-        (body,), (law,) = study.bodies.values(), study.laws.values()
-        _counted(
-            lambda: rs.statistics(body, law, **study.run, **how, threads=threads, progress=progress(quiet)),
-            run,
-            out,
-            overwrite=overwrite,
-            quiet=quiet,
-        )
+    _count(run, out, _given(locals()), threads, single=True, overwrite=overwrite, quiet=quiet)
 
 
 def compare(
@@ -129,20 +103,7 @@ def compare(
     The file holds what restitution.compare returns. Ctrl-C ends the work early;
     combinations that were finished are written.
     """
-    given = _given(locals())
-    with errors_in_a_line("netCDF4"):
-        import restitution as rs
-        from restitution.drop.toml import read_all
-
-        study = read_all(run)
-        how = study.run | _bins(run, study.statistics | given)
-        _counted(
-            lambda: rs.compare(study.bodies, study.laws, **how, threads=threads, progress=progress(quiet)),
-            run,
-            out,
-            overwrite=overwrite,
-            quiet=quiet,
-        )
+    _count(run, out, _given(locals()), threads, single=False, overwrite=overwrite, quiet=quiet)
 
 
 def distribution(
@@ -249,20 +210,48 @@ def _given(options: dict[str, Any]) -> dict[str, Any]:
     return {name: options[name] for name in _OPTIONS if options.get(name) is not None}
 
 
-def _bins(run: Path, how: dict[str, Any]) -> dict[str, Any]:
-    """Return the arguments of a count; an error names bins that neither the file nor the options have."""
-    missing = [name for name in ("velocity_bins", "restitution_bins") if name not in how]
-    if missing:
-        options = ", ".join(f"--{name.replace('_', '-')}" for name in missing)
-        raise ValueError(
-            f"{run}: {' and '.join(missing)}: missing; must be in a table [statistics], "
-            f"as restitution template prints it, or given as {options} with a range"
-        )
-    return how
+def _count(
+    run: Path,
+    out: Path,
+    given: dict[str, Any],
+    threads: int | None,
+    *,
+    single: bool,
+    overwrite: bool,
+    quiet: bool,
+) -> None:
+    """Count impacts of one body under one law, or of several; options go before the table [statistics]."""
+    with errors_in_a_line("netCDF4"):
+        import restitution as rs
+        from restitution.drop.toml import read_all
+
+        study = read_all(run, single=single)
+        bins = study.statistics | given
+        missing = [name for name in ("velocity_bins", "restitution_bins") if name not in bins]
+        if missing:
+            options = ", ".join(f"--{name.replace('_', '-')}" for name in missing)
+            raise ValueError(
+                f"{run}: {' and '.join(missing)}: missing; must be in a table [statistics], "
+                f"as restitution template prints it, or given as {options} with a range"
+            )
+        how = study.run | bins | {"threads": threads, "progress": progress(quiet)}
+        if single:
+            (body,), (law,) = study.bodies.values(), study.laws.values()
+            count = partial(rs.statistics, body, law, **how)
+        else:
+            count = partial(rs.compare, study.bodies, study.laws, **how)
+        _written(count, lambda found: () if quiet else _counts(found), run, out, overwrite=overwrite)
 
 
-def _counted(count: Any, run: Path, out: Path, *, overwrite: bool, quiet: bool) -> None:
-    """Count impacts, write the statistics, and print a summary."""
+def _written(
+    work: Callable[[], "xr.Dataset"],
+    summary: Callable[["xr.Dataset"], Iterable[str]],
+    run: Path,
+    out: Path,
+    *,
+    overwrite: bool,
+) -> None:
+    """Do the work, write its result, also where Ctrl-C ended it early, and print a summary."""
     from restitution._internal.datasets import save
     from restitution._internal.files import NETCDF, check, check_apart, check_name
     from restitution.drop.simulate import SimulationInterrupted
@@ -274,13 +263,13 @@ def _counted(count: Any, run: Path, out: Path, *, overwrite: bool, quiet: bool) 
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # the summary says what they would
         try:
-            found = count()
+            found = work()
         except SimulationInterrupted as stop:
             found, interrupted = stop.data, stop
-            tell("interrupted; writing what was counted so far")
+            tell("interrupted; writing the impacts so far")
     with put_off(press_again) as late:
         save(found, out, replace=overwrite)
-    for line in _counts(found) if not quiet else ():
+    for line in summary(found):
         say(line)
     if interrupted or late:
         raise Kept(late) from interrupted

@@ -15,13 +15,7 @@ _NAMES = ("mean_restitution", "variance", "skewness", "kurtosis", "mean_fraction
 
 
 def batches_of(particles: int, batches: int) -> list[tuple[int, int]]:
-    """Divide particles into batches of at least two; one batch of all where there are too few.
-
-    Returns
-    -------
-    list of tuple of int
-        First particle of each batch, and the one after its last.
-    """
+    """Divide particles into batches [first, end) of at least two, or one of all where they are too few."""
     number = 1 if particles < 2 * batches else batches
     ends = [particles * k // number for k in range(number + 1)]
     return list(pairwise(ends))
@@ -43,18 +37,8 @@ def standard_errors(parts: Sequence[dict[str, FloatArray]]) -> dict[str, Any]:
 
     The impacts of a particle are correlated, particles are not. With θ_(b) a moment of all batches but b the
     error is √((n - 1)/n Σ_b (θ_(b) - θ̄)²) (B. Efron, The Jackknife, the Bootstrap and Other Resampling Plans,
-    SIAM 1982), for moments that are not sums over particles as well.
-
-    Parameters
-    ----------
-    parts : sequence of dict of ndarray, shape (rows,)
-        Of each batch ``number``, ``mean_restitution``, ``variance``, ``skewness``, ``kurtosis`` and
-        ``mean_fraction``.
-
-    Returns
-    -------
-    dict of str to variable data
-        ``mean_restitution_error`` and so on, without the dimension: values and attributes.
+    SIAM 1982), for moments that are not sums over particles as well. Each of `parts` has ``number`` and the
+    moments of a batch, shape (rows,); each error has its values and attributes.
     """
     n = np.array([part["number"] for part in parts], dtype=np.float64)
     mean, variance, skewness, kurtosis, fraction = (

@@ -124,22 +124,8 @@ def assemble(
 ) -> xr.Dataset:
     """Lay statistics out by row and bin, all at once: adding to a Dataset takes as long as making one.
 
-    Parameters
-    ----------
-    counts : dict of int64 arrays, shape (rows, bins + 3)
-        ``restitution_count`` and perhaps ``fraction_count``; the columns are what is below the bins, the
-        bins, what is above, and the undefined.
-    number : int64 array, shape (rows,)
-        Impacts whose restitution is defined.
-    moments : dict of float arrays, shape (rows,)
-        ``mean_restitution``, ``variance``, ``skewness``, ``kurtosis``, ``minimum``, ``maximum``,
-        ``mean_fraction``; or none.
-    rows : xarray.Variable, shape (rows,)
-        The coordinate of the rows, named like its dimension.
-    columns : dict of float arrays, shape (bins + 1,)
-        Edges of ``restitution`` and, with ``fraction_count``, of ``fraction``.
-    more : mapping of str to what a Dataset takes as a variable
-        Further variables.
+    `counts` has ``restitution_count`` and perhaps ``fraction_count``, shape (rows, bins + 3): below the bins,
+    the bins, above, undefined. `columns` has the edges of ``restitution`` and perhaps ``fraction``.
     """
     row = str(rows.dims[0])
     grid = counts["restitution_count"]

@@ -191,7 +191,9 @@ def _side_by_side(runs: list[xr.Dataset], bodies: Mapping[str, Body], laws: Mapp
         shape = (len(bodies), len(laws), *stacked.shape[1:])
         variables[str(name)] = (("body", "law", *variable.dims), stacked.reshape(shape), variable.attrs)
     for name, text in _PER_RUN.items():
-        values = np.array([_total(run, name) for run in runs]).reshape(len(bodies), len(laws))
+        # Without any energy created there is no attribute largest_energy_ratio.
+        attribute = name.removesuffix("_of_all")
+        values = np.array([run.attrs.get(attribute, 1.0) for run in runs]).reshape(len(bodies), len(laws))
         variables[name] = (("body", "law"), values, {"long_name": text})
     coordinates: dict[str, Any] = {
         "body": list(bodies),
@@ -238,13 +240,6 @@ def _parameters(axis: str, objects: Iterable[Parameters]) -> dict[str, Any]:
             words = ["" if value is None else str(value) for value in values]
             found[name] = ((axis,), words, {"long_name": f"{name} of the {axis}"})
     return found
-
-
-def _total(run: xr.Dataset, name: str) -> int | float:
-    if name == "largest_energy_ratio_of_all":
-        return float(run.attrs.get("largest_energy_ratio", 1.0))
-    value: int | float = run.attrs[name]
-    return value
 
 
 def _warn(found: xr.Dataset) -> None:

@@ -44,12 +44,7 @@ LEDGER = ("all_impacts", "energy_created_impacts", "energy_created_share", "larg
 def ledger(impacts: int, created: int, largest: float) -> dict[str, Any]:
     """Return the attributes that say how many impacts created energy, their share, and the largest factor.
 
-    Parameters
-    ----------
-    impacts, created : int
-        Number of all impacts and of those that created energy.
-    largest : float
-        Largest energy ratio of the latter; of no meaning, and left out, where there are none.
+    The factor has no meaning, and is left out, where no impact created energy.
     """
     found: dict[str, Any] = {
         "all_impacts": impacts,
@@ -67,17 +62,7 @@ def ledger_of(energy_ratio: FloatArray) -> dict[str, Any]:
 
 
 def by_row(row: str, created: IntArray, largest: FloatArray) -> dict[str, Any]:
-    """Return the variables on energy of each row of statistics.
-
-    Parameters
-    ----------
-    row : str
-        The dimension of the rows.
-    created : array of int, shape (rows,)
-        Impacts that created energy.
-    largest : array of float, shape (rows,)
-        Largest energy ratio of these; of no meaning where there are none.
-    """
+    """Return for each row the impacts that created energy and their largest ratio, NaN for none."""
     text = "impacts that multiplied the kinetic energy by more than 1 + 1e-12"
     highest = "largest factor by which an impact multiplied the kinetic energy, where any created energy"
     factors = np.where(created > 0, largest, np.nan)

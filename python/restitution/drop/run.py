@@ -149,13 +149,7 @@ class Run(Parameters):
 
     @classmethod
     def called(cls, function: str, body: Body, law: Law, arguments: Mapping[str, Any]) -> Self:
-        """Take the parameters of a run from the keyword arguments of a function.
-
-        Raises
-        ------
-        TypeError
-            As Python does where the function has no such argument.
-        """
+        """Take the parameters of a run from the keyword arguments of a function."""
         for name in arguments:
             if name not in RunArguments.__annotations__:
                 raise TypeError(f"{function}() got an unexpected keyword argument {name!r}")
@@ -256,10 +250,7 @@ class Run(Parameters):
 
     def parameters(self) -> dict[str, Any]:
         """Name every parameter as the core does, compiled where the core knows it as an object of its own."""
-        compiled = {
-            "body": self.body.solid,
-            "law": self.law.compiled,
-        }
+        compiled = {"body": self.body.solid, "law": self.law.compiled}
         for name in ("release_height", "spin"):
             value = getattr(self, name)
             random = isinstance(value, RandomHeight | RandomSpin)

@@ -62,33 +62,17 @@ def read(path: Path) -> Run:
 
 @dataclass(frozen=True)
 class Asked:
-    """The content of a file: bodies and laws by name, and the arguments of the calls.
+    """The content of a file: bodies and laws by name, and the arguments of the calls."""
 
-    Parameters
-    ----------
-    bodies, laws : dict of str to Body, Law
-        A table ``[body]``, or tables ``[[body]]`` with a ``name`` each; and the same for laws.
-    run, statistics, distribution : dict
-        Arguments as they stand in the tables of these names; those of the run are checked.
-    """
-
-    bodies: dict[str, Any]
+    bodies: dict[str, Any]  # of a table [body], or of tables [[body]] with a name each
     laws: dict[str, Any]
-    run: dict[str, Any]
+    run: dict[str, Any]  # checked; the others as they stand in the tables
     statistics: dict[str, Any]
     distribution: dict[str, Any]
 
 
 def read_all(path: Path, *, single: bool = False) -> Asked:
-    """Read what is to be counted, compared or learned; errors as from `read`.
-
-    Parameters
-    ----------
-    path : Path
-        The file.
-    single : bool
-        Refuse more than one body or law.
-    """
+    """Read what is to be counted, compared or learned; `single` refuses more than one body or law."""
     reader = _Reader(tables_in(path))
     bodies, laws = (reader.several(name, single=single) for name in _PARTS)
     for body in bodies.values():
@@ -149,10 +133,6 @@ def _plain(value: Any) -> Any:
     if isinstance(value, np.ndarray):
         return value.tolist()
     return list(value) if isinstance(value, tuple) else value
-
-
-def _allowed_in_a_file(problem: Problem) -> str:
-    return problem.allowed and _ALLOWED.get(problem.name, problem.allowed)
 
 
 class _Reader:
@@ -246,7 +226,10 @@ class _Reader:
         except ParameterError as error:
             # A part that is missing has been reported already.
             found = (
-                problem._replace(name=f"{name}.{problem.name}", allowed=_allowed_in_a_file(problem))
+                problem._replace(
+                    name=f"{name}.{problem.name}",
+                    allowed=problem.allowed and _ALLOWED.get(problem.name, problem.allowed),
+                )
                 for problem in error.problems
                 if problem.name not in bad
             )

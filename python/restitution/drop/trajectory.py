@@ -86,7 +86,8 @@ def trajectory(data: xr.Dataset, particle: int, times: npt.ArrayLike) -> xr.Data
     _check(data)
     slender = _slender(data)
     pulled = np.array(_gravity(*pull("data", data)))
-    one = _particle(data.assign(release_height=_heights(data)), particle)
+    heights = np.broadcast_to(released_from("data", data), data.sizes["particle"])
+    one = _particle(data.assign(release_height=("particle", heights)), particle)
     asked = reals("times", times, "times in s, one or several", unit="s", dimensions=(0, 1), finite=False)
     when = np.atleast_1d(asked)
     happened = times_of(one["time"].to_numpy())
@@ -159,11 +160,6 @@ def _slender(data: xr.Dataset) -> float:
     return 1.0 - attribute("data", data, "axial_inertia", allowed, lambda j: 0.0 < j <= most) / across
 
 
-def _heights(data: xr.Dataset) -> tuple[str, FloatArray]:
-    """Return the height of release of every particle."""
-    return "particle", np.broadcast_to(released_from("data", data), data.sizes["particle"])
-
-
 def times_of(time: FloatArray) -> FloatArray:
     """Return the times of a particle's impacts: NaN comes only after the last one."""
     happened = time[: np.count_nonzero(~np.isnan(time))]
@@ -191,16 +187,11 @@ def _begin(one: xr.Dataset, impacts: int) -> dict[str, FloatArray]:
         "angular_velocity": one["release_spin"].to_numpy() if "release_spin" in one else np.zeros(3),
     }
     after = {"velocity": "velocity_after", "angular_velocity": "angular_velocity_after"}
+    states = one.transpose("impact", ...)
     return {
-        name: np.concatenate([[value], _states(one, after.get(name, name))[:impacts]])
+        name: np.concatenate([[value], states[after.get(name, name)].to_numpy()[:impacts]])
         for name, value in released.items()
     }
-
-
-def _states(one: xr.Dataset, name: str) -> FloatArray:
-    """Return a variable of all impacts, a row each."""
-    values: FloatArray = one[name].transpose("impact", ...).to_numpy()
-    return values
 
 
 def _turned(vectors: FloatArray, rotations: FloatArray) -> FloatArray:

@@ -33,9 +33,9 @@ def colours(name: str, value: Any) -> ScalarMappable:
 
 
 def text(name: str, value: Any) -> str:
-    """Check a text that files can hold: a lone surrogate is half a character."""
-    if not isinstance(value, str) or any("\ud800" <= one <= "\udfff" for one in value):
-        raise ParameterError(wrong(name, value, "text, without lone surrogates"))
+    """Check a text."""
+    if not isinstance(value, str):
+        raise ParameterError(wrong(name, value, "text"))
     return value
 
 

@@ -37,21 +37,7 @@ class Section(NamedTuple):
 
 
 def page(title: str, header: str, sections: Sequence[Section], footer: str, *, contents: bool = False) -> str:
-    """Make the whole page, with a table of contents where it is asked for.
-
-    Parameters
-    ----------
-    title : str
-        What the browser shows as its name.
-    header : str
-        What stands above the sections, as HTML.
-    sections : sequence of Section
-        In this order.
-    footer : str
-        A line of text.
-    contents : bool
-        Whether the sections are listed first.
-    """
+    """Make the whole page, with a table of contents where it is asked for; `header` is HTML already."""
     body = "\n".join(map(_section, sections))
     entries = "\n".join(f'<li><a href="#{one.anchor}">{text(one.title)}</a></li>' for one in sections)
     listed = f'<nav aria-label="Contents">\n<ol>\n{entries}\n</ol>\n</nav>\n' if contents else ""
@@ -122,16 +108,7 @@ def table(
 ) -> str:
     """Make a table of cells that are HTML already; on a phone it is folded, with the caption to open it.
 
-    Parameters
-    ----------
-    headers : sequence of str
-        One cell for each column.
-    rows : iterable of sequence of str
-        The first cell of each row is its header.
-    caption : str
-        What it shows.
-    numbers : sequence of int
-        Columns that are set flush right.
+    The first cell of each row is its header; the columns in `numbers` are set flush right.
     """
 
     def cells(row: Sequence[str], head: bool) -> str:

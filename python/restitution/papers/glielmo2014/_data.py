@@ -215,7 +215,7 @@ def _deviations(
 
 def _quantiles(data: xr.Dataset, edges: FloatArray) -> xr.Dataset:
     velocity, restitution = (data[name].to_numpy().ravel() for name in ("impact_velocity", "restitution"))
-    bins = np.searchsorted(edges, velocity, side="right") - 1
+    bins, _ = _bins(velocity, edges)
     found = np.full((len(QUANTILES), edges.size - 1), np.nan)
     for k in range(edges.size - 1):
         values = restitution[bins == k]
