@@ -14,47 +14,25 @@ from restitution.distribution._table import Floats, Histogram, starts
 
 @dataclass(frozen=True)
 class Counted:
-    """Counts of all batches together.
-
-    Parameters
-    ----------
-    nodes, conditions
-        As in `Counter`.
-    histograms : list of Histogram
-        One for each component.
-    share_errors, below_errors : list of ndarray
-        Standard errors of the bins' shares and of `Histogram.cumulative`.
-    impacts, mean_errors, std_errors : ndarray, shape (components,)
-        Weights added up, and standard errors of mean and standard deviation.
-    shape_errors : ndarray, shape (components, 2)
-        Standard errors of skewness and kurtosis.
-    seen : ndarray, shape (2, nodes)
-        Least and greatest condition next to each node.
-    """
+    """Counts of all batches together, with nodes and conditions as in `Counter`."""
 
     nodes: Floats
     conditions: Sequence[Floats]
-    histograms: list[Histogram]
-    share_errors: list[Floats]
-    below_errors: list[Floats]
-    impacts: Floats
+    histograms: list[Histogram]  # one for each component
+    share_errors: list[Floats]  # of the shares of the bins
+    below_errors: list[Floats]  # of `Histogram.cumulative`
+    impacts: Floats  # weights added up, shape (components,)
     mean_errors: Floats
     std_errors: Floats
-    shape_errors: Floats
-    seen: Floats
+    shape_errors: Floats  # of skewness and kurtosis, shape (components, 2)
+    seen: Floats  # least and greatest condition next to each node, shape (2, nodes)
 
 
 class Counter:
     """Counts of the impacts at nodes and conditions, and how they scatter from batch to batch.
 
-    Parameters
-    ----------
-    nodes : ndarray, shape (nodes,)
-        Speeds in m/s.
-    conditions : sequence of ndarray, one for each node
-        One component each.
-    edges : sequence of ndarray, one for each component
-        Inner edges of the bins of ε.
+    Nodes are speeds in m/s, each with one component for each of its conditions; each component has the inner
+    edges of its bins of ε.
     """
 
     def __init__(self, nodes: Floats, conditions: Sequence[Floats], edges: Sequence[Floats]) -> None:

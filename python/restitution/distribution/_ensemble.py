@@ -27,21 +27,13 @@ _IMPACTS_AT_A_TIME = 100_000
 class Impacts(NamedTuple):
     """The variables of some impacts; shape (particles, impacts), NaN where there was none.
 
-    Parameters
-    ----------
-    velocity : ndarray
-        Impact velocity in m/s.
-    restitution, fraction : ndarray
-        ε and E_rot/E_tot before the impact; the latter has no elements where nobody asked for it.
-    first : int
-        Number of the particle in the first row. Particle i belongs to batch i modulo `BATCHES`, and shares
-        impacts with no other.
+    Particle i belongs to batch i modulo `BATCHES`, and shares impacts with no other.
     """
 
-    velocity: Floats
+    velocity: Floats  # impact velocity in m/s
     restitution: Floats
-    fraction: Floats
-    first: int = 0
+    fraction: Floats  # E_rot/E_tot before the impact; no elements where it is not asked for
+    first: int = 0  # number of the particle in the first row
 
 
 _Part: TypeAlias = tuple[Run, tuple[int, int]]
@@ -57,23 +49,12 @@ class Ensemble:
 
     Given orientations and spins are dealt out to the heights at random, in another way in each stream, so
     that the fresh ensemble has them all, too, but none of the trajectories that were learned from.
-
-    Parameters
-    ----------
-    run : Run
-        With the particles and the seed of the whole.
-    heights : tuple of float, or of one RandomHeight
-        Heights of release, in m.
-    threads : int, optional
-        For the simulation, and for what is done with the impacts.
-    fraction : bool
-        Whether E_rot/E_tot is asked for.
     """
 
-    run: Run
-    heights: tuple[float | RandomHeight, ...]
+    run: Run  # with the particles and the seed of the whole
+    heights: tuple[float | RandomHeight, ...]  # of release, in m
     threads: int | None = None
-    fraction: bool = False
+    fraction: bool = False  # whether E_rot/E_tot is asked for
 
     def __post_init__(self) -> None:
         spread = len(self.heights) > 1 or isinstance(self.heights[0], RandomHeight)

@@ -56,17 +56,7 @@ class Density:
         With h the distance of nodes in ln v and ρ the effective number of impacts per unit of ln v, the
         statistical error of a node's distribution function is at most 0.5/√(1.5 ρ h), and the mixture is off
         by about 0.2 h² F″. Their sum is least at h = 0.23 ρ^(-1/5) for F″ = 20, the largest second derivative
-        with respect to ln v that was seen.
-
-        Parameters
-        ----------
-        scale : float
-            How many times larger the whole ensemble is than what was counted.
-
-        Returns
-        -------
-        ndarray, shape (nodes,)
-            In m/s; the ends of the range are the first and the last.
+        with respect to ln v that was seen. The whole ensemble is `scale` times larger than what was counted.
         """
         impacts, squares = self._sums
         # Kish's effective number: impacts of one particle in one cell are taken for one and the same.
@@ -128,20 +118,8 @@ def bins(restitution: Floats, scale: float, where: str) -> Floats:
 
     Beyond what is in `restitution` the edges go on, twice as far with every step, because the whole ensemble
     reaches farther. Where all restitutions are the same, as those of a sphere, one bin holds them.
-
-    Parameters
-    ----------
-    restitution : ndarray
-        Part of the impacts at a node.
-    scale : float
-        How many times as many the node will have.
-    where : str
-        The node, for the error.
-
-    Returns
-    -------
-    ndarray
-        Inner edges, strictly increasing; the outermost bins are open.
+    They are the inner edges; the outermost bins are open. The node, named `where` in the error, will have
+    `scale` times as many impacts.
     """
     if restitution.size < 2:
         allowed = f"2 or more at {where}: more particles, more impacts of each, or another range"

@@ -25,29 +25,14 @@ class Pilot:
 
     Where the energy that is lost at an impact hardly varies, each height contributes impacts of its own
     at each node, and bins that were placed without them would hold several times their share.
-
-    Parameters
-    ----------
-    ensemble : Ensemble
-        The whole.
-    share : float
-        Part of the particles of each run.
-    scale : float
-        How many times larger the whole is.
-    density : Density
-        Of the impacts over the range of speeds.
-    held : list of Impacts
-        Those that are kept.
-    kept : float
-        The share that these are.
     """
 
     ensemble: Ensemble
-    share: float
-    scale: float
-    density: Density
-    held: list[Impacts]
-    kept: float
+    share: float  # part of the particles of each run
+    scale: float  # how many times larger the whole is
+    density: Density  # of the impacts over the range of speeds
+    held: list[Impacts]  # those that are kept
+    kept: float  # their share
 
     @classmethod
     def of(cls, ensemble: Ensemble, low: float, high: float) -> "Pilot":

@@ -57,27 +57,13 @@ class Histogram:
 
 @dataclass(frozen=True)
 class Table:
-    """Histograms at increasing speeds, at each speed one, or one for each of its conditions.
+    """Histograms at increasing speeds, at each speed one, or one for each of its conditions."""
 
-    Parameters
-    ----------
-    speeds : ndarray, shape (nodes,)
-        In m/s.
-    first : ndarray of int, shape (nodes + 1,)
-        Where the components of each node start.
-    conditions : ndarray, shape (components,)
-        Increasing within a node.
-    start : ndarray of int, shape (components + 1,)
-        Where the edges of each component start.
-    edges, cumulative : ndarray, shape (edges,)
-        Of all components, one after the other.
-    """
-
-    speeds: Floats
-    first: Ints
-    conditions: Floats
-    start: Ints
-    edges: Floats
+    speeds: Floats  # in m/s
+    first: Ints  # where the components of each node start, shape (nodes + 1,)
+    conditions: Floats  # increasing within a node, shape (components,)
+    start: Ints  # where the edges of each component start, shape (components + 1,)
+    edges: Floats  # of all components, one after the other
     cumulative: Floats
 
     @classmethod

@@ -99,22 +99,10 @@ class Tallied:
 
 
 def clustered(samples: Parts, clusters: ArrayLike | None, velocity: Window | None) -> Clustered | Tallied:
-    """Sort samples by particle, or take counts of several runs.
+    """Sort samples by particle, or take counts or statistics of independent runs in place of particles.
 
-    Parameters
-    ----------
-    samples : array_like, xarray.Dataset or sequence of Counts or xarray.Dataset
-        Values; impacts as from `restitution.simulate`, whose particles are known; or the counts, or
-        statistics, of independent runs, which take the place of particles.
-    clusters : array_like of int, shape (n,), optional
-        Number of the particle that each value is from; without it every value is a particle of its own.
-    velocity : float or tuple of two floats, optional
-        For a Dataset, as in `asymmetric_laplace`.
-
-    Raises
-    ------
-    ValueError
-        If labels do not match the samples, or there are fewer than two particles or runs.
+    The arguments are those of `bootstrap`; without `clusters` every value is a particle of its own. Raises
+    ValueError if labels do not match the samples, or there are fewer than two particles or runs.
     """
     several = isinstance(samples, list | tuple) and len(samples) > 0
     if several and isinstance(samples[0], Counts | xr.Dataset):  # type: ignore[index]

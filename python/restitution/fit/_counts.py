@@ -141,17 +141,7 @@ class Counts(Content):
 def fit_counts(family: str, counts: Counts, make: Maker, start: ArrayLike, *, fixed: int = 0) -> Fit:
     """Maximise the likelihood of binned counts, Σ c_j ln(F(e_(j+1)) - F(e_j)), both open bins included.
 
-    Parameters
-    ----------
-    family : str
-        Name in words.
-    counts : Counts
-    make : Maker
-        Makes the distribution of an unbounded point.
-    start : array_like
-        Where the search starts.
-    fixed : int
-        Parameters that were not fitted.
+    `make` makes the distribution of an unbounded point; `fixed` parameters were not fitted.
 
     Raises
     ------

@@ -23,22 +23,9 @@ Parts: TypeAlias = Samples | Sequence[Counts] | Sequence[xr.Dataset]
 def taken(samples: Samples, velocity: Window | None, location: float | None = None) -> Array | Counts:
     """Return the samples that a family fits: a flat array or counts.
 
-    Parameters
-    ----------
-    samples : array_like, Counts or xarray.Dataset
-        Values of any shape; binned counts; impacts as from `restitution.simulate`; or statistics as from
-        `restitution.statistics`.
-    velocity : float or tuple of two floats, in m/s
-        For a Dataset, and for that alone. Impacts: the window (low, high), low ≤ v < high. Statistics: the
-        velocity bin that holds the number, or a window whose ends are edges of velocity bins.
-    location : float, optional
-        Of a cusp that is given, as from `cusp`.
-
-    Raises
-    ------
-    ValueError
-        If `velocity` is missing, superfluous or outside the data, no impact is there, or the samples are not
-        as they must be.
+    The arguments are those of `asymmetric_laplace`, and the location of a cusp that is given, as from `cusp`.
+    Raises ValueError if `velocity` is missing, superfluous or outside the data, no impact is there, or the
+    samples are not as they must be.
     """
     if isinstance(samples, xr.Dataset):
         if "restitution_count" in samples:
