@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import cached_property, lru_cache
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -14,6 +14,7 @@ from scipy.integrate import quad
 from restitution.analytic._frozen import FirstImpact, Values, cosine_of, floats, probability, scalar
 from restitution.analytic._impact_from_rest import ImpactFromRest, impact_from_rest
 from restitution.analytic._orientation import ORIENTATIONS, Floats, Orientation, OrientationName
+from restitution.analytic._panels import gauss
 from restitution.bodies import Dumbbell, Spherocylinder
 from restitution.laws import Frictionless, TangentialRestitution
 
@@ -107,7 +108,7 @@ class PairFirstImpact(FirstImpact):
         return float(total), up_to - below
 
     def _raw(self, order: int) -> float:
-        q, weights = _gauss(self._impact.nodes(order))
+        q, weights = gauss(self._impact.nodes(order))
         return float(weights @ self.ppf(q) ** order)
 
     def _standardised(self, order: int) -> float:
@@ -135,18 +136,11 @@ class PairFirstImpact(FirstImpact):
     @cached_property
     def _mean_loss(self) -> float:
         """Mean of (ε_n - ε)/w."""
-        q, weights = _gauss(self._impact.nodes(1))
+        q, weights = gauss(self._impact.nodes(1))
         return float(weights @ self._impact.relative_loss(*self._orientation.quantile(q, 1.0 - q)))
 
     def _central(self, order: int) -> float:
         """Return the central moment of (ε_n - ε)/w."""
-        q, weights = _gauss(self._impact.nodes(order))
+        q, weights = gauss(self._impact.nodes(order))
         loss = self._impact.relative_loss(*self._orientation.quantile(q, 1.0 - q))
         return float(weights @ (loss - self._mean_loss) ** order)
-
-
-@lru_cache(maxsize=16)
-def _gauss(number: int) -> tuple[Floats, Floats]:
-    """Return nodes and weights on [0, 1]."""
-    nodes, weights = np.polynomial.legendre.leggauss(number)
-    return 0.5 * (1.0 + nodes), 0.5 * weights

@@ -93,15 +93,16 @@ def distinct(values: list[float], apart: float) -> list[float]:
 
 def nodes(edges: Floats, order: int) -> tuple[Floats, Floats]:
     """Return the Gauss nodes and weights on all panels, for the power ``order`` of the function."""
-    points, weights = _gauss(20 + 2 * order)
-    half = 0.5 * np.diff(edges)[:, None]
-    return (edges[:-1, None] + half * (1.0 + points)).ravel(), (half * weights).ravel()
+    points, weights = gauss(20 + 2 * order)
+    width = np.diff(edges)[:, None]
+    return (edges[:-1, None] + width * points).ravel(), (width * weights).ravel()
 
 
 @lru_cache(maxsize=16)
-def _gauss(number: int) -> tuple[Floats, Floats]:
+def gauss(number: int) -> tuple[Floats, Floats]:
+    """Return the Gauss nodes and weights on [0, 1]."""
     points, weights = np.polynomial.legendre.leggauss(number)
-    return points, weights
+    return 0.5 * (1.0 + points), 0.5 * weights
 
 
 def solve(function: Callable[[Floats], Floats], low: Floats, high: Floats) -> Floats:

@@ -5,7 +5,7 @@ from typing import Annotated, Self
 from pydantic import Field
 
 from restitution import _core
-from restitution._internal.parameters import Number, in_terms_of
+from restitution._internal.parameters import Number, ParameterError, in_terms_of, wrong
 from restitution.bodies._body import Body
 from restitution.bodies._length_width import LengthWidth
 from restitution.bodies._pair import PositivePair, both
@@ -72,7 +72,9 @@ class Dumbbell(Body):
         >>> rs.Dumbbell.from_length_width(6.3e-3, 6.0e-3).elongation.__round__(9)
         0.1
         """
-        size = LengthWidth(length=length, width=width).elongated()
+        size = LengthWidth(length=length, width=width)
+        if size.length < size.width:
+            raise ParameterError(wrong("length", size.length, f">= width = {size.width!r} (m)"))
         with in_terms_of(length=length, width=width, density=density):
             return cls(radius=0.5 * size.width, separation=size.length - size.width, density=density)
 

@@ -4,7 +4,7 @@ from typing import Annotated
 
 from pydantic import Field
 
-from restitution._internal.parameters import Number, ParameterError, Parameters, wrong
+from restitution._internal.parameters import Number, Parameters
 
 
 class LengthWidth(Parameters):
@@ -12,9 +12,3 @@ class LengthWidth(Parameters):
 
     length: Annotated[Number, Field(gt=0, description="m")]
     width: Annotated[Number, Field(gt=0, description="m")]
-
-    def elongated(self) -> "LengthWidth":
-        """Return these sizes, or raise `ValueError` if the length is below the width."""
-        if self.length < self.width:
-            raise ParameterError(wrong("length", self.length, f">= width = {self.width!r} (m)"))
-        return self

@@ -1,26 +1,22 @@
 """A parameter that the two spheres of a body share, or that each has its own of."""
 
-import math
 from typing import Annotated, Any
 
 import numpy as np
-from pydantic import BeforeValidator, ValidationInfo
+from pydantic import BeforeValidator, Field, TypeAdapter, ValidationError, ValidationInfo
 
-from restitution._internal.parameters import Allowed, ParameterError, plain_number, wrong
+from restitution._internal.parameters import Allowed, Number, ParameterError, wrong
 
 _POSITIVE = "a finite number > 0"
 _ALLOWED = f"{_POSITIVE} (or one for each sphere)"
+_number = TypeAdapter(Annotated[Number, Field(gt=0)])
 
 
 def _positive(value: Any) -> float | None:
-    value = plain_number(value)
-    if isinstance(value, bool) or not isinstance(value, int | float):
-        return None
     try:
-        number = float(value)
-    except OverflowError:
+        return _number.validate_python(value)
+    except ValidationError:
         return None
-    return number if 0.0 < number < math.inf else None
 
 
 def _checked(value: Any, info: ValidationInfo) -> float | tuple[float, float]:

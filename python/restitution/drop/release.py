@@ -1,19 +1,17 @@
 """The release of particles: the height, axis, spin and velocity of a run, checked."""
 
 import math
-from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal, Self, TypeAlias, get_args
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal, Self, get_args
 
 import numpy as np
-import numpy.typing as npt
 from pydantic import BeforeValidator, Field, TypeAdapter, ValidationError, model_validator
 
 from restitution import _core
-from restitution._internal.arrays import check_each, reals
+from restitution._internal.arrays import FloatArray, check_each, reals
 from restitution._internal.parameters import Allowed, Number, ParameterError, Parameters, wrong
 
 Orientation = Literal["uniform-angle", "isotropic"]
 Axis = Literal["isotropic", "horizontal", "across", "thermal"]
-FloatArray: TypeAlias = npt.NDArray[np.float64]
 
 _ORIENTATIONS = (
     "'uniform-angle', 'isotropic' or a 1-D array of angles in rad, one per particle, "

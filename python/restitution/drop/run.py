@@ -11,7 +11,7 @@ import numpy as np
 import numpy.typing as npt
 from pydantic import ConfigDict, Field, InstanceOf, model_validator
 
-from restitution._internal.arrays import check_each
+from restitution._internal.arrays import FloatArray, check_each
 from restitution._internal.parameters import (
     Allowed,
     Number,
@@ -23,7 +23,6 @@ from restitution._internal.parameters import (
 )
 from restitution.bodies import BODIES, Body
 from restitution.drop.release import (
-    FloatArray,
     HeightOfRun,
     OrientationOfRun,
     RandomHeight,
@@ -259,24 +258,17 @@ class Run(Parameters):
 
     def attributes(self) -> dict[str, Any]:
         """Return every parameter under its own name, as plain values that a netCDF file can hold."""
-        written = {
+        written: dict[str, dict[str, Any]] = {
             "body": {"body": type(self.body).__name__, **self.body.model_dump()},
             "law": {"law": type(self.law).__name__, **self.law.attributes()},
             "orientation": {"orientation": self.orientation if self.angles is None else "given"},
-            "release_height": self._height_attributes(),
-            "spin": self._spin_attributes(),
-            "seed": {"seed": self.seed},
+            "spin": {"spin": self.spin if self.spins is None else "given"},
         }
+        if isinstance(self.release_height, RandomHeight):
+            written["release_height"] = {"release_height": "random", "release_height_range": self.heights}
+        if isinstance(self.spin, RandomSpin):
+            rates, axis = self.spin.rates, self.spin.axis
+            written["spin"] = {"spin": "random", "spin_rate": rates, "spin_axis": axis}
         names = type(self).model_fields
         parts = [written.get(name, {name: getattr(self, name)}) for name in names]
         return {key: value for part in parts for key, value in part.items()}
-
-    def _height_attributes(self) -> dict[str, Any]:
-        if isinstance(self.release_height, RandomHeight):
-            return {"release_height": "random", "release_height_range": self.heights}
-        return {"release_height": self.release_height}
-
-    def _spin_attributes(self) -> dict[str, Any]:
-        if isinstance(self.spin, RandomSpin):
-            return {"spin": "random", "spin_rate": self.spin.rates, "spin_axis": self.spin.axis}
-        return {"spin": self.spin if self.spins is None else "given"}

@@ -125,8 +125,11 @@ def statistics(
     with progress_bar("statistics", ensemble.particles, "particles", show=progress) as tell:
         table, each, interrupted = _core.statistics(ensemble.parameters(), edges, number, tell, parts)
     found = dataset_of(ensemble, edges, table)
-    rows = [_moments(edges, one) for one in each] if len(each) > 1 else []  # one batch has no scatter
-    if rows:
+    rows: list[dict[str, Any]] = []
+    if len(each) > 1:  # one batch has no scatter
+        inner = slice(None) if edges["velocity"] is None else slice(1, -1)
+        names = MOMENTS | {"number": "number"}
+        rows = [{name: one[key][inner] for name, key in names.items()} for one in each]
         row = "impact" if edges["velocity"] is None else "velocity"
         found = found.assign(
             {name: (row, values, attrs) for name, (values, attrs) in standard_errors(rows).items()}
@@ -137,12 +140,6 @@ def statistics(
         raise SimulationInterrupted(found.assign_attrs(incomplete="interrupted by the user")) from interrupted
     warn(found)
     return found
-
-
-def _moments(edges: Edges, table: Table) -> dict[str, Any]:
-    """Select the rows of the result, and the columns from which standard errors follow."""
-    inner = slice(None) if edges["velocity"] is None else slice(1, -1)
-    return {name: table[key][inner] for name, key in (MOMENTS | {"number": "number"}).items()}
 
 
 def edges_of(

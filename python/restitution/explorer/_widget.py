@@ -97,18 +97,9 @@ def _run_of(data: "xr.Dataset") -> Run:
             if isinstance(spin, str):
                 text = "the explorer shows this only if it is the same for all"
                 raise ValueError(f"data.spin = {spin}: {text}")
-            numbers = {name: attributes[name] for name in NUMBERS}
-            return Run(
-                body=body,
-                law=law,
-                **numbers,
-                particles=attributes["particles"],
-                impacts=attributes["impacts"],
-                orientation=orientation,
-                spin=spin,
-                release_velocity=attributes["release_velocity"],
-                seed=attributes["seed"],
-            )
+            names = (*NUMBERS, "particles", "impacts", "release_velocity", "seed")
+            others = {name: attributes[name] for name in names}
+            return Run(body=body, law=law, orientation=orientation, spin=spin, **others)
     except (KeyError, AttributeError) as error:
         raise ValueError(
             f"data: must be a Dataset from restitution.simulate, with the numbers of its law: {error}"

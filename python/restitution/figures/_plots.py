@@ -11,7 +11,7 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from restitution._internal.arrays import FARTHEST, reals, whole
+from restitution._internal.arrays import FARTHEST, FloatArray, reals, whole
 from restitution._internal.parameters import ParameterError, Problem, renamed, wrong
 from restitution.drop.recorded import check_filled, check_successive, counted, pull, records, released_from
 from restitution.drop.trajectory import times_of
@@ -249,12 +249,8 @@ def trajectory(data: xr.Dataset, particle: int = 0, impacts: int = 20) -> Figure
 
 
 def _heights(
-    time: npt.NDArray[np.float64],
-    fall: npt.NDArray[np.float64],
-    rise: npt.NDArray[np.float64],
-    gravity: float,
-    start: float,
-) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.float64]]:
+    time: FloatArray, fall: FloatArray, rise: FloatArray, gravity: float, start: float
+) -> tuple[FloatArray, FloatArray]:
     """Return times and heights of the centre of mass, forty to a flight, to the end of the last one."""
     begin = np.concatenate([[0.0], time[:-1]])
     duration = time - begin

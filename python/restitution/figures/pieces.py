@@ -6,21 +6,18 @@ from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 from matplotlib.axes import Axes
 from matplotlib.collections import QuadMesh
 from matplotlib.colors import LogNorm
 from matplotlib.figure import Figure
 from matplotlib.ticker import FixedLocator, NullFormatter, StrMethodFormatter
 
-from restitution._internal.arrays import check_each, reals, whole
+from restitution._internal.arrays import FloatArray, IntArray, check_each, reals, whole
 from restitution._internal.parameters import ParameterError, Problem, wrong
 from restitution.drop.bins import increasing_edges
 from restitution.figures.check import colours, column, panel
 from restitution.figures.check import figure as checked_figure
 from restitution.figures.style import COLORMAP, styled
-
-FloatArray = npt.NDArray[np.float64]
 
 
 @styled
@@ -28,7 +25,7 @@ def population(
     axes: Axes,
     x_edges: FloatArray,
     y_edges: FloatArray,
-    count: npt.NDArray[np.int64],
+    count: IntArray,
     *,
     largest: int | None = None,
 ) -> QuadMesh:

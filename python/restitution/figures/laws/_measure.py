@@ -4,17 +4,14 @@ from math import ceil, sqrt
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 import xarray as xr
 
-from restitution._internal.arrays import whole
+from restitution._internal.arrays import FloatArray, whole
 from restitution._internal.resources import progress_bar
 from restitution.bodies import Dumbbell
 from restitution.drop.compare import compare
 from restitution.drop.energy import reported_elsewhere
 from restitution.laws import ChatterjeeRuina, Coulomb, Frictionless, Law, TangentialRestitution
-
-FloatArray = npt.NDArray[np.float64]
 
 NORMAL, FRICTION, STICK = 0.98, 0.3, 0.0
 """ε_n of all laws, μ of those with friction, and e_t of Chatterjee and Ruina's."""

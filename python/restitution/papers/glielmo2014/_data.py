@@ -7,19 +7,13 @@ import numpy.typing as npt
 import xarray as xr
 
 from restitution import analytic, fit
+from restitution._internal.arrays import FloatArray, IntArray
 from restitution.drop.reduce import reduce, standard_errors
 from restitution.papers.figures import counted, recorded
 from restitution.papers.glielmo2014._checks import printed_density
 from restitution.papers.glielmo2014._runs import Runs
 from restitution.papers.glielmo2014._settings import Settings
-from restitution.papers.glielmo2014._windows import (
-    FloatArray,
-    IntArray,
-    at_speeds,
-    coarse,
-    histogram_edges,
-    mesh,
-)
+from restitution.papers.glielmo2014._windows import at_speeds, coarse, histogram_edges, mesh
 
 QUANTILES = (0.01, 0.5, 0.99)
 """Quantiles of restitution in the sensitivity figure of Fig. 2."""

@@ -7,6 +7,7 @@ from typing import Any
 
 import xarray as xr
 
+from restitution._internal.arrays import FloatArray
 from restitution.papers import runs
 from restitution.papers.glielmo2014 import _windows as windows
 from restitution.papers.glielmo2014._settings import Settings
@@ -68,7 +69,7 @@ def simulate(s: Settings, impacts: int, runner: Runner) -> Runs:
             found[x] = data[_KEPT].copy(deep=True)  # a part would keep the whole alive
         return found
 
-    def count(recorded: xr.Dataset, elongation: float, mean: int, *edges: windows.FloatArray) -> xr.Dataset:
+    def count(recorded: xr.Dataset, elongation: float, mean: int, *edges: FloatArray) -> xr.Dataset:
         return runner.count(
             recorded,
             s.body(elongation),

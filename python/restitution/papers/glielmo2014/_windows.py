@@ -3,13 +3,10 @@
 from collections.abc import Iterable, Iterator
 
 import numpy as np
-import numpy.typing as npt
 import xarray as xr
 
+from restitution._internal.arrays import FloatArray, IntArray
 from restitution.papers.glielmo2014._settings import Settings
-
-FloatArray = npt.NDArray[np.float64]
-IntArray = npt.NDArray[np.int64]
 
 
 def mesh(low: float, high: float, step: float) -> FloatArray:
@@ -27,7 +24,7 @@ def lattice(s: Settings) -> tuple[FloatArray, FloatArray]:
     """Return edges of velocity (m/s) and restitution among which are those of every window and histogram."""
     windows = np.ravel(s.speed_windows)
     widths = s.histogram_widths
-    bins = s.histogram_bins // 2 * _multiple(max(widths), _finest(widths))
+    bins = s.histogram_bins // 2 * round(max(widths) / _finest(widths))
     steps = np.arange(-bins, bins + 1, dtype=np.float64)
     return mesh(windows.min(), windows.max(), _finest(windows)), s.normal + _finest(widths) * steps
 
@@ -43,7 +40,7 @@ def at_speeds(counted: xr.Dataset, s: Settings) -> Iterator[xr.Dataset]:
 
 def coarse(count: IntArray, s: Settings, width: float) -> IntArray:
     """Put the bins of the `lattice` together to those of `histogram_edges`."""
-    many = _multiple(width, _finest(s.histogram_widths))
+    many = round(width / _finest(s.histogram_widths))
     half, middle = s.histogram_bins // 2 * many, count.size // 2
     summed: IntArray = count[middle - half : middle + half].reshape(-1, many).sum(axis=1)
     return summed
@@ -52,7 +49,3 @@ def coarse(count: IntArray, s: Settings, width: float) -> IntArray:
 def _finest(values: Iterable[float]) -> float:
     """Return the largest step of which all values are multiples, if all are whole millionths."""
     return float(np.gcd.reduce(np.rint(1e6 * np.array(list(values))).astype(np.int64))) / 1e6
-
-
-def _multiple(value: float, step: float) -> int:
-    return round(value / step)
