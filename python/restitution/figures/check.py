@@ -4,39 +4,18 @@ from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.cm import ScalarMappable
 from matplotlib.figure import Figure
 
 from restitution._internal.arrays import FARTHEST, FloatArray, check_each, reals
 from restitution._internal.parameters import ParameterError, Problem, wrong
 
-
-def panel(name: str, value: Any) -> Axes:
-    """Check a panel."""
-    if not isinstance(value, Axes):
-        raise ParameterError(wrong(name, value, "a panel, matplotlib.axes.Axes"))
-    return value
+_KINDS = {Axes: "a panel, matplotlib.axes.Axes", Figure: "a matplotlib.figure.Figure", str: "text"}
 
 
-def figure(name: str, value: Any) -> Figure:
-    """Check a figure."""
-    if not isinstance(value, Figure):
-        raise ParameterError(wrong(name, value, "a matplotlib.figure.Figure"))
-    return value
-
-
-def colours(name: str, value: Any) -> ScalarMappable:
-    """Check the argument that a colour bar belongs to."""
-    if not isinstance(value, ScalarMappable) or value.get_array() is None:
-        raise ParameterError(wrong(name, value, "what `population` returns"))
-    return value
-
-
-def text(name: str, value: Any) -> str:
-    """Check a text."""
-    if not isinstance(value, str):
-        raise ParameterError(wrong(name, value, "text"))
-    return value
+def check_kind(name: str, value: Any, kind: type[Any]) -> None:
+    """Refuse what is no panel, no figure, or no text."""
+    if not isinstance(value, kind):
+        raise ParameterError(wrong(name, value, _KINDS[kind]))
 
 
 def column(name: str, value: Any, length: int | None = None, like: str = "") -> FloatArray:

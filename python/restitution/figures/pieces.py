@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
+from matplotlib.cm import ScalarMappable
 from matplotlib.collections import QuadMesh
 from matplotlib.colors import LogNorm
 from matplotlib.figure import Figure
@@ -15,8 +16,7 @@ from matplotlib.ticker import FixedLocator, NullFormatter, StrMethodFormatter
 from restitution._internal.arrays import FloatArray, IntArray, check_each, reals, whole
 from restitution._internal.parameters import ParameterError, Problem, wrong
 from restitution.drop.bins import increasing_edges
-from restitution.figures.check import colours, column, panel
-from restitution.figures.check import figure as checked_figure
+from restitution.figures.check import check_kind, column
 from restitution.figures.style import COLORMAP, styled
 
 
@@ -61,7 +61,7 @@ def population(
     >>> mesh = figures.population(axes, edges, edges, np.array([[1, 0], [10, 100]]))
     >>> figures.population_bar(figure, mesh, axes)
     """
-    panel("axes", axes)
+    check_kind("axes", axes, Axes)
     x_edges, y_edges = increasing_edges(x_edges, "x_edges"), increasing_edges(y_edges, "y_edges")
     sites = (x_edges.size - 1, y_edges.size - 1)
     allowed = f"whole numbers in [0, 2**53], of shape {sites}"
@@ -99,10 +99,11 @@ def population_bar(figure: Figure, mesh: QuadMesh, axes: Axes) -> None:
     >>> figure.axes[1].get_ylabel()
     'population / largest population'
     """
-    bar = checked_figure("figure", figure).colorbar(
-        colours("mesh", mesh), ax=panel("axes", axes), pad=0.02, aspect=30
-    )
-    bar.set_label("population / largest population")
+    check_kind("figure", figure, Figure)
+    check_kind("axes", axes, Axes)
+    if not isinstance(mesh, ScalarMappable) or mesh.get_array() is None:
+        raise ParameterError(wrong("mesh", mesh, "what `population` returns"))
+    figure.colorbar(mesh, ax=axes, pad=0.02, aspect=30).set_label("population / largest population")
 
 
 @styled
@@ -132,23 +133,17 @@ def histogram(axes: Axes, edges: FloatArray, density: FloatArray, error: FloatAr
     >>> figure, [[axes]] = figures.panels(figures.COLUMN, 2.5)
     >>> figures.histogram(axes, edges, scale * count, scale * np.sqrt(count), label="drawn")
     """
-    panel("axes", axes)
+    check_kind("axes", axes, Axes)
     density = column("density", density)
-    edges, error = (
-        column("edges", edges, density.size + 1, "density"),
-        column("error", error, density.size, "density"),
-    )
+    edges = column("edges", edges, density.size + 1, "density")
+    error = column("error", error, density.size, "density")
     filled = density > 0
     centres = 0.5 * (edges[:-1] + edges[1:])
     # A bar down to zero, as that of a single count, would run off a logarithmic axis.
     below = np.where(error < density, error, 0.0)
     points: dict[str, Any] = {"linestyle": "none", "capsize": 0.0, "elinewidth": 0.5} | style
-    axes.errorbar(
-        centres[filled],
-        density[filled],
-        yerr=np.stack([below, error])[:, filled],
-        **points,
-    )
+    bars = np.stack([below, error])[:, filled]
+    axes.errorbar(centres[filled], density[filled], yerr=bars, **points)
 
 
 @styled
@@ -165,7 +160,8 @@ def line(axes: Axes, x: FloatArray, y: FloatArray, error: FloatArray | None = No
     """
     x = column("x", x)
     y = column("y", y, x.size, "x")
-    (drawn,) = panel("axes", axes).plot(x, y, **style)
+    check_kind("axes", axes, Axes)
+    (drawn,) = axes.plot(x, y, **style)
     if error is not None:
         error = column("error", error, x.size, "x")
         with np.errstate(invalid="ignore"):  # ∞ - ∞ leaves a gap, too
@@ -186,7 +182,8 @@ def plain_log(axes: Axes, ticks: Sequence[float]) -> None:
     """
     places = column("ticks", ticks)
     check_each("ticks", places, (places > 0) & np.isfinite(places), "finite and > 0")
-    panel("axes", axes).set_xscale("log")
+    check_kind("axes", axes, Axes)
+    axes.set_xscale("log")
     axes.xaxis.set_major_locator(FixedLocator(places.tolist()))
     axes.xaxis.set_major_formatter(StrMethodFormatter("{x:g}"))
     axes.xaxis.set_minor_formatter(NullFormatter())

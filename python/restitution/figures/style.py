@@ -15,9 +15,7 @@ from matplotlib.figure import Figure
 from restitution._internal.arrays import flag, real, whole
 from restitution._internal.files import IMAGE, path_for, whole_file
 from restitution._internal.parameters import ParameterError, wrong
-from restitution.figures.check import figure as checked_figure
-from restitution.figures.check import panel
-from restitution.figures.check import text as checked_text
+from restitution.figures.check import check_kind
 
 COLUMN = 3.4
 """Width of one column in a Physical Review journal, in inches."""
@@ -154,7 +152,9 @@ def letter(axes: Axes, text: str, *, left: bool = True) -> None:
     >>> figures.letter(right, "(b)", left=False)
     """
     x, side = (0.03, "left") if flag("left", left) else (0.97, "right")
-    panel("axes", axes).text(x, 0.96, checked_text("text", text), transform=axes.transAxes, ha=side, va="top")
+    check_kind("axes", axes, Axes)
+    check_kind("text", text, str)
+    axes.text(x, 0.96, text, transform=axes.transAxes, ha=side, va="top")
 
 
 @styled
@@ -188,9 +188,9 @@ def save(figure: Figure, name: str | Path, title: str = "", caption: str = "") -
     ['empty.png', 'empty.pdf']
     """
     path = path_for("name", name, IMAGE)
-    checked_figure("figure", figure)
-    checked_text("title", title)
-    checked_text("caption", caption)
+    check_kind("figure", figure, Figure)
+    check_kind("title", title, str)
+    check_kind("caption", caption, str)
     single = path.suffix.lower() in _METADATA
     paths = (path,) if single else tuple(path.with_name(path.name + suffix) for suffix in (".png", ".pdf"))
     for one in paths:
