@@ -140,7 +140,9 @@ def test_heights_are_spread_where_none_is_given() -> None:
     assert FluctuatingRestitution.learn(BODY, LAW, **how, heights_about=0.06) == one
     high = FluctuatingRestitution.learn(BODY, LAW, **how, heights_about=0.12)
     assert min(high.data.attrs["release_height"]) < 0.12 < max(high.data.attrs["release_height"])
-    with pytest.raises(ValueError, match=r"^heights_about = 0.1: must be None, because release_height is given"):
+    with pytest.raises(
+        ValueError, match=r"^heights_about = 0.1: must be None, because release_height is given"
+    ):
         FluctuatingRestitution.learn(BODY, LAW, **how, release_height=0.06, heights_about=0.1)
     with pytest.raises(ValueError, match=r"^heights_about = 'high': must be a height"):
         FluctuatingRestitution.learn(BODY, LAW, **how, heights_about="high")  # type: ignore[arg-type]

@@ -162,7 +162,9 @@ def test_heights_beyond_the_digits_of_a_double(law: rs.TangentialRestitution, he
         rs.simulate(body, law, release_height=height)
     with pytest.raises(ValueError, match=r"^release_velocity\[2\] = -.*: must be at most .* m/s in mag"):
         rs.simulate(body, law, release_velocity=[0.0, 0.0, -height])
-    with pytest.raises(ValueError, match=r"^spin\[1\] = .*: must be at most .* rad/s in magnitude, 100000 times"):
+    with pytest.raises(
+        ValueError, match=r"^spin\[1\] = .*: must be at most .* rad/s in magnitude, 100000 times"
+    ):
         rs.simulate(body, law, spin=[0.0, height, 0.0])
     with pytest.raises(ValueError, match=r"^spin\[1, 2\] = -.*: must be at most"):
         rs.simulate(body, law, particles=2, spin=[[0.0, 1.0, 0.0], [1.0, 2.0, -height]])
