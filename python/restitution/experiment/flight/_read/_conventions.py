@@ -3,7 +3,7 @@
 import math
 import re
 from collections.abc import Callable
-from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -11,26 +11,24 @@ from restitution.experiment.flight._read._table import Row, Table, as_number
 from restitution.experiment.flight._read._video import impacts_of_track
 
 _SECONDS = {"s": 1.0, "sec": 1.0, "seconds": 1.0, "ms": 1e-3, "us": 1e-6, "µs": 1e-6, "μs": 1e-6}
-_NAME = re.compile(r"^'?\s*(?P<name>.*?)\s*(?:[(\[/]\s*(?P<unit>[^)\]]*?)\s*[)\]]?)?$")
+_NAME = re.compile(r"^'?\s*(?P<name>.*?)\s*(?:[(\[/]\s*(?P<unit>[^)\]]*?)\s*[)\]]?)?$", re.DOTALL)
 _TIME = {"t", "time", "times", "zeit", "event time", "time of impact", "impact time"}
 _ERROR = {"uncertainty", "error", "standard error", "sigma", "dt", "u(t)"}
 
 
-@dataclass
-class Found:
-    """Times in s as they stand in a file, with their errors (NaN: not given) and the row of each."""
+class Impact(NamedTuple):
+    """Time and error in s (NaN: not given) as they stand in a file, and the place of the time."""
 
-    times: list[float]
-    errors: list[float]
-    rows: list[tuple[Row, int]]
+    time: float
+    error: float
+    row: Row
+    column: int
 
 
 def _split(header: str) -> tuple[str, str]:
     """Split a column's heading into name and unit, both in lower case."""
-    match = _NAME.match(header.strip().strip('"'))
-    if match is None:
-        return header.lower(), ""
-    return (match["name"] or "").lower(), (match["unit"] or "").lower()
+    name, unit = _NAME.findall(header.strip().strip('"').lower())[0]
+    return name, unit
 
 
 def _scale(table: Table, row: Row, column: int, unit: str) -> float:
@@ -43,13 +41,7 @@ def _scale(table: Table, row: Row, column: int, unit: str) -> float:
     return _SECONDS[own]
 
 
-def _is_heading(row: Row) -> bool:
-    """Test whether a cell is a word and not a number; a missing number is neither."""
-    values = [as_number(cell) for cell in row.cells]
-    return any(value is None for value in values)
-
-
-def phyphox(table: Table, unit: str) -> Found | None:
+def phyphox(table: Table, unit: str) -> list[Impact] | None:
     """Read the acoustic stopwatch's list of events, or a row of times: "Bounce 0 (s)", "Start (s)"."""
     heading = table.rows[0]
     names = [_split(cell)[0] for cell in heading.cells]
@@ -62,20 +54,18 @@ def phyphox(table: Table, unit: str) -> Found | None:
     ]
     if len(wide) < 2 or len(table.rows) < 2:
         return None
-    found = Found([], [], [])
+    found: list[Impact] = []
     row = table.rows[1]
     for column in wide:
         value = table.number(row, column, "s", _scale(table, heading, column, unit))
         # An event that did not take place is written as 0.
-        if math.isnan(value) or (value == 0.0 and found.times):
+        if math.isnan(value) or (value == 0.0 and found):
             break
-        found.times.append(value)
-        found.errors.append(math.nan)
-        found.rows.append((row, column))
+        found.append(Impact(value, math.nan, row, column))
     return found
 
 
-def audacity(table: Table, unit: str) -> Found | None:
+def audacity(table: Table, unit: str) -> list[Impact] | None:
     """Read labels: start, end, text; a line that begins with a backslash holds frequencies.
 
     The impact is somewhere in a region: its middle, and its length over √12, stand for it.
@@ -83,23 +73,21 @@ def audacity(table: Table, unit: str) -> Found | None:
     labels = [row for row in table.rows if row.cells[0] != "\\"]
     if table.separator != "\t" or not labels:
         return None
-    found = Found([], [], [])
+    found: list[Impact] = []
     for row in labels:
-        ends = [as_number(cell) for cell in row.cells[:2]]
-        if len(ends) < 2 or ends[0] is None or ends[1] is None or not ends[1] >= ends[0]:
-            if found.times and len(ends) == 2 and ends[0] is not None:
-                raise table.error(
-                    row, 1, f"{row.cells[1]!r}: a label must end at its start, {row.cells[0]}, or later"
-                )
+        begin, end, *_ = [*map(as_number, row.cells[:2]), None]
+        if begin is None or end is None or not end >= begin:
+            if found and begin is not None and len(row.cells) > 1:
+                text = f"{row.cells[1]!r}: a label must end at its start, {row.cells[0]}, or later"
+                raise table.error(row, 1, text)
             return None
-        found.times.append(0.5 * (ends[0] + ends[1]) * _SECONDS[unit])
-        length = (ends[1] - ends[0]) * _SECONDS[unit]
-        found.errors.append(length / math.sqrt(12.0) if length > 0.0 else math.nan)
-        found.rows.append((row, 0))
+        length = (end - begin) * _SECONDS[unit]
+        error = length / math.sqrt(12.0) if length > 0.0 else math.nan
+        found.append(Impact(0.5 * (begin + end) * _SECONDS[unit], error, row, 0))
     return found
 
 
-def tracker(table: Table, unit: str) -> Found | None:
+def tracker(table: Table, unit: str) -> list[Impact] | None:
     """Read a track: its name, then t, x, y of each frame; impacts are where its parabolas meet."""
     first = 1 if table.rows[0].cells[0].startswith("#multi") else 0
     for start in range(first, min(first + 2, len(table.rows))):
@@ -111,30 +99,27 @@ def tracker(table: Table, unit: str) -> Found | None:
         return None
     height = names.index("y")
     scale = _scale(table, heading, 0, unit)
-    rows = [
-        row
-        for row in table.rows[start + 1 :]
-        if height < len(row.cells) and row.cells[height] and row.cells[0]
-    ]
+    rows = [row for row in table.rows[start + 1 :] if row.cells[0] and any(row.cells[height : height + 1])]
     t = np.array([table.number(row, 0, "s", scale) for row in rows])
     y = np.array([table.number(row, height, "a length") for row in rows])
-    for number in range(1, t.size):
-        if not t[number] > t[number - 1]:
-            raise table.error(
-                rows[number], 0, f"{rows[number].cells[0]}: must be later than the frame before it"
-            )
+    late = np.flatnonzero(~(np.diff(t) > 0.0))
+    if late.size:
+        row = rows[late[0] + 1]
+        raise table.error(row, 0, f"{row.cells[0]}: must be later than the frame before it")
     try:
         times, errors = impacts_of_track(t, y)
     except ValueError as error:
         raise table.error(heading, height, str(error)) from None
-    at = [(rows[int(np.searchsorted(t, time))], 0) for time in times]
-    return Found(times.tolist(), errors.tolist(), at)
+    return [
+        Impact(float(time), float(error), rows[int(np.searchsorted(t, time))], 0)
+        for time, error in zip(times, errors, strict=True)
+    ]
 
 
-def plain(table: Table, unit: str) -> Found | None:
+def plain(table: Table, unit: str) -> list[Impact] | None:
     """Read a column called time or t, or the first; beside it one called uncertainty, or the second."""
     heading = table.rows[0]
-    if not _is_heading(heading):
+    if all(as_number(cell) is not None for cell in heading.cells):
         error = 1 if all(len(row.cells) > 1 for row in table.rows) else None
         return _column(table, -1, 0, error, unit)
     names = [_split(cell)[0] for cell in heading.cells]
@@ -147,7 +132,7 @@ def plain(table: Table, unit: str) -> Found | None:
 
 def _column(
     table: Table, heading: int, column: int, error: int | None, unit: str, *, ends_at_nan: bool = False
-) -> Found:
+) -> list[Impact]:
     """Read a column of times, below the row of headings if `heading` is not -1."""
     scale = _SECONDS[unit]
     error_scale = scale
@@ -155,18 +140,17 @@ def _column(
         scale = error_scale = _scale(table, table.rows[heading], column, unit)
         if error is not None and _split(table.rows[heading].cells[error])[1]:
             error_scale = _scale(table, table.rows[heading], error, unit)
-    found = Found([], [], [])
+    found: list[Impact] = []
     for row in table.rows[heading + 1 :]:
         time = table.number(row, column, "s", scale)
         if math.isnan(time) and ends_at_nan:
             break
-        found.times.append(time)
-        found.errors.append(math.nan if error is None else table.number(row, error, "s", error_scale))
-        found.rows.append((row, column))
+        deviation = math.nan if error is None else table.number(row, error, "s", error_scale)
+        found.append(Impact(time, deviation, row, column))
     return found
 
 
-FORMATS: dict[str, Callable[[Table, str], Found | None]] = {
+FORMATS: dict[str, Callable[[Table, str], list[Impact] | None]] = {
     "phyphox": phyphox,
     "audacity": audacity,
     "tracker": tracker,

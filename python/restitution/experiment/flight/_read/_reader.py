@@ -12,7 +12,7 @@ import xarray as xr
 from restitution._internal.arrays import real
 from restitution._internal.files import path_from
 from restitution._internal.parameters import ParameterError, Problem, wrong
-from restitution.experiment.flight._read._conventions import FORMATS, UNITS, Found
+from restitution.experiment.flight._read._conventions import FORMATS, UNITS, Impact
 from restitution.experiment.flight._read._table import Table, tables
 from restitution.experiment.flight.times import GOOD, MISSED, flag_attributes
 
@@ -79,11 +79,11 @@ def read(
     found = tables(path)
     readers = FORMATS if format is None else {format: FORMATS[format]}
     for name, reader in readers.items():
-        candidates = [(times, table) for table in found if (times := reader(table, unit)) is not None]
+        candidates = [(impacts, table) for table in found if (impacts := reader(table, unit)) is not None]
         if candidates:
             # Among the tables of one export, that of all events is the longest.
-            times, table = max(candidates, key=lambda candidate: len(candidate[0].times))
-            return _dataset(path, name, table, times, uncertainty)
+            impacts, table = max(candidates, key=lambda candidate: len(candidate[0]))
+            return _dataset(path, name, table, impacts, uncertainty)
     raise ParameterError(Problem(str(path), f": no times of impacts; {_contents(found, format)}"))
 
 
@@ -101,20 +101,21 @@ def _contents(found: list[Table], format: str | None) -> str:
     return f"must have {expected}; its first line is: {heads}"
 
 
-def _dataset(path: Path, format: str, table: Table, found: Found, uncertainty: float | None) -> xr.Dataset:
+def _dataset(
+    path: Path, format: str, table: Table, impacts: list[Impact], uncertainty: float | None
+) -> xr.Dataset:
     earlier = -math.inf
-    for time, (row, column) in zip(found.times, found.rows, strict=True):
+    for time, error, row, column in impacts:
         if time <= earlier:
-            raise table.error(
-                row, column, f"{time:g} s: must be later than the impact before it, {earlier:g} s"
-            )
+            text = f"{time:g} s: must be later than the impact before it, {earlier:g} s"
+            raise table.error(row, column, text)
         if math.isinf(time):
             raise table.error(row, column, f"{time}: must be finite (s)")
-        earlier = earlier if math.isnan(time) else time
-    for error, (row, column) in zip(found.errors, found.rows, strict=True):
         if error < 0.0 or math.isinf(error):
             raise table.error(row, column, f"an uncertainty of {error:g} s: must be finite and >= 0")
-    times, errors = np.array(found.times), np.array(found.errors)
+        earlier = earlier if math.isnan(time) else time
+    times = np.array([one.time for one in impacts])
+    errors = np.array([one.error for one in impacts])
     if np.count_nonzero(~np.isnan(times)) < 2:
         raise ParameterError(Problem(str(path), f": {len(times)} times of impacts; must have at least two"))
     missed = np.isnan(times)

@@ -7,14 +7,11 @@ import zipfile
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 from restitution._internal.files import MOST, content
 from restitution._internal.parameters import ParameterError, Problem, shown
 
 _DECIMAL_COMMA = re.compile(r"[+-]?\d*,\d+([eE][+-]?\d+)?$")
-
-
 _NEVER = "\x1f"
 """A separator that no table has."""
 
@@ -29,23 +26,11 @@ class Row:
 
 @dataclass(frozen=True)
 class Table:
-    """Rows of cells; blank lines are left out.
-
-    Attributes
-    ----------
-    file : str
-        The file's name.
-    part : str
-        Name of the sheet, or of the member of an archive; empty where a file is one table.
-    separator : str
-        What stands between cells; empty in a spreadsheet.
-    rows : tuple of Row
-        In their order.
-    """
+    """Rows of cells; blank lines are left out."""
 
     file: str
-    part: str
-    separator: str
+    part: str  # the sheet, or the member of an archive; empty where a file is one table
+    separator: str  # what stands between cells; empty in a spreadsheet
     rows: tuple[Row, ...]
 
     def error(self, row: Row, column: int, text: str) -> ParameterError:
@@ -87,20 +72,23 @@ def tables(path: Path) -> list[Table]:
     """
     held = content(path)
     if held.startswith((b"\xd0\xcf\x11\xe0", b"PK")):
-        packed = _zipped if held.startswith(b"PK") else _xls
         try:
-            found = list(packed(str(path), held))
+            found = list(_packed(str(path), held))
         except ParameterError:
             raise
+        except ImportError as error:
+            text = ": a spreadsheet, which needs python-calamine: pip install 'restitution[measure]'"
+            raise ParameterError(Problem(str(path), text)) from error
         except Exception as error:  # what these libraries raise on damaged files is anything
             raise ParameterError(
                 Problem(str(path), f": a damaged spreadsheet or archive ({error})")
             ) from error
     else:
         found = [_text(str(path), "", held)]
-    if not any(table.rows for table in found):
+    found = [table for table in found if table.rows]
+    if not found:
         raise ParameterError(Problem(str(path), ": empty; must be a table with times of impacts"))
-    return [table for table in found if table.rows]
+    return found
 
 
 def _text(file: str, part: str, content: bytes) -> Table:
@@ -136,48 +124,24 @@ def _separator(text: str) -> str:
     return _NEVER if alone else " "
 
 
-def _xls(file: str, content: bytes) -> Iterator[Table]:
-    try:
-        import xlrd
-    except ImportError:
-        raise _missing(file, "xlrd") from None
-    book = xlrd.open_workbook(file_contents=content, logfile=io.StringIO())  # it prints what it finds odd
-    for sheet in book.sheets():
-        values = [[sheet.cell_value(i, j) for j in range(sheet.ncols)] for i in range(sheet.nrows)]
-        yield _sheet(file, sheet.name, values)
+def _packed(file: str, held: bytes) -> Iterator[Table]:
+    """Take the sheets of a spreadsheet, or what phyphox packs: a text file for each of its tables."""
+    if held.startswith(b"PK"):
+        with zipfile.ZipFile(io.BytesIO(held)) as archive:
+            if sum(one.file_size for one in archive.infolist()) > MOST:
+                raise ParameterError(Problem(file, f": unpacks to more than {MOST >> 20} MiB"))
+            names = archive.namelist()
+            if "[Content_Types].xml" not in names:
+                for name in names:
+                    if name.lower().endswith((".csv", ".txt")) and not name.startswith("meta/"):
+                        yield _text(file, name, archive.read(name))
+                return
+    import pandas
 
-
-def _zipped(file: str, content: bytes) -> Iterator[Table]:
-    """Take a spreadsheet of the newer kind, or what phyphox packs: a text file for each of its tables."""
-    with zipfile.ZipFile(io.BytesIO(content)) as archive:
-        names = archive.namelist()
-        if sum(one.file_size for one in archive.infolist()) > MOST:
-            raise ParameterError(Problem(file, f": unpacks to more than {MOST >> 20} MiB"))
-        if "[Content_Types].xml" not in names:
-            for name in names:
-                if name.lower().endswith((".csv", ".txt")) and not name.startswith("meta/"):
-                    yield _text(file, name, archive.read(name))
-            return
-    try:
-        import openpyxl
-    except ImportError:
-        raise _missing(file, "openpyxl") from None
-    book = openpyxl.load_workbook(io.BytesIO(content), read_only=True, data_only=True)
-    for sheet in book.worksheets:
-        yield _sheet(file, sheet.title, [list(row) for row in sheet.iter_rows(values_only=True)])
-    book.close()
-
-
-def _sheet(file: str, name: str, values: list[list[Any]]) -> Table:
-    rows = []
-    for number, row in enumerate(values, start=1):
-        cells = tuple("" if value is None else str(value).strip() for value in row)
-        if any(cells):
-            rows.append(Row(number, cells))
-    return Table(file, f"sheet {name!r}", "", tuple(rows))
-
-
-def _missing(file: str, library: str) -> ParameterError:
-    return ParameterError(
-        Problem(file, f": a spreadsheet, which needs {library}: pip install 'restitution[measure]'")
+    sheets = pandas.read_excel(
+        io.BytesIO(held), sheet_name=None, header=None, dtype=object, na_filter=False, engine="calamine"
     )
+    for name, sheet in sheets.items():
+        lines = [[str(cell).strip() for cell in row] for row in sheet.itertuples(index=False)]
+        rows = tuple(Row(number, tuple(cells)) for number, cells in enumerate(lines, 1) if any(cells))
+        yield Table(file, f"sheet {name!r}", "", rows)
