@@ -50,8 +50,9 @@ def energy(impacts: int, images: Path | None) -> str:
 
 
 def fits(particles: int, images: Path | None) -> str:
-    """Make the table of other ensembles of examples/fits.py."""
-    return str(_script("fits").repeat(particles, 14 if images else 2))
+    """Make the tables of examples/fits.py of other ensembles and of other bodies."""
+    script = _script("fits")
+    return f"{script.catalogue(particles)}\n\n{script.repeat(particles, 14 if images else 2)}"
 
 
 def locking(particles: int, images: Path | None) -> str:

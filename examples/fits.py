@@ -35,6 +35,8 @@ HIGHEST = 0.9
 """Speed in m/s up to which the distance of the fit is judged: the first impacts have their own density."""
 RETURNED = 0.7
 """An impact at v is of a particle that has returned if an earlier one was slower than this times v."""
+BODIES = (0.01, 0.02, 0.1, 0.5, 2.0)
+"""L/R of the bodies of the paper, and one between."""
 REPEATED = (0.1, 0.28, 0.4)
 """Speeds in m/s at which the fit is repeated with other ensembles."""
 SHOWN = (0.04, 0.06, 0.08, 0.1, 0.12, 0.15, 0.18, 0.21, 0.24, 0.26, 0.28, 0.4, 0.6, 0.8)
@@ -77,17 +79,39 @@ class Measured:
         return self.slopes.power_law(side, *GROWTH, release_speed=RELEASE_SPEED if reservoir else None)
 
 
-def drop(particles: int, seed: int) -> xr.Dataset:
-    """Drop the particles of the paper's Fig. 2."""
+def drop(particles: int, seed: int, elongation: float = ELONGATION, slowest: float = 0.0) -> xr.Dataset:
+    """Drop the particles of the paper's Fig. 2, or dumbbells of another L/R."""
     return rs.simulate(
-        rs.Dumbbell(radius=RADIUS, separation=ELONGATION * RADIUS),
+        rs.Dumbbell(radius=RADIUS, separation=elongation * RADIUS),
         rs.TangentialRestitution(normal=NORMAL),
         particles=particles,
         impacts=1200,
         release_height=HEIGHT,
         gravity=GRAVITY,
+        minimum_speed=slowest,
         seed=seed,
     )
+
+
+def catalogue(particles: int = 4000, seed: int = 1) -> str:
+    """Fit a and b as functions of v for the bodies of the paper, and write the table of docs/fits.md."""
+    head = "| L/R | a: 10³ A | p | scatter | b: 10³ A | p | scatter | largest D |"
+    lines = [head, "|---" * 8 + "|"]
+    for elongation in BODIES:
+        data = drop(particles, seed, elongation, slowest=0.8 * GROWTH[0])
+        found = fit.slopes(data, np.geomspace(*GROWTH, 17), location=NORMAL, resamples=49, seed=seed)
+        fastest = float(data.impact_velocity[:, 0].mean())
+        cells = []
+        for side in ("above", "below"):
+            law = found.power_law(side, release_speed=fastest)
+            cells += [
+                f"{1e3 * law.amplitude:.3f} ± {1e3 * law.amplitude_error:.3f}",
+                f"{law.exponent:.3f} ± {law.exponent_error:.3f}",
+                f"{100 * law.scatter:.1f} %",
+            ]
+        distance = float(found.table["ks_distance"].max())
+        lines.append(f"| {elongation:g} | {' | '.join(cells)} | {distance:.3f} |")
+    return "\n".join(lines)
 
 
 def repeat(particles: int = 4000, ensembles: int = 14) -> str:

@@ -133,6 +133,28 @@ def test_bodies_and_laws_of_a_file_are_compared(study: Path) -> None:
     assert "body: 2 tables; must be one, [body]" in result.stderr
 
 
+def test_statistics_write_a_table(study: Path) -> None:
+    """A row for each velocity bin, with its edges and the moments of the file, as CSV and as Parquet."""
+    pandas = pytest.importorskip("pandas")
+    for name, read_back in (("table.csv", pandas.read_csv), ("table.parquet", pandas.read_parquet)):
+        if name.endswith("parquet"):
+            pytest.importorskip("pyarrow")
+        out, table = study.with_name(f"{name}.nc"), study.with_name(name)
+        assert invoke("statistics", study, "-o", out, "--table", table).exit_code == 0
+        rows, found = read_back(table), load(out)
+        assert rows["velocity_from"].to_numpy() == pytest.approx([0.0, 0.1, 0.2, 0.3])
+        assert rows["velocity_to"].to_numpy() == pytest.approx([0.1, 0.2, 0.3, 0.4])
+        for column in ("number", "mean_restitution", "mean_restitution_error", "kurtosis", "energy_created"):
+            np.testing.assert_allclose(rows[column], found[column], rtol=1e-15)
+    for name in ("table", "table.xlsx"):
+        refused = invoke(
+            "statistics", study, "-o", study.with_name("more.nc"), "--table", study.with_name(name)
+        )
+        assert refused.exit_code == BAD_INPUT
+        assert "error: table = " in refused.stderr
+    assert not study.with_name("more.nc").exists()
+
+
 def test_a_fit_prints_what_the_functions_return(tmp_path: Path) -> None:
     body, law = rs.Dumbbell(radius=3e-3, separation=3e-4), rs.TangentialRestitution(normal=0.98)
     data = rs.simulate(body, law, particles=200, impacts=100)

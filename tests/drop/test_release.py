@@ -1,6 +1,7 @@
 """Particles let go with spin and velocity, over an inclined plane: drawn, given, refused, kept in files."""
 
 import re
+import warnings
 from pathlib import Path
 from typing import Any
 
@@ -297,3 +298,24 @@ def test_a_direction_is_one_of_four(axis: Any) -> None:
 def test_the_first_bad_number_is_named(argument: dict[str, Any], said: str) -> None:
     with pytest.raises(ValueError, match=f"^{re.escape(said)}"):
         rs.simulate(BODY, rs.Frictionless(normal=0.9), particles=2, **argument)
+
+
+@pytest.mark.parametrize(
+    ("changed", "told"),
+    [
+        ({"orientation": [0.1, 45.0]}, r"^orientation, up to 45, is taken in radians: is that meant\?$"),
+        ({"release_height": 60.0}, r"^release_height = 60 is taken in metres"),
+        (
+            {"body": rs.Dumbbell(radius=3.0, separation=0.3), "release_height": 9.0},
+            r"^radius = 3 is taken in metres",
+        ),
+    ],
+)
+def test_numbers_that_look_like_degrees_or_millimetres_are_named(changed: dict[str, Any], told: str) -> None:
+    given: dict[str, Any] = {"body": BODY, "law": rs.Frictionless(normal=0.9), "particles": 2, "impacts": 2}
+    with pytest.warns(UserWarning, match=told):
+        rs.simulate(**(given | changed))
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        rs.simulate(**given, orientation=[0.1, 6.28])
+        rs.simulate(**given, release_height=2.5)

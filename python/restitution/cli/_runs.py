@@ -4,6 +4,7 @@ import warnings
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import ExitStack
 from functools import partial
+from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -72,6 +73,10 @@ def statistics(
     velocity_range: Span = None,
     restitution_bins: Bins = None,
     restitution_range: Span = None,
+    table: Annotated[
+        Path | None,
+        typer.Option(metavar="FILE", help="Also a table of the moments: .csv, or .parquet with pyarrow."),
+    ] = None,
     threads: Threads = None,
     overwrite: Overwrite = False,
     quiet: Quiet = False,
@@ -79,10 +84,11 @@ def statistics(
     r"""Count impacts by velocity and restitution, in memory that does not grow.
 
     The file holds what restitution.statistics returns: counts, moments and
-    energy. The bins are those of the table \[statistics] of RUN.toml, or of the
-    options. Ctrl-C ends the run early; what was counted until then is written.
+    energy; a table has a row for each velocity bin. The bins are those of the
+    table \[statistics] of RUN.toml, or of the options. Ctrl-C ends the run early;
+    what was counted until then is written.
     """
-    _count(run, out, _given(locals()), threads, single=True, overwrite=overwrite, quiet=quiet)
+    _count(run, out, _given(locals()), threads, single=True, overwrite=overwrite, quiet=quiet, table=table)
 
 
 def compare(
@@ -219,6 +225,7 @@ def _count(
     single: bool,
     overwrite: bool,
     quiet: bool,
+    table: Path | None = None,
 ) -> None:
     """Count impacts of one body under one law, or of several; options go before the table [statistics]."""
     with errors_in_a_line("netCDF4"):
@@ -240,7 +247,8 @@ def _count(
             count = partial(rs.statistics, body, law, **how)
         else:
             count = partial(rs.compare, study.bodies, study.laws, **how)
-        _written(count, lambda found: () if quiet else _counts(found), run, out, overwrite=overwrite)
+        summary = partial(_counts, quiet=quiet)
+        _written(count, summary, run, out, overwrite=overwrite, table=table)
 
 
 def _written(
@@ -250,15 +258,19 @@ def _written(
     out: Path,
     *,
     overwrite: bool,
+    table: Path | None = None,
 ) -> None:
     """Do the work, write its result, also where Ctrl-C ended it early, and print a summary."""
     from restitution._internal.datasets import save
-    from restitution._internal.files import NETCDF, check, check_apart, check_name
+    from restitution._internal.files import NETCDF, check, check_apart, check_name, write
     from restitution.drop.simulate import SimulationInterrupted
 
-    check_apart([run], [out])
+    check_apart([run], [out] if table is None else [out, table])
     check_name("out", out, NETCDF)
     check(out, replace=overwrite)
+    if table is not None:
+        _check_table(table)
+        check(table, replace=overwrite)
     interrupted: KeyboardInterrupt | None = None  # kept: what is caught has not been lost
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # the summary says what they would
@@ -269,13 +281,39 @@ def _written(
             tell("interrupted; writing the impacts so far")
     with put_off(press_again) as late:
         save(found, out, replace=overwrite)
+        if table is not None:
+            write(table, _rows(found, table), replace=overwrite)
     for line in summary(found):
         say(line)
     if interrupted or late:
         raise Kept(late) from interrupted
 
 
-def _counts(found: "xr.Dataset") -> Iterator[str]:
+def _check_table(path: Path) -> None:
+    from restitution._internal.files import TABLE, check_name
+    from restitution._internal.parameters import ParameterError, wrong
+
+    check_name("table", path, TABLE)
+    if path.suffix not in (".csv", ".parquet"):
+        raise ParameterError(wrong("table", str(path), "a name that ends in .csv or .parquet"))
+    if path.suffix == ".parquet" and find_spec("pyarrow") is None:
+        raise ImportError("Parquet needs pyarrow: pip install 'restitution[table]'")
+
+
+def _rows(found: "xr.Dataset", path: Path) -> bytes:
+    """Write what there is of each row of the counts, with the edges of the velocity bins."""
+    row = "velocity" if "velocity" in found.dims else "impact"
+    frame = found[[name for name, one in found.data_vars.items() if one.dims == (row,)]].to_dataframe()
+    if "velocity_edges" in found:
+        edges = found["velocity_edges"].to_numpy()
+        frame.insert(0, "velocity_from", edges[:-1])
+        frame.insert(1, "velocity_to", edges[1:])
+    return bytes(frame.to_parquet(None) if path.suffix == ".parquet" else frame.to_csv().encode())
+
+
+def _counts(found: "xr.Dataset", quiet: bool) -> Iterator[str]:
+    if quiet:
+        return
     inside, total = int(found["restitution_count"].sum()), int(found["number"].sum())
     yield f"{total} impacts in the rows, {inside} of them in the bins of restitution"
     if "body" not in found.dims:

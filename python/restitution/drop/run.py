@@ -3,6 +3,7 @@
 import inspect
 import math
 import re
+import warnings
 from collections.abc import Callable, Mapping
 from textwrap import dedent, indent
 from typing import Annotated, Any, ClassVar, Literal, Self, TypedDict, TypeVar
@@ -19,6 +20,7 @@ from restitution._internal.parameters import (
     Parameters,
     Problem,
     Whole,
+    unit_of,
     wrong,
 )
 from restitution.bodies import BODIES, Body
@@ -169,6 +171,21 @@ class Run(Parameters):
             lowest = solid.farthest() if cosines is None else solid.lowest(cosines)
             allowed = f"at least {lowest!r} m, or a part of the body would reach below the plane"
             raise ParameterError(wrong("release_height", self.release_height, allowed))
+        return self
+
+    @model_validator(mode="after")
+    def _in_our_units(self) -> "Run":
+        """Warn of millimetres and degrees: bodies above 1 m, falls above 10 m, angles above 2π."""
+        kind, units = type(self.body), []
+        for name in kind.model_fields:
+            if unit_of(kind, name) == "m" and (length := getattr(self.body, name)) > 1.0:
+                units.append(f"{name} = {length:g} is taken in metres")
+        if self.heights[1] > 10.0:
+            units.append(f"release_height = {self.heights[1]:g} is taken in metres")
+        if self.angles is not None and (largest := float(np.abs(self.angles).max())) > 2.0 * math.pi:
+            units.append(f"orientation, up to {largest:g}, is taken in radians")
+        if units:
+            warnings.warn(f"{'; '.join(units)}: is that meant?", UserWarning, stacklevel=2)
         return self
 
     @model_validator(mode="after")
