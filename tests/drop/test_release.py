@@ -307,7 +307,7 @@ def test_the_first_bad_number_is_named(argument: dict[str, Any], said: str) -> N
         ({"release_height": 60.0}, r"^release_height = 60 is taken in metres"),
         (
             {"body": rs.Dumbbell(radius=3.0, separation=0.3), "release_height": 9.0},
-            r"^radius = 3 is taken in metres",
+            r"^radius = 3.0 is taken in metres",
         ),
     ],
 )

@@ -20,7 +20,6 @@ from restitution._internal.parameters import (
     Parameters,
     Problem,
     Whole,
-    unit_of,
     wrong,
 )
 from restitution.bodies import BODIES, Body
@@ -176,10 +175,11 @@ class Run(Parameters):
     @model_validator(mode="after")
     def _in_our_units(self) -> "Run":
         """Warn of millimetres and degrees: bodies above 1 m, falls above 10 m, angles above 2π."""
-        kind, units = type(self.body), []
-        for name in kind.model_fields:
-            if unit_of(kind, name) == "m" and (length := getattr(self.body, name)) > 1.0:
-                units.append(f"{name} = {length:g} is taken in metres")
+        units = []
+        for name, field in type(self.body).model_fields.items():
+            length = getattr(self.body, name)
+            if (field.description or "").split(";")[0] == "m" and np.max(length) > 1.0:
+                units.append(f"{name} = {length} is taken in metres")
         if self.heights[1] > 10.0:
             units.append(f"release_height = {self.heights[1]:g} is taken in metres")
         if self.angles is not None and (largest := float(np.abs(self.angles).max())) > 2.0 * math.pi:
