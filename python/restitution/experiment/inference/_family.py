@@ -16,22 +16,11 @@ Array = npt.NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Family:
-    """Bodies by L/R, and laws by the parameter of ε_n and by friction.
+    """Bodies by L/R, and laws by the parameter of ε_n and by friction."""
 
-    Attributes
-    ----------
-    law : Law
-        Its kind is kept, and so is every parameter that is not inferred.
-    diameter : float
-        In m.
-    form : Form
-        As in `restitution.from_roundness`.
-    lobes : int
-    """
-
-    law: Law
-    diameter: float
-    form: Form
+    law: Law  # its kind is kept, and so is every parameter that is not inferred
+    diameter: float  # in m
+    form: Form  # as in `restitution.from_roundness`
     lobes: int
 
     @property

@@ -35,17 +35,10 @@ def _negative(covariance: Array) -> bool:
 
 
 class Drops(NamedTuple):
-    """Simulated series that could have been measured.
+    """Simulated series that could have been measured."""
 
-    Attributes
-    ----------
-    statistics : ndarray, shape (kept, 3)
-    share : float
-        Of all simulated series, those that bounce as often and have distinct impacts.
-    """
-
-    statistics: Array
-    share: float
+    statistics: Array  # shape (kept, 3)
+    share: float  # of all simulated series, those that bounce as often and have distinct impacts
 
 
 NEEDED = ("time", "uncertainty", "impact_velocity", "restitution", "restitution_covariance")

@@ -22,18 +22,10 @@ _NOISES = 4
 
 @dataclass(frozen=True)
 class Table:
-    """Logarithm of the likelihood.
+    """Logarithm of the likelihood."""
 
-    Attributes
-    ----------
-    axes : tuple of ndarray
-        The parameter of ε_n, ln L/R, and friction where it is inferred.
-    values : ndarray
-        Over these axes.
-    """
-
-    axes: tuple[Array, ...]
-    values: Array
+    axes: tuple[Array, ...]  # the parameter of ε_n, ln L/R, and friction where it is inferred
+    values: Array  # over these axes
 
     def between(self) -> RegularGridInterpolator:
         """Interpolate linearly."""
