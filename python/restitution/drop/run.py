@@ -153,7 +153,9 @@ class Run(Parameters):
         for name in arguments:
             if name not in RunArguments.__annotations__:
                 raise TypeError(f"{function}() got an unexpected keyword argument {name!r}")
-        return cls(body=body, law=law, **arguments)
+        run = cls(body=body, law=law, **arguments)
+        run.warn_of_units()
+        return run
 
     @model_validator(mode="after")
     def _nothing_below_the_plane(self) -> "Run":
@@ -172,9 +174,11 @@ class Run(Parameters):
             raise ParameterError(wrong("release_height", self.release_height, allowed))
         return self
 
-    @model_validator(mode="after")
-    def _in_our_units(self) -> "Run":
-        """Warn of millimetres and degrees: bodies above 1 m, falls above 10 m, angles above 2π."""
+    def warn_of_units(self) -> None:
+        """Warn of millimetres and degrees: bodies above 1 m, falls above 10 m, angles above 2π.
+
+        Of what a user gave: the package itself also runs bodies of unit size.
+        """
         units = []
         for name, field in type(self.body).model_fields.items():
             length = getattr(self.body, name)
@@ -185,8 +189,7 @@ class Run(Parameters):
         if self.angles is not None and (largest := float(np.abs(self.angles).max())) > 2.0 * math.pi:
             units.append(f"orientation, up to {largest:g}, is taken in radians")
         if units:
-            warnings.warn(f"{'; '.join(units)}: is that meant?", UserWarning, stacklevel=2)
-        return self
+            warnings.warn(f"{'; '.join(units)}: is that meant?", UserWarning, stacklevel=4)
 
     @model_validator(mode="after")
     def _within_the_digits(self) -> "Run":

@@ -57,7 +57,9 @@ def read(path: Path) -> Run:
     OSError
         If the file cannot be read.
     """
-    return run_of(tables_in(path), str(path))
+    run = run_of(tables_in(path), str(path))
+    run.warn_of_units()
+    return run
 
 
 @dataclass(frozen=True)
