@@ -9,7 +9,7 @@ FUZZ ?= 300
 JOBS ?= 2
 CORE := $(shell find crates -name '*.rs' -o -name 'Cargo.toml') Cargo.toml Cargo.lock pyproject.toml
 
-.PHONY: help install pages paper calibrate test fuzz hostile audit mutants test-arm test-web bench-web look web docs wheel licences coverage lint bench clean
+.PHONY: help install pages paper calibrate test fuzz hostile audit mutants test-arm test-web rust-tests bench-web look web docs wheel licences coverage lint bench clean
 
 help:  ## list the targets
 	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed 's/:.*##/\t/' | expand -t 12
@@ -36,10 +36,16 @@ lint: $(STAMP)
 	$(BIN)/mypy
 	$(BIN)/lint-imports
 
-test: lint  ## every check: Rust format, clippy, Rust tests, ruff, mypy, the explorer, pytest
+# The package is built by one core; the other builds the Rust tests meanwhile.
+test:  ## every check: Rust format, clippy, Rust tests, ruff, mypy, the explorer, pytest
+	$(MAKE) --jobs=2 $(STAMP) rust-tests
+	$(MAKE) lint
 	cargo test --workspace --locked
 	$(MAKE) test-web
 	$(BIN)/python -m pytest -n $(JOBS) --dist loadfile
+
+rust-tests:
+	cargo test --workspace --locked --no-run
 
 # The kept module and page must be of these sources: built anew here, they would pass where everybody else gets the old ones.
 test-web: $(STAMP) web/node_modules/.package-lock.json  ## the explorer: types, its engine beside the native one, the page in a real browser
