@@ -18,6 +18,7 @@ __all__ = [
     "PADE",
     "STOP_REASONS",
     "Counter",
+    "Histogram",
     "Law",
     "Levels",
     "MagnitudeError",
@@ -26,7 +27,6 @@ __all__ = [
     "NumericalError",
     "ParameterError",
     "Solid",
-    "Tally",
     "build_info",
     "bytes_per_impact",
     "chatterjee_ruina",
@@ -203,20 +203,20 @@ def simulate_series(
 def columns(law: Law, state: bool = False) -> list[str]: ...
 def bytes_per_impact(columns: Sequence[str]) -> int: ...
 
-class Tally:
+class Histogram:
     @staticmethod
-    def read(run: Mapping[str, Any], edges: _Edges, words: npt.NDArray[np.uint64]) -> Tally: ...
+    def read(run: Mapping[str, Any], edges: _Edges, words: npt.NDArray[np.uint64]) -> Histogram: ...
     def words(self) -> npt.NDArray[np.uint64]: ...
-    def merged(self, others: Sequence[Tally]) -> Tally: ...
+    def merged(self, others: Sequence[Histogram]) -> Histogram: ...
     def table(self) -> dict[str, npt.NDArray[Any]]: ...
 
-def tally(
+def histogram(
     run: Mapping[str, Any],
     edges: _Edges,
     threads: int,
     progress: Callable[[int], None] | None,
     part: tuple[int, int] | None = None,
-) -> tuple[Tally, KeyboardInterrupt | None]: ...
+) -> tuple[Histogram, KeyboardInterrupt | None]: ...
 def statistics(
     run: Mapping[str, Any],
     edges: _Edges,

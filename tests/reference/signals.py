@@ -26,9 +26,9 @@ def arm(number: int, name: str) -> None:
         return
     from restitution import _core
 
-    for work in ("simulate", "simulate_series", "statistics", "tally"):
+    for work in ("simulate", "simulate_series", "statistics", "histogram"):
         setattr(_core, work, _sending(getattr(_core, work), number))
-    _core.Tally = _Sending(_core.Tally, number)  # type: ignore[assignment,misc]
+    _core.Histogram = _Sending(_core.Histogram, number)  # type: ignore[assignment,misc]
 
 
 def watched(tell: Callable[[int, int], object]) -> None:

@@ -163,7 +163,7 @@ proptest! {
 
     /// A histogram of nothing changes nothing, from either side.
     #[test]
-    fn an_empty_tally_is_neutral(piece in 0..12_usize) {
+    fn an_empty_histogram_is_neutral(piece in 0..12_usize) {
         let nothing = nothing(&nearly_at_rest(2.0, 0.0, &[0.0]).law);
         let piece = &PIECES[piece];
         let (mut before, mut after) = (nothing.clone(), piece.clone());
@@ -327,7 +327,7 @@ fn sites_that_have_no_number_are_refused() {
 
 /// Rows of a histogram that is read have the numbers of impacts with a defined ε that they had, where others have none.
 #[test]
-fn a_tally_that_is_read_is_the_one_that_was_written() {
+fn a_histogram_that_is_read_is_the_one_that_was_written() {
     let extreme = nearly_at_rest(2.0, 0.0, &[]);
     let bins = Edges::coarse().bins(By::Number(ROWS));
     for histogram in PIECES.iter() {
@@ -341,7 +341,7 @@ fn a_tally_that_is_read_is_the_one_that_was_written() {
 
 /// What was written down is what is read, whatever the words are: sums of E_rot/E_tot beyond 2⁶⁴ quanta have a second one.
 #[test]
-fn every_word_of_a_tally_is_kept() {
+fn every_word_of_a_histogram_is_kept() {
     let bins = Edges::coarse().bins(By::Number(ROWS));
     let empty = Histogram::new(&bins, 0.98).unwrap().to_words().unwrap();
     let number = |i: usize| (i as u64 + 1).wrapping_mul(0x9e37_79b9_7f4a_7c15);

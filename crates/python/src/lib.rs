@@ -5,10 +5,10 @@ mod counts;
 mod describe;
 mod distribution;
 mod errors;
+mod histogram;
 mod laws;
 mod records;
 mod release;
-mod tally;
 mod watch;
 
 use bodies::Solid;
@@ -127,7 +127,7 @@ fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     distribution::add_to(module)?;
     counts::add_to(module)?;
     records::add_to(module)?;
-    tally::add_to(module)?;
+    histogram::add_to(module)?;
     module.add_function(wrap_pyfunction!(build_info, module)?)?;
     module.add_function(wrap_pyfunction!(sincos, module)?)?;
     Ok(())

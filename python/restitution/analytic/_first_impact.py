@@ -7,7 +7,7 @@ from restitution.analytic._branched import BranchedFirstImpact
 from restitution.analytic._frozen import FirstImpact, check
 from restitution.analytic._normal import Fall
 from restitution.analytic._orientation import ORIENTATIONS, OrientationName
-from restitution.analytic._pair import PairFirstImpact
+from restitution.analytic._two_balls import TwoBallsFirstImpact
 from restitution.bodies import Body, Dumbbell, LoadedSphere, Spherocylinder, Spheroid
 from restitution.laws import Frictionless, Law, TangentialRestitution
 
@@ -79,7 +79,7 @@ def first_impact(
         if not SHORTEST <= body.elongation <= LONGEST:
             allowed = f"{SHORTEST:g} to {LONGEST:g} times body.radius"
             raise ParameterError(wrong("body.separation", body.separation, allowed))
-        return PairFirstImpact(body, law, orientation)
+        return TwoBallsFirstImpact(body, law, orientation)
     distribution = BranchedFirstImpact(body, law, orientation, fall)
     low, high = distribution.support()
     if high - low < NARROWEST:

@@ -8,7 +8,7 @@ from restitution import _core
 from restitution._internal.parameters import Number, ParameterError, in_terms_of, wrong
 from restitution.bodies._body import Body
 from restitution.bodies._length_width import LengthWidth
-from restitution.bodies._pair import PositivePair, both
+from restitution.bodies._two_balls import PositivePair, both
 
 
 class Dumbbell(Body):

@@ -123,7 +123,7 @@ def reduce(
     created = energy > CREATES_ENERGY
     largest = np.zeros(rows)
     np.maximum.at(largest, row[created], energy[created])
-    gains = _tally(row[created], rows)
+    gains = _counts(row[created], rows)
     row, restitution, fraction = row[defined], restitution[defined], fraction[defined]
     moments = {**_moments(restitution, row, rows), "mean_fraction": _mean(fraction, row, rows)}
     more = by_row("velocity", gains[1:-1], largest[1:-1])
@@ -131,7 +131,7 @@ def reduce(
         batch = np.searchsorted([last for _, last in parts], particle[defined], side="right")
         cells = (batch * rows + row, rows * len(parts))
         single = _moments(restitution, *cells) | {"mean_fraction": _mean(fraction, *cells)}
-        single["number"] = _tally(*cells).astype(np.float64)
+        single["number"] = _counts(*cells).astype(np.float64)
         shaped = {name: values.reshape(len(parts), rows)[:, 1:-1] for name, values in single.items()}
         each = [{name: values[i] for name, values in shaped.items()} for i in range(len(parts))]
         more |= {
@@ -180,7 +180,7 @@ def standard_errors(data: xr.Dataset, velocity_bins: npt.ArrayLike, *, block: in
     kept = (bins >= 0) & (bins < nv) & defined
     pooled = _moments(restitution[kept], bins[kept], nv)
     mean, variance = pooled["mean_restitution"], pooled["variance"]
-    number = _tally(bins[kept], nv)
+    number = _counts(bins[kept], nv)
 
     particles = np.zeros(nv, np.int64)
     squares = np.zeros((2, nv))
@@ -190,7 +190,7 @@ def standard_errors(data: xr.Dataset, velocity_bins: npt.ArrayLike, *, block: in
         deviation = restitution[start : start + block][chosen] - mean[b]
         cell = np.nonzero(chosen)[0] * nv + b
         shape = (chosen.shape[0], nv)
-        particles += np.count_nonzero(_tally(cell, shape[0] * nv).reshape(shape), axis=0)
+        particles += np.count_nonzero(_counts(cell, shape[0] * nv).reshape(shape), axis=0)
         for k, influence in enumerate((deviation, deviation**2 - variance[b])):
             sums = np.bincount(cell, weights=influence, minlength=shape[0] * nv).reshape(shape)
             squares[k] += np.sum(sums**2, axis=0)
@@ -225,7 +225,7 @@ def _bin(values: FloatArray, edges: FloatArray) -> IntArray:
     return np.searchsorted(edges, values, side="right").astype(np.int64) - 1
 
 
-def _tally(index: IntArray, size: int) -> IntArray:
+def _counts(index: IntArray, size: int) -> IntArray:
     return np.bincount(index, minlength=size).astype(np.int64)
 
 
@@ -235,7 +235,7 @@ def _grid(
     """Count in rows and columns: below the bins, the bins, above, undefined; shape (rows, bins + 3)."""
     columns = edges.size + 2
     column = np.where(defined, _bin(values, edges) + 1, columns - 1)
-    return _tally(row * columns + column, rows * columns).reshape(rows, columns)
+    return _counts(row * columns + column, rows * columns).reshape(rows, columns)
 
 
 def _mean(values: FloatArray, bins: IntArray, size: int) -> FloatArray:

@@ -61,7 +61,7 @@ class Clustered:
 
 
 @dataclass(frozen=True)
-class Tallied:
+class CountedRuns:
     """Counts of independent runs or blocks of particles, each of which is drawn again as a whole.
 
     Parameters
@@ -87,18 +87,18 @@ class Tallied:
 
     def redrawn(self, random: np.random.Generator) -> Counts:
         """Draw as many runs with replacement and give their counts."""
-        return Tallied(self.edges, self.counts[random.integers(self.number, size=self.number)]).pool()
+        return CountedRuns(self.edges, self.counts[random.integers(self.number, size=self.number)]).pool()
 
-    def following(self, fit: Fit, _: np.random.Generator) -> Tallied:
+    def following(self, fit: Fit, _: np.random.Generator) -> CountedRuns:
         """Move the edges of the bins to the ranks that they have in the fit; each bin is filled evenly."""
         one_by_one = np.cumsum(np.pad(self.counts, ((0, 0), (1, 0))), axis=1)
         ranks = one_by_one.sum(axis=0) / self.counts.sum()
         levels = np.concatenate([[0.0], fit.cdf(self.edges), [1.0]])
         moved = [np.rint(np.interp(levels, ranks, numbers)) for numbers in one_by_one]
-        return Tallied(self.edges, np.diff(moved, axis=1))
+        return CountedRuns(self.edges, np.diff(moved, axis=1))
 
 
-def clustered(samples: Parts, clusters: ArrayLike | None, velocity: Window | None) -> Clustered | Tallied:
+def clustered(samples: Parts, clusters: ArrayLike | None, velocity: Window | None) -> Clustered | CountedRuns:
     """Sort samples by particle, or take counts or statistics of independent runs in place of particles.
 
     The arguments are those of `bootstrap`; without `clusters` every value is a particle of its own. Raises
@@ -112,7 +112,7 @@ def clustered(samples: Parts, clusters: ArrayLike | None, velocity: Window | Non
         _several(len(parts), "counts")
         if any(not np.array_equal(part.edges, parts[0].edges) for part in parts):
             raise ValueError("counts: must all have the same edges")
-        return Tallied(parts[0].edges, np.array([part.all for part in parts]))
+        return CountedRuns(parts[0].edges, np.array([part.all for part in parts]))
     if isinstance(samples, Counts) or (isinstance(samples, xr.Dataset) and "restitution_count" in samples):
         raise ValueError(
             "samples: one set of counts, which do not distinguish particles; give those of several "
@@ -149,7 +149,7 @@ def specified(family: Callable[..., Fit], keywords: dict[str, Any]) -> Callable[
 
 
 def refitted(
-    family: Callable[[Any], Fit], source: Clustered | Tallied, random: np.random.Generator
+    family: Callable[[Any], Fit], source: Clustered | CountedRuns, random: np.random.Generator
 ) -> tuple[Array | Counts, Fit]:
     """Draw particles again and fit what they have.
 

@@ -68,8 +68,8 @@ def fingerprint() -> dict[str, str]:
                 run = Run(
                     body=body, law=law, particles=4, impacts=12, release_height=20.0, gravity=1.0, spin=spin
                 )
-                tally, _ = _core.tally(run.parameters(), edges, 1, None)
-                digest.update(tally.words().tobytes())
+                histogram, _ = _core.histogram(run.parameters(), edges, 1, None)
+                digest.update(histogram.words().tobytes())
     return {"version": version_here(), "runs": digest.hexdigest()}
 
 

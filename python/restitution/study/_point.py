@@ -64,8 +64,8 @@ def with_template(point: Point) -> Point:
         names, point = list(template.data_vars), replace(point, template=template)
     else:
         assert point.edges is not None
-        tally = _core.Tally.read(point.run.parameters(), point.edges, count(point, (0, 2)))
-        names = _real(_measured(point, _statistics(point, tally)))
+        histogram = _core.Histogram.read(point.run.parameters(), point.edges, count(point, (0, 2)))
+        names = _real(_measured(point, _statistics(point, histogram)))
     study.effort.check([*with_errors(study.edges, study.forms.values()), *map(str, names)])
     return point
 
@@ -74,10 +74,10 @@ def count(point: Point, part: tuple[int, int], tell: Tell | None = None) -> Word
     """Run the particles of a part, and store the sums over their impacts."""
     words, edges = [np.empty(0, np.uint64)], point.edges
     if edges is not None:
-        tally, interrupted = _core.tally(_parameters(point.run, part), edges, 1, tell, part)
+        histogram, interrupted = _core.histogram(_parameters(point.run, part), edges, 1, tell, part)
         if interrupted:
             raise KeyboardInterrupt from interrupted
-        words.append(tally.words())
+        words.append(histogram.words())
     if point.records:
         found = _measured(point, _recorded(point, part, tell))
         words += [_values(found, name).ravel().view(np.uint64) for name in sorted(map(str, found.data_vars))]
@@ -99,8 +99,8 @@ def evaluate(point: Point, rows: Words) -> xr.Dataset:
     start = rows.shape[1] - sum(variable.size for variable in recorded.values())
     if edges is not None:
         parameters = point.run.parameters()
-        tallies = [_core.Tally.read(parameters, edges, row) for row in rows[:, :start]]
-        by_group = [_sum(tallies[g::groups]) for g in range(groups)]
+        histograms = [_core.Histogram.read(parameters, edges, row) for row in rows[:, :start]]
+        by_group = [_sum(histograms[g::groups]) for g in range(groups)]
         without = [_sum(by_group[:g] + by_group[g + 1 :]) for g in range(groups)]
         found = _with_errors(point, _sum(by_group), without)
     if point.template is not None:
@@ -113,8 +113,8 @@ def evaluate(point: Point, rows: Words) -> xr.Dataset:
     return found
 
 
-def _sum(tallies: Sequence[_core.Tally]) -> _core.Tally:
-    return tallies[0].merged(tallies[1:])
+def _sum(histograms: Sequence[_core.Histogram]) -> _core.Histogram:
+    return histograms[0].merged(histograms[1:])
 
 
 def _parameters(run: Run, part: tuple[int, int]) -> dict[str, Any]:
@@ -155,18 +155,18 @@ def _values(found: xr.Dataset, name: str) -> npt.NDArray[np.float64]:
     return np.asarray(found[name].to_numpy(), dtype=np.float64, order="C")
 
 
-def _statistics(point: Point, tally: _core.Tally) -> xr.Dataset:
+def _statistics(point: Point, histogram: _core.Histogram) -> xr.Dataset:
     assert point.study.edges is not None
-    return dataset_of(point.run, point.study.edges, tally.table())
+    return dataset_of(point.run, point.study.edges, histogram.table())
 
 
-def _with_errors(point: Point, total: _core.Tally, without: Sequence[_core.Tally]) -> xr.Dataset:
+def _with_errors(point: Point, total: _core.Histogram, without: Sequence[_core.Histogram]) -> xr.Dataset:
     edges = point.study.edges
     assert edges is not None
     statistics = _statistics(point, total)
     row = str(statistics["number"].dims[0])
     values = _derived(total.table(), edges)
-    errors = _errors([_derived(tally.table(), edges) for tally in without])
+    errors = _errors([_derived(histogram.table(), edges) for histogram in without])
     found: dict[Hashable, Any] = {}
     for name, value in values.items():
         dims = (row, "restitution")[: value.ndim]
@@ -182,7 +182,7 @@ def _with_errors(point: Point, total: _core.Tally, without: Sequence[_core.Tally
     measures = [partial(form, point.run) for form in point.study.forms.values()]
     if point.study.measure is not None and not point.records:
         measures.append(partial(_measured, point))
-    parts = [_statistics(point, tally) for tally in without] if measures else []
+    parts = [_statistics(point, histogram) for histogram in without] if measures else []
     for measure in measures:
         measured, left = measure(statistics), [measure(part) for part in parts]
         real = _real(measured)

@@ -1,6 +1,6 @@
 """The Zarr store of a study (format 3): what every task counted, and the labelled results.
 
-The array ``tasks/words`` holds a row for each batch of each point: the words of `restitution._core.Tally`,
+The array ``tasks/words`` holds a row for each batch of each point: the words of a `_core.Histogram`,
 and after them a digest, BLAKE2b, of the study, the point, the batch and the words. A task writes its rows as
 one chunk, which takes its place in one step: its digest shows whether what is read back is what was written.
 Everything else in the store follows from these rows.

@@ -43,15 +43,15 @@ impl Edges<'_> {
 
 /// Counts and sums of the impacts of some particles of a run.
 #[pyclass(frozen, module = "restitution._core")]
-struct Tally {
+struct Histogram {
     bins: Bins,
     origin: f64,
-    tally: core::Histogram,
+    counts: core::Histogram,
 }
 
 #[pymethods]
-impl Tally {
-    /// The tally of a run with these bins, from its words.
+impl Histogram {
+    /// The histogram of a run with these bins, from its words.
     #[staticmethod]
     fn read(
         run: Parameters<'_>,
@@ -60,52 +60,52 @@ impl Tally {
     ) -> PyResult<Self> {
         let run = run.run()?;
         let (bins, origin) = (edges.bins(run.impacts)?, run.origin());
-        let tally = core::Histogram::from_words(&bins, origin, words.as_slice()?);
+        let counts = core::Histogram::from_words(&bins, origin, words.as_slice()?);
         Ok(Self {
-            tally: tally.map_err(python_error)?,
+            counts: counts.map_err(python_error)?,
             bins,
             origin,
         })
     }
 
-    /// All numbers of the tally.
+    /// All numbers of the histogram.
     fn words<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<u64>>> {
-        let words = self.tally.to_words().map_err(python_error)?;
+        let words = self.counts.to_words().map_err(python_error)?;
         Ok(words.into_pyarray(py))
     }
 
-    /// The sum of this tally and others.
+    /// The sum of this histogram and others.
     fn merged(&self, others: Vec<PyRef<'_, Self>>) -> PyResult<Self> {
         let mut total = core::Histogram::new(&self.bins, self.origin).map_err(python_error)?;
-        total.merge(&self.tally);
+        total.merge(&self.counts);
         for other in others {
             if other.bins != self.bins || other.origin.to_bits() != self.origin.to_bits() {
-                let text = "others: must be tallies with the same bins and the same coefficient of the law";
+                let text = "others: must be histograms with the same bins and the same coefficient of the law";
                 return Err(PyValueError::new_err(text));
             }
-            total.merge(&other.tally);
+            total.merge(&other.counts);
         }
         Ok(Self {
             bins: self.bins.clone(),
             origin: self.origin,
-            tally: total,
+            counts: total,
         })
     }
 
     /// The counts and moments by name.
     fn table<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        let copy = self.tally.copied().map_err(python_error)?;
+        let copy = self.counts.copied().map_err(python_error)?;
         table(py, copy)
     }
 }
 
 /// What was counted, by name. The counts themselves are handed over, not a copy: a fine grid is large.
-fn table(py: Python<'_>, tally: core::Histogram) -> PyResult<Bound<'_, PyDict>> {
+fn table(py: Python<'_>, counts: core::Histogram) -> PyResult<Bound<'_, PyDict>> {
     let core::Histogram {
         restitution,
         fraction,
         rows,
-    } = tally;
+    } = counts;
     let number = rows.gains.len();
     let table = Measured::of(&rows).map_err(python_error)?.table(py)?;
     for (name, grid) in [("count", restitution), ("fraction_count", fraction)] {
@@ -171,31 +171,31 @@ fn column<T: Element>(
     Ok(values.into_pyarray(py))
 }
 
-/// Simulates the particles from `part[0]` up to, not including, `part[1]`, or all, and counts their impacts. Returns the tally, and
+/// Simulates the particles from `part[0]` up to, not including, `part[1]`, or all, and counts their impacts. Returns the histogram, and
 /// the `KeyboardInterrupt` that cut the run short, if any.
 #[pyfunction]
 #[pyo3(signature = (run, edges, threads, progress, part=None))]
-fn tally<'py>(
+fn histogram<'py>(
     py: Python<'py>,
     run: Parameters<'py>,
     edges: Edges<'py>,
     threads: usize,
     progress: Option<Bound<'py, PyAny>>,
     part: Option<(usize, usize)>,
-) -> PyResult<(Tally, Option<PyErr>)> {
+) -> PyResult<(Histogram, Option<PyErr>)> {
     let run = run.run()?;
     let resources = resources(threads)?;
     let bins = edges.bins(run.impacts)?;
     let part = range(part, run.particles);
-    let (tally, interrupted) = watch::run(py, progress, |monitor: &Monitor| {
+    let (counts, interrupted) = watch::run(py, progress, |monitor: &Monitor| {
         run.statistics_of_part(part, &bins, resources, monitor)
     })?;
     let origin = run.origin();
     Ok((
-        Tally {
+        Histogram {
             bins,
             origin,
-            tally,
+            counts,
         },
         interrupted,
     ))
@@ -219,7 +219,7 @@ fn statistics<'py>(
     let bins = edges.bins(run.impacts)?;
     let parts: Vec<Range<usize>> = parts.into_iter().map(|(first, end)| first..end).collect();
     let mut measured = Vec::new();
-    let (tally, interrupted) = watch::run(py, progress, |monitor: &Monitor| {
+    let (counts, interrupted) = watch::run(py, progress, |monitor: &Monitor| {
         run.statistics_of_parts(&parts, &bins, resources, monitor, |rows| {
             measured.push(Measured::of(rows)?);
             Ok(())
@@ -227,11 +227,11 @@ fn statistics<'py>(
     })?;
     let measured = measured.into_iter().map(|part| part.table(py));
     let measured = measured.collect::<PyResult<_>>()?;
-    Ok((table(py, tally)?, measured, interrupted))
+    Ok((table(py, counts)?, measured, interrupted))
 }
 
 pub fn add_to(module: &Bound<'_, PyModule>) -> PyResult<()> {
-    module.add_class::<Tally>()?;
-    module.add_function(wrap_pyfunction!(tally, module)?)?;
+    module.add_class::<Histogram>()?;
+    module.add_function(wrap_pyfunction!(histogram, module)?)?;
     module.add_function(wrap_pyfunction!(statistics, module)?)
 }

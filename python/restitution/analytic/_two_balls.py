@@ -20,7 +20,7 @@ from restitution.laws import Frictionless, TangentialRestitution
 
 
 @dataclass(frozen=True)
-class PairFirstImpact(FirstImpact):
+class TwoBallsFirstImpact(FirstImpact):
     """Distribution of ε at the first impact from rest, all in closed form; make it with `first_impact`.
 
     Density, distribution function and quantiles are closed forms; moments are Gauss sums over the quantile
