@@ -1,6 +1,7 @@
 """Sphinx: the pages of this folder, the docstrings and the explorer as one site. `make docs` builds it."""
 
 import os
+import re
 import shutil
 from importlib.metadata import version as version_of
 from pathlib import Path
@@ -29,13 +30,8 @@ exclude_patterns = ["README.md"]
 myst_enable_extensions = ["dollarmath", "amsmath", "deflist", "colon_fence", "attrs_block"]
 myst_heading_anchors = 4
 myst_dmath_double_inline = True
-# explorer:stop=3 is the explorer at the third stop of its tour, paper:report.html the redrawn paper
-myst_url_schemes = {
-    "http": None,
-    "https": None,
-    "explorer": "explorer.html#{{path}}",
-    "paper": "paper/{{path}}",
-}
+# the explorer, which stands beside the pages here and elsewhere in the sources
+myst_url_schemes = {"http": None, "https": None, "explorer": "explorer.html#{{path}}"}
 
 nb_execution_mode = "cache"
 nb_execution_cache_path = str(HERE.parent / "build" / "notebooks")
@@ -93,20 +89,23 @@ def _plain_bars(app: object, what: str, name: str, thing: object, options: objec
 
 
 PAGES_ABOVE = {
-    "architecture": "ARCHITECTURE.md",
-    "changelog": "CHANGELOG.md",
-    "conduct": "CODE_OF_CONDUCT.md",
-    "contributing": "CONTRIBUTING.md",
+    "changelog": ["CHANGELOG.md"],
+    "contributing": ["CONTRIBUTING.md", "ARCHITECTURE.md", "CODE_OF_CONDUCT.md"],
 }
 
 
-def _page_from_above(app: object, name: str, source: list[str]) -> None:
-    """Show a page of the folder above, whose links are from there."""
-    if name in PAGES_ABOVE:
-        text = (HERE.parent / PAGES_ABOVE[name]).read_text(encoding="utf-8").replace("](docs/", "](")
+def _as_on_the_site(app: object, name: str, source: list[str]) -> None:
+    """Show pages of the folder above, whose links are from there, and the explorer where the site has it."""
+    text = source[0]
+    if files := PAGES_ABOVE.get(name):
+        text = "\n".join((HERE.parent / file).read_text(encoding="utf-8") for file in files)
+        text = text.replace("](docs/", "](")
         for here, there in PAGES_ABOVE.items():
-            text = text.replace(f"]({there})", f"]({here}.md)")
-        source[0] = text
+            for file in there:
+                text = text.replace(f"]({file})", f"]({here}.md)")
+        if len(files) > 1:  # parts of one page
+            text = "# Development\n\n" + re.sub("^#", "##", text, flags=re.MULTILINE)
+    source[0] = re.sub(r"\]\(../python/restitution/explorer/explorer\.html#?", "](explorer:", text)
 
 
 def _explorer_leads_back(app: object, error: Exception | None) -> None:
@@ -120,5 +119,5 @@ def _explorer_leads_back(app: object, error: Exception | None) -> None:
 def setup(app: object) -> None:
     """Let Sphinx know."""
     app.connect("build-finished", _explorer_leads_back)  # type: ignore[attr-defined]
-    app.connect("source-read", _page_from_above)  # type: ignore[attr-defined]
+    app.connect("source-read", _as_on_the_site)  # type: ignore[attr-defined]
     app.connect("autodoc-process-docstring", _plain_bars)  # type: ignore[attr-defined]

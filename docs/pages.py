@@ -64,7 +64,7 @@ def locking(particles: int, images: Path | None) -> str:
     return str(script.table(particles, seeds=2))
 
 
-def release(drops: int, images: Path | None) -> str:
+def golf(drops: int, images: Path | None) -> str:
     """Make the table and the figure of examples/golf.py."""
     script = _script("golf")
     if images is not None:
@@ -96,8 +96,8 @@ BLOCKS = {
     "energy": Block(energy, 10_000_000, 20_000, ("laws.png",)),
     "fits": Block(fits, 4000, 100),
     "laws": Block(laws, 0, 0),
-    "locking": Block(locking, 5000, 100, ("locking.png",)),
-    "release": Block(release, 0, 0, ("golf.png",)),
+    "near-round": Block(locking, 5000, 100, ("locking.png",)),
+    "shapes": Block(golf, 0, 0, ("golf.png",)),
     "theory": Block(theory, 100, 1),
 }
 """By the name of the page."""

@@ -1,4 +1,4 @@
-"""Hold a clock beside the truth: docs/images/clock.png and the table of docs/clock.md.
+"""Hold a clock beside the truth: docs/images/clock.png and the table of docs/listening.md.
 
 Run ``python examples/clock.py OUT`` to write ``clock.png``, ``clock.pdf`` and ``clock.md`` into the folder
 OUT. A second argument is the number of particles, 2000 unless given: a few seconds.
@@ -114,7 +114,7 @@ def draw(found: list[Compared]) -> Figure:
 
 
 def table(found: list[Compared]) -> str:
-    """Write the table of docs/clock.md."""
+    """Write the table of docs/listening.md."""
     lines = ["| L/R | v (m/s) | bias (10⁻⁴) | deviation | largest | gL/(2v²) | deviation of ε |"]
     lines.append("|---|---|---|---|---|---|---|")
     for one in found:

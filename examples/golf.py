@@ -2,7 +2,7 @@
 
     python examples/golf.py golf.png
 
-draws docs/images/golf.png; `python docs/pages.py release` also writes the table of docs/release.md.
+draws docs/images/golf.png; `python docs/pages.py shapes` also writes the table of docs/shapes.md.
 """
 
 import sys
@@ -87,7 +87,7 @@ def spin_for(law: Law, angle: float, velocity: float, wanted: float) -> float:
 
 
 def table() -> str:
-    """Write the table of docs/release.md: the spins in rad/s for ε = +2 and for ε = −4."""
+    """Write the table of docs/shapes.md: the spins in rad/s for ε = +2 and for ε = −4."""
     falling, rising, rise = np.radians(150.0), np.radians(110.0), 0.5
     speed = float(np.sqrt(2.0 * GRAVITY * (HEIGHT - RADIUS * (1.0 + np.abs(np.cos(falling))))))
     lines = [

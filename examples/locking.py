@@ -2,7 +2,7 @@
 
     python examples/locking.py locking.png
 
-draws docs/images/locking.png; `python docs/pages.py locking` also writes the table of docs/locking.md.
+draws docs/images/locking.png; `python docs/pages.py near-round` also writes the table of docs/near-round.md.
 """
 
 import sys
@@ -104,7 +104,7 @@ def _mean(values: list[float], scale: float) -> str:
 
 
 def table(particles: int = 5000, seeds: int = 8) -> str:
-    """Write the table of docs/locking.md."""
+    """Write the table of docs/near-round.md."""
     unit = np.sqrt(GRAVITY * RADIUS)
     lines = [
         "| ε_n | L/R | locked, of 1000: one bounce | two bounces | locked impacts from "

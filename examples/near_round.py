@@ -3,7 +3,7 @@
     restitution sweep examples/near_round.toml --out near_round.zarr
     python examples/near_round.py near_round.zarr docs/images
 
-prints the tables of docs/studies.md and draws near_round.png and near_round_maps.png.
+prints the tables of docs/near-round.md and draws near_round.png and near_round_maps.png.
 """
 
 import sys
@@ -164,7 +164,7 @@ def exponent(rows: list[Row], largest: float = 0.03) -> tuple[float, float]:
 
 
 def table(rows: list[Row]) -> str:
-    """Write the table of docs/studies.md, of every other L/R."""
+    """Write the table of docs/near-round.md, of every other L/R."""
     lines = [
         "| L/R | κ | bins | σ over the scaling map: mean, rms | over `near_round`: mean, rms, worst "
         "| over the closed form: mean, rms | ⟨ε²⟩ less that of `near_round`: rms |",

@@ -1,1 +1,1 @@
-"""What other engines do to a bouncing dumbbell, against the exact solution; docs/engines.md."""
+"""What other engines do to a bouncing dumbbell, against the exact solution; docs/performance.md."""

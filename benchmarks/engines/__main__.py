@@ -1,4 +1,4 @@
-"""`python -m benchmarks.engines [ENGINE...]`, in the environment of requirements.txt: docs/engines.md."""
+"""`python -m benchmarks.engines [ENGINE...]`, in the environment of requirements.txt: docs/performance.md."""
 
 import importlib
 import sys

@@ -37,7 +37,7 @@ SPINS = {
     "paper": (78.4, 78.1),
     "paper, rough": (129.9, 113.6),
 }
-"""In rad/s, for +2 and for -4: the table of docs/release.md."""
+"""In rad/s, for +2 and for -4: the table of docs/shapes.md."""
 each_law = pytest.mark.parametrize("name", LAWS)
 
 

@@ -1,4 +1,4 @@
-"""docs/locking.md: dumbbells turn by half a turn in a bounce or two, and climb while they lose energy."""
+"""docs/near-round.md: dumbbells turn by half a turn in a bounce or two, and climb while they lose energy."""
 
 import runpy
 from pathlib import Path

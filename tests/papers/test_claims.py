@@ -338,11 +338,11 @@ def test_impacts_that_never_happened_change_nothing() -> None:
 
 
 def test_all_claims_are_judged_with_their_rule(monkeypatch: pytest.MonkeyPatch) -> None:
-    """And docs/claims.md lists each. P-values depend on the seed of the runs alone."""
+    """And docs/paper.md lists each. P-values depend on the seed of the runs alone."""
     monkeypatch.setattr(_shape, "RESAMPLES", 20)
     found = CLAIMS.judge(runs(), SETTINGS)
     assert judged("laplace") in [claim.finding for claim in found]
-    page = (Path(__file__).parents[2] / "docs" / "claims.md").read_text(encoding="utf-8")
+    page = (Path(__file__).parents[2] / "docs" / "paper.md").read_text(encoding="utf-8")
     assert set(re.findall(r"\| `([a-z0-9-]+)` \|", page)) == {claim.key for claim in found}
     for claim in found:
         assert claim.finding.verdict in ("holds", "holds in part", "fails")

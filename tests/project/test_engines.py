@@ -86,7 +86,7 @@ def test_impacts_are_found_in_a_motion(steps: int) -> None:
 def test_the_page_has_a_row_for_every_setting() -> None:
     from benchmarks.engines import settings
 
-    page = (Path(__file__).parents[2] / "docs" / "engines.md").read_text(encoding="utf-8")
+    page = (Path(__file__).parents[2] / "docs" / "performance.md").read_text(encoding="utf-8")
     for name, rows in settings.SETTINGS.items():
         listed = [line for line in page.splitlines() if line.startswith(f"| {settings.TITLES[name]} ")]
         assert len(listed) == len(rows), name

@@ -166,8 +166,6 @@ def test_links_in_the_pages() -> None:
     """Links to files of the project lead to files; hosts are named only for DOIs."""
     for page in (*PAGES, *ROOT.glob("*.md")):
         for target in re.findall(r"\]\(([^)#]+)", page.read_text(encoding="utf-8")):
-            if target.startswith(("explorer:", "paper:")):
-                continue  # a state, which `make test-web` reads; a page that `make docs` makes and follows
             if target.startswith("http"):
                 assert target.startswith("https://doi.org/"), (page.name, target)
             else:

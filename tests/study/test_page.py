@@ -1,4 +1,4 @@
-"""docs/studies.md: what it says of nearly round bodies and of the catalogue is what its commands give."""
+"""docs/near-round.md and docs/studies.md: what they say is what their commands give."""
 
 import re
 import runpy
@@ -15,7 +15,9 @@ from restitution.drop.toml import tables_in
 from restitution.study import Refused, learned, study_of, sweep
 
 ROOT = Path(__file__).parents[2]
-PAGE = (ROOT / "docs" / "studies.md").read_text(encoding="utf-8")
+PAGE = "".join(
+    (ROOT / "docs" / f"{name}.md").read_text(encoding="utf-8") for name in ("near-round", "studies")
+)
 ROWS = (0, 6, 10)
 """Of the L/R of the study: the roundest, one where the scaling ends, one where it has ended."""
 

@@ -148,7 +148,7 @@ test("links of the pages to the explorer are set-ups", () => {
   const folder = fileURLToPath(new URL("../../docs/", import.meta.url));
   let seen = 0;
   for (const name of readdirSync(folder).filter((file) => file.endsWith(".md"))) {
-    for (const [, state] of readFileSync(folder + name, "utf8").matchAll(/\]\(explorer:([^)]*)\)/g)) {
+    for (const [, state] of readFileSync(folder + name, "utf8").matchAll(/\]\([^)]*explorer\.html#([^)]*)\)/g)) {
       assert.deepEqual(page.fromHash(`#${state}`).problems, [], `${name}: ${state}`);
       seen++;
     }
