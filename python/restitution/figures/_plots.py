@@ -237,14 +237,16 @@ def trajectory(data: xr.Dataset, particle: int = 0, impacts: int = 20) -> Figure
         when, height = _heights(time, fall, rise, gravity * float(np.cos(incline)), start)
     if not np.all(np.abs(height) <= FARTHEST):
         raise ParameterError(Problem("data", ": heights are no finite numbers; must be those of a run"))
-    figure, [[path], [below]] = panels(COLUMN, 3.6, 2, 1, sharex=True)
+    figure, [[path], [middle], [below]] = panels(COLUMN, 4.2, 3, 1, sharex=True, height_ratios=(4, 3, 3))
     path.plot(when, 1e3 * height, linewidth=0.8)
     path.set_ylabel("height (mm)")
     path.set_ylim(bottom=0.0)
-    below.plot(time, ratio, linestyle="none", marker=MARKERS[0], color=COLORS[0], label=r"$\varepsilon$")
-    below.plot(time, fraction, linestyle="none", marker=MARKERS[1], color=COLORS[1], label=FRACTION)
+    middle.plot(time, ratio, linestyle="none", marker=MARKERS[0], color=COLORS[0])
+    middle.set_ylabel(r"$\varepsilon$")
+    below.plot(time, fraction, linestyle="none", marker=MARKERS[1], color=COLORS[1])
+    below.set_ylabel(FRACTION)
     below.set_xlabel("time since release (s)")
-    below.legend()
+    below.set_ylim(bottom=0.0)
     return figure
 
 
