@@ -6,6 +6,8 @@ import shutil
 from importlib.metadata import version as version_of
 from pathlib import Path
 
+from PIL import Image
+
 HERE = Path(__file__).parent
 BUILT = (
     HERE.parent / "build" / "static"
@@ -63,6 +65,7 @@ html_theme_options: dict[str, object] = {
     "footer_start": ["copyright"],
     "footer_end": [],
 }
+html_context = {"default_mode": "auto"}
 html_sidebars: dict[str, list[str]] = {name: [] for name in ("index", "start", "gallery")}
 html_show_sourcelink = False
 html_domain_indices = False
@@ -76,8 +79,48 @@ if site := os.environ.get("RESTITUTION_SITE"):
     html_theme_options["check_switcher"] = False
     html_theme_options["navbar_end"] = ["version-switcher", "theme-switcher"]
 
+# The picture on a card is a part of a figure: its file, then left, top, right and bottom as shares of it.
+CARDS = {
+    "theorist": ("first-impact", 0.5, 0.0, 1.0, 0.49),
+    "experimenter": ("roundness", 0.0, 0.0, 1.0, 1.0),
+    "dem": ("golf", 0.0, 0.0, 0.5, 1.0),
+    "lecturer": ("lab-sheet", 0.0, 0.0, 1.0, 1.0),
+    "first-impact": ("first-impact", 0.0, 0.5, 0.5, 1.0),
+    "physics": ("locking", 0.0, 0.0, 0.43, 1.0),
+    "laws": ("laws", 0.265, 0.05, 0.515, 0.275),
+    "energy": ("laws", 0.515, 0.62, 1.0, 0.79),
+    "paper": ("fig2", 0.0, 0.0, 1.0, 1.0),
+    "fits": ("fits", 0.66, 0.0, 1.0, 0.5),
+    "theory": ("fits", 0.66, 0.5, 1.0, 1.0),
+    "near-round": ("locking", 0.48, 0.0, 1.0, 1.0),
+    "gas": ("cooling", 0.0, 0.06, 0.36, 1.0),
+    "shapes": ("golf", 0.5, 0.0, 1.0, 1.0),
+    "records": ("near_round", 0.67, 0.0, 1.0, 1.0),
+    "names": ("near_round", 0.33, 0.0, 0.67, 1.0),
+    "studies": ("near_round_maps", 0.0, 0.0, 0.7, 0.55),
+    "listening": ("clock", 0.0, 0.0, 1.0, 1.0),
+    "roundness": ("required", 0.0, 0.0, 1.0, 1.0),
+    "inference": ("calibration", 0.0, 0.0, 1.0, 0.4),
+    "lab-sheet": ("lab-sheet", 0.0, 0.0, 1.0, 1.0),
+}
+
+
+def _cards() -> None:
+    """Cut the pictures of the cards out of the figures."""
+    folder = BUILT.parent / "cards"
+    folder.mkdir(exist_ok=True)
+    for name, (figure, *box) in CARDS.items():
+        with Image.open(HERE / "images" / f"{figure}.png") as whole:
+            width, height = whole.size
+            left, top, right, bottom = box
+            part = whole.crop((left * width, top * height, right * width, bottom * height)).convert("RGB")
+        part.thumbnail((640, 640))
+        part.save(folder / f"{name}.png")
+
+
 BUILT.mkdir(parents=True, exist_ok=True)
 EXTRA.mkdir(parents=True, exist_ok=True)
+_cards()
 shutil.copy(HERE.parent / "web" / "node_modules" / "mathjax" / "es5" / "tex-svg-full.js", BUILT)
 
 
