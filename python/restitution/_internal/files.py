@@ -21,19 +21,20 @@ MOST = 2**28  # bytes of a file that is read as a whole: far above tables of tim
 _LONGEST = 50  # letters of a name that a draft's contains: most file systems allow 255 bytes in all
 
 # What the package writes under names that are given, in the words of an error, and how such names end.
-NETCDF, ZARR, HEADER, MODULE, IMAGE, TABLE, LATEX, FOLDER = _OWN = {
+NETCDF, ZARR, HEADER, MODULE, IMAGE, FILM, TABLE, LATEX, FOLDER = _OWN = {
     "a netCDF file, such as run.nc": ".nc .nc3 .nc4 .netcdf .cdf .h5 .hdf5",
     "a Zarr store, such as study.zarr": ".zarr",
     "a header of C and C++, such as dist.h": ".h .hh .hpp .hxx",
     "a Fortran source, such as dist.f90": ".f90 .f95 .f03 .f08",
     "a figure, which is written as .png, .pdf or .svg": ".png .pdf .svg",
+    "a film, which is written as .gif or .mp4": ".gif .mp4",
     "a table, which is written as .csv or .parquet": ".csv .parquet",
     "a LaTeX source, such as fit.tex": ".tex",
     "a folder": "",
 }
 _OTHERS = (
     ".c .cc .cpp .f .for .py .rs .jl .m .r .ipynb .tsv .txt .md .html .htm .json .toml .yaml .yml "
-    ".xml .xls .xlsx .ods .npy .npz .mat .pkl .pickle .jpg .jpeg .gif .tif .tiff .bmp .eps .ps .mp4 "
+    ".xml .xls .xlsx .ods .npy .npz .mat .pkl .pickle .jpg .jpeg .tif .tiff .bmp .eps .ps "
     ".wav .flac .ogg .mp3 .aiff .zip .tar .gz .bz2 .xz .7z .sqlite"
 )
 

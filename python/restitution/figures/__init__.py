@@ -13,6 +13,7 @@ they are given into a panel, in the sizes, colours and markers that stand here:
 
 from restitution.figures._plots import densities, map, moments, scatter, trajectory
 from restitution.figures.pieces import histogram, line, plain_log, population, population_bar
+from restitution.figures.scene import Film, animate, body, impact
 from restitution.figures.style import COLORMAP, COLORS, COLUMN, MARKERS, PAGE, letter, panels, save, styled
 
 __all__ = [
@@ -21,8 +22,12 @@ __all__ = [
     "COLUMN",
     "MARKERS",
     "PAGE",
+    "Film",
+    "animate",
+    "body",
     "densities",
     "histogram",
+    "impact",
     "letter",
     "line",
     "map",

@@ -17,7 +17,7 @@ from restitution._internal.arrays import FloatArray, IntArray, check_each, reals
 from restitution._internal.parameters import ParameterError, Problem, wrong
 from restitution.drop.bins import increasing_edges
 from restitution.figures.check import check_kind, column
-from restitution.figures.style import COLORMAP, styled
+from restitution.figures.style import colormap, styled
 
 
 @styled
@@ -78,7 +78,7 @@ def population(
     share = np.ma.masked_equal(count.T, 0) / top
     # A scale needs two ends even if no site holds more than one.
     norm = LogNorm(1 / max(top, 10), 1)
-    mesh = axes.pcolormesh(x_edges, y_edges, share, norm=norm, cmap=COLORMAP, rasterized=True)
+    mesh = axes.pcolormesh(x_edges, y_edges, share, norm=norm, cmap=colormap(), rasterized=True)
     axes.set_xlim(x_edges[0], x_edges[-1])
     axes.set_ylim(y_edges[0], y_edges[-1])
     return mesh

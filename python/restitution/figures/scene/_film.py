@@ -1,0 +1,386 @@
+"""Films of a bouncing body, in slow motion around its impacts."""
+
+from __future__ import annotations
+
+import io
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import matplotlib as mpl
+import numpy as np
+from matplotlib.animation import FFMpegWriter
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from PIL import Image
+
+from restitution._internal.arrays import FloatArray, whole
+from restitution._internal.files import FILM, path_for, whole_file
+from restitution._internal.parameters import ParameterError, Problem, wrong
+from restitution.drop.recorded import pull
+from restitution.drop.trajectory import trajectory
+from restitution.figures.scene import _solid as solid
+from restitution.figures.scene import _vectors as draw
+from restitution.figures.scene._impact import Impact, Sideview
+from restitution.figures.style import COLUMN, Style, colors, ink, panels, points, styled
+
+if TYPE_CHECKING:
+    import xarray as xr
+    from matplotlib.figure import Figure
+
+_DURATION = 60
+"""Of a picture, in ms; in GIF whole hundredths of a second."""
+RATE = 1000 / _DURATION
+"""Pictures per second."""
+_HIGHEST = 3.2
+"""Beyond so many reaches of the body above the plane a flight is not shown."""
+_FLIGHT, _NEAR, _STILL = 1.1, 1.0, 1.6
+"""Seconds of a film for a flight, for the slow motion on either side of an impact, and for the impact."""
+_CLOSE = 0.3
+"""Of a reach: how far the body moves in the slow motion on either side."""
+_PIXELS_PER_INCH = 100
+_HEIGHT = 3.0
+"""Of a picture in a journal, in inches."""
+
+
+@dataclass(frozen=True)
+class Frame:
+    """What one picture of a film shows."""
+
+    time: float  # s since release
+    slowed: float  # film time over time; infinite while the film stands still
+    impact: int | None  # index of the impact that the picture stands still at
+    before: int  # how many of the film's impacts have happened
+
+
+class Film:
+    """A film of a body and its impacts, from `animate`: `save` writes it, and a notebook shows it.
+
+    Attributes
+    ----------
+    frames : int
+        How many pictures it has, one every 60 ms.
+    times : ndarray, shape (frames,)
+        Time since release that each of them shows, in s.
+
+    Examples
+    --------
+    >>> import restitution as rs
+    >>> data = rs.simulate(
+    ...     rs.Dumbbell(radius=3e-3, separation=6e-3), rs.TangentialRestitution(normal=0.9), particles=1,
+    ...     impacts=4, record="state")
+    >>> film = rs.figures.animate(data, impacts=2)
+    >>> figure = film.picture(0)
+    """
+
+    def __init__(self, view: Sideview, data: xr.Dataset, particle: int, style: Style | None) -> None:
+        self._view, self._style = view, style
+        self._frames = _schedule(view, data, particle)
+        self.times = np.array([one.time for one in self._frames])
+        self._motion = trajectory(data, int(data["particle"][particle]), self.times)
+
+    @property
+    def frames(self) -> int:
+        """How many pictures the film has, one every 60 ms."""
+        return len(self._frames)
+
+    def __repr__(self) -> str:
+        return f"Film({self.frames} pictures, {self.frames / RATE:.1f} s)"
+
+    def centre(self, frame: int) -> FloatArray:
+        """Return where the centre of mass is drawn in a picture: right and up, in mm."""
+        position = self._motion["position"].to_numpy()[frame]
+        return np.asarray(1e3 * (self._view.frame @ position)[:2])
+
+    def picture(self, frame: int) -> Figure:
+        """Draw one of the pictures as a figure.
+
+        Parameters
+        ----------
+        frame : int
+            Its number.
+        """
+        frame = whole("frame", frame, 0, self.frames - 1)
+        return self._draw(frame, style=self._style)
+
+    def save(self, name: str | Path) -> Path:
+        """Write the film; a file of this name is replaced, whole or not at all.
+
+        Parameters
+        ----------
+        name : str or Path
+            Ends in .gif, or in .mp4, which takes the program ffmpeg.
+
+        Returns
+        -------
+        Path
+
+        Raises
+        ------
+        ValueError
+            If the name ends otherwise.
+        RuntimeError
+            If ffmpeg is needed and not installed.
+        """
+        path = path_for("name", name, FILM)
+        if path.suffix.lower() not in (".gif", ".mp4"):
+            raise ParameterError(wrong("name", str(path), f"the name of {FILM}"))
+        if path.suffix.lower() == ".mp4":
+            if not FFMpegWriter.isAvailable():
+                text = f"{path}: .mp4 takes the program ffmpeg, which is not installed; .gif takes nothing"
+                raise RuntimeError(text)
+            with whole_file(path, replace=True) as draft:
+                self._save_mp4(draft)
+        else:
+            with whole_file(path, replace=True) as draft:
+                draft.write_bytes(self._gif())
+        return path
+
+    def _repr_html_(self) -> str:
+        import base64
+
+        return f'<img alt="{self!r}" src="data:image/gif;base64,{base64.b64encode(self._gif()).decode()}">'
+
+    def _images(self) -> list[Image.Image]:
+        images: list[Image.Image] = []
+        last: tuple[Any, ...] | None = None
+        for number, one in enumerate(self._frames):
+            if (one.time, one.impact, one.before) == last:
+                images.append(images[-1])
+                continue
+            last = (one.time, one.impact, one.before)
+            images.append(self._image(number, style=self._style))
+        return images
+
+    @styled
+    def _image(self, frame: int, *, style: Style | None) -> Image.Image:
+        figure = self._draw(frame, style=style)
+        figure.set_dpi(_PIXELS_PER_INCH)
+        canvas: Any = FigureCanvasAgg(figure)
+        canvas.draw()
+        return Image.fromarray(np.asarray(canvas.buffer_rgba())).convert("RGB")
+
+    def _gif(self) -> bytes:
+        images = self._images()
+        # One palette for all pictures, from the first, one in the middle of an impact, and the last.
+        chosen = [images[0], images[self._still()], images[-1]]
+        width, height = images[0].size
+        sheet = Image.new("RGB", (width, height * len(chosen)))
+        for k, one in enumerate(chosen):
+            sheet.paste(one, (0, k * height))
+        palette = sheet.quantize(96, dither=Image.Dither.NONE)
+        shown: list[Image.Image] = []
+        durations: list[int] = []
+        for k, image in enumerate(images):
+            if k and image is images[k - 1]:
+                durations[-1] += _DURATION
+            else:
+                shown.append(image.quantize(palette=palette, dither=Image.Dither.NONE))
+                durations.append(_DURATION)
+        content = io.BytesIO()
+        shown[0].save(
+            content, "GIF", save_all=True, append_images=shown[1:], duration=durations, loop=0, optimize=True
+        )
+        return content.getvalue()
+
+    def _still(self) -> int:
+        return [k for k, one in enumerate(self._frames) if one.impact is not None][-1]
+
+    def _save_mp4(self, path: Path) -> None:
+        import subprocess
+
+        images = self._images()
+        width, height = (2 * (n // 2) for n in images[0].size)  # the codec takes even numbers
+        command = [
+            mpl.rcParams["animation.ffmpeg_path"],
+            *("-y", "-loglevel", "error", "-f", "rawvideo", "-pix_fmt", "rgb24"),
+            *("-s", f"{width}x{height}", "-r", f"{RATE:.6g}", "-i", "-"),
+            *("-c:v", "libx264", "-pix_fmt", "yuv420p", "-f", "mp4", str(path)),
+        ]
+        content = b"".join(one.crop((0, 0, width, height)).tobytes() for one in images)
+        subprocess.run(command, input=content, check=True)
+
+    @styled
+    def _draw(self, frame: int, *, style: Style | None) -> Figure:
+        view, one = self._view, self._frames[frame]
+        figure, [[axes]] = panels(COLUMN, _HEIGHT)
+        figure.set_layout_engine("none")
+        axes.set_position((0.02, 0.02, 0.96, 0.80))
+        draw.bare(axes)
+        far, centre = 1e3 * solid.reach(view.body), self.centre(frame)
+        half, top = self._window()
+        draw.plane(axes, centre[0], half, 0.5 * far)
+        draw.scale_bar(axes, centre[0] - 0.95 * half, -0.75 * far, 2.0 * far)
+        path = np.array([self.centre(k) for k in range(frame + 1)])
+        axes.plot(*path.T, color=ink(0.45), linewidth=points(0.8), linestyle=":", zorder=1.5)
+        state = self._motion.isel(time=frame)
+        axis = view.frame @ state["axis"].to_numpy()
+        solid.place(axes, view.body, axis, view.frame @ state["position"].to_numpy())
+        velocity = view.frame @ state["velocity"].to_numpy()
+        rotation = float((view.frame @ state["angular_velocity"].to_numpy())[2])
+        hit = None if one.impact is None else view.impacts[one.impact]
+        draw.marks(axes, centre, None if hit is None else 1e3 * hit.contact)
+        if hit is not None:
+            after = one.before > view.impacts.index(hit)
+            velocity, rotation = hit.velocity[after], float(hit.rotation[after][2])
+        self._arrows(axes, self.centre(frame), velocity, rotation, hit if hit and after else None)
+        self._words(axes, one, velocity, rotation, hit if hit and after else None)
+        axes.set_xlim(centre[0] - half, centre[0] + half)
+        axes.set_ylim(-far, top)
+        return figure
+
+    def _arrows(self, axes: Any, centre: FloatArray, v: FloatArray, w: float, hit: Impact | None) -> None:
+        length, angle = self._view.scales
+        far = 1e3 * solid.reach(self._view.body)
+        draw.turn(axes, centre, draw.ARC * far, angle * w, draw.ROTATION)
+        draw.arrow(axes, centre, 1e3 * length * v[:2], draw.VELOCITY)
+        if hit is not None:
+            draw.arrow(axes, 1e3 * hit.contact[:2], 1e3 * length * hit.impulse[:2], draw.IMPULSE)
+
+    def _words(self, axes: Any, one: Frame, v: FloatArray, w: float, hit: Impact | None) -> None:
+        """Write the key with its values, what the impact did, and how slow the film is."""
+        past = hit or (self._view.impacts[one.before - 1] if one.before else None)
+        push = "" if hit is None else f"{np.linalg.norm(hit.impulse):.2f} m/s"
+        keys = (
+            (rf"$v$ = {np.linalg.norm(v):.2f} m/s", draw.VELOCITY, 0.03),
+            (rf"$\omega$ = {abs(w):.0f} rad/s", draw.ROTATION, 0.35),
+            (rf"$P/m$ = {push}" if push else "", draw.IMPULSE, 0.68),
+        )
+        figure = axes.figure
+        for text, number, x in keys:
+            figure.text(x, 0.985, text, color=colors()[number], ha="left", va="top", fontsize="medium")
+        if past is not None:
+            text = f"$\\varepsilon$ = {past.restitution:.2f} at $v_G^n$ = {past.speed:.2f} m/s"
+            text = text.replace("= -", "= \N{MINUS SIGN}")
+            figure.text(0.03, 0.915, text, ha="left", va="top", fontsize="x-large")
+        slowed = float(f"{one.slowed:.2g}")
+        pace = "stands still" if np.isinf(slowed) else f"slowed {slowed:.0f} times"
+        figure.text(0.97, 0.035, pace, color=ink(0.65), ha="right", va="bottom", fontsize="small")
+
+    def _window(self) -> tuple[float, float]:
+        """Return how far the pictures reach to either side of the centre of mass, and up, in mm."""
+        far = 1e3 * solid.reach(self._view.body)
+        top = max(self.centre(k)[1] for k in range(self.frames)) + 1.4 * far
+        return 0.5 * (top + far) * (COLUMN * 0.96) / (_HEIGHT * 0.80), top
+
+
+@styled
+def animate(
+    data: xr.Dataset, particle: int = 0, impacts: int | tuple[int, int] = 0, *, style: Style | None = None
+) -> Film:
+    """Make a film of a body from the side, in slow motion around its impacts.
+
+    It shows the body over the plane, the point of contact, the velocity v of the centre of mass, the angular
+    velocity ω and, at an impact, the impulse per mass P/m on the scale of v, each with its value, and ε. The
+    motion is that of `restitution.trajectory`: nothing is interpolated.
+
+    Parameters
+    ----------
+    data : xarray.Dataset
+        Impacts from `restitution.simulate` with ``record="state"``.
+    particle : int
+        Which one.
+    impacts : int or (int, int)
+        The impact, or the first and the last one, from 0 on. The film ends with the flight after it, or at
+        the impact where it is the last one that was recorded.
+    style : str, optional
+        "paper", "page" or "slides", with "-dark" for a dark ground.
+
+    Returns
+    -------
+    Film
+        Its method ``save`` writes .gif, or .mp4 with the program ffmpeg; a notebook shows it.
+
+    Examples
+    --------
+    >>> import restitution as rs
+    >>> data = rs.simulate(
+    ...     rs.Dumbbell(radius=3e-3, separation=6e-3), rs.TangentialRestitution(normal=0.9), particles=1,
+    ...     impacts=4, record="state")
+    >>> film = rs.figures.animate(data, particle=0, impacts=(1, 2))
+    >>> path = film.save("bounce.gif")  # doctest: +SKIP
+    """
+    allowed = "the number of an impact, or of a first and a last one"
+    try:
+        first, last = impacts if isinstance(impacts, tuple | list) else (impacts, impacts)
+    except ValueError:
+        raise ParameterError(wrong("impacts", impacts, allowed)) from None
+    view = Sideview.of(data, particle, first, last)
+    gravity, incline = pull("data", data)
+    if not gravity * np.cos(incline) > 0.0:
+        raise ParameterError(Problem("data.gravity", f" = {gravity!r}: must pull towards the plane"))
+    return Film(view, data, particle, style)
+
+
+def _schedule(view: Sideview, data: xr.Dataset, particle: int) -> tuple[Frame, ...]:
+    """Choose the time of each picture: flights fast, the neighbourhood of an impact slow, impacts at rest."""
+    first = int(np.searchsorted(data["time"].to_numpy()[particle], view.impacts[0].time, side="left"))
+    times = data["time"].to_numpy()[particle]
+    begin = times[first - 1] if first else 0.0
+    last = first + len(view.impacts)
+    end = times[last] if last < times.size and np.isfinite(times[last]) else view.impacts[-1].time
+    far = solid.reach(view.body)
+    gravity = abs(float(data.attrs["gravity"]) * np.cos(float(data.attrs["incline"])))
+    knots = [_first_seen(view.impacts[0], begin, gravity, far)]
+    knots += [one.time for one in view.impacts]
+    knots.append(_last_seen(view.impacts[-1], end, gravity, far))
+    frames: list[Frame] = []
+    for k, one in enumerate(view.impacts):
+        frames += _flight(knots[k], one, None if k == 0 else view.impacts[k - 1], k, far)
+        still = round(RATE * _STILL)
+        frames += [Frame(one.time, np.inf, k, k)] * (still // 3) + [Frame(one.time, np.inf, k, k + 1)] * still
+    frames += _after(view.impacts[-1], knots[-1], len(view.impacts), far)
+    return tuple(frames)
+
+
+def _first_seen(one: Impact, begin: float, gravity: float, far: float) -> float:
+    """Return when the flight before an impact is first low enough to be seen, or at its top."""
+    fall = -float(one.velocity[0][1])
+    return max(begin, one.time - _duration(fall, float(one.centre[1]), gravity, far))
+
+
+def _last_seen(one: Impact, end: float, gravity: float, far: float) -> float:
+    rise = float(one.velocity[1][1])
+    return min(end, one.time + _duration(rise, float(one.centre[1]), gravity, far))
+
+
+def _duration(speed: float, height: float, gravity: float, far: float) -> float:
+    """Return the time from an impact to the top, or until the centre of mass is too high to be seen."""
+    if speed <= 0.0:
+        return np.inf
+    room = max(_HIGHEST * far - height, 0.0)
+    climbs = speed**2 - 2.0 * gravity * room
+    return (speed - np.sqrt(climbs)) / gravity if climbs > 0.0 else speed / gravity
+
+
+def _near(speed: float, far: float, whole_time: float) -> float:
+    return min(_CLOSE * far / max(speed, 1e-300), 0.25 * whole_time)
+
+
+def _pieces(begin: float, end: float, seconds: float, before: int) -> list[Frame]:
+    number = max(1, round(RATE * seconds))
+    times = begin + (end - begin) * np.arange(number) / number
+    slowed = seconds / (end - begin) if end > begin else np.inf
+    return [Frame(float(t), slowed, None, before) for t in times]
+
+
+def _flight(begin: float, one: Impact, earlier: Impact | None, before: int, far: float) -> list[Frame]:
+    """Frames of a flight up to an impact; between two impacts it begins slowly, too."""
+    whole_time = one.time - begin
+    if whole_time <= 0.0:
+        return []
+    close = one.time - _near(float(np.linalg.norm(one.velocity[0])), far, whole_time)
+    frames = []
+    if earlier is not None:
+        left = begin + _near(float(np.linalg.norm(earlier.velocity[1])), far, whole_time)
+        frames += _pieces(begin, left, _NEAR, before)
+        begin = left
+    frames += _pieces(begin, close, _FLIGHT, before)
+    return frames + _pieces(close, one.time, _NEAR, before)
+
+
+def _after(one: Impact, end: float, before: int, far: float) -> list[Frame]:
+    whole_time = end - one.time
+    if whole_time <= 0.0:
+        return []
+    left = one.time + _near(float(np.linalg.norm(one.velocity[1])), far, whole_time)
+    return _pieces(one.time, left, _NEAR, before) + _pieces(left, end, _FLIGHT, before)

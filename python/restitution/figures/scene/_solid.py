@@ -1,0 +1,137 @@
+"""The surface of a body of revolution, as parts that one formula describes, and its picture from the side."""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.image import AxesImage
+
+from restitution._internal.arrays import FloatArray
+from restitution._internal.parameters import ParameterError, Problem, wrong
+from restitution.bodies import BODIES, KINDS, Body, Dumbbell, LoadedSphere, Spherocylinder, Spheroid
+
+_PIXELS = 220
+"""Across the picture of a body."""
+_GREYS = {1: 0.62, 2: 0.9, 0: 0.45}
+"""How bright the two ends are, and a rod between them: without a colour, which belongs to the arrows."""
+_LIGHT = np.array([-0.45, 0.7, 0.55])
+"""Where the light comes from: right, up and towards the reader."""
+
+
+@dataclass(frozen=True)
+class Part:
+    """The points q about ``place`` where q² ``across`` + (q·e)² ``excess`` = 1 and |q·e| <= ``half``."""
+
+    place: float  # from the centre of mass along the axis, in m
+    across: float
+    excess: float = 0.0
+    half: float = math.inf
+    end: int | None = None  # of the body, or None: that to which q·e points
+
+
+def parts_of(body: Body) -> tuple[Part, ...]:
+    """Return the surfaces of a body whose union is what one sees."""
+    match body:
+        case Spheroid():
+            across = body.equatorial**-2
+            return (Part(0.0, across, body.polar**-2 - across),)
+        case Spherocylinder():
+            across, half = body.radius**-2, 0.5 * body.separation
+            return Part(half, across, end=1), Part(-half, across, end=2), Part(0.0, across, -across, half)
+        case LoadedSphere():
+            return (Part(-body.centre_of_mass, body.radius**-2),)
+        case Dumbbell():
+            half, centre = 0.5 * body.separation, body.centre_of_mass
+            one, two = (r**-2 for r in body.radii)
+            balls = Part(half - centre, one, end=1), Part(-half - centre, two, end=2)
+            rod = (12.0 / min(body.radii)) ** 2
+            return (*balls, Part(-centre, rod, -rod, half, end=0))
+    raise ParameterError(wrong("body", body, BODIES))
+
+
+def body_of(data: xr.Dataset) -> Body:
+    """Make the body that was dropped, from the attributes of its run."""
+    kinds = {kind.__name__: kind for kind in KINDS}
+    kind = kinds.get(str(data.attrs.get("body")))
+    missing = ["body"] if kind is None else [name for name in kind.model_fields if name not in data.attrs]
+    if kind is None or missing:
+        text = f" lacks the attributes of the body ({', '.join(missing)}): must be from restitution.simulate"
+        raise ParameterError(Problem("data", text))
+    return kind(**{name: data.attrs[name] for name in kind.model_fields})
+
+
+def reach(body: Body) -> float:
+    """Return how far the surface is from the centre of mass, at most, in m."""
+    return body.solid.farthest()
+
+
+def contact_point(body: Body, axis: FloatArray, end: int | None = None) -> FloatArray:
+    """Return the lowest point of a body from its centre of mass, or that of one end, in the picture's frame.
+
+    Of the quadric q·Q q = 1 it is -Q⁻¹n/√(n·Q⁻¹n).
+    """
+    up = np.array([0.0, 1.0, 0.0])
+    lowest = []
+    for part in parts_of(body):
+        if part.half == math.inf and (end is None or part.end in (None, end)):
+            inverse = (up - part.excess / (part.across + part.excess) * axis[1] * axis) / part.across
+            lowest.append(part.place * axis - inverse / np.sqrt(inverse[1]))
+    return min(lowest, key=lambda point: float(point[1]))
+
+
+def picture(body: Body, axis: FloatArray) -> FloatArray:
+    """Return the picture of a body about its centre of mass, from -1.05 to 1.05 of its reach, as RGBA.
+
+    `axis` is the symmetry axis in the frame of the picture: right, up, towards the reader.
+    """
+    size = 1.05 * reach(body)
+    places = size * (np.arange(_PIXELS) + 0.5 - 0.5 * _PIXELS) * 2.0 / _PIXELS
+    right, up = np.meshgrid(places, places)
+    flat = np.stack([right, up, np.zeros_like(right)], axis=-1)
+    depth = np.full(right.shape, -np.inf)
+    grey = np.zeros_like(right)
+    cover = np.zeros_like(right)
+    towards = float(axis[2])
+    for part in parts_of(body):
+        q = flat - part.place * axis
+        along = q @ axis
+        # q + t k lies on the part where a t² + 2 b t + c = 0, k being the direction to the reader.
+        a = part.across + part.excess * towards**2
+        if a <= 1e-9 * part.across:  # a cylinder that points at the reader: its end is hidden by a cap
+            continue
+        b = part.across * q[..., 2] + part.excess * along * towards
+        c = part.across * (q**2).sum(axis=-1) + part.excess * along**2 - 1.0
+        root = b * b - a * c
+        t = (np.sqrt(np.maximum(root, 0.0)) - b) / a
+        hit = q + t[..., None] * np.array([0.0, 0.0, 1.0])
+        height = along + t * towards
+        # The edge is as soft as a pixel is wide: the root vanishes there, and its gradient is known.
+        slope = np.hypot(*np.gradient(root, places, places))
+        inside = np.clip(0.5 + root / np.maximum(slope * 2.0 * size / _PIXELS, 1e-300), 0.0, 1.0)
+        inside = np.where(np.abs(height) <= part.half, inside, 0.0)
+        normal = part.across * hit + part.excess * height[..., None] * axis
+        normal /= np.maximum(np.linalg.norm(normal, axis=-1, keepdims=True), 1e-300)
+        light = np.clip(normal @ (_LIGHT / np.linalg.norm(_LIGHT)), 0.0, 1.0)
+        end = np.where(height > 0.0, 1, 2) if part.end is None else np.full(height.shape, part.end)
+        tone = np.select([end == 1, end == 2], [_GREYS[1], _GREYS[2]], _GREYS[0])
+        seen = (hit[..., 2] > depth) & (inside > 0.0)
+        grey = np.where(seen, tone * (0.45 + 0.5 * light) + 0.12 * light**12, grey)
+        depth = np.where(seen & (inside >= 1.0), hit[..., 2], depth)
+        cover = np.maximum(cover, inside)
+    return np.dstack([np.clip(grey, 0.0, 1.0)] * 3 + [cover])
+
+
+def place(axes: Axes, body: Body, axis: FloatArray, centre: FloatArray) -> AxesImage:
+    """Draw a body into a panel in mm: its centre of mass at `centre`, in the frame of `picture`, in m."""
+    image = axes.imshow(picture(body, axis), origin="lower", interpolation="bilinear", zorder=2.0)
+    move(image, body, centre)
+    return image
+
+
+def move(image: AxesImage, body: Body, centre: FloatArray) -> None:
+    """Put the picture of a body where its centre of mass is."""
+    size = 1.05 * reach(body)
+    x, z = float(centre[0]), float(centre[1])
+    image.set_extent((1e3 * (x - size), 1e3 * (x + size), 1e3 * (z - size), 1e3 * (z + size)))

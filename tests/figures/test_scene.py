@@ -1,0 +1,151 @@
+"""Pictures and films of bodies: what is drawn is where the body is, and the drawn vectors obey mechanics."""
+
+import math
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+import xarray as xr
+from matplotlib.figure import Figure
+from matplotlib.patches import FancyArrowPatch
+from PIL import Image, ImageSequence
+
+import restitution as rs
+from restitution.bodies import Body
+from restitution.figures.scene._impact import Sideview
+from restitution.figures.scene._solid import contact_point, picture, reach
+
+BODIES: dict[str, Body] = {
+    "dumbbell": rs.Dumbbell(radius=(3e-3, 2e-3), separation=6e-3, density=(2500, 4000)),
+    "loaded": rs.LoadedSphere(radius=3e-3, load=1e-4, offset=2e-3),
+    "capsule": rs.Spherocylinder(radius=2e-3, separation=5e-3),
+    "prolate": rs.Spheroid(equatorial=2e-3, polar=4e-3),
+    "oblate": rs.Spheroid(equatorial=4e-3, polar=2e-3),
+}
+
+
+def states(body: Body, **more: Any) -> xr.Dataset:
+    law = rs.TangentialRestitution(normal=0.8)
+    return rs.simulate(body, law, particles=3, impacts=8, record="state", seed=3, **more)
+
+
+@pytest.mark.parametrize("body", BODIES.values(), ids=BODIES)
+@pytest.mark.parametrize("spin", [(0.0, 0.0, 0.0), (30.0, 20.0, 10.0)], ids=["planar", "in space"])
+def test_the_marked_point_touches_and_obeys_the_law(body: Body, spin: tuple[float, ...]) -> None:
+    """It is on the plane, and the normal velocity of this point, v + ω × r, is reversed times ε_n (Eq. 9)."""
+    data = states(body, spin=spin)
+    for particle in range(3):
+        for one in Sideview.of(data, particle, 0, int(data["impacts"][particle]) - 1).impacts:
+            assert abs(one.contact[1]) < 1e-11 * reach(body) * 1e3
+            arm = one.contact - one.centre
+            before, after = (
+                (v + np.cross(w, arm))[1] for v, w in zip(one.velocity, one.rotation, strict=True)
+            )
+            assert before < 0
+            assert after == pytest.approx(-0.8 * before, rel=1e-9)
+
+
+@pytest.mark.parametrize(("name", "tilt"), [(n, t) for n in BODIES for t in (0.0, 0.5, 1.4)])
+def test_a_body_is_as_large_in_its_picture_as_it_is(name: str, tilt: float) -> None:
+    """Areas of the outlines in closed form, for an axis that leans towards the reader by `tilt`."""
+    body = BODIES[name]
+    cover = picture(body, np.array([math.cos(tilt), 0.0, math.sin(tilt)]))[..., 3]
+    side = 2.1 * reach(body) / cover.shape[0]
+    match body:
+        case rs.Spheroid(equatorial=a, polar=c):
+            area = math.pi * a * math.hypot(c * math.cos(tilt), a * math.sin(tilt))
+        case rs.Spherocylinder(radius=r, separation=length):
+            area = math.pi * r**2 + 2 * r * length * math.cos(tilt)
+        case rs.LoadedSphere(radius=r):
+            area = math.pi * r**2
+        case rs.Dumbbell(radii=(r, s), separation=length):
+            if tilt > 1.0:
+                pytest.skip("one sphere hides a part of the other")
+            rod = 2 * min(r, s) / 12 * (length * math.cos(tilt) - r - s)
+            area = math.pi * (r**2 + s**2) + max(rod, 0.0)
+    # a pixel at the edge is off by less than a tenth of its area on average
+    assert cover.sum() * side**2 == pytest.approx(area, rel=0.01)
+
+
+def test_the_lower_end_of_an_ellipse_is_where_calculus_puts_it() -> None:
+    """The support function of a spheroid, h² = a² + (c² - a²) cos²θ, and its derivative as the lever arm."""
+    body, theta = rs.Spheroid(equatorial=2e-3, polar=5e-3), 0.6
+    x, down, _ = contact_point(body, np.array([math.sin(theta), math.cos(theta), 0.0]))
+    h = math.sqrt(2e-3**2 + (5e-3**2 - 2e-3**2) * math.cos(theta) ** 2)
+    assert down == pytest.approx(-h, rel=1e-12)
+    lever = (5e-3**2 - 2e-3**2) * math.sin(theta) * math.cos(theta) / h
+    assert x == pytest.approx(-lever, rel=1e-12)
+
+
+def arrows(figure: Figure) -> list[np.ndarray[Any, Any]]:
+    """Tip minus start of every straight arrow of a figure, in its order."""
+    found = []
+    for axes in figure.axes:
+        for patch in axes.patches:
+            if isinstance(patch, FancyArrowPatch):
+                path = patch._path_original  # type: ignore[attr-defined]
+                if len(path.vertices) == 2:
+                    found.append(path.vertices[1] - path.vertices[0])
+    return found
+
+
+def test_the_arrows_of_an_impact_add_up() -> None:
+    """v + P/m = v', and their directions are those of the run."""
+    data = states(BODIES["dumbbell"])
+    figure = rs.figures.impact(data, 1, 3)
+    before, after, push = arrows(figure)
+    np.testing.assert_allclose(before + push, after, atol=1e-9)
+    v = data["velocity_before"].to_numpy()[1, 3]
+    assert before[1] / np.hypot(*before) == pytest.approx(v[2] / np.linalg.norm(v))
+    titles = " ".join(axes.get_title() for axes in figure.axes)
+    assert f"{float(data.restitution[1, 3]):.2f}".replace("-", "\N{MINUS SIGN}") in titles
+
+
+def test_a_film_shows_the_body_where_it_is(tmp_path: Path) -> None:
+    """Every picture has the body at its place in `trajectory`; the film stands still at the impact."""
+    data = states(BODIES["dumbbell"])
+    film = rs.figures.animate(data, 1, (2, 3))
+    assert np.all(np.diff(film.times) >= 0)
+    when = data["time"].to_numpy()[1]
+    assert when[1] <= film.times[0] < when[2]
+    assert film.times[-1] <= when[4]
+    path = rs.trajectory(data, 1, film.times)
+    for k in (0, film.frames // 2, film.frames - 1):
+        (image,) = film.picture(k).axes[0].images
+        left, right, low, high = image.get_extent()
+        assert 0.5 * (low + high) == pytest.approx(1e3 * float(path["position"][k, 2]), rel=1e-9)
+        assert 0.5 * (left + right) == pytest.approx(film.centre(k)[0], rel=1e-9)
+    assert {when[2], when[3]} <= set(film.times)
+    short = rs.figures.animate(data, 2, 3)
+    with Image.open(short.save(tmp_path / "film.gif")) as saved:
+        total = sum(one.info["duration"] for one in ImageSequence.Iterator(saved))
+    assert total == 60 * short.frames
+
+
+def test_films_say_what_they_cannot_do(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    data = states(BODIES["prolate"])
+    film = rs.figures.animate(data, 0, 7)  # the last one: the film ends there
+    assert film.times[-1] == data["time"].to_numpy()[0, 7]
+    with pytest.raises(ValueError, match=r"name = '.*film.png': must be the name of a film"):
+        film.save(tmp_path / "film.png")
+    monkeypatch.setattr("matplotlib.animation.FFMpegWriter.isAvailable", lambda: False)
+    with pytest.raises(RuntimeError, match="takes the program ffmpeg, which is not installed"):
+        film.save(tmp_path / "film.mp4")
+    assert not (tmp_path / "film.mp4").exists()
+    with pytest.raises(ValueError, match=r"impacts = \(1, 2, 3\): must be the number of an impact"):
+        rs.figures.animate(data, 0, (1, 2, 3))  # type: ignore[arg-type]
+    with pytest.raises(ValueError, match=r'record="state"'):
+        rs.figures.animate(rs.simulate(BODIES["prolate"], rs.Frictionless(normal=0.9), particles=1))
+    with pytest.raises(ValueError, match=r"impact = 8: must be a whole number in \[0, 7\]"):
+        rs.figures.impact(data, 0, 8)
+
+
+def test_a_portrait_has_its_parts() -> None:
+    """The body, its axis, centre of mass and contact, and a bar of a round length."""
+    axes = rs.figures.body(BODIES["oblate"], 0.4).axes[0]
+    assert len(axes.images) == 1
+    (label,) = (text.get_text().strip() for text in axes.texts)
+    assert label in ("1 mm", "2 mm")
+    bar = next(line for line in axes.lines if np.all(np.asarray(line.get_ydata()) < 0))
+    assert np.ptp(np.asarray(bar.get_xdata())) == pytest.approx(float(label.split()[0]))
