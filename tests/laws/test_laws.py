@@ -220,7 +220,8 @@ def test_every_law_can_be_written_down(tmp_path: Path, name: str) -> None:
         (
             'type = "coulomb"\nhypothesis = "hertz"\n[law.normal]\ntype = "elastic"',
             [
-                'law.normal.type = \'elastic\': must be "viscoelastic" or "plastic" or "tabulated"',
+                "law.normal.type = 'elastic': "
+                'must be "viscoelastic" or "plastic" or "tabulated" or "scattered"',
                 "law.friction: missing; must be a real number in [0, 1e+100]",
                 "law.hypothesis = 'hertz': must be 'stronge', 'poisson' or 'newton'",
             ],

@@ -174,12 +174,12 @@ def test_the_engine_needs_no_power_function() -> None:
         (
             rs.Frictionless,
             {"normal": -0.5},
-            "normal = -0.5: must be a real number in [0, 1], a Viscoelastic, Plastic or",
+            "normal = -0.5: must be a real number in [0, 1], a Viscoelastic, Plastic, Tabulated",
         ),
         (
             rs.Frictionless,
             {"normal": True},
-            "normal = True: must be a real number in [0, 1], a Viscoelastic, Plastic or",
+            "normal = True: must be a real number in [0, 1], a Viscoelastic, Plastic, Tabulated",
         ),
         (rs.Coulomb, {"normal": 0.5, "friction": -1}, "friction = -1: must be a real number in [0, 1e+100]"),
         (

@@ -73,7 +73,7 @@ def test_every_kind_is_entered() -> None:
         assert {kind.__name__ for kind in kinds} <= set(rs.__all__)
     assert list(_KINDS["body"][1]) == ["dumbbell", "loaded-sphere", "spherocylinder", "spheroid"]
     assert list(_KINDS["law"][1]) == ["tangential-restitution", "frictionless", "coulomb", "chatterjee-ruina"]
-    assert list(_KINDS["normal"][1]) == ["viscoelastic", "plastic", "tabulated"]
+    assert list(_KINDS["normal"][1]) == ["viscoelastic", "plastic", "tabulated", "scattered"]
 
 
 @pytest.mark.parametrize("function", [rs.simulate, rs.statistics, rs.FluctuatingRestitution.learn])

@@ -109,6 +109,7 @@ CALLS: dict[str, Call] = {
             "radius": 1e-3,
         },
     ),
+    "Scattered": (rs.Scattered, lambda: {"normal": 0.9, "deviation": 0.01}),
     "Plastic": (rs.Plastic, lambda: {"yield_speed": 0.1}),
     "Tabulated": (rs.Tabulated, lambda: {"v": [0.1, 0.2], "e": [0.9, 0.8]}),
     "Tabulated.from_function": (

@@ -44,6 +44,7 @@ WORKINGS = {
     "distribution.quantiles",
     "distribution.sealed",
     "laws.Material",
+    "laws.check_steady",
     "listen.Setting",
     "study.Study.where",
 }

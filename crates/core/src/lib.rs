@@ -58,7 +58,7 @@ pub use drop::{
 pub use error::{Error, Value};
 pub use law::{
     ChatterjeeRuina, Coulomb, Frictionless, Hypothesis, LAWS, Law, MATERIALS, Material, Normal,
-    Plastic, Points, Rule, Tabulated, TangentialRestitution, Viscoelastic,
+    Plastic, Points, Rule, Scattered, Tabulated, TangentialRestitution, Viscoelastic,
 };
 pub use math::{Quaternion, Symmetric, Vector};
 pub use memory::{collected, copied};

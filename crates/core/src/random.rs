@@ -21,6 +21,15 @@ pub fn pair(seed: u64, index: u64) -> (f64, f64) {
     (unit(a, b), unit(c, d))
 }
 
+/// A uniform number in (0, 1) for an impact of a particle, counted from 0: counter = (particle, impact, 2), whose last word is 0 or 1 for
+/// the others.
+pub fn of_impact(seed: u64, particle: u64, impact: u64) -> f64 {
+    let (low, high) = halves(particle);
+    let key = halves(seed);
+    let [a, b, ..] = philox4x32_10([low, high, impact as u32, 2], [key.0, key.1]);
+    unit(a, b) + 2.0_f64.powi(-54)
+}
+
 fn unit(low: u32, high: u32) -> f64 {
     let bits = u64::from(low) | u64::from(high) << 32;
     (bits >> 11) as f64 * 2.0_f64.powi(-53)
@@ -67,6 +76,9 @@ mod tests {
         stream(&|i| uniform(7, i << 32, 0));
         stream(&|i| pair(7, i).0);
         stream(&|i| pair(7, i).1);
+        stream(&|i| of_impact(7, i, 0));
+        stream(&|i| of_impact(7, 3, i));
+        stream(&|i| of_impact(i, 3, 0));
         stream(&|i| {
             if i % 2 == 0 {
                 pair(7, i / 2).0

@@ -8,7 +8,7 @@ use restitution_core::law::{
 };
 use restitution_core::{
     ChatterjeeRuina, Coulomb, Error, Frictionless, Hypothesis, Normal, Plastic, Points, Rule,
-    TangentialRestitution, Viscoelastic, collected,
+    Scattered, TangentialRestitution, Viscoelastic, collected,
 };
 use std::sync::Arc;
 
@@ -84,6 +84,24 @@ enum Given<'py> {
     Material(PyRef<'py, Material>),
 }
 
+impl Given<'_> {
+    fn material(&self) -> Result<restitution_core::Material, Error> {
+        Ok(match self {
+            Given::Constant(value) => Normal::Constant(*value).checked()?.into(),
+            Given::Material(material) => restitution_core::Material::clone(&material.0),
+        })
+    }
+}
+
+#[pyfunction]
+fn scattered(normal: Given<'_>, deviation: f64) -> PyResult<Material> {
+    let around = normal.material().map_err(python_error)?;
+    let scattered = Scattered::new(around, deviation).map_err(python_error)?;
+    Ok(Material(Arc::new(restitution_core::Material::Scattered(
+        scattered,
+    ))))
+}
+
 /// A collision law, ready for a run.
 #[pyclass(frozen, module = "restitution._core")]
 pub struct Law {
@@ -94,10 +112,7 @@ pub struct Law {
 impl Law {
     /// The law in the core's form.
     pub fn law(&self) -> restitution_core::Law<'_> {
-        restitution_core::Law {
-            normal: self.coefficient.normal(),
-            rule: self.rule,
-        }
+        restitution_core::Law::of(&self.coefficient, self.rule)
     }
 }
 
@@ -131,10 +146,7 @@ type Triple = (f64, f64, f64);
 fn law(normal: Given<'_>, rule: Result<impl Into<Rule>, Error>) -> PyResult<Law> {
     let rule = rule.map_err(python_error)?.into();
     let coefficient = match normal {
-        Given::Constant(value) => {
-            let law = restitution_core::Law::new(value, rule).map_err(python_error)?;
-            Arc::new(law.normal.into())
-        }
+        Given::Constant(_) => Arc::new(normal.material().map_err(python_error)?),
         Given::Material(material) => Arc::clone(&material.0),
     };
     Ok(Law { coefficient, rule })
@@ -170,6 +182,7 @@ pub fn add_to(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(viscoelastic, module)?)?;
     module.add_function(wrap_pyfunction!(plastic, module)?)?;
     module.add_function(wrap_pyfunction!(tabulated, module)?)?;
+    module.add_function(wrap_pyfunction!(scattered, module)?)?;
     module.add_function(wrap_pyfunction!(tangential_restitution, module)?)?;
     module.add_function(wrap_pyfunction!(frictionless, module)?)?;
     module.add_function(wrap_pyfunction!(coulomb, module)?)?;

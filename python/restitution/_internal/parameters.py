@@ -132,7 +132,7 @@ class Parameters(BaseModel):
     are given by name, but for those in `by_place`.
     """
 
-    by_place: ClassVar[tuple[str, ...]] = ()  # the two ends of a range, and no others
+    by_place: ClassVar[tuple[str, ...]] = ()  # where the order is plain
 
     model_config: ClassVar[ConfigDict] = ConfigDict(frozen=True, extra="forbid", arbitrary_types_allowed=True)
 

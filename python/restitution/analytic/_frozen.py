@@ -19,7 +19,7 @@ from restitution._internal.resources import check_size
 from restitution._internal.text import table, value
 from restitution.analytic._orientation import Floats, OrientationName
 from restitution.bodies import BODIES, Body
-from restitution.laws import LAWS, Law
+from restitution.laws import LAWS, Law, check_steady
 
 Values: TypeAlias = Any  # np.float64 for a scalar argument, an array of floats otherwise
 RandomState: TypeAlias = int | np.random.Generator | np.random.RandomState | None
@@ -254,11 +254,12 @@ class FirstImpact(ABC):
 
 
 def check(body: Body, law: Law) -> None:
-    """Refuse what is not a body or not a law."""
+    """Refuse what is not a body or not a law, and a law that scatters."""
     if not isinstance(body, Body):
         raise ParameterError(wrong("body", body, BODIES))
     if not isinstance(law, Law):
         raise ParameterError(wrong("law", law, LAWS))
+    check_steady(law)
 
 
 def generator(random_state: RandomState) -> np.random.Generator | np.random.RandomState:

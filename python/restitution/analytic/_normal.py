@@ -8,7 +8,7 @@ from pydantic import Field
 from restitution._core import PADE
 from restitution._internal.parameters import Number, Parameters
 from restitution.analytic import _disc
-from restitution.laws import Plastic, Tabulated, Viscoelastic
+from restitution.laws import Material, Plastic, Tabulated, Viscoelastic
 
 _ABOVE, _BELOW = map(np.polynomial.Polynomial, PADE)
 """Numerator and denominator of a viscoelastic sphere's ε_n, in powers of v*."""
@@ -29,7 +29,7 @@ class Fall(Parameters):
         return self.release_height - 0.5 * speed * speed / self.gravity
 
 
-def kinks(normal: float | Viscoelastic | Plastic | Tabulated) -> tuple[float, ...]:
+def kinks(normal: float | Material) -> tuple[float, ...]:
     """Return speeds in m/s at which the formula of ε_n changes."""
     match normal:
         case Plastic():
@@ -39,12 +39,11 @@ def kinks(normal: float | Viscoelastic | Plastic | Tabulated) -> tuple[float, ..
     return ()
 
 
-def coefficient(
-    normal: float | Viscoelastic | Plastic | Tabulated, squared: _disc.Number, among: float
-) -> _disc.Number:
+def coefficient(normal: float | Material, squared: _disc.Number, among: float) -> _disc.Number:
     """Return ε_n at v², complex or a disc, by the formula that holds about the speed ``among``.
 
     For real speeds this is what the core computes; between its kinks it is continued into the complex plane.
+    A `Scattered` coefficient was refused before.
     """
     match normal:
         case Viscoelastic():
@@ -62,4 +61,5 @@ def coefficient(
                 return normal.e[max(i - 1, 0)]
             slope = (normal.e[i] - normal.e[i - 1]) / (normal.v[i] - normal.v[i - 1])
             return normal.e[i - 1] + slope * (squared**0.5 - normal.v[i - 1])
+    assert not isinstance(normal, Material)
     return normal

@@ -35,6 +35,8 @@ normal = 0.98                     # in [0, 1]; or a table [law.normal], see belo
 # type = "plastic"                # yield_speed (m/s)
 # [law.normal]
 # type = "tabulated"              # v = [0.1, 1.0] (m/s), e = [0.97, 0.92]
+# [law.normal]
+# type = "scattered"              # drawn at every impact: normal = 0.98 (or a table), deviation = 0.01
 
 [run]
 # particles = 1000

@@ -18,7 +18,7 @@ class ChatterjeeRuina(Law):
 
     Parameters
     ----------
-    normal : float, Viscoelastic, Plastic, Tabulated or callable
+    normal : float, Viscoelastic, Plastic, Tabulated, Scattered or callable
         Normal coefficient e, in [0, 1], or a material.
     tangential : float
         Tangential coefficient e_t, in [-1, 1]: -1 is frictionless, 0 sticks, 1 reverses the slip. For a

@@ -19,7 +19,7 @@ class Coulomb(Law):
 
     Parameters
     ----------
-    normal : float, Viscoelastic, Plastic, Tabulated or callable
+    normal : float, Viscoelastic, Plastic, Tabulated, Scattered or callable
         Coefficient of restitution ε_n, in [0, 1], or a material; its meaning depends on the hypothesis.
     friction : float
         Coefficient of friction μ, in [0, 1e100]. 0 is `Frictionless`.

@@ -12,7 +12,7 @@ class Frictionless(Law):
 
     Parameters
     ----------
-    normal : float, Viscoelastic, Plastic, Tabulated or callable
+    normal : float, Viscoelastic, Plastic, Tabulated, Scattered or callable
         Normal coefficient of restitution ε_n at the contact point, in [0, 1], or a material.
 
     Examples

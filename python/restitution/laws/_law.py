@@ -4,31 +4,11 @@ from abc import abstractmethod
 from functools import cached_property
 from typing import Annotated, Any, Self
 
-from pydantic import BeforeValidator, Field, TypeAdapter, ValidationError, model_validator
+from pydantic import Field, model_validator
 
 from restitution import _core
-from restitution._internal.parameters import Allowed, Number, ParameterError, Parameters, wrong
-from restitution.laws._materials import Material, Plastic, Tabulated, Viscoelastic, tabulated
-
-NORMAL = "a real number in [0, 1], a Viscoelastic, Plastic or Tabulated, or a function of the speed"
-_number = TypeAdapter(Annotated[Number, Field(ge=0, le=1)])
-
-
-def _normal(value: Any) -> Any:
-    if isinstance(value, Material):
-        return value
-    if callable(value) and not isinstance(value, type):
-        return tabulated("normal", value)
-    try:
-        return _number.validate_python(value)
-    except ValidationError:
-        raise ParameterError(wrong("normal", value, NORMAL)) from None
-
-
-NormalCoefficient = Annotated[
-    float | Viscoelastic | Plastic | Tabulated, BeforeValidator(_normal), Allowed(NORMAL)
-]
-"""ε_n: a number, or a function of the speed."""
+from restitution._internal.parameters import Number, ParameterError, Parameters, wrong
+from restitution.laws._materials import Material, NormalCoefficient, Scattered
 
 Friction = Annotated[Number, Field(ge=0, le=_core.MOST_FRICTION)]
 """μ; the bound keeps products of it finite, and nothing slips long before."""
@@ -39,7 +19,7 @@ class Law(Parameters):
 
     Parameters
     ----------
-    normal : float, Viscoelastic, Plastic, Tabulated or callable
+    normal : float, Viscoelastic, Plastic, Tabulated, Scattered or callable
         Normal coefficient of restitution ε_n, in [0, 1], or a material that gives it for the normal speed at
         which the contact point approaches the plane. A function of one speed in m/s becomes
         `Tabulated.from_function` of it, to 1e-6 up to 100 m/s.
@@ -68,16 +48,19 @@ class Law(Parameters):
         Raises
         ------
         ValueError
-            If it depends on the speed.
+            If it depends on the speed, or scatters.
         """
         if isinstance(self.normal, Material):
-            raise ParameterError(wrong("normal", self.normal, "a number, the same at every speed"))
+            raise ParameterError(wrong("normal", self.normal, "a number, the same at every impact"))
         return self.normal
 
     def attributes(self) -> dict[str, Any]:
         """Return every parameter under its own name, those of a material after `normal_`, as plain values."""
-        material = self.normal
-        if not isinstance(material, Material):
-            return self.model_dump()
-        parts = {f"normal_{name}": value for name, value in material.model_dump().items()}
-        return self.model_dump() | {"normal": type(material).__name__} | parts
+        normal = self.normal
+        return self.model_dump() | (normal.attributes() if isinstance(normal, Material) else {})
+
+
+def check_steady(law: Law) -> None:
+    """Refuse a law whose coefficient scatters, where that has no meaning or is what is sought."""
+    if isinstance(law.normal, Scattered):
+        raise ParameterError(wrong("law.normal", law.normal, "a coefficient that does not scatter"))

@@ -1,14 +1,14 @@
-"""Materials: the normal coefficient of restitution as a function of the normal contact speed."""
+"""Materials: the normal coefficient of restitution as a function of the contact speed, and its scatter."""
 
 import math
 from abc import abstractmethod
 from collections.abc import Callable
 from functools import cached_property
-from typing import Annotated, Any, Self
+from typing import Annotated, Any, ClassVar, Self
 
 import numpy as np
 import numpy.typing as npt
-from pydantic import BeforeValidator, Field, model_validator
+from pydantic import BeforeValidator, Field, TypeAdapter, ValidationError, model_validator
 
 from restitution import _core
 from restitution._internal.arrays import real, reals
@@ -60,6 +60,14 @@ class Material(Parameters):
     def compiled(self) -> _core.Material:
         """The coefficient as the core knows it, made and checked once; every ε_n(v) is the core's."""
         return self._compile()
+
+    def attributes(self) -> dict[str, Any]:
+        """Return name and parameters as those of a law, after `normal`, as plain values."""
+        parts = self.model_dump()
+        for value in self._fields().values():
+            if isinstance(value, Material):
+                parts |= value.attributes()
+        return {"normal": type(self).__name__} | {f"normal_{name}": value for name, value in parts.items()}
 
 
 class Viscoelastic(Material):
@@ -257,6 +265,76 @@ class Tabulated(Material):
     def _limit(self) -> float:
         return self.e[-1]
 
+
+NORMAL = (
+    "a real number in [0, 1], a Viscoelastic, Plastic, Tabulated or Scattered, or a function of the speed"
+)
+_STEADY = "a real number in [0, 1], a Viscoelastic, Plastic or Tabulated, or a function of the speed"
+_number = TypeAdapter(Annotated[Number, Field(ge=0, le=1)])
+
+
+def _coefficient(allowed: str, *kinds: type[Material]) -> BeforeValidator:
+    """Take a number, one of these materials, or a function, which is tabulated."""
+
+    def check(value: Any) -> float | Material:
+        if isinstance(value, kinds):
+            return value
+        if callable(value) and not isinstance(value, type | Material):
+            return tabulated("normal", value)
+        try:
+            return _number.validate_python(value)
+        except ValidationError:
+            raise ParameterError(wrong("normal", value, allowed)) from None
+
+    return BeforeValidator(check)
+
+
+class Scattered(Material):
+    """A coefficient that scatters: of ball, dust or plate, which are not the same everywhere.
+
+    ε_n has a normal distribution about `normal`, truncated to [0, 1], and is drawn for every impact of every
+    particle, independently of all others: from the seed, the number of the particle and that of the impact.
+    Called with speeds, it gives what it scatters about.
+
+    Parameters
+    ----------
+    normal : float, Viscoelastic, Plastic, Tabulated or callable
+        The coefficient about which it scatters, as for a law.
+    deviation : float
+        Standard deviation in [0, 1] of the normal distribution, before it is truncated.
+
+    Examples
+    --------
+    >>> import restitution as rs
+    >>> dusty = rs.Scattered(normal=0.93, deviation=0.01)
+    >>> ball = rs.Dumbbell(radius=3e-3, separation=0.0)
+    >>> run = rs.simulate(ball, rs.Frictionless(normal=dusty), particles=1000, impacts=20)
+    >>> round(float(run.restitution.std()), 3)
+    0.01
+    """
+
+    by_place: ClassVar[tuple[str, ...]] = ("normal", "deviation")
+
+    normal: Annotated[
+        float | Viscoelastic | Plastic | Tabulated,
+        _coefficient(_STEADY, Viscoelastic, Plastic, Tabulated),
+        Allowed(_STEADY),
+    ]
+    deviation: Annotated[Number, Field(ge=0, le=1)]
+
+    def _compile(self) -> _core.Material:
+        normal = self.normal.compiled if isinstance(self.normal, Material) else self.normal
+        return _core.scattered(normal, self.deviation)
+
+    @property
+    def _limit(self) -> float:
+        return self.normal._limit if isinstance(self.normal, Material) else self.normal
+
+
+NormalCoefficient = Annotated[
+    float | Viscoelastic | Plastic | Tabulated | Scattered, _coefficient(NORMAL, Material), Allowed(NORMAL)
+]
+"""ε_n: a number, a function of the speed, or one that scatters."""
 
 _MOST_POINTS = 100_000
 _NARROWEST = 1e-9

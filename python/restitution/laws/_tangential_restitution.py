@@ -21,7 +21,7 @@ class TangentialRestitution(Law):
 
     Parameters
     ----------
-    normal : float, Viscoelastic, Plastic, Tabulated or callable
+    normal : float, Viscoelastic, Plastic, Tabulated, Scattered or callable
         Normal coefficient of restitution ε_n at the contact point, in [0, 1], or a material.
     tangential : float, default 1
         Tangential coefficient of restitution ε_t at the contact point, in [-1, 1]. Kinetic theory writes

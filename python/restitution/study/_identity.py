@@ -15,7 +15,7 @@ from restitution._internal.parameters import ParameterError
 from restitution.bodies import Body, Dumbbell, LoadedSphere, Spheroid
 from restitution.drop.dataset import version_here
 from restitution.drop.run import Run
-from restitution.laws import ChatterjeeRuina, Coulomb, Frictionless, Law, TangentialRestitution
+from restitution.laws import ChatterjeeRuina, Coulomb, Frictionless, Law, Scattered, TangentialRestitution
 from restitution.study._study import Study
 
 _NAME = "restitution_study"  # of the attribute
@@ -32,6 +32,7 @@ _LAWS: tuple[Law, ...] = (
     Frictionless(normal=0.9),
     Coulomb(normal=0.9, friction=0.2),
     ChatterjeeRuina(normal=0.9, tangential=0.2, friction=0.3),
+    Frictionless(normal=Scattered(normal=0.9, deviation=0.05)),
 )
 
 

@@ -1,7 +1,8 @@
 //! One particle of a run, followed impact by impact, for a drawing of its motion.
 
 use crate::Error;
-use crate::drop::{NoConvergence, SingleImpact, StopReason, trajectory};
+use crate::drop::single::{Lone, trajectory_of};
+use crate::drop::{NoConvergence, SingleImpact, StopReason};
 use crate::drop::{Plan, Run, Scales};
 use crate::motion::State;
 
@@ -48,18 +49,16 @@ impl<'a> Followed<'a> {
             record(impact)
         };
         let limits = plan.limits();
-        trajectory(
-            &plan.body,
-            &plan.law,
-            plan.slope,
-            self.release,
-            limits,
-            counted,
+        let release = Lone {
+            state: self.release,
+            drawn: (plan.run.seed, self.particle as u64),
+        };
+        trajectory_of(&release, &plan.body, &plan.law, plan.slope, limits, counted).map_err(
+            |NoConvergence| Error::Numerical {
+                particle: self.particle as u64,
+                seed: plan.run.seed,
+                flight: impacts,
+            },
         )
-        .map_err(|NoConvergence| Error::Numerical {
-            particle: self.particle as u64,
-            seed: plan.run.seed,
-            flight: impacts,
-        })
     }
 }

@@ -4,6 +4,7 @@ use super::lanes::Release;
 use super::{Plan, Run};
 use crate::Error;
 use crate::motion::State;
+use crate::random::of_impact;
 use std::ops::Range;
 
 /// Where particles come from: one run, or several.
@@ -86,5 +87,10 @@ impl<T: Source> Release for T {
     fn start(&self, particle: usize) -> State {
         let (plan, number) = self.origin(particle);
         plan.state(number)
+    }
+
+    fn chance(&self, particle: usize, impact: usize) -> f64 {
+        let (plan, number) = self.origin(particle);
+        of_impact(plan.run.seed, number as u64, impact as u64)
     }
 }

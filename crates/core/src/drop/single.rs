@@ -9,6 +9,7 @@ use super::stop::{Limits, StopReason};
 use crate::contact;
 use crate::law::{Law, Respond, Response};
 use crate::motion::{State, SymmetricState};
+use crate::random::of_impact;
 use crate::shape::{Body, Hull, Sphere, with_hull};
 use crate::simd::one;
 use pulp::{Scalar, Simd};
@@ -77,7 +78,11 @@ pub fn first_contact(
     with_hull!(&body.hull, hull => {
         let simd = Scalar::new();
         let mut groups = [Group::<Scalar, Spatial>::empty(simd, hull)];
-        groups[0].occupy(&Lone(*start), &mut (0..1), slope, hull);
+        let release = Lone {
+            state: *start,
+            drawn: (0, 0),
+        };
+        groups[0].occupy(&release, &mut (0..1), slope, hull);
         if let FlightStart::Contact { sphere, speed } = departure {
             groups[0].depart_from(contact::LastContact {
                 sphere: one(sphere.sign()),
@@ -101,14 +106,15 @@ pub fn first_contact(
 }
 
 /// The state after the impact of `sphere`, and the speed, in √(gR), at which the point of contact leaves the plane. A law that
-/// depends on the speed must be scaled to √(gR) ([`Law::scaled`]).
+/// depends on the speed must be scaled to √(gR) ([`Law::scaled`]); ε_n is that where it does not scatter.
 pub fn collide(body: &Body, law: &Law<'_>, before: &State, sphere: Sphere) -> (State, f64) {
     with_hull!(&body.hull, hull => {
         let state = before.in_lane();
         let part = hull.part(one(sphere.sign()).eq(1.0));
         let point = ContactPoint::of(hull, &part, state.axis.z);
         let mut response = [Response::none(Scalar::new())];
-        law.respond_all::<_, true>(&[state.contact(body, point)], &mut response);
+        let steady = Law { deviation: 0.0, ..*law };
+        steady.respond_all::<_, true>(&[state.contact(body, point)], &[], &mut response);
         let after = state.with_motion(state.after(body, point, &response[0]));
         (after.lane(0), response[0].separation_speed.as_slice()[0])
     })
@@ -116,7 +122,7 @@ pub fn collide(body: &Body, law: &Law<'_>, before: &State, sphere: Sphere) -> (S
 
 /// Simulates a particle until a limit is reached; `record` is called with every impact and returns whether to continue. The plane
 /// descends along x with the given slope, tan α. The impacts have the same bits as in a run, because a release from rest is treated
-/// as planar motion here as well.
+/// as planar motion here as well. Where ε_n scatters, it is drawn as for particle 0 of seed 0.
 ///
 /// # Errors
 /// [`NoConvergence`] if a contact search does not converge.
@@ -128,6 +134,23 @@ pub fn trajectory(
     limits: Limits,
     record: impl FnMut(&SingleImpact) -> bool,
 ) -> Result<StopReason, NoConvergence> {
+    let release = Lone {
+        state: start,
+        drawn: (0, 0),
+    };
+    trajectory_of(&release, body, law, slope, limits, record)
+}
+
+/// [`trajectory`] of a particle of a run.
+pub(super) fn trajectory_of(
+    release: &Lone,
+    body: &Body,
+    law: &Law<'_>,
+    slope: f64,
+    limits: Limits,
+    record: impl FnMut(&SingleImpact) -> bool,
+) -> Result<StopReason, NoConvergence> {
+    let start = release.state;
     if limits.impacts == 0 {
         return Ok(StopReason::ImpactsReached);
     }
@@ -139,7 +162,7 @@ pub fn trajectory(
     };
     let (simd, job) = (Scalar::new(), (body, limits));
     let cycle = General { body, law, slope };
-    let release = (&Lone(start), 0..1);
+    let release = (release, 0..1);
     if start.is_at_rest() && slope == 0.0 {
         bounce::<_, Planar, _, 1>(simd, job, &cycle, release, &mut reporter, || go_on.get())
     } else {
@@ -150,11 +173,20 @@ pub fn trajectory(
 }
 
 /// The release of a single particle.
-struct Lone(State);
+pub(super) struct Lone {
+    pub state: State,
+    /// Seed and number of the particle whose ε_n are drawn.
+    pub drawn: (u64, u64),
+}
 
 impl Release for Lone {
     fn start(&self, _: usize) -> State {
-        self.0
+        self.state
+    }
+
+    fn chance(&self, _: usize, impact: usize) -> f64 {
+        let (seed, particle) = self.drawn;
+        of_impact(seed, particle, impact as u64)
     }
 }
 

@@ -1,5 +1,5 @@
-//! The impulse of an impact, (9), (10). A law is a function of the contact velocity and of the matrix K, the compliance of the contact,
-//! and knows nothing else of the body.
+//! The impulse of an impact, (9), (10). A law is a function of the contact velocity, of the matrix K, the compliance of the contact,
+//! and, where its normal coefficient scatters, of one number drawn for seed, particle and impact. It knows nothing else of the body.
 //!
 //! For a body of revolution K separates in the frame of **n**, of **u**, the horizontal direction of the axis, and of
 //! **w** = **n** × **u**, into a 2×2 block {**n**, **u**} and a single entry for **w**. Each formula is written once, for a contact in
@@ -22,7 +22,8 @@ pub use contact::{Answer, Components, Contact, Response};
 pub use coulomb::{Coulomb, Hypothesis, MOST_FRICTION};
 pub use frictionless::Frictionless;
 pub use normal::{
-    MATERIALS, Material, Normal, PADE_ABOVE, PADE_BELOW, Plastic, Points, Tabulated, Viscoelastic,
+    MATERIALS, Material, Normal, PADE_ABOVE, PADE_BELOW, Plastic, Points, Scattered, Tabulated,
+    Viscoelastic,
 };
 pub use rule::{Creation, LAWS, Law, LawKind, Rule};
 pub(crate) use rule::{MOST_CONTACTS, Respond};

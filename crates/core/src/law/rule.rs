@@ -1,8 +1,8 @@
 //! The choice of a law.
 
 use super::{
-    Answer, ChatterjeeRuina, Compliance, Contact, Coulomb, Frictionless, Normal, Response,
-    TangentialRestitution, tangential::Steady,
+    Answer, ChatterjeeRuina, Compliance, Contact, Coulomb, Frictionless, Material, Normal,
+    Response, TangentialRestitution, normal::scattered, tangential::Steady,
 };
 use crate::Error;
 use crate::describe::Kind;
@@ -10,11 +10,13 @@ use crate::math::Vector;
 use crate::simd::Pack;
 use pulp::{Scalar, Simd, WithSimd};
 
-/// A collision law: a normal coefficient, which may borrow a table, and a rule for the impulse.
+/// A collision law: a normal coefficient, which may borrow a table and may scatter, and a rule for the impulse.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Law<'a> {
     /// The normal coefficient ε_n.
     pub normal: Normal<'a>,
+    /// The standard deviation with which ε_n scatters before truncation to [0, 1]; 0 if it does not.
+    pub deviation: f64,
     /// The impulse that follows from a contact and ε_n.
     pub rule: Rule,
 }
@@ -80,6 +82,7 @@ impl<'a> Law<'a> {
     pub fn new(normal: impl Into<Normal<'a>>, rule: impl Into<Rule>) -> Result<Self, Error> {
         Ok(Self {
             normal: normal.into().checked()?,
+            deviation: 0.0,
             rule: rule.into(),
         })
     }
@@ -88,18 +91,32 @@ impl<'a> Law<'a> {
     pub fn scaled(&self, unit: f64) -> Self {
         Self {
             normal: self.normal.scaled(unit),
-            rule: self.rule,
+            ..*self
         }
     }
 
-    /// The impulse of a contact, and its normal velocity after the impact.
+    /// The law of a material with this rule.
+    pub fn of(material: &'a Material, rule: Rule) -> Self {
+        Self {
+            normal: material.normal(),
+            deviation: material.deviation(),
+            rule,
+        }
+    }
+
+    /// The impulse of a contact, and its normal velocity after the impact, with ε_n as it is where it does not scatter.
     pub fn respond(&self, contact: &Contact) -> Response {
         let mut found = [Response::none(Scalar::new())];
-        self.respond_all::<_, true>(&[contact.in_lane()], &mut found);
+        let steady = Self {
+            deviation: 0.0,
+            ..*self
+        };
+        steady.respond_all::<_, true>(&[contact.in_lane()], &[], &mut found);
         found[0].lane(0)
     }
 
-    /// The impulse for any compliance, of a contact that arrives with this velocity in the frame whose z axis is the normal, z ≤ 0.
+    /// The impulse for any compliance, of a contact that arrives with this velocity in the frame whose z axis is the normal, z ≤ 0;
+    /// ε_n as in [`Self::respond`].
     pub fn answer(&self, compliance: &Compliance, velocity: Vector) -> Answer {
         // One that leaves only touches.
         let velocity = Vector::new(velocity.x, velocity.y, velocity.z.min(0.0));
@@ -112,10 +129,10 @@ impl<'a> Law<'a> {
         }
     }
 
-    /// The law as [`Steady`], if it is the paper's with a constant ε_n.
+    /// The law as [`Steady`], if it is the paper's with the same ε_n for all impacts.
     pub(crate) fn steady(&self) -> Option<Steady> {
         match (self.rule, self.normal) {
-            (Rule::TangentialRestitution(rule), Normal::Constant(normal)) => {
+            (Rule::TangentialRestitution(rule), Normal::Constant(normal)) if !self.scatters() => {
                 Some(Steady { normal, rule })
             }
             _ => None,
@@ -128,20 +145,31 @@ pub(crate) const MOST_CONTACTS: usize = 6;
 
 /// A law in the form that the bounce loop uses: it answers all contacts at once, so that those that take long can share the lanes.
 pub(crate) trait Respond {
-    /// Answers up to [`MOST_CONTACTS`] vectors of contacts. Without `SPACE` no contact velocity has a component along **w**.
+    /// Whether ε_n scatters.
+    fn scatters(&self) -> bool;
+
+    /// Answers up to [`MOST_CONTACTS`] vectors of contacts; `chances` has a uniform number in (0, 1) for each if ε_n scatters. Without
+    /// `SPACE` no contact velocity has a component along **w**.
     fn respond_all<S: Simd, const SPACE: bool>(
         &self,
         contacts: &[Contact<Pack<S, 1>>],
+        chances: &[Pack<S, 1>],
         responses: &mut [Response<Pack<S, 1>>],
     );
 }
 
 impl Respond for Law<'_> {
+    #[inline(always)]
+    fn scatters(&self) -> bool {
+        self.deviation > 0.0
+    }
+
     /// Chooses the law in a function of its own: inlined, all laws together would use up the registers of the bounce loop.
     #[inline(always)]
     fn respond_all<S: Simd, const SPACE: bool>(
         &self,
         contacts: &[Contact<Pack<S, 1>>],
+        chances: &[Pack<S, 1>],
         responses: &mut [Response<Pack<S, 1>>],
     ) {
         let Some(first) = contacts.first() else {
@@ -150,6 +178,7 @@ impl Respond for Law<'_> {
         first.velocity.normal.simd().vectorize(Choice::<S, SPACE> {
             law: self,
             contacts,
+            chances,
             responses,
         });
     }
@@ -159,6 +188,7 @@ impl Respond for Law<'_> {
 struct Choice<'a, 'b, S: Simd, const SPACE: bool> {
     law: &'a Law<'b>,
     contacts: &'a [Contact<Pack<S, 1>>],
+    chances: &'a [Pack<S, 1>],
     responses: &'a mut [Response<Pack<S, 1>>],
 }
 
@@ -170,21 +200,30 @@ impl<S: Simd, const SPACE: bool> WithSimd for Choice<'_, '_, S, SPACE> {
         let Self {
             law,
             contacts,
+            chances,
             responses,
         } = self;
+        let coefficient = |i: usize, contact: &Contact<Pack<S, 1>>| {
+            let normal = law.normal.in_lanes(contact.approach_speed());
+            if law.scatters() {
+                scattered(normal, law.deviation, chances[i])
+            } else {
+                normal
+            }
+        };
         if let (true, Rule::Coulomb(rule)) = (SPACE, &law.rule)
             && rule.takes_long()
         {
             let simd = contacts[0].velocity.normal.simd();
             let mut normal = [Pack::splat(simd, 0.0); MOST_CONTACTS];
-            for (normal, contact) in normal.iter_mut().zip(contacts) {
-                *normal = law.normal.in_lanes(contact.approach_speed());
+            for (i, contact) in contacts.iter().enumerate() {
+                normal[i] = coefficient(i, contact);
             }
             rule.respond_in_space(contacts, &normal, responses);
             return;
         }
-        for (contact, response) in contacts.iter().zip(responses) {
-            let normal = law.normal.in_lanes(contact.approach_speed());
+        for (i, (contact, response)) in contacts.iter().zip(responses).enumerate() {
+            let normal = coefficient(i, contact);
             *response = match &law.rule {
                 Rule::TangentialRestitution(rule) => rule.respond::<S, SPACE>(contact, normal),
                 Rule::Frictionless(rule) => rule.respond(contact, normal),

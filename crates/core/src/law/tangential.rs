@@ -100,9 +100,15 @@ pub(crate) struct Steady {
 
 impl Respond for Steady {
     #[inline(always)]
+    fn scatters(&self) -> bool {
+        false
+    }
+
+    #[inline(always)]
     fn respond_all<S: Simd, const SPACE: bool>(
         &self,
         contacts: &[Contact<Pack<S, 1>>],
+        _: &[Pack<S, 1>],
         responses: &mut [Response<Pack<S, 1>>],
     ) {
         for (contact, response) in contacts.iter().zip(responses) {

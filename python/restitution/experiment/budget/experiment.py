@@ -15,7 +15,7 @@ from restitution.bodies import BODIES, Body, Dumbbell, LoadedSphere, Spherocylin
 from restitution.experiment.flight.chain import COMMON, Measured, chain
 from restitution.experiment.flight.laws import LAWS, LawOfSpeed, by_parameters
 from restitution.experiment.flight.times import LARGEST
-from restitution.laws import Law, Material, Plastic, Viscoelastic
+from restitution.laws import Law, Material, Plastic, Viscoelastic, check_steady
 
 Array = npt.NDArray[np.float64]
 
@@ -101,6 +101,7 @@ class Experiment:
     @classmethod
     def of(cls, law: Law, setting: Setting) -> "Experiment":
         """Follow the bouncing ball."""
+        check_steady(law)
         speed, coefficient = [math.sqrt(2.0 * setting.gravity * setting.drop)], []
         for _ in range(setting.impacts):
             coefficient.append(float(at(law, np.array(speed[-1]))))

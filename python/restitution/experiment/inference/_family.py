@@ -9,7 +9,7 @@ from restitution._internal.parameters import ParameterError, Problem
 from restitution.bodies import Body, Form, from_roundness
 from restitution.experiment.budget.experiment import law_of_speed
 from restitution.experiment.flight.laws import LawOfSpeed
-from restitution.laws import Coulomb, Law, Material, Plastic, Tabulated, Viscoelastic
+from restitution.laws import Coulomb, Law, Material, Plastic, Tabulated, Viscoelastic, check_steady
 
 Array = npt.NDArray[np.float64]
 
@@ -25,7 +25,8 @@ class Family:
 
     @property
     def of_speed(self) -> LawOfSpeed:
-        """ε_n(v), with one parameter."""
+        """ε_n(v), with one parameter; a `Scattered` law is refused, whose scatter is inferred."""
+        check_steady(self.law)
         if isinstance(self.law.normal, Tabulated):
             raise ParameterError(Problem("law", ": a Tabulated ε_n has no parameter; take another material"))
         return law_of_speed(self.law)

@@ -24,6 +24,9 @@ pub(crate) trait Advance<S: Simd, T: Dimension> {
     /// Whether the work of the sink is interleaved with that of [`Advance::advance`].
     const TOGETHER: bool;
 
+    /// Whether ε_n is drawn for every impact.
+    fn scatters(&self) -> bool;
+
     /// Groups without particles.
     fn groups<const N: usize>(&self, simd: S) -> [Group<S, T>; N];
 
@@ -74,6 +77,11 @@ pub(crate) struct General<'a, 'b> {
 
 impl<S: Simd, T: Dimension, H: Hull, L: Respond> Advance<S, T> for Inlined<'_, H, L> {
     const TOGETHER: bool = true;
+
+    #[inline(always)]
+    fn scatters(&self) -> bool {
+        self.law.scatters()
+    }
 
     #[inline(always)]
     fn groups<const N: usize>(&self, simd: S) -> [Group<S, T>; N] {
@@ -136,19 +144,20 @@ impl<H: Hull, L: Respond> Inlined<'_, H, L> {
         let Self {
             body, hull, law, ..
         } = *self;
+        let Collisions {
+            points,
+            contacts,
+            chances,
+            responses,
+        } = collisions;
         if T::SPACE {
             let count = groups.len();
-            let Collisions {
-                points,
-                contacts,
-                responses,
-            } = collisions;
             let (contacts, responses) = (&mut contacts[..count], &mut responses[..count]);
             for (i, group) in groups.iter_mut().enumerate() {
                 points[i] = group.land(hull);
                 contacts[i] = group.contact(body, points[i]);
             }
-            law.respond_all::<S, true>(contacts, responses);
+            law.respond_all::<S, true>(contacts, chances, responses);
             for (i, group) in groups.iter_mut().enumerate() {
                 group.leave(body, points[i], &contacts[i], &responses[i]);
                 work_up::<S>(sink, i, 7);
@@ -159,7 +168,11 @@ impl<H: Hull, L: Respond> Inlined<'_, H, L> {
                 let point = group.land(hull);
                 let contact = group.contact(body, point);
                 let mut response = Response::none(contact.velocity.normal.simd());
-                law.respond_all::<S, false>(from_ref(&contact), from_mut(&mut response));
+                law.respond_all::<S, false>(
+                    from_ref(&contact),
+                    from_ref(&chances[i]),
+                    from_mut(&mut response),
+                );
                 group.leave(body, point, &contact, &response);
                 work_up::<S>(sink, i, 7);
             }
@@ -254,6 +267,11 @@ impl<'a, 'b> General<'a, 'b> {
 
 impl<S: Simd, T: Dimension> Advance<S, T> for General<'_, '_> {
     const TOGETHER: bool = false;
+
+    #[inline(always)]
+    fn scatters(&self) -> bool {
+        self.law.scatters()
+    }
 
     #[inline(always)]
     fn groups<const N: usize>(&self, simd: S) -> [Group<S, T>; N] {

@@ -47,6 +47,11 @@ pub(crate) fn bounce<S: Simd, T: Dimension, L: Advance<S, T>, const N: usize>(
         if !go_on() {
             break;
         }
+        if cycle.scatters() {
+            for (chances, group) in collisions.chances.iter_mut().zip(groups.iter()) {
+                *chances = group.particles.chances(release);
+            }
+        }
         cycle.advance(groups, &mut collisions, sink)?;
         ended = if L::TOGETHER {
             report::<S, T, _, false>(simd, groups, (body, limits), sink)

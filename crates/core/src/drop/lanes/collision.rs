@@ -74,10 +74,12 @@ impl<S: Simd> ContactPoint<S> {
     }
 }
 
-/// The impacts of all groups: where each body touches, what a law is asked, and what it answers.
+/// The impacts of all groups: where each body touches, what a law is asked, the numbers that a coefficient which scatters is drawn with,
+/// and what the law answers.
 pub(crate) struct Collisions<S: Simd> {
     pub points: [ContactPoint<S>; GROUPS],
     pub contacts: [Contact<Pack<S, 1>>; GROUPS],
+    pub chances: [Pack<S, 1>; GROUPS],
     pub responses: [Response<Pack<S, 1>>; GROUPS],
 }
 
@@ -87,6 +89,7 @@ impl<S: Simd> Collisions<S> {
         Self {
             points: [ContactPoint::none(simd); GROUPS],
             contacts: [Contact::none(simd); GROUPS],
+            chances: [Pack::splat(simd, 0.5); GROUPS],
             responses: [Response::none(simd); GROUPS],
         }
     }

@@ -29,6 +29,9 @@ const _: () = assert!(GROUPS <= MOST_CONTACTS);
 pub(crate) trait Release {
     /// The state of a particle of the run at its release.
     fn start(&self, particle: usize) -> State;
+
+    /// The number in (0, 1) that ε_n is drawn with at an impact of a particle, counted from 0, where it scatters.
+    fn chance(&self, particle: usize, impact: usize) -> f64;
 }
 
 /// The particle whose contact search did not converge.

@@ -1,6 +1,6 @@
 //! The particles of a group, one in each lane: which they are, how far they have come, and which have stopped.
 
-use super::group::Unconverged;
+use super::group::{Release, Unconverged};
 use super::impact::Sink;
 use crate::drop::stop::{COLLAPSE_RUN, StopReason, UNRESOLVED};
 use crate::simd::{LANES, Mask, Pack};
@@ -151,6 +151,17 @@ impl<S: Simd> Particles<S> {
         });
         self.ended = self.ended & !self.ended;
         self.has_ended = false;
+    }
+
+    /// The numbers that ε_n is drawn with at the next impacts, in the lanes that have a particle.
+    #[cold]
+    pub fn chances(&self, release: &impl Release) -> Pack<S, 1> {
+        let mut chances = 0.0 * self.number + 0.5;
+        self.active.each(|lane| {
+            let (particle, impacts) = self.trajectory(lane);
+            chances.as_mut_slice()[lane] = release.chance(particle, impacts);
+        });
+        chances
     }
 
     /// The particle in a lane, and the number of its impacts.

@@ -1,10 +1,14 @@
-//! The normal coefficient of restitution: a constant, or a function of the speed at which the contact approaches the plane.
+//! The normal coefficient of restitution: a constant, or a function of the speed at which the contact approaches the plane; it may
+//! scatter.
 
 mod plastic;
+mod scattered;
 mod tabulated;
 mod viscoelastic;
 
 pub use plastic::Plastic;
+pub use scattered::Scattered;
+pub(super) use scattered::scattered;
 pub use tabulated::{Points, Tabulated};
 pub use viscoelastic::{PADE_ABOVE, PADE_BELOW, Viscoelastic};
 
@@ -26,21 +30,32 @@ pub enum Normal<'a> {
     Tabulated(Tabulated<'a>),
 }
 
-/// A normal coefficient, with the table that it may own.
+/// A normal coefficient, with the table that it may own, and how it scatters.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Material {
     /// A function in closed form.
     Closed(Normal<'static>),
     /// Points of a table.
     Measured(Points),
+    /// Another one with scatter.
+    Scattered(Scattered),
 }
 
 impl Material {
-    /// The normal coefficient.
+    /// The normal coefficient, that about which it scatters if it does.
     pub fn normal(&self) -> Normal<'_> {
         match self {
             Self::Closed(normal) => *normal,
             Self::Measured(points) => points.coefficient().into(),
+            Self::Scattered(scattered) => scattered.around().normal(),
+        }
+    }
+
+    /// The standard deviation with which it scatters before truncation to [0, 1]; 0 if it does not.
+    pub fn deviation(&self) -> f64 {
+        match self {
+            Self::Closed(_) | Self::Measured(_) => 0.0,
+            Self::Scattered(scattered) => scattered.deviation(),
         }
     }
 }
@@ -52,7 +67,12 @@ impl<T: Into<Normal<'static>>> From<T> for Material {
 }
 
 /// Every material.
-pub const MATERIALS: &[Kind<Material>] = &[Viscoelastic::KIND, Plastic::KIND, Points::KIND];
+pub const MATERIALS: &[Kind<Material>] = &[
+    Viscoelastic::KIND,
+    Plastic::KIND,
+    Points::KIND,
+    Scattered::KIND,
+];
 
 impl Normal<'_> {
     /// The coefficient at a speed ≥ 0, in m/s, or in the core's unit of speed if it was scaled.
@@ -92,7 +112,7 @@ impl Normal<'_> {
     }
 
     /// The coefficient itself, or an error for a constant outside [0, 1].
-    pub(super) fn checked(self) -> Result<Self, Error> {
+    pub fn checked(self) -> Result<Self, Error> {
         if let Self::Constant(value) = self {
             Error::unless((0.0..=1.0).contains(&value), "normal", value, "in [0, 1]")?;
         }
