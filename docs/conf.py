@@ -40,6 +40,7 @@ nb_execution_cache_path = str(HERE.parent / "build" / "notebooks")
 nb_execution_raise_on_error = True
 nb_execution_in_temp = True
 nb_execution_timeout = 300
+nb_merge_streams = True
 nb_ipywidgets_js: dict[str, dict[str, str]] = {}  # no widgets, no script from elsewhere
 
 autosummary_generate = True
