@@ -82,27 +82,27 @@ if site := os.environ.get("RESTITUTION_SITE"):
 
 # The picture on a card is a part of a figure: its file, then left, top, right and bottom as shares of it.
 CARDS = {
-    "theorist": ("first-impact", 0.5, 0.0, 1.0, 0.49),
-    "experimenter": ("roundness", 0.0, 0.0, 1.0, 1.0),
-    "dem": ("golf", 0.0, 0.0, 0.5, 1.0),
-    "lecturer": ("lab-sheet", 0.0, 0.0, 1.0, 1.0),
-    "first-impact": ("first-impact", 0.0, 0.5, 0.5, 1.0),
-    "physics": ("locking", 0.0, 0.0, 0.43, 1.0),
-    "laws": ("laws", 0.265, 0.05, 0.515, 0.275),
-    "energy": ("laws", 0.515, 0.62, 1.0, 0.79),
-    "paper": ("fig2", 0.0, 0.0, 1.0, 1.0),
-    "fits": ("fits", 0.66, 0.0, 1.0, 0.5),
-    "theory": ("fits", 0.66, 0.5, 1.0, 1.0),
-    "near-round": ("locking", 0.48, 0.0, 1.0, 1.0),
-    "gas": ("cooling", 0.0, 0.06, 0.36, 1.0),
-    "shapes": ("golf", 0.5, 0.0, 1.0, 1.0),
-    "records": ("near_round", 0.67, 0.0, 1.0, 1.0),
-    "names": ("near_round", 0.33, 0.0, 0.67, 1.0),
-    "studies": ("near_round_maps", 0.0, 0.0, 0.7, 0.55),
-    "listening": ("clock", 0.0, 0.0, 1.0, 1.0),
-    "roundness": ("required", 0.0, 0.0, 1.0, 1.0),
-    "inference": ("calibration", 0.0, 0.0, 1.0, 0.4),
-    "lab-sheet": ("lab-sheet", 0.0, 0.0, 1.0, 1.0),
+    "theorist": ("first-impact.png", 0.5, 0.0, 1.0, 0.49),
+    "experimenter": ("roundness.png", 0.0, 0.0, 1.0, 1.0),
+    "dem": ("golf.png", 0.0, 0.0, 0.5, 1.0),
+    "lecturer": ("gain.gif", 0.0, 0.0, 1.0, 1.0),
+    "first-impact": ("first-impact.png", 0.0, 0.5, 0.5, 1.0),
+    "physics": ("impact.png", 0.0, 0.0, 0.5, 1.0),
+    "laws": ("laws.png", 0.265, 0.05, 0.515, 0.275),
+    "energy": ("laws.png", 0.515, 0.62, 1.0, 0.79),
+    "paper": ("fig2.png", 0.0, 0.0, 1.0, 1.0),
+    "fits": ("fits.png", 0.66, 0.0, 1.0, 0.5),
+    "theory": ("fits.png", 0.66, 0.5, 1.0, 1.0),
+    "near-round": ("near_round.png", 0.0, 0.0, 0.33, 1.0),
+    "gas": ("cooling.png", 0.0, 0.06, 0.33, 1.0),
+    "shapes": ("shapes.png", 0.0, 0.0, 1.0, 1.0),
+    "records": ("locking.png", 0.53, 0.0, 1.0, 1.0),
+    "names": ("impact.png", 0.0, 0.0, 1.0, 1.0),
+    "studies": ("near_round_maps.png", 0.0, 0.0, 0.7, 0.55),
+    "listening": ("clock.png", 0.0, 0.0, 1.0, 1.0),
+    "roundness": ("required.png", 0.0, 0.0, 1.0, 1.0),
+    "inference": ("calibration.png", 0.0, 0.0, 1.0, 0.4),
+    "lab-sheet": ("lab-sheet.png", 0.0, 0.0, 1.0, 1.0),
 }
 
 
@@ -111,7 +111,7 @@ def _cards() -> None:
     folder = BUILT.parent / "cards"
     folder.mkdir(exist_ok=True)
     for name, (figure, *box) in CARDS.items():
-        with Image.open(HERE / "images" / f"{figure}.png") as whole:
+        with Image.open(HERE / "images" / figure) as whole:
             width, height = whole.size
             left, top, right, bottom = box
             part = whole.crop((left * width, top * height, right * width, bottom * height)).convert("RGB")

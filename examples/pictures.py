@@ -1,9 +1,12 @@
 """Pictures and films of bodies and impacts: `python examples/pictures.py OUT` writes them into a folder."""
 
+import io
+import math
 import sys
 from pathlib import Path
 
 import xarray as xr
+from PIL import Image
 
 import restitution as rs
 
@@ -17,10 +20,33 @@ def drops() -> xr.Dataset:
     return rs.simulate(body, law, particles=400, impacts=12, record="state", seed=1)
 
 
+def shapes(style: str) -> Image.Image:
+    """Put bodies side by side: two dumbbells, a loaded sphere, a spherocylinder and two spheroids."""
+    bodies = (
+        rs.Dumbbell(radius=3e-3, separation=3e-3),
+        rs.Dumbbell(radius=(3e-3, 2e-3), separation=4e-3, density=(2500.0, 7800.0)),
+        rs.LoadedSphere(radius=4e-3, density=1200.0, load=5e-4, offset=2.5e-3),
+        rs.Spherocylinder(radius=2.5e-3, separation=5e-3),
+        rs.Spheroid(equatorial=2.5e-3, polar=5e-3),
+        rs.Spheroid(equatorial=4.5e-3, polar=2.5e-3),
+    )
+    drawn = []
+    for body in bodies:
+        content = io.BytesIO()
+        rs.figures.body(body, math.radians(55.0), style=style).savefig(content, dpi=150)
+        drawn.append(Image.open(content).convert("RGB"))
+    width, height = drawn[0].size
+    whole = Image.new("RGB", (3 * width, 2 * height))
+    for place, picture in enumerate(drawn):
+        whole.paste(picture, (place % 3 * width, place // 3 * height))
+    return whole
+
+
 def main(folder: Path) -> None:
     """Write everything."""
     data = drops()
     for ground in ("page", "page-dark"):
+        shapes(ground).save(folder / f"shapes{ground.removeprefix('page')}.png")
         drawn = rs.figures.impact(data, *IMPACT, style=ground)
         name = f"impact{ground.removeprefix('page')}.png"
         rs.figures.save(drawn, folder / name, title="An impact before and after")
