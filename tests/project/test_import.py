@@ -126,7 +126,8 @@ def test_every_public_name_has_an_example() -> None:
 def blocks(page: Path, language: str) -> list[str]:
     """The code blocks of a page that are in a language; those of Python may be cells of a notebook."""
     kinds = r"(?:python|\{code-cell\})" if language == "python" else language
-    return re.findall(rf"^```{kinds}\n(.*?)^```$", page.read_text(encoding="utf-8"), re.DOTALL | re.MULTILINE)
+    block = rf"^```{kinds}\n(?::\w+: .*\n)*(.*?)^```$"  # a cell may begin with options
+    return re.findall(block, page.read_text(encoding="utf-8"), re.DOTALL | re.MULTILINE)
 
 
 def promised(code: str) -> Iterator[str]:
