@@ -2,17 +2,12 @@
 
 from typing import TYPE_CHECKING, Any
 
+from restitution import _core
+
 if TYPE_CHECKING:
     from restitution import analytic, figures, fit, study
     from restitution._core import NumericalError, build_info
-    from restitution.bodies import (
-        Dumbbell,
-        LoadedSphere,
-        Spherocylinder,
-        Spheroid,
-        ball_grade,
-        from_roundness,
-    )
+    from restitution.bodies import *  # noqa: F403
     from restitution.distribution import DistanceWarning, FluctuatingRestitution
     from restitution.drop.compare import compare
     from restitution.drop.energy import EnergyWarning
@@ -25,42 +20,20 @@ if TYPE_CHECKING:
     from restitution.experiment.budget import ErrorBudget, RequiredRoundness, error_budget, required_roundness
     from restitution.experiment.inference import posterior
     from restitution.explorer import explore
-    from restitution.laws import (
-        ChatterjeeRuina,
-        Coulomb,
-        Frictionless,
-        Plastic,
-        Scattered,
-        Tabulated,
-        TangentialRestitution,
-        Viscoelastic,
-    )
+    from restitution.laws import *  # noqa: F403
     from restitution.study import sweep
 
 __all__ = [
-    "ChatterjeeRuina",
-    "Coulomb",
     "DistanceWarning",
-    "Dumbbell",
     "EnergyWarning",
     "ErrorBudget",
     "FluctuatingRestitution",
-    "Frictionless",
-    "LoadedSphere",
     "NumericalError",
-    "Plastic",
     "RandomHeight",
     "RandomSpin",
     "RequiredRoundness",
-    "Scattered",
     "SimulationInterrupted",
-    "Spherocylinder",
-    "Spheroid",
-    "Tabulated",
-    "TangentialRestitution",
-    "Viscoelastic",
     "analytic",
-    "ball_grade",
     "build_info",
     "compare",
     "error_budget",
@@ -68,7 +41,6 @@ __all__ = [
     "figures",
     "fit",
     "flight",
-    "from_roundness",
     "posterior",
     "reduce",
     "required_roundness",
@@ -81,10 +53,8 @@ __all__ = [
 ]
 
 _HOMES = {
-    "Dumbbell": "bodies",
-    "LoadedSphere": "bodies",
-    "Spherocylinder": "bodies",
-    "Spheroid": "bodies",
+    **dict.fromkeys((entry["name"] for entry in _core.BODIES), "bodies"),
+    **dict.fromkeys((entry["name"] for entry in (*_core.LAWS, *_core.MATERIALS)), "laws"),
     "ball_grade": "bodies",
     "from_roundness": "bodies",
     "ErrorBudget": "experiment.budget",
@@ -103,14 +73,6 @@ _HOMES = {
     "RandomSpin": "drop.release",
     "reduce": "drop.reduce",
     "SimulationInterrupted": "drop.simulate",
-    "ChatterjeeRuina": "laws",
-    "Coulomb": "laws",
-    "Frictionless": "laws",
-    "Plastic": "laws",
-    "Scattered": "laws",
-    "Tabulated": "laws",
-    "TangentialRestitution": "laws",
-    "Viscoelastic": "laws",
     "simulate": "drop.simulate",
     "statistics": "drop.statistics",
     "sweep": "study",
@@ -119,6 +81,9 @@ _HOMES = {
 """The module that each public name comes from; the others are modules themselves."""
 _FOLDERS = {"flight": "experiment.flight", "sound": "experiment.sound"}
 """The folders of the public modules that do not stand at the root."""
+
+if not TYPE_CHECKING:  # those of the table, which a type checker finds in the modules
+    __all__ = sorted({*__all__, *_HOMES})
 
 
 def __getattr__(name: str) -> Any:

@@ -211,7 +211,7 @@ def test_no_branch_is_missed_whatever_the_body_and_the_law(
         "ruina": lambda: rs.ChatterjeeRuina(normal=normal, tangential=tangential, friction=friction),
     }
     law = make[kind]()
-    height = body.solid.farthest() * (1 + above)
+    height = body.compiled.farthest() * (1 + above)
     fall = {} if isinstance(normal, float) else {"release_height": height, "gravity": 9.81}
     try:
         distribution: Any = first_impact(body, law, orientation, **fall)

@@ -53,7 +53,7 @@ def check(body: Body, expected: Properties, origin: float = 0.0, rtol: float = 1
     assert body.mass == pytest.approx(expected.mass, rel=rtol)
     assert body.transverse_inertia == pytest.approx(expected.transverse, rel=rtol)
     assert body.axial_inertia == pytest.approx(expected.axial, rel=rtol)
-    centre = body.solid.centre_of_mass + origin
+    centre = body.compiled.centre_of_mass + origin
     assert centre == pytest.approx(expected.centre, rel=rtol, abs=rtol * size)
 
 

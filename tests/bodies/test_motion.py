@@ -252,7 +252,11 @@ MAKERS: list[tuple[str, Callable[[], Body], str]] = [
         lambda: rs.LoadedSphere(radius=1.0, load=-1.0, offset=0.5),
         "load = -1.0: must be a finite number",
     ),
-    ("long", lambda: rs.Spheroid(equatorial=1.0, polar=1001.0), "polar = 1001.0: must be between 1/1000 and"),
+    (
+        "long",
+        lambda: rs.Spheroid(equatorial=1.0, polar=1001.0),
+        "polar = 1001.0, equatorial = 1.0: must be between 1/1000",
+    ),
     ("flat", lambda: rs.Spheroid(equatorial=1.0, polar=0.0), "polar = 0.0: must be a finite number > 0"),
     (
         "tiny",

@@ -331,7 +331,6 @@ def test_parameters_of_another_law_are_those_of_least_squares() -> None:
             r"^law = Frictionless\(.*yield_speed=50\.0\)\): must be one from whose ε_n at the speeds "
             r"1\.40071 to 1\.40071 m/s the yield_speed can be fitted",
         ),
-        (lambda: mean_radius(3), r"^body = 3: must be a Dumbbell"),  # type: ignore[arg-type]
     ],
 )
 def test_what_is_no_experiment_is_said(make: Callable[[], object], said: str) -> None:

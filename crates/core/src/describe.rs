@@ -28,6 +28,8 @@ pub struct Parameter {
     pub allowed: Allowed,
     /// Its value unless one is given; it must be given if there is none.
     pub default: Option<Argument<'static>>,
+    /// A usual value, for files that show what can be written, and for tests; those of all parameters go together.
+    pub example: Argument<'static>,
 }
 
 /// The values that a parameter may have.
@@ -97,6 +99,7 @@ impl Parameter {
         text: &'static str,
         unit: Option<&'static str>,
         allowed: Allowed,
+        example: Argument<'static>,
     ) -> Self {
         Self {
             name,
@@ -104,6 +107,41 @@ impl Parameter {
             unit,
             allowed,
             default: None,
+            example,
+        }
+    }
+
+    /// A number that must be given, in a unit.
+    pub(crate) const fn number(
+        name: &'static str,
+        text: &'static str,
+        unit: &'static str,
+        interval: Interval,
+        example: f64,
+    ) -> Self {
+        let (allowed, example) = (Allowed::Number(interval), Argument::Number(example));
+        Self::new(name, text, Some(unit), allowed, example)
+    }
+
+    /// A positive length, in m.
+    pub(crate) const fn length(name: &'static str, text: &'static str, example: f64) -> Self {
+        Self::number(name, text, "m", Interval::POSITIVE, example)
+    }
+
+    /// A density that is that of glass unless one is given.
+    pub(crate) const fn density(text: &'static str) -> Self {
+        let glass = Argument::Number(2500.0);
+        Self::number("density", text, "kg m-3", Interval::POSITIVE, 2500.0).or(glass)
+    }
+
+    /// The same, which each of two spheres may have its own of.
+    pub(crate) const fn of_each(self) -> Self {
+        match self.allowed {
+            Allowed::Number(interval) => Self {
+                allowed: Allowed::Pair(interval),
+                ..self
+            },
+            _ => self,
         }
     }
 

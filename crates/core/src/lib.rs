@@ -56,17 +56,12 @@ pub use drop::{
     Orientation, Run, Scales, SingleImpact, Spin, StopReason, collide, first_contact, trajectory,
 };
 pub use error::{Error, Value};
-pub use law::{
-    ChatterjeeRuina, Coulomb, Frictionless, Hypothesis, LAWS, Law, MATERIALS, Material, Normal,
-    Plastic, Points, Rule, Scattered, Tabulated, TangentialRestitution, Viscoelastic,
-};
+pub use law::*;
 pub use math::{Quaternion, Symmetric, Vector};
 pub use memory::{collected, copied};
 pub use motion::{Rotation, State, Top};
 pub use record::{Columns, PER_IMPACT, PER_PARTICLE, Records, Values, Variable, When};
-pub use shape::{
-    BODIES, Body, Dumbbell, LoadedSphere, Shape, Solid, Sphere, Spherocylinder, Spheroid, Surface,
-};
+pub use shape::*;
 pub use simd::{Level, elementary};
 pub use simulate::simulate_series;
 pub use threads::{Monitor, Resources, STACK, default_threads};

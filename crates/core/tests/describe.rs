@@ -2,23 +2,8 @@
 
 use restitution_core::describe::{Allowed, Argument, Interval, Kind, Parameter};
 use restitution_core::law::Creation;
-use restitution_core::{BODIES, Error, Hypothesis, LAWS, MATERIALS};
-
-const SPEEDS: [f64; 2] = [1.0, 2.0];
-const HALVES: [f64; 2] = [0.5, 0.5];
-
-/// A value inside that goes with those of the other parameters.
-fn usual(about: &Parameter) -> Argument<'static> {
-    match about.allowed {
-        Allowed::Number(_) | Allowed::Pair(_) if about.name == "poisson_ratio" => {
-            Argument::Number(0.2)
-        }
-        Allowed::Number(_) | Allowed::Pair(_) => Argument::Number(1.0),
-        Allowed::Numbers(interval) if interval.high == 1.0 => Argument::Numbers(&HALVES),
-        Allowed::Numbers(_) => Argument::Numbers(&SPEEDS),
-        Allowed::Name(names) => Argument::Name(names[0]),
-    }
-}
+use restitution_core::{Arc, BODIES, Error, Hypothesis, LAWS, MATERIALS, Solid};
+use std::f64::consts::PI;
 
 /// Numbers at the ends that are inside, and next to them outside.
 fn ends(interval: Interval) -> (Vec<f64>, Vec<f64>) {
@@ -39,13 +24,17 @@ fn ends(interval: Interval) -> (Vec<f64>, Vec<f64>) {
 
 /// What a number may be, as an argument of this parameter.
 fn given(about: &Parameter, number: f64) -> Argument<'static> {
-    match about.allowed {
-        Allowed::Numbers(interval) if interval.high == 1.0 => {
-            Argument::Numbers(Vec::leak(vec![number, HALVES[1]]))
+    match about.example {
+        Argument::Numbers([_, rest @ ..]) => {
+            Argument::Numbers(Vec::leak([&[number], rest].concat()))
         }
-        Allowed::Numbers(_) => Argument::Numbers(Vec::leak(vec![number, SPEEDS[1]])),
         _ => Argument::Number(number),
     }
+}
+
+/// The example of every parameter.
+fn examples(parameters: &[Parameter]) -> Vec<Argument<'static>> {
+    parameters.iter().map(|about| about.example).collect()
 }
 
 fn refused<T>(made: Result<T, Error>, name: &str) {
@@ -56,7 +45,7 @@ fn refused<T>(made: Result<T, Error>, name: &str) {
 }
 
 fn check<T>(kind: &Kind<T>) {
-    let all: Vec<_> = kind.parameters.iter().map(usual).collect();
+    let all: Vec<_> = examples(kind.parameters);
     assert!((kind.make)(&all).is_ok(), "{}", kind.name);
     for (place, about) in kind.parameters.iter().enumerate() {
         let with = |argument| {
@@ -123,4 +112,118 @@ fn every_hypothesis_is_in_the_table() {
     let coulomb = LAWS.iter().find(|law| law.kind.name == "Coulomb").unwrap();
     let names = Hypothesis::NAMED.map(|(name, _)| name);
     assert!(matches!(coulomb.kind.parameters[1].allowed, Allowed::Name(known) if *known == names));
+}
+
+/// Bodies of the table: with the parameters of their examples, and with each number halved and doubled in turn.
+fn bodies(homogeneous: bool) -> Vec<(String, Solid, f64)> {
+    let mut found = vec![];
+    for kind in BODIES {
+        for (place, factor) in (0..kind.parameters.len()).flat_map(|i| [(i, 0.5), (i, 2.0)]) {
+            let mut arguments = examples(kind.parameters);
+            if let Argument::Number(number) = &mut arguments[place] {
+                *number *= factor;
+            }
+            let mut density = f64::NAN;
+            for (about, argument) in kind.parameters.iter().zip(&mut arguments) {
+                match argument {
+                    Argument::Number(mass) if homogeneous && about.unit == Some("kg") => {
+                        *mass = 0.0
+                    }
+                    Argument::Number(number) if about.name == "density" => density = *number,
+                    _ => (),
+                }
+            }
+            if let Ok(body) = (kind.make)(&arguments) {
+                let name = format!("{} {arguments:?}", kind.name);
+                found.push((name, body, density));
+            }
+        }
+    }
+    assert!(found.len() > 5 * BODIES.len());
+    found
+}
+
+/// The points (place on the axis, distance from it) of an arc.
+fn point(arc: &Arc, t: f64) -> [f64; 2] {
+    [arc.centre + arc.along * t.cos(), arc.across * t.sin()]
+}
+
+/// The integrals ∫f(z, r) |dz| under the outline, by Simpson's rule in the angle of each arc and along the straight line.
+fn integral(outline: &[Arc; 2], f: impl Fn(f64, f64) -> f64) -> f64 {
+    const PARTS: usize = 2000;
+    let simpson = |g: &dyn Fn(f64) -> f64, from: f64, to: f64| {
+        let step = (to - from) / PARTS as f64;
+        let weight = |k: usize| match k {
+            0 | PARTS => 1.0,
+            _ if k % 2 == 1 => 4.0,
+            _ => 2.0,
+        };
+        let sum: f64 = (0..=PARTS)
+            .map(|k| weight(k) * g(from + k as f64 * step))
+            .sum();
+        sum * step / 3.0
+    };
+    let [one, two] = outline;
+    let arcs = outline.iter().map(|arc| {
+        let under = |t: f64| {
+            let [z, r] = point(arc, t);
+            f(z, r) * arc.along * t.sin()
+        };
+        simpson(&under, arc.from, arc.to)
+    });
+    let ([high, r_high], [low, r_low]) = (point(one, one.to), point(two, two.from));
+    let line = |z: f64| {
+        let share = if high > low {
+            (z - low) / (high - low)
+        } else {
+            0.0
+        };
+        f(z, r_low + share * (r_high - r_low))
+    };
+    arcs.sum::<f64>() + simpson(&line, low, high)
+}
+
+/// Mass, centre of mass and both moments of inertia are the integrals over the slices of a homogeneous solid with the outline.
+#[test]
+fn bodies_weigh_what_their_outline_encloses() {
+    for (name, body, density) in bodies(true) {
+        let close = |found: f64, exact: f64, what: &str| {
+            let wrong = (found / exact - 1.0).abs();
+            assert!(wrong < 1e-11, "{name}: {what} {found} for {exact}");
+        };
+        let mass = density * PI * integral(&body.outline, |_, r| r * r);
+        close(body.mass, mass, "mass");
+        let moment = density * PI * integral(&body.outline, |z, r| z * r * r);
+        assert!(
+            moment.abs() < 1e-11 * mass * body.farthest(),
+            "{name}: {moment}"
+        );
+        let axial = density * PI * integral(&body.outline, |_, r| 0.5 * r.powi(4));
+        close(body.axial_inertia, axial, "J_zz");
+        let second = density * PI * integral(&body.outline, |z, r| z * z * r * r);
+        close(body.transverse_inertia, 0.5 * axial + second, "J_xx");
+    }
+}
+
+/// The centre of mass is as high over the plane as the outline reaches below it, at every angle.
+#[test]
+fn bodies_touch_with_their_outline() {
+    for (name, body, _) in bodies(false) {
+        for k in 0..=200 {
+            let angle = PI * f64::from(k) / 200.0;
+            let (sine, cosine) = angle.sin_cos();
+            let depth = body.outline.iter().map(|arc| {
+                // −(z cos θ − r sin θ) is largest there, or at an end of the arc.
+                let lowest = (arc.across * sine).atan2(-arc.along * cosine);
+                let [z, r] = point(arc, lowest.clamp(arc.from, arc.to));
+                r * sine - z * cosine
+            });
+            let depth = depth.fold(0.0, f64::max);
+            let wrong = (body.lowest(angle.cos()) - depth).abs();
+            assert!(
+                wrong < 1e-14 * body.unit * 10.0,
+                "{name} at {angle}: {wrong:e}"
+            );
+        }
+    }
 }

@@ -1,9 +1,9 @@
 //! Bodies, made from the parameters of a shape in SI units.
 
-use crate::errors::python_error;
+use crate::describe::{self, Given};
 use numpy::PyReadonlyArray1;
 use pyo3::prelude::*;
-use restitution_core::{Dumbbell, LoadedSphere, Shape, Spherocylinder, Spheroid};
+use restitution_core::BODIES;
 
 /// A body of revolution, ready for a run.
 #[pyclass(frozen, module = "restitution._core")]
@@ -35,6 +35,15 @@ impl Solid {
         self.0.centre_of_mass
     }
 
+    /// The arcs of the outline at the end to which the axis points and at the other, joined by a straight line: each an ellipse with its
+    /// centre on the axis, its semi-axes along and across the axis, and the angles from and to which it goes (m, rad).
+    #[getter]
+    fn outline(&self) -> [[f64; 5]; 2] {
+        self.0
+            .outline
+            .map(|arc| [arc.centre, arc.along, arc.across, arc.from, arc.to])
+    }
+
     /// Smallest height of the centre of mass, in m, at which no part is below the plane for any cos θ in `cosines`.
     fn lowest(&self, cosines: PyReadonlyArray1<'_, f64>) -> PyResult<f64> {
         let heights = cosines
@@ -61,34 +70,13 @@ impl Solid {
     }
 }
 
-fn solid<S: Shape>(shape: Result<S, restitution_core::Error>) -> PyResult<Solid> {
-    Ok(Solid(shape.map_err(python_error)?.into()))
-}
-
+/// The body with this name, made from all its parameters in their order.
 #[pyfunction]
-fn dumbbell(radius: [f64; 2], separation: f64, density: [f64; 2]) -> PyResult<Solid> {
-    solid(Dumbbell::unequal(radius, separation, density))
-}
-
-#[pyfunction]
-fn loaded_sphere(radius: f64, density: f64, load: f64, offset: f64) -> PyResult<Solid> {
-    solid(LoadedSphere::new(radius, density, load, offset))
-}
-
-#[pyfunction]
-fn spherocylinder(radius: f64, separation: f64, density: f64) -> PyResult<Solid> {
-    solid(Spherocylinder::new(radius, separation, density))
-}
-
-#[pyfunction]
-fn spheroid(equatorial: f64, polar: f64, density: f64) -> PyResult<Solid> {
-    solid(Spheroid::new(equatorial, polar, density))
+fn body(name: &str, arguments: Vec<Given<'_>>) -> PyResult<Solid> {
+    describe::made(BODIES.iter(), name, &arguments).map(Solid)
 }
 
 pub fn add_to(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<Solid>()?;
-    module.add_function(wrap_pyfunction!(dumbbell, module)?)?;
-    module.add_function(wrap_pyfunction!(loaded_sphere, module)?)?;
-    module.add_function(wrap_pyfunction!(spherocylinder, module)?)?;
-    module.add_function(wrap_pyfunction!(spheroid, module)?)
+    module.add_function(wrap_pyfunction!(body, module)?)
 }

@@ -1,10 +1,45 @@
 //! The table of bodies, laws and materials, as dictionaries.
 
+use crate::errors::python_error;
+use numpy::PyReadonlyArray1;
+use pyo3::exceptions::PyLookupError;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
 use restitution_core::describe::{Allowed, Argument, Interval, Kind, Parameter};
-use restitution_core::law::Creation;
+use restitution_core::law::{Creation, LawKind, Slip};
 use restitution_core::{BODIES, LAWS, MATERIALS};
+
+/// A parameter as Python gives it.
+#[derive(FromPyObject)]
+pub enum Given<'py> {
+    Numbers(PyReadonlyArray1<'py, f64>),
+    Number(f64),
+    Name(String),
+    Pair([f64; 2]),
+}
+
+/// What the table has under a name, made from its parameters.
+pub fn made<'a, T: 'static>(
+    mut table: impl Iterator<Item = &'a Kind<T>>,
+    name: &str,
+    given: &[Given<'_>],
+) -> PyResult<T> {
+    let kind = table
+        .find(|kind| kind.name == name)
+        .ok_or_else(|| PyLookupError::new_err(format!("no {name} in the table")))?;
+    let arguments: Vec<_> = given
+        .iter()
+        .map(|given| {
+            Ok(match given {
+                Given::Number(number) => Argument::Number(*number),
+                Given::Name(name) => Argument::Name(name),
+                Given::Pair(pair) => Argument::Pair(*pair),
+                Given::Numbers(numbers) => Argument::Numbers(numbers.as_slice()?),
+            })
+        })
+        .collect::<PyResult<_>>()?;
+    (kind.make)(&arguments).map_err(python_error)
+}
 
 fn argument(py: Python<'_>, given: Argument<'_>) -> PyResult<Py<PyAny>> {
     Ok(match given {
@@ -16,7 +51,7 @@ fn argument(py: Python<'_>, given: Argument<'_>) -> PyResult<Py<PyAny>> {
 }
 
 /// Name, text and unit of a parameter; `type`, and the interval (`low`, `high`, `closed` for whether the lower end belongs to it) or the
-/// `names` that are allowed; `default`, unless it must be given.
+/// `names` that are allowed; `default`, unless it must be given; `example`.
 fn parameter<'py>(py: Python<'py>, about: &Parameter) -> PyResult<Bound<'py, PyDict>> {
     let entry = PyDict::new(py);
     entry.set_item("name", about.name)?;
@@ -37,6 +72,7 @@ fn parameter<'py>(py: Python<'py>, about: &Parameter) -> PyResult<Bound<'py, PyD
             entry.set_item("names", names)?;
         }
     }
+    entry.set_item("example", argument(py, about.example)?)?;
     if let Some(default) = about.default {
         entry.set_item("default", argument(py, default)?)?;
     }
@@ -63,7 +99,7 @@ pub fn add_to(module: &Bound<'_, PyModule>) -> PyResult<()> {
     let py = module.py();
     module.add("BODIES", kinds(py, BODIES)?)?;
     module.add("MATERIALS", kinds(py, MATERIALS)?)?;
-    let law = |about: &restitution_core::law::LawKind| {
+    let law = |about: &LawKind| {
         let entry = kind(py, &about.kind)?;
         match about.creates_energy {
             Creation::Never => entry.set_item("creates_energy", false)?,
@@ -72,6 +108,16 @@ pub fn add_to(module: &Bound<'_, PyModule>) -> PyResult<()> {
                 entry.set_item("creates_energy", (parameter, value))?;
             }
         }
+        let slip = |slip: Slip| match slip {
+            Slip::Free => "free",
+            Slip::Stuck => "stuck",
+            Slip::Sliding => "sliding",
+            Slip::Part => "part",
+        };
+        let from_rest = about
+            .from_rest
+            .map(|[within, beyond]| (slip(within), slip(beyond)));
+        entry.set_item("from_rest", from_rest)?;
         Ok(entry)
     };
     let laws: Vec<_> = LAWS.iter().map(law).collect::<PyResult<_>>()?;

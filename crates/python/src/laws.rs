@@ -1,15 +1,13 @@
 //! Normal coefficients and laws, checked when they are made, and their response to single contacts.
 
+use crate::describe::{self, Given};
 use crate::errors::python_error;
 use numpy::{IntoPyArray, PyArray1, PyReadonlyArray1};
 use pyo3::prelude::*;
 use restitution_core::law::{
     AxialCompliance, Components, Contact, MOST_FRICTION, PADE_ABOVE, PADE_BELOW,
 };
-use restitution_core::{
-    ChatterjeeRuina, Coulomb, Error, Frictionless, Hypothesis, Normal, Plastic, Points, Rule,
-    Scattered, TangentialRestitution, Viscoelastic, collected,
-};
+use restitution_core::{Error, LAWS, MATERIALS, Normal, Rule, Scattered, collected};
 use std::sync::Arc;
 
 /// A normal coefficient that depends on the speed.
@@ -40,61 +38,32 @@ impl Material {
     }
 }
 
-fn closed(normal: Result<impl Into<Normal<'static>>, Error>) -> PyResult<Material> {
-    let normal = normal.map_err(python_error)?.into();
-    Ok(Material(Arc::new(restitution_core::Material::Closed(
-        normal,
-    ))))
-}
-
+/// The material with this name, made from all its parameters in their order.
 #[pyfunction]
-fn viscoelastic(
-    young_modulus: f64,
-    poisson_ratio: f64,
-    dissipation: f64,
-    density: f64,
-    radius: f64,
-) -> PyResult<Material> {
-    closed(Viscoelastic::new(
-        young_modulus,
-        poisson_ratio,
-        dissipation,
-        density,
-        radius,
-    ))
-}
-
-#[pyfunction]
-fn plastic(yield_speed: f64) -> PyResult<Material> {
-    closed(Plastic::new(yield_speed))
-}
-
-#[pyfunction]
-fn tabulated(v: PyReadonlyArray1<'_, f64>, e: PyReadonlyArray1<'_, f64>) -> PyResult<Material> {
-    let points = Points::new(v.as_slice()?, e.as_slice()?).map_err(python_error)?;
-    Ok(Material(Arc::new(restitution_core::Material::Measured(
-        points,
-    ))))
+fn material(name: &str, arguments: Vec<Given<'_>>) -> PyResult<Material> {
+    let made = describe::made(MATERIALS.iter(), name, &arguments)?;
+    Ok(Material(Arc::new(made)))
 }
 
 /// A constant normal coefficient, or a material.
 #[derive(FromPyObject)]
-enum Given<'py> {
+enum Coefficient<'py> {
     Constant(f64),
     Material(PyRef<'py, Material>),
 }
 
-impl Given<'_> {
+impl Coefficient<'_> {
     fn material(&self) -> Result<restitution_core::Material, Error> {
         Ok(match self {
-            Given::Constant(value) => Normal::Constant(*value).checked()?.into(),
-            Given::Material(material) => restitution_core::Material::clone(&material.0),
+            Self::Constant(value) => Normal::Constant(*value).checked()?.into(),
+            Self::Material(material) => restitution_core::Material::clone(&material.0),
         })
     }
 }
 
+/// A coefficient that scatters about a number or another material, which no row of parameters holds.
 #[pyfunction]
-fn scattered(normal: Given<'_>, deviation: f64) -> PyResult<Material> {
+fn scattered(normal: Coefficient<'_>, deviation: f64) -> PyResult<Material> {
     let around = normal.material().map_err(python_error)?;
     let scattered = Scattered::new(around, deviation).map_err(python_error)?;
     Ok(Material(Arc::new(restitution_core::Material::Scattered(
@@ -143,48 +112,23 @@ impl Law {
 
 type Triple = (f64, f64, f64);
 
-fn law(normal: Given<'_>, rule: Result<impl Into<Rule>, Error>) -> PyResult<Law> {
-    let rule = rule.map_err(python_error)?.into();
+/// The law with this name, made from the normal coefficient and all its other parameters in their order.
+#[pyfunction]
+fn law(name: &str, normal: Coefficient<'_>, arguments: Vec<Given<'_>>) -> PyResult<Law> {
+    let rule = describe::made(LAWS.iter().map(|law| &law.kind), name, &arguments)?;
     let coefficient = match normal {
-        Given::Constant(_) => Arc::new(normal.material().map_err(python_error)?),
-        Given::Material(material) => Arc::clone(&material.0),
+        Coefficient::Constant(_) => Arc::new(normal.material().map_err(python_error)?),
+        Coefficient::Material(material) => Arc::clone(&material.0),
     };
     Ok(Law { coefficient, rule })
-}
-
-#[pyfunction]
-fn tangential_restitution(normal: Given<'_>, tangential: f64) -> PyResult<Law> {
-    law(normal, TangentialRestitution::new(tangential))
-}
-
-#[pyfunction]
-fn frictionless(normal: Given<'_>) -> PyResult<Law> {
-    law(normal, Ok(Frictionless))
-}
-
-#[pyfunction]
-fn coulomb(normal: Given<'_>, friction: f64, hypothesis: &str) -> PyResult<Law> {
-    let hypothesis = Hypothesis::named(hypothesis).map_err(python_error)?;
-    law(normal, Coulomb::new(friction, hypothesis))
-}
-
-#[pyfunction]
-fn chatterjee_ruina(normal: Given<'_>, tangential: f64, friction: f64) -> PyResult<Law> {
-    law(normal, ChatterjeeRuina::new(tangential, friction))
 }
 
 pub fn add_to(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add("MOST_FRICTION", MOST_FRICTION)?;
     module.add("PADE", (PADE_ABOVE, PADE_BELOW))?;
-    module.add("HYPOTHESES", Hypothesis::NAMED.map(|(name, _)| name))?;
     module.add_class::<Material>()?;
     module.add_class::<Law>()?;
-    module.add_function(wrap_pyfunction!(viscoelastic, module)?)?;
-    module.add_function(wrap_pyfunction!(plastic, module)?)?;
-    module.add_function(wrap_pyfunction!(tabulated, module)?)?;
+    module.add_function(wrap_pyfunction!(material, module)?)?;
     module.add_function(wrap_pyfunction!(scattered, module)?)?;
-    module.add_function(wrap_pyfunction!(tangential_restitution, module)?)?;
-    module.add_function(wrap_pyfunction!(frictionless, module)?)?;
-    module.add_function(wrap_pyfunction!(coulomb, module)?)?;
-    module.add_function(wrap_pyfunction!(chatterjee_ruina, module)?)
+    module.add_function(wrap_pyfunction!(law, module)?)
 }

@@ -49,8 +49,9 @@ fn parameter(about: &Parameter) -> String {
     let default = about.default.map_or(String::new(), |default| {
         format!(",\"default\":{}", argument(default))
     });
+    let example = argument(about.example);
     format!(
-        "{{\"name\":{},\"text\":{},\"unit\":{},{allowed}{default}}}",
+        "{{\"name\":{},\"text\":{},\"unit\":{},{allowed},\"example\":{example}{default}}}",
         text(about.name),
         text(about.text),
         about.unit.map_or("null".to_owned(), text)

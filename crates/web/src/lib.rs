@@ -1,7 +1,7 @@
 //! The binding for the browser: it takes a run as a row of numbers and returns tables of numbers. It contains no physics, no threads
 //! and no unsafe block; only the functions that the page calls are exported.
 //!
-//! The page writes `parameters::COUNT` numbers at [`run_parameters`], calls [`simulate`] or [`follow`], and reads the table
+//! The page writes `parameters::COUNT` numbers at [`run_parameters`], calls [`simulate`], [`follow`] or [`outline`], and reads the table
 //! at [`table`], of as many numbers as the call returned. A call that fails returns −1, and [`message`] says why. What bodies and laws
 //! there are, and with which parameters, [`describe`] says.
 #![deny(unsafe_code)]
@@ -60,6 +60,20 @@ pub extern "C" fn simulate(first: usize, count: usize) -> f64 {
 #[unsafe(no_mangle)]
 pub extern "C" fn follow(particle: usize) -> f64 {
     keep(|parameters| path::follow(&parameters.run()?, particle))
+}
+
+/// The outline of the body: two rows, of the arcs at the ends of the axis, each centre, semi-axes along and across the axis, and the
+/// angles from and to which the arc goes.
+#[allow(unsafe_code)]
+#[unsafe(no_mangle)]
+pub extern "C" fn outline() -> f64 {
+    keep(|parameters| {
+        let arcs = parameters.run()?.body.outline;
+        Ok(arcs
+            .iter()
+            .flat_map(|arc| [arc.centre, arc.along, arc.across, arc.from, arc.to])
+            .collect())
+    })
 }
 
 /// Address of the table that the last call made.

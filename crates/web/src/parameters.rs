@@ -3,9 +3,25 @@
 use restitution_core::describe::{Allowed, Argument, Kind};
 use restitution_core::{BODIES, Error, LAWS, Law, Orientation, Run, Solid, Spin, Vector};
 
-/// Places for the parameters of a body, and of a law beside its normal coefficient.
-pub const OF_BODY: usize = 4;
-pub const OF_LAW: usize = 2;
+/// Places for the parameters of a body, and of a law beside its normal coefficient: as many as one has.
+pub const OF_BODY: usize = {
+    let (mut most, mut i) = (0, 0);
+    while i < BODIES.len() {
+        let count = BODIES[i].parameters.len();
+        most = if count > most { count } else { most };
+        i += 1;
+    }
+    most
+};
+pub const OF_LAW: usize = {
+    let (mut most, mut i) = (0, 0);
+    while i < LAWS.len() {
+        let count = LAWS[i].kind.parameters.len();
+        most = if count > most { count } else { most };
+        i += 1;
+    }
+    most
+};
 
 /// Number of parameters: body and law with theirs, the normal coefficient, and sixteen of the run.
 pub const COUNT: usize = 1 + OF_BODY + 1 + 1 + OF_LAW + 16;
@@ -97,13 +113,6 @@ fn law(row: &mut Row<'_>) -> Result<Law<'static>, Error> {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    /// There are places for the parameters of every body and of every law.
-    #[test]
-    fn rows_are_wide_enough() {
-        assert!(BODIES.iter().all(|kind| kind.parameters.len() <= OF_BODY));
-        assert!(LAWS.iter().all(|law| law.kind.parameters.len() <= OF_LAW));
-    }
 
     /// Every number of the row is read.
     #[test]

@@ -76,12 +76,6 @@ def unknown(name: str, taker: str, allowed: Iterable[str], prefix: str = "") -> 
     return Problem(prefix + name, f": unknown; {meant}{taker} takes {', '.join(names)}")
 
 
-def listed(kinds: Iterable[type]) -> str:
-    """Name classes in words."""
-    *others, last = (kind.__name__ for kind in kinds)
-    return f"{', '.join(others)} or {last}"
-
-
 _SHORT = Repr()
 _SHORT.maxstring = _SHORT.maxother = 72
 

@@ -8,7 +8,7 @@ from restitution.analytic._frozen import FirstImpact, check
 from restitution.analytic._normal import Fall
 from restitution.analytic._orientation import ORIENTATIONS, OrientationName
 from restitution.analytic._two_balls import TwoBallsFirstImpact
-from restitution.bodies import Body, Dumbbell, LoadedSphere, Spherocylinder, Spheroid
+from restitution.bodies import Body, Dumbbell, Spherocylinder
 from restitution.laws import Frictionless, Law, TangentialRestitution
 
 SHORTEST, LONGEST = 1e-100, 1e100  # L/R whose powers, up to the third, are normal numbers
@@ -31,10 +31,10 @@ def first_impact(
 
     Parameters
     ----------
-    body : Dumbbell, LoadedSphere, Spherocylinder or Spheroid
+    body : Dumbbell or another body
         Not a sphere about its centre of mass. For two equal balls under the paper's law or without friction,
         L/R from 1e-100 to 1e100; else such that ε varies by 1e-9 at least.
-    law : TangentialRestitution, Frictionless, Coulomb or ChatterjeeRuina
+    law : TangentialRestitution or another law
         Law of the impact.
     orientation : {"uniform-angle", "isotropic"}
         Law of the angle θ between symmetry axis and plane normal: θ uniform in [0, π) as in the paper, or the
@@ -96,13 +96,13 @@ def _fall(body: Body, law: Law, release_height: float | None, gravity: float | N
                 raise ParameterError(
                     wrong(name, value, f"left out: law.normal = {law.normal!r} at any speed")
                 )
-        return Fall(release_height=2.0 * body.solid.farthest(), gravity=1.0)  # any: nothing depends on it
+        return Fall(release_height=2.0 * body.compiled.farthest(), gravity=1.0)  # any: nothing depends on it
     for name, value in given.items():
         if value is None:
             text = f": missing; law.normal = {type(law.normal).__name__} depends on the speed"
             raise ParameterError(Problem(name, text))
     fall = Fall(**given)
-    highest = body.solid.farthest()
+    highest = body.compiled.farthest()
     if not fall.release_height > highest * (1.0 + 1e-9):
         allowed = f"more than {highest!r} m, or the body may touch the plane at release"
         raise ParameterError(wrong("release_height", release_height, allowed))
@@ -110,18 +110,7 @@ def _fall(body: Body, law: Law, release_height: float | None, gravity: float | N
 
 
 def _not_a_sphere(body: Body, law: Law) -> None:
-    match body:
-        case Dumbbell(is_equal=True) | Spherocylinder():
-            name, value, round_at = "body.separation", body.separation, 0.0
-            allowed = "> 0"
-        case Spheroid():
-            name, value, round_at = "body.polar", body.polar, body.equatorial
-            allowed = "different from body.equatorial"
-        case LoadedSphere():
-            name, value, round_at = "body.centre_of_mass", body.centre_of_mass, 0.0
-            allowed = "> 0"
-        case _:
-            return
-    if value == round_at:
+    one, two = body.compiled.outline
+    if one[:3] == two[:3] and one[0] == 0.0 and one[1] == one[2]:
         sphere = f"a sphere has no distribution, its restitution is law.normal = {law.normal!r}"
-        raise ParameterError(wrong(name, value, f"{allowed}; {sphere}"))
+        raise ParameterError(wrong("body", body, f"no sphere about its centre of mass; {sphere}"))

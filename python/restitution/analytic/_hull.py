@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 from restitution.analytic._disc import Number
-from restitution.bodies import Body, Dumbbell, LoadedSphere, Spherocylinder, Spheroid
+from restitution.bodies import Body
 
 
 @dataclass(frozen=True)
@@ -69,29 +69,26 @@ class Outline:
     @classmethod
     def of(cls, body: Body) -> "Outline":
         """Make the hull of a body."""
-        unit = body.solid.farthest()
+        unit = body.compiled.farthest()
         inertia = body.transverse_inertia / unit / body.mass / unit
         return cls(unit, inertia, _sides(body, unit))
 
 
 def _sides(body: Body, unit: float) -> tuple[Side, ...]:
-    right = 0.5 * math.pi
-    match body:
-        case Spheroid():
-            return (Side(0.0, right, Ellipsoid(body.equatorial / unit, body.polar / unit)),)
-        case Spherocylinder():
-            return (Side(0.0, right, Ball(body.radius / unit, -0.5 * body.separation / unit)),)
-        case LoadedSphere():
-            return (Side(0.0, math.pi, Ball(body.radius / unit, -body.centre_of_mass / unit)),)
-        case Dumbbell():
-            half, centre = 0.5 * body.separation / unit, body.centre_of_mass / unit
-            one = Ball(body.radii[0] / unit, half - centre)
-            two = Ball(body.radii[1] / unit, -half - centre)
-            if body.is_equal:
-                return (Side(0.0, right, two),)
-            level = body.radii[0] - body.radii[1]
-            if abs(level) >= body.separation:  # one sphere holds the other, or they are one
-                return (Side(0.0, math.pi, one if level >= 0.0 else two),)
-            turn = math.acos(level / body.separation)  # both touch
-            return Side(0.0, turn, two), Side(turn, math.pi, one)
-    raise TypeError(f"no outline of {body!r}")
+    one, two = body.compiled.outline
+    if one[:3] == two[:3]:  # the halves of one ellipsoid
+        hull = _hull(one, unit)
+        level = isinstance(hull, Ellipsoid) or hull.place == 0.0  # it looks the same upside down
+        return (Side(0.0, 0.5 * math.pi if level else math.pi, hull),)
+    upper, lower = Ball(one[1] / unit, one[0] / unit), Ball(two[1] / unit, two[0] / unit)
+    if upper.radius == lower.radius and upper.place == -lower.place:
+        return (Side(0.0, 0.5 * math.pi, lower),)
+    turn = math.acos((upper.radius - lower.radius) / (upper.place - lower.place))  # both touch
+    return Side(0.0, turn, lower), Side(turn, math.pi, upper)
+
+
+def _hull(arc: list[float], unit: float) -> Ball | Ellipsoid:
+    centre, along, across, *_ = arc
+    if along == across:
+        return Ball(across / unit, centre / unit)
+    return Ellipsoid(across / unit, along / unit)  # its centre is the centre of mass

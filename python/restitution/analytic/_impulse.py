@@ -18,8 +18,9 @@ Chatterjee and Ruina's law is "part" inside the friction cone, and "sliding" on 
 from dataclasses import dataclass
 from typing import Literal, TypeAlias
 
+from restitution._internal.parameters import ParameterError, wrong
 from restitution.analytic._disc import Number
-from restitution.laws import ChatterjeeRuina, Coulomb, Frictionless, Law, TangentialRestitution
+from restitution.laws import Law
 
 Mode: TypeAlias = Literal["free", "stuck", "sliding", "part"]
 
@@ -32,29 +33,24 @@ class Impulse:
     inertia: float  # J, in the square of the unit of h and a
 
     def modes(self) -> tuple[Mode, Mode]:
-        """Return the modes where `margin` is not positive, and where it is."""
-        match self.law:
-            case Frictionless():
-                return "free", "free"
-            case Coulomb():
-                return "stuck", "sliding"
-            case ChatterjeeRuina():
-                return "part", "sliding"
-            case TangentialRestitution():
-                return "stuck", "stuck"
-        raise TypeError(f"no closed form of {self.law!r}")
+        """Return the modes where `margin` is not positive, and where it is, of the law's entry."""
+        modes = self.law.entry().get("from_rest")
+        if modes is None:
+            raise ParameterError(wrong("law", self.law, "one whose first impact from rest has a closed form"))
+        within, beyond = modes
+        return within, beyond
 
     def margin(self, normal: Number, height: Number, arm: Number) -> Number:
         """Positive where the tangential impulse would leave the friction cone; ε_n = normal."""
+        within, beyond = self.modes()
+        if beyond != "sliding":
+            return 0.0
         inertia, couple = self.inertia, height * arm
-        match self.law:
-            case Coulomb(friction=friction):
-                return couple - friction * (inertia + height * height)
-            case ChatterjeeRuina(friction=friction, tangential=tangential):
-                room = inertia + arm * arm - friction * couple
-                whole = inertia + arm * arm + height * height
-                return (1.0 + tangential) * couple * room - friction * inertia * (1.0 + normal) * whole
-        return 0.0
+        if within == "stuck":
+            return couple - self._friction * (inertia + height * height)
+        room = inertia + arm * arm - self._friction * couple
+        whole = inertia + arm * arm + height * height
+        return self._kept * couple * room - self._friction * inertia * (1.0 + normal) * whole
 
     def loss(self, mode: Mode, normal: Number, height: Number, arm: Number) -> Number:
         """Return λ = ε_n - ε, ε_n = normal."""
@@ -89,10 +85,9 @@ class Impulse:
     @property
     def _friction(self) -> float:
         """μ, of the laws that have it."""
-        assert isinstance(self.law, Coulomb | ChatterjeeRuina)
-        return self.law.friction
+        return float(getattr(self.law, "friction"))  # noqa: B009
 
     @property
     def _kept(self) -> float:
-        """1 + e_t, the share of the impulse that sticking adds to that without friction."""
-        return 1.0 + self.law.tangential if isinstance(self.law, ChatterjeeRuina) else 0.0
+        """1 + e_t, the share of the impulse that sticking adds to that without friction; 0 without any."""
+        return 1.0 + getattr(self.law, "tangential") if "part" in self.modes() else 0.0  # noqa: B009

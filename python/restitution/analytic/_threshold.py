@@ -22,9 +22,9 @@ def negative_threshold(body: Body, law: Law) -> float:
 
     Parameters
     ----------
-    body : Dumbbell, LoadedSphere, Spherocylinder or Spheroid
+    body : Dumbbell or another body
         The body that is dropped.
-    law : TangentialRestitution, Frictionless, Coulomb or ChatterjeeRuina
+    law : TangentialRestitution or another law
         The collision law; its own ``normal`` does not matter.
 
     Returns

@@ -1,20 +1,18 @@
 """Bodies: what falls. All are bodies of revolution, of which the flight between impacts has a closed form."""
 
-from restitution._internal.parameters import listed
-from restitution.bodies._body import Body
+from restitution import _core
+from restitution._internal.described import one_of
+from restitution.bodies._body import Body as Body
 from restitution.bodies._dumbbell import Dumbbell
 from restitution.bodies._loaded_sphere import LoadedSphere
-from restitution.bodies._roundness import GRADES, Form, ball_grade, from_roundness
+from restitution.bodies._roundness import GRADES as GRADES
+from restitution.bodies._roundness import Form as Form
+from restitution.bodies._roundness import ball_grade, from_roundness
 from restitution.bodies._spherocylinder import Spherocylinder
 from restitution.bodies._spheroid import Spheroid
 
 __all__ = [
-    "BODIES",
-    "GRADES",
-    "KINDS",
-    "Body",
     "Dumbbell",
-    "Form",
     "LoadedSphere",
     "Spherocylinder",
     "Spheroid",
@@ -22,6 +20,6 @@ __all__ = [
     "from_roundness",
 ]
 
-KINDS = (Dumbbell, LoadedSphere, Spherocylinder, Spheroid)
-"""Every body."""
-BODIES = f"a {listed(KINDS)}"
+KINDS: tuple[type[Body], ...] = tuple(globals()[entry["name"]] for entry in _core.BODIES)
+"""Every body of the core's table."""
+BODIES = one_of(_core.BODIES)

@@ -1,43 +1,23 @@
 """The base of every shape: mass, inertia, and the compiled body."""
 
-from abc import abstractmethod
 from collections.abc import Iterator
 from functools import cached_property
-from typing import Self
-
-from pydantic import model_validator
 
 from restitution import _core
 from restitution._internal import text as _text
-from restitution._internal.parameters import ParameterError, Parameters, Problem, shown
+from restitution._internal.described import Described
 
 
-class Body(Parameters):
+class Body(Described):
     """A homogeneous or loaded body of revolution, in SI units.
 
-    Its symmetry axis makes the angle θ with the plane normal. A shape says how the core makes it; mass and
-    inertia follow.
+    Its symmetry axis makes the angle θ with the plane normal. Mass and inertia follow from its parameters.
     """
 
-    @abstractmethod
-    def _compile(self) -> _core.Solid:
-        """Make the body as the core knows it."""
-
     @cached_property
-    def solid(self) -> _core.Solid:
+    def compiled(self) -> _core.Solid:
         """The body as the core knows it, made and checked once."""
-        return self._compile()
-
-    @model_validator(mode="after")
-    def _is_possible(self) -> Self:
-        try:
-            _ = self.solid
-        except _core.MagnitudeError as error:
-            first, *others = type(self).model_fields
-            given = "".join(f", {name} = {shown(getattr(self, name))}" for name in others)
-            text = f" = {shown(getattr(self, first))}{given}: must be {error.allowed}"
-            raise ParameterError(Problem(first, text)) from None
-        return self
+        return _core.body(type(self).__name__, self._arguments())
 
     def _rows(self) -> Iterator[tuple[str, str]]:
         yield from super()._rows()
@@ -48,14 +28,14 @@ class Body(Parameters):
     @property
     def mass(self) -> float:
         """Mass m in kg."""
-        return self.solid.mass
+        return self.compiled.mass
 
     @property
     def transverse_inertia(self) -> float:
         """Moment of inertia J_xx across the symmetry axis, through the centre of mass, in kg m²."""
-        return self.solid.transverse_inertia
+        return self.compiled.transverse_inertia
 
     @property
     def axial_inertia(self) -> float:
         """Moment of inertia J_zz about the symmetry axis, in kg m²."""
-        return self.solid.axial_inertia
+        return self.compiled.axial_inertia

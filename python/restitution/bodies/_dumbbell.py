@@ -4,7 +4,6 @@ from typing import Annotated, Self
 
 from pydantic import Field
 
-from restitution import _core
 from restitution._internal.parameters import Number, ParameterError, in_terms_of, wrong
 from restitution.bodies._body import Body
 from restitution.bodies._length_width import LengthWidth
@@ -17,7 +16,7 @@ class Dumbbell(Body):
     Where the spheres overlap the body is their union, cut at the plane of their intersection, each side with
     its sphere's density. Where they do not, beyond the paper, it is two full spheres on a massless rod; where
     one contains the other it is that one. ``separation = 0`` is a sphere. The axis points from sphere 2 to
-    sphere 1.
+    sphere 1. Mass and inertia of equal spheres are (A3), (A5) with L⁵/160 for L⁵/180, and (A8).
 
     Parameters
     ----------
@@ -43,10 +42,6 @@ class Dumbbell(Body):
     radius: Annotated[PositivePair, Field(description="m")]
     separation: Annotated[Number, Field(ge=0, description="m")]
     density: Annotated[PositivePair, Field(description="kg/m³")] = 2500.0
-
-    def _compile(self) -> _core.Solid:
-        """Make the body: mass and inertia by (A3), (A5) with L⁵/160 for L⁵/180, and (A8)."""
-        return _core.dumbbell(self.radii, self.separation, self.densities)
 
     @classmethod
     def from_length_width(
@@ -101,4 +96,4 @@ class Dumbbell(Body):
     @property
     def centre_of_mass(self) -> float:
         """Place of the centre of mass on the axis, from the middle of both centres towards sphere 1, in m."""
-        return self.solid.centre_of_mass
+        return self.compiled.centre_of_mass

@@ -4,8 +4,7 @@ from typing import Annotated
 
 from pydantic import Field
 
-from restitution import _core
-from restitution._internal.parameters import Number, ParameterError, Problem, shown
+from restitution._internal.parameters import Number
 from restitution.bodies._body import Body
 
 
@@ -38,13 +37,7 @@ class LoadedSphere(Body):
     load: Annotated[Number, Field(ge=0, description="kg")]
     offset: Annotated[Number, Field(ge=0, description="m")]
 
-    def _compile(self) -> _core.Solid:
-        if self.offset > self.radius:
-            text = f" = {shown(self.offset)}, radius = {shown(self.radius)}: must be "
-            raise ParameterError(Problem("offset", text, "at most the radius (m)"))
-        return _core.loaded_sphere(self.radius, self.density, self.load, self.offset)
-
     @property
     def centre_of_mass(self) -> float:
         """Distance of the centre of mass from the centre of the sphere, towards the load, in m."""
-        return self.solid.centre_of_mass
+        return self.compiled.centre_of_mass

@@ -4,7 +4,6 @@ from typing import Annotated
 
 from pydantic import Field
 
-from restitution import _core
 from restitution._internal.parameters import Number
 from restitution.bodies._body import Body
 
@@ -34,9 +33,6 @@ class Spherocylinder(Body):
     radius: Annotated[Number, Field(gt=0, description="m")]
     separation: Annotated[Number, Field(ge=0, description="m")]
     density: Annotated[Number, Field(gt=0, description="kg/m³")] = 2500.0
-
-    def _compile(self) -> _core.Solid:
-        return _core.spherocylinder(self.radius, self.separation, self.density)
 
     @property
     def elongation(self) -> float:

@@ -4,7 +4,6 @@ from typing import Annotated, Self
 
 from pydantic import Field
 
-from restitution import _core
 from restitution._internal.parameters import Number, ParameterError, in_terms_of, wrong
 from restitution.bodies._body import Body
 from restitution.bodies._length_width import LengthWidth
@@ -33,9 +32,6 @@ class Spheroid(Body):
     equatorial: Annotated[Number, Field(gt=0, description="m")]
     polar: Annotated[Number, Field(gt=0, description="m")]
     density: Annotated[Number, Field(gt=0, description="kg/m³")] = 2500.0
-
-    def _compile(self) -> _core.Solid:
-        return _core.spheroid(self.equatorial, self.polar, self.density)
 
     @classmethod
     def from_length_width(cls, length: float, width: float, *, density: float = 2500.0) -> Self:

@@ -1,43 +1,55 @@
 """`restitution template`: a commented TOML file with all parameters of a run."""
 
+import json
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Any
+
+from restitution import _core
+from restitution._internal.described import kebab
 from restitution._internal.process import say
 
-TEMPLATE = """\
-# What restitution simulate, statistics, compare and distribution read. SI units throughout: m, kg, s, rad.
-# What is commented out is another choice, or a default that may be left out.
+_NORMAL = [("normal = 0.98", "in [0, 1]; or a table [law.normal], see below")]
 
-[body]                            # for compare: a table [[body]] for each, perhaps with name = "..."
-shape = "dumbbell"
-radius = 3e-3                     # R of both spheres, > 0; or of each: [3e-3, 2e-3]
-separation = 3e-4                 # L, distance of the centres, >= 0; 0 is a sphere
-# density = 2500.0                # kg/m^3, > 0; or of each sphere
-# [body]
-# shape = "spherocylinder"        # a cylinder with hemispherical caps: radius, separation, density
-# [body]
-# shape = "loaded-sphere"         # radius, density, load (kg), offset (of the load from the centre)
-# [body]
-# shape = "spheroid"              # equatorial, polar (semi-axes), density
 
-[law]                             # for compare: a table [[law]] for each, perhaps with name = "..."
-type = "tangential-restitution"   # Eq. 9 of Phys. Rev. E 90, 052204
-normal = 0.98                     # in [0, 1]; or a table [law.normal], see below
-# tangential = 1.0                # in [-1, 1]
-# [law]
-# type = "frictionless"           # normal
-# [law]
-# type = "coulomb"                # normal, friction, hypothesis = "stronge", "poisson" or "newton"
-# [law]
-# type = "chatterjee-ruina"       # normal, tangential, friction
+def _lines(
+    name: str, selector: str, table: Sequence[Mapping[str, Any]], about: str, *, chosen: bool
+) -> Iterator[str]:
+    """Write every entry of a table of the core as a table of the file; the first one stands if `chosen`."""
+    for number, entry in enumerate(table):
+        mark = "" if chosen and number == 0 else "# "
+        rows = [(f"[{name}]", about if number == 0 else "")]
+        rows.append((f'{selector} = "{kebab(entry["name"])}"', entry["text"]))
+        rows += _NORMAL if name == "law" else []
+        for parameter in entry["parameters"]:
+            out = "" if mark or "default" not in parameter else "# "
+            rows.append((f"{out}{parameter['name']} = {json.dumps(parameter['example'])}", _what(parameter)))
+        for text, comment in rows:
+            yield f"{mark + text:<34}# {comment}" if comment else mark + text
+    yield ""
 
-# [law.normal]                    # instead of the number: a coefficient that depends on the speed
-# type = "viscoelastic"           # young_modulus (Pa), poisson_ratio, dissipation (s), density, radius
-# [law.normal]
-# type = "plastic"                # yield_speed (m/s)
-# [law.normal]
-# type = "tabulated"              # v = [0.1, 1.0] (m/s), e = [0.97, 0.92]
-# [law.normal]
-# type = "scattered"              # drawn at every impact: normal = 0.98 (or a table), deviation = 0.01
 
+def _what(parameter: Mapping[str, Any]) -> str:
+    unit = parameter["unit"] if parameter["unit"] not in (None, "1") else ""
+    if parameter["type"] == "name":
+        allowed = " or ".join(f'"{name}"' for name in parameter["names"])
+    else:
+        low, high = (f"{parameter[end]:g}" for end in ("low", "high"))
+        allowed = f"in {'[' if parameter['closed'] else '('}{low}, {high}]"
+        if high == "inf":
+            allowed = f"{'>=' if parameter['closed'] else '>'} {low}"
+    return ", ".join(filter(None, [parameter["text"], unit, allowed]))
+
+
+_SEVERAL = 'for compare: a table [[{}]] for each, perhaps with name = "..."'
+TEMPLATE = "\n".join(
+    [
+        "# What restitution simulate, statistics, compare and distribution read. SI units: m, kg, s, rad.",
+        "# What is commented out is another choice, or a default that may be left out.",
+        "",
+        *_lines("body", "shape", _core.BODIES, _SEVERAL.format("body"), chosen=True),
+        *_lines("law", "type", _core.LAWS, _SEVERAL.format("law"), chosen=True),
+        *_lines("law.normal", "type", _core.MATERIALS, "instead of the number", chosen=False),
+        """\
 [run]
 # particles = 1000
 # impacts = 400                   # the most of each particle
@@ -71,7 +83,9 @@ restitution_range = [-1.0, 3.0]
 # given = "rotational_fraction"   # or "previous"
 # heights_about = 0.06            # spread about this one where no release_height is given
 # release_height = [0.05, 0.06]   # in equal parts from each, instead of the height of [run]
-"""
+""",
+    ]
+)
 
 
 def template() -> None:

@@ -20,7 +20,7 @@ _LEAST_IMPACTS, _MOST_IMPACTS = 256, 4096
 def lowest_position(run: Run) -> float:
     """Return the height in m of the centre of mass of the body in its lowest position on the plane."""
     # Upright either way or level: in one of these the centre of mass comes lowest.
-    return min(run.body.solid.lowest(np.array([cosine])) for cosine in (-1.0, 0.0, 1.0))
+    return min(run.body.compiled.lowest(np.array([cosine])) for cosine in (-1.0, 0.0, 1.0))
 
 
 def speeds(run: Run) -> Floats:
@@ -36,7 +36,7 @@ def heights(run: Run) -> tuple[float, ...]:
     in [-1, 1]: dense in the middle and none at both ends, so that impacts of one number fade into those of
     the next. With 1000 of them for each loss, neighbours differ by 0.1 % in v.
     """
-    base = run.body.solid.farthest()
+    base = run.body.compiled.farthest()
     drop = run.release_height - base
     normal = run.law.normal
     kept = float(normal(run.fall_speed(drop))) if isinstance(normal, Material) else normal
@@ -58,7 +58,7 @@ def minimum_speed(run: Run, slowest: float) -> float:
     plane. Impacts can create energy, hence never more than half of the slowest speed.
     """
     gravity = run.gravity * math.cos(run.incline)
-    gained = 2.0 * gravity * (run.body.solid.farthest() - lowest_position(run))
+    gained = 2.0 * gravity * (run.body.compiled.farthest() - lowest_position(run))
     return min(math.sqrt(max(slowest**2 - gained, 0.0)), 0.5 * slowest)
 
 

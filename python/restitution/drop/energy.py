@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from restitution._core import CREATES_ENERGY
+from restitution import _core
 from restitution._internal.arrays import FloatArray, IntArray
 
 
@@ -33,9 +33,21 @@ class EnergyWarning(UserWarning):
     """
 
 
+def _harmless() -> Iterator[str]:
+    """Name the laws that cannot create energy, with the values of a parameter for which they cannot."""
+    for law in _core.LAWS:
+        match law["creates_energy"]:
+            case False:
+                yield law["name"]
+            case (parameter, value):
+                (names,) = (about["names"] for about in law["parameters"] if about["name"] == parameter)
+                others = " or ".join(repr(name) for name in names if name != value)
+                yield f"{law['name']} with {parameter} {others}"
+
+
 WHY = (
     "The law does this, not rounding: gains below 1e-12 are not counted. Laws that cannot: "
-    "Frictionless, Coulomb with hypothesis 'stronge' or 'poisson', and ChatterjeeRuina."
+    f"{'; '.join(_harmless())}."
 )
 LEDGER = ("all_impacts", "energy_created_impacts", "energy_created_share", "largest_energy_ratio")
 """The attributes of a result that say how much energy its impacts created."""
@@ -57,7 +69,7 @@ def ledger(impacts: int, created: int, largest: float) -> dict[str, Any]:
 def ledger_of(energy_ratio: FloatArray) -> dict[str, Any]:
     """`ledger` of recorded energy ratios, NaN where there was no impact."""
     impacts = energy_ratio.size - int(np.count_nonzero(np.isnan(energy_ratio)))
-    created = int(np.count_nonzero(energy_ratio > CREATES_ENERGY))
+    created = int(np.count_nonzero(energy_ratio > _core.CREATES_ENERGY))
     return ledger(impacts, created, float(np.fmax.reduce(energy_ratio, axis=None, initial=np.nan)))
 
 

@@ -163,7 +163,7 @@ class Run(Parameters):
         if angles is not None and angles.size != self.particles:
             text = f" has {angles.size} angles: must have one for each of particles = {self.particles}"
             raise ParameterError(Problem("orientation", text))
-        solid = self.body.solid
+        solid = self.body.compiled
         least = self.heights[0]
         if solid.clears(least):
             return self
@@ -194,7 +194,7 @@ class Run(Parameters):
     @model_validator(mode="after")
     def _within_the_digits(self) -> "Run":
         """Refuse heights, speeds and spins so large that a double has no digits left for the body."""
-        solid = self.body.solid
+        solid = self.body.compiled
         least = min(solid.lowest(np.array([cosine])) for cosine in (-1.0, 0.0, 1.0))
         highest = self.heights[1]
         if highest > _BEYOND * least:
@@ -269,7 +269,7 @@ class Run(Parameters):
 
     def parameters(self) -> dict[str, Any]:
         """Name every parameter as the core does, compiled where the core knows it as an object of its own."""
-        compiled = {"body": self.body.solid, "law": self.law.compiled}
+        compiled = {"body": self.body.compiled, "law": self.law.compiled}
         for name in ("release_height", "spin"):
             value = getattr(self, name)
             random = isinstance(value, RandomHeight | RandomSpin)

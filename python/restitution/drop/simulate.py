@@ -58,7 +58,7 @@ def simulate(
 
     Parameters
     ----------
-    body : Dumbbell, LoadedSphere, Spherocylinder or Spheroid
+    body : Dumbbell or another body
         The body that is dropped.
     law : Law
         The collision law.

@@ -10,6 +10,7 @@ from typing import Any, TypeVar
 import numpy as np
 
 from restitution import bodies, laws
+from restitution._internal.described import kebab
 from restitution._internal.files import content
 from restitution._internal.parameters import ParameterError, Parameters, Problem, unknown, wrong
 from restitution.drop.release import RandomHeight, RandomSpin
@@ -17,8 +18,7 @@ from restitution.drop.run import Run
 
 
 def _by_name(kinds: Iterable[type[Parameters]]) -> dict[str, type[Parameters]]:
-    """Name classes as a file does: `tangential-restitution` for TangentialRestitution."""
-    return {re.sub(r"(?<!^)(?=[A-Z])", "-", kind.__name__).lower(): kind for kind in kinds}
+    return {kebab(kind.__name__): kind for kind in kinds}
 
 
 # Table: the key that chooses a kind of body, law or material, and the kinds there are.

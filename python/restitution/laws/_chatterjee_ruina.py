@@ -4,7 +4,6 @@ from typing import Annotated
 
 from pydantic import Field
 
-from restitution import _core
 from restitution._internal.parameters import Number
 from restitution.laws._law import Friction, Law
 
@@ -18,7 +17,7 @@ class ChatterjeeRuina(Law):
 
     Parameters
     ----------
-    normal : float, Viscoelastic, Plastic, Tabulated, Scattered or callable
+    normal : float, material or callable
         Normal coefficient e, in [0, 1], or a material.
     tangential : float
         Tangential coefficient e_t, in [-1, 1]: -1 is frictionless, 0 sticks, 1 reverses the slip. For a
@@ -34,6 +33,3 @@ class ChatterjeeRuina(Law):
 
     tangential: Annotated[Number, Field(ge=-1, le=1)]
     friction: Friction
-
-    def _compile(self, normal: float | _core.Material) -> _core.Law:
-        return _core.chatterjee_ruina(normal, self.tangential, self.friction)

@@ -2,7 +2,6 @@
 
 from typing import Annotated, Literal
 
-from restitution import _core
 from restitution._internal.parameters import Allowed
 from restitution.laws._law import Friction, Law
 
@@ -19,7 +18,7 @@ class Coulomb(Law):
 
     Parameters
     ----------
-    normal : float, Viscoelastic, Plastic, Tabulated, Scattered or callable
+    normal : float, material or callable
         Coefficient of restitution ε_n, in [0, 1], or a material; its meaning depends on the hypothesis.
     friction : float
         Coefficient of friction μ, in [0, 1e100]. 0 is `Frictionless`.
@@ -37,6 +36,3 @@ class Coulomb(Law):
 
     friction: Friction
     hypothesis: Annotated[Hypothesis, Allowed("'stronge', 'poisson' or 'newton'")] = "stronge"
-
-    def _compile(self, normal: float | _core.Material) -> _core.Law:
-        return _core.coulomb(normal, self.friction, self.hypothesis)

@@ -1,6 +1,5 @@
 """The law without friction."""
 
-from restitution import _core
 from restitution.laws._law import Law
 
 
@@ -12,7 +11,7 @@ class Frictionless(Law):
 
     Parameters
     ----------
-    normal : float, Viscoelastic, Plastic, Tabulated, Scattered or callable
+    normal : float, material or callable
         Normal coefficient of restitution ε_n at the contact point, in [0, 1], or a material.
 
     Examples
@@ -20,6 +19,3 @@ class Frictionless(Law):
     >>> import restitution as rs
     >>> law = rs.Frictionless(normal=0.98)
     """
-
-    def _compile(self, normal: float | _core.Material) -> _core.Law:
-        return _core.frictionless(normal)

@@ -1,25 +1,25 @@
 """The base of every law: the normal coefficient, and how a law is written down."""
 
-from abc import abstractmethod
 from functools import cached_property
-from typing import Annotated, Any, Self
+from typing import Annotated, Any
 
-from pydantic import Field, model_validator
+from pydantic import Field
 
 from restitution import _core
-from restitution._internal.parameters import Number, ParameterError, Parameters, wrong
+from restitution._internal.described import Described
+from restitution._internal.parameters import Number, ParameterError, wrong
 from restitution.laws._materials import Material, NormalCoefficient, Scattered
 
 Friction = Annotated[Number, Field(ge=0, le=_core.MOST_FRICTION)]
 """μ; the bound keeps products of it finite, and nothing slips long before."""
 
 
-class Law(Parameters):
+class Law(Described):
     """A collision law: the impulse as a function of the contact velocity.
 
     Parameters
     ----------
-    normal : float, Viscoelastic, Plastic, Tabulated, Scattered or callable
+    normal : float, material or callable
         Normal coefficient of restitution ε_n, in [0, 1], or a material that gives it for the normal speed at
         which the contact point approaches the plane. A function of one speed in m/s becomes
         `Tabulated.from_function` of it, to 1e-6 up to 100 m/s.
@@ -27,19 +27,11 @@ class Law(Parameters):
 
     normal: NormalCoefficient
 
-    @abstractmethod
-    def _compile(self, normal: float | _core.Material) -> _core.Law:
-        """Make the law as the core knows it, with the normal coefficient as the core knows that."""
-
     @cached_property
     def compiled(self) -> _core.Law:
         """The law as the core knows it, made and checked once."""
-        return self._compile(self.normal.compiled if isinstance(self.normal, Material) else self.normal)
-
-    @model_validator(mode="after")
-    def _is_possible(self) -> Self:
-        _ = self.compiled
-        return self
+        normal = self.normal.compiled if isinstance(self.normal, Material) else self.normal
+        return _core.law(type(self).__name__, normal, self._arguments(without="normal"))
 
     @property
     def constant(self) -> float:

@@ -8,25 +8,26 @@ from typing import Annotated, Any, ClassVar, Self
 
 import numpy as np
 import numpy.typing as npt
-from pydantic import BeforeValidator, Field, TypeAdapter, ValidationError, model_validator
+from pydantic import (
+    BeforeValidator,
+    Field,
+    InstanceOf,
+    PlainSerializer,
+    TypeAdapter,
+    ValidationError,
+    model_validator,
+)
 
 from restitution import _core
 from restitution._internal.arrays import real, reals
-from restitution._internal.parameters import (
-    Allowed,
-    Number,
-    ParameterError,
-    Parameters,
-    Problem,
-    shown,
-    wrong,
-)
+from restitution._internal.described import Described, one_of
+from restitution._internal.parameters import Allowed, Number, ParameterError, Problem, wrong
 from restitution._internal.resources import check_room
 
 Floats = npt.NDArray[np.float64]
 
 
-class Material(Parameters):
+class Material(Described):
     """A normal coefficient of restitution ε_n that depends on the speed; call it to see it."""
 
     def __call__(self, speed: "npt.ArrayLike") -> "Floats":
@@ -52,14 +53,23 @@ class Material(Parameters):
     def _limit(self) -> float:
         """Give the limit of ε_n at infinite speed, where formulas are quotients of infinities."""
 
-    @abstractmethod
-    def _compile(self) -> _core.Material:
-        """Make the coefficient as the core knows it."""
+    def formula(self, squared: Any, among: float) -> Any:
+        """Return ε_n at v², complex or a disc, by the formula that holds about the real speed `among`.
+
+        For real speeds this is what the core computes; between its kinks it continues into the complex plane,
+        where the first impact from rest is integrated.
+        """
+        raise ParameterError(wrong("law.normal", self, "a material with a formula of the speed"))
+
+    @property
+    def kinks(self) -> tuple[float, ...]:
+        """Speeds in m/s at which the formula changes."""
+        return ()
 
     @cached_property
     def compiled(self) -> _core.Material:
         """The coefficient as the core knows it, made and checked once; every ε_n(v) is the core's."""
-        return self._compile()
+        return _core.material(type(self).__name__, self._arguments())
 
     def attributes(self) -> dict[str, Any]:
         """Return name and parameters as those of a law, after `normal`, as plain values."""
@@ -107,18 +117,10 @@ class Viscoelastic(Material):
     density: Annotated[Number, Field(gt=0, description="kg/m³")]
     radius: Annotated[Number, Field(gt=0, description="m")]
 
-    def _compile(self) -> _core.Material:
-        return _core.viscoelastic(**self.model_dump())
-
-    @model_validator(mode="after")
-    def _is_possible(self) -> Self:
-        try:
-            _ = self.compiled
-        except _core.MagnitudeError as error:
-            given = ", ".join(f"{name} = {shown(value)}" for name, value in self.model_dump().items())
-            first, _, rest = given.partition(" = ")
-            raise ParameterError(Problem(first, f" = {rest}: must be {error.allowed}")) from None
-        return self
+    def formula(self, squared: Any, among: float) -> Any:
+        x = self.beta**0.5 * squared**0.05
+        above, below = map(np.polynomial.Polynomial, _core.PADE)
+        return above(x) / below(x)
 
     @property
     def _limit(self) -> float:
@@ -152,8 +154,16 @@ class Plastic(Material):
 
     yield_speed: Annotated[Number, Field(gt=0, description="m/s")]
 
-    def _compile(self) -> _core.Material:
-        return _core.plastic(self.yield_speed)
+    def formula(self, squared: Any, among: float) -> Any:
+        if among <= self.yield_speed:
+            return 1.0
+        x = self.yield_speed / squared**0.5
+        ratio = x / (x + 2.0 * (1.2 - 0.2 * (x * x)) ** 0.5)
+        return (1.2 * 3.0**0.5) ** 0.5 * (1.0 - x * x / 6.0) ** 0.5 * ratio**0.25
+
+    @property
+    def kinks(self) -> tuple[float, ...]:
+        return (self.yield_speed,)
 
     @property
     def _limit(self) -> float:
@@ -214,7 +224,7 @@ class Tabulated(Material):
     ]
 
     @model_validator(mode="after")
-    def _a_function(self) -> "Tabulated":
+    def _is_possible(self) -> Self:
         for i in range(1, len(self.v)):
             if self.v[i] <= self.v[i - 1]:
                 allowed = f"greater than v[{i - 1}] = {self.v[i - 1]}"
@@ -258,26 +268,38 @@ class Tabulated(Material):
         """
         return cls(**dict(zip("ve", _points("function", function, fastest, tolerance), strict=True)))
 
-    def _compile(self) -> _core.Material:
-        return _core.tabulated(np.asarray(self.v, dtype=float), np.asarray(self.e, dtype=float))
+    def _arguments(self, *, without: str = "") -> list[Any]:
+        return [np.asarray(self.v, dtype=float), np.asarray(self.e, dtype=float)]
+
+    def formula(self, squared: Any, among: float) -> Any:
+        i = int(np.searchsorted(self.v, among))
+        if i in (0, len(self.v)):
+            return self.e[max(i - 1, 0)]
+        slope = (self.e[i] - self.e[i - 1]) / (self.v[i] - self.v[i - 1])
+        return self.e[i - 1] + slope * (squared**0.5 - self.v[i - 1])
+
+    @property
+    def kinks(self) -> tuple[float, ...]:
+        return self.v
 
     @property
     def _limit(self) -> float:
         return self.e[-1]
 
 
-NORMAL = (
-    "a real number in [0, 1], a Viscoelastic, Plastic, Tabulated or Scattered, or a function of the speed"
+_STEADY = [entry for entry in _core.MATERIALS if entry["name"] != "Scattered"]
+NORMAL, STEADY = (
+    f"a real number in [0, 1], {one_of(table)}, or a function of the speed"
+    for table in (_core.MATERIALS, _STEADY)
 )
-_STEADY = "a real number in [0, 1], a Viscoelastic, Plastic or Tabulated, or a function of the speed"
 _number = TypeAdapter(Annotated[Number, Field(ge=0, le=1)])
 
 
-def _coefficient(allowed: str, *kinds: type[Material]) -> BeforeValidator:
-    """Take a number, one of these materials, or a function, which is tabulated."""
+def _coefficient(allowed: str) -> BeforeValidator:
+    """Take a number, a material, or a function, which is tabulated; one that scatters if that is allowed."""
 
     def check(value: Any) -> float | Material:
-        if isinstance(value, kinds):
+        if isinstance(value, Material) and (allowed == NORMAL or not isinstance(value, Scattered)):
             return value
         if callable(value) and not isinstance(value, type | Material):
             return tabulated("normal", value)
@@ -289,6 +311,10 @@ def _coefficient(allowed: str, *kinds: type[Material]) -> BeforeValidator:
     return BeforeValidator(check)
 
 
+def _plain(value: float | Material) -> Any:
+    return value.model_dump() if isinstance(value, Material) else value
+
+
 class Scattered(Material):
     """A coefficient that scatters: of ball, dust or plate, which are not the same everywhere.
 
@@ -298,7 +324,7 @@ class Scattered(Material):
 
     Parameters
     ----------
-    normal : float, Viscoelastic, Plastic, Tabulated or callable
+    normal : float, material or callable
         The coefficient about which it scatters, as for a law.
     deviation : float
         Standard deviation in [0, 1] of the normal distribution, before it is truncated.
@@ -316,13 +342,12 @@ class Scattered(Material):
     by_place: ClassVar[tuple[str, ...]] = ("normal", "deviation")
 
     normal: Annotated[
-        float | Viscoelastic | Plastic | Tabulated,
-        _coefficient(_STEADY, Viscoelastic, Plastic, Tabulated),
-        Allowed(_STEADY),
+        float | InstanceOf[Material], _coefficient(STEADY), PlainSerializer(_plain), Allowed(STEADY)
     ]
     deviation: Annotated[Number, Field(ge=0, le=1)]
 
-    def _compile(self) -> _core.Material:
+    @cached_property
+    def compiled(self) -> _core.Material:
         normal = self.normal.compiled if isinstance(self.normal, Material) else self.normal
         return _core.scattered(normal, self.deviation)
 
@@ -332,7 +357,7 @@ class Scattered(Material):
 
 
 NormalCoefficient = Annotated[
-    float | Viscoelastic | Plastic | Tabulated | Scattered, _coefficient(NORMAL, Material), Allowed(NORMAL)
+    float | InstanceOf[Material], _coefficient(NORMAL), PlainSerializer(_plain), Allowed(NORMAL)
 ]
 """ε_n: a number, a function of the speed, or one that scatters."""
 

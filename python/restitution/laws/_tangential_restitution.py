@@ -4,7 +4,6 @@ from typing import Annotated
 
 from pydantic import Field
 
-from restitution import _core
 from restitution._internal.parameters import Number
 from restitution.laws._law import Law
 
@@ -21,7 +20,7 @@ class TangentialRestitution(Law):
 
     Parameters
     ----------
-    normal : float, Viscoelastic, Plastic, Tabulated, Scattered or callable
+    normal : float, material or callable
         Normal coefficient of restitution ε_n at the contact point, in [0, 1], or a material.
     tangential : float, default 1
         Tangential coefficient of restitution ε_t at the contact point, in [-1, 1]. Kinetic theory writes
@@ -34,6 +33,3 @@ class TangentialRestitution(Law):
     """
 
     tangential: Annotated[Number, Field(ge=-1, le=1)] = 1.0
-
-    def _compile(self, normal: float | _core.Material) -> _core.Law:
-        return _core.tangential_restitution(normal, self.tangential)

@@ -1,9 +1,9 @@
 //! The law of A. Chatterjee and A. Ruina, *A new algebraic rigid-body collision law based on impulse space considerations*,
 //! J. Appl. Mech. **65**, 939 (1998).
 
-use super::{Answer, Compliance, Components, Contact, Response, Rule};
+use super::{Answer, Compliance, Components, Contact, Creation, LawKind, Response, Slip};
 use crate::Error;
-use crate::describe::{Allowed, Arguments, Interval, Kind, Parameter};
+use crate::describe::{Arguments, Interval, Kind, Parameter};
 use crate::math::Vector;
 use crate::simd::{Pack, one};
 use pulp::Simd;
@@ -23,24 +23,30 @@ pub struct ChatterjeeRuina {
 
 impl ChatterjeeRuina {
     /// Its entry in the table of laws.
-    pub(crate) const KIND: Kind<Rule> = Kind {
-        name: "ChatterjeeRuina",
-        text: "restitution along and across the normal, within the friction cone",
-        parameters: &[
-            Parameter::new(
-                "tangential",
-                "tangential coefficient of restitution",
-                Some("1"),
-                Allowed::Number(Interval::from(-1.0, 1.0)),
-            ),
-            Parameter::new(
-                "friction",
-                "coefficient of friction",
-                Some("1"),
-                Allowed::Number(Interval::from(0.0, super::MOST_FRICTION)),
-            ),
-        ],
-        make: |given| Ok(Self::new(given.number(0), given.number(1))?.into()),
+    pub(crate) const KIND: LawKind = LawKind {
+        kind: Kind {
+            name: "ChatterjeeRuina",
+            text: "restitution along and across the normal, within the friction cone",
+            parameters: &[
+                Parameter::number(
+                    "tangential",
+                    "tangential coefficient of restitution",
+                    "1",
+                    Interval::from(-1.0, 1.0),
+                    0.0,
+                ),
+                Parameter::number(
+                    "friction",
+                    "coefficient of friction",
+                    "1",
+                    Interval::from(0.0, super::MOST_FRICTION),
+                    0.3,
+                ),
+            ],
+            make: |given| Ok(Self::new(given.number(0), given.number(1))?.into()),
+        },
+        creates_energy: Creation::Never,
+        from_rest: Some([Slip::Part, Slip::Sliding]),
     };
 
     /// The law with the tangential coefficient e_t and the coefficient of friction μ.

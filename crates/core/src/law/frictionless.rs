@@ -1,6 +1,6 @@
 //! The law without friction: **P** ∥ **n**.
 
-use super::{Answer, Compliance, Components, Contact, Response, Rule};
+use super::{Answer, Compliance, Components, Contact, Creation, LawKind, Response, Slip};
 use crate::describe::Kind;
 use crate::math::Vector;
 use crate::simd::Pack;
@@ -15,11 +15,15 @@ pub struct Frictionless;
 
 impl Frictionless {
     /// Its entry in the table of laws.
-    pub(crate) const KIND: Kind<Rule> = Kind {
-        name: "Frictionless",
-        text: "an impulse along the plane normal only",
-        parameters: &[],
-        make: |_| Ok(Self.into()),
+    pub(crate) const KIND: LawKind = LawKind {
+        kind: Kind {
+            name: "Frictionless",
+            text: "an impulse along the plane normal only",
+            parameters: &[],
+            make: |_| Ok(Self.into()),
+        },
+        creates_energy: Creation::Never,
+        from_rest: Some([Slip::Free, Slip::Free]),
     };
 
     /// The impulse for any compliance.
@@ -38,7 +42,7 @@ impl Frictionless {
     }
 
     #[inline(always)]
-    pub(super) fn respond<S: Simd>(
+    pub(super) fn respond<S: Simd, const SPACE: bool>(
         &self,
         contact: &Contact<Pack<S, 1>>,
         normal: Pack<S, 1>,

@@ -21,10 +21,22 @@ pub use compliance::Compliance;
 pub use contact::{Answer, Components, Contact, Response};
 pub use coulomb::{Coulomb, Hypothesis, MOST_FRICTION};
 pub use frictionless::Frictionless;
-pub use normal::{
-    MATERIALS, Material, Normal, PADE_ABOVE, PADE_BELOW, Plastic, Points, Scattered, Tabulated,
-    Viscoelastic,
-};
-pub use rule::{Creation, LAWS, Law, LawKind, Rule};
+pub use normal::*;
+pub use rule::{Creation, Law, LawKind, Slip};
 pub(crate) use rule::{MOST_CONTACTS, Respond};
 pub use tangential::TangentialRestitution;
+
+use crate::math::Vector;
+use crate::simd::Pack;
+use pulp::Simd;
+
+rule::laws! {
+    /// The paper's law (9).
+    TangentialRestitution,
+    /// An impulse along the plane normal only.
+    Frictionless,
+    /// Coulomb friction.
+    Coulomb,
+    /// The law of Chatterjee and Ruina, within the friction cone.
+    ChatterjeeRuina,
+}

@@ -1,8 +1,8 @@
 //! The choice of a law.
 
 use super::{
-    Answer, ChatterjeeRuina, Compliance, Contact, Coulomb, Frictionless, Material, Normal,
-    Response, TangentialRestitution, normal::scattered, tangential::Steady,
+    Answer, Compliance, Contact, Material, Normal, Response, Rule, normal::scattered,
+    tangential::Steady,
 };
 use crate::Error;
 use crate::describe::Kind;
@@ -21,19 +21,6 @@ pub struct Law<'a> {
     pub rule: Rule,
 }
 
-/// The rule by which the impulse follows from a contact and a normal coefficient.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Rule {
-    /// The paper's law (9).
-    TangentialRestitution(TangentialRestitution),
-    /// An impulse along the plane normal only.
-    Frictionless(Frictionless),
-    /// Coulomb friction.
-    Coulomb(Coulomb),
-    /// The law of Chatterjee and Ruina, within the friction cone.
-    ChatterjeeRuina(ChatterjeeRuina),
-}
-
 /// A law in the table of laws.
 #[derive(Debug, Clone, Copy)]
 pub struct LawKind {
@@ -41,6 +28,8 @@ pub struct LawKind {
     pub kind: Kind<Rule>,
     /// Whether it can create kinetic energy.
     pub creates_energy: Creation,
+    /// What the point of contact does in an impact from rest within the friction cone, and beyond it; none where that has no closed form.
+    pub from_rest: Option<[Slip; 2]>,
 }
 
 /// Whether a law can create kinetic energy.
@@ -54,25 +43,61 @@ pub enum Creation {
     Where(&'static str, &'static str),
 }
 
-/// Every law.
-pub const LAWS: &[LawKind] = &[
-    LawKind {
-        kind: TangentialRestitution::KIND,
-        creates_energy: Creation::Possible,
-    },
-    LawKind {
-        kind: Frictionless::KIND,
-        creates_energy: Creation::Never,
-    },
-    LawKind {
-        kind: Coulomb::KIND,
-        creates_energy: Creation::Where("hypothesis", "newton"),
-    },
-    LawKind {
-        kind: ChatterjeeRuina::KIND,
-        creates_energy: Creation::Never,
-    },
-];
+/// What the point of contact does in an impact from rest, before which it does not slip. Each is a closed form of the first impact,
+/// in `analytic/_impulse.py` of the Python package.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Slip {
+    /// It slips freely, for nothing acts along the plane.
+    Free,
+    /// It sticks.
+    Stuck,
+    /// It slips with friction at its limit, μ times the normal force.
+    Sliding,
+    /// The tangential impulse is (1 + e_t) times that of a sticking plastic impact.
+    Part,
+}
+
+/// Makes the rule that is one of these laws, and the table of them.
+macro_rules! laws {
+    ($($(#[$text:meta])* $law:ident),* $(,)?) => {
+        /// The rule by which the impulse follows from a contact and a normal coefficient.
+        #[derive(Debug, Clone, Copy, PartialEq)]
+        pub enum Rule {
+            $($(#[$text])* $law($law)),*
+        }
+
+        /// Every law.
+        pub const LAWS: &[LawKind] = &[$($law::KIND),*];
+
+        impl Rule {
+            /// The impulse for any compliance.
+            fn answer(&self, compliance: &Compliance, velocity: Vector, normal: f64) -> Answer {
+                match self {
+                    $(Self::$law(law) => law.answer(compliance, velocity, normal)),*
+                }
+            }
+
+            /// The response to a contact in each lane.
+            #[inline(always)]
+            fn respond<S: Simd, const SPACE: bool>(
+                &self,
+                contact: &Contact<Pack<S, 1>>,
+                normal: Pack<S, 1>,
+            ) -> Response<Pack<S, 1>> {
+                match self {
+                    $(Self::$law(law) => law.respond::<S, SPACE>(contact, normal)),*
+                }
+            }
+        }
+
+        $(impl From<$law> for Rule {
+            fn from(law: $law) -> Self {
+                Self::$law(law)
+            }
+        })*
+    };
+}
+pub(super) use laws;
 
 impl<'a> Law<'a> {
     /// The law with ε_n, a constant in [0, 1] or a function of the normal contact speed, and a rule.
@@ -121,12 +146,7 @@ impl<'a> Law<'a> {
         // One that leaves only touches.
         let velocity = Vector::new(velocity.x, velocity.y, velocity.z.min(0.0));
         let normal = self.normal.at(velocity.z.abs());
-        match &self.rule {
-            Rule::TangentialRestitution(rule) => rule.answer(compliance, velocity, normal),
-            Rule::Frictionless(rule) => rule.answer(compliance, velocity, normal),
-            Rule::Coulomb(rule) => rule.answer(compliance, velocity, normal),
-            Rule::ChatterjeeRuina(rule) => rule.answer(compliance, velocity, normal),
-        }
+        self.rule.answer(compliance, velocity, normal)
     }
 
     /// The law as [`Steady`], if it is the paper's with the same ε_n for all impacts.
@@ -223,37 +243,9 @@ impl<S: Simd, const SPACE: bool> WithSimd for Choice<'_, '_, S, SPACE> {
             return;
         }
         for (i, (contact, response)) in contacts.iter().zip(responses).enumerate() {
-            let normal = coefficient(i, contact);
-            *response = match &law.rule {
-                Rule::TangentialRestitution(rule) => rule.respond::<S, SPACE>(contact, normal),
-                Rule::Frictionless(rule) => rule.respond(contact, normal),
-                Rule::Coulomb(rule) => rule.respond_in_plane(contact, normal),
-                Rule::ChatterjeeRuina(rule) => rule.respond::<S, SPACE>(contact, normal),
-            };
+            *response = law
+                .rule
+                .respond::<S, SPACE>(contact, coefficient(i, contact));
         }
-    }
-}
-
-impl From<TangentialRestitution> for Rule {
-    fn from(rule: TangentialRestitution) -> Self {
-        Self::TangentialRestitution(rule)
-    }
-}
-
-impl From<Frictionless> for Rule {
-    fn from(rule: Frictionless) -> Self {
-        Self::Frictionless(rule)
-    }
-}
-
-impl From<Coulomb> for Rule {
-    fn from(rule: Coulomb) -> Self {
-        Self::Coulomb(rule)
-    }
-}
-
-impl From<ChatterjeeRuina> for Rule {
-    fn from(rule: ChatterjeeRuina) -> Self {
-        Self::ChatterjeeRuina(rule)
     }
 }

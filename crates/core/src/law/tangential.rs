@@ -1,8 +1,8 @@
 //! The paper's law, (9): both components of the contact velocity change by a fixed factor.
 
-use super::{Answer, Compliance, Components, Contact, Respond, Response, Rule};
+use super::{Answer, Compliance, Components, Contact, Creation, LawKind, Respond, Response, Slip};
 use crate::Error;
-use crate::describe::{Allowed, Argument, Arguments, Interval, Kind, Parameter};
+use crate::describe::{Argument, Arguments, Interval, Kind, Parameter};
 use crate::math::Vector;
 use crate::simd::{Operand, Pack};
 use pulp::Simd;
@@ -19,17 +19,22 @@ pub struct TangentialRestitution {
 
 impl TangentialRestitution {
     /// Its entry in the table of laws.
-    pub(crate) const KIND: Kind<Rule> = Kind {
-        name: "TangentialRestitution",
-        text: "both components of the contact velocity change by a fixed factor",
-        parameters: &[Parameter::new(
-            "tangential",
-            "tangential coefficient of restitution",
-            Some("1"),
-            Allowed::Number(Interval::from(-1.0, 1.0)),
-        )
-        .or(Argument::Number(1.0))],
-        make: |given| Ok(Self::new(given.number(0))?.into()),
+    pub(crate) const KIND: LawKind = LawKind {
+        kind: Kind {
+            name: "TangentialRestitution",
+            text: "both components of the contact velocity change by a fixed factor",
+            parameters: &[Parameter::number(
+                "tangential",
+                "tangential coefficient of restitution",
+                "1",
+                Interval::from(-1.0, 1.0),
+                1.0,
+            )
+            .or(Argument::Number(1.0))],
+            make: |given| Ok(Self::new(given.number(0))?.into()),
+        },
+        creates_energy: Creation::Possible,
+        from_rest: Some([Slip::Stuck, Slip::Stuck]),
     };
 
     /// The law with ε_t in [−1, 1].

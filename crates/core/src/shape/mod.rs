@@ -3,7 +3,4 @@
 mod mass;
 mod revolution;
 
-pub(crate) use revolution::{AxisMotion, Hull, HullPart, with_hull};
-pub use revolution::{
-    BODIES, Body, Dumbbell, LoadedSphere, Shape, Solid, Sphere, Spherocylinder, Spheroid, Surface,
-};
+pub use revolution::*;

@@ -43,7 +43,7 @@ def error_budget(
 
     Parameters
     ----------
-    body : Dumbbell, LoadedSphere, Spherocylinder or Spheroid
+    body : Dumbbell or another body
         The ball; `restitution.from_roundness` makes it from a diameter and an out-of-roundness.
     law : Law
         The collision law. Fitted is what goes with its normal coefficient: a constant, the Padé

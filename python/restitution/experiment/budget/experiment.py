@@ -11,7 +11,7 @@ from pydantic import Field, model_validator
 from scipy.optimize import least_squares
 
 from restitution._internal.parameters import Number, ParameterError, Parameters, Whole, wrong
-from restitution.bodies import BODIES, Body, Dumbbell, LoadedSphere, Spherocylinder, Spheroid
+from restitution.bodies import Body
 from restitution.experiment.flight.chain import COMMON, Measured, chain
 from restitution.experiment.flight.laws import LAWS, LawOfSpeed, by_parameters
 from restitution.experiment.flight.times import LARGEST
@@ -51,18 +51,9 @@ class Setting(Parameters):
 
 
 def mean_radius(body: Body) -> float:
-    """Return half the mean of the largest and the smallest diameter, in m."""
-    match body:
-        case Spheroid():
-            return 0.5 * (body.equatorial + body.polar)
-        case LoadedSphere():
-            return body.radius
-        case Spherocylinder():
-            return body.radius + 0.25 * body.separation
-        case Dumbbell():
-            return 0.5 * (max(body.radii) + 0.5 * (sum(body.radii) + body.separation))
-        case _:
-            raise ParameterError(wrong("body", body, BODIES))
+    """Return half the mean of the diameters along and across the axis, in m."""
+    up, down, across = (body.compiled.lowest(np.array([cosine])) for cosine in (1.0, -1.0, 0.0))
+    return 0.25 * (up + down) + 0.5 * across
 
 
 def law_of_speed(law: Law) -> LawOfSpeed:

@@ -10,7 +10,9 @@ mod general;
 mod planar;
 mod turning;
 
-use super::{Answer, Compliance, Components, Contact, Frictionless, Response, Rule};
+use super::{
+    Answer, Compliance, Components, Contact, Creation, Frictionless, LawKind, Response, Slip,
+};
 use crate::Error;
 use crate::describe::{Allowed, Argument, Arguments, Interval, Kind, Parameter};
 use crate::math::Vector;
@@ -63,28 +65,34 @@ pub struct Coulomb {
 
 impl Coulomb {
     /// Its entry in the table of laws.
-    pub(crate) const KIND: Kind<Rule> = Kind {
-        name: "Coulomb",
-        text: "dry friction, with slip that may stop, turn or reverse",
-        parameters: &[
-            Parameter::new(
-                "friction",
-                "coefficient of friction",
-                Some("1"),
-                Allowed::Number(Interval::from(0.0, MOST_FRICTION)),
-            ),
-            Parameter::new(
-                "hypothesis",
-                "the condition that ends the impact",
-                None,
-                Allowed::Name(&["stronge", "poisson", "newton"]),
-            )
-            .or(Argument::Name("stronge")),
-        ],
-        make: |given| {
-            let hypothesis = Hypothesis::named(given.name(1))?;
-            Ok(Self::new(given.number(0), hypothesis)?.into())
+    pub(crate) const KIND: LawKind = LawKind {
+        kind: Kind {
+            name: "Coulomb",
+            text: "dry friction, with slip that may stop, turn or reverse",
+            parameters: &[
+                Parameter::number(
+                    "friction",
+                    "coefficient of friction",
+                    "1",
+                    Interval::from(0.0, MOST_FRICTION),
+                    0.3,
+                ),
+                Parameter::new(
+                    "hypothesis",
+                    "the condition that ends the impact",
+                    None,
+                    Allowed::Name(&["stronge", "poisson", "newton"]),
+                    Argument::Name("stronge"),
+                )
+                .or(Argument::Name("stronge")),
+            ],
+            make: |given| {
+                let hypothesis = Hypothesis::named(given.name(1))?;
+                Ok(Self::new(given.number(0), hypothesis)?.into())
+            },
         },
+        creates_energy: Creation::Where("hypothesis", "newton"),
+        from_rest: Some([Slip::Stuck, Slip::Sliding]),
     };
 
     /// The law with the coefficient of friction μ and a hypothesis.
@@ -130,7 +138,7 @@ impl Coulomb {
 
     /// The response to a contact that does not slip along **w**.
     #[inline(always)]
-    pub(super) fn respond_in_plane<S: Simd>(
+    pub(super) fn respond<S: Simd, const SPACE: bool>(
         &self,
         contact: &Contact<Pack<S, 1>>,
         restitution: Pack<S, 1>,

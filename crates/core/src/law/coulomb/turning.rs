@@ -1941,7 +1941,7 @@ impl<S: Simd> WithSimd for Turning<'_, S> {
             impacts.stop();
             let mut response = impacts.answer();
             if !turns.all() {
-                let straight = rule.respond_in_plane(contact, restitution);
+                let straight = rule.respond::<S, false>(contact, restitution);
                 response = response.or(!turns, &straight);
             }
             let open = (!impacts.course.over & turns).select(1.0, 0.0);

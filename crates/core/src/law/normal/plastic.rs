@@ -3,7 +3,7 @@
 
 use super::Material;
 use crate::Error;
-use crate::describe::{Allowed, Arguments, Interval, Kind, Parameter};
+use crate::describe::{Arguments, Interval, Kind, Parameter};
 use crate::simd::Pack;
 use pulp::Simd;
 
@@ -19,11 +19,12 @@ impl Plastic {
     pub(crate) const KIND: Kind<Material> = Kind {
         name: "Plastic",
         text: "elastic–perfectly plastic spheres",
-        parameters: &[Parameter::new(
+        parameters: &[Parameter::number(
             "yield_speed",
             "speed at which yield begins",
-            Some("m s-1"),
-            Allowed::Number(Interval::POSITIVE),
+            "m s-1",
+            Interval::POSITIVE,
+            0.01,
         )],
         make: |given| Ok(Self::new(given.number(0))?.into()),
     };

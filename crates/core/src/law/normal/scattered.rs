@@ -2,7 +2,7 @@
 
 use super::Material;
 use crate::Error;
-use crate::describe::{Allowed, Arguments, Interval, Kind, Parameter};
+use crate::describe::{Arguments, Interval, Kind, Parameter};
 use crate::simd::elementary::{exp_in_lanes, ln};
 use crate::simd::{Pack, one};
 use pulp::{Simd, WithSimd};
@@ -20,17 +20,19 @@ impl Scattered {
         name: "Scattered",
         text: "drawn anew for every impact, about a number or another material",
         parameters: &[
-            Parameter::new(
+            Parameter::number(
                 "normal",
                 "normal coefficient of restitution about which it scatters",
-                Some("1"),
-                Allowed::Number(Interval::from(0.0, 1.0)),
+                "1",
+                Interval::from(0.0, 1.0),
+                0.98,
             ),
-            Parameter::new(
+            Parameter::number(
                 "deviation",
                 "standard deviation before truncation to [0, 1]",
-                Some("1"),
-                Allowed::Number(Interval::from(0.0, 1.0)),
+                "1",
+                Interval::from(0.0, 1.0),
+                0.01,
             ),
         ],
         make: |given| {

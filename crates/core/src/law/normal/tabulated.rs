@@ -2,7 +2,7 @@
 
 use super::Material;
 use crate::Error;
-use crate::describe::{Allowed, Arguments, Interval, Kind, Parameter};
+use crate::describe::{Allowed, Argument, Arguments, Interval, Kind, Parameter};
 use crate::memory::copied;
 use crate::simd::Pack;
 use pulp::Simd;
@@ -34,12 +34,14 @@ impl Points {
                 "normal speeds, increasing",
                 Some("m s-1"),
                 Allowed::Numbers(Interval::NOT_NEGATIVE),
+                Argument::Numbers(&[0.1, 1.0]),
             ),
             Parameter::new(
                 "e",
                 "coefficients at these speeds",
                 Some("1"),
                 Allowed::Numbers(Interval::from(0.0, 1.0)),
+                Argument::Numbers(&[0.97, 0.92]),
             ),
         ],
         make: |given| {

@@ -3,7 +3,7 @@
 
 use super::Material;
 use crate::Error;
-use crate::describe::{Allowed, Arguments, Interval, Kind, Parameter};
+use crate::describe::{Arguments, Interval, Kind, Parameter};
 use crate::simd::Pack;
 use crate::simd::elementary::{fifth_root, polynomial};
 use pulp::Simd;
@@ -32,40 +32,33 @@ impl Viscoelastic {
         name: "Viscoelastic",
         text: "viscoelastic spheres",
         parameters: &[
-            Parameter::new(
+            Parameter::number(
                 "young_modulus",
                 "Young modulus",
-                Some("Pa"),
-                Allowed::Number(Interval::POSITIVE),
+                "Pa",
+                Interval::POSITIVE,
+                6e10,
             ),
-            Parameter::new(
+            Parameter::number(
                 "poisson_ratio",
                 "Poisson ratio",
-                Some("1"),
-                Allowed::Number(Interval {
+                "1",
+                Interval {
                     low: -1.0,
                     high: 0.5,
                     closed: false,
-                }),
+                },
+                0.22,
             ),
-            Parameter::new(
+            Parameter::number(
                 "dissipation",
                 "dissipative constant A",
-                Some("s"),
-                Allowed::Number(Interval::NOT_NEGATIVE),
+                "s",
+                Interval::NOT_NEGATIVE,
+                1e-7,
             ),
-            Parameter::new(
-                "density",
-                "density",
-                Some("kg m-3"),
-                Allowed::Number(Interval::POSITIVE),
-            ),
-            Parameter::new(
-                "radius",
-                "radius",
-                Some("m"),
-                Allowed::Number(Interval::POSITIVE),
-            ),
+            Parameter::number("density", "density", "kg m-3", Interval::POSITIVE, 2500.0),
+            Parameter::length("radius", "radius", 3e-3),
         ],
         make: |given| {
             let [young, poisson, dissipation, density, radius] =

@@ -1,11 +1,11 @@
 //! Two spheres on an axis. Equal ones are the paper's homogeneous dumbbell (A1)–(A8).
 
 use super::{
-    Ball, Body, EqualBalls, OneBall, Shape, Solid, Surface, TwoBalls, check_density,
+    Arc, Ball, Body, EqualBalls, OneBall, Shape, Solid, Surface, TwoBalls, check_density,
     check_distance, check_length, representable, seen,
 };
 use crate::Error;
-use crate::describe::{Allowed, Argument, Arguments, Interval, Kind, Parameter};
+use crate::describe::{Arguments, Interval, Kind, Parameter};
 use crate::shape::mass::MassProperties;
 use std::f64::consts::PI;
 
@@ -28,25 +28,15 @@ impl Dumbbell {
         name: "Dumbbell",
         text: "two spheres on an axis",
         parameters: &[
-            Parameter::new(
-                "radius",
-                "radius of either sphere, or of each",
-                Some("m"),
-                Allowed::Pair(Interval::POSITIVE),
-            ),
-            Parameter::new(
+            Parameter::length("radius", "radius of either sphere, or of each", 3e-3).of_each(),
+            Parameter::number(
                 "separation",
                 "distance between the centres",
-                Some("m"),
-                Allowed::Number(Interval::NOT_NEGATIVE),
+                "m",
+                Interval::NOT_NEGATIVE,
+                3e-4,
             ),
-            Parameter::new(
-                "density",
-                "density of both spheres, or of each",
-                Some("kg m-3"),
-                Allowed::Pair(Interval::POSITIVE),
-            )
-            .or(Argument::Number(2500.0)),
+            Parameter::density("density of both spheres, or of each").of_each(),
         ],
         make: |given| Ok(Self::unequal(given.pair(0), given.number(1), given.pair(2))?.into()),
     };
@@ -190,6 +180,24 @@ impl Shape for Dumbbell {
         } else {
             self.unit() * (self.whole().centre + 0.5 * self.elongation())
         }
+    }
+
+    fn outline(&self) -> [Arc; 2] {
+        let [one, two] = self.radius;
+        let half = 0.5 * self.separation;
+        let centres = [half, -half].map(|place| place - self.centre_of_mass());
+        if (one - two).abs() >= self.separation {
+            let larger = usize::from(two > one);
+            return Arc::halves(centres[larger], self.radius[larger], self.radius[larger]);
+        }
+        // The cosines of the angles at which the spheres meet, from the direction towards the other sphere.
+        let lean = (one - two) / self.separation * (one + two);
+        let meets = [(one, lean), (two, -lean)].map(|(radius, lean)| {
+            (0.5 * (self.separation + lean) / radius)
+                .clamp(-1.0, 1.0)
+                .acos()
+        });
+        Arc::caps(centres, self.radius, [PI - meets[0], meets[1]])
     }
 
     fn scaled(&self) -> Body {

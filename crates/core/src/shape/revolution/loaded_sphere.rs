@@ -1,11 +1,11 @@
 //! A sphere with a point mass inside: it is round, but its centre of mass is not its centre.
 
 use super::{
-    Ball, Body, OneBall, Shape, Solid, Surface, check_density, check_distance, check_length,
+    Arc, Ball, Body, OneBall, Shape, Solid, Surface, check_density, check_distance, check_length,
     representable,
 };
 use crate::Error;
-use crate::describe::{Allowed, Argument, Arguments, Interval, Kind, Parameter};
+use crate::describe::{Arguments, Interval, Kind, Parameter};
 use crate::shape::mass::MassProperties;
 
 /// A homogeneous sphere with a point mass on its axis, in SI units. The axis points from the centre to the load.
@@ -23,30 +23,21 @@ impl LoadedSphere {
         name: "LoadedSphere",
         text: "a sphere with a point mass inside",
         parameters: &[
-            Parameter::new(
-                "radius",
-                "radius of the sphere",
-                Some("m"),
-                Allowed::Number(Interval::POSITIVE),
-            ),
-            Parameter::new(
-                "density",
-                "density of the sphere",
-                Some("kg m-3"),
-                Allowed::Number(Interval::POSITIVE),
-            )
-            .or(Argument::Number(2500.0)),
-            Parameter::new(
+            Parameter::length("radius", "radius of the sphere", 3e-3),
+            Parameter::density("density of the sphere"),
+            Parameter::number(
                 "load",
                 "mass of the point",
-                Some("kg"),
-                Allowed::Number(Interval::NOT_NEGATIVE),
+                "kg",
+                Interval::NOT_NEGATIVE,
+                1e-4,
             ),
-            Parameter::new(
+            Parameter::number(
                 "offset",
                 "distance of the point from the centre, at most the radius",
-                Some("m"),
-                Allowed::Number(Interval::NOT_NEGATIVE),
+                "m",
+                Interval::NOT_NEGATIVE,
+                2e-3,
             ),
         ],
         make: |given| {
@@ -102,6 +93,10 @@ impl Shape for LoadedSphere {
 
     fn centre_of_mass(&self) -> f64 {
         self.whole().centre
+    }
+
+    fn outline(&self) -> [Arc; 2] {
+        Arc::halves(-self.centre_of_mass(), self.radius, self.radius)
     }
 
     fn scaled(&self) -> Body {

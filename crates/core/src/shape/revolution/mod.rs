@@ -1,11 +1,12 @@
 //! Bodies of revolution: the properties on which the motion depends, and one file per shape.
 //!
-//! A new shape is a file with its parameters in SI units that implements [`Shape`]. Its hull consists of balls or is smooth;
-//! [`Hull`] lists what it has to provide.
+//! A new shape is a file with its parameters in SI units that implements [`Shape`], and an entry of [`BODIES`]. Its hull consists of
+//! balls or is smooth; [`Hull`] lists what it has to provide.
 
 mod dumbbell;
 mod hull;
 mod loaded_sphere;
+mod outline;
 mod spherocylinder;
 mod spheroid;
 
@@ -13,6 +14,7 @@ pub use dumbbell::Dumbbell;
 pub(crate) use hull::{AxisMotion, Hull, HullPart, with_hull};
 pub use hull::{Ball, Ellipsoid, EqualBalls, OneBall, Sphere, Surface, TwoBalls};
 pub use loaded_sphere::LoadedSphere;
+pub use outline::Arc;
 pub use spherocylinder::Spherocylinder;
 pub use spheroid::Spheroid;
 
@@ -55,6 +57,9 @@ pub trait Shape {
     fn centre_of_mass(&self) -> f64 {
         0.0
     }
+    /// The curve that the surface cuts out of a plane through the axis, as far as it is not straight: the arc at the end to which the
+    /// axis points, and that at the other end, joined by a straight line. In m; the origin is the centre of mass.
+    fn outline(&self) -> [Arc; 2];
     /// The body in the core's units.
     fn scaled(&self) -> Body;
 }
@@ -72,6 +77,8 @@ pub struct Solid {
     pub axial_inertia: f64,
     /// Position of the centre of mass on the axis, in m, relative to the middle of the shape ([`Shape::centre_of_mass`]).
     pub centre_of_mass: f64,
+    /// The outline ([`Shape::outline`]).
+    pub outline: [Arc; 2],
     /// The body in the core's units.
     pub scaled: Body,
 }
@@ -84,6 +91,7 @@ impl<S: Shape> From<S> for Solid {
             transverse_inertia: shape.transverse_inertia(),
             axial_inertia: shape.axial_inertia(),
             centre_of_mass: shape.centre_of_mass(),
+            outline: shape.outline(),
             scaled: shape.scaled(),
         }
     }

@@ -1,11 +1,11 @@
 //! A cylinder with hemispherical caps: its contact is that of a dumbbell, but it has more mass in the middle.
 
 use super::{
-    Body, EqualBalls, Shape, Solid, Surface, check_density, check_distance, check_length,
+    Arc, Body, EqualBalls, Shape, Solid, Surface, check_density, check_distance, check_length,
     representable, seen,
 };
 use crate::Error;
-use crate::describe::{Allowed, Argument, Arguments, Interval, Kind, Parameter};
+use crate::describe::{Arguments, Interval, Kind, Parameter};
 use std::f64::consts::PI;
 
 /// A homogeneous cylinder with hemispherical caps whose centres are `separation` apart, in SI units.
@@ -22,25 +22,15 @@ impl Spherocylinder {
         name: "Spherocylinder",
         text: "a cylinder with hemispherical caps",
         parameters: &[
-            Parameter::new(
-                "radius",
-                "radius of cylinder and caps",
-                Some("m"),
-                Allowed::Number(Interval::POSITIVE),
-            ),
-            Parameter::new(
+            Parameter::length("radius", "radius of cylinder and caps", 3e-3),
+            Parameter::number(
                 "separation",
                 "length of the cylinder",
-                Some("m"),
-                Allowed::Number(Interval::NOT_NEGATIVE),
+                "m",
+                Interval::NOT_NEGATIVE,
+                6e-3,
             ),
-            Parameter::new(
-                "density",
-                "density",
-                Some("kg m-3"),
-                Allowed::Number(Interval::POSITIVE),
-            )
-            .or(Argument::Number(2500.0)),
+            Parameter::density("density"),
         ],
         make: |given| Ok(Self::new(given.number(0), given.number(1), given.number(2))?.into()),
     };
@@ -99,6 +89,11 @@ impl Shape for Spherocylinder {
 
     fn axial_inertia(&self) -> f64 {
         self.density * self.radius.powi(5) * PI * self.axial_factor()
+    }
+
+    fn outline(&self) -> [Arc; 2] {
+        let half = 0.5 * self.separation;
+        Arc::caps([half, -half], [self.radius; 2], [0.5 * PI; 2])
     }
 
     fn scaled(&self) -> Body {

@@ -1,8 +1,10 @@
 //! An ellipsoid of revolution: prolate, oblate, or a sphere.
 
-use super::{Body, Ellipsoid, Shape, Solid, Surface, check_density, check_length, representable};
+use super::{
+    Arc, Body, Ellipsoid, Shape, Solid, Surface, check_density, check_length, representable,
+};
 use crate::Error;
-use crate::describe::{Allowed, Argument, Arguments, Interval, Kind, Parameter};
+use crate::describe::{Arguments, Kind, Parameter};
 use std::f64::consts::PI;
 
 /// Largest ratio of the semi-axes; beyond it the relative rounding error of the contact exceeds 10⁻¹².
@@ -22,25 +24,17 @@ impl Spheroid {
         name: "Spheroid",
         text: "an ellipsoid of revolution",
         parameters: &[
-            Parameter::new(
+            Parameter::length(
                 "equatorial",
                 "semi-axis across the axis of revolution",
-                Some("m"),
-                Allowed::Number(Interval::POSITIVE),
+                2e-3,
             ),
-            Parameter::new(
+            Parameter::length(
                 "polar",
                 "semi-axis along the axis of revolution, between 1/1000 and 1000 times the other",
-                Some("m"),
-                Allowed::Number(Interval::POSITIVE),
+                3e-3,
             ),
-            Parameter::new(
-                "density",
-                "density",
-                Some("kg m-3"),
-                Allowed::Number(Interval::POSITIVE),
-            )
-            .or(Argument::Number(2500.0)),
+            Parameter::density("density"),
         ],
         make: |given| Ok(Self::new(given.number(0), given.number(1), given.number(2))?.into()),
     };
@@ -91,6 +85,10 @@ impl Shape for Spheroid {
 
     fn axial_inertia(&self) -> f64 {
         self.mass() * self.unit().powi(2) * self.scaled().axial
+    }
+
+    fn outline(&self) -> [Arc; 2] {
+        Arc::halves(0.0, self.polar, self.equatorial)
     }
 
     fn scaled(&self) -> Body {
