@@ -67,8 +67,6 @@ def test_thresholds_are_where_the_restitution_vanishes() -> None:
         for inertia, height, arm in ((0.4, 1.1, 0.9), (0.05, 0.6, 0.2), (1.3, 0.31, 1.7)):
             threshold = float(Impulse(law, inertia).threshold(mode, height, arm))
             assert evaluated(law, mode, inertia, threshold, height, arm) == pytest.approx(0.0, abs=4e-15)
-    with pytest.raises(TypeError, match="no closed form of 'a law'"):
-        Impulse("a law", 1.0).modes()  # type: ignore[arg-type]
 
 
 HULLS = (Ball(1.0, -0.6), Ball(0.7, 0.9), Ellipsoid(1.0, 3.0), Ellipsoid(3.0, 1.0))

@@ -219,11 +219,11 @@ EGG = rs.Spheroid(equatorial=2e-2, polar=3e-2)
     [
         (
             {"body": rs.Spheroid(equatorial=1.0, polar=1.0)},
-            r"body\.polar = 1\.0: must be different .* sphere",
+            r"body = Spheroid\(.*: must be no sphere about its centre of mass",
         ),
         (
             {"body": rs.LoadedSphere(radius=1.0, load=0, offset=0.5)},
-            r"body\.centre_of_mass = 0\.0: must be > 0; a",
+            r"body = LoadedSphere\(.*: must be no sphere about its",
         ),
         (
             {"body": rs.Spheroid(equatorial=1.0, polar=1.00001)},
@@ -323,5 +323,5 @@ def test_a_pair_turned_upside_down_is_the_same_body() -> None:
 
 @pytest.mark.parametrize("radii", [(1.0, 0.3), (0.3, 1.0)])
 def test_a_pair_one_of_which_holds_the_other_is_a_sphere(radii: tuple[float, float]) -> None:
-    with pytest.raises(ValueError, match=r"varies by 1e-09 at least; here by 0\.0e\+00"):
+    with pytest.raises(ValueError, match="must be no sphere about its centre of mass"):
         first_impact(rs.Dumbbell(radius=radii, separation=0.5), rs.TangentialRestitution(normal=0.5))

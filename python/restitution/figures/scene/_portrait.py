@@ -24,7 +24,7 @@ def body(body: Body, angle: float = math.radians(50.0), *, style: Style | None =
 
     Parameters
     ----------
-    body : Dumbbell, LoadedSphere, Spherocylinder or Spheroid
+    body : Dumbbell or another body
         What is drawn.
     angle : float
         Angle θ between the axis and the plane normal, in rad; the axis leans to the right.

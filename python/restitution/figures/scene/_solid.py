@@ -64,7 +64,7 @@ def body_of(data: xr.Dataset) -> Body:
 
 def reach(body: Body) -> float:
     """Return how far the surface is from the centre of mass, at most, in m."""
-    return body.solid.farthest()
+    return body.compiled.farthest()
 
 
 def contact_point(body: Body, axis: FloatArray, end: int | None = None) -> FloatArray:
