@@ -6,6 +6,7 @@ import { existsSync, mkdirSync, readFileSync, writeFileSync } from "node:fs";
 import { dirname, join } from "node:path";
 import { fileURLToPath } from "node:url";
 import { gzipSync } from "node:zlib";
+import { table } from "./table.mjs";
 
 const here = dirname(fileURLToPath(import.meta.url));
 const at = (...names) => join(here, ...names);
@@ -39,7 +40,7 @@ const worker = await bundle("src/engine/worker.ts");
 /** An address of the project, once it has one. */
 const cited = (key) => text("..", "CITATION.cff").match(new RegExp(`^${key}: *"?([^"\n]+)`, "m"))?.[1];
 const home = cited("url");
-const script = await bundle("src/main.ts", { CORE: JSON.stringify(core), WORKER: JSON.stringify(worker), HOME: JSON.stringify(home ?? "") });
+const script = await bundle("src/main.ts", { CORE: JSON.stringify(core), WORKER: JSON.stringify(worker), TABLE: table(), HOME: JSON.stringify(home ?? "") });
 const links = [["Paper", "https://doi.org/10.1103/PhysRevE.90.052204"], ["Documentation", home], ["Repository", cited("repository-code")]]
   .filter(([, address]) => address)
   .map(([name, address]) => `<a href="${address}">${name}</a>`);

@@ -1,41 +1,56 @@
 /** The sliders and choices of a set-up. */
 
 import { problem } from "./link";
+import { outlineOf } from "./outline";
 import { part } from "./page";
-import {
-  applies,
-  HYPOTHESES,
-  LAWS,
-  ORIENTATIONS,
-  SHAPES,
-  MOST_IMPACTS,
-  type ChoiceKey,
-  type Key,
-  type NumberKey,
-  type Setup,
-} from "./setup";
+import { applies, bodyOf, MOST_IMPACTS, ORIENTATIONS, rounded, type Setup } from "./setup";
+import { nice } from "./statistics";
+import { beside, BODIES, LAWS, PARAMETERS, sizeOf, type Parameter } from "./table";
 
 interface Slider {
-  key: NumberKey;
+  key: string;
   name: string;
+  title?: string;
   unit: string;
-  /** What the page shows is the value times this. */
+  /** What the page shows is the value times this, over the parameter `beside`. */
   factor: number;
+  beside?: string | undefined;
   low: number;
   high: number;
   step: number;
   more?: boolean;
 }
 
+interface Choice {
+  key: string;
+  name: string;
+  options: readonly string[];
+  labels: readonly string[];
+}
+
 const DEGREES = 180 / Math.PI;
 
+/** Of SI units that the page shows in others: their name and what one of them is in it. */
+const UNITS: Record<string, [string, number]> = { m: ["mm", 1e3], kg: ["mg", 1e6], "kg m-3": ["kg/m³", 1], "1": ["", 1] };
+const capital = (text: string) => text[0].toUpperCase() + text.slice(1);
+
+/** Of a number in the table: over its interval, or from its lower end to some times a usual value. */
+function sliderOf({ name, text, unit, low, high, example, ...about }: Parameter): Slider {
+  const usual = Number(example);
+  const body = BODIES.some(({ parameters }) => parameters.some((one) => one.name === name));
+  const size = beside(name);
+  const label = capital(unit === "1" ? text : name.replaceAll("_", " "));
+  if (size) return { key: name, name: `${label} / ${size}`, title: text, unit: "", factor: 1, beside: size, low: about.closed ? 0 : 0.05, high: 3, step: 0.01 };
+  const [shown, factor] = UNITS[unit!] ?? [unit!, 1];
+  const most = (high != null && high < 1e6 ? high : (unit === "m" ? 6 : 5) * usual) * factor;
+  const step = nice((most - low! * factor) / 200);
+  return { key: name, name: label, title: text, unit: shown, factor, low: about.closed ? low! * factor : step, high: most, step, more: body && about.default !== undefined };
+}
+
+const NUMBERS = [...PARAMETERS.values()].filter(({ names }) => !names);
 const SLIDERS: readonly Slider[] = [
-  { key: "elongation", name: "Elongation L/R", unit: "", factor: 1, low: 0, high: 3, step: 0.01 },
-  { key: "normal", name: "Normal restitution εₙ", unit: "", factor: 1, low: 0, high: 1, step: 0.01 },
-  { key: "tangential", name: "Tangential restitution εₜ", unit: "", factor: 1, low: -1, high: 1, step: 0.01 },
-  { key: "friction", name: "Friction μ", unit: "", factor: 1, low: 0, high: 1.5, step: 0.01 },
+  ...NUMBERS.map(sliderOf),
   { key: "release_height", name: "Release height of the centre", unit: "mm", factor: 1e3, low: 5, high: 300, step: 1 },
-  { key: "radius", name: "Radius R", unit: "mm", factor: 1e3, low: 0.5, high: 20, step: 0.1 },
   { key: "angle", name: "Tilt θ of the axis at release", unit: "°", factor: DEGREES, low: 0, high: 180, step: 0.5 },
   { key: "spin_y", name: "Spin at release", unit: "rad/s", factor: 1, low: -300, high: 300, step: 1 },
   { key: "particles", name: "Particles", unit: "", factor: 1, low: 10, high: 5000, step: 10 },
@@ -49,32 +64,39 @@ const SLIDERS: readonly Slider[] = [
   { key: "minimum_speed", name: "Stop below", unit: "m/s", factor: 1, low: 0, high: 0.5, step: 0.01, more: true },
 ];
 
-const CHOICES: readonly { key: ChoiceKey; name: string; options: readonly string[]; labels: string[] }[] = [
-  { key: "shape", name: "Shape", options: SHAPES, labels: ["Dumbbell", "Spherocylinder", "Spheroid"] },
-  {
-    key: "law",
-    name: "Collision law",
-    options: LAWS,
-    labels: ["The paper's: εₙ and εₜ", "No friction", "Coulomb friction", "Chatterjee and Ruina"],
-  },
-  { key: "hypothesis", name: "Hypothesis", options: HYPOTHESES, labels: ["Stronge (energy)", "Poisson (impulse)", "Newton (velocity)"] },
+/** The words of a name as in Python. */
+const words = (name: string) => name.replace(/(?<!^)(?=[A-Z])/g, " ");
+const kinds = (key: string, name: string, table: readonly { key: string; name: string }[]): Choice => ({
+  key,
+  name,
+  options: table.map((kind) => kind.key),
+  labels: table.map((kind) => words(kind.name)),
+});
+
+const CHOICES: readonly Choice[] = [
+  kinds("shape", "Shape", BODIES),
+  kinds("law", "Collision law", LAWS),
+  ...[...PARAMETERS.values()].flatMap(({ name, names }) => (names ? [{ key: name, name: capital(name), options: names, labels: names.map(capital) }] : [])),
   { key: "orientation", name: "Axis at release", options: ORIENTATIONS, labels: ["θ uniform", "every direction alike", "one particle, θ given"] },
 ];
-/** The slider that is shown where there is room for one only, until another is chosen. */
-const FIRST = "elongation";
+const later = (key: string) => SLIDERS.find((slider) => slider.key === key)?.more === true;
+const named = (table: readonly { parameters: Parameter[] }[]) =>
+  [...new Set(table.flatMap(({ parameters }) => parameters.map(({ name }) => name)))].filter((name) => !later(name));
 /** The choices and sliders in the order of the page; what follows the last is under "More". */
-const ORDER: readonly Key[] = [
-  "shape", "elongation", "law", "normal", "tangential", "friction", "hypothesis", "release_height", "radius",
-  "orientation", "angle", "spin_y", "particles", "impacts", "seed",
+const ORDER: readonly string[] = [
+  "shape", ...named(BODIES), "law", ...named(LAWS), "release_height", "orientation", "angle", "spin_y", "particles", "impacts", "seed",
 ];
 
-const nameOf = (key: Key) => [...SLIDERS, ...CHOICES].find((x) => x.key === key)!.name;
+const nameOf = (key: string) => [...SLIDERS, ...CHOICES].find((x) => x.key === key)!.name;
+
+/** The slider that is shown where there is room for one only, until another is chosen: a length beside the size of the body. */
+const first = (s: Setup) => (bodyOf(s).parameters.find(({ name }) => beside(name)) ?? bodyOf(s).parameters[0]).name;
 
 export class Controls {
   private setup!: Setup;
-  private readonly fields = new Map<Key, { row: HTMLElement; show: () => void }>();
+  private readonly fields = new Map<string, { row: HTMLElement; show: () => void }>();
 
-  constructor(host: HTMLFormElement, private readonly changed: (key: Key, value: string | number) => void) {
+  constructor(host: HTMLFormElement, private readonly changed: (key: string, value: string | number) => void) {
     host.addEventListener("submit", (event) => event.preventDefault());
     const more = document.createElement("details");
     more.innerHTML = "<summary>More</summary>";
@@ -91,7 +113,7 @@ export class Controls {
   show(setup: Setup): void {
     this.setup = setup;
     const there = ORDER.filter((key) => applies(key, setup));
-    const wanted = there.find((key) => key === this.quick.value) ?? FIRST;
+    const wanted = there.find((key) => key === this.quick.value) ?? first(setup);
     // An open list stays as it is.
     if (this.quick.options.length !== there.length) this.quick.replaceChildren(...there.map((key) => new Option(nameOf(key), key)));
     this.quick.value = wanted;
@@ -102,13 +124,13 @@ export class Controls {
     }
   }
 
-  private field(key: Key): HTMLElement {
+  private field(key: string): HTMLElement {
     const slider = SLIDERS.find((x) => x.key === key);
     const row = slider ? this.slider(slider) : this.choice(CHOICES.find((x) => x.key === key)!);
     return row;
   }
 
-  private choice({ key, name, options, labels }: (typeof CHOICES)[number]): HTMLElement {
+  private choice({ key, name, options, labels }: Choice): HTMLElement {
     const row = document.createElement("div");
     row.className = "field";
     row.innerHTML = `<label class="name" for="${key}">${name}</label><select id="${key}">${options
@@ -116,20 +138,21 @@ export class Controls {
       .join("")}</select>`;
     const select = row.querySelector("select")!;
     select.addEventListener("change", () => this.changed(key, select.value));
-    this.fields.set(key, { row, show: () => (select.value = this.setup[key]) });
+    this.fields.set(key, { row, show: () => (select.value = String(this.setup[key])) });
     return row;
   }
 
-  private slider({ key, name, unit, factor, low, high, step }: Slider): HTMLElement {
+  private slider({ key, name, title, unit, factor, beside, low, high, step }: Slider): HTMLElement {
     const row = document.createElement("div");
     row.className = "field";
-    row.innerHTML = `<label class="name" for="${key}">${name}</label>
+    row.innerHTML = `<label class="name" for="${key}"${title ? ` title="${capital(title)}"` : ""}>${name}</label>
       <span class="value"><input type="number" id="${key}-number" aria-label="${name}${unit && `, ${unit}`}" step="any"><span>${unit}</span></span>
       <input type="range" id="${key}" min="${low}" max="${high}" step="${step}">`;
     const range = row.querySelector<HTMLInputElement>("input[type=range]")!;
     const number = row.querySelector<HTMLInputElement>("input[type=number]")!;
+    const scale = () => factor / (beside ? Number(this.setup[beside]) : 1);
     const tell = (text: string) => {
-      const value = Number((Number(text) / factor).toPrecision(12));
+      const value = rounded(Number(text) / scale());
       const wrong = text === "" ? `${name}: a number is missing` : problem(key, value);
       number.setCustomValidity(wrong);
       number.setAttribute("aria-invalid", String(wrong !== ""));
@@ -139,7 +162,7 @@ export class Controls {
     range.addEventListener("input", () => tell(range.value));
     number.addEventListener("change", () => tell(number.value));
     const show = () => {
-      const value = Number((this.setup[key] * factor).toPrecision(10));
+      const value = Number((Number(this.setup[key]) * scale()).toPrecision(10));
       range.value = String(value);
       range.setAttribute("aria-valuetext", `${value} ${unit}`);
       if (document.activeElement !== number) number.value = String(value);
@@ -152,10 +175,15 @@ export class Controls {
 }
 
 /** The set-up with one value changed, and all that must change with it. */
-export function changed(setup: Setup, key: Key, value: string | number): Setup {
-  const next = { ...setup, [key]: value } as Setup;
-  // The body must fit under its centre; radius and elongation push it up.
-  const least = next.radius * (1 + next.elongation / 2);
+export function changed(setup: Setup, key: string, value: string | number): Setup {
+  const next: Setup = { ...setup, [key]: value };
+  // Another size is the same shape.
+  const { parameters } = bodyOf(next);
+  if (key === sizeOf(bodyOf(next))) {
+    for (const { name } of parameters) if (beside(name)) next[name] = rounded((Number(setup[name]) / Number(setup[key])) * Number(value));
+  }
+  // The body must fit under its centre; a larger one pushes it up.
+  const least = outlineOf(next).reach;
   if (next.release_height < least) next.release_height = Number((least * 1.02).toPrecision(3));
   if (next.particles * next.impacts > MOST_IMPACTS) {
     if (key === "impacts") next.particles = Math.max(1, Math.floor(MOST_IMPACTS / next.impacts));
@@ -163,4 +191,3 @@ export function changed(setup: Setup, key: Key, value: string | number): Setup {
   }
   return next;
 }
-

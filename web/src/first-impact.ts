@@ -1,6 +1,6 @@
 /** The first impact from rest of a dumbbell in closed form, for a comparison with the engine: it shares nothing with it. */
 
-import { type Setup } from "./setup";
+import { rounded, type Setup } from "./setup";
 import type { Bins } from "./statistics";
 
 /** J_xx/(mR²) of a dumbbell with this L/R, at most 2: (A3), (A8). */
@@ -9,9 +9,12 @@ export function transverseInertia(x: number): number {
   return (8 / 15 + (3 / 4) * x + x ** 2 / 3 + x ** 3 / 24 + x ** 5 / 960) / mass; // (A8)
 }
 
+/** L/R. */
+const elongation = (s: Setup): number => rounded(Number(s.separation) / Number(s.radius));
+
 /** ε where |cos θ| = c, lengths in R. */
 export function restitution(s: Setup, c: number): number {
-  const [x, k] = [s.elongation, 1 + s.normal];
+  const [x, k] = [elongation(s), 1 + s.normal];
   const inertia = transverseInertia(x);
   if (s.law === "frictionless") return -1 + k / (1 + (x ** 2 * (1 - c * c)) / (4 * inertia));
   const top = 4 * inertia + x ** 2 * c * c + 4 * x * c + 4;
@@ -22,7 +25,7 @@ export function restitution(s: Setup, c: number): number {
  * probability of a bin is that of an interval of c. */
 export function firstImpact(s: Setup, bins: Bins): (number | null)[] | undefined {
   const closed =
-    s.shape === "dumbbell" && s.elongation > 0 && s.elongation <= 2 && s.orientation !== "given" &&
+    s.shape === "dumbbell" && elongation(s) > 0 && elongation(s) <= 2 && s.orientation !== "given" &&
     (s.law === "frictionless" || (s.law === "tangential-restitution" && s.tangential === 1)) &&
     [s.spin_y, s.spin_z, s.velocity_x, s.velocity_z, s.incline].every((x) => x === 0);
   if (!closed) return undefined;

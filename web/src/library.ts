@@ -1,7 +1,7 @@
 /** What the tests import: parts of the page that need no browser. */
 
 export { Engine } from "./engine/module";
-export { BODIES, COLUMNS, numbers } from "./engine/layout";
+export { COLUMNS, numbers } from "./engine/layout";
 export { DIGESTED } from "./engine/run";
 export { python, toml } from "./export/text";
 export { restitution, transverseInertia } from "./first-impact";
@@ -9,8 +9,10 @@ export { density as laplaceDensity, laplace } from "./laplace";
 export * as pictures from "./charts/pictures";
 export { ticks } from "./charts/ticks";
 export { fromHash, initial, toHash } from "./link";
-export { DEFAULT, HYPOTHESES, LAWS, LAW_PARAMETERS, SHAPES, particlesOf } from "./setup";
+export { contactArm, drawWith, outlineOf, pointsOf } from "./outline";
+export { Vector3 } from "three";
+export { DEFAULT, particlesOf } from "./setup";
+export { BODIES, LAWS } from "./table";
 export { Path } from "./stage/path";
-export { contactArm } from "./stage/body";
 export { Statistics } from "./statistics";
 export { at, TOUR } from "./tour";

@@ -1,22 +1,16 @@
 /** The state of the page as the part of its address after #, so that a link is a set-up. */
 
-import {
-  DEFAULT,
-  HYPOTHESES,
-  LAWS,
-  ORIENTATIONS,
-  SHAPES,
-  MOST_IMPACTS,
-  type ChoiceKey,
-  type Key,
-  type Setup,
-} from "./setup";
+import { DEFAULT, MOST_IMPACTS, ORIENTATIONS, rounded, type Setup } from "./setup";
+import { BODIES, LAWS, PARAMETERS } from "./table";
 import { TOUR, at } from "./tour";
 
 export const RANGES = ["fig2", "near", "fig7", "all"] as const;
 export const DENSITIES = ["restitution", "fraction"] as const;
 /** The pictures that can stand beside the scene, below the map of set-up A. */
 export const CHARTS = ["scatter-b", "density", "sigma", "reservoir", "drawing"] as const;
+
+/** In a link: of what the density is shown. */
+const DENSITY_OF = "density-of";
 
 /** In a link: the page is to open as it is projected. */
 export const PRESENT = "present";
@@ -51,20 +45,16 @@ export const initial = (): State => ({
   stop: 0,
 });
 
-const CHOICES: Record<ChoiceKey, readonly string[]> = {
-  shape: SHAPES,
-  law: LAWS,
-  hypothesis: HYPOTHESES,
+const keys = (table: readonly { key: string }[]) => table.map(({ key }) => key);
+const CHOICES: Record<string, readonly string[]> = {
+  shape: keys(BODIES),
+  law: keys(LAWS),
   orientation: ORIENTATIONS,
+  ...Object.fromEntries([...PARAMETERS.values()].flatMap(({ name, names }) => (names ? [[name, names]] : []))),
 };
 
 /** What is allowed of each number: least, most, and whether it is whole. */
-export const LIMITS: Record<Exclude<Key, ChoiceKey>, readonly [number, number, boolean?]> = {
-  radius: [1e-6, 1],
-  elongation: [0, 20],
-  normal: [0, 1],
-  tangential: [-1, 1],
-  friction: [0, 10],
+export const LIMITS: Record<string, [number, number, boolean?]> = {
   release_height: [1e-6, 10],
   gravity: [0.01, 100],
   angle: [-10, 10],
@@ -80,32 +70,44 @@ export const LIMITS: Record<Exclude<Key, ChoiceKey>, readonly [number, number, b
 };
 
 /** Why a value cannot be, or "". */
-export function problem(key: Key, value: string | number): string {
+export function problem(key: string, value: string | number): string {
   if (key in CHOICES) {
-    const allowed = CHOICES[key as ChoiceKey];
+    const allowed = CHOICES[key];
     return allowed.includes(String(value)) ? "" : `${key} = ${value}: must be ${allowed.join(" or ")}`;
   }
-  const [low, high, whole] = LIMITS[key as Exclude<Key, ChoiceKey>];
-  const x = Number(value);
-  const fits = value !== "" && x >= low && x <= high && (!whole || Number.isInteger(x));
-  return fits ? "" : `${key} = ${value}: must be ${whole ? "a whole number " : ""}in [${low}, ${high}]`;
+  const about = PARAMETERS.get(key);
+  const [low, high, whole] = about ? [about.low!, about.high ?? Infinity] : LIMITS[key];
+  const [x, open] = [Number(value), about?.closed === false];
+  const fits = value !== "" && Number.isFinite(x) && (open ? x > low : x >= low) && x <= high && (!whole || Number.isInteger(x));
+  const interval = high < Infinity ? `in ${open ? "(" : "["}${low}, ${high}]` : `${open ? ">" : ">="} ${low}`;
+  return fits ? "" : `${key} = ${value}: must be ${whole ? "a whole number " : ""}${interval}`;
 }
 
 function write(prefix: string, setup: Setup, out: URLSearchParams): void {
-  for (const key of Object.keys(DEFAULT) as Key[]) {
+  for (const key of Object.keys(DEFAULT)) {
     if (setup[key] !== DEFAULT[key]) out.set(prefix + key, String(setup[key]));
   }
 }
 
+/** Takes what links of the page once had: L/R and R for all bodies. A spheroid was as long for its width as the dumbbell of that L/R. */
+function longAs(elongation: string | null, sized: boolean, setup: Setup): void {
+  if (elongation === null && !(sized && setup.shape === "spheroid")) return;
+  const [x, radius] = [Number(elongation ?? 0.1), Number(setup.radius)];
+  if (!(x >= 0 && x <= 20)) return;
+  setup.separation = rounded(radius * x);
+  if (setup.shape === "spheroid") [setup.equatorial, setup.polar] = [radius, rounded(radius * (1 + x / 2))];
+}
+
 function read(prefix: string, from: URLSearchParams, problems: string[]): Setup {
   const setup = { ...DEFAULT };
-  for (const key of Object.keys(DEFAULT) as Key[]) {
+  for (const key of Object.keys(DEFAULT)) {
     const text = from.get(prefix + key);
     if (text === null) continue;
     const wrong = problem(key, text);
     if (wrong) problems.push(wrong);
-    else (setup as Record<Key, string | number>)[key] = key in CHOICES ? text : Number(text);
+    else setup[key] = key in CHOICES ? text : Number(text);
   }
+  longAs(from.get(`${prefix}elongation`), from.has(`${prefix}radius`), setup);
   if (setup.particles * setup.impacts > MOST_IMPACTS) {
     problems.push(`particles × impacts = ${setup.particles * setup.impacts}: must be at most ${MOST_IMPACTS} on this page`);
     setup.particles = Math.max(1, Math.floor(MOST_IMPACTS / setup.impacts));
@@ -130,7 +132,7 @@ function all(state: State): string {
     write("b.", state.b, out);
   }
   for (const key of ["speed", "range", "density", "chart", "particle", "impact", "stop"] as const) {
-    if (state[key] !== start[key]) out.set(key, String(state[key]));
+    if (state[key] !== start[key]) out.set(key === "density" ? DENSITY_OF : key, String(state[key]));
   }
   return out.toString();
 }
@@ -138,6 +140,12 @@ function all(state: State): string {
 /** The state of a link, and what of it cannot be. */
 export function fromHash(hash: string): { state: State; problems: string[] } {
   const from = new URLSearchParams(hash.replace(/^#/, ""));
+  // Links of the page once had this in the place of the density of the body.
+  const of = from.get("density");
+  if (of && !(Number(of) > 0)) {
+    from.set(DENSITY_OF, of);
+    from.delete("density");
+  }
   const problems: string[] = [];
   let state = initial();
   state.a = read("", from, problems);
@@ -154,12 +162,12 @@ export function fromHash(hash: string): { state: State; problems: string[] } {
   number("impact", 0, MOST_IMPACTS);
   number("stop", 0, TOUR.length);
   if (state.stop && [...from.keys()].every((key) => key === "stop" || key === PRESENT)) state = at(state.stop, state);
-  const one = <K extends "range" | "density" | "chart">(key: K, of: readonly State[K][]) => {
-    const name = of.find((x) => x === from.get(key));
-    if (name !== undefined) state[key] = name;
+  const one = <K extends "range" | "density" | "chart">(key: K, of: readonly State[K][], name: string = key) => {
+    const found = of.find((x) => x === from.get(name));
+    if (found !== undefined) state[key] = found;
   };
   one("range", RANGES);
-  one("density", DENSITIES);
+  one("density", DENSITIES, DENSITY_OF);
   one("chart", ["map", ...CHARTS]);
   return { state, problems };
 }

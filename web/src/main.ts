@@ -2,6 +2,7 @@
 
 import "./language"; // before the charts, which look at it as they load
 import { changed, Controls } from "./controls";
+import { Engine } from "./engine/module";
 import { Pool } from "./engine/pool";
 import { Explorer, type ChartName } from "./explorer";
 import { canRecord } from "./export/record";
@@ -12,7 +13,7 @@ import { onChange, onClick, part } from "./page";
 import { KINDS, type Kind } from "./pick";
 import { onGround } from "./charts/chart";
 import { theme } from "./charts/colours";
-import { fallSpeed } from "./setup";
+import { drawWith, fallSpeed } from "./outline";
 import type { Pace } from "./stage/clock";
 import { at, TOUR } from "./tour";
 
@@ -30,7 +31,10 @@ const calm = matchMedia("(prefers-reduced-motion: reduce)").matches;
 const ready = WebAssembly.compile(bytes);
 
 ready.then(
-  (module) => begin(new Pool(WORKER, module)),
+  (module) => {
+    drawWith(new Engine(module));
+    begin(new Pool(WORKER, module));
+  },
   (error: Error) => {
     part("problem").hidden = false;
     part("problem").textContent = `This browser cannot run the engine: ${error.message}`;
@@ -61,7 +65,7 @@ function begin(pool: Pool): void {
     part("play").textContent = player.clock.playing ? "Pause" : "Play";
     part<HTMLInputElement>("particle").value = String(state.particle);
     part<HTMLSelectElement>("range").value = state.range;
-    part<HTMLSelectElement>("density").value = state.density;
+    part<HTMLSelectElement>("density-of").value = state.density;
     const given = state.a.impacts === 1 ? "" : " | v";
     part("density-title").textContent = state.density === "fraction" ? `p(rotational share${given})` : `p(ε${given})`;
     arrange(state);
@@ -197,7 +201,7 @@ function begin(pool: Pool): void {
   onClick("find", () => explorer.find(kinds.value as Kind, (found = 0), !calm));
   onClick("find-next", () => explorer.find(kinds.value as Kind, ++found, !calm));
   onChange("range", (range) => view({ range: range as State["range"] }));
-  onChange("density", (density) => view({ density: density as State["density"] }));
+  onChange("density-of", (density) => view({ density: density as State["density"] }));
   part<HTMLInputElement>("speed").addEventListener("input", (event) => {
     explorer.setSpeed(Number((event.target as HTMLInputElement).value));
   });

@@ -1,21 +1,15 @@
 /** A set-up: what falls, under which law, and how it is let go. Names and SI units are those of the package. */
 
-export const SHAPES = ["dumbbell", "spherocylinder", "spheroid"] as const;
-export const LAWS = ["tangential-restitution", "frictionless", "coulomb", "chatterjee-ruina"] as const;
-export const HYPOTHESES = ["stronge", "poisson", "newton"] as const;
+import { BODIES, kindOf, LAWS, PARAMETERS } from "./table";
+
 export const ORIENTATIONS = ["uniform-angle", "isotropic", "given"] as const;
 
 export interface Setup {
-  shape: (typeof SHAPES)[number];
-  /** R in m: of a sphere, of the hemispheres; the equatorial semi-axis of a spheroid. */
-  radius: number;
-  /** L/R; a spheroid is as long for its width as the dumbbell of the same L/R. */
-  elongation: number;
-  law: (typeof LAWS)[number];
+  /** The parameters of bodies and laws by their names; of one, those that its entry in the table has. */
+  [parameter: string]: number | string;
+  shape: string;
+  law: string;
   normal: number;
-  tangential: number;
-  friction: number;
-  hypothesis: (typeof HYPOTHESES)[number];
   release_height: number;
   gravity: number;
   orientation: (typeof ORIENTATIONS)[number];
@@ -36,14 +30,10 @@ export interface Setup {
 }
 
 export const DEFAULT: Readonly<Setup> = {
-  shape: "dumbbell",
-  radius: 3e-3,
-  elongation: 0.1,
-  law: "tangential-restitution",
+  shape: BODIES[0].key,
+  law: LAWS[0].key,
   normal: 0.98,
-  tangential: 1,
-  friction: 0.3,
-  hypothesis: "stronge",
+  ...Object.fromEntries([...PARAMETERS.values()].map((one) => [one.name, one.default ?? one.example])),
   release_height: 0.06,
   gravity: 9.81,
   orientation: "uniform-angle",
@@ -59,40 +49,20 @@ export const DEFAULT: Readonly<Setup> = {
   seed: 1,
 };
 
-export type Key = keyof Setup;
-export type NumberKey = { [K in Key]: Setup[K] extends number ? K : never }[Key];
-export type ChoiceKey = Exclude<Key, NumberKey>;
-
 /** Most impacts that a page keeps: 64 bytes each. */
 export const MOST_IMPACTS = 2_000_000;
-/** Of the bodies' material; the motion does not depend on it. */
-export const DENSITY = 2500;
+
+export const bodyOf = (s: Setup) => kindOf(BODIES, s.shape);
+export const lawOf = (s: Setup) => kindOf(LAWS, s.law);
 
 export const particlesOf = (s: Setup): number => (s.orientation === "given" ? 1 : s.particles);
 
-/** The length of the body beside its radius, in m: L, or the polar semi-axis of a spheroid. To twelve digits, so that 0.1 times
- * 3 mm is 0.3 mm, as somebody would write it, and not a bit more. */
-export const lengthOf = (s: Setup): number =>
-  Number((s.radius * (s.shape === "spheroid" ? 1 + s.elongation / 2 : s.elongation)).toPrecision(12));
-
-/** Largest height of the centre of mass with the body on the plane, in m. */
-export const reachOf = (s: Setup): number => s.radius * (1 + s.elongation / 2);
-
-/** Normal speed of the first impact, about, in m/s. */
-export const fallSpeed = (s: Setup): number =>
-  Math.sqrt(2 * s.gravity * Math.cos(s.incline) * Math.max(s.release_height - s.radius, 0) + s.velocity_z ** 2);
-
-/** Which parameters a law has. */
-export const LAW_PARAMETERS: Record<Setup["law"], readonly Key[]> = {
-  "tangential-restitution": ["normal", "tangential"],
-  frictionless: ["normal"],
-  coulomb: ["normal", "friction", "hypothesis"],
-  "chatterjee-ruina": ["normal", "tangential", "friction"],
-};
+/** To twelve digits, so that 0.1 times 3 mm is 0.3 mm, as somebody would write it, and not a bit more. */
+export const rounded = (x: number): number => Number(x.toPrecision(12));
 
 /** Whether a parameter has a meaning in this set-up. */
-export function applies(key: Key, s: Setup): boolean {
-  if (["normal", "tangential", "friction", "hypothesis"].includes(key)) return LAW_PARAMETERS[s.law].includes(key);
+export function applies(key: string, s: Setup): boolean {
+  if (PARAMETERS.has(key)) return [bodyOf(s), lawOf(s)].some(({ parameters }) => parameters.some(({ name }) => name === key));
   if (key === "angle") return s.orientation === "given";
   if (key === "particles") return s.orientation !== "given";
   return true;

@@ -2,7 +2,8 @@
 
 import type { Column } from "./engine/layout";
 import type { Portion, Run } from "./engine/run";
-import { fallSpeed, type Setup } from "./setup";
+import { fallSpeed } from "./outline";
+import type { Setup } from "./setup";
 
 /** Uniform bins [low + k step, low + (k + 1) step). */
 export class Bins {

@@ -2,7 +2,7 @@
 
 import type { State } from "./link";
 import type { Kind } from "./pick";
-import { DEFAULT, type Setup } from "./setup";
+import { DEFAULT, rounded, type Setup } from "./setup";
 
 export interface Stop {
   title: string;
@@ -14,11 +14,14 @@ export interface Stop {
   kind?: Kind;
 }
 
+/** L in m of a body with this L/R. */
+const long = (elongation: number) => rounded(elongation * Number(DEFAULT.radius));
+
 export const TOUR: readonly Stop[] = [
   {
     title: "A sphere has one coefficient of restitution",
-    text: "A sphere (L = 0) loses the same share of its speed at every impact: ε = εₙ = 0.98, a line. Now move L/R from 0. The body of Fig. 1 of the paper is two overlapping spheres whose centres are L apart.",
-    a: { elongation: 0, impacts: 100, particles: 100 },
+    text: "A sphere (L = 0) loses the same share of its speed at every impact: ε = εₙ = 0.98, a line. Now move L, the distance between the centres, from 0. The body of Fig. 1 of the paper is two overlapping spheres whose centres are L apart.",
+    a: { separation: long(0), impacts: 100, particles: 100 },
   },
   {
     title: "Fig. 2: ε of a slightly elongated body scatters",
@@ -44,8 +47,8 @@ export const TOUR: readonly Stop[] = [
   {
     title: "Fig. 6: even good glass beads scatter",
     text: "Two set-ups with the same random numbers: L/R = 0.01 (A) and 0.02 (B), glass beads of average make. The standard deviation σ(ε) grows as they slow down. Twice the elongation gives four to five times the scatter: the rotation that a body picks up grows with L, and so does what it does at the next impact.",
-    a: { elongation: 0.01 },
-    b: { elongation: 0.02 },
+    a: { separation: long(0.01) },
+    b: { separation: long(0.02) },
     view: { speed: 0.5, range: "near", chart: "sigma" },
   },
   {
@@ -58,15 +61,15 @@ export const TOUR: readonly Stop[] = [
   {
     title: "Fig. 9: the first impact, exactly",
     text: "Two touching spheres (L = 2R) of soft material, εₙ = 0.4, at their first impact from rest. The line is the density in closed form, Eqs. 17 to 21. Already without any spin, 3 % of the bodies go on downwards: one of them is replayed.",
-    a: { elongation: 2, normal: 0.4, impacts: 1, particles: 20000 },
+    a: { separation: long(2), normal: 0.4, impacts: 1, particles: 20000 },
     view: { range: "near", chart: "density" },
     kind: "downward",
   },
   {
     title: "A surprise: the law creates energy",
     text: "A: the paper's law, which keeps the tangential velocity of the contact (εₜ = 1). B: no friction. They are not the same: A's plane must push sideways, and kinetic energy can grow. The impact that creates most is replayed. Nothing of the kind happens in B, whose scatter is larger by far.",
-    a: { elongation: 0.5 },
-    b: { elongation: 0.5, law: "frictionless" },
+    a: { separation: long(0.5) },
+    b: { separation: long(0.5), law: "frictionless" },
     view: { chart: "scatter-b" },
     kind: "gain",
   },
@@ -84,8 +87,8 @@ export function at(stop: number, state: State): State {
   const { a, b, view } = TOUR[stop - 1];
   return {
     ...state,
-    a: { ...DEFAULT, ...a },
-    b: b && { ...DEFAULT, ...b },
+    a: { ...DEFAULT, ...a } as Setup,
+    b: b && ({ ...DEFAULT, ...b } as Setup),
     speed: 0.4,
     range: "fig2",
     density: "restitution",

@@ -1,12 +1,13 @@
 // The page's parts that need no browser, and the native program beside them.
 import { build } from "esbuild";
+import { table } from "../table.mjs";
 import { execFileSync } from "node:child_process";
 import { createHash } from "node:crypto";
 import { readFileSync } from "node:fs";
 import { fileURLToPath } from "node:url";
 
 const at = (path) => fileURLToPath(new URL(path, import.meta.url));
-const bundled = await build({ entryPoints: [at("../src/library.ts")], bundle: true, write: false, format: "esm", target: "es2022" });
+const bundled = await build({ entryPoints: [at("../src/library.ts")], bundle: true, write: false, format: "esm", target: "es2022", define: { TABLE: table() } });
 const source = Buffer.from(bundled.outputFiles[0].text).toString("base64");
 export const page = await import(`data:text/javascript;base64,${source}`);
 
@@ -15,6 +16,7 @@ const BIN = at("../../.venv/bin/");
 
 const module = new WebAssembly.Module(readFileSync(at("../module/restitution_web.wasm")));
 export const engine = new page.Engine(module);
+page.drawWith(engine);
 
 /** The columns of a run, by name, and the number of impacts of each particle. */
 export function simulate(setup) {

@@ -73,7 +73,7 @@ test("the digests on the page are those of the engine, for two set-ups side by s
 test("a slider changes the run, the address and the lines of Python; the address brings it back", async () => {
   const { page, close } = await open(SMALL);
   const [old] = await shown(page);
-  await set(page, "elongation", 0.5);
+  await set(page, "separation", 0.5);
   await set(page, "law", "coulomb");
   await set(page, "friction", 0.2);
   await done(page);
@@ -81,7 +81,7 @@ test("a slider changes the run, the address and the lines of Python; the address
   const [now] = await shown(page);
   assert.notEqual(now, old);
   const hash = await hashOf(page);
-  assert.match(hash, /elongation=0\.5/);
+  assert.match(hash, /separation=0\.0015/);
   assert.match(await page.locator("#code").textContent(), /rs\.Coulomb\(normal=0\.98, friction=0\.2, hypothesis="stronge"\)/);
   const again = await open(hash);
   assert.deepEqual(await shown(again.page), [now]);
@@ -99,7 +99,7 @@ test("what cannot be is said in words, and the next slider heals it", async () =
   await radius.blur();
   assert.equal(await radius.getAttribute("aria-invalid"), "true");
   assert.doesNotMatch(await hashOf(page), /normal/);
-  await set(page, "elongation", 3);
+  await set(page, "separation", 3);
   await set(page, "release_height", 5);
   await done(page);
   assert.equal(await page.locator("#problem").isVisible(), false, "the body is lifted over the plane");
@@ -252,7 +252,7 @@ test("text, scene and the chart of every stop are on one screen, on a laptop and
       }
     }
     // Slider and picture are in sight together.
-    const slider = await box(page, "#elongation");
+    const slider = await box(page, "#separation");
     assert.ok(slider.y > 0 && slider.y + slider.height <= window.height);
     const map = await box(page, "#scatter-a");
     assert.ok(map.width >= window.width / 3, `${map.width}`);
@@ -366,7 +366,7 @@ test("the replay of an impact is recorded as a film", async () => {
 
 test("the page saves itself, and what is saved is the page", async () => {
   const { page, close } = await open(SMALL);
-  await set(page, "elongation", 0.3);
+  await set(page, "separation", 0.3);
   await done(page);
   const waiting = page.waitForEvent("download");
   await page.locator("#save-page").click();

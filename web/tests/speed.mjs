@@ -58,7 +58,7 @@ for (const speed of [0.1, 0.15, 0.2, 0.3, 0.4, 0.5, 0.6]) {
 const runs = [];
 for (const elongation of [0.11, 0.12, 0.13, 0.14, 0.15]) {
   runs.push(
-    await page.locator("#elongation").evaluate(async (input, x) => {
+    await page.locator("#separation").evaluate(async (input, x) => {
       const started = performance.now();
       input.value = x;
       input.dispatchEvent(new Event("input", { bubbles: true }));

@@ -6,22 +6,15 @@ from urllib.parse import urlencode
 
 import numpy as np
 
+from restitution._internal.described import kebab
 from restitution._internal.parameters import ParameterError, wrong
-from restitution.bodies import Dumbbell, Spherocylinder, Spheroid
 from restitution.drop.release import RandomHeight, RandomSpin
 from restitution.drop.run import Run
-from restitution.laws import ChatterjeeRuina, Coulomb, Frictionless, TangentialRestitution
 
 MOST_IMPACTS = 2_000_000
 """More than these the page does not keep."""
 
 NUMBERS = ("release_height", "gravity", "incline", "minimum_speed")
-_LAWS = {
-    TangentialRestitution: "tangential-restitution",
-    Frictionless: "frictionless",
-    Coulomb: "coulomb",
-    ChatterjeeRuina: "chatterjee-ruina",
-}
 
 
 def page() -> str:
@@ -35,7 +28,7 @@ def link(run: Run) -> str:
     Parameters
     ----------
     run : Run
-        A run that the page can show: a dumbbell of equal spheres, a spherocylinder or a prolate spheroid
+        A run that the page can show: of a body that has no parameter of its own for each of two spheres,
         under a law with a constant normal coefficient, all particles with the same spin and velocity. Of a
         run of more than 2 000 000 impacts the page shows the first particles.
 
@@ -48,8 +41,9 @@ def link(run: Run) -> str:
         raise ParameterError(wrong("run", run, "a run, as of a TOML file"))
     # Every value is written, for a default of the package may change, and a link shall stay.
     values: dict[str, Any] = {
+        "shape": kebab(type(run.body).__name__),
         **_body(run),
-        "law": _LAWS[type(run.law)],
+        "law": kebab(type(run.law).__name__),
         **_law(run),
         **_orientation(run),
         **_motion(run),
@@ -68,23 +62,18 @@ def _cannot(name: str, value: object, allowed: str) -> ValueError:
 
 
 def _body(run: Run) -> dict[str, Any]:
-    body = run.body
-    if isinstance(body, Dumbbell) and body.is_equal:
-        return _shape("dumbbell", body.radii[0], body.elongation)
-    if isinstance(body, Spherocylinder):
-        return _shape("spherocylinder", body.radius, body.separation / body.radius)
-    if isinstance(body, Spheroid) and body.polar >= body.equatorial:
-        return _shape("spheroid", body.equatorial, 2.0 * (body.polar / body.equatorial - 1.0))
-    allowed = "a Dumbbell of equal spheres, a Spherocylinder or a prolate Spheroid"
-    raise _cannot("body", repr(body), allowed)
-
-
-def _shape(name: str, radius: float, elongation: float) -> dict[str, Any]:
-    # The page makes the length from this again, to twelve digits.
-    return {"shape": name, "radius": radius, "elongation": float(f"{elongation:.15g}")}
+    values = run.body.model_dump()
+    for name, value in values.items():
+        if isinstance(value, tuple):
+            values[name], other = value
+            if values[name] != other:
+                raise _cannot(f"body.{name}", value, "the same for both spheres")
+    return values
 
 
 def _law(run: Run) -> dict[str, Any]:
+    if not run.law.entry():
+        raise _cannot("law", type(run.law).__name__, "a law of the core")
     values = run.law.model_dump()
     if not isinstance(values["normal"], float | int):
         raise _cannot("law.normal", type(run.law.normal).__name__, "a number")

@@ -1,7 +1,7 @@
 /** One impact, drawn: the body, the contact point and the arm to it, v and ω just before and just after, the impulse P. */
 
 import type { Setup } from "../setup";
-import { contactArm } from "../stage/body";
+import { contactArm, outlineOf, pointsOf } from "../outline";
 import { short } from "../stage/overlay";
 import { arrivalOf, impulseOf, type Path } from "../stage/path";
 import { Vector3 } from "three";
@@ -39,7 +39,7 @@ export function drawing(path: Path, setup: Setup, impacts: number): Struck {
   const flat = (x: Vector3): Place => [x.dot(along), x.z];
   const normal = along.clone().cross(new Vector3(0, 0, 1));
   // The precession is constant in a flight; the rest of ω is along the axis, which lies in the plane of the drawing.
-  const arm = contactArm(setup, flight.axis, flight.sphere).divideScalar(setup.radius);
+  const arm = contactArm(setup, flight.axis, flight.sphere).divideScalar(outlineOf(setup).size);
   return {
     setup,
     tilt: Math.atan2(flight.axis.z, flight.axis.dot(along)),
@@ -102,7 +102,9 @@ function panel(
   const motion = after ? struck.after : before;
   const floor = height - 5 * font;
   // The body is a third of the drawing, and an arrow as long as the body is the fastest velocity of the two.
-  const unit = Math.min(width, floor) / (3 * (1 + setup.elongation / 2)) / 1.2;
+  const { size, length } = outlineOf(setup);
+  const half = Math.max(1, length / size / 2);
+  const unit = Math.min(width, floor) / (3 * half) / 1.2;
   const middle: Place = [left + width / 2, floor + arm[1] * unit];
   const at = ([x, y]: Place, from = middle): Place => [from[0] + x * unit, from[1] - y * unit];
   pen.line([[left + font, floor], [left + width - font, floor]], colours.soft, 2);
@@ -112,7 +114,7 @@ function panel(
   pen.ellipse(middle, [3, 3], 0, colours.ink, "none", 0);
   pen.ellipse(contact, [4, 4], 0, colours.ink, "none", 0);
 
-  const longest = 1.6 * (1 + setup.elongation / 2);
+  const longest = 1.6 * half;
   const fastest = Math.max(...[before, struck.after].map(({ velocity }) => Math.hypot(...velocity)), Math.hypot(...impulse) / 2);
   const scaled = ([x, y]: Place, whole: number): Place => [(x * longest) / whole, (y * longest) / whole];
   // It arrives at the centre of mass, and leaves from there: neither arrow points through the plane unless the body does go on downwards.
@@ -137,25 +139,11 @@ function panel(
 }
 
 function outline(pen: Pen, setup: Setup, tilt: number, [x, y]: Place, unit: number, colours: Palette): void {
-  const half = setup.elongation / 2;
-  const [c, s] = [Math.cos(tilt), Math.sin(tilt)];
-  const along = (z: number): Place => [x + z * unit * c, y - z * unit * s];
-  const body = { fill: "none", stroke: colours.a, width: 2.5 };
-  if (setup.shape === "spheroid") {
-    pen.ellipse([x, y], [(1 + half) * unit, unit], -tilt, body.fill, body.stroke, body.width);
-  } else if (setup.shape === "dumbbell") {
-    if (half > 1) pen.line([along(half - 1), along(1 - half)], body.stroke, 2 * body.width);
-    for (const side of [half, -half]) pen.ellipse(along(side), [unit, unit], 0, body.fill, body.stroke, body.width);
-  } else {
-    const places: Place[] = [];
-    for (let k = 0; k <= 48; k++) {
-      const angle = (k < 24 ? -90 + (180 * k) / 23 : 90 + (180 * (k - 24)) / 23) * (Math.PI / 180);
-      const z = (k < 24 ? half : -half) + Math.cos(angle);
-      const across = Math.sin(angle);
-      places.push([x + unit * (z * c - across * s), y - unit * (z * s + across * c)]);
-    }
-    pen.line([...places, places[0]], body.stroke, body.width);
-  }
+  const { arcs, size } = outlineOf(setup);
+  const [c, s] = [(unit / size) * Math.cos(tilt), (unit / size) * Math.sin(tilt)];
+  const points = arcs.flatMap(pointsOf);
+  const round = [...points, ...points.map(([z, r]): Place => [z, -r]).reverse()];
+  pen.line([...round, round[0]].map(([z, r]): Place => [x + z * c - r * s, y - z * s - r * c]), colours.a, 2.5);
 }
 
 /** With its name beside `named`, its tip or its tail. */

@@ -3,7 +3,9 @@
 import { firstImpact } from "../first-impact";
 import { density as laplaceDensity, laplace } from "../laplace";
 import type { State } from "../link";
-import { fallSpeed } from "../setup";
+import { fallSpeed } from "../outline";
+import { bodyOf, rounded } from "../setup";
+import { beside } from "../table";
 import { Bins, nice, quantile, type Statistics } from "../statistics";
 import type { Curve, Picture } from "./picture";
 
@@ -29,11 +31,14 @@ export const EXACT = 1e-9;
 
 const each = <T>({ a, b }: Both, make: (s: Statistics, of: "a" | "b") => T): T[] =>
   b ? [make(a, "a"), make(b, "b")] : [make(a, "a")];
-const label = ({ run }: Statistics, of: "a" | "b", both: Both) => {
-  const x = run.setup.elongation;
-  return both.b && both.b.run.setup.elongation !== both.a.run.setup.elongation ? `${of.toUpperCase()}: L/R = ${x}` : `set-up ${of.toUpperCase()}`;
+/** By a parameter of the body in which the set-ups differ, a length beside the size of the body. */
+const label = ({ run: { setup } }: Statistics, of: "a" | "b", { a, b }: Both) => {
+  const other = b && (of === "a" ? b : a).run.setup;
+  const one = other?.shape === setup.shape && bodyOf(setup).parameters.find(({ name }) => setup[name] !== other[name])?.name;
+  if (!one) return `set-up ${of.toUpperCase()}`;
+  const unit = beside(one);
+  return `${of.toUpperCase()}: ${one}${unit ? `/${unit}` : ""} = ${rounded(Number(setup[one]) / Number(unit ? setup[unit] : 1))}`;
 };
-
 /** The range of v and ε that is asked for; the paper's numbers, scaled with the speed of the fall. */
 function rangeOf(state: State, s: Statistics): { v: [number, number]; epsilon: [number, number] } {
   const fall = fallSpeed(s.run.setup);

@@ -6,7 +6,7 @@ interface Exports {
   simulate(first: number, count: number): number;
   follow(particle: number): number;
   table(): number;
-  describe(): void;
+  outline(): number;
   message(): number;
   message_length(): number;
 }
@@ -28,18 +28,17 @@ export class Engine {
     return this.call(parameters, () => this.core.follow(particle));
   }
 
+  /** The outline of the body; see crates/web/src/lib.rs. */
+  outline(parameters: Float64Array): Float64Array {
+    return this.call(parameters, () => this.core.outline());
+  }
+
   private call(parameters: Float64Array, work: () => number): Float64Array {
     const core = this.core;
     new Float64Array(core.memory.buffer, core.run_parameters(), parameters.length).set(parameters);
     const size = work();
     if (size < 0) throw new Error(this.message());
     return new Float64Array(core.memory.buffer, core.table(), size).slice();
-  }
-
-  /** The table of bodies, laws and materials; see crates/web/src/catalogue.rs. */
-  describe(): unknown {
-    this.core.describe();
-    return JSON.parse(this.message());
   }
 
   private message(): string {

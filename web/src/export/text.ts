@@ -2,7 +2,8 @@
 
 import { COLUMNS } from "../engine/layout";
 import { DIGESTED, type Run } from "../engine/run";
-import { DENSITY, LAW_PARAMETERS, lengthOf, particlesOf, type Setup } from "../setup";
+import { bodyOf, lawOf, particlesOf, type Setup } from "../setup";
+import type { Kind } from "../table";
 
 /** As Python and TOML write a float. */
 function float(x: number): string {
@@ -12,15 +13,8 @@ function float(x: number): string {
 
 const quoted = (text: string) => JSON.stringify(text);
 
-function body(s: Setup): [string, string][] {
-  const density: [string, string] = ["density", float(DENSITY)];
-  return s.shape === "spheroid"
-    ? [["equatorial", float(s.radius)], ["polar", float(lengthOf(s))], density]
-    : [["radius", float(s.radius)], ["separation", float(lengthOf(s))], density];
-}
-
-function law(s: Setup): [string, string][] {
-  return LAW_PARAMETERS[s.law].map((key) => [key, typeof s[key] === "number" ? float(s[key]) : quoted(s[key])]);
+function given({ parameters }: Kind, s: Setup): [string, string][] {
+  return parameters.map(({ name, names }) => [name, names ? quoted(String(s[name])) : float(Number(s[name]))]);
 }
 
 function run(s: Setup): [string, string][] {
@@ -44,21 +38,11 @@ export function toml(s: Setup): string {
     `[${name}]\n${rows.map(([key, value]) => `${key} = ${value}\n`).join("")}`;
   return [
     "# restitution simulate run.toml --out run.nc\n",
-    table("body", [["shape", quoted(s.shape)], ...body(s)]),
-    table("law", [["type", quoted(s.law)], ...law(s)]),
+    table("body", [["shape", quoted(s.shape)], ...given(bodyOf(s), s)]),
+    table("law", [["type", quoted(s.law)], ...given(lawOf(s), s)]),
     table("run", run(s)),
   ].join("\n");
 }
-
-const CLASSES = {
-  dumbbell: "Dumbbell",
-  spherocylinder: "Spherocylinder",
-  spheroid: "Spheroid",
-  "tangential-restitution": "TangentialRestitution",
-  frictionless: "Frictionless",
-  coulomb: "Coulomb",
-  "chatterjee-ruina": "ChatterjeeRuina",
-};
 
 /** The lines of Python that make the same data, to the last bit. */
 export function python(s: Setup): string {
@@ -69,8 +53,8 @@ export function python(s: Setup): string {
 
 import restitution as rs
 
-body = rs.${CLASSES[s.shape]}(${list(body(s), ", ")})
-law = rs.${CLASSES[s.law]}(${list(law(s), ", ")})
+body = rs.${bodyOf(s).name}(${list(given(bodyOf(s), s), ", ")})
+law = rs.${lawOf(s).name}(${list(given(lawOf(s), s), ", ")})
 data = rs.simulate(
     body,
     law,

@@ -26,7 +26,8 @@ import { theme } from "../charts/colours";
 import type { Setup } from "../setup";
 import { nice } from "../statistics";
 import { Arrow } from "./arrow";
-import { bodyOf, contactArm } from "./body";
+import { contactArm, outlineOf } from "../outline";
+import { solidOf } from "./body";
 import { write, type Arrowhead } from "./overlay";
 import { impulseOf, spinOf, type Moment, type Path } from "./path";
 
@@ -127,7 +128,7 @@ export class Stage {
       this.scene.remove(world);
       for (const part of [body, trace, staff]) part.traverse((x) => (x as Mesh).geometry?.dispose());
     }
-    const unit = cast[0]?.setup.radius ?? 1;
+    const unit = cast[0] ? outlineOf(cast[0].setup).size : 1;
     this.spacing = nice(unit) / unit;
     this.actors = cast.map((part) => this.actor(part, unit));
     this.grid.scale.setScalar(this.spacing);
@@ -171,7 +172,7 @@ export class Stage {
       this.renderer.setScissor(k * each, 0, each, height);
       this.renderer.render(this.scene, this.camera);
       const arrows = this.arrows(actor, moment).map((arrow) => ({ ...arrow, tip: arrow.tip && this.onScreen(arrow.tip, k * each, each, height) }));
-      const perMetre = height / (2 * Math.tan((ANGLE * Math.PI) / 360) * this.camera.position.length() * this.actors[0].setup.radius);
+      const perMetre = height / (2 * Math.tan((ANGLE * Math.PI) / 360) * this.camera.position.length() * outlineOf(this.actors[0].setup).size);
       const most = Math.max(...actor.path.peaks(moment.impacts));
       write(context, { left: k * each, width: each, height, of: actor.of, arrows, perMetre, now: moment.place.z, most, named: this.actors.length > 1 }, font);
     });
@@ -190,25 +191,26 @@ export class Stage {
 
   private actor({ setup, path, of }: Part, unit: number): Actor {
     const colours = theme();
-    const scale = setup.radius / unit;
+    const outline = outlineOf(setup);
+    const scale = outline.size / unit;
     const ink = new LineBasicMaterial({ color: colours[of], transparent: true, opacity: 0.8 });
     const actor: Actor = {
       setup,
       path,
       of,
       world: new Group(),
-      body: bodyOf(setup, colours[of]),
+      body: solidOf(setup, colours[of]),
       velocity: new Arrow(colours.velocity),
       spin: new Arrow(colours.spin),
       impulse: new Arrow(colours.impulse),
       contact: new Mesh(new CircleGeometry(0.12, 24), new MeshBasicMaterial({ color: colours.impulse })),
       trace: new Line(new BufferGeometry(), ink),
       staff: new LineSegments(new BufferGeometry(), new LineBasicMaterial({ color: colours.soft, transparent: true, opacity: 0.7 })),
-      length: scale * (2 + setup.elongation),
+      length: Math.max(2 * scale, outline.length / unit),
       scale,
       traced: -1,
     };
-    actor.body.scale.setScalar(scale);
+    actor.body.scale.setScalar(1 / unit);
     actor.body.traverse((part) => (part.castShadow = true));
     actor.trace.frustumCulled = false;
     actor.world.add(actor.body, actor.velocity, actor.spin, actor.impulse, actor.contact, actor.trace, actor.staff);
@@ -225,7 +227,7 @@ export class Stage {
 
   private pose(actor: Actor, moment: Moment, aspect: number): void {
     const { world, body, length } = actor;
-    const unit = this.actors[0].setup.radius;
+    const unit = outlineOf(this.actors[0].setup).size;
     const place = moment.place.clone().divideScalar(unit);
     // Near the plane the camera waits, so that one sees the body come down and leave.
     const look = Math.max(place.z, 0.9 * length);
@@ -251,7 +253,7 @@ export class Stage {
     const arrow = (vector: Vector3, unit: number) => vector.multiplyScalar((ARROW.whole * length) / unit).clampLength(0, ARROW.most * length);
     actor.velocity.point(place, arrow(moment.velocity.clone(), whole), thick);
     // A surface that turns with a third of that speed has an arrow as long.
-    actor.spin.point(place, arrow(spinOf(moment), whole / (3 * setup.radius)), thick);
+    actor.spin.point(place, arrow(spinOf(moment), whole / (3 * outlineOf(setup).size)), thick);
     const { flight, impacts } = moment;
     const hit = impacts > 0;
     actor.contact.visible = actor.impulse.visible = hit;

@@ -27,12 +27,12 @@ impl Spheroid {
             Parameter::length(
                 "equatorial",
                 "semi-axis across the axis of revolution",
-                2e-3,
+                3e-3,
             ),
             Parameter::length(
                 "polar",
                 "semi-axis along the axis of revolution, between 1/1000 and 1000 times the other",
-                3e-3,
+                3.15e-3,
             ),
             Parameter::density("density"),
         ],
