@@ -7,6 +7,8 @@ from importlib.metadata import version as version_of
 from pathlib import Path
 
 from PIL import Image
+from sphinx.ext import autosummary
+from sphinx.pycode import ModuleAnalyzer
 
 HERE = Path(__file__).parent
 BUILT = (
@@ -44,6 +46,8 @@ nb_merge_streams = True
 nb_ipywidgets_js: dict[str, dict[str, str]] = {}  # no widgets, no script from elsewhere
 
 autosummary_generate = True
+autosummary.WELL_KNOWN_ABBREVIATIONS += tuple("Sec. Secs. Fig. Figs. Eq. Eqs. J. Phys. Appl. Mech. Rev.".split())
+CONSTANTS = ModuleAnalyzer.for_module("restitution.figures.style").find_attr_docs()
 autodoc_typehints = "none"  # types and shapes are in the docstrings
 autodoc_member_order = "bysource"
 napoleon_use_rtype = False
@@ -125,8 +129,10 @@ _cards()
 shutil.copy(HERE.parent / "web" / "node_modules" / "mathjax" / "es5" / "tex-svg-full.js", BUILT)
 
 
-def _plain_bars(app: object, what: str, name: str, thing: object, options: object, lines: list[str]) -> None:
-    """|x| in a docstring is a magnitude, not a substitution of reStructuredText."""
+def _as_written(app: object, what: str, name: str, thing: object, options: object, lines: list[str]) -> None:
+    """Give a constant its own text, not that of its class; |x| is a magnitude, not a substitution."""
+    if what == "data" and name.startswith("restitution.figures."):
+        lines[:] = CONSTANTS["", name.rpartition(".")[2]]
     lines[:] = [
         line if line.lstrip().startswith((">>>", "...")) else line.replace("|", r"\|") for line in lines
     ]
@@ -164,4 +170,4 @@ def setup(app: object) -> None:
     """Let Sphinx know."""
     app.connect("build-finished", _explorer_leads_back)  # type: ignore[attr-defined]
     app.connect("source-read", _as_on_the_site)  # type: ignore[attr-defined]
-    app.connect("autodoc-process-docstring", _plain_bars)  # type: ignore[attr-defined]
+    app.connect("autodoc-process-docstring", _as_written)  # type: ignore[attr-defined]
