@@ -46,7 +46,9 @@ nb_merge_streams = True
 nb_ipywidgets_js: dict[str, dict[str, str]] = {}  # no widgets, no script from elsewhere
 
 autosummary_generate = True
-autosummary.WELL_KNOWN_ABBREVIATIONS += tuple("Sec. Secs. Fig. Figs. Eq. Eqs. J. Phys. Appl. Mech. Rev.".split())
+# where the first sentence of a docstring does not end
+autosummary.WELL_KNOWN_ABBREVIATIONS += ("Sec.", "Fig.", "Figs.", "Eq.")
+autosummary.WELL_KNOWN_ABBREVIATIONS += ("J.", "Phys.", "Appl.", "Mech.", "Rev.")
 CONSTANTS = ModuleAnalyzer.for_module("restitution.figures.style").find_attr_docs()
 autodoc_typehints = "none"  # types and shapes are in the docstrings
 autodoc_member_order = "bysource"
