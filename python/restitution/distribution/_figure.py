@@ -2,11 +2,12 @@
 
 import io
 
-import matplotlib as mpl
 import numpy as np
 import numpy.typing as npt
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.patches import Patch
+from matplotlib.ticker import FixedLocator, NullFormatter, StrMethodFormatter
 
 from restitution.distribution._errors import EstimatedDistribution
 from restitution.distribution._table import Floats
@@ -20,20 +21,22 @@ _VELOCITY = r"impact velocity $v_G^n$ (m/s)"
 _RESTITUTION = r"coefficient of restitution $\varepsilon$"
 
 
-_TICKS = [scale * 10.0**power for power in range(-6, 4) for scale in (1, 2, 5)]
+def _ticks(low: float, high: float) -> list[float]:
+    """Return round numbers for a logarithmic axis: more of them where it is short."""
+    steps = (1, 2, 3, 4, 6) if high < 10.0 * low else (1, 2, 5) if high < 1000.0 * low else (1,)
+    return [step * 10.0**power for power in range(-9, 7) for step in steps]
 
 
 def image(dist: EstimatedDistribution, suffix: str) -> bytes:
     """Draw and encode; without a date, so that the same distribution gives the same bytes."""
     dated = {"pdf": {"CreationDate": None}, "svg": {"Date": None}}
     content = io.BytesIO()
-    with mpl.rc_context({"text.usetex": False}):  # the labels of ticks are made only now
-        draw(dist).savefig(content, format=suffix, dpi=300, metadata=dated.get(suffix))
+    draw(dist).savefig(content, format=suffix, dpi=300, metadata=dated.get(suffix))
     return content.getvalue()
 
 
 @fg.styled
-def draw(dist: EstimatedDistribution) -> Figure:
+def draw(dist: EstimatedDistribution, *, style: fg.Style | None = None) -> Figure:
     """Draw quantiles, densities at four speeds, standard deviation and distance to fresh impacts.
 
     Shaded are pointwise 95 % confidence bands: 1.96 standard errors, over batches of particles, either way.
@@ -47,7 +50,7 @@ def draw(dist: EstimatedDistribution) -> Figure:
     met = np.geomspace(speeds[0], speeds[-1], 251)
     met = met[~_in_gaps(dist, met)]
     for k in range(4):
-        _density(densities, dist, float(met[(k + 1) * (met.size - 1) // 5]), fg.COLORS[k])
+        _density(densities, dist, float(met[(k + 1) * (met.size - 1) // 5]), fg.colors()[k])
     densities.set_yscale("log")
     densities.set_xlabel(_RESTITUTION)
     densities.set_ylabel(r"$p(\varepsilon\,|\,v)$")
@@ -56,14 +59,22 @@ def draw(dist: EstimatedDistribution) -> Figure:
     densities.set_ylim(top=min(densities.get_ylim()[1], 100.0 * middle))
     low, high = densities.get_xlim()
     densities.set_xlim(low - 0.1 * (high - low), high + 0.25 * (high - low))  # for the letter, the legend
-    densities.legend(title="m/s", loc="upper right")
+    densities.legend(title="$v$ (m/s)", loc="upper right")
     v, known = _shown(dist)
     sigma = known * dist.clamped().std(v)
     band = _CONFIDENCE * dist.clamped().std_error(v) if dist.has_errors else np.zeros_like(sigma)
-    (drawn,) = deviation.plot(v, sigma)
+    (drawn,) = deviation.plot(v, sigma, label=r"$\sigma(\varepsilon)$")
     below = np.where(band < sigma, sigma - band, sigma)
     deviation.fill_between(v, below, sigma + band, color=drawn.get_color(), alpha=0.3, linewidth=0)
+    if dist.has_errors:
+        patch = Patch(color=drawn.get_color(), alpha=0.3, linewidth=0, label="95 % band")
+        deviation.legend(handles=[drawn, patch], loc="lower left")
     deviation.set_yscale("log")
+    low, high = deviation.get_ylim()
+    deviation.yaxis.set_major_locator(FixedLocator(_ticks(low, high)))
+    deviation.yaxis.set_major_formatter(StrMethodFormatter("{x:g}"))
+    deviation.yaxis.set_minor_formatter(NullFormatter())
+    deviation.set_ylim(low, high)
     deviation.set_ylabel(r"standard deviation $\sigma(\varepsilon)$")
     if "ks_distance" in dist.data:
         distance.stairs(dist.data["ks_distance"].to_numpy(), speeds, baseline=None, label="fresh impacts")
@@ -76,7 +87,7 @@ def draw(dist: EstimatedDistribution) -> Figure:
         fg.letter(axes, f"({name})", left=axes in (quantiles, densities))
         if axes is not densities:
             axes.set_xlabel(_VELOCITY)
-            pieces.plain_log(axes, _TICKS)
+            pieces.plain_log(axes, _ticks(speeds[0], speeds[-1]))
             axes.set_xlim(speeds[0], speeds[-1])
     for row in conditional:
         _given(row, dist)
@@ -114,15 +125,21 @@ def _given(row: list[Axes], dist: EstimatedDistribution) -> None:
         v = speeds[seen.to_numpy()]
         low, half, high = (dist.ppf(q, v, given=z) for q in (0.25, 0.5, 0.75))
         label = f"{z:.2g}"
-        (drawn,) = row[0].plot(v, half, color=fg.COLORS[k], label=label)
+        (drawn,) = row[0].plot(v, half, color=fg.colors()[k], label=label)
         row[0].fill_between(v, low, high, color=drawn.get_color(), alpha=0.2, linewidth=0)
         ends = dist.ppf([1e-3, 1.0 - 1e-3], speeds[near], given=z)
         x = np.linspace(ends[0], ends[1], 300)
         density = dist.pdf(x, speeds[near], given=z)
-        row[1].plot(x, np.where(density > 0, density, np.nan), color=fg.COLORS[k], label=label, linewidth=0.7)
+        row[1].plot(
+            x,
+            np.where(density > 0, density, np.nan),
+            color=fg.colors()[k],
+            label=label,
+            linewidth=fg.points(0.7),
+        )
     row[0].set_xlabel(_VELOCITY)
     row[0].set_ylabel(_RESTITUTION)
-    pieces.plain_log(row[0], _TICKS)
+    pieces.plain_log(row[0], _ticks(speeds[0], speeds[-1]))
     row[0].set_xlim(speeds[0], speeds[-1])
     row[1].set_xlabel(_RESTITUTION)
     row[1].set_ylabel(rf"$p(\varepsilon\,|\,v, z)$ at {speeds[near]:.3g} m/s")
@@ -144,15 +161,15 @@ def _quantiles(axes: Axes, dist: EstimatedDistribution) -> None:
             axes.fill_between(v, x - band, x + band, color=drawn.get_color(), alpha=0.3, linewidth=0)
     axes.set_ylabel(_RESTITUTION)
     low, high = axes.get_ylim()
-    axes.set_ylim(low, high + 0.3 * (high - low))  # room for the panel's letter and the legend
-    axes.legend(loc="upper right", ncols=3)
+    axes.set_ylim(low, high + 0.45 * (high - low))  # room for the panel's letter and the legend
+    axes.legend(loc="upper right", ncols=3, title="quantiles" + (", 95 % bands" if dist.has_errors else ""))
 
 
 def _density(axes: Axes, dist: EstimatedDistribution, v: float, color: str) -> None:
     low, high = dist.ppf([1e-4, 1.0 - 1e-4], v)
     x = np.linspace(low, high, 400)
     density = np.where(dist.pdf(x, v) > 0, dist.pdf(x, v), np.nan)
-    axes.plot(x, density, color=color, label=f"{v:.3g}", linewidth=0.7)
+    axes.plot(x, density, color=color, label=f"{v:.2g}", linewidth=fg.points(0.7))
     if not dist.has_errors:
         return
     band = _CONFIDENCE * dist.pdf_error(x, v)

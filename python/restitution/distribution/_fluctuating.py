@@ -37,6 +37,8 @@ from restitution.laws import Law
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
+    from restitution.figures.style import Style
+
 
 class FluctuatingRestitution(EstimatedDistribution):
     """The coefficient of restitution as a random number whose distribution depends on the impact velocity.
@@ -248,14 +250,19 @@ class FluctuatingRestitution(EstimatedDistribution):
         path = path_for("path", path, MODULE)
         write(path, module(self.data, name).encode("ascii"), replace=flag("replace", replace))
 
-    def figure(self) -> Figure:
+    def figure(self, *, style: Style | None = None) -> Figure:
         """Draw quantiles over v, densities with confidence bands, σ(ε) and the distance to fresh impacts.
 
         With a condition also what ε is at three values of it. `savefig` of the figure writes it to a file.
+
+        Parameters
+        ----------
+        style : str, optional
+            "paper", "page" or "slides", with "-dark" for a dark ground.
         """
         from restitution.distribution._figure import draw
 
-        return draw(self)
+        return draw(self, style=style)
 
     def distance(self, data: xr.Dataset) -> xr.Dataset:
         """Measure how far impacts are from this distribution.

@@ -13,15 +13,35 @@ from matplotlib.figure import Figure
 
 from restitution._internal.arrays import FARTHEST, FloatArray, reals, whole
 from restitution._internal.parameters import ParameterError, Problem, renamed, wrong
-from restitution.drop.recorded import check_filled, check_successive, counted, pull, records, released_from
+from restitution.drop.recorded import (
+    check_filled,
+    check_successive,
+    counted,
+    pull,
+    records,
+    released_from,
+    variables,
+)
 from restitution.drop.trajectory import times_of
 from restitution.figures.check import check_drawable
 from restitution.figures.pieces import line, population, population_bar
-from restitution.figures.style import COLORS, COLUMN, MARKERS, PAGE, letter, panels, styled
+from restitution.figures.style import (
+    COLORS,
+    COLUMN,
+    MARKERS,
+    PAGE,
+    Style,
+    colors,
+    ink,
+    letter,
+    panels,
+    styled,
+)
 
 if TYPE_CHECKING:
     import numpy.typing as npt
 
+    from restitution.analytic import FirstImpact
     from restitution.distribution import FluctuatingRestitution
 
 VELOCITY = r"impact velocity $v_G^n$ (m/s)"
@@ -31,7 +51,9 @@ DEVIATION = r"standard deviation $\sigma(\varepsilon)$"
 
 
 @styled
-def map(found: xr.Dataset, of: Literal["restitution", "fraction"] = "restitution") -> Figure:
+def map(
+    found: xr.Dataset, of: Literal["restitution", "fraction"] = "restitution", *, style: Style | None = None
+) -> Figure:
     """Draw where the impacts are in the plane of velocity and restitution, as the paper's Figs. 2 and 3.
 
     Parameters
@@ -40,6 +62,8 @@ def map(found: xr.Dataset, of: Literal["restitution", "fraction"] = "restitution
         As from `restitution.statistics` or `restitution.reduce`, by velocity.
     of : {"restitution", "fraction"}
         What stands over the velocity: ε, or E_rot/E_tot.
+    style : str, optional
+        "paper", "page" or "slides", with "-dark" for a dark ground.
 
     Returns
     -------
@@ -69,7 +93,13 @@ def map(found: xr.Dataset, of: Literal["restitution", "fraction"] = "restitution
 
 
 @styled
-def densities(found: xr.Dataset | FluctuatingRestitution, velocities: npt.ArrayLike) -> Figure:
+def densities(
+    found: xr.Dataset | FluctuatingRestitution,
+    velocities: npt.ArrayLike,
+    *,
+    exact: FirstImpact | None = None,
+    style: Style | None = None,
+) -> Figure:
     """Draw p(ε | v) at some speeds, on a logarithmic axis, as the paper's Fig. 4.
 
     Parameters
@@ -78,6 +108,10 @@ def densities(found: xr.Dataset | FluctuatingRestitution, velocities: npt.ArrayL
         Statistics by velocity, of which the bins that hold the speeds are drawn, or a learned distribution.
     velocities : array_like
         At most six impact velocities in m/s.
+    exact : FirstImpact, optional
+        Closed form of `restitution.analytic.first_impact`, drawn as a dashed line.
+    style : str, optional
+        "paper", "page" or "slides", with "-dark" for a dark ground.
 
     Examples
     --------
@@ -88,6 +122,7 @@ def densities(found: xr.Dataset | FluctuatingRestitution, velocities: npt.ArrayL
     ...     velocity_bins=np.linspace(0.0, 1.2, 61), restitution_bins=np.linspace(0.5, 1.5, 101))
     >>> figure = rs.figures.densities(found, [0.2, 0.4])
     """
+    from restitution.analytic import FirstImpact
     from restitution.distribution import FluctuatingRestitution
 
     if not isinstance(found, xr.Dataset | FluctuatingRestitution):
@@ -98,6 +133,8 @@ def densities(found: xr.Dataset | FluctuatingRestitution, velocities: npt.ArrayL
     speeds = np.atleast_1d(reals("velocities", velocities, allowed, unit="m s-1", dimensions=(0, 1)))
     if not 1 <= speeds.size <= len(COLORS):
         raise ParameterError(wrong("velocities", velocities, allowed))
+    if exact is not None and not isinstance(exact, FirstImpact):
+        raise ParameterError(wrong("exact", exact, "what restitution.analytic.first_impact returns, or None"))
     figure, [[axes]] = panels(COLUMN, 2.7)
     many = np.ndim(velocities) > 0
     for k, v in enumerate(speeds):
@@ -110,20 +147,30 @@ def densities(found: xr.Dataset | FluctuatingRestitution, velocities: npt.ArrayL
             name = f"{v:g} m/s"
             edges = np.linspace(low, high, 401)
             if not np.all(np.diff(edges) > 0):  # one value alone, which has no density
-                axes.axvline(low, color=COLORS[k], label=name)
+                axes.axvline(low, color=colors()[k], label=name)
                 continue
             density = np.diff(found.cdf(edges, float(v))) / np.diff(edges)
-        axes.stairs(np.where(density > 0, density, np.nan), edges, baseline=None, color=COLORS[k], label=name)
+        axes.stairs(
+            np.where(density > 0, density, np.nan), edges, baseline=None, color=colors()[k], label=name
+        )
+    if exact is not None:
+        low, high = exact.support()
+        within = np.linspace(low, high, 1001)[1:-1]  # densities may diverge at the ends
+        axes.plot(within, exact.pdf(within), color=ink(), linestyle="--", label="closed form")
     axes.set_yscale("log")
     axes.set_xlabel(RESTITUTION)
     axes.set_ylabel(r"$p(\varepsilon\,|\,v)$")
     axes.set_ylim(top=30.0 * axes.get_ylim()[1])  # for the legend
-    axes.legend(title="impact velocity", ncols=2 if speeds.size > 2 else 1, loc="upper right")
+    axes.legend(
+        title="impact velocity",
+        ncols=2 if len(axes.get_legend_handles_labels()[1]) > 2 else 1,
+        loc="upper right",
+    )
     return figure
 
 
 @styled
-def scatter(found: xr.Dataset | Mapping[str, xr.Dataset]) -> Figure:
+def scatter(found: xr.Dataset | Mapping[str, xr.Dataset], *, style: Style | None = None) -> Figure:
     """Draw the standard deviation of ε over the impact velocity, as the paper's Fig. 6.
 
     Parameters
@@ -132,6 +179,8 @@ def scatter(found: xr.Dataset | Mapping[str, xr.Dataset]) -> Figure:
         Statistics by velocity: one, several with their names, or those of `restitution.compare`, whose
         lines are named by body and law. Bins of fewer than 100 impacts are left out, and those that reach
         down to v = 0, where ε diverges.
+    style : str, optional
+        "paper", "page" or "slides", with "-dark" for a dark ground.
 
     Examples
     --------
@@ -143,32 +192,55 @@ def scatter(found: xr.Dataset | Mapping[str, xr.Dataset]) -> Figure:
     ...     velocity_bins=np.linspace(0.0, 1.2, 31), restitution_bins=np.linspace(-1.0, 3.0, 401))
     >>> figure = rs.figures.scatter(found)
     """
-    figure, [[axes]] = panels(COLUMN, 2.7)
-    lines = _lines(found)
-    for k, (name, one) in enumerate(lines.items()):
-        style: dict[str, Any] = {
-            "color": COLORS[k % len(COLORS)],
-            "marker": MARKERS[k // len(COLORS) % len(MARKERS)],
-        }
-        _moment(axes, one, "deviation", label=name if len(lines) > 1 else None, markersize=2.0, **style)
-    axes.set_xscale("log")
+    figure, axes = _over_velocity(found, "deviation", DEVIATION)
     axes.set_yscale("log")
-    axes.set_xlabel(VELOCITY)
-    axes.set_ylabel(DEVIATION)
-    if len(lines) > 1:
-        axes.legend()
     return figure
 
 
 @styled
-def moments(found: xr.Dataset) -> Figure:
+def fraction(found: xr.Dataset | Mapping[str, xr.Dataset], *, style: Style | None = None) -> Figure:
+    """Draw the mean rotational share E_rot/E_tot before an impact over the impact velocity.
+
+    Parameters
+    ----------
+    found : xarray.Dataset or mapping of str to xarray.Dataset
+        As for `scatter`. Bands are ± one standard error where there are standard errors.
+    style : str, optional
+        "paper", "page" or "slides", with "-dark" for a dark ground.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import restitution as rs
+    >>> found = rs.statistics(
+    ...     rs.Dumbbell(radius=3e-3, separation=3e-4), rs.TangentialRestitution(normal=0.98), particles=100,
+    ...     velocity_bins=np.linspace(0.0, 1.2, 31), restitution_bins=np.linspace(0.5, 1.5, 101))
+    >>> figure = rs.figures.fraction(found)
+    """
+    figure, axes = _over_velocity(found, "mean_fraction", f"mean {FRACTION}")
+    axes.set_ylim(bottom=0.0)
+    return figure
+
+
+@styled
+def moments(
+    found: xr.Dataset | FluctuatingRestitution,
+    *,
+    exact: xr.Dataset | None = None,
+    style: Style | None = None,
+) -> Figure:
     """Draw mean, standard deviation, skewness and kurtosis of ε over the impact velocity.
 
     Parameters
     ----------
-    found : xarray.Dataset
-        Statistics by velocity. Bands are ± one standard error where there are standard errors. Bins of fewer
-        than 100 impacts are left out, and those that reach down to v = 0, where ε diverges.
+    found : xarray.Dataset or FluctuatingRestitution
+        Statistics by velocity, or a learned distribution. Bands are ± one standard error where there are
+        standard errors. Bins of fewer than 100 impacts are left out, and those that reach down to v = 0,
+        where ε diverges.
+    exact : xarray.Dataset, optional
+        Mean and standard deviation of `restitution.analytic.near_round`, drawn as dashed lines.
+    style : str, optional
+        "paper", "page" or "slides", with "-dark" for a dark ground.
 
     Examples
     --------
@@ -181,6 +253,8 @@ def moments(found: xr.Dataset) -> Figure:
     >>> len(figure.axes)
     4
     """
+    from restitution.distribution import FluctuatingRestitution
+
     figure, rows = panels(PAGE, 4.6, 2, 2, sharex=True)
     names = {
         "mean_restitution": "mean of $\\varepsilon$",
@@ -190,16 +264,31 @@ def moments(found: xr.Dataset) -> Figure:
     }
     places = [axes for row in rows for axes in row]
     for axes, (name, label), mark in zip(places, names.items(), "abcd", strict=True):
-        _moment(axes, found, name)
+        if isinstance(found, FluctuatingRestitution):
+            _learned_moment(axes, found, name)
+        else:
+            _moment(axes, found, name)
         axes.set_ylabel(label)
         letter(axes, f"({mark})", left=False)
+    if exact is not None:
+        speeds, mean, deviation = variables(
+            "exact",
+            exact,
+            "restitution.analytic.near_round",
+            dict.fromkeys(("velocity", "mean_restitution", "std_restitution"), ("velocity",)),
+        )
+        for axes, values in zip(rows[0], (mean, deviation), strict=True):
+            line(axes, speeds, values, color=ink(), linestyle="--", label="nearly round")
+            axes.legend(loc="lower left")
     for axes in rows[-1]:
         axes.set_xlabel(VELOCITY)
     return figure
 
 
 @styled
-def trajectory(data: xr.Dataset, particle: int = 0, impacts: int = 20) -> Figure:
+def trajectory(
+    data: xr.Dataset, particle: int = 0, impacts: int = 20, *, style: Style | None = None
+) -> Figure:
     """Draw the height of the centre of mass of a particle over time, and what its impacts did.
 
     Heights are exact: parabolas that the recorded velocities put together.
@@ -212,6 +301,8 @@ def trajectory(data: xr.Dataset, particle: int = 0, impacts: int = 20) -> Figure
         Which one.
     impacts : int
         How many of its impacts.
+    style : str, optional
+        "paper", "page" or "slides", with "-dark" for a dark ground.
 
     Examples
     --------
@@ -238,12 +329,12 @@ def trajectory(data: xr.Dataset, particle: int = 0, impacts: int = 20) -> Figure
     if not np.all(np.abs(height) <= FARTHEST):
         raise ParameterError(Problem("data", ": heights are no finite numbers; must be those of a run"))
     figure, [[path], [middle], [below]] = panels(COLUMN, 4.2, 3, 1, sharex=True, height_ratios=(4, 3, 3))
-    path.plot(when, 1e3 * height, linewidth=0.8)
+    path.plot(when, 1e3 * height)
     path.set_ylabel("height (mm)")
     path.set_ylim(bottom=0.0)
-    middle.plot(time, ratio, linestyle="none", marker=MARKERS[0], color=COLORS[0])
+    middle.plot(time, ratio, linestyle="none", marker=MARKERS[0], color=colors()[0])
     middle.set_ylabel(r"$\varepsilon$")
-    below.plot(time, fraction, linestyle="none", marker=MARKERS[1], color=COLORS[1])
+    below.plot(time, fraction, linestyle="none", marker=MARKERS[1], color=colors()[1])
     below.set_ylabel(FRACTION)
     below.set_xlabel("time since release (s)")
     below.set_ylim(bottom=0.0)
@@ -262,6 +353,35 @@ def _heights(
     climbed = upward[:, None] * elapsed - 0.5 * gravity * elapsed**2
     base = start + np.concatenate([[0.0], np.cumsum(climbed[:, -1])[:-1]])
     return (begin[:, None] + elapsed).ravel(), (base[:, None] + climbed).ravel()
+
+
+def _over_velocity(
+    found: xr.Dataset | Mapping[str, xr.Dataset], name: str, label: str
+) -> tuple[Figure, Axes]:
+    """Draw one of the quantities by velocity of one or several sets of statistics."""
+    figure, [[axes]] = panels(COLUMN, 2.7)
+    lines = _lines(found)
+    for k, (each, one) in enumerate(lines.items()):
+        marker = MARKERS[k // len(COLORS) % len(MARKERS)]
+        look: dict[str, Any] = {"color": colors()[k % len(COLORS)], "marker": marker}
+        _moment(axes, one, name, label=each if len(lines) > 1 else None, **look)
+    axes.set_xscale("log")
+    axes.set_xlabel(VELOCITY)
+    axes.set_ylabel(label)
+    if len(lines) > 1:
+        axes.legend()
+    return figure, axes
+
+
+def _learned_moment(axes: Axes, found: FluctuatingRestitution, name: str) -> None:
+    """Draw a moment of a learned distribution over the speeds of its nodes, not where it saw no impacts."""
+    speeds = found.data["velocity"].to_numpy()
+    known = ~np.any((speeds[:, None] >= found.gaps[:, 0]) & (speeds[:, None] < found.gaps[:, 1]), axis=1)
+    method = {"mean_restitution": "mean", "deviation": "std"}.get(name, name)
+    each = found.clamped()
+    values = np.where(known, getattr(each, method)(speeds), np.nan)
+    error = np.where(known, getattr(each, f"{method}_error")(speeds), np.nan) if found.has_errors else None
+    line(axes, speeds, values, error)
 
 
 def _moment(axes: Axes, found: xr.Dataset, name: str, **style: Any) -> None:

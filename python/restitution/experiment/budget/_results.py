@@ -10,6 +10,7 @@ from restitution._internal.arrays import real
 from restitution._internal.datasets import Content
 from restitution._internal.parameters import ParameterError, wrong
 from restitution.bodies import GRADES
+from restitution.figures.style import Style
 
 _SOURCES = {
     "shape": "shape",
@@ -86,22 +87,27 @@ class ErrorBudget(Content):
         about = f"{data.attrs['impacts']} coefficients from a drop of {data.attrs['drop']:g} m"
         return f"Error budget, bias ± standard deviation: {about}\n{self.table()}"
 
-    def figure(self) -> Figure:
+    def figure(self, *, style: Style | None = None) -> Figure:
         """Draw the root mean square error √(bias² + variance) of one ε by source, against the speed.
 
         Values that sampling cannot distinguish from 0 are not drawn, nor are those below a thousandth of the
         largest; lines join those that are.
+
+        Parameters
+        ----------
+        style : str, optional
+            "paper", "page" or "slides", with "-dark" for a dark ground.
         """
         from restitution.figures.pieces import plain_log
-        from restitution.figures.style import COLUMN, panels, styled
+        from restitution.figures.style import COLUMN, colors, ink, panels, styled
 
         @styled
-        def drawn() -> Figure:
+        def drawn(*, style: Style | None) -> Figure:
             figure, [[axes]] = panels(COLUMN, 3.0)
             speed = self.data.impact_velocity.values
             total = self.data.sel(source="total")
             least = _DRAWN * float(np.hypot(total.standard_deviation, total.bias).max())
-            for source, (color, marker) in _LOOKS.items():
+            for source, (number, grey, marker) in _LOOKS.items():
                 one = self.data.sel(source=source)
                 known = one.standard_deviation > 2.0 * one.standard_deviation_error
                 biased = np.abs(one.bias) > 2.0 * one.bias_error
@@ -111,6 +117,7 @@ class ErrorBudget(Content):
                 shown = error > least
                 if shown.any():
                     name = self._named(source)
+                    color = ink(grey) if number is None else colors()[number]
                     axes.plot(speed[shown], error[shown], color=color, marker=marker, label=name)
             axes.set_yscale("log")
             plain_log(axes, [tick for tick in _TICKS if speed.min() <= tick <= speed.max()])
@@ -119,7 +126,7 @@ class ErrorBudget(Content):
             figure.legend(loc="outside upper center", ncols=3)
             return figure
 
-        return drawn()
+        return drawn(style=style)
 
 
 def _cell(one: xr.Dataset, prefix: str) -> str:
@@ -136,17 +143,17 @@ def _cell(one: xr.Dataset, prefix: str) -> str:
     return f"{shown} ± {deviation:.1e}"
 
 
-_LOOKS = {
-    "shape": ("#0072B2", "o"),
-    "timing": ("#D55E00", "s"),
-    "gravity": ("#009E73", "^"),
-    "drop": ("#CC79A7", "v"),
-    "tilt": ("#56B4E9", "D"),
-    "spin": ("#8B5A2B", "x"),
-    "drag": ("0.55", "+"),
-    "total": ("0.0", ""),
+_LOOKS: dict[str, tuple[int | None, float, str]] = {
+    "shape": (0, 1.0, "o"),
+    "timing": (1, 1.0, "s"),
+    "gravity": (2, 1.0, "^"),
+    "drop": (3, 1.0, "v"),
+    "tilt": (4, 1.0, "D"),
+    "spin": (None, 0.7, "x"),
+    "drag": (None, 0.45, "+"),
+    "total": (None, 1.0, ""),
 }
-"""Colour and marker of each source."""
+"""Number of the colour, or strength of a grey, and marker of each source."""
 _TICKS = tuple(digit * 10.0**power for power in range(-3, 3) for digit in (1, 1.5, 2, 3, 4, 6, 8))
 _DRAWN = 1e-3
 _NOTHING = 1e-12
@@ -231,19 +238,25 @@ class RequiredRoundness(Content):
             f"of {1e3 * diameter:g} mm{grade}"
         )
 
-    def figure(self) -> Figure:
-        """Draw the errors against the out-of-roundness, with the grades of ball bearings above."""
-        from restitution.figures.style import COLORS, COLUMN, panels, styled
+    def figure(self, *, style: Style | None = None) -> Figure:
+        """Draw the errors against the out-of-roundness, with the grades of ball bearings above.
+
+        Parameters
+        ----------
+        style : str, optional
+            "paper", "page" or "slides", with "-dark" for a dark ground.
+        """
+        from restitution.figures.style import COLUMN, colors, ink, panels, styled
 
         @styled
-        def drawn() -> Figure:
+        def drawn(*, style: Style | None) -> Figure:
             figure, [[axes]] = panels(COLUMN, 3.0)
             deviation = self.data.out_of_roundness.values * 1e6
             names = {"single": "one impact", "mean": "mean of a run", "fit": r"fitted $\varepsilon^n(v)$"}
             for number, (name, label) in enumerate(names.items()):
-                style = ("-", "--", ":")[number]
-                axes.loglog(deviation, self.data[name], style, color=COLORS[number], label=label)
-            axes.axhline(self.precision, color="0.6", linewidth=0.7)
+                dashes = ("-", "--", ":")[number]
+                axes.loglog(deviation, self.data[name], dashes, color=colors()[number], label=label)
+            axes.axhline(self.precision, color=ink(0.4))
             axes.set_xlim(deviation[0], deviation[-1])
             axes.set_xlabel("out-of-roundness (µm)")
             axes.set_ylabel(r"error of $\varepsilon$ over $\varepsilon$")
@@ -256,7 +269,7 @@ class RequiredRoundness(Content):
             above.set_xlabel("grade of ball bearings")
             return figure
 
-        return drawn()
+        return drawn(style=style)
 
 
 def _length(value: float, diameter: float) -> str:

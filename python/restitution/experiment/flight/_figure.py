@@ -12,13 +12,13 @@ from restitution.experiment.flight._law_fit import LawFit
 from restitution.experiment.flight.series import series_of
 from restitution.figures.check import check_drawable
 from restitution.figures.pieces import line
-from restitution.figures.style import COLORS, COLUMN, panels, styled
+from restitution.figures.style import COLORS, COLUMN, Style, colors, panels, styled
 
 _POINTS = 200
 
 
 @styled
-def figure(data: xr.Dataset | Iterable[xr.Dataset], *fits: LawFit) -> Figure:
+def figure(data: xr.Dataset | Iterable[xr.Dataset], *fits: LawFit, style: Style | None = None) -> Figure:
     """Draw ε against v with error bars, and each law with its band of one standard error.
 
     Parameters
@@ -27,6 +27,8 @@ def figure(data: xr.Dataset | Iterable[xr.Dataset], *fits: LawFit) -> Figure:
         As `restitution.flight.restitution` returns it.
     *fits : LawFit
         Laws fitted to them. A fitted scatter widens the band by a lighter one.
+    style : str, optional
+        "paper", "page" or "slides", with "-dark" for a dark ground.
 
     Returns
     -------
@@ -76,15 +78,15 @@ def figure(data: xr.Dataset | Iterable[xr.Dataset], *fits: LawFit) -> Figure:
             marker="o",
             markersize=2.5,
             elinewidth=0.6,
-            color=COLORS[-1 - number % 2],
+            color=colors()[-1 - number % 2],
             label="measured" if number == 0 else None,
             zorder=3,
         )
     along = np.linspace(speeds.min(), speeds.max(), _POINTS)
     for number, law in enumerate(fits):
-        color = COLORS[number % len(COLORS)]
-        style = ("-", "--", "-.", ":")[number % 4]
-        line(axes, along, law(along), law.error(along), color=color, linestyle=style, label=law.law)
+        color = colors()[number % len(COLORS)]
+        dashes = ("-", "--", "-.", ":")[number % 4]
+        line(axes, along, law(along), law.error(along), color=color, linestyle=dashes, label=law.law)
         if law.scatter > 0.0:
             middle = law(along)
             axes.fill_between(
