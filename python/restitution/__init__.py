@@ -73,6 +73,7 @@ _HOMES = {
     "RandomSpin": "drop.release",
     "reduce": "drop.reduce",
     "SimulationInterrupted": "drop.simulate",
+    "CustomLaw": "laws",
     "simulate": "drop.simulate",
     "statistics": "drop.statistics",
     "sweep": "study",

@@ -238,13 +238,13 @@ def test_an_interruption_of_the_first_run(monkeypatch: pytest.MonkeyPatch) -> No
     [
         ({}, LAWS, "bodies: must not be empty"),
         (BODIES["short"], LAWS, "bodies = Dumbbell.*must be a dict or list of Body"),
-        (BODIES, ["frictionless"], "laws holds 'frictionless': must be objects of a Law"),
+        (BODIES, ["frictionless"], "laws holds 'frictionless': must be objects of a CollisionLaw"),
         (BODIES, {1: LAWS[0]}, "laws: 1 is not a name"),
         (BODIES, [LAWS[0], LAWS[0]], "laws: TangentialRestitution appears twice"),
         (BODIES, [LAWS[1], LAWS[0], LAWS[0]], "laws: TangentialRestitution appears twice"),
         ("short", LAWS, "^bodies = 'short': must be a dict or list of Body"),
         (np.array(3.0), LAWS, "^bodies = .*3.*: must be a dict or list of Body"),
-        (BODIES, {"one": 3}, "^laws holds 3: must be objects of a Law"),
+        (BODIES, {"one": 3}, "^laws holds 3: must be objects of a CollisionLaw"),
     ],
 )
 def test_bad_input_is_named(bodies: Any, laws: Any, reason: str) -> None:

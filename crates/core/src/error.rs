@@ -1,5 +1,6 @@
 //! Errors: a parameter outside its range, missing memory or threads, or numerical trouble in one particle.
 
+use crate::law::Fault;
 use std::fmt;
 
 /// Every error of the core. The fields hold name, value and allowed range, so that a binding can word the message itself.
@@ -50,6 +51,20 @@ pub enum Error {
         what: &'static str,
         /// The size, in bytes.
         bytes: usize,
+    },
+    /// A law of one's own failed, or gave an impulse that is impossible.
+    #[error("particle {particle} (seed {seed}), impact {impact}: {law} {fault}")]
+    Law {
+        /// What it is called.
+        law: String,
+        /// Index of the particle.
+        particle: u64,
+        /// Seed of the run.
+        seed: u64,
+        /// Number of the impact, counted from 0.
+        impact: u64,
+        /// What is wrong.
+        fault: Fault,
     },
     /// The contact search of one particle did not converge.
     #[error(

@@ -39,6 +39,7 @@ fn array(v: Vector) -> Array {
 
 fn answer(law: &Law, contact: &Contact) -> Answer {
     law.answer(&compliance(&contact.response), vector(contact.velocity))
+        .unwrap()
 }
 
 /// Three orthogonal axes, as rows.

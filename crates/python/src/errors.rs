@@ -3,7 +3,7 @@
 use pyo3::create_exception;
 use pyo3::exceptions::{PyMemoryError, PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
-use restitution_core::{Error, Value};
+use restitution_core::{Error, Fault, Raised, Value};
 
 create_exception!(
     restitution,
@@ -53,10 +53,29 @@ pub fn python_error(error: Error) -> PyErr {
             Value::Name(name),
             &allowed,
         ),
+        Error::Law {
+            fault: Fault::Raised(raised),
+            ..
+        } => raised_again(&raised, &text),
+        Error::Law { .. } => PyValueError::new_err(text),
         Error::Numerical { .. } => NumericalError::new_err(text),
         Error::Threads { .. } => PyRuntimeError::new_err(text),
         Error::Memory { .. } => PyMemoryError::new_err(text),
     }
+}
+
+/// The exception of a law of the user's own, with a note that names particle and seed.
+fn raised_again(raised: &Raised, text: &str) -> PyErr {
+    let Some(error) = raised.0.downcast_ref::<PyErr>() else {
+        return PyRuntimeError::new_err(text.to_owned());
+    };
+    Python::attach(|py| {
+        let error = error.clone_ref(py);
+        match error.value(py).call_method1("add_note", (text,)) {
+            Ok(_) => error,
+            Err(failed) => failed,
+        }
+    })
 }
 
 fn with_fields(error: PyErr, name: &str, value: Value, allowed: &str) -> PyErr {

@@ -2,12 +2,17 @@
 
 use crate::describe::{self, Given};
 use crate::errors::python_error;
-use numpy::{IntoPyArray, PyArray1, PyReadonlyArray1};
+use numpy::ndarray::arr2;
+use numpy::{IntoPyArray, PyArray1, PyReadonlyArray1, ToPyArray};
+use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 use restitution_core::law::{
     AxialCompliance, Components, Contact, MOST_FRICTION, PADE_ABOVE, PADE_BELOW,
 };
-use restitution_core::{Error, LAWS, MATERIALS, Normal, Rule, Scattered, collected};
+use restitution_core::{
+    Error, Fault, ImpulseFunction, LAWS, MATERIALS, Normal, Raised, Rule, Scattered, Vector,
+    collected,
+};
 use std::sync::Arc;
 
 /// A normal coefficient that depends on the speed.
@@ -73,15 +78,68 @@ fn scattered(normal: Coefficient<'_>, deviation: f64) -> PyResult<Material> {
 
 /// A collision law, ready for a run.
 #[pyclass(frozen, module = "restitution._core")]
-pub struct Law {
-    coefficient: Arc<restitution_core::Material>,
-    rule: Rule,
+pub struct Law(Chosen);
+
+enum Chosen {
+    /// A law of the core.
+    Known(Arc<restitution_core::Material>, Rule),
+    /// A function of the user.
+    Custom(Function),
 }
 
 impl Law {
     /// The law in the core's form.
     pub fn law(&self) -> restitution_core::Law<'_> {
-        restitution_core::Law::of(&self.coefficient, self.rule)
+        match &self.0 {
+            Chosen::Known(coefficient, rule) => restitution_core::Law::of(coefficient, *rule),
+            Chosen::Custom(function) => restitution_core::Law::custom(function),
+        }
+    }
+}
+
+/// A Python function of K and the contact velocity, which returns an impulse.
+struct Function {
+    name: String,
+    function: Py<PyAny>,
+}
+
+/// Most characters of what a function returned that an error shows.
+const SHOWN: usize = 72;
+
+impl Function {
+    fn call(
+        &self,
+        py: Python<'_>,
+        compliance: [[f64; 3]; 3],
+        velocity: Vector,
+    ) -> PyResult<Given3> {
+        let velocity = [velocity.x, velocity.y, velocity.z].to_pyarray(py);
+        let given = self
+            .function
+            .bind(py)
+            .call1((arr2(&compliance).to_pyarray(py), velocity))?;
+        if let Ok([x, y, z]) = given.extract::<[f64; 3]>() {
+            return Ok(Ok(Vector::new(x, y, z)));
+        }
+        let text = given.repr()?.to_string();
+        let short = text.split_whitespace().collect::<Vec<_>>().join(" ");
+        Ok(Err(short.chars().take(SHOWN).collect()))
+    }
+}
+
+/// An impulse, or what was given instead.
+type Given3 = Result<Vector, String>;
+
+impl ImpulseFunction for Function {
+    fn name(&self) -> &str {
+        &self.name
+    }
+
+    fn impulse(&self, compliance: [[f64; 3]; 3], velocity: Vector) -> Result<Vector, Fault> {
+        Python::attach(|py| match self.call(py, compliance, velocity) {
+            Ok(given) => given.map_err(Fault::NoVector),
+            Err(error) => Err(Fault::Raised(Raised(Arc::new(error)))),
+        })
     }
 }
 
@@ -90,7 +148,18 @@ impl Law {
     /// The impulse of a contact divided by m, in m/s, and the normal velocity of the contact afterwards. Vectors have components
     /// along n, u and w. `slip` is the contact velocity in m/s, `arm` the vector from the centre of mass to the contact along n and u
     /// in m, `inertia` is J_xx/m in m², and `across` is the entry of m K for w.
-    fn respond(&self, slip: Triple, arm: (f64, f64), inertia: f64, across: f64) -> (Triple, f64) {
+    fn respond(
+        &self,
+        slip: Triple,
+        arm: (f64, f64),
+        inertia: f64,
+        across: f64,
+    ) -> PyResult<(Triple, f64)> {
+        if let Chosen::Custom(_) = self.0 {
+            return Err(PyTypeError::new_err(
+                "a function has no response without a mass",
+            ));
+        }
         let (normal, along, w) = slip;
         let response = self.law().respond(&Contact {
             velocity: Components {
@@ -106,7 +175,7 @@ impl Law {
             },
         });
         let p = response.impulse;
-        ((p.normal, p.along, p.across), response.separation_speed)
+        Ok(((p.normal, p.along, p.across), response.separation_speed))
     }
 }
 
@@ -120,7 +189,13 @@ fn law(name: &str, normal: Coefficient<'_>, arguments: Vec<Given<'_>>) -> PyResu
         Coefficient::Constant(_) => Arc::new(normal.material().map_err(python_error)?),
         Coefficient::Material(material) => Arc::clone(&material.0),
     };
-    Ok(Law { coefficient, rule })
+    Ok(Law(Chosen::Known(coefficient, rule)))
+}
+
+/// The law of a function.
+#[pyfunction]
+fn custom(function: Py<PyAny>, name: String) -> Law {
+    Law(Chosen::Custom(Function { name, function }))
 }
 
 pub fn add_to(module: &Bound<'_, PyModule>) -> PyResult<()> {
@@ -130,5 +205,6 @@ pub fn add_to(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<Law>()?;
     module.add_function(wrap_pyfunction!(material, module)?)?;
     module.add_function(wrap_pyfunction!(scattered, module)?)?;
-    module.add_function(wrap_pyfunction!(law, module)?)
+    module.add_function(wrap_pyfunction!(law, module)?)?;
+    module.add_function(wrap_pyfunction!(custom, module)?)
 }

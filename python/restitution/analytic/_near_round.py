@@ -106,7 +106,7 @@ def _impacts(run: Run, slowest: float, angles: int) -> tuple[Floats, Floats]:
     Masses are those of the body over its own. The axis leans by θ towards x; the lower end touches at (x, z)
     from the centre of mass, where a spin dθ/dt = ω moves the surface by (zω, -xω).
     """
-    body, law = run.body, run.law
+    body, law = run.body, run.standard_law
     assert isinstance(body, Dumbbell)
     assert isinstance(law.normal, float)
     radius, half = body.radii[0], 0.5 * body.separation
@@ -149,9 +149,9 @@ def _impacts(run: Run, slowest: float, angles: int) -> tuple[Floats, Floats]:
 
 def _most(run: Run, slowest: float) -> int:
     """Return a number of impacts after which all bodies are slower: three times that without spin."""
-    assert isinstance(run.law.normal, float)
+    assert isinstance(run.standard_law.normal, float)
     fastest = np.sqrt(2 * run.gravity * run.release_height)
-    return 10 + int(3 * max(0.0, np.log(fastest / slowest)) / -np.log(max(run.law.normal, 1e-3)))
+    return 10 + int(3 * max(0.0, np.log(fastest / slowest)) / -np.log(max(run.standard_law.normal, 1e-3)))
 
 
 def _by_velocity(velocity: Floats, epsilon: Floats, edges: Floats, slowest: float) -> xr.Dataset:

@@ -7,7 +7,7 @@ import numpy as np
 from restitution.distribution._table import Floats
 from restitution.drop.run import Run
 from restitution.drop.simulate import simulate_run
-from restitution.laws import Material
+from restitution.laws import Law, Material
 
 RANGE = (0.04, 0.4)
 """Learned speeds where none are asked for, over the largest possible one at the first impact."""
@@ -38,7 +38,8 @@ def heights(run: Run) -> tuple[float, ...]:
     """
     base = run.body.compiled.farthest()
     drop = run.release_height - base
-    normal = run.law.normal
+    # Of a law of one's own the loss is not known; the lower ε_n, the wider the heights are spread.
+    normal = run.law.normal if isinstance(run.law, Law) else 0.5
     kept = float(normal(run.fall_speed(drop))) if isinstance(normal, Material) else normal
     kept = min(max(kept, 0.05), 0.999)
     wanted = round(2.0 * _LEVELS_PER_LOSS * math.log(1.0 / kept))

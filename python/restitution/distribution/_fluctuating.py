@@ -32,7 +32,7 @@ from restitution.drop import energy
 from restitution.drop.recorded import check_filled, check_successive, records
 from restitution.drop.release import RandomHeight
 from restitution.drop.run import Run, Surroundings, takes_run
-from restitution.laws import Law
+from restitution.laws import CollisionLaw
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -84,7 +84,7 @@ class FluctuatingRestitution(EstimatedDistribution):
     def learn(
         cls,
         body: Body,
-        law: Law,
+        law: CollisionLaw,
         *,
         particles: int = 20_000,
         impacts: int | None = None,
@@ -379,7 +379,7 @@ class FluctuatingRestitution(EstimatedDistribution):
 
 
 def _runs(
-    body: Body, law: Law, arguments: dict[str, Any], heights: Sequence[Any], several: bool
+    body: Body, law: CollisionLaw, arguments: dict[str, Any], heights: Sequence[Any], several: bool
 ) -> Iterator[Run]:
     """Make a run from each height; what is wrong with one of several is said with its place."""
     for k, height in enumerate(heights):

@@ -18,7 +18,7 @@ from restitution.bodies import Body
 from restitution.drop.energy import LEDGER, WHY, EnergyWarning, factor, percent, reported_elsewhere
 from restitution.drop.simulate import SimulationInterrupted
 from restitution.drop.statistics import statistics
-from restitution.laws import Law
+from restitution.laws import CollisionLaw
 
 T = TypeVar("T", bound=Parameters)
 
@@ -35,7 +35,7 @@ _PER_RUN = {
 
 def compare(
     bodies: Mapping[str, Body] | Iterable[Body],
-    laws: Mapping[str, Law] | Iterable[Law],
+    laws: Mapping[str, CollisionLaw] | Iterable[CollisionLaw],
     *,
     progress: bool = False,
     **run: Any,
@@ -44,7 +44,7 @@ def compare(
 
     Parameters
     ----------
-    bodies, laws : mapping of str to Body or Law, or iterable of them
+    bodies, laws : mapping of str to Body, or to Law or CustomLaw, or iterable of them
         The bodies and the collision laws. Without names they are called by their class and those
         parameters in which they differ from others of their class.
     progress : bool
@@ -96,7 +96,7 @@ def compare(
     if missing := [name for name in _NEEDED if name not in run]:
         raise TypeError(f"compare(): missing a required argument: {' and '.join(map(repr, missing))}")
     solids = _named("bodies", bodies, Body)
-    rules = _named("laws", laws, Law)
+    rules = _named("laws", laws, CollisionLaw)
     pairs = list(product(solids, rules))
     with (
         reported_elsewhere(),  # below, once
@@ -116,7 +116,10 @@ def compare(
 
 
 def _finished(
-    runs: list[xr.Dataset], begun: xr.Dataset, bodies: Mapping[str, Body], laws: Mapping[str, Law]
+    runs: list[xr.Dataset],
+    begun: xr.Dataset,
+    bodies: Mapping[str, Body],
+    laws: Mapping[str, CollisionLaw],
 ) -> xr.Dataset:
     """Put the finished runs side by side, with blanks in the places of the others."""
     example = runs[0] if runs else begun  # what had only begun may lack standard errors
@@ -173,13 +176,20 @@ def _name(one: Parameters, others: list[T]) -> str:
     alike = [other for other in others if type(other) is type(one)]
     telling = [
         f"{field} = {getattr(one, field)!r}"
-        for field in type(one).model_fields
+        for field in _written(one)
         if any(getattr(other, field) != getattr(one, field) for other in alike)
     ]
     return type(one).__name__ + (f"({', '.join(telling)})" if telling else "")
 
 
-def _side_by_side(runs: list[xr.Dataset], bodies: Mapping[str, Body], laws: Mapping[str, Law]) -> xr.Dataset:
+def _written(one: Parameters) -> list[str]:
+    """Return the names of the parameters that are values, not functions."""
+    return [name for name, field in type(one).model_fields.items() if field.repr]
+
+
+def _side_by_side(
+    runs: list[xr.Dataset], bodies: Mapping[str, Body], laws: Mapping[str, CollisionLaw]
+) -> xr.Dataset:
     """Stack statistics, all in the same bins, in the order body, law."""
     first = runs[0]
     variables: dict[str, Any] = {}
@@ -218,7 +228,7 @@ def _parameters(axis: str, objects: Iterable[Parameters]) -> dict[str, Any]:
     units: dict[str, str] = {}
     for one in objects:
         row: dict[str, Any] = {}
-        for name in type(one).model_fields:
+        for name in _written(one):
             value = getattr(one, name)
             units.setdefault(name, unit_of(type(one), name))
             if isinstance(value, tuple) and len(value) == 2:

@@ -31,7 +31,7 @@ from restitution.drop.release import (
     SpinOfRun,
     VelocityOfRun,
 )
-from restitution.laws import LAWS, Law
+from restitution.laws import LAWS, CollisionLaw, Law
 
 F = TypeVar("F", bound=Callable[..., Any])
 
@@ -133,7 +133,7 @@ class Run(Parameters):
     """
 
     body: Annotated[InstanceOf[Body], Allowed(BODIES)]
-    law: Annotated[InstanceOf[Law], Allowed(LAWS)]
+    law: Annotated[InstanceOf[CollisionLaw], Allowed(f"{LAWS}, or a CustomLaw")]
     particles: Annotated[Whole, Field(ge=1, lt=2**40, description="number of particles")] = 1000
     impacts: Annotated[Whole, Field(ge=1, lt=2**40, description="most impacts of a particle")] = 400
     release_height: Annotated[HeightOfRun, Field(description="m")] = 0.06
@@ -148,7 +148,7 @@ class Run(Parameters):
     model_config: ClassVar[ConfigDict] = ConfigDict(validate_default=True)
 
     @classmethod
-    def called(cls, function: str, body: Body, law: Law, arguments: Mapping[str, Any]) -> Self:
+    def called(cls, function: str, body: Body, law: CollisionLaw, arguments: Mapping[str, Any]) -> Self:
         """Take the parameters of a run from the keyword arguments of a function."""
         for name in arguments:
             if name not in RunArguments.__annotations__:
@@ -233,6 +233,13 @@ class Run(Parameters):
             text = f" has {len(spins)} vectors: must have one for each of particles = {self.particles}"
             raise ParameterError(Problem("spin", text))
         return self
+
+    @property
+    def standard_law(self) -> Law:
+        """The law, where it must be one of the package, which has a normal coefficient."""
+        if not isinstance(self.law, Law):
+            raise ParameterError(wrong("law", self.law, LAWS))
+        return self.law
 
     @property
     def heights(self) -> tuple[float, float]:

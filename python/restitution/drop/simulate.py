@@ -9,7 +9,7 @@ from restitution._internal.parameters import ParameterError, wrong
 from restitution._internal.resources import check_memory, checked_threads, progress_bar
 from restitution.bodies import Body
 from restitution.drop.run import Run, RunArguments, takes_run
-from restitution.laws import Law
+from restitution.laws import CollisionLaw
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -47,7 +47,7 @@ class SimulationInterrupted(KeyboardInterrupt):
 @takes_run(RunArguments)
 def simulate(
     body: Body,
-    law: Law,
+    law: CollisionLaw,
     *,
     record: Record = "impacts",
     threads: int | None = None,
@@ -60,7 +60,7 @@ def simulate(
     ----------
     body : Dumbbell or another body
         The body that is dropped.
-    law : Law
+    law : Law or CustomLaw
         The collision law.
     %(run)s
     record : {"impacts", "state"}

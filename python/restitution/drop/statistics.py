@@ -20,7 +20,7 @@ from restitution.drop.dataset import attributes
 from restitution.drop.energy import by_row, ledger, warn
 from restitution.drop.run import Run, RunArguments, takes_run
 from restitution.drop.simulate import SimulationInterrupted
-from restitution.laws import Law
+from restitution.laws import CollisionLaw
 
 Edges: TypeAlias = dict[str, npt.NDArray[np.float64] | None]
 """Edges of the bins of ``velocity`` or None, of ``restitution``, and of ``fraction`` or None."""
@@ -35,7 +35,7 @@ MOMENTS = {"mean_restitution": "mean", **{name: name for name in _SAME}}
 @takes_run(RunArguments)
 def statistics(
     body: Body,
-    law: Law,
+    law: CollisionLaw,
     *,
     threads: int | None = None,
     velocity_bins: npt.ArrayLike | None,

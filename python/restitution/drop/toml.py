@@ -121,6 +121,8 @@ def tables_of(run: Run) -> dict[str, Any]:
 
 def table_of(parameters: Parameters) -> dict[str, Any]:
     """Write a body, a law or a material down as a table."""
+    if isinstance(parameters, laws.CustomLaw):
+        raise ParameterError(Problem("law", f" = {parameters!r}: a function cannot be written to a file"))
     fields = {name: _plain(getattr(parameters, name)) for name in type(parameters).model_fields}
     for selector, kinds in _KINDS.values():
         for name, kind in kinds.items():

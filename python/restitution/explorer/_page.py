@@ -10,6 +10,7 @@ from restitution._internal.described import kebab
 from restitution._internal.parameters import ParameterError, wrong
 from restitution.drop.release import RandomHeight, RandomSpin
 from restitution.drop.run import Run
+from restitution.laws import Law
 
 MOST_IMPACTS = 2_000_000
 """More than these the page does not keep."""
@@ -72,8 +73,8 @@ def _body(run: Run) -> dict[str, Any]:
 
 
 def _law(run: Run) -> dict[str, Any]:
-    if not run.law.entry():
-        raise _cannot("law", type(run.law).__name__, "a law of the core")
+    if not isinstance(run.law, Law) or not run.law.entry():
+        raise _cannot("law", repr(run.law), "a law of the core")
     values = run.law.model_dump()
     if not isinstance(values["normal"], float | int):
         raise _cannot("law.normal", type(run.law.normal).__name__, "a number")

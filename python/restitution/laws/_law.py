@@ -1,5 +1,6 @@
 """The base of every law: the normal coefficient, and how a law is written down."""
 
+from abc import abstractmethod
 from functools import cached_property
 from typing import Annotated, Any
 
@@ -7,15 +8,28 @@ from pydantic import Field
 
 from restitution import _core
 from restitution._internal.described import Described
-from restitution._internal.parameters import Number, ParameterError, wrong
+from restitution._internal.parameters import Number, ParameterError, Parameters, wrong
 from restitution.laws._materials import Material, NormalCoefficient, Scattered
 
 Friction = Annotated[Number, Field(ge=0, le=_core.MOST_FRICTION)]
 """μ; the bound keeps products of it finite, and nothing slips long before."""
 
 
-class Law(Described):
-    """A collision law: the impulse as a function of the contact velocity.
+class CollisionLaw(Parameters):
+    """A collision law, of the package or of one's own."""
+
+    @property
+    @abstractmethod
+    def compiled(self) -> _core.Law:
+        """The law as the core knows it."""
+
+    @abstractmethod
+    def attributes(self) -> dict[str, Any]:
+        """Return what a result says of the law besides its kind, as plain values."""
+
+
+class Law(Described, CollisionLaw):
+    """A collision law of the package: the impulse as a function of the contact velocity.
 
     Parameters
     ----------

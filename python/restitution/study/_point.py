@@ -245,8 +245,8 @@ def _first_impact(run: Run) -> xr.Dataset:
     from restitution.analytic import first_impact
 
     fall = {"release_height": run.release_height, "gravity": run.gravity}
-    varies = not isinstance(run.law.normal, float)
-    law = first_impact(run.body, run.law, orientation=run.orientation, **(fall if varies else {}))
+    varies = not isinstance(run.standard_law.normal, float)
+    law = first_impact(run.body, run.standard_law, orientation=run.orientation, **(fall if varies else {}))
     mean = {"long_name": "mean restitution of the first impact"}
     std = {"long_name": "standard deviation of the restitution of the first impact"}
     return xr.Dataset(

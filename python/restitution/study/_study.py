@@ -211,7 +211,7 @@ def _first_impact(own: Mapping[str, Any], run: Run) -> bool:
     given = own["first_impact"]
     if not isinstance(given, Mapping) or len(given) > 0:
         raise ParameterError(wrong("first_impact", given, "an empty table"))
-    if isinstance(run.release_height, RandomHeight) and isinstance(run.law.normal, Material):
+    if isinstance(run.release_height, RandomHeight) and isinstance(run.standard_law.normal, Material):
         allowed = "a number, for the closed form of [first_impact] where the coefficient varies"
         raise ParameterError(wrong("run.release_height", run.release_height, allowed))
     return True

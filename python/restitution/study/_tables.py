@@ -299,7 +299,7 @@ class Fitted(Parameters):
             raise ParameterError(wrong("fit.velocity", self.velocity, _WINDOW))
         if self.location is not None and self.family not in _CUSPED:
             raise ParameterError(wrong("fit.location", self.location, _AT_NORMAL))
-        if self.location is not None and not isinstance(run.law.normal, float):
+        if self.location is not None and not isinstance(run.standard_law.normal, float):
             text = " = 'normal': must be left out; the law's ε_n depends on the speed"
             raise ParameterError(Problem("fit.location", text))
         if self.location is None and self.family == "cusp-mixture":
@@ -311,7 +311,7 @@ class Fitted(Parameters):
         from restitution import fit
         from restitution.fit.source import counted
 
-        location = {} if self.location is None else {"location": run.law.normal}
+        location = {} if self.location is None else {"location": run.standard_law.normal}
         function = getattr(fit, self.family.replace("-", "_"))
         words = {name: f"{name} of the {self.family} density" for name in _PARAMETERS[self.family]}
         try:

@@ -2,7 +2,7 @@
 
 use super::Source;
 use super::lanes::{
-    Advance, Dimension, GROUPS, General, Inlined, Planar, Sink, Spatial, Unconverged, bounce,
+    Advance, Dimension, GROUPS, General, Inlined, Lost, Planar, Sink, Spatial, bounce,
 };
 use crate::Error;
 use crate::shape::Surface;
@@ -43,12 +43,19 @@ pub(crate) fn bounce_block(
     sink: &mut impl Sink,
 ) -> Result<(), Error> {
     let count = particles.len() as u64;
-    level.run(Block {
+    // A law of one's own may take long: the fewer contacts it is asked about at a time, the sooner a run that is cancelled ends.
+    let level = match source.plan().law.custom {
+        Some(_) => Level::Scalar,
+        None => level,
+    };
+    let ended = level.run(Block {
         source,
         particles,
         monitor,
         sink,
-    })?;
+    });
+    // The other threads need not go on.
+    ended.inspect_err(|_| monitor.cancel())?;
     monitor.add_finished(count);
     Ok(())
 }
@@ -96,14 +103,32 @@ impl<R: Source, T: Sink> Block<'_, R, T> {
             sink,
             || !monitor.is_cancelled(),
         )
-        .map_err(|Unconverged { particle, impacts }| {
-            let (plan, number) = source.origin(particle);
-            Error::Numerical {
-                particle: number as u64,
-                seed: plan.run.seed,
-                flight: impacts as u64,
-            }
-        })
+        .map_err(|lost| error(source, lost))
+    }
+}
+
+/// The error that names the particle, its seed and the flight or the impact in question.
+fn error(source: &impl Source, lost: Lost) -> Error {
+    let Lost {
+        particle,
+        impacts,
+        fault,
+    } = lost;
+    let (plan, number) = source.origin(particle);
+    let (particle, seed) = (number as u64, plan.run.seed);
+    match fault {
+        None => Error::Numerical {
+            particle,
+            seed,
+            flight: impacts as u64,
+        },
+        Some(fault) => Error::Law {
+            law: plan.law.custom.map_or("", |law| law.name()).to_owned(),
+            particle,
+            seed,
+            impact: impacts as u64,
+            fault: *fault,
+        },
     }
 }
 

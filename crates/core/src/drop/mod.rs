@@ -66,10 +66,13 @@ impl Run<'_> {
         self.law.normal.at(start.mul_add(start, gained).sqrt())
     }
 
-    /// Whether all particles are released at rest over a level plane. All directions in the plane are then equivalent, and each
-    /// particle remains in the vertical plane of its axis.
+    /// Whether all particles are released at rest over a level plane. All directions in the plane are then equivalent, unless a law of
+    /// one's own distinguishes them, and each particle remains in the vertical plane of its axis.
     pub(crate) fn is_at_rest(&self) -> bool {
-        self.spin.is_none() && self.release_velocity == Vector::default() && self.incline == 0.0
+        self.spin.is_none()
+            && self.release_velocity == Vector::default()
+            && self.incline == 0.0
+            && self.law.custom.is_none()
     }
 
     /// Whether another run differs in nothing but its seed, the number of its particles and how they are released, and moves in the

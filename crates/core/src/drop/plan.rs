@@ -68,7 +68,7 @@ impl<'a> Plan<'a> {
         let plan = Self {
             run,
             body: run.body.scaled,
-            law: run.law.scaled(scales.speed),
+            law: run.law.scaled(scales.speed, run.body.mass),
             scales,
             height: run.release_height.scaled(scales.length),
             velocity: velocity / scales.speed,

@@ -47,7 +47,7 @@ pub enum FlightEnd {
     Never,
 }
 
-/// The contact search did not converge, which is a defect of the program.
+/// The contact search did not converge, which is a defect of the program, or a law of one's own gave no impulse that is possible.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct NoConvergence;
 
@@ -163,7 +163,7 @@ pub(super) fn trajectory_of(
     let (simd, job) = (Scalar::new(), (body, limits));
     let cycle = General { body, law, slope };
     let release = (release, 0..1);
-    if start.is_at_rest() && slope == 0.0 {
+    if start.is_at_rest() && slope == 0.0 && law.custom.is_none() {
         bounce::<_, Planar, _, 1>(simd, job, &cycle, release, &mut reporter, || go_on.get())
     } else {
         bounce::<_, Spatial, _, 1>(simd, job, &cycle, release, &mut reporter, || go_on.get())

@@ -30,6 +30,11 @@ impl Compliance {
         Ok(Self(entries))
     }
 
+    /// The compliance with these entries, of a body that has one.
+    pub(super) fn of_entries(entries: Symmetric) -> Self {
+        Self(entries)
+    }
+
     /// I/m + [**r**]ᵀJ⁻¹[**r**]: that of a body with mass m and the inverse tensor of inertia J⁻¹, hit at **r** from its centre of mass.
     pub fn of_body(mass: f64, inverse_inertia: &Symmetric, arm: Vector) -> Self {
         // Column i of [r] is r × e_i.

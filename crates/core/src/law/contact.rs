@@ -66,6 +66,21 @@ impl Contact {
 }
 
 impl<S: Simd> Contact<Pack<S, 1>> {
+    /// The contact in a lane.
+    pub(crate) fn lane(&self, lane: usize) -> Contact {
+        let at = |pack: Pack<S, 1>| pack.as_slice()[lane];
+        let k = &self.compliance;
+        Contact {
+            velocity: self.velocity.map(at),
+            compliance: AxialCompliance {
+                inertia: k.inertia,
+                arm_normal: at(k.arm_normal),
+                arm_along: at(k.arm_along),
+                ww: at(k.ww),
+            },
+        }
+    }
+
     /// No contact.
     #[inline(always)]
     pub fn none(simd: S) -> Self {
@@ -121,21 +136,22 @@ impl<S: Simd> Response<Pack<S, 1>> {
         }
     }
 
-    /// Puts the answer in lane k of `other` into a lane.
+    /// Puts an answer into a lane.
     #[inline(always)]
-    pub(super) fn put(&mut self, lane: usize, other: &Self, k: usize) {
+    pub(crate) fn put(&mut self, lane: usize, answer: &Response) {
         let own = &mut self.impulse;
         for (to, from) in [
-            (&mut own.normal, other.impulse.normal),
-            (&mut own.along, other.impulse.along),
-            (&mut own.across, other.impulse.across),
-            (&mut self.separation_speed, other.separation_speed),
+            (&mut own.normal, answer.impulse.normal),
+            (&mut own.along, answer.impulse.along),
+            (&mut own.across, answer.impulse.across),
+            (&mut self.separation_speed, answer.separation_speed),
         ] {
-            to.as_mut_slice()[lane] = from.as_slice()[k];
+            to.as_mut_slice()[lane] = from;
         }
     }
 
     /// The answer in a lane.
+    #[inline(always)]
     pub fn lane(&self, lane: usize) -> Response {
         Response {
             impulse: self.impulse.map(|component| component.as_slice()[lane]),

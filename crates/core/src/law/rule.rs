@@ -1,8 +1,8 @@
 //! The choice of a law.
 
 use super::{
-    Answer, Compliance, Contact, Material, Normal, Response, Rule, normal::scattered,
-    tangential::Steady,
+    Answer, Compliance, Contact, CustomLaw, Fault, Frictionless, ImpulseFunction, Material, Normal,
+    Response, Rule, normal::scattered, tangential::Steady,
 };
 use crate::Error;
 use crate::describe::Kind;
@@ -19,6 +19,8 @@ pub struct Law<'a> {
     pub deviation: f64,
     /// The impulse that follows from a contact and ε_n.
     pub rule: Rule,
+    /// A law of one's own, which takes the place of coefficient and rule.
+    pub custom: Option<CustomLaw<'a>>,
 }
 
 /// A law in the table of laws.
@@ -109,13 +111,25 @@ impl<'a> Law<'a> {
             normal: normal.into().checked()?,
             deviation: 0.0,
             rule: rule.into(),
+            custom: None,
         })
     }
 
-    /// The same law for speeds that are given in multiples of `unit` (in m/s) instead of m/s.
-    pub fn scaled(&self, unit: f64) -> Self {
+    /// The law that asks a function.
+    pub fn custom(function: &'a dyn ImpulseFunction) -> Self {
         Self {
-            normal: self.normal.scaled(unit),
+            normal: Normal::Constant(1.0),
+            deviation: 0.0,
+            rule: Frictionless.into(),
+            custom: Some(CustomLaw::new(function)),
+        }
+    }
+
+    /// The same law for contacts in multiples of these units, in m/s and kg, instead of SI units.
+    pub fn scaled(&self, speed: f64, mass: f64) -> Self {
+        Self {
+            normal: self.normal.scaled(speed),
+            custom: self.custom.map(|law| law.scaled(speed, mass)),
             ..*self
         }
     }
@@ -126,10 +140,12 @@ impl<'a> Law<'a> {
             normal: material.normal(),
             deviation: material.deviation(),
             rule,
+            custom: None,
         }
     }
 
-    /// The impulse of a contact, and its normal velocity after the impact, with ε_n as it is where it does not scatter.
+    /// The impulse of a contact, and its normal velocity after the impact, with ε_n as it is where it does not scatter. A law of one's
+    /// own is not asked, but [`Law::answer`].
     pub fn respond(&self, contact: &Contact) -> Response {
         let mut found = [Response::none(Scalar::new())];
         let steady = Self {
@@ -142,11 +158,17 @@ impl<'a> Law<'a> {
 
     /// The impulse for any compliance, of a contact that arrives with this velocity in the frame whose z axis is the normal, z ≤ 0;
     /// ε_n as in [`Self::respond`].
-    pub fn answer(&self, compliance: &Compliance, velocity: Vector) -> Answer {
+    ///
+    /// # Errors
+    /// Where a law of one's own gives no impulse that is possible.
+    pub fn answer(&self, compliance: &Compliance, velocity: Vector) -> Result<Answer, Fault> {
         // One that leaves only touches.
         let velocity = Vector::new(velocity.x, velocity.y, velocity.z.min(0.0));
+        if let Some(law) = &self.custom {
+            return law.answer(compliance, velocity);
+        }
         let normal = self.normal.at(velocity.z.abs());
-        self.rule.answer(compliance, velocity, normal)
+        Ok(self.rule.answer(compliance, velocity, normal))
     }
 
     /// The law as [`Steady`], if it is the paper's with the same ε_n for all impacts.
@@ -176,6 +198,12 @@ pub(crate) trait Respond {
         chances: &[Pack<S, 1>],
         responses: &mut [Response<Pack<S, 1>>],
     );
+
+    /// The law of one's own that is to be asked instead, if this is one.
+    #[inline(always)]
+    fn custom(&self) -> Option<CustomLaw<'_>> {
+        None
+    }
 }
 
 impl Respond for Law<'_> {
@@ -201,6 +229,11 @@ impl Respond for Law<'_> {
             chances,
             responses,
         });
+    }
+
+    #[inline(always)]
+    fn custom(&self) -> Option<CustomLaw<'_>> {
+        self.custom
     }
 }
 

@@ -5,7 +5,7 @@
 //! parallel. All stages of one group in a row would be a single chain of dependent operations.
 
 use super::collision::{Collisions, Dimension};
-use super::group::{Group, Release, Unconverged};
+use super::group::{Group, Lost, Release, Unconverged};
 use super::impact::Meanwhile;
 use super::passes::SearchOn;
 use crate::law::{Law, Respond, Response};
@@ -44,7 +44,7 @@ pub(crate) trait Advance<S: Simd, T: Dimension> {
         groups: &mut [Group<S, T>],
         collisions: &mut Collisions<S>,
         sink: &mut impl Meanwhile,
-    ) -> Result<(), Unconverged>;
+    ) -> Result<(), Lost>;
 }
 
 /// Hull and law inlined in the bounce loop, and the work of the sink interleaved with the stages; used for the most common runs.
@@ -111,11 +111,10 @@ impl<S: Simd, T: Dimension, H: Hull, L: Respond> Advance<S, T> for Inlined<'_, H
         groups: &mut [Group<S, T>],
         collisions: &mut Collisions<S>,
         sink: &mut impl Meanwhile,
-    ) -> Result<(), Unconverged> {
+    ) -> Result<(), Lost> {
         self.take_off(groups, sink);
         find(groups, self.hull, sink)?;
-        self.collide(groups, collisions, sink);
-        Ok(())
+        self.collide(groups, collisions, sink)
     }
 }
 
@@ -140,7 +139,7 @@ impl<H: Hull, L: Respond> Inlined<'_, H, L> {
         groups: &mut [Group<S, T>],
         collisions: &mut Collisions<S>,
         sink: &mut impl Meanwhile,
-    ) {
+    ) -> Result<(), Lost> {
         let Self {
             body, hull, law, ..
         } = *self;
@@ -157,7 +156,13 @@ impl<H: Hull, L: Respond> Inlined<'_, H, L> {
                 points[i] = group.land(hull);
                 contacts[i] = group.contact(body, points[i]);
             }
-            law.respond_all::<S, true>(contacts, chances, responses);
+            if let Some(law) = law.custom() {
+                for (i, group) in groups.iter().enumerate() {
+                    responses[i] = group.ask(law, points[i], &contacts[i])?;
+                }
+            } else {
+                law.respond_all::<S, true>(contacts, chances, responses);
+            }
             for (i, group) in groups.iter_mut().enumerate() {
                 group.leave(body, points[i], &contacts[i], &responses[i]);
                 work_up::<S>(sink, i, 7);
@@ -177,6 +182,7 @@ impl<H: Hull, L: Respond> Inlined<'_, H, L> {
                 work_up::<S>(sink, i, 7);
             }
         }
+        Ok(())
     }
 }
 
@@ -294,7 +300,7 @@ impl<S: Simd, T: Dimension> Advance<S, T> for General<'_, '_> {
         groups: &mut [Group<S, T>],
         collisions: &mut Collisions<S>,
         _: &mut impl Meanwhile,
-    ) -> Result<(), Unconverged> {
+    ) -> Result<(), Lost> {
         let simd = groups[0].particles.active.simd();
         with_hull!(self.surface(), hull => simd.vectorize(AdvanceApart {
             cycle: self.with(hull),
@@ -334,7 +340,7 @@ struct AdvanceApart<'a, S: Simd, T: Dimension, L> {
 }
 
 impl<S: Simd, T: Dimension, L: Advance<S, T>> WithSimd for AdvanceApart<'_, S, T, L> {
-    type Output = Result<(), Unconverged>;
+    type Output = Result<(), Lost>;
 
     #[inline(always)]
     fn with_simd<U: Simd>(self, _: U) -> Self::Output {

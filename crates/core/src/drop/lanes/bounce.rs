@@ -2,7 +2,7 @@
 
 use super::advance::Advance;
 use super::collision::{Collisions, Dimension};
-use super::group::{Group, Release, Unconverged};
+use super::group::{Group, Lost, Release};
 use super::impact::Sink;
 use crate::drop::stop::{Limits, StopReason};
 use crate::shape::Body;
@@ -22,7 +22,7 @@ pub(crate) fn bounce<S: Simd, T: Dimension, L: Advance<S, T>, const N: usize>(
     (release, mut particles): (&impl Release, Range<usize>),
     sink: &mut impl Sink,
     go_on: impl Fn() -> bool,
-) -> Result<(), Unconverged> {
+) -> Result<(), Lost> {
     let mut groups = cycle.groups::<N>(simd);
     let mut collisions = Collisions::none(simd);
     let width = Pack::<S, 1>::WIDTH;

@@ -100,6 +100,9 @@ pub(crate) trait Collide<S: Simd>: SymmetricState<S, 1> {
     /// The contact of the part of the hull that touches.
     fn contact(&self, body: &Body, point: ContactPoint<S>) -> Contact<Pack<S, 1>>;
 
+    /// **u** along x and y.
+    fn along(&self, point: ContactPoint<S>) -> [Pack<S, 1>; 2];
+
     /// The motion after the impact.
     fn after(
         &self,
@@ -137,6 +140,10 @@ impl<S: Simd> Collide<S> for PlanarState<S, 1> {
                 ww: zero,
             },
         }
+    }
+
+    fn along(&self, _: ContactPoint<S>) -> [Pack<S, 1>; 2] {
+        [1.0, 0.0].map(|part| Pack::splat(self.sine.simd(), part))
     }
 
     #[inline(always)]
@@ -225,6 +232,13 @@ impl<S: Simd> Collide<S> for SpatialState<S, 1> {
                 ww,
             },
         }
+    }
+
+    fn along(&self, point: ContactPoint<S>) -> [Pack<S, 1>; 2] {
+        let Frame {
+            along_x, along_y, ..
+        } = Frame::new(self, point);
+        [along_x, along_y]
     }
 
     #[inline(always)]

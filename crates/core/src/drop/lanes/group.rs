@@ -7,7 +7,7 @@ use crate::contact::{
     GapEvaluation, LastContact, LocatedContact, MOST_STEPS, Prediction, Search, Steps,
 };
 use crate::drop::stop::{Limits, StopReason};
-use crate::law::{Contact, MOST_CONTACTS, Response};
+use crate::law::{Contact, CustomLaw, Fault, MOST_CONTACTS, Response};
 use crate::motion::{Flight, State, SymmetricState};
 use crate::shape::{Body, Hull};
 use crate::simd::{Mask, Pack};
@@ -39,6 +39,24 @@ pub(crate) trait Release {
 pub(crate) struct Unconverged {
     pub particle: usize,
     pub impacts: usize,
+}
+
+/// The particle that cannot be followed: its contact search did not converge, or a law of one's own gave no impulse that is possible.
+#[derive(Debug)]
+pub(crate) struct Lost {
+    pub particle: usize,
+    pub impacts: usize,
+    pub fault: Option<Box<Fault>>,
+}
+
+impl From<Unconverged> for Lost {
+    fn from(Unconverged { particle, impacts }: Unconverged) -> Self {
+        Self {
+            particle,
+            impacts,
+            fault: None,
+        }
+    }
 }
 
 /// A contact that was located, in each lane.
@@ -322,6 +340,36 @@ impl<S: Simd, T: Dimension> Group<S, T> {
             *across = self.landing().select(*across, 0.0);
         }
         contact
+    }
+
+    /// Asks a law of one's own about the contact in each lane that has one.
+    #[cold]
+    pub fn ask(
+        &self,
+        law: CustomLaw<'_>,
+        point: ContactPoint<S>,
+        contact: &Contact<Pack<S, 1>>,
+    ) -> Result<Response<Pack<S, 1>>, Lost> {
+        let along = self.before().along(point);
+        let mut response = Response::none(self.time.simd());
+        let mut found = Ok(());
+        self.landing().each(|lane| {
+            if found.is_err() {
+                return;
+            }
+            match law.respond(&contact.lane(lane), along.map(|part| part.as_slice()[lane])) {
+                Ok(answer) => response.put(lane, &answer),
+                Err(fault) => {
+                    let (particle, impacts) = self.particles.trajectory(lane);
+                    found = Err(Lost {
+                        particle,
+                        impacts,
+                        fault: Some(Box::new(fault)),
+                    });
+                }
+            }
+        });
+        found.map(|()| response)
     }
 
     /// Takes the motion after an impact.

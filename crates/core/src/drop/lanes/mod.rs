@@ -13,5 +13,5 @@ pub(super) use advance::{Advance, General, Idle, Inlined, find};
 pub(super) use bounce::bounce;
 pub(super) use collision::{Collide, ContactPoint, Dimension, Planar, Spatial};
 pub(crate) use group::GROUPS;
-pub(super) use group::{Found, Group, Release, Unconverged};
+pub(super) use group::{Found, Group, Lost, Release};
 pub(crate) use impact::{Impact, Meanwhile, Sink};

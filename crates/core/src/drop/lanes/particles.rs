@@ -165,7 +165,7 @@ impl<S: Simd> Particles<S> {
     }
 
     /// The particle in a lane, and the number of its impacts.
-    fn trajectory(&self, lane: usize) -> (usize, usize) {
+    pub fn trajectory(&self, lane: usize) -> (usize, usize) {
         let [particle, impacts] =
             [self.number, self.impacts()].map(|count| count.as_slice()[lane] as usize);
         (particle, impacts)

@@ -177,7 +177,7 @@ impl<S: Simd> Lanes<S> {
             {
                 *place = None;
                 let response = &mut pending[i].response;
-                response.put(k, &answer, lane);
+                response.put(k, &answer.lane(lane));
             }
         }
     }

@@ -1,0 +1,201 @@
+//! A law of one's own: a function that is asked for the impulse of one contact at a time.
+
+use super::{Answer, AxialCompliance, Compliance, Components, Contact, Response};
+use crate::math::{Symmetric, Vector};
+use std::any::Any;
+use std::fmt;
+use std::sync::Arc;
+
+/// The impulse of a contact in SI units.
+pub trait ImpulseFunction: Sync {
+    /// What errors call it.
+    fn name(&self) -> &str;
+
+    /// The impulse in N s on the body, for K in 1/kg and the velocity of the point of contact in m/s. The z axis is the plane normal, x
+    /// descends the slope.
+    ///
+    /// # Errors
+    /// [`Fault::Raised`] or [`Fault::NoVector`], which end the run.
+    fn impulse(&self, compliance: [[f64; 3]; 3], velocity: Vector) -> Result<Vector, Fault>;
+}
+
+/// An error of an [`ImpulseFunction`], handed through to whoever started the run.
+#[derive(Clone)]
+pub struct Raised(pub Arc<dyn Any + Send + Sync>);
+
+impl fmt::Debug for Raised {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("Raised")
+    }
+}
+
+impl PartialEq for Raised {
+    fn eq(&self, other: &Self) -> bool {
+        Arc::ptr_eq(&self.0, &other.0)
+    }
+}
+
+/// Why an impulse is refused; impulses in N s, velocities in m/s.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Fault {
+    /// The function failed.
+    Raised(Raised),
+    /// What the function gave, as text, is not three numbers.
+    NoVector(String),
+    /// The impulse is not finite.
+    NotFinite(Vector),
+    /// The impulse has a negative normal component.
+    Pulls(Vector),
+    /// The contact still approaches the plane afterwards, at this speed.
+    Approaches(Vector, f64),
+}
+
+impl fmt::Display for Fault {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let triple = |v: &Vector| format!("({:?}, {:?}, {:?})", v.x, v.y, v.z);
+        match self {
+            Self::Raised(_) => f.write_str("raised an exception"),
+            Self::NoVector(given) => {
+                write!(f, "gave {given}: must be three numbers, the impulse in N s")
+            }
+            Self::NotFinite(p) => write!(f, "gave {} N s: must be finite", triple(p)),
+            Self::Pulls(p) => write!(
+                f,
+                "gave {} N s, which pulls: the component along z must be >= 0",
+                triple(p)
+            ),
+            Self::Approaches(p, speed) => write!(
+                f,
+                "gave {} N s, after which the contact still approaches the plane at {speed:?} m/s: must leave it or stay",
+                triple(p)
+            ),
+        }
+    }
+}
+
+/// Share of the largest term by which a sum of a few may be wrong because of rounding, also in the function's own arithmetic.
+const ROUNDING: f64 = 1.0 / 1_099_511_627_776.0; // 2⁻⁴⁰
+
+/// A law that asks an [`ImpulseFunction`], with the units in which contacts are given.
+#[derive(Clone, Copy)]
+pub struct CustomLaw<'a> {
+    function: &'a dyn ImpulseFunction,
+    /// The units of mass and speed, in kg and m/s.
+    mass: f64,
+    speed: f64,
+}
+
+impl fmt::Debug for CustomLaw<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("CustomLaw")
+    }
+}
+
+/// The same function.
+impl PartialEq for CustomLaw<'_> {
+    fn eq(&self, other: &Self) -> bool {
+        std::ptr::addr_eq(self.function, other.function)
+            && (self.mass, self.speed) == (other.mass, other.speed)
+    }
+}
+
+impl<'a> CustomLaw<'a> {
+    /// The law of a function, for contacts in SI units.
+    pub fn new(function: &'a dyn ImpulseFunction) -> Self {
+        Self {
+            function,
+            mass: 1.0,
+            speed: 1.0,
+        }
+    }
+
+    /// What errors call it.
+    pub(crate) fn name(&self) -> &'a str {
+        self.function.name()
+    }
+
+    /// The same for contacts in multiples of other units, in m/s and kg.
+    pub(super) fn scaled(&self, speed: f64, mass: f64) -> Self {
+        Self {
+            speed: self.speed * speed,
+            mass: self.mass * mass,
+            ..*self
+        }
+    }
+
+    /// The impulse of a contact with velocity **v**_c, in the frame whose z axis is the normal, z ≤ 0.
+    pub(super) fn answer(
+        &self,
+        compliance: &Compliance,
+        velocity: Vector,
+    ) -> Result<Answer, Fault> {
+        let k = compliance.entries();
+        let rows = [[k.xx, k.xy, k.xz], [k.xy, k.yy, k.yz], [k.xz, k.yz, k.zz]];
+        let in_units = rows.map(|row| row.map(|entry| entry / self.mass));
+        let given = self.function.impulse(in_units, velocity * self.speed)?;
+        let impulse = given / (self.mass * self.speed);
+        if !impulse.norm().is_finite() {
+            return Err(Fault::NotFinite(given));
+        }
+        let terms = [
+            velocity.z,
+            k.xz * impulse.x,
+            k.yz * impulse.y,
+            k.zz * impulse.z,
+        ];
+        let rounding = ROUNDING
+            * terms
+                .iter()
+                .fold(0.0_f64, |most, term| most.max(term.abs()));
+        if terms[3] < -rounding {
+            return Err(Fault::Pulls(given));
+        }
+        let separation: f64 = terms.iter().sum();
+        if separation < -rounding {
+            return Err(Fault::Approaches(given, -separation * self.speed));
+        }
+        Ok(Answer {
+            impulse,
+            separation_speed: separation.max(0.0),
+        })
+    }
+
+    /// The answer to a contact of a body of revolution whose **u** has these components along x and y.
+    pub(crate) fn respond(&self, contact: &Contact, along: [f64; 2]) -> Result<Response, Fault> {
+        let [x, y] = along;
+        let Components {
+            normal,
+            along,
+            across,
+        } = contact.velocity;
+        let velocity = Vector::new(x * along - y * across, y * along + x * across, normal);
+        let Answer {
+            impulse,
+            separation_speed,
+        } = self.answer(&contact.compliance.turned([x, y]), velocity)?;
+        Ok(Response {
+            impulse: Components {
+                normal: impulse.z,
+                along: x * impulse.x + y * impulse.y,
+                across: x * impulse.y - y * impulse.x,
+            },
+            separation_speed,
+        })
+    }
+}
+
+impl AxialCompliance {
+    /// The full matrix, where **u** has these components along x and y.
+    fn turned(&self, [x, y]: [f64; 2]) -> Compliance {
+        let k = self.in_lane();
+        let [nn, uu, nu, ww] = [k.nn(), k.uu(), k.nu(), k.ww()].map(|entry| entry.as_slice()[0]);
+        Compliance::of_entries(Symmetric {
+            xx: uu * x * x + ww * y * y,
+            yy: uu * y * y + ww * x * x,
+            zz: nn,
+            xy: (uu - ww) * x * y,
+            xz: nu * x,
+            yz: nu * y,
+        })
+    }
+}
