@@ -15,6 +15,7 @@ Results do not depend on the machine, so neither does the stamp.
 
 import argparse
 import hashlib
+import math
 import re
 import sys
 import warnings
@@ -64,17 +65,41 @@ def locking(particles: int, images: Path | None) -> str:
     return str(script.table(particles, seeds=2))
 
 
+def _parameters(what: str, table: list[dict[str, Any]]) -> str:
+    """Tell what the core's table says of the parameters of every body, law or material."""
+    rows = [f"| {what} | | parameter | | unit | allowed | default |", "|---|---|---|---|---|---|---|"]
+    for entry in table:
+        head = f"`{entry['name']}` | {entry['text']}"
+        for about in entry["parameters"] or [None]:
+            rows.append(f"| {head} | {_cells(about) if about else ' | | | |'} |")
+            head = " | "
+    return "\n".join(rows)
+
+
+def _cells(about: dict[str, Any]) -> str:
+    if about["type"] == "name":
+        allowed = ", ".join(f"`{name}`" for name in about["names"])
+    elif math.isinf(about["high"]):
+        allowed = f"{'≥' if about['closed'] else '>'} {about['low']:g}"
+    else:
+        allowed = f"{'[' if about['closed'] else '('}{about['low']:g}, {about['high']:g}]"
+    unit = {None: "", "1": "", "kg m-3": "kg/m³", "m s-1": "m/s"}.get(about["unit"], about["unit"])
+    return f"`{about['name']}` | {about['text']} | {unit} | {allowed} | {about.get('default', '')}"
+
+
 def golf(drops: int, images: Path | None) -> str:
-    """Make the table and the figure of examples/golf.py."""
-    script = _script("golf")
+    """Make the table of the bodies' parameters, and the table and the figure of examples/golf.py."""
+    script, core = _script("golf"), import_module("restitution._core")
     if images is not None:
         script.draw(images / "golf.png")
-    return str(script.table())
+    return f"{_parameters('body', core.BODIES)}\n\n{script.table()}"
 
 
 def laws(contacts: int, images: Path | None) -> str:
-    """Make the table of benchmarks/impulse.py."""
-    return str(_script("benchmarks.impulse").table())
+    """Make the tables of the parameters of laws and materials, and that of benchmarks/impulse.py."""
+    core = import_module("restitution._core")
+    impulse = _script("benchmarks.impulse").table()
+    return "\n\n".join([_parameters("law", core.LAWS), impulse, _parameters("material", core.MATERIALS)])
 
 
 def theory(percent: int, images: Path | None) -> str:

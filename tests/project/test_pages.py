@@ -21,7 +21,7 @@ def test_no_page_is_stale(name: str) -> None:
 def test_a_changed_table_is_noticed() -> None:
     """One digit in another place is another digest."""
     tables, stamp = PAGES["made"]("shapes")
-    assert PAGES["stamp"]("shapes", [tables[0].replace("101", "102")]) != stamp
+    assert PAGES["stamp"]("shapes", [*tables[:-1], tables[-1].replace("101", "102")]) != stamp
 
 
 def test_pages_name_their_command() -> None:
