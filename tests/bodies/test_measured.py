@@ -72,7 +72,7 @@ def test_a_grade_is_its_number_in_millionths_of_an_inch() -> None:
         (lambda: rs.from_roundness(6e-3, -1e-6), r"^out_of_roundness = -1e-06"),
         (
             lambda: rs.from_roundness(6e-3, 1e-6, form="egg"),  # type: ignore[arg-type]
-            r"^form = 'egg': must be 'lobed', 'flattened'",
+            r"^form = 'egg': must be 'lobed', 'flattened', 'dumbbell' or 'off-centre'$",
         ),
         (lambda: rs.from_roundness(6e-3, 1e-6, lobes=1), r"^lobes = 1"),
         (lambda: rs.from_roundness(6e-3, 1e-6, form="flattened", lobes=3), r"^lobes = 3: must be left out"),

@@ -166,7 +166,7 @@ def test_a_symbolic_link_stays_one(tmp_path: Path) -> None:
     ("make", "number", "text"),
     [
         (lambda folder: folder / "folder", errno.EINVAL, "not a file that can be written"),
-        (lambda folder: folder / "there", errno.EEXIST, "exists already"),
+        (lambda folder: folder / "there", errno.EEXIST, "exists already; replace=True replaces it"),
     ],
     ids=["folder", "there"],
 )

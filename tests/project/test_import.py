@@ -163,6 +163,31 @@ def test_runs_in_the_pages(page: Path, tmp_path: Path) -> None:
         assert run.particles > 0
 
 
+def test_the_numbers_of_the_first_page() -> None:
+    """README says in its text what its code prints, and of its film what the run gives."""
+    text = (ROOT / "README.md").read_text(encoding="utf-8")
+    (printed,) = re.findall(r"^print\(.*\)  # (.*)", text, re.MULTILINE)
+    deviation, above = printed.split()
+    assert f"standard deviation of {deviation} at 0.2 m/s" in text
+    assert f"exceeds 1 in {100 * float(above):.0f} % of these impacts" in text
+    body, law = (
+        rs.Dumbbell(radius=3e-3, separation=3e-4),
+        rs.TangentialRestitution(normal=0.98, tangential=1.0),
+    )
+    for seed in (2, 3):
+        data = rs.simulate(body, law, particles=1000, impacts=400, seed=seed)
+        near = data.restitution.where(abs(data.impact_velocity - 0.2) < 0.01)
+        assert 0.0615 <= float(near.std()) < 0.0675
+    sys.path.insert(0, str(ROOT / "examples"))
+    pictures = importlib.import_module("pictures")
+    data = pictures.drops()
+    assert data.attrs["energy_created_impacts"] == 0
+    particle, impact = pictures.GAIN
+    assert f"{float(data.restitution[particle, impact]):.2f} times as fast as it came" in text
+    particle, (first, _) = pictures.NEGATIVE
+    assert float(data.restitution[particle, first]) < 0
+
+
 def test_links_in_the_pages() -> None:
     """Links to files of the project lead to files; hosts are named only for DOIs."""
     for page in (*PAGES, *ROOT.glob("*.md")):

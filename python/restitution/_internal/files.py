@@ -204,7 +204,7 @@ def claim(draft: Path, target: Path) -> None:
 
 def _begin(path: Path, replace: bool) -> tuple[Path, Path]:
     """Make an empty draft of a file; give also the place that it is to take."""
-    target = _target(path, replace)
+    target = _target(path, replace, "exists already; replace=True replaces it")
     remove_old_drafts(target.parent, target.name)
     draft = draft_of(target)
     try:
@@ -215,13 +215,13 @@ def _begin(path: Path, replace: bool) -> tuple[Path, Path]:
     return draft, target
 
 
-def _target(path: Path, replace: bool) -> Path:
+def _target(path: Path, replace: bool, taken: str = "exists already") -> Path:
     """Follow links to where a file is to be, and refuse what is in its way."""
     target = Path(os.path.realpath(path))
     if path.exists() and not target.is_file():  # a pipe in /dev/fd is there, and leads to no name of a file
         raise OSError(errno.EINVAL, "not a file that can be written", str(path))
     if target.exists() and not replace:
-        raise FileExistsError(errno.EEXIST, "exists already", str(path))
+        raise FileExistsError(errno.EEXIST, taken, str(path))
     return target
 
 

@@ -23,7 +23,7 @@ from restitution.bodies._spheroid import Spheroid
 
 Form: TypeAlias = Literal["lobed", "flattened", "dumbbell", "off-centre"]
 
-_FORMS = ", ".join(map(repr, get_args(Form)))
+_FORMS = "{}, {}, {} or {}".format(*map(repr, get_args(Form)))
 _MOST = 0.1
 """Out-of-roundness over diameter up to which a ball is called nearly round."""
 

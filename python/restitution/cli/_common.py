@@ -120,7 +120,8 @@ def _failed(error: Exception) -> NoReturn:
         case ValueError():
             fail(str(error), BAD_INPUT)
         case FileExistsError():
-            fail(f"{_named(error.filename)}: {error.strerror}; --overwrite replaces it", FAILED)
+            text = str(error.strerror).partition(";")[0]  # the rest is for a call
+            fail(f"{_named(error.filename)}: {text}; --overwrite replaces it", FAILED)
         case OSError():
             fail(f"{_named(error.filename)}: {error.strerror}" if error.filename else str(error), FAILED)
         case RuntimeError() | MemoryError() | ImportError():  # NumericalError is a RuntimeError
