@@ -5,6 +5,7 @@ import math
 import sys
 from pathlib import Path
 
+import numpy as np
 import xarray as xr
 from PIL import Image
 
@@ -35,6 +36,44 @@ def shapes(style: str) -> Image.Image:
         content = io.BytesIO()
         rs.figures.body(body, math.radians(55.0), style=style).savefig(content, dpi=150)
         drawn.append(Image.open(content).convert("RGB"))
+    return _side_by_side(drawn)
+
+
+def laws(style: str) -> Image.Image:
+    """Put side by side what each law makes of the same oblique impact, almost in the plane of the picture."""
+    each = {
+        "TangentialRestitution": rs.TangentialRestitution(normal=0.9, tangential=1.0),
+        "Frictionless": rs.Frictionless(normal=0.9),
+        "Coulomb, Stronge": rs.Coulomb(normal=0.9, friction=0.3, hypothesis="stronge"),
+        "Coulomb, Poisson": rs.Coulomb(normal=0.9, friction=0.3, hypothesis="poisson"),
+        "Coulomb, Newton": rs.Coulomb(normal=0.9, friction=0.3, hypothesis="newton"),
+        "ChatterjeeRuina": rs.ChatterjeeRuina(normal=0.9, tangential=0.9, friction=0.3),
+    }
+    body = rs.Dumbbell(radius=3e-3, separation=6e-3)
+    drawn = []
+    for name, law in each.items():
+        data = rs.simulate(
+            body,
+            law,
+            particles=4000,
+            impacts=1,
+            release_height=2e-2,
+            orientation=np.full(4000, 0.6),
+            release_velocity=(0.7, 0.0, 0.0),
+            record="state",
+        )
+        across = abs(data["axis"].sel(component="y")).where(data["axis"].sel(component="x") > 0.0)
+        figure = rs.figures.impact(data, int(across.isel(impact=0).argmin()), style=style)
+        after = figure.axes[1]
+        after.set_title(after.get_title().replace("after", name))
+        content = io.BytesIO()
+        figure.savefig(content, dpi=150)
+        whole = Image.open(content).convert("RGB")
+        drawn.append(whole.crop((whole.width // 2, 0, whole.width, whole.height)))
+    return _side_by_side(drawn)
+
+
+def _side_by_side(drawn: list[Image.Image]) -> Image.Image:
     width, height = drawn[0].size
     whole = Image.new("RGB", (3 * width, 2 * height))
     for place, picture in enumerate(drawn):
@@ -47,6 +86,7 @@ def main(folder: Path) -> None:
     data = drops()
     for ground in ("page", "page-dark"):
         shapes(ground).save(folder / f"shapes{ground.removeprefix('page')}.png")
+        laws(ground).save(folder / f"impulses{ground.removeprefix('page')}.png")
         drawn = rs.figures.impact(data, *IMPACT, style=ground)
         name = f"impact{ground.removeprefix('page')}.png"
         rs.figures.save(drawn, folder / name, title="An impact before and after")
