@@ -45,7 +45,6 @@ COLUMNS = [
 CHOSEN = {
     "python/restitution/figures/laws/_measure.py",
     "python/restitution/experiment/inference/_family.py",
-    "python/restitution/figures/scene/_solid.py",
 }
 """Files that compare some laws, or infer a parameter of some materials; they need no further one."""
 

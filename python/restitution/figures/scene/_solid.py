@@ -1,7 +1,7 @@
 """The surface of a body of revolution, as parts that one formula describes, and its picture from the side."""
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import xarray as xr
@@ -9,8 +9,8 @@ from matplotlib.axes import Axes
 from matplotlib.image import AxesImage
 
 from restitution._internal.arrays import FloatArray
-from restitution._internal.parameters import ParameterError, Problem, wrong
-from restitution.bodies import BODIES, KINDS, Body, Dumbbell, LoadedSphere, Spherocylinder, Spheroid
+from restitution._internal.parameters import ParameterError, Problem
+from restitution.bodies import KINDS, Body
 
 _PIXELS = 220
 """Across the picture of a body."""
@@ -22,33 +22,41 @@ _LIGHT = np.array([-0.45, 0.7, 0.55])
 
 @dataclass(frozen=True)
 class Part:
-    """The points q about ``place`` where q² ``across`` + (q·e)² ``excess`` = 1 and |q·e| <= ``half``."""
+    """The points q about ``place`` where q² across + (q·e)² excess + (q·e) linear = 1 and |q·e| <= half."""
 
     place: float  # from the centre of mass along the axis, in m
     across: float
-    excess: float = 0.0
+    excess: float
+    linear: float = 0.0  # of a cone
     half: float = math.inf
     end: int | None = None  # of the body, or None: that to which q·e points
 
 
 def parts_of(body: Body) -> tuple[Part, ...]:
-    """Return the surfaces of a body whose union is what one sees."""
-    match body:
-        case Spheroid():
-            across = body.equatorial**-2
-            return (Part(0.0, across, body.polar**-2 - across),)
-        case Spherocylinder():
-            across, half = body.radius**-2, 0.5 * body.separation
-            return Part(half, across, end=1), Part(-half, across, end=2), Part(0.0, across, -across, half)
-        case LoadedSphere():
-            return (Part(-body.centre_of_mass, body.radius**-2),)
-        case Dumbbell():
-            half, centre = 0.5 * body.separation, body.centre_of_mass
-            one, two = (r**-2 for r in body.radii)
-            balls = Part(half - centre, one, end=1), Part(-half - centre, two, end=2)
-            rod = (12.0 / min(body.radii)) ** 2
-            return (*balls, Part(-centre, rod, -rod, half, end=0))
-    raise ParameterError(wrong("body", body, BODIES))
+    """Return the surfaces whose union one sees: those of the arcs of the outline, and that between them."""
+    one, two = body.compiled.outline
+    same = one[:3] == two[:3]
+    parts = []
+    for end, (centre, along, across, *_) in enumerate((one,) if same else (one, two), start=1):
+        if across > 0.0:
+            curved = across**-2
+            parts.append(Part(centre, curved, along**-2 - curved, end=None if same else end))
+    (high, wide), (low, narrow) = _point(one, one[4]), _point(two, two[3])
+    radius, length = 0.5 * (wide + narrow), high - low
+    if length > 1e-9 * max(one[2], two[2]):
+        rod = radius < 1e-9 * max(one[2], two[2])
+        radius = min(one[2], two[2]) / 12.0 if rod else radius
+        slope, curved = (wide - narrow) / length, radius**-2
+        side = Part(
+            0.5 * (high + low), curved, -curved * (1.0 + slope**2), -2.0 * slope / radius, 0.5 * length
+        )
+        parts.append(replace(side, end=0) if rod else side)
+    return tuple(parts)
+
+
+def _point(arc: list[float], angle: float) -> tuple[float, float]:
+    centre, along, across, *_ = arc
+    return centre + along * math.cos(angle), across * math.sin(angle)
 
 
 def body_of(data: xr.Dataset) -> Body:
@@ -70,14 +78,14 @@ def reach(body: Body) -> float:
 def contact_point(body: Body, axis: FloatArray, end: int | None = None) -> FloatArray:
     """Return the lowest point of a body from its centre of mass, or that of one end, in the picture's frame.
 
-    Of the quadric q·Q q = 1 it is -Q⁻¹n/√(n·Q⁻¹n).
+    Of the ellipsoid q·Q⁻¹q = 1 it is -Qn/√(n·Qn).
     """
     up = np.array([0.0, 1.0, 0.0])
     lowest = []
-    for part in parts_of(body):
-        if part.half == math.inf and (end is None or part.end in (None, end)):
-            inverse = (up - part.excess / (part.across + part.excess) * axis[1] * axis) / part.across
-            lowest.append(part.place * axis - inverse / np.sqrt(inverse[1]))
+    for number, (centre, along, across, *_) in enumerate(body.compiled.outline, start=1):
+        if end in (None, number):
+            q = (along**2 - across**2) * axis[1] * axis + across**2 * up
+            lowest.append(centre * axis - q / max(math.sqrt(q[1]), 1e-300))
     return min(lowest, key=lambda point: float(point[1]))
 
 
@@ -99,10 +107,10 @@ def picture(body: Body, axis: FloatArray) -> FloatArray:
         along = q @ axis
         # q + t k lies on the part where a t² + 2 b t + c = 0, k being the direction to the reader.
         a = part.across + part.excess * towards**2
-        if a <= 1e-9 * part.across:  # a cylinder that points at the reader: its end is hidden by a cap
+        if abs(a) <= 1e-9 * part.across:  # a cylinder that points at the reader: its end is hidden by a cap
             continue
-        b = part.across * q[..., 2] + part.excess * along * towards
-        c = part.across * (q**2).sum(axis=-1) + part.excess * along**2 - 1.0
+        b = part.across * q[..., 2] + (part.excess * along + 0.5 * part.linear) * towards
+        c = part.across * (q**2).sum(axis=-1) + (part.excess * along + part.linear) * along - 1.0
         root = b * b - a * c
         t = (np.sqrt(np.maximum(root, 0.0)) - b) / a
         hit = q + t[..., None] * np.array([0.0, 0.0, 1.0])
@@ -111,7 +119,7 @@ def picture(body: Body, axis: FloatArray) -> FloatArray:
         slope = np.hypot(*np.gradient(root, places, places))
         inside = np.clip(0.5 + root / np.maximum(slope * 2.0 * size / _PIXELS, 1e-300), 0.0, 1.0)
         inside = np.where(np.abs(height) <= part.half, inside, 0.0)
-        normal = part.across * hit + part.excess * height[..., None] * axis
+        normal = part.across * hit + (part.excess * height[..., None] + 0.5 * part.linear) * axis
         normal /= np.maximum(np.linalg.norm(normal, axis=-1, keepdims=True), 1e-300)
         light = np.clip(normal @ (_LIGHT / np.linalg.norm(_LIGHT)), 0.0, 1.0)
         end = np.where(height > 0.0, 1, 2) if part.end is None else np.full(height.shape, part.end)
