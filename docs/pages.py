@@ -87,6 +87,29 @@ def _cells(about: dict[str, Any]) -> str:
     return f"`{about['name']}` | {about['text']} | {unit} | {allowed} | {about.get('default', '')}"
 
 
+def names(size: int, images: Path | None) -> str:
+    """List the bodies, laws and materials of the core's table."""
+    core = import_module("restitution._core")
+    rows = [f"| `{one['name']}` | {one['text']} |" for one in (*core.BODIES, *core.LAWS, *core.MATERIALS)]
+    return "\n".join(["| name | what |", "|---|---|", *rows])
+
+
+def api(size: int, images: Path | None) -> str:
+    """Make the directives from which the pages of bodies, and of laws and materials, are made."""
+    core = import_module("restitution._core")
+    tables = (core.BODIES, (*core.LAWS, *core.MATERIALS))
+    lists = (["   " + one["name"] for one in table] for table in tables)
+    return "\n\n".join("\n".join([_DIRECTIVE, *sorted(names), "```"]) for names in lists)
+
+
+_DIRECTIVE = """```{eval-rst}
+.. currentmodule:: restitution
+
+.. autosummary::
+   :toctree: generated
+"""
+
+
 def golf(drops: int, images: Path | None) -> str:
     """Make the table of the bodies' parameters, and the table and the figure of examples/golf.py."""
     script, core = _script("golf"), import_module("restitution._core")
@@ -118,9 +141,11 @@ class Block:
 
 
 BLOCKS = {
+    "api": Block(api, 0, 0),
     "energy": Block(energy, 10_000_000, 20_000, ("laws.png",)),
     "fits": Block(fits, 4000, 100),
     "laws": Block(laws, 0, 0),
+    "names": Block(names, 0, 0),
     "near-round": Block(locking, 5000, 100, ("locking.png",)),
     "shapes": Block(golf, 0, 0, ("golf.png",)),
     "theory": Block(theory, 100, 1),
@@ -150,7 +175,7 @@ def remake(name: str) -> None:
     """Make the tables and figures of a page, and write them into it."""
     block, page = BLOCKS[name], ROOT / "docs" / f"{name}.md"
     places = len(made(name)[0])  # before anything is computed
-    tables = block.make(block.size, IMAGES).strip().split("\n\n")
+    tables = re.split(r"\n\n(?=\||```)", block.make(block.size, IMAGES).strip())
     if len(tables) != places:
         raise ValueError(f"docs/{name}.md has room for {places} tables, and there are {len(tables)}")
     print("\n\n".join(tables))

@@ -74,9 +74,8 @@ def test_every_kind_is_entered() -> None:
     for base, kinds in families:
         assert set(base.__subclasses__()) == set(kinds)
         assert {kind.__name__ for kind in kinds} <= set(rs.__all__)
-    assert list(_KINDS["body"][1]) == ["dumbbell", "loaded-sphere", "spherocylinder", "spheroid"]
-    assert list(_KINDS["law"][1]) == ["tangential-restitution", "frictionless", "coulomb", "chatterjee-ruina"]
-    assert list(_KINDS["normal"][1]) == ["viscoelastic", "plastic", "tabulated", "scattered"]
+    for place, kinds in (("body", bodies.KINDS), ("law", laws.KINDS), ("normal", laws.MATERIALS)):
+        assert list(_KINDS[place][1]) == [snake(kind.__name__).replace("_", "-") for kind in kinds]
 
 
 @pytest.mark.parametrize("function", [rs.simulate, rs.statistics, rs.FluctuatingRestitution.learn])
