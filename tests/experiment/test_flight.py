@@ -1,6 +1,7 @@
 """Coefficients of restitution from times of flight: their values, and every error that goes into them."""
 
 import math
+from typing import Any
 
 import numpy as np
 import pytest
@@ -38,7 +39,7 @@ def test_the_covariance_is_that_of_many_repetitions(drag: rs.flight.Drag | None)
     """Every measured number is drawn 20 000 times: standard errors agree to 5/√(2·20000) = 2.5 %."""
     rng = np.random.default_rng(3)
     true, sigma, repetitions = one_series(6), 2e-5, 20_000
-    setting = {"gravity_uncertainty": 0.02, "drop_height_uncertainty": 1e-3}
+    setting: dict[str, Any] = {"gravity_uncertainty": 0.02, "drop_height_uncertainty": 1e-3}
     data = rs.flight.restitution(true, sigma, drop_height=0.2, drag=drag, **setting)
     drawn = []
     for _ in range(repetitions // 20):

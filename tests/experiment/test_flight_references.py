@@ -140,9 +140,10 @@ def test_a_fit_is_the_least_squares_of_all_times(law: str, scatter: float) -> No
 
 @pytest.mark.parametrize("law", ["constant", "power law", "plastic"])
 def test_the_fitted_scatter_is_the_most_likely(law: str) -> None:
-    """The determinant of the covariance and χ², from the Dataset's own covariances, are least there.
+    """Its restricted likelihood, from the Dataset's own covariances, is largest there.
 
-    The information on the scatter is half the trace of the square of C⁻¹ dC/dσ.
+    The parameters are integrated out, which leaves the determinant of the information on them. The
+    information on the scatter is half the trace of the square of C⁻¹ dC/dσ.
     """
     data = Series(law, 25, 4e-5, 0.3, 5, 0.01).data()
     found = flight.fit(data, law, scatter="fit")
@@ -171,8 +172,18 @@ def test_the_fitted_scatter_is_the_most_likely(law: str) -> None:
     inverse = np.linalg.inv(covariance)
     information = 2 * found.scatter**2 * np.trace(inverse @ inverse)
     assert found.scatter_error == pytest.approx(information**-0.5, rel=0.02)
+    slopes = np.empty((v.size, values.size))
+    for place, value in enumerate(values):
+        beside = [values + way * 1e-5 * value * (np.arange(values.size) == place) for way in (1, -1)]
+        high, low = (coefficient(law, one) for one in beside)
+        slopes[:, place] = [(high(x) - low(x)) / (2e-5 * value) for x in v]
+
+    def restricted(scatter: float) -> float:
+        logarithm, covariance = loglikelihood(values, scatter)
+        return logarithm - 0.5 * float(np.linalg.slogdet(slopes.T @ np.linalg.solve(covariance, slopes))[1])
+
     steps = np.linspace(0.8, 1.2, 81)
-    best = steps[int(np.argmax([loglikelihood(values, step * found.scatter)[0] for step in steps]))]
+    best = steps[int(np.argmax([restricted(step * found.scatter) for step in steps]))]
     assert best == pytest.approx(1.0, abs=0.02)
     # Residuals of the fit are of speeds, v times these: ln det differs by 2 Σ ln v.
     assert found.loglikelihood == pytest.approx(top - np.sum(np.log(v)), abs=0.1)
@@ -182,14 +193,14 @@ def test_the_fitted_scatter_is_the_most_likely(law: str) -> None:
 
 
 def test_the_scatter_of_exact_times_is_that_of_the_coefficients() -> None:
-    """Of a Gaussian: the mean, and the root of the mean square; errors σ/√n and σ/√(2n)."""
+    """Of a Gaussian: the mean, and the root of the sum of squares over n - 1; errors σ/√n and σ/√(2n)."""
     data = flight.restitution(Series("constant", 25, 0.0, None, 5, 0.01).times)
     e = data["restitution"].to_numpy()[1:-1]
     found = flight.fit(data, "constant", scatter="fit")
     assert found.parameters["restitution"] == pytest.approx(e.mean(), rel=1e-6)
-    assert found.scatter == pytest.approx(e.std(), rel=1e-5)
-    assert found.errors["restitution"] == pytest.approx(e.std() / math.sqrt(e.size), rel=1e-5)
-    assert found.scatter_error == pytest.approx(e.std() / math.sqrt(2 * e.size), rel=1e-5)
+    assert found.scatter == pytest.approx(e.std(ddof=1), rel=1e-5)
+    assert found.errors["restitution"] == pytest.approx(e.std(ddof=1) / math.sqrt(e.size), rel=1e-5)
+    assert found.scatter_error == pytest.approx(e.std(ddof=1) / math.sqrt(2 * e.size), rel=1e-5)
     with pytest.raises(ValueError, match=r"^data: times without errors; .*, or give scatter='fit'"):
         flight.fit(data, "constant")
 

@@ -77,7 +77,8 @@ def test_times_that_are_just_right() -> None:
     """The largest numbers, flags that are not known, and errors of impacts that were missed."""
     data = flight.restitution([-1e30, 1e30], [1e30, 0.0])
     assert data["time"].to_numpy().tolist() == [-1e30, 1e30]
-    data = flight.restitution(heard(flag=[np.nan, 0.0, 1.0]))
+    assert np.isnan(flight.restitution(heard(flag=[np.nan, 0.0, 1.0]))["restitution"]).all()
+    data = flight.restitution(heard(flag=[np.nan, 0.0, 1.0]), doubtful=True)
     assert float(data["restitution"][1]) == pytest.approx(0.9, rel=1e-12)
     missed = flight.restitution([0.0, 1.0, math.nan, 2.5], [1e-4, 1e-4, math.nan, 1e-4])
     assert np.isnan(missed["uncertainty"][2])

@@ -44,13 +44,18 @@ def errors(heard: xr.Dataset, true: np.ndarray) -> tuple[np.ndarray, int]:
     ],
 )
 def test_all_impacts_are_heard_to_a_few_microseconds(name: str, make: object) -> None:
-    """A sample lasts 22.7 µs: all are found, none is invented, and half are within a fifth of a sample."""
+    """A sample lasts 22.7 µs: all are found, none is invented, and half are within a fifth of a sample.
+
+    One may be doubtful: steel still rings when the last impact comes, and as loud.
+    """
     samples, true = make()  # type: ignore[operator]
     heard = rs.sound.impacts(samples, 44100)
     off, found = errors(heard, true)
     assert found == true.size == off.size, name
     assert np.median(np.abs(off)) < 5e-6
-    assert np.abs(off).max() < 5.0 * heard.uncertainty.values.max()
+    good = heard.flag.values == 0
+    assert good.sum() >= true.size - 1
+    assert np.abs(off[good] - np.median(off[good])).max() < 5.0 * heard.uncertainty.values[good].max()
 
 
 def test_a_telephone_rate_still_tells_times_below_its_sample() -> None:
@@ -86,8 +91,7 @@ def test_errors_are_what_they_are_said_to_be() -> None:
         off, _ = errors(heard, true)
         good = (heard.flag == 0).values[heard.flag.values < 2]
         pulls.extend((off / heard.uncertainty.values[heard.flag.values < 2])[good])
-    # At worst the floor of a tenth of a sample stands for an error of 0.5 µs.
-    assert 0.2 < 1.4826 * np.median(np.abs(pulls)) < 2.0
+    assert 0.8 < 1.4826 * np.median(np.abs(pulls)) < 1.3
 
 
 def test_three_series_in_a_noisy_hall() -> None:

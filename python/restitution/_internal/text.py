@@ -60,6 +60,11 @@ def value(number: object, unit: str | None = None) -> str:
     return f"{text} {unit}" if unit else text
 
 
+def digits(number: float) -> str:
+    """Write a number in two digits, and without a power of ten: 290, 2.9 or 0.029."""
+    return f"{float(f'{number:.2g}'):g}"
+
+
 def with_error(value: float, error: float | None) -> str:
     """Write `value` ± `error` to two digits of the error, or without error to four digits.
 

@@ -29,6 +29,7 @@ def listen(
     out_of_roundness: Annotated[
         float | None, typer.Option(metavar="T", help="Out-of-roundness of the ball, m, if it was measured.")
     ] = None,
+    doubtful: Annotated[bool, typer.Option("--doubtful", help="Take impacts that are in doubt.")] = False,
     overwrite: Overwrite = False,
     quiet: Quiet = False,
 ) -> None:
@@ -53,6 +54,7 @@ def listen(
                 gravity=gravity,
                 gravity_uncertainty=gravity_error,
                 out_of_roundness=out_of_roundness,
+                doubtful=doubtful,
             )
         analysis = write(file, out, setting, replace=overwrite)
         for warning in analysis.warnings:

@@ -37,7 +37,7 @@ def fit(
         spheres with their yield speed.
     scatter : float or "fit"
         Standard deviation of ε about the law besides the errors of measurement, >= 0, as an imperfect shape
-        makes it; or fitted with the law, by the likelihood.
+        makes it; or fitted with the law, by the restricted likelihood.
 
     Returns
     -------

@@ -118,6 +118,12 @@ class Misfit:
         _, logarithm = np.linalg.slogdet(self.covariance(values, scatter))
         return -0.5 * (misfit + float(logarithm))
 
+    def information(self, values: Array, scatter: float) -> Array:
+        """Return the information on the parameters, the inverse of their covariance."""
+        factor = cho_factor(self.covariance(values, scatter), lower=True)
+        slopes = self.before[:, None] * by_parameters(self.form, self.before, values)
+        return np.asarray(slopes.T @ cho_solve(factor, slopes))
+
     def least_squares(self, start: Array, scatter: float) -> Array:
         scale = np.maximum(np.abs(start), 1e-3)
 
@@ -141,9 +147,7 @@ class Misfit:
             misfit = float(np.sum(self.whitened(values, spread) ** 2))
             if misfit > _REFUTED * self.before.size or not self.improve(values, spread):
                 break
-        factor = cho_factor(self.covariance(values, spread), lower=True)
-        slopes = self.before[:, None] * by_parameters(self.form, self.before, values)
-        information = slopes.T @ cho_solve(factor, slopes)
+        information = self.information(values, spread)
         # Where no data depend on a parameter, as on a yield speed above all speeds, its error is infinite.
         told = np.linalg.matrix_rank(information) == len(information)
         covariance = np.asarray(np.linalg.inv(information) if told else np.full(information.shape, np.inf))
@@ -158,14 +162,18 @@ class Misfit:
             scatter=spread,
             scatter_error=spread_error,
             impacts=residual.size,
-            chi2=float(residual @ cho_solve(factor, residual)),
+            chi2=float(np.sum(self.whitened(values, spread) ** 2)),
             degrees_of_freedom=residual.size - len(names),
             loglikelihood=self.loglikelihood(values, spread),
             _form=self.form,
         )
 
     def _with_scatter(self, start: Array) -> tuple[Array, float]:
-        """Maximise the likelihood over the parameters and the logarithm of the scatter."""
+        """Maximise the restricted likelihood over the parameters and the logarithm of the scatter.
+
+        Residuals about a fitted law are smaller than those about the true one: without the determinant of
+        the information on the parameters the scatter, and all errors with it, would come out too small.
+        """
         rough = np.std((self.after / self.before) - self.form.coefficient(self.before, start))
         first = np.append(start, np.log(max(float(rough), 1e-8)))
         scale = np.append(np.maximum(np.abs(start), 1e-3), 1.0)
@@ -175,7 +183,9 @@ class Misfit:
             if np.any(values[:-1] < self.form.least):
                 return _IMPOSSIBLE
             try:
-                value = -self.loglikelihood(values[:-1], _spread(values[-1]))
+                scatter = _spread(values[-1])
+                _, determinant = np.linalg.slogdet(self.information(values[:-1], scatter))
+                value = 0.5 * float(determinant) - self.loglikelihood(values[:-1], scatter)
             except (np.linalg.LinAlgError, ValueError):
                 return _IMPOSSIBLE
             return value if np.isfinite(value) else _IMPOSSIBLE

@@ -9,6 +9,7 @@ import numpy as np
 import numpy.typing as npt
 import xarray as xr
 
+from restitution._internal.arrays import flag
 from restitution._internal.parameters import ParameterError, wrong
 from restitution.experiment.flight._setting import Drop, Errors
 from restitution.experiment.flight.chain import chain, measured
@@ -27,6 +28,7 @@ def restitution(
     drop_height: float | None = None,
     drop_height_uncertainty: float = 0.0,
     drag: Drag | None = None,
+    doubtful: bool = False,
 ) -> xr.Dataset:
     """Return impact velocity and coefficient of restitution of each impact of a ball, from their times.
 
@@ -44,8 +46,8 @@ def restitution(
     times : array_like, shape (n,), or Dataset
         Times of all impacts of one series in s, increasing, 2 to 3000 of them; NaN for an impact that was
         missed. Or a Dataset with ``time`` and ``uncertainty``, as `restitution.sound.impacts` and
-        `restitution.flight.read` return it: what is flagged as missed counts as NaN, what is flagged as
-        doubled is left out.
+        `restitution.flight.read` return it: what is flagged as missed or doubtful counts as NaN, what is
+        flagged as doubled is left out.
     uncertainty : float or array_like, shape (n,), optional
         Standard error of the times in s, >= 0; independent of one another.
     gravity, gravity_uncertainty : float
@@ -55,6 +57,8 @@ def restitution(
         coefficient, too.
     drag : Drag, optional
         Air drag. Both speeds of a flight then differ from g Δt/2, and from one another.
+    doubtful : bool
+        Whether times that a Dataset flags as doubtful count; they are NaN if not.
 
     Returns
     -------
@@ -88,7 +92,7 @@ def restitution(
     >>> data.restitution_error.values[1:3].round(5).tolist()
     [0.0006, 0.00063]
     """
-    instants, errors = checked(times, uncertainty)
+    instants, errors = checked(times, uncertainty, doubtful=flag("doubtful", doubtful))
     setting = Errors(
         gravity=gravity,
         gravity_uncertainty=gravity_uncertainty,

@@ -31,8 +31,10 @@ def flag_attributes() -> dict[str, Any]:
     }
 
 
-def checked(times: npt.ArrayLike | xr.Dataset, uncertainty: npt.ArrayLike | None) -> tuple[Array, Array]:
-    """Return times and standard errors, shapes (n,), n >= 2; NaN where an impact was missed.
+def checked(
+    times: npt.ArrayLike | xr.Dataset, uncertainty: npt.ArrayLike | None, *, doubtful: bool
+) -> tuple[Array, Array]:
+    """Return times and standard errors, shapes (n,), n >= 2; NaN for what was missed, or is in doubt.
 
     Raises
     ------
@@ -42,7 +44,7 @@ def checked(times: npt.ArrayLike | xr.Dataset, uncertainty: npt.ArrayLike | None
     if isinstance(times, xr.Dataset):
         if uncertainty is not None:
             raise ParameterError(wrong("uncertainty", uncertainty, "left out: the Dataset has its own"))
-        instants, errors = _of_dataset(times)
+        instants, errors = _of_dataset(times, doubtful=doubtful)
     else:
         instants = reals("times", times, "a 1-D array of times in s", unit="s", dimensions=(1,), finite=False)
         errors = (
@@ -100,7 +102,7 @@ def check_series(instants: Array, errors: Array, times: str, uncertainty: str) -
     return instants, np.where(np.isnan(instants), np.nan, errors)
 
 
-def _of_dataset(data: xr.Dataset) -> tuple[Array, Array]:
+def _of_dataset(data: xr.Dataset, *, doubtful: bool) -> tuple[Array, Array]:
     missing = [name for name in ("time", "uncertainty") if name not in data]
     if missing:
         has = ", ".join(map(str, data.data_vars)) or "nothing"
@@ -128,7 +130,8 @@ def _of_dataset(data: xr.Dataset) -> tuple[Array, Array]:
         unknown = np.setdiff1d(flags[~np.isnan(flags)], range(len(FLAGS)))
         if unknown.size:
             raise ParameterError(wrong("times.flag", float(unknown[0]), allowed))
-        instants = np.where(flags == MISSED, np.nan, instants)
+        unknown_times = (flags == MISSED) | ((flags == DOUBTFUL) & (not doubtful))
+        instants = np.where(unknown_times, np.nan, instants)
         kept = flags != DOUBLED
         instants, errors = instants[kept], errors[kept]
     return instants, errors

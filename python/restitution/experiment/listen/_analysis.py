@@ -23,9 +23,9 @@ from restitution._internal.parameters import (
     TooLargeError,
     wrong,
 )
-from restitution._internal.text import with_error
+from restitution._internal.text import digits, with_error
 from restitution.bodies import from_roundness
-from restitution.experiment.flight.times import DOUBLED, FLAGS, MISSED
+from restitution.experiment.flight.times import DOUBLED, FLAGS
 from restitution.experiment.listen._shape import Shape, shape
 from restitution.experiment.sound import impacts
 
@@ -56,6 +56,8 @@ class Setting(Parameters):
         g and its standard error, in m/s².
     out_of_roundness : float, optional
         Of the ball, in m, where it was measured.
+    doubtful : bool
+        Whether impacts that are in doubt count.
     """
 
     diameter: Annotated[Number, Field(gt=0, description="m")]
@@ -67,6 +69,8 @@ class Setting(Parameters):
     out_of_roundness: Annotated[
         Number | None, Field(ge=0, description="m"), Allowed("a finite number >= 0 (m), or None")
     ] = None
+
+    doubtful: bool = False
 
     @model_validator(mode="after")
     def _nearly_round(self) -> Self:
@@ -114,14 +118,13 @@ class Series(Content):
     def sentence(self, setting: Setting) -> str:
         """State the result in a sentence, as a paper would."""
         checked(setting)
-        flags = self.heard.flag.values
         known = np.isfinite(self.data.restitution.values)
         speeds = self.data.impact_velocity.values[known]
         error = float(np.nanmedian(self.data.uncertainty.values)) * 1e6
-        number = int(np.count_nonzero(flags < MISSED))
+        number = int(np.isfinite(self.data.time).sum())
         begin = (
             f"From the sound of {number} impacts of a ball of {1e3 * setting.diameter:g} mm diameter, "
-            f"timed to {error:.2g} µs (standard error)"
+            f"timed to {digits(error)} µs (standard error)"
         )
         if not known.any():
             return f"{begin}, no coefficient of restitution can be given."
@@ -196,7 +199,8 @@ class Analysis(Content):
         for name in names:
             table[name] = ("impact", columns[name], first[name].attrs)
         table["restitution_covariance"] = (("impact", "other_impact"), covariance, {"units": "1"})
-        table.attrs |= {name: value for name, value in self.setting.model_dump().items() if value is not None}
+        known = {name: value for name, value in self.setting.model_dump().items() if value is not None}
+        table.attrs |= known | {"doubtful": int(self.setting.doubtful)}
         return table
 
     def csv(self) -> str:
@@ -245,7 +249,7 @@ def analyse(file: Path, setting: Setting) -> Analysis:
     checked(setting)
     series = tuple(_series(heard, int(number), setting) for number in np.unique(heard.series))
     _check_drop(series[0], setting)
-    return Analysis(file.name, setting, heard, series, tuple(_warnings(heard, series)))
+    return Analysis(file.name, setting, heard, series, tuple(_warnings(heard, series, setting)))
 
 
 def checked(setting: object) -> None:
@@ -264,6 +268,7 @@ def _series(heard: xr.Dataset, number: int, setting: Setting) -> Series:
         drop_height=setting.drop if number == 0 else None,
         drop_height_uncertainty=setting.drop_uncertainty,
         drag=setting.drag,
+        doubtful=setting.doubtful,
     )
     known = int(np.isfinite(data.restitution).sum())
     fits = _fitted(data, 0.0) if known >= 3 else []
@@ -301,7 +306,7 @@ def _check_drop(first: Series, setting: Setting) -> None:
     if setting.drop is None:
         return
     ratio = float(first.data.restitution[0])
-    if not ratio <= 1.05:
+    if ratio > 1.05:
         interval = float(first.data.time[1] - first.data.time[0])
         least = setting.gravity * interval**2 / 8.0
         raise ParameterError(
@@ -313,7 +318,7 @@ def _check_drop(first: Series, setting: Setting) -> None:
         )
 
 
-def _warnings(heard: xr.Dataset, series: tuple[Series, ...]) -> list[str]:
+def _warnings(heard: xr.Dataset, series: tuple[Series, ...], setting: Setting) -> list[str]:
     found = []
     share = float(heard.attrs["clipped_share"])
     if share > _CLIPPED:
@@ -324,7 +329,8 @@ def _warnings(heard: xr.Dataset, series: tuple[Series, ...]) -> list[str]:
     for one in series:
         flags = one.heard.flag.values
         name = f"Series {one.number}: " if len(series) > 1 else ""
-        for code, what in ((1, "doubtful"), (2, "missed"), (3, "doubled")):
+        left_out = "doubtful" if setting.doubtful else "doubtful, which no fit takes unless asked"
+        for code, what in ((1, left_out), (2, "missed"), (3, "doubled")):
             number = int(np.count_nonzero(flags == code))
             if number:
                 found.append(f"{name}{number} impact{'s' * (number > 1)} {what}.")

@@ -10,7 +10,7 @@ from restitution._internal.arrays import flag
 from restitution._internal.datasets import put
 from restitution._internal.files import check, check_apart, path_from, whole_file
 from restitution._internal.parameters import ParameterError, wrong
-from restitution._internal.text import with_error
+from restitution._internal.text import digits, with_error
 from restitution.experiment.flight.times import DOUBLED, FLAGS
 from restitution.experiment.listen._analysis import Analysis, Series, Setting, analyse, checked
 from restitution.experiment.listen._figures import close_ups, drawn_shape, waveform
@@ -186,7 +186,7 @@ def _impacts(analysis: Analysis) -> str:
         ]
         time = float(one.time)
         shown = "–" if time != time else f"{time:.6f}"
-        error = "–" if time != time else f"{1e6 * float(one.uncertainty):.2g}"
+        error = "–" if time != time else digits(1e6 * float(one.uncertainty))
         rows.append([str(place), str(int(one.series)), FLAGS[int(one.flag)], shown, error, *known])
     head = ["row", "series", "flag", "time (s)", "error (µs)", "v (m/s)", "ε"]
     return table(head, rows, caption="All impacts, with their standard errors", numbers=(3, 4, 5, 6))

@@ -9,6 +9,7 @@ import xarray as xr
 from restitution import flight
 from restitution._internal.datasets import Content
 from restitution._internal.parameters import ParameterError, TooLargeError
+from restitution._internal.text import digits
 from restitution.bodies import from_roundness
 from restitution.experiment.budget import ErrorBudget, error_budget
 from restitution.experiment.flight.drag import Drag
@@ -130,7 +131,7 @@ def _roundness(
         elongation = float(draws.attrs["elongation_upper_limit"])
     t = 0.25 * diameter * elongation
     which = "the median of the posterior" if determined else "the upper limit that the times give"
-    return t, f"The out-of-roundness is taken to be {1e6 * t:.2g} µm, {which}."
+    return t, f"The out-of-roundness is taken to be {digits(1e6 * t)} µm, {which}."
 
 
 def _drop(data: xr.Dataset, law: Frictionless) -> float:

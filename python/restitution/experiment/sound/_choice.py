@@ -1,21 +1,32 @@
-"""The choice among the rules for onsets, by their own scatter."""
+"""The choice among the rules for onsets: by what they say of one another, and by the noise at each impact."""
 
+from dataclasses import dataclass
+from itertools import combinations
 from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
+from scipy.optimize import nnls
 
-from restitution.experiment.sound._pickers import Picks
-from restitution.experiment.sound._scatter import told_apart
+from restitution.experiment.sound._envelope import bands
+from restitution.experiment.sound._pickers import MATCHED, RULES, Band, Matched, Picker
 
 Array = npt.NDArray[np.float64]
 
-_WORSE = 1.3
-"""Rules that scatter more than the best by this factor have no voice beside it."""
-_VOICES = 6
-"""Rules that are needed to compare them with one another."""
+_DRAWS = 24
+"""Excerpts of the noise with which each rule is tried at each impact."""
+_CLEAR = 6
+"""Impacts, the clearest, whose sounds are added to the excerpts."""
+_LOST = 0.1
+"""Share of the excerpts in which a rule goes astray from which on its time is doubted."""
+_HIDDEN = 0.45
+"""Part of its reach that the error of a time has if noise hides the impact; of any time within, 0.58."""
 _FAR_OFF = 6.0
 """Standard errors by which a time must be off to be doubted."""
+_REACH, _MOST_REACH = 0.1e-3, 3e-3
+"""Time in s on either side of an impact in which it is looked for once rules agree where it is; at most."""
+_TINY = 1e-18
+"""A variance in s² that matters to no time, 1 ns squared."""
 
 
 class Choice(NamedTuple):
@@ -23,88 +34,237 @@ class Choice(NamedTuple):
 
     Attributes
     ----------
-    picks : Picks
-        Its times, in samples.
-    error : float
-        Standard error of a time, in samples.
-    jumps : ndarray
-        By how many samples each time is off.
+    rule : str
+        What it is, and in which band.
+    times, errors : ndarray
+        Of each impact and its standard error, in s.
     doubtful : ndarray of bool
-        Which times are off by more than errors explain.
+        Which times the other rules contradict, or noise hides.
     """
 
-    picks: Picks
-    error: float
-    jumps: Array
+    rule: str
+    times: Array
+    errors: Array
     doubtful: npt.NDArray[np.bool_]
 
 
-def choose(found: list[Picks]) -> Choice:
-    """Choose the rule whose times scatter least.
+@dataclass(frozen=True)
+class _Picks:
+    """Times of all impacts by one rule in one band, in s, and what noise does to them.
 
-    A ball whose ratio of flights changes smoothly shows the scatter of each rule by itself. Where the
-    ball's own changes are larger than that, they are common to all rules: then the rules are compared with
-    one another.
+    Attributes
+    ----------
+    noise, whole : ndarray
+        Variance by noise in s², of the times that do not go astray, and of all.
+    lost : ndarray
+        Share of times that go astray, to another wave of the sound or into the noise.
     """
-    known = [one for one in found if one.scatter is not None]
-    if not known:
-        return _by_consensus(found)
-    known.sort(key=_scatter_of)
-    best = known[0]
-    parts = told_apart(_without_outliers(best), best.places)
-    if parts is not None and parts.ball_changes:
-        near = [one for one in known if _scatter_of(one) < _WORSE * _scatter_of(best)]
-        if len(near) >= _VOICES:
-            return _by_consensus(near)
-    assert best.scatter is not None
-    doubtful = np.abs(best.scatter.jumps) > _FAR_OFF * best.scatter.jump_errors
-    error = _scatter_of(best) if parts is None else parts.time
-    return Choice(best, error, best.scatter.jumps, doubtful)
+
+    rule: str
+    band: str
+    times: Array
+    noise: Array
+    whole: Array
+    lost: Array
+
+    def beside(self, other: Array) -> Array:
+        """Return the times with the delay of others."""
+        return np.asarray(self.times - np.median(self.times - other))
 
 
-def _scatter_of(picks: Picks) -> float:
-    return np.inf if picks.scatter is None else picks.scatter.time
+def choose(samples: Array, rate: float, times: Array, before: Array, after: Array) -> Choice:
+    """Pick onsets by every rule, and choose the one that the others and the noise say is best.
+
+    Parameters
+    ----------
+    samples : ndarray, shape (m,)
+        The recording.
+    rate : float
+        Samples per second.
+    times, before, after : ndarray, shape (n,)
+        When the level rises at each impact, and how far before and after that its onset may be, in s.
+    """
+    parts = [Band(samples, rate, band) for band in bands(rate)[1:]]
+    places = _Places(times, before, after)
+    rough = [picks for part in parts for picks in places.picked(part)]
+    own, between = _variances(rough)
+    best = int(np.argmin(own))
+    allies = np.argsort(between[best])[:2]
+    three = np.array([rough[one].beside(rough[best].times) for one in (best, *allies)])
+    middle = np.median(three, axis=0)
+    delays = [float(np.median(picks.times - middle)) for picks in rough if picks.rule == MATCHED]
+    spread = float(np.sqrt(between[best, allies].mean()))
+    if rough[best].rule == MATCHED:
+        middle = places.together(parts, delays)
+        spread = 1.4826 * float(np.median(np.abs(middle - np.median(three, axis=0))))
+    reach = min(_REACH + 6.0 * spread, _MOST_REACH)
+    alone = np.all(np.abs(three - middle) > reach, axis=0)
+    fine = [
+        picks
+        for part, delay in zip(parts, delays, strict=True)
+        for picks in _tried(part, middle + delay, reach)
+    ]
+    own, _ = _variances(fine)
+    whole = own[:, None] + np.array([picks.whole for picks in fine]) + _TINY
+    order = np.argsort(np.mean(np.log(whole), axis=1))
+    chosen = fine[order[0]]
+    errors = np.sqrt(own[order[0]] + chosen.noise + _TINY)
+    off, error = _beside_others([fine[one] for one in order], own[order])
+    lost = (chosen.lost > _LOST) | (errors > _HIDDEN * reach)
+    doubtful = lost | alone | (np.abs(off) > _FAR_OFF * error)
+    errors = np.where(doubtful, np.maximum(np.sqrt(whole[order[0]]), np.abs(off)), errors)
+    return Choice(f"{chosen.rule}, {chosen.band}", chosen.times, errors, doubtful)
 
 
-def _without_outliers(picks: Picks) -> Array:
-    assert picks.scatter is not None
-    off = np.abs(picks.scatter.jumps) > _FAR_OFF * picks.scatter.jump_errors
-    return np.where(off, np.nan, picks.times)
+class _Places:
+    """Wide windows in which the impacts are; the mean sound of each band is found in them."""
+
+    def __init__(self, times: Array, before: Array, after: Array) -> None:
+        self._begins, self._lengths = times - before, before + after
+        self._matched: dict[str, Matched] = {}
+
+    def _windows(self, part: Band, delay: float = 0.0) -> tuple[list[Array], Array]:
+        """Cut out the sound of each impact, and when each window begins."""
+        cut = [
+            part.windows(np.array([begin + delay - part.lead]), length + part.lead + part.tail)
+            for begin, length in zip(self._begins, self._lengths, strict=True)
+        ]
+        return [rows[0] for rows, _ in cut], np.array([begin[0] for _, begin in cut])
+
+    def picked(self, part: Band) -> list[_Picks]:
+        """Pick onsets by every rule."""
+        windows, begins = self._windows(part)
+        found = {
+            rule: np.array([picker(one[None, :])[0] for one in windows]) for rule, picker in RULES.items()
+        }
+        same = self._matched[part.name] = Matched(part, windows, next(iter(found.values())))
+        found[MATCHED] = np.array([same(one[None, :])[0] for one in windows])
+        none = np.zeros(begins.size)
+        return [
+            _Picks(rule, part.name, begins + places / part.rate, none, none, none)
+            for rule, places in found.items()
+        ]
+
+    def together(self, parts: list[Band], delays: list[float]) -> Array:
+        """Find where the sound is most like its mean in all bands together.
+
+        A band of width B has 2 B T independent numbers in a time T. If they are normal, and the loudness
+        of the sound and of the noise are not known, the logarithm of their likelihood is -B T ln(1 - r²).
+        """
+        step = 1.0 / max(part.rate for part in parts)
+        grids = [
+            begin + np.arange(0.0, length, step)
+            for begin, length in zip(self._begins, self._lengths, strict=True)
+        ]
+        scores = [np.zeros(grid.size) for grid in grids]
+        for part, delay in zip(parts, delays, strict=True):
+            matched = self._matched[part.name]
+            for window, begin, grid, score in zip(*self._windows(part, delay), grids, scores, strict=True):
+                onsets, likeness = matched.likeness(window)
+                score -= part.independent * np.interp(grid, begin + onsets / part.rate - delay, likeness)
+        return np.array([grid[np.argmax(score)] for grid, score in zip(grids, scores, strict=True)])
 
 
-def _by_consensus(found: list[Picks]) -> Choice:
-    """Choose the rule that is nearest to the median of all, each less its own mean delay."""
-    times = np.array([one.times for one in found])
-    centre = np.median(times, axis=0)
-    off = times - centre
-    off -= np.median(off, axis=1, keepdims=True)
-    consensus = np.median(off, axis=0)
-    distance = np.array([_spread(row - consensus) for row in off])
-    order = np.argsort(distance)
-    # Three rules of different kinds: differences of their times give the variance of each.
-    kinds: list[int] = []
-    for place in order:
-        if found[place].rule not in {found[kind].rule for kind in kinds}:
-            kinds.append(int(place))
-    first = kinds[0]
-    if found[first].scatter is None:  # too few to judge a rule: they differ by what one may be wrong
-        return Choice(
-            found[first], float(np.median(distance)), off[first], np.zeros(times.shape[1], dtype=np.bool_)
+def _tried(part: Band, times: Array, reach: float) -> list[_Picks]:
+    """Pick onsets in narrow windows, and try each rule on clear sounds in the noise before each impact."""
+    length = 2.0 * reach + part.lead + part.tail
+    first = times - reach - part.lead
+    windows, begins = part.windows(first, length)
+    rng = np.random.default_rng(0)
+    gaps = np.diff(times, prepend=2.0 * times[0] - times[1])
+    starts = (first - length)[:, None] - 0.3 * gaps[:, None] * rng.random((times.size, _DRAWS))
+    noise = part.windows(starts.ravel(), length)[0].reshape(times.size, _DRAWS, -1)
+    # Silence may be digital, where a sound has the noise of rounding.
+    noise = noise + part.rounding * rng.standard_normal(noise.shape)
+    power, of_noise = np.mean(windows**2, axis=1), np.mean(noise**2, axis=(1, 2))
+    loudness = np.sqrt(np.maximum(power - of_noise, 1e-4 * power))
+    clear = np.argsort(loudness / np.sqrt(of_noise + 1e-300))[::-1][:_CLEAR]
+    models = clear[np.arange(_DRAWS) % clear.size]
+    factors = loudness[:, None] / np.maximum(loudness[models], 1e-300)
+    tried = (windows[models] * factors[:, :, None] + noise).reshape(times.size * _DRAWS, -1)
+    pickers: dict[str, Picker] = RULES | {MATCHED: Matched(part, list(windows), (times - begins) * part.rate)}
+    found = []
+    for rule, picker in pickers.items():
+        places = picker(windows)
+        off = (picker(tried).reshape(times.size, _DRAWS) - places[models]) / part.rate
+        off -= np.median(off, axis=1, keepdims=True)
+        # Of normal numbers, three quarters are within 1.15 standard deviations.
+        inside = np.abs(off) <= 5.0 / 1.15 * np.quantile(np.abs(off), 0.75, axis=1, keepdims=True)
+        noise_variance = np.sum(inside * off**2, axis=1) / np.maximum(inside.sum(axis=1) - 1, 1)
+        whole, lost = np.sum(off**2, axis=1) / (_DRAWS - 1), 1.0 - inside.mean(axis=1)
+        # At the edge of its window a rule has found nothing.
+        early, late = part.points if rule == MATCHED else (2, 2)
+        pinned = (places < early + 1.0) | (places > windows.shape[1] - late - 2.0)
+        found.append(
+            _Picks(
+                rule,
+                part.name,
+                begins + places / part.rate,
+                np.where(pinned, reach**2, noise_variance),
+                np.where(pinned, reach**2, whole),
+                np.where(pinned, 1.0, lost),
+            )
         )
-    error = float(distance[first])
-    if len(kinds) > 2:
-        one, two, three = (off[kind] for kind in kinds[:3])
-        variance = 0.5 * (_spread(one - two) ** 2 + _spread(one - three) ** 2 - _spread(two - three) ** 2)
-        error = max(float(np.sqrt(max(variance, 0.0))), error)
-    jumps = off[first] - consensus
-    return Choice(found[first], error, jumps, np.abs(jumps) > _FAR_OFF * max(error, 1e-9))
+    return found
 
 
-def _spread(values: Array) -> float:
-    """Return the standard deviation, to which values that are far off count as if they were five off."""
-    middle = 1.4826 * float(np.median(np.abs(values)))
-    return (
-        float(np.sqrt(np.mean(np.minimum(values**2, 25.0 * middle**2))))
-        if middle > 0.0
-        else float(np.std(values))
-    )
+def _variances(found: list[_Picks]) -> tuple[Array, Array]:
+    """Separate the variances of rules, besides that by noise, by their differences (three-cornered hat).
+
+    Noise, and how the sound differs between impacts, are independent in bands that have no frequency in
+    common: the difference of two rules in different bands has the sum of their variances.
+
+    Returns
+    -------
+    tuple of ndarray
+        The variance of each, in s², and those of the differences, infinite in one band.
+    """
+    number, count = len(found), found[0].times.size
+    between, known_to = np.full((number, number), np.inf), np.full((number, number), np.inf)
+    rows, right = [], []
+    for i, j in combinations(range(number), 2):
+        one, other = found[i], found[j]
+        if one.band == other.band:
+            continue
+        noise = one.noise + other.noise
+        variance = _excess(one.times - other.times, noise)
+        error = variance + float(np.median(noise)) + _TINY
+        between[i, j] = between[j, i] = variance
+        known_to[i, j] = known_to[j, i] = error
+        row = np.zeros(number)
+        row[[i, j]] = 1.0 / error
+        rows.append(row)
+        right.append(variance / error)
+    # Errors are √(2/n) of that. Where nothing tells the two apart that agree best, each has half, give or
+    # take half.
+    nearest = np.argmin(known_to, axis=1)
+    every = np.arange(number)
+    weight = np.sqrt(2.0 / count) / known_to[every, nearest]
+    rows += list(np.diag(2.0 * weight))
+    right += list(weight * between[every, nearest])
+    own, _ = nnls(np.array(rows), np.array(right))
+    return own, between
+
+
+def _excess(difference: Array, noise: Array) -> float:
+    """Return the variance of a difference beyond that by noise; values that are far off count as five off."""
+    off = difference - np.median(difference)
+    middle = (1.4826 * np.median(np.abs(off))) ** 2
+    size = np.minimum(off**2, 25.0 * (middle + noise)) * off.size / (off.size - 1)
+    variance = float(np.mean(size))
+    for _ in range(20):
+        weight = 1.0 / (variance + noise + _TINY) ** 2
+        variance = max(float(np.sum(weight * (size - noise)) / np.sum(weight)), 0.0)
+    return variance
+
+
+def _beside_others(found: list[_Picks], own: Array) -> tuple[Array, Array]:
+    """Compare the times of the first with the mean of the first of each other band; return off and error."""
+    first = {picks.band: place for place, picks in reversed(list(enumerate(found)))}
+    chosen, others = found[0], [place for band, place in first.items() if band != found[0].band]
+    times = np.array([found[one].beside(chosen.times) for one in others])
+    weights = np.array([1.0 / (own[one] + found[one].noise + _TINY) for one in others])
+    weights *= np.where([found[one].lost > _LOST for one in others], 1e-3, 1.0)
+    off = chosen.times - np.sum(weights * times, axis=0) / np.sum(weights, axis=0)
+    error = np.sqrt(own[0] + chosen.noise + 1.0 / np.sum(weights, axis=0))
+    return off - np.median(off), error

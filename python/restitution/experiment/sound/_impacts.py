@@ -16,7 +16,6 @@ from restitution._internal.parameters import ParameterError, Problem, TooLargeEr
 from restitution.experiment.flight.times import DOUBLED, DOUBTFUL, GOOD, MISSED, flag_attributes
 from restitution.experiment.sound._choice import Choice, choose
 from restitution.experiment.sound._envelope import Envelope, bands, envelope, rounding
-from restitution.experiment.sound._pickers import pick, variants
 from restitution.experiment.sound._series import best_series, strongest
 from restitution.experiment.sound._track import Track, followed
 from restitution.experiment.sound.load import clipped_share, load
@@ -56,8 +55,8 @@ def impacts(source: str | PathLike[str] | npt.ArrayLike, rate: float | None = No
 
     The band of frequencies is chosen in which most impacts follow one another like those of a bouncing ball:
     each flight is shorter than the one before by about the same ratio. Echoes and second bursts do not do
-    that. The onset of each is picked by several rules in several parts of the sound; the rule is taken
-    whose times scatter least.
+    that. The onset of each is picked by several rules in several bands; the rule is taken that agrees best
+    with those in other bands and that noise disturbs least.
 
     Parameters
     ----------
@@ -89,9 +88,9 @@ def impacts(source: str | PathLike[str] | npt.ArrayLike, rate: float | None = No
 
     Notes
     -----
-    docs/listening.md has the precision on synthetic recordings and on a real one. The standard error is the
-    scatter of the rule that was taken, separated from changes of the ball itself where at least 12 impacts
-    were heard; with fewer, changes of the ball are part of it.
+    docs/listening.md has the choice of the rule and the precision on synthetic recordings and on a real one.
+    The standard error has two parts: the noise at that impact, and what the sound's own changes do to the
+    rule, as its differences from rules in other bands show. What all bands have in common is not in it.
 
     Examples
     --------
@@ -125,7 +124,7 @@ def _heard_in(samples: Array, own: float, name: str) -> xr.Dataset:
             raise ParameterError(Problem(name, text))
         raise ParameterError(Problem(name, f": {_what_was_heard(loudest)}"))
     heard = [_Heard(track, _picked(samples[:, channel], own, track)) for track in tracks]
-    heard.sort(key=lambda one: float(one.choice.picks.times[0]))
+    heard.sort(key=lambda one: float(one.choice.times[0]))
     return _dataset(heard, own, channel, clipped_share(samples), name)
 
 
@@ -178,32 +177,19 @@ def _what_was_heard(one: Envelope) -> str:
 
 
 def _picked(samples: Array, rate: float, track: Track) -> Choice:
-    """Pick onsets twice: near where the level rises, then near where the best rule says they should be."""
+    """Pick the onsets near where the level rises."""
     width = track.envelope.width
     gaps = np.diff(track.times)
     before = np.minimum(1.5 * width + 2e-3, 0.4 * np.append(gaps[0], gaps))
     after = np.minimum(width + 1.5e-3, 0.4 * np.append(gaps, gaps[-1]))
 
-    def window(
-        times: Array, before: Array, after: Array
-    ) -> tuple[npt.NDArray[np.int64], npt.NDArray[np.int64]]:
-        begins = np.clip(((times - before) * rate).astype(np.int64), 0, samples.size - 16)
-        return begins, np.clip(((times + after) * rate).astype(np.int64), begins + 16, samples.size)
-
-    parts = variants(samples, rate, track.envelope.band)
-    rough = choose(pick(parts, rate, *window(track.times, before, after), track.places))
-    # A time that is off is looked for where the others want it.
-    onsets = np.where(rough.doubtful, rough.picks.times - rough.jumps, rough.picks.times)
-    reach = 0.4e-3 + 8.0 * rough.error / rate
-    second = window(onsets / rate, np.minimum(before, reach), np.minimum(after, reach + 1e-3))
-    fine = choose(pick(parts, rate, *second, track.places, onsets))
-    return fine if fine.error < rough.error else rough
+    return choose(samples, rate, track.times, before, after)
 
 
 def _dataset(heard: list[_Heard], rate: float, channel: int, clipped: float, name: str) -> xr.Dataset:
     columns: dict[str, list[Array]] = {key: [] for key in ("time", "uncertainty", "flag", "series", "level")}
     for number, one in enumerate(heard):
-        for key, values in _rows(one, rate).items():
+        for key, values in _rows(one).items():
             columns[key].append(values)
         columns["series"].append(np.full(columns["time"][-1].size, number))
     joined = {key: np.concatenate(values) for key, values in columns.items()}
@@ -226,24 +212,21 @@ def _dataset(heard: list[_Heard], rate: float, channel: int, clipped: float, nam
             "rate": rate,
             "channel": channel,
             "band": "; ".join("{:g} to {:g} Hz".format(*one.track.envelope.band) for one in heard),
-            "rule": "; ".join(str(one.choice.picks) for one in heard),
+            "rule": "; ".join(one.choice.rule for one in heard),
             "clipped_share": clipped,
         },
     )
 
 
-def _rows(one: _Heard, rate: float) -> dict[str, Array]:
+def _rows(one: _Heard) -> dict[str, Array]:
     """Lay out a series, with what was missed and doubled in it."""
     track, choice = one.track, one.choice
-    times = choice.picks.times / rate
+    times, errors = choice.times, choice.errors
     # Where no onset is found near the rise of the level, the rise stands for it, with the delay of the
     # others.
     delay = times - track.times
     astray = np.abs(delay - np.median(delay)) > 1.5 * track.envelope.width
     times = np.where(astray, track.times + np.median(delay), times)
-    # Between samples a time is known only to a part of their distance.
-    errors = np.full(times.size, max(choice.error, 0.1) / rate)
-    errors = np.where(choice.doubtful, np.maximum(np.abs(choice.jumps) / rate, errors), errors)
     errors = np.where(astray, np.maximum(track.envelope.width, errors), errors)
     flags = np.where(choice.doubtful | track.faint | astray, DOUBTFUL, GOOD)
     levels = track.levels

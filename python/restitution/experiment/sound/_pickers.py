@@ -1,191 +1,162 @@
-"""Onsets: the moment at which a sound begins, by several rules."""
+"""Onsets: the moment at which a sound begins, by several rules, in one band of frequency."""
 
+import math
 from collections.abc import Callable
-from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
-from scipy.signal import butter, sosfilt
+from numpy.lib.stride_tricks import sliding_window_view
+from scipy.signal import butter, resample_poly, sosfilt
 
-from restitution.experiment.sound._scatter import Scatter, scatter
+from restitution.experiment.sound._envelope import rounding
 
 Array = npt.NDArray[np.float64]
-Whole = npt.NDArray[np.int64]
+Picker = Callable[[Array], Array]
+"""Windows, shape (m, n), to the place of the onset in each, in samples, shape (m,)."""
 
-_HIGH_PASSES = (0.0, 200.0, 800.0, 2500.0, 7000.0)
-"""Corner frequencies in Hz that are tried, 0 being none; those beyond the rate are left out."""
-_THRESHOLDS = (0.1, 0.3, 0.5)
-"""Shares of the peak."""
+_SHARE = 0.3
+"""Of the peak, the level of the threshold."""
+_ROUNDS = 3
+"""In which the mean waveform and the shifts to it are found."""
+_POINTS = 8.0
+"""Points to a period of the highest frequency at which a band is looked at."""
+_LEAST_LEAD, _LEAD = 0.4e-3, 0.5
+_LEAST_TAIL, _TAIL = 1.2e-3, 3.0
+"""What rules look at before and after the onset: at least this time in s, and so many periods of the band."""
 
 
-@dataclass(frozen=True)
-class Picks:
-    """Times in samples by one rule.
+class Band:
+    """A recording in one band of frequency, filtered causally, for no sound precedes its cause.
 
     Attributes
     ----------
-    rule, filter : str
-        What the rule was, and of which part of the sound.
-    times : ndarray, shape (n,)
-        In samples, with fractions.
-    places : ndarray of int, shape (n,)
-        Number of each impact in its series, those that were missed counted.
-    scatter : Scatter or None
-        About a smooth law, in samples; None if there are too few.
-    """
-
-    rule: str
-    filter: str
-    times: Array
-    places: Whole
-    scatter: Scatter | None
-
-    def __str__(self) -> str:
-        return f"{self.rule}, {self.filter}"
-
-
-def pick(
-    parts: list[tuple[str, Array]],
-    rate: float,
-    begins: Whole,
-    ends: Whole,
-    places: Whole,
-    onsets: Array | None = None,
-) -> list[Picks]:
-    """Pick the onset in each window by every rule.
-
-    Parameters
-    ----------
-    parts : list of str and ndarray, shape (n,)
-        The recording, filtered in several ways.
+    name : str
+        Its frequencies.
+    lead, tail : float
+        How far before and after an onset rules look, in s.
+    independent : float
+        Half the number of independent values in this time.
+    rounding : float
+        Standard deviation of the noise of rounding.
     rate : float
-        Samples per second.
-    begins, ends : ndarray of int, shape (m,)
-        Windows, one for each impact, as indices of samples.
-    places : ndarray of int, shape (m,)
-        Number of each impact in its series, those that were missed counted.
-    onsets : ndarray, shape (m,), optional
-        Onsets that are nearly right, in samples, from which waveforms are matched.
+        Points per second of its windows.
     """
-    found: list[Picks] = []
-    for name, filtered in parts:
-        windows = [filtered[begin:end] for begin, end in zip(begins, ends, strict=True)]
-        for rule, picker in _RULES.items():
-            times = begins + np.array([picker(window) for window in windows])
-            found.append(Picks(rule, name, times, places, scatter(times, places)))
-        base = found[-len(_RULES)].times if onsets is None else onsets
-        times = _matched(filtered, base, int(1.5e-3 * rate), int(0.5e-3 * rate))
-        found.append(Picks("matched waveform", name, times, places, scatter(times, places)))
 
-    return found
+    def __init__(self, samples: Array, rate: float, band: tuple[float, float]) -> None:
+        low, high = band
+        self.name = f"{low:g} to {high:g} Hz"
+        middle = np.sqrt(low * high)
+        self.lead, self.tail = max(_LEAST_LEAD, _LEAD / middle), max(_LEAST_TAIL, _TAIL / middle)
+        self.independent = (high - low) * (self.lead + self.tail)
+        self.rounding = math.sqrt(rounding(samples) * 2.0 * (high - low) / rate)
+        self._own = rate
+        self._up, self._down = max(math.ceil(_POINTS * high / rate), 1), max(int(rate / (_POINTS * high)), 1)
+        self.rate = rate * self._up / self._down
+        self._signal = np.asarray(sosfilt(butter(2, band, "bandpass", fs=rate, output="sos"), samples))
 
+    @property
+    def points(self) -> tuple[int, int]:
+        """Points of a window before and after an onset."""
+        return round(self.lead * self.rate), round(self.tail * self.rate)
 
-def variants(samples: Array, rate: float, band: tuple[float, float]) -> list[tuple[str, Array]]:
-    """Filter causally: no sound begins before its cause. The last is the band of the series, in Hz."""
-    found = [("unfiltered", samples)]
-    for corner in _HIGH_PASSES[1:]:
-        if corner < 0.3 * rate:
-            found.append(
-                (
-                    f"above {corner:g} Hz",
-                    sosfilt(butter(2, corner, "highpass", fs=rate, output="sos"), samples),
-                )
-            )
-    low, high = band
-    name = f"{low:g} to {high:g} Hz"
-    found.append((name, sosfilt(butter(2, band, "bandpass", fs=rate, output="sos"), samples)))
-    return found
+    def windows(self, begins: Array, length: float) -> tuple[Array, Array]:
+        """Cut out windows of one length in s; return them, shape (m, n), and when each begins, in s."""
+        first = np.round(begins * self._own).astype(np.int64)
+        places = np.clip(first[:, None] + np.arange(round(length * self._own) + 1), 0, self._signal.size - 1)
+        rows = self._signal[places]
+        if self._up != self._down:
+            rows = resample_poly(rows, self._up, self._down, axis=1)
+        return rows, first / self._own
 
 
-def _crossing(values: Array, level: float) -> float:
-    """Return the first place, with fraction, at which values reach a level."""
-    first = int(np.argmax(values >= level))
-    if first == 0:
-        return 0.0
-    below, above = values[first - 1], values[first]
-    return first - 1 + float((level - below) / (above - below))
-
-
-def _threshold(share: float) -> Callable[[Array], float]:
-    def picker(window: Array) -> float:
-        size = np.abs(window)
-        return _crossing(size, share * float(size.max()))
-
-    return picker
-
-
-def _peak(window: Array) -> float:
-    """Place of the largest size, by the parabola through it and its neighbours."""
-    size = np.abs(window)
-    place = int(np.argmax(size))
-    return place + _summit(size, place)
-
-
-def _summit(values: Array, place: int) -> float:
-    if not 0 < place < values.size - 1:
-        return 0.0
-    left, middle, right = values[place - 1 : place + 2]
+def _summit(values: Array, place: npt.NDArray[np.int64]) -> Array:
+    """Return the summit of the parabola through the largest value of each row and its neighbours."""
+    rows = np.arange(len(values))
+    inner = np.clip(place, 1, values.shape[1] - 2)
+    left, middle, right = (values[rows, inner + step] for step in (-1, 0, 1))
     bend = left - 2.0 * middle + right
-    return float(0.5 * (left - right) / bend) if bend < 0.0 else 0.0
+    shift = np.where(bend < 0.0, 0.5 * (left - right) / np.where(bend < 0.0, bend, -1.0), 0.0)
+    return np.asarray(place + np.where(inner == place, np.clip(shift, -0.5, 0.5), 0.0))
 
 
-def _energy(window: Array) -> float:
-    """Find the time by which a tenth of the energy up to the peak has arrived."""
-    energy = np.cumsum(window[: int(np.argmax(np.abs(window))) + 1] ** 2)
-    return _crossing(energy, 0.1 * float(energy[-1]))
+def _threshold(windows: Array) -> Array:
+    """Find where the sound first reaches a share of its peak."""
+    size = np.abs(windows)
+    level = _SHARE * size.max(axis=1)
+    first = np.argmax(size >= level[:, None], axis=1)
+    rows, before = np.arange(len(size)), np.maximum(first - 1, 0)
+    below, above = size[rows, before], size[rows, first]
+    return np.asarray(first - np.where(first > 0, (above - level) / np.maximum(above - below, 1e-300), 0.0))
 
 
-def _akaike(window: Array) -> float:
+def _peak(windows: Array) -> Array:
+    size = np.abs(windows)
+    return _summit(size, np.argmax(size, axis=1))
+
+
+def _akaike(windows: Array) -> Array:
     """Find where two pieces of noise of different strength part best, up to the peak (Maeda 1985).
 
     AIC(k) = k ln var(x[:k]) + (N - k - 1) ln var(x[k:]).
     """
-    part = window[: max(int(np.argmax(np.abs(window))) + 1, 8)]
-    n = part.size
-    k = np.arange(2, n - 2)
-    if not k.size:
-        return float(np.argmax(np.abs(window)))
-    sums, squares = np.cumsum(part), np.cumsum(part**2)
-    left = squares[k - 1] / k - (sums[k - 1] / k) ** 2
-    rest = n - k
-    right = (squares[-1] - squares[k - 1]) / rest - ((sums[-1] - sums[k - 1]) / rest) ** 2
-    tiny = 1e-12 * max(float(squares[-1]) / n, 1e-30)
-    criterion = k * np.log(left + tiny) + (rest - 1) * np.log(right + tiny)
-    place = int(np.argmin(criterion))
-    return float(k[place]) + _summit(-criterion, place)
+    n = np.maximum(np.argmax(np.abs(windows), axis=1) + 1, 8)[:, None]
+    k = np.arange(2, windows.shape[1] - 2)[None, :]
+    sums, squares = np.cumsum(windows, axis=1), np.cumsum(windows**2, axis=1)
+    whole, power = (np.take_along_axis(values, n - 1, axis=1) for values in (sums, squares))
+    rest = np.maximum(n - k, 1)
+    left = squares[:, 1:-3] / k - (sums[:, 1:-3] / k) ** 2
+    right = (power - squares[:, 1:-3]) / rest - ((whole - sums[:, 1:-3]) / rest) ** 2
+    tiny = 1e-12 * power / n + 1e-300
+    criterion = k * np.log(np.maximum(left, 0.0) + tiny) + (rest - 1) * np.log(np.maximum(right, 0.0) + tiny)
+    criterion = np.where(k < n - 2, criterion, 1e300)
+    return 2.0 + _summit(-criterion, np.argmin(criterion, axis=1))
 
 
-_RULES: dict[str, Callable[[Array], float]] = {
-    "30 % of the peak": _threshold(0.3),
-    "10 % of the peak": _threshold(0.1),
-    "50 % of the peak": _threshold(0.5),
+RULES: dict[str, Picker] = {
+    f"{100 * _SHARE:.0f} % of the peak": _threshold,
     "peak": _peak,
-    "tenth of the energy": _energy,
     "Akaike's criterion": _akaike,
 }
+"""Rules that look at one impact at a time."""
+_SILENT = 0.05
+"""Share of the energy of a sound by which that of any piece is taken to be larger in a correlation."""
+MATCHED = "matched waveform"
+"""The rule that looks at all impacts at once."""
 
 
-def _matched(signal: Array, base: Array, length: int, reach: int) -> Array:
-    """Shift each onset to where the sound after it is most like the mean of all."""
-    before = length // 4
-    size = length + before
-    starts = np.round(base).astype(np.int64) - before
-    if size < 8 or starts.size < 3:
-        return base
-    padded = np.pad(signal, (reach + size, reach + size + length))
-    starts = starts + reach + size
-    pieces = np.array([padded[start : start + size] for start in starts])
-    scale = np.sqrt(np.sum(pieces**2, axis=1, keepdims=True))
-    template = np.mean(pieces / np.maximum(scale, 1e-30), axis=0)
-    shifts = np.zeros(starts.size)
-    for _ in range(2):
-        aligned = []
-        for number, start in enumerate(starts):
-            around = padded[start - reach : start + size + reach]
-            likeness = np.correlate(around, template, mode="valid")
-            place = int(np.argmax(likeness))
-            shifts[number] = place + _summit(likeness, place) - reach
-            piece = padded[start + place - reach : start + place - reach + size]
-            aligned.append(piece / max(float(np.sqrt(np.sum(piece**2))), 1e-30))
-        template = np.mean(aligned, axis=0)
-    return np.asarray(np.round(base) + shifts)
+class Matched:
+    """The rule that shifts a sound to where it is most like the mean of all.
+
+    Parameters
+    ----------
+    part : Band
+        In which the sounds are.
+    windows : list of ndarray
+        The sound of each impact. The loud ones count most in the mean.
+    onsets : ndarray
+        Where in its window each begins, nearly, in points.
+    """
+
+    def __init__(self, part: Band, windows: list[Array], onsets: Array) -> None:
+        self._lead, tail = part.points
+        length = self._lead + tail
+        for _ in range(_ROUNDS):
+            whole = np.round(onsets).astype(int) - self._lead
+            starts = np.clip(whole, 0, [one.size - length for one in windows])
+            pieces = [one[at : at + length] for one, at in zip(windows, starts, strict=True)]
+            self._mean = np.mean(pieces, axis=0)
+            onsets = np.array([self(one[None, :])[0] for one in windows])
+
+    def __call__(self, windows: Array) -> Array:
+        """Pick the onset in each window; shape (m, n) to (m,)."""
+        product = sliding_window_view(windows, self._mean.size, axis=1) @ self._mean
+        return _summit(product, np.argmax(product, axis=1)) + self._lead
+
+    def likeness(self, window: Array) -> tuple[Array, Array]:
+        """Return onsets, in points, and ln(1 - r²), r > 0 being the correlation with the mean."""
+        pieces = sliding_window_view(window, self._mean.size)
+        energy = np.sum(pieces**2, axis=1)
+        # In digital silence the first wave of a sound is like anything.
+        size = np.sqrt((energy + _SILENT * energy.max()) * np.sum(self._mean**2))
+        r = np.maximum(pieces @ self._mean, 0.0) / np.maximum(size, 1e-300)
+        return self._lead + np.arange(r.size), np.log1p(-(np.minimum(r, 1.0 - 1e-9) ** 2))
