@@ -204,3 +204,14 @@ def test_what_is_no_table_is_refused(tmp_path: Path, capsys: pytest.CaptureFixtu
         with pytest.raises(ValueError, match=rf"^{tmp_path}/{name}: .*damaged"):
             rs.flight.read(tmp_path / name)
     assert capsys.readouterr() == ("", "")
+
+
+def test_lines_that_begin_with_a_hash_are_comments(tmp_path: Path) -> None:
+    """Wherever they stand, and whatever stands in them."""
+    file = tmp_path / "times.csv"
+    file.write_text(
+        "# drop 1, a plate; steel\ntime (s), uncertainty (s)\n0.1, 1e-4\n# lunch\n0.5, 1e-4\n0.88, 1e-4\n"
+    )
+    assert rs.flight.read(file).time.values.tolist() == [0.1, 0.5, 0.88]
+    file.write_text("# typed by hand\n0.1\n0.5\n0.88\n")
+    assert rs.flight.read(file).time.values.tolist() == [0.1, 0.5, 0.88]

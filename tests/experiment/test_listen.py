@@ -15,6 +15,7 @@ import restitution as rs
 from benchmarks.recording import PLATE, recording
 from reference.bouncing import impact_times
 from restitution.cli import app
+from restitution.experiment.listen._analysis import in_words
 
 RATE = 44100
 
@@ -132,6 +133,12 @@ def no_sound(folder: Path) -> Path:
     return path
 
 
+def of_a_telephone(folder: Path) -> Path:
+    path = folder / "a.m4a"
+    path.write_bytes(b"\0\0\0\x20ftypM4A " + bytes(100))
+    return path
+
+
 def slow_rate(folder: Path) -> Path:
     return written(folder / "a.wav", np.random.default_rng(1).standard_normal(3000) / 10, 500)
 
@@ -143,6 +150,7 @@ def slow_rate(folder: Path) -> Path:
         (one_impact, "a.wav: one impact is heard, at 0.45 s; at least three are needed"),
         (clipped_throughout, "a.wav: clipped throughout"),
         (no_sound, "a.wav: not a sound file that can be read (WAV, FLAC, OGG, MP3, AIFF)"),
+        (of_a_telephone, "a.m4a: must be converted first: ffmpeg -i a.m4a a.wav"),
         (slow_rate, "a.wav: 500 samples per second; must be at least 2000"),
     ],
 )
@@ -184,3 +192,18 @@ def test_clipping_is_told(tmp_path: Path) -> None:
     code, said = listen(file, "--diameter", 0.02, "--out", tmp_path / "a.html")
     assert code == 0
     assert "of the loud samples are clipped: loudness is lost, times are not" in said
+
+
+def test_a_lossy_file_says_that_it_is(tmp_path: Path, ball: Path) -> None:
+    samples, _ = soundfile.read(ball)
+    file = written(tmp_path / "a.ogg", samples)
+    code, said = listen(file, "--diameter", 0.02, "--out", tmp_path / "a.html")
+    assert code == 0
+    assert ".ogg compresses with loss" in said
+
+
+def test_the_sentence_names_parameters_in_words() -> None:
+    data = rs.flight.restitution(impact_times(lambda v: 0.9 * v**-0.02, 2.0, 12), 1e-5)
+    said = in_words(str(rs.flight.fit(data, "power law")))
+    assert said.startswith("power law: ε at 1 m/s = 0.900")
+    assert "restitution_at" not in said

@@ -35,6 +35,8 @@ _FEWEST_FOR_SCATTER = 6
 """Coefficients that are needed to fit a scatter beside a law."""
 _EXPLAINED = 0.01
 """Probability of a law from which on errors of measurement explain all scatter."""
+_LOSSY = (".mp3", ".ogg", ".oga", ".opus")
+"""Endings of files that are compressed with loss."""
 _LAWS = ("constant", "power law", "viscoelastic", "plastic")
 
 
@@ -153,7 +155,8 @@ class Series(Content):
         text += "; air drag is accounted for" if setting.mass is not None else "; air drag is neglected"
         if best.law != "constant":
             gain = mean.aic - best.aic
-            text += f". The law that fits best is {best}, by {gain:.1f} in Akaike's criterion over a constant"
+            text += f". The law that fits best is {in_words(str(best))}"
+            text += f", by {gain:.1f} in Akaike's criterion over a constant"
         if self.shape is not None and self.shape.draws is not None:
             text += f". {self.shape.verdict.rstrip('.')}"
         return text + "."
@@ -249,7 +252,12 @@ def analyse(file: Path, setting: Setting) -> Analysis:
     checked(setting)
     series = tuple(_series(heard, int(number), setting) for number in np.unique(heard.series))
     _check_drop(series[0], setting)
-    return Analysis(file.name, setting, heard, series, tuple(_warnings(heard, series, setting)))
+    return Analysis(file.name, setting, heard, series, (*_lossy(file), *_warnings(heard, series, setting)))
+
+
+def in_words(text: str) -> str:
+    """Put words for the names of parameters."""
+    return text.replace("restitution_at_1_m_s", "ε at 1 m/s").replace("yield_speed", "yield speed")
 
 
 def checked(setting: object) -> None:
@@ -316,6 +324,13 @@ def _check_drop(first: Series, setting: Setting) -> None:
                 "the drop is wrong, or the sample rate of the file, or an earlier impact was not heard",
             )
         )
+
+
+def _lossy(file: Path) -> list[str]:
+    kind = file.suffix.lower()
+    if kind not in _LOSSY:
+        return []
+    return [f"{kind} compresses with loss, which moves onsets; record in WAV or FLAC where you can."]
 
 
 def _warnings(heard: xr.Dataset, series: tuple[Series, ...], setting: Setting) -> list[str]:

@@ -25,6 +25,8 @@ _QUIET = 1e-10
 """Quieter samples are amplified, as 16 bits in integers of 64: floors of powers are made for full scale."""
 _OF_TIME, _OF_SAMPLE = 40, 8
 """Bytes that it takes at least to listen to a time, and to each of its samples in a channel."""
+_CONVERTED = (".m4a", ".aac", ".mp4", ".3gp", ".amr", ".wma")
+"""Endings of recordings of telephones that libsndfile does not read."""
 _SOURCE = "a path, or samples of shape (n,) or (n, channels)"
 
 
@@ -93,6 +95,9 @@ def _file(path: Path) -> tuple[Array, float]:
     except MemoryError:
         raise
     except (soundfile.LibsndfileError, RuntimeError) as error:
+        if path.suffix.lower() in _CONVERTED:
+            text = f": must be converted first: ffmpeg -i {path.name} {path.stem}.wav"
+            raise ParameterError(Problem(str(path), text)) from None
         reason = str(error).partition(": ")[2].strip() or str(error)
         raise ParameterError(
             Problem(str(path), f": not a sound file that can be read (WAV, FLAC, OGG, MP3, AIFF): {reason}")

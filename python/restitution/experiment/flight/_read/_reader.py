@@ -35,7 +35,7 @@ def read(
         that Audacity exported; a table of Tracker with t and y, of which impacts are where the parabolas of
         successive flights meet; or a table with a column "time" or "t" and perhaps one "uncertainty", or
         without headings. Cells are separated by tab, semicolon, comma or spaces; decimals have a point or a
-        comma.
+        comma; lines that begin with # are comments.
     format : {"phyphox", "audacity", "tracker", "csv"}, optional
         Whose conventions these are; found from the content if not given.
     unit : {"s", "ms", "us"}

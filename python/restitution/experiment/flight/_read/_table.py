@@ -106,21 +106,26 @@ def _text(file: str, part: str, content: bytes) -> Table:
     rows = []
     try:
         for cells in reader:
-            if any(cell.strip() for cell in cells):
+            if any(cell.strip() for cell in cells) and not comment(cells[0]):
                 rows.append(Row(reader.line_num, tuple(cell.strip() for cell in cells)))
     except csv.Error as error:
         raise ParameterError(Problem(file, f", line {reader.line_num}: {error}")) from None
     return Table(file, part, separator, tuple(rows))
 
 
+def comment(cell: str) -> bool:
+    """Tell a line that begins with # from a track's heading, which Tracker begins with #multi."""
+    return cell.lstrip().startswith("#") and not cell.lstrip().startswith("#multi")
+
+
 def _separator(text: str) -> str:
     """Find what stands between the cells: a comma may also be that of a decimal."""
-    sample = "\n".join(text.splitlines()[:20])
+    sample = "\n".join([line for line in text.splitlines() if not comment(line)][:20])
     for separator in ("\t", ";", ","):
         if separator in sample:
             return separator
     # A heading may have spaces, where a column stands alone.
-    alone = all(len(line.split()) < 2 for line in text.splitlines()[1:])
+    alone = all(len(line.split()) < 2 for line in text.splitlines()[1:] if not comment(line))
     return _NEVER if alone else " "
 
 
