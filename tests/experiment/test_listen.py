@@ -207,3 +207,9 @@ def test_the_sentence_names_parameters_in_words() -> None:
     said = in_words(str(rs.flight.fit(data, "power law")))
     assert said.startswith("power law: ε at 1 m/s = 0.900")
     assert "restitution_at" not in said
+
+
+def test_all_missing_options_are_said_at_once(ball: Path) -> None:
+    code, said = listen(ball)
+    assert code == 2
+    assert "--diameter and --out: missing" in said

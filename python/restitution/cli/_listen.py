@@ -11,11 +11,15 @@ from restitution.cli._common import Overwrite, Quiet, errors_in_a_line
 
 def listen(
     file: Annotated[Path, typer.Argument(metavar="FILE", help="The recording: WAV, FLAC, OGG, MP3 or AIFF.")],
-    diameter: Annotated[float, typer.Option(metavar="D", help="Diameter of the ball, m.")],
+    diameter: Annotated[
+        float | None, typer.Option(metavar="D", help="Diameter of the ball, m; required.")
+    ] = None,
     out: Annotated[
-        Path,
-        typer.Option(metavar="PAGE.html", help="The page to write, with PAGE.csv and PAGE.nc beside it."),
-    ],
+        Path | None,
+        typer.Option(
+            metavar="PAGE.html", help="The page to write, with PAGE.csv and PAGE.nc beside it; required."
+        ),
+    ] = None,
     mass: Annotated[
         float | None, typer.Option(metavar="M", help="Mass of the ball, kg, for a correction of air drag.")
     ] = None,
@@ -45,6 +49,10 @@ def listen(
         from restitution._internal.parameters import renamed
         from restitution.experiment.listen import Setting, write
 
+        if diameter is None or out is None:
+            given = {"--diameter": diameter, "--out": out}
+            absent = [option for option, value in given.items() if value is None]
+            raise ValueError(f"{' and '.join(absent)}: missing; must be given")
         with renamed(lambda name: name.replace("uncertainty", "error")):  # as the options are called
             setting = Setting(
                 diameter=diameter,
