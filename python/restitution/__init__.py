@@ -55,6 +55,7 @@ __all__ = [
 _HOMES = {
     **dict.fromkeys((entry["name"] for entry in _core.BODIES), "bodies"),
     **dict.fromkeys((entry["name"] for entry in (*_core.LAWS, *_core.MATERIALS)), "laws"),
+    **dict.fromkeys(("Box", "Clump", "ConvexPolyhedron", "Ellipsoid"), "bodies"),
     "ball_grade": "bodies",
     "from_roundness": "bodies",
     "ErrorBudget": "experiment.budget",

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import restitution as rs
-from reference.refused import ANGLE, BODIES, BODY, LAW, RUN, THREADS_CASES, check, identify, message
+from reference.refused import ANGLE, BODIES, BODY, LAW, REVOLVED, RUN, THREADS_CASES, check, identify, message
 
 
 @pytest.mark.parametrize(("name", "value", "allowed"), BODY, ids=identify)
@@ -73,10 +73,10 @@ def test_body_and_law(body: rs.Dumbbell, law: rs.TangentialRestitution) -> None:
     """What is no body or no law is refused, be it as much as the other of the two or their parameters."""
     no_bodies: list[Any] = [law, None, 3, "dumbbell", {"radius": 1.0, "separation": 0.1}, rs.Dumbbell]
     for wrong in no_bodies:
-        for call in (rs.simulate, rs.analytic.first_impact):
+        for call, allowed in ((rs.simulate, BODIES), (rs.analytic.first_impact, REVOLVED)):
             text = message(partial(call, wrong, law))
             assert text.startswith("body = ")
-            assert text.endswith(f": must be {BODIES}")
+            assert text.endswith(f": must be {allowed}")
     no_laws: list[Any] = [body, None, 0.98, {"normal": 0.98}]
     for wrong in no_laws:
         for call in (rs.simulate, rs.analytic.first_impact):

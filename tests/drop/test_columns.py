@@ -31,14 +31,14 @@ def recorded(run: Run, columns: list[str]) -> dict[str, Floats]:
 
 def with_state(law: Any, **more: Any) -> dict[str, Floats]:
     run = Run(body=BODY, law=law, particles=40, impacts=30, seed=5, **more)
-    return recorded(run, _core.columns(run.law.compiled, True))
+    return recorded(run, _core.columns(run.body.compiled, run.law.compiled, True))
 
 
 def test_a_run_records_what_it_is_asked_for() -> None:
     """Nothing else takes memory, and what is recorded does not depend on what else is."""
     run = Run(body=BODY, law=rs.Frictionless(normal=0.9), particles=9, impacts=7, **IN_SPACE)
     per_particle = {"impacts", "stop_reason", "release_angle", "release_azimuth", "release_spin"}
-    every = recorded(run, _core.columns(run.law.compiled, True))
+    every = recorded(run, _core.columns(run.body.compiled, run.law.compiled, True))
     for name, size in (("angle", 8), ("contact", 1), ("velocity_after", 24)):
         alone = recorded(run, [name])
         assert set(alone) == {name} | per_particle
@@ -49,20 +49,22 @@ def test_a_run_records_what_it_is_asked_for() -> None:
 def test_an_unknown_column_is_refused_with_the_list() -> None:
     with pytest.raises(ValueError, match="columns = 'colour'") as caught:
         _core.bytes_per_impact(["time", "colour"])
-    assert set(_core.columns(rs.Frictionless(normal=0.9).compiled, True)) < set(
+    assert set(_core.columns(BODY.compiled, rs.Frictionless(normal=0.9).compiled, True)) < set(
         caught.value.allowed.removeprefix("one of ").split(", ")  # type: ignore[attr-defined]
     )
 
 
 def test_the_state_does_not_enlarge_the_usual_records() -> None:
     """Seven doubles and a byte; one double more where the coefficient varies."""
-    assert _core.bytes_per_impact(_core.columns(rs.Frictionless(normal=0.9).compiled)) == 57
-    assert _core.bytes_per_impact(_core.columns(rs.Frictionless(normal=GLASS).compiled)) == 65
+    assert _core.bytes_per_impact(_core.columns(BODY.compiled, rs.Frictionless(normal=0.9).compiled)) == 57
+    assert _core.bytes_per_impact(_core.columns(BODY.compiled, rs.Frictionless(normal=GLASS).compiled)) == 65
 
 
 def test_every_variable_is_described() -> None:
     run = Run(body=BODY, law=rs.Frictionless(normal=GLASS), particles=3, impacts=2, **IN_SPACE)
-    table, _ = _core.simulate(run.parameters(), 1, None, columns=_core.columns(run.law.compiled, True))
+    table, _ = _core.simulate(
+        run.parameters(), 1, None, columns=_core.columns(run.body.compiled, run.law.compiled, True)
+    )
     data = dataset(run, table)
     for name, variable in data.data_vars.items():
         assert variable.attrs["long_name"], name

@@ -69,12 +69,14 @@ def test_every_kind_is_entered() -> None:
     families: tuple[tuple[Any, tuple[Any, ...]], ...] = (
         (laws.Law, laws.KINDS),
         (bodies.Body, bodies.KINDS),
+        (bodies.RigidBody, bodies.RIGID),
         (laws.Tabulated.__base__, laws.MATERIALS),
     )
     for base, kinds in families:
         assert set(base.__subclasses__()) == set(kinds)
         assert {kind.__name__ for kind in kinds} <= set(rs.__all__)
-    for place, kinds in (("body", bodies.KINDS), ("law", laws.KINDS), ("normal", laws.MATERIALS)):
+    every = (*bodies.KINDS, *bodies.RIGID)
+    for place, kinds in (("body", every), ("law", laws.KINDS), ("normal", laws.MATERIALS)):
         assert list(_KINDS[place][1]) == [snake(kind.__name__).replace("_", "-") for kind in kinds]
 
 

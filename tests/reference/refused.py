@@ -8,12 +8,15 @@ from typing import Any
 import numpy as np
 import pytest
 
+from restitution.drop.toml import _KINDS
+
 POSITIVE = "must be a finite number > 0"
 NOT_NEGATIVE = "must be a finite number >= 0"
 COUNT = "must be a whole number in [1, 2**40)"
 SEED = "must be a whole number in [0, 2**64)"
-BODIES = "a Dumbbell, LoadedSphere, Spherocylinder or Spheroid"
-SHAPES = '"dumbbell" or "loaded-sphere" or "spherocylinder" or "spheroid"'
+REVOLVED = "a Dumbbell, LoadedSphere, Spherocylinder or Spheroid"
+BODIES = "a Dumbbell, LoadedSphere, Spherocylinder, Spheroid, Clump, Ellipsoid, ConvexPolyhedron or Box"
+SHAPES = " or ".join(f'"{shape}"' for shape in _KINDS["body"][1])
 THREADS = "must be a whole number in [1, 1024] or None"
 ORIENTATION = "must be 'uniform-angle', 'isotropic' or a 1-D array of angles in rad, one per particle"
 LAW_TYPES = '"tangential-restitution" or "frictionless" or "coulomb" or "chatterjee-ruina"'

@@ -29,7 +29,12 @@ impl Run<'_> {
         resources: Resources,
         monitor: &Monitor,
     ) -> Result<Records, Error> {
-        self.simulate_columns(part, &Columns::usual(&self.law, false), resources, monitor)
+        self.simulate_columns(
+            part,
+            &Columns::usual(self.body, &self.law, false),
+            resources,
+            monitor,
+        )
     }
 
     /// As [`Run::simulate_part`], recording the variables in `columns`.

@@ -100,7 +100,7 @@ proptest! {
         };
         let records = simulate(&run);
         let separation = elongation * 3e-3;
-        let expected = first_restitution(&run.body, separation, normal, angle);
+        let expected = first_restitution(run.body.revolution().unwrap(), separation, normal, angle);
         prop_assert!((records.restitution[0] - expected).abs() <= 32.0 * ROUNDING);
         let ratio = 1.0 - (1.0 - normal) * (1.0 + expected);
         prop_assert!((records.energy_ratio[0] - ratio).abs() <= 64.0 * ROUNDING);

@@ -70,7 +70,7 @@ fn a_sphere_falls_from_the_height_that_is_drawn() {
     for i in 0..run.particles {
         let height = run.release_height.draw(run.seed, i as u64);
         assert_eq!(records.release_height[i], height);
-        let drop = height - run.body.unit;
+        let drop = height - run.body.unit();
         let speed = (2.0 * run.gravity * drop).sqrt();
         assert!((records.impact_velocity[i * run.impacts] / speed - 1.0).abs() < 1e-14);
     }
@@ -185,7 +185,8 @@ fn the_thermal_spin_of_a_run_knows_the_moments_of_inertia() {
     let level = Vector::new(-0.7_f64.sin(), 0.7_f64.cos(), 0.0);
     let third = along.cross(level);
     // J_xx⟨ω_x²⟩ = J_zz⟨ω_z²⟩ and 2⟨ω_x²⟩ + ⟨ω_z²⟩ = rate².
-    let (jxx, jzz) = (run.body.transverse_inertia, run.body.axial_inertia);
+    let solid = run.body.revolution().unwrap();
+    let (jxx, jzz) = (solid.transverse_inertia, solid.axial_inertia);
     let across = rate * (jzz / (2.0 * jzz + jxx)).sqrt();
     let lengthwise = across * (jxx / jzz).sqrt();
     let components: Vec<_> = records

@@ -303,7 +303,7 @@ fn releases() {
         };
         assert_eq!(of(run), "release_height");
     }
-    let most = 1e100 * (run().gravity / run().body.unit).sqrt();
+    let most = 1e100 * (run().gravity / run().body.unit()).sqrt();
     let about = About::Isotropic;
     let fixed = |x| Spin::Fixed(Vector::new(0.0, x, 0.0));
     let random = |low, high| Spin::Random { low, high, about };
@@ -331,7 +331,7 @@ fn releases() {
         simulate(&Run { spin, ..run() });
     }
     for velocity in [-1.001, 1.001, f64::NAN] {
-        let most = 1e100 * (run().gravity * run().body.unit).sqrt();
+        let most = 1e100 * (run().gravity * run().body.unit()).sqrt();
         for release_velocity in [
             Vector::new(velocity * most, 0.0, 0.0),
             Vector::new(0.0, velocity * most, 0.0),

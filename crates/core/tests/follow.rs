@@ -5,11 +5,11 @@ mod scalar;
 
 use common::*;
 use restitution_core::{
-    About, Followed, LoadedSphere, Orientation, Run, Solid, Sphere, Spheroid, Spin, Vector,
+    About, AnyBody, Followed, LoadedSphere, Orientation, Run, Sphere, Spheroid, Spin, Vector,
 };
 use scalar::Observed;
 
-fn bodies() -> [Solid; 3] {
+fn bodies() -> [AnyBody<'static>; 3] {
     [
         paper(2.0, law(1.0, 1.0)).body,
         LoadedSphere::new(3e-3, 2500.0, 1e-4, 2e-3).unwrap().into(),
@@ -21,7 +21,7 @@ fn bodies() -> [Solid; 3] {
 const IN_THE_PLANE: [[f64; 2]; 9] = [[1.0, 0.0]; 9];
 
 /// At rest, or with one of spin, throw and incline.
-fn releases(body: Solid) -> [Run<'static>; 7] {
+fn releases(body: AnyBody<'static>) -> [Run<'static>; 7] {
     let rest = Run {
         body,
         particles: 9,

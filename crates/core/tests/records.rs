@@ -5,7 +5,7 @@ mod common;
 use common::*;
 use restitution_core::{
     About, Columns, Height, Level, Monitor, PER_IMPACT, PER_PARTICLE, Plastic, Records, Resources,
-    Run, Spin, StopReason, Values, Vector, When,
+    Rigid, Run, Spin, StopReason, Values, Vector, When,
 };
 use std::ops::Range;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -217,7 +217,7 @@ fn the_state_is_that_of_the_impact() {
         impacts: 3,
         ..paper(0.5, law(0.9, 0.3))
     };
-    let columns = Columns::usual(&run.law, true);
+    let columns = Columns::usual(run.body, &run.law, true);
     let records = run
         .simulate_columns(0..20, &columns, ONE, &Monitor::default())
         .unwrap();
@@ -257,35 +257,49 @@ fn the_variables_of_impacts_are_those_that_were_chosen() {
     assert!(found.iter().all(|(about, _)| PER_IMPACT.contains(about)));
     let found: Vec<_> = found
         .into_iter()
-        .map(|(about, values)| (about.name, about.vector, values))
+        .map(|(about, values)| (about.name, about.components.len(), values))
         .collect();
     let expected = [
-        ("time", false, Values::Numbers(time)),
-        ("contact", false, Values::Flags(contact)),
-        ("axis", true, Values::Numbers(axis)),
+        ("time", 0, Values::Numbers(time)),
+        ("contact", 0, Values::Flags(contact)),
+        ("axis", 3, Values::Numbers(axis)),
     ];
     assert_eq!(found, expected);
 }
 
-/// By default the normal coefficient is recorded if it varies, and the state if it is asked for.
+/// By default the normal coefficient is recorded if it varies, the state if it is asked for, and of a body without an axis its attitude
+/// instead of that, and the number of the part that touches.
 #[test]
 fn the_usual_variables_follow_from_the_law() {
     let constant = law(0.9, 0.3);
     let varying = Plastic::new(1.0).unwrap();
     let tangential = restitution_core::TangentialRestitution::new(0.3).unwrap();
     let varying = restitution_core::Law::new(varying, tangential).unwrap();
+    let pebble = Rigid::ellipsoid([3e-3, 2e-3, 1e-3], 2500.0).unwrap();
+    let body = paper(1.0, constant).body;
     for (law, varies) in [(&constant, false), (&varying, true)] {
         for state in [false, true] {
-            let expected = PER_IMPACT.iter().filter(|about| match about.when {
-                When::Always => true,
-                When::NormalVaries => varies,
-                When::StateAsked => state,
-                When::HeightVaries | When::InSpace => panic!("{}", about.name),
-            });
-            let expected: Vec<_> = expected.map(|about| about.name).collect();
-            assert_eq!(Columns::usual(law, state).names(), expected);
-            assert_eq!(expected.contains(&"microscopic"), varies);
-            assert_eq!(expected.contains(&"axis"), state);
+            for (body, axis) in [(body, true), ((&pebble).into(), false)] {
+                let expected = PER_IMPACT.iter().filter(|about| match about.when {
+                    When::Always => true,
+                    When::HasAxis => axis,
+                    When::HasNoAxis => !axis,
+                    When::NormalVaries => varies,
+                    When::StateAsked => state,
+                    When::StateAskedOfAxis => state && axis,
+                    When::StateAskedWithoutAxis => state && !axis,
+                    When::HeightVaries | When::InSpace => panic!("{}", about.name),
+                });
+                let expected: Vec<_> = expected.map(|about| about.name).collect();
+                let names = Columns::usual(body, law, state).names();
+                assert_eq!(names.len(), expected.len());
+                assert_eq!(names.contains(&"microscopic"), varies);
+                assert_eq!(names.contains(&"axis"), state && axis);
+                assert_eq!(names.contains(&"attitude"), state && !axis);
+                assert_eq!(names.contains(&"contact"), axis);
+                assert_eq!(names.contains(&"part"), !axis);
+                assert!(expected.contains(&"contact"));
+            }
         }
     }
 }

@@ -5,8 +5,8 @@ mod scalar;
 
 use common::*;
 use restitution_core::{
-    About, Frictionless, Law, Level, Limits, LoadedSphere, Monitor, Orientation, Plastic, Records,
-    Resources, Run, Scales, SingleImpact, Solid, Spheroid, Spin, State, StopReason, Vector,
+    About, AnyBody, Frictionless, Law, Level, Limits, LoadedSphere, Monitor, Orientation, Plastic,
+    Records, Resources, Run, Scales, SingleImpact, Spheroid, Spin, State, StopReason, Vector,
     trajectory,
 };
 use scalar::Observed;
@@ -18,7 +18,7 @@ const TUMBLING: Spin<'_> = Spin::Random {
 };
 
 /// Everything at once: random spin, a throw upwards and sideways, an incline.
-fn thrown(body: Solid, law: Law<'_>) -> Run<'_> {
+fn thrown<'a>(body: AnyBody<'a>, law: Law<'a>) -> Run<'a> {
     Run {
         body,
         particles: 200,
@@ -35,7 +35,7 @@ fn thrown(body: Solid, law: Law<'_>) -> Run<'_> {
     }
 }
 
-fn bodies() -> [Solid; 4] {
+fn bodies() -> [AnyBody<'static>; 4] {
     [
         paper(2.0, law(1.0, 1.0)).body,
         paper(0.0, law(1.0, 1.0)).body,
@@ -46,13 +46,13 @@ fn bodies() -> [Solid; 4] {
 
 /// The state that a particle of a run is released with, from what the records say of it.
 fn released(run: &Run<'_>, records: &Records, particle: usize) -> State {
-    let scales = Scales::new(run.body.unit, run.gravity * run.incline.cos()).unwrap();
+    let scales = Scales::new(run.body.unit(), run.gravity * run.incline.cos()).unwrap();
     let angle = records.release_angle[particle];
     let azimuth = records.release_azimuth[particle];
     let [x, y, z] = records.release_spin[particle];
     let level = Vector::new(azimuth.cos(), azimuth.sin(), 0.0) * angle.sin();
     State::with_spin(
-        &run.body.scaled,
+        &run.body.revolution().unwrap().scaled,
         run.release_height.middle() / scales.length,
         run.release_velocity / scales.speed,
         Vector::new(level.x, level.y, angle.cos()),
@@ -67,7 +67,7 @@ fn the_records_tell_the_release() {
     for body in bodies() {
         let run = thrown(body, law(0.6, 0.3));
         let records = simulate(&run);
-        let scales = Scales::new(body.unit, run.gravity * run.incline.cos()).unwrap();
+        let scales = Scales::new(body.unit(), run.gravity * run.incline.cos()).unwrap();
         let limits = Limits {
             impacts: 1,
             minimum_speed: 0.0,
@@ -78,7 +78,7 @@ fn the_records_tell_the_release() {
             let slope = run.incline.tan();
             let mut first = None;
             trajectory(
-                &body.scaled,
+                &body.revolution().unwrap().scaled,
                 &run.law,
                 slope,
                 release,
@@ -94,7 +94,7 @@ fn the_records_tell_the_release() {
             assert!((records.time[i] / time - 1.0).abs() < 1e-11);
             let fall = first.impact_velocity() * scales.speed;
             assert!((records.impact_velocity[i] - fall).abs() < 1e-11);
-            let ratio = first.energy_ratio(&body.scaled);
+            let ratio = first.energy_ratio(&body.revolution().unwrap().scaled);
             assert!((records.energy_ratio[i] / ratio - 1.0).abs() < 1e-9);
         }
     }
@@ -111,7 +111,7 @@ fn what_a_frictionless_plane_conserves() {
         let slope = 0.4;
         for particle in 0..run.particles {
             let release = released(&run, &records, particle);
-            let body = body.scaled;
+            let body = body.revolution().unwrap().scaled;
             let limits = Limits {
                 impacts: run.impacts,
                 minimum_speed: 0.0,
@@ -220,6 +220,7 @@ fn hardly_any_spin() {
 #[test]
 fn an_impact_at_the_release() {
     let body = paper(2.0, law(1.0, 1.0)).body;
+    let body = body.revolution().unwrap();
     let radius = body.unit;
     let tumble = Spin::Fixed(Vector::new(0.0, 50.0, 0.0));
     let level = [[std::f64::consts::FRAC_PI_2, 0.0]];
@@ -268,7 +269,7 @@ fn from_the_plane() {
         orientation: Orientation::Given(&[0.0]),
         ..paper(2.0, law(0.5, 1.0))
     };
-    let release_height = 2.0 * run.body.unit;
+    let release_height = 2.0 * run.body.unit();
     let velocity = Vector::new(0.0, 0.0, 0.7);
     let up = simulate(&Run {
         release_height: release_height.into(),
@@ -330,7 +331,7 @@ fn the_origin_of_moments_is_the_first_restitution_of_a_sphere() {
         };
         let records = simulate(&run);
         assert!((run.origin() - records.restitution[0]).abs() < 1e-14);
-        let drop = run.release_height.middle() - run.body.unit;
+        let drop = run.release_height.middle() - run.body.unit();
         let square = velocity.z * velocity.z + 2.0 * run.gravity * incline.cos() * drop;
         assert!((records.impact_velocity[0] / square.sqrt() - 1.0).abs() < 1e-13);
     }

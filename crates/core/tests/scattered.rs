@@ -72,7 +72,7 @@ fn a_particle_is_the_same_by_itself() {
         let series = [(run, 30..40), (other, 0..20)];
         let found = simulate_series(
             &series,
-            &Columns::usual(&run.law, false),
+            &Columns::usual(run.body, &run.law, false),
             resources,
             &Monitor::default(),
         )

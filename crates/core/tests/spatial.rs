@@ -11,7 +11,7 @@ use oracle::normal::Restitution;
 use oracle::solid::Shape;
 use restitution_core::statistics::{Axis, Bins, By};
 use restitution_core::{
-    Dumbbell, Level, LoadedSphere, Monitor, Orientation, Resources, Run, Solid, Spheroid, Spin,
+    AnyBody, Dumbbell, Level, LoadedSphere, Monitor, Orientation, Resources, Run, Spheroid, Spin,
     StopReason,
 };
 
@@ -20,7 +20,7 @@ const MEANS: Resources = Resources {
     level: Level::Scalar,
 };
 
-fn bodies() -> [Solid; 3] {
+fn bodies() -> [AnyBody<'static>; 3] {
     [
         Dumbbell::unequal([3e-3, 2e-3], 4e-3, [2500.0, 7800.0])
             .unwrap()
@@ -30,7 +30,7 @@ fn bodies() -> [Solid; 3] {
     ]
 }
 
-fn run(body: Solid) -> Run<'static> {
+fn run(body: AnyBody<'static>) -> Run<'static> {
     Run {
         body,
         law: law(0.6, 0.3),

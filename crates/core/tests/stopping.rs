@@ -182,7 +182,7 @@ fn the_threshold_is_a_speed_in_metres_per_second() {
     let records = simulate(&run);
     assert!(all_stopped_for(&records, StopReason::SpeedBelowThreshold));
     is_consistent(&run, &records);
-    let body = run.body.scaled;
+    let body = run.body.revolution().unwrap().scaled;
     let threshold = 0.2 / (9.81_f64 * 3e-3).sqrt();
     for (particle, &angle) in angles.iter().enumerate() {
         let release = at_rest(&body, run.release_height.middle() / 3e-3, angle);

@@ -95,7 +95,7 @@ fn series(
     monitor: &Monitor,
 ) -> Result<Records, Error> {
     let level = Level::best();
-    let columns = Columns::usual(&runs[0].0.law, false);
+    let columns = Columns::usual(runs[0].0.body, &runs[0].0.law, false);
     simulate_series(runs, &columns, Resources { threads, level }, monitor)
 }
 

@@ -1,9 +1,12 @@
 //! Bodies, made from the parameters of a shape in SI units.
 
 use crate::describe::{self, Given};
-use numpy::PyReadonlyArray1;
+use crate::errors::python_error;
+use numpy::{PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
-use restitution_core::BODIES;
+use restitution_core::{
+    AnyBody, BODIES, Inertia, Matter, Quaternion, RigidBall, Symmetric, Vector,
+};
 
 /// A body of revolution, ready for a run.
 #[pyclass(frozen, module = "restitution._core")]
@@ -70,6 +73,165 @@ impl Solid {
     }
 }
 
+/// A rigid body of any shape, ready for a run.
+#[pyclass(frozen, module = "restitution._core")]
+pub struct Rigid(pub restitution_core::Rigid);
+
+/// A body that a run takes.
+#[derive(FromPyObject)]
+pub enum Dropped<'py> {
+    Revolution(PyRef<'py, Solid>),
+    Rigid(PyRef<'py, Rigid>),
+}
+
+impl Dropped<'_> {
+    pub fn body(&self) -> AnyBody<'_> {
+        match self {
+            Self::Revolution(solid) => AnyBody::Revolution(solid.0),
+            Self::Rigid(body) => AnyBody::Rigid(&body.0),
+        }
+    }
+}
+
+type Matrix = [[f64; 3]; 3];
+
+#[pymethods]
+impl Rigid {
+    /// Mass in kg.
+    #[getter]
+    fn mass(&self) -> f64 {
+        self.0.inertia.mass
+    }
+
+    /// Centre of mass in m, in the axes that the body was given in.
+    #[getter]
+    fn centre(&self) -> [f64; 3] {
+        let Vector { x, y, z } = self.0.inertia.centre;
+        [x, y, z]
+    }
+
+    /// Tensor of inertia about the centre of mass in kg m², in the same axes.
+    #[getter]
+    fn inertia_tensor(&self) -> Matrix {
+        let j = self.0.inertia.tensor;
+        [[j.xx, j.xy, j.xz], [j.xy, j.yy, j.yz], [j.xz, j.yz, j.zz]]
+    }
+
+    /// The principal moments of inertia, in kg m².
+    #[getter]
+    fn principal_moments(&self) -> [f64; 3] {
+        self.0.principal_moments()
+    }
+
+    /// The rotation from the principal axes to those that the body was given in, as a quaternion (w, x, y, z).
+    #[getter]
+    fn principal_axes(&self) -> [f64; 4] {
+        let Quaternion { w, x, y, z } = self.0.axes;
+        [w, x, y, z]
+    }
+
+    /// Smallest height of the centre of mass, in m, at which no part is below the plane in any of these attitudes, rows (w, x, y, z).
+    fn lowest(&self, attitudes: PyReadonlyArray2<'_, f64>) -> PyResult<f64> {
+        let (rows, _) = attitudes.as_slice()?.as_chunks::<4>();
+        let heights = rows
+            .iter()
+            .map(|&[w, x, y, z]| self.0.lowest(Quaternion::new(w, x, y, z).normalized()));
+        Ok(heights.fold(0.0, f64::max))
+    }
+
+    /// Whether no part is below the plane at a height of the centre of mass, in m, in any of these attitudes, or in none at all.
+    #[pyo3(signature = (height, attitudes=None))]
+    fn clears(&self, height: f64, attitudes: Option<PyReadonlyArray2<'_, f64>>) -> PyResult<bool> {
+        let lowest = match attitudes {
+            Some(attitudes) => self.lowest(attitudes)?,
+            None => self.farthest(),
+        };
+        Ok(restitution_core::Solid::clears(height, lowest))
+    }
+
+    /// Smallest height of the centre of mass, in m, at which no part is below the plane in any attitude.
+    fn farthest(&self) -> f64 {
+        self.0.unit
+    }
+}
+
+fn rigid(body: Result<restitution_core::Rigid, restitution_core::Error>) -> PyResult<Rigid> {
+    Ok(Rigid(body.map_err(python_error)?))
+}
+
+/// Mass, centre of mass and tensor of inertia about it, of a body that is not homogeneous.
+#[derive(FromPyObject)]
+#[pyo3(from_item_all)]
+struct GivenInertia {
+    mass: f64,
+    centre: [f64; 3],
+    tensor: Matrix,
+}
+
+impl GivenInertia {
+    fn inertia(&self) -> Inertia {
+        let [x, y, z] = self.centre;
+        let [[xx, xy, xz], [_, yy, yz], [_, _, zz]] = self.tensor;
+        Inertia {
+            mass: self.mass,
+            centre: Vector::new(x, y, z),
+            tensor: Symmetric {
+                xx,
+                yy,
+                zz,
+                xy,
+                xz,
+                yz,
+            },
+        }
+    }
+}
+
+/// Balls, rows (x, y, z, radius), whose matter is that of their union, or summed ball by ball.
+#[pyfunction]
+fn clump(spheres: Vec<[f64; 4]>, density: f64, sum: bool) -> PyResult<Rigid> {
+    let matter = if sum { Matter::Sum } else { Matter::Union };
+    rigid(restitution_core::Rigid::clump(
+        &balls(&spheres),
+        density,
+        matter,
+    ))
+}
+
+/// Balls with a given inertia.
+#[pyfunction]
+fn clump_with(spheres: Vec<[f64; 4]>, inertia: GivenInertia) -> PyResult<Rigid> {
+    rigid(restitution_core::Rigid::clump_with(
+        &balls(&spheres),
+        inertia.inertia(),
+    ))
+}
+
+fn balls(spheres: &[[f64; 4]]) -> Vec<RigidBall> {
+    let ball = |&[x, y, z, radius]: &[f64; 4]| RigidBall {
+        centre: Vector::new(x, y, z),
+        radius,
+    };
+    spheres.iter().map(ball).collect()
+}
+
+#[pyfunction]
+fn ellipsoid(semi_axes: [f64; 3], density: f64) -> PyResult<Rigid> {
+    rigid(restitution_core::Rigid::ellipsoid(semi_axes, density))
+}
+
+/// The convex hull of points with triangles of them as faces.
+#[pyfunction]
+fn polyhedron(points: Vec<[f64; 3]>, triangles: Vec<[usize; 3]>, density: f64) -> PyResult<Rigid> {
+    let points: Vec<_> = points
+        .iter()
+        .map(|&[x, y, z]| Vector::new(x, y, z))
+        .collect();
+    rigid(restitution_core::Rigid::polyhedron(
+        &points, &triangles, density,
+    ))
+}
+
 /// The body with this name, made from all its parameters in their order.
 #[pyfunction]
 fn body(name: &str, arguments: Vec<Given<'_>>) -> PyResult<Solid> {
@@ -78,5 +240,10 @@ fn body(name: &str, arguments: Vec<Given<'_>>) -> PyResult<Solid> {
 
 pub fn add_to(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<Solid>()?;
+    module.add_class::<Rigid>()?;
+    module.add_function(wrap_pyfunction!(clump, module)?)?;
+    module.add_function(wrap_pyfunction!(clump_with, module)?)?;
+    module.add_function(wrap_pyfunction!(ellipsoid, module)?)?;
+    module.add_function(wrap_pyfunction!(polyhedron, module)?)?;
     module.add_function(wrap_pyfunction!(body, module)?)
 }

@@ -11,7 +11,7 @@ mod records;
 mod release;
 mod watch;
 
-use bodies::Solid;
+use bodies::Dropped;
 use errors::python_error;
 use numpy::ndarray::Array2;
 use numpy::{Element, IntoPyArray};
@@ -49,7 +49,7 @@ macro_rules! parameters {
 }
 
 parameters! {
-    body: PyRef<'py, Solid> = |given| given.0;
+    body: Dropped<'py> = |given| given.body();
     law: PyRef<'py, laws::Law> = |given| given.law();
     particles: usize = |given| *given;
     impacts: usize = |given| *given;

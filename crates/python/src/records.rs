@@ -1,5 +1,6 @@
 //! Recorded impacts: each variable with the dimensions, values and attributes that xarray takes.
 
+use crate::bodies::Dropped;
 use crate::errors::python_error;
 use crate::laws::Law;
 use crate::{Parameters, range, resources, watch};
@@ -19,11 +20,11 @@ fn named(columns: &[String]) -> PyResult<Columns> {
     Columns::named(columns.iter().map(String::as_str)).map_err(python_error)
 }
 
-/// The names of the variables of an impact that are recorded under a law, with the full state if `state`.
+/// The names of the variables of an impact that are recorded of a body under a law, with the full state if `state`.
 #[pyfunction]
-#[pyo3(signature = (law, state=false))]
-fn columns(law: &Law, state: bool) -> Vec<&'static str> {
-    Columns::usual(&law.law(), state).names()
+#[pyo3(signature = (body, law, state=false))]
+fn columns(body: Dropped<'_>, law: &Law, state: bool) -> Vec<&'static str> {
+    Columns::usual(body.body(), &law.law(), state).names()
 }
 
 /// Simulates the particles from `part[0]` up to, not including, `part[1]`, or all, and records the variables in `columns`, or those
@@ -42,7 +43,7 @@ fn simulate<'py>(
     let resources = resources(threads)?;
     let columns = match columns {
         Some(names) => named(&names)?,
-        None => Columns::usual(&run.law, false),
+        None => Columns::usual(run.body, &run.law, false),
     };
     let part = range(part, run.particles);
     let (records, interrupted) = watch::run(py, progress, |monitor| {
@@ -107,8 +108,10 @@ fn variable<'py>(
     values: Values,
 ) -> PyResult<(Bound<'py, PyTuple>, Bound<'py, PyAny>, Bound<'py, PyDict>)> {
     let mut dimensions = dimensions.to_vec();
-    if about.vector {
-        dimensions.push(("component", 3));
+    match about.components.len() {
+        0 => {}
+        3 => dimensions.push(("component", 3)),
+        parts => dimensions.push(("quaternion", parts)),
     }
     let (names, shape): (Vec<_>, Vec<_>) = dimensions.into_iter().unzip();
     let attributes = PyDict::new(py);
@@ -127,6 +130,7 @@ fn variable<'py>(
     let values = match values {
         Values::Numbers(values) => shaped(py, values, shape)?,
         Values::Flags(values) => shaped(py, values, shape)?,
+        Values::Parts(values) => shaped(py, values, shape)?,
         Values::Counts(values) => shaped(py, values, shape)?,
     };
     Ok((PyTuple::new(py, names)?, values, attributes))

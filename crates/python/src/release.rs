@@ -5,12 +5,12 @@ use numpy::{PyReadonlyArray1, PyReadonlyArray2, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 use restitution_core::{About, Height, Orientation, Spin, Vector};
 
-/// The name of a distribution, an array of angles θ, or one of rows (θ, φ); in rad.
+/// The name of a distribution, an array of angles θ, or one of rows (θ, φ) in rad or of quaternions (w, x, y, z).
 #[derive(FromPyObject)]
 pub enum Axes<'py> {
     Name(String),
     Angles(PyReadonlyArray1<'py, f64>),
-    Directions(PyReadonlyArray2<'py, f64>),
+    Rows(PyReadonlyArray2<'py, f64>),
 }
 
 impl Axes<'_> {
@@ -18,15 +18,19 @@ impl Axes<'_> {
         Ok(match self {
             Self::Name(name) => Orientation::named(name).map_err(python_error)?,
             Self::Angles(angles) => Orientation::Given(angles.as_slice()?),
-            Self::Directions(rows) => {
+            Self::Rows(rows) => {
                 let columns = rows.shape()[1];
                 unless(
-                    columns == 2,
+                    columns == 2 || columns == 4,
                     "columns of orientation",
                     columns,
-                    "2, for θ and φ",
+                    "2, for θ and φ, or 4, for w, x, y and z",
                 )?;
-                Orientation::Directions(rows.as_slice()?.as_chunks().0)
+                if columns == 2 {
+                    Orientation::Directions(rows.as_slice()?.as_chunks().0)
+                } else {
+                    Orientation::Attitudes(rows.as_slice()?.as_chunks().0)
+                }
             }
         })
     }

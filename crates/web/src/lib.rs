@@ -68,7 +68,7 @@ pub extern "C" fn follow(particle: usize) -> f64 {
 #[unsafe(no_mangle)]
 pub extern "C" fn outline() -> f64 {
     keep(|parameters| {
-        let arcs = parameters.run()?.body.outline;
+        let arcs = parameters.run()?.body.revolution()?.outline;
         Ok(arcs
             .iter()
             .flat_map(|arc| [arc.centre, arc.along, arc.across, arc.from, arc.to])

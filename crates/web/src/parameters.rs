@@ -76,7 +76,7 @@ impl Parameters {
     pub fn run(&self) -> Result<Run<'_>, Error> {
         let mut row = Row(&self.0);
         Ok(Run {
-            body: body(&mut row)?,
+            body: body(&mut row)?.into(),
             law: law(&mut row)?,
             particles: row.number() as usize,
             impacts: row.number() as usize,

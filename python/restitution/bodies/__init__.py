@@ -1,10 +1,15 @@
-"""Bodies: what falls. All are bodies of revolution, of which the flight between impacts has a closed form."""
+"""Bodies: what falls. That of bodies of revolution has a closed form; other rigid bodies have any shape."""
 
 from restitution import _core
 from restitution._internal.described import one_of
+from restitution.bodies._body import AnyBody as AnyBody
 from restitution.bodies._body import Body as Body
+from restitution.bodies._clump import Clump
 from restitution.bodies._dumbbell import Dumbbell
+from restitution.bodies._ellipsoid import Ellipsoid
 from restitution.bodies._loaded_sphere import LoadedSphere
+from restitution.bodies._polyhedra import Box, ConvexPolyhedron
+from restitution.bodies._rigid import RigidBody as RigidBody
 from restitution.bodies._roundness import GRADES as GRADES
 from restitution.bodies._roundness import Form as Form
 from restitution.bodies._roundness import ball_grade, from_roundness
@@ -12,7 +17,11 @@ from restitution.bodies._spherocylinder import Spherocylinder
 from restitution.bodies._spheroid import Spheroid
 
 __all__ = [
+    "Box",
+    "Clump",
+    "ConvexPolyhedron",
     "Dumbbell",
+    "Ellipsoid",
     "LoadedSphere",
     "Spherocylinder",
     "Spheroid",
@@ -21,5 +30,8 @@ __all__ = [
 ]
 
 KINDS: tuple[type[Body], ...] = tuple(globals()[entry["name"]] for entry in _core.BODIES)
-"""Every body of the core's table."""
+"""Every body of the core's table, all of revolution."""
+RIGID: tuple[type[RigidBody], ...] = (Clump, Ellipsoid, ConvexPolyhedron, Box)
+"""Every other body."""
 BODIES = one_of(_core.BODIES)
+ANY_BODIES = one_of([*_core.BODIES, *({"name": kind.__name__} for kind in RIGID)])

@@ -1,34 +1,62 @@
-"""The base of every shape: mass, inertia, and the compiled body."""
+"""The bases of every shape: mass, inertia, and the compiled body."""
 
+from abc import abstractmethod
 from collections.abc import Iterator
 from functools import cached_property
+from typing import Any
+
+import numpy as np
 
 from restitution import _core
 from restitution._internal import text as _text
 from restitution._internal.described import Described
 
 
-class Body(Described):
-    """A homogeneous or loaded body of revolution, in SI units.
+class AnyBody(Described):
+    """A body that can be dropped, in SI units. Mass and inertia follow from its parameters."""
 
-    Its symmetry axis makes the angle θ with the plane normal. Mass and inertia follow from its parameters.
-    """
+    @cached_property
+    @abstractmethod
+    def compiled(self) -> _core.Solid | _core.Rigid:
+        """The body as the core knows it, made and checked once."""
+
+    @property
+    @abstractmethod
+    def lowest_position(self) -> float:
+        """Least height of the centre of mass over the plane, about, in m."""
+
+    @property
+    def mass(self) -> float:
+        """Mass m in kg."""
+        return self.compiled.mass
+
+    def attributes(self) -> dict[str, Any]:
+        """Return every parameter under its own name, as plain values that a netCDF file can hold."""
+        return self.model_dump()
+
+    def _rows(self) -> Iterator[tuple[str, str]]:
+        yield from super()._rows()
+        yield "mass", _text.value(self.mass, "kg")
+
+
+class Body(AnyBody):
+    """A homogeneous or loaded body of revolution, whose axis makes the angle θ with the plane normal."""
 
     @cached_property
     def compiled(self) -> _core.Solid:
         """The body as the core knows it, made and checked once."""
         return _core.body(type(self).__name__, self._arguments())
 
+    @property
+    def lowest_position(self) -> float:
+        """Least height of the centre of mass over the plane, in m."""
+        # Upright either way or level: in one of these the centre of mass comes lowest.
+        return min(self.compiled.lowest(np.array([cosine])) for cosine in (-1.0, 0.0, 1.0))
+
     def _rows(self) -> Iterator[tuple[str, str]]:
         yield from super()._rows()
-        yield "mass", _text.value(self.mass, "kg")
         yield "transverse_inertia", _text.value(self.transverse_inertia, "kg m²")
         yield "axial_inertia", _text.value(self.axial_inertia, "kg m²")
-
-    @property
-    def mass(self) -> float:
-        """Mass m in kg."""
-        return self.compiled.mass
 
     @property
     def transverse_inertia(self) -> float:

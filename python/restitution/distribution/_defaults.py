@@ -17,15 +17,9 @@ _PILOTS, _STILL_FAST = 64, 0.01
 _LEAST_IMPACTS, _MOST_IMPACTS = 256, 4096
 
 
-def lowest_position(run: Run) -> float:
-    """Return the height in m of the centre of mass of the body in its lowest position on the plane."""
-    # Upright either way or level: in one of these the centre of mass comes lowest.
-    return min(run.body.compiled.lowest(np.array([cosine])) for cosine in (-1.0, 0.0, 1.0))
-
-
 def speeds(run: Run) -> Floats:
     """Return the least and the greatest speed to learn, in m/s."""
-    return np.array(RANGE) * run.fall_speed(run.heights[0] - lowest_position(run))
+    return np.array(RANGE) * run.fall_speed(run.heights[0] - run.body.lowest_position)
 
 
 def heights(run: Run) -> tuple[float, ...]:
@@ -59,7 +53,7 @@ def minimum_speed(run: Run, slowest: float) -> float:
     plane. Impacts can create energy, hence never more than half of the slowest speed.
     """
     gravity = run.gravity * math.cos(run.incline)
-    gained = 2.0 * gravity * (run.body.compiled.farthest() - lowest_position(run))
+    gained = 2.0 * gravity * (run.body.compiled.farthest() - run.body.lowest_position)
     return min(math.sqrt(max(slowest**2 - gained, 0.0)), 0.5 * slowest)
 
 

@@ -58,7 +58,7 @@ class Ensemble:
 
     def __post_init__(self) -> None:
         spread = len(self.heights) > 1 or isinstance(self.heights[0], RandomHeight)
-        if self.run.angles is not None and not isinstance(self.run.spin, RandomSpin) and not spread:
+        if self.run.orientations is not None and not isinstance(self.run.spin, RandomSpin) and not spread:
             text = (
                 ": orientations, spins and the height are all given; one of them must be random, or the "
                 "fresh impacts that test a distribution are the same as those that it was learned from"
@@ -109,7 +109,7 @@ class Ensemble:
 
     def _runs(self, stream: int, share: float) -> Iterator[list[tuple[Run, int]]]:
         """Yield the runs of each round, up to that share, and the particles that the whole runs have."""
-        given = self.run.angles is not None or self.run.spins is not None
+        given = self.run.orientations is not None or self.run.spins is not None
         shuffled = np.random.default_rng(np.random.SeedSequence(self.run.seed, spawn_key=(stream,)))
         rows = shuffled.permutation(self.run.particles) if given else None
         begun = 0

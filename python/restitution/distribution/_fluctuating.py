@@ -16,7 +16,7 @@ from restitution._internal.files import HEADER, MODULE, NETCDF, path_for, path_f
 from restitution._internal.parameters import ParameterError, Problem, renamed, wrong
 from restitution._internal.resources import checked_threads
 from restitution._internal.text import Text, table, value
-from restitution.bodies import Body
+from restitution.bodies import AnyBody
 from restitution.distribution import _defaults as defaults
 from restitution.distribution._check import Check, largest_distance, warn_of_distance
 from restitution.distribution._ensemble import Ensemble, Impacts
@@ -83,7 +83,7 @@ class FluctuatingRestitution(EstimatedDistribution):
     @takes_run(Surroundings)
     def learn(
         cls,
-        body: Body,
+        body: AnyBody,
         law: CollisionLaw,
         *,
         particles: int = 20_000,
@@ -379,7 +379,7 @@ class FluctuatingRestitution(EstimatedDistribution):
 
 
 def _runs(
-    body: Body, law: CollisionLaw, arguments: dict[str, Any], heights: Sequence[Any], several: bool
+    body: AnyBody, law: CollisionLaw, arguments: dict[str, Any], heights: Sequence[Any], several: bool
 ) -> Iterator[Run]:
     """Make a run from each height; what is wrong with one of several is said with its place."""
     for k, height in enumerate(heights):

@@ -14,7 +14,7 @@ import xarray as xr
 from restitution._internal.arrays import several
 from restitution._internal.parameters import ParameterError, Parameters, Problem, shown, wrong
 from restitution._internal.resources import progress_bar
-from restitution.bodies import Body
+from restitution.bodies import AnyBody
 from restitution.drop.energy import LEDGER, WHY, EnergyWarning, factor, percent, reported_elsewhere
 from restitution.drop.simulate import SimulationInterrupted
 from restitution.drop.statistics import statistics
@@ -34,7 +34,7 @@ _PER_RUN = {
 
 
 def compare(
-    bodies: Mapping[str, Body] | Iterable[Body],
+    bodies: Mapping[str, AnyBody] | Iterable[AnyBody],
     laws: Mapping[str, CollisionLaw] | Iterable[CollisionLaw],
     *,
     progress: bool = False,
@@ -44,7 +44,7 @@ def compare(
 
     Parameters
     ----------
-    bodies, laws : mapping of str to Body, or to Law or CustomLaw, or iterable of them
+    bodies, laws : mapping of str to body, or to Law or CustomLaw, or iterable of them
         The bodies and the collision laws. Without names they are called by their class and those
         parameters in which they differ from others of their class.
     progress : bool
@@ -95,7 +95,7 @@ def compare(
         raise TypeError(f"compare(): {error}") from None
     if missing := [name for name in _NEEDED if name not in run]:
         raise TypeError(f"compare(): missing a required argument: {' and '.join(map(repr, missing))}")
-    solids = _named("bodies", bodies, Body)
+    solids = _named("bodies", bodies, AnyBody)
     rules = _named("laws", laws, CollisionLaw)
     pairs = list(product(solids, rules))
     with (
@@ -118,7 +118,7 @@ def compare(
 def _finished(
     runs: list[xr.Dataset],
     begun: xr.Dataset,
-    bodies: Mapping[str, Body],
+    bodies: Mapping[str, AnyBody],
     laws: Mapping[str, CollisionLaw],
 ) -> xr.Dataset:
     """Put the finished runs side by side, with blanks in the places of the others."""
@@ -188,7 +188,7 @@ def _written(one: Parameters) -> list[str]:
 
 
 def _side_by_side(
-    runs: list[xr.Dataset], bodies: Mapping[str, Body], laws: Mapping[str, CollisionLaw]
+    runs: list[xr.Dataset], bodies: Mapping[str, AnyBody], laws: Mapping[str, CollisionLaw]
 ) -> xr.Dataset:
     """Stack statistics, all in the same bins, in the order body, law."""
     first = runs[0]

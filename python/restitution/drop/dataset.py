@@ -9,6 +9,7 @@ import numpy.typing as npt
 import xarray as xr
 
 from restitution._core import STOP_REASONS
+from restitution.bodies import Body, RigidBody
 from restitution.drop.energy import ledger_of
 from restitution.drop.run import Run
 
@@ -21,8 +22,12 @@ def dataset(
 ) -> xr.Dataset:
     """Turn the records of the core into a Dataset of dimensions (particle, impact)."""
     variables: dict[str, Any] = dict(table)
-    if any("component" in dimensions for dimensions, _, _ in table.values()):
+    dimensions = {name for names, _, _ in table.values() for name in names}
+    if "component" in dimensions:
         variables["component"] = (("component",), ["x", "y", "z"], {"long_name": "z: the plane normal"})
+    if "quaternion" in dimensions:
+        about = {"long_name": "parts of a quaternion, the real one first"}
+        variables["quaternion"] = (("quaternion",), ["w", "x", "y", "z"], about)
     for name, size in zip(("particle", "impact"), table["time"][1].shape, strict=True):
         about = {"long_name": f"number of the {name}, from 0"}
         variables.setdefault(name, ((name,), np.arange(size), about))
@@ -34,7 +39,13 @@ def dataset(
     attrs = attributes(run, "Impacts of bouncing aspherical particles")
     if "axis" in table:
         body = run.body
+        assert isinstance(body, Body)
         attrs |= {name: getattr(body, name) for name in ("mass", "transverse_inertia", "axial_inertia")}
+    if "attitude" in table:
+        body = run.body
+        assert isinstance(body, RigidBody)
+        attrs |= {"mass": body.mass, "principal_moments": body.compiled.principal_moments}
+        attrs |= {"principal_axes": body.compiled.principal_axes}
     attrs |= ledger_of(table["energy_ratio"][1])
     reasons = table["stop_reason"][1]
     cut_short = np.count_nonzero(reasons == STOP_REASONS.index("interrupted"))

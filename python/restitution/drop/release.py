@@ -15,7 +15,7 @@ Axis = Literal["isotropic", "horizontal", "across", "thermal"]
 
 _ORIENTATIONS = (
     "'uniform-angle', 'isotropic' or a 1-D array of angles in rad, one per particle, "
-    "or a 2-D array of their pairs (θ, φ)"
+    "or a 2-D array of their pairs (θ, φ), or of quaternions (w, x, y, z) for bodies without an axis"
 )
 _SPINS = "None, (ωx, ωy, ωz) in rad/s, an array of them, one per particle, or a RandomSpin"
 _HEIGHTS = "a finite number > 0 (height of the centre of mass, m), or a RandomHeight"
@@ -36,8 +36,13 @@ def _orientation(value: Any) -> Any:
     if isinstance(value, str) and value in get_args(Orientation):
         return value
     angles = _array("orientation", value, _ORIENTATIONS, "rad", 1, 2)
-    if angles.ndim == 2 and angles.shape[1] != 2:
+    if angles.ndim == 2 and angles.shape[1] not in (2, 4):
         raise ParameterError(wrong("orientation", value, _ORIENTATIONS))
+    if angles.ndim == 2 and angles.shape[1] == 4:
+        lengths = np.linalg.norm(angles, axis=1)
+        possible = (lengths > 1e-100) & (lengths < 1e100)
+        check_each("orientation", lengths, possible, "the finite length > 0 of a quaternion")
+        return angles
     near = np.abs(angles) <= _core.MOST_RADIANS
     check_each("orientation", angles, near, "a finite angle in rad, at most 2**20 either way")
     return angles
@@ -132,11 +137,11 @@ class RandomSpin(Parameters):
         |ω| in rad/s, finite and >= 0: the same for all, or uniform between the two. Of a thermal spin one
         number, √⟨ω²⟩.
     axis : {"isotropic", "horizontal", "across", "thermal"}
-        The direction of ω: isotropic, uniform in the plane, or uniform perpendicular to the symmetry axis,
-        so that the body tumbles; independent of the rate. "thermal" is Maxwell's distribution,
-        exp(-E_rot/T): the components of ω along the axis and across it are Gaussian, with the same mean
-        energy T/2 each.
-        With the moments of inertia J about the axis and J' across it, ⟨ω²⟩ = T (1/J + 2/J').
+        The direction of ω: isotropic, uniform in the plane, or uniform perpendicular to the symmetry axis, if
+        there is one, so that the body tumbles; independent of the rate. "thermal" is Maxwell's distribution,
+        exp(-E_rot/T): the components of ω along the principal axes are Gaussian, with the same mean energy
+        T/2 each.
+        With the principal moments of inertia J₁, J₂, J₃, ⟨ω²⟩ = T (1/J₁ + 1/J₂ + 1/J₃).
 
     Examples
     --------

@@ -20,9 +20,10 @@ from restitution._internal.parameters import (
     Parameters,
     Problem,
     Whole,
+    shown,
     wrong,
 )
-from restitution.bodies import BODIES, Body
+from restitution.bodies import ANY_BODIES, AnyBody, Body, RigidBody
 from restitution.drop.release import (
     HeightOfRun,
     OrientationOfRun,
@@ -116,9 +117,12 @@ class Run(Parameters):
         no part may be below the plane.
     gravity : float
         Acceleration of gravity in m/s², > 0.
-    orientation : {"uniform-angle", "isotropic"} or array of float, shape (particles,) or (particles, 2)
+    orientation : {"uniform-angle", "isotropic"} or array of float
         The angle θ between symmetry axis and plane normal at release: uniform in [0, π) (above Eq. 18),
-        isotropic, or given in rad. Its azimuth φ is uniform in [0, 2π), or given beside θ.
+        isotropic, or given in rad, shape (particles,). Its azimuth φ is uniform in [0, 2π), or given beside
+        θ, shape (particles, 2). Of a body without an axis all rotations are alike, "isotropic", which is then
+        the default, or each particle has a quaternion (w, x, y, z), shape (particles, 4), that turns the axes
+        of the body to those of space.
     spin : array of float, shape (3,) or (particles, 3), or RandomSpin, optional
         Angular velocity ω at release, in rad/s: the same for all, one each, or drawn at random.
     release_velocity : array of float, shape (3,), optional
@@ -132,7 +136,7 @@ class Run(Parameters):
         Seed of the random numbers, in [0, 2⁶⁴). The same seed gives the same bits with any number of threads.
     """
 
-    body: Annotated[InstanceOf[Body], Allowed(BODIES)]
+    body: Annotated[InstanceOf[AnyBody], Allowed(ANY_BODIES)]
     law: Annotated[InstanceOf[CollisionLaw], Allowed(f"{LAWS}, or a CustomLaw")]
     particles: Annotated[Whole, Field(ge=1, lt=2**40, description="number of particles")] = 1000
     impacts: Annotated[Whole, Field(ge=1, lt=2**40, description="most impacts of a particle")] = 400
@@ -148,7 +152,7 @@ class Run(Parameters):
     model_config: ClassVar[ConfigDict] = ConfigDict(validate_default=True)
 
     @classmethod
-    def called(cls, function: str, body: Body, law: CollisionLaw, arguments: Mapping[str, Any]) -> Self:
+    def called(cls, function: str, body: AnyBody, law: CollisionLaw, arguments: Mapping[str, Any]) -> Self:
         """Take the parameters of a run from the keyword arguments of a function."""
         for name in arguments:
             if name not in RunArguments.__annotations__:
@@ -157,19 +161,45 @@ class Run(Parameters):
         run.warn_of_units()
         return run
 
+    @model_validator(mode="before")
+    @classmethod
+    def _isotropic_without_an_axis(cls, given: Any) -> Any:
+        if isinstance(given, dict) and isinstance(given.get("body"), RigidBody):
+            return {"orientation": "isotropic"} | given
+        return given
+
+    @model_validator(mode="after")
+    def _oriented_as_the_body_can_be(self) -> "Run":
+        quaternions = np.ndim(self.orientation) == 2 and self.orientation.shape[1] == 4
+        axis = isinstance(self.body, Body)
+        if quaternions and axis:
+            allowed = "angles, for a body of revolution"
+            raise ParameterError(wrong("orientation", self.orientation, allowed))
+        if not axis and not quaternions and not self._has_all_rotations():
+            allowed = "'isotropic' or quaternions, shape (particles, 4), for a body without an axis"
+            raise ParameterError(wrong("orientation", self.orientation, allowed))
+        if not axis and isinstance(self.spin, RandomSpin) and self.spin.axis == "across":
+            allowed = "'isotropic', 'horizontal' or 'thermal', for a body without an axis"
+            raise ParameterError(wrong("axis", "across", allowed))
+        return self
+
+    def _has_all_rotations(self) -> bool:
+        return isinstance(self.orientation, str) and self.orientation == "isotropic"
+
     @model_validator(mode="after")
     def _nothing_below_the_plane(self) -> "Run":
-        angles = self.angles
-        if angles is not None and angles.size != self.particles:
-            text = f" has {angles.size} angles: must have one for each of particles = {self.particles}"
+        given = self.orientations
+        if given is not None and len(given) != self.particles:
+            what = "quaternions" if given.ndim == 2 and given.shape[1] == 4 else "angles"
+            text = f" has {len(given)} {what}: must have one for each of particles = {self.particles}"
             raise ParameterError(Problem("orientation", text))
-        solid = self.body.compiled
+        solid: Any = self.body.compiled
         least = self.heights[0]
         if solid.clears(least):
             return self
-        cosines = None if angles is None else np.cos(angles)
-        if cosines is None or not solid.clears(least, cosines):
-            lowest = solid.farthest() if cosines is None else solid.lowest(cosines)
+        placed = given if self.angles is None else np.cos(self.angles)
+        if placed is None or not solid.clears(least, placed):
+            lowest = solid.farthest() if placed is None else solid.lowest(placed)
             allowed = f"at least {lowest!r} m, or a part of the body would reach below the plane"
             raise ParameterError(wrong("release_height", self.release_height, allowed))
         return self
@@ -182,8 +212,9 @@ class Run(Parameters):
         units = []
         for name, field in type(self.body).model_fields.items():
             length = getattr(self.body, name)
-            if (field.description or "").split(";")[0] == "m" and np.max(length) > 1.0:
-                units.append(f"{name} = {length} is taken in metres")
+            in_metres = (field.description or "").split(";")[0] == "m" and length is not None
+            if in_metres and np.max(length) > 1.0:
+                units.append(f"{name} = {shown(length)} is taken in metres")
         if self.heights[1] > 10.0:
             units.append(f"release_height = {self.heights[1]:g} is taken in metres")
         if self.angles is not None and (largest := float(np.abs(self.angles).max())) > 2.0 * math.pi:
@@ -195,7 +226,7 @@ class Run(Parameters):
     def _within_the_digits(self) -> "Run":
         """Refuse heights, speeds and spins so large that a double has no digits left for the body."""
         solid = self.body.compiled
-        least = min(solid.lowest(np.array([cosine])) for cosine in (-1.0, 0.0, 1.0))
+        least = self.body.lowest_position
         highest = self.heights[1]
         if highest > _BEYOND * least:
             of = f"{_BEYOND:g} times the least height of the centre of mass over the plane"
@@ -250,10 +281,15 @@ class Run(Parameters):
     @property
     def angles(self) -> FloatArray | None:
         """The angles θ at release where they were given, in rad, shape (particles,)."""
-        if isinstance(self.orientation, str):
+        given = self.orientations
+        if given is None or isinstance(self.body, RigidBody):
             return None
-        angles: FloatArray = self.orientation
-        return angles if angles.ndim == 1 else angles[:, 0]
+        return given if given.ndim == 1 else given[:, 0]
+
+    @property
+    def orientations(self) -> FloatArray | None:
+        """The angles or quaternions at release where they were given."""
+        return None if isinstance(self.orientation, str) else self.orientation
 
     @property
     def spins(self) -> FloatArray | None:
@@ -263,7 +299,7 @@ class Run(Parameters):
     def of(self, rows: npt.NDArray[np.int64]) -> Self:
         """Return the run of these of its particles; what is drawn for them depends on their new numbers."""
         changed: dict[str, Any] = {"particles": rows.size}
-        if self.angles is not None:
+        if self.orientations is not None:
             changed["orientation"] = self.orientation[rows]
         if self.spins is not None:
             changed["spin"] = self.spins[rows]
@@ -286,9 +322,9 @@ class Run(Parameters):
     def attributes(self) -> dict[str, Any]:
         """Return every parameter under its own name, as plain values that a netCDF file can hold."""
         written: dict[str, dict[str, Any]] = {
-            "body": {"body": type(self.body).__name__, **self.body.model_dump()},
+            "body": {"body": type(self.body).__name__, **self.body.attributes()},
             "law": {"law": type(self.law).__name__, **self.law.attributes()},
-            "orientation": {"orientation": self.orientation if self.angles is None else "given"},
+            "orientation": {"orientation": self.orientation if self.orientations is None else "given"},
             "spin": {"spin": self.spin if self.spins is None else "given"},
         }
         if isinstance(self.release_height, RandomHeight):

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Literal, TypeAlias, Unpack, get_args
 from restitution import _core
 from restitution._internal.parameters import ParameterError, wrong
 from restitution._internal.resources import check_memory, checked_threads, progress_bar
-from restitution.bodies import Body
+from restitution.bodies import AnyBody
 from restitution.drop.run import Run, RunArguments, takes_run
 from restitution.laws import CollisionLaw
 
@@ -46,7 +46,7 @@ class SimulationInterrupted(KeyboardInterrupt):
 
 @takes_run(RunArguments)
 def simulate(
-    body: Body,
+    body: AnyBody,
     law: CollisionLaw,
     *,
     record: Record = "impacts",
@@ -80,7 +80,11 @@ def simulate(
         contact. Over particles: ``impacts``, ``stop_reason``, ``release_angle``; where heights are
         drawn also ``release_height``; with spin, release velocity or
         incline also ``release_azimuth`` and, over (particle, component), ``release_spin``. With
+        A body without a symmetry axis has no ``angle``, ``release_angle`` and ``release_azimuth``; its
+        ``contact`` is the number of the ball or vertex that touched, from 1, and ``release_attitude``, over
+        (particle, quaternion), says how it was released. With
         ``record="state"`` also, over (particle, impact, component), ``position`` and ``axis`` at the impact,
+        or ``attitude``, the quaternion (w, x, y, z) that turns the axes of the body to those of space,
         which both stay through it, ``velocity_before``, ``velocity_after``, ``angular_velocity_before`` and
         ``angular_velocity_after``; `trajectory` makes of them the motion between impacts. Units are in the
         variables' attributes, all parameters in the Dataset's, as are ``energy_created_impacts``, the
@@ -141,7 +145,7 @@ def simulate_run(
 
     number = checked_threads(threads)
     state = checked_record(record) == "state"
-    columns = _core.columns(run.law.compiled, state)
+    columns = _core.columns(run.body.compiled, run.law.compiled, state)
     check_memory(run.particles * run.impacts, _core.bytes_per_impact(columns) + state * POSITION)
     with progress_bar("simulate", run.particles, "particles", show=progress) as tell:
         table, interrupted = _core.simulate(run.parameters(), number, tell, columns=columns)

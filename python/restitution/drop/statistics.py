@@ -13,7 +13,7 @@ from restitution._core import STOP_REASONS
 from restitution._internal.arrays import flag, whole
 from restitution._internal.parameters import Problem, TooLargeError
 from restitution._internal.resources import available_memory, checked_threads, progress_bar
-from restitution.bodies import Body
+from restitution.bodies import AnyBody
 from restitution.drop.batches import BATCHES, batches_of, origin, standard_errors
 from restitution.drop.bins import FRACTION_BINS, all_edges_from, assemble, by_velocity, increasing_edges
 from restitution.drop.dataset import attributes
@@ -34,7 +34,7 @@ MOMENTS = {"mean_restitution": "mean", **{name: name for name in _SAME}}
 
 @takes_run(RunArguments)
 def statistics(
-    body: Body,
+    body: AnyBody,
     law: CollisionLaw,
     *,
     threads: int | None = None,

@@ -23,7 +23,7 @@ def _by_name(kinds: Iterable[type[Parameters]]) -> dict[str, type[Parameters]]:
 
 # Table: the key that chooses a kind of body, law or material, and the kinds there are.
 _KINDS: dict[str, tuple[str, dict[str, type[Parameters]]]] = {
-    "body": ("shape", _by_name(bodies.KINDS)),
+    "body": ("shape", _by_name((*bodies.KINDS, *bodies.RIGID))),
     "law": ("type", _by_name(laws.KINDS)),
     "normal": ("type", _by_name(laws.MATERIALS)),  # a table [law.normal]; a number stands for itself
 }

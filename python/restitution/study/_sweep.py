@@ -292,7 +292,7 @@ def estimate(study: Study, threads: int) -> Estimate:
     points, particles = study.design.points, study.effort.particles
     tried = min(points, _POINTS)
     each = float(np.mean([_particle(_some(study, tried), number) for number in range(tried)]))
-    given = study.base.angles is not None or study.base.spins is not None  # one for each particle
+    given = study.base.orientations is not None or study.base.spins is not None  # one for each particle
     whole_ones = given or tried * particles * each < _WHOLE
     some = particles if whole_ones else max(2 * study.effort.batches, int(_WHOLE / (tried * each)))
     _done(_some(study, 1), some)  # the first one loads what all need

@@ -174,7 +174,7 @@ def effort(given: Any, run: Run) -> Effort:
     if not until and most != run.particles:
         text = ": is used with `until` only; without it run.particles is the number"
         raise ParameterError(Problem("effort.most_particles", text))
-    if until and (run.angles is not None or run.spins is not None):
+    if until and (run.orientations is not None or run.spins is not None):
         text = ": particles cannot be added where orientation or spin are given one by one"
         raise ParameterError(Problem("effort.until", text))
     blocks = 1 << (most // run.particles).bit_length() - 1

@@ -2,7 +2,9 @@
 
 mod certify;
 mod lanes;
+mod plane;
 
 pub(crate) use lanes::{
     GapEvaluation, LastContact, LocatedContact, MOST_STEPS, Prediction, Search, Steps,
 };
+pub(crate) use plane::{Departure, INVISIBLE, Instant, LAST};

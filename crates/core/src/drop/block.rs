@@ -1,11 +1,13 @@
 //! A block of particles, and the choice of the bounce loop for their motion, hull and law.
 
-use super::Source;
 use super::lanes::{
-    Advance, Dimension, GROUPS, General, Inlined, Lost, Planar, Sink, Spatial, bounce,
+    Advance, Dimension, GROUPS, General, Inlined, Lost, Planar, Release, Sink, Spatial, bounce,
 };
+use super::{Source, rigid};
 use crate::Error;
-use crate::shape::Surface;
+use crate::motion::State;
+use crate::random::of_impact;
+use crate::shape::{AnyBody, Body, Rigid, Surface};
 use crate::simd::Level;
 use crate::threads::Monitor;
 use pulp::{Simd, WithSimd};
@@ -74,21 +76,30 @@ impl<R: Source, T: Sink> WithSimd for Block<'_, R, T> {
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) -> Self::Output {
         let plan = self.source.plan();
-        let (body, law, slope) = (&plan.body, &plan.law, plan.slope);
+        let body = match &plan.run.body {
+            AnyBody::Rigid(body) => return self.rigid(body),
+            AnyBody::Revolution(solid) => &solid.scaled,
+        };
+        let (law, slope) = (&plan.law, plan.slope);
         // The paper's runs have a bounce loop of their own where they are not held up by memory.
         match (&body.hull, plan.at_rest, &plan.law.steady()) {
             (Surface::EqualBalls(hull), true, Some(law)) if T::TOGETHER => {
-                self.run::<S, Planar>(simd, &Inlined::new(body, hull, law, slope))
+                self.run::<S, Planar>(simd, body, &Inlined::new(body, hull, law, slope))
             }
-            (_, true, _) => self.run::<S, Planar>(simd, &General { body, law, slope }),
-            (_, false, _) => self.run::<S, Spatial>(simd, &General { body, law, slope }),
+            (_, true, _) => self.run::<S, Planar>(simd, body, &General { body, law, slope }),
+            (_, false, _) => self.run::<S, Spatial>(simd, body, &General { body, law, slope }),
         }
     }
 }
 
 impl<R: Source, T: Sink> Block<'_, R, T> {
     #[inline(always)]
-    fn run<S: Simd, K: Dimension>(self, simd: S, cycle: &impl Advance<S, K>) -> Result<(), Error> {
+    fn run<S: Simd, K: Dimension>(
+        self,
+        simd: S,
+        body: &Body,
+        cycle: &impl Advance<S, K>,
+    ) -> Result<(), Error> {
         let Self {
             source,
             particles,
@@ -97,13 +108,63 @@ impl<R: Source, T: Sink> Block<'_, R, T> {
         } = self;
         bounce::<S, K, _, GROUPS>(
             simd,
-            (&source.plan().body, source.plan().limits()),
+            (body, source.plan().limits()),
             cycle,
-            (source, particles),
+            (&Released { source, body }, particles),
             sink,
             || !monitor.is_cancelled(),
         )
         .map_err(|lost| error(source, lost))
+    }
+
+    /// Bodies of any shape, one after the other.
+    #[inline(always)]
+    fn rigid(self, body: &Rigid) -> Result<(), Error> {
+        let Self {
+            source,
+            particles,
+            monitor,
+            sink,
+        } = self;
+        let plan = source.plan();
+        let bouncing = rigid::Bouncing {
+            body,
+            law: &plan.law,
+            slope: plan.slope,
+            limits: plan.limits(),
+        };
+        sink.begin();
+        for particle in particles {
+            if monitor.is_cancelled() {
+                break;
+            }
+            let (plan, number) = source.origin(particle);
+            let start = plan.rigid(body, number);
+            let chance = |impact| of_impact(plan.run.seed, number as u64, impact);
+            bouncing
+                .bounce((particle, start), chance, sink, || !monitor.is_cancelled())
+                .map_err(|lost| error(source, lost))?;
+        }
+        Ok(())
+    }
+}
+
+/// The start of the particles of a body of revolution.
+struct Released<'a, R> {
+    source: &'a R,
+    body: &'a Body,
+}
+
+impl<R: Source> Release for Released<'_, R> {
+    #[inline(always)]
+    fn start(&self, particle: usize) -> State {
+        let (plan, number) = self.source.origin(particle);
+        plan.state(self.body, number)
+    }
+
+    fn chance(&self, particle: usize, impact: usize) -> f64 {
+        let (plan, number) = self.source.origin(particle);
+        of_impact(plan.run.seed, number as u64, impact as u64)
     }
 }
 

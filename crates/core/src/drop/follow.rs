@@ -5,11 +5,13 @@ use crate::drop::single::{Lone, trajectory_of};
 use crate::drop::{NoConvergence, SingleImpact, StopReason};
 use crate::drop::{Plan, Run, Scales};
 use crate::motion::State;
+use crate::shape::Body;
 
 /// A particle of a run, ready to be released.
 pub struct Followed<'a> {
     plan: Plan<'a>,
     particle: usize,
+    body: Body,
     /// The core's units of length, time and speed, in SI units.
     pub scales: Scales,
     /// The state at release, in the core's units.
@@ -17,18 +19,20 @@ pub struct Followed<'a> {
 }
 
 impl<'a> Followed<'a> {
-    /// Particle number `particle`, with the random numbers that it has in [`Run::simulate`].
+    /// Particle number `particle` of a body of revolution, with the random numbers that it has in [`Run::simulate`].
     ///
     /// # Errors
     /// [`Error::Parameter`] or [`Error::Magnitude`] for a parameter of the run out of range, or a particle that it does not have.
     pub fn new(run: &'a Run<'a>, particle: usize) -> Result<Self, Error> {
         let plan = Plan::new(run)?;
+        let body = run.body.revolution()?.scaled;
         let allowed = "less than the number of particles";
         Error::unless(particle < run.particles, "particle", particle, allowed)?;
         Ok(Self {
             particle,
             scales: plan.scales,
-            release: plan.state(particle),
+            release: plan.state(&body, particle),
+            body,
             plan,
         })
     }
@@ -53,7 +57,7 @@ impl<'a> Followed<'a> {
             state: self.release,
             drawn: (plan.run.seed, self.particle as u64),
         };
-        trajectory_of(&release, &plan.body, &plan.law, plan.slope, limits, counted).map_err(
+        trajectory_of(&release, &self.body, &plan.law, plan.slope, limits, counted).map_err(
             |NoConvergence| Error::Numerical {
                 particle: self.particle as u64,
                 seed: plan.run.seed,

@@ -5,6 +5,7 @@ mod follow;
 mod lanes;
 mod plan;
 mod release;
+mod rigid;
 mod scales;
 mod series;
 mod single;
@@ -12,7 +13,7 @@ mod stop;
 
 pub(crate) use block::{BLOCK, bounce_block, even, share};
 pub use follow::Followed;
-pub(crate) use lanes::{GROUPS, Impact, Meanwhile, Sink};
+pub(crate) use lanes::{GROUPS, Impact, Meanwhile, Pose, Sink};
 pub(crate) use plan::Plan;
 pub use release::{About, Height, Orientation, Spin};
 pub use scales::Scales;
@@ -24,14 +25,15 @@ pub use stop::{COLLAPSE_RUN, Limits, StopReason};
 
 use crate::law::Law;
 use crate::math::Vector;
-use crate::shape::Solid;
+use crate::shape::AnyBody;
 use crate::simd::elementary::sincos;
+use crate::{Error, Value};
 
 /// A run, in SI units.
 #[derive(Debug, Clone, Copy)]
 pub struct Run<'a> {
     /// The body.
-    pub body: Solid,
+    pub body: AnyBody<'a>,
     /// The collision law.
     pub law: Law<'a>,
     /// Number of particles.
@@ -42,7 +44,7 @@ pub struct Run<'a> {
     pub release_height: Height,
     /// Acceleration of gravity, in m/s².
     pub gravity: f64,
-    /// Distribution of the symmetry axis at release.
+    /// Distribution of the symmetry axis, or of the attitude, at release.
     pub orientation: Orientation<'a>,
     /// Distribution of the angular velocity at release, in rad/s.
     pub spin: Spin<'a>,
@@ -60,10 +62,36 @@ impl Run<'_> {
     /// The origin about which moments of ε are summed: ε_n at the normal speed of the first impact; for random heights, of a release
     /// from the middle one.
     pub fn origin(&self) -> f64 {
-        let drop = self.release_height.middle() - self.body.unit;
+        let drop = self.release_height.middle() - self.body.unit();
         let gained = 2.0 * self.gravity * sincos(self.incline).1 * drop.max(0.0);
         let start = self.release_velocity.z;
         self.law.normal.at(start.mul_add(start, gained).sqrt())
+    }
+
+    /// Refuses orientations and spins that refer to an axis, or to none, where the body is of the other kind.
+    fn check_directions(&self) -> Result<(), Error> {
+        let allowed = match self.body {
+            AnyBody::Revolution(_) => match self.orientation {
+                Orientation::Attitudes(_) => "angles, for a body of revolution",
+                _ => return Ok(()),
+            },
+            AnyBody::Rigid(_) => match self.orientation {
+                Orientation::Isotropic | Orientation::Attitudes(_) => {
+                    return self.spin.check_without_axis();
+                }
+                _ => "'isotropic' or quaternions, for a body without an axis",
+            },
+        };
+        let given = match self.orientation {
+            Orientation::UniformAngle => "uniform-angle",
+            Orientation::Attitudes(_) => "quaternions",
+            _ => "angles",
+        };
+        Err(Error::Parameter {
+            name: "orientation",
+            value: Value::Name(given.into()),
+            allowed: allowed.into(),
+        })
     }
 
     /// Whether all particles are released at rest over a level plane. All directions in the plane are then equivalent, unless a law of

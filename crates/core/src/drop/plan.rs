@@ -1,12 +1,13 @@
 //! A run that has been checked, in the core's units, ready for the bounce loop.
 
+use super::rigid::RigidState;
 use super::{Height, Orientation, Run, Scales};
 use crate::Error;
 use crate::drop::Limits;
 use crate::law::Law;
-use crate::math::Vector;
+use crate::math::{Quaternion, Vector};
 use crate::motion::State;
-use crate::shape::{Body, Solid};
+use crate::shape::{AnyBody, Body, Rigid, Solid};
 use crate::simd::elementary::sincos;
 use std::f64::consts::FRAC_PI_2;
 use std::ops::Range;
@@ -14,7 +15,6 @@ use std::ops::Range;
 /// A run that has been checked, in the core's units.
 pub(crate) struct Plan<'a> {
     pub run: &'a Run<'a>,
-    pub body: Body,
     pub law: Law<'a>,
     pub scales: Scales,
     /// Height of the centre of mass at release.
@@ -43,6 +43,7 @@ impl<'a> Plan<'a> {
             allowed,
         )?;
         run.orientation.check(run.particles)?;
+        run.check_directions()?;
         let incline = run.incline;
         let allowed = "in [0, pi/2) (rad)";
         Error::unless(
@@ -52,7 +53,7 @@ impl<'a> Plan<'a> {
             allowed,
         )?;
         let (sine, cosine) = sincos(incline);
-        let scales = Scales::new(run.body.unit, run.gravity * cosine)?;
+        let scales = Scales::new(run.body.unit(), run.gravity * cosine)?;
         run.spin.check(run.particles, FASTEST / scales.time)?;
         let velocity = run.release_velocity;
         for component in [velocity.x, velocity.y, velocity.z] {
@@ -67,32 +68,43 @@ impl<'a> Plan<'a> {
         }
         let plan = Self {
             run,
-            body: run.body.scaled,
-            law: run.law.scaled(scales.speed, run.body.mass),
+            law: run.law.scaled(scales.speed, run.body.mass()),
             scales,
             height: run.release_height.scaled(scales.length),
             velocity: velocity / scales.speed,
             slope: sine / cosine,
-            at_rest: run.is_at_rest(),
+            at_rest: run.is_at_rest() && run.body.revolution().is_ok(),
         };
         run.release_height.check()?;
-        let lowest = plan.height.lowest();
-        let clear = |cosine: f64| Solid::clears(lowest, plan.body.hull.support(cosine));
-        let high = Solid::clears(run.release_height.lowest(), run.body.farthest());
-        let clear = high
-            || match run.orientation {
-                Orientation::Given(_) | Orientation::Directions(_) => {
-                    (0..run.particles).all(|i| clear(plan.release(i).1))
-                }
-                Orientation::UniformAngle | Orientation::Isotropic => false,
-            };
         Error::unless(
-            clear && lowest.is_finite(),
+            plan.is_clear() && plan.height.lowest().is_finite(),
             "release_height",
             run.release_height.lowest(),
             "finite and high enough that no part is below the plane at release",
         )?;
         Ok(plan)
+    }
+
+    /// Whether no part is below the plane at release.
+    fn is_clear(&self) -> bool {
+        let run = self.run;
+        let lowest = run.release_height.lowest();
+        let (high, given) = match run.body {
+            AnyBody::Revolution(solid) => (solid.farthest(), self.height.lowest()),
+            AnyBody::Rigid(body) => (body.unit, lowest),
+        };
+        let random = matches!(
+            run.orientation,
+            Orientation::UniformAngle | Orientation::Isotropic
+        );
+        let clear = |particle| match run.body {
+            AnyBody::Revolution(solid) => {
+                let (_, cosine) = self.release(particle);
+                Solid::clears(given, solid.scaled.hull.support(cosine))
+            }
+            AnyBody::Rigid(body) => Solid::clears(given, body.lowest(self.attitude(particle))),
+        };
+        Solid::clears(lowest, high) || !random && (0..run.particles).all(clear)
     }
 
     /// Sine and cosine of the angle at release.
@@ -112,12 +124,40 @@ impl<'a> Plan<'a> {
         self.run.release_height.draw(self.run.seed, particle as u64)
     }
 
+    /// The attitude at release of a body without an axis, from the axes that it was given in.
+    pub fn attitude(&self, particle: usize) -> Quaternion {
+        let (seed, number) = (self.run.seed, particle as u64);
+        self.run.orientation.attitude(seed, number)
+    }
+
+    /// Its angular velocity, in rad/s.
+    pub fn spin(&self, body: &Rigid, particle: usize) -> Vector {
+        let (seed, number) = (self.run.seed, particle as u64);
+        let principal = self.attitude(particle) * body.axes;
+        let moments = body.top.moments();
+        self.run
+            .spin
+            .draw_without_axis(seed, number, principal, moments)
+    }
+
+    /// The state of such a particle at release.
+    pub fn rigid(&self, body: &Rigid, particle: usize) -> RigidState {
+        let attitude = (self.attitude(particle) * body.axes).normalized();
+        let spin = self.spin(body, particle) * self.scales.time;
+        RigidState {
+            height: self.height(particle),
+            velocity: self.velocity,
+            attitude,
+            spin: attitude.inverse().rotate(spin),
+        }
+    }
+
     /// Azimuth at release, in rad, and angular velocity, in rad/s.
-    pub fn spinning(&self, particle: usize) -> (f64, Vector) {
+    pub fn spinning(&self, body: &Body, particle: usize) -> (f64, Vector) {
         let (seed, number) = (self.run.seed, particle as u64);
         let azimuth = self.run.orientation.azimuth(seed, number);
         let angle = self.release(particle);
-        let ratio = self.body.transverse / self.body.axial;
+        let ratio = body.transverse / body.axial;
         let axis = (angle, sincos(azimuth));
         let spin = self.run.spin.draw(seed, number, axis, ratio);
         (azimuth, spin)
@@ -140,21 +180,21 @@ impl<'a> Plan<'a> {
 
     /// The state of a particle at release. At rest over a level plane the azimuth does not matter, and the axis is in the x–z plane.
     #[inline(always)]
-    pub fn state(&self, particle: usize) -> State {
+    pub fn state(&self, body: &Body, particle: usize) -> State {
         let (sine, cosine) = self.release(particle);
         let height = self.height(particle);
         if self.at_rest {
             return State {
-                height: height - self.body.hull.level(),
+                height: height - body.hull.level(),
                 velocity: Vector::default(),
                 axis: Vector::new(sine, 0.0, cosine),
                 precession: Vector::default(),
             };
         }
-        let (azimuth, spin) = self.spinning(particle);
+        let (azimuth, spin) = self.spinning(body, particle);
         let (y, x) = sincos(azimuth);
         let axis = Vector::new(sine * x, sine * y, cosine);
         let spin = spin * self.scales.time;
-        State::with_spin(&self.body, height, self.velocity, axis, spin)
+        State::with_spin(body, height, self.velocity, axis, spin)
     }
 }

@@ -1,10 +1,7 @@
 //! Several runs side by side: particles that differ only in how they are released.
 
-use super::lanes::Release;
 use super::{Plan, Run};
 use crate::Error;
-use crate::motion::State;
-use crate::random::of_impact;
 use std::ops::Range;
 
 /// Where particles come from: one run, or several.
@@ -79,18 +76,5 @@ impl Source for Series<'_> {
         let part = self.ends.partition_point(|&end| end <= particle);
         let before = if part > 0 { self.ends[part - 1] } else { 0 };
         (&self.plans[part], self.first[part] + (particle - before))
-    }
-}
-
-impl<T: Source> Release for T {
-    #[inline(always)]
-    fn start(&self, particle: usize) -> State {
-        let (plan, number) = self.origin(particle);
-        plan.state(number)
-    }
-
-    fn chance(&self, particle: usize, impact: usize) -> f64 {
-        let (plan, number) = self.origin(particle);
-        of_impact(plan.run.seed, number as u64, impact as u64)
     }
 }

@@ -2,8 +2,8 @@
 //! impact, or the states of a trajectory.
 
 use super::lanes::{
-    Collide, ContactPoint, Found, General, Group, Idle, Impact, Meanwhile, Planar, Release, Sink,
-    Spatial, bounce, find,
+    Collide, ContactPoint, Found, General, Group, Idle, Impact, Meanwhile, Planar, Pose, Release,
+    Sink, Spatial, bounce, find,
 };
 use super::stop::{Limits, StopReason};
 use crate::contact;
@@ -206,15 +206,19 @@ impl<F: FnMut(&SingleImpact) -> bool> Sink for Reporter<'_, F> {
 
     fn begin(&mut self) {}
 
-    fn impact<S: Simd, const K: usize>(&mut self, _: usize, impact: &Impact<S, K>) {
-        if !impact.active.any() {
+    fn impact<S: Simd, P: Pose<S, K>, const K: usize>(
+        &mut self,
+        _: usize,
+        impact: &Impact<S, P, K>,
+    ) {
+        let (true, Some([before, after])) = (impact.active.any(), impact.pose.symmetric()) else {
             return;
-        }
+        };
         self.go_on.set((self.record)(&SingleImpact {
             time: impact.time.as_slice()[0],
-            before: impact.before.lane(0),
-            after: impact.after.lane(0),
-            sphere: Sphere::of(impact.sphere.as_slice()[0]),
+            before: before.lane(0),
+            after: after.lane(0),
+            sphere: Sphere::BOTH[impact.part.as_slice()[0] as usize - 1],
         }));
     }
 

@@ -7,7 +7,7 @@ use super::{
 use crate::Error;
 use crate::describe::Kind;
 use crate::math::Vector;
-use crate::simd::Pack;
+use crate::simd::{Pack, one};
 use pulp::{Scalar, Simd, WithSimd};
 
 /// A collision law: a normal coefficient, which may borrow a table and may scatter, and a rule for the impulse.
@@ -162,12 +162,33 @@ impl<'a> Law<'a> {
     /// # Errors
     /// Where a law of one's own gives no impulse that is possible.
     pub fn answer(&self, compliance: &Compliance, velocity: Vector) -> Result<Answer, Fault> {
+        self.answer_with(compliance, velocity, |normal| normal)
+    }
+
+    /// The same where ε_n scatters, with a uniform number in (0, 1).
+    pub(crate) fn answer_drawn(
+        &self,
+        compliance: &Compliance,
+        velocity: Vector,
+        chance: f64,
+    ) -> Result<Answer, Fault> {
+        let drawn = |normal| scattered(one(normal), self.deviation, one(chance)).as_slice()[0];
+        self.answer_with(compliance, velocity, drawn)
+    }
+
+    /// The impulse with a function of what ε_n is at the speed of the contact.
+    fn answer_with(
+        &self,
+        compliance: &Compliance,
+        velocity: Vector,
+        drawn: impl Fn(f64) -> f64,
+    ) -> Result<Answer, Fault> {
         // One that leaves only touches.
         let velocity = Vector::new(velocity.x, velocity.y, velocity.z.min(0.0));
         if let Some(law) = &self.custom {
             return law.answer(compliance, velocity);
         }
-        let normal = self.normal.at(velocity.z.abs());
+        let normal = drawn(self.normal.at(velocity.z.abs()));
         Ok(self.rule.answer(compliance, velocity, normal))
     }
 

@@ -1,6 +1,6 @@
 //! Symmetric 3×3 matrices: tensors of inertia, and what an impulse does to a contact.
 
-use super::Vector;
+use super::{Quaternion, Vector};
 use std::ops::Mul;
 
 /// A symmetric 3×3 matrix.
@@ -31,3 +31,81 @@ impl Mul<Vector> for Symmetric {
         )
     }
 }
+
+impl Symmetric {
+    /// The diagonal matrix with these entries.
+    pub const fn diagonal([xx, yy, zz]: [f64; 3]) -> Self {
+        Self {
+            xx,
+            yy,
+            zz,
+            xy: 0.0,
+            xz: 0.0,
+            yz: 0.0,
+        }
+    }
+
+    /// The matrix of this operation on vectors of the body, in the axes of space.
+    pub fn turned(&self, attitude: Quaternion) -> Self {
+        let back = attitude.inverse();
+        let [x, y, z] = UNITS.map(|unit| attitude.rotate(*self * back.rotate(unit)));
+        Self {
+            xx: x.x,
+            yy: y.y,
+            zz: z.z,
+            xy: 0.5 * (x.y + y.x),
+            xz: 0.5 * (x.z + z.x),
+            yz: 0.5 * (y.z + z.y),
+        }
+    }
+
+    /// Eigenvalues, and the rotation from the eigenvectors' axes to those of the matrix: Jacobi's method, which finds even small
+    /// eigenvalues to the last digits. The axes of a diagonal matrix are its own.
+    pub fn principal(&self) -> ([f64; 3], Quaternion) {
+        let mut m = [
+            [self.xx, self.xy, self.xz],
+            [self.xy, self.yy, self.yz],
+            [self.xz, self.yz, self.zz],
+        ];
+        let mut axes = Quaternion::IDENTITY;
+        for _ in 0..SWEEPS {
+            let mut rests = true;
+            for (i, j, k) in [(0, 1, 2), (1, 2, 0), (2, 0, 1)] {
+                let off = m[i][j];
+                // Smaller entries do not change the eigenvalues.
+                if off.abs() <= 0.125 * f64::EPSILON * (m[i][i] * m[j][j]).abs().sqrt() {
+                    continue;
+                }
+                rests = false;
+                let tau = 0.5 * (m[j][j] - m[i][i]) / off;
+                let tangent = 1.0_f64.copysign(tau) / (tau.abs() + (1.0 + tau * tau).sqrt());
+                let cosine = 1.0 / (1.0 + tangent * tangent).sqrt();
+                let sine = tangent * cosine;
+                m[i][i] -= tangent * off;
+                m[j][j] += tangent * off;
+                (m[i][j], m[j][i]) = (0.0, 0.0);
+                let (a, b) = (m[i][k], m[j][k]);
+                m[i][k] = cosine * a - sine * b;
+                m[j][k] = sine * a + cosine * b;
+                (m[k][i], m[k][j]) = (m[i][k], m[j][k]);
+                // Half the angle about axis k.
+                let half = (0.5 * (1.0 + cosine)).sqrt();
+                let mut turn = [0.0; 3];
+                turn[k] = -0.5 * sine / half;
+                axes = (axes * Quaternion::new(half, turn[0], turn[1], turn[2])).normalized();
+            }
+            if rests {
+                break;
+            }
+        }
+        ([m[0][0], m[1][1], m[2][2]], axes)
+    }
+}
+
+/// Rounds of Jacobi's method after which it has converged; it needs five or six.
+const SWEEPS: usize = 30;
+const UNITS: [Vector; 3] = [
+    Vector::new(1.0, 0.0, 0.0),
+    Vector::new(0.0, 1.0, 0.0),
+    Vector::new(0.0, 0.0, 1.0),
+];

@@ -3,8 +3,9 @@
 
 use super::variable::{Stored, Values, Variable, When};
 use crate::drop::Plan;
-use crate::drop::{Impact, StopReason};
+use crate::drop::{Impact, Pose, StopReason};
 use crate::memory::{filled, zeros};
+use crate::shape::AnyBody;
 use crate::simd::LANES;
 use crate::simd::elementary::angle_in_lanes;
 use crate::{Error, Law, Normal, Value};
@@ -19,7 +20,7 @@ macro_rules! columns {
     ($($(#[$doc:meta])* $name:ident: $kind:ty { $($about:tt)* } = |$impact:ident, $plan:ident| $value:expr;)*) => {
         /// The variables of an impact.
         pub const PER_IMPACT: &[Variable] = &[$(
-            Variable { name: stringify!($name), vector: <$kind>::VECTOR, $($about)*, ..Variable::PLAIN }
+            Variable { $($about)*, ..Variable::named(stringify!($name), <$kind>::COMPONENTS) }
         ),*];
 
         /// Which variables of an impact a run records.
@@ -42,7 +43,7 @@ macro_rules! columns {
                     match name {
                         $(stringify!($name) => chosen.$name = true,)*
                         _ => {
-                            let known: Vec<_> = PER_IMPACT.iter().map(|known| known.name).collect();
+                            let known = [$(stringify!($name)),*];
                             return Err(Error::Parameter {
                                 name: "columns",
                                 value: Value::Name(name.to_owned()),
@@ -56,8 +57,25 @@ macro_rules! columns {
 
             /// The names of the chosen variables, in the order of [`PER_IMPACT`].
             pub fn names(&self) -> Vec<&'static str> {
-                let chosen = [$(self.$name),*].into_iter().zip(PER_IMPACT);
-                chosen.filter(|(chosen, _)| *chosen).map(|(_, about)| about.name).collect()
+                let chosen = [$((self.$name, stringify!($name))),*].into_iter();
+                chosen.filter(|(chosen, _)| *chosen).map(|(_, name)| name).collect()
+            }
+
+            /// The variables that are recorded of a body under a law by default, with the full state at each impact if `state`.
+            pub fn usual(body: AnyBody<'_>, law: &Law<'_>, state: bool) -> Self {
+                let axis = matches!(body, AnyBody::Revolution(_));
+                let recorded = |about: &Variable| match about.when {
+                    When::Always => true,
+                    When::HasAxis => axis,
+                    When::HasNoAxis => !axis,
+                    When::NormalVaries => !matches!(law.normal, Normal::Constant(_)),
+                    When::StateAsked => state,
+                    When::StateAskedOfAxis => state && axis,
+                    When::StateAskedWithoutAxis => state && !axis,
+                    When::HeightVaries | When::InSpace => false,
+                };
+                let mut about = PER_IMPACT.iter().map(recorded);
+                Self { $($name: about.next() == Some(true)),* }
             }
 
             /// Memory for one impact, in bytes.
@@ -84,8 +102,10 @@ macro_rules! columns {
             pub impacts: Vec<i64>,
             /// [`StopReason`] as a number, per particle.
             pub stop_reason: Vec<i8>,
-            /// θ at release in rad, per particle.
+            /// θ at release in rad, per particle; NaN for bodies without an axis.
             pub release_angle: Vec<f64>,
+            /// Attitude at release, per particle of a body without an axis.
+            pub release_attitude: Vec<[f64; 4]>,
             /// Height of the centre of mass at release in m, per particle; empty if all were released from the same height.
             pub release_height: Vec<f64>,
             /// Azimuth of the axis at release in rad, per particle; empty if all were released at rest over a level plane.
@@ -108,6 +128,7 @@ macro_rules! columns {
                     impacts: zeros(ROOM, particles)?,
                     stop_reason: filled(ROOM, StopReason::Interrupted as i8, particles)?,
                     release_angle: filled(ROOM, f64::NAN, particles)?,
+                    release_attitude: Vec::new(),
                     release_height: Vec::new(),
                     release_azimuth: Vec::new(),
                     release_spin: Vec::new(),
@@ -183,10 +204,10 @@ macro_rules! columns {
 
             /// Writes an impact of the particle in each active lane; row 0 is that of the particle `first`.
             #[inline(always)]
-            pub fn record<S: Simd, const K: usize>(
+            pub fn record<S: Simd, P: Pose<S, K>, const K: usize>(
                 &mut self,
                 first: usize,
-                impact: &Impact<S, K>,
+                impact: &Impact<S, P, K>,
                 plan: &Plan<'_>,
             ) {
                 // Lanes and cells, of which the lanes that have no impact are left out.
@@ -267,70 +288,77 @@ columns! {
     angle: f64 {
         text: "angle between symmetry axis and plane normal at the impact",
         unit: Some("rad"),
-        symbol: Some("θ")
-    } = |impact, _plan| angle_in_lanes(impact.sine, impact.cosine);
+        symbol: Some("θ"),
+        when: When::HasAxis
+    } = |impact, _plan| {
+        let (sine, cosine) = impact.pose.tilt();
+        angle_in_lanes(sine, cosine)
+    };
 
     /// 1 or 2: the sphere, or the half of a spheroid, that touched; 0: no impact.
     contact: i8 {
         text: "sphere or half that touched; the axis points to 1",
-        meanings: &["none", "sphere_1", "sphere_2"]
-    } = |impact, _plan| impact.sphere.lt(0.0).select(2.0, 1.0_f64);
+        meanings: &["none", "sphere_1", "sphere_2"],
+        when: When::HasAxis
+    } = |impact, _plan| impact.part;
+
+    /// Number of the ball or vertex that touched, from 1; 0: no impact.
+    part: i32 {
+        name: "contact",
+        text: "number of the ball or vertex that touched, from 1; 0: no impact",
+        when: When::HasNoAxis
+    } = |impact, _plan| impact.part;
 
     /// Height of the centre of mass at the impact, in m.
     height: f64 {
         text: "height of the centre of mass over the plane at the impact",
         unit: Some("m"),
         when: When::StateAsked
-    } = |impact, plan| (impact.before.height + plan.body.hull.level()) * plan.scales.length;
+    } = |impact, plan| impact.pose.height() * plan.scales.length;
 
     /// Symmetry axis at the impact, a unit vector from sphere 2 to sphere 1.
     axis: [f64; 3] {
         text: "unit vector of the symmetry axis at the impact, from sphere 2 to sphere 1",
         unit: Some("1"),
         symbol: Some("e"),
-        when: When::StateAsked
-    } = |impact, _plan| impact.before.axis;
+        when: When::StateAskedOfAxis
+    } = |impact, _plan| impact.pose.axis();
+
+    /// Attitude at the impact, the rotation from the axes of the body to those of space.
+    attitude: [f64; 4] {
+        text: "attitude at the impact, the rotation from the axes of the body to those of space as a quaternion",
+        unit: Some("1"),
+        symbol: Some("q"),
+        when: When::StateAskedWithoutAxis
+    } = |impact, _plan| impact.pose.attitude();
 
     /// v_G before the impact, in m/s.
     velocity_before: [f64; 3] {
         text: "velocity of the centre of mass before the impact",
         unit: Some("m s-1"),
         when: When::StateAsked
-    } = |impact, plan| impact.before.motion.velocity.times(plan.scales.speed);
+    } = |impact, plan| impact.pose.velocities()[0].times(plan.scales.speed);
 
     /// v_G after the impact, in m/s.
     velocity_after: [f64; 3] {
         text: "velocity of the centre of mass after the impact",
         unit: Some("m s-1"),
         when: When::StateAsked
-    } = |impact, plan| impact.after.motion.velocity.times(plan.scales.speed);
+    } = |impact, plan| impact.pose.velocities()[1].times(plan.scales.speed);
 
     /// ω before the impact, in rad/s.
     angular_velocity_before: [f64; 3] {
         text: "angular velocity before the impact",
         unit: Some("rad s-1"),
         when: When::StateAsked
-    } = |impact, plan| impact.before.spin(&plan.body).times(1.0 / plan.scales.time);
+    } = |impact, plan| impact.pose.spin_before().times(1.0 / plan.scales.time);
 
     /// ω after the impact, in rad/s.
     angular_velocity_after: [f64; 3] {
         text: "angular velocity after the impact",
         unit: Some("rad s-1"),
         when: When::StateAsked
-    } = |impact, plan| impact.after.spin(&plan.body).times(1.0 / plan.scales.time);
-}
-
-impl Columns {
-    /// The variables that are recorded under a law by default, with the full state at each impact if `state`.
-    pub fn usual(law: &Law<'_>, state: bool) -> Self {
-        let recorded = PER_IMPACT.iter().filter(|about| match about.when {
-            When::Always => true,
-            When::NormalVaries => !matches!(law.normal, Normal::Constant(_)),
-            When::StateAsked => state,
-            When::HeightVaries | When::InSpace => false,
-        });
-        Self::named(recorded.map(|about| about.name)).expect("each is known by its own name")
-    }
+    } = |impact, plan| impact.pose.spin_after().times(1.0 / plan.scales.time);
 }
 
 /// Splits off the first cells of a slice; of an empty slice, none.

@@ -4,7 +4,7 @@ use super::{Records, Values, Variable, When};
 use crate::drop::StopReason;
 
 /// The variables of a particle; [`Variable::when`] says in which runs each is recorded.
-pub const PER_PARTICLE: [Variable; 6] = [
+pub const PER_PARTICLE: [Variable; 7] = [
     Variable {
         name: "impacts",
         text: "number of impacts",
@@ -20,6 +20,16 @@ pub const PER_PARTICLE: [Variable; 6] = [
         name: "release_angle",
         text: "angle between symmetry axis and plane normal at release",
         unit: Some("rad"),
+        when: When::HasAxis,
+        ..Variable::PLAIN
+    },
+    Variable {
+        name: "release_attitude",
+        text: "attitude at release, the rotation from the axes of the body to those of space as a quaternion",
+        unit: Some("1"),
+        symbol: Some("q"),
+        components: &["w", "x", "y", "z"],
+        when: When::HasNoAxis,
         ..Variable::PLAIN
     },
     Variable {
@@ -42,7 +52,7 @@ pub const PER_PARTICLE: [Variable; 6] = [
         text: "angular velocity at release",
         unit: Some("rad s-1"),
         symbol: Some("ω"),
-        vector: true,
+        components: &["x", "y", "z"],
         when: When::InSpace,
         ..Variable::PLAIN
     },
@@ -57,18 +67,22 @@ impl Records {
     /// The recorded variables of the particles with their values, which are moved out; a vector has three numbers per particle.
     pub fn per_particle(&mut self) -> Vec<(Variable, Values)> {
         use std::mem::take;
-        let flattened = take(&mut self.release_spin).into_flattened();
+        let axes = self.release_attitude.is_empty();
         let columns = [
             Values::Counts(take(&mut self.impacts)),
             Values::Flags(take(&mut self.stop_reason)),
             Values::Numbers(take(&mut self.release_angle)),
+            Values::Numbers(take(&mut self.release_attitude).into_flattened()),
             Values::Numbers(take(&mut self.release_height)),
             Values::Numbers(take(&mut self.release_azimuth)),
-            Values::Numbers(flattened),
+            Values::Numbers(take(&mut self.release_spin).into_flattened()),
         ];
         let known = PER_PARTICLE.iter().copied().zip(columns);
-        let asked =
-            known.filter(|(about, values)| about.when == When::Always || !values.is_empty());
+        let asked = known.filter(|(about, values)| match about.when {
+            When::Always => true,
+            When::HasAxis => axes,
+            _ => !values.is_empty(),
+        });
         asked.collect()
     }
 }

@@ -3,8 +3,10 @@
 use super::columns::{Block, ROOM, Records};
 use crate::Error;
 use crate::drop::{Height, Plan, Source};
-use crate::drop::{Impact, Meanwhile, Sink, StopReason};
+use crate::drop::{Impact, Meanwhile, Pose, Sink, StopReason};
+use crate::math::Quaternion;
 use crate::memory::empty;
+use crate::shape::AnyBody;
 use crate::simd::elementary::angle;
 use crate::threads::Monitor;
 use pulp::Simd;
@@ -74,13 +76,26 @@ impl Records {
         if plan.at_rest {
             return Ok(());
         }
-        self.release_azimuth = empty(ROOM, self.particles())?;
         self.release_spin = empty(ROOM, self.particles())?;
-        for row in 0..self.particles() {
-            let particle = particle(row, self);
-            let (azimuth, spin) = plan.spinning(particle);
-            self.release_azimuth.push(azimuth);
-            self.release_spin.push([spin.x, spin.y, spin.z]);
+        match plan.run.body {
+            AnyBody::Revolution(solid) => {
+                self.release_azimuth = empty(ROOM, self.particles())?;
+                for row in 0..self.particles() {
+                    let (azimuth, spin) = plan.spinning(&solid.scaled, particle(row, self));
+                    self.release_azimuth.push(azimuth);
+                    self.release_spin.push([spin.x, spin.y, spin.z]);
+                }
+            }
+            AnyBody::Rigid(body) => {
+                self.release_attitude = empty(ROOM, self.particles())?;
+                for row in 0..self.particles() {
+                    let particle = particle(row, self);
+                    let Quaternion { w, x, y, z } = plan.attitude(particle);
+                    let spin = plan.spin(body, particle);
+                    self.release_attitude.push([w, x, y, z]);
+                    self.release_spin.push([spin.x, spin.y, spin.z]);
+                }
+            }
         }
         Ok(())
     }
@@ -137,7 +152,11 @@ impl Sink for Table<'_> {
     fn begin(&mut self) {}
 
     #[inline(always)]
-    fn impact<S: Simd, const K: usize>(&mut self, _: usize, impact: &Impact<S, K>) {
+    fn impact<S: Simd, P: Pose<S, K>, const K: usize>(
+        &mut self,
+        _: usize,
+        impact: &Impact<S, P, K>,
+    ) {
         self.block.record(self.first, impact, self.plan);
     }
 

@@ -17,8 +17,8 @@ pub struct Variable {
     pub symbol: Option<&'static str>,
     /// The names that its numbers 0, 1, ... stand for; empty if they stand for themselves.
     pub meanings: &'static [&'static str],
-    /// Whether it is a vector, with components along x, y and z.
-    pub vector: bool,
+    /// The names of its components; none of a number.
+    pub components: &'static [&'static str],
     /// The runs in which it is recorded, unless columns are chosen by name.
     pub when: When,
 }
@@ -28,10 +28,18 @@ pub struct Variable {
 pub enum When {
     /// All runs.
     Always,
+    /// Runs of bodies of revolution.
+    HasAxis,
+    /// Runs of other bodies.
+    HasNoAxis,
     /// Runs whose normal coefficient depends on the speed.
     NormalVaries,
     /// Runs that record the full state at each impact.
     StateAsked,
+    /// Such runs of bodies of revolution.
+    StateAskedOfAxis,
+    /// Such runs of other bodies.
+    StateAskedWithoutAxis,
     /// Runs whose particles are released from random heights.
     HeightVaries,
     /// Runs whose particles are not released at rest over a level plane.
@@ -39,6 +47,15 @@ pub enum When {
 }
 
 impl Variable {
+    /// A variable with a name, to be filled in.
+    pub(crate) const fn named(name: &'static str, components: &'static [&'static str]) -> Self {
+        Self {
+            name,
+            components,
+            ..Self::PLAIN
+        }
+    }
+
     /// A variable without metadata, to be filled in.
     pub const PLAIN: Self = Self {
         name: "",
@@ -46,7 +63,7 @@ impl Variable {
         unit: None,
         symbol: None,
         meanings: &[],
-        vector: false,
+        components: &[],
         when: When::Always,
     };
 }
@@ -58,6 +75,8 @@ pub enum Values {
     Numbers(Vec<f64>),
     /// Numbers that stand for names.
     Flags(Vec<i8>),
+    /// Numbers of parts of a body.
+    Parts(Vec<i32>),
     /// Counts.
     Counts(Vec<i64>),
 }
@@ -67,6 +86,7 @@ impl Values {
         match self {
             Self::Numbers(values) => values.is_empty(),
             Self::Flags(values) => values.is_empty(),
+            Self::Parts(values) => values.is_empty(),
             Self::Counts(values) => values.is_empty(),
         }
     }
@@ -76,8 +96,8 @@ impl Values {
 pub(crate) trait Stored: Copy + Default {
     /// The value where there was no impact.
     const NONE: Self;
-    /// [`Variable::vector`].
-    const VECTOR: bool = false;
+    /// [`Variable::components`].
+    const COMPONENTS: &'static [&'static str] = &[];
     /// Its form in the bounce loop, one value in each lane.
     type Lanes<S: Simd, const K: usize>;
 
@@ -113,9 +133,38 @@ impl Stored for i8 {
     }
 }
 
+impl Stored for i32 {
+    const NONE: Self = 0;
+    type Lanes<S: Simd, const K: usize> = Pack<S, K>;
+
+    #[inline(always)]
+    fn lane<S: Simd, const K: usize>(lanes: &Pack<S, K>, lane: usize) -> Self {
+        lanes.as_slice()[lane] as Self
+    }
+
+    fn values(column: Vec<Self>) -> Values {
+        Values::Parts(column)
+    }
+}
+
+impl Stored for [f64; 4] {
+    const NONE: Self = [f64::NAN; 4];
+    const COMPONENTS: &'static [&'static str] = &["w", "x", "y", "z"];
+    type Lanes<S: Simd, const K: usize> = [Pack<S, K>; 4];
+
+    #[inline(always)]
+    fn lane<S: Simd, const K: usize>(lanes: &Self::Lanes<S, K>, lane: usize) -> Self {
+        lanes.map(|part| part.as_slice()[lane])
+    }
+
+    fn values(column: Vec<Self>) -> Values {
+        Values::Numbers(column.into_flattened())
+    }
+}
+
 impl Stored for [f64; 3] {
     const NONE: Self = [f64::NAN; 3];
-    const VECTOR: bool = true;
+    const COMPONENTS: &'static [&'static str] = &["x", "y", "z"];
     type Lanes<S: Simd, const K: usize> = Vectors<S, K>;
 
     #[inline(always)]

@@ -10,7 +10,7 @@ use super::rows::{CREATES_ENERGY, Rows};
 use crate::Error;
 use crate::drop::Plan;
 use crate::drop::StopReason;
-use crate::drop::{GROUPS, Impact, Meanwhile, Sink};
+use crate::drop::{GROUPS, Impact, Meanwhile, Pose, Sink};
 use crate::memory::zeros;
 use crate::simd::{LANES, Pack};
 use pulp::Simd;
@@ -80,7 +80,11 @@ impl<const EVEN: bool> Sink for CountSink<'_, EVEN> {
     }
 
     #[inline(always)]
-    fn impact<S: Simd, const K: usize>(&mut self, group: usize, impact: &Impact<S, K>) {
+    fn impact<S: Simd, P: Pose<S, K>, const K: usize>(
+        &mut self,
+        group: usize,
+        impact: &Impact<S, P, K>,
+    ) {
         let width = Pack::<S, K>::WIDTH;
         if self.recently.add(width) {
             self.empty();

@@ -208,7 +208,7 @@ pub fn kinds() -> Vec<(String, Run<'static>)> {
                 0.9.into()
             };
             let dropped = Run {
-                body: solid,
+                body: solid.into(),
                 particles: 100,
                 impacts: 40,
                 ..paper(0.1, Law::new(normal, rule).unwrap())

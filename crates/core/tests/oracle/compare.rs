@@ -107,7 +107,7 @@ impl Case {
             }
         };
         f(&Run {
-            body: shape.solid(),
+            body: shape.solid().into(),
             law: rule.law(normal),
             particles,
             impacts: self.impacts,

@@ -130,7 +130,7 @@ impl<S: Simd, T: Dimension, K: Sink, const SETTLE: bool> WithSimd for Report<'_,
 
 #[cfg(test)]
 mod tests {
-    use crate::drop::{GROUPS, Impact, Meanwhile, Sink, StopReason};
+    use crate::drop::{GROUPS, Impact, Meanwhile, Pose, Sink, StopReason};
     use crate::drop::{Orientation, Plan, Run, bounce_block};
     use crate::simd::{LANES, Level, Pack};
     use crate::{Dumbbell, Law, Monitor, Spin, TangentialRestitution, Vector};
@@ -157,7 +157,11 @@ mod tests {
 
         fn begin(&mut self) {}
 
-        fn impact<S: Simd, const K: usize>(&mut self, group: usize, impact: &Impact<S, K>) {
+        fn impact<S: Simd, P: Pose<S, K>, const K: usize>(
+            &mut self,
+            group: usize,
+            impact: &Impact<S, P, K>,
+        ) {
             impact.active.each(|lane| {
                 let place = group * Pack::<S, K>::WIDTH + lane;
                 assert!(!self.waits[place], "an impact is lost");

@@ -1,7 +1,7 @@
 //! A group of particles, as many as a vector has lanes, and the stages from one impact to the next.
 
 use super::collision::{Collide, ContactPoint, Dimension};
-use super::impact::{Impact, Sink};
+use super::impact::{Impact, Sink, SymmetricPose};
 use super::particles::Particles;
 use crate::contact::{
     GapEvaluation, LastContact, LocatedContact, MOST_STEPS, Prediction, Search, Steps,
@@ -429,12 +429,14 @@ impl<S: Simd, T: Dimension> Group<S, T> {
             rotation: before.rotational_energy(body),
             energy_before: before.kinetic_energy(body),
             energy_after,
-            sine: before.sine(),
-            cosine: before.cos_tilt(),
-            sphere: self.search.last_contact.sphere,
+            part: self.search.last_contact.sphere.lt(0.0).select(2.0, 1.0_f64),
             approach: self.approach,
-            before: before.in_space(),
-            after: after.in_space(),
+            pose: SymmetricPose {
+                body,
+                sine: before.sine(),
+                before: before.in_space(),
+                after: after.in_space(),
+            },
             active: landing,
         };
         sink.impact(number, &impact);

@@ -1,13 +1,15 @@
 //! An impact as the bounce loop reports it, and the trait of its receivers.
 
 use crate::drop::StopReason;
+use crate::math::Vectors;
 use crate::motion::SpatialState;
+use crate::shape::Body;
 use crate::simd::{Mask, Pack};
 use pulp::Simd;
 use std::ops::Range;
 
-/// One impact in each lane, in the core's units.
-pub(crate) struct Impact<S: Simd, const K: usize> {
+/// One impact in each lane, in the core's units: what statistics read, and the pose.
+pub(crate) struct Impact<S: Simd, P, const K: usize> {
     /// Number of the particle in the run.
     pub particle: Pack<S, K>,
     /// Number of the impact, counted from 0.
@@ -22,21 +24,17 @@ pub(crate) struct Impact<S: Simd, const K: usize> {
     /// Total kinetic energies before and after the impact.
     pub energy_before: Pack<S, K>,
     pub energy_after: Pack<S, K>,
-    /// Sine, up to its sign, and cosine of the angle between the axis and the plane normal.
-    pub sine: Pack<S, K>,
-    pub cosine: Pack<S, K>,
-    /// +1 or −1: sphere 1 or 2 touched.
-    pub sphere: Pack<S, K>,
+    /// Number of the part that touched, from 1.
+    pub part: Pack<S, K>,
     /// Speed at which the point of contact approached the plane, −v_c^n.
     pub approach: Pack<S, K>,
-    /// The states before and after the impact.
-    pub before: SpatialState<S, K>,
-    pub after: SpatialState<S, K>,
+    /// How the body lies, and moves before and after the impact: a [`Pose`].
+    pub pose: P,
     /// The lanes that have an impact.
     pub active: Mask<S, K>,
 }
 
-impl<S: Simd, const K: usize> Impact<S, K> {
+impl<S: Simd, P, const K: usize> Impact<S, P, K> {
     /// The coefficient of restitution (1).
     #[inline(always)]
     pub fn restitution(&self) -> Pack<S, K> {
@@ -56,6 +54,79 @@ impl<S: Simd, const K: usize> Impact<S, K> {
     }
 }
 
+/// How bodies lie at an impact, and move before and after it. What a body does not have is NaN: the axis of one without symmetry, the attitude
+/// of one of revolution.
+pub(crate) trait Pose<S: Simd, const K: usize> {
+    /// Height of the centre of mass.
+    fn height(&self) -> Pack<S, K>;
+    /// Sine, up to its sign, and cosine of the angle between the symmetry axis and the plane normal.
+    fn tilt(&self) -> (Pack<S, K>, Pack<S, K>);
+    /// Symmetry axis.
+    fn axis(&self) -> Vectors<S, K>;
+    /// Attitude, a quaternion (w, x, y, z).
+    fn attitude(&self) -> [Pack<S, K>; 4];
+    /// Velocities of the centre of mass before and after the impact.
+    fn velocities(&self) -> [Vectors<S, K>; 2];
+    /// Angular velocity before the impact.
+    fn spin_before(&self) -> Vectors<S, K>;
+    /// Angular velocity after the impact.
+    fn spin_after(&self) -> Vectors<S, K>;
+    /// The states before and after the impact of a body of revolution.
+    fn symmetric(&self) -> Option<[&SpatialState<S, K>; 2]> {
+        None
+    }
+}
+
+/// The pose of a body of revolution.
+pub(crate) struct SymmetricPose<'a, S: Simd, const K: usize> {
+    pub body: &'a Body,
+    pub sine: Pack<S, K>,
+    pub before: SpatialState<S, K>,
+    pub after: SpatialState<S, K>,
+}
+
+impl<S: Simd, const K: usize> Pose<S, K> for SymmetricPose<'_, S, K> {
+    #[inline(always)]
+    fn height(&self) -> Pack<S, K> {
+        self.before.height + self.body.hull.level()
+    }
+
+    #[inline(always)]
+    fn tilt(&self) -> (Pack<S, K>, Pack<S, K>) {
+        (self.sine, self.before.axis.z)
+    }
+
+    #[inline(always)]
+    fn axis(&self) -> Vectors<S, K> {
+        self.before.axis
+    }
+
+    #[inline(always)]
+    fn attitude(&self) -> [Pack<S, K>; 4] {
+        [Pack::splat(self.sine.simd(), f64::NAN); 4]
+    }
+
+    #[inline(always)]
+    fn velocities(&self) -> [Vectors<S, K>; 2] {
+        [self.before.motion.velocity, self.after.motion.velocity]
+    }
+
+    #[inline(always)]
+    fn spin_before(&self) -> Vectors<S, K> {
+        self.before.spin(self.body)
+    }
+
+    #[inline(always)]
+    fn spin_after(&self) -> Vectors<S, K> {
+        self.after.spin(self.body)
+    }
+
+    #[inline(always)]
+    fn symmetric(&self) -> Option<[&SpatialState<S, K>; 2]> {
+        Some([&self.before, &self.after])
+    }
+}
+
 /// Work that can be interleaved with the bounce loop while its arithmetic waits for results.
 pub(crate) trait Meanwhile {
     /// Works up the impact at a place: number of its group times number of lanes, plus lane.
@@ -72,7 +143,11 @@ pub(crate) trait Sink: Meanwhile {
     fn begin(&mut self);
     /// Receives an impact in each active lane of a group. What is left to be done with it is done before the next one of this group:
     /// meanwhile, or by [`Sink::settle`].
-    fn impact<S: Simd, const K: usize>(&mut self, group: usize, impact: &Impact<S, K>);
+    fn impact<S: Simd, P: Pose<S, K>, const K: usize>(
+        &mut self,
+        group: usize,
+        impact: &Impact<S, P, K>,
+    );
     /// Works up the impacts at these places.
     #[inline(always)]
     fn settle(&mut self, places: Range<usize>) {

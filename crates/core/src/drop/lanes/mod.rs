@@ -14,4 +14,4 @@ pub(super) use bounce::bounce;
 pub(super) use collision::{Collide, ContactPoint, Dimension, Planar, Spatial};
 pub(crate) use group::GROUPS;
 pub(super) use group::{Found, Group, Lost, Release};
-pub(crate) use impact::{Impact, Meanwhile, Sink};
+pub(crate) use impact::{Impact, Meanwhile, Pose, Sink};

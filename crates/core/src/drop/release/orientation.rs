@@ -1,9 +1,13 @@
 //! Initial conditions: the symmetry axis at release.
 
 use crate::Error;
+use crate::math::Quaternion;
 use crate::random::uniform;
 use crate::simd::elementary::{RANGE, sincos};
 use std::f64::consts::{PI, TAU};
+
+/// Number of the draw of the angle about the axis; the orientation has 0 and 1 as well, spin and height 2 to 7.
+const TURN: u32 = 8;
 
 /// The distribution of the angle θ between the symmetry axis and the plane normal at release, and of the azimuth φ of the axis, in
 /// rad: the axis is (sin θ cos φ, sin θ sin φ, cos θ).
@@ -17,6 +21,9 @@ pub enum Orientation<'a> {
     Given(&'a [f64]),
     /// θ and φ for each particle, in rad.
     Directions(&'a [[f64; 2]]),
+    /// For bodies without an axis, the rotation of each particle from the axes of the body to those of space: a quaternion (w, x, y, z) of
+    /// any length but 0.
+    Attitudes(&'a [[f64; 4]]),
 }
 
 impl Orientation<'_> {
@@ -45,7 +52,24 @@ impl Orientation<'_> {
             }
             Self::Given(angles) => sincos(angles[particle as usize]),
             Self::Directions(angles) => sincos(angles[particle as usize][0]),
+            Self::Attitudes(_) => (f64::NAN, f64::NAN),
         }
+    }
+
+    /// The attitude of a particle without an axis. A random one is uniform among all rotations: its z axis is that of [`Self::draw`] and
+    /// [`Self::azimuth`], about which it is turned by an angle that is uniform as well.
+    pub fn attitude(&self, seed: u64, particle: u64) -> Quaternion {
+        if let Self::Attitudes(given) = self {
+            let [w, x, y, z] = given[particle as usize];
+            return Quaternion::new(w, x, y, z).normalized();
+        }
+        let (_, cosine) = self.draw(seed, particle);
+        let azimuth = self.azimuth(seed, particle);
+        let turn = TAU * uniform(seed, particle, TURN);
+        let (c, s) = ((0.5 * (1.0 + cosine)).sqrt(), (0.5 * (1.0 - cosine)).sqrt());
+        let (z, w) = sincos(0.5 * (azimuth + turn));
+        let (x, y) = sincos(0.5 * (azimuth - turn));
+        Quaternion::new(c * w, -s * x, s * y, c * z).normalized()
     }
 
     /// Azimuth φ of a particle in rad, uniform in [0, 2π) unless it is given. It matters only where spin, velocity or gravity single
@@ -63,11 +87,23 @@ impl Orientation<'_> {
             Self::UniformAngle | Self::Isotropic => return Ok(()),
             Self::Given(angles) => angles,
             Self::Directions(angles) => angles.as_flattened(),
+            Self::Attitudes(attitudes) => attitudes.as_flattened(),
         };
-        let each = if let Self::Directions(_) = self { 2 } else { 1 };
+        let each = match self {
+            Self::Attitudes(_) => 4,
+            Self::Directions(_) => 2,
+            _ => 1,
+        };
         let count = angles.len() / each;
         let allowed = "the number of particles";
         Error::unless(count == particles, "number of angles", count, allowed)?;
+        if let Self::Attitudes(attitudes) = self {
+            return attitudes.iter().try_for_each(|parts| {
+                let square: f64 = parts.iter().map(|x| x * x).sum();
+                let allowed = "a quaternion of finite length > 0";
+                Error::unless(square.is_normal(), "orientation", square, allowed)
+            });
+        }
         angles.iter().try_for_each(|&angle| {
             let reduced = angle.abs() <= RANGE;
             Error::unless(reduced, "angle", angle, "finite, at most 2^20 rad")

@@ -1,9 +1,9 @@
 //! Initial conditions: the angular velocity at release.
 
-use crate::Error;
-use crate::math::Vector;
+use crate::math::{Quaternion, Vector};
 use crate::random::uniform;
 use crate::simd::elementary::{ln, sincos};
+use crate::{Error, Value};
 use std::f64::consts::TAU;
 
 /// The distribution of the angular velocity **ω** at release, in rad/s.
@@ -111,23 +111,50 @@ impl Spin<'_> {
                 direction * rate
             }
             Self::Thermal { rate } => {
-                let normal = |size, direction| {
-                    let (size, turn) = (
-                        uniform(seed, particle, size),
-                        uniform(seed, particle, direction),
-                    );
-                    let (b, a) = sincos(TAU * turn);
-                    let size = (-2.0 * ln(1.0 - size)).sqrt();
-                    (size * a, size * b)
-                };
-                let (first, second) = normal(RATE, AROUND);
-                let (third, _) = normal(UPWARD, LENGTHWISE);
+                let [first, second, third] = normals(seed, particle);
                 let across = rate / (2.0 + ratio).sqrt();
                 let axis = Vector::new(sine * x, sine * y, cosine);
                 let turning = level.mul_add(second, tilted * first);
                 axis.mul_add(third * ratio.sqrt(), turning) * across
             }
         }
+    }
+
+    /// **ω** of a particle without an axis, in rad/s, at an attitude of its principal axes, about which these are its moments of inertia.
+    /// Directions that refer to an axis have been refused by then.
+    pub fn draw_without_axis(
+        &self,
+        seed: u64,
+        particle: u64,
+        attitude: Quaternion,
+        moments: [f64; 3],
+    ) -> Vector {
+        let Self::Thermal { rate } = *self else {
+            let upright = ((0.0, 1.0), (0.0, 1.0));
+            return self.draw(seed, particle, upright, 1.0);
+        };
+        let [a, b, c] = moments;
+        let scale = rate / (1.0 / a + 1.0 / b + 1.0 / c).sqrt();
+        let [x, y, z] = normals(seed, particle);
+        let spin = Vector::new(x / a.sqrt(), y / b.sqrt(), z / c.sqrt());
+        attitude.rotate(spin * scale)
+    }
+
+    /// Refuses directions that refer to an axis.
+    pub(crate) fn check_without_axis(&self) -> Result<(), Error> {
+        let across = matches!(
+            self,
+            Self::Random {
+                about: About::Across,
+                ..
+            }
+        );
+        Error::unless(
+            !across,
+            "axis",
+            Value::Name("across".into()),
+            "'isotropic', 'horizontal' or 'thermal' for a body without an axis",
+        )
     }
 
     /// Checks that all components are at most `most` and that there is a spin for each particle.
@@ -157,4 +184,20 @@ impl Spin<'_> {
             }
         }
     }
+}
+
+/// Three independent Gaussian numbers with mean 0 and variance 1.
+fn normals(seed: u64, particle: u64) -> [f64; 3] {
+    let normal = |size, direction| {
+        let (size, turn) = (
+            uniform(seed, particle, size),
+            uniform(seed, particle, direction),
+        );
+        let (b, a) = sincos(TAU * turn);
+        let size = (-2.0 * ln(1.0 - size)).sqrt();
+        (size * a, size * b)
+    };
+    let (first, second) = normal(RATE, AROUND);
+    let (third, _) = normal(UPWARD, LENGTHWISE);
+    [first, second, third]
 }

@@ -18,6 +18,7 @@ pub use outline::Arc;
 pub use spherocylinder::Spherocylinder;
 pub use spheroid::Spheroid;
 
+use super::check_density;
 use crate::Error;
 use crate::describe::Kind;
 
@@ -158,10 +159,4 @@ fn check_length(name: &'static str, value: f64) -> Result<(), Error> {
 fn check_distance(name: &'static str, value: f64) -> Result<(), Error> {
     let positive = value.is_finite() && value >= 0.0;
     Error::unless(positive, name, value, "finite and >= 0 (m)")
-}
-
-/// Checks that a density, in kg/m³, is positive.
-fn check_density(value: f64) -> Result<(), Error> {
-    let positive = value.is_finite() && value > 0.0;
-    Error::unless(positive, "density", value, "finite and > 0 (kg/m^3)")
 }

@@ -1,0 +1,330 @@
+//! The bounce loop for bodies of any shape, one particle at a time.
+
+use super::lanes::{Impact, Lost, Pose, Sink};
+use super::stop::{COLLAPSE_RUN, Limits, StopReason, UNRESOLVED};
+use crate::contact::{Departure, INVISIBLE, Instant, LAST, MOST_STEPS};
+use crate::law::{Compliance, Fault, Law, Respond};
+use crate::math::{Quaternion, Symmetric, Vector, Vectors};
+use crate::motion::Rotation;
+use crate::shape::{Rigid, up};
+use crate::simd::elementary::RANGE;
+use crate::simd::{Mask, Pack, one};
+use pulp::Scalar;
+
+/// Position and motion of a particle, in the core's units. The horizontal position is omitted, because the motion does not depend on it.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct RigidState {
+    /// Height and velocity of the centre of mass.
+    pub height: f64,
+    pub velocity: Vector,
+    /// The rotation from the principal axes to those of space.
+    pub attitude: Quaternion,
+    /// Angular velocity in the principal axes.
+    pub spin: Vector,
+}
+
+/// A body, its law and the plane that it bounces on.
+pub(super) struct Bouncing<'a> {
+    pub body: &'a Rigid,
+    pub law: &'a Law<'a>,
+    /// tan α.
+    pub slope: f64,
+    pub limits: Limits,
+}
+
+/// A contact: the flight time to it, the state then, and the part that touches.
+struct Contact {
+    time: f64,
+    state: RigidState,
+    part: usize,
+    /// M T², with M the bound on |f″| and T the flight time.
+    size: f64,
+}
+
+/// How a flight goes on without a contact.
+enum NoContact {
+    Ends(StopReason),
+    Unconverged,
+}
+
+/// What an impact does.
+struct Bounce {
+    after: RigidState,
+    departure: Departure,
+    approach: f64,
+}
+
+impl Bouncing<'_> {
+    /// Follows a particle from impact to impact until it stops. `chance` gives the uniform number of an impact, for an ε_n that scatters.
+    pub fn bounce(
+        &self,
+        (particle, start): (usize, RigidState),
+        chance: impl Fn(u64) -> f64,
+        sink: &mut impl Sink,
+        go_on: impl Fn() -> bool,
+    ) -> Result<(), Lost> {
+        let lost = |impacts, fault| Lost {
+            particle,
+            impacts,
+            fault,
+        };
+        let (mut state, mut departure) = (start, None);
+        let (mut clock, mut impacts, mut unresolved) = (0.0, 0, 0);
+        let reason = loop {
+            if !go_on() {
+                break StopReason::Interrupted;
+            }
+            let contact = match self.first_contact(&state, departure) {
+                Ok(contact) => contact,
+                Err(NoContact::Ends(reason)) => break reason,
+                Err(NoContact::Unconverged) => return Err(lost(impacts, None)),
+            };
+            clock += contact.time;
+            let drawn = self.law.scatters().then(|| chance(impacts as u64));
+            let bounce = self
+                .collide(&contact, drawn)
+                .map_err(|fault| lost(impacts, Some(Box::new(fault))))?;
+            self.report((particle, impacts, clock), &contact, &bounce, sink);
+            (state, departure) = (bounce.after, Some(bounce.departure));
+            impacts += 1;
+            unresolved = if contact.size < UNRESOLVED {
+                unresolved + 1
+            } else {
+                0
+            };
+            let slowest = self.limits.minimum_speed;
+            if slowest > 0.0 && 2.0 * self.energies(&state).1 < slowest * slowest {
+                break StopReason::SpeedBelowThreshold;
+            } else if unresolved == COLLAPSE_RUN {
+                break StopReason::Collapse;
+            } else if impacts == self.limits.impacts {
+                break StopReason::ImpactsReached;
+            }
+        };
+        sink.end(particle, impacts, reason);
+        Ok(())
+    }
+
+    /// The first contact of the flight from a state, in which a part may be leaving the plane.
+    fn first_contact(
+        &self,
+        start: &RigidState,
+        departure: Option<Departure>,
+    ) -> Result<Contact, NoContact> {
+        let body = self.body;
+        let mut rotation = Rotation::new(body.top, start.attitude, start.spin);
+        let fastest = body.top.largest_spin(start.spin).sqrt();
+        let turn = body.top.acceleration(start.spin);
+        if let Some(left) = departure.filter(|left| left.speed <= 0.0)
+            && self.rests(start, left)
+        {
+            return Err(NoContact::Ends(StopReason::Collapse));
+        }
+        // While the centre of mass is higher than the body reaches, nothing touches.
+        let above = start.velocity.z * start.velocity.z + 2.0 * (start.height - 1.0);
+        let root = above.max(0.0).sqrt();
+        let (up_at, down_at) = (start.velocity.z - root, start.velocity.z + root);
+        let skip = |time: f64| {
+            if above > 0.0 && up_at <= time {
+                time.max(down_at)
+            } else {
+                time
+            }
+        };
+        let mut time = 0.0;
+        for _ in 0..MOST_STEPS {
+            if fastest * time > RANGE {
+                return Err(NoContact::Ends(StopReason::NeverLands));
+            }
+            let attitude = rotation.attitude(time);
+            let spin = rotation.spin(time);
+            let at = instant(start, time, attitude, spin);
+            let step = body.skin.step(&at, turn, departure.filter(|_| time == 0.0));
+            let end = time + step.length;
+            let invisible = step.bound * step.length * step.length <= INVISIBLE;
+            if step.closes && invisible && step.length <= LAST * end {
+                return Ok(self.land(start, end, step.part, rotation, turn));
+            }
+            time = skip(end.max(time * (1.0 + f64::EPSILON)));
+        }
+        Err(NoContact::Unconverged)
+    }
+
+    /// The state at a contact. The height is that at which the part touches.
+    fn land(
+        &self,
+        start: &RigidState,
+        time: f64,
+        part: usize,
+        mut rotation: Rotation,
+        turn: f64,
+    ) -> Contact {
+        let (attitude, spin) = (rotation.attitude(time), rotation.spin(time));
+        let normal = up(attitude);
+        let pull = Vector::new(self.slope, 0.0, -1.0);
+        Contact {
+            time,
+            state: RigidState {
+                height: -normal.dot(self.body.skin.nearest(part, normal)),
+                velocity: pull.mul_add(time, start.velocity),
+                attitude,
+                spin,
+            },
+            part,
+            size: (1.0 + turn) * time * time,
+        }
+    }
+
+    /// Whether the part on the plane, which has no normal speed, stays there: f″ ≤ 0, and no other part is about to touch as well.
+    fn rests(&self, state: &RigidState, left: Departure) -> bool {
+        let at = instant(state, 0.0, state.attitude, state.spin);
+        let [a, b, c] = self.body.top.moments();
+        let Vector { x, y, z } = state.spin;
+        let change = Vector::new(
+            (b - c) / a * y * z,
+            (c - a) / b * z * x,
+            (a - b) / c * x * y,
+        );
+        let bending = at.turning.cross(state.spin) + at.up.cross(change);
+        let skin = &self.body.skin;
+        skin.curvature(left.part, &at, bending) <= 1.0 && !skin.another_touches(left, &at)
+    }
+
+    /// The motion after a contact; where ε_n scatters it is drawn with a uniform number.
+    fn collide(&self, contact: &Contact, chance: Option<f64>) -> Result<Bounce, Fault> {
+        let RigidState {
+            velocity,
+            attitude,
+            spin,
+            ..
+        } = contact.state;
+        let arm = self.body.skin.nearest(contact.part, up(attitude));
+        let inverse = self.body.top.moments().map(|moment| 1.0 / moment);
+        let arm_in_space = attitude.rotate(arm);
+        let compliance = Compliance::of_body(
+            1.0,
+            &Symmetric::diagonal(inverse).turned(attitude),
+            arm_in_space,
+        );
+        let at_contact = velocity + attitude.rotate(spin.cross(arm)); // (7)
+        let answer = match chance {
+            Some(chance) => self.law.answer_drawn(&compliance, at_contact, chance)?,
+            None => self.law.answer(&compliance, at_contact)?,
+        };
+        let torque = arm.cross(attitude.inverse().rotate(answer.impulse));
+        let [x, y, z] = inverse;
+        Ok(Bounce {
+            after: RigidState {
+                velocity: velocity + answer.impulse,
+                spin: spin + Vector::new(x * torque.x, y * torque.y, z * torque.z), // (11)
+                ..contact.state
+            },
+            departure: Departure {
+                part: contact.part,
+                speed: answer.separation_speed,
+            },
+            approach: (-at_contact.z).max(0.0),
+        })
+    }
+
+    /// Kinetic energies of the rotation and of all motion, in m g R.
+    fn energies(&self, state: &RigidState) -> (f64, f64) {
+        let rotation = 0.5 * self.body.top.twice_energy(state.spin);
+        (
+            rotation,
+            rotation + 0.5 * state.velocity.dot(state.velocity),
+        )
+    }
+
+    /// Hands an impact to the sink.
+    fn report(
+        &self,
+        (particle, number, clock): (usize, usize, f64),
+        contact: &Contact,
+        bounce: &Bounce,
+        sink: &mut impl Sink,
+    ) {
+        let (before, after) = (&contact.state, &bounce.after);
+        let (rotation, energy_before) = self.energies(before);
+        let impact = Impact {
+            particle: one(particle as f64),
+            number: one(number as f64),
+            time: one(clock),
+            fall: one(-before.velocity.z),
+            rise: one(after.velocity.z),
+            rotation: one(rotation),
+            energy_before: one(energy_before),
+            energy_after: one(self.energies(after).1),
+            part: one((contact.part + 1) as f64),
+            approach: one(bounce.approach),
+            pose: RigidPose {
+                body: self.body,
+                before,
+                after,
+            },
+            active: Mask::splat(Scalar::new(), true),
+        };
+        sink.impact(0, &impact);
+        sink.settle(0..1);
+    }
+}
+
+/// The body at a time of the flight from `start`.
+fn instant(start: &RigidState, time: f64, attitude: Quaternion, spin: Vector) -> Instant {
+    let normal = up(attitude);
+    let speed = start.velocity.z;
+    Instant {
+        height: start.height + time * (speed - 0.5 * time),
+        rate: speed - time,
+        up: normal,
+        turning: normal.cross(spin),
+    }
+}
+
+/// The pose of a body of any shape.
+struct RigidPose<'a> {
+    body: &'a Rigid,
+    before: &'a RigidState,
+    after: &'a RigidState,
+}
+
+type Lane = Pack<Scalar, 1>;
+
+fn lane(v: Vector) -> Vectors<Scalar, 1> {
+    Vectors {
+        x: one(v.x),
+        y: one(v.y),
+        z: one(v.z),
+    }
+}
+
+impl Pose<Scalar, 1> for RigidPose<'_> {
+    fn height(&self) -> Lane {
+        one(self.before.height)
+    }
+
+    fn tilt(&self) -> (Lane, Lane) {
+        (one(f64::NAN), one(f64::NAN))
+    }
+
+    fn axis(&self) -> Vectors<Scalar, 1> {
+        lane(Vector::new(f64::NAN, f64::NAN, f64::NAN))
+    }
+
+    fn attitude(&self) -> [Lane; 4] {
+        let Quaternion { w, x, y, z } = self.before.attitude * self.body.axes.inverse();
+        [w, x, y, z].map(one)
+    }
+
+    fn velocities(&self) -> [Vectors<Scalar, 1>; 2] {
+        [self.before, self.after].map(|state| lane(state.velocity))
+    }
+
+    fn spin_before(&self) -> Vectors<Scalar, 1> {
+        lane(self.before.attitude.rotate(self.before.spin))
+    }
+
+    fn spin_after(&self) -> Vectors<Scalar, 1> {
+        lane(self.after.attitude.rotate(self.after.spin))
+    }
+}

@@ -1,0 +1,72 @@
+//! Convex polyhedra.
+
+use super::check_density;
+use super::rigid::{Moments, Rigid, RigidBall};
+use crate::Error;
+use crate::math::{Symmetric, Vector};
+
+impl Rigid {
+    /// The homogeneous convex hull of points (m), whose faces are these triangles of them.
+    ///
+    /// # Errors
+    /// Unless all numbers are finite, the triangles are those of the points, and the volume is positive.
+    pub fn polyhedron(
+        points: &[Vector],
+        triangles: &[[usize; 3]],
+        density: f64,
+    ) -> Result<Self, Error> {
+        check_density(density)?;
+        for x in points.iter().flat_map(|point| [point.x, point.y, point.z]) {
+            Error::unless(x.is_finite(), "points", x, "finite (m)")?;
+        }
+        let known = triangles.as_flattened().iter().all(|&i| i < points.len());
+        Error::unless(known, "triangles", triangles.len(), "those of the points")?;
+        let mut vertices: Vec<usize> = triangles.as_flattened().to_vec();
+        vertices.sort_unstable();
+        vertices.dedup();
+        let inside = vertices
+            .iter()
+            .fold(Vector::default(), |sum, &i| sum + points[i])
+            / vertices.len() as f64;
+        // Tetrahedra with their apex inside, all of positive volume.
+        let mut moments = Moments::default();
+        for corners in triangles {
+            let [a, b, c] = corners.map(|i| points[i] - inside);
+            let volume = a.dot(b.cross(c)).abs() / 6.0;
+            moments = moments.and(tetrahedron(volume, [a, b, c]));
+        }
+        let allowed = "not all in one plane";
+        let solid = moments.content > 0.0 && moments.content.is_finite();
+        Error::unless(solid, "points", points.len(), allowed)?;
+        let mut inertia = moments.inertia(density);
+        inertia.centre = inertia.centre + inside;
+        let vertex = |&centre: &Vector| RigidBall {
+            centre,
+            radius: 0.0,
+        };
+        let vertices: Vec<_> = points.iter().map(vertex).collect();
+        Self::of_balls(inertia, &vertices)
+    }
+}
+
+/// The tetrahedron of the origin and three other corners: ∫**x**⊗**x** = V/20 (Σ**x**ᵢ⊗**x**ᵢ + **s**⊗**s**), **s** = Σ**x**ᵢ.
+fn tetrahedron(volume: f64, corners: [Vector; 3]) -> Moments {
+    let [a, b, c] = corners;
+    let sum = a + b + c;
+    let mut second = Symmetric::default();
+    for v in [a, b, c, sum] {
+        second = Symmetric {
+            xx: second.xx + volume / 20.0 * v.x * v.x,
+            yy: second.yy + volume / 20.0 * v.y * v.y,
+            zz: second.zz + volume / 20.0 * v.z * v.z,
+            xy: second.xy + volume / 20.0 * v.x * v.y,
+            xz: second.xz + volume / 20.0 * v.x * v.z,
+            yz: second.yz + volume / 20.0 * v.y * v.z,
+        };
+    }
+    Moments {
+        content: volume,
+        first: sum * (0.25 * volume),
+        second,
+    }
+}

@@ -1,0 +1,245 @@
+//! Bodies of any shape: mass, principal axes, and what can touch the plane.
+
+use super::check_density;
+use crate::Error;
+use crate::math::{Quaternion, Symmetric, Vector};
+use crate::motion::Top;
+
+/// Volume, or mass, with its first and second moments: the integrals of 1, **x** and **x**⊗**x**.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub(super) struct Moments {
+    pub content: f64,
+    pub first: Vector,
+    pub second: Symmetric,
+}
+
+/// Mass, centre of mass and tensor of inertia about it, in coherent units and the axes that the body was given in.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Inertia {
+    /// Mass.
+    pub mass: f64,
+    /// Centre of mass.
+    pub centre: Vector,
+    /// Tensor of inertia about the centre of mass.
+    pub tensor: Symmetric,
+}
+
+/// A ball, or a vertex as one of no size.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct RigidBall {
+    /// Its centre.
+    pub centre: Vector,
+    /// Its radius.
+    pub radius: f64,
+}
+
+/// A ball or vertex of a body, in units of R and the principal axes.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Point {
+    /// Its centre, and the distance of that from the centre of mass.
+    pub place: Vector,
+    pub distance: f64,
+    pub radius: f64,
+}
+
+/// What of a body can touch.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) enum Skin {
+    /// Balls, or the vertices of a polyhedron.
+    Points(Vec<Point>),
+    /// An ellipsoid about the centre of mass with these semi-axes along the principal axes.
+    Ellipsoid([f64; 3]),
+}
+
+/// A rigid body of any shape. Its unit of length R is the largest distance of a part of it from the centre of mass.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Rigid {
+    /// Mass, centre and inertia, in SI units, in the axes that the body was given in.
+    pub inertia: Inertia,
+    /// The core's unit of length R, in m.
+    pub unit: f64,
+    /// The rotation from the principal axes to those that the body was given in.
+    pub axes: Quaternion,
+    /// The principal moments over mR².
+    pub top: Top,
+    /// What can touch, in units of R and the principal axes.
+    pub(crate) skin: Skin,
+}
+
+impl Moments {
+    /// Those of a part of mass `content` about its own centre, with these second moments about it, moved there.
+    pub fn about(content: f64, centre: Vector, second: Symmetric) -> Self {
+        let c = centre;
+        Self {
+            content,
+            first: c * content,
+            second: Symmetric {
+                xx: second.xx + content * c.x * c.x,
+                yy: second.yy + content * c.y * c.y,
+                zz: second.zz + content * c.z * c.z,
+                xy: second.xy + content * c.x * c.y,
+                xz: second.xz + content * c.x * c.z,
+                yz: second.yz + content * c.y * c.z,
+            },
+        }
+    }
+
+    /// Both together.
+    pub fn and(self, other: Self) -> Self {
+        let (a, b) = (self.second, other.second);
+        Self {
+            content: self.content + other.content,
+            first: self.first + other.first,
+            second: Symmetric {
+                xx: a.xx + b.xx,
+                yy: a.yy + b.yy,
+                zz: a.zz + b.zz,
+                xy: a.xy + b.xy,
+                xz: a.xz + b.xz,
+                yz: a.yz + b.yz,
+            },
+        }
+    }
+
+    /// Mass, centre and inertia of matter of this density.
+    pub fn inertia(&self, density: f64) -> Inertia {
+        let c = self.first / self.content;
+        let m = self.content;
+        let central = Self::about(-m, c, self.second).second;
+        let Symmetric {
+            xx,
+            yy,
+            zz,
+            xy,
+            xz,
+            yz,
+        } = central;
+        Inertia {
+            mass: density * m,
+            centre: c,
+            tensor: Symmetric {
+                xx: density * (yy + zz),
+                yy: density * (zz + xx),
+                zz: density * (xx + yy),
+                xy: -density * xy,
+                xz: -density * xz,
+                yz: -density * yz,
+            },
+        }
+    }
+}
+
+impl Rigid {
+    /// A body with these parts, in m and the axes of its inertia.
+    pub(super) fn of_balls(inertia: Inertia, balls: &[RigidBall]) -> Result<Self, Error> {
+        let from_centre = |ball: &RigidBall| ball.centre - inertia.centre;
+        let reach = |ball: &RigidBall| from_centre(ball).norm() + ball.radius;
+        let unit = balls.iter().map(reach).fold(0.0, f64::max);
+        let (top, axes) = principal(&inertia, unit)?;
+        let back = axes.inverse();
+        let points = balls.iter().map(|ball| {
+            let place = back.rotate(from_centre(ball)) / unit;
+            Point {
+                place,
+                distance: place.norm(),
+                radius: ball.radius / unit,
+            }
+        });
+        Ok(Self {
+            inertia,
+            unit,
+            axes,
+            top,
+            skin: Skin::Points(points.collect()),
+        })
+    }
+
+    /// A homogeneous ellipsoid with these semi-axes (m) along its own axes.
+    ///
+    /// # Errors
+    /// Unless they and the density are positive, and the largest is at most 1000 times the smallest.
+    pub fn ellipsoid(semi_axes: [f64; 3], density: f64) -> Result<Self, Error> {
+        for axis in semi_axes {
+            let positive = axis.is_finite() && axis > 0.0;
+            Error::unless(positive, "semi_axes", axis, "finite and > 0 (m)")?;
+        }
+        check_density(density)?;
+        let [a, b, c] = semi_axes;
+        let unit = a.max(b).max(c);
+        let least = a.min(b).min(c);
+        Error::unless(
+            unit <= 1000.0 * least * (1.0 + 4.0 * f64::EPSILON),
+            "semi_axes",
+            least,
+            "at least 1/1000 of the largest",
+        )?;
+        let mass = density * (4.0 / 3.0 * std::f64::consts::PI) * a * b * c;
+        let fifth = mass / 5.0;
+        let inertia = Inertia {
+            mass,
+            centre: Vector::default(),
+            tensor: Symmetric::diagonal([
+                fifth * (b * b + c * c),
+                fifth * (c * c + a * a),
+                fifth * (a * a + b * b),
+            ]),
+        };
+        let (top, axes) = principal(&inertia, unit)?;
+        Ok(Self {
+            inertia,
+            unit,
+            axes,
+            top,
+            skin: Skin::Ellipsoid(semi_axes.map(|axis| axis / unit)),
+        })
+    }
+
+    /// The principal moments of inertia, in kg m².
+    pub fn principal_moments(&self) -> [f64; 3] {
+        let scale = self.inertia.mass * self.unit * self.unit;
+        self.top.moments().map(|moment| scale * moment)
+    }
+
+    /// Smallest height of the centre of mass, in m, at which no part of the body is below the plane in an attitude of the axes that
+    /// the body was given in.
+    pub fn lowest(&self, attitude: Quaternion) -> f64 {
+        self.unit * self.skin.support(up(attitude * self.axes))
+    }
+}
+
+/// The plane normal in the axes of a body with this attitude.
+pub(crate) fn up(attitude: Quaternion) -> Vector {
+    let Quaternion { w, x, y, z } = attitude;
+    Vector::new(
+        2.0 * (x * z - w * y),
+        2.0 * (y * z + w * x),
+        1.0 - 2.0 * (x * x + y * y),
+    )
+}
+
+impl Skin {
+    /// The distance from the centre of mass to the lowest part, in the direction against `up`.
+    pub(crate) fn support(&self, up: Vector) -> f64 {
+        match self {
+            Self::Points(points) => {
+                let lowest = points
+                    .iter()
+                    .map(|point| point.radius - up.dot(point.place));
+                lowest.fold(f64::NEG_INFINITY, f64::max)
+            }
+            Self::Ellipsoid([a, b, c]) => Vector::new(a * up.x, b * up.y, c * up.z).norm(),
+        }
+    }
+}
+
+/// The principal moments over mR², and the rotation from the principal axes.
+fn principal(inertia: &Inertia, unit: f64) -> Result<(Top, Quaternion), Error> {
+    let (moments, axes) = inertia.tensor.principal();
+    let scale = 1.0 / (inertia.mass * unit * unit);
+    let moments = moments.map(|moment| scale * moment);
+    let all = [inertia.mass, scale, moments[0], moments[1], moments[2]];
+    let finite = all.iter().all(|x| x.is_normal());
+    let allowed = "such that mass and inertia neither overflow nor underflow";
+    Error::unless_beyond(finite, "density", inertia.mass, allowed)?;
+    Ok((Top::new(moments)?, axes))
+}

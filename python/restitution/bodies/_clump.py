@@ -1,0 +1,98 @@
+"""Clumps of spheres, as discrete-element codes have them."""
+
+from typing import Annotated, Any
+
+import numpy as np
+from pydantic import BeforeValidator, Field
+
+from restitution import _core
+from restitution._internal.arrays import check_each, reals
+from restitution._internal.parameters import Allowed, Number, ParameterError, Problem, wrong
+from restitution.bodies._rigid import RigidBody
+
+Rows = tuple[tuple[float, ...], ...]
+
+_SPHERES = "rows (x, y, z, radius) of finite numbers in m, one or more, each radius > 0"
+_INERTIA = '"union", "sum" or a symmetric matrix, shape (3, 3), in kg m²'
+_CENTRE = "None or (x, y, z), finite, in m"
+
+
+def _rows(numbers: Any) -> Rows:
+    return tuple(map(tuple, numbers.tolist()))
+
+
+def _spheres(value: Any) -> Rows:
+    spheres = reals("spheres", value, _SPHERES, unit="m", dimensions=(2,))
+    if spheres.shape[0] == 0 or spheres.shape[1] != 4:
+        raise ParameterError(wrong("spheres", value, _SPHERES))
+    check_each(
+        "spheres",
+        spheres,
+        np.column_stack([np.ones((len(spheres), 3), bool), spheres[:, 3:] > 0.0]),
+        _SPHERES,
+    )
+    return _rows(spheres)
+
+
+def _inertia(value: Any) -> str | Rows:
+    if isinstance(value, str) and value in ("union", "sum"):
+        return value
+    tensor = reals("inertia", value, _INERTIA, unit="kg m2", dimensions=(2,))
+    if tensor.shape != (3, 3) or not np.allclose(tensor, tensor.T, rtol=1e-9, atol=0.0):
+        raise ParameterError(wrong("inertia", value, _INERTIA))
+    return _rows(0.5 * (tensor + tensor.T))
+
+
+def _centre(value: Any) -> tuple[float, ...] | None:
+    if value is None:
+        return None
+    centre = reals("centre", value, _CENTRE, unit="m", dimensions=(1,))
+    if centre.shape != (3,):
+        raise ParameterError(wrong("centre", value, _CENTRE))
+    return tuple(centre.tolist())
+
+
+class Clump(RigidBody):
+    """Spheres that are fixed to each other, overlapping or not: the multisphere of discrete-element codes.
+
+    Parameters
+    ----------
+    spheres : array_like, shape (n, 4)
+        Centre and radius (x, y, z, r) of each sphere, in m; finite, r > 0.
+    density : float, default 2500
+        Density in kg/m³; finite and > 0.
+    inertia : {"union", "sum"} or array_like, shape (3, 3)
+        The matter: that of the union of the spheres, or of each sphere by itself, so that overlaps count
+        several times, as in some codes. Or the tensor of inertia about the centre of mass, in kg m², in the
+        axes of the spheres; the mass is then that of the union.
+    centre : array_like, shape (3,), optional
+        The centre of mass in m, where a tensor of inertia is given; that of the union if it is left out.
+
+    Examples
+    --------
+    >>> import restitution as rs
+    >>> body = rs.Clump(spheres=[(0, 0, 1.5e-4, 3e-3), (0, 0, -1.5e-4, 3e-3)])
+    >>> dumbbell = rs.Dumbbell(radius=3e-3, separation=3e-4)
+    >>> round(body.mass / dumbbell.mass, 12)
+    1.0
+    """
+
+    spheres: Annotated[Any, Allowed(_SPHERES), BeforeValidator(_spheres), Field(description="m")]
+    density: Annotated[Number, Field(gt=0, description="kg/m³")] = 2500.0
+    inertia: Annotated[Any, Allowed(_INERTIA), BeforeValidator(_inertia), Field(description="kg m²")] = (
+        "union"
+    )
+    centre: Annotated[Any, Allowed(_CENTRE), BeforeValidator(_centre), Field(description="m")] = None
+
+    def _compile(self) -> _core.Rigid:
+        union = _core.clump(self.spheres, self.density, self.inertia == "sum")
+        if isinstance(self.inertia, str):
+            if self.centre is not None:
+                text = f" = {self.centre}, inertia = {self.inertia!r}: must be "
+                raise ParameterError(
+                    Problem("centre", text, "left out, or given with the tensor of inertia about it")
+                )
+            return union
+        centre = union.centre if self.centre is None else self.centre
+        given = {"mass": union.mass, "centre": centre, "tensor": self.inertia}
+        return _core.clump_with(self.spheres, given)

@@ -1,0 +1,107 @@
+"""Convex polyhedra."""
+
+from itertools import product
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar
+
+import numpy as np
+from pydantic import BeforeValidator, Field
+
+from restitution import _core
+from restitution._internal.arrays import reals
+from restitution._internal.parameters import Allowed, Number, ParameterError, wrong
+from restitution.bodies._rigid import RigidBody
+
+_POINTS = "four or more points (x, y, z) in m, finite, not all in one plane"
+_DENSITY = Annotated[Number, Field(gt=0, description="kg/m³")]
+
+
+def _points(value: Any) -> tuple[tuple[float, ...], ...]:
+    points = reals("points", value, _POINTS, unit="m", dimensions=(2,))
+    if points.shape[0] < 4 or points.shape[1] != 3:
+        raise ParameterError(wrong("points", value, _POINTS))
+    return tuple(map(tuple, points.tolist()))
+
+
+class ConvexPolyhedron(RigidBody):
+    """The homogeneous convex hull of points.
+
+    Parameters
+    ----------
+    points : array_like, shape (n, 3)
+        Its vertices (x, y, z), in m; finite, not all in one plane. Points inside of it do not matter.
+    density : float, default 2500
+        Density in kg/m³; finite and > 0. Only mass and inertia depend on it, the motion does not.
+
+    Examples
+    --------
+    >>> import restitution as rs
+    >>> corner = rs.ConvexPolyhedron([(0, 0, 0), (6e-3, 0, 0), (0, 6e-3, 0), (0, 0, 6e-3)])
+    >>> corner.centre_of_mass.tolist()
+    [0.0015, 0.0015, 0.0015]
+    """
+
+    by_place: ClassVar[tuple[str, ...]] = ("points",)
+
+    points: Annotated[Any, Allowed(_POINTS), BeforeValidator(_points), Field(description="m")]
+    density: _DENSITY = 2500.0
+
+    if TYPE_CHECKING:  # or type checkers would take the fields for keyword arguments
+
+        def __init__(self, points: Any, *, density: float = 2500.0) -> None: ...
+
+    def _compile(self) -> _core.Rigid:
+        from scipy.spatial import ConvexHull, QhullError
+
+        points = np.array(self.points)
+        size = np.ptp(points, axis=0).max()
+        try:
+            hull = ConvexHull((points - points[0]) / (size or 1.0))
+        except QhullError:
+            raise ParameterError(wrong("points", points, _POINTS)) from None
+        return _core.polyhedron(self.points, hull.simplices.tolist(), self.density)
+
+
+class Box(RigidBody):
+    """A homogeneous cuboid.
+
+    Parameters
+    ----------
+    a, b, c : float
+        Lengths of the edges along x, y and z of the body, in m; finite and > 0.
+    density : float, default 2500
+        Density in kg/m³; finite and > 0. Only mass and inertia depend on it, the motion does not.
+
+    Examples
+    --------
+    >>> import restitution as rs
+    >>> die = rs.Box(a=1e-2, b=1e-2, c=1e-2)
+    >>> bool(abs(die.principal_moments / die.mass - 1e-4 / 6).max() < 1e-18)
+    True
+    """
+
+    by_place: ClassVar[tuple[str, ...]] = ("a", "b", "c")
+
+    a: Annotated[Number, Field(gt=0, description="m")]
+    b: Annotated[Number, Field(gt=0, description="m")]
+    c: Annotated[Number, Field(gt=0, description="m")]
+    density: _DENSITY = 2500.0
+
+    if TYPE_CHECKING:
+
+        def __init__(self, a: float, b: float, c: float, *, density: float = 2500.0) -> None: ...
+
+    @property
+    def vertices(self) -> tuple[tuple[float, float, float], ...]:
+        """The eight corners in m, in the order of the numbers in ``contact``, from 1."""
+        x, y, z = 0.5 * self.a, 0.5 * self.b, 0.5 * self.c
+        return tuple(product((-x, x), (-y, y), (-z, z)))
+
+    def _compile(self) -> _core.Rigid:
+        return _core.polyhedron(self.vertices, _TRIANGLES, self.density)
+
+
+_TRIANGLES = [
+    [0, 1, 3], [0, 3, 2], [4, 5, 7], [4, 7, 6], [0, 1, 5], [0, 5, 4],
+    [2, 3, 7], [2, 7, 6], [0, 2, 6], [0, 6, 4], [1, 3, 7], [1, 7, 5],
+]  # fmt: skip
+"""The faces of a box, two triangles each."""

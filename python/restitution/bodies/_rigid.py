@@ -1,0 +1,75 @@
+"""The base of the bodies without a symmetry axis."""
+
+from abc import abstractmethod
+from collections.abc import Iterator
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from restitution import _core
+from restitution._internal import text as _text
+from restitution._internal.arrays import FloatArray
+from restitution.bodies._body import AnyBody
+
+_HALF = np.sqrt(0.5)
+_FACES = np.array(
+    [
+        (1.0, 0.0, 0.0, 0.0),
+        (0.0, 1.0, 0.0, 0.0),
+        (_HALF, _HALF, 0.0, 0.0),
+        (_HALF, -_HALF, 0.0, 0.0),
+        (_HALF, 0.0, _HALF, 0.0),
+        (_HALF, 0.0, -_HALF, 0.0),
+    ]
+)
+"""Attitudes with each axis of the body up or down."""
+
+
+class RigidBody(AnyBody):
+    """A rigid body of any shape.
+
+    Its attitude is the rotation from the axes that it is given in to those of space.
+    """
+
+    @abstractmethod
+    def _compile(self) -> _core.Rigid:
+        """Make the body as the core knows it."""
+
+    @cached_property
+    def compiled(self) -> _core.Rigid:
+        """The body as the core knows it, made and checked once."""
+        return self._compile()
+
+    @property
+    def lowest_position(self) -> float:
+        """Least height of the centre of mass over the plane with an axis of the body upright, in m."""
+        return min(self.compiled.lowest(face[None]) for face in _FACES)
+
+    @property
+    def centre_of_mass(self) -> FloatArray:
+        """Place of the centre of mass in the axes that the body is given in, in m, shape (3,)."""
+        return np.array(self.compiled.centre)
+
+    @property
+    def inertia_tensor(self) -> FloatArray:
+        """Tensor of inertia about the centre of mass, in the same axes, in kg m², shape (3, 3)."""
+        return np.array(self.compiled.inertia_tensor)
+
+    @property
+    def principal_moments(self) -> FloatArray:
+        """The three principal moments of inertia, in kg m²."""
+        return np.array(self.compiled.principal_moments)
+
+    def attributes(self) -> dict[str, Any]:
+        """Return every parameter under its own name, rows of tables one after the other."""
+        plain = {name: value for name, value in self.model_dump().items() if value is not None}
+        return {
+            name: np.ravel(value).tolist() if isinstance(value, tuple) else value
+            for name, value in plain.items()
+        }
+
+    def _rows(self) -> Iterator[tuple[str, str]]:
+        yield from super()._rows()
+        for number, moment in enumerate(self.principal_moments, start=1):
+            yield f"principal moment {number}", _text.value(float(moment), "kg m²")
