@@ -15,7 +15,6 @@ import restitution as rs
 from benchmarks.recording import PLATE, recording
 from reference.bouncing import impact_times
 from restitution.cli import app
-from restitution.experiment.listen._analysis import in_words
 
 RATE = 44100
 
@@ -202,9 +201,48 @@ def test_a_lossy_file_says_that_it_is(tmp_path: Path, ball: Path) -> None:
     assert ".ogg compresses with loss" in said
 
 
+def typed(path: Path, times: np.ndarray) -> Path:
+    path.write_text("# a marble\ntime (ms)\n" + "".join(f"{1e3 * t:.4f}\n" for t in times), encoding="utf-8")
+    return path
+
+
+def test_a_typed_table_gives_page_and_sentence(tmp_path: Path) -> None:
+    """The errors of its times, which it does not give, are fitted; nothing is drawn of a sound."""
+    times = 0.3 + impact_times(lambda _: 0.9, 2.0, 16) + np.random.default_rng(1).normal(0.0, 1e-4, 16)
+    file, out = typed(tmp_path / "times.csv", times), tmp_path / "report.html"
+    code, said = listen(file, "--diameter", 0.02, "--out", out)
+    assert code == 0, said
+    match = re.search(r"From the times of 16 impacts .* is (0\.\d+) ± (0\.\d+)", said)
+    assert match is not None, said
+    assert abs(float(match[1]) - 0.9) < 4.0 * float(match[2]) < 4e-3
+    match = re.search(r"came without an uncertainty; their standard error, .*, is (\d+) ± (\d+) µs", said)
+    assert match is not None, said
+    assert abs(float(match[1]) - 100.0) < 3.0 * float(match[2]) < 100.0
+    page = Page(out.read_text(encoding="utf-8"))
+    assert "came without an uncertainty" in page.words
+    assert "sample rate" not in page.words
+    data = xr.load_dataset(out.with_suffix(".nc"))
+    assert data.time.values == pytest.approx(times, abs=1e-7)
+    assert data.uncertainty.values == pytest.approx(1e-6 * float(match[1]), abs=1e-6)
+
+
+def test_a_table_has_the_error_that_is_given(tmp_path: Path) -> None:
+    file = typed(tmp_path / "times.txt", impact_times(lambda _: 0.9, 2.0, 16))
+    code, said = listen(file, "--diameter", 0.02, "--time-error", 1e-4, "--out", tmp_path / "a.html")
+    assert code == 0, said
+    assert "timed to 100 µs (standard error)" in said
+    assert "without an uncertainty" not in said
+
+
+def test_errors_of_times_are_found_in_a_recording(ball: Path, tmp_path: Path) -> None:
+    code, said = listen(ball, "--diameter", 0.02, "--time-error", 1e-4, "--out", tmp_path / "a.html")
+    assert code == 2
+    assert "a recording, in which errors of times are found, not given" in said
+
+
 def test_the_sentence_names_parameters_in_words() -> None:
     data = rs.flight.restitution(impact_times(lambda v: 0.9 * v**-0.02, 2.0, 12), 1e-5)
-    said = in_words(str(rs.flight.fit(data, "power law")))
+    said = str(rs.flight.fit(data, "power law"))
     assert said.startswith("power law: ε at 1 m/s = 0.900")
     assert "restitution_at" not in said
 

@@ -1,4 +1,4 @@
-"""`restitution listen`: from a recording of a bouncing ball to a page."""
+"""`restitution listen`: from a recording of a bouncing ball, or the times of its impacts, to a page."""
 
 from pathlib import Path
 from typing import Annotated
@@ -10,7 +10,12 @@ from restitution.cli._common import Overwrite, Quiet, errors_in_a_line
 
 
 def listen(
-    file: Annotated[Path, typer.Argument(metavar="FILE", help="The recording: WAV, FLAC, OGG, MP3 or AIFF.")],
+    file: Annotated[
+        Path,
+        typer.Argument(
+            metavar="FILE", help="The recording: WAV, FLAC, OGG, MP3 or AIFF; or times: CSV, TXT, XLSX."
+        ),
+    ],
     diameter: Annotated[
         float | None, typer.Option(metavar="D", help="Diameter of the ball, m; required.")
     ] = None,
@@ -28,6 +33,9 @@ def listen(
         typer.Option(metavar="H", help="Fall from rest to the first impact heard, m."),
     ] = None,
     drop_error: Annotated[float, typer.Option(metavar="S", help="Standard error of the drop, m.")] = 0.0,
+    time_error: Annotated[
+        float | None, typer.Option(metavar="S", help="Standard error of times in a table without one, s.")
+    ] = None,
     gravity: Annotated[float, typer.Option(metavar="G", help="Acceleration of gravity, m/s2.")] = 9.81,
     gravity_error: Annotated[float, typer.Option(metavar="S", help="Standard error of gravity, m/s2.")] = 0.0,
     out_of_roundness: Annotated[
@@ -37,7 +45,7 @@ def listen(
     overwrite: Overwrite = False,
     quiet: Quiet = False,
 ) -> None:
-    """Find the impacts of a bouncing ball in a recording, and evaluate them.
+    """Find the impacts of a bouncing ball in a recording, or read their times, and evaluate them.
 
     Writes one page that needs nothing else: the impacts marked on the waveform,
     close-ups of onsets, the coefficient of restitution against the speed with
@@ -59,6 +67,7 @@ def listen(
                 mass=mass,
                 drop=drop,
                 drop_uncertainty=drop_error,
+                time_uncertainty=time_error,
                 gravity=gravity,
                 gravity_uncertainty=gravity_error,
                 out_of_roundness=out_of_roundness,

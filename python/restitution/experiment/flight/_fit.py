@@ -1,6 +1,7 @@
 """A law ε_n(v) fitted to measured impacts, with the whole covariance of the measurement."""
 
 from collections.abc import Iterable
+from dataclasses import replace
 from typing import Literal
 
 import numpy as np
@@ -10,7 +11,8 @@ from restitution._internal.arrays import real
 from restitution._internal.parameters import ParameterError, Problem, wrong
 from restitution.experiment.flight._law_fit import LawFit
 from restitution.experiment.flight._problem import Misfit, joined
-from restitution.experiment.flight.chain import measured_of
+from restitution.experiment.flight._separation import Separation, separated
+from restitution.experiment.flight.chain import Measured, measured_of
 from restitution.experiment.flight.laws import law_named
 from restitution.experiment.flight.series import series_of
 from restitution.experiment.flight.times import LARGEST
@@ -37,7 +39,9 @@ def fit(
         spheres with their yield speed.
     scatter : float or "fit"
         Standard deviation of ε about the law besides the errors of measurement, >= 0, as an imperfect shape
-        makes it; or fitted with the law, by the restricted likelihood.
+        makes it; or fitted with the law, by the restricted likelihood. If the times came without an
+        uncertainty it is fitted, too, where the coefficients tell one from the other; the fit's ``note``
+        says what they tell.
 
     Returns
     -------
@@ -74,12 +78,33 @@ def fit(
         raise ParameterError(
             Problem("data", ": times without errors; must have an uncertainty > 0, or give scatter='fit'")
         )
+    note = ""
+    if scatter == "fit" and not any(one.variances[: one.times.size].any() for one in experiments):
+        found = separation(experiments)
+        note = found.words
+        if found.timing > 0.0:
+            problem = Misfit(form, [one.timed(found.timing) for one in experiments], known)
+            scatter = found.scatter
     try:
-        return problem.fit(scatter)
+        return replace(problem.fit(scatter), note=note)
     except (np.linalg.LinAlgError, ValueError):  # of Cholesky, or of least squares that met a NaN
         raise ParameterError(
             Problem("data", f": the law {form.name!r} has no fit; errors must be small beside the intervals")
         ) from None
+
+
+def separation(experiments: list[Measured]) -> Separation:
+    """Separate errors of times that came without an uncertainty from a scatter of ε.
+
+    The first impact after a drop of uncertain height says nothing about either.
+    """
+    links = joined(experiments, None)
+    ratio = links.after / links.before
+    drops = slice(-len(experiments), None)
+    known = np.isfinite(ratio) & (links.before_by[:, drops] ** 2 @ links.variances[drops] == 0.0)
+    times = ratio.size
+    slopes = links.after_by[known, :times] - ratio[known, None] * links.before_by[known, :times]
+    return separated(links.before[known], ratio[known], slopes / links.before[known, None])
 
 
 def compare(*fits: LawFit) -> str:

@@ -42,6 +42,8 @@ class LawFit(Content):
         Coefficients less parameters.
     loglikelihood : float
         Natural logarithm of the likelihood, up to a constant that all fits of the same data share.
+    note : str
+        What is known of the errors of times that came without an uncertainty; empty where they had one.
 
     Examples
     --------
@@ -64,6 +66,7 @@ class LawFit(Content):
     degrees_of_freedom: int
     loglikelihood: float
     _form: LawOfSpeed = field(repr=False)
+    note: str = ""
 
     @property
     def p_value(self) -> float:
@@ -90,16 +93,16 @@ class LawFit(Content):
     def _values(self) -> Array:
         return np.array(list(self.parameters.values()))
 
-    def _estimates(self) -> list[tuple[str, str]]:
-        """Return parameters with their errors and units, as text."""
+    def estimates(self) -> list[tuple[str, str]]:
+        """Return parameters in words, with their errors and units, as text."""
         units = {name: "" if unit == "1" else f" {unit}" for name, unit in self.units.items()}
         return [
-            (name, with_error(value, self.errors[name]) + units[name])
+            (_WORDS.get(name, name), with_error(value, self.errors[name]) + units[name])
             for name, value in self.parameters.items()
         ]
 
     def _repr_html_(self) -> str:
-        rows = self._estimates()
+        rows = self.estimates()
         if self.scatter_error > 0.0:
             rows.append(("scatter", with_error(self.scatter, self.scatter_error)))
         else:
@@ -108,14 +111,17 @@ class LawFit(Content):
         return table(f"{self.law}, fitted to {self.impacts} coefficients of restitution", rows)
 
     def __str__(self) -> str:
-        parts = list(map(" = ".join, self._estimates()))
+        parts = list(map(" = ".join, self.estimates()))
         if self.scatter_error > 0.0:
             parts.append(f"scatter {with_error(self.scatter, self.scatter_error)}")
         freedom = self.degrees_of_freedom
         quality = f"χ²/n = {self.chi2:.1f}/{freedom}"
         if not self.scatter_error > 0.0:
             quality += f", p = {self.p_value:.2g}"
-        return f"{self.law}: {', '.join(parts)}; {quality}"
+        return f"{self.law}: {', '.join(parts)}; {quality}" + f"\n{self.note}" * bool(self.note)
+
+
+_WORDS = {"restitution_at_1_m_s": "ε at 1 m/s", "yield_speed": "yield speed"}
 
 
 def _speeds(speed: npt.ArrayLike) -> Array:

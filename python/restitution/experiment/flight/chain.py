@@ -64,6 +64,11 @@ class Measured:
     terminal: float | None
     variances: Array
 
+    def timed(self, error: float) -> "Measured":
+        """Return the chain with one standard error, in s, for all times."""
+        n = self.times.size
+        return replace(self, variances=np.append(np.full(n, error**2), self.variances[n:]))
+
     def moved(self, shift: Array) -> "Measured":
         """Return the chain with other numbers, which differ by `shift`, shape (n + 3,)."""
         n = self.times.size

@@ -25,6 +25,9 @@ from restitution._internal.parameters import (
 )
 from restitution._internal.text import digits, with_error
 from restitution.bodies import from_roundness
+from restitution.experiment.flight._fit import separation
+from restitution.experiment.flight._separation import KNOWN, Separation
+from restitution.experiment.flight.chain import measured_of
 from restitution.experiment.flight.times import DOUBLED, FLAGS
 from restitution.experiment.listen._shape import Shape, shape
 from restitution.experiment.sound import impacts
@@ -37,10 +40,13 @@ _EXPLAINED = 0.01
 """Probability of a law from which on errors of measurement explain all scatter."""
 _LOSSY = (".mp3", ".ogg", ".oga", ".opus")
 """Endings of files that are compressed with loss."""
+_TABLES = (".csv", ".tsv", ".txt", ".xls", ".xlsx", ".zip")
+"""Endings of files that hold times of impacts."""
 _LAWS = ("constant", "power law", "viscoelastic", "plastic")
 
 
 _OR_NONE = Allowed("a finite number > 0 (SI units), or None")
+_TIME_OR_NONE = Allowed("a finite number > 0 (s), or None")
 
 
 class Setting(Parameters):
@@ -54,6 +60,8 @@ class Setting(Parameters):
         In kg; then air drag is taken into account.
     drop, drop_uncertainty : float, optional
         Height of the fall before the first impact heard, and its standard error, in m.
+    time_uncertainty : float, optional
+        Standard error of the times of a table that does not give it, in s.
     gravity, gravity_uncertainty : float
         g and its standard error, in m/s².
     out_of_roundness : float, optional
@@ -66,6 +74,7 @@ class Setting(Parameters):
     mass: Annotated[Number | None, Field(gt=0, description="kg"), _OR_NONE] = None
     drop: Annotated[Number | None, Field(gt=0, description="m"), _OR_NONE] = None
     drop_uncertainty: Annotated[Number, Field(ge=0, description="m")] = 0.0
+    time_uncertainty: Annotated[Number | None, Field(gt=0, description="s"), _TIME_OR_NONE] = None
     gravity: Annotated[Number, Field(gt=0, description="m/s²")] = 9.81
     gravity_uncertainty: Annotated[Number, Field(ge=0, description="m/s²")] = 0.0
     out_of_roundness: Annotated[
@@ -103,7 +112,10 @@ class Series(Content):
     fits : tuple of LawFit
         The laws that could be fitted, the best first; none where there are too few impacts.
     shape : Shape or None
-        What the times say of the ball's shape, and the error budget; None where no law was fitted.
+        What the times say of the ball's shape, and the error budget; None where no law was fitted, or where
+        the errors of the times are not known.
+    note : str
+        What is known of these errors where the table did not give them.
     """
 
     number: int
@@ -111,6 +123,7 @@ class Series(Content):
     data: xr.Dataset
     fits: tuple[flight.LawFit, ...]
     shape: Shape | None
+    note: str = ""
 
     @property
     def coefficients(self) -> int:
@@ -124,9 +137,10 @@ class Series(Content):
         speeds = self.data.impact_velocity.values[known]
         error = float(np.nanmedian(self.data.uncertainty.values)) * 1e6
         number = int(np.isfinite(self.data.time).sum())
+        timed = f"timed to {digits(error)} µs (standard error)" if error else "with times of unknown error"
         begin = (
-            f"From the sound of {number} impacts of a ball of {1e3 * setting.diameter:g} mm diameter, "
-            f"timed to {digits(error)} µs (standard error)"
+            f"From the {'sound' if heard_in(self.heard) else 'times'} of {number} impacts of a ball of "
+            f"{1e3 * setting.diameter:g} mm diameter, {timed}"
         )
         if not known.any():
             return f"{begin}, no coefficient of restitution can be given."
@@ -151,15 +165,15 @@ class Series(Content):
             text += (
                 f", with a scatter of {with_error(mean.scatter, mean.scatter_error)} from impact to impact"
             )
-            text += " that errors of the times do not explain"
+            text += " that errors of the times do not explain" if error else ""
         text += "; air drag is accounted for" if setting.mass is not None else "; air drag is neglected"
         if best.law != "constant":
             gain = mean.aic - best.aic
-            text += f". The law that fits best is {in_words(str(best))}"
+            text += f". The law that fits best is {str(best).splitlines()[0]}"
             text += f", by {gain:.1f} in Akaike's criterion over a constant"
         if self.shape is not None and self.shape.draws is not None:
             text += f". {self.shape.verdict.rstrip('.')}"
-        return text + "."
+        return f"{text}. {self.note}".rstrip() if self.note else f"{text}."
 
 
 @dataclass(frozen=True, eq=False)
@@ -238,7 +252,7 @@ class Analysis(Content):
 
 
 def analyse(file: Path, setting: Setting) -> Analysis:
-    """Listen to a recording and fit what is heard.
+    """Listen to a recording, or read a table of times, and fit what is heard.
 
     Raises
     ------
@@ -248,16 +262,20 @@ def analyse(file: Path, setting: Setting) -> Analysis:
         If the file cannot be read.
     """
     file = path_from("file", file)
-    heard = impacts(file)
     checked(setting)
-    series = tuple(_series(heard, int(number), setting) for number in np.unique(heard.series))
+    if file.suffix.lower() in _TABLES:
+        heard = flight.read(file, uncertainty=setting.time_uncertainty)
+        heard, told = _with_errors(heard, setting)
+        heard["series"] = xr.zeros_like(heard.flag, dtype=np.int64)
+    elif setting.time_uncertainty is not None:
+        raise ParameterError(
+            Problem(str(file), ": a recording, in which errors of times are found, not given")
+        )
+    else:
+        heard, told = impacts(file), KNOWN
+    series = tuple(_series(heard, int(number), setting, told) for number in np.unique(heard.series))
     _check_drop(series[0], setting)
     return Analysis(file.name, setting, heard, series, (*_lossy(file), *_warnings(heard, series, setting)))
-
-
-def in_words(text: str) -> str:
-    """Put words for the names of parameters."""
-    return text.replace("restitution_at_1_m_s", "ε at 1 m/s").replace("yield_speed", "yield speed")
 
 
 def checked(setting: object) -> None:
@@ -266,9 +284,46 @@ def checked(setting: object) -> None:
         raise ParameterError(wrong("setting", setting, "a Setting"))
 
 
-def _series(heard: xr.Dataset, number: int, setting: Setting) -> Series:
+def heard_in(heard: xr.Dataset) -> bool:
+    """Tell times that were heard in a recording from those of a table."""
+    return "rate" in heard.attrs
+
+
+def _with_errors(heard: xr.Dataset, setting: Setting) -> tuple[xr.Dataset, Separation]:
+    """Put the errors of times that came without one into a table, where its coefficients show them."""
+    if heard.uncertainty.fillna(0.0).any():
+        return heard, KNOWN
+    told = separation([measured_of(_coefficients(heard, 0, setting))])
+    errors = np.where(np.isnan(heard.time.values), np.nan, told.timing)
+    return heard.assign(uncertainty=("impact", errors, heard.uncertainty.attrs)), told
+
+
+def _series(heard: xr.Dataset, number: int, setting: Setting, told: Separation) -> Series:
     rows = heard.isel(impact=np.flatnonzero(heard.series == number))
-    data = flight.restitution(
+    data = _coefficients(rows, number, setting)
+    known = int(np.isfinite(data.restitution).sum())
+    timed = bool(data.uncertainty.fillna(0.0).any())
+    fits = _fitted(data, told.scatter) if timed and known >= 3 else []
+    if known >= _FEWEST_FOR_SCATTER and not any(fit.p_value > _EXPLAINED for fit in fits):
+        fits = _fitted(data, "fit")
+    if not any(fit.law == "constant" for fit in fits):
+        fits = []
+    ordered = tuple(sorted(fits, key=lambda fit: fit.aic))
+    found = None
+    if timed:
+        found = shape(
+            data,
+            ordered,
+            diameter=setting.diameter,
+            mass=setting.mass,
+            out_of_roundness=setting.out_of_roundness,
+            drag=setting.drag,
+        )
+    return Series(number, rows, data, ordered, found, told.words)
+
+
+def _coefficients(rows: xr.Dataset, number: int, setting: Setting) -> xr.Dataset:
+    return flight.restitution(
         rows,
         gravity=setting.gravity,
         gravity_uncertainty=setting.gravity_uncertainty,
@@ -278,22 +333,6 @@ def _series(heard: xr.Dataset, number: int, setting: Setting) -> Series:
         drag=setting.drag,
         doubtful=setting.doubtful,
     )
-    known = int(np.isfinite(data.restitution).sum())
-    fits = _fitted(data, 0.0) if known >= 3 else []
-    if known >= _FEWEST_FOR_SCATTER and not any(fit.p_value > _EXPLAINED for fit in fits):
-        fits = _fitted(data, "fit")
-    if not any(fit.law == "constant" for fit in fits):
-        fits = []
-    ordered = tuple(sorted(fits, key=lambda fit: fit.aic))
-    found = shape(
-        data,
-        ordered,
-        diameter=setting.diameter,
-        mass=setting.mass,
-        out_of_roundness=setting.out_of_roundness,
-        drag=setting.drag,
-    )
-    return Series(number, rows, data, ordered, found)
 
 
 def _fitted(data: xr.Dataset, scatter: float | Literal["fit"]) -> list[flight.LawFit]:
@@ -335,7 +374,7 @@ def _lossy(file: Path) -> list[str]:
 
 def _warnings(heard: xr.Dataset, series: tuple[Series, ...], setting: Setting) -> list[str]:
     found = []
-    share = float(heard.attrs["clipped_share"])
+    share = float(heard.attrs.get("clipped_share", 0.0))
     if share > _CLIPPED:
         found.append(
             f"{100 * share:.0f} % of the loud samples are clipped: "

@@ -12,7 +12,7 @@ from restitution._internal.files import check, check_apart, path_from, whole_fil
 from restitution._internal.parameters import ParameterError, wrong
 from restitution._internal.text import digits, with_error
 from restitution.experiment.flight.times import DOUBLED, FLAGS
-from restitution.experiment.listen._analysis import Analysis, Series, Setting, analyse, checked
+from restitution.experiment.listen._analysis import Analysis, Series, Setting, analyse, checked, heard_in
 from restitution.experiment.listen._figures import close_ups, drawn_shape, waveform
 from restitution.experiment.listen._shape import Shape
 from restitution.figures.report import Section, drawing, page, paragraph, prose, table, text
@@ -50,7 +50,8 @@ def write(file: Path, out: Path, setting: Setting, *, replace: bool = False) -> 
 
 
 def _page(file: Path, analysis: Analysis) -> str:
-    sections = [Section("recording", "The recording", _recording(file, analysis))]
+    title = "The recording" if heard_in(analysis.heard) else "The times"
+    sections = [Section("recording", title, _recording(file, analysis))]
     for one in analysis.series:
         title = "Coefficient of restitution" if len(analysis.series) == 1 else f"Series {one.number}"
         sections.append(Section(f"series-{one.number}", title, _series(one, analysis.setting)))
@@ -71,13 +72,8 @@ def _page(file: Path, analysis: Analysis) -> str:
 
 
 def _recording(file: Path, analysis: Analysis) -> list[str]:
-    attrs = analysis.heard.attrs
     setting = analysis.setting
     rows = [
-        ["sample rate", f"{attrs['rate']:g} Hz"],
-        ["channel", str(attrs["channel"])],
-        ["band", text(attrs["band"])],
-        ["rule for the onset", text(attrs["rule"])],
         ["diameter", f"{1e3 * setting.diameter:g} mm"],
         ["gravity", f"{with_error(setting.gravity, setting.gravity_uncertainty)} m/s²"],
     ]
@@ -89,6 +85,15 @@ def _recording(file: Path, analysis: Analysis) -> list[str]:
     else:
         speed = with_error(drag.terminal_velocity, drag.uncertainty)
         rows.append(["air drag", f"quadratic, terminal velocity {speed} m/s"])
+    if not heard_in(analysis.heard):
+        return [table(["", ""], rows, caption="Set-up")]
+    attrs = analysis.heard.attrs
+    rows[:0] = [
+        ["sample rate", f"{attrs['rate']:g} Hz"],
+        ["channel", str(attrs["channel"])],
+        ["band", text(attrs["band"])],
+        ["rule for the onset", text(attrs["rule"])],
+    ]
     return [
         drawing(waveform(file, analysis), "The sound against time, with a mark at each impact."),
         drawing(
@@ -107,11 +112,7 @@ def _series(one: Series, setting: Setting) -> list[str]:
         best = one.fits[0].aic
         rows = []
         for fit in one.fits:
-            parameters = ", ".join(
-                f"{name.replace('_m_s', ' m/s').replace('_', ' ')} {with_error(value, fit.errors[name])}"
-                + (f" {fit.units[name]}" if fit.units[name] != "1" else "")
-                for name, value in fit.parameters.items()
-            )
+            parameters = ", ".join(map(" ".join, fit.estimates()))
             spread = with_error(fit.scatter, fit.scatter_error) if fit.scatter_error > 0.0 else "none fitted"
             chance = "" if fit.scatter_error > 0.0 else f"{fit.p_value:.2g}"
             quality = f"{fit.chi2:.1f}/{fit.degrees_of_freedom}"

@@ -120,12 +120,13 @@ def comment(cell: str) -> bool:
 
 def _separator(text: str) -> str:
     """Find what stands between the cells: a comma may also be that of a decimal."""
-    sample = "\n".join([line for line in text.splitlines() if not comment(line)][:20])
+    lines = [line for line in text.splitlines() if not comment(line)]
+    sample = "\n".join(lines[:20])
     for separator in ("\t", ";", ","):
         if separator in sample:
             return separator
     # A heading may have spaces, where a column stands alone.
-    alone = all(len(line.split()) < 2 for line in text.splitlines()[1:] if not comment(line))
+    alone = all(len(line.split()) < 2 for line in lines[1:])
     return _NEVER if alone else " "
 
 
