@@ -1,15 +1,18 @@
 """Onsets of balls that scatter themselves, from recordings whose times are known: `reference.clicks`."""
 
 from functools import cache
+from pathlib import Path
 
 import numpy as np
 import numpy.typing as npt
 import pytest
+import soundfile
 import xarray as xr
 from scipy import stats
 
 import restitution as rs
-from reference.clicks import KINDS, RATE, Recording, bouncing
+from reference.clicks import KINDS, RATE, Recording, bouncing, clicks, put
+from restitution.experiment.listen import Setting, write
 
 Array = npt.NDArray[np.float64]
 
@@ -81,6 +84,53 @@ def test_no_slope_is_claimed_that_is_not_there() -> None:
     assert np.std(np.array(ratios) - exact) < 0.3
     # The ball scatters by .003; of 23 coefficients each is known to 15 %, the mean of 40 to 2.4 %.
     assert np.mean(scatters) == pytest.approx(0.003, rel=0.08)
+
+
+def two_balls(kind: str, seed: int, noise: float) -> tuple[Recording, Recording, Array]:
+    """Record two balls at once, the second fainter, dropped from higher, and less elastic."""
+    one = bouncing(kind, seed=seed, noise=noise)
+    other = bouncing(kind, seed=seed + 50, noise=noise, normal=0.88, speed=1.9, impacts=18)
+    samples = np.zeros(max(one.samples.size, other.samples.size))
+    samples[: one.samples.size] += one.samples
+    samples[: other.samples.size] += 0.8 * other.samples
+    return one, other, samples
+
+
+@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize("seed", [101, 102, 103])
+def test_a_second_ball_is_reported(kind: str, seed: int) -> None:
+    """And the series that is fitted is that of one of the two."""
+    one, other, samples = two_balls(kind, seed, -45.0)
+    found = rs.sound.impacts(samples, RATE)
+    assert found.attrs["other_ball_impacts"] >= 5
+    times = found.time.values[found.flag.values == 0]
+    apart = [np.abs(times[:, None] - ball.times).min(axis=1) < 5e-3 for ball in (one, other)]
+    assert max(same.mean() for same in apart) == 1.0
+
+
+@pytest.mark.parametrize("noise", [-45.0, -20.0])
+@pytest.mark.parametrize("kind", KINDS)
+def test_a_single_ball_is_not_taken_for_two(kind: str, noise: float) -> None:
+    for seed in range(101, 109):
+        assert heard(kind, seed, noise)[1].attrs["other_ball_impacts"] == 0
+
+
+def test_the_page_says_that_there_was_a_second_ball(tmp_path: Path) -> None:
+    samples = two_balls("ping", 101, -45.0)[2]
+    soundfile.write(tmp_path / "two.wav", 0.4 * samples, RATE)
+    analysis = write(tmp_path / "two.wav", tmp_path / "two.html", Setting(diameter=0.02))
+    assert any(warning.startswith("A second ball: ") for warning in analysis.warnings)
+    assert "A second ball: " in (tmp_path / "two.html").read_text(encoding="utf-8")
+
+
+def test_20_s_of_silence_and_a_false_impact_leave_the_scatter_as_it_is() -> None:
+    truth = bouncing("ping", seed=315, noise=-45.0, silence=20.0)
+    rng = np.random.default_rng(1)
+    samples = truth.samples.copy()
+    put(samples, 0.1 * clicks("ping", np.ones(1), rng)[0], truth.times[-1] + 10.0)
+    fit = rs.flight.fit(rs.flight.restitution(rs.sound.impacts(samples, RATE)), scatter="fit")
+    assert fit.scatter == pytest.approx(0.003, abs=3.0 * fit.scatter_error)
+    assert fit.parameters["restitution"] == pytest.approx(0.92, abs=4.0 * fit.errors["restitution"])
 
 
 def test_a_doubtful_impact_enters_no_fit_unless_asked() -> None:

@@ -11,9 +11,9 @@ from restitution._internal.arrays import real
 from restitution._internal.parameters import ParameterError, Problem, wrong
 from restitution.experiment.flight._law_fit import LawFit
 from restitution.experiment.flight._problem import Misfit, joined
-from restitution.experiment.flight._separation import Separation, separated
-from restitution.experiment.flight.chain import Measured, measured_of
+from restitution.experiment.flight.chain import measured_of
 from restitution.experiment.flight.laws import law_named
+from restitution.experiment.flight.separation import separation
 from restitution.experiment.flight.series import series_of
 from restitution.experiment.flight.times import LARGEST
 
@@ -91,20 +91,6 @@ def fit(
         raise ParameterError(
             Problem("data", f": the law {form.name!r} has no fit; errors must be small beside the intervals")
         ) from None
-
-
-def separation(experiments: list[Measured]) -> Separation:
-    """Separate errors of times that came without an uncertainty from a scatter of ε.
-
-    The first impact after a drop of uncertain height says nothing about either.
-    """
-    links = joined(experiments, None)
-    ratio = links.after / links.before
-    drops = slice(-len(experiments), None)
-    known = np.isfinite(ratio) & (links.before_by[:, drops] ** 2 @ links.variances[drops] == 0.0)
-    times = ratio.size
-    slopes = links.after_by[known, :times] - ratio[known, None] * links.before_by[known, :times]
-    return separated(links.before[known], ratio[known], slopes / links.before[known, None])
 
 
 def compare(*fits: LawFit) -> str:

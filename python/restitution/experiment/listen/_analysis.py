@@ -25,9 +25,8 @@ from restitution._internal.parameters import (
 )
 from restitution._internal.text import digits, with_error
 from restitution.bodies import from_roundness
-from restitution.experiment.flight._fit import separation
-from restitution.experiment.flight._separation import KNOWN, Separation
 from restitution.experiment.flight.chain import measured_of
+from restitution.experiment.flight.separation import KNOWN, Separation, separation
 from restitution.experiment.flight.times import DOUBLED, FLAGS
 from restitution.experiment.listen._shape import Shape, shape
 from restitution.experiment.sound import impacts
@@ -379,6 +378,12 @@ def _warnings(heard: xr.Dataset, series: tuple[Series, ...], setting: Setting) -
         found.append(
             f"{100 * share:.0f} % of the loud samples are clipped: "
             "loudness is lost, times are not; record with less gain."
+        )
+    others = int(heard.attrs.get("other_ball_impacts", 0))
+    if others:
+        found.append(
+            f"A second ball: {others} sounds between the impacts follow one another like those of another "
+            "ball, and enter no fit; record one ball at a time."
         )
     for one in series:
         flags = one.heard.flag.values

@@ -40,6 +40,10 @@ _CLIPPED_THROUGHOUT = 0.5
 """Share of loud samples at the limit that explains why nothing is heard."""
 _FURTHER_MEMBERS = 4
 """Impacts that a further series must have."""
+_SAME_BALL = 0.02
+"""Part by which the ratio of two flights may differ from that of most where another ball is heard."""
+_OTHER_MEMBERS = 5
+"""Impacts that another ball must have had between those of the first."""
 
 
 @dataclass(frozen=True)
@@ -73,8 +77,8 @@ def impacts(source: str | PathLike[str] | npt.ArrayLike, rate: float | None = No
         ``flag``: "good", "doubtful" (found, but its time is off, or it is hardly heard), "missed" (there
         must have been one; time NaN), "doubled" (a second sound as loud as the impact before it, which
         belongs to no series); ``series``, counted from 0; ``level``, in dB over the noise. All times have
-        one small delay in common. The attributes give the band and the rule of each series, and the share
-        of clipped samples.
+        one small delay in common. The attributes give the band and the rule of each series, the share
+        of clipped samples, and how many sounds between the impacts are those of another ball.
 
     Raises
     ------
@@ -125,7 +129,11 @@ def _heard_in(samples: Array, own: float, name: str) -> xr.Dataset:
         raise ParameterError(Problem(name, f": {_what_was_heard(loudest)}"))
     heard = [_Heard(track, _picked(samples[:, channel], own, track)) for track in tracks]
     heard.sort(key=lambda one: float(one.choice.times[0]))
-    return _dataset(heard, own, channel, clipped_share(samples), name)
+    found = _dataset(heard, own, channel, clipped_share(samples), name)
+    others = _of_another_ball(tracks)
+    if others:
+        found["flag"] = ("impact", _of_one_ball(found), found.flag.attrs)
+    return found.assign_attrs(other_ball_impacts=others)
 
 
 def _tracks(samples: Array, rate: float) -> tuple[int, list[Track], Envelope]:
@@ -162,6 +170,39 @@ def _series_in(one: Envelope) -> list[Track]:
         # What lies within a series is its own: echoes, second bursts, noise.
         left = (times < times[members[0]] - one.width) | (times > times[members[-1]] + one.width)
         times, rewards = times[left], rewards[left]
+
+
+def _of_another_ball(tracks: list[Track]) -> int:
+    """Count the sounds between those of the tracks that follow one another like impacts of another ball.
+
+    Second bursts and echoes do so, too, but at one delay after each impact.
+    """
+    own, one = np.sort(np.concatenate([track.times for track in tracks])), tracks[0].envelope
+    times, rises = one.candidates(CANDIDATE)
+    left = np.abs(times[:, None] - own).min(axis=1, initial=np.inf) > 2.0 * one.width
+    times, rewards = strongest(times[left], rises[left] / max(one.spread, _LEAST_SPREAD) - _WORTH)
+    found = best_series(times, rewards, one.width / 3.0)
+    if found is None or found.score < FURTHER_SCORE or found.score < _MEAN * found.members.size:
+        return 0
+    heard = times[found.members]
+    delays = heard - own[np.maximum(np.searchsorted(own, heard) - 1, 0)]
+    alone = heard.size >= _OTHER_MEMBERS and np.std(delays) > 2.0 * one.width
+    return heard.size if alone else 0
+
+
+def _of_one_ball(found: xr.Dataset) -> npt.NDArray[np.int8]:
+    """Flag as doubtful what went over to the other ball: its flights have another ratio than most."""
+    flags = np.array(found.flag.values, dtype=np.int8)
+    for number in np.unique(found.series.values):
+        places = np.flatnonzero((found.series.values == number) & (flags <= DOUBTFUL))
+        ratios = np.diff(np.log(np.diff(found.time.values[places])))
+        same = np.abs(ratios - np.median(ratios)) < _SAME_BALL
+        # A ratio is that of three impacts. One that has it with those before, and not with those after, may
+        # be the other ball's.
+        kept = np.convolve(same, np.ones(3)) > 1.0
+        kept[0], kept[-1] = same[0], same[-1]
+        flags[places[~kept]] = DOUBTFUL
+    return flags
 
 
 def _what_was_heard(one: Envelope) -> str:

@@ -7,6 +7,8 @@ import numpy as np
 import numpy.typing as npt
 
 from restitution._internal.text import digits, with_error
+from restitution.experiment.flight._problem import joined
+from restitution.experiment.flight.chain import Measured
 
 Array = npt.NDArray[np.float64]
 
@@ -39,6 +41,20 @@ class Separation:
 
 KNOWN = Separation(0.0, 0.0, "")
 """Where the times came with their errors."""
+
+
+def separation(experiments: list[Measured]) -> Separation:
+    """Separate errors of times that came without an uncertainty from a scatter of ε.
+
+    The first impact after a drop of uncertain height says nothing about either.
+    """
+    links = joined(experiments, None)
+    ratio = links.after / links.before
+    drops = slice(-len(experiments), None)
+    known = np.isfinite(ratio) & (links.before_by[:, drops] ** 2 @ links.variances[drops] == 0.0)
+    times = ratio.size
+    slopes = links.after_by[known, :times] - ratio[known, None] * links.before_by[known, :times]
+    return separated(links.before[known], ratio[known], slopes / links.before[known, None])
 
 
 def separated(speed: Array, ratio: Array, by_times: Array) -> Separation:
