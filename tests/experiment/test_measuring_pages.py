@@ -47,6 +47,16 @@ def test_every_condition_has_its_row() -> None:
         assert len(row(page, condition.name)) == 7
 
 
+def test_the_precision_with_balls_that_scatter_is_that_of_the_page() -> None:
+    page = (ROOT / "docs" / "listening.md").read_text(encoding="utf-8")
+    name = f"{listening.SCATTERING['slap']}, -45 dB"
+    here, there = row(listening.scattering_row("slap", -45), name), row(page, name)
+    assert [float(cell) for cell in here[1:]] == pytest.approx([float(cell) for cell in there[1:]], rel=0.34)
+    for kind in listening.SCATTERING.values():
+        for level in listening.LEVELS:
+            assert len(row(page, f"{kind}, {level} dB")) == 4
+
+
 def test_the_clock_is_that_of_the_page() -> None:
     clock = script("clock")
     found = [clock.compare(elongation) for elongation in clock.ELONGATIONS]

@@ -11,6 +11,7 @@ import xarray as xr
 from scipy import stats
 
 import restitution as rs
+from benchmarks.listening import off_and_stated
 from reference.clicks import KINDS, RATE, Recording, bouncing, clicks, put
 from restitution.experiment.listen import Setting, write
 
@@ -29,12 +30,7 @@ def heard(kind: str, seed: int, noise: float) -> tuple[Recording, xr.Dataset]:
 def errors(kind: str, seed: int, noise: float) -> tuple[Array, Array]:
     """By how much good times are off, less what all have in common, and what they are said to be off by."""
     truth, found = heard(kind, seed, noise)
-    good = found.flag.values == 0
-    times, said = found.time.values[good], found.uncertainty.values[good]
-    off = times - truth.times[np.abs(times[:, None] - truth.times).argmin(axis=1)]
-    off = off - np.median(off)
-    mean = np.average(off, weights=said**-2.0)
-    return off - mean, said
+    return off_and_stated(found, truth.times)
 
 
 def test_times_are_good_to_20_us_whatever_the_ball_does() -> None:
