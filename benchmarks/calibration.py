@@ -1,7 +1,7 @@
 """Whether posteriors are calibrated: synthetic experiments whose truth is drawn from the prior.
 
 ``python -m benchmarks.calibration OUT [EXPERIMENTS]`` writes ``calibration.png``, ``calibration.md`` and
-``calibration.csv`` into the folder OUT; 500 experiments take some five minutes on one core. If the posterior
+``calibration.csv`` into the folder OUT; 120 experiments take some five minutes on one core. If the posterior
 is right, the rank of the truth among its draws is uniform, and an interval of 90 % covers it in 90 %
 (Talts et al., arXiv:1804.06788).
 """
@@ -23,9 +23,9 @@ from restitution import figures as fg
 Array = npt.NDArray[np.float64]
 
 DIAMETER, DROP, IMPACTS, ERROR = 6e-3, 0.1, 17, 2e-5
-NORMAL, ELONGATION = (0.85, 0.97), (2e-3, 0.2)
+NORMAL, ELONGATION, SCATTER = (0.85, 0.97), (2e-3, 0.2), (1e-4, 0.02)
 """Of these the truth is drawn: uniform, and uniform in the logarithm."""
-NAMES = ("normal", "elongation")
+NAMES = ("normal", "elongation", "scatter")
 
 
 @dataclass(frozen=True)
@@ -34,8 +34,8 @@ class Calibration:
 
     Attributes
     ----------
-    truth, rank : ndarray, shape (experiments, 2)
-        Of ε_n and L/R.
+    truth, rank : ndarray, shape (experiments, 3)
+        Of ε_n, L/R and the scatter of ε_n.
     told : ndarray of bool, shape (experiments,)
         Whether the verdict was that the times determine the shape.
     limit : ndarray, shape (experiments,)
@@ -48,16 +48,17 @@ class Calibration:
     limit: Array
 
 
-def experiment(seed: int) -> tuple[tuple[float, float], xr.DataTree]:
-    """Drop a ball of the prior, time it, and infer what it was: ε_n and L/R, and the posterior."""
+def experiment(seed: int) -> tuple[tuple[float, float, float], xr.DataTree]:
+    """Drop a ball of the prior, time it, and infer what it was: ε_n, L/R and scatter, and the posterior."""
     rng = np.random.default_rng(seed)
     while True:
         normal = rng.uniform(*NORMAL)
         elongation = float(np.exp(rng.uniform(*np.log(ELONGATION))))
+        scatter = float(np.exp(rng.uniform(*np.log(SCATTER))))
         law = rs.Frictionless(normal=normal)
         run = rs.simulate(
-            rs.from_roundness(DIAMETER, 0.25 * elongation * DIAMETER),
-            law,
+            rs.from_roundness(DIAMETER, 0.25 * elongation * DIAMETER, form="dumbbell"),
+            rs.Frictionless(normal=rs.Scattered(normal=normal, deviation=scatter)),
             particles=1,
             impacts=IMPACTS,
             release_height=DROP + DIAMETER / 2.0,
@@ -70,9 +71,16 @@ def experiment(seed: int) -> tuple[tuple[float, float], xr.DataTree]:
             break
     data = rs.flight.restitution(times, ERROR, drop_height=DROP)
     found = rs.posterior(
-        data, law, diameter=DIAMETER, elongation=ELONGATION, particles=300, draws=640, seed=seed
+        data,
+        law,
+        diameter=DIAMETER,
+        elongation=ELONGATION,
+        scatter=SCATTER,
+        particles=200,
+        draws=640,
+        seed=seed,
     )
-    return (normal, elongation), found
+    return (normal, elongation, scatter), found
 
 
 def calibrate(experiments: int, first: int = 1) -> Calibration:
@@ -88,7 +96,7 @@ def calibrate(experiments: int, first: int = 1) -> Calibration:
     return Calibration(np.array(truths), np.array(ranks), np.array(told), np.array(limits))
 
 
-_COLUMNS = "normal,elongation,rank_normal,rank_elongation,told,limit"
+_COLUMNS = "normal,elongation,scatter,rank_normal,rank_elongation,rank_scatter,told,limit"
 
 
 def written(found: Calibration) -> str:
@@ -101,7 +109,7 @@ def written(found: Calibration) -> str:
 def read(path: Path) -> Calibration:
     """Read what was written."""
     rows = np.loadtxt(path, delimiter=",", skiprows=1)
-    return Calibration(rows[:, :2], rows[:, 2:4], rows[:, 4].astype(np.bool_), rows[:, 5])
+    return Calibration(rows[:, :3], rows[:, 3:6], rows[:, 6].astype(np.bool_), rows[:, 7])
 
 
 def covered(rank: Array, share: float) -> float:
@@ -115,7 +123,7 @@ def table(found: Calibration) -> str:
         "| parameter | 50 % covers | 90 % covers | 95 % covers | p, ranks uniform |",
         "|---|---|---|---|---|",
     ]
-    for name, rank in zip(("ε_n", "L/R"), found.rank.T, strict=True):
+    for name, rank in zip(("ε_n", "L/R", "scatter of ε_n"), found.rank.T, strict=True):
         shares = [f"{100 * covered(rank, share):.1f} %" for share in (0.5, 0.9, 0.95)]
         p = stats.kstest(rank, "uniform").pvalue
         lines.append(f"| {name} | {' | '.join(shares)} | {p:.2g} |")
@@ -137,10 +145,10 @@ def sentence(found: Calibration) -> str:
 @fg.styled
 def draw(found: Calibration) -> Figure:
     """Draw histograms of the ranks with the band of 95 % for uniform ones."""
-    figure, [row] = fg.panels(fg.PAGE, 2.4, 1, 2)
-    n, bins = len(found.rank), 20
+    figure, [row] = fg.panels(fg.PAGE, 2.4, 1, 3)
+    n, bins = len(found.rank), 10
     low, high = stats.binom(n, 1.0 / bins).ppf([0.025, 0.975])
-    for axes, rank, name in zip(row, found.rank.T, (r"$\varepsilon_n$", "$L/R$"), strict=True):
+    for axes, rank, name in zip(row, found.rank.T, (r"$\varepsilon_n$", "$L/R$", "scatter"), strict=True):
         axes.axhspan(low, high, color="0.85")
         axes.hist(rank, bins=bins, range=(0.0, 1.0), color=fg.COLORS[0], histtype="step")
         axes.set_xlabel(f"rank of the true {name} among its draws")
@@ -163,4 +171,4 @@ def main(out: Path, experiments: int) -> None:
 if __name__ == "__main__":
     if len(sys.argv) not in (2, 3):
         sys.exit("usage: python -m benchmarks.calibration OUT [EXPERIMENTS]")
-    main(Path(sys.argv[1]), int(sys.argv[2]) if len(sys.argv) == 3 else 500)
+    main(Path(sys.argv[1]), int(sys.argv[2]) if len(sys.argv) == 3 else 120)

@@ -23,18 +23,20 @@ def test_a_family_changes_what_is_inferred_and_keeps_the_rest() -> None:
     """ε_n within [0, 1], β and the yield speed from 0; β goes as the dissipation."""
     constant = Family(rs.Coulomb(normal=0.9, friction=0.2), 6e-3, "lobed", 2)
     assert (constant.parameter, constant.range) == ("normal", (0.0, 1.0))
-    assert constant.law_of(0.8, None) == rs.Coulomb(normal=0.8, friction=0.2)
-    assert constant.law_of(0.8, 0.3) == rs.Coulomb(normal=0.8, friction=0.3)
+    assert constant.law_of(0.8, None, None) == rs.Coulomb(normal=0.8, friction=0.2)
+    assert constant.law_of(0.8, None, 0.3) == rs.Coulomb(normal=0.8, friction=0.3)
+    scattered = rs.Scattered(normal=0.8, deviation=0.01)
+    assert constant.law_of(0.8, 0.01, 0.3) == rs.Coulomb(normal=scattered, friction=0.3)
     turned = rs.TangentialRestitution(normal=0.9, tangential=-0.4)
-    assert Family(turned, 6e-3, "lobed", 2).law_of(0.7, None) == rs.TangentialRestitution(
+    assert Family(turned, 6e-3, "lobed", 2).law_of(0.7, None, None) == rs.TangentialRestitution(
         normal=0.7, tangential=-0.4
     )
     metal = Family(rs.Frictionless(normal=rs.Plastic(yield_speed=0.02)), 6e-3, "lobed", 2)
     assert (metal.parameter, metal.range) == ("yield_speed", (0.0, np.inf))
-    assert metal.law_of(0.05, None) == rs.Frictionless(normal=rs.Plastic(yield_speed=0.05))
+    assert metal.law_of(0.05, None, None) == rs.Frictionless(normal=rs.Plastic(yield_speed=0.05))
     soft = Family(rs.Frictionless(normal=RUBBER), 6e-3, "lobed", 2)
     assert (soft.parameter, soft.range) == ("beta", (0.0, np.inf))
-    changed = soft.law_of(3 * RUBBER.beta, None).normal
+    changed = soft.law_of(3 * RUBBER.beta, None, None).normal
     assert isinstance(changed, rs.Viscoelastic)
     assert changed.beta == pytest.approx(3 * RUBBER.beta, rel=1e-14)
     assert changed.dissipation == pytest.approx(3e-4, rel=1e-14)

@@ -24,7 +24,7 @@ def inferred(monkeypatch: pytest.MonkeyPatch, of_shape: Callable[[Any], Any]) ->
     data = rs.flight.restitution(run.time.values[0], 1e-5, drop_height=0.1)
     made: list[Table] = []
 
-    def known(_: Any, __: Any, elongations: Any, frictions: Any, *___: Any) -> Table:
+    def known(_: Any, __: Any, elongations: Any, ___: Any, frictions: Any, *____: Any) -> Table:
         axes = (np.linspace(0.9, 0.96, 31), np.log(elongations), np.asarray(frictions, dtype=np.float64))
         normal, shape, friction = np.meshgrid(*axes, indexing="ij")
         values = -0.5 * ((normal - 0.93) / 0.01) ** 2 + of_shape(shape) - 2.0 * friction
@@ -37,6 +37,7 @@ def inferred(monkeypatch: pytest.MonkeyPatch, of_shape: Callable[[Any], Any]) ->
         LAW,
         diameter=6e-3,
         elongation=(0.03, 0.3),
+        scatter=None,
         friction=(0.1, 0.5),
         particles=100,
         draws=4000,
@@ -89,7 +90,7 @@ def test_the_tree_says_what_it_holds(found: tuple[xr.DataTree, Table]) -> None:
     about = tree.attrs
     assert about["title"] == "Posterior from the times of impacts"
     assert about["source"] == f"restitution {rs.__version__}"
-    assert (about["law"], about["form"], about["lobes"]) == (repr(LAW), "lobed", 2)
+    assert (about["law"], about["form"], about["lobes"]) == (repr(LAW), "dumbbell", 2)
     assert (about["diameter"], about["particles"], about["draws"], about["seed"]) == (6e-3, 100, 4000, 3)
 
 
@@ -102,8 +103,9 @@ def test_the_limit_weighs_equal_intervals_of_elongation_equally(found: tuple[xr.
     low, middle, high = np.quantile(drawn, (0.05, 0.5, 0.95))
     assert tree.attrs["elongation_determined"] == 1  # ln L falls by 12.7 to the least L/R
     assert tree.attrs["verdict"] == (
-        f"The times determine the shape: L/R = {middle:.2g}, between {low:.2g} and {high:.2g} (90 %), an "
-        f"out-of-roundness of {1500.0 * middle:.2g} µm."
+        f"The times determine the shape, if ε_n does not scatter: L/R = {middle:.2g}, between {low:.2g} and "
+        f"{high:.2g} (90 %), an out-of-roundness of {1500.0 * middle:.2g} µm, for a ball of "
+        "the form 'dumbbell'."
     )
 
 
@@ -118,7 +120,8 @@ def test_a_round_ball_explains_the_times_as_well_if_the_least_elongation_does(
     limit = tree.attrs["elongation_upper_limit"]
     assert tree.attrs["verdict"] == (
         f"The times do not determine the shape: a round ball explains them as well. L/R is below "
-        f"{limit:.2g} (95 %), the out-of-roundness below {1500.0 * limit:.2g} µm."
+        f"{limit:.2g} (95 %), the out-of-roundness below {1500.0 * limit:.2g} µm, for a ball of the form "
+        "'dumbbell'."
     )
 
 

@@ -9,7 +9,7 @@ from restitution._internal.parameters import ParameterError, Problem
 from restitution.bodies import Body, Form, from_roundness
 from restitution.experiment.budget.experiment import law_of_speed
 from restitution.experiment.flight.laws import LawOfSpeed
-from restitution.laws import Coulomb, Law, Material, Plastic, Tabulated, Viscoelastic, check_steady
+from restitution.laws import Coulomb, Law, Plastic, Scattered, Tabulated, Viscoelastic, check_steady
 
 Array = npt.NDArray[np.float64]
 
@@ -46,16 +46,19 @@ class Family:
         t = 0.25 * elongation * self.diameter
         return from_roundness(self.diameter, t, form=self.form, lobes=self.lobes)
 
-    def law_of(self, parameter: float, friction: float | None) -> Law:
-        """Return the law of a parameter of ε_n and, where it is inferred, of a friction."""
-        changed: dict[str, object] = {"normal": self._normal(parameter)}
+    def law_of(self, parameter: float, scatter: float | None, friction: float | None) -> Law:
+        """Return the law of a parameter of ε_n and, where they are inferred, its scatter and friction."""
+        normal: float | Viscoelastic | Plastic | Scattered = self._normal(parameter)
+        if scatter is not None:
+            normal = Scattered(normal=self._normal(parameter), deviation=scatter)
+        changed: dict[str, object] = {"normal": normal}
         if friction is not None:
             changed["friction"] = friction
         return type(self.law)(
             **{name: getattr(self.law, name) for name in type(self.law).model_fields} | changed
         )
 
-    def _normal(self, parameter: float) -> float | Material:
+    def _normal(self, parameter: float) -> float | Viscoelastic | Plastic:
         normal = self.law.normal
         if isinstance(normal, Plastic):
             return Plastic(yield_speed=parameter)

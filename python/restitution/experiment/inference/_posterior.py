@@ -19,19 +19,19 @@ from restitution.experiment.flight.series import series_of
 from restitution.experiment.inference._family import Family
 from restitution.experiment.inference._series import NEEDED, Series, check_from_release
 from restitution.experiment.inference._table import Table, table
+from restitution.experiment.inference._verdict import judge, limit, sentence
 from restitution.laws import Law
 
 Array = npt.NDArray[np.float64]
 
-_SHAPES, _FRICTIONS = 10, 6
-"""Values of L/R in a decade, and values of friction."""
+_SHAPES, _SCATTERS, _FRICTIONS = 10, 4, 6
+"""Values of L/R and of the scatter of ε_n in a decade, and values of friction."""
+_LEAST_SCATTER = 1e-9
 _ROUNDEST = 1e-9
 """L/R below which no ball is: of a millimetre it is less than an atom."""
 _WALKERS, _CHAINS, _BURN = 32, 4, 100
 _MOST_RANGE = 1e6
 """Of L/R: the grid has points all the way."""
-_TOLD = 3.3
-"""Difference of log-likelihoods that separates shapes: 99 % of χ² with one degree of freedom."""
 
 
 class Setting(Parameters):
@@ -49,20 +49,22 @@ def posterior(
     law: Law,
     *,
     diameter: float,
-    form: Form = "lobed",
+    form: Form = "dumbbell",
     lobes: int = 2,
     elongation: tuple[float, float] = (1e-3, 0.3),
+    scatter: tuple[float, float] | None = (1e-4, 0.05),
     friction: tuple[float, float] | None = None,
     particles: int = 500,
     draws: int = 2000,
     seed: int = 1,
 ) -> xr.DataTree:
-    """Infer ε_n, the shape and friction of a ball from the times of its impacts.
+    """Infer ε_n, its scatter, the shape and friction of a ball from the times of its impacts.
 
     A ball is released from rest at any angle; how it turns is not measured. Its times are compared with
     those of simulated balls with the same errors, through three numbers: the parameter of ε_n by least
     squares, and how large the residuals are early and late. Their joint density is estimated from simulations
-    on a grid of L/R and friction, and the posterior is sampled with emcee.
+    on a grid of L/R, scatter of ε_n and friction, and the posterior is sampled with emcee. Whether the shape
+    makes ε scatter, or the material, or both, is decided by the Bayes factors of these explanations.
 
     Parameters
     ----------
@@ -75,9 +77,14 @@ def posterior(
     diameter : float
         In m, > 0.
     form, lobes
-        Kind of deviation from a sphere, as in `restitution.from_roundness`; L = 2t.
+        Kind of deviation from a sphere, as in `restitution.from_roundness`; L = 2t. It is assumed, and the
+        result depends on it: an L/R of one form scatters ε as some other L/R of another.
     elongation : (float, float)
         Prior: ln(L/R) is uniform between these, 10⁻⁹ <= low < high < 10⁶ low.
+    scatter : (float, float) or None
+        Prior of the standard deviation with which ε_n itself scatters from impact to impact, as by
+        `restitution.Scattered`: its logarithm is uniform between these, 10⁻⁹ <= low < high <= 1, and at the
+        low end there is none. With None no material scatters, and all scatter of ε is of the shape.
     friction : (float, float), optional
         Prior of the friction of a `Coulomb` law: uniform between these, 0 <= low < high. Not inferred unless
         given.
@@ -92,10 +99,13 @@ def posterior(
     -------
     xarray.DataTree
         In ArviZ's schema: ``posterior`` with ``normal`` (or ``beta``, ``yield_speed``), ``elongation`` (L/R),
-        ``out_of_roundness`` (m) and ``friction``, over chain and draw; ``sample_stats`` with ``lp``;
-        ``observed_data``; ``likelihood`` with ``profile``, the log-likelihood as a function of L/R, largest
-        over the rest. The attributes hold the settings, ``elongation_determined`` (1 or 0),
-        ``elongation_upper_limit`` (95 %, for L/R uniform from 0) and ``verdict``, a sentence.
+        ``out_of_roundness`` (m), ``scatter`` (of ε_n) and ``friction``, over chain and draw; ``sample_stats``
+        with ``lp``; ``observed_data``; ``likelihood`` with ``profile``, the log-likelihood as a function of
+        L/R, largest over the rest. The attributes hold the settings; ``explained_by``, what makes ε scatter:
+        'shape', 'material', 'both', 'neither' (errors of the times suffice) or 'undecided' (one of them, and
+        the times do not tell which); ``log_bayes_factor_shape`` and ``log_bayes_factor_scatter``, ln of the
+        factors for each against its absence; ``elongation_determined`` (1 or 0), ``elongation_upper_limit``
+        (95 %, for L/R uniform from 0) and ``verdict``, a sentence.
 
     Raises
     ------
@@ -133,6 +143,12 @@ def posterior(
     if friction is not None:
         bottom, top = _pair("friction", friction, least=0.0)
         frictions = [float(mu) for mu in bottom + (top - bottom) * np.linspace(0.0, 1.0, _FRICTIONS) ** 2]
+    scatters: Sequence[float | None] = [None]
+    if scatter is not None:
+        bottom, top = _pair("scatter", scatter, least=_LEAST_SCATTER)
+        if not top <= 1.0:
+            raise ParameterError(wrong("scatter", scatter, "at most 1, as ε_n is"))
+        scatters = np.geomspace(bottom, top, 1 + math.ceil(_SCATTERS * math.log10(top / bottom))).tolist()
     named = series_of(data, *NEEDED)
     for name, one in named.items():
         check_from_release(name, one)
@@ -145,9 +161,9 @@ def posterior(
         for measured, end in product(series, (low, high)):
             measured.check_release(family.body(end), law)
     nodes = np.geomspace(low, high, 1 + math.ceil(_SHAPES * math.log10(high / low)))
-    found = table(series, family, nodes, frictions, setting.particles, setting.seed)
+    found = table(series, family, nodes, scatters, frictions, setting.particles, setting.seed)
     chain, log = _sampled(emcee, found, setting)
-    return _tree(from_dict, family, setting, found, chain, log, series)
+    return _tree(from_dict, family, setting, found, chain, log, series, scatters=scatter is not None)
 
 
 def _packages() -> tuple[Any, Any]:
@@ -220,6 +236,8 @@ def _tree(
     chain: Array,
     log: Array,
     series: Sequence[Series],
+    *,
+    scatters: bool,
 ) -> xr.DataTree:
     elongation = np.exp(chain[..., 1])
     drawn = {
@@ -227,8 +245,11 @@ def _tree(
         "elongation": elongation,
         "out_of_roundness": 0.25 * setting.diameter * elongation,
     }
-    if chain.shape[2] == 3:
-        drawn["friction"] = chain[..., 2]
+    names = [*(["scatter"] if scatters else []), *(["friction"] if chain.shape[2] > 2 + scatters else [])]
+    drawn |= {name: chain[..., 2 + place] for place, name in enumerate(names)}
+    scatter = None
+    if scatters:
+        scatter = drawn["scatter"] = np.exp(drawn["scatter"])
     tree: xr.DataTree = from_dict(
         {
             "posterior": drawn,
@@ -240,37 +261,24 @@ def _tree(
     for node in tree.subtree:  # the same draws are the same result, whenever they were made
         node.attrs.pop("created_at", None)
     tree["posterior"]["out_of_roundness"].attrs["units"] = "m"
-    profile = found.values.max(axis=tuple(k for k in range(found.values.ndim) if k != 1))
+    profile = found.profile(1)
     shape = xr.Dataset(
         {"profile": ("elongation", profile - profile.max(), {"long_name": "ln L, less its largest"})},
         coords={"elongation": np.exp(found.axes[1])},
     )
     tree["likelihood"] = xr.DataTree(shape)
-    told = bool(profile[0] < profile.max() - _TOLD)
-    # With equal weight for equal intervals of L/R, so that the limit does not depend on where the prior ends.
-    flat = elongation.ravel()
-    order = np.argsort(flat)
-    limit = float(flat[order][np.searchsorted(np.cumsum(flat[order]) / flat.sum(), 0.95)])
-    low, middle, high = np.quantile(flat, (0.05, 0.5, 0.95))
-    t = 0.25 * setting.diameter * 1e6
-    if told:
-        verdict = (
-            f"The times determine the shape: L/R = {middle:.2g}, between {low:.2g} and {high:.2g} (90 %), an "
-            f"out-of-roundness of {t * middle:.2g} µm."
-        )
-    else:
-        verdict = (
-            f"The times do not determine the shape: a round ball explains them as well. L/R is below "
-            f"{limit:.2g} (95 %), the out-of-roundness below {t * limit:.2g} µm."
-        )
+    verdict = judge(found, scatters=scatters)
     tree.attrs |= {
         "title": "Posterior from the times of impacts",
         "source": f"restitution {version('restitution')}",
         "law": repr(family.law),
         "form": family.form,
         **setting.model_dump(),
-        "elongation_determined": int(told),
-        "elongation_upper_limit": limit,
-        "verdict": verdict,
+        "explained_by": verdict.cause,
+        "log_bayes_factor_shape": verdict.for_shape,
+        **({"log_bayes_factor_scatter": verdict.for_scatter} if scatters else {}),
+        "elongation_determined": int(verdict.cause in ("shape", "both")),
+        "elongation_upper_limit": limit(elongation),
+        "verdict": sentence(verdict, family.form, setting.diameter, elongation, scatter),
     }
     return tree

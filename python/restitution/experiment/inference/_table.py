@@ -1,11 +1,14 @@
 """The likelihood on a grid of parameters, and between its points."""
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import product
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
-from scipy.interpolate import RegularGridInterpolator
+from scipy.interpolate import Akima1DInterpolator, RegularGridInterpolator
 
 from restitution._internal.parameters import ParameterError, Problem
 from restitution.experiment.inference._family import Family
@@ -16,74 +19,94 @@ Array = npt.NDArray[np.float64]
 
 _GRID = 81
 """Values of the parameter of ε_n."""
-_NOISES = 4
+_NOISES = 2
 """Times each simulated drop is timed."""
+_FINER = 4
+"""Points between those that are simulated: of many drops the likelihood is narrow."""
 
 
 @dataclass(frozen=True)
 class Table:
     """Logarithm of the likelihood."""
 
-    axes: tuple[Array, ...]  # the parameter of ε_n, ln L/R, and friction where it is inferred
+    axes: tuple[
+        Array, ...
+    ]  # the parameter of ε_n, ln L/R, and where they are inferred ln of scatter, friction
     values: Array  # over these axes
 
     def between(self) -> RegularGridInterpolator:
         """Interpolate linearly."""
         return RegularGridInterpolator(self.axes, self.values)
 
+    def profile(self, axis: int) -> Array:
+        """Return the largest value over all other axes."""
+        return np.asarray(self.values.max(axis=tuple(k for k in range(self.values.ndim) if k != axis)))
+
+    def log_evidence(self, *ends: int) -> float:
+        """Return ln of the mean likelihood for priors uniform along the axes, or at the low ends of some."""
+        values, axes = self.values, list(self.axes)
+        for end in sorted(ends, reverse=True):
+            values = np.asarray(values.take(0, axis=end))
+            del axes[end]
+        largest = float(values.max())
+        mean: Any = np.exp(values - largest)
+        for line in reversed(axes):
+            mean = np.trapezoid(mean, line, axis=-1) / np.ptp(line)
+        return largest + math.log(mean)
+
 
 def table(
     series: Sequence[Series],
     family: Family,
     elongations: Array,
+    scatters: Sequence[float | None],
     frictions: Sequence[float | None],
     particles: int,
     seed: int,
 ) -> Table:
-    """Simulate at every L/R and friction, at three values of the parameter of ε_n.
+    """Simulate at every L/R, scatter of ε_n and friction.
 
-    What the numbers of a series are, less the true parameter, hardly depends on the parameter; between the
-    three it is taken to be linear in the logarithm.
+    What the numbers of a series are, less the true parameter, hardly depends on the parameter: they are
+    simulated at one value of it, that which the series have by least squares.
     """
     middle = float(np.mean([one.observed[0] for one in series]))
     low, high = family.range
     middle = min(max(middle, low + 1e-6), high - 1e-6)
-    nodes = [(x, mu) for x in elongations for mu in frictions]
-
-    def densities(value: float, part: int) -> list[list[Density]]:
-        found = []
-        for number, (x, mu) in enumerate(nodes):
-            body, law = family.body(float(x)), family.law_of(value, mu)
-            start = seed + 1000003 * (part * len(nodes) + number)
-            found.append(
-                [
-                    Density(one.simulated(body, law, particles, _NOISES, start + 7 * k), value, one.observed)
-                    for k, one in enumerate(series)
-                ]
-            )
-        return found
-
-    at_middle = densities(middle, 0)
-    width, narrow = _widths(series, at_middle, middle)
-    others = [float(np.clip(middle + side * 2.0 * width, low + 1e-9, high)) for side in (-1.0, 1.0)]
-    values = [others[0], middle, others[1]]
-    sets = [densities(others[0], 1), at_middle, densities(others[1], 2)]
+    densities = []
+    for number, (x, scatter, mu) in enumerate(product(elongations, scatters, frictions)):
+        body, law = family.body(float(x)), family.law_of(middle, scatter, mu)
+        start = seed + 1000003 * number
+        densities.append(
+            [
+                Density(one.simulated(body, law, particles, _NOISES, start + 7 * k), middle, one.observed)
+                for k, one in enumerate(series)
+            ]
+        )
+    width, narrow = _widths(series, densities, middle)
     # Fine where the best balls determine the parameter well, extended to where the worst do.
     steep = np.arcsinh(6.0 * width / narrow)
     grid = middle + narrow * np.sinh(steep * np.linspace(-1.0, 1.0, _GRID))
     grid = np.unique(np.clip(grid, low, high))
-    logs = np.zeros((grid.size, len(nodes)))
-    for place in range(len(nodes)):
-        three = np.array(
-            [sum(d(one.observed, grid) for d, one in zip(each[place], series, strict=True)) for each in sets]
-        )
-        for row, value in enumerate(grid):
-            logs[row, place] = np.interp(value, values, three[:, row])
-    shape = (grid.size, len(elongations), len(frictions))
-    axes: tuple[Array, ...] = (grid, np.log(elongations))
-    if frictions[0] is None:
-        return Table(axes, logs.reshape(shape[:2]))
-    return Table((*axes, np.array(frictions, dtype=np.float64)), logs.reshape(shape))
+    logs = np.array(
+        [sum(d(one.observed, grid) for d, one in zip(each, series, strict=True)) for each in densities]
+    )
+    axes: list[Array] = [grid, np.log(elongations)]
+    if scatters[0] is not None:
+        axes.append(np.log(np.array(scatters, dtype=np.float64)))
+    if frictions[0] is not None:
+        axes.append(np.array(frictions, dtype=np.float64))
+    values = logs.T.reshape([axis.size for axis in axes])
+    for place in range(1, 2 if scatters[0] is None else 3):
+        values, axes[place] = _finer(values, axes[place], place)
+    return Table(tuple(axes), values)
+
+
+def _finer(values: Array, axis: Array, place: int) -> tuple[Array, Array]:
+    """Interpolate along an axis of equal steps by Akima's rule, which is exact for parabolas."""
+    if axis.size < 2:
+        return values, axis
+    fine = np.linspace(axis[0], axis[-1], _FINER * (axis.size - 1) + 1)
+    return np.asarray(Akima1DInterpolator(axis, values, axis=place)(fine)), fine
 
 
 def _widths(series: Sequence[Series], densities: list[list[Density]], middle: float) -> tuple[float, float]:
