@@ -40,23 +40,23 @@ KEPT = Path(__file__).parents[2] / "docs" / "data" / "calibration.csv"
 
 
 def test_ranks_of_the_truth_are_uniform() -> None:
-    """The 500 experiments of docs/inference.md: 90 +- 3 % is more than two standard errors, 1.3 %."""
+    """The 120 experiments of docs/inference.md: 90 +- 7 % is two and a half standard errors, 2.7 %."""
     found = calibration.read(KEPT)
-    assert found.rank.shape == (500, 2)
+    assert found.rank.shape == (120, 3)
     for rank in found.rank.T:
         assert stats.kstest(rank, "uniform").pvalue > 0.01
-        assert abs(calibration.covered(rank, 0.9) - 0.9) < 0.03
+        assert abs(calibration.covered(rank, 0.9) - 0.9) < 0.07
     page = (KEPT.parents[1] / "inference.md").read_text(encoding="utf-8")
     assert calibration.table(found).strip() in page
     assert calibration.sentence(found).strip() in page
 
 
 def test_some_of_the_experiments_come_out_as_they_are_kept() -> None:
-    """The first of the 500, made anew. A rank may move with the last bits of a linear algebra library."""
-    found, kept = calibration.calibrate(6), calibration.read(KEPT)
-    assert found.truth == pytest.approx(kept.truth[:6], rel=1e-5)
-    assert np.abs(found.rank - kept.rank[:6]).max() < 0.1
-    assert calibration.written(found).count("\n") == 7
+    """The first of the 120, made anew. A rank may move with the last bits of a linear algebra library."""
+    found, kept = calibration.calibrate(3), calibration.read(KEPT)
+    assert found.truth == pytest.approx(kept.truth[:3], rel=1e-5)
+    assert np.abs(found.rank - kept.rank[:3]).max() < 0.1
+    assert calibration.written(found).count("\n") == 4
 
 
 def test_a_round_ball_gives_an_upper_limit_and_an_egg_a_shape() -> None:
@@ -66,7 +66,7 @@ def test_a_round_ball_gives_an_upper_limit_and_an_egg_a_shape() -> None:
     assert round_ball.attrs["elongation_determined"] == 0
     assert "do not determine the shape" in round_ball.attrs["verdict"]
     assert 1e-3 < round_ball.attrs["elongation_upper_limit"] < 0.05
-    egg = quick(heard(0.15, law, 3), law, scatter=None)
+    egg = quick([heard(0.15, law, seed) for seed in (3, 4, 5)], law, scatter=None)
     assert egg.attrs["elongation_determined"] == 1
     assert egg.attrs["verdict"].startswith("The times determine the shape, if ε_n does not scatter: L/R = 0.")
     assert 0.05 < float(egg["posterior"].to_dataset().elongation.median()) < 0.3

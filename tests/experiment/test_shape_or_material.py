@@ -1,5 +1,6 @@
 """Whether the shape or the material makes ε scatter: planted balls, made by code that knows no package."""
 
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -7,6 +8,7 @@ import pytest
 import xarray as xr
 
 import restitution as rs
+from benchmarks import shape_or_material
 from reference.plane_motion import Motion, ball, first_contact
 
 ERROR, DIAMETER, NORMAL = 2e-5, 6e-3, 0.93
@@ -115,3 +117,30 @@ def test_errors_of_the_times_suffice_for_a_round_ball() -> None:
     assert tree.attrs["explained_by"] == "neither"
     assert "a round ball explains them as well" in tree.attrs["verdict"]
     assert tree.attrs["elongation_upper_limit"] < 0.02
+
+
+def test_scatter_that_no_ball_has_is_said_first() -> None:
+    """A plate that is shaken at first: neither shape nor material scatters ε early and not late."""
+    speed, times = np.sqrt(2.0 * 9.81 * 0.1), [0.0]
+    for number in range(14):
+        speed *= NORMAL + (0.02 * (-1.0) ** number if number < 6 else 0.0)
+        times.append(times[-1] + 2.0 * speed / 9.81)
+    tree = inferred(heard(np.array(times), 8))
+    assert tree.attrs["predictive_p_value"] < 0.01
+    assert tree.attrs["verdict"].startswith("No ball of this kind gives the observed scatter of ε")
+
+
+def test_the_scatter_of_a_ball_of_this_kind_agrees() -> None:
+    for data in (round_ball(0.003, 1), dumbbell(0.05, 1)):
+        tree = inferred(data)
+        assert tree.attrs["predictive_p_value"] > 0.01
+        assert not tree.attrs["verdict"].startswith("No ball")
+
+
+def test_the_table_is_that_of_the_page() -> None:
+    """Every ball and number of drops has its row; one is made anew."""
+    page = (Path(__file__).parents[2] / "docs" / "inference.md").read_text(encoding="utf-8")
+    for ball in shape_or_material.BALLS:
+        for number in shape_or_material.DROPS:
+            assert f"| {ball[0]} | {number} |" in page
+    assert shape_or_material.row(*shape_or_material.BALLS[0], 1) in page

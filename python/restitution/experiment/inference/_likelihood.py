@@ -45,6 +45,20 @@ class Density:
         self.points = math.sqrt(1.0 - self.width**2) * white
         self.norm = -0.5 * d * math.log(2.0 * math.pi) - float(np.log(np.diag(self.root)).sum())
 
+    def beyond(self, numbers: Array) -> float:
+        """Return the share of simulated series whose scatter, early and late, is farther from the usual.
+
+        Farther by the distance of Mahalanobis: the probability of such a scatter, were this the ball.
+        """
+        if not self.enough:
+            return 0.0
+        spread = (self.root @ self.root.T)[1:, 1:]
+        root = np.linalg.cholesky(spread)
+        simulated = (self.points / math.sqrt(1.0 - self.width**2) @ self.root.T)[:, 1:]
+        off = np.linalg.solve(root, np.vstack([numbers[1:] - self.mean[1:], simulated]).T)
+        distance = np.sum(off**2, axis=0)
+        return float(np.mean(distance[1:] >= distance[0]))
+
     def __call__(self, numbers: Array, truths: Array) -> Array:
         """Return ln p of the numbers, shape (3,), were these the true parameters, shape (m,)."""
         if not self.enough:

@@ -19,7 +19,7 @@ from restitution.experiment.flight.series import series_of
 from restitution.experiment.inference._family import Family
 from restitution.experiment.inference._series import NEEDED, Series, check_from_release
 from restitution.experiment.inference._table import Table, table
-from restitution.experiment.inference._verdict import judge, limit, sentence
+from restitution.experiment.inference._verdict import disagreement, judge, limit, sentence
 from restitution.laws import Law
 
 Array = npt.NDArray[np.float64]
@@ -105,7 +105,8 @@ def posterior(
         'shape', 'material', 'both', 'neither' (errors of the times suffice) or 'undecided' (one of them, and
         the times do not tell which); ``log_bayes_factor_shape`` and ``log_bayes_factor_scatter``, ln of the
         factors for each against its absence; ``elongation_determined`` (1 or 0), ``elongation_upper_limit``
-        (95 %, for L/R uniform from 0) and ``verdict``, a sentence.
+        (95 %, for L/R uniform from 0); ``predictive_p_value``, the probability that the best ball scatters ε
+        as far from its usual as observed; and ``verdict``, a sentence, which says first if this is small.
 
     Raises
     ------
@@ -279,6 +280,8 @@ def _tree(
         **({"log_bayes_factor_scatter": verdict.for_scatter} if scatters else {}),
         "elongation_determined": int(verdict.cause in ("shape", "both")),
         "elongation_upper_limit": limit(elongation),
-        "verdict": sentence(verdict, family.form, setting.diameter, elongation, scatter),
+        "predictive_p_value": found.agreement,
+        "verdict": disagreement(found)
+        + sentence(verdict, family.form, setting.diameter, elongation, scatter),
     }
     return tree

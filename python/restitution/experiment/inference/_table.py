@@ -33,6 +33,9 @@ class Table:
         Array, ...
     ]  # the parameter of ε_n, ln L/R, and where they are inferred ln of scatter, friction
     values: Array  # over these axes
+    agreement: float = (
+        1.0  # probability of a scatter as far from the usual as observed, were the best ball true
+    )
 
     def between(self) -> RegularGridInterpolator:
         """Interpolate linearly."""
@@ -95,10 +98,13 @@ def table(
         axes.append(np.log(np.array(scatters, dtype=np.float64)))
     if frictions[0] is not None:
         axes.append(np.array(frictions, dtype=np.float64))
+    best = densities[int(np.argmax(logs.max(axis=1)))]
+    shares = [d.beyond(one.observed) for d, one in zip(best, series, strict=True)]
+    agreement = min(1.0, len(shares) * min(shares))  # the least of several
     values = logs.T.reshape([axis.size for axis in axes])
     for place in range(1, 2 if scatters[0] is None else 3):
         values, axes[place] = _finer(values, axes[place], place)
-    return Table(tuple(axes), values)
+    return Table(tuple(axes), values, agreement)
 
 
 def _finer(values: Array, axis: Array, place: int) -> tuple[Array, Array]:

@@ -16,6 +16,10 @@ _STRONG = 20.0
 _ELONGATION, _SCATTER = 1, 2
 
 
+_DISAGREES = 0.01
+"""Probability of the observed scatter, below which not even the best ball is one that gives it."""
+
+
 class Verdict(NamedTuple):
     """Bayes factors, natural logarithms, and the cause that follows."""
 
@@ -58,6 +62,17 @@ def limit(draws: Array) -> float:
     """
     ordered = np.sort(draws.ravel())
     return float(ordered[np.searchsorted(np.cumsum(ordered) / ordered.sum(), 0.95)])
+
+
+def disagreement(found: Table) -> str:
+    """Say first what disagrees: that the best ball does not give the scatter that was observed."""
+    if found.agreement >= _DISAGREES:
+        return ""
+    p = f"p = {found.agreement:.1g}" if found.agreement > 0.0 else "p < 0.001"
+    return (
+        f"No ball of this kind gives the observed scatter of ε, early and late ({p} for the best); what "
+        "follows holds only for such balls. "
+    )
 
 
 def sentence(verdict: Verdict, form: str, diameter: float, elongation: Array, scatter: Array | None) -> str:

@@ -10,7 +10,7 @@ from restitution import flight
 from restitution._internal.datasets import Content
 from restitution._internal.parameters import ParameterError, TooLargeError
 from restitution._internal.text import digits
-from restitution.bodies import from_roundness
+from restitution.bodies import Form, from_roundness
 from restitution.experiment.budget import ErrorBudget, error_budget
 from restitution.experiment.flight.drag import Drag
 from restitution.experiment.inference import posterior
@@ -72,12 +72,13 @@ def shape(
         except ParameterError as error:
             verdict = f"No shape is inferred: {error}."
     t, assumed = _roundness(out_of_roundness, draws, diameter)
+    form: Form = "dumbbell" if draws is None else draws.attrs["form"]
     if t is None:
         return Shape(law, draws, verdict, None, assumed)
     density = 2500.0 if mass is None else 6.0 * mass / (np.pi * diameter**3)
     try:
         budget = error_budget(
-            from_roundness(diameter, t, density=density),
+            from_roundness(diameter, t, density=density, form=form),
             law,
             drop=_drop(data, law),
             impacts=int(np.isfinite(data.restitution).sum()),
@@ -130,8 +131,12 @@ def _roundness(
     else:
         elongation = float(draws.attrs["elongation_upper_limit"])
     t = 0.25 * diameter * elongation
-    which = "the median of the posterior" if determined else "the upper limit that the times give"
-    return t, f"The out-of-roundness is taken to be {digits(1e6 * t)} µm, {which}."
+    if determined:
+        return t, f"The out-of-roundness is taken to be {digits(1e6 * t)} µm, the median of the posterior."
+    return t, (
+        f"The out-of-roundness is taken to be {digits(1e6 * t)} µm, the upper limit that the times give; the "
+        "errors from the shape are therefore upper limits as well, and may be far above those of the fit."
+    )
 
 
 def _drop(data: xr.Dataset, law: Frictionless) -> float:
