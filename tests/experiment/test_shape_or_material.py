@@ -140,7 +140,7 @@ def test_the_scatter_of_a_ball_of_this_kind_agrees() -> None:
 def test_the_table_is_that_of_the_page() -> None:
     """Every ball and number of drops has its row; one is made anew."""
     page = (Path(__file__).parents[2] / "docs" / "inference.md").read_text(encoding="utf-8")
-    for ball in shape_or_material.BALLS:
+    for one in shape_or_material.BALLS:
         for number in shape_or_material.DROPS:
-            assert f"| {ball[0]} | {number} |" in page
+            assert f"| {one[0]} | {number} |" in page
     assert shape_or_material.row(*shape_or_material.BALLS[0], 1) in page

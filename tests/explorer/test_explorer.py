@@ -103,6 +103,7 @@ def test_large_runs_are_shown_in_part() -> None:
     ("change", "word"),
     [
         ({"body": rs.Dumbbell(radius=(3e-3, 2e-3), separation=1e-3)}, "the same for both spheres"),
+        ({"body": rs.Ellipsoid(semi_axes=(1e-3, 2e-3, 3e-3))}, "body = Ellipsoid"),
         ({"law": rs.Frictionless(normal=rs.Plastic(yield_speed=0.1))}, "law.normal = Plastic"),
         ({"orientation": [0.1, 0.2], "particles": 2}, "orientation = an array"),
         ({"spin": rs.RandomSpin(rate=10.0)}, "spin"),
@@ -126,6 +127,9 @@ def test_a_dataset_knows_its_run() -> None:
     assert float(values(_run_of(one))["angle"]) == pytest.approx(0.75, abs=1e-15)
     with pytest.raises(ValueError, match="data: must be a Dataset"):
         rs.explore(data.drop_attrs())
+    rigid = rs.simulate(rs.Box(1e-3, 2e-3, 3e-3), LAW, particles=1, impacts=2)
+    with pytest.raises(ValueError, match=r"data\.body = Box: the explorer shows bodies of revolution only"):
+        rs.explore(rigid)
 
 
 def test_the_widget_carries_page_and_link(monkeypatch: pytest.MonkeyPatch) -> None:

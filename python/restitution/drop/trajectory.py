@@ -140,6 +140,9 @@ def _particle(data: xr.Dataset, particle: int) -> xr.Dataset:
 
 def _check(data: xr.Dataset) -> None:
     """Refuse states that are no numbers, or not those of all impacts from the release on."""
+    if "attitude" in getattr(data, "variables", ()):
+        text = f" is of a {data.attrs.get('body')}: must be of a body of revolution between impacts"
+        raise ParameterError(Problem("data", text))
     given = {name: needed for name, needed in _RELEASED.items() if name in getattr(data, "variables", ())}
     variables("data", data, 'restitution.simulate(..., record="state")', _NEEDED | given)
     check_successive("data", data, start=0)

@@ -8,6 +8,7 @@ import numpy as np
 
 from restitution._internal.described import kebab
 from restitution._internal.parameters import ParameterError, wrong
+from restitution.bodies import KINDS
 from restitution.drop.release import RandomHeight, RandomSpin
 from restitution.drop.run import Run
 from restitution.laws import Law
@@ -63,6 +64,8 @@ def _cannot(name: str, value: object, allowed: str) -> ValueError:
 
 
 def _body(run: Run) -> dict[str, Any]:
+    if not isinstance(run.body, KINDS):
+        raise _cannot("body", type(run.body).__name__, "a body of revolution")
     values = run.body.model_dump()
     for name, value in values.items():
         if isinstance(value, tuple):

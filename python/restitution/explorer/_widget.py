@@ -87,6 +87,10 @@ def _run_of(data: "xr.Dataset") -> Run:
     try:
         with renamed(lambda name: f"data.{name}"):
             body_type = getattr(bodies, str(attributes["body"]))
+            if body_type in bodies.RIGID:
+                raise ValueError(
+                    f"data.body = {attributes['body']}: the explorer shows bodies of revolution only"
+                )
             law_type = getattr(laws, str(attributes["law"]))
             body = body_type(**{name: attributes[name] for name in body_type.model_fields})
             law = law_type(**{name: attributes[name] for name in law_type.model_fields})
