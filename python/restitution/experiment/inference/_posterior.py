@@ -89,7 +89,8 @@ def posterior(
         Prior of the friction of a `Coulomb` law: uniform between these, 0 <= low < high. Not inferred unless
         given.
     particles : int
-        Drops that are simulated at each point of the grid, >= 100.
+        Drops that are simulated at each point of the grid, >= 100. The sampling error of the likelihood adds
+        up over series: ten series need 500, more need more.
     draws : int
         Draws of the posterior, >= 100.
     seed : int
