@@ -52,10 +52,14 @@ def test_ranks_of_the_truth_are_uniform() -> None:
 
 
 def test_some_of_the_experiments_come_out_as_they_are_kept() -> None:
-    """The first of the 120, made anew. A rank may move with the last bits of a linear algebra library."""
+    """The first of the 120, made anew.
+
+    The last bits of a linear algebra library make other walks of the sampler; the rank of one among 640
+    correlated draws has a standard error of some 0.05, and the difference of two 0.07.
+    """
     found, kept = calibration.calibrate(3), calibration.read(KEPT)
     assert found.truth == pytest.approx(kept.truth[:3], rel=1e-5)
-    assert np.abs(found.rank - kept.rank[:3]).max() < 0.1
+    assert np.abs(found.rank - kept.rank[:3]).max() < 0.2
     assert calibration.written(found).count("\n") == 4
 
 

@@ -9,6 +9,7 @@ import pytest
 import xarray as xr
 
 import restitution as rs
+from restitution._internal.text import digits
 from restitution.experiment.inference import _posterior
 from restitution.experiment.inference._table import Table
 
@@ -104,7 +105,7 @@ def test_the_limit_weighs_equal_intervals_of_elongation_equally(found: tuple[xr.
     assert tree.attrs["elongation_determined"] == 1  # ln L falls by 12.7 to the least L/R
     assert tree.attrs["verdict"] == (
         f"The times determine the shape, if ε_n does not scatter: L/R = {middle:.2g}, between {low:.2g} and "
-        f"{high:.2g} (90 %), an out-of-roundness of {1500.0 * middle:.2g} µm, for a ball of "
+        f"{high:.2g} (90 %), an out-of-roundness of {digits(1500.0 * middle)} µm, for a ball of "
         "the form 'dumbbell'."
     )
 
@@ -120,7 +121,7 @@ def test_a_round_ball_explains_the_times_as_well_if_the_least_elongation_does(
     limit = tree.attrs["elongation_upper_limit"]
     assert tree.attrs["verdict"] == (
         f"The times do not determine the shape: a round ball explains them as well. L/R is below "
-        f"{limit:.2g} (95 %), the out-of-roundness below {1500.0 * limit:.2g} µm, for a ball of the form "
+        f"{limit:.2g} (95 %), the out-of-roundness below {digits(1500.0 * limit)} µm, for a ball of the form "
         "'dumbbell'."
     )
 

@@ -6,6 +6,7 @@ from typing import Literal, NamedTuple
 import numpy as np
 import numpy.typing as npt
 
+from restitution._internal.text import digits
 from restitution.experiment.inference._table import Table
 
 Array = npt.NDArray[np.float64]
@@ -82,11 +83,11 @@ def sentence(verdict: Verdict, form: str, diameter: float, elongation: Array, sc
     most = limit(elongation)
     shape = (
         f"L/R = {middle:.2g}, between {low:.2g} and {high:.2g} (90 %), an out-of-roundness of "
-        f"{micrometres * middle:.2g} µm, for a ball of the form '{form}'"
+        f"{digits(micrometres * middle)} µm, for a ball of the form '{form}'"
     )
     at_most = (
-        f"L/R is below {most:.2g} (95 %), the out-of-roundness below {micrometres * most:.2g} µm, for a ball "
-        f"of the form '{form}'"
+        f"L/R is below {most:.2g} (95 %), the out-of-roundness below {digits(micrometres * most)} µm, for a "
+        f"ball of the form '{form}'"
     )
     undetermined = "The times do not determine the shape"
     round_as_well = f"{undetermined}: a round ball explains them as well. {at_most}."
