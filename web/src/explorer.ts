@@ -74,6 +74,7 @@ export class Explorer {
     const statistics = new Statistics(new Run(setup, this.pool));
     this.runs[which] = statistics;
     const { run } = statistics;
+    this.problem("");
     const started = run.start((portion) => {
       statistics.add(portion);
       if (this.state.particle >= portion.first && this.state.particle < portion.first + portion.count) this.player.refresh();
@@ -84,7 +85,6 @@ export class Explorer {
       () => {
         if (this.runs[which] !== statistics) return;
         this.ended += 1;
-        this.problem("");
         this.redraw();
         this.changed();
         if (this.done) for (const act of this.waiting.splice(0)) act();
