@@ -167,6 +167,7 @@ CALLS |= {
     "figures.densities": (figures.densities, some("found", velocities=[0.55, 0.75])),
     "figures.scatter": (figures.scatter, some("found")),
     "figures.moments": (figures.moments, some("found")),
+    "figures.fraction": (figures.fraction, some("found")),
     "figures.trajectory": (figures.trajectory, some("data", particle=1, impacts=5)),
     "figures.panels": (figures.panels, lambda: {"width": 3.0, "height": 2.0}),
     "figures.save": (figures.save, some("figure", name="figure.png")),

@@ -36,7 +36,7 @@ class ConvexPolyhedron(RigidBody):
     --------
     >>> import restitution as rs
     >>> corner = rs.ConvexPolyhedron([(0, 0, 0), (6e-3, 0, 0), (0, 6e-3, 0), (0, 0, 6e-3)])
-    >>> corner.centre_of_mass.tolist()
+    >>> corner.centre_of_mass.round(9).tolist()
     [0.0015, 0.0015, 0.0015]
     """
 

@@ -140,9 +140,14 @@ def _finished(
     return found.assign_attrs(incomplete=incomplete)
 
 
+def _word(kind: type[Any]) -> str:
+    """Return what a user calls a kind of objects."""
+    return kind.__name__.removeprefix("Any")
+
+
 def _named(what: str, given: Mapping[str, T] | Iterable[T], kind: type[Any]) -> dict[str, T]:
     """Name every body or law."""
-    allowed = f"a dict or list of {kind.__name__}"
+    allowed = f"a dict or list of {_word(kind)}"
     if isinstance(given, Mapping):
         named = dict(given)
     elif isinstance(given, Iterable) and not isinstance(given, Parameters | str):
@@ -166,7 +171,7 @@ def _named(what: str, given: Mapping[str, T] | Iterable[T], kind: type[Any]) -> 
 
 def _checked(what: str, value: Any, kind: type[Any]) -> Any:
     if not isinstance(value, kind):
-        text = f" holds {shown(value)}: must be objects of a {kind.__name__}"
+        text = f" holds {shown(value)}: must be objects of a {_word(kind)}"
         raise ParameterError(Problem(what, text))
     return value
 

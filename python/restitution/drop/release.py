@@ -15,7 +15,7 @@ Axis = Literal["isotropic", "horizontal", "across", "thermal"]
 
 _ORIENTATIONS = (
     "'uniform-angle', 'isotropic' or a 1-D array of angles in rad, one per particle, "
-    "or a 2-D array of their pairs (θ, φ), or of quaternions (w, x, y, z) for bodies without an axis"
+    "or a 2-D array of their pairs (θ, φ), or of quaternions (w, x, y, z)"
 )
 _SPINS = "None, (ωx, ωy, ωz) in rad/s, an array of them, one per particle, or a RandomSpin"
 _HEIGHTS = "a finite number > 0 (height of the centre of mass, m), or a RandomHeight"
