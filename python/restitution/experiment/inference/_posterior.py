@@ -19,7 +19,7 @@ from restitution.experiment.flight.series import series_of
 from restitution.experiment.inference._family import Family
 from restitution.experiment.inference._series import NEEDED, Series, check_from_release
 from restitution.experiment.inference._table import Table, table
-from restitution.experiment.inference._verdict import disagreement, judge, limit, sentence
+from restitution.experiment.inference._verdict import disagreement, judge, sentence
 from restitution.laws import Law
 
 Array = npt.NDArray[np.float64]
@@ -52,7 +52,7 @@ def posterior(
     form: Form = "dumbbell",
     lobes: int = 2,
     elongation: tuple[float, float] = (1e-3, 0.3),
-    scatter: tuple[float, float] | None = (1e-4, 0.05),
+    scatter: tuple[float, float] | None = (1e-6, 0.05),
     friction: tuple[float, float] | None = None,
     particles: int = 500,
     draws: int = 2000,
@@ -280,9 +280,9 @@ def _tree(
         "log_bayes_factor_shape": verdict.for_shape,
         **({"log_bayes_factor_scatter": verdict.for_scatter} if scatters else {}),
         "elongation_determined": int(verdict.cause in ("shape", "both")),
-        "elongation_upper_limit": limit(elongation),
+        "elongation_upper_limit": found.limit(1),
         "predictive_p_value": found.agreement,
         "verdict": disagreement(found)
-        + sentence(verdict, family.form, setting.diameter, elongation, scatter),
+        + sentence(found, verdict, family.form, setting.diameter, elongation, scatter),
     }
     return tree

@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 import numpy.typing as npt
+from scipy.integrate import cumulative_trapezoid
 from scipy.interpolate import Akima1DInterpolator, RegularGridInterpolator
 
 from restitution._internal.parameters import ParameterError, Problem
@@ -56,6 +57,18 @@ class Table:
         for line in reversed(axes):
             mean = np.trapezoid(mean, line, axis=-1) / np.ptp(line)
         return largest + math.log(mean)
+
+    def limit(self, axis: int) -> float:
+        """Return the upper limit, 95 %, of what an axis has the logarithm of, uniform from the low end.
+
+        It gives equal intervals equal weight, and so does not depend on where a prior in the logarithm ends.
+        """
+        marginal: Any = np.moveaxis(np.exp(self.values - self.values.max()), axis, 0)
+        for place in reversed([k for k in range(self.values.ndim) if k != axis]):
+            marginal = np.trapezoid(marginal, self.axes[place], axis=-1)
+        value = np.exp(self.axes[axis])
+        below = cumulative_trapezoid(marginal, value, initial=0)
+        return float(np.interp(0.95 * below[-1], below, value))
 
 
 def table(

@@ -56,15 +56,6 @@ def judge(found: Table, *, scatters: bool) -> Verdict:
     return Verdict(cause, for_shape, for_scatter)
 
 
-def limit(draws: Array) -> float:
-    """Return the upper limit, 95 %, that gives equal intervals of a positive parameter equal weight.
-
-    It does not depend on where the prior, uniform in the logarithm, ends.
-    """
-    ordered = np.sort(draws.ravel())
-    return float(ordered[np.searchsorted(np.cumsum(ordered) / ordered.sum(), 0.95)])
-
-
 def disagreement(found: Table) -> str:
     """Say first what disagrees: that the best ball does not give the scatter that was observed."""
     if found.agreement >= _DISAGREES:
@@ -76,11 +67,13 @@ def disagreement(found: Table) -> str:
     )
 
 
-def sentence(verdict: Verdict, form: str, diameter: float, elongation: Array, scatter: Array | None) -> str:
+def sentence(
+    found: Table, verdict: Verdict, form: str, diameter: float, elongation: Array, scatter: Array | None
+) -> str:
     """State the result, and the form that it assumes."""
     micrometres = 0.25 * diameter * 1e6
     low, middle, high = np.quantile(elongation, (0.05, 0.5, 0.95))
-    most = limit(elongation)
+    most = found.limit(_ELONGATION)
     shape = (
         f"L/R = {middle:.2g}, between {low:.2g} and {high:.2g} (90 %), an out-of-roundness of "
         f"{digits(micrometres * middle)} µm, for a ball of the form '{form}'"
@@ -96,7 +89,7 @@ def sentence(verdict: Verdict, form: str, diameter: float, elongation: Array, sc
         return told if verdict.cause == "shape" else round_as_well
     below, usual, above = np.quantile(scatter, (0.05, 0.5, 0.95))
     material = f"ε_n scatters by {usual:.2g}, between {below:.2g} and {above:.2g} (90 %)"
-    at_most_scatter = f"ε_n scatters by less than {limit(scatter):.2g} (95 %)"
+    at_most_scatter = f"ε_n scatters by less than {found.limit(_SCATTER):.2g} (95 %)"
     match verdict.cause:
         case "shape":
             return (
