@@ -126,8 +126,8 @@ CALLS: dict[str, Call] = {
     "flight.compare": (lambda fits: flight.compare(fits), lambda: {"fits": good()["law_fit"]}),
     "flight.clock": (flight.clock, some("data")),
     "flight.figure": (
-        lambda data, fits: flight.figure(data, fits),
-        lambda: {"data": good()["measured"], "fits": good()["law_fit"]},
+        lambda data, fits, style: flight.figure(data, fits, style=style),
+        lambda: {"data": good()["measured"], "fits": good()["law_fit"], "style": "page"},
     ),
     "flight.read": (flight.read, lambda: {"file": folder() / "times.csv"}),
     "flight.LawFit.error": (flight.LawFit.error, of("law_fit", speed=0.5)),
