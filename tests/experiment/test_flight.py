@@ -130,7 +130,9 @@ def test_missed_impacts_leave_gaps_and_doubled_ones_do_not_count() -> None:
             "flag": ("impact", np.array([0, 0, 0, 3, 0, 2, 1, 0, 0])),
         }
     )
-    data = rs.flight.restitution(heard)
+    without = rs.flight.restitution(heard)
+    assert np.flatnonzero(np.isnan(without.restitution)).tolist() == [0, 3, 4, 5, 6, 7]
+    data = rs.flight.restitution(heard, doubtful=True)
     assert data.sizes["impact"] == 8
     assert np.flatnonzero(np.isnan(data.restitution)).tolist() == [0, 3, 4, 5, 7]
     assert data.restitution.values[[1, 2, 6]] == pytest.approx(CONSTANT, rel=1e-12)
