@@ -113,8 +113,7 @@ impl Rigid {
     /// Tensor of inertia about the centre of mass in kg m², in the same axes.
     #[getter]
     fn inertia_tensor(&self) -> Matrix {
-        let j = self.0.inertia.tensor;
-        [[j.xx, j.xy, j.xz], [j.xy, j.yy, j.yz], [j.xz, j.yz, j.zz]]
+        self.0.inertia.tensor.rows()
     }
 
     /// The principal moments of inertia, in kg m².
@@ -171,18 +170,10 @@ struct GivenInertia {
 impl GivenInertia {
     fn inertia(&self) -> Inertia {
         let [x, y, z] = self.centre;
-        let [[xx, xy, xz], [_, yy, yz], [_, _, zz]] = self.tensor;
         Inertia {
             mass: self.mass,
             centre: Vector::new(x, y, z),
-            tensor: Symmetric {
-                xx,
-                yy,
-                zz,
-                xy,
-                xz,
-                yz,
-            },
+            tensor: Symmetric::from_rows(self.tensor),
         }
     }
 }

@@ -107,12 +107,13 @@ struct Function {
 const SHOWN: usize = 72;
 
 impl Function {
+    /// The impulse, or what was given instead.
     fn call(
         &self,
         py: Python<'_>,
         compliance: [[f64; 3]; 3],
         velocity: Vector,
-    ) -> PyResult<Given3> {
+    ) -> PyResult<Result<Vector, String>> {
         let velocity = [velocity.x, velocity.y, velocity.z].to_pyarray(py);
         let given = self
             .function
@@ -126,9 +127,6 @@ impl Function {
         Ok(Err(short.chars().take(SHOWN).collect()))
     }
 }
-
-/// An impulse, or what was given instead.
-type Given3 = Result<Vector, String>;
 
 impl ImpulseFunction for Function {
     fn name(&self) -> &str {

@@ -4,7 +4,8 @@ mod certify;
 mod lanes;
 mod plane;
 
+pub(crate) use certify::{INVISIBLE, LAST};
 pub(crate) use lanes::{
     GapEvaluation, LastContact, LocatedContact, MOST_STEPS, Prediction, Search, Steps,
 };
-pub(crate) use plane::{Departure, INVISIBLE, Instant, LAST};
+pub(crate) use plane::{Departure, Instant};

@@ -13,16 +13,10 @@
 //! Steps to the first root of these bounds converge quadratically to the contact. The search ends when what a step leaves of the gap is below
 //! the resolution. An overlap is rounding: one that approaches is a contact now, one that separates is none.
 
+use super::certify::{SHORTEST, TOUCHING};
 use crate::math::Vector;
 use crate::shape::{Point, Skin};
 
-/// The shortest step of a gap that does not close is this over M, 2⁻²⁶/M: rotation and gravity change it by less than the resolution in
-/// that time.
-const SHORTEST: f64 = 1.0 / 67_108_864.0;
-/// The last step leaves a gap of at most this, the resolution: 2⁻⁵² R...
-pub(crate) const INVISIBLE: f64 = f64::EPSILON;
-/// ...and is at most this fraction of the flight time.
-pub(crate) const LAST: f64 = 1.0 / 2048.0;
 /// Steps of Newton's method towards the root of the bound of a convex body.
 const NEWTON: usize = 3;
 
@@ -146,9 +140,6 @@ impl Skin {
         })
     }
 }
-
-/// Gaps up to this may be rounding errors: 2⁻⁴⁸ R.
-const TOUCHING: f64 = 16.0 * f64::EPSILON;
 
 impl Step {
     fn never() -> Self {

@@ -178,13 +178,7 @@ impl Bouncing<'_> {
     /// Whether the part on the plane, which has no normal speed, stays there: f″ ≤ 0, and no other part is about to touch as well.
     fn rests(&self, state: &RigidState, left: Departure) -> bool {
         let at = instant(state, 0.0, state.attitude, state.spin);
-        let [a, b, c] = self.body.top.moments();
-        let Vector { x, y, z } = state.spin;
-        let change = Vector::new(
-            (b - c) / a * y * z,
-            (c - a) / b * z * x,
-            (a - b) / c * x * y,
-        );
+        let change = self.body.top.change(state.spin);
         let bending = at.turning.cross(state.spin) + at.up.cross(change);
         let skin = &self.body.skin;
         skin.curvature(left.part, &at, bending) <= 1.0 && !skin.another_touches(left, &at)

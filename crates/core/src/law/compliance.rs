@@ -79,15 +79,7 @@ impl Add for Compliance {
     type Output = Self;
 
     fn add(self, other: Self) -> Self {
-        let (a, b) = (self.0, other.0);
-        Self(Symmetric {
-            xx: a.xx + b.xx,
-            yy: a.yy + b.yy,
-            zz: a.zz + b.zz,
-            xy: a.xy + b.xy,
-            xz: a.xz + b.xz,
-            yz: a.yz + b.yz,
-        })
+        Self(self.0 + other.0)
     }
 }
 

@@ -130,8 +130,7 @@ impl<'a> CustomLaw<'a> {
         velocity: Vector,
     ) -> Result<Answer, Fault> {
         let k = compliance.entries();
-        let rows = [[k.xx, k.xy, k.xz], [k.xy, k.yy, k.yz], [k.xz, k.yz, k.zz]];
-        let in_units = rows.map(|row| row.map(|entry| entry / self.mass));
+        let in_units = k.rows().map(|row| row.map(|entry| entry / self.mass));
         let given = self.function.impulse(in_units, velocity * self.speed)?;
         let impulse = given / (self.mass * self.speed);
         if !impulse.norm().is_finite() {

@@ -1,7 +1,7 @@
 //! Symmetric 3×3 matrices: tensors of inertia, and what an impulse does to a contact.
 
 use super::{Quaternion, Vector};
-use std::ops::Mul;
+use std::ops::{Add, Mul};
 
 /// A symmetric 3×3 matrix.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -32,7 +32,55 @@ impl Mul<Vector> for Symmetric {
     }
 }
 
+impl Add for Symmetric {
+    type Output = Self;
+
+    fn add(self, b: Self) -> Self {
+        Self {
+            xx: self.xx + b.xx,
+            yy: self.yy + b.yy,
+            zz: self.zz + b.zz,
+            xy: self.xy + b.xy,
+            xz: self.xz + b.xz,
+            yz: self.yz + b.yz,
+        }
+    }
+}
+
 impl Symmetric {
+    /// The matrix with these rows, of which the upper triangle is read.
+    pub const fn from_rows([[xx, xy, xz], [_, yy, yz], [_, _, zz]]: [[f64; 3]; 3]) -> Self {
+        Self {
+            xx,
+            yy,
+            zz,
+            xy,
+            xz,
+            yz,
+        }
+    }
+
+    /// Its rows.
+    pub const fn rows(&self) -> [[f64; 3]; 3] {
+        [
+            [self.xx, self.xy, self.xz],
+            [self.xy, self.yy, self.yz],
+            [self.xz, self.yz, self.zz],
+        ]
+    }
+
+    /// **v** ⊗ **v** times a factor.
+    pub fn square(v: Vector, factor: f64) -> Self {
+        Self {
+            xx: factor * v.x * v.x,
+            yy: factor * v.y * v.y,
+            zz: factor * v.z * v.z,
+            xy: factor * v.x * v.y,
+            xz: factor * v.x * v.z,
+            yz: factor * v.y * v.z,
+        }
+    }
+
     /// The diagonal matrix with these entries.
     pub const fn diagonal([xx, yy, zz]: [f64; 3]) -> Self {
         Self {
@@ -62,11 +110,7 @@ impl Symmetric {
     /// Eigenvalues, and the rotation from the eigenvectors' axes to those of the matrix: Jacobi's method, which finds even small
     /// eigenvalues to the last digits. The axes of a diagonal matrix are its own.
     pub fn principal(&self) -> ([f64; 3], Quaternion) {
-        let mut m = [
-            [self.xx, self.xy, self.xz],
-            [self.xy, self.yy, self.yz],
-            [self.xz, self.yz, self.zz],
-        ];
+        let mut m = self.rows();
         let mut axes = Quaternion::IDENTITY;
         for _ in 0..SWEEPS {
             let mut rests = true;

@@ -81,6 +81,19 @@ impl Top {
         a * spin.x * spin.x + b * spin.y * spin.y + c * spin.z * spin.z
     }
 
+    /// (J₂ − J₃)/J₁ and so on: by Euler's equations ω̇₁ is the first of them times ω₂ω₃.
+    fn couplings(&self) -> [f64; 3] {
+        let [a, b, c] = self.moments;
+        [(b - c) / a, (c - a) / b, (a - b) / c]
+    }
+
+    /// ω̇ of a free body.
+    pub(crate) fn change(&self, spin: Vector) -> Vector {
+        let [a, b, c] = self.couplings();
+        let Vector { x, y, z } = spin;
+        Vector::new(a * y * z, b * z * x, c * x * y)
+    }
+
     /// The largest |ω|² of a flight.
     pub fn largest_spin(&self, spin: Vector) -> f64 {
         largest_spin(self.moments, [spin.x, spin.y, spin.z])
@@ -162,8 +175,7 @@ impl Rotation {
         if size == 0.0 {
             return;
         }
-        let [a, b, c] = self.top.moments;
-        let factors = [(b - c) / a, (c - a) / b, (a - b) / c].map(|f| f * self.length);
+        let factors = self.top.couplings().map(|f| f * self.length);
         for n in 0..TERMS - 1 {
             let (mut turn, mut change) = ([0.0; 4], [0.0; 3]);
             for (q, (left, right)) in self.attitude[..=n]

@@ -117,14 +117,7 @@ pub(super) fn union(balls: &[RigidBall]) -> (Moments, f64) {
         }
     }
     let [content, x, y, z, xx, yy, zz, xy, xz, yz] = sums;
-    let second = Symmetric {
-        xx,
-        yy,
-        zz,
-        xy,
-        xz,
-        yz,
-    };
+    let second = Symmetric::from_rows([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]]);
     let centred = Moments {
         content,
         first: Vector::new(x, y, z),

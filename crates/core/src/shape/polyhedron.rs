@@ -4,6 +4,7 @@ use super::check_density;
 use super::rigid::{Moments, Rigid, RigidBall};
 use crate::Error;
 use crate::math::{Symmetric, Vector};
+use std::ops::Add;
 
 impl Rigid {
     /// The homogeneous convex hull of points (m), whose faces are these triangles of them.
@@ -53,17 +54,10 @@ impl Rigid {
 fn tetrahedron(volume: f64, corners: [Vector; 3]) -> Moments {
     let [a, b, c] = corners;
     let sum = a + b + c;
-    let mut second = Symmetric::default();
-    for v in [a, b, c, sum] {
-        second = Symmetric {
-            xx: second.xx + volume / 20.0 * v.x * v.x,
-            yy: second.yy + volume / 20.0 * v.y * v.y,
-            zz: second.zz + volume / 20.0 * v.z * v.z,
-            xy: second.xy + volume / 20.0 * v.x * v.y,
-            xz: second.xz + volume / 20.0 * v.x * v.z,
-            yz: second.yz + volume / 20.0 * v.y * v.z,
-        };
-    }
+    let second = [a, b, c, sum]
+        .map(|v| Symmetric::square(v, volume / 20.0))
+        .into_iter()
+        .fold(Symmetric::default(), Symmetric::add);
     Moments {
         content: volume,
         first: sum * (0.25 * volume),

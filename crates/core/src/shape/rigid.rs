@@ -69,35 +69,19 @@ pub struct Rigid {
 impl Moments {
     /// Those of a part of mass `content` about its own centre, with these second moments about it, moved there.
     pub fn about(content: f64, centre: Vector, second: Symmetric) -> Self {
-        let c = centre;
         Self {
             content,
-            first: c * content,
-            second: Symmetric {
-                xx: second.xx + content * c.x * c.x,
-                yy: second.yy + content * c.y * c.y,
-                zz: second.zz + content * c.z * c.z,
-                xy: second.xy + content * c.x * c.y,
-                xz: second.xz + content * c.x * c.z,
-                yz: second.yz + content * c.y * c.z,
-            },
+            first: centre * content,
+            second: second + Symmetric::square(centre, content),
         }
     }
 
     /// Both together.
     pub fn and(self, other: Self) -> Self {
-        let (a, b) = (self.second, other.second);
         Self {
             content: self.content + other.content,
             first: self.first + other.first,
-            second: Symmetric {
-                xx: a.xx + b.xx,
-                yy: a.yy + b.yy,
-                zz: a.zz + b.zz,
-                xy: a.xy + b.xy,
-                xz: a.xz + b.xz,
-                yz: a.yz + b.yz,
-            },
+            second: self.second + other.second,
         }
     }
 

@@ -1,7 +1,6 @@
 //! The gap at a time of the flight, and the step from there that cannot pass a contact.
 
-use super::TOUCHING;
-use crate::contact::certify::{SHORTEST, closing_speed, first_zero};
+use crate::contact::certify::{SHORTEST, TOUCHING, closing_speed, first_zero};
 use crate::motion::{Attitude, Flight, SymmetricState};
 use crate::shape::{AxisMotion, Hull, HullPart};
 use crate::simd::elementary::RANGE;

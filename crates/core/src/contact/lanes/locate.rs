@@ -1,8 +1,8 @@
 //! The end of the search: from the last certified step to the contact. [`super`] explains why this is the first contact.
 
 use super::gap::{GapEvaluation, Search};
-use super::{FAR, INVISIBLE, LAST, NEAR, SMALL};
-use crate::contact::certify::{least_before, mean_rate_before};
+use super::{FAR, NEAR, SMALL};
+use crate::contact::certify::{INVISIBLE, LAST, least_before, mean_rate_before};
 use crate::motion::{Attitude, Flight};
 use crate::shape::Hull;
 use crate::simd::{Mask, Pack};

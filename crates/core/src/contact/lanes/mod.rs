@@ -30,11 +30,5 @@ const FAR: f64 = 0.5;
 /// correction, relative to the step τ, is then (½(f″τ/f′)² − f‴τ²/6f′)h³, which is below 2⁻⁵², or 2⁻⁵⁰ for a
 /// spheroid, because Mτ ≤ 2|f′|.
 const SMALL: f64 = 1.0 / 262_144.0;
-/// At a grazing contact the last step is at most this fraction of the flight time, turns the axis by at most this angle, 2⁻¹¹...
-const LAST: f64 = 1.0 / 2048.0;
-/// ...and leaves a gap of at most this, the resolution: 2⁻⁵² R.
-const INVISIBLE: f64 = 1.0 / 4_503_599_627_370_496.0;
-/// Gaps up to this may be rounding errors: 2⁻⁴⁸ R.
-const TOUCHING: f64 = 1.0 / 281_474_976_710_656.0;
 /// Largest number of passes. Grazing contacts need up to two or three dozen, fast spins a few hundred.
 pub(crate) const MOST_STEPS: u32 = 1_000_000;
