@@ -15,7 +15,6 @@ Results do not depend on the machine, so neither does the stamp.
 
 import argparse
 import hashlib
-import math
 import re
 import sys
 import warnings
@@ -79,10 +78,9 @@ def _parameters(what: str, table: list[dict[str, Any]]) -> str:
 def _cells(about: dict[str, Any]) -> str:
     if about["type"] == "name":
         allowed = ", ".join(f"`{name}`" for name in about["names"])
-    elif math.isinf(about["high"]):
-        allowed = f"{'≥' if about['closed'] else '>'} {about['low']:g}"
     else:
-        allowed = f"{'[' if about['closed'] else '('}{about['low']:g}, {about['high']:g}]"
+        described = import_module("restitution._internal.described")
+        allowed = described.interval(about).replace(">=", "≥")
     unit = {None: "", "1": "", "kg m-3": "kg/m³", "m s-1": "m/s"}.get(about["unit"], about["unit"])
     return f"`{about['name']}` | {about['text']} | {unit} | {allowed} | {about.get('default', '')}"
 

@@ -41,6 +41,7 @@ WORKINGS = {
     "bodies.Form",
     "distribution.image",
     "distribution.image_format",
+    "distribution.in_gaps",
     "distribution.quantiles",
     "distribution.sealed",
     "flight.LawFit.estimates",

@@ -1,5 +1,6 @@
 """Clumps of spheres, as discrete-element codes have them."""
 
+from functools import cached_property
 from typing import Annotated, Any
 
 import numpy as np
@@ -84,7 +85,9 @@ class Clump(RigidBody):
     )
     centre: Annotated[Any, Allowed(_CENTRE), BeforeValidator(_centre), Field(description="m")] = None
 
-    def _compile(self) -> _core.Rigid:
+    @cached_property
+    def compiled(self) -> _core.Rigid:
+        """The body as the core knows it, made and checked once."""
         union = _core.clump(self.spheres, self.density, self.inertia == "sum")
         if isinstance(self.inertia, str):
             if self.centre is not None:

@@ -1,5 +1,6 @@
 """Ellipsoids with three semi-axes."""
 
+from functools import cached_property
 from typing import Annotated, Any
 
 import numpy as np
@@ -41,5 +42,7 @@ class Ellipsoid(RigidBody):
     semi_axes: Annotated[Any, Allowed(_AXES), BeforeValidator(_semi_axes), Field(description="m")]
     density: Annotated[Number, Field(gt=0, description="kg/m³")] = 2500.0
 
-    def _compile(self) -> _core.Rigid:
+    @cached_property
+    def compiled(self) -> _core.Rigid:
+        """The body as the core knows it, made and checked once."""
         return _core.ellipsoid(self.semi_axes, self.density)

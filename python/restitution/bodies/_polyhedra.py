@@ -1,5 +1,6 @@
 """Convex polyhedra."""
 
+from functools import cached_property
 from itertools import product
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar
 
@@ -49,7 +50,9 @@ class ConvexPolyhedron(RigidBody):
 
         def __init__(self, points: Any, *, density: float = 2500.0) -> None: ...
 
-    def _compile(self) -> _core.Rigid:
+    @cached_property
+    def compiled(self) -> _core.Rigid:
+        """The body as the core knows it, made and checked once."""
         from scipy.spatial import ConvexHull, QhullError
 
         points = np.array(self.points)
@@ -96,7 +99,9 @@ class Box(RigidBody):
         x, y, z = 0.5 * self.a, 0.5 * self.b, 0.5 * self.c
         return tuple(product((-x, x), (-y, y), (-z, z)))
 
-    def _compile(self) -> _core.Rigid:
+    @cached_property
+    def compiled(self) -> _core.Rigid:
+        """The body as the core knows it, made and checked once."""
         return _core.polyhedron(self.vertices, _TRIANGLES, self.density)
 
 

@@ -32,14 +32,10 @@ class RigidBody(AnyBody):
     Its attitude is the rotation from the axes that it is given in to those of space.
     """
 
-    @abstractmethod
-    def _compile(self) -> _core.Rigid:
-        """Make the body as the core knows it."""
-
     @cached_property
+    @abstractmethod
     def compiled(self) -> _core.Rigid:
         """The body as the core knows it, made and checked once."""
-        return self._compile()
 
     @property
     def lowest_position(self) -> float:

@@ -5,7 +5,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 from restitution import _core
-from restitution._internal.described import kebab
+from restitution._internal.described import interval, kebab
 from restitution._internal.process import say
 
 _NORMAL = [("normal = 0.98", "in [0, 1]; or a table [law.normal], see below")]
@@ -33,10 +33,9 @@ def _what(parameter: Mapping[str, Any]) -> str:
     if parameter["type"] == "name":
         allowed = " or ".join(f'"{name}"' for name in parameter["names"])
     else:
-        low, high = (f"{parameter[end]:g}" for end in ("low", "high"))
-        allowed = f"in {'[' if parameter['closed'] else '('}{low}, {high}]"
-        if high == "inf":
-            allowed = f"{'>=' if parameter['closed'] else '>'} {low}"
+        allowed = interval(parameter)
+        if not allowed.startswith(">"):
+            allowed = f"in {allowed}"
     return ", ".join(filter(None, [parameter["text"], unit, allowed]))
 
 

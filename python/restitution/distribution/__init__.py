@@ -6,12 +6,20 @@ from restitution.distribution._check import DistanceWarning
 from restitution.distribution._fluctuating import FluctuatingRestitution
 from restitution.distribution._from_statistics import quantiles
 from restitution.distribution._store import sealed
-from restitution.distribution._text import image_format
+from restitution.distribution._text import image_format, in_gaps
 
 if TYPE_CHECKING:
     from restitution.distribution._figure import image
 
-__all__ = ["DistanceWarning", "FluctuatingRestitution", "image", "image_format", "quantiles", "sealed"]
+__all__ = [
+    "DistanceWarning",
+    "FluctuatingRestitution",
+    "image",
+    "image_format",
+    "in_gaps",
+    "quantiles",
+    "sealed",
+]
 
 
 def __getattr__(name: str) -> object:

@@ -3,7 +3,6 @@
 import io
 
 import numpy as np
-import numpy.typing as npt
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch
@@ -11,6 +10,7 @@ from matplotlib.ticker import FixedLocator, NullFormatter, StrMethodFormatter
 
 from restitution.distribution._errors import EstimatedDistribution
 from restitution.distribution._table import Floats
+from restitution.distribution._text import in_gaps
 from restitution.figures import pieces
 from restitution.figures import style as fg
 
@@ -48,7 +48,7 @@ def draw(dist: EstimatedDistribution, *, style: fg.Style | None = None) -> Figur
     speeds = dist.data["velocity"].to_numpy()
     _quantiles(quantiles, dist)
     met = np.geomspace(speeds[0], speeds[-1], 251)
-    met = met[~_in_gaps(dist, met)]
+    met = met[~in_gaps(dist.data, met)]
     for k in range(4):
         _density(densities, dist, float(met[(k + 1) * (met.size - 1) // 5]), fg.colors()[k])
     densities.set_yscale("log")
@@ -94,17 +94,11 @@ def draw(dist: EstimatedDistribution, *, style: fg.Style | None = None) -> Figur
     return figure
 
 
-def _in_gaps(dist: EstimatedDistribution, v: npt.ArrayLike) -> npt.NDArray[np.bool_]:
-    """Mark the speeds near which no impact was seen."""
-    speeds = np.asarray(v)[..., None]
-    return np.asarray(np.any((speeds >= dist.gaps[:, 0]) & (speeds < dist.gaps[:, 1]), axis=-1))
-
-
 def _shown(dist: EstimatedDistribution) -> tuple[Floats, Floats]:
     """Return the speeds of a curve, and 1 for each, NaN in gaps, where the curve is interrupted."""
     inside = dist.gaps.mean(axis=1)
     v = np.unique(np.concatenate([dist.data["velocity"].to_numpy(), dist.gaps.ravel(), inside]))
-    return v, np.where(_in_gaps(dist, v), np.nan, 1.0)
+    return v, np.where(in_gaps(dist.data, v), np.nan, 1.0)
 
 
 def _given(row: list[Axes], dist: EstimatedDistribution) -> None:
@@ -121,7 +115,7 @@ def _given(row: list[Axes], dist: EstimatedDistribution) -> None:
     there = conditions[first[near] : first[near + 1]]
     for k, z in enumerate((there[0], there[there.size // 2], there[-1])):
         seen = (speeds >= 0) & (dist.data["given_lowest"] <= z) & (z <= dist.data["given_highest"]).to_numpy()
-        seen = seen & ~_in_gaps(dist, speeds)
+        seen = seen & ~in_gaps(dist.data, speeds)
         v = speeds[seen.to_numpy()]
         low, half, high = (dist.ppf(q, v, given=z) for q in (0.25, 0.5, 0.75))
         label = f"{z:.2g}"

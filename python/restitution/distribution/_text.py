@@ -7,6 +7,7 @@ from textwrap import wrap
 from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 import xarray as xr
 
 from restitution._internal.parameters import ParameterError, wrong
@@ -71,6 +72,12 @@ def gaps(data: xr.Dataset) -> Floats:
     if "gap_lowest" not in data:
         return np.empty((0, 2))
     return np.stack([data[f"gap_{name}"].to_numpy() for name in ("lowest", "highest")], axis=1)
+
+
+def in_gaps(data: xr.Dataset, v: npt.ArrayLike) -> npt.NDArray[np.bool_]:
+    """Mark the speeds near which no impact was seen."""
+    speeds, ends = np.asarray(v)[..., None], gaps(data)
+    return np.asarray(np.any((speeds >= ends[:, 0]) & (speeds < ends[:, 1]), axis=-1))
 
 
 def image_format(path: Path) -> str:

@@ -170,12 +170,12 @@ class Run(Parameters):
 
     @model_validator(mode="after")
     def _oriented_as_the_body_can_be(self) -> "Run":
-        quaternions = np.ndim(self.orientation) == 2 and self.orientation.shape[1] == 4
-        axis = isinstance(self.body, Body)
+        given, axis = self.orientations, isinstance(self.body, Body)
+        quaternions = given is not None and given.ndim == 2 and given.shape[1] == 4
         if quaternions and axis:
             allowed = "angles, for a body of revolution"
             raise ParameterError(wrong("orientation", self.orientation, allowed))
-        if not axis and not quaternions and not self._has_all_rotations():
+        if not axis and not quaternions and (given is not None or self.orientation != "isotropic"):
             allowed = "'isotropic' or quaternions, shape (particles, 4), for a body without an axis"
             raise ParameterError(wrong("orientation", self.orientation, allowed))
         if not axis and isinstance(self.spin, RandomSpin) and self.spin.axis == "across":
@@ -183,14 +183,11 @@ class Run(Parameters):
             raise ParameterError(wrong("axis", "across", allowed))
         return self
 
-    def _has_all_rotations(self) -> bool:
-        return isinstance(self.orientation, str) and self.orientation == "isotropic"
-
     @model_validator(mode="after")
     def _nothing_below_the_plane(self) -> "Run":
         given = self.orientations
         if given is not None and len(given) != self.particles:
-            what = "quaternions" if given.ndim == 2 and given.shape[1] == 4 else "angles"
+            what = "angles" if isinstance(self.body, Body) else "quaternions"
             text = f" has {len(given)} {what}: must have one for each of particles = {self.particles}"
             raise ParameterError(Problem("orientation", text))
         solid: Any = self.body.compiled

@@ -79,7 +79,7 @@ def simulate(
         spheroid); where ε_n depends on the speed also ``microscopic``, its value at the speed of the
         contact. Over particles: ``impacts``, ``stop_reason``, ``release_angle``; where heights are
         drawn also ``release_height``; with spin, release velocity or
-        incline also ``release_azimuth`` and, over (particle, component), ``release_spin``. With
+        incline also ``release_azimuth`` and, over (particle, component), ``release_spin``.
         A body without a symmetry axis has no ``angle``, ``release_angle`` and ``release_azimuth``; its
         ``contact`` is the number of the ball or vertex that touched, from 1, and ``release_attitude``, over
         (particle, quaternion), says how it was released. With

@@ -375,8 +375,10 @@ def _over_velocity(
 
 def _learned_moment(axes: Axes, found: FluctuatingRestitution, name: str) -> None:
     """Draw a moment of a learned distribution over the speeds of its nodes, not where it saw no impacts."""
+    from restitution.distribution import in_gaps
+
     speeds = found.data["velocity"].to_numpy()
-    known = ~np.any((speeds[:, None] >= found.gaps[:, 0]) & (speeds[:, None] < found.gaps[:, 1]), axis=1)
+    known = ~in_gaps(found.data, speeds)
     method = {"mean_restitution": "mean", "deviation": "std"}.get(name, name)
     each = found.clamped()
     values = np.where(known, getattr(each, method)(speeds), np.nan)

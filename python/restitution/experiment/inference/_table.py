@@ -28,15 +28,21 @@ _FINER = 4
 
 @dataclass(frozen=True)
 class Table:
-    """Logarithm of the likelihood."""
+    """Logarithm of the likelihood.
 
-    axes: tuple[
-        Array, ...
-    ]  # the parameter of ε_n, ln L/R, and where they are inferred ln of scatter, friction
-    values: Array  # over these axes
-    agreement: float = (
-        1.0  # probability of a scatter as far from the usual as observed, were the best ball true
-    )
+    Attributes
+    ----------
+    axes : tuple of ndarray
+        The parameter of ε_n, ln L/R, and where they are inferred ln of the scatter and the friction.
+    values : ndarray
+        Over these axes.
+    agreement : float
+        Probability of a scatter as far from the usual as observed, were the best ball true.
+    """
+
+    axes: tuple[Array, ...]
+    values: Array
+    agreement: float = 1.0
 
     def between(self) -> RegularGridInterpolator:
         """Interpolate linearly."""

@@ -77,6 +77,8 @@ class Film:
         self._frames = _schedule(view, data, particle)
         self.times = np.array([one.time for one in self._frames])
         self._motion = trajectory(data, int(data["particle"][particle]), self.times)
+        position = self._motion["position"].to_numpy() @ view.frame.T
+        self._centres: FloatArray = 1e3 * position[:, :2]
 
     @property
     def frames(self) -> int:
@@ -88,8 +90,7 @@ class Film:
 
     def centre(self, frame: int) -> FloatArray:
         """Return where the centre of mass is drawn in a picture: right and up, in mm."""
-        position = self._motion["position"].to_numpy()[frame]
-        return np.asarray(1e3 * (self._view.frame @ position)[:2])
+        return np.array(self._centres[frame])
 
     def picture(self, frame: int) -> Figure:
         """Draw one of the pictures as a figure.
@@ -206,24 +207,28 @@ class Film:
         figure.set_layout_engine("none")
         axes.set_position((0.02, 0.02, 0.96, 0.80))
         draw.bare(axes)
-        far, centre = 1e3 * solid.reach(view.body), self.centre(frame)
+        far, centre = 1e3 * solid.reach(view.body), self._centres[frame]
         half, top = self._window()
         draw.plane(axes, centre[0], half, 0.5 * far)
         draw.scale_bar(axes, centre[0] - 0.95 * half, -0.75 * far, 2.0 * far)
-        path = np.array([self.centre(k) for k in range(frame + 1)])
-        axes.plot(*path.T, color=ink(0.45), linewidth=points(0.8), linestyle=":", zorder=1.5)
+        axes.plot(
+            *self._centres[: frame + 1].T, color=ink(0.45), linewidth=points(0.8), linestyle=":", zorder=1.5
+        )
         state = self._motion.isel(time=frame)
         axis = view.frame @ state["axis"].to_numpy()
         solid.place(axes, view.body, axis, view.frame @ state["position"].to_numpy())
         velocity = view.frame @ state["velocity"].to_numpy()
         rotation = float((view.frame @ state["angular_velocity"].to_numpy())[2])
-        hit = None if one.impact is None else view.impacts[one.impact]
-        draw.marks(axes, centre, None if hit is None else 1e3 * hit.contact)
-        if hit is not None:
-            after = one.before > view.impacts.index(hit)
+        done = None
+        if one.impact is None:
+            draw.marks(axes, centre, None)
+        else:
+            hit, after = view.impacts[one.impact], one.before > one.impact
+            draw.marks(axes, centre, 1e3 * hit.contact)
             velocity, rotation = hit.velocity[after], float(hit.rotation[after][2])
-        self._arrows(axes, self.centre(frame), velocity, rotation, hit if hit and after else None)
-        self._words(axes, one, velocity, rotation, hit if hit and after else None)
+            done = hit if after else None
+        self._arrows(axes, centre, velocity, rotation, done)
+        self._words(axes, one, velocity, rotation, done)
         axes.set_xlim(centre[0] - half, centre[0] + half)
         axes.set_ylim(-far, top)
         return figure
@@ -259,7 +264,7 @@ class Film:
     def _window(self) -> tuple[float, float]:
         """Return how far the pictures reach to either side of the centre of mass, and up, in mm."""
         far = 1e3 * solid.reach(self._view.body)
-        top = max(self.centre(k)[1] for k in range(self.frames)) + 1.4 * far
+        top = float(self._centres[:, 1].max()) + 1.4 * far
         return 0.5 * (top + far) * (COLUMN * 0.96) / (_HEIGHT * 0.80), top
 
 
