@@ -15,6 +15,7 @@ import xarray as xr
 
 from restitution._internal.files import check_regular, whole_file
 from restitution._internal.parameters import ParameterError, Problem
+from restitution._internal.process import undisturbed
 from restitution._internal.resources import check_room
 
 _BESIDE = 2**20  # bytes that HDF5 keeps beside the numbers of a file, at most
@@ -78,7 +79,8 @@ def load(path: Path) -> xr.Dataset:
     """Read a netCDF file; an OSError that names it if it cannot be read."""
     check_regular(path)
     try:
-        with xr.open_dataset(path, engine="netcdf4") as data:
+        # netCDF4 swallows the exception of a signal that comes while it reads.
+        with undisturbed(), xr.open_dataset(path, engine="netcdf4") as data:
             check_room(str(path), data.nbytes)
             return data.load()
     except MemoryError:
