@@ -128,6 +128,31 @@ CALLS: dict[str, Call] = {
     ),
     "trajectory": (rs.trajectory, some("data", particle=3, times=[0.0, 0.1])),
     "analytic.first_impact": (analytic.first_impact, some("body", "law", orientation="isotropic")),
+    "analytic.RoughContact": (analytic.RoughContact, lambda: {"mean_square": 1e-4, "sphere": 0.0}),
+    "analytic.rough_contact": (
+        analytic.rough_contact,
+        lambda: {"radius": 3e-3, "asperities": 1000, "asperity_radius": 1e-4, "height": 1e-4},
+    ),
+    "analytic.rough_impact": (
+        analytic.rough_impact,
+        lambda: {
+            "law": rs.Frictionless(normal=0.9),
+            "contact": analytic.RoughContact(1e-4, 0.0),
+            "speed": 0.3,
+            "spin": 100.0,
+            "radius": 3e-3,
+        },
+    ),
+    "analytic.rough_spin": (
+        analytic.rough_spin,
+        lambda: {
+            "law": rs.Frictionless(normal=0.9),
+            "contact": analytic.RoughContact(1e-4, 0.0),
+            "speed": 0.3,
+            "release_speed": 1.0,
+            "radius": 3e-3,
+        },
+    ),
     "analytic.negative_threshold": (analytic.negative_threshold, some("body", "law")),
     "analytic.near_round": (
         analytic.near_round,

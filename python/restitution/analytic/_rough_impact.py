@@ -1,0 +1,187 @@
+"""p(ε | v) of a rough sphere that spins: an asymmetric Laplace density; docs/rough.md derives it."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+from scipy.stats import laplace_asymmetric
+
+from restitution._internal.arrays import real
+from restitution._internal.parameters import ParameterError, wrong
+from restitution.analytic._orientation import Floats
+from restitution.analytic._rough_contact import RoughContact
+from restitution.laws import Frictionless, Law, TangentialRestitution
+
+_FLATTEST = 1e-6
+"""Least ratio of the widths of the two flanks that is drawn: below it one is as good as empty."""
+_WIDEST = 0.5
+"""Largest width in units of 1 + ε_n, where the expansion in it has long failed."""
+
+
+class _AsymmetricLaplace(type(laplace_asymmetric)):  # type: ignore[misc]
+    """`scipy.stats.laplace_asymmetric`, whose two probabilities overflow on a side that is nearly empty."""
+
+    def _cdf(self, x: Floats, kappa: Floats) -> Any:
+        below = kappa**2 / (1.0 + kappa**2)
+        left = below * np.exp(np.minimum(x, 0.0) / kappa)
+        return np.where(x < 0.0, left, 1.0 - (1.0 - below) * np.exp(-np.maximum(x, 0.0) * kappa))
+
+    def _sf(self, x: Floats, kappa: Floats) -> Any:
+        return self._cdf(-x, 1.0 / kappa)
+
+
+_DENSITY = _AsymmetricLaplace(name="asymmetric_laplace")
+
+
+def rough_impact(
+    law: Law, contact: RoughContact, *, speed: float, spin: float, radius: float, inertia: float = 0.4
+) -> Any:
+    """Return the distribution of ε at an impact velocity, of a rough sphere whose spin is Gaussian.
+
+    Asperities are many and small: to first order in the width of the density. It is the asymmetric Laplace
+    density, with its cusp at ε_n. Its width is the scatter of the lever arm times the spin, and its asymmetry
+    the difference between contacts that spin drives into the plane, which are met more often, and the loss to
+    rotation that every lever arm causes: docs/rough.md.
+
+    Parameters
+    ----------
+    law : Frictionless or TangentialRestitution
+        With a number for ``normal``; ``tangential`` must be 1.
+    contact : RoughContact
+        Where the sphere touches, from `rough_contact`. The sphere itself must touch in less than one impact
+        in a hundred.
+    speed : float
+        Impact velocity v, in m/s, > 0.
+    spin : float
+        Standard deviation of each of the two horizontal components of ω, in rad/s, >= 0.
+    radius : float
+        Of the sphere, in m, > 0.
+    inertia : float
+        J/(mR²), in (0, 2/3]; 0.4 for a homogeneous sphere.
+
+    Returns
+    -------
+    scipy.stats frozen distribution
+        As of ``scipy.stats.laplace_asymmetric``: with ``pdf``, ``cdf``, ``rvs``, ``mean``, ``std``.
+
+    Raises
+    ------
+    ValueError
+        Naming the argument, its value and what is allowed.
+
+    Examples
+    --------
+    >>> import restitution as rs
+    >>> from restitution.analytic import rough_contact, rough_impact
+    >>> contact = rough_contact(radius=3e-3, asperities=10**4, asperity_radius=3e-5, height=3e-5)
+    >>> found = rough_impact(rs.Frictionless(normal=0.9), contact, speed=0.3, spin=300.0, radius=3e-3)
+    >>> f"{found.mean():.4f} {found.std():.4f}"
+    '0.9049 0.1141'
+    """
+    normal, coupling = _law(law, inertia)
+    square = _contact(contact)
+    size = real("radius", radius, "a finite number > 0, in m", lambda x: 0.0 < x < math.inf, unit="m")
+    v = real("speed", speed, "a finite number > 0, in m/s", lambda x: 0.0 < x < math.inf, unit="m/s")
+    omega = real("spin", spin, "a finite number >= 0, in rad/s", lambda x: 0.0 <= x < math.inf, unit="rad/s")
+    turned = (omega * size / v) ** 2
+    shift, spread = square * (turned - coupling), square * turned  # (7), (8)
+    above, below = _flanks(shift, spread)
+    if not above <= _WIDEST:
+        allowed = f"such that the density is narrow: here 1 + ε_n times {above:.3g}, at most {_WIDEST}"
+        raise ParameterError(wrong("spin", spin, allowed))
+    scale = (1.0 + normal) * math.sqrt(above * below)
+    return _DENSITY(math.sqrt(below / above), loc=normal, scale=scale)
+
+
+def _flanks(shift: float, spread: float) -> tuple[float, float]:
+    """Return the widths a and b of the flanks above and below: a - b = ``shift``, 2ab = ``spread`` (9)."""
+    longer = 0.5 * (abs(shift) + math.sqrt(shift * shift + 2.0 * spread))
+    shorter = 0.5 * spread / longer
+    above, below = (longer, shorter) if shift > 0.0 else (shorter, longer)
+    return max(above, _FLATTEST * longer), max(below, _FLATTEST * longer)
+
+
+def rough_spin(
+    law: Law,
+    contact: RoughContact,
+    *,
+    speed: float,
+    release_speed: float,
+    radius: float,
+    inertia: float = 0.4,
+) -> float:
+    """Return the spin that a rough sphere dropped without any has gathered when it is as slow as ``speed``.
+
+    Each impact changes ω by a kick of random direction, proportional to the speed; the sphere bounces with
+    ε_n to leading order. Kicks of different impacts are independent while the sphere turns by more than the
+    distance of asperities from one to the next.
+
+    Parameters
+    ----------
+    law, contact, radius, inertia
+        As in `rough_impact`; ``law.normal`` below 1.
+    speed : float
+        Impact velocity v, in m/s, in (0, `release_speed`].
+    release_speed : float
+        Velocity v_0 of the first impact, in m/s.
+
+    Returns
+    -------
+    float
+        Standard deviation of each horizontal component of ω, in rad/s.
+
+    Raises
+    ------
+    ValueError
+        Naming the argument, its value and what is allowed.
+
+    Examples
+    --------
+    >>> import restitution as rs
+    >>> from restitution.analytic import rough_contact, rough_spin
+    >>> contact = rough_contact(radius=3e-3, asperities=10**6, asperity_radius=3e-6, height=3e-6)
+    >>> round(rough_spin(rs.Frictionless(normal=0.9), contact, speed=0.1, release_speed=1.0, radius=3e-3), 2)
+    5.11
+    """
+    normal, coupling = _law(law, inertia)
+    if normal == 1.0:
+        raise ParameterError(wrong("law", law, "one with normal < 1, or the sphere never gets slower"))
+    square = _contact(contact)
+    size = real("radius", radius, "a finite number > 0, in m", lambda x: 0.0 < x < math.inf, unit="m")
+    first = real(
+        "release_speed",
+        release_speed,
+        "a finite number > 0, in m/s",
+        lambda x: 0.0 < x < math.inf,
+        unit="m/s",
+    )
+    allowed = f"in (0, {first!r}] m/s: at most release_speed"
+    v = real("speed", speed, allowed, lambda x: 0.0 < x <= first, unit="m/s")
+    fallen = (first - v) * (first + v) / ((1.0 - normal) * (1.0 + normal))
+    return coupling * (1.0 + normal) / size * math.sqrt(0.5 * square * fallen)  # (12)
+
+
+def _law(law: Law, inertia: float) -> tuple[float, float]:
+    """Return ε_n, and the share κ of the loss: mR²/J without friction, mR²/(J + mR²) for ε_t = 1."""
+    j = real("inertia", inertia, "in (0, 2/3]: J/(mR²)", lambda x: 0.0 < x <= 2.0 / 3.0)
+    sticking = isinstance(law, TangentialRestitution) and law.tangential == 1.0
+    if not (sticking or isinstance(law, Frictionless)) or not isinstance(law.normal, float):
+        allowed = "Frictionless, or TangentialRestitution with tangential = 1, with a number for normal"
+        raise ParameterError(wrong("law", law, allowed))
+    return law.normal, 1.0 / (j + 1.0) if sticking else 1.0 / j
+
+
+def _contact(contact: RoughContact) -> float:
+    if not isinstance(contact, RoughContact):
+        raise ParameterError(wrong("contact", contact, "a RoughContact, from `rough_contact`"))
+    mean_square = real("contact.mean_square", contact.mean_square, "in (0, 1]", _is_share)
+    if not contact.sphere <= 0.01:
+        allowed = "of a sphere that touches itself in less than one impact in a hundred"
+        raise ParameterError(wrong("contact", contact, allowed))
+    return mean_square
+
+
+def _is_share(x: float) -> bool:
+    return 0.0 < x <= 1.0
