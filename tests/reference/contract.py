@@ -53,7 +53,7 @@ WORKINGS = {
 """What other folders call, with what they have checked, and types of arguments."""
 
 UNTRIED = {
-    *("Box", "Clump", "ConvexPolyhedron", "CustomLaw", "Ellipsoid"),
+    *("Box", "Clump", "Clump.from_file", "Clump.to_csv", "ConvexPolyhedron", "CustomLaw", "Ellipsoid"),
     *(f"figures.{name}" for name in ("animate", "body", "impact")),
     *(f"figures.Film{name}" for name in ("", ".centre", ".picture", ".save")),
 }

@@ -1,14 +1,17 @@
 """Clumps of spheres, as discrete-element codes have them."""
 
+import os
 from functools import cached_property
-from typing import Annotated, Any
+from typing import Annotated, Any, Self
 
 import numpy as np
 from pydantic import BeforeValidator, Field
 
 from restitution import _core
-from restitution._internal.arrays import check_each, reals
+from restitution._internal import files
+from restitution._internal.arrays import check_each, flag, real, reals
 from restitution._internal.parameters import Allowed, Number, ParameterError, Problem, wrong
+from restitution.bodies import _clump_files
 from restitution.bodies._rigid import RigidBody
 
 Rows = tuple[tuple[float, ...], ...]
@@ -84,6 +87,63 @@ class Clump(RigidBody):
         "union"
     )
     centre: Annotated[Any, Allowed(_CENTRE), BeforeValidator(_centre), Field(description="m")] = None
+
+    @classmethod
+    def from_file(
+        cls,
+        path: str | os.PathLike[str],
+        format: _clump_files.Format | None = None,
+        *,
+        scale: float = 1.0,
+        density: float = 2500.0,
+        inertia: Any = "union",
+        centre: Any = None,
+    ) -> Self:
+        """Read the spheres from a file of another code.
+
+        Parameters
+        ----------
+        path : str or path-like
+            A text file. What follows a ``#`` is a comment.
+        format : {"rows", "csv", "lammps"}, optional
+            Rows ``x y z r`` with spaces or commas between them, after which a type may stand, and which ``&``
+            continues on the next line, as LIGGGHTS (multisphere), CLUMP and MercuryDPM have them; a table
+            whose header names columns x, y, z and r, as DEM-Engine has them; or a molecule of LAMMPS, of
+            which ``Coords`` and ``Diameters`` are read, but neither mass nor inertia. None finds out.
+        scale : float, default 1
+            What a unit of the file is in m: 1e-3 for millimetres. > 0.
+        density, inertia, centre
+            As those of the body.
+
+        Raises
+        ------
+        ValueError
+            If the file is none of these, or a row is malformed; the message names its line, and what is
+            wrong with it.
+        OSError
+            If the file cannot be read.
+        """
+        unit = real("scale", scale, "a finite number > 0 (m)", lambda x: 0.0 < x < np.inf)
+        spheres = np.array(_clump_files.read(files.path_from("path", path), format))
+        return cls(spheres=unit * spheres, density=density, inertia=inertia, centre=centre)
+
+    def to_csv(self, path: str | os.PathLike[str], *, replace: bool = False) -> None:
+        """Write the spheres as a table with the columns x, y, z and r, in m.
+
+        Parameters
+        ----------
+        path : str or path-like
+            The file, which is written whole or not at all.
+        replace : bool, default False
+            Whether a file in its place is replaced.
+
+        Raises
+        ------
+        OSError
+            If the file is there and is not to be replaced, or cannot be written.
+        """
+        rows = ["x,y,z,r", *(",".join(map(repr, sphere)) for sphere in self.spheres)]
+        files.write(files.path_from("path", path), "\n".join(rows) + "\n", replace=flag("replace", replace))
 
     @cached_property
     def compiled(self) -> _core.Rigid:
