@@ -8,7 +8,19 @@ import numpy as np
 import pytest
 
 import restitution as rs
-from reference.refused import ANGLE, BODIES, BODY, LAW, REVOLVED, RUN, THREADS_CASES, check, identify, message
+from reference.refused import (
+    ANGLE,
+    BODIES,
+    BODY,
+    LAW,
+    LAWS,
+    REVOLVED,
+    RUN,
+    THREADS_CASES,
+    check,
+    identify,
+    message,
+)
 
 
 @pytest.mark.parametrize(("name", "value", "allowed"), BODY, ids=identify)
@@ -82,8 +94,7 @@ def test_body_and_law(body: rs.Dumbbell, law: rs.TangentialRestitution) -> None:
         for call, more in ((rs.simulate, ", or a CustomLaw"), (rs.analytic.first_impact, "")):
             text = message(partial(call, body, wrong))
             assert text.startswith("law = ")
-            laws = "a TangentialRestitution, Frictionless, Coulomb or ChatterjeeRuina"
-            assert text.endswith(f": must be {laws}{more}")
+            assert text.endswith(f": must be {LAWS}{more}")
 
 
 def test_missing_and_unknown_names() -> None:

@@ -148,7 +148,7 @@ def test_a_law_that_scatters_is_compared_swept_and_learned(tmp_path: Path) -> No
         ((0.9, 1.1), "deviation = 1.1: must be a real number in [0, 1]"),
         (
             (1.5, 0.1),
-            "normal = 1.5: must be a real number in [0, 1], a Viscoelastic, Plastic or Tabulated, or",
+            "normal = 1.5: must be a real number in [0, 1], a Viscoelastic, Plastic",
         ),
         (
             (DUSTY, 0.1),

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 import restitution as rs
-from restitution import analytic, bodies, figures, fit, flight
+from restitution import _core, analytic, bodies, figures, fit, flight, laws
 
 Call = tuple[Callable[..., Any], Callable[[], dict[str, Any]]]
 """A public function, class or method, and what it is given; of a method with ``self``."""
@@ -83,35 +83,21 @@ def of(thing: str, /, **others: Any) -> Callable[[], dict[str, Any]]:
 RUN = {"particles": 3, "impacts": 3}
 BINS = ("velocity_bins", "restitution_bins")
 
+
+def described(kind: type[Any], entry: dict[str, Any]) -> Call:
+    """Make a class of the core's tables, with the usual value of each parameter."""
+    values = {about["name"]: about["example"] for about in entry["parameters"]}
+    return kind, lambda: ({"normal": 0.5} if issubclass(kind, laws.Law) else {}) | values
+
+
+TABLES = ((bodies.KINDS, _core.BODIES), (laws.KINDS, _core.LAWS), (laws.MATERIALS, _core.MATERIALS))
+
 CALLS: dict[str, Call] = {
-    "Dumbbell": (rs.Dumbbell, lambda: {"radius": 1.0, "separation": 1.0, "density": 1.0}),
+    **{kind.__name__: described(kind, entry) for table in TABLES for kind, entry in zip(*table, strict=True)},
     "Dumbbell.from_length_width": (rs.Dumbbell.from_length_width, lambda: {"length": 2.0, "width": 1.0}),
-    "LoadedSphere": (
-        rs.LoadedSphere,
-        lambda: {"radius": 0.01, "density": 1000.0, "load": 1e-3, "offset": 2e-3},
-    ),
-    "Spherocylinder": (rs.Spherocylinder, lambda: {"radius": 1.0, "separation": 2.0, "density": 1.0}),
-    "Spheroid": (rs.Spheroid, lambda: {"equatorial": 1.0, "polar": 2.0, "density": 1.0}),
     "Spheroid.from_length_width": (rs.Spheroid.from_length_width, lambda: {"length": 2.0, "width": 1.0}),
     "ball_grade": (bodies.ball_grade, lambda: {"grade": 10}),
     "from_roundness": (bodies.from_roundness, lambda: {"diameter": 0.04, "out_of_roundness": 1e-4}),
-    "TangentialRestitution": (rs.TangentialRestitution, lambda: {"normal": 0.5, "tangential": 0.5}),
-    "Frictionless": (rs.Frictionless, lambda: {"normal": 0.5}),
-    "Coulomb": (rs.Coulomb, lambda: {"normal": 0.5, "friction": 0.5, "hypothesis": "newton"}),
-    "ChatterjeeRuina": (rs.ChatterjeeRuina, lambda: {"normal": 0.5, "tangential": 0.5, "friction": 0.5}),
-    "Viscoelastic": (
-        rs.Viscoelastic,
-        lambda: {
-            "young_modulus": 1e9,
-            "poisson_ratio": 0.3,
-            "dissipation": 1e-6,
-            "density": 1e3,
-            "radius": 1e-3,
-        },
-    ),
-    "Scattered": (rs.Scattered, lambda: {"normal": 0.9, "deviation": 0.01}),
-    "Plastic": (rs.Plastic, lambda: {"yield_speed": 0.1}),
-    "Tabulated": (rs.Tabulated, lambda: {"v": [0.1, 0.2], "e": [0.9, 0.8]}),
     "Tabulated.from_function": (
         rs.Tabulated.from_function,
         lambda: {"function": lambda v: 1.0 / (1.0 + v), "fastest": 1.0},

@@ -2,24 +2,38 @@
 
 import math
 import pickle
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Any
 
 import numpy as np
 import pytest
 
+from restitution import bodies, laws
 from restitution.drop.toml import _KINDS
 
 POSITIVE = "must be a finite number > 0"
 NOT_NEGATIVE = "must be a finite number >= 0"
 COUNT = "must be a whole number in [1, 2**40)"
 SEED = "must be a whole number in [0, 2**64)"
-REVOLVED = "a Dumbbell, LoadedSphere, Spherocylinder or Spheroid"
-BODIES = "a Dumbbell, LoadedSphere, Spherocylinder, Spheroid, Clump, Ellipsoid, ConvexPolyhedron or Box"
-SHAPES = " or ".join(f'"{shape}"' for shape in _KINDS["body"][1])
+
+
+def one_of(kinds: Sequence[type]) -> str:
+    """Classes in words."""
+    *others, last = (kind.__name__ for kind in kinds)
+    return f"a {', '.join(others)} or {last}"
+
+
+def quoted(place: str) -> str:
+    """What a file calls the kinds of body, law or material."""
+    return " or ".join(f'"{name}"' for name in _KINDS[place][1])
+
+
+REVOLVED = one_of(bodies.KINDS)
+BODIES = one_of((*bodies.KINDS, *bodies.RIGID))
+LAWS = one_of(laws.KINDS)
+SHAPES, LAW_TYPES, MATERIAL_TYPES = map(quoted, ("body", "law", "normal"))
 THREADS = "must be a whole number in [1, 1024] or None"
 ORIENTATION = "must be 'uniform-angle', 'isotropic' or a 1-D array of angles in rad, one per particle"
-LAW_TYPES = '"tangential-restitution" or "frictionless" or "coulomb" or "chatterjee-ruina"'
 SPIN = "must be None, (ωx, ωy, ωz) in rad/s, an array of them, one per particle, or a RandomSpin"
 VELOCITY = "must be None or (vx, vy, vz), finite, in m/s"
 ANGLE = "must be a finite angle in rad, at most 2**20 either way"

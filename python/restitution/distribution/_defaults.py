@@ -3,6 +3,7 @@
 import math
 
 import numpy as np
+import xarray as xr
 
 from restitution.distribution._table import Floats
 from restitution.drop.run import Run
@@ -22,20 +23,35 @@ def speeds(run: Run) -> Floats:
     return np.array(RANGE) * run.fall_speed(run.heights[0] - run.body.lowest_position)
 
 
-def heights(run: Run) -> tuple[float, ...]:
+def _pilot(run: Run, impacts: int, threads: int | None) -> xr.Dataset:
+    """Follow a few particles."""
+    few = run.of(np.arange(min(run.particles, _PILOTS)))
+    return simulate_run(few.model_copy(update={"impacts": impacts}), threads=threads)
+
+
+def _kept(run: Run, drop: float, threads: int | None) -> float:
+    """Return the share of its speed that a body keeps in the first impact: ε_n, where the law has one.
+
+    Of a law of one's own it is √(E′/E), with E′/E averaged over the first impacts of a few particles.
+    """
+    if not isinstance(run.law, Law):
+        return math.sqrt(float(_pilot(run, 1, threads)["energy_ratio"].mean()))
+    normal = run.law.normal
+    return float(normal(run.fall_speed(drop))) if isinstance(normal, Material) else normal
+
+
+def heights(run: Run, threads: int | None) -> tuple[float, ...]:
     """Spread the heights of release about the one that was asked for, over one loss of energy to either side.
 
     From a single height the first impacts have few separate speeds, and p(ε | v) as fine a structure. The
     heights above the highest position on the plane are (ε_n)^(2x) times the one asked for, with x triangular
     in [-1, 1]: dense in the middle and none at both ends, so that impacts of one number fade into those of
-    the next. With 1000 of them for each loss, neighbours differ by 0.1 % in v.
+    the next; `_kept` says what stands for ε_n where the law has none. With 1000 of them for each loss,
+    neighbours differ by 0.1 % in v.
     """
     base = run.body.compiled.farthest()
     drop = run.release_height - base
-    # Of a law of one's own the loss is not known; the lower ε_n, the wider the heights are spread.
-    normal = run.law.normal if isinstance(run.law, Law) else 0.5
-    kept = float(normal(run.fall_speed(drop))) if isinstance(normal, Material) else normal
-    kept = min(max(kept, 0.05), 0.999)
+    kept = min(max(0.05, _kept(run, drop, threads)), 0.999)  # 0.05 also where no particle has an impact
     wanted = round(2.0 * _LEVELS_PER_LOSS * math.log(1.0 / kept))
     number = min(max(wanted, _FEWEST), run.particles // _PARTICLES_EACH)
     if number < 2 or drop <= 0.0:
@@ -64,8 +80,7 @@ def impacts(run: Run, threads: int | None) -> int:
     """
     number = _LEAST_IMPACTS
     while number < _MOST_IMPACTS:
-        few = run.of(np.arange(min(run.particles, _PILOTS)))
-        data = simulate_run(few.model_copy(update={"impacts": number}), threads=threads)
+        data = _pilot(run, number, threads)
         if float((data["stop_reason"] == 0).mean()) <= _STILL_FAST:
             break
         number *= 2

@@ -121,7 +121,8 @@ class FluctuatingRestitution(EstimatedDistribution):
         heights_about : float, default 0.06
             Instead of `release_height`: from heights about this one, in m, one loss of energy to either side,
             dense in the middle and none at the ends, so that impacts of one number fade into those of the
-            next. Near the speed of the first impact σ(ε) may be twice that of one height.
+            next. Near the speed of the first impact σ(ε) may be twice that of one height. One loss is that
+            of ε_n; of a law of one's own, the mean loss of the first impacts of 64 particles.
         minimum_speed : float, optional
             As in `restitution.simulate`; by default the speed from which no learned impact velocity is
             reached.
@@ -175,10 +176,11 @@ class FluctuatingRestitution(EstimatedDistribution):
         nodes = checked_speeds(velocities, min(runs, key=lambda one: one.heights[0]))
         if minimum_speed is None:
             first = first.model_copy(update={"minimum_speed": defaults.minimum_speed(first, float(nodes[0]))})
+        number = checked_threads(threads) or None
         if impacts is None:
-            most = defaults.impacts(first, checked_threads(threads) or None)
+            most = defaults.impacts(first, number)
             first = first.model_copy(update={"impacts": most})
-        spread = defaults.heights(first) if about else tuple(one.release_height for one in runs)
+        spread = defaults.heights(first, number) if about else tuple(one.release_height for one in runs)
         ensemble = Ensemble(
             first, spread, threads, fraction=isinstance(given, str) and given == "rotational_fraction"
         )
