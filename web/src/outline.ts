@@ -35,12 +35,16 @@ export function drawWith(core: Engine): void {
 }
 
 const known = new Map<string, Outline>();
+/** How many of them are kept: more than are on the page at once, less than a slider passes. */
+const KEPT = 16;
 
 export function outlineOf(setup: Setup): Outline {
   const row = numbers(setup);
   const key = row.slice(0, 5).join();
   const found = known.get(key) ?? made(drawn(setup, row));
-  known.set(key, found);
+  known.delete(key);
+  known.set(key, found); // behind all others, so that the first is that which was not asked for the longest
+  if (known.size > KEPT) known.delete(known.keys().next().value!);
   return found;
 }
 

@@ -56,6 +56,14 @@ test("every body under every law of the table is that of the native engine", () 
   setups.forEach((setup, k) => assert.equal(digest(setup), printed[k], `${setup.shape}, ${setup.law}`));
 });
 
+test("an outline is the same after many others were asked for", () => {
+  const at = (separation) => page.outlineOf({ ...page.DEFAULT, separation });
+  const before = Array.from({ length: 40 }, (_, k) => at(1e-4 * k));
+  assert.equal(at(1e-4 * 39), before[39], "kept");
+  assert.notEqual(at(0), before[0], "made anew");
+  assert.deepEqual(at(0), before[0]);
+});
+
 test("the contact of every body is on its outline, at every tilt", () => {
   for (const { key } of page.BODIES) {
     const setup = { ...page.DEFAULT, shape: key };

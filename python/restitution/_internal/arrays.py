@@ -3,7 +3,7 @@
 import math
 import re
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
-from operator import index
+from operator import index, lt
 from typing import Any, TypeVar
 
 import numpy as np
@@ -91,6 +91,21 @@ def real(
     if not good(number):
         raise ParameterError(wrong(name, value, allowed))
     return number
+
+
+def pair(
+    name: str,
+    value: Any,
+    allowed: str,
+    good: Callable[[float, float], bool] = lt,
+    *,
+    unit: str | None = "1",
+) -> tuple[float, float]:
+    """Take two numbers, in this unit, for which `good` holds: unless given, the first is the lower one."""
+    ends = reals(name, value, allowed, unit=unit, dimensions=(1,), finite=False)
+    if ends.shape != (2,) or not good(*ends.tolist()):
+        raise ParameterError(wrong(name, value, allowed))
+    return float(ends[0]), float(ends[1])
 
 
 def whole(name: str, value: Any, least: int, most: int | None = None) -> int:

@@ -8,7 +8,7 @@ import numpy.typing as npt
 import xarray as xr
 
 from restitution._core import LARGEST_RESTITUTION
-from restitution._internal.arrays import FARTHEST, FloatArray, IntArray, reals
+from restitution._internal.arrays import FARTHEST, FloatArray, IntArray, pair, reals
 from restitution._internal.parameters import ParameterError, Problem, shown, wrong
 
 FRACTION_BINS: FloatArray = np.linspace(0.0, 1.0, 51)
@@ -81,14 +81,12 @@ def edges_from(bins: npt.ArrayLike | None, span: npt.ArrayLike | None, name: str
         raise ParameterError(
             Problem(f"{kind}_range", f": missing; {name} = {shown(bins)} needs a range (low, high)")
         )
-    ends = reals(f"{kind}_range", span, "(low, high) with low < high", unit=_unit(kind), dimensions=(1,))
-    if ends.shape != (2,) or not ends[0] < ends[1]:
-        raise ParameterError(wrong(f"{kind}_range", span, "(low, high) with low < high"))
-    if np.abs(ends).max() > FARTHEST:
+    low, high = pair(f"{kind}_range", span, "(low, high) with low < high", unit=_unit(kind))
+    if max(abs(low), abs(high)) > FARTHEST:
         raise ParameterError(wrong(f"{kind}_range", span, f"at most {FARTHEST:g} either way"))
     if not 1 <= bins <= _MOST_BINS:
         raise ParameterError(wrong(name, bins, f"edges, or a number of bins in [1, {_MOST_BINS}]"))
-    edges = np.linspace(ends[0], ends[1], int(bins) + 1)
+    edges = np.linspace(low, high, int(bins) + 1)
     if not _wide_enough(np.diff(edges)).all():
         allowed = f"so wide that 1/width of each of {bins} bins is finite"
         raise ParameterError(wrong(f"{kind}_range", span, allowed))

@@ -7,7 +7,7 @@ import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike, NDArray
 
-from restitution._internal.arrays import real, reals
+from restitution._internal.arrays import pair, real
 from restitution._internal.parameters import ParameterError, Problem, shown, wrong
 from restitution.drop.bins import LARGEST
 from restitution.drop.recorded import counted as recorded_counts
@@ -91,7 +91,4 @@ def no_window(samples: object, velocity: Window | None) -> None:
 def window(velocity: Window) -> tuple[float, float]:
     """Check a window of impact velocity."""
     allowed = "a window (low, high) with low < high, in m/s"
-    ends = reals("velocity", velocity, allowed, unit="m s-1", dimensions=(1,), finite=False)
-    if ends.shape != (2,) or not ends[0] < ends[1]:
-        raise ParameterError(wrong("velocity", velocity, allowed))
-    return float(ends[0]), float(ends[1])
+    return pair("velocity", velocity, allowed, unit="m s-1")

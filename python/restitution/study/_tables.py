@@ -9,7 +9,7 @@ import numpy as np
 import xarray as xr
 from pydantic import BeforeValidator
 
-from restitution._internal.arrays import real, reals, whole
+from restitution._internal.arrays import pair, real, reals, whole
 from restitution._internal.parameters import (
     Allowed,
     ParameterError,
@@ -168,7 +168,9 @@ def effort(given: Any, run: Run) -> Effort:
     until = _until(own.get("until", {}))
     velocities = own.get("velocities")
     if velocities is not None:
-        velocities = _pair("effort.velocities", velocities, "a pair (low, high) with low < high, in m/s")
+        velocities = pair(
+            "effort.velocities", velocities, "a pair (low, high) with low < high, in m/s", unit="m s-1"
+        )
     usual = min(_MOST_PARTICLES, 2**_MOST_DOUBLINGS * run.particles) if until else run.particles
     most = whole("effort.most_particles", own.get("most_particles", usual), run.particles, _MOST_PARTICLES)
     if not until and most != run.particles:
@@ -196,14 +198,6 @@ def _until(value: Any) -> dict[str, float | str]:
 
 def _variable(name: str) -> str:
     return f"{name}_restitution" if name in _SHORT else name
-
-
-def _pair(name: str, given: Any, allowed: str) -> tuple[float, float]:
-    """Take two speeds, the lower one first."""
-    ends = reals(name, given, allowed, unit="m s-1", dimensions=(1,), finite=False)
-    if ends.shape != (2,) or not ends[0] < ends[1]:
-        raise ParameterError(wrong(name, given, allowed))
-    return float(ends[0]), float(ends[1])
 
 
 def _share(text: str) -> float:
@@ -252,7 +246,7 @@ def _levels(given: Any) -> tuple[float, ...]:
 
 
 def _window(given: Any) -> tuple[float, float]:
-    return _pair("velocity", given, _WINDOW)
+    return pair("velocity", given, _WINDOW, unit="m s-1")
 
 
 class Learn(Parameters):

@@ -12,7 +12,7 @@ import xarray as xr
 from pydantic import Field
 
 from restitution import flight
-from restitution._internal.arrays import reals
+from restitution._internal.arrays import pair
 from restitution._internal.parameters import Number, ParameterError, Parameters, Whole, in_terms_of, wrong
 from restitution.bodies import Form
 from restitution.experiment.flight.series import series_of
@@ -134,7 +134,7 @@ def posterior(
     setting = Setting(diameter=diameter, lobes=lobes, particles=particles, draws=draws, seed=seed)
     if not isinstance(law, Law):
         raise ParameterError(wrong("law", law, "a law such as Frictionless(normal=0.9)"))
-    low, high = _pair("elongation", elongation, least=_ROUNDEST)
+    low, high = _prior("elongation", elongation, least=_ROUNDEST)
     if not high < _MOST_RANGE * low:
         raise ParameterError(wrong("elongation", elongation, f"high < {_MOST_RANGE:g} low"))
     family = Family(law, setting.diameter, form, setting.lobes)
@@ -143,11 +143,11 @@ def posterior(
         family.body(high)
     frictions: Sequence[float | None] = [None]
     if friction is not None:
-        bottom, top = _pair("friction", friction, least=0.0)
+        bottom, top = _prior("friction", friction, least=0.0)
         frictions = [float(mu) for mu in bottom + (top - bottom) * np.linspace(0.0, 1.0, _FRICTIONS) ** 2]
     scatters: Sequence[float | None] = [None]
     if scatter is not None:
-        bottom, top = _pair("scatter", scatter, least=_LEAST_SCATTER)
+        bottom, top = _prior("scatter", scatter, least=_LEAST_SCATTER)
         if not top <= 1.0:
             raise ParameterError(wrong("scatter", scatter, "at most 1, as ε_n is"))
         scatters = np.geomspace(bottom, top, 1 + math.ceil(_SCATTERS * math.log10(top / bottom))).tolist()
@@ -179,15 +179,9 @@ def _packages() -> tuple[Any, Any]:
     return emcee, from_dict
 
 
-def _pair(name: str, value: object, *, least: float) -> tuple[float, float]:
+def _prior(name: str, value: object, *, least: float) -> tuple[float, float]:
     allowed = f"a pair (low, high) with {least:g} <= low < high"
-    ends = reals(name, value, allowed, dimensions=(1,), finite=False)
-    if ends.shape != (2,):
-        raise ParameterError(wrong(name, value, allowed))
-    low, high = ends.tolist()
-    if not least <= low < high < math.inf:
-        raise ParameterError(wrong(name, value, allowed))
-    return low, high
+    return pair(name, value, allowed, lambda low, high: least <= low < high < math.inf)
 
 
 def _sampled(emcee: Any, found: Table, setting: Setting) -> tuple[Array, Array]:
