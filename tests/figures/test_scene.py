@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 import xarray as xr
+from matplotlib.colors import to_rgb
 from matplotlib.figure import Figure
 from matplotlib.patches import FancyArrowPatch
 from PIL import Image, ImageSequence
@@ -15,6 +16,8 @@ import restitution as rs
 from restitution.bodies import Body
 from restitution.figures.scene._impact import Sideview
 from restitution.figures.scene._solid import contact_point, picture, reach
+from restitution.figures.scene._vectors import CONTACT, IMPULSE, ROTATION, VELOCITY
+from restitution.figures.style import COLORS, ON_DARK, Style
 
 BODIES: dict[str, Body] = {
     "dumbbell": rs.Dumbbell(radius=(3e-3, 2e-3), separation=6e-3, density=(2500, 4000)),
@@ -36,7 +39,7 @@ def test_the_marked_point_touches_and_obeys_the_law(body: Body, spin: tuple[floa
     """It is on the plane, and the normal velocity of this point, v + ω × r, is reversed times ε_n (Eq. 9)."""
     data = states(body, spin=spin)
     for particle in range(3):
-        for one in Sideview.of(data, particle, 0, int(data["impacts"][particle]) - 1).impacts:
+        for one in Sideview.of(data, particle, 0, int(data["impacts"][particle]) - 1, name="impacts").impacts:
             assert abs(one.contact[1]) < 1e-11 * reach(body) * 1e3
             arm = one.contact - one.centre
             before, after = (
@@ -123,6 +126,26 @@ def test_a_film_shows_the_body_where_it_is(tmp_path: Path) -> None:
     assert total == 60 * short.frames
 
 
+@pytest.mark.parametrize("style", [None, "slides", "page-dark", "slides-dark"])
+def test_a_film_is_in_its_style(style: Style | None) -> None:
+    """The ground is that of the style, all words are inside, and no colour of an arrow is lost in a GIF."""
+    film = rs.figures.animate(states(BODIES["dumbbell"]), 1, 2, style=style)
+    dark = style is not None and style.endswith("-dark")
+    still = film._still()
+    figure = film.picture(still)
+    for text in figure.texts:
+        box = text.get_window_extent()
+        assert 0.0 <= box.x0 <= box.x1 <= figure.bbox.width, text.get_text()
+    image = film._image(still, style=style)
+    palette = film._palette([image], style=style)
+    shown = np.asarray(image.quantize(palette=palette, dither=Image.Dither.NONE).convert("RGB")).astype(int)
+    ground = (20, 24, 30) if dark else (255, 255, 255)
+    assert np.abs(shown[0, 0] - ground).max() <= 4
+    for number in (VELOCITY, ROTATION, IMPULSE, CONTACT):
+        color = np.array(to_rgb((ON_DARK if dark else COLORS)[number])) * 255
+        assert np.abs(shown - color).max(axis=-1).min() <= 12, number
+
+
 def test_films_say_what_they_cannot_do(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     data = states(BODIES["prolate"])
     film = rs.figures.animate(data, 0, 7)  # the last one: the film ends there
@@ -130,11 +153,21 @@ def test_films_say_what_they_cannot_do(tmp_path: Path, monkeypatch: pytest.Monke
     with pytest.raises(ValueError, match=r"name = '.*film.png': must be the name of a film"):
         film.save(tmp_path / "film.png")
     monkeypatch.setattr("matplotlib.animation.FFMpegWriter.isAvailable", lambda: False)
-    with pytest.raises(RuntimeError, match="takes the program ffmpeg, which is not installed"):
+    with pytest.raises(
+        RuntimeError, match=r"takes the program ffmpeg, .* ffmpeg.org, or save the film as .gif"
+    ):
         film.save(tmp_path / "film.mp4")
     assert not (tmp_path / "film.mp4").exists()
     with pytest.raises(ValueError, match=r"impacts = \(1, 2, 3\): must be the number of an impact"):
         rs.figures.animate(data, 0, (1, 2, 3))  # type: ignore[arg-type]
+    with pytest.raises(ValueError, match=r"impacts = 2: must be a whole number in \[3, 7\]"):
+        rs.figures.animate(data, 0, (3, 2))
+    with pytest.raises(ValueError, match=r"impacts = None: must be the number of an impact"):
+        rs.figures.animate(data, 0, None)  # type: ignore[arg-type]
+    for frame in (-1, film.frames):
+        for method in (film.picture, film.centre):
+            with pytest.raises(ValueError, match=rf"frame = {frame}: must be a whole number in \[0, "):
+                method(frame)
     with pytest.raises(ValueError, match=r'record="state"'):
         rs.figures.animate(rs.simulate(BODIES["prolate"], rs.Frictionless(normal=0.9), particles=1))
     with pytest.raises(ValueError, match=r"impact = 8: must be a whole number in \[0, 7\]"):

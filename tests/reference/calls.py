@@ -22,6 +22,7 @@ def folder() -> Path:
     """Give a folder with one small file of each kind that is read."""
     path = Path(tempfile.mkdtemp(prefix="calls-"))
     (path / "times.csv").write_text("time (s)\n0\n0.4\n0.78\n1.141\n", encoding="ascii")
+    good()["clump"].to_csv(path / "clump.csv")
     good()["dist"].save(path / "dist.nc")
     return path
 
@@ -42,6 +43,7 @@ def good() -> dict[str, Any]:
     return {
         "body": body,
         "law": law,
+        "clump": rs.Clump(spheres=[(0, 0, 1e-3, 3e-3), (0, 0, -1e-3, 3e-3)]),
         "data": data,
         "found": found,
         "velocity_bins": velocity,
@@ -60,6 +62,7 @@ def good() -> dict[str, Any]:
         "first": analytic.first_impact(body, law),
         "fit": laplace,
         "counts": fit.Counts.at(found, 0.65),
+        "film": figures.animate(data, impacts=2),
         "bootstrap": fit.bootstrap(fit.laplace, data, velocity=WINDOW, resamples=3),
         "slopes": fit.slopes(data, np.linspace(0.2, 1.0, 6), resamples=2),
         "times": times,
@@ -98,6 +101,16 @@ CALLS: dict[str, Call] = {
     "Spheroid.from_length_width": (rs.Spheroid.from_length_width, lambda: {"length": 2.0, "width": 1.0}),
     "ball_grade": (bodies.ball_grade, lambda: {"grade": 10}),
     "from_roundness": (bodies.from_roundness, lambda: {"diameter": 0.04, "out_of_roundness": 1e-4}),
+    "Clump": (
+        rs.Clump,
+        lambda: {"spheres": [(0, 0, 1e-3, 3e-3), (0, 0, -1e-3, 3e-3)], "density": 1e3, "inertia": "union"},
+    ),
+    "Clump.from_file": (rs.Clump.from_file, lambda: {"path": folder() / "clump.csv", "scale": 1e-3}),
+    "Clump.to_csv": (rs.Clump.to_csv, of("clump", path="clump.csv", replace=True)),
+    "Ellipsoid": (rs.Ellipsoid, lambda: {"semi_axes": (3e-3, 2e-3, 1e-3), "density": 1e3}),
+    "ConvexPolyhedron": (rs.ConvexPolyhedron, lambda: {"points": np.eye(4, 3), "density": 1e3}),
+    "Box": (rs.Box, lambda: {"a": 1e-2, "b": 2e-2, "c": 3e-2, "density": 1e3}),
+    "CustomLaw": (rs.CustomLaw, lambda: {"function": lambda K, velocity: -velocity, "name": "own"}),
     "Tabulated.from_function": (
         rs.Tabulated.from_function,
         lambda: {"function": lambda v: 1.0 / (1.0 + v), "fastest": 1.0},

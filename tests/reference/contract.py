@@ -28,6 +28,7 @@ RESULTS = {
     "RequiredRoundness",
     "analytic.FirstImpact",
     *(f"fit.{name}" for name in ("Bootstrap", "Comparison", "Fit", "Goodness", "PowerLaw", "Slopes")),
+    "figures.Film",
     "flight.LawFit",
     "listen.Analysis",
     "listen.Series",
@@ -51,13 +52,6 @@ WORKINGS = {
     "study.Study.where",
 }
 """What other folders call, with what they have checked, and types of arguments."""
-
-UNTRIED = {
-    *("Box", "Clump", "Clump.from_file", "Clump.to_csv", "ConvexPolyhedron", "CustomLaw", "Ellipsoid"),
-    *(f"figures.{name}" for name in ("animate", "body", "impact")),
-    *(f"figures.Film{name}" for name in ("", ".centre", ".picture", ".save")),
-}
-"""What has tests of its own for bad input, and is not attacked here yet."""
 
 
 def public() -> Iterator[tuple[str, Callable[..., Any]]]:

@@ -99,6 +99,8 @@ def harms(data: xr.Dataset, attributes: tuple[str, ...]) -> Iterator[Harm]:
 FITTING: dict[str, tuple[str, ...]] = {
     "trajectory": ("times", "particle = "),
     "figures.trajectory": ("particle = ",),
+    "figures.impact": ("particle = ", "impact = "),
+    "figures.animate": ("particle = ", "impacts = "),
     "figures.densities": ("velocities",),
     **{name: ("velocity = ", "clusters: ", "count: ") for name in CALLS if name.startswith("fit.")},
     "posterior": ("diameter = ",),

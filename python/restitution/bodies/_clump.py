@@ -5,18 +5,21 @@ from functools import cached_property
 from typing import Annotated, Any, Self
 
 import numpy as np
-from pydantic import BeforeValidator, Field
+from numpy.typing import NDArray
+from pydantic import BeforeValidator, Field, ValidationInfo
 
 from restitution import _core
 from restitution._internal import files
-from restitution._internal.arrays import check_each, flag, real, reals
-from restitution._internal.parameters import Allowed, Number, ParameterError, Problem, wrong
+from restitution._internal.arrays import FloatArray, check_each, flag, real, reals
+from restitution._internal.parameters import Allowed, Number, ParameterError, Problem, shown, wrong
 from restitution.bodies import _clump_files
 from restitution.bodies._rigid import RigidBody
 
 Rows = tuple[tuple[float, ...], ...]
 
-_SPHERES = "rows (x, y, z, radius) of finite numbers in m, one or more, each radius > 0"
+_SMALLEST, _LARGEST = 1e-60, 1e60
+"""Sizes in m whose fifth power is a number."""
+_SPHERES = f"rows (x, y, z, radius) in m, one or more, |x| to {_LARGEST:g}, radius >= {_SMALLEST:g}"
 _INERTIA = '"union", "sum" or a symmetric matrix, shape (3, 3), in kg m²'
 _CENTRE = "None or (x, y, z), finite, in m"
 
@@ -32,10 +35,14 @@ def _spheres(value: Any) -> Rows:
     check_each(
         "spheres",
         spheres,
-        np.column_stack([np.ones((len(spheres), 3), bool), spheres[:, 3:] > 0.0]),
+        _within(spheres),
         _SPHERES,
     )
     return _rows(spheres)
+
+
+def _within(spheres: FloatArray) -> NDArray[np.bool_]:
+    return np.asarray((np.abs(spheres) <= _LARGEST) & (spheres >= [*3 * [-_LARGEST], _SMALLEST]))
 
 
 def _inertia(value: Any) -> str | Rows:
@@ -47,9 +54,14 @@ def _inertia(value: Any) -> str | Rows:
     return _rows(0.5 * (tensor + tensor.T))
 
 
-def _centre(value: Any) -> tuple[float, ...] | None:
+def _centre(value: Any, about: ValidationInfo) -> tuple[float, ...] | None:
     if value is None:
         return None
+    if isinstance(about.data.get("inertia"), str):
+        text = f" = {shown(value)}, inertia = {about.data['inertia']!r}: must be "
+        raise ParameterError(
+            Problem("centre", text, "left out, or given with the tensor of inertia about it")
+        )
     centre = reals("centre", value, _CENTRE, unit="m", dimensions=(1,))
     if centre.shape != (3,):
         raise ParameterError(wrong("centre", value, _CENTRE))
@@ -62,7 +74,7 @@ class Clump(RigidBody):
     Parameters
     ----------
     spheres : array_like, shape (n, 4)
-        Centre and radius (x, y, z, r) of each sphere, in m; finite, r > 0.
+        Centre and radius (x, y, z, r) of each sphere, in m; r > 0.
     density : float, default 2500
         Density in kg/m³; finite and > 0.
     inertia : {"union", "sum"} or array_like, shape (3, 3)
@@ -125,7 +137,11 @@ class Clump(RigidBody):
         """
         unit = real("scale", scale, "a finite number > 0 (m)", lambda x: 0.0 < x < np.inf)
         spheres = np.array(_clump_files.read(files.path_from("path", path), format))
-        return cls(spheres=unit * spheres, density=density, inertia=inertia, centre=centre)
+        with np.errstate(over="ignore"):
+            scaled = unit * spheres
+        if not _within(scaled).all():
+            raise ParameterError(wrong("scale", scale, f"such that the spheres are {_SPHERES}"))
+        return cls(spheres=scaled, density=density, inertia=inertia, centre=centre)
 
     def to_csv(self, path: str | os.PathLike[str], *, replace: bool = False) -> None:
         """Write the spheres as a table with the columns x, y, z and r, in m.
@@ -150,11 +166,6 @@ class Clump(RigidBody):
         """The body as the core knows it, made and checked once."""
         union = _core.clump(self.spheres, self.density, self.inertia == "sum")
         if isinstance(self.inertia, str):
-            if self.centre is not None:
-                text = f" = {self.centre}, inertia = {self.inertia!r}: must be "
-                raise ParameterError(
-                    Problem("centre", text, "left out, or given with the tensor of inertia about it")
-                )
             return union
         centre = union.centre if self.centre is None else self.centre
         given = {"mass": union.mass, "centre": centre, "tensor": self.inertia}

@@ -52,7 +52,7 @@ class _File(NamedTuple):
 
 def read(path: Path, format: Any) -> Spheres:
     """Read the rows (x, y, z, r) of a file; a ParameterError names the line that is none, and why."""
-    if format is not None and format not in get_args(Format):
+    if format is not None and not (isinstance(format, str) and format in get_args(Format)):
         raise ParameterError(wrong("format", format, f"None, {', '.join(map(repr, get_args(Format)))}"))
     name, held = str(path), content(path)
     try:

@@ -9,7 +9,7 @@ from pydantic import BeforeValidator, Field
 
 from restitution import _core
 from restitution._internal.arrays import reals
-from restitution._internal.parameters import Allowed, Number, ParameterError, wrong
+from restitution._internal.parameters import Allowed, Number, ParameterError, Problem, wrong
 from restitution.bodies._rigid import RigidBody
 
 _POINTS = "four or more points (x, y, z) in m, finite, not all in one plane"
@@ -102,7 +102,14 @@ class Box(RigidBody):
     @cached_property
     def compiled(self) -> _core.Rigid:
         """The body as the core knows it, made and checked once."""
-        return _core.polyhedron(self.vertices, _TRIANGLES, self.density)
+        try:
+            return _core.polyhedron(self.vertices, _TRIANGLES, self.density)
+        except _core.ParameterError as error:
+            if error.name != "points":
+                raise
+            edges = f" = {self.a!r}, b = {self.b!r}, c = {self.c!r}: must be "
+            allowed = "such that the volume neither overflows nor underflows"
+            raise ParameterError(Problem("a", edges, allowed)) from None
 
 
 _TRIANGLES = [

@@ -105,6 +105,13 @@ def check_successive(name: str, data: xr.Dataset, *, start: int | None = None) -
     check_each(f"{name}.impact", numbers, numbers == first + np.arange(numbers.size), rule)
 
 
+def check_frame(name: str, data: xr.Dataset) -> None:
+    """Refuse vectors whose components are not those in the frame of the plane."""
+    frame = data["component"].to_numpy()
+    if "component" not in data.coords or frame.tolist() != ["x", "y", "z"]:
+        raise ParameterError(wrong(f"{name}.component", frame, "x, y, z"))
+
+
 def attribute(
     name: str,
     data: xr.Dataset,

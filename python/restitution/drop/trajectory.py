@@ -9,7 +9,15 @@ import numpy.typing as npt
 
 from restitution._internal.arrays import FloatArray, check_each, reals, whole
 from restitution._internal.parameters import ParameterError, Problem, wrong
-from restitution.drop.recorded import RECORDS, attribute, check_successive, pull, released_from, variables
+from restitution.drop.recorded import (
+    RECORDS,
+    attribute,
+    check_frame,
+    check_successive,
+    pull,
+    released_from,
+    variables,
+)
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -146,9 +154,7 @@ def _check(data: xr.Dataset) -> None:
     given = {name: needed for name, needed in _RELEASED.items() if name in getattr(data, "variables", ())}
     variables("data", data, 'restitution.simulate(..., record="state")', _NEEDED | given)
     check_successive("data", data, start=0)
-    frame = data["component"].to_numpy()
-    if "component" not in data.coords or frame.tolist() != ["x", "y", "z"]:
-        raise ParameterError(wrong("data.component", frame, "x, y, z"))
+    check_frame("data", data)
     allowed = "three finite numbers"
     velocity = data.attrs.get("release_velocity")
     if reals("data.release_velocity", velocity, allowed).shape != (3,):

@@ -13,7 +13,7 @@ from matplotlib.animation import FFMpegWriter
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from PIL import Image
 
-from restitution._internal.arrays import FloatArray, whole
+from restitution._internal.arrays import FARTHEST, FloatArray, whole
 from restitution._internal.files import FILM, path_for, whole_file
 from restitution._internal.parameters import ParameterError, Problem, wrong
 from restitution.drop.recorded import pull
@@ -38,6 +38,8 @@ _FLIGHT, _NEAR, _STILL = 1.1, 1.0, 1.6
 _CLOSE = 0.3
 """Of a reach: how far the body moves in the slow motion on either side."""
 _PIXELS_PER_INCH = 100
+_SWATCH = 40
+"""Pixels of a side of the squares from which a palette takes the colours of a style."""
 _HEIGHT = 3.0
 """Of a picture in a journal, in inches."""
 
@@ -78,6 +80,9 @@ class Film:
         self.times = np.array([one.time for one in self._frames])
         self._motion = trajectory(data, int(data["particle"][particle]), self.times)
         position = self._motion["position"].to_numpy() @ view.frame.T
+        if np.abs(position).max() > FARTHEST:
+            text = ": the body flies too far to be drawn; must be the states and settings of a run"
+            raise ParameterError(Problem("data", text))
         self._centres: FloatArray = 1e3 * position[:, :2]
 
     @property
@@ -90,7 +95,7 @@ class Film:
 
     def centre(self, frame: int) -> FloatArray:
         """Return where the centre of mass is drawn in a picture: right and up, in mm."""
-        return np.array(self._centres[frame])
+        return np.array(self._centres[self._number(frame)])
 
     def picture(self, frame: int) -> Figure:
         """Draw one of the pictures as a figure.
@@ -100,8 +105,10 @@ class Film:
         frame : int
             Its number.
         """
-        frame = whole("frame", frame, 0, self.frames - 1)
-        return self._draw(frame, style=self._style)
+        return self._draw(self._number(frame), style=self._style)
+
+    def _number(self, frame: int) -> int:
+        return whole("frame", frame, 0, self.frames - 1)
 
     def save(self, name: str | Path) -> Path:
         """Write the film; a file of this name is replaced, whole or not at all.
@@ -127,7 +134,10 @@ class Film:
             raise ParameterError(wrong("name", str(path), f"the name of {FILM}"))
         if path.suffix.lower() == ".mp4":
             if not FFMpegWriter.isAvailable():
-                text = f"{path}: .mp4 takes the program ffmpeg, which is not installed; .gif takes nothing"
+                text = (
+                    f"{path}: .mp4 takes the program ffmpeg, which is not installed: "
+                    "get it from your system's packages or ffmpeg.org, or save the film as .gif"
+                )
                 raise RuntimeError(text)
             with whole_file(path, replace=True) as draft:
                 self._save_mp4(draft)
@@ -162,13 +172,7 @@ class Film:
 
     def _gif(self) -> bytes:
         images = self._images()
-        # One palette for all pictures, from the first, one in the middle of an impact, and the last.
-        chosen = [images[0], images[self._still()], images[-1]]
-        width, height = images[0].size
-        sheet = Image.new("RGB", (width, height * len(chosen)))
-        for k, one in enumerate(chosen):
-            sheet.paste(one, (0, k * height))
-        palette = sheet.quantize(96, dither=Image.Dither.NONE)
+        palette = self._palette([images[0], images[self._still()], images[-1]], style=self._style)
         shown: list[Image.Image] = []
         durations: list[int] = []
         for k, image in enumerate(images):
@@ -182,6 +186,17 @@ class Film:
             content, "GIF", save_all=True, append_images=shown[1:], duration=durations, loop=0, optimize=True
         )
         return content.getvalue()
+
+    @styled
+    def _palette(self, chosen: list[Image.Image], *, style: Style | None) -> Image.Image:
+        """Choose the colours of all pictures: from some of them, and those of the arrows."""
+        width, height = chosen[0].size
+        sheet = Image.new("RGB", (width, height * len(chosen) + _SWATCH))
+        for k, one in enumerate(chosen):
+            sheet.paste(one, (0, k * height))
+        for k, color in enumerate(colors()):  # or those of small things would be lost
+            sheet.paste(color, (k * _SWATCH, height * len(chosen), (k + 1) * _SWATCH, sheet.height))
+        return sheet.quantize(96, dither=Image.Dither.NONE)
 
     def _still(self) -> int:
         return [k for k, one in enumerate(self._frames) if one.impact is not None][-1]
@@ -246,13 +261,13 @@ class Film:
         past = hit or (self._view.impacts[one.before - 1] if one.before else None)
         push = "" if hit is None else f"{np.linalg.norm(hit.impulse):.2f} m/s"
         keys = (
-            (rf"$v$ = {np.linalg.norm(v):.2f} m/s", draw.VELOCITY, 0.03),
-            (rf"$\omega$ = {abs(w):.0f} rad/s", draw.ROTATION, 0.35),
-            (rf"$P/m$ = {push}" if push else "", draw.IMPULSE, 0.68),
+            (rf"$v$ = {np.linalg.norm(v):.2f} m/s", draw.VELOCITY, 0.03, "left"),
+            (rf"$\omega$ = {abs(w):.0f} rad/s", draw.ROTATION, 0.47, "center"),
+            (rf"$P/m$ = {push}" if push else "", draw.IMPULSE, 0.97, "right"),
         )
         figure = axes.figure
-        for text, number, x in keys:
-            figure.text(x, 0.985, text, color=colors()[number], ha="left", va="top", fontsize="medium")
+        for text, number, x, side in keys:
+            figure.text(x, 0.985, text, color=colors()[number], ha=side, va="top", fontsize="medium")
         if past is not None:
             text = f"$\\varepsilon$ = {past.restitution:.2f} at $v_G^n$ = {past.speed:.2f} m/s"
             text = text.replace("= -", "= \N{MINUS SIGN}")
@@ -306,14 +321,11 @@ def animate(
     """
     allowed = "the number of an impact, or of a first and a last one"
     try:
-        first, last = impacts if isinstance(impacts, tuple | list) else (impacts, impacts)
+        ends = impacts if isinstance(impacts, tuple | list) else (impacts, impacts)
+        first, last = (whole("impacts", one, 0) for one in ends)
     except ValueError:
         raise ParameterError(wrong("impacts", impacts, allowed)) from None
-    view = Sideview.of(data, particle, first, last)
-    gravity, incline = pull("data", data)
-    if not gravity * np.cos(incline) > 0.0:
-        raise ParameterError(Problem("data.gravity", f" = {gravity!r}: must pull towards the plane"))
-    return Film(view, data, particle, style)
+    return Film(Sideview.of(data, particle, first, last, name="impacts"), data, particle, style)
 
 
 def _schedule(view: Sideview, data: xr.Dataset, particle: int) -> tuple[Frame, ...]:
@@ -324,7 +336,8 @@ def _schedule(view: Sideview, data: xr.Dataset, particle: int) -> tuple[Frame, .
     last = first + len(view.impacts)
     end = times[last] if last < times.size and np.isfinite(times[last]) else view.impacts[-1].time
     far = solid.reach(view.body)
-    gravity = abs(float(data.attrs["gravity"]) * np.cos(float(data.attrs["incline"])))
+    gravity, incline = pull("data", data)
+    gravity *= np.cos(incline)
     knots = [_first_seen(view.impacts[0], begin, gravity, far)]
     knots += [one.time for one in view.impacts]
     knots.append(_last_seen(view.impacts[-1], end, gravity, far))
@@ -353,7 +366,8 @@ def _duration(speed: float, height: float, gravity: float, far: float) -> float:
     if speed <= 0.0:
         return np.inf
     room = max(_HIGHEST * far - height, 0.0)
-    climbs = speed**2 - 2.0 * gravity * room
+    with np.errstate(over="ignore"):
+        climbs = speed**2 - 2.0 * gravity * room
     return (speed - np.sqrt(climbs)) / gravity if climbs > 0.0 else speed / gravity
 
 

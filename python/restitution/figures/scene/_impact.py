@@ -9,9 +9,9 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from restitution._internal.arrays import FloatArray, whole
+from restitution._internal.arrays import FARTHEST, FloatArray, check_each, whole
 from restitution._internal.parameters import ParameterError, Problem
-from restitution.drop.recorded import RECORDS, attribute, variables
+from restitution.drop.recorded import RECORDS, attribute, check_frame, variables
 from restitution.drop.trajectory import times_of
 from restitution.figures.scene import _solid as solid
 from restitution.figures.scene import _vectors as draw
@@ -66,22 +66,24 @@ class Sideview:
     impacts: tuple[Impact, ...]
 
     @classmethod
-    def of(cls, data: xr.Dataset, particle: int, first: int, last: int) -> Sideview:
-        """Read the impacts from `first` to `last` of a run that recorded states."""
+    def of(cls, data: xr.Dataset, particle: int, first: int, last: int, *, name: str) -> Sideview:
+        """Read the impacts from `first` to `last`, as the argument `name` says, of a run with states."""
         found = variables("data", data, 'restitution.simulate(..., record="state")', _NEEDED)
+        check_frame("data", data)
         body = solid.body_of(data)
         mass = attribute("data", data, "mass", "a finite number > 0", lambda m: 0.0 < m < np.inf)
         particle = whole("particle", particle, 0, data.sizes["particle"] - 1)
-        one = {name: values[particle] for name, values in zip(_NEEDED, found, strict=True)}
+        one = {key: values[particle] for key, values in zip(_NEEDED, found, strict=True)}
         happened = times_of(one["time"]).size
         if happened == 0:
             raise ParameterError(Problem("particle", f" = {particle}: must be one that has an impact"))
-        first = whole("impact", first, 0, happened - 1)
-        last = whole("impacts", last, first, happened - 1)
+        first = whole(name, first, 0, happened - 1)
+        last = whole(name, last, first, happened - 1)
+        _check({key: values[first : last + 1] for key, values in one.items()})
         frame = _frame(one["axis"][first])
         impacts = []
         for i in range(first, last + 1):
-            vectors = {name: frame @ one[name][i] for name in _VECTORS}
+            vectors = {key: frame @ one[key][i] for key in _VECTORS}
             contact = solid.contact_point(body, vectors["axis"], int(one["contact"][i]))
             impacts.append(
                 Impact(
@@ -104,6 +106,18 @@ class Sideview:
         turns = [abs(float(w[2])) for one in self.impacts for w in one.rotation]
         fastest = max(float(np.hypot(v[0], v[1])) for v in speeds)
         return 1.15 * solid.reach(self.body) / (fastest or 1.0), LARGEST_TURN / (max(turns) or 1.0)
+
+
+def _check(one: dict[str, FloatArray]) -> None:
+    """Refuse what cannot be drawn."""
+    for key, values in one.items():
+        allowed = f"a finite number, at most {FARTHEST:g} either way"
+        check_each(f"data.{key}", values, np.abs(values) <= FARTHEST, allowed)
+    check_each(
+        "data.contact", one["contact"], np.isin(one["contact"], (1, 2)), "1 or 2, the end that touches"
+    )
+    length = np.linalg.norm(one["axis"], axis=1)
+    check_each("data.axis", length, np.abs(length - 1.0) < 1e-6, "of length 1")
 
 
 def _frame(axis: FloatArray) -> FloatArray:
@@ -142,7 +156,7 @@ def impact(data: xr.Dataset, particle: int = 0, impact: int = 0, *, style: Style
     ...     impacts=3, record="state")
     >>> figure = rs.figures.impact(data, impact=2)
     """
-    view = Sideview.of(data, particle, impact, impact)
+    view = Sideview.of(data, particle, impact, impact, name="impact")
     figure, [[before, after]] = panels(1.45 * COLUMN, 2.2, columns=2)
     for axes, when in ((before, 0), (after, 1)):
         _draw(axes, view, when)

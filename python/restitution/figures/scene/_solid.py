@@ -9,7 +9,7 @@ from matplotlib.axes import Axes
 from matplotlib.image import AxesImage
 
 from restitution._internal.arrays import FloatArray
-from restitution._internal.parameters import ParameterError, Problem
+from restitution._internal.parameters import ParameterError, Problem, renamed
 from restitution.bodies import KINDS, Body
 
 _PIXELS = 220
@@ -67,7 +67,8 @@ def body_of(data: xr.Dataset) -> Body:
     if kind is None or missing:
         text = f" lacks the attributes of the body ({', '.join(missing)}): must be from restitution.simulate"
         raise ParameterError(Problem("data", text))
-    return kind(**{name: data.attrs[name] for name in kind.model_fields})
+    with renamed(lambda name: f"data.{name}"):
+        return kind(**{name: data.attrs[name] for name in kind.model_fields})
 
 
 def reach(body: Body) -> float:
