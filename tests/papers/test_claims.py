@@ -30,8 +30,9 @@ from reference.made_up_runs import (
 )
 from restitution._core import STOP_REASONS
 from restitution.analytic import first_impact
+from restitution.papers import shape
 from restitution.papers.estimate import jackknife
-from restitution.papers.glielmo2014._claims import CLAIMS, _experiments, _negative, _shape
+from restitution.papers.glielmo2014._claims import CLAIMS, _experiments, _negative
 
 ALL_LOW = {"restitution": np.minimum(MAIN["restitution"].to_numpy(), 0.99)}
 TOO_HIGH = {"restitution": np.where(np.arange(IMPACTS) == 0, 0.985, MAIN["restitution"].to_numpy())}
@@ -127,7 +128,7 @@ def test_tails_that_end_are_found_out() -> None:
     """A Laplace sample has the tails of its fit within four standard errors; one that is cut off has not."""
     laplace = even(np.random.default_rng(15), (20_000,))
     for values, ends in ((laplace, False), (laplace[np.abs(laplace) < 5 * 0.7], True)):
-        root, error = jackknife(_shape._tails, values, np.arange(values.size))
+        root, error = jackknife(shape.tails, values, np.arange(values.size))
         assert (abs(root - 1) > 4 * error) == ends
 
 
@@ -339,7 +340,7 @@ def test_impacts_that_never_happened_change_nothing() -> None:
 
 def test_all_claims_are_judged_with_their_rule(monkeypatch: pytest.MonkeyPatch) -> None:
     """And docs/paper.md lists each. P-values depend on the seed of the runs alone."""
-    monkeypatch.setattr(_shape, "RESAMPLES", 20)
+    monkeypatch.setattr(shape, "RESAMPLES", 20)
     found = CLAIMS.judge(runs(), SETTINGS)
     assert judged("laplace") in [claim.finding for claim in found]
     page = (Path(__file__).parents[2] / "docs" / "paper.md").read_text(encoding="utf-8")

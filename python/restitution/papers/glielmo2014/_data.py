@@ -3,17 +3,17 @@
 from collections.abc import Mapping
 
 import numpy as np
-import numpy.typing as npt
 import xarray as xr
 
 from restitution import analytic, fit
-from restitution._internal.arrays import FloatArray, IntArray
+from restitution._internal.arrays import FloatArray
 from restitution.drop.reduce import reduce, standard_errors
 from restitution.papers.figures import counted, recorded
 from restitution.papers.glielmo2014._checks import printed_density
 from restitution.papers.glielmo2014._runs import Runs
 from restitution.papers.glielmo2014._settings import Settings
 from restitution.papers.glielmo2014._windows import at_speeds, coarse, histogram_edges, mesh
+from restitution.papers.histograms import binned, density, design_effect, in_window
 
 QUANTILES = (0.01, 0.5, 0.99)
 """Quantiles of restitution in the sensitivity figure of Fig. 2."""
@@ -36,13 +36,13 @@ def restitution_histograms(runs: Runs, s: Settings) -> xr.Dataset:
     parts = []
     windows = zip(at_speeds(runs.windows, s), s.speed_windows, s.histogram_widths, strict=True)
     for found, window, width in windows:
-        particle, values = _window(runs.main, "restitution", window)
+        particle, values = in_window(runs.main, "restitution", window)
         edges = histogram_edges(s, width)
         fitted = fit.asymmetric_laplace(values)
         # The cusp itself is among the points, so that the curve does not cut it off.
         points = np.sort(np.append(np.linspace(edges[0], edges[-1], 400), fitted.parameters["location"]))
         count = coarse(found["restitution_count"].to_numpy(), s, width)
-        part = _histogram(count, int(found["number"]), edges, _together(particle, values, edges))
+        part = density(count, int(found["number"]), edges, design_effect(particle, values, edges))
         part["fit_point"] = ("point", points)
         part["fit_density"] = ("point", fitted.pdf(points))
         part["fit_number"] = values.size
@@ -57,9 +57,9 @@ def fraction_histograms(runs: Runs, s: Settings) -> xr.Dataset:
     edges = mesh(*s.fraction_range, s.fraction_mesh)
     parts = []
     for found, window in zip(at_speeds(runs.windows, s), s.speed_windows, strict=True):
-        together = _together(*_window(runs.main, "rotational_fraction", window), edges)
+        together = design_effect(*in_window(runs.main, "rotational_fraction", window), edges)
         count = found["fraction_count"].to_numpy()
-        parts.append(_histogram(count, int(found["number"]), edges, together))
+        parts.append(density(count, int(found["number"]), edges, together))
     return _by_speed(parts, s).assign_attrs(recorded(runs.main), **counted(runs.windows))
 
 
@@ -80,9 +80,9 @@ def first_impact(runs: Runs, s: Settings) -> xr.Dataset:
     edges = high - step * np.arange(np.ceil((high - low) / step), -0.5, -1)
     edges[0], edges[-1] = low - 1e-12, high + 1e-12
     values = runs.first["restitution"].to_numpy().ravel()
-    bins, inside = _bins(values, edges)
+    bins, inside = binned(values, edges)
     # One impact a particle: all are independent.
-    drawn = _histogram(np.bincount(bins[inside], minlength=edges.size - 1), values.size, edges, 1.0)
+    drawn = density(np.bincount(bins[inside], minlength=edges.size - 1), values.size, edges, 1.0)
     # Even steps of the angle crowd where the density diverges, at the upper end.
     points = exact.ppf(np.linspace(0.0, 1.0, 1002)[1:-1])
     drawn["point"] = ("point", points)
@@ -123,54 +123,6 @@ def _varied(runs: Runs, elongation: float) -> list[xr.Dataset]:
     return [pair[elongation] for by in (runs.by_radius, runs.by_height) for pair in by.values()]
 
 
-def _window(data: xr.Dataset, name: str, window: tuple[float, float]) -> tuple[IntArray, FloatArray]:
-    """Return particle and value of `name` of impacts with impact velocity in [lo, hi), shapes (n,)."""
-    velocity = data["impact_velocity"].to_numpy()
-    particle, impact = np.nonzero((velocity >= window[0]) & (velocity < window[1]))
-    return particle, data[name].to_numpy()[particle, impact]
-
-
-def _together(particle: IntArray, values: FloatArray, edges: FloatArray) -> FloatArray:
-    """Design effect in each bin: the variance of its density over that if all impacts were independent.
-
-    A share p = Σc/Σn, with c of the n impacts of a particle in the bin, has the variance Σ(c − np)²/(Σn)²,
-    each particle being one draw. Given is Σ(c − np)²/Σc, which is 1 for rare impacts of different particles,
-    and 1 where there are none.
-    """
-    size = edges.size - 1
-    bins, inside = _bins(values, edges)
-    cell, each = np.unique(particle[inside] * size + bins[inside], return_counts=True)
-    drawn = np.bincount(particle)
-    weights = (each, each**2, each * drawn[cell // size])
-    single, squares, mixed = (np.bincount(cell % size, weights=w, minlength=size) for w in weights)
-    share = single / values.size
-    scatter = squares - 2 * share * mixed + share**2 * np.sum(drawn**2)
-    # Rounding may carry it below zero where every impact is in the bin.
-    return np.divide(np.maximum(scatter, 0.0), single, out=np.ones(size), where=single > 0)
-
-
-def _bins(values: FloatArray, edges: FloatArray) -> tuple[IntArray, npt.NDArray[np.bool_]]:
-    """Find the half-open bin of each value, and whether there is one."""
-    bins = np.searchsorted(edges, values, side="right").astype(np.int64) - 1
-    return bins, (bins >= 0) & (bins < edges.size - 1)
-
-
-def _histogram(count: IntArray, number: int, edges: FloatArray, together: FloatArray | float) -> xr.Dataset:
-    """Return the density of `number` impacts, and its standard error if `together` impacts are one draw."""
-    scale = 1 / (number * np.diff(edges))
-    error = np.sqrt(count * together)
-    return xr.Dataset(
-        {
-            "edges": ("edge", edges),
-            "impacts": ("bin", count),
-            "density": ("bin", count * scale, {"long_name": "probability density"}),
-            "density_error": ("bin", error * scale, {"long_name": "standard error, a particle is a cluster"}),
-            "number": number,
-            "outside": number - int(count.sum()),
-        }
-    )
-
-
 def _by_speed(parts: list[xr.Dataset], s: Settings) -> xr.Dataset:
     speed = xr.DataArray(list(s.speeds), dims="speed", name="speed", attrs={"units": "m s-1"})
     drawn = xr.concat(parts, speed)
@@ -209,7 +161,7 @@ def _deviations(
 
 def _quantiles(data: xr.Dataset, edges: FloatArray) -> xr.Dataset:
     velocity, restitution = (data[name].to_numpy().ravel() for name in ("impact_velocity", "restitution"))
-    bins, _ = _bins(velocity, edges)
+    bins, _ = binned(velocity, edges)
     found = np.full((len(QUANTILES), edges.size - 1), np.nan)
     for k in range(edges.size - 1):
         values = restitution[bins == k]

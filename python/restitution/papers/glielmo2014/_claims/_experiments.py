@@ -14,9 +14,9 @@ from restitution.laws import Frictionless, TangentialRestitution
 from restitution.papers.claims import SIGNIFICANT, Claims, Finding, Measurement, listed, verdict
 from restitution.papers.estimate import in_windows
 from restitution.papers.glielmo2014._claims._scatter import by_elongation
-from restitution.papers.glielmo2014._claims._shape import followed, following
 from restitution.papers.glielmo2014._runs import Runs
 from restitution.papers.glielmo2014._settings import Settings
+from restitution.papers.successive import followed, following
 
 CLAIMS: Claims[Runs, Settings] = Claims()
 TIMING, GRAVITY_ERROR, DROP_ERROR, TILT, SPIN = 10e-6, 0.01, 1e-3, 2e-3, 2.0

@@ -1,66 +1,18 @@
 """Claims on Fig. 4: the density of ε at given speed, and how successive impacts depend when slow."""
 
-from dataclasses import dataclass
-
 import numpy as np
-import xarray as xr
-from numpy.typing import NDArray
 
-from restitution import fit
-from restitution.papers.claims import SIGNIFICANT, Claims, Finding, Measurement, Verdict, listed, verdict
-from restitution.papers.estimate import Array, Impacts, Index, in_windows, jackknife
+from restitution.papers.claims import SIGNIFICANT, Claims, Finding, Measurement, listed, verdict
+from restitution.papers.estimate import Array, Impacts, in_windows
 from restitution.papers.glielmo2014._runs import Runs
 from restitution.papers.glielmo2014._settings import Settings
 from restitution.papers.runs import derived_seed
+from restitution.papers.shape import LAPLACE_RULE, Shape, shape, tests
+from restitution.papers.successive import followed, following
 from restitution.papers.trend import falling
 
 CLAIMS: Claims[Runs, Settings] = Claims()
-RIVALS = (fit.gaussian, fit.logistic, fit.student_t)
-RESAMPLES = 499
-IN_TAILS = 100
 SLOW_BINS = 12
-REJECTED = 0.002
-"""p-value at which a density is rejected: no draw from it is as far off."""
-
-
-@dataclass(frozen=True)
-class Shape:
-    """The density of ε at one speed beside the asymmetric Laplace distribution."""
-
-    label: str  # the speed
-    goodness: fit.Goodness  # of the Laplace fit to independent draws, at most one of each particle
-    distance: float  # of Kolmogorov and Smirnov, between all impacts and their fit
-    rivals: dict[str, fit.Comparison]  # gain of the Laplace fit in log-likelihood an impact, by family
-    exponent: tuple[float, float]  # k of the flanks exp(−|x|^k), and its error; 1 is Laplace, 2 Gaussian
-    tails: tuple[float, float]  # √ of the impacts in the tails over those of the fit, and its error
-    asymmetry: tuple[float, float]  # ln(a/b) of the decay lengths above and below, and its error
-
-    @property
-    def rejected(self) -> bool:
-        """True if a test, the exponent or the tails exclude the Laplace density."""
-        p = min(self.goodness.kolmogorov_smirnov_p, self.goodness.anderson_darling_p)
-        far = (abs(value - 1) > SIGNIFICANT * error for value, error in (self.exponent, self.tails))
-        return p <= REJECTED or any(far)
-
-    @property
-    def verdict(self) -> Verdict:
-        """By `LAPLACE_RULE`, for this speed."""
-        scores = [c.z for c in self.rivals.values()]
-        return verdict(
-            not self.rejected, all(z > -SIGNIFICANT for z in scores) and any(z > SIGNIFICANT for z in scores)
-        )
-
-
-LAPLACE_RULE = (
-    f"Tails: farther from the cusp than the fit expects {IN_TAILS} impacts to be. At one speed: holds if the "
-    f"Laplace density is not rejected (both p-values of independent draws above {REJECTED:g}; flank "
-    f"exponent, and √ of the number in the tails over {IN_TAILS}, within {SIGNIFICANT:g} standard errors of "
-    "1); in part if it is, but no "
-    f"rival (Gaussian, logistic, Student's t) is better by more than {SIGNIFICANT:g} standard errors of the "
-    "log-likelihood and some rival is worse by as much; fails otherwise. Overall: holds if it holds at "
-    f"every speed, fails if it fails at every one. The p-values come from {RESAMPLES} draws, so none is "
-    f"below {1 / (RESAMPLES + 1):g}."
-)
 
 
 def _shapes(runs: Runs, settings: Settings) -> list[Shape]:
@@ -74,7 +26,7 @@ def _each_shape(runs: Runs, settings: Settings) -> list[Shape]:
     drawn = impacts.one_per_particle(seed)
     every, some = (chosen.of(runs.main["restitution"]) for chosen in (impacts, drawn))
     return [
-        _shape(
+        shape(
             f"{v:g} m/s",
             every[impacts.cell == k],
             impacts.where[0][impacts.cell == k],
@@ -83,48 +35,6 @@ def _each_shape(runs: Runs, settings: Settings) -> list[Shape]:
         )
         for k, v in enumerate(settings.speeds)
     ]
-
-
-def _shape(label: str, values: Array, particle: Index, independent: Array, seed: int) -> Shape:
-    laplace = fit.asymmetric_laplace(values)
-    ordered = np.sort(values)
-    model, n = laplace.cdf(ordered), values.size
-    rank = np.arange(n)
-    return Shape(
-        label,
-        fit.goodness(fit.asymmetric_laplace, independent, resamples=RESAMPLES, seed=seed),
-        float(max(np.max((rank + 1) / n - model), np.max(model - rank / n))),
-        {
-            one.family: fit.compare(laplace, one, values, particle)
-            for one in (rival(values) for rival in RIVALS)
-        },
-        jackknife(lambda x: fit.asymmetric_power(x).parameters["exponent"], values, particle),
-        jackknife(_tails, values, particle),
-        jackknife(_log_ratio, values, particle),
-    )
-
-
-def _tails(values: Array) -> float:
-    """Return √ of the number of impacts where the Laplace fit has `IN_TAILS`, over that of the fit."""
-    found = fit.asymmetric_laplace(values).parameters
-    away = values - found["location"]
-    lengths = np.where(away > 0, away / found["above"], -away / found["below"])
-    return float(np.sqrt(np.count_nonzero(lengths > np.log(values.size / IN_TAILS)) / IN_TAILS))
-
-
-def _log_ratio(values: Array) -> float:
-    found = fit.asymmetric_laplace(values).parameters
-    return float(np.log(found["above"] / found["below"]))
-
-
-def _tests(one: Shape) -> tuple[Measurement, ...]:
-    """Return the measures by which the Laplace density may be rejected."""
-    return (
-        Measurement("p (Kolmogorov–Smirnov)", one.goodness.kolmogorov_smirnov_p, at=one.label),
-        Measurement("p (Anderson–Darling)", one.goodness.anderson_darling_p, at=one.label),
-        Measurement("flank exponent k", *one.exponent, at=one.label),
-        Measurement("√(impacts in the tails over those of the fit)", *one.tails, at=one.label),
-    )
 
 
 @CLAIMS.add(
@@ -139,7 +49,7 @@ def laplace(runs: Runs, settings: Settings) -> Finding:
         good = one.goodness
         measured += [
             Measurement("independent draws", float(good.fit.samples), at=one.label),
-            *_tests(one),
+            *tests(one),
             *(
                 Measurement(
                     f"gain in ln L an impact over {name}", c.difference, c.standard_error, at=one.label
@@ -188,7 +98,7 @@ def deviates(runs: Runs, settings: Settings) -> Finding:
     farthest = all(lowest.distance > one.distance for one in others)
     return Finding(
         measured=(
-            *_tests(lowest),
+            *tests(lowest),
             *(Measurement("distance sup|F − F_fit|", one.distance, at=one.label) for one in shapes),
         ),
         verdict=verdict(lowest.rejected and farthest, lowest.rejected),
@@ -200,20 +110,6 @@ def deviates(runs: Runs, settings: Settings) -> Finding:
         f"{lowest.distance / max(one.distance for one in others):.2g} times as far from the impacts as at "
         "the worst of the other speeds.",
     )
-
-
-def followed(impacts: Impacts, data: xr.Dataset) -> Impacts:
-    """Select the impacts of a run that have a next one with a finite ε."""
-    e = data["restitution"].to_numpy()
-    follows = np.zeros(e.shape, dtype=np.bool_)
-    follows[:, :-1] = np.isfinite(e[:, 1:])
-    return impacts.only(follows[impacts.where] & np.isfinite(e[impacts.where]))
-
-
-def following(impacts: Impacts, values: NDArray[np.generic]) -> Array:
-    """Return values at the impacts that follow."""
-    particle, impact = impacts.where
-    return Impacts((particle, impact + 1), impacts.cell, impacts.cells, impacts.particles).of(values)
 
 
 def _changes(impacts: Impacts, runs: Runs) -> Array:

@@ -1,0 +1,98 @@
+"""The density of ε at one speed beside the asymmetric Laplace distribution: tests, flanks and rivals."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from restitution import fit
+from restitution.papers.claims import SIGNIFICANT, Measurement, Verdict, verdict
+from restitution.papers.estimate import Array, Index, jackknife
+
+RIVALS = (fit.gaussian, fit.logistic, fit.student_t)
+RESAMPLES = 499
+IN_TAILS = 100
+REJECTED = 0.002
+"""p-value at which a density is rejected: no draw from it is as far off."""
+
+
+@dataclass(frozen=True)
+class Shape:
+    """What is measured of the density at one speed."""
+
+    label: str  # the speed
+    goodness: fit.Goodness  # of the Laplace fit to independent draws, at most one of each particle
+    distance: float  # of Kolmogorov and Smirnov, between all impacts and their fit
+    rivals: dict[str, fit.Comparison]  # gain of the Laplace fit in log-likelihood an impact, by family
+    exponent: tuple[float, float]  # k of the flanks exp(−|x|^k), and its error; 1 is Laplace, 2 Gaussian
+    tails: tuple[float, float]  # √ of the impacts in the tails over those of the fit, and its error
+    asymmetry: tuple[float, float]  # ln(a/b) of the decay lengths above and below, and its error
+
+    @property
+    def rejected(self) -> bool:
+        """True if a test, the exponent or the tails exclude the Laplace density."""
+        p = min(self.goodness.kolmogorov_smirnov_p, self.goodness.anderson_darling_p)
+        far = (abs(value - 1) > SIGNIFICANT * error for value, error in (self.exponent, self.tails))
+        return p <= REJECTED or any(far)
+
+    @property
+    def verdict(self) -> Verdict:
+        """By `LAPLACE_RULE`, for this speed."""
+        scores = [c.z for c in self.rivals.values()]
+        return verdict(
+            not self.rejected, all(z > -SIGNIFICANT for z in scores) and any(z > SIGNIFICANT for z in scores)
+        )
+
+
+LAPLACE_RULE = (
+    f"Tails: farther from the cusp than the fit expects {IN_TAILS} impacts to be. At one speed: holds if the "
+    f"Laplace density is not rejected (both p-values of independent draws above {REJECTED:g}; flank "
+    f"exponent, and √ of the number in the tails over {IN_TAILS}, within {SIGNIFICANT:g} standard errors of "
+    "1); in part if it is, but no "
+    f"rival (Gaussian, logistic, Student's t) is better by more than {SIGNIFICANT:g} standard errors of the "
+    "log-likelihood and some rival is worse by as much; fails otherwise. Overall: holds if it holds at "
+    f"every speed, fails if it fails at every one. The p-values come from {RESAMPLES} draws, so none is "
+    f"below {1 / (RESAMPLES + 1):g}."
+)
+
+
+def shape(label: str, values: Array, particle: Index, independent: Array, seed: int) -> Shape:
+    """Measure the density of values, some of which are independent draws, at most one of each particle."""
+    laplace = fit.asymmetric_laplace(values)
+    ordered = np.sort(values)
+    model, n = laplace.cdf(ordered), values.size
+    rank = np.arange(n)
+    return Shape(
+        label,
+        fit.goodness(fit.asymmetric_laplace, independent, resamples=RESAMPLES, seed=seed),
+        float(max(np.max((rank + 1) / n - model), np.max(model - rank / n))),
+        {
+            one.family: fit.compare(laplace, one, values, particle)
+            for one in (rival(values) for rival in RIVALS)
+        },
+        jackknife(lambda x: fit.asymmetric_power(x).parameters["exponent"], values, particle),
+        jackknife(tails, values, particle),
+        jackknife(_log_ratio, values, particle),
+    )
+
+
+def tails(values: Array) -> float:
+    """Return √ of the number of impacts where the Laplace fit has `IN_TAILS`, over that of the fit."""
+    found = fit.asymmetric_laplace(values).parameters
+    away = values - found["location"]
+    lengths = np.where(away > 0, away / found["above"], -away / found["below"])
+    return float(np.sqrt(np.count_nonzero(lengths > np.log(values.size / IN_TAILS)) / IN_TAILS))
+
+
+def _log_ratio(values: Array) -> float:
+    found = fit.asymmetric_laplace(values).parameters
+    return float(np.log(found["above"] / found["below"]))
+
+
+def tests(one: Shape) -> tuple[Measurement, ...]:
+    """Return the measures by which the Laplace density may be rejected."""
+    return (
+        Measurement("p (Kolmogorov–Smirnov)", one.goodness.kolmogorov_smirnov_p, at=one.label),
+        Measurement("p (Anderson–Darling)", one.goodness.anderson_darling_p, at=one.label),
+        Measurement("flank exponent k", *one.exponent, at=one.label),
+        Measurement("√(impacts in the tails over those of the fit)", *one.tails, at=one.label),
+    )
