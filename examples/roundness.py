@@ -13,7 +13,7 @@ from matplotlib.figure import Figure
 
 import restitution as rs
 from restitution import figures as fg
-from restitution.bodies import GRADES, Body
+from restitution.bodies import GRADES, ROUGHNESS, Body
 
 Array = npt.NDArray[np.float64]
 
@@ -124,19 +124,32 @@ FORMS_AT = (3e-6, 1e-5, 3e-5, 1e-4)
 def balls() -> str:
     """Tabulate what balls are, and what their shape does beside everything else."""
     lines = [
-        "| ball | t (µm) | L/R | kick K | one ε: shape | one ε: the rest | mean: shape | mean: the rest |"
+        "| ball | t (µm) | Ra (µm) | L/R | kick K | one ε: shape | one ε: roughness | one ε: the rest "
+        "| mean: shape | mean: roughness | mean: the rest |"
     ]
-    lines.append("|---|---|---|---|---|---|---|---|")
-    every = {f"steel, grade {grade}": (6e-3, t, STEEL) for grade, t in GRADES.items()} | BALLS
-    for name, (diameter, t, density) in every.items():
+    lines.append("|---" * 11 + "|")
+    every = {
+        f"steel, grade {grade}": (6e-3, t, STEEL, ROUGHNESS.get(grade, 0.0)) for grade, t in GRADES.items()
+    }
+    every |= {name: (*ball, 0.0) for name, ball in BALLS.items()}
+    for name, (diameter, t, density, ra) in every.items():
         body = rs.from_roundness(diameter, t, density=density)
-        data = rs.error_budget(body, LAW, drop=DROP, impacts=IMPACTS, **STATED).data  # type: ignore[arg-type]
+        setting = {"drop": DROP, "impacts": IMPACTS, "roughness": ra} | STATED
+        data = rs.error_budget(body, LAW, **setting).data  # type: ignore[arg-type]
         rest = ["timing", "gravity", "drop"]
         parts = []
         for variable in (data.standard_deviation.isel(impact=-1), data.mean_standard_deviation):
             parts.append(f"{float(variable.sel(source='shape')):.1e}")
+            parts.append(f"{float(variable.sel(source='roughness')):.1e}" if ra else "–")
             parts.append(f"{float(np.sqrt((variable.sel(source=rest) ** 2).sum())):.1e}")
-        cells = [name, f"{1e6 * t:g}", f"{4.0 * t / diameter:.2g}", f"{float(data.kick[0]):.2g}", *parts]
+        cells = [
+            name,
+            f"{1e6 * t:g}",
+            f"{1e6 * ra:g}" if ra else "–",
+            f"{4.0 * t / diameter:.2g}",
+            f"{float(data.kick[0]):.2g}",
+            *parts,
+        ]
         lines.append(f"| {' | '.join(cells)} |")
     return "\n".join(lines) + "\n"
 

@@ -57,6 +57,7 @@ _HOMES = {
     **dict.fromkeys((entry["name"] for entry in (*_core.LAWS, *_core.MATERIALS)), "laws"),
     **dict.fromkeys(("Box", "Clump", "ConvexPolyhedron", "Ellipsoid"), "bodies"),
     "ball_grade": "bodies",
+    "ball_roughness": "bodies",
     "from_roundness": "bodies",
     "ErrorBudget": "experiment.budget",
     "RequiredRoundness": "experiment.budget",

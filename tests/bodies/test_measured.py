@@ -77,6 +77,7 @@ def test_a_grade_is_its_number_in_millionths_of_an_inch() -> None:
         (lambda: rs.from_roundness(6e-3, 1e-6, lobes=1), r"^lobes = 1"),
         (lambda: rs.from_roundness(6e-3, 1e-6, form="flattened", lobes=3), r"^lobes = 3: must be left out"),
         (lambda: rs.ball_grade(7), r"^grade = 7: must be one of 3, 5, 10"),
+        (lambda: rs.ball_roughness(500), r"^grade = 500: must be one of 3, 5, 10"),
         (lambda: rs.ball_grade([]), r"^grade = \[\]"),  # type: ignore[arg-type]
     ],
 )

@@ -100,6 +100,7 @@ CALLS: dict[str, Call] = {
     "Dumbbell.from_length_width": (rs.Dumbbell.from_length_width, lambda: {"length": 2.0, "width": 1.0}),
     "Spheroid.from_length_width": (rs.Spheroid.from_length_width, lambda: {"length": 2.0, "width": 1.0}),
     "ball_grade": (bodies.ball_grade, lambda: {"grade": 10}),
+    "ball_roughness": (bodies.ball_roughness, lambda: {"grade": 10}),
     "from_roundness": (bodies.from_roundness, lambda: {"diameter": 0.04, "out_of_roundness": 1e-4}),
     "Clump": (
         rs.Clump,

@@ -147,6 +147,7 @@ CALLS: dict[str, Call] = {
             "drop": 0.1,
             "impacts": 5,
             "particles": 50,
+            "roughness": 1e-8,
         },
     ),
     "RequiredRoundness.allowed": (

@@ -11,8 +11,9 @@ from restitution.bodies._loaded_sphere import LoadedSphere
 from restitution.bodies._polyhedra import Box, ConvexPolyhedron
 from restitution.bodies._rigid import RigidBody as RigidBody
 from restitution.bodies._roundness import GRADES as GRADES
+from restitution.bodies._roundness import ROUGHNESS as ROUGHNESS
 from restitution.bodies._roundness import Form as Form
-from restitution.bodies._roundness import ball_grade, from_roundness
+from restitution.bodies._roundness import ball_grade, ball_roughness, from_roundness
 from restitution.bodies._spherocylinder import Spherocylinder
 from restitution.bodies._spheroid import Spheroid
 
@@ -26,6 +27,7 @@ __all__ = [
     "Spherocylinder",
     "Spheroid",
     "ball_grade",
+    "ball_roughness",
     "from_roundness",
 ]
 

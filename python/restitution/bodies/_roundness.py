@@ -46,6 +46,22 @@ GRADES = {
 """Allowed deviation from spherical form in m: ISO 3290-1 up to 200; 48, 500 and 1000 of ANSI/ABMA 10."""
 
 
+ROUGHNESS = {
+    3: 0.010e-6,
+    5: 0.014e-6,
+    10: 0.020e-6,
+    16: 0.025e-6,
+    20: 0.032e-6,
+    24: 0.040e-6,
+    28: 0.050e-6,
+    40: 0.060e-6,
+    60: 0.080e-6,
+    100: 0.100e-6,
+    200: 0.150e-6,
+}
+"""Allowed arithmetic mean roughness Ra in m: ISO 3290-1."""
+
+
 class _Asked(Parameters):
     diameter: Annotated[Number, Field(gt=0, description="m")]
     out_of_roundness: Annotated[Number, Field(ge=0, description="m")]
@@ -159,3 +175,27 @@ def ball_grade(grade: int) -> float:
     if not isinstance(grade, Integral) or grade not in GRADES:
         raise ParameterError(wrong("grade", grade, f"one of {', '.join(map(str, GRADES))}"))
     return GRADES[grade]
+
+
+def ball_roughness(grade: int) -> float:
+    """Return the largest arithmetic mean roughness Ra of a ball of a grade, in m, by ISO 3290-1.
+
+    Parameters
+    ----------
+    grade : int
+        3, 5, 10, 16, 20, 24, 28, 40, 60, 100 or 200.
+
+    Raises
+    ------
+    ValueError
+        If the grade does not exist there.
+
+    Examples
+    --------
+    >>> import restitution as rs
+    >>> rs.ball_roughness(100)
+    1e-07
+    """
+    if not isinstance(grade, Integral) or grade not in ROUGHNESS:
+        raise ParameterError(wrong("grade", grade, f"one of {', '.join(map(str, ROUGHNESS))}"))
+    return ROUGHNESS[grade]

@@ -11,6 +11,7 @@ from restitution.bodies import BODIES, Body
 from restitution.experiment.budget import _sources
 from restitution.experiment.budget._near_round import near_round
 from restitution.experiment.budget._results import ErrorBudget
+from restitution.experiment.budget._rough import roughness as rough
 from restitution.experiment.budget._sources import Source
 from restitution.experiment.budget.experiment import Array, Experiment, Setting, mean_radius
 from restitution.experiment.flight.drag import Drag
@@ -29,6 +30,7 @@ def error_budget(
     drop_uncertainty: float = 0.0,
     tilt: float = 0.0,
     spin: float = 0.0,
+    roughness: float = 0.0,
     drag: Drag | Literal["sphere"] | None = "sphere",
     drag_corrected: bool = False,
     particles: int = 1000,
@@ -62,6 +64,11 @@ def error_budget(
         Angle by which the plate is inclined, in rad, in [0, 0.5).
     spin : float
         Angular velocity at release, about an axis of any direction, in rad/s, >= 0.
+    roughness : float
+        Arithmetic mean roughness Ra of the surface, in m, >= 0, and at most a thousandth of the radius;
+        `restitution.ball_roughness` gives that of a grade. Asperities with exponentially distributed heights,
+        of which impacts flatten none: the most that roughness can do. For Frictionless, and for
+        TangentialRestitution with ``tangential=1``.
     drag : Drag, "sphere" or None
         Air drag; "sphere" is a sphere with the diameter and mass of the body in air, for which the body needs
         its true density.
@@ -90,6 +97,7 @@ def error_budget(
     Errors of g do not enter ε, which is a quotient of times, but for the first coefficient and the speeds.
     Drag that is neglected makes ε too small by the factor 1 - (1 + ε²) v²/(4 V²), to lowest order in the
     speed over the terminal velocity V. Shape, spin and tilt are simulated, without any approximation.
+    Roughness is a closed form, docs/rough.md, of a ball that has no other error of shape.
 
     Examples
     --------
@@ -113,6 +121,7 @@ def error_budget(
         drop_uncertainty=drop_uncertainty,
         tilt=tilt,
         spin=spin,
+        roughness=roughness,
         particles=particles,
         seed=seed,
     )
@@ -124,6 +133,7 @@ def error_budget(
     shape = _sources.shape(experiment, body)
     sources = {
         "shape": shape,
+        "roughness": rough(experiment, body) if setting.roughness > 0.0 else _sources.nothing(n),
         "timing": _sources.timing(experiment),
         "gravity": _sources.gravity(experiment),
         "drop": _sources.drop(experiment),
@@ -143,12 +153,12 @@ def _force(drag: object, body: Body, setting: Setting) -> Drag | None:
     return Drag.of_sphere(diameter=2.0 * mean_radius(body), mass=body.mass, gravity=setting.gravity)
 
 
-def weights(experiment: Experiment, shape: Source) -> Array:
+def weights(experiment: Experiment, *sources: Source) -> Array:
     """Return the covariance that a fit assumes: times, g and drop, and one scatter of ε for all impacts."""
     setting = experiment.setting
     known = experiment.covariance(setting.timing, setting.gravity_uncertainty, setting.drop_uncertainty)
     # Without any error all impacts have equal weight.
-    scatter = max(float(np.mean(np.diag(shape.covariance))), 1e-24)
+    scatter = max(sum(float(np.mean(np.diag(one.covariance))) for one in sources), 1e-24)
     return np.asarray(known + scatter * np.eye(experiment.speed.size))
 
 
@@ -156,7 +166,7 @@ def _dataset(
     experiment: Experiment, body: Body, sources: dict[str, Source], force: Drag | None
 ) -> xr.Dataset:
     n = experiment.speed.size
-    estimator, curve = experiment.fitted(weights(experiment, sources["shape"]))
+    estimator, curve = experiment.fitted(weights(experiment, sources["shape"], sources["roughness"]))
     one = {"units": "1"}
     variables: dict[str, Any] = {}
     for prefix, by, dimensions, what in (

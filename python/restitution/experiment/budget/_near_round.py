@@ -21,7 +21,7 @@ import numpy as np
 
 from restitution.bodies import Body, Dumbbell, LoadedSphere, Spheroid
 from restitution.experiment.budget.experiment import Array, Experiment, mean_radius
-from restitution.laws import Frictionless, TangentialRestitution
+from restitution.laws import Frictionless, Law, TangentialRestitution
 
 
 @dataclass(frozen=True)
@@ -45,16 +45,21 @@ class NearRound:
     deviation: Array
 
 
+def coupling(law: Law, body: Body) -> float | None:
+    """Return q in 1/m², or None for laws for which it is not worked out here."""
+    match law:
+        case Frictionless():
+            return body.mass / body.transverse_inertia
+        case TangentialRestitution(tangential=1.0):
+            return body.mass / (body.transverse_inertia + body.mass * mean_radius(body) ** 2)
+    return None
+
+
 def near_round(experiment: Experiment, body: Body) -> NearRound | None:
     """Return the limit, or None for laws and bodies for which they are not worked out here."""
-    radius = mean_radius(body)
-    match experiment.law:
-        case Frictionless():
-            q = body.mass / body.transverse_inertia
-        case TangentialRestitution(tangential=1.0):
-            q = body.mass / (body.transverse_inertia + body.mass * radius**2)
-        case _:
-            return None
+    q = coupling(experiment.law, body)
+    if q is None:
+        return None
     match body:
         case Spheroid():
             t, curvature, turned = abs(body.polar - body.equatorial), 2.0, 8.0 / 45.0

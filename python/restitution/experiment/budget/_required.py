@@ -12,7 +12,8 @@ from restitution._internal.parameters import Allowed, Number, ParameterError, Pa
 from restitution.bodies import Form, from_roundness
 from restitution.experiment.budget._error_budget import weights
 from restitution.experiment.budget._results import RequiredRoundness
-from restitution.experiment.budget._sources import shape
+from restitution.experiment.budget._rough import roughness as rough
+from restitution.experiment.budget._sources import nothing, shape
 from restitution.experiment.budget.experiment import Experiment, Setting
 from restitution.laws import Law
 
@@ -37,13 +38,14 @@ def required_roundness(
     form: Form = "lobed",
     lobes: int = 2,
     gravity: float = 9.81,
+    roughness: float = 0.0,
     particles: int = 400,
     seed: int = 1,
 ) -> RequiredRoundness:
     """Find how round a ball must be for its shape to cause no more than an error.
 
     Balls of increasing out-of-roundness are dropped, all at the same random angles, and for each the root
-    mean square error that the shape alone causes is taken: √(bias² + variance), over ε.
+    mean square error that shape and roughness cause is taken: √(bias² + variance), over ε.
 
     Parameters
     ----------
@@ -63,6 +65,9 @@ def required_roundness(
         Kind of deviation from a sphere, as in `restitution.from_roundness`.
     gravity : float
         In m/s², > 0.
+    roughness : float
+        Ra of the surface in m, as in `restitution.error_budget`, whose error counts too: where it alone is
+        more than `precision`, no ball is round enough.
     particles, seed : int
         Number of simulated drops for each out-of-roundness, >= 50, and the seed.
 
@@ -88,8 +93,13 @@ def required_roundness(
         raise ParameterError(wrong("law", law, "a law such as Frictionless(normal=0.9)"))
     # The errors of what makes the balls come first.
     from_roundness(asked.diameter, asked.diameter * _ROUNDEST, form=form, lobes=lobes)
-    setting = Setting(drop=drop, impacts=impacts, gravity=gravity, particles=particles, seed=seed)
+    setting = Setting(
+        drop=drop, impacts=impacts, gravity=gravity, roughness=roughness, particles=particles, seed=seed
+    )
     experiment = Experiment.of(law, setting)
+    smooth = setting.roughness == 0.0
+    ball = from_roundness(asked.diameter, 0.0)
+    surface = nothing(setting.impacts) if smooth else rough(experiment, ball)
     deviations: list[float] = []
     rows: list[tuple[float, float, float]] = []
     for share in np.geomspace(_ROUNDEST, _LEAST_ROUND * 2.0 / lobes, _STEPS):
@@ -102,10 +112,11 @@ def required_roundness(
             if not rows:
                 raise
             break  # such balls no longer bounce that often
-        _, curve = experiment.fitted(weights(experiment, alone))
+        _, curve = experiment.fitted(weights(experiment, alone, surface))
         n = setting.impacts
         # ⟨δ δᵀ⟩ with its bias.
-        square = alone.covariance + np.outer(alone.bias, alone.bias)
+        bias = alone.bias + surface.bias
+        square = alone.covariance + surface.covariance + np.outer(bias, bias)
         one = 1.0 / experiment.coefficient
         fitted = curve @ square @ curve.T
         middle = float(experiment.coefficient.mean())
@@ -132,7 +143,7 @@ def required_roundness(
             "lobes": lobes,
             "diameter": asked.diameter,
             "quantity": asked.quantity,
-            **setting.model_dump(include={"drop", "impacts", "gravity", "particles", "seed"}),
+            **setting.model_dump(include={"drop", "impacts", "gravity", "roughness", "particles", "seed"}),
         },
     )
     found = RequiredRoundness(float("nan"), asked.precision, data)

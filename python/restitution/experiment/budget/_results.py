@@ -14,6 +14,7 @@ from restitution.figures.style import Style
 
 _SOURCES = {
     "shape": "shape",
+    "roughness": "roughness",
     "timing": "times",
     "gravity": "g",
     "drop": "drop height",
@@ -31,7 +32,7 @@ class ErrorBudget(Content):
     Attributes
     ----------
     data : Dataset
-        Over ``source`` ("shape", "timing", "gravity", "drop", "tilt", "spin", "drag", "total"):
+        Over ``source`` ("shape", "roughness", "timing", "gravity", "drop", "tilt", "spin", "drag", "total"):
         ``mean_bias`` and ``mean_standard_deviation`` of the mean over a run; over ``source`` and ``impact``:
         ``bias`` and ``standard_deviation`` of one coefficient, ``fit_bias`` and ``fit_standard_deviation`` of
         the fitted ε_n at that speed; over ``source`` and ``parameter``: ``parameter_bias`` and
@@ -145,6 +146,7 @@ def _cell(one: xr.Dataset, prefix: str) -> str:
 
 _LOOKS: dict[str, tuple[int | None, float, str]] = {
     "shape": (0, 1.0, "o"),
+    "roughness": (None, 0.25, "p"),
     "timing": (1, 1.0, "s"),
     "gravity": (2, 1.0, "^"),
     "drop": (3, 1.0, "v"),

@@ -38,6 +38,7 @@ class Setting(Parameters):
     drop_uncertainty: Annotated[Number, Field(ge=0, le=LARGEST, description="m")] = 0.0
     tilt: Annotated[Number, Field(ge=0, lt=0.5, description="rad")] = 0.0
     spin: Annotated[Number, Field(ge=0, description="rad/s")] = 0.0
+    roughness: Annotated[Number, Field(ge=0, description="m")] = 0.0
     particles: Annotated[Whole, Field(ge=50)] = 1000
     seed: Annotated[Whole, Field(ge=0, lt=2**63)] = 1
 
