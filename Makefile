@@ -109,6 +109,7 @@ test-arm:  ## the digests on AArch64, under qemu-user; installs nothing and says
 
 pages: $(STAMP)  ## tables and figures of docs/ anew
 	$(BIN)/python docs/pages.py
+	$(BIN)/python docs/homework.py
 	$(BIN)/python examples/pictures.py docs/images
 
 bench: $(STAMP)  ## speed beside the peers, as ratios measured in one run

@@ -41,11 +41,15 @@ def test_the_summary(parameters: Path) -> None:
     ratio = data.energy_ratio.to_numpy()
     gains = ratio[ratio > 1]
     reasons, counts = np.unique(data.stop_reason, return_counts=True)
-    stops = [f"{STOP_REASONS[reason]} {count}" for reason, count in zip(reasons, counts, strict=True)]
+    why = {"impacts_reached": "all impacts asked for were made", "collapse": "impacts accumulate"}
+    stops = [
+        f"{count} particles ended because {why[STOP_REASONS[reason]]} ({STOP_REASONS[reason]})."
+        for reason, count in zip(reasons, counts, strict=True)
+    ]
     assert result.stdout.splitlines() == [
-        f"7 particles, {np.isfinite(ratio).sum()} impacts",
-        f"stop reasons: {', '.join(stops)}",
-        f"{gains.size} impacts created kinetic energy, at most by a factor of {gains.max():.6g}",
+        f"7 particles made {np.isfinite(ratio).sum()} impacts.",
+        *stops,
+        f"{gains.size} impacts created kinetic energy, by a factor of {gains.max():.6g} at most.",
     ]
 
 

@@ -55,7 +55,7 @@ def test_statistics_are_those_of_the_call(study: Path) -> None:
     with pytest.warns(rs.EnergyWarning):
         expected = rs.statistics(BODY, LAW, **RUN, **EDGES)
     xr.testing.assert_identical(load(out), expected)
-    assert f"{int(expected.number.sum())} impacts in the rows" in result.stdout
+    assert f"The rows hold {int(expected.number.sum())} impacts" in result.stdout
     again = invoke("statistics", study, "-o", out)
     assert (again.exit_code, again.stderr) == (
         FAILED,
@@ -165,7 +165,7 @@ def test_a_fit_prints_what_the_functions_return(tmp_path: Path) -> None:
     found = rs.fit.bootstrap(rs.fit.laplace, data, velocity=(0.5, 0.6), resamples=20)
     for name, value in found.fit.parameters.items():
         assert f"{name} = {value:.6g} +- {found.standard_errors[name]:.2g}" in result.stdout
-    assert re.search(r"Kolmogorov-Smirnov distance 0\.\d+, p = 0\.\d+", result.stdout)
+    assert re.search(r"The Kolmogorov-Smirnov distance is 0\.\d+, p = 0\.\d+\.", result.stdout)
     assert invoke(*words, "cauchy").stderr.startswith("error: family = 'cauchy': must be")
     table = tmp_path / "fit.tex"
     for family in ("asymmetric_laplace", "asymmetric_power", "cusp_mixture"):
@@ -186,7 +186,7 @@ def test_a_fit_prints_what_the_functions_return(tmp_path: Path) -> None:
     }
     rs.reduce(data, **bins).to_netcdf(tmp_path / "counts.nc")
     result = invoke("fit", tmp_path / "counts.nc", "--velocity", 0.5, 0.6)
-    assert "standard errors: not known, because counts do not say which particle" in result.stdout
+    assert "Standard errors are not known, because counts do not say which particle" in result.stdout
 
 
 def test_the_template_is_a_run_and_all_of_its_choices_are() -> None:

@@ -169,5 +169,5 @@ def test_the_summary_is_text(learned: FluctuatingRestitution) -> None:
     summary = learned.summary()
     assert repr(summary) == str(summary)  # what a notebook shows
     lines = summary.splitlines()
-    assert lines[-2] == "also given E_rot/E_tot before the impact (Eq. 12)"
-    assert lines[-1].startswith("at most 0.")
+    assert lines[-2] == "It is also given E_rot/E_tot before the impact (Eq. 12)."
+    assert lines[-1].startswith("It is at most 0.")

@@ -100,7 +100,7 @@ def test_workers_and_the_scheduler_are_killed(whole: dict[str, str], tmp_path: P
     with cluster(tmp_path, 1) as (address, _, _):
         code, out, error = finished(started(study, "--out", store, "--scheduler", address))
         assert code == 0, error
-        assert "12 of 12 points finished" in out
+        assert "12 of 12 points are finished" in out
     assert bits(store) == whole
     assert status(store).finished == 12
 

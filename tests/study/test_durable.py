@@ -199,5 +199,5 @@ def test_two_drivers_on_one_store(whole: dict[str, str], tmp_path: Path) -> None
     for process in both:
         code, out, error = finished(process)
         assert code == 0, error
-        assert "12 of 12 points finished" in out
+        assert "12 of 12 points are finished" in out
     assert bits(store) == whole

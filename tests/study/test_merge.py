@@ -135,7 +135,7 @@ def test_errors_of_a_store_name_it(error: Exception, told: str) -> None:
 def test_the_status_counts_what_is_there(done: Path, tmp_path: Path) -> None:
     found = status(done)
     assert (found.points, found.finished, found.tasks, found.there) == (6, 6, 12, 12)
-    assert str(found) == "6 of 6 points finished (100 %); 12 of 12 tasks done"
+    assert str(found) == "6 of 6 points are finished (100 %), and 12 of 12 tasks are done."
     opened = open_store(done)
     assert opened["mean_restitution"].dims == ("separation", "normal", "velocity")
     assert not opened.chunks, "read when it is needed, and by no library besides"
@@ -144,8 +144,8 @@ def test_the_status_counts_what_is_there(done: Path, tmp_path: Path) -> None:
     found = status(str(part))
     assert (found.points, found.finished, found.tasks, found.there) == (6, 0, 12, 4)
     merge(part)
-    assert str(status(part)) == "2 of 6 points finished (33 %); 4 of 12 tasks done"
-    with pytest.raises(Refused, match=r"none\.zarr: is not the store"):
+    assert str(status(part)) == "2 of 6 points are finished (33 %), and 4 of 12 tasks are done."
+    with pytest.raises(Refused, match=r"none\.zarr: does not exist"):
         status(tmp_path / "none.zarr")
     with pytest.raises(ValueError, match=r"^out = 3: must be the path"):
         status(3)  # type: ignore[arg-type]
@@ -184,7 +184,7 @@ def test_a_merge_takes_what_is_undamaged(done: Path, tiny: Study, tmp_path: Path
         ("none.zarr", "one.zarr", r"^parts = 'one\.zarr': must be a list of paths"),
         ("none.zarr", 3, r"^parts = 3: must be a list of paths"),
         ("none.zarr", [3], r"^parts\[0\] = 3: must be the path"),
-        ("none.zarr", ["none"], "none: is not the store of a study"),
+        ("none.zarr", ["none"], "none: does not exist; must be the store"),
         ("none.csv", ["done"], r"^out = 'none\.csv': must be the name of a Zarr store"),
     ],
 )

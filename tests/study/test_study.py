@@ -176,9 +176,9 @@ def test_shards_in_one_store_and_in_several_merge_to_the_same_bits(store: Path, 
     parts = [tmp_path / f"{i}.zarr" for i in (3, 1)]
     result = invoke("sweep", "merge", "--out", tmp_path / "all.zarr", *parts)
     assert result.exit_code == 1
-    assert "4 of 6 points finished (67 %); 4 of 6 tasks done" in result.stdout
+    assert "4 of 6 points are finished (67 %), and 4 of 6 tasks are done." in result.stdout
     assert invoke("sweep", study, "--out", tmp_path / "all.zarr", "--status").stdout == (
-        "4 of 6 points finished (67 %); 4 of 6 tasks done\n"
+        "4 of 6 points are finished (67 %), and 4 of 6 tasks are done.\n"
     )
     assert merge(tmp_path / "all.zarr", [tmp_path / "2.zarr"]).finished == 6
     assert bits(tmp_path / "one.zarr") == bits(tmp_path / "all.zarr") == bits(store)
@@ -290,13 +290,14 @@ def test_a_dry_run_writes_nothing(tmp_path: Path) -> None:
     result = invoke("sweep", written(tmp_path), "--out", tmp_path / "s.zarr", "--dry-run")
     assert result.exit_code == 0
     assert re.fullmatch(
-        r"6 points, 6 tasks, 384 particles\n"
-        r"of these, .* s of processor time for \d+ threads to share; store: .* MB\n",
+        r"The study has 6 points in 6 tasks, with 384 particles\.\n"
+        r"These take .* s of processor time(, which \d+ threads share)?\. The store takes .* MB\.\n",
         result.stdout,
     )
     assert not (tmp_path / "s.zarr").exists()
     adaptive = estimate(study_of(tables(effort={"until": {"mean": 2e-3}})), 1)
-    assert "128 particles; at most 1024 times as many until the standard error is reached\n" in str(adaptive)
+    more = "128 particles, and at most 1024 times as many until the standard error is reached.\n"
+    assert more in str(adaptive)
 
 
 def test_studies_compare_and_hash_by_what_they_are() -> None:

@@ -83,15 +83,16 @@ def fit(
 
 
 def _counted(found: Any) -> Iterator[str]:
-    yield f"{found.family}, {found.samples} impacts"
+    yield f"The {found.family} density is fitted to {found.samples} impacts."
     for name, value in found.parameters.items():
         yield f"{name} = {value:.6g}"
     yield from filter(None, [found.limit])
-    yield "standard errors: not known, because counts do not say which particle an impact belongs to"
+    yield "Standard errors are not known, because counts do not say which particle an impact belongs to."
 
 
 def _recorded(found: Any, judged: Any) -> Iterator[str]:
-    yield f"{found.fit.family}, {found.fit.samples} impacts of {found.clusters} particles"
+    samples = f"{found.fit.samples} impacts of {found.clusters} particles"
+    yield f"The {found.fit.family} density is fitted to {samples}."
     for name, value in found.fit.parameters.items():
         error = found.standard_errors[name]
         yield f"{name} = {value:.6g} +- {error:.2g}" if error else f"{name} = {value:.6g} (given)"
@@ -100,4 +101,4 @@ def _recorded(found: Any, judged: Any) -> Iterator[str]:
         ("Kolmogorov-Smirnov", judged.kolmogorov_smirnov, judged.kolmogorov_smirnov_p),
         ("Anderson-Darling", judged.anderson_darling, judged.anderson_darling_p),
     ):
-        yield f"{name} distance {distance:.4g}, p = {p:.3f}"
+        yield f"The {name} distance is {distance:.4g}, p = {p:.3f}."

@@ -315,7 +315,7 @@ def _counts(found: "xr.Dataset", quiet: bool) -> Iterator[str]:
     if quiet:
         return
     inside, total = int(found["restitution_count"].sum()), int(found["number"].sum())
-    yield f"{total} impacts in the rows, {inside} of them in the bins of restitution"
+    yield f"The rows hold {total} impacts, and the bins of restitution {inside} of them."
     if "body" not in found.dims:
         yield from _energy(found.attrs)
         return
@@ -323,9 +323,23 @@ def _counts(found: "xr.Dataset", quiet: bool) -> Iterator[str]:
         for law in found["law"].values:
             here = found.sel(body=body, law=law)
             yield (
-                f"{body}, {law}: {int(here['all_impacts'])} impacts, "
-                f"{100 * float(here['energy_created_share']):.3g} % of them created kinetic energy"
+                f"{body} made {int(here['all_impacts'])} impacts under {law}; "
+                f"{100 * float(here['energy_created_share']):.3g} % of them created kinetic energy."
             )
+
+
+_ENDED = {
+    "impacts_reached": "all impacts asked for were made",
+    "speed_below_threshold": "the speed was below the minimum",
+    "collapse": "impacts accumulate",
+    "never_lands": "the next impact is too many turns away",
+    "interrupted": "the run was interrupted",
+}
+"""Why a particle ended, by the name of the reason."""
+
+
+def _number(count: int, what: str) -> str:
+    return f"{count} {what}{'' if count == 1 else 's'}"
 
 
 def _summary(data: "xr.Dataset") -> Iterator[str]:
@@ -333,9 +347,10 @@ def _summary(data: "xr.Dataset") -> Iterator[str]:
     from restitution._core import STOP_REASONS
 
     impacts = int(data.impacts.sum())
-    yield f"{data.sizes['particle']} particles, {impacts} impacts"
-    counts = [(int((data.stop_reason == code).sum()), name) for code, name in enumerate(STOP_REASONS)]
-    yield "stop reasons: " + ", ".join(f"{name} {count}" for count, name in counts if count)
+    yield f"{_number(data.sizes['particle'], 'particle')} made {_number(impacts, 'impact')}."
+    for code, name in enumerate(STOP_REASONS):
+        if count := int((data.stop_reason == code).sum()):
+            yield f"{_number(count, 'particle')} ended because {_ENDED[name]} ({name})."
     yield from _energy(data.attrs)
 
 
@@ -345,4 +360,4 @@ def _energy(attrs: dict[str, Any]) -> Iterator[str]:
     gains = attrs["energy_created_impacts"]
     if gains:
         largest = attrs["largest_energy_ratio"]
-        yield f"{gains} impacts created kinetic energy, at most by a factor of {factor(largest)}"
+        yield f"{_number(gains, 'impact')} created kinetic energy, by a factor of {factor(largest)} at most."

@@ -115,7 +115,7 @@ def run(
             raise RuntimeError(str(error)) from None
         except KeyboardInterrupt:
             with suppress(ValueError, OSError):  # it may not be there yet
-                tell(f"{out}: {status_of(out)}; the same command continues")
+                tell(f"{out}: {status_of(out)} The same command continues.")
             raise
         if not quiet:
             say(f"{out}: {status_of(out)}")

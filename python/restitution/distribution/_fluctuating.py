@@ -332,23 +332,27 @@ class FluctuatingRestitution(EstimatedDistribution):
     def summary(self) -> str:
         """Summarise in a few lines what was learned and how well; a notebook shows the text as it reads."""
         low, high = self.velocities
-        lines = [f"{float(self.data['impacts'].sum()):.0f} impacts at {low:.4g} to {high:.4g} m/s"]
+        lines = [
+            f"Learned from {float(self.data['impacts'].sum()):.0f} impacts at {low:.4g} to {high:.4g} m/s."
+        ]
         number = self.data["impacts"].to_numpy()
         lines += [
-            f"{number.size} histograms of {number.min():.0f} to {number.max():.0f} impacts, {self._tails}, "
-            f"{self.data.sizes['edge']} edges"
+            f"It has {number.size} histograms of {number.min():.0f} to {number.max():.0f} impacts, "
+            f"{self._tails}, and {self.data.sizes['edge']} edges."
         ]
-        lines += [f"no impact at {start:.4g} to {end:.4g} m/s: refused there" for start, end in self.gaps]
+        lines += [
+            f"There was no impact at {start:.4g} to {end:.4g} m/s: refused there." for start, end in self.gaps
+        ]
         if "release_height" in self.data.attrs:
-            lines += [released(self.data.attrs)]
+            lines += [f"The particles were {released(self.data.attrs)}."]
         if share := self.data.attrs.get("energy_created_share", 0.0):
             lines += [
-                f"{energy.percent(share)} of the impacts created kinetic energy: a gas of it may heat itself"
+                f"{energy.percent(share)} of the impacts created kinetic energy: a gas of it may heat itself."
             ]
         if self.given is not None:
-            lines += [f"also given {self.data['given'].attrs['long_name']}"]
+            lines += [f"It is also given {self.data['given'].attrs['long_name']}."]
         if "ks_distance" in self.data:
-            lines += [f"at most {largest_distance(self.data)}"]
+            lines += [f"It is at most {largest_distance(self.data)}."]
         return Text("\n".join(lines))
 
     def _repr_html_(self) -> str:

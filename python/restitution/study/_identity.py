@@ -71,6 +71,8 @@ def identity(path: Path) -> dict[str, Any]:
         raise
     except (OSError, ValueError, LookupError, TypeError, RecursionError):
         found = None
+    if not path.exists():
+        raise Refused(f"{path}: does not exist; must be the store of a study")
     if not isinstance(found, dict):
         raise Refused(f"{path}: is not the store of a study, or its zarr.json is damaged; give another path")
     return found

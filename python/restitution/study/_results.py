@@ -42,7 +42,7 @@ class Status:
     >>> out = tempfile.mkdtemp() + "/study.zarr"
     >>> found = rs.sweep(study, out=out)
     >>> print(rs.study.status(out))
-    2 of 2 points finished (100 %); 2 of 2 tasks done
+    2 of 2 points are finished (100 %), and 2 of 2 tasks are done.
     """
 
     points: int
@@ -53,8 +53,8 @@ class Status:
     def __str__(self) -> str:
         share = self.finished / self.points
         of = "" if self.tasks is None else f" of {self.tasks}"
-        points = f"{self.finished} of {self.points} points finished ({100 * share:.0f} %)"
-        return f"{points}; {self.there}{of} tasks done"
+        points = f"{self.finished} of {self.points} points are finished ({100 * share:.0f} %)"
+        return f"{points}, and {self.there}{of} tasks are done."
 
 
 def status(out: str | Path) -> Status:

@@ -158,7 +158,7 @@ def merge(
     need_zarr()
     if not path.exists():
         if not others:
-            text = f" = {shown(out)}: there is no such store, and no parts for it"
+            text = f" = {shown(str(out))}: there is no such store, and no parts for it"
             raise ParameterError(Problem("out", text))
         check_name("out", path, ZARR)
     wanted = study_of(study if study is not None else study_in(path if path.exists() else others[0]))
@@ -258,12 +258,13 @@ class Estimate:
     most: int
 
     def __str__(self) -> str:
-        size = "" if self.store is None else f"; store: {self.store / 1e6:.2g} MB"
-        more = f"; at most {self.most} times as many until the standard error is reached"
+        size = "" if self.store is None else f" The store takes {self.store / 1e6:.2g} MB."
+        more = f", and at most {self.most} times as many until the standard error is reached"
+        share = f", which {self.threads} threads share" if self.threads > 1 else ""
         return (
-            f"{self.points} points, {self.tasks} tasks, {self.particles} particles"
-            f"{more if self.most > 1 else ''}\n"
-            f"of these, {duration(self.seconds)} of processor time for {self.threads} threads to share{size}"
+            f"The study has {self.points} points in {self.tasks} tasks, with {self.particles} particles"
+            f"{more if self.most > 1 else ''}.\n"
+            f"These take {duration(self.seconds)} of processor time{share}.{size}"
         )
 
 
