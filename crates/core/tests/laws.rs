@@ -4,8 +4,9 @@
 mod contacts;
 
 use contacts::*;
-use restitution_core::law::{AxialCompliance, Components, Contact, Response};
-use restitution_core::{Hypothesis, Law, Rule, TangentialRestitution};
+use restitution_core::describe::{Allowed, Argument, Parameter};
+use restitution_core::law::{AxialCompliance, Compliance, Components, Contact, Creation, Response};
+use restitution_core::{Hypothesis, LAWS, Law, Rule, Symmetric, TangentialRestitution, Vector};
 
 const CONTACTS: usize = 20_000;
 
@@ -33,6 +34,91 @@ fn laws(random: &mut Random) -> Vec<Law<'static>> {
     ];
     laws.extend(HYPOTHESES.map(|hypothesis| coulomb(normal, friction, hypothesis)));
     laws
+}
+
+/// What the table says of every law holds, with parameters drawn from it: energy is created only where it can be, a law with a coefficient
+/// of friction stays within the cone, and the answer for the full matrix is the same where the contact does not jam.
+#[test]
+fn every_law_of_the_table_keeps_what_it_says() {
+    each_contact(8, |random, contact| {
+        for entry in LAWS {
+            let draw = |about: &Parameter| match about.allowed {
+                Allowed::Number(range) => {
+                    Argument::Number(random.between(range.low.max(-2.0), range.high.min(2.0)))
+                }
+                Allowed::Name(names) => {
+                    Argument::Name(names[(random.uniform() * names.len() as f64) as usize])
+                }
+                _ => about.example,
+            };
+            let arguments: Vec<_> = entry.kind.parameters.iter().map(draw).collect();
+            let value = |name: &str| {
+                let place = entry.kind.parameters.iter().position(|p| p.name == name);
+                place.map(|place| arguments[place])
+            };
+            let rule = (entry.kind.make)(&arguments).unwrap();
+            let law = Law::new(random.coefficient(), rule).unwrap();
+            let response = law.respond(contact);
+            let allowed = 64.0 * rounding(contact, &response);
+            let creates = match entry.creates_energy {
+                Creation::Never => false,
+                Creation::Possible => true,
+                Creation::Where(name, with) => value(name) == Some(Argument::Name(with)),
+            };
+            let what = || format!("{law:?} {contact:?} {response:?}");
+            let scale = size(response.impulse);
+            assert!(
+                creates || gain(contact, &response) <= allowed * scale,
+                "{}",
+                what()
+            );
+
+            let AxialCompliance {
+                inertia,
+                arm_normal: n,
+                arm_along: u,
+                ww,
+            } = contact.compliance;
+            let k = Symmetric {
+                xx: 1.0 + n * n / inertia,
+                yy: ww,
+                zz: 1.0 + u * u / inertia,
+                xy: 0.0,
+                xz: -n * u / inertia,
+                yz: 0.0,
+            };
+            if let Some(Argument::Number(friction)) = value("friction") {
+                let (pull, limit) = (
+                    tangential(response.impulse),
+                    friction * response.impulse.normal,
+                );
+                assert!(pull <= limit + (1.0 + friction) * allowed, "{}", what());
+                if friction * k.xz.abs() > k.zz {
+                    continue;
+                }
+            }
+            let v = contact.velocity;
+            let answer = law
+                .answer(
+                    &Compliance::new(k).unwrap(),
+                    Vector::new(v.along, v.across, v.normal),
+                )
+                .unwrap();
+            let found = Response {
+                impulse: Components {
+                    normal: answer.impulse.z,
+                    along: answer.impulse.x,
+                    across: answer.impulse.y,
+                },
+                separation_speed: answer.separation_speed,
+            };
+            assert!(
+                agree(contact, &found, &response, 64.0),
+                "{} {found:?}",
+                what()
+            );
+        }
+    });
 }
 
 /// K turns the impulse that was solved for a change of the contact velocity into that change (10), in every direction.

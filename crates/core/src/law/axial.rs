@@ -1,6 +1,6 @@
 //! The compliance of a body of revolution that touches a plane.
 
-use super::Components;
+use super::{Compliant, Components};
 use crate::simd::{Pack, one};
 use pulp::{Scalar, Simd};
 
@@ -47,14 +47,20 @@ impl AxialCompliance {
     }
 }
 
-impl<S: Simd> AxialCompliance<Pack<S, 1>> {
-    /// The impulse that changes the contact velocity by `change`: K P = Δ**v**_c (10), solved as in (14). Without `SPACE` nothing
-    /// happens along **w**.
+impl<S: Simd> Compliant<S> for AxialCompliance<Pack<S, 1>> {
     #[inline(always)]
-    pub fn impulse<const SPACE: bool>(
-        &self,
-        change: Components<Pack<S, 1>>,
-    ) -> Components<Pack<S, 1>> {
+    fn nn(&self) -> Pack<S, 1> {
+        (self.arm_along * self.arm_along).mul_add(1.0 / self.inertia, 1.0)
+    }
+
+    #[inline(always)]
+    fn pushed(&self, normal: Pack<S, 1>, velocity: &Components<Pack<S, 1>>) -> [Pack<S, 1>; 2] {
+        [self.nu().mul_add(normal, velocity.along), velocity.across]
+    }
+
+    /// Solved as in (14).
+    #[inline(always)]
+    fn impulse<const SPACE: bool>(&self, change: Components<Pack<S, 1>>) -> Components<Pack<S, 1>> {
         let (n, u, j) = (self.arm_normal, self.arm_along, self.inertia);
         let nn = n.mul_add(n, j);
         let inverse = 1.0 / u.mul_add(u, nn); // 1/(J_xx/m + r_c²)
@@ -69,13 +75,9 @@ impl<S: Simd> AxialCompliance<Pack<S, 1>> {
             },
         }
     }
+}
 
-    /// K_nn.
-    #[inline(always)]
-    pub fn nn(&self) -> Pack<S, 1> {
-        (self.arm_along * self.arm_along).mul_add(1.0 / self.inertia, 1.0)
-    }
-
+impl<S: Simd> AxialCompliance<Pack<S, 1>> {
     /// K_uu.
     #[inline(always)]
     pub fn uu(&self) -> Pack<S, 1> {

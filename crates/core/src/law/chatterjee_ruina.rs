@@ -1,11 +1,10 @@
 //! The law of A. Chatterjee and A. Ruina, *A new algebraic rigid-body collision law based on impulse space considerations*,
 //! J. Appl. Mech. **65**, 939 (1998).
 
-use super::{Answer, Compliance, Components, Contact, Creation, LawKind, Response, Slip};
+use super::{Compliant, Components, Contact, Creation, LawKind, Response, Slip};
 use crate::Error;
 use crate::describe::{Arguments, Interval, Kind, Parameter};
-use crate::math::Vector;
-use crate::simd::{Pack, one};
+use crate::simd::Pack;
 use pulp::Simd;
 
 /// **P** = (1 + e) **P**_I + κ (**P**_II − **P**_I), with e = ε_n, **P**_I the impulse of a perfectly plastic impact without
@@ -67,42 +66,11 @@ impl ChatterjeeRuina {
         })
     }
 
-    /// The impulse for any compliance.
-    pub(super) fn answer(
-        &self,
-        compliance: &Compliance,
-        velocity: Vector,
-        restitution: f64,
-    ) -> Answer {
-        let k = compliance.entries();
-        let speed = velocity.z.abs();
-        let frictionless = speed / k.zz; // P_I
-        let left = Vector::new(
-            -(velocity.x + k.xz * frictionless),
-            -(velocity.y + k.yz * frictionless),
-            0.0,
-        );
-        let stop = compliance.impulse(left); // P_II − P_I
-        let most = (1.0 + restitution) * frictionless;
-        let tangential = length(one(stop.x), one(stop.y)).as_slice()[0];
-        let excess = tangential - self.friction * stop.z;
-        let wanted = 1.0 + self.tangential;
-        let outside = self.friction * most < excess * wanted;
-        let share = if outside {
-            self.friction * most / excess
-        } else {
-            wanted
-        }; // κ
-        Answer {
-            impulse: Vector::new(0.0, 0.0, most) + stop * share,
-            separation_speed: restitution * speed,
-        }
-    }
-
+    /// The response to a contact in each lane.
     #[inline(always)]
     pub(super) fn respond<S: Simd, const SPACE: bool>(
         &self,
-        contact: &Contact<Pack<S, 1>>,
+        contact: &Contact<Pack<S, 1>, impl Compliant<S>>,
         restitution: Pack<S, 1>,
     ) -> Response<Pack<S, 1>> {
         let speed = contact.approach_speed();
@@ -110,11 +78,11 @@ impl ChatterjeeRuina {
 
         let (k, velocity) = (&contact.compliance, contact.velocity);
         let frictionless = speed / k.nn(); // P_I
-        let left = k.nu().mul_add(frictionless, velocity.along); // tangential contact velocity after P_I
+        let [along, across] = k.pushed(frictionless, &velocity); // tangential contact velocity after P_I
         let stop = k.impulse::<SPACE>(Components {
             normal: zero,
-            along: -left,
-            across: -velocity.across,
+            along: -along,
+            across: -across,
         }); // P_II − P_I
         let tangential = if SPACE {
             length(stop.along, stop.across)

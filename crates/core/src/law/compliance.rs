@@ -1,7 +1,10 @@
 //! What an impulse at the point of contact does to the velocity there, for bodies of any shape.
 
+use super::{Compliant, Components};
 use crate::Error;
 use crate::math::{Symmetric, Vector};
+use crate::simd::{Pack, one};
+use pulp::Scalar;
 use std::ops::Add;
 
 /// The matrix K that turns an impulse **P** at the point of contact into the change of the contact velocity, Δ**v**_c = K**P** (10), in
@@ -72,6 +75,32 @@ impl Compliance {
     /// K⁻¹Δ**v**_c: the impulse that changes the contact velocity by this much.
     pub fn impulse(&self, change: Vector) -> Vector {
         Factors::new(&self.0).solve(change)
+    }
+}
+
+/// For one contact: **n**, **u** and **w** are its axes z, x and y.
+impl Compliant<Scalar> for Compliance {
+    fn nn(&self) -> Pack<Scalar, 1> {
+        one(self.normal())
+    }
+
+    fn pushed(
+        &self,
+        normal: Pack<Scalar, 1>,
+        velocity: &Components<Pack<Scalar, 1>>,
+    ) -> [Pack<Scalar, 1>; 2] {
+        let k = self.entries();
+        [
+            normal.mul_add(k.xz, velocity.along),
+            normal.mul_add(k.yz, velocity.across),
+        ]
+    }
+
+    fn impulse<const SPACE: bool>(
+        &self,
+        change: Components<Pack<Scalar, 1>>,
+    ) -> Components<Pack<Scalar, 1>> {
+        Components::in_lane(self.impulse(change.in_axes()))
     }
 }
 

@@ -18,11 +18,11 @@ pub struct Components<T = f64> {
 
 /// A contact, in the core's units.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Contact<T = f64> {
+pub struct Contact<T = f64, K = AxialCompliance<T>> {
     /// Velocity **v**_c of the point of contact (7), (8); `normal` ≤ 0.
     pub velocity: Components<T>,
     /// The matrix K (10).
-    pub compliance: AxialCompliance<T>,
+    pub compliance: K,
 }
 
 /// The answer of a law to a contact, in the core's units.
@@ -52,6 +52,27 @@ impl<T: Copy> Components<T> {
             along: f(self.along),
             across: f(self.across),
         }
+    }
+}
+
+impl Components<Pack<Scalar, 1>> {
+    /// These components, x along **u**, y along **w** and z along **n**, in a single lane.
+    pub(super) fn in_lane(v: Vector) -> Self {
+        Self {
+            normal: one(v.z),
+            along: one(v.x),
+            across: one(v.y),
+        }
+    }
+
+    /// The vector with these components.
+    pub(super) fn in_axes(self) -> Vector {
+        let Components {
+            normal,
+            along,
+            across,
+        } = self.map(|component| component.as_slice()[0]);
+        Vector::new(along, across, normal)
     }
 }
 
@@ -99,7 +120,9 @@ impl<S: Simd> Contact<Pack<S, 1>> {
             },
         }
     }
+}
 
+impl<S: Simd, K> Contact<Pack<S, 1>, K> {
     /// The speed of approach, −v_c^n ≥ 0.
     #[inline(always)]
     pub fn approach_speed(&self) -> Pack<S, 1> {

@@ -1,6 +1,6 @@
 //! A law of one's own: a function that is asked for the impulse of one contact at a time.
 
-use super::{Answer, AxialCompliance, Compliance, Components, Contact, Response};
+use super::{Answer, AxialCompliance, Compliance, Compliant, Components, Contact, Response};
 use crate::math::{Symmetric, Vector};
 use std::any::Any;
 use std::fmt;

@@ -1,8 +1,7 @@
 //! The law without friction: **P** ∥ **n**.
 
-use super::{Answer, Compliance, Components, Contact, Creation, LawKind, Response, Slip};
+use super::{Compliant, Components, Contact, Creation, LawKind, Response, Slip};
 use crate::describe::Kind;
-use crate::math::Vector;
 use crate::simd::Pack;
 use pulp::Simd;
 
@@ -26,25 +25,11 @@ impl Frictionless {
         from_rest: Some([Slip::Free, Slip::Free]),
     };
 
-    /// The impulse for any compliance.
-    pub(super) fn answer(
-        &self,
-        compliance: &Compliance,
-        velocity: Vector,
-        restitution: f64,
-    ) -> Answer {
-        let speed = velocity.z.abs();
-        let change = (1.0 + restitution) * speed;
-        Answer {
-            impulse: Vector::new(0.0, 0.0, change / compliance.normal()),
-            separation_speed: restitution * speed,
-        }
-    }
-
+    /// The response to a contact in each lane.
     #[inline(always)]
     pub(super) fn respond<S: Simd, const SPACE: bool>(
         &self,
-        contact: &Contact<Pack<S, 1>>,
+        contact: &Contact<Pack<S, 1>, impl Compliant<S>>,
         normal: Pack<S, 1>,
     ) -> Response<Pack<S, 1>> {
         let speed = contact.approach_speed();

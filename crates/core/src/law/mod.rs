@@ -3,11 +3,12 @@
 //!
 //! For a body of revolution K separates in the frame of **n**, of **u**, the horizontal direction of the axis, and of
 //! **w** = **n** × **u**, into a 2×2 block {**n**, **u**} and a single entry for **w**. Each formula is written once, for a contact in
-//! each lane; terms along **w** are omitted where all motion is in the plane of **n** and **u**.
+//! each lane and, through [`compliant`], for either K; terms along **w** are omitted where all motion is in the plane of **n** and **u**.
 
 mod axial;
 mod chatterjee_ruina;
 mod compliance;
+mod compliant;
 mod contact;
 mod coulomb;
 mod custom;
@@ -19,6 +20,7 @@ mod tangential;
 pub use axial::AxialCompliance;
 pub use chatterjee_ruina::ChatterjeeRuina;
 pub use compliance::Compliance;
+use compliant::Compliant;
 pub use contact::{Answer, Components, Contact, Response};
 pub use coulomb::{Coulomb, Hypothesis, MOST_FRICTION};
 pub use custom::{CustomLaw, Fault, ImpulseFunction, Raised};
@@ -28,7 +30,6 @@ pub use rule::{Creation, Law, LawKind, Slip};
 pub(crate) use rule::{MOST_CONTACTS, Respond};
 pub use tangential::TangentialRestitution;
 
-use crate::math::Vector;
 use crate::simd::Pack;
 use pulp::Simd;
 

@@ -1,8 +1,8 @@
 //! The choice of a law.
 
 use super::{
-    Answer, Compliance, Contact, CustomLaw, Fault, Frictionless, ImpulseFunction, Material, Normal,
-    Response, Rule, normal::scattered, tangential::Steady,
+    Answer, Compliance, Components, Contact, CustomLaw, Fault, Frictionless, ImpulseFunction,
+    Material, Normal, Response, Rule, normal::scattered, tangential::Steady,
 };
 use crate::Error;
 use crate::describe::Kind;
@@ -72,18 +72,11 @@ macro_rules! laws {
         pub const LAWS: &[LawKind] = &[$($law::KIND),*];
 
         impl Rule {
-            /// The impulse for any compliance.
-            fn answer(&self, compliance: &Compliance, velocity: Vector, normal: f64) -> Answer {
-                match self {
-                    $(Self::$law(law) => law.answer(compliance, velocity, normal)),*
-                }
-            }
-
             /// The response to a contact in each lane.
             #[inline(always)]
             fn respond<S: Simd, const SPACE: bool>(
                 &self,
-                contact: &Contact<Pack<S, 1>>,
+                contact: &Contact<Pack<S, 1>, impl Compliant<S>>,
                 normal: Pack<S, 1>,
             ) -> Response<Pack<S, 1>> {
                 match self {
@@ -188,8 +181,16 @@ impl<'a> Law<'a> {
         if let Some(law) = &self.custom {
             return law.answer(compliance, velocity);
         }
-        let normal = drawn(self.normal.at(velocity.z.abs()));
-        Ok(self.rule.answer(compliance, velocity, normal))
+        let contact = Contact {
+            velocity: Components::in_lane(velocity),
+            compliance: *compliance,
+        };
+        let normal = one(drawn(self.normal.at(velocity.z.abs())));
+        let response = self.rule.respond::<_, true>(&contact, normal);
+        Ok(Answer {
+            impulse: response.impulse.in_axes(),
+            separation_speed: response.separation_speed.as_slice()[0],
+        })
     }
 
     /// The law as [`Steady`], if it is the paper's with the same ε_n for all impacts.

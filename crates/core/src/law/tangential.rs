@@ -1,9 +1,8 @@
 //! The paper's law, (9): both components of the contact velocity change by a fixed factor.
 
-use super::{Answer, Compliance, Components, Contact, Creation, LawKind, Respond, Response, Slip};
+use super::{Compliant, Components, Contact, Creation, LawKind, Respond, Response, Slip};
 use crate::Error;
 use crate::describe::{Argument, Arguments, Interval, Kind, Parameter};
-use crate::math::Vector;
 use crate::simd::{Operand, Pack};
 use pulp::Simd;
 
@@ -51,27 +50,11 @@ impl TangentialRestitution {
         Ok(Self { tangential })
     }
 
-    /// The impulse for any compliance.
-    pub(super) fn answer(
-        &self,
-        compliance: &Compliance,
-        velocity: Vector,
-        restitution: f64,
-    ) -> Answer {
-        let lost = self.tangential - 1.0;
-        let speed = velocity.z.abs();
-        let gained = (1.0 + restitution) * speed;
-        let change = Vector::new(lost * velocity.x, lost * velocity.y, gained); // (9)
-        Answer {
-            impulse: compliance.impulse(change), // (10)
-            separation_speed: restitution * speed,
-        }
-    }
-
+    /// The response to a contact in each lane.
     #[inline(always)]
     pub(super) fn respond<S: Simd, const SPACE: bool>(
         &self,
-        contact: &Contact<Pack<S, 1>>,
+        contact: &Contact<Pack<S, 1>, impl Compliant<S>>,
         normal: Pack<S, 1>,
     ) -> Response<Pack<S, 1>> {
         self.with::<S, SPACE>(-normal, -(normal + 1.0), contact)
@@ -83,7 +66,7 @@ impl TangentialRestitution {
         &self,
         rebound: impl Operand<S, 1>,
         change: impl Operand<S, 1>,
-        contact: &Contact<Pack<S, 1>>,
+        contact: &Contact<Pack<S, 1>, impl Compliant<S>>,
     ) -> Response<Pack<S, 1>> {
         let velocity = contact.velocity;
         Response {

@@ -15,10 +15,10 @@
 //! its sign, so that v_n is monotone in every piece of the path, and a contact that approaches again during the restitution is
 //! compressed again. There is no jam where the slip grows or sticks, because K is positive definite, so that each one ends.
 
-use super::{Coulomb, Hypothesis};
-use crate::law::{Answer, Compliance};
-use crate::math::Vector;
-use crate::simd::{elementary, one};
+use super::{Coulomb, Hypothesis, Sliding};
+use crate::law::{Compliance, Components, Contact, Frictionless, Response};
+use crate::simd::{Pack, elementary, one};
+use pulp::Scalar;
 
 /// Powers of a series.
 const TERMS: usize = 24;
@@ -34,41 +34,57 @@ const MOST_POWERS: usize = 72;
 /// Pieces of a path after which the slip is taken to have vanished; the most seen in millions of impacts is 349.
 const MOST_PIECES: usize = 2000;
 
-/// The impulse under Coulomb's law with μ > 0.
-pub(super) fn answer(rule: &Coulomb, k: &Compliance, velocity: Vector, restitution: f64) -> Answer {
-    let approach = velocity.z.abs();
-    let size = approach + velocity.x.abs() + velocity.y.abs();
-    if size == 0.0 {
-        return Answer {
-            impulse: Vector::default(),
-            separation_speed: 0.0,
+impl Sliding<Scalar> for Compliance {
+    fn slide(
+        &self,
+        rule: &Coulomb,
+        velocity: Components<Pack<Scalar, 1>>,
+        restitution: Pack<Scalar, 1>,
+    ) -> Response<Pack<Scalar, 1>> {
+        if rule.friction == 0.0 {
+            let contact = Contact {
+                velocity,
+                compliance: *self,
+            };
+            return Frictionless.respond::<_, true>(&contact, restitution);
+        }
+        let velocity = velocity.in_axes();
+        let approach = velocity.z.abs();
+        let size = approach + velocity.x.abs() + velocity.y.abs();
+        if size == 0.0 {
+            return Response::none(Scalar::new());
+        }
+        // Powers of two, so that nothing is rounded here.
+        let (speed_unit, response_unit) = (power_of_two(size), power_of_two(self.normal()));
+        let frame = Frame::new(self, 1.0 / response_unit, rule.friction);
+        let unit = 1.0 / speed_unit;
+        let mut path = Path {
+            frame: &frame,
+            restitution: restitution.as_slice()[0],
+            hypothesis: rule.hypothesis,
+            approach: approach * unit,
+            slip: frame.inward([velocity.x * unit, velocity.y * unit]),
+            speed: -approach * unit,
+            normal: 0.0,
+            friction: [0.0; 2],
+            compressing: true,
+            began: 0.0,
+            work: 0.0,
+            owed: 0.0,
+            rest_is_beyond: false,
         };
-    }
-    // Powers of two, so that nothing is rounded here.
-    let (speed_unit, response_unit) = (power_of_two(size), power_of_two(k.normal()));
-    let frame = Frame::new(k, 1.0 / response_unit, rule.friction);
-    let unit = 1.0 / speed_unit;
-    let mut path = Path {
-        frame: &frame,
-        restitution,
-        hypothesis: rule.hypothesis,
-        approach: approach * unit,
-        slip: frame.inward([velocity.x * unit, velocity.y * unit]),
-        speed: -approach * unit,
-        normal: 0.0,
-        friction: [0.0; 2],
-        compressing: true,
-        began: 0.0,
-        work: 0.0,
-        owed: 0.0,
-        rest_is_beyond: false,
-    };
-    path.follow();
-    let scale = speed_unit / response_unit;
-    let [x, y] = frame.outward(path.friction);
-    Answer {
-        impulse: Vector::new(x * scale, y * scale, path.normal * scale),
-        separation_speed: path.speed.max(0.0) * speed_unit,
+        path.follow();
+        let scale = speed_unit / response_unit;
+        let [along, across] = frame.outward(path.friction);
+        Response {
+            impulse: Components {
+                normal: path.normal,
+                along,
+                across,
+            }
+            .map(|component| one(component * scale)),
+            separation_speed: one(path.speed.max(0.0) * speed_unit),
+        }
     }
 }
 

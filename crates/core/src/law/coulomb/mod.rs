@@ -10,14 +10,10 @@ mod general;
 mod planar;
 mod turning;
 
-use super::{
-    Answer, Compliance, Components, Contact, Creation, Frictionless, LawKind, Response, Slip,
-};
+use super::{Compliant, Components, Contact, Creation, LawKind, Response, Slip};
 use crate::Error;
 use crate::describe::{Allowed, Argument, Arguments, Interval, Kind, Parameter};
-use crate::math::Vector;
 use crate::simd::Pack;
-use planar::Path;
 use pulp::Simd;
 
 /// The condition that ends the phase of restitution, after that of compression. The three hypotheses agree as long as the slip
@@ -107,19 +103,6 @@ impl Coulomb {
         })
     }
 
-    /// The impulse for any compliance.
-    pub(super) fn answer(
-        &self,
-        compliance: &Compliance,
-        velocity: Vector,
-        restitution: f64,
-    ) -> Answer {
-        if self.friction == 0.0 {
-            return Frictionless.answer(compliance, velocity, restitution);
-        }
-        general::answer(self, compliance, velocity, restitution)
-    }
-
     /// Whether some contacts take much longer than others where they slip in any direction.
     pub(super) fn takes_long(&self) -> bool {
         self.friction > 0.0
@@ -136,25 +119,28 @@ impl Coulomb {
         turning::respond(self, contacts, restitution, responses);
     }
 
-    /// The response to a contact that does not slip along **w**.
+    /// The response to a contact in each lane, which, where K is that of a body of revolution, does not slip along **w**.
     #[inline(always)]
     pub(super) fn respond<S: Simd, const SPACE: bool>(
         &self,
-        contact: &Contact<Pack<S, 1>>,
+        contact: &Contact<Pack<S, 1>, impl Compliant<S>>,
         restitution: Pack<S, 1>,
     ) -> Response<Pack<S, 1>> {
-        let speed = contact.approach_speed();
-        let path = Path::new(contact, self.friction);
-        let (normal, separation_speed) = path.end(speed, restitution, self.hypothesis);
-        Response {
-            impulse: Components {
-                normal,
-                along: path.friction(normal),
-                across: normal * 0.0,
-            },
-            separation_speed,
-        }
+        contact
+            .compliance
+            .slide(self, contact.velocity, restitution)
     }
+}
+
+/// Coulomb friction with one kind of K: where that separates, the slip follows a line; in general it turns.
+pub(super) trait Sliding<S: Simd> {
+    /// The response to a contact with this velocity in each lane.
+    fn slide(
+        &self,
+        rule: &Coulomb,
+        velocity: Components<Pack<S, 1>>,
+        restitution: Pack<S, 1>,
+    ) -> Response<Pack<S, 1>>;
 }
 
 /// Largest μ; beyond it products of μ could overflow, and every contact sticks long before.

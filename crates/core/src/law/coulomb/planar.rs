@@ -1,12 +1,12 @@
 //! Slip along a line: the contact velocity is piecewise linear in the normal impulse.
 
-use super::Hypothesis;
-use crate::law::Contact;
+use super::{Coulomb, Hypothesis, Sliding};
+use crate::law::{AxialCompliance, Compliant, Components, Response};
 use crate::simd::Pack;
 use pulp::Simd;
 
 /// The contact velocity as a function of the normal impulse p: piecewise linear, with a kink at `stop`.
-pub(super) struct Path<S: Simd> {
+struct Path<S: Simd> {
     /// Impulse p_s at which the slip velocity vanishes; infinite if it never does.
     stop: Pack<S, 1>,
     /// dv_c^n/dp before and after p_s. The first may be negative (jamming): the contact then sticks before it separates.
@@ -17,10 +17,31 @@ pub(super) struct Path<S: Simd> {
     second_friction: Pack<S, 1>,
 }
 
+impl<S: Simd> Sliding<S> for AxialCompliance<Pack<S, 1>> {
+    #[inline(always)]
+    fn slide(
+        &self,
+        rule: &Coulomb,
+        velocity: Components<Pack<S, 1>>,
+        restitution: Pack<S, 1>,
+    ) -> Response<Pack<S, 1>> {
+        let path = Path::new(self, velocity.along, rule.friction);
+        let (normal, separation_speed) =
+            path.end(velocity.normal.abs(), restitution, rule.hypothesis);
+        Response {
+            impulse: Components {
+                normal,
+                along: path.friction(normal),
+                across: normal * 0.0,
+            },
+            separation_speed,
+        }
+    }
+}
+
 impl<S: Simd> Path<S> {
     #[inline(always)]
-    pub fn new(contact: &Contact<Pack<S, 1>>, friction: f64) -> Self {
-        let (k, along) = (&contact.compliance, contact.velocity.along);
+    fn new(k: &AxialCompliance<Pack<S, 1>>, along: Pack<S, 1>, friction: f64) -> Self {
         let slip = along.abs();
         let zero = Pack::splat(slip.simd(), 0.0);
         let (nn, uu) = (k.nn(), k.uu());
@@ -42,7 +63,7 @@ impl<S: Simd> Path<S> {
 
     /// Normal impulse and normal velocity at the end of the impact.
     #[inline(always)]
-    pub fn end(
+    fn end(
         &self,
         speed: Pack<S, 1>,
         restitution: Pack<S, 1>,
@@ -93,7 +114,7 @@ impl<S: Simd> Path<S> {
 
     /// Tangential impulse P_u at a normal impulse p.
     #[inline(always)]
-    pub fn friction(&self, normal: Pack<S, 1>) -> Pack<S, 1> {
+    fn friction(&self, normal: Pack<S, 1>) -> Pack<S, 1> {
         let slipping = normal.min(self.stop);
         slipping.mul_add(
             self.first_friction,
