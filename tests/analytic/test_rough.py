@@ -150,6 +150,17 @@ def test_the_spin_gathered_since_the_release(law: rs.Frictionless, tangential: f
     assert abs(found / exact - 1.0) < 5.0 / np.sqrt(4.0 * number) + 1e-3
 
 
+def test_a_spin_is_braked_by_its_own_contacts() -> None:
+    """(12), its γ: what 8000 spheres that spin as fast as they fall keep of ω, to five standard errors."""
+    body, number = Rough(3000, 0.02, 0.02), 8000
+    spin = np.zeros((number, 3))
+    spin[:, 0] = 3.0
+    _, after = rebound(body, hits(body, spin, 90), 0.9, None)
+    lost = 1.0 - after[:, 0] / 3.0
+    gamma = 2.5 * 1.9 * 4.0 / 3000
+    assert abs(lost.mean() - gamma) < 5.0 * lost.std() / np.sqrt(number) + 0.05 * gamma
+
+
 @pytest.mark.parametrize(
     ("change", "text"),
     [
@@ -189,6 +200,8 @@ def test_bad_impacts(change: dict, text: str) -> None:
 
 def test_bad_falls() -> None:
     contact = RoughContact(1e-4, 0.0)
+    with pytest.raises(ValueError, match=r"contact = .*: must be one with mean_square below 0.0947"):
+        rough_spin(SMOOTH, RoughContact(0.2, 0.0), speed=0.5, release_speed=1.0, radius=1.0)
     with pytest.raises(ValueError, match=r"speed = 2.0: must be in \(0, 1.0\]"):
         rough_spin(SMOOTH, contact, speed=2.0, release_speed=1.0, radius=1.0)
     with pytest.raises(ValueError, match="law = "):

@@ -159,8 +159,14 @@ def rough_spin(
     )
     allowed = f"in (0, {first!r}] m/s: at most release_speed"
     v = real("speed", speed, allowed, lambda x: 0.0 < x <= first, unit="m/s")
-    fallen = (first - v) * (first + v) / ((1.0 - normal) * (1.0 + normal))
-    return coupling * (1.0 + normal) / size * math.sqrt(0.5 * square * fallen)  # (12)
+    loss = coupling * (1.0 + normal) * square  # γ
+    kept, left = 1.0 - 2.0 * loss, normal * (normal - 2.0 * loss)  # of ω² and of v², in one impact
+    if not left > 0.0:
+        most = 0.5 * normal / (coupling * (1.0 + normal))
+        raise ParameterError(wrong("contact", contact, f"one with mean_square below {most:.3g}"))
+    impacts = 2.0 * math.log(first / v) / -math.log(left)
+    kicks = (first * first * kept**impacts - v * v) / (kept - left)
+    return math.sqrt(max(0.5 * coupling * (1.0 + normal) * loss * kicks, 0.0)) / size  # (12)
 
 
 def _law(law: Law, inertia: float) -> tuple[float, float]:
