@@ -79,20 +79,19 @@ def clicks(kind: str, speeds: Array, rng: np.random.Generator) -> list[Array]:
     decays = rng.uniform(1e-3, 6e-3, 4)
     phases = rng.uniform(0.0, 2.0 * np.pi, 4)
     burst = rng.standard_normal(t.size)
+    fade = -np.expm1(-t / 5e-5) * np.exp(-t / 1.5e-3)
+    rings = np.exp(-t / decays[:, None]) * np.sin(2.0 * np.pi * frequencies[:, None] * t + phases[:, None])
     found = []
     for speed in speeds:
         if kind in ("crackle", "slap"):
             if kind == "slap":
                 burst = rng.standard_normal(t.size)
-            click = burst * -np.expm1(-t / 5e-5) * np.exp(-t / 1.5e-3)
+            click = burst * fade
         else:
             strengths, contact = np.ones(4), 5e-5
             if kind == "knock":
                 strengths, contact = rng.uniform(0.6, 1.4, 4), 1.5e-4 * speed**-0.2
             rise = np.sin(0.5 * np.pi * np.clip(t / contact, 0.0, 1.0)) ** 2
-            rings = np.exp(-t / decays[:, None]) * np.sin(
-                2.0 * np.pi * frequencies[:, None] * t + phases[:, None]
-            )
             click = rise * (strengths @ rings)
         found.append(speed * click)
     return found

@@ -1,7 +1,6 @@
 """The choice among the rules for onsets: by what they say of one another, and by the noise at each impact."""
 
 from dataclasses import dataclass
-from itertools import combinations
 from typing import NamedTuple
 
 import numpy as np
@@ -219,43 +218,40 @@ def _variances(found: list[_Picks]) -> tuple[Array, Array]:
     tuple of ndarray
         The variance of each, in s², and those of the differences, infinite in one band.
     """
-    number, count = len(found), found[0].times.size
+    bands = np.array([picks.band for picks in found])
+    times, noises = np.array([picks.times for picks in found]), np.array([picks.noise for picks in found])
+    number, count = times.shape
+    one, other = np.nonzero(np.triu(bands[:, None] != bands))
+    noise = noises[one] + noises[other]
+    variance = _excess(times[one] - times[other], noise)
+    error = variance + np.median(noise, axis=1) + _TINY
     between, known_to = np.full((number, number), np.inf), np.full((number, number), np.inf)
-    rows, right = [], []
-    for i, j in combinations(range(number), 2):
-        one, other = found[i], found[j]
-        if one.band == other.band:
-            continue
-        noise = one.noise + other.noise
-        variance = _excess(one.times - other.times, noise)
-        error = variance + float(np.median(noise)) + _TINY
-        between[i, j] = between[j, i] = variance
-        known_to[i, j] = known_to[j, i] = error
-        row = np.zeros(number)
-        row[[i, j]] = 1.0 / error
-        rows.append(row)
-        right.append(variance / error)
+    between[one, other] = between[other, one] = variance
+    known_to[one, other] = known_to[other, one] = error
+    rows = np.zeros((one.size, number))
+    rows[np.arange(one.size), one] = rows[np.arange(one.size), other] = 1.0 / error
     # Errors are √(2/n) of that. Where nothing tells the two apart that agree best, each has half, give or
     # take half.
     nearest = np.argmin(known_to, axis=1)
     every = np.arange(number)
     weight = np.sqrt(2.0 / count) / known_to[every, nearest]
-    rows += list(np.diag(2.0 * weight))
-    right += list(weight * between[every, nearest])
-    own, _ = nnls(np.array(rows), np.array(right))
+    right = np.concatenate([variance / error, weight * between[every, nearest]])
+    own, _ = nnls(np.vstack([rows, np.diag(2.0 * weight)]), right)
     return own, between
 
 
-def _excess(difference: Array, noise: Array) -> float:
-    """Return the variance of a difference beyond that by noise; values that are far off count as five off."""
-    off = difference - np.median(difference)
-    middle = (1.4826 * np.median(np.abs(off))) ** 2
-    size = np.minimum(off**2, 25.0 * (middle + noise)) * off.size / (off.size - 1)
-    variance = float(np.mean(size))
+def _excess(differences: Array, noise: Array) -> Array:
+    """Return the variance of each row beyond that by noise; values that are far off count as five off."""
+    off = differences - np.median(differences, axis=1, keepdims=True)
+    middle = (1.4826 * np.median(np.abs(off), axis=1, keepdims=True)) ** 2
+    count = off.shape[1]
+    size = np.minimum(off**2, 25.0 * (middle + noise)) * count / (count - 1)
+    variance = np.mean(size, axis=1)
     for _ in range(20):
-        weight = 1.0 / (variance + noise + _TINY) ** 2
-        variance = max(float(np.sum(weight * (size - noise)) / np.sum(weight)), 0.0)
-    return variance
+        weight = 1.0 / (variance[:, None] + noise + _TINY) ** 2
+        variance = np.sum(weight * (size - noise), axis=1) / np.sum(weight, axis=1)
+        variance = np.maximum(variance, 0.0)
+    return np.asarray(variance)
 
 
 def _beside_others(found: list[_Picks], own: Array) -> tuple[Array, Array]:

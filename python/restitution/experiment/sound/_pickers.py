@@ -2,11 +2,11 @@
 
 import math
 from collections.abc import Callable
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
-from numpy.lib.stride_tricks import sliding_window_view
-from scipy.signal import butter, resample_poly, sosfilt
+from scipy.signal import butter, firwin, resample_poly, sosfilt
 
 from restitution.experiment.sound._envelope import rounding
 
@@ -52,6 +52,9 @@ class Band:
         self._own = rate
         self._up, self._down = max(math.ceil(_POINTS * high / rate), 1), max(int(rate / (_POINTS * high)), 1)
         self.rate = rate * self._up / self._down
+        most = max(self._up, self._down)
+        # As resample_poly makes them, once.
+        self._taps: Any = firwin(20 * most + 1, 1.0 / most, window=("kaiser", 5.0)) if most > 1 else None
         self._signal = np.asarray(sosfilt(butter(2, band, "bandpass", fs=rate, output="sos"), samples))
 
     @property
@@ -65,7 +68,7 @@ class Band:
         places = np.clip(first[:, None] + np.arange(round(length * self._own) + 1), 0, self._signal.size - 1)
         rows = self._signal[places]
         if self._up != self._down:
-            rows = resample_poly(rows, self._up, self._down, axis=1)
+            rows = resample_poly(rows, self._up, self._down, axis=1, window=self._taps)
         return rows, first / self._own
 
 
@@ -149,14 +152,13 @@ class Matched:
 
     def __call__(self, windows: Array) -> Array:
         """Pick the onset in each window; shape (m, n) to (m,)."""
-        product = sliding_window_view(windows, self._mean.size, axis=1) @ self._mean
+        product = np.array([np.correlate(one, self._mean, "valid") for one in windows])
         return _summit(product, np.argmax(product, axis=1)) + self._lead
 
     def likeness(self, window: Array) -> tuple[Array, Array]:
         """Return onsets, in points, and ln(1 - r²), r > 0 being the correlation with the mean."""
-        pieces = sliding_window_view(window, self._mean.size)
-        energy = np.sum(pieces**2, axis=1)
+        energy = np.convolve(window**2, np.ones(self._mean.size), "valid")
         # In digital silence the first wave of a sound is like anything.
         size = np.sqrt((energy + _SILENT * energy.max()) * np.sum(self._mean**2))
-        r = np.maximum(pieces @ self._mean, 0.0) / np.maximum(size, 1e-300)
+        r = np.maximum(np.correlate(window, self._mean, "valid"), 0.0) / np.maximum(size, 1e-300)
         return self._lead + np.arange(r.size), np.log1p(-(np.minimum(r, 1.0 - 1e-9) ** 2))
