@@ -132,12 +132,6 @@ def no_sound(folder: Path) -> Path:
     return path
 
 
-def of_a_telephone(folder: Path) -> Path:
-    path = folder / "a.m4a"
-    path.write_bytes(b"\0\0\0\x20ftypM4A " + bytes(100))
-    return path
-
-
 def slow_rate(folder: Path) -> Path:
     return written(folder / "a.wav", np.random.default_rng(1).standard_normal(3000) / 10, 500)
 
@@ -149,7 +143,6 @@ def slow_rate(folder: Path) -> Path:
         (one_impact, "a.wav: one impact is heard, at 0.45 s; at least three are needed"),
         (clipped_throughout, "a.wav: clipped throughout"),
         (no_sound, "a.wav: not a sound file that can be read (WAV, FLAC, OGG, MP3, AIFF)"),
-        (of_a_telephone, "a.m4a: must be converted first: ffmpeg -i a.m4a a.wav"),
         (slow_rate, "a.wav: 500 samples per second; must be at least 2000"),
     ],
 )

@@ -13,7 +13,8 @@ def listen(
     file: Annotated[
         Path,
         typer.Argument(
-            metavar="FILE", help="The recording: WAV, FLAC, OGG, MP3 or AIFF; or times: CSV, TXT, XLSX."
+            metavar="FILE",
+            help="The recording: WAV, FLAC, OGG, MP3, AIFF, M4A with ffmpeg; or times: CSV, TXT, XLSX.",
         ),
     ],
     diameter: Annotated[

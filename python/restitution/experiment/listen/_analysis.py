@@ -37,8 +37,10 @@ _FEWEST_FOR_SCATTER = 6
 """Coefficients that are needed to fit a scatter beside a law."""
 _EXPLAINED = 0.01
 """Probability of a law from which on errors of measurement explain all scatter."""
-_LOSSY = (".mp3", ".ogg", ".oga", ".opus")
+_LOSSY = (".mp3", ".ogg", ".oga", ".opus", ".aac", ".3gp", ".amr", ".wma")
 """Endings of files that are compressed with loss."""
+_OFTEN_LOSSY = (".m4a", ".mp4")
+"""And of those that are, unless they are Apple Lossless."""
 _TABLES = (".csv", ".tsv", ".txt", ".xls", ".xlsx", ".zip")
 """Endings of files that hold times of impacts."""
 _LAWS = ("constant", "power law", "viscoelastic", "plastic")
@@ -273,8 +275,7 @@ def analyse(file: Path, setting: Setting) -> Analysis:
     else:
         heard, told = impacts(file), KNOWN
     series = tuple(_series(heard, int(number), setting, told) for number in np.unique(heard.series))
-    _check_drop(series[0], setting)
-    return Analysis(file.name, setting, heard, series, (*_lossy(file), *_warnings(heard, series, setting)))
+    return Analysis(file.name, setting, heard, series, (*_warnings(heard, series, setting), *_lossy(file)))
 
 
 def checked(setting: object) -> None:
@@ -300,6 +301,8 @@ def _with_errors(heard: xr.Dataset, setting: Setting) -> tuple[xr.Dataset, Separ
 def _series(heard: xr.Dataset, number: int, setting: Setting, told: Separation) -> Series:
     rows = heard.isel(impact=np.flatnonzero(heard.series == number))
     data = _coefficients(rows, number, setting)
+    if number == 0:
+        _check_drop(data, setting)
     known = int(np.isfinite(data.restitution).sum())
     timed = bool(data.uncertainty.fillna(0.0).any())
     fits = _fitted(data, told.scatter) if timed and known >= 3 else []
@@ -347,13 +350,13 @@ def _fitted(data: xr.Dataset, scatter: float | Literal["fit"]) -> list[flight.La
     return fits
 
 
-def _check_drop(first: Series, setting: Setting) -> None:
+def _check_drop(first: xr.Dataset, setting: Setting) -> None:
     """Refuse a drop that the first flight contradicts."""
     if setting.drop is None:
         return
-    ratio = float(first.data.restitution[0])
+    ratio = float(first.restitution[0])
     if ratio > 1.05:
-        interval = float(first.data.time[1] - first.data.time[0])
+        interval = float(first.time[1] - first.time[0])
         least = setting.gravity * interval**2 / 8.0
         raise ParameterError(
             Problem(
@@ -366,9 +369,10 @@ def _check_drop(first: Series, setting: Setting) -> None:
 
 def _lossy(file: Path) -> list[str]:
     kind = file.suffix.lower()
-    if kind not in _LOSSY:
+    if kind not in _LOSSY + _OFTEN_LOSSY:
         return []
-    return [f"{kind} compresses with loss, which moves onsets; record in WAV or FLAC where you can."]
+    but = ", unless it is Apple Lossless" if kind in _OFTEN_LOSSY else ""
+    return [f"{kind} compresses with loss, which moves onsets{but}; record in WAV or FLAC where you can."]
 
 
 def _warnings(heard: xr.Dataset, series: tuple[Series, ...], setting: Setting) -> list[str]:

@@ -65,8 +65,9 @@ def impacts(source: str | PathLike[str] | npt.ArrayLike, rate: float | None = No
     Parameters
     ----------
     source : path or array_like, shape (n,) or (n, channels)
-        A sound file of any kind that libsndfile reads (WAV, FLAC, OGG, MP3, AIFF) and any depth, or
-        samples. Of several channels, the one is taken in which impacts stand out most.
+        A sound file of any kind that libsndfile reads (WAV, FLAC, OGG, MP3, AIFF) and any depth, one of a
+        telephone (M4A, AAC, MP4, 3GP, AMR, WMA) where ffmpeg is installed, or samples. Of several channels,
+        the one is taken in which impacts stand out most.
     rate : float, optional
         Samples per second of an array, at least 2000. A file has its own.
 

@@ -12,6 +12,7 @@ from restitution._internal.arrays import real, reals
 from restitution._internal.files import check_regular, path_from
 from restitution._internal.parameters import ParameterError, Problem, TooLargeError, wrong
 from restitution._internal.resources import available_memory
+from restitution.experiment.sound import _ffmpeg
 
 Array = npt.NDArray[np.float64]
 
@@ -25,8 +26,6 @@ _QUIET = 1e-10
 """Quieter samples are amplified, as 16 bits in integers of 64: floors of powers are made for full scale."""
 _OF_TIME, _OF_SAMPLE = 40, 8
 """Bytes that it takes at least to listen to a time, and to each of its samples in a channel."""
-_CONVERTED = (".m4a", ".aac", ".mp4", ".3gp", ".amr", ".wma")
-"""Endings of recordings of telephones that libsndfile does not read."""
 _SOURCE = "a path, or samples of shape (n,) or (n, channels)"
 
 
@@ -83,24 +82,26 @@ def load(source: str | PathLike[str] | npt.ArrayLike, rate: float | None) -> tup
 def _file(path: Path) -> tuple[Array, float]:
     check_regular(path)
     path.open("rb").close()  # an OSError that names the file, if it cannot be read
+    if path.suffix.lower() in _ffmpeg.ENDINGS:
+        with _ffmpeg.decoded(path) as wave:
+            return _read(wave, str(path))
+    return _read(path, str(path))
+
+
+def _read(path: Path, name: str) -> tuple[Array, float]:
     try:
         import soundfile
     except ImportError:
         message = ": reading sound files needs soundfile: pip install 'restitution[measure]'"
-        raise ParameterError(Problem(str(path), message)) from None
+        raise ParameterError(Problem(name, message)) from None
     try:
         about = soundfile.info(path)
-        check_memory(str(path), about.frames, about.channels)
+        check_memory(name, about.frames, about.channels)
         samples, rate = soundfile.read(path, dtype="float64", always_2d=True)
-    except MemoryError:
-        raise
     except (soundfile.LibsndfileError, RuntimeError) as error:
-        if path.suffix.lower() in _CONVERTED:
-            text = f": must be converted first: ffmpeg -i {path.name} {path.stem}.wav"
-            raise ParameterError(Problem(str(path), text)) from None
         reason = str(error).partition(": ")[2].strip() or str(error)
         raise ParameterError(
-            Problem(str(path), f": not a sound file that can be read (WAV, FLAC, OGG, MP3, AIFF): {reason}")
+            Problem(name, f": not a sound file that can be read (WAV, FLAC, OGG, MP3, AIFF): {reason}")
         ) from None
     return np.asarray(samples, dtype=np.float64), float(rate)
 

@@ -1,0 +1,90 @@
+"""Recordings of telephones, decoded by a program that stands for ffmpeg on the PATH."""
+
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+import soundfile
+
+import restitution as rs
+from reference.command import invoke
+from reference.measuring import samples
+from restitution.experiment.listen import Setting, analyse
+
+RATE = 8000
+SAMPLES = samples()[: int(1.35 * RATE)].astype(np.float32)
+"""Five impacts, too few for a shape, which takes long."""
+CONTENT = b"\0\0\0\x20ftypM4A " + bytes(100)
+DECODES = """
+import shutil
+import sys
+from pathlib import Path
+
+words = sys.argv[1:]
+assert words[words.index("-i") + 1] == "file:{recording}", words
+Path("{log}").open("a").write(words[-1] + "\\n")
+shutil.copy("{decoded}", words[-1])
+"""
+FAILS = """
+import sys
+print("moov atom not found", file=sys.stderr)
+print("{recording}: Invalid data found when processing input", file=sys.stderr)
+sys.exit(183)
+"""
+
+
+@pytest.fixture
+def recording(tmp_path: Path) -> Path:
+    """A file as a telephone writes it; beside it, what ffmpeg makes of it."""
+    path = tmp_path / "my ball.m4a"
+    path.write_bytes(CONTENT)
+    soundfile.write(tmp_path / "decoded.wav", SAMPLES, RATE, subtype="FLOAT")
+    return path
+
+
+def installed(recording: Path, monkeypatch: pytest.MonkeyPatch, program: str) -> Path:
+    """Put a program that is called ffmpeg on the PATH, alone; return where it writes down its output."""
+    folder, log = recording.parent / "bin", recording.parent / "log"
+    folder.mkdir()
+    code = program.format(recording=recording, log=log, decoded=recording.with_name("decoded.wav"))
+    (folder / "ffmpeg").write_text(f"#!{sys.executable}\n{code}", encoding="utf-8")
+    (folder / "ffmpeg").chmod(0o755)
+    monkeypatch.setenv("PATH", str(folder))
+    return log
+
+
+def test_ffmpeg_decodes_what_libsndfile_does_not_read(
+    recording: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The times are those of the samples, and the decoded file is gone."""
+    log = installed(recording, monkeypatch, DECODES)
+    heard = rs.sound.impacts(recording)
+    expected = rs.sound.impacts(SAMPLES, RATE)
+    np.testing.assert_allclose(heard.time, expected.time, rtol=0, atol=1e-9)
+    assert heard.attrs["source"].startswith("my ball.m4a, listened to by restitution")
+    [decoded] = log.read_text(encoding="utf-8").splitlines()
+    assert not Path(decoded).parent.exists()
+
+
+def test_the_page_says_that_the_file_is_compressed(recording: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Unless it is of the kind that loses nothing."""
+    installed(recording, monkeypatch, DECODES)
+    [*_, lossy] = analyse(recording, Setting(diameter=0.02)).warnings
+    assert lossy.startswith(".m4a compresses with loss, which moves onsets, unless it is Apple Lossless")
+
+
+def test_without_ffmpeg_the_command_is_said(recording: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Nothing is written."""
+    monkeypatch.setenv("PATH", str(recording.parent))
+    done = invoke("listen", recording, "--diameter", 0.02, "--out", recording.with_name("a.html"))
+    assert done.exit_code == 2
+    assert "ffmpeg -i 'my ball.m4a' 'my ball.wav'" in done.output
+    assert not list(recording.parent.glob("a.*"))
+
+
+def test_a_file_that_ffmpeg_does_not_read(recording: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Its last words are passed on."""
+    installed(recording, monkeypatch, FAILS)
+    with pytest.raises(ValueError, match=r"my ball\.m4a: not a sound that ffmpeg can read: .*Invalid data"):
+        rs.sound.impacts(recording)
