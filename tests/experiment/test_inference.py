@@ -57,10 +57,10 @@ def test_some_of_the_experiments_come_out_as_they_are_kept() -> None:
     The last bits of a linear algebra library make other walks of the sampler; the rank of one among 640
     correlated draws has a standard error of some 0.05, and the difference of two 0.07.
     """
-    found, kept = calibration.calibrate(3), calibration.read(KEPT)
-    assert found.truth == pytest.approx(kept.truth[:3], rel=1e-5)
-    assert np.abs(found.rank - kept.rank[:3]).max() < 0.2
-    assert calibration.written(found).count("\n") == 4
+    found, kept = calibration.calibrate(2), calibration.read(KEPT)
+    assert found.truth == pytest.approx(kept.truth[:2], rel=1e-5)
+    assert np.abs(found.rank - kept.rank[:2]).max() < 0.2
+    assert calibration.written(found).count("\n") == 3
 
 
 def test_a_round_ball_gives_an_upper_limit_and_an_egg_a_shape() -> None:
@@ -108,8 +108,8 @@ def test_draws_are_those_of_the_table() -> None:
 
 def test_the_same_seed_gives_the_same_draws() -> None:
     law = rs.Frictionless(normal=0.93)
-    data = heard(0.05, law, 5)
-    one, other = (quick(data, law)["posterior"].to_dataset() for _ in range(2))
+    data, few = heard(0.05, law, 5), {"particles": 100, "elongation": (0.02, 0.2), "scatter": (1e-3, 0.01)}
+    one, other = (quick(data, law, **few)["posterior"].to_dataset() for _ in range(2))
     assert one.identical(other.assign_attrs(one.attrs))
 
 
@@ -120,7 +120,7 @@ def test_friction_and_materials_are_inferred_with_the_shape() -> None:
         law,
         friction=(0.0, 0.4),
         particles=100,
-        elongation=(0.03, 0.3),
+        elongation=(0.05, 0.2),
         scatter=(1e-3, 0.01),
     )
     drawn = tree["posterior"].to_dataset()
@@ -128,13 +128,13 @@ def test_friction_and_materials_are_inferred_with_the_shape() -> None:
     assert 1e-3 <= float(drawn.scatter.min()) < float(drawn.scatter.max()) <= 0.01
     assert 0.0 <= float(drawn.friction.min()) < float(drawn.friction.max()) <= 0.4
     metal = rs.Frictionless(normal=rs.Plastic(yield_speed=0.02))
-    tree = quick(heard(2e-3, metal, 2), metal)
+    tree = quick(heard(2e-3, metal, 2), metal, scatter=None)
     low, high = np.quantile(tree["posterior"].to_dataset().yield_speed, [0.001, 0.999])
     assert low < 0.02 < high
     rubber = rs.Viscoelastic(
         young_modulus=1e7, poisson_ratio=0.3, dissipation=1e-4, density=1100.0, radius=3e-3
     )
-    tree = quick(heard(2e-3, rs.Frictionless(normal=rubber), 2), rs.Frictionless(normal=rubber))
+    tree = quick(heard(2e-3, rs.Frictionless(normal=rubber), 2), rs.Frictionless(normal=rubber), scatter=None)
     low, high = np.quantile(tree["posterior"].to_dataset().beta, [0.001, 0.999])
     assert low < rubber.beta < high
 

@@ -12,6 +12,7 @@ from scipy import stats
 
 import restitution as rs
 from reference.bouncing import impact_times
+from restitution.drop.run import Run
 from restitution.experiment.inference._family import Family
 from restitution.experiment.inference._likelihood import IMPOSSIBLE, Density
 from restitution.experiment.inference._series import Drops, Series
@@ -212,18 +213,19 @@ def test_simulated_series_are_those_that_could_have_been_heard(monkeypatch: pyte
         "at once": flights * [1, 1, 1, 1, 1, 1, 0.0],
     }
     made = np.array([np.concatenate([[0.0], np.cumsum(row)]) for row in rows.values()])
-    asked: dict[str, Any] = {}
+    asked: list[Run] = []
 
-    def simulate(body: Any, law: Any, **run: Any) -> xr.Dataset:
-        asked.update(run, body=body, law=law)
-        return xr.Dataset({"time": (("particle", "impact"), made)})
+    def times_of_impacts(run: Run) -> Any:
+        asked.append(run)
+        return made
 
-    monkeypatch.setattr("restitution.experiment.inference._series.simulate", simulate)
+    monkeypatch.setattr("restitution.experiment.inference._series.times_of_impacts", times_of_impacts)
     body, law = rs.from_roundness(6e-3, 6e-5), rs.Frictionless(normal=0.9)
     found = one.simulated(body, law, 6, 50, seed=5)
-    height = asked.pop("release_height") - one.drop
-    assert height == pytest.approx(0.5 * 6e-3, rel=0.02)
-    assert asked == {"body": body, "law": law, "particles": 6, "impacts": 8, "gravity": 9.7, "seed": 5}
+    [run] = asked
+    assert run.release_height - one.drop == pytest.approx(0.5 * 6e-3, rel=0.02)
+    assert (run.body, run.law, run.particles, run.impacts) == (body, law, 6, 8)
+    assert (run.gravity, run.seed) == (9.7, 5)
 
     noise = np.random.default_rng(5).standard_normal((3 * 50, 8))
     expected = []

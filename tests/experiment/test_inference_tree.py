@@ -1,4 +1,4 @@
-"""What `posterior` gives besides its draws, worked out again from the table and the chains."""
+"""Compare what `posterior` gives besides its draws with the table and the chains."""
 
 import sys
 from collections.abc import Callable
@@ -118,7 +118,7 @@ def test_the_limit_weighs_equal_intervals_of_elongation_equally(found: tuple[xr.
 def test_a_round_ball_explains_the_times_as_well_if_the_least_elongation_does(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    """Whatever the likelihood of the next one; the sentence tells the limit, also as out-of-roundness."""
+    """Ask so for any likelihood of the next one; the sentence tells the limit, also as out-of-roundness."""
     second = np.log(SHAPES[1])
     tree, table = inferred(monkeypatch, lambda shape: np.where(np.isclose(shape, second), -9.0, 0.0))
     assert np.ptp(table.values.max(axis=(0, 2))) == pytest.approx(9.0)
@@ -177,7 +177,7 @@ def test_errors_name_the_series_of_several() -> None:
 
 
 def test_draws_reach_both_ends_of_the_table(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Where all shapes are as likely draws come up to the ends, and none is beyond."""
+    """Draws come up to the ends if all shapes are as likely, and none is beyond."""
     drawn = inferred(monkeypatch, np.zeros_like)[0]["posterior"].to_dataset().elongation.values
     assert SHAPES[0] <= drawn.min() < SHAPES[0] * 1.01
     assert SHAPES[-1] * 0.99 < drawn.max() <= SHAPES[-1]

@@ -12,6 +12,8 @@ from restitution.drop.run import Run, RunArguments, takes_run
 from restitution.laws import CollisionLaw
 
 if TYPE_CHECKING:
+    import numpy as np
+    import numpy.typing as npt
     import xarray as xr
 
 
@@ -155,3 +157,14 @@ def simulate_run(
     if interrupted:
         raise SimulationInterrupted(data) from interrupted
     return data
+
+
+def times_of_impacts(run: Run) -> npt.NDArray[np.float64]:
+    """Return the times alone, shape (particles, impacts), for thousands of small runs that fit in memory.
+
+    NaN where an impact never happened. A Dataset of 200 particles takes ten times as long as their motion.
+    """
+    table, interrupted = _core.simulate(run.parameters(), 0, None, columns=["time"])
+    if interrupted:
+        raise interrupted
+    return table["time"][1]

@@ -161,7 +161,7 @@ def posterior(
     series = [Series.of(one, family.of_speed, reference, first.scatter, name) for name, one in named.items()]
     with in_terms_of(diameter=diameter, elongation=elongation):
         for measured, end in product(series, (low, high)):
-            measured.check_release(family.body(end), law)
+            measured.check_release(family.body(end), law, setting.particles)
     nodes = np.geomspace(low, high, 1 + math.ceil(_SHAPES * math.log10(high / low)))
     found = table(series, family, nodes, scatters, frictions, setting.particles, setting.seed)
     chain, log = _sampled(emcee, found, setting)

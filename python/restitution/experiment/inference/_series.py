@@ -9,11 +9,11 @@ import xarray as xr
 
 from restitution._internal.arrays import check_each
 from restitution._internal.parameters import ParameterError, Problem, wrong
+from restitution._internal.resources import check_memory
 from restitution.bodies import Body
-from restitution.drop.energy import reported_elsewhere
 from restitution.drop.recorded import check_successive
 from restitution.drop.run import Run
-from restitution.drop.simulate import simulate
+from restitution.drop.simulate import times_of_impacts
 from restitution.experiment.budget.experiment import mean_radius
 from restitution.experiment.flight.laws import LawOfSpeed, by_parameters
 from restitution.experiment.flight.times import LARGEST
@@ -26,6 +26,8 @@ _ROUNDING = 1e-6
 """Of a variance of 0, over the largest, in a covariance that was computed."""
 _SHORTEST = 0.1
 """Flights shorter than this, over the one before, are heard as one impact with the next."""
+_BYTES = 64
+"""That a simulated impact takes: its time, flights, speed and coefficient, each timed twice."""
 
 
 def _negative(covariance: Array) -> bool:
@@ -157,29 +159,28 @@ class Series:
             ]
         )
 
-    def check_release(self, body: Body, law: Law) -> None:
-        """Refuse a fall from so low that a part of the body would be in the plane."""
-        height = self._release_height(body)
-        Run(body=body, law=law, particles=1, impacts=1, release_height=height, gravity=self.gravity)
+    def check_release(self, body: Body, law: Law, particles: int) -> None:
+        """Refuse a fall from so low that a part of the body would be in the plane, and too many particles."""
+        self._run(body, law, 1, seed=1)
+        check_memory(particles * self.errors.size, _BYTES)
 
-    def _release_height(self, body: Body) -> float:
-        return mean_radius(body) + self.drop
-
-    @reported_elsewhere()
-    def simulated(self, body: Body, law: Law, particles: int, noises: int, seed: int) -> Drops:
-        """Drop such balls, and time each of them with errors, several times over."""
-        run = simulate(
-            body,
-            law,
+    def _run(self, body: Body, law: Law, particles: int, seed: int) -> Run:
+        return Run(
+            body=body,
+            law=law,
             particles=particles,
             impacts=self.errors.size,
-            release_height=self._release_height(body),
+            release_height=mean_radius(body) + self.drop,
             gravity=self.gravity,
             seed=seed,
         )
-        flight = np.diff(run.time.values, axis=1)
+
+    def simulated(self, body: Body, law: Law, particles: int, noises: int, seed: int) -> Drops:
+        """Drop such balls, and time each of them with errors, several times over."""
+        dropped = times_of_impacts(self._run(body, law, particles, seed))
+        flight = np.diff(dropped, axis=1)
         kept = np.all(flight > 0.0, axis=1) & np.all(flight[:, 1:] > _SHORTEST * flight[:, :-1], axis=1)
-        times = np.repeat(run.time.values[kept], noises, axis=0)
+        times = np.repeat(dropped[kept], noises, axis=0)
         rng = np.random.default_rng(seed)
         heard = np.diff(times + self.errors * rng.standard_normal(times.shape), axis=1)
         whole = np.all(heard > 0.0, axis=1)
