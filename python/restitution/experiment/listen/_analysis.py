@@ -192,7 +192,7 @@ class Analysis(Content):
     series : tuple of Series
         In the order of time.
     warnings : tuple of str
-        What to be careful about, a sentence each.
+        What to be careful about, a sentence or two each; what disagrees comes first.
     """
 
     file: str
@@ -377,6 +377,10 @@ def _lossy(file: Path) -> list[str]:
 
 def _warnings(heard: xr.Dataset, series: tuple[Series, ...], setting: Setting) -> list[str]:
     found = []
+    for one in series:
+        if one.shape is not None and one.shape.disagreement:
+            name = f"Series {one.number}: " if len(series) > 1 else ""
+            found.append(f"{name}{one.shape.disagreement}")
     share = float(heard.attrs.get("clipped_share", 0.0))
     if share > _CLIPPED:
         found.append(

@@ -65,7 +65,7 @@ def _page(file: Path, analysis: Analysis) -> str:
     lead = "".join(paragraph(one.sentence(analysis.setting), "lead") for one in analysis.series)
     return page(
         f"{analysis.file}: impacts and coefficient of restitution",
-        f"<h1>{text(analysis.file)}</h1>\n{lead}\n{careful}",
+        f"<h1>{text(analysis.file)}</h1>\n{careful}\n{lead}",
         sections,
         f"Made by restitution {version('restitution')}.",
     )

@@ -14,6 +14,7 @@ from restitution.bodies import Form, from_roundness
 from restitution.experiment.budget import ErrorBudget, error_budget
 from restitution.experiment.flight.drag import Drag
 from restitution.experiment.inference import posterior
+from restitution.experiment.listen._agreement import compared, disagreement
 from restitution.laws import Frictionless, Plastic, Viscoelastic
 
 _PARTICLES = 300
@@ -36,6 +37,8 @@ class Shape(Content):
     budget : ErrorBudget or None
     assumed : str
         The shape that the budget is about, or why there is none.
+    disagreement : str
+        What the budget and the times say differently; empty if nothing.
     """
 
     law: Frictionless
@@ -43,6 +46,7 @@ class Shape(Content):
     verdict: str
     budget: ErrorBudget | None
     assumed: str
+    disagreement: str = ""
 
 
 def shape(
@@ -71,7 +75,7 @@ def shape(
             raise
         except ParameterError as error:
             verdict = f"No shape is inferred: {error}."
-    t, assumed = _roundness(out_of_roundness, draws, diameter)
+    t, assumed, too_large = _roundness(out_of_roundness, draws, diameter)
     form: Form = "dumbbell" if draws is None else draws.attrs["form"]
     if t is None:
         return Shape(law, draws, verdict, None, assumed)
@@ -93,7 +97,15 @@ def shape(
         raise
     except ParameterError as error:
         return Shape(law, draws, verdict, None, f"No budget of errors: {error}.")
-    return Shape(law, draws, verdict, budget, assumed)
+    numbers = list(compared(data, fits, budget, _material(draws)))
+    return Shape(law, draws, verdict, budget, assumed, disagreement(numbers, too_large))
+
+
+def _material(draws: xr.DataTree | None) -> float:
+    """Return the scatter of ε_n itself, where the times need it."""
+    if draws is None or draws.attrs["explained_by"] not in ("material", "both"):
+        return 0.0
+    return float(draws["posterior"].to_dataset().scatter.median())
 
 
 def _law(
@@ -119,24 +131,26 @@ def _law(
 
 def _roundness(
     measured: float | None, draws: xr.DataTree | None, diameter: float
-) -> tuple[float | None, str]:
-    """Choose the out-of-roundness that the budget is about."""
+) -> tuple[float | None, str, str]:
+    """Choose the out-of-roundness of the budget; say which, and why the errors may be smaller."""
     if measured is not None:
-        return measured, f"The out-of-roundness is {1e6 * measured:.3g} µm, as measured."
+        assumed = f"The out-of-roundness is {1e6 * measured:.3g} µm, as measured."
+        return measured, assumed, "The ball is rounder than was measured, or hardly turned between impacts."
     if draws is None:
-        return None, "No budget of errors without an out-of-roundness; give it."
-    determined = bool(draws.attrs["elongation_determined"])
-    if determined:
-        elongation = float(draws["posterior"].to_dataset().elongation.median())
-    else:
-        elongation = float(draws.attrs["elongation_upper_limit"])
-    t = 0.25 * diameter * elongation
-    if determined:
-        return t, f"The out-of-roundness is taken to be {digits(1e6 * t)} µm, the median of the posterior."
-    return t, (
+        return None, "No budget of errors without an out-of-roundness; give it.", ""
+    if draws.attrs["elongation_determined"]:
+        t = 0.25 * diameter * float(draws["posterior"].to_dataset().elongation.median())
+        assumed = f"The out-of-roundness is taken to be {digits(1e6 * t)} µm, the median of the posterior."
+        return t, assumed, "Other drops of such a ball would scatter more than this one."
+    t = 0.25 * diameter * float(draws.attrs["elongation_upper_limit"])
+    assumed = (
         f"The out-of-roundness is taken to be {digits(1e6 * t)} µm, the upper limit that the times give; the "
         "errors from the shape are therefore upper limits as well, and may be far above those of the fit."
     )
+    too_large = (
+        "The budget is of the largest out-of-roundness that the times allow: the ball may be far rounder."
+    )
+    return t, assumed, too_large
 
 
 def _drop(data: xr.Dataset, law: Frictionless) -> float:

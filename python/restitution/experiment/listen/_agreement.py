@@ -1,0 +1,92 @@
+"""The error budget beside the errors that the times themselves show, number by number."""
+
+from collections.abc import Iterator
+from typing import NamedTuple
+
+import numpy as np
+import xarray as xr
+from scipy.stats import chi2
+
+from restitution import flight
+from restitution._internal.text import digits
+from restitution.experiment.budget import ErrorBudget
+
+_FACTOR = 5.0
+"""By which one drop may be off the mean over all drops: the angle of release decides how a ball turns."""
+_CHANCE = 1e-3
+"""Probability that a number is called off although it is not, if it scatters as the root of χ²/n does."""
+
+
+class Compared(NamedTuple):
+    """A standard deviation by the error budget, and as it was observed.
+
+    Attributes
+    ----------
+    name : str
+    budget, observed : float
+    degrees : float
+        Degrees of freedom of the observed one.
+    """
+
+    name: str
+    budget: float
+    observed: float
+    degrees: float
+
+    @property
+    def disagree(self) -> bool:
+        """Tell that they differ by more than chance and the angle of release explain."""
+        least, most = np.sqrt(chi2.ppf([0.5 * _CHANCE, 1.0 - 0.5 * _CHANCE], self.degrees) / self.degrees)
+        low, high = min(least, 1.0 / _FACTOR), max(most, _FACTOR)
+        return not low * self.budget <= self.observed <= high * self.budget
+
+
+def compared(
+    data: xr.Dataset, fits: tuple[flight.LawFit, ...], budget: ErrorBudget, material: float
+) -> Iterator[Compared]:
+    """Compare the scatter of ε about the best law, and the errors of the law that the budget is about.
+
+    Parameters
+    ----------
+    data : Dataset
+        Of `restitution.flight.restitution`.
+    fits : tuple of LawFit
+        The best first, a constant among them.
+    budget : ErrorBudget
+    material : float
+        Scatter of ε_n itself, which no budget has.
+    """
+    known = np.isfinite(data.restitution.values)
+    speed, ratio = data.impact_velocity.values[known], data.restitution.values[known]
+    table, total = budget.data, budget.data.sel(source="total")
+    order = np.argsort(table.impact_velocity.values)
+    expected = np.interp(speed, table.impact_velocity.values[order], total.standard_deviation.values[order])
+    expected = np.hypot(expected, material)
+    # Errors of times make neighbours depend on one another: half as many are independent.
+    degrees = 0.5 * fits[0].degrees_of_freedom
+    residual = (ratio - fits[0](speed)) / expected
+    usual = float(np.median(expected))
+    observed = usual * float(np.sqrt(np.sum(residual**2) / fits[0].degrees_of_freedom))
+    yield Compared("the scatter of one ε", usual, observed, degrees)
+    if material > 0.0:  # a fit that knows it has larger errors than any source of the budget
+        return
+    deviations = np.hypot(total.parameter_bias, total.parameter_standard_deviation).values
+    for fit in fits:
+        if fit.law == table.attrs["fitted_law"]:
+            for (name, stated), error in zip(fit.errors.items(), deviations, strict=True):
+                words = {"restitution": "mean ε"}.get(name, name.replace("_", " "))
+                yield Compared(f"the error of the {words}", float(error), stated, degrees)
+
+
+def disagreement(numbers: list[Compared], budget_is_of: str) -> str:
+    """State what disagrees, with both numbers; empty if nothing does."""
+    wrong = [one for one in numbers if one.disagree]
+    if not wrong:
+        return ""
+    said = " and ".join(
+        f"{one.name} is {digits(one.budget)} by the budget, {digits(one.observed)} by the times"
+        for one in wrong
+    )
+    beyond = "Beyond the budget, the material, the plate, a spin at release or another law may scatter ε."
+    why = budget_is_of if wrong[0].observed < wrong[0].budget else beyond
+    return f"The error budget and the times disagree: {said}. {why}"
