@@ -9,7 +9,7 @@ FUZZ ?= 300
 JOBS ?= 2
 CORE := $(shell find crates -name '*.rs' -o -name 'Cargo.toml') Cargo.toml Cargo.lock pyproject.toml
 
-.PHONY: help install pages paper calibrate test fuzz hostile audit mutants test-arm test-web rust-tests bench-web look web docs wheel licences coverage lint bench clean
+.PHONY: help install pages paper calibrate onsets test fuzz hostile audit mutants test-arm test-web rust-tests bench-web look web docs wheel licences coverage lint bench clean
 
 help:  ## list the targets
 	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed 's/:.*##/\t/' | expand -t 12
@@ -26,6 +26,9 @@ paper: $(STAMP)  ## redraw and judge the whole paper into $(OUT)/
 
 calibrate: $(STAMP)  ## 500 synthetic experiments: do posteriors cover? Ten minutes on one core
 	$(BIN)/python -m benchmarks.calibration build/calibration
+
+onsets: $(STAMP)  ## errors of onsets, slopes and second balls over many recordings: two minutes
+	$(BIN)/python -m pytest tests/manual/onsets.py
 
 lint: $(STAMP)
 	cargo fmt --all --check

@@ -35,7 +35,7 @@ def test_a_file_gives_what_the_call_gives(parameters: Path) -> None:
 
 
 def test_the_summary(parameters: Path) -> None:
-    """What was done, why the particles stopped, and how much kinetic energy appeared, counted here anew."""
+    """Count anew what was done, why the particles stopped, and how much kinetic energy appeared."""
     result = invoke("simulate", parameters, "--out", parameters.with_name("run.nc"))
     data = small()
     ratio = data.energy_ratio.to_numpy()
@@ -136,7 +136,7 @@ def test_an_existing_file_is_replaced_only_if_asked(parameters: Path) -> None:
 
 
 def places(folder: Path) -> dict[Path, str]:
-    """Where nothing can be written, and what is said of it."""
+    """Return places where nothing can be written, and what is said of each."""
     (folder / "taken.nc").write_text("precious", encoding="utf-8")
     (folder / "folder.nc").mkdir()
     no_file = "not a file that can be written"

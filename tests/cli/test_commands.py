@@ -83,7 +83,7 @@ def test_missing_bins_are_an_error_of_one_line(study: Path, command: str) -> Non
 
 
 def test_states_are_recorded_for_who_asks(study: Path) -> None:
-    """What `rs.trajectory` needs; another word is refused with the two that are known."""
+    """Record what `rs.trajectory` needs; another word is refused with the two that are known."""
     out = study.with_name("state.nc")
     assert invoke("simulate", study, "--out", out, "--record", "state").exit_code == 0
     data = load(out)
@@ -202,7 +202,7 @@ def test_the_template_is_a_run_and_all_of_its_choices_are() -> None:
 
 
 def test_the_templates_numbers_are_the_defaults(tmp_path: Path) -> None:
-    """What is commented out in [run] and [statistics] is what holds without it."""
+    """Lines that are commented out in [run] and [statistics] hold without them, too."""
     lines = TEMPLATE.splitlines()
     start = lines.index("[run]")
     told = [re.sub(r"^# (?=[a-z_]+ = )", "", line) for line in lines[start:] if not line.startswith("# [")]

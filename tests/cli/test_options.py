@@ -27,9 +27,9 @@ NEVER = {
     "not UTF-8": "1\udcff",
     "a null": "1\\0",
 }
-"""What no number may be."""
+"""Texts that are no numbers."""
 NUMBERS = {"N", "S", "D", "M", "H", "G", "T", "LOW HIGH"}
-"""What help calls numbers."""
+"""Names of numbers in help."""
 INFINITE = ("-inf", "-1e400", "5000 digits")
 ENDS = {"velocity"}
 """Of a window, which may lie at infinity."""

@@ -207,7 +207,7 @@ def test_what_is_no_table_is_refused(tmp_path: Path, capsys: pytest.CaptureFixtu
 
 
 def test_lines_that_begin_with_a_hash_are_comments(tmp_path: Path) -> None:
-    """Wherever they stand, and whatever stands in them."""
+    """Skip them in any place and with any content."""
     file = tmp_path / "times.csv"
     file.write_text(
         "# drop 1, a plate; steel\ntime (s), uncertainty (s)\n0.1, 1e-4\n# lunch\n0.5, 1e-4\n0.88, 1e-4\n"

@@ -1,6 +1,7 @@
 """`restitution listen`: the page, what stands beside it, and what it says to recordings that tell nothing."""
 
 import re
+from collections.abc import Iterator
 from html.parser import HTMLParser
 from pathlib import Path
 
@@ -15,6 +16,7 @@ import restitution as rs
 from benchmarks.recording import PLATE, recording
 from reference.bouncing import impact_times
 from restitution.cli import app
+from restitution.experiment.listen import Setting, analyse
 
 RATE = 44100
 
@@ -28,6 +30,21 @@ def ball(tmp_path_factory: pytest.TempPathFactory) -> Path:
     path = tmp_path_factory.mktemp("listen") / "ball.wav"
     soundfile.write(path, 0.9 * samples, RATE)
     return path
+
+
+@pytest.fixture(scope="module", autouse=True)
+def few_particles() -> Iterator[None]:
+    """Simulate few for the shape: what is asked here is not how well it is known."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr("restitution.experiment.listen._shape._PARTICLES", 200)
+        yield
+
+
+@pytest.fixture(scope="module")
+def short(ball: Path) -> Path:
+    """Its first six impacts, too few for a shape, which takes long."""
+    samples, _ = soundfile.read(ball)
+    return written(ball.with_name("short.wav"), samples[: int(2.0 * RATE)])
 
 
 def listen(*arguments: object) -> tuple[int, str]:
@@ -96,10 +113,10 @@ def test_nothing_is_replaced_unless_asked(ball: Path, report: tuple[Path, str]) 
     assert "exists already" in said
 
 
-def test_mass_accounts_for_drag(ball: Path, tmp_path: Path) -> None:
+def test_mass_accounts_for_drag(short: Path, tmp_path: Path) -> None:
     """And pictures need no LaTeX, whatever the user's own settings of matplotlib ask for."""
     with mpl.rc_context({"text.usetex": True}):
-        code, said = listen(ball, "--diameter", 0.04, "--mass", 2.7e-3, "--out", tmp_path / "a.html")
+        code, said = listen(short, "--diameter", 0.04, "--mass", 2.7e-3, "--out", tmp_path / "a.html")
     assert code == 0
     assert "air drag is accounted for" in said
     assert "quadratic, terminal velocity 8.8" in (tmp_path / "a.html").read_text(encoding="utf-8")
@@ -177,21 +194,18 @@ def test_errors_name_what_is_wrong(ball: Path, arguments: tuple[object, ...], me
 
 
 def test_clipping_is_told(tmp_path: Path) -> None:
-    times = impact_times(lambda _: 0.9, 2.0, 10)
-    speeds = np.array([2.0 * 0.9**i for i in range(10)])
+    times = impact_times(lambda _: 0.9, 2.0, 6)
+    speeds = np.array([2.0 * 0.9**i for i in range(6)])
     samples, _ = recording(times, speeds, PLATE, noise=-45.0, clipping=0.7)
-    file = written(tmp_path / "a.wav", samples)
-    code, said = listen(file, "--diameter", 0.02, "--out", tmp_path / "a.html")
-    assert code == 0
-    assert "of the loud samples are clipped: loudness is lost, times are not" in said
+    warnings = analyse(written(tmp_path / "a.wav", samples), Setting(diameter=0.02)).warnings
+    said = "of the loud samples are clipped: loudness is lost, times are not"
+    assert any(said in warning for warning in warnings)
 
 
-def test_a_lossy_file_says_that_it_is(tmp_path: Path, ball: Path) -> None:
-    samples, _ = soundfile.read(ball)
-    file = written(tmp_path / "a.ogg", samples)
-    code, said = listen(file, "--diameter", 0.02, "--out", tmp_path / "a.html")
-    assert code == 0
-    assert ".ogg compresses with loss" in said
+def test_a_lossy_file_says_that_it_is(tmp_path: Path, short: Path) -> None:
+    samples, _ = soundfile.read(short)
+    analysis = analyse(written(tmp_path / "a.ogg", samples), Setting(diameter=0.02))
+    assert any(".ogg compresses with loss" in warning for warning in analysis.warnings)
 
 
 def typed(path: Path, times: np.ndarray) -> Path:
@@ -220,7 +234,7 @@ def test_a_typed_table_gives_page_and_sentence(tmp_path: Path) -> None:
 
 
 def test_a_table_has_the_error_that_is_given(tmp_path: Path) -> None:
-    file = typed(tmp_path / "times.txt", impact_times(lambda _: 0.9, 2.0, 16))
+    file = typed(tmp_path / "times.txt", impact_times(lambda _: 0.9, 2.0, 6))
     code, said = listen(file, "--diameter", 0.02, "--time-error", 1e-4, "--out", tmp_path / "a.html")
     assert code == 0, said
     assert "timed to 100 µs (standard error)" in said

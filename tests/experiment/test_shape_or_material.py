@@ -1,4 +1,4 @@
-"""Whether the shape or the material makes ε scatter: planted balls, made by code that knows no package."""
+"""Tell whether shape or material makes ε scatter: planted balls, made by code that knows no package."""
 
 from pathlib import Path
 from typing import Any
