@@ -67,8 +67,8 @@ def interval(tree: xr.DataTree, name: str) -> tuple[float, float]:
 
 @pytest.mark.parametrize("scatter", [0.001, 0.003, 0.01])
 def test_one_drop_of_a_round_ball_that_scatters_is_no_shape(scatter: float) -> None:
-    """Three seeds each: the scatter is seen, and not taken for a shape; both truths are covered."""
-    for seed in (1, 2, 3):
+    """Two seeds each: the scatter is seen, and not taken for a shape; both truths are covered."""
+    for seed in (1, 2):
         tree = inferred(round_ball(scatter, seed))
         assert tree.attrs["explained_by"] in ("material", "undecided")
         assert tree.attrs["elongation_determined"] == 0
@@ -77,9 +77,8 @@ def test_one_drop_of_a_round_ball_that_scatters_is_no_shape(scatter: float) -> N
         assert low < scatter < high
 
 
-@pytest.mark.parametrize("seed", [10, 20])
-def test_five_drops_of_a_round_ball_tell_that_the_material_scatters(seed: int) -> None:
-    tree = inferred([round_ball(0.003, seed + i) for i in range(5)])
+def test_five_drops_of_a_round_ball_tell_that_the_material_scatters() -> None:
+    tree = inferred([round_ball(0.003, 10 + i) for i in range(5)])
     assert tree.attrs["explained_by"] == "material"
     assert tree.attrs["log_bayes_factor_scatter"] > 3.0 > tree.attrs["log_bayes_factor_shape"]
     low, high = interval(tree, "scatter")
@@ -87,9 +86,8 @@ def test_five_drops_of_a_round_ball_tell_that_the_material_scatters(seed: int) -
     assert "the material scatters, ε_n scatters by 0.00" in tree.attrs["verdict"]
 
 
-@pytest.mark.parametrize("seed", [10, 20])
-def test_ten_drops_of_a_dumbbell_tell_its_shape(seed: int) -> None:
-    tree = inferred([dumbbell(0.05, seed + i) for i in range(10)], 500)
+def test_ten_drops_of_a_dumbbell_tell_its_shape() -> None:
+    tree = inferred([dumbbell(0.05, 10 + i) for i in range(10)], 500)
     assert tree.attrs["explained_by"] == "shape"
     assert tree.attrs["verdict"].startswith("The times determine the shape: L/R = 0.0")
     assert "for a ball of the form 'dumbbell'" in tree.attrs["verdict"]
@@ -98,12 +96,15 @@ def test_ten_drops_of_a_dumbbell_tell_its_shape(seed: int) -> None:
 
 
 def test_one_drop_of_a_dumbbell_covers_its_shape() -> None:
-    """Eight drops by themselves: intervals of 90 % cover in fewer than five with a probability of 0.0004."""
+    """Five drops by themselves: intervals of 90 % cover in fewer than three with a probability of 0.009.
+
+    `make calibrate` asks for this in 120 experiments.
+    """
     ends = [
         np.quantile(inferred(dumbbell(0.05, seed))["posterior"].to_dataset().elongation, (0.05, 0.95))
-        for seed in range(1, 9)
+        for seed in range(1, 6)
     ]
-    assert sum(low < 0.05 < high for low, high in ends) >= 5
+    assert sum(low < 0.05 < high for low, high in ends) >= 3
 
 
 def test_ten_drops_of_a_rounder_dumbbell_cover_its_shape() -> None:
