@@ -24,7 +24,7 @@ install: $(STAMP)  ## build the core and install the package into .venv
 paper: $(STAMP)  ## redraw and judge the whole paper into $(OUT)/
 	$(BIN)/restitution paper --overwrite --out $(OUT) --impacts $(IMPACTS)
 
-calibrate: $(STAMP)  ## 500 synthetic experiments: do posteriors cover? Ten minutes on one core
+calibrate: $(STAMP)  ## 120 synthetic experiments: do posteriors cover? Some minutes on one core
 	$(BIN)/python -m benchmarks.calibration build/calibration
 
 onsets: $(STAMP)  ## errors of onsets, slopes and second balls over many recordings: two minutes
