@@ -185,7 +185,7 @@ def test_bad_contacts(change: dict, text: str) -> None:
         ({"law": rs.Coulomb(normal=0.9, friction=0.1)}, "law = "),
         ({"law": rs.TangentialRestitution(normal=0.9, tangential=0.5)}, "law = "),
         ({"contact": 0.1}, "contact = 0.1"),
-        ({"contact": RoughContact(0.1, 0.5)}, "contact = "),
+        ({"contact": RoughContact(mean_square=0.1, sphere=0.5)}, "contact = "),
         ({"speed": 0.0}, "speed = 0.0"),
         ({"spin": -1.0}, "spin = -1.0"),
         ({"spin": 1e9}, "spin = 1000000000.0: must be such that the density is narrow"),
@@ -193,15 +193,23 @@ def test_bad_contacts(change: dict, text: str) -> None:
     ],
 )
 def test_bad_impacts(change: dict, text: str) -> None:
-    good = {"law": SMOOTH, "contact": RoughContact(1e-4, 0.0), "speed": 1.0, "spin": 1.0, "radius": 1.0}
+    good = {
+        "law": SMOOTH,
+        "contact": RoughContact(mean_square=1e-4, sphere=0.0),
+        "speed": 1.0,
+        "spin": 1.0,
+        "radius": 1.0,
+    }
     with pytest.raises(ValueError, match=text):
         rough_impact(**(good | change))
 
 
 def test_bad_falls() -> None:
-    contact = RoughContact(1e-4, 0.0)
+    contact = RoughContact(mean_square=1e-4, sphere=0.0)
     with pytest.raises(ValueError, match=r"contact = .*: must be one with mean_square below 0.0947"):
-        rough_spin(SMOOTH, RoughContact(0.2, 0.0), speed=0.5, release_speed=1.0, radius=1.0)
+        rough_spin(
+            SMOOTH, RoughContact(mean_square=0.2, sphere=0.0), speed=0.5, release_speed=1.0, radius=1.0
+        )
     with pytest.raises(ValueError, match=r"speed = 2.0: must be in \(0, 1.0\]"):
         rough_spin(SMOOTH, contact, speed=2.0, release_speed=1.0, radius=1.0)
     with pytest.raises(ValueError, match="law = "):

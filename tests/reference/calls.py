@@ -73,6 +73,11 @@ def good() -> dict[str, Any]:
     }
 
 
+def _own(compliance: Any, velocity: Any) -> Any:
+    """Return an impulse; a law that holds a function of a module can be pickled."""
+    return -velocity
+
+
 def some(*names: str, **others: Any) -> Callable[[], dict[str, Any]]:
     """Give good values by their names, and others."""
     return lambda: {name: good()[name] for name in names} | others
@@ -111,7 +116,7 @@ CALLS: dict[str, Call] = {
     "Ellipsoid": (rs.Ellipsoid, lambda: {"semi_axes": (3e-3, 2e-3, 1e-3), "density": 1e3}),
     "ConvexPolyhedron": (rs.ConvexPolyhedron, lambda: {"points": np.eye(4, 3), "density": 1e3}),
     "Box": (rs.Box, lambda: {"a": 1e-2, "b": 2e-2, "c": 3e-2, "density": 1e3}),
-    "CustomLaw": (rs.CustomLaw, lambda: {"function": lambda K, velocity: -velocity, "name": "own"}),
+    "CustomLaw": (rs.CustomLaw, lambda: {"function": _own, "name": "own"}),
     "Tabulated.from_function": (
         rs.Tabulated.from_function,
         lambda: {"function": lambda v: 1.0 / (1.0 + v), "fastest": 1.0},
@@ -137,7 +142,7 @@ CALLS: dict[str, Call] = {
         analytic.rough_impact,
         lambda: {
             "law": rs.Frictionless(normal=0.9),
-            "contact": analytic.RoughContact(1e-4, 0.0),
+            "contact": analytic.RoughContact(mean_square=1e-4, sphere=0.0),
             "speed": 0.3,
             "spin": 100.0,
             "radius": 3e-3,
@@ -147,7 +152,7 @@ CALLS: dict[str, Call] = {
         analytic.rough_spin,
         lambda: {
             "law": rs.Frictionless(normal=0.9),
-            "contact": analytic.RoughContact(1e-4, 0.0),
+            "contact": analytic.RoughContact(mean_square=1e-4, sphere=0.0),
             "speed": 0.3,
             "release_speed": 1.0,
             "radius": 3e-3,

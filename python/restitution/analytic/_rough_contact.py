@@ -8,18 +8,19 @@ touches, at R_c cos a + ρ below the centre. docs/rough.md derives the formulas;
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
+from typing import Annotated
 
+from pydantic import Field
 from scipy.special import betainc
 
 from restitution._internal.arrays import real, whole
-from restitution._internal.parameters import ParameterError, Problem, wrong
+from restitution._internal.parameters import Number, ParameterError, Parameters, Problem, wrong
 
 _MOST = 10**12
 """Asperities; with 10¹⁵ or so 1 - h/2R_c to their number has no digits left."""
 
 
-class RoughContact(NamedTuple):
+class RoughContact(Parameters):
     """Where a rough sphere touches the plane; make it with `rough_contact`.
 
     Attributes
@@ -28,10 +29,16 @@ class RoughContact(NamedTuple):
         ⟨sin² a⟩ of the contact, 0 where the sphere itself touches.
     sphere : float
         Probability that the sphere itself touches, and no asperity.
+
+    Examples
+    --------
+    >>> from restitution.analytic import RoughContact
+    >>> RoughContact(mean_square=4e-4, sphere=0.0)
+    RoughContact(mean_square=0.0004, sphere=0.0)
     """
 
-    mean_square: float
-    sphere: float
+    mean_square: Annotated[Number, Field(ge=0, le=1)]
+    sphere: Annotated[Number, Field(ge=0, le=1)]
 
 
 def rough_contact(
@@ -94,7 +101,7 @@ def rough_contact(
         allowed = f"in (0, {0.01 * size:g}] m: no more than a hundredth of the radius"
         mean = real("mean_height", mean_height, allowed, lambda x: 0.0 < x <= 0.01 * size, unit="m")
         sphere = math.exp(-0.5 * number * mean / size)  # (10)
-        return RoughContact(2.0 * mean / size * (1.0 - sphere), sphere)  # (11)
+        return RoughContact(mean_square=2.0 * mean / size * (1.0 - sphere), sphere=sphere)  # (11)
     top = real("height", height, f"in [0, {2.0 * rho!r}] m", lambda x: 0.0 <= x <= 2.0 * rho, unit="m")
     if not size + top > rho:
         raise ParameterError(wrong("asperity_radius", asperity_radius, "less than radius + height"))
@@ -105,6 +112,5 @@ def _equal(number: int, relative: float) -> RoughContact:
     """Return the contact of N asperities of equal height h = ``relative`` R_c."""
     n, least = float(number), min(0.5 * relative, 1.0)  # of 1 - cos²(a/2), where the sphere touches too
     sphere = math.exp(n * math.log1p(-least)) if least < 1.0 else 0.0  # (3)
-    return RoughContact(
-        4.0 * n / ((n + 1.0) * (n + 2.0)) * float(betainc(2.0, n + 1.0, least)), sphere
-    )  # (2)
+    mean_square = 4.0 * n / ((n + 1.0) * (n + 2.0)) * float(betainc(2.0, n + 1.0, least))  # (2)
+    return RoughContact(mean_square=mean_square, sphere=sphere)
