@@ -124,7 +124,7 @@ SLOW_ONES = {
 def test_everything_that_public_functions_return_compares(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Results, what is in them, the arguments of this catalogue; figures and films are equal to themselves."""
+    """Results, what is in them, arguments of this catalogue; figures and films are equal to themselves."""
     monkeypatch.chdir(tmp_path)  # some of the functions write files
     kinds: dict[type, Any] = {}
     for name, (function, make) in CALLS.items():
