@@ -7,9 +7,11 @@ from pathlib import Path
 
 import numpy as np
 import xarray as xr
+from matplotlib.figure import Figure
 from PIL import Image
 
 import restitution as rs
+from restitution.figures.style import Style
 
 IMPACT, GAIN, NEGATIVE = (79, 7), (391, 4), (24, (9, 10))
 """Particle and impacts: of the drawing, and of the films, one with ε > 1, one with ε < 0 and the next."""
@@ -73,6 +75,32 @@ def laws(style: str) -> Image.Image:
     return _side_by_side(drawn)
 
 
+def grains(style: Style) -> Figure:
+    """Draw bodies without an axis, and under each the density of ε at impacts with 0.35 to 0.45 m/s."""
+    stone = np.random.default_rng(2).normal(size=(24, 3)) * [3e-3, 2.5e-3, 2e-3]
+    bodies = {
+        "Clump": rs.Clump(spheres=1e-3 * np.array([(0, 0, 2, 3), (2.5, 0, -1.5, 2.5), (-2, 1, -1.5, 2)])),
+        "Ellipsoid": rs.Ellipsoid(semi_axes=(4e-3, 3e-3, 2e-3)),
+        "Box": rs.Box(8e-3, 6e-3, 4e-3),
+        "ConvexPolyhedron": rs.ConvexPolyhedron(stone),
+    }
+    figure, (above, below) = rs.figures.panels(rs.figures.PAGE, 3.4, rows=2, columns=len(bodies))
+    for picture, axes, (name, body) in zip(above, below, bodies.items(), strict=True):
+        content = io.BytesIO()
+        rs.figures.body(body, 0.5, style=style).savefig(content, dpi=300)
+        picture.imshow(Image.open(content))
+        picture.set_axis_off()
+        picture.set_title(name)
+        data = rs.simulate(body, rs.Frictionless(normal=0.9), particles=1500, impacts=40, release_height=0.06)
+        near = data.restitution.values[abs(data.impact_velocity.values - 0.4) < 0.05]
+        edges = np.linspace(-0.5, 2.0, 41)
+        number, _ = np.histogram(near, edges)
+        axes.stairs(number / near.size / np.diff(edges), edges)
+        axes.set(xlabel=r"$\varepsilon$", xlim=(edges[0], edges[-1]), ylim=(0.0, None))
+    below[0].set_ylabel(r"$p(\varepsilon \mid v = 0.4$ m/s$)$")
+    return figure
+
+
 def _side_by_side(drawn: list[Image.Image]) -> Image.Image:
     width, height = drawn[0].size
     whole = Image.new("RGB", (3 * width, 2 * height))
@@ -84,8 +112,11 @@ def _side_by_side(drawn: list[Image.Image]) -> Image.Image:
 def main(folder: Path) -> None:
     """Write everything."""
     data = drops()
-    for ground in ("page", "page-dark"):
+    grounds: tuple[Style, ...] = ("page", "page-dark")
+    for ground in grounds:
         shapes(ground).save(folder / f"shapes{ground.removeprefix('page')}.png")
+        drawn = rs.figures.styled(grains)(style=ground)
+        rs.figures.save(drawn, folder / f"grains{ground.removeprefix('page')}.png", title="Grains")
         laws(ground).save(folder / f"impulses{ground.removeprefix('page')}.png")
         drawn = rs.figures.impact(data, *IMPACT, style=ground)
         name = f"impact{ground.removeprefix('page')}.png"

@@ -11,9 +11,11 @@ from matplotlib.colors import to_rgb
 from matplotlib.figure import Figure
 from matplotlib.patches import FancyArrowPatch
 from PIL import Image, ImageSequence
+from scipy.spatial.transform import Rotation
 
 import restitution as rs
-from restitution.bodies import Body
+from restitution.bodies import Body, RigidBody
+from restitution.figures.scene import _grain as grain
 from restitution.figures.scene._impact import Sideview
 from restitution.figures.scene._solid import contact_point, picture, reach
 from restitution.figures.scene._vectors import CONTACT, IMPULSE, ROTATION, VELOCITY
@@ -79,6 +81,40 @@ def test_the_lower_end_of_an_ellipse_is_where_calculus_puts_it() -> None:
     assert down == pytest.approx(-h, rel=1e-12)
     lever = (5e-3**2 - 2e-3**2) * math.sin(theta) * math.cos(theta) / h
     assert x == pytest.approx(-lever, rel=1e-12)
+
+
+GRAINS: dict[str, RigidBody] = {
+    "two balls": rs.Clump(spheres=[(0, 0, 3e-3, 2e-3), (1e-3, 0, -3e-3, 3e-3)]),
+    "ellipsoid": rs.Ellipsoid(semi_axes=(4e-3, 3e-3, 2e-3)),
+    "box": rs.Box(8e-3, 6e-3, 4e-3),
+    "tetrahedron": rs.ConvexPolyhedron(1e-3 * np.array([(0, 0, 0), (6, 0, 0), (0, 5, 0), (0, 0, 4)])),
+}
+UPRIGHT = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, -1.0, 0.0]])
+
+
+@pytest.mark.parametrize("name", GRAINS)
+def test_a_grain_is_as_large_as_it_is_and_touches_where_the_core_says(name: str) -> None:
+    """Projected areas in closed form (of polyhedra half the sum over their faces), and the core's height."""
+    body = GRAINS[name]
+    turn = Rotation.from_euler("zxy", [0.4, 0.3, 0.2])
+    attitude = UPRIGHT @ turn.as_matrix()
+    x, y, z, w = turn.as_quat()
+    height = body.compiled.lowest(np.array([[w, x, y, z]]))
+    assert -grain.lowest(body, attitude)[1] == pytest.approx(height, rel=1e-12)
+    cover = grain.picture(body, attitude)[..., 3]
+    n = np.abs(attitude[2])  # towards the reader, in the axes of the body
+    match body:
+        case rs.Clump(spheres=spheres):
+            area = math.pi * sum(radius**2 for *_, radius in spheres)
+        case rs.Ellipsoid(semi_axes=(a, b, c)):
+            area = math.pi * float(np.linalg.norm(n * [b * c, c * a, a * b]))
+        case rs.Box(a=a, b=b, c=c):
+            area = float(n @ [b * c, c * a, a * b])
+        case rs.ConvexPolyhedron():
+            small = 0.5e-6 * np.array([5 * 4, 4 * 6, 6 * 5])  # of its faces on the planes of its axes
+            area = 0.5 * float(n @ small + abs(attitude[2] @ small))
+    side = 2.1 * body.compiled.farthest() / cover.shape[0]
+    assert cover.sum() * side**2 == pytest.approx(area, rel=0.003)
 
 
 def arrows(figure: Figure) -> list[np.ndarray[Any, Any]]:

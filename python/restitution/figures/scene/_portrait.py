@@ -7,20 +7,26 @@ import math
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from scipy.spatial.transform import Rotation
 
-from restitution._internal.arrays import real
+from restitution._internal.arrays import FloatArray, real
 from restitution._internal.parameters import ParameterError, wrong
-from restitution.bodies import BODIES, Body
+from restitution.bodies import ANY_BODIES, AnyBody, Body, RigidBody
+from restitution.figures.scene import _grain as grain
 from restitution.figures.scene import _solid as solid
 from restitution.figures.scene import _vectors as draw
 from restitution.figures.style import COLUMN, Style, ink, panels, points, styled
 
+_ASIDE, _TOWARDS = 0.6, 0.45
+"""Angles in rad at which one sees three sides of a box."""
+
 
 @styled
-def body(body: Body, angle: float = math.radians(50.0), *, style: Style | None = None) -> Figure:
+def body(body: AnyBody, angle: float = math.radians(50.0), *, style: Style | None = None) -> Figure:
     """Draw a body as it touches the plane, with centre of mass, axis, point of contact and a scale bar.
 
-    The brighter end is end 2 of the axis.
+    The brighter end is end 2 of the axis. The axis of a body without one, as of a box, is its own z; it leans
+    towards the reader, too, so that one sees its shape.
 
     Parameters
     ----------
@@ -40,26 +46,41 @@ def body(body: Body, angle: float = math.radians(50.0), *, style: Style | None =
     >>> import restitution as rs
     >>> figure = rs.figures.body(rs.Spheroid(equatorial=2e-3, polar=3e-3), angle=1.0)
     """
-    if not isinstance(body, Body):
-        raise ParameterError(wrong("body", body, BODIES))
+    if not isinstance(body, AnyBody):
+        raise ParameterError(wrong("body", body, ANY_BODIES))
     angle = real("angle", angle, "an angle in rad, in [-2 pi, 2 pi]", lambda x: abs(x) <= 2.0 * math.pi)
     figure, [[axes]] = panels(0.5 * COLUMN, 0.5 * COLUMN)
     portrait(axes, body, angle)
     return figure
 
 
-def portrait(axes: Axes, body: Body, angle: float) -> None:
+def portrait(axes: Axes, body: AnyBody, angle: float) -> None:
     """Draw the body into a panel."""
     axis = np.array([math.sin(angle), math.cos(angle), 0.0])
-    contact = 1e3 * solid.contact_point(body, axis)
+    reach = body.compiled.farthest()
+    if isinstance(body, RigidBody):
+        attitude = _attitude(angle)
+        contact, pixels = 1e3 * grain.lowest(body, attitude), grain.picture(body, attitude)
+    else:
+        assert isinstance(body, Body)
+        contact, pixels = 1e3 * solid.contact_point(body, axis), solid.picture(body, axis)
     centre = np.array([0.0, -contact[1] / 1e3, 0.0])
-    size = 1e3 * solid.reach(body)
+    size = 1e3 * reach
     draw.bare(axes)
     draw.plane(axes, 0.0, 1.3 * size, 0.2 * size)
     draw.scale_bar(axes, -1.2 * size, -0.42 * size, 1.5 * size)
-    solid.place(axes, body, axis, centre)
-    ends = np.array([-1.2, 1.2])[:, None] * size * axis[:2] + 1e3 * centre[:2]
-    axes.plot(*ends.T, color=ink(0.6), linewidth=points(0.7), linestyle=(0, (6, 2, 1, 2)), zorder=3.0)
+    solid.put(axes, pixels, reach, centre)
+    if isinstance(body, Body):
+        ends = np.array([-1.2, 1.2])[:, None] * size * axis[:2] + 1e3 * centre[:2]
+        axes.plot(*ends.T, color=ink(0.6), linewidth=points(0.7), linestyle=(0, (6, 2, 1, 2)), zorder=3.0)
     draw.marks(axes, 1e3 * centre, contact * [1.0, 0.0, 0.0])
     axes.set_xlim(-1.3 * size, 1.3 * size)
     axes.set_ylim(-0.6 * size, 2.2 * size)
+
+
+def _attitude(angle: float) -> FloatArray:
+    """Turn the axes of a body into the picture's: about its own z, towards the reader, to the right."""
+    upright = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, -1.0, 0.0]])
+    about = Rotation.from_euler("yxz", [_ASIDE, _TOWARDS, -angle]).as_matrix()
+    attitude: FloatArray = about @ upright
+    return attitude

@@ -12,7 +12,7 @@ from restitution._internal.arrays import FloatArray
 from restitution._internal.parameters import ParameterError, Problem, renamed
 from restitution.bodies import KINDS, Body
 
-_PIXELS = 220
+PIXELS = 220
 """Across the picture of a body."""
 _GREYS = {1: 0.62, 2: 0.9, 0: 0.45}
 """How bright the two ends are, and a rod between them: without a colour, which belongs to the arrows."""
@@ -90,13 +90,21 @@ def contact_point(body: Body, axis: FloatArray, end: int | None = None) -> Float
     return min(lowest, key=lambda point: float(point[1]))
 
 
+def shade(normal: FloatArray, tone: FloatArray | float) -> FloatArray:
+    """Return how bright a surface of this tone is, by its normals of any length: (..., 3)."""
+    length = np.maximum(np.linalg.norm(normal, axis=-1), 1e-300)
+    light = np.clip(normal @ (_LIGHT / np.linalg.norm(_LIGHT)) / length, 0.0, 1.0)
+    bright: FloatArray = tone * (0.45 + 0.5 * light) + 0.12 * light**12
+    return bright
+
+
 def picture(body: Body, axis: FloatArray) -> FloatArray:
     """Return the picture of a body about its centre of mass, from -1.05 to 1.05 of its reach, as RGBA.
 
     `axis` is the symmetry axis in the frame of the picture: right, up, towards the reader.
     """
     size = 1.05 * reach(body)
-    places = size * (np.arange(_PIXELS) + 0.5 - 0.5 * _PIXELS) * 2.0 / _PIXELS
+    places = size * (np.arange(PIXELS) + 0.5 - 0.5 * PIXELS) * 2.0 / PIXELS
     right, up = np.meshgrid(places, places)
     flat = np.stack([right, up, np.zeros_like(right)], axis=-1)
     depth = np.full(right.shape, -np.inf)
@@ -118,15 +126,13 @@ def picture(body: Body, axis: FloatArray) -> FloatArray:
         height = along + t * towards
         # The edge is as soft as a pixel is wide: the root vanishes there, and its gradient is known.
         slope = np.hypot(*np.gradient(root, places, places))
-        inside = np.clip(0.5 + root / np.maximum(slope * 2.0 * size / _PIXELS, 1e-300), 0.0, 1.0)
+        inside = np.clip(0.5 + root / np.maximum(slope * 2.0 * size / PIXELS, 1e-300), 0.0, 1.0)
         inside = np.where(np.abs(height) <= part.half, inside, 0.0)
         normal = part.across * hit + (part.excess * height[..., None] + 0.5 * part.linear) * axis
-        normal /= np.maximum(np.linalg.norm(normal, axis=-1, keepdims=True), 1e-300)
-        light = np.clip(normal @ (_LIGHT / np.linalg.norm(_LIGHT)), 0.0, 1.0)
         end = np.where(height > 0.0, 1, 2) if part.end is None else np.full(height.shape, part.end)
         tone = np.select([end == 1, end == 2], [_GREYS[1], _GREYS[2]], _GREYS[0])
         seen = (hit[..., 2] > depth) & (inside > 0.0)
-        grey = np.where(seen, tone * (0.45 + 0.5 * light) + 0.12 * light**12, grey)
+        grey = np.where(seen, shade(normal, tone), grey)
         depth = np.where(seen & (inside >= 1.0), hit[..., 2], depth)
         cover = np.maximum(cover, inside)
     return np.dstack([np.clip(grey, 0.0, 1.0)] * 3 + [cover])
@@ -134,13 +140,12 @@ def picture(body: Body, axis: FloatArray) -> FloatArray:
 
 def place(axes: Axes, body: Body, axis: FloatArray, centre: FloatArray) -> AxesImage:
     """Draw a body into a panel in mm: its centre of mass at `centre`, in the frame of `picture`, in m."""
-    image = axes.imshow(picture(body, axis), origin="lower", interpolation="bilinear", zorder=2.0)
-    move(image, body, centre)
-    return image
+    return put(axes, picture(body, axis), reach(body), centre)
 
 
-def move(image: AxesImage, body: Body, centre: FloatArray) -> None:
+def put(axes: Axes, pixels: FloatArray, reach: float, centre: FloatArray) -> AxesImage:
     """Put the picture of a body where its centre of mass is."""
-    size = 1.05 * reach(body)
-    x, z = float(centre[0]), float(centre[1])
+    image = axes.imshow(pixels, origin="lower", interpolation="bilinear", zorder=2.0)
+    x, z, size = float(centre[0]), float(centre[1]), 1.05 * reach
     image.set_extent((1e3 * (x - size), 1e3 * (x + size), 1e3 * (z - size), 1e3 * (z + size)))
+    return image

@@ -1,0 +1,106 @@
+"""The picture of a body without a symmetry axis: spheres, an ellipsoid or a convex polyhedron."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.spatial import ConvexHull
+
+from restitution._internal.arrays import FloatArray
+from restitution.bodies import Box, Clump, ConvexPolyhedron, Ellipsoid, RigidBody
+from restitution.figures.scene._solid import PIXELS, shade
+
+_FINE = 3
+"""Rays across a pixel, so that edges are soft."""
+_TONE = 0.8
+
+
+@dataclass(frozen=True)
+class _Round:
+    """The points q about `centre` with q·Aq = 1, in the frame of the picture: right, up, to the reader."""
+
+    centre: FloatArray
+    matrix: FloatArray
+
+    @property
+    def lowest(self) -> FloatArray:
+        """Of the ellipsoid q·Q⁻¹q = 1 it is -Qn/√(n·Qn)."""
+        down = np.linalg.inv(self.matrix)[:, 1]
+        point: FloatArray = self.centre - down / np.sqrt(down[1])
+        return point
+
+    def seen(self, right: FloatArray, up: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Return how near the reader each ray meets it, -inf where it does not, and its normal there."""
+        x, y, a = right - self.centre[0], up - self.centre[1], self.matrix
+        b = a[0, 2] * x + a[1, 2] * y
+        c = a[0, 0] * x * x + 2.0 * a[0, 1] * x * y + a[1, 1] * y * y - 1.0
+        root = b * b - a[2, 2] * c
+        z = (np.sqrt(np.maximum(root, 0.0)) - b) / a[2, 2]
+        normal = np.stack([x, y, z], axis=-1) @ a
+        return np.where(root > 0.0, z + self.centre[2], -np.inf), normal
+
+
+@dataclass(frozen=True)
+class _Faces:
+    """The points q with n·q <= d for every face, and the corners of that."""
+
+    normals: FloatArray
+    distances: FloatArray
+    corners: FloatArray
+
+    @property
+    def lowest(self) -> FloatArray:
+        lowest: FloatArray = self.corners[self.corners[:, 1].argmin()]
+        return lowest
+
+    def seen(self, right: FloatArray, up: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """As of what is round."""
+        near, far = np.full(right.shape, np.inf), np.full(right.shape, -np.inf)
+        normal = np.zeros((*right.shape, 3))
+        for (x, y, z), distance in zip(self.normals, self.distances, strict=True):
+            room = distance - x * right - y * up
+            if z > 1e-12:
+                nearer = room / z < near
+                near, normal[nearer] = np.where(nearer, room / z, near), (x, y, z)
+            elif z < -1e-12:
+                far = np.maximum(far, room / z)
+            else:
+                far = np.where(room < 0.0, np.inf, far)
+        return np.where(far <= near, near, -np.inf), normal
+
+
+def surfaces(body: RigidBody, attitude: FloatArray) -> list[_Round | _Faces]:
+    """Return what there is to see about the centre of mass; `attitude` is from the body to the picture."""
+    middle = body.centre_of_mass
+    match body:
+        case Clump(spheres=spheres):
+            return [_Round(attitude @ (np.array(s[:3]) - middle), np.eye(3) / s[3] ** 2) for s in spheres]
+        case Ellipsoid(semi_axes=axes):
+            return [_Round(np.zeros(3), attitude @ np.diag(np.array(axes) ** -2.0) @ attitude.T)]
+        case Box(vertices=points) | ConvexPolyhedron(points=points):
+            corners = (np.array(points) - middle) @ attitude.T
+            size = np.abs(corners).max()
+            hull = ConvexHull(corners / size)
+            faces = hull.equations
+            return [_Faces(faces[:, :3], -size * faces[:, 3], corners)]
+    raise AssertionError(body)
+
+
+def lowest(body: RigidBody, attitude: FloatArray) -> FloatArray:
+    """Return the lowest point of a body from its centre of mass, in the frame of the picture."""
+    return min((one.lowest for one in surfaces(body, attitude)), key=lambda point: float(point[1]))
+
+
+def picture(body: RigidBody, attitude: FloatArray) -> FloatArray:
+    """Return the picture of a body about its centre of mass, from -1.05 to 1.05 of its reach, as RGBA."""
+    rays, size = _FINE * PIXELS, 1.05 * body.compiled.farthest()
+    places = size * ((np.arange(rays) + 0.5) * 2.0 / rays - 1.0)
+    right, up = np.meshgrid(places, places)
+    depth, grey = np.full(right.shape, -np.inf), np.zeros(right.shape)
+    for one in surfaces(body, attitude):
+        z, normal = one.seen(right, up)
+        nearer = z > depth
+        depth[nearer], grey[nearer] = z[nearer], shade(normal[nearer], _TONE)
+    parts = (PIXELS, _FINE, PIXELS, _FINE)
+    cover = np.isfinite(depth).reshape(parts).mean(axis=(1, 3))
+    grey = grey.reshape(parts).mean(axis=(1, 3)) / np.maximum(cover, 1e-300)
+    return np.dstack([np.clip(grey, 0.0, 1.0)] * 3 + [cover])
