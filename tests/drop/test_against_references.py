@@ -52,7 +52,7 @@ CASES = [
 
 
 def rounded(rng: np.random.Generator) -> Callable[[State, Flight], State]:
-    """What one rounding in each quantity does to the state just before an impact.
+    """Work out what one rounding in each quantity does to the state just before an impact.
 
     Velocities, spin and axis change by half a unit in the last place of each component, up or down, and so do
     the angle turned in the flight and its duration. The moment of contact moves because the gap is a

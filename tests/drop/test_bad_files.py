@@ -47,7 +47,7 @@ IN_A_FILE = [
 
 
 def refused(path: Path) -> list[str]:
-    """What the command says of a bad file; nothing is written."""
+    """Return what the command says of a bad file, and check that nothing is written."""
     before = sorted(path.parent.iterdir())
     result = invoke("simulate", path, "--out", path.with_name("run.nc"))
     assert sorted(path.parent.iterdir()) == before

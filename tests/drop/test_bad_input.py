@@ -82,7 +82,7 @@ def test_a_tilted_body_may_start_lower(body: rs.Dumbbell, law: rs.TangentialRest
 
 
 def test_body_and_law(body: rs.Dumbbell, law: rs.TangentialRestitution) -> None:
-    """What is no body or no law is refused, be it as much as the other of the two or their parameters."""
+    """Refuse what is no body or no law, be it as much as the other of the two or their parameters."""
     no_bodies: list[Any] = [law, None, 3, "dumbbell", {"radius": 1.0, "separation": 0.1}, rs.Dumbbell]
     for wrong in no_bodies:
         for call, allowed in ((rs.simulate, BODIES), (rs.analytic.first_impact, REVOLVED)):
@@ -161,7 +161,7 @@ def test_a_body_beyond_floating_point(values: dict[str, float]) -> None:
 
 @pytest.mark.parametrize("gravity", [1e273, 1e-273])
 def test_scales_with_few_digits(gravity: float) -> None:
-    """Where R/g or gR is subnormal, times and speeds would be off by the digits that it lacks."""
+    """Refuse a subnormal R/g or gR: times and speeds would be off by the digits that it lacks."""
     body, law = rs.Dumbbell(radius=1.4e-50, separation=0.0), rs.Frictionless(normal=0.5)
     text = message(lambda: rs.simulate(body, law, release_height=1e-49, gravity=gravity))
     assert text.startswith("gravity = 1e")

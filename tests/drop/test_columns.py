@@ -1,4 +1,4 @@
-"""What is recorded of an impact: columns chosen by name, and the full state held to mechanics."""
+"""Check the record of an impact: columns chosen by name, and the full state held to mechanics."""
 
 from typing import Any
 

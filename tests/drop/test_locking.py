@@ -18,7 +18,7 @@ def data() -> xr.Dataset:
 
 @pytest.fixture(scope="module")
 def parts(data: xr.Dataset) -> list[dict[str, Any]]:
-    """What each particle records while it is locked, of those that are locked for a hundred impacts."""
+    """Return what particles that are locked for a hundred impacts record while they are."""
     first, last = LOCKING["locked"](data.impact_velocity.to_numpy())
     found = []
     for particle, (start, end) in enumerate(zip(first, last, strict=True)):

@@ -96,7 +96,7 @@ def test_a_clock_needs_gravity(value: Any) -> None:
 
 
 def test_one_of_a_comparison() -> None:
-    """What is for one body and one law says how to take one; lines of one law are named by their bodies."""
+    """Say how to take one body and one law where needed; lines of one law are named by their bodies."""
     bodies = {name: rs.Dumbbell(radius=3e-3, separation=L) for name, L in (("a", 3e-4), ("b", 3e-3))}
     bins: dict[str, Any] = {"velocity_bins": SPEEDS, "restitution_bins": RATIOS}
     found = rs.compare(bodies, [LAW], particles=300, impacts=20, **bins)

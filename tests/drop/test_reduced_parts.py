@@ -1,4 +1,4 @@
-"""What `reduce` says of the impacts that it was given, which need not be those of a whole run."""
+"""Check what `reduce` says of the impacts that it was given, which need not be those of a whole run."""
 
 import numpy as np
 import pytest

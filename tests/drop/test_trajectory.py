@@ -216,7 +216,7 @@ def test_states_in_another_order_of_dimensions() -> None:
 
 
 def test_a_particle_without_impacts_has_its_release_alone() -> None:
-    """What the largest angle that is followed ends before its first impact has no last one."""
+    """Follow it to its release alone: it passes the largest angle before its first impact."""
     data = rs.simulate(
         BODY,
         LAW,
