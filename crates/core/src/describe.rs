@@ -67,6 +67,8 @@ pub enum Argument<'a> {
     Numbers(&'a [f64]),
     /// A name.
     Name(&'a str),
+    /// None: the parameter is left out.
+    Absent,
 }
 
 impl Interval {
@@ -145,6 +147,19 @@ impl Parameter {
         }
     }
 
+    /// The same, which is usually left out; its example is then not one that goes with those of the others.
+    pub(crate) const fn optional(self) -> Self {
+        Self {
+            default: Some(Argument::Absent),
+            ..self
+        }
+    }
+
+    /// Whether it is usually left out.
+    pub const fn is_optional(&self) -> bool {
+        matches!(self.default, Some(Argument::Absent))
+    }
+
     /// The same with a default.
     pub(crate) const fn or(self, default: Argument<'static>) -> Self {
         Self {
@@ -160,6 +175,7 @@ pub(crate) trait Arguments {
     fn pair(&self, place: usize) -> [f64; 2];
     fn numbers(&self, place: usize) -> &[f64];
     fn name(&self, place: usize) -> &str;
+    fn is_absent(&self, place: usize) -> bool;
 }
 
 /// An argument that is missing or of another type reads as NaN, as no numbers or as no name, which every constructor refuses.
@@ -190,5 +206,9 @@ impl Arguments for [Argument<'_>] {
             Some(Argument::Name(name)) => name,
             _ => "",
         }
+    }
+
+    fn is_absent(&self, place: usize) -> bool {
+        matches!(self.get(place), Some(Argument::Absent))
     }
 }

@@ -32,9 +32,16 @@ fn given(about: &Parameter, number: f64) -> Argument<'static> {
     }
 }
 
-/// The example of every parameter.
+/// The example of every parameter that is not usually left out.
 fn examples(parameters: &[Parameter]) -> Vec<Argument<'static>> {
-    parameters.iter().map(|about| about.example).collect()
+    let usual = |about: &Parameter| {
+        if about.is_optional() {
+            Argument::Absent
+        } else {
+            about.example
+        }
+    };
+    parameters.iter().map(usual).collect()
 }
 
 fn refused<T>(made: Result<T, Error>, name: &str) {
@@ -66,7 +73,7 @@ fn check<T>(kind: &Kind<T>) {
                 for number in outside {
                     refused(with(given(about, number)), about.name);
                 }
-                if let Allowed::Pair(_) = about.allowed {
+                if let (Allowed::Pair(_), false) = (about.allowed, about.is_optional()) {
                     assert!(with(Argument::Pair([1.0, 0.5])).is_ok());
                     refused(with(Argument::Pair([1.0, 0.0])), about.name);
                 }

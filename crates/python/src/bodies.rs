@@ -225,7 +225,7 @@ fn polyhedron(points: Vec<[f64; 3]>, triangles: Vec<[usize; 3]>, density: f64) -
 
 /// The body with this name, made from all its parameters in their order.
 #[pyfunction]
-fn body(name: &str, arguments: Vec<Given<'_>>) -> PyResult<Solid> {
+fn body(name: &str, arguments: Vec<Option<Given<'_>>>) -> PyResult<Solid> {
     describe::made(BODIES.iter(), name, &arguments).map(Solid)
 }
 

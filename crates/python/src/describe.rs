@@ -22,7 +22,7 @@ pub enum Given<'py> {
 pub fn made<'a, T: 'static>(
     mut table: impl Iterator<Item = &'a Kind<T>>,
     name: &str,
-    given: &[Given<'_>],
+    given: &[Option<Given<'_>>],
 ) -> PyResult<T> {
     let kind = table
         .find(|kind| kind.name == name)
@@ -31,10 +31,11 @@ pub fn made<'a, T: 'static>(
         .iter()
         .map(|given| {
             Ok(match given {
-                Given::Number(number) => Argument::Number(*number),
-                Given::Name(name) => Argument::Name(name),
-                Given::Pair(pair) => Argument::Pair(*pair),
-                Given::Numbers(numbers) => Argument::Numbers(numbers.as_slice()?),
+                None => Argument::Absent,
+                Some(Given::Number(number)) => Argument::Number(*number),
+                Some(Given::Name(name)) => Argument::Name(name),
+                Some(Given::Pair(pair)) => Argument::Pair(*pair),
+                Some(Given::Numbers(numbers)) => Argument::Numbers(numbers.as_slice()?),
             })
         })
         .collect::<PyResult<_>>()?;
@@ -47,6 +48,7 @@ fn argument(py: Python<'_>, given: Argument<'_>) -> PyResult<Py<PyAny>> {
         Argument::Pair(pair) => pair.into_pyobject(py)?.into_any().unbind(),
         Argument::Numbers(numbers) => numbers.into_pyobject(py)?.into_any().unbind(),
         Argument::Name(name) => name.into_pyobject(py)?.into_any().unbind(),
+        Argument::Absent => py.None(),
     })
 }
 

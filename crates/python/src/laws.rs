@@ -45,7 +45,7 @@ impl Material {
 
 /// The material with this name, made from all its parameters in their order.
 #[pyfunction]
-fn material(name: &str, arguments: Vec<Given<'_>>) -> PyResult<Material> {
+fn material(name: &str, arguments: Vec<Option<Given<'_>>>) -> PyResult<Material> {
     let made = describe::made(MATERIALS.iter(), name, &arguments)?;
     Ok(Material(Arc::new(made)))
 }
@@ -181,7 +181,7 @@ type Triple = (f64, f64, f64);
 
 /// The law with this name, made from the normal coefficient and all its other parameters in their order.
 #[pyfunction]
-fn law(name: &str, normal: Coefficient<'_>, arguments: Vec<Given<'_>>) -> PyResult<Law> {
+fn law(name: &str, normal: Coefficient<'_>, arguments: Vec<Option<Given<'_>>>) -> PyResult<Law> {
     let rule = describe::made(LAWS.iter().map(|law| &law.kind), name, &arguments)?;
     let coefficient = match normal {
         Coefficient::Constant(_) => Arc::new(normal.material().map_err(python_error)?),

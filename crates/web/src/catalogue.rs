@@ -1,5 +1,6 @@
 //! The table of bodies, laws and materials as JSON.
 
+use crate::parameters::asked;
 use restitution_core::describe::{Allowed, Argument, Interval, Kind, Parameter};
 use restitution_core::law::Creation;
 use restitution_core::{BODIES, LAWS, MATERIALS};
@@ -27,7 +28,11 @@ fn kind<T>(about: &Kind<T>, more: &str) -> String {
         "{{\"name\":{},\"text\":{},\"parameters\":{}{more}}}",
         text(about.name),
         text(about.text),
-        list(about.parameters.iter().map(parameter))
+        list(
+            about.parameters[..asked(about.parameters)]
+                .iter()
+                .map(parameter)
+        )
     )
 }
 
@@ -64,6 +69,7 @@ fn argument(given: Argument<'_>) -> String {
         Argument::Pair(values) => list(values.map(number)),
         Argument::Numbers(values) => list(values.iter().copied().map(number)),
         Argument::Name(name) => text(name),
+        Argument::Absent => "null".to_owned(),
     }
 }
 

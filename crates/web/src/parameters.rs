@@ -1,13 +1,22 @@
 //! The parameters of a run as a row of numbers, in SI units, written by the page.
 
-use restitution_core::describe::{Allowed, Argument, Kind};
+use restitution_core::describe::{Allowed, Argument, Kind, Parameter};
 use restitution_core::{BODIES, Error, LAWS, Law, Orientation, Run, Solid, Spin, Vector};
+
+/// How many of these parameters the page asks for: those before the ones that are usually left out.
+pub const fn asked(parameters: &[Parameter]) -> usize {
+    let mut count = 0;
+    while count < parameters.len() && !parameters[count].is_optional() {
+        count += 1;
+    }
+    count
+}
 
 /// Places for the parameters of a body, and of a law beside its normal coefficient: as many as one has.
 pub const OF_BODY: usize = {
     let (mut most, mut i) = (0, 0);
     while i < BODIES.len() {
-        let count = BODIES[i].parameters.len();
+        let count = asked(BODIES[i].parameters);
         most = if count > most { count } else { most };
         i += 1;
     }
@@ -16,7 +25,7 @@ pub const OF_BODY: usize = {
 pub const OF_LAW: usize = {
     let (mut most, mut i) = (0, 0);
     while i < LAWS.len() {
-        let count = LAWS[i].kind.parameters.len();
+        let count = asked(LAWS[i].kind.parameters);
         most = if count > most { count } else { most };
         i += 1;
     }
@@ -61,12 +70,16 @@ fn chosen<T>(table: &[T], number: f64) -> &T {
 
 /// Makes a body or a law from numbers.
 fn make<T>(kind: &Kind<T>, numbers: &[f64]) -> Result<T, Error> {
-    let given = kind.parameters.iter().zip(numbers);
-    let arguments: Vec<_> = given
+    let (shown, left_out) = kind.parameters.split_at(asked(kind.parameters));
+    let given = shown
+        .iter()
+        .zip(numbers)
         .map(|(about, &number)| match about.allowed {
             Allowed::Name(names) => Argument::Name(chosen::<&'static str>(names, number)),
             _ => Argument::Number(number),
-        })
+        });
+    let arguments: Vec<_> = given
+        .chain(left_out.iter().map(|_| Argument::Absent))
         .collect();
     (kind.make)(&arguments)
 }

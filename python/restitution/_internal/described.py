@@ -48,8 +48,9 @@ class Described(Parameters):
 
     @classmethod
     def example(cls, **others: Any) -> Self:
-        """Make one with the usual values of the core's table."""
-        return cls(**{about["name"]: about["example"] for about in cls.entry()["parameters"]} | others)
+        """Make one with the usual values of the core's table, and without what is usually left out."""
+        given = (about for about in cls.entry()["parameters"] if about.get("default", 0.0) is not None)
+        return cls(**{about["name"]: about["example"] for about in given} | others)
 
     def _arguments(self, *, without: str = "") -> list[Any]:
         """Return all parameters but one, in the order in which the core takes them."""

@@ -175,22 +175,26 @@ class Parameters(BaseModel):
         return [name for name in super().__dir__() if name[0] != "_" and name not in hidden]
 
     def __str__(self) -> str:
-        fields = (f"{name}={_text.short(getattr(self, name))}" for name in type(self).model_fields)
+        fields = (f"{name}={_text.short(value)}" for name, value in self._given().items())
         return f"{type(self).__name__}({', '.join(fields)})"
 
     def _repr_html_(self) -> str:
         return _text.table(type(self).__name__, self._rows())
 
+    def _given(self) -> dict[str, Any]:
+        """Return the fields that are not left out."""
+        every = {name: getattr(self, name) for name in type(self).model_fields}
+        return {name: value for name, value in every.items() if value is not None}
+
     def _rows(self) -> Iterator[tuple[str, str]]:
         """Yield the names and values that a notebook shows."""
-        for name, field in type(self).model_fields.items():
-            value = getattr(self, name)
+        for name, value in self._given().items():
             if isinstance(value, Parameters):
                 yield name, type(value).__name__
                 for key, text in value._rows():
                     yield f"{name}.{key}", text
             else:
-                yield name, _text.value(value, field.description)
+                yield name, _text.value(value, type(self).model_fields[name].description)
 
 
 def _problems(model: type[BaseModel], error: ValidationError) -> Iterator[Problem]:

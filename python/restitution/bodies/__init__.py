@@ -4,9 +4,11 @@ from restitution import _core
 from restitution._internal.described import one_of
 from restitution.bodies._body import AnyBody as AnyBody
 from restitution.bodies._body import Body as Body
+from restitution.bodies._body import of_attributes as of_attributes
 from restitution.bodies._clump import Clump
 from restitution.bodies._dumbbell import Dumbbell
 from restitution.bodies._ellipsoid import Ellipsoid
+from restitution.bodies._hollow import Wall as Wall
 from restitution.bodies._loaded_sphere import LoadedSphere
 from restitution.bodies._polyhedra import Box, ConvexPolyhedron
 from restitution.bodies._rigid import RigidBody as RigidBody

@@ -1,15 +1,17 @@
 """The bases of every shape: mass, inertia, and the compiled body."""
 
 from abc import abstractmethod
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from functools import cached_property
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 
 from restitution import _core
 from restitution._internal import text as _text
 from restitution._internal.described import Described
+
+B = TypeVar("B", bound="AnyBody")
 
 
 class AnyBody(Described):
@@ -31,8 +33,8 @@ class AnyBody(Described):
         return self.compiled.mass
 
     def attributes(self) -> dict[str, Any]:
-        """Return every parameter under its own name, as plain values that a netCDF file can hold."""
-        return self.model_dump()
+        """Return what is given under its own name, as plain values that a netCDF file can hold."""
+        return {name: value for name, value in self.model_dump().items() if value is not None}
 
     def _rows(self) -> Iterator[tuple[str, str]]:
         yield from super()._rows()
@@ -40,7 +42,7 @@ class AnyBody(Described):
 
 
 class Body(AnyBody):
-    """A homogeneous or loaded body of revolution, whose axis makes the angle θ with the plane normal."""
+    """A body of revolution, full or hollow, whose axis makes the angle θ with the plane normal."""
 
     @cached_property
     def compiled(self) -> _core.Solid:
@@ -67,3 +69,16 @@ class Body(AnyBody):
     def axial_inertia(self) -> float:
         """Moment of inertia J_zz about the symmetry axis, in kg m²."""
         return self.compiled.axial_inertia
+
+
+def of_attributes(kind: type[B], attributes: Mapping[Any, Any]) -> B:
+    """Make a body again from its `attributes`; a KeyError has the names of those that are missing."""
+    names = [
+        name
+        for name, field in kind.model_fields.items()
+        if name in attributes or field.default is not None  # else it may be left out
+    ]
+    missing = [name for name in names if name not in attributes]
+    if missing:
+        raise KeyError(*missing)
+    return kind(**{name: attributes[name] for name in names})

@@ -6,6 +6,7 @@ from pydantic import Field
 
 from restitution._internal.parameters import Number, ParameterError, in_terms_of, wrong
 from restitution.bodies._body import Body
+from restitution.bodies._hollow import Moments, Wall
 from restitution.bodies._length_width import LengthWidth
 from restitution.bodies._two_balls import PositivePair, both
 
@@ -27,6 +28,14 @@ class Dumbbell(Body):
     density : float or (float, float), default 2500
         Density of both spheres, or of sphere 1 and of sphere 2, in kg/m³; finite and > 0. If it is the same,
         the motion does not depend on it.
+    wall : float, optional
+        Thickness of the wall of a hollow body, in m; at least 10⁻⁶ R and at most the larger radius. It is
+        then these spheres less spheres whose radii are shorter by it. Left out where both radius and density
+        differ.
+        Mass and inertia are those of the wall.
+    inertia : (float, float) or float, optional
+        Moments of inertia across and about the axis, in kg m², instead of those of the matter, or one number
+        for both; the second at most twice the first. Not together with ``wall``.
 
     Examples
     --------
@@ -42,6 +51,8 @@ class Dumbbell(Body):
     radius: Annotated[PositivePair, Field(description="m")]
     separation: Annotated[Number, Field(ge=0, description="m")]
     density: Annotated[PositivePair, Field(description="kg/m³")] = 2500.0
+    wall: Wall = None
+    inertia: Moments = None
 
     @classmethod
     def from_length_width(

@@ -6,6 +6,7 @@ from pydantic import Field
 
 from restitution._internal.parameters import Number
 from restitution.bodies._body import Body
+from restitution.bodies._hollow import Moments, Wall
 
 
 class LoadedSphere(Body):
@@ -23,6 +24,12 @@ class LoadedSphere(Body):
         Mass of the load, in kg; finite and >= 0.
     offset : float
         Distance of the load from the centre, in m; in [0, radius].
+    wall : float, optional
+        Thickness of the wall of a hollow body, in m; at least 10⁻⁶ R and at most R. The load comes on top.
+        Mass and inertia are those of the wall.
+    inertia : (float, float) or float, optional
+        Moments of inertia across and about the axis, in kg m², instead of those of the matter, or one number
+        for both; the second at most twice the first. Not together with ``wall``.
 
     Examples
     --------
@@ -36,6 +43,8 @@ class LoadedSphere(Body):
     density: Annotated[Number, Field(gt=0, description="kg/m³")] = 2500.0
     load: Annotated[Number, Field(ge=0, description="kg")]
     offset: Annotated[Number, Field(ge=0, description="m")]
+    wall: Wall = None
+    inertia: Moments = None
 
     @property
     def centre_of_mass(self) -> float:

@@ -59,10 +59,9 @@ class RigidBody(AnyBody):
 
     def attributes(self) -> dict[str, Any]:
         """Return every parameter under its own name, rows of tables one after the other."""
-        plain = {name: value for name, value in self.model_dump().items() if value is not None}
         return {
             name: np.ravel(value).tolist() if isinstance(value, tuple) else value
-            for name, value in plain.items()
+            for name, value in super().attributes().items()
         }
 
     def _rows(self) -> Iterator[tuple[str, str]]:

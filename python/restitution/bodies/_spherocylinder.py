@@ -6,6 +6,7 @@ from pydantic import Field
 
 from restitution._internal.parameters import Number
 from restitution.bodies._body import Body
+from restitution.bodies._hollow import Moments, Wall
 
 
 class Spherocylinder(Body):
@@ -21,6 +22,13 @@ class Spherocylinder(Body):
         Distance L between the centres of the caps, the length of the cylinder, in m; finite and >= 0.
     density : float, default 2500
         Density in kg/m³; finite and > 0. Only mass and inertia depend on it, the motion does not.
+    wall : float, optional
+        Thickness of the wall of a hollow body, in m; at least 10⁻⁶ R and at most R. The cavity is the
+        spherocylinder of the radius R - wall.
+        Mass and inertia are those of the wall.
+    inertia : (float, float) or float, optional
+        Moments of inertia across and about the axis, in kg m², instead of those of the matter, or one number
+        for both; the second at most twice the first. Not together with ``wall``.
 
     Examples
     --------
@@ -33,6 +41,8 @@ class Spherocylinder(Body):
     radius: Annotated[Number, Field(gt=0, description="m")]
     separation: Annotated[Number, Field(ge=0, description="m")]
     density: Annotated[Number, Field(gt=0, description="kg/m³")] = 2500.0
+    wall: Wall = None
+    inertia: Moments = None
 
     @property
     def elongation(self) -> float:

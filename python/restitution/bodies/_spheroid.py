@@ -6,6 +6,7 @@ from pydantic import Field
 
 from restitution._internal.parameters import Number, ParameterError, in_terms_of, wrong
 from restitution.bodies._body import Body
+from restitution.bodies._hollow import Moments, Wall
 from restitution.bodies._length_width import LengthWidth
 
 
@@ -20,6 +21,13 @@ class Spheroid(Body):
         Semi-axis along the axis of revolution, in m; between 1/1000 and 1000 times ``equatorial``.
     density : float, default 2500
         Density in kg/m³; finite and > 0. Only mass and inertia depend on it, the motion does not.
+    wall : float, optional
+        Thickness of the wall of a hollow body, in m; at least 10⁻⁶ of the longer semi-axis and at
+        most the shorter. The cavity is all that is farther below the surface; it is no spheroid.
+        Mass and inertia are those of the wall.
+    inertia : (float, float) or float, optional
+        Moments of inertia across and about the axis, in kg m², instead of those of the matter, or one number
+        for both; the second at most twice the first. Not together with ``wall``.
 
     Examples
     --------
@@ -32,6 +40,8 @@ class Spheroid(Body):
     equatorial: Annotated[Number, Field(gt=0, description="m")]
     polar: Annotated[Number, Field(gt=0, description="m")]
     density: Annotated[Number, Field(gt=0, description="kg/m³")] = 2500.0
+    wall: Wall = None
+    inertia: Moments = None
 
     @classmethod
     def from_length_width(cls, length: float, width: float, *, density: float = 2500.0) -> Self:

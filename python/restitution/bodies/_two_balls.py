@@ -19,14 +19,14 @@ def _positive(value: Any) -> float | None:
         return None
 
 
-def _checked(value: Any, info: ValidationInfo) -> float | tuple[float, float]:
-    name = str(info.field_name)
+def one_or_two(name: str, value: Any, allowed: str) -> float | tuple[float, float]:
+    """Take a positive number, or two."""
     if isinstance(value, np.ndarray) and value.shape == (2,):
         value = value.tolist()
     if not (isinstance(value, list | tuple) and len(value) == 2):
         number = _positive(value)
         if number is None:
-            raise ParameterError(wrong(name, value, _ALLOWED))
+            raise ParameterError(wrong(name, value, allowed))
         return number
     numbers = [_positive(part) for part in value]
     problems = [
@@ -38,6 +38,10 @@ def _checked(value: Any, info: ValidationInfo) -> float | tuple[float, float]:
         raise ParameterError(*problems)
     one, two = (number for number in numbers if number is not None)
     return one, two
+
+
+def _checked(value: Any, info: ValidationInfo) -> float | tuple[float, float]:
+    return one_or_two(str(info.field_name), value, _ALLOWED)
 
 
 PositivePair = Annotated[float | tuple[float, float], Allowed(_ALLOWED), BeforeValidator(_checked)]

@@ -235,6 +235,8 @@ def _parameters(axis: str, objects: Iterable[Parameters]) -> dict[str, Any]:
         row: dict[str, Any] = {}
         for name in _written(one):
             value = getattr(one, name)
+            if value is None:
+                continue
             units.setdefault(name, unit_of(type(one), name))
             if isinstance(value, tuple) and len(value) == 2:
                 row |= {f"{name}_1": value[0], f"{name}_2": value[1]}
@@ -274,7 +276,7 @@ def _warn(found: xr.Dataset) -> None:
 
 
 _UNITS = {"m/s": "m s-1", "m/s²": "m s-2", "rad/s": "rad s-1", "kg/m³": "kg m-3"}
-_UNITS |= {unit: unit for unit in ("m", "s", "rad", "kg", "Pa")}
+_UNITS |= {unit: unit for unit in ("m", "s", "rad", "kg", "Pa")} | {"kg m²": "kg m2"}
 
 
 def unit_of(kind: type[Parameters], name: str) -> str:

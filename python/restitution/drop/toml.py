@@ -123,7 +123,8 @@ def table_of(parameters: Parameters) -> dict[str, Any]:
     """Write a body, a law or a material down as a table."""
     if isinstance(parameters, laws.CustomLaw):
         raise ParameterError(Problem("law", f" = {parameters!r}: a function cannot be written to a file"))
-    fields = {name: _plain(getattr(parameters, name)) for name in type(parameters).model_fields}
+    every = {name: getattr(parameters, name) for name in type(parameters).model_fields}
+    fields = {name: _plain(value) for name, value in every.items() if value is not None}
     for selector, kinds in _KINDS.values():
         for name, kind in kinds.items():
             if type(parameters) is kind:

@@ -66,7 +66,10 @@ def _cannot(name: str, value: object, allowed: str) -> ValueError:
 def _body(run: Run) -> dict[str, Any]:
     if not isinstance(run.body, KINDS):
         raise _cannot("body", type(run.body).__name__, "a body of revolution")
-    values = run.body.model_dump()
+    values = run.body.attributes()
+    for name in ("wall", "inertia"):
+        if name in values:
+            raise _cannot(f"body.{name}", values[name], "left out")
     for name, value in values.items():
         if isinstance(value, tuple):
             values[name], other = value

@@ -92,7 +92,7 @@ def _run_of(data: "xr.Dataset") -> Run:
                     f"data.body = {attributes['body']}: the explorer shows bodies of revolution only"
                 )
             law_type = getattr(laws, str(attributes["law"]))
-            body = body_type(**{name: attributes[name] for name in body_type.model_fields})
+            body = bodies.of_attributes(body_type, attributes)
             law = law_type(**{name: attributes[name] for name in law_type.model_fields})
             orientation = attributes["orientation"]
             if orientation == "given":

@@ -40,7 +40,8 @@ class Refused(ValueError):
 def fingerprint() -> dict[str, str]:
     """Return the version, and SHA-256 of what the impacts of short runs of every body and law add up to.
 
-    Takes milliseconds. Runs at rest and with spin go through both engines of the core.
+    Takes milliseconds. Runs at rest and with spin go through both engines of the core; bodies are full and
+    hollow.
     """
     edges = {
         "velocity": np.linspace(0.0, 1.2, 9),
@@ -48,7 +49,7 @@ def fingerprint() -> dict[str, str]:
         "fraction": np.linspace(0.0, 1.0, 11),
     }
     digest = hashlib.sha256()
-    bodies = [kind.example() for kind in KINDS]
+    bodies = [kind.example(wall=wall) for wall in (None, 4e-4) for kind in KINDS]
     for law in [kind.example(normal=0.9) for kind in laws.KINDS]:
         for body in bodies:
             for spin in ((0.0, 0.0, 0.0), (30.0, 20.0, 10.0)):

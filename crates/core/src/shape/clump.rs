@@ -66,7 +66,7 @@ fn whole(ball: &RigidBall) -> Moments {
 }
 
 /// Nodes of Gauss's quadrature with 16 points, and their weights; each stands for its mirror image as well.
-const GAUSS: [[f64; 2]; 8] = [
+pub(super) const GAUSS: [[f64; 2]; 8] = [
     [0.989_400_934_991_649_9, 0.027_152_459_411_754_096],
     [0.944_575_023_073_232_6, 0.062_253_523_938_647_894],
     [0.865_631_202_387_831_8, 0.095_158_511_682_492_79],

@@ -63,6 +63,16 @@ impl MassProperties {
         }
     }
 
+    /// This part without another that lies within it.
+    pub fn less(self, other: Self) -> Self {
+        self.and(Self {
+            mass: -other.mass,
+            centre: other.centre,
+            transverse: -other.transverse,
+            axial: -other.axial,
+        })
+    }
+
     /// Both parts together, by the parallel axis theorem.
     pub fn and(self, other: Self) -> Self {
         let mass = self.mass + other.mass;

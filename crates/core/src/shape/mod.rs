@@ -8,6 +8,7 @@ mod rigid;
 
 use crate::Error;
 
+use clump::GAUSS;
 pub use clump::Matter;
 
 pub use revolution::*;

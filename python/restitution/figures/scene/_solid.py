@@ -10,7 +10,7 @@ from matplotlib.image import AxesImage
 
 from restitution._internal.arrays import FloatArray
 from restitution._internal.parameters import ParameterError, Problem, renamed
-from restitution.bodies import KINDS, Body
+from restitution.bodies import KINDS, Body, of_attributes
 
 PIXELS = 220
 """Across the picture of a body."""
@@ -63,12 +63,15 @@ def body_of(data: xr.Dataset) -> Body:
     """Make the body that was dropped, from the attributes of its run."""
     kinds = {kind.__name__: kind for kind in KINDS}
     kind = kinds.get(str(data.attrs.get("body")))
-    missing = ["body"] if kind is None else [name for name in kind.model_fields if name not in data.attrs]
-    if kind is None or missing:
-        text = f" lacks the attributes of the body ({', '.join(missing)}): must be from restitution.simulate"
-        raise ParameterError(Problem("data", text))
-    with renamed(lambda name: f"data.{name}"):
-        return kind(**{name: data.attrs[name] for name in kind.model_fields})
+    try:
+        if kind is None:
+            raise KeyError("body")
+        with renamed(lambda name: f"data.{name}"):
+            return of_attributes(kind, data.attrs)
+    except KeyError as error:
+        missing = ", ".join(error.args)
+        text = f" lacks the attributes of the body ({missing}): must be from restitution.simulate"
+        raise ParameterError(Problem("data", text)) from None
 
 
 def reach(body: Body) -> float:

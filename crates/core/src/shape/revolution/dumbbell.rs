@@ -1,8 +1,8 @@
 //! Two spheres on an axis. Equal ones are the paper's homogeneous dumbbell (A1)–(A8).
 
 use super::{
-    Arc, Ball, Body, EqualBalls, OneBall, Shape, Solid, Surface, TwoBalls, check_density,
-    check_distance, check_length, representable, seen,
+    Arc, Ball, Body, EqualBalls, INERTIA, OneBall, Shape, Solid, Surface, TwoBalls, WALL,
+    check_density, check_distance, check_length, hollow, made, representable, seen,
 };
 use crate::Error;
 use crate::describe::{Arguments, Interval, Kind, Parameter};
@@ -14,12 +14,13 @@ use std::f64::consts::PI;
 /// If the spheres overlap, the body is their union, divided at the plane of their intersection; each side has the density of its
 /// sphere. If they do not, it is two full spheres on a massless rod, and if one contains the other, it is that sphere alone. Mass
 /// and inertia are continuous from case to case. Spheres of equal radius and different density at zero separation are two
-/// hemispheres.
+/// hemispheres. A hollow one is this body less that of spheres whose radii are shorter by the wall.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Dumbbell {
     radius: [f64; 2],
     separation: f64,
     density: [f64; 2],
+    wall: Option<f64>,
 }
 
 impl Dumbbell {
@@ -37,8 +38,13 @@ impl Dumbbell {
                 3e-4,
             ),
             Parameter::density("density of both spheres, or of each").of_each(),
+            WALL,
+            INERTIA,
         ],
-        make: |given| Ok(Self::unequal(given.pair(0), given.number(1), given.pair(2))?.into()),
+        make: |given| {
+            let body = Self::unequal(given.pair(0), given.number(1), given.pair(2))?;
+            made(body, given, 3)
+        },
     };
 
     /// Equal spheres of `radius` (m) and `density` (kg/m³), their centres `separation` (m) apart.
@@ -63,6 +69,7 @@ impl Dumbbell {
             radius,
             separation,
             density,
+            wall: None,
         };
         representable(body, "radius")
     }
@@ -80,13 +87,21 @@ impl Dumbbell {
     /// Mass, centre and inertia of unequal spheres, in units of R and of the density of sphere 1; the origin is the centre of
     /// sphere 1.
     fn whole(&self) -> MassProperties {
+        let radii = self.radii();
+        let outer = self.union(radii);
+        self.wall.map_or(outer, |wall| {
+            outer.less(self.union(radii.map(|radius| radius - wall / self.unit())))
+        })
+    }
+
+    /// The same of spheres with these radii in the places of those of the body; one that is not positive is none.
+    fn union(&self, [one, two]: [f64; 2]) -> MassProperties {
         let l = self.elongation();
-        let [one, two] = self.radii();
         let density = self.density[1] / self.density[0];
-        if one > two && one - two >= l {
+        if two <= 0.0 || one > two && one - two >= l {
             return MassProperties::sphere(one, 1.0);
         }
-        if two > one && two - one >= l {
+        if one <= 0.0 || two > one && two - one >= l {
             return MassProperties::sphere(two, density).upside_down(-l);
         }
         // Height of a spherical segment above the plane of intersection.
@@ -111,33 +126,50 @@ impl Dumbbell {
 
     /// m/(πρR³).
     fn mass_factor(&self) -> f64 {
-        let l = self.elongation();
-        if l < 2.0 {
-            4.0 / 3.0 + l - l.powi(3) / 12.0 // (A3)
-        } else {
-            8.0 / 3.0 // two spheres
-        }
+        self.of_wall(mass_factor, 3)
     }
 
     /// J_xx/(πρR⁵).
     fn transverse_factor(&self) -> f64 {
-        let l = self.elongation();
-        if l < 2.0 {
-            8.0 / 15.0 + 3.0 / 4.0 * l + l.powi(2) / 3.0 + l.powi(3) / 24.0 + l.powi(5) / 960.0 // (A8)
-        } else {
-            16.0 / 15.0 + 2.0 / 3.0 * l.powi(2) // two spheres, parallel axis theorem
-        }
+        self.of_wall(transverse_factor, 5)
     }
 
     /// J_zz/(πρR⁵).
     fn axial_factor(&self) -> f64 {
-        let l = self.elongation();
-        if l < 2.0 {
-            // (A5). The last term is printed as L⁵/180, but the integral is L⁵/160; only then is J_zz at L = 2R that of two spheres.
-            8.0 / 15.0 + l / 2.0 - l.powi(3) / 12.0 + l.powi(5) / 160.0
-        } else {
-            16.0 / 15.0 // two spheres
-        }
+        self.of_wall(axial_factor, 5)
+    }
+
+    fn of_wall(&self, factor: fn(f64) -> f64, power: i32) -> f64 {
+        let wall = self.wall.map(|wall| wall / self.unit());
+        hollow::of_wall(factor, power, self.elongation(), wall)
+    }
+}
+
+/// m/(πρR³) of full equal spheres.
+fn mass_factor(l: f64) -> f64 {
+    if l < 2.0 {
+        4.0 / 3.0 + l - l.powi(3) / 12.0 // (A3)
+    } else {
+        8.0 / 3.0 // two spheres
+    }
+}
+
+/// J_xx/(πρR⁵) of full equal spheres.
+fn transverse_factor(l: f64) -> f64 {
+    if l < 2.0 {
+        8.0 / 15.0 + 3.0 / 4.0 * l + l.powi(2) / 3.0 + l.powi(3) / 24.0 + l.powi(5) / 960.0 // (A8)
+    } else {
+        16.0 / 15.0 + 2.0 / 3.0 * l.powi(2) // two spheres, parallel axis theorem
+    }
+}
+
+/// J_zz/(πρR⁵) of full equal spheres.
+fn axial_factor(l: f64) -> f64 {
+    if l < 2.0 {
+        // (A5). The last term is printed as L⁵/180, but the integral is L⁵/160; only then is J_zz at L = 2R that of two spheres.
+        8.0 / 15.0 + l / 2.0 - l.powi(3) / 12.0 + l.powi(5) / 160.0
+    } else {
+        16.0 / 15.0 // two spheres
     }
 }
 
@@ -198,6 +230,18 @@ impl Shape for Dumbbell {
                 .acos()
         });
         Arc::caps(centres, self.radius, [PI - meets[0], meets[1]])
+    }
+
+    fn hollow(self, wall: f64) -> Result<Self, Error> {
+        let one_material = self.radius[0] == self.radius[1] || self.density[0] == self.density[1];
+        Error::unless(
+            one_material,
+            "wall",
+            wall,
+            "left out where both radius and density differ",
+        )?;
+        let wall = hollow::checked(wall, self.unit(), self.unit())?;
+        representable(Self { wall, ..self }, "radius")
     }
 
     fn scaled(&self) -> Body {

@@ -1,8 +1,8 @@
 //! A sphere with a point mass inside: it is round, but its centre of mass is not its centre.
 
 use super::{
-    Arc, Ball, Body, OneBall, Shape, Solid, Surface, check_density, check_distance, check_length,
-    representable,
+    Arc, Ball, Body, INERTIA, OneBall, Shape, Solid, Surface, WALL, check_density, check_distance,
+    check_length, hollow, made, representable,
 };
 use crate::Error;
 use crate::describe::{Arguments, Interval, Kind, Parameter};
@@ -15,6 +15,7 @@ pub struct LoadedSphere {
     density: f64,
     load: f64,
     offset: f64,
+    wall: Option<f64>,
 }
 
 impl LoadedSphere {
@@ -39,10 +40,12 @@ impl LoadedSphere {
                 Interval::NOT_NEGATIVE,
                 2e-3,
             ),
+            WALL,
+            INERTIA,
         ],
         make: |given| {
             let [radius, density, load, offset] = std::array::from_fn(|i| given.number(i));
-            Ok(Self::new(radius, density, load, offset)?.into())
+            made(Self::new(radius, density, load, offset)?, given, 4)
         },
     };
 
@@ -63,13 +66,17 @@ impl LoadedSphere {
             density,
             load,
             offset,
+            wall: None,
         };
         representable(body, "radius")
     }
 
     /// Mass, centre and inertia of sphere and load.
     fn whole(&self) -> MassProperties {
-        MassProperties::sphere(self.radius, self.density)
+        let sphere = |radius| MassProperties::sphere(radius, self.density);
+        let whole = sphere(self.radius);
+        self.wall
+            .map_or(whole, |wall| whole.less(sphere(self.radius - wall)))
             .and(MassProperties::point(self.load, self.offset))
     }
 }
@@ -97,6 +104,11 @@ impl Shape for LoadedSphere {
 
     fn outline(&self) -> [Arc; 2] {
         Arc::halves(-self.centre_of_mass(), self.radius, self.radius)
+    }
+
+    fn hollow(self, wall: f64) -> Result<Self, Error> {
+        let wall = hollow::checked(wall, self.radius, self.radius)?;
+        representable(Self { wall, ..self }, "radius")
     }
 
     fn scaled(&self) -> Body {

@@ -4,6 +4,7 @@
 //! balls or is smooth; [`Hull`] lists what it has to provide.
 
 mod dumbbell;
+mod hollow;
 mod hull;
 mod loaded_sphere;
 mod outline;
@@ -21,6 +22,7 @@ pub use spheroid::Spheroid;
 use super::check_density;
 use crate::Error;
 use crate::describe::Kind;
+use hollow::{INERTIA, WALL, made};
 
 /// Every body.
 pub const BODIES: &[Kind<Solid>] = &[
@@ -63,6 +65,13 @@ pub trait Shape {
     fn outline(&self) -> [Arc; 2];
     /// The body in the core's units.
     fn scaled(&self) -> Body;
+    /// The body with a wall of this thickness, in m: the shape less itself drawn in by it; the whole shape if it leaves nothing inside.
+    ///
+    /// # Errors
+    /// Unless the wall is at least 10⁻⁶ of the longest radius, and no thicker than the body.
+    fn hollow(self, wall: f64) -> Result<Self, Error>
+    where
+        Self: Sized;
 }
 
 /// The properties of any shape, as a run uses them.
@@ -109,6 +118,14 @@ impl Solid {
     /// plane.
     pub fn clears(height: f64, lowest: f64) -> bool {
         height >= lowest * (1.0 - 4.0 * f64::EPSILON)
+    }
+
+    /// The body with these moments of inertia across and about its axis, in kg m², instead of those of its matter.
+    ///
+    /// # Errors
+    /// Unless matter within the hull can have them: both positive, the second at most twice the first.
+    pub fn with_inertia(self, moments: [f64; 2]) -> Result<Self, Error> {
+        hollow::with_inertia(self, moments)
     }
 
     /// The largest value of [`Solid::lowest`] over all angles, in m.

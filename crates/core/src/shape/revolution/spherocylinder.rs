@@ -1,8 +1,8 @@
 //! A cylinder with hemispherical caps: its contact is that of a dumbbell, but it has more mass in the middle.
 
 use super::{
-    Arc, Body, EqualBalls, Shape, Solid, Surface, check_density, check_distance, check_length,
-    representable, seen,
+    Arc, Body, EqualBalls, INERTIA, Shape, Solid, Surface, WALL, check_density, check_distance,
+    check_length, hollow, made, representable, seen,
 };
 use crate::Error;
 use crate::describe::{Arguments, Interval, Kind, Parameter};
@@ -14,6 +14,7 @@ pub struct Spherocylinder {
     radius: f64,
     separation: f64,
     density: f64,
+    wall: Option<f64>,
 }
 
 impl Spherocylinder {
@@ -31,8 +32,13 @@ impl Spherocylinder {
                 6e-3,
             ),
             Parameter::density("density"),
+            WALL,
+            INERTIA,
         ],
-        make: |given| Ok(Self::new(given.number(0), given.number(1), given.number(2))?.into()),
+        make: |given| {
+            let [radius, separation, density] = std::array::from_fn(|i| given.number(i));
+            made(Self::new(radius, separation, density)?, given, 3)
+        },
     };
 
     /// A spherocylinder of `radius` (m) and `density` (kg/m³), the centres of its caps `separation` (m) apart.
@@ -48,6 +54,7 @@ impl Spherocylinder {
             radius,
             separation,
             density,
+            wall: None,
         };
         representable(body, "radius")
     }
@@ -59,18 +66,25 @@ impl Spherocylinder {
 
     /// m/(πρR³).
     fn mass_factor(&self) -> f64 {
-        4.0 / 3.0 + self.elongation()
+        self.of_wall(|l| 4.0 / 3.0 + l, 3)
     }
 
     /// J_xx/(πρR⁵), L in R: the cylinder gives L(1/4 + L²/12), the hemispheres have their centres of mass at ±(L/2 + 3/8).
     fn transverse_factor(&self) -> f64 {
-        let l = self.elongation();
-        8.0 / 15.0 + l * (3.0 / 4.0 + l * (1.0 / 3.0 + l / 12.0))
+        self.of_wall(
+            |l| 8.0 / 15.0 + l * (3.0 / 4.0 + l * (1.0 / 3.0 + l / 12.0)),
+            5,
+        )
     }
 
     /// J_zz/(πρR⁵).
     fn axial_factor(&self) -> f64 {
-        8.0 / 15.0 + self.elongation() / 2.0
+        self.of_wall(|l| 8.0 / 15.0 + l / 2.0, 5)
+    }
+
+    fn of_wall(&self, factor: fn(f64) -> f64, power: i32) -> f64 {
+        let wall = self.wall.map(|wall| wall / self.radius);
+        hollow::of_wall(factor, power, self.elongation(), wall)
     }
 }
 
@@ -94,6 +108,11 @@ impl Shape for Spherocylinder {
     fn outline(&self) -> [Arc; 2] {
         let half = 0.5 * self.separation;
         Arc::caps([half, -half], [self.radius; 2], [0.5 * PI; 2])
+    }
+
+    fn hollow(self, wall: f64) -> Result<Self, Error> {
+        let wall = hollow::checked(wall, self.radius, self.radius)?;
+        representable(Self { wall, ..self }, "radius")
     }
 
     fn scaled(&self) -> Body {
