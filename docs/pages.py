@@ -81,7 +81,9 @@ def _cells(about: dict[str, Any]) -> str:
     else:
         described = import_module("restitution._internal.described")
         allowed = described.interval(about).replace(">=", "≥")
-    unit = {None: "", "1": "", "kg m-3": "kg/m³", "m s-1": "m/s"}.get(about["unit"], about["unit"])
+    unit = {None: "", "1": "", "kg m-3": "kg/m³", "m s-1": "m/s", "kg m2": "kg m²"}.get(
+        about["unit"], about["unit"]
+    )
     return f"`{about['name']}` | {about['text']} | {unit} | {allowed} | {about.get('default', '')}"
 
 

@@ -47,6 +47,22 @@ def test_every_form_has_the_lever_arm_that_it_stands_for(form: str) -> None:
     assert body.mass == pytest.approx(2700.0 * np.pi / 6.0 * diameter**3, rel=2e-3)
 
 
+@pytest.mark.parametrize("form", ["lobed", "flattened", "dumbbell", "off-centre"])
+def test_every_form_of_a_shell_has_its_mass_and_inertia(form: str) -> None:
+    """J = 2 m (R⁵ - r⁵)/(5 (R³ - r³)), and m of the wall, to first order in t/R; the hull stays."""
+    t, diameter, wall = 4e-6, 0.04, 4e-4
+    body = rs.from_roundness(diameter, t, form=form, density=1400.0, wall=wall)  # type: ignore[arg-type]
+    outside, inside = diameter / 2.0, diameter / 2.0 - wall
+    assert body.mass == pytest.approx(1400.0 * 4 / 3 * np.pi * (outside**3 - inside**3), rel=1e-3)
+    inertia = 0.4 * body.mass * (outside**5 - inside**5) / (outside**3 - inside**3)
+    assert body.transverse_inertia == pytest.approx(inertia, rel=1e-3)
+    full = rs.from_roundness(diameter, t, form=form, density=1400.0)  # type: ignore[arg-type]
+    angles = np.cos(np.linspace(0.0, np.pi, 7))
+    for angle in angles:
+        height, other = (one.compiled.lowest(np.array([angle])) for one in (body, full))
+        assert height == pytest.approx(other, abs=1e-3 * t)
+
+
 def test_more_lobes_have_a_longer_lever_arm() -> None:
     three = rs.from_roundness(6e-3, 10e-6, lobes=3)
     two = rs.from_roundness(6e-3, 15e-6)
@@ -75,6 +91,11 @@ def test_a_grade_is_its_number_in_millionths_of_an_inch() -> None:
             r"^form = 'egg': must be 'lobed', 'flattened', 'dumbbell' or 'off-centre'$",
         ),
         (lambda: rs.from_roundness(6e-3, 1e-6, lobes=1), r"^lobes = 1"),
+        (lambda: rs.from_roundness(6e-3, 1e-6, wall=-1e-4), r"^wall = -0.0001: must be a finite number > 0"),
+        (
+            lambda: rs.from_roundness(6e-3, 1e-6, wall=4e-3),
+            r"^diameter = 0.006, .*, wall = 0.004: gives wall = 0.004.*: must be at most the equatorial",
+        ),
         (lambda: rs.from_roundness(6e-3, 1e-6, form="flattened", lobes=3), r"^lobes = 3: must be left out"),
         (lambda: rs.ball_grade(7), r"^grade = 7: must be one of 3, 5, 10"),
         (lambda: rs.ball_roughness(500), r"^grade = 500: must be one of 3, 5, 10"),

@@ -93,8 +93,9 @@ BINS = ("velocity_bins", "restitution_bins")
 
 
 def described(kind: type[Any], entry: dict[str, Any]) -> Call:
-    """Make a class of the core's tables, with the usual value of each parameter."""
-    values = {about["name"]: about["example"] for about in entry["parameters"]}
+    """Make a class of the core's tables, with the usual value of each parameter that is not left out."""
+    given = (about for about in entry["parameters"] if about.get("default", 0.0) is not None)
+    values = {about["name"]: about["example"] for about in given}
     return kind, lambda: ({"normal": 0.5} if issubclass(kind, laws.Law) else {}) | values
 
 

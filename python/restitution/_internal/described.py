@@ -62,7 +62,7 @@ class Described(Parameters):
             _ = self.compiled
         except _core.ParameterError as error:
             # Of which values it depends: of all if a number overflows, else of those that the text names.
-            among = [name for name in type(self).model_fields if name != error.name]
+            among = [name for name in self._given() if name != error.name]
             if not isinstance(error, _core.MagnitudeError):
                 among = [name for name in among if re.search(rf"\b{name}\b", error.allowed)]
             values = "".join(f", {name} = {shown(getattr(self, name))}" for name in among)

@@ -178,6 +178,9 @@ class Parameters(BaseModel):
         fields = (f"{name}={_text.short(value)}" for name, value in self._given().items())
         return f"{type(self).__name__}({', '.join(fields)})"
 
+    def __repr_args__(self) -> list[tuple[str | None, Any]]:
+        return [(name, value) for name, value in super().__repr_args__() if value is not None]
+
     def _repr_html_(self) -> str:
         return _text.table(type(self).__name__, self._rows())
 

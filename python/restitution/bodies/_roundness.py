@@ -18,6 +18,7 @@ from restitution._internal.parameters import (
 )
 from restitution.bodies._body import Body
 from restitution.bodies._dumbbell import Dumbbell
+from restitution.bodies._hollow import Wall
 from restitution.bodies._loaded_sphere import LoadedSphere
 from restitution.bodies._spheroid import Spheroid
 
@@ -68,6 +69,7 @@ class _Asked(Parameters):
     form: Annotated[Form, Allowed(_FORMS)]
     lobes: Annotated[Whole, Field(ge=2, le=1000)]
     density: Annotated[Number, Field(gt=0, description="kg/m³")]
+    wall: Wall
 
 
 def from_roundness(
@@ -77,6 +79,7 @@ def from_roundness(
     form: Form = "lobed",
     lobes: int = 2,
     density: float = 2500.0,
+    wall: float | None = None,
 ) -> Body:
     """Make a body that stands for a nearly round ball.
 
@@ -101,7 +104,10 @@ def from_roundness(
     lobes : int
         Number of lobes of form "lobed", >= 2.
     density : float
-        Mean density in kg/m³, > 0.
+        Mean density of the matter in kg/m³, > 0.
+    wall : float, optional
+        Thickness of the wall of a hollow ball, in m; at most half the smallest diameter. A shell has up to
+        5/3 times the moment of inertia of a full ball of the same mass, and the shape that much less effect.
 
     Returns
     -------
@@ -119,7 +125,12 @@ def from_roundness(
     1.000834
     """
     asked = _Asked(
-        diameter=diameter, out_of_roundness=out_of_roundness, form=form, lobes=lobes, density=density
+        diameter=diameter,
+        out_of_roundness=out_of_roundness,
+        form=form,
+        lobes=lobes,
+        density=density,
+        wall=wall,
     )
     if asked.lobes != 2 and asked.form != "lobed":
         raise ParameterError(wrong("lobes", lobes, f"left out: form = {form!r} has none"))
@@ -128,25 +139,30 @@ def from_roundness(
         most = 2.0 * _MOST * asked.diameter / asked.lobes
         allowed = f"in [0, {most:g}], nearly round for diameter = {shown(diameter)} (m)"
         raise ParameterError(wrong("out_of_roundness", out_of_roundness, allowed))
-    with in_terms_of(diameter=diameter, out_of_roundness=out_of_roundness, density=density):
+    hollow = {} if wall is None else {"wall": wall}
+    with in_terms_of(diameter=diameter, out_of_roundness=out_of_roundness, density=density, **hollow):
         return _body(asked, t)
 
 
 def _body(asked: _Asked, t: float) -> Body:
     long, short = 0.5 * (asked.diameter + t), 0.5 * (asked.diameter - t)
+    density, wall = asked.density, asked.wall
     match asked.form:
         case "lobed":
-            return Spheroid(equatorial=short, polar=long, density=asked.density)
+            return Spheroid(equatorial=short, polar=long, density=density, wall=wall)
         case "flattened":
-            return Spheroid(equatorial=long, polar=short, density=asked.density)
+            return Spheroid(equatorial=long, polar=short, density=density, wall=wall)
         case "dumbbell":
-            return Dumbbell(radius=short, separation=2.0 * t, density=asked.density)
+            return Dumbbell(radius=short, separation=2.0 * t, density=density, wall=wall)
         case "off-centre":
             radius = 0.5 * asked.diameter
-            mass = 4.0 / 3.0 * math.pi * radius**3 * asked.density
+            volume = 4.0 / 3.0 * math.pi * radius**3
+            if wall is not None:
+                volume -= 4.0 / 3.0 * math.pi * max(0.0, radius - wall) ** 3
+            mass = volume * density
             share = t / radius  # a load m' at the surface moves the centre of mass by R m'/m
             return LoadedSphere(
-                radius=radius, density=asked.density * (1.0 - share), load=mass * share, offset=radius
+                radius=radius, density=density * (1.0 - share), load=mass * share, offset=radius, wall=wall
             )
 
 

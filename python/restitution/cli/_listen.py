@@ -42,6 +42,9 @@ def listen(
     out_of_roundness: Annotated[
         float | None, typer.Option(metavar="T", help="Out-of-roundness of the ball, m, if it was measured.")
     ] = None,
+    wall: Annotated[
+        float | None, typer.Option(metavar="W", help="Thickness of the wall of a hollow ball, m.")
+    ] = None,
     doubtful: Annotated[bool, typer.Option("--doubtful", help="Take impacts that are in doubt.")] = False,
     overwrite: Overwrite = False,
     quiet: Quiet = False,
@@ -72,6 +75,7 @@ def listen(
                 gravity=gravity,
                 gravity_uncertainty=gravity_error,
                 out_of_roundness=out_of_roundness,
+                wall=wall,
                 doubtful=doubtful,
             )
         analysis = write(file, out, setting, replace=overwrite)

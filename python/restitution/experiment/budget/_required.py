@@ -9,7 +9,7 @@ import xarray as xr
 from pydantic import Field
 
 from restitution._internal.parameters import Allowed, Number, ParameterError, Parameters, TooLargeError, wrong
-from restitution.bodies import Form, from_roundness
+from restitution.bodies import Body, Form, from_roundness
 from restitution.experiment.budget._error_budget import weights
 from restitution.experiment.budget._results import RequiredRoundness
 from restitution.experiment.budget._rough import roughness as rough
@@ -37,6 +37,7 @@ def required_roundness(
     quantity: Literal["single", "mean", "fit"] = "mean",
     form: Form = "lobed",
     lobes: int = 2,
+    wall: float | None = None,
     gravity: float = 9.81,
     roughness: float = 0.0,
     particles: int = 400,
@@ -61,8 +62,8 @@ def required_roundness(
         Number of coefficients, from 3 to 1000.
     quantity : {"single", "mean", "fit"}
         One coefficient (root mean square over the run), the mean over the run, or the fitted ε_n(v).
-    form, lobes
-        Kind of deviation from a sphere, as in `restitution.from_roundness`.
+    form, lobes, wall
+        Kind of deviation from a sphere, and the wall of a hollow ball, as in `restitution.from_roundness`.
     gravity : float
         In m/s², > 0.
     roughness : float
@@ -92,18 +93,21 @@ def required_roundness(
     if not isinstance(law, Law):
         raise ParameterError(wrong("law", law, "a law such as Frictionless(normal=0.9)"))
     # The errors of what makes the balls come first.
-    from_roundness(asked.diameter, asked.diameter * _ROUNDEST, form=form, lobes=lobes)
+
+    def ball(share: float) -> Body:
+        return from_roundness(asked.diameter, asked.diameter * share, form=form, lobes=lobes, wall=wall)
+
+    ball(_ROUNDEST)
     setting = Setting(
         drop=drop, impacts=impacts, gravity=gravity, roughness=roughness, particles=particles, seed=seed
     )
     experiment = Experiment.of(law, setting)
     smooth = setting.roughness == 0.0
-    ball = from_roundness(asked.diameter, 0.0)
-    surface = nothing(setting.impacts) if smooth else rough(experiment, ball)
+    surface = nothing(setting.impacts) if smooth else rough(experiment, ball(0.0))
     deviations: list[float] = []
     rows: list[tuple[float, float, float]] = []
     for share in np.geomspace(_ROUNDEST, _LEAST_ROUND * 2.0 / lobes, _STEPS):
-        body = from_roundness(asked.diameter, asked.diameter * share, form=form, lobes=lobes)
+        body = ball(float(share))
         try:
             alone = shape(experiment, body)
         except TooLargeError:

@@ -22,6 +22,7 @@ class Family:
     diameter: float  # in m
     form: Form  # as in `restitution.from_roundness`
     lobes: int
+    wall: float | None = None  # in m
 
     @property
     def of_speed(self) -> LawOfSpeed:
@@ -44,7 +45,12 @@ class Family:
     def body(self, elongation: float) -> Body:
         """Return the ball of an L/R, with L = 2t."""
         t = 0.25 * elongation * self.diameter
-        return from_roundness(self.diameter, t, form=self.form, lobes=self.lobes)
+        return from_roundness(self.diameter, t, form=self.form, lobes=self.lobes, wall=self.wall)
+
+    @property
+    def words(self) -> str:
+        """The form, as a sentence names it, and the wall if it is hollow."""
+        return f"'{self.form}'" + ("" if self.wall is None else f" with a wall of {1e3 * self.wall:.3g} mm")
 
     def law_of(self, parameter: float, scatter: float | None, friction: float | None) -> Law:
         """Return the law of a parameter of ε_n and, where they are inferred, its scatter and friction."""

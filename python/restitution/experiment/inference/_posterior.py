@@ -14,7 +14,7 @@ from pydantic import Field
 from restitution import flight
 from restitution._internal.arrays import pair
 from restitution._internal.parameters import Number, ParameterError, Parameters, Whole, in_terms_of, wrong
-from restitution.bodies import Form
+from restitution.bodies import Form, Wall
 from restitution.experiment.flight.series import series_of
 from restitution.experiment.inference._family import Family
 from restitution.experiment.inference._series import NEEDED, Series, check_from_release
@@ -39,6 +39,7 @@ class Setting(Parameters):
 
     diameter: Annotated[Number, Field(gt=0, le=1e6, description="m")]
     lobes: Annotated[Whole, Field(ge=2)]
+    wall: Wall
     particles: Annotated[Whole, Field(ge=100)]
     draws: Annotated[Whole, Field(ge=100, le=10**8)]
     seed: Annotated[Whole, Field(ge=0, lt=2**32)]
@@ -51,6 +52,7 @@ def posterior(
     diameter: float,
     form: Form = "dumbbell",
     lobes: int = 2,
+    wall: float | None = None,
     elongation: tuple[float, float] = (1e-3, 0.3),
     scatter: tuple[float, float] | None = (1e-6, 0.05),
     friction: tuple[float, float] | None = None,
@@ -79,6 +81,9 @@ def posterior(
     form, lobes
         Kind of deviation from a sphere, as in `restitution.from_roundness`; L = 2t. It is assumed, and the
         result depends on it: an L/R of one form scatters ε as some other L/R of another.
+    wall : float, optional
+        Thickness of the wall of a hollow ball, in m. A table-tennis ball that is taken for a full one has an
+        L/R that is too small by a fifth.
     elongation : (float, float)
         Prior: ln(L/R) is uniform between these, 10⁻⁹ <= low < high < 10⁶ low.
     scatter : (float, float) or None
@@ -131,15 +136,16 @@ def posterior(
     'undecided'
     """
     emcee, from_dict = _packages()
-    setting = Setting(diameter=diameter, lobes=lobes, particles=particles, draws=draws, seed=seed)
+    setting = Setting(diameter=diameter, lobes=lobes, wall=wall, particles=particles, draws=draws, seed=seed)
     if not isinstance(law, Law):
         raise ParameterError(wrong("law", law, "a law such as Frictionless(normal=0.9)"))
     low, high = _prior("elongation", elongation, least=_ROUNDEST)
     if not high < _MOST_RANGE * low:
         raise ParameterError(wrong("elongation", elongation, f"high < {_MOST_RANGE:g} low"))
-    family = Family(law, setting.diameter, form, setting.lobes)
+    family = Family(law, setting.diameter, form, setting.lobes, setting.wall)
     family.check_friction(friction)
-    with in_terms_of(elongation=elongation, diameter=diameter):
+    hollow = {} if wall is None else {"wall": wall}
+    with in_terms_of(elongation=elongation, diameter=diameter, **hollow):
         family.body(high)
     frictions: Sequence[float | None] = [None]
     if friction is not None:
@@ -269,7 +275,7 @@ def _tree(
         "source": f"restitution {version('restitution')}",
         "law": repr(family.law),
         "form": family.form,
-        **setting.model_dump(),
+        **setting.model_dump(exclude_none=True),
         "explained_by": verdict.cause,
         "log_bayes_factor_shape": verdict.for_shape,
         **({"log_bayes_factor_scatter": verdict.for_scatter} if scatters else {}),
@@ -277,6 +283,6 @@ def _tree(
         "elongation_upper_limit": found.limit(1),
         "predictive_p_value": found.agreement,
         "verdict": disagreement(found)
-        + sentence(found, verdict, family.form, setting.diameter, elongation, scatter),
+        + sentence(found, verdict, family.words, setting.diameter, elongation, scatter),
     }
     return tree

@@ -76,11 +76,11 @@ def sentence(
     most = found.limit(_ELONGATION)
     shape = (
         f"L/R = {middle:.2g}, between {low:.2g} and {high:.2g} (90 %), an out-of-roundness of "
-        f"{digits(micrometres * middle)} µm, for a ball of the form '{form}'"
+        f"{digits(micrometres * middle)} µm, for a ball of the form {form}"
     )
     at_most = (
         f"L/R is below {most:.2g} (95 %), the out-of-roundness below {digits(micrometres * most)} µm, for a "
-        f"ball of the form '{form}'"
+        f"ball of the form {form}"
     )
     undetermined = "The times do not determine the shape"
     round_as_well = f"{undetermined}: a round ball explains them as well. {at_most}."

@@ -24,7 +24,7 @@ from restitution._internal.parameters import (
     wrong,
 )
 from restitution._internal.text import digits, with_error
-from restitution.bodies import from_roundness
+from restitution.bodies import Wall, from_roundness
 from restitution.experiment.flight.chain import measured_of
 from restitution.experiment.flight.separation import KNOWN, Separation, separation
 from restitution.experiment.flight.times import DOUBLED, FLAGS
@@ -37,6 +37,8 @@ _FEWEST_FOR_SCATTER = 6
 """Coefficients that are needed to fit a scatter beside a law."""
 _EXPLAINED = 0.01
 """Probability of a law from which on errors of measurement explain all scatter."""
+_LIGHT = 500.0
+"""Mean density in kg/m³ below which a ball is asked about: of wood, cork and foam, or hollow."""
 _LOSSY = (".mp3", ".ogg", ".oga", ".opus", ".aac", ".3gp", ".amr", ".wma")
 """Endings of files that are compressed with loss."""
 _OFTEN_LOSSY = (".m4a", ".mp4")
@@ -67,6 +69,8 @@ class Setting(Parameters):
         g and its standard error, in m/s².
     out_of_roundness : float, optional
         Of the ball, in m, where it was measured.
+    wall : float, optional
+        Thickness of the wall of a hollow ball, in m.
     doubtful : bool
         Whether impacts that are in doubt count.
     """
@@ -81,13 +85,13 @@ class Setting(Parameters):
     out_of_roundness: Annotated[
         Number | None, Field(ge=0, description="m"), Allowed("a finite number >= 0 (m), or None")
     ] = None
-
+    wall: Wall = None
     doubtful: bool = False
 
     @model_validator(mode="after")
     def _nearly_round(self) -> Self:
-        if self.out_of_roundness is not None:
-            from_roundness(self.diameter, self.out_of_roundness)
+        if self.out_of_roundness is not None or self.wall is not None:
+            from_roundness(self.diameter, self.out_of_roundness or 0.0, wall=self.wall)
         return self
 
     @property
@@ -319,6 +323,7 @@ def _series(heard: xr.Dataset, number: int, setting: Setting, told: Separation) 
             diameter=setting.diameter,
             mass=setting.mass,
             out_of_roundness=setting.out_of_roundness,
+            wall=setting.wall,
             drag=setting.drag,
         )
     return Series(number, rows, data, ordered, found, told.words)
@@ -387,6 +392,13 @@ def _warnings(heard: xr.Dataset, series: tuple[Series, ...], setting: Setting) -
             f"{100 * share:.0f} % of the loud samples are clipped: "
             "loudness is lost, times are not; record with less gain."
         )
+    if setting.mass is not None and setting.wall is None:
+        density = setting.mass / from_roundness(setting.diameter, 0.0, density=1.0).mass
+        if density < _LIGHT:
+            found.append(
+                f"The mean density of the ball is {digits(density)} kg/m³: if it is hollow, give the "
+                "thickness of its wall; taken for a full ball, it seems rounder than it is."
+            )
     others = int(heard.attrs.get("other_ball_impacts", 0))
     if others:
         found.append(

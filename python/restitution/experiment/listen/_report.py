@@ -77,6 +77,8 @@ def _recording(file: Path, analysis: Analysis) -> list[str]:
         ["diameter", f"{1e3 * setting.diameter:g} mm"],
         ["gravity", f"{with_error(setting.gravity, setting.gravity_uncertainty)} m/s²"],
     ]
+    if setting.wall is not None:
+        rows.append(["wall", f"{1e3 * setting.wall:g} mm"])
     if setting.drop is not None:
         rows.append(["drop height", f"{with_error(setting.drop, setting.drop_uncertainty)} m"])
     drag = setting.drag

@@ -56,6 +56,7 @@ def shape(
     diameter: float,
     mass: float | None,
     out_of_roundness: float | None,
+    wall: float | None,
     drag: Drag | None,
 ) -> Shape | None:
     """Infer the shape of the ball of a series, and budget its errors; None where no law was fitted."""
@@ -69,7 +70,7 @@ def shape(
     )
     if apart <= _APART:
         try:
-            draws = posterior(data, law, diameter=diameter, particles=_PARTICLES)
+            draws = posterior(data, law, diameter=diameter, wall=wall, particles=_PARTICLES)
             verdict = str(draws.attrs["verdict"])
         except TooLargeError:
             raise
@@ -79,10 +80,10 @@ def shape(
     form: Form = "dumbbell" if draws is None else draws.attrs["form"]
     if t is None:
         return Shape(law, draws, verdict, None, assumed)
-    density = 2500.0 if mass is None else 6.0 * mass / (np.pi * diameter**3)
+    density = 2500.0 if mass is None else mass / from_roundness(diameter, 0.0, density=1.0, wall=wall).mass
     try:
         budget = error_budget(
-            from_roundness(diameter, t, density=density, form=form),
+            from_roundness(diameter, t, density=density, form=form, wall=wall),
             law,
             drop=_drop(data, law),
             impacts=int(np.isfinite(data.restitution).sum()),

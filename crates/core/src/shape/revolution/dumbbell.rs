@@ -240,7 +240,11 @@ impl Shape for Dumbbell {
             wall,
             "left out where both radius and density differ",
         )?;
-        let wall = hollow::checked(wall, self.unit(), self.unit())?;
+        let wall = hollow::checked(
+            wall,
+            self.unit(),
+            (self.unit(), "at most the larger radius (m)"),
+        )?;
         representable(Self { wall, ..self }, "radius")
     }
 

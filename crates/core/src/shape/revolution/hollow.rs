@@ -13,7 +13,7 @@ pub(super) const WALL: Parameter = Parameter::length(
 .optional();
 pub(super) const INERTIA: Parameter = Parameter::new(
     "inertia",
-    "moments of inertia across and about the axis instead of those of the matter, the second at most twice the first; or one for both",
+    "moments of inertia across and about the axis, or one for both, instead of those of the matter",
     Some("kg m2"),
     Allowed::Pair(Interval::POSITIVE),
     Argument::Pair([1.2e-9, 1.0e-9]),
@@ -49,15 +49,18 @@ pub(super) fn made<S: Shape>(
     }
 }
 
-/// The wall, unless it is too thin or thicker than a body of this longest radius and this thickness to its middle, in m; none if it
-/// leaves nothing inside.
-pub(super) fn checked(wall: f64, unit: f64, thickest: f64) -> Result<Option<f64>, Error> {
+/// The wall, unless it is too thin for a body of this longest radius, or thicker than its thickest, in m, which `allowed` names; none if
+/// it leaves nothing inside.
+pub(super) fn checked(
+    wall: f64,
+    unit: f64,
+    (thickest, allowed): (f64, &'static str),
+) -> Result<Option<f64>, Error> {
     check_length("wall", wall)?;
     let thick = wall >= THINNEST * unit * (1.0 - 4.0 * f64::EPSILON);
-    let allowed = "at least 1e-6 of the longest radius (m)";
-    Error::unless(thick, "wall", wall, allowed)?;
+    let least = "at least 1e-6 of the longest radius (m)";
+    Error::unless(thick, "wall", wall, least)?;
     let within = wall <= thickest * (1.0 + 4.0 * f64::EPSILON);
-    let allowed = "no thicker than the body, whose middle is as far below its surface at most";
     Error::unless(within, "wall", wall, allowed)?;
     Ok((wall < thickest).then_some(wall))
 }

@@ -107,7 +107,7 @@ impl Shape for LoadedSphere {
     }
 
     fn hollow(self, wall: f64) -> Result<Self, Error> {
-        let wall = hollow::checked(wall, self.radius, self.radius)?;
+        let wall = hollow::checked(wall, self.radius, (self.radius, "at most the radius (m)"))?;
         representable(Self { wall, ..self }, "radius")
     }
 

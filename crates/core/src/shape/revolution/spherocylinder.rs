@@ -111,7 +111,7 @@ impl Shape for Spherocylinder {
     }
 
     fn hollow(self, wall: f64) -> Result<Self, Error> {
-        let wall = hollow::checked(wall, self.radius, self.radius)?;
+        let wall = hollow::checked(wall, self.radius, (self.radius, "at most the radius (m)"))?;
         representable(Self { wall, ..self }, "radius")
     }
 

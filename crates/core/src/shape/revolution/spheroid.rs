@@ -115,7 +115,14 @@ impl Shape for Spheroid {
 
     fn hollow(self, wall: f64) -> Result<Self, Error> {
         let thickest = self.equatorial.min(self.polar);
-        let wall = hollow::checked(wall, self.unit(), thickest)?;
+        let wall = hollow::checked(
+            wall,
+            self.unit(),
+            (
+                thickest,
+                "at most the equatorial and the polar semi-axis (m)",
+            ),
+        )?;
         let cavity = wall.map(|wall| cavity(self.axes(), wall / self.unit()));
         representable(Self { cavity, ..self }, "equatorial")
     }
