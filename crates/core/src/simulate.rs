@@ -106,7 +106,7 @@ impl Run<'_> {
         Ok(total)
     }
 
-    /// CountSink the impacts of a part in the grids of a histogram, and returns what else is summed of them.
+    /// Counts the impacts of a part in the grids of a histogram, and returns what else is summed of them.
     fn rows(
         plan: &Plan<'_>,
         part: Range<usize>,

@@ -83,7 +83,7 @@ impl<R: Source, T: Sink> WithSimd for Block<'_, R, T> {
         let (law, slope) = (&plan.law, plan.slope);
         // The paper's runs have a bounce loop of their own where they are not held up by memory.
         match (&body.hull, plan.at_rest, &plan.law.steady()) {
-            (Surface::EqualBalls(hull), true, Some(law)) if T::TOGETHER => {
+            (Surface::EqualBalls(hull), true, Some(law)) if T::INTERLEAVED => {
                 self.run::<S, Planar>(simd, body, &Inlined::new(body, hull, law, slope))
             }
             (_, true, _) => self.run::<S, Planar>(simd, body, &General { body, law, slope }),

@@ -13,7 +13,7 @@ mod stop;
 
 pub(crate) use block::{BLOCK, bounce_block, even, share};
 pub use follow::Followed;
-pub(crate) use lanes::{GROUPS, Impact, Meanwhile, Pose, Sink};
+pub(crate) use lanes::{Impact, Meanwhile, PLACES, Pose, Sink, of_group};
 pub(crate) use plan::Plan;
 pub use release::{About, Height, Orientation, Spin};
 pub use scales::Scales;

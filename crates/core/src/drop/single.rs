@@ -198,12 +198,12 @@ struct Reporter<'a, F> {
 }
 
 impl<F> Meanwhile for Reporter<'_, F> {
+    const INTERLEAVED: bool = false;
+
     fn meanwhile(&mut self, _: usize) {}
 }
 
 impl<F: FnMut(&SingleImpact) -> bool> Sink for Reporter<'_, F> {
-    const TOGETHER: bool = false;
-
     fn begin(&mut self) {}
 
     fn impact<S: Simd, P: Pose<S, K>, const K: usize>(

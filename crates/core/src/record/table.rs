@@ -143,12 +143,12 @@ impl<'a> Table<'a> {
 }
 
 impl Meanwhile for Table<'_> {
+    const INTERLEAVED: bool = false;
+
     fn meanwhile(&mut self, _: usize) {}
 }
 
 impl Sink for Table<'_> {
-    const TOGETHER: bool = false;
-
     fn begin(&mut self) {}
 
     #[inline(always)]

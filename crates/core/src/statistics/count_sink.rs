@@ -10,14 +10,11 @@ use super::rows::{CREATES_ENERGY, Rows};
 use crate::Error;
 use crate::drop::Plan;
 use crate::drop::StopReason;
-use crate::drop::{GROUPS, Impact, Meanwhile, Pose, Sink};
+use crate::drop::{Impact, Meanwhile, PLACES, Pose, Sink, of_group};
 use crate::memory::zeros;
 use crate::simd::{LANES, Pack};
 use pulp::Simd;
 use std::sync::Mutex;
-
-/// Length of the queue: a place for each lane of every group.
-const LENGTH: usize = GROUPS * LANES;
 
 /// Counts impacts in the grid of ε, and those that create energy, as [`super::MomentSink`] does, and nothing else.
 pub(crate) struct CountSink<'a, const EVEN: bool> {
@@ -30,7 +27,7 @@ pub(crate) struct CountSink<'a, const EVEN: bool> {
     restitution: Vec<u32>,
     recently: Recently,
     /// The sites at which impacts are to be counted, with [`ROUND`] added.
-    queue: [f64; LENGTH],
+    queue: [f64; PLACES],
 }
 
 impl<'a, const EVEN: bool> CountSink<'a, EVEN> {
@@ -47,11 +44,11 @@ impl<'a, const EVEN: bool> CountSink<'a, EVEN> {
             plan,
             restitution: zeros(WHAT, sites + LANES)?,
             recently: Recently::default(),
-            queue: [0.0; LENGTH],
+            queue: [0.0; PLACES],
         })
     }
 
-    /// CountSink the impact at place `i` of the queue.
+    /// Counts the impact at place `i` of the queue.
     #[inline(always)]
     fn count(&mut self, i: usize) {
         self.restitution[whole(self.queue[i])] += 1;
@@ -66,6 +63,8 @@ impl<'a, const EVEN: bool> CountSink<'a, EVEN> {
 }
 
 impl<const EVEN: bool> Meanwhile for CountSink<'_, EVEN> {
+    const INTERLEAVED: bool = true;
+
     #[inline(always)]
     fn meanwhile(&mut self, place: usize) {
         self.count(place);
@@ -73,8 +72,6 @@ impl<const EVEN: bool> Meanwhile for CountSink<'_, EVEN> {
 }
 
 impl<const EVEN: bool> Sink for CountSink<'_, EVEN> {
-    const TOGETHER: bool = true;
-
     fn begin(&mut self) {
         self.queue.fill(last(&self.restitution));
     }
@@ -89,7 +86,7 @@ impl<const EVEN: bool> Sink for CountSink<'_, EVEN> {
         if self.recently.add(width) {
             self.empty();
         }
-        let lanes = group * width..(group + 1) * width;
+        let lanes = of_group::<S, K>(group);
         let restitution = impact.restitution();
         let columns = &self.bins.restitution;
         let (row, column) = match &self.bins.by {

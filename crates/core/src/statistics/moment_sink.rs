@@ -13,17 +13,14 @@ use super::rows::{CREATES_ENERGY, Rows};
 use crate::Error;
 use crate::drop::Plan;
 use crate::drop::StopReason;
-use crate::drop::{GROUPS, Impact, Meanwhile, Pose, Sink};
+use crate::drop::{Impact, Meanwhile, PLACES, Pose, Sink, of_group};
 use crate::memory::{filled, zeros};
 use crate::simd::{LANES, Pack};
 use pulp::Simd;
 use std::ops::{IndexMut, Range};
 use std::sync::Mutex;
 
-/// Length of the queue: a place for each lane of every group.
-const LENGTH: usize = GROUPS * LANES;
-
-/// CountSink impacts in narrow integers, which are emptied before they can overflow. The bins of an impact are computed in all lanes at
+/// Counts impacts in narrow integers, which are emptied before they can overflow. The bins of an impact are computed in all lanes at
 /// once and queued; the queue is counted lane by lane while other arithmetic waits for its results. Lanes without an impact, or with
 /// one that cannot be summed there, are counted in an additional site or row that is never read, so that no branch is needed.
 pub(crate) struct MomentSink<'a, const EVEN: bool> {
@@ -51,14 +48,14 @@ pub(crate) struct MomentSink<'a, const EVEN: bool> {
 /// Impacts to be counted. Integers have [`ROUND`] added to them.
 #[repr(align(64))]
 struct Queue {
-    places: [Place; LENGTH],
+    places: [Place; PLACES],
     /// Contributions to the sums, in halves.
-    low: [Half; LENGTH],
-    high: [Half; LENGTH],
+    low: [Half; PLACES],
+    high: [Half; PLACES],
 }
 
 impl Queue {
-    /// CountSink the impact at place `i` in the grids, in the recent sums and extremes of its row, and, if there is no room left
+    /// Counts the impact at place `i` in the grids, in the recent sums and extremes of its row, and, if there is no room left
     /// there, in `own`.
     #[inline(always)]
     fn count<G, R, E>(
@@ -136,9 +133,9 @@ impl<'a, const EVEN: bool> MomentSink<'a, EVEN> {
             largest: zeros(WHAT, 2 * rows + LANES)?,
             recently: Recently::default(),
             queue: Queue {
-                places: [[0.0; 4]; LENGTH],
-                low: [[0.0; 4]; LENGTH],
-                high: [[0.0; 4]; LENGTH],
+                places: [[0.0; 4]; PLACES],
+                low: [[0.0; 4]; PLACES],
+                high: [[0.0; 4]; PLACES],
             },
         })
     }
@@ -172,6 +169,8 @@ impl<'a, const EVEN: bool> MomentSink<'a, EVEN> {
 }
 
 impl<const EVEN: bool> Meanwhile for MomentSink<'_, EVEN> {
+    const INTERLEAVED: bool = true;
+
     #[inline(always)]
     fn meanwhile(&mut self, place: usize) {
         let (grids, rows) = (
@@ -180,11 +179,23 @@ impl<const EVEN: bool> Meanwhile for MomentSink<'_, EVEN> {
         );
         self.queue.count(place, grids, rows, &mut self.own);
     }
+
+    #[inline(always)]
+    fn settle(&mut self, places: Range<usize>) {
+        // As vectors their addresses and lengths would be read again for every place.
+        let (restitution, fraction) = (&mut self.restitution[..], &mut self.fraction[..]);
+        let (rows, extremes) = (&mut self.rows[..], &mut self.extremes[..]);
+        for place in places {
+            let (grids, rows) = (
+                (&mut *restitution, &mut *fraction),
+                (&mut *rows, &mut *extremes),
+            );
+            self.queue.count(place, grids, rows, &mut self.own);
+        }
+    }
 }
 
 impl<const EVEN: bool> Sink for MomentSink<'_, EVEN> {
-    const TOGETHER: bool = true;
-
     fn begin(&mut self) {
         let nowhere = [
             last(&self.restitution),
@@ -205,7 +216,7 @@ impl<const EVEN: bool> Sink for MomentSink<'_, EVEN> {
         if self.recently.add(width) {
             self.empty();
         }
-        let lanes = group * width..(group + 1) * width;
+        let lanes = of_group::<S, K>(group);
         let simd = impact.time.simd();
         let restitution = impact.restitution();
         let fraction = impact.rotational_fraction();
@@ -272,20 +283,6 @@ impl<const EVEN: bool> Sink for MomentSink<'_, EVEN> {
                     *largest = ratio;
                 }
             }
-        }
-    }
-
-    #[inline(always)]
-    fn settle(&mut self, places: Range<usize>) {
-        // As vectors their addresses and lengths would be read again for every place.
-        let (restitution, fraction) = (&mut self.restitution[..], &mut self.fraction[..]);
-        let (rows, extremes) = (&mut self.rows[..], &mut self.extremes[..]);
-        for place in places {
-            let (grids, rows) = (
-                (&mut *restitution, &mut *fraction),
-                (&mut *rows, &mut *extremes),
-            );
-            self.queue.count(place, grids, rows, &mut self.own);
         }
     }
 

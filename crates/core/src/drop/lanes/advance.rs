@@ -6,7 +6,7 @@
 
 use super::collision::{Collisions, Dimension};
 use super::group::{Group, Lost, Release, Unconverged};
-use super::impact::Meanwhile;
+use super::interleaved::{Idle, Meanwhile, work_up};
 use super::passes::SearchOn;
 use crate::law::{Law, Respond, Response};
 use crate::shape::{Body, Hull, Surface, with_hull};
@@ -21,8 +21,8 @@ const WIDE: usize = 6;
 
 /// The motion of groups of particles from one impact to the next.
 pub(crate) trait Advance<S: Simd, T: Dimension> {
-    /// Whether the work of the sink is interleaved with that of [`Advance::advance`].
-    const TOGETHER: bool;
+    /// True if the work of the sink is interleaved with that of [`Advance::advance`].
+    const INTERLEAVED: bool;
 
     /// Whether ε_n is drawn for every impact.
     fn scatters(&self) -> bool;
@@ -76,7 +76,7 @@ pub(crate) struct General<'a, 'b> {
 }
 
 impl<S: Simd, T: Dimension, H: Hull, L: Respond> Advance<S, T> for Inlined<'_, H, L> {
-    const TOGETHER: bool = true;
+    const INTERLEAVED: bool = true;
 
     #[inline(always)]
     fn scatters(&self) -> bool {
@@ -186,14 +186,6 @@ impl<H: Hull, L: Respond> Inlined<'_, H, L> {
     }
 }
 
-/// Works up the impact of a lane of a group, if there is such a lane: eight stages have one lane each.
-#[inline(always)]
-fn work_up<S: Simd>(sink: &mut impl Meanwhile, group: usize, lane: usize) {
-    if lane < Pack::<S, 1>::WIDTH {
-        sink.meanwhile(group * Pack::<S, 1>::WIDTH + lane);
-    }
-}
-
 /// Searches for the next contact of all groups until few of their lanes still wait for one.
 #[inline(always)]
 pub(crate) fn find<S: Simd, T: Dimension>(
@@ -272,7 +264,7 @@ impl<'a, 'b> General<'a, 'b> {
 }
 
 impl<S: Simd, T: Dimension> Advance<S, T> for General<'_, '_> {
-    const TOGETHER: bool = false;
+    const INTERLEAVED: bool = false;
 
     #[inline(always)]
     fn scatters(&self) -> bool {
@@ -346,12 +338,4 @@ impl<S: Simd, T: Dimension, L: Advance<S, T>> WithSimd for AdvanceApart<'_, S, T
     fn with_simd<U: Simd>(self, _: U) -> Self::Output {
         self.cycle.advance(self.groups, self.collisions, &mut Idle)
     }
-}
-
-/// No work to interleave.
-pub(crate) struct Idle;
-
-impl Meanwhile for Idle {
-    #[inline(always)]
-    fn meanwhile(&mut self, _: usize) {}
 }

@@ -4,6 +4,7 @@ use super::advance::Advance;
 use super::collision::{Collisions, Dimension};
 use super::group::{Group, Lost, Release};
 use super::impact::Sink;
+use super::interleaved::of_groups;
 use crate::drop::stop::{Limits, StopReason};
 use crate::shape::Body;
 use crate::simd::Pack;
@@ -37,8 +38,8 @@ pub(crate) fn bounce<S: Simd, T: Dimension, L: Advance<S, T>, const N: usize>(
             cycle.occupy(groups, release, &mut particles);
             let before = groups.len();
             groups = in_use(groups);
-            if L::TOGETHER {
-                sink.settle(width * groups.len()..width * before);
+            if L::INTERLEAVED {
+                sink.settle(of_groups::<S>(groups.len()..before));
             }
         }
         if groups.is_empty() {
@@ -53,14 +54,14 @@ pub(crate) fn bounce<S: Simd, T: Dimension, L: Advance<S, T>, const N: usize>(
             }
         }
         cycle.advance(groups, &mut collisions, sink)?;
-        ended = if L::TOGETHER {
+        ended = if L::INTERLEAVED {
             report::<S, T, _, false>(simd, groups, (body, limits), sink)
         } else {
             report::<S, T, _, true>(simd, groups, (body, limits), sink)
         };
     }
-    if L::TOGETHER {
-        sink.settle(0..width * groups.len());
+    if L::INTERLEAVED {
+        sink.settle(of_groups::<S>(0..groups.len()));
     }
     for group in groups {
         group
@@ -116,13 +117,12 @@ impl<S: Simd, T: Dimension, K: Sink, const SETTLE: bool> WithSimd for Report<'_,
 
     #[inline(always)]
     fn with_simd<U: Simd>(self, _: U) -> bool {
-        let width = Pack::<S, 1>::WIDTH;
         let mut ended = false;
         for (i, group) in self.groups.iter_mut().enumerate() {
             ended |= group.report(i, self.body, self.limits, self.sink);
         }
         if SETTLE {
-            self.sink.settle(0..width * self.groups.len());
+            self.sink.settle(of_groups::<S>(0..self.groups.len()));
         }
         ended
     }
@@ -130,9 +130,9 @@ impl<S: Simd, T: Dimension, K: Sink, const SETTLE: bool> WithSimd for Report<'_,
 
 #[cfg(test)]
 mod tests {
-    use crate::drop::{GROUPS, Impact, Meanwhile, Pose, Sink, StopReason};
+    use crate::drop::{Impact, Meanwhile, PLACES, Pose, Sink, StopReason};
     use crate::drop::{Orientation, Plan, Run, bounce_block};
-    use crate::simd::{LANES, Level, Pack};
+    use crate::simd::{Level, Pack};
     use crate::{Dumbbell, Law, Monitor, Spin, TangentialRestitution, Vector};
     use pulp::Simd;
     use std::ops::Range;
@@ -143,18 +143,18 @@ mod tests {
         most: usize,
         impacts: usize,
         done: usize,
-        waits: [bool; GROUPS * LANES],
+        waits: [bool; PLACES],
     }
 
     impl Meanwhile for Cancelling<'_> {
+        const INTERLEAVED: bool = true;
+
         fn meanwhile(&mut self, place: usize) {
             self.done += usize::from(std::mem::take(&mut self.waits[place]));
         }
     }
 
     impl Sink for Cancelling<'_> {
-        const TOGETHER: bool = true;
-
         fn begin(&mut self) {}
 
         fn impact<S: Simd, P: Pose<S, K>, const K: usize>(
@@ -204,7 +204,7 @@ mod tests {
                         most,
                         impacts: 0,
                         done: 0,
-                        waits: [false; GROUPS * LANES],
+                        waits: [false; PLACES],
                     };
                     let range: Range<usize> = 0..particles;
                     bounce_block(&plan, range, level, &monitor, &mut sink).unwrap();

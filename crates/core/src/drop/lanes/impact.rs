@@ -1,12 +1,12 @@
 //! An impact as the bounce loop reports it, and the trait of its receivers.
 
+use super::interleaved::Meanwhile;
 use crate::drop::StopReason;
 use crate::math::Vectors;
 use crate::motion::SpatialState;
 use crate::shape::Body;
 use crate::simd::{Mask, Pack};
 use pulp::Simd;
-use std::ops::Range;
 
 /// One impact in each lane, in the core's units: what statistics read, and the pose.
 pub(crate) struct Impact<S: Simd, P, const K: usize> {
@@ -127,34 +127,17 @@ impl<S: Simd, const K: usize> Pose<S, K> for SymmetricPose<'_, S, K> {
     }
 }
 
-/// Work that can be interleaved with the bounce loop while its arithmetic waits for results.
-pub(crate) trait Meanwhile {
-    /// Works up the impact at a place: number of its group times number of lanes, plus lane.
-    fn meanwhile(&mut self, place: usize);
-}
-
 /// A receiver of impacts, which records or counts them.
 pub(crate) trait Sink: Meanwhile {
-    /// Whether bounce loops are compiled for this sink ([`super::Inlined`]). Sinks that write records are limited by memory and
-    /// gain nothing from it.
-    const TOGETHER: bool;
-
     /// Announces a release: at no place is there an impact to be worked up.
     fn begin(&mut self);
     /// Receives an impact in each active lane of a group. What is left to be done with it is done before the next one of this group:
-    /// meanwhile, or by [`Sink::settle`].
+    /// meanwhile, or by [`Meanwhile::settle`].
     fn impact<S: Simd, P: Pose<S, K>, const K: usize>(
         &mut self,
         group: usize,
         impact: &Impact<S, P, K>,
     );
-    /// Works up the impacts at these places.
-    #[inline(always)]
-    fn settle(&mut self, places: Range<usize>) {
-        for place in places {
-            self.meanwhile(place);
-        }
-    }
     /// Receives the end of a particle after `impacts` impacts.
     fn end(&mut self, particle: usize, impacts: usize, reason: StopReason);
 }

@@ -6,12 +6,15 @@ mod bounce;
 mod collision;
 mod group;
 mod impact;
+mod interleaved;
 mod particles;
 mod passes;
 
-pub(super) use advance::{Advance, General, Idle, Inlined, find};
+pub(super) use advance::{Advance, General, Inlined, find};
 pub(super) use bounce::bounce;
 pub(super) use collision::{Collide, ContactPoint, Dimension, Planar, Spatial};
-pub(crate) use group::GROUPS;
+pub(super) use group::GROUPS;
 pub(super) use group::{Found, Group, Lost, Release};
-pub(crate) use impact::{Impact, Meanwhile, Pose, Sink};
+pub(crate) use impact::{Impact, Pose, Sink};
+pub(super) use interleaved::Idle;
+pub(crate) use interleaved::{Meanwhile, PLACES, of_group};

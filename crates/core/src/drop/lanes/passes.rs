@@ -1,8 +1,9 @@
 //! Further passes of the contact search.
 
-use super::advance::{Idle, pass};
+use super::advance::pass;
 use super::collision::Dimension;
 use super::group::{Group, Unconverged};
+use super::interleaved::Idle;
 use crate::shape::Hull;
 use crate::simd::Pack;
 use pulp::{Simd, WithSimd};

@@ -1,0 +1,74 @@
+//! Counting that is interleaved with the bounce loop: what it is, where it is used, and all that the loop has to know of it.
+//!
+//! To count an impact takes some forty scalar instructions, which read and write memory: two grids, eight sums, two extremes. The stages of
+//! the bounce loop are chains of vector arithmetic, in which one instruction waits for the result of another. A processor executes both at
+//! once if they stand next to each other in the program. This folder arranges that; docs/performance.md has the time that it saves.
+//!
+//! * **A queue** has a place for each lane of every group ([`PLACES`]). [`Sink::impact`](super::Sink::impact) computes in all lanes at once
+//!   what is to be counted and leaves it at the places of its group, [`of_group`].
+//! * **Each stage works up one lane** ([`work_up`]). Eight stages take a group to its next impact, and a vector has at most eight lanes, so
+//!   that the places of the group are free when it reports that impact. A lane without an impact is worked up like the others, into sites
+//!   that are never read: there is no branch.
+//! * **The rest is settled** ([`Meanwhile::settle`]): the places of groups that have no particles any more, and all at the end of a run.
+//!
+//! It is used for the paper's runs only, whose loop is compiled for each sink that asks for it ([`Meanwhile::INTERLEAVED`],
+//! [`Inlined`](super::Inlined)). All other runs share one loop for every sink ([`General`](super::General)), and settle their impacts as soon
+//! as all groups have reported them. Results do not depend on it, because integers are summed, in any order.
+
+use super::group::GROUPS;
+use crate::simd::{LANES, Pack};
+use pulp::Simd;
+use std::ops::Range;
+
+/// Number of places.
+pub(crate) const PLACES: usize = GROUPS * LANES;
+
+/// The places of a group, one for each lane.
+#[inline(always)]
+pub(crate) fn of_group<S: Simd, const K: usize>(group: usize) -> Range<usize> {
+    let width = Pack::<S, K>::WIDTH;
+    group * width..(group + 1) * width
+}
+
+/// The places of these groups.
+#[inline(always)]
+pub(super) fn of_groups<S: Simd>(groups: Range<usize>) -> Range<usize> {
+    let width = Pack::<S, 1>::WIDTH;
+    groups.start * width..groups.end * width
+}
+
+/// Work on impacts that wait in a queue.
+pub(crate) trait Meanwhile {
+    /// True if bounce loops are compiled with this work between their stages. Sinks that write records are limited by memory and gain
+    /// nothing from it.
+    const INTERLEAVED: bool;
+
+    /// Works up the impact at a place.
+    fn meanwhile(&mut self, place: usize);
+
+    /// Works up the impacts at these places.
+    #[inline(always)]
+    fn settle(&mut self, places: Range<usize>) {
+        for place in places {
+            self.meanwhile(place);
+        }
+    }
+}
+
+/// Works up the impact of a lane of a group, if there is such a lane: eight stages have one lane each.
+#[inline(always)]
+pub(super) fn work_up<S: Simd>(work: &mut impl Meanwhile, group: usize, lane: usize) {
+    if lane < Pack::<S, 1>::WIDTH {
+        work.meanwhile(group * Pack::<S, 1>::WIDTH + lane);
+    }
+}
+
+/// No work.
+pub(crate) struct Idle;
+
+impl Meanwhile for Idle {
+    const INTERLEAVED: bool = false;
+
+    #[inline(always)]
+    fn meanwhile(&mut self, _: usize) {}
+}
