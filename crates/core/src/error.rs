@@ -13,7 +13,7 @@ pub enum Error {
         name: &'static str,
         /// The value given.
         value: Value,
-        /// What is allowed.
+        /// The values that are allowed.
         allowed: String,
     },
     /// Each parameter is in its range, but a quantity derived from all of them overflows or underflows.
@@ -23,7 +23,7 @@ pub enum Error {
         name: &'static str,
         /// Its value.
         value: Value,
-        /// What is allowed.
+        /// The values that are allowed.
         allowed: &'static str,
     },
     /// A SIMD level that does not exist, or that this machine does not have.
@@ -31,7 +31,7 @@ pub enum Error {
     Level {
         /// The name given.
         name: String,
-        /// What is allowed.
+        /// The values that are allowed.
         allowed: String,
         /// The reason for the refusal.
         problem: &'static str,
@@ -39,7 +39,7 @@ pub enum Error {
     /// The operating system refused to start threads.
     #[error("threads = {asked}: the system gives no more threads ({problem}); one needs none")]
     Threads {
-        /// How many were asked for.
+        /// The number that was asked for.
         asked: usize,
         /// The system's message.
         problem: String,
@@ -55,7 +55,7 @@ pub enum Error {
     /// A law of one's own failed, or gave an impulse that is impossible.
     #[error("particle {particle} (seed {seed}), impact {impact}: {law} {fault}")]
     Law {
-        /// What it is called.
+        /// Its name.
         law: String,
         /// Index of the particle.
         particle: u64,
@@ -63,7 +63,7 @@ pub enum Error {
         seed: u64,
         /// Number of the impact, counted from 0.
         impact: u64,
-        /// What is wrong.
+        /// The reason.
         fault: Fault,
     },
     /// The contact search of one particle did not converge.

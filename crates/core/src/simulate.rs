@@ -137,7 +137,7 @@ impl Run<'_> {
         Ok(sum)
     }
 
-    /// What every thread has summed. Which thread takes which block does not matter, because integer sums do not depend on the
+    /// The sums of every thread. They do not depend on which thread takes which block, because integer sums do not depend on the
     /// order.
     fn each<T: HistogramSink>(
         plan: &Plan<'_>,

@@ -99,7 +99,7 @@ impl Histogram {
     }
 }
 
-/// What was counted, by name. The counts themselves are handed over, not a copy: a fine grid is large.
+/// The histogram by name. The counts themselves are handed over, not a copy: a fine grid is large.
 fn table(py: Python<'_>, counts: core::Histogram) -> PyResult<Bound<'_, PyDict>> {
     let core::Histogram {
         restitution,
@@ -201,7 +201,7 @@ fn histogram<'py>(
     ))
 }
 
-/// What was counted of a run, by name; the moments of each of its parts that was begun; and what cut it short, if anything.
+/// The histogram of a run, by name; the moments of each of its parts that was begun; and what cut it short, if anything.
 type Counted<'py> = (Bound<'py, PyDict>, Vec<Bound<'py, PyDict>>, Option<PyErr>);
 
 /// The same for the particles of several parts, one part after the other.

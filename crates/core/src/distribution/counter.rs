@@ -6,7 +6,7 @@ use super::nodes::{Nodes, divides, rises};
 use crate::memory::{empty, filled, zeros};
 use crate::{Error, Monitor, Resources};
 
-/// What the memory of the counts follows from.
+/// The argument that determines the memory of the counts.
 const ROOM: &str = "velocities";
 
 /// Counts of the impacts in the bins of each component, and sums of their ε, batch by batch.
@@ -128,7 +128,7 @@ impl Counter {
         )
     }
 
-    /// What was counted.
+    /// Returns the counts.
     ///
     /// # Errors
     /// [`Error::Memory`].

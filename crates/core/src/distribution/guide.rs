@@ -3,7 +3,7 @@
 use crate::Error;
 use crate::memory::zeros;
 
-/// How many of the numbers lie in the cells before each of equally wide cells, which span the middle of the list.
+/// The number of entries in the cells before each of equally wide cells, which span the middle of the list.
 #[derive(Debug)]
 pub(super) struct Guide {
     low: f64,

@@ -12,7 +12,7 @@ use std::sync::Mutex;
 pub const FINE: usize = 4096;
 /// Number of those in which they are counted batch by batch.
 pub const COARSE: usize = 256;
-/// What the memory of the counts follows from.
+/// The argument that determines the memory of the counts.
 const ROOM: &str = "velocities";
 /// Seed of the numbers that spread the levels of point masses.
 const SEED: u64 = 1;
@@ -29,7 +29,7 @@ pub struct Levels {
 #[derive(Debug)]
 struct Batch {
     number: u64,
-    /// How many levels were spread.
+    /// The number of levels that were spread.
     spread: u64,
     /// In [`COARSE`] parts of each interval.
     coarse: Vec<u64>,
@@ -151,7 +151,7 @@ impl Levels {
         Ok(batches.flat_map(move |b| b.coarse[levels.clone()].iter().copied()))
     }
 
-    /// Where the levels of an interval are.
+    /// The places of the levels of an interval.
     fn levels(&self, interval: usize, number: usize) -> Result<Range<usize>, Error> {
         let allowed = "one of the intervals";
         Error::unless(interval < self.intervals, "interval", interval, allowed)?;

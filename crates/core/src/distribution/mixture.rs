@@ -8,7 +8,7 @@ use crate::{Error, Monitor, Resources};
 /// The table, in ragged arrays.
 #[derive(Debug)]
 pub struct Layout {
-    /// Where its components are.
+    /// The places of its components.
     pub nodes: Nodes,
     /// Index of the first edge of each component, and finally the number of edges.
     pub start: Vec<i64>,
@@ -70,7 +70,7 @@ impl Mixture {
         )
     }
 
-    /// Whether a bin is narrower than `point`.
+    /// Returns whether a bin is narrower than `point`.
     pub(super) fn has_points(&self, point: f64) -> bool {
         let components = 0..self.layout.nodes.components();
         let mut edges = components.map(|component| self.histogram(component).0);

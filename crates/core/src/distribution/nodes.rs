@@ -1,4 +1,4 @@
-//! Where the components of a distribution are, and the weight of each at an impact: what is evaluated and what is counted agree.
+//! Places of the components of a distribution, and the weight of each at an impact, for evaluation and for counting alike.
 
 use super::guide::Guide;
 use crate::Error;
@@ -33,12 +33,12 @@ fn between(points: &[f64], reached: usize, x: f64) -> (usize, f64) {
     (left, weight.clamp(0.0, 1.0))
 }
 
-/// Whether numbers increase strictly.
+/// Returns whether numbers increase strictly.
 pub(super) fn rises(x: &[f64]) -> bool {
     x.windows(2).all(|pair| pair[0] < pair[1])
 }
 
-/// Whether `start` divides `size` elements into ranges of `least` or more.
+/// Returns whether `start` divides `size` elements into ranges of `least` or more.
 pub(super) fn divides(start: &[i64], size: usize, least: i64) -> bool {
     start.first() == Some(&0)
         && start.last() == Some(&(size as i64))
@@ -105,7 +105,7 @@ impl Nodes {
         (components.start + below, weight)
     }
 
-    /// Whether an impact counts: from the first node up to, not including, the last, with ε and z.
+    /// Returns whether an impact counts: from the first node up to, not including, the last, with ε and z.
     #[inline]
     pub(super) fn counts(&self, (v, e, z): (f64, f64, f64)) -> bool {
         let inside = v >= self.speeds[0] && v < self.speeds[self.speeds.len() - 1];

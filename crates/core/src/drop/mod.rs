@@ -94,8 +94,8 @@ impl Run<'_> {
         })
     }
 
-    /// Whether all particles are released at rest over a level plane. All directions in the plane are then equivalent, unless a law of
-    /// one's own distinguishes them, and each particle remains in the vertical plane of its axis.
+    /// Returns whether all particles are released at rest over a level plane. All directions in the plane are then equivalent, unless a
+    /// law of one's own distinguishes them, and each particle remains in the vertical plane of its axis.
     pub(crate) fn is_at_rest(&self) -> bool {
         self.spin.is_none()
             && self.release_velocity == Vector::default()
@@ -103,7 +103,7 @@ impl Run<'_> {
             && self.law.custom.is_none()
     }
 
-    /// Whether another run differs in nothing but its seed, the number of its particles and how they are released, and moves in the
+    /// Returns whether another run differs in nothing but its seed, the number of its particles and how they are released, and moves in the
     /// same way.
     pub(crate) fn is_like(&self, other: &Self) -> bool {
         self.body == other.body

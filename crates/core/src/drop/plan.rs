@@ -85,7 +85,7 @@ impl<'a> Plan<'a> {
         Ok(plan)
     }
 
-    /// Whether no part is below the plane at release.
+    /// Returns whether no part is below the plane at release.
     fn is_clear(&self) -> bool {
         let run = self.run;
         let lowest = run.release_height.lowest();
@@ -171,7 +171,7 @@ impl<'a> Plan<'a> {
         }
     }
 
-    /// Whether the range has particles, all of them of the run.
+    /// Returns whether the range has particles, all of them of the run.
     pub fn check_part(&self, part: &Range<usize>) -> Result<(), Error> {
         let allowed = "at least one of the particles of the run, from the first to before the last";
         let inside = part.start < part.end && part.end <= self.run.particles;

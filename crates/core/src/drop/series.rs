@@ -4,7 +4,7 @@ use super::{Plan, Run};
 use crate::Error;
 use std::ops::Range;
 
-/// Where particles come from: one run, or several.
+/// The origin of particles: one run, or several.
 pub(crate) trait Source: Sync {
     /// Body, law, units and limits, which are those of all particles.
     fn plan(&self) -> &Plan<'_>;

@@ -1,4 +1,4 @@
-//! When and why a trajectory ends.
+//! Reasons for the end of a trajectory, and its limits.
 
 /// Why a trajectory ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -27,7 +27,7 @@ impl StopReason {
     ];
 }
 
-/// When to stop.
+/// Conditions that end a trajectory.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Limits {
     /// Largest number of impacts.

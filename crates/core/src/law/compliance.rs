@@ -1,4 +1,4 @@
-//! What an impulse at the point of contact does to the velocity there, for bodies of any shape.
+//! The change of the contact velocity by an impulse at the point of contact, for bodies of any shape.
 
 use super::{Compliant, Components};
 use crate::Error;

@@ -1,4 +1,4 @@
-//! What the laws use of the matrix K (10), so that each formula stands once, for every K.
+//! Operations of the laws on the matrix K (10), so that each formula stands once, for every K.
 
 use super::Components;
 use super::coulomb::Sliding;

@@ -8,7 +8,7 @@ use std::sync::Arc;
 
 /// The impulse of a contact in SI units.
 pub trait ImpulseFunction: Sync {
-    /// What errors call it.
+    /// Its name in errors.
     fn name(&self) -> &str;
 
     /// The impulse in N s on the body, for K in 1/kg and the velocity of the point of contact in m/s. The z axis is the plane normal, x
@@ -40,7 +40,7 @@ impl PartialEq for Raised {
 pub enum Fault {
     /// The function failed.
     Raised(Raised),
-    /// What the function gave, as text, is not three numbers.
+    /// The value of the function, here as text, is not three numbers.
     NoVector(String),
     /// The impulse is not finite.
     NotFinite(Vector),
@@ -109,7 +109,7 @@ impl<'a> CustomLaw<'a> {
         }
     }
 
-    /// What errors call it.
+    /// Its name in errors.
     pub(crate) fn name(&self) -> &'a str {
         self.function.name()
     }

@@ -28,13 +28,13 @@ pub struct Law<'a> {
 pub struct LawKind {
     /// Its description, whose parameters come after the normal coefficient, which all laws have.
     pub kind: Kind<Rule>,
-    /// Whether it can create kinetic energy.
+    /// The possibility that it creates kinetic energy.
     pub creates_energy: Creation,
-    /// What the point of contact does in an impact from rest within the friction cone, and beyond it; none where that has no closed form.
+    /// Slip in an impact from rest within the friction cone, and beyond it; none where that has no closed form.
     pub from_rest: Option<[Slip; 2]>,
 }
 
-/// Whether a law can create kinetic energy.
+/// The possibility that a law creates kinetic energy.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Creation {
     /// It cannot.
@@ -45,7 +45,7 @@ pub enum Creation {
     Where(&'static str, &'static str),
 }
 
-/// What the point of contact does in an impact from rest, before which it does not slip. Each is a closed form of the first impact,
+/// Slip during an impact from rest, before which the contact does not slip. Each is a closed form of the first impact,
 /// in `analytic/_impulse.py` of the Python package.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Slip {
@@ -209,7 +209,7 @@ pub(crate) const MOST_CONTACTS: usize = 6;
 
 /// A law in the form that the bounce loop uses: it answers all contacts at once, so that those that take long can share the lanes.
 pub(crate) trait Respond {
-    /// Whether ε_n scatters.
+    /// Returns whether ε_n scatters.
     fn scatters(&self) -> bool;
 
     /// Answers up to [`MOST_CONTACTS`] vectors of contacts; `chances` has a uniform number in (0, 1) for each if ε_n scatters. Without

@@ -23,7 +23,7 @@ macro_rules! columns {
             Variable { $($about)*, ..Variable::named(stringify!($name), <$kind>::COMPONENTS) }
         ),*];
 
-        /// Which variables of an impact a run records.
+        /// The variables of an impact that a run records.
         #[derive(Debug, Clone, Copy, PartialEq, Eq)]
         pub struct Columns {
             $($(#[$doc])* pub $name: bool,)*
@@ -95,7 +95,7 @@ macro_rules! columns {
             pub reached: usize,
             /// Numbers of the particles of the rows, where some particles had to be left out; otherwise empty.
             pub particle: Vec<i64>,
-            /// Whether a row is blank where there was no impact.
+            /// True if a row is blank where there was no impact.
             pub(crate) settled: Vec<bool>,
             $($(#[$doc])* pub $name: Vec<$kind>,)*
             /// Number of impacts, per particle.

@@ -1,4 +1,4 @@
-//! What is recorded of a run: the variables of an impact and of a particle, a row each, and the table of all impacts.
+//! The records of a run: the variables of an impact and of a particle, a row each, and the table of all impacts.
 
 mod columns;
 mod particles;

@@ -83,7 +83,7 @@ impl Level {
         Self::ALL.into_iter().filter(|level| level.is_available())
     }
 
-    /// Whether this machine has the level.
+    /// Returns whether this machine has the level.
     pub fn is_available(self) -> bool {
         struct Nothing;
         impl WithSimd for Nothing {

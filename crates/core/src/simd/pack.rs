@@ -248,7 +248,7 @@ impl<S: Simd, const K: usize> Mask<S, K> {
         a.with(each_vector!(r = b, k => simd.select_f64s(m[k], a.vectors[k], b[k])))
     }
 
-    /// Whether any lane is true.
+    /// Returns whether any lane is true.
     #[inline(always)]
     pub fn any(self) -> bool {
         let simd = self.simd;
@@ -259,13 +259,13 @@ impl<S: Simd, const K: usize> Mask<S, K> {
         simd.first_true_m64s(all) < size_of::<S::f64s>() / size_of::<f64>()
     }
 
-    /// Whether all lanes are true.
+    /// Returns whether all lanes are true.
     #[inline(always)]
     pub fn all(self) -> bool {
         !(!self).any()
     }
 
-    /// Whether a lane is true.
+    /// Returns whether a lane is true.
     #[inline(always)]
     pub fn get(self, lane: usize) -> bool {
         self.select(1.0, 0.0).as_slice()[lane] == 1.0

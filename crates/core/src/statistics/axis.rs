@@ -81,7 +81,7 @@ impl Axis {
         self.beyond
     }
 
-    /// Whether all bins have the same width.
+    /// Returns whether all bins have the same width.
     pub(super) fn is_even(&self) -> bool {
         self.cells.is_none()
     }

@@ -20,7 +20,7 @@ use std::sync::Mutex;
 pub(crate) struct CountSink<'a, const EVEN: bool> {
     /// Whose grids this counter and others fill.
     shared: &'a Mutex<Histogram>,
-    /// What else is summed here.
+    /// The other sums.
     own: Rows,
     bins: &'a Bins,
     plan: &'a Plan<'a>,

@@ -43,7 +43,7 @@ impl Bins {
         }
     }
 
-    /// Whether all bins of every axis have the same width.
+    /// Returns whether all bins of every axis have the same width.
     pub(crate) fn are_even(&self) -> bool {
         let rows = match &self.by {
             By::Velocity(axis) => axis.is_even(),
@@ -73,7 +73,7 @@ pub struct Histogram {
     pub restitution: Grid,
     /// Impacts by row and bin of E_rot/E_tot; the last column as above. It has no columns if [`Bins::fraction`] is `None`.
     pub fraction: Grid,
-    /// What else is summed of the same impacts.
+    /// The other sums over the same impacts.
     pub rows: Rows,
 }
 

@@ -22,6 +22,6 @@ pub use rows::{CREATES_ENERGY, Gains, Rows};
 
 /// A sink that counts the impacts that it receives in the grids of a [`Histogram`], which is shared with others.
 pub(crate) trait HistogramSink: crate::drop::Sink {
-    /// What else is summed of the impacts, all of which are then in the grids.
+    /// Returns the other sums over the impacts, all of which are then in the grids.
     fn finish(self) -> Rows;
 }

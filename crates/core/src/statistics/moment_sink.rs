@@ -26,7 +26,7 @@ use std::sync::Mutex;
 pub(crate) struct MomentSink<'a, const EVEN: bool> {
     /// Whose grids this counter and others fill.
     shared: &'a Mutex<Histogram>,
-    /// What else is summed here.
+    /// The other sums.
     own: Rows,
     by: &'a By,
     columns: &'a Axis,

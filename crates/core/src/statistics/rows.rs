@@ -1,4 +1,4 @@
-//! What is summed of the impacts in each row: moments of ε and of E_rot/E_tot, created energy; and how the particles ended.
+//! Sums over the impacts of each row: moments of ε and of E_rot/E_tot, created energy; and how the particles ended.
 
 use super::histogram::{Bins, WHAT};
 use super::moments::{Moments, Sums};

@@ -223,7 +223,7 @@ impl<S: Simd, F: Flight<S, K>, const K: usize> Search<S, F, K> {
         (led & beyond.le(0.0) & rate.lt(0.0)).select(aim, certain)
     }
 
-    /// Whether no part can have touched between `certain`, up to which a contact is ruled out, and the `time` of the evaluation.
+    /// Returns whether no part can have touched between `certain`, up to which a contact is ruled out, and the `time` of the evaluation.
     #[inline(always)]
     pub fn is_clear<H: Hull>(
         &self,

@@ -24,7 +24,7 @@ pub(crate) trait Advance<S: Simd, T: Dimension> {
     /// True if the work of the sink is interleaved with that of [`Advance::advance`].
     const INTERLEAVED: bool;
 
-    /// Whether ε_n is drawn for every impact.
+    /// Returns whether ε_n is drawn for every impact.
     fn scatters(&self) -> bool;
 
     /// Groups without particles.

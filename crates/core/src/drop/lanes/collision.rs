@@ -15,7 +15,7 @@ use pulp::Simd;
 pub(crate) trait Dimension: Copy {
     /// The flight of as many particles as there are lanes.
     type Flight<S: Simd>: Flight<S, 1, State: Collide<S>>;
-    /// Whether a contact may slip across the plane of the axis.
+    /// True if a contact may slip across the plane of the axis.
     const SPACE: bool;
 }
 

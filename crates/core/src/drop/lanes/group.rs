@@ -229,8 +229,8 @@ impl<S: Simd, T: Dimension> Group<S, T> {
         self.locate(hull);
     }
 
-    /// Whether the contact of some particle was not located before this pass, or is not by this one: rare after the first pass, except
-    /// for spinning smooth hulls.
+    /// Returns whether the contact of some particle was not located before this pass, or is not by this one: rare after the first pass,
+    /// except for spinning smooth hulls.
     #[inline(always)]
     pub fn takes_another_pass(&self) -> bool {
         self.is_behind || (self.particles.active & !self.located.done).any()

@@ -28,7 +28,7 @@ pub(crate) struct Impact<S: Simd, P, const K: usize> {
     pub part: Pack<S, K>,
     /// Speed at which the point of contact approached the plane, −v_c^n.
     pub approach: Pack<S, K>,
-    /// How the body lies, and moves before and after the impact: a [`Pose`].
+    /// Position, attitude and motion of the body before and after the impact: a [`Pose`].
     pub pose: P,
     /// The lanes that have an impact.
     pub active: Mask<S, K>,
@@ -54,8 +54,8 @@ impl<S: Simd, P, const K: usize> Impact<S, P, K> {
     }
 }
 
-/// How bodies lie at an impact, and move before and after it. What a body does not have is NaN: the axis of one without symmetry, the attitude
-/// of one of revolution.
+/// Position and attitude of bodies at an impact, and their motion before and after it. A quantity that a body does not have is NaN: the
+/// axis of one without symmetry, the attitude of one of revolution.
 pub(crate) trait Pose<S: Simd, const K: usize> {
     /// Height of the centre of mass.
     fn height(&self) -> Pack<S, K>;

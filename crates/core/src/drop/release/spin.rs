@@ -68,7 +68,7 @@ impl Spin<'_> {
     /// No spin.
     pub const NONE: Self = Self::Fixed(Vector::new(0.0, 0.0, 0.0));
 
-    /// Whether no particle spins.
+    /// Returns whether no particle spins.
     pub fn is_none(&self) -> bool {
         match self {
             Self::Fixed(spin) => *spin == Vector::default(),

@@ -26,7 +26,7 @@ const TERMS: usize = 24;
 const LOST: f64 = -39.5;
 /// Longest step, in units of the largest rate.
 const LONGEST: f64 = 8.0;
-/// What an impulse may be off by, relative to the impulse so far.
+/// Largest error of an impulse, relative to the impulse so far.
 const TINY: f64 = 0.125 * f64::EPSILON;
 /// Largest tan(δ/2) from which the way to the rest is summed, and the most powers of it.
 const NEAR: f64 = 0.35;
@@ -119,7 +119,7 @@ struct Frame {
     drive: [f64; 2],
     brake: [f64; 2],
     spread: f64,
-    /// Whether dv_n/dp can be negative.
+    /// True if dv_n/dp can be negative.
     may_jam: bool,
 }
 
@@ -286,12 +286,12 @@ struct Path<'a> {
     /// p, and the tangential impulse.
     normal: f64,
     friction: [f64; 2],
-    /// Whether the contact is being compressed, or has Newton's hypothesis to fulfil.
+    /// True if the contact is being compressed, or has Newton's hypothesis to fulfil.
     compressing: bool,
     /// p at the beginning of this compression or restitution, and ∫v_n dp since.
     began: f64,
     work: f64,
-    /// What the restitution has yet to give: impulse under Poisson's, work under Stronge's hypothesis.
+    /// The part of the restitution that is still to come: impulse under Poisson's, work under Stronge's hypothesis.
     owed: f64,
     /// The impact is over, or changes from compression to restitution or back, before the slip comes to rest.
     rest_is_beyond: bool,
@@ -476,8 +476,8 @@ impl Path<'_> {
         self.rest_is_beyond = false;
     }
 
-    /// Whether the end of the present phase, or a new compression, lies at or before a place that is so far away along a piece on which
-    /// v_n is monotone.
+    /// Returns whether the end of the present phase, or a new compression, lies at or before a place that is so far away along a piece on
+    /// which v_n is monotone.
     fn passes(&self, gain: &Gain) -> bool {
         let speed = self.speed + gain.speed;
         if self.compressing {
@@ -569,7 +569,7 @@ impl Path<'_> {
         }
     }
 
-    /// What is missing to the end of the present phase, with its derivative; negative before it.
+    /// The distance beyond the end of the present phase, with its derivative; negative before it.
     fn lack(&self, sums: &Sums) -> (f64, f64) {
         let frame = self.frame;
         let speed = self.speed + frame.rise(&sums.whole);
@@ -808,7 +808,7 @@ impl<'a> Stop<'a> {
         }
     }
 
-    /// What is gained until the rest, from tan(δ/2), ρ and v_n. None if the series does not converge.
+    /// The gain until the slip is at rest, from tan(δ/2), ρ and v_n. None if the series does not converge.
     fn gain(&self, z: f64, rho: f64, speed: f64) -> Option<Gain> {
         let frame = self.frame;
         // Q²g of the integrals of ρ, ρ cos δ and ρ sin δ.

@@ -103,7 +103,7 @@ impl Coulomb {
         })
     }
 
-    /// Whether some contacts take much longer than others where they slip in any direction.
+    /// Returns whether some contacts take much longer than others where they slip in any direction.
     pub(super) fn takes_long(&self) -> bool {
         self.friction > 0.0
     }

@@ -150,7 +150,7 @@ impl<S: Simd, const K: usize> Rates<S, K> {
 /// Slip at which it counts as vanished, relative to the contact velocity; the impulse is of the order of that.
 const VANISHED: f64 = 1.0 / 18_014_398_509_481_984.0; // 2⁻⁵⁴
 
-/// Where the impacts have come to.
+/// The state of the impacts in progress.
 #[derive(Clone, Copy)]
 struct Course<S: Simd, const K: usize> {
     /// Slip u and w ≥ 0, |**s**|, A, y.
@@ -182,7 +182,7 @@ struct Course<S: Simd, const K: usize> {
     pub limit: Pack<S, K>,
 }
 
-/// What ends the restitution.
+/// The condition that ends the restitution.
 #[derive(Clone, Copy)]
 struct Goal<S: Simd, const K: usize> {
     pub hypothesis: Hypothesis,
@@ -194,7 +194,7 @@ struct Goal<S: Simd, const K: usize> {
 }
 
 impl<S: Simd, const K: usize> Goal<S, K> {
-    /// What is missing of the restitution: < 0 once it is over.
+    /// The part of the restitution that is still missing: < 0 once it is over.
     #[inline(always)]
     pub fn missing(&self, at: &Course<S, K>) -> Pack<S, K> {
         match self.hypothesis {
@@ -255,7 +255,7 @@ impl<S: Simd, const K: usize> Course<S, K> {
         rates.turn(mask.select(-rates.nu, rates.nu));
     }
 
-    /// Whether it has gone beyond the next event.
+    /// Returns whether it has gone beyond the next event.
     #[inline(always)]
     pub fn is_late(&self, goal: &Goal<S, K>) -> Mask<S, K> {
         let zero = Pack::splat(self.v.simd(), 0.0);
@@ -392,7 +392,7 @@ struct Hodograph<S: Simd, const K: usize> {
 
 /// A point of it.
 struct Point<S: Simd, const K: usize> {
-    /// What y has lost.
+    /// The decrease of y.
     pub lost: Pack<S, K>,
     /// ∫D dθ, and ln A less its first value.
     pub turn: Pack<S, K>,
@@ -444,7 +444,7 @@ impl<S: Simd, const K: usize> Hodograph<S, K> {
         }
     }
 
-    /// How far it is, in θ, until ρ₋ζ is too large for the series of artanh, or y has grown too much: infinitely far if it never does.
+    /// The distance in θ until ρ₋ζ is too large for the series of artanh, or y has grown too much: infinitely far if it never does.
     #[inline(always)]
     fn steep(&self) -> Pack<S, K> {
         let bend = self.minus * self.distance;
@@ -455,7 +455,7 @@ impl<S: Simd, const K: usize> Hodograph<S, K> {
         reach(self.sigma, one, one / steep.max(grown))
     }
 
-    /// How far it may be followed, in θ: where 1/y vanishes next to the path the functions have poles.
+    /// The distance in θ up to which it may be followed: where 1/y vanishes next to the path the functions have poles.
     #[inline(always)]
     fn resolved(&self) -> Pack<S, K> {
         // 1 + ρ₋ζ = 0 where exp(−2σθ) = E = 1 + σ/ρ₋D; |ln E| ≥ 16|q − 1|/(q + 1) with q⁸ = |E|.
@@ -660,7 +660,7 @@ const NEWTON_STEPS: usize = 2;
 #[derive(Clone, Copy)]
 struct Series<S: Simd, const K: usize>(pub [Pack<S, K>; ORDER]);
 
-/// Where a series takes a value.
+/// The argument at which a series takes a value.
 struct Root<S: Simd, const K: usize> {
     pub x: Pack<S, K>,
     /// The slope there, and Newton's last step.
@@ -678,7 +678,7 @@ impl<S: Simd, const K: usize> Series<S, K> {
         sum * x
     }
 
-    /// Where it is `value`, beyond `from`, where its slope is `slope`.
+    /// Finds the argument, beyond `from`, at which it is `value`; its slope at `from` is `slope`.
     #[inline(always)]
     pub fn reaches(&self, value: Pack<S, K>, from: Pack<S, K>, slope: Pack<S, K>) -> Root<S, K> {
         let rest = value - self.at(from);
@@ -707,7 +707,7 @@ impl<S: Simd, const K: usize> Series<S, K> {
     }
 }
 
-/// Where bx + cx² = `value`: the root next to 0, or the positive one where b = 0.
+/// Solves bx + cx² = `value`: the root next to 0, or the positive one where b = 0.
 #[inline(always)]
 fn parabola<S: Simd, const K: usize>(
     b: Pack<S, K>,
@@ -748,7 +748,7 @@ struct Way<S: Simd, const K: usize> {
     pub fourth: Pack<S, K>,
 }
 
-/// How far the next event is, in θ; infinitely far if there is none.
+/// The distance to the next event in θ; infinite if there is none.
 #[inline(always)]
 fn guess<S: Simd, const K: usize>(
     rates: &Rates<S, K>,
@@ -800,7 +800,7 @@ fn way<S: Simd, const K: usize>(
     }
 }
 
-/// How far it is certain, in θ, that v_c^n has no extremum, or all but none.
+/// The distance in θ over which v_c^n certainly has no extremum, or almost certainly.
 #[inline(always)]
 fn crest<S: Simd, const K: usize>(rates: &Rates<S, K>, at: &Course<S, K>) -> Pack<S, K> {
     let zero = Pack::splat(at.y.simd(), 0.0);
@@ -829,7 +829,7 @@ fn events<S: Simd, const K: usize>(
     near.select(wanted, far).min(crest)
 }
 
-/// Which lanes have gone too far on the way from `at` to `end`, and how far they should have gone.
+/// The lanes that have gone too far on the way from `at` to `end`, and the distance at which they should have stopped.
 #[inline(always)]
 fn beyond<S: Simd, const K: usize>(
     rates: &Rates<S, K>,
@@ -882,7 +882,7 @@ struct Beyond<S: Simd, const K: usize> {
 }
 
 impl<S: Simd, const K: usize> Beyond<S, K> {
-    /// Whether it is too far behind for the series.
+    /// Returns whether it is too far behind for the series.
     #[inline(always)]
     fn is_far(&self) -> Mask<S, K> {
         Pack::splat(self.off.simd(), 0.0).lt(self.off) & !self.off.le(0.5 * self.late)
@@ -907,7 +907,7 @@ impl<S: Simd, const K: usize> Beyond<S, K> {
 /// Last of them at which it is found, relative to the way: the next one would be its square; and at which it is a guess.
 const FOUND: f64 = 1e-8;
 const GUESSED: f64 = 0.1;
-/// What the terms left out may be of the impact, and of the way to an event that is a guess.
+/// Largest share of the terms left out, of the impact, and of the way to an event that is a guess.
 const EXACT: f64 = 1.0 / 9_007_199_254_740_992.0; // 2⁻⁵³
 const ROUGH: f64 = 1.0 / 128.0;
 
@@ -979,14 +979,14 @@ impl<S: Simd, const K: usize> Near<S, K> {
         near
     }
 
-    /// What the terms left out are, as a velocity.
+    /// The terms left out, as a velocity.
     #[inline(always)]
     fn error(&self, rates: &Rates<S, K>, x: Pack<S, K>) -> Pack<S, K> {
         let rest = self.impulse.rest().mul_add(rates.nn, self.velocity.rest());
         power(x) * rest
     }
 
-    /// Whether an event beyond `from` is found to rounding, of which the velocity `allowed` is left.
+    /// Returns whether an event beyond `from` is found to rounding, of which the velocity `allowed` is left.
     #[inline(always)]
     fn exact(
         &self,
@@ -999,13 +999,13 @@ impl<S: Simd, const K: usize> Near<S, K> {
         small & self.error(rates, root.x).le(allowed)
     }
 
-    /// Whether what is `due` is a work that the series from here resolve.
+    /// Returns whether what is `due` is a work that the series from here resolve.
     #[inline(always)]
     fn keeps(&self, x: Pack<S, K>, from: Pack<S, K>, due: Pack<S, K>) -> Mask<S, K> {
         (self.work.rest() * power(x)).le(due * EXACT) & self.work.at(from).abs().le(16.0 * due)
     }
 
-    /// Whether it is found roughly.
+    /// Returns whether it is found roughly.
     #[inline(always)]
     fn rough(&self, rates: &Rates<S, K>, root: &Root<S, K>, from: Pack<S, K>) -> Mask<S, K> {
         let small = root.step.abs().le((root.x - from).abs() * GUESSED);
@@ -1121,9 +1121,9 @@ const STRAIGHT: f64 = 2.0 * f64::EPSILON;
 
 /// The way of a slip that vanishes.
 struct Stop<S: Simd, const K: usize> {
-    /// Whether the slip vanishes, unless the impact is over before.
+    /// True if the slip vanishes, unless the impact is over before.
     pub reached: Mask<S, K>,
-    /// Whether **u** is taken the other way.
+    /// True if **u** is taken the other way.
     back: Mask<S, K>,
     /// A, y*, D.
     a: Pack<S, K>,
@@ -1140,7 +1140,7 @@ struct Stop<S: Simd, const K: usize> {
 /// N₁ to N₆ with a common factor.
 struct Levels<S: Simd, const K: usize>([Pack<S, K>; 6]);
 
-/// What the fraction is made of: λ*, κ, 2σ, 2ρ₋, D, and D(λ*ρ₋ − κσ) and 2Dσρ₋.
+/// The terms of the fraction: λ*, κ, 2σ, 2ρ₋, D, and D(λ*ρ₋ − κσ) and 2Dσρ₋.
 struct Terms<S: Simd, const K: usize> {
     decay: Pack<S, K>,
     kappa: Pack<S, K>,
@@ -1370,7 +1370,7 @@ const FEW_ARTANH: [f64; 5] = [1.0, 1.0 / 3.0, 1.0 / 5.0, 1.0 / 7.0, 1.0 / 9.0];
 
 /// The slip from a point on.
 struct Tail<S: Simd, const K: usize> {
-    /// Whether its direction turns so little.
+    /// True if its direction turns so little.
     straight: Mask<S, K>,
     /// y*, ζ₀, w, σ, λ*.
     limit: Pack<S, K>,
@@ -1382,7 +1382,7 @@ struct Tail<S: Simd, const K: usize> {
     pull: Pack<S, K>,
 }
 
-/// What the sums consist of, in units of A/S(1), and of its square for the work.
+/// The terms of the sums, in units of A/S(1), and of its square for the work.
 struct Sums<S: Simd, const K: usize> {
     /// a_k.
     size: [Pack<S, K>; TERMS],
@@ -1491,7 +1491,7 @@ impl<S: Simd, const K: usize> Tail<S, K> {
         sums
     }
 
-    /// Where the slip has come to after θ.
+    /// The slip after θ.
     #[inline(always)]
     fn at(
         &self,
@@ -1668,7 +1668,7 @@ struct Impacts<S: Simd> {
     course: Course<S, 1>,
     /// Panels so far.
     panels: Pack<S, 1>,
-    /// What the velocities are measured in.
+    /// The unit of the velocities.
     scale: Pack<S, 1>,
     /// By symmetry such a slip does not turn.
     aside: Mask<S, 1>,

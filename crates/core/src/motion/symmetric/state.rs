@@ -42,7 +42,7 @@ impl State {
         }
     }
 
-    /// Whether the body is at rest with its axis in the x–z plane. The motion from such a state stays in that plane.
+    /// Returns whether the body is at rest with its axis in the x–z plane. The motion from such a state stays in that plane.
     pub(crate) fn is_at_rest(&self) -> bool {
         let rest = Vector::default();
         self.velocity == rest && self.precession == rest && self.axis.y == 0.0

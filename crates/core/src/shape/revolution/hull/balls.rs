@@ -6,7 +6,7 @@ use pulp::Simd;
 
 /// The parameters of a hull of spheres, whose gaps are linear in e_z.
 pub(super) trait Balls: Copy {
-    /// Whether the hull has two spheres.
+    /// True if the hull has two spheres.
     const TWO: bool;
     /// The levers s of spheres 1 and 2.
     fn levers(&self) -> [f64; 2];

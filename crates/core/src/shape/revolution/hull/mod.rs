@@ -65,9 +65,9 @@ pub struct Ball {
 /// The part of a hull whose gap is evaluated, in each lane.
 #[derive(Clone, Copy)]
 pub(crate) struct HullPart<S: Simd, const K: usize> {
-    /// Whether it is sphere 1; ignored where only one part can touch.
+    /// True if it is sphere 1; ignored where only one part can touch.
     pub one: Mask<S, K>,
-    /// What its gap depends on besides e_z: the lever s of a sphere. For a smooth hull it is 1/h where [`Hull::nearer`] was asked for
+    /// The parameter of its gap besides e_z: the lever s of a sphere. For a smooth hull it is 1/h where [`Hull::nearer`] was asked for
     /// the part, which the derivatives there need again.
     pub own: Pack<S, K>,
 }
@@ -88,7 +88,7 @@ pub(crate) struct AxisMotion<S: Simd, const K: usize> {
 
 /// The surface that can touch the plane. The contact search, the landing and the impact use no other property of it.
 pub(crate) trait Hull: Copy {
-    /// Whether it has two parts, either of which may touch first.
+    /// True if it has two parts, either of which may touch first.
     const TWO: bool;
 
     /// Height of the centre of mass above the plane from which heights are counted in flight, and 0 there.
