@@ -6,7 +6,7 @@
 
 use super::collision::{Collisions, Dimension};
 use super::group::{Group, Lost, Release, Unconverged};
-use super::interleaved::{Idle, Meanwhile, work_up};
+use super::interleaved::{Idle, Meanwhile, is_interleaved, work_up};
 use super::passes::SearchOn;
 use crate::law::{Law, Respond, Response};
 use crate::shape::{Body, Hull, Surface, with_hull};
@@ -76,7 +76,7 @@ pub(crate) struct General<'a, 'b> {
 }
 
 impl<S: Simd, T: Dimension, H: Hull, L: Respond> Advance<S, T> for Inlined<'_, H, L> {
-    const INTERLEAVED: bool = true;
+    const INTERLEAVED: bool = is_interleaved::<S>();
 
     #[inline(always)]
     fn scatters(&self) -> bool {

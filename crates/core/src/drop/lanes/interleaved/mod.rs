@@ -6,14 +6,16 @@
 //!
 //! * **A queue** has a place for each lane of every group ([`PLACES`]). [`Sink::impact`](super::Sink::impact) computes in all lanes at once
 //!   what is to be counted and leaves it at the places of its group, [`of_group`].
-//! * **Each stage works up one lane** ([`work_up`]). Eight stages take a group to its next impact, and a vector has at most eight lanes, so
+//! * **Each stage works up one lane** ([`work_up`]). Eight stages take a group to its next impact, and a vector of AVX-512 has eight lanes, so
 //!   that the places of the group are free when it reports that impact. A lane without an impact is worked up like the others, into sites
 //!   that are never read: there is no branch.
 //! * **The rest is settled** ([`Meanwhile::settle`]): the places of groups that have no particles any more, and all at the end of a run.
 //!
-//! It is used for the paper's runs only, whose loop is compiled for each sink that asks for it ([`Meanwhile::INTERLEAVED`],
-//! [`Inlined`](super::Inlined)). All other runs share one loop for every sink ([`General`](super::General)), and settle their impacts as soon
-//! as all groups have reported them. Results do not depend on it, because integers are summed, in any order.
+//! It is used where it was measured to gain something: with vectors of eight lanes ([`is_interleaved`]), for the paper's runs, whose loop is
+//! compiled for each sink that asks for it ([`Meanwhile::INTERLEAVED`], [`Inlined`](super::Inlined)). With four lanes it takes longer, and
+//! sinks that write records are limited by memory. All other runs share one loop for every sink ([`General`](super::General)). Without
+//! interleaving the impacts are settled as soon as all groups have reported them. Results do not depend on it, because integers are
+//! summed, in any order.
 
 use super::group::GROUPS;
 use crate::simd::{LANES, Pack};
@@ -39,8 +41,7 @@ pub(super) fn of_groups<S: Simd>(groups: Range<usize>) -> Range<usize> {
 
 /// Work on impacts that wait in a queue.
 pub(crate) trait Meanwhile {
-    /// True if bounce loops are compiled with this work between their stages. Sinks that write records are limited by memory and gain
-    /// nothing from it.
+    /// True if the paper's runs have a bounce loop of their own for this work.
     const INTERLEAVED: bool;
 
     /// Works up the impact at a place.
@@ -55,11 +56,19 @@ pub(crate) trait Meanwhile {
     }
 }
 
-/// Works up the impact of a lane of a group, if there is such a lane: eight stages have one lane each.
+/// Stages from one impact to the next.
+const STAGES: usize = 8;
+
+/// Returns whether work is interleaved at a SIMD level: only where a vector has a lane for each stage.
+pub(super) const fn is_interleaved<S: Simd>() -> bool {
+    Pack::<S, 1>::WIDTH == STAGES
+}
+
+/// Works up the impact of a lane of a group, after the stage of the same number.
 #[inline(always)]
 pub(super) fn work_up<S: Simd>(work: &mut impl Meanwhile, group: usize, lane: usize) {
-    if lane < Pack::<S, 1>::WIDTH {
-        work.meanwhile(group * Pack::<S, 1>::WIDTH + lane);
+    if is_interleaved::<S>() {
+        work.meanwhile(group * STAGES + lane);
     }
 }
 
