@@ -13,6 +13,7 @@ if TYPE_CHECKING:
     from restitution.drop.energy import EnergyWarning
     from restitution.drop.reduce import reduce
     from restitution.drop.release import RandomHeight, RandomSpin
+    from restitution.drop.resting import resting
     from restitution.drop.simulate import SimulationInterrupted, simulate
     from restitution.drop.statistics import statistics
     from restitution.drop.trajectory import trajectory
@@ -44,6 +45,7 @@ __all__ = [
     "posterior",
     "reduce",
     "required_roundness",
+    "resting",
     "simulate",
     "sound",
     "statistics",
@@ -55,7 +57,8 @@ __all__ = [
 _HOMES = {
     **dict.fromkeys((entry["name"] for entry in _core.BODIES), "bodies"),
     **dict.fromkeys((entry["name"] for entry in (*_core.LAWS, *_core.MATERIALS)), "laws"),
-    **dict.fromkeys(("Box", "Clump", "ConvexPolyhedron", "Ellipsoid"), "bodies"),
+    **dict.fromkeys(("Box", "Clump", "ConvexPolyhedron", "Cylinder", "Die", "Egg", "Ellipsoid"), "bodies"),
+    **dict.fromkeys(("Mesh", "Revolution", "Ring"), "bodies"),
     "ball_grade": "bodies",
     "ball_roughness": "bodies",
     "from_roundness": "bodies",
@@ -74,6 +77,7 @@ _HOMES = {
     "RandomHeight": "drop.release",
     "RandomSpin": "drop.release",
     "reduce": "drop.reduce",
+    "resting": "drop.resting",
     "SimulationInterrupted": "drop.simulate",
     "CustomLaw": "laws",
     "simulate": "drop.simulate",

@@ -15,6 +15,8 @@ Call = tuple[Callable[..., Any], Callable[[], dict[str, Any]]]
 """A public function, class or method, and what it is given; of a method with ``self``."""
 
 WINDOW = (0.5, 0.9)
+TETRAHEDRON = ((0, 1, 2), (0, 3, 1), (1, 3, 2), (2, 3, 0))
+"""The faces of that of the origin, the last vertex, and the unit vectors."""
 
 
 @cache
@@ -23,6 +25,14 @@ def folder() -> Path:
     path = Path(tempfile.mkdtemp(prefix="calls-"))
     (path / "times.csv").write_text("time (s)\n0\n0.4\n0.78\n1.141\n", encoding="ascii")
     good()["clump"].to_csv(path / "clump.csv")
+    rows = [
+        "v 1 0 0",
+        "v 0 1 0",
+        "v 0 0 1",
+        "v 0 0 0",
+        *(f"f {a + 1} {b + 1} {c + 1}" for a, b, c in TETRAHEDRON),
+    ]
+    (path / "mesh.obj").write_text("\n".join(rows) + "\n", encoding="ascii")
     good()["dist"].save(path / "dist.nc")
     return path
 
@@ -33,6 +43,7 @@ def good() -> dict[str, Any]:
     body, law = rs.Dumbbell(radius=3e-3, separation=3e-3), rs.TangentialRestitution(normal=0.9)
     data = rs.simulate(body, law, particles=200, impacts=40, threads=1, record="state")
     velocity, restitution = np.linspace(0.1, 1.2, 12), np.linspace(-1, 3, 101)
+    die = rs.Die(faces=6, edge=1e-2)
     many = rs.simulate(body, law, particles=1000, impacts=20, threads=1)
     learned = rs.reduce(many, [0.7, 0.8, 0.9, 1.0], restitution)
     laplace = fit.laplace(data, velocity=WINDOW)
@@ -43,6 +54,8 @@ def good() -> dict[str, Any]:
     return {
         "body": body,
         "law": law,
+        "die": die,
+        "dropped": rs.simulate(die, rs.Frictionless(normal=0.5), particles=3, impacts=40, record="state"),
         "clump": rs.Clump(spheres=[(0, 0, 1e-3, 3e-3), (0, 0, -1e-3, 3e-3)]),
         "data": data,
         "found": found,
@@ -117,6 +130,16 @@ CALLS: dict[str, Call] = {
     "Ellipsoid": (rs.Ellipsoid, lambda: {"semi_axes": (3e-3, 2e-3, 1e-3), "density": 1e3}),
     "ConvexPolyhedron": (rs.ConvexPolyhedron, lambda: {"points": np.eye(4, 3), "density": 1e3}),
     "Box": (rs.Box, lambda: {"a": 1e-2, "b": 2e-2, "c": 3e-2, "density": 1e3}),
+    "Die": (rs.Die, lambda: {"faces": 8, "edge": 1e-2, "density": 1e3}),
+    "Mesh": (rs.Mesh, lambda: {"vertices": np.eye(4, 3), "triangles": TETRAHEDRON, "density": 1e3}),
+    "Mesh.from_file": (rs.Mesh.from_file, lambda: {"path": folder() / "mesh.obj", "scale": 1e-3}),
+    "Revolution": (rs.Revolution, lambda: {"profile": [(0, 1e-3), (2e-3, 1e-3)], "density": 1e3}),
+    "Cylinder": (rs.Cylinder, lambda: {"radius": 1e-3, "height": 2e-3, "density": 1e3}),
+    "Ring": (rs.Ring, lambda: {"outer": 2e-3, "inner": 1e-3, "height": 2e-3, "density": 1e3}),
+    "Egg": (
+        rs.Egg,
+        lambda: {"length": 6e-3, "width": 4e-3, "blunt_end": 1.9e-3, "tip": 1.2e-3, "density": 1e3},
+    ),
     "CustomLaw": (rs.CustomLaw, lambda: {"function": _own, "name": "own"}),
     "Tabulated.from_function": (
         rs.Tabulated.from_function,
@@ -132,6 +155,7 @@ CALLS: dict[str, Call] = {
         rs.compare,
         lambda: some(*BINS, particles=2, impacts=2)() | {"bodies": [good()["body"]], "laws": [good()["law"]]},
     ),
+    "resting": (rs.resting, lambda: {"body": good()["die"], "data": good()["dropped"]}),
     "trajectory": (rs.trajectory, some("data", particle=3, times=[0.0, 0.1])),
     "analytic.first_impact": (analytic.first_impact, some("body", "law", orientation="isotropic")),
     "analytic.RoughContact": (analytic.RoughContact, lambda: {"mean_square": 1e-4, "sphere": 0.0}),

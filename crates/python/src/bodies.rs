@@ -129,6 +129,12 @@ impl Rigid {
         [w, x, y, z]
     }
 
+    /// Where the rims of a solid of revolution are that can touch, rows (z, r) in m.
+    #[getter]
+    fn rims(&self) -> Vec<[f64; 2]> {
+        self.0.rims()
+    }
+
     /// Smallest height of the centre of mass, in m, at which no part is below the plane in any of these attitudes, rows (w, x, y, z).
     fn lowest(&self, attitudes: PyReadonlyArray2<'_, f64>) -> PyResult<f64> {
         let (rows, _) = attitudes.as_slice()?.as_chunks::<4>();
@@ -214,13 +220,42 @@ fn ellipsoid(semi_axes: [f64; 3], density: f64) -> PyResult<Rigid> {
 /// The convex hull of points with triangles of them as faces.
 #[pyfunction]
 fn polyhedron(points: Vec<[f64; 3]>, triangles: Vec<[usize; 3]>, density: f64) -> PyResult<Rigid> {
-    let points: Vec<_> = points
-        .iter()
-        .map(|&[x, y, z]| Vector::new(x, y, z))
-        .collect();
     rigid(restitution_core::Rigid::polyhedron(
-        &points, &triangles, density,
+        &vectors(&points),
+        &triangles,
+        density,
     ))
+}
+
+/// The solid within triangles of points, some of which are the vertices of its convex hull.
+#[pyfunction]
+fn mesh(
+    points: Vec<[f64; 3]>,
+    triangles: Vec<[usize; 3]>,
+    hull: Vec<usize>,
+    density: f64,
+) -> PyResult<Rigid> {
+    let points = vectors(&points);
+    rigid(restitution_core::Rigid::mesh(
+        &points, &triangles, &hull, density,
+    ))
+}
+
+fn vectors(points: &[[f64; 3]]) -> Vec<Vector> {
+    let vector = |&[x, y, z]: &[f64; 3]| Vector::new(x, y, z);
+    points.iter().map(vector).collect()
+}
+
+/// A solid of revolution with this profile of points (z, r).
+#[pyfunction]
+fn revolution(profile: Vec<[f64; 2]>, density: f64) -> PyResult<Rigid> {
+    rigid(restitution_core::Rigid::revolution(&profile, density))
+}
+
+/// An egg of this length and width, with caps of these radii.
+#[pyfunction]
+fn egg(size: [f64; 2], caps: [f64; 2], density: f64) -> PyResult<Rigid> {
+    rigid(restitution_core::Rigid::egg(size, caps, density))
 }
 
 /// The body with this name, made from all its parameters in their order.
@@ -236,5 +271,8 @@ pub fn add_to(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(clump_with, module)?)?;
     module.add_function(wrap_pyfunction!(ellipsoid, module)?)?;
     module.add_function(wrap_pyfunction!(polyhedron, module)?)?;
+    module.add_function(wrap_pyfunction!(mesh, module)?)?;
+    module.add_function(wrap_pyfunction!(revolution, module)?)?;
+    module.add_function(wrap_pyfunction!(egg, module)?)?;
     module.add_function(wrap_pyfunction!(body, module)?)
 }

@@ -6,11 +6,14 @@ from restitution.bodies._body import AnyBody as AnyBody
 from restitution.bodies._body import Body as Body
 from restitution.bodies._body import of_attributes as of_attributes
 from restitution.bodies._clump import Clump
+from restitution.bodies._die import Die
 from restitution.bodies._dumbbell import Dumbbell
 from restitution.bodies._ellipsoid import Ellipsoid
 from restitution.bodies._hollow import Wall as Wall
 from restitution.bodies._loaded_sphere import LoadedSphere
+from restitution.bodies._mesh import Mesh
 from restitution.bodies._polyhedra import Box, ConvexPolyhedron
+from restitution.bodies._revolution import Cylinder, Egg, Revolution, Ring
 from restitution.bodies._rigid import RigidBody as RigidBody
 from restitution.bodies._roundness import GRADES as GRADES
 from restitution.bodies._roundness import ROUGHNESS as ROUGHNESS
@@ -23,9 +26,15 @@ __all__ = [
     "Box",
     "Clump",
     "ConvexPolyhedron",
+    "Cylinder",
+    "Die",
     "Dumbbell",
+    "Egg",
     "Ellipsoid",
     "LoadedSphere",
+    "Mesh",
+    "Revolution",
+    "Ring",
     "Spherocylinder",
     "Spheroid",
     "ball_grade",
@@ -35,7 +44,9 @@ __all__ = [
 
 KINDS: tuple[type[Body], ...] = tuple(globals()[entry["name"]] for entry in _core.BODIES)
 """Every body of the core's table, all of revolution."""
-RIGID: tuple[type[RigidBody], ...] = (Clump, Ellipsoid, ConvexPolyhedron, Box)
+RIGID: tuple[type[RigidBody], ...] = (
+    *(Clump, Ellipsoid, ConvexPolyhedron, Box, Die, Mesh, Revolution, Cylinder, Ring, Egg),
+)
 """Every other body."""
 BODIES = one_of(_core.BODIES)
 ANY_BODIES = one_of([*_core.BODIES, *({"name": kind.__name__} for kind in RIGID)])

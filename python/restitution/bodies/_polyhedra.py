@@ -8,9 +8,12 @@ import numpy as np
 from pydantic import BeforeValidator, Field
 
 from restitution import _core
-from restitution._internal.arrays import reals
-from restitution._internal.parameters import Allowed, Number, ParameterError, Problem, wrong
-from restitution.bodies._rigid import RigidBody
+from restitution._internal.arrays import FloatArray, reals
+from restitution._internal.parameters import Allowed, Number, ParameterError, wrong
+from restitution.bodies._rigid import RigidBody, of_lengths
+
+if TYPE_CHECKING:
+    from scipy.spatial import ConvexHull
 
 _POINTS = "four or more points (x, y, z) in m, finite, not all in one plane"
 _DENSITY = Annotated[Number, Field(gt=0, description="kg/m³")]
@@ -21,6 +24,17 @@ def _points(value: Any) -> tuple[tuple[float, ...], ...]:
     if points.shape[0] < 4 or points.shape[1] != 3:
         raise ParameterError(wrong("points", value, _POINTS))
     return tuple(map(tuple, points.tolist()))
+
+
+def hull_of(points: FloatArray) -> "ConvexHull | None":
+    """Find the convex hull of points of any size; None if they lie in a plane."""
+    from scipy.spatial import ConvexHull, QhullError
+
+    size = np.ptp(points, axis=0).max()
+    try:
+        return ConvexHull((points - points[0]) / (size or 1.0))
+    except QhullError:
+        return None
 
 
 class ConvexPolyhedron(RigidBody):
@@ -53,14 +67,10 @@ class ConvexPolyhedron(RigidBody):
     @cached_property
     def compiled(self) -> _core.Rigid:
         """The body as the core knows it, made and checked once."""
-        from scipy.spatial import ConvexHull, QhullError
-
         points = np.array(self.points)
-        size = np.ptp(points, axis=0).max()
-        try:
-            hull = ConvexHull((points - points[0]) / (size or 1.0))
-        except QhullError:
-            raise ParameterError(wrong("points", points, _POINTS)) from None
+        hull = hull_of(points)
+        if hull is None:
+            raise ParameterError(wrong("points", points, _POINTS))
         return _core.polyhedron(self.points, hull.simplices.tolist(), self.density)
 
 
@@ -102,14 +112,8 @@ class Box(RigidBody):
     @cached_property
     def compiled(self) -> _core.Rigid:
         """The body as the core knows it, made and checked once."""
-        try:
+        with of_lengths(a=self.a, b=self.b, c=self.c):
             return _core.polyhedron(self.vertices, _TRIANGLES, self.density)
-        except _core.ParameterError as error:
-            if error.name != "points":
-                raise
-            edges = f" = {self.a!r}, b = {self.b!r}, c = {self.c!r}: must be "
-            allowed = "such that the volume neither overflows nor underflows"
-            raise ParameterError(Problem("a", edges, allowed)) from None
 
 
 _TRIANGLES = [

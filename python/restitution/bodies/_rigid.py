@@ -2,6 +2,7 @@
 
 from abc import abstractmethod
 from collections.abc import Iterator
+from contextlib import contextmanager
 from functools import cached_property
 from typing import Any
 
@@ -10,6 +11,7 @@ import numpy as np
 from restitution import _core
 from restitution._internal import text as _text
 from restitution._internal.arrays import FloatArray
+from restitution._internal.parameters import ParameterError, Problem
 from restitution.bodies._body import AnyBody
 
 _HALF = np.sqrt(0.5)
@@ -24,6 +26,21 @@ _FACES = np.array(
     ]
 )
 """Attitudes with each axis of the body up or down."""
+
+
+@contextmanager
+def of_lengths(**lengths: float) -> Iterator[None]:
+    """Name the lengths of a body, where the points made of them have no volume that is a number."""
+    try:
+        yield
+    except _core.ParameterError as error:
+        if error.name not in ("points", "profile"):
+            raise
+        first, *others = (f"{name} = {length!r}" for name, length in lengths.items())
+        name, _, value = first.partition(" = ")
+        text = f" = {', '.join([value, *others])}: must be "
+        allowed = "such that the volume neither overflows nor underflows"
+        raise ParameterError(Problem(name, text, allowed)) from None
 
 
 class RigidBody(AnyBody):

@@ -1,6 +1,7 @@
 //! The next contact of a body with the plane.
 
 mod certify;
+mod convex;
 mod lanes;
 mod plane;
 

@@ -14,11 +14,9 @@
 //! the resolution. An overlap is rounding: one that approaches is a contact now, one that separates is none.
 
 use super::certify::{SHORTEST, TOUCHING};
+use super::convex::{BandSupport, Length, convex_root};
 use crate::math::Vector;
-use crate::shape::{Point, Skin};
-
-/// Steps of Newton's method towards the root of the bound of a convex body.
-const NEWTON: usize = 3;
+use crate::shape::{Band, Point, Skin};
 
 /// A body over the plane at one time of its flight.
 #[derive(Debug, Clone, Copy)]
@@ -50,7 +48,7 @@ pub(crate) struct Step {
 }
 
 /// The first root ≥ 0 of f + f′s − Ms²/2 with f ≥ 0, in that of its two forms in which no digits cancel.
-fn first_root(width: f64, rate: f64, bound: f64) -> f64 {
+pub(super) fn first_root(width: f64, rate: f64, bound: f64) -> f64 {
     let speed = rate.abs() + (rate * rate + 2.0 * bound * width).sqrt();
     if rate < 0.0 {
         2.0 * width / speed
@@ -86,23 +84,47 @@ impl Skin {
             }
             Self::Ellipsoid(axes) => {
                 let bound = 1.0 + turn;
-                let gap = EllipsoidGap::new(*axes, at);
+                let support = Length::of_ellipsoid(*axes, at);
                 let (width, rate) = match departure {
                     Some(left) => (0.0, left.speed),
-                    None => (at.height - gap.support.0, gap.rate(0.0)),
+                    None => (at.height - support.size, at.rate - support.slope),
                 };
                 Step {
-                    length: gap.first_root(width.max(0.0), rate, bound),
+                    length: convex_root(&support, width.max(0.0), rate, bound),
                     part: 0,
                     closes: rate < 0.0,
                     bound,
                 }
             }
+            Self::Bands(bands) => {
+                let mut first = Step::never();
+                for (part, band) in bands.iter().enumerate() {
+                    let support = BandSupport::new(band, at);
+                    let (width, rate) = match departure {
+                        // Flat on its rim a body has no single point there, whose speed that is.
+                        Some(left) if left.part == part && !support.is_flat() => (0.0, left.speed),
+                        Some(left) if left.part == part => (0.0, at.rate - support.slope),
+                        _ => (at.height - support.size, at.rate - support.slope),
+                    };
+                    let bound = 1.0 + turn * band.reach;
+                    let length = convex_root(&support, width.max(0.0), rate, bound);
+                    if length < first.length {
+                        first = Step {
+                            length,
+                            part,
+                            closes: rate < 0.0,
+                            bound,
+                        };
+                    }
+                }
+                first
+            }
         }
     }
 
-    /// The point of a part that is nearest to the plane, from the centre of mass, in the axes of the body.
-    pub(crate) fn nearest(&self, part: usize, up: Vector) -> Vector {
+    /// The point of a part that is nearest to the plane, from the centre of mass, in the axes of the body; of several the one that
+    /// comes down first, while **n** changes with **n**′.
+    pub(crate) fn nearest(&self, part: usize, up: Vector, turning: Vector) -> Vector {
         match self {
             Self::Points(points) => points[part].place - up * points[part].radius,
             Self::Ellipsoid([a, b, c]) => {
@@ -110,6 +132,7 @@ impl Skin {
                 let size = -1.0 / stretched.norm();
                 Vector::new(a * stretched.x, b * stretched.y, c * stretched.z) * size
             }
+            Self::Bands(bands) => bands[part].farthest(up * -1.0, turning * -1.0),
         }
     }
 
@@ -118,26 +141,37 @@ impl Skin {
         match self {
             Self::Points(points) => points[part].place.dot(bending),
             Self::Ellipsoid(axes) => {
-                // −h″, h² = |A(n + s n′ + s² n″/2)|².
-                let gap = EllipsoidGap::new(*axes, at);
-                let (h, slope) = gap.support;
                 let [x, y, z] = axes.map(|axis| axis * axis);
                 let bent = Vector::new(x * at.up.x, y * at.up.y, z * at.up.z).dot(bending);
-                -(gap.square + bent - slope * slope) / h
+                -Length::of_ellipsoid(*axes, at).bent(bent)
             }
+            Self::Bands(bands) => BandSupport::new(&bands[part], at).curvature(at, bending),
         }
     }
 
     /// Whether some part but one overlaps, or touches within rounding, and approaches faster than that one.
     pub(crate) fn another_touches(&self, departure: Departure, at: &Instant) -> bool {
-        let Self::Points(points) = self else {
-            return false;
-        };
-        let still = at.opening(&points[departure.part]).1;
-        points.iter().enumerate().any(|(part, point)| {
-            let (width, rate) = at.opening(point);
-            part != departure.part && width <= TOUCHING && rate < still
-        })
+        let touches = |(width, rate): (f64, f64), still: f64| width <= TOUCHING && rate < still;
+        match self {
+            Self::Points(points) => {
+                let still = at.opening(&points[departure.part]).1;
+                points.iter().enumerate().any(|(part, point)| {
+                    part != departure.part && touches(at.opening(point), still)
+                })
+            }
+            Self::Ellipsoid(_) => false,
+            Self::Bands(bands) => {
+                let opening = |band: &Band| {
+                    let support = BandSupport::new(band, at);
+                    (at.height - support.size, at.rate - support.slope)
+                };
+                let still = opening(&bands[departure.part]).1;
+                bands
+                    .iter()
+                    .enumerate()
+                    .any(|(part, band)| part != departure.part && touches(opening(band), still))
+            }
+        }
     }
 }
 
@@ -161,98 +195,5 @@ impl Instant {
             self.height + (n.x * p.x + n.y * p.y + n.z * p.z) - point.radius,
             self.rate + (w.x * p.x + w.y * p.y + w.z * p.z),
         )
-    }
-}
-
-/// The gap of an ellipsoid whose normal **n** turns along its tangent: z + v s − √(|A**n**|² + 2s A**n**·A**n**′ + s²|A**n**′|²).
-struct EllipsoidGap {
-    /// v.
-    speed: f64,
-    /// h = |A**n**| and h′.
-    support: (f64, f64),
-    /// |A**n**′|².
-    square: f64,
-}
-
-impl EllipsoidGap {
-    fn new([a, b, c]: [f64; 3], at: &Instant) -> Self {
-        let stretched = |v: Vector| Vector::new(a * v.x, b * v.y, c * v.z);
-        let (one, other) = (stretched(at.up), stretched(at.turning));
-        let h = one.norm();
-        Self {
-            speed: at.rate,
-            support: (h, one.dot(other) / h),
-            square: other.dot(other),
-        }
-    }
-
-    /// The rate at which the gap opens.
-    fn rate(&self, s: f64) -> f64 {
-        let (h, slope) = self.support;
-        self.speed - (h * slope + s * self.square) / self.support_at(s)
-    }
-
-    fn support_at(&self, s: f64) -> f64 {
-        let (h, slope) = self.support;
-        (h * h + s * (2.0 * h * slope + s * self.square))
-            .max(0.0)
-            .sqrt()
-    }
-
-    /// A time no later than the first root of the lower bound that begins with this gap and rate. Its tangents lie above it, so that Newton's
-    /// method comes from behind the root; the last chord, which lies below it, ends in front of it.
-    fn first_root(&self, width: f64, rate: f64, bound: f64) -> f64 {
-        let (h, slope) = self.support;
-        // What the support grows by beyond its tangent, without cancellation: (h² + 2s hh′ + s²k) − (h + s h′)² = s²(k − h′²).
-        let spread = (self.square - slope * slope).max(0.0);
-        let bulge = |s: f64| s * s * spread / (self.support_at(s) + (h + s * slope).abs());
-        let value = |s: f64| {
-            let tangent = h + s * slope;
-            let beyond = if tangent >= 0.0 {
-                bulge(s)
-            } else {
-                bulge(s) - 2.0 * tangent
-            };
-            width + s * (rate - 0.5 * bound * s) - beyond
-        };
-        let mut after = first_root(width, rate, bound);
-        if spread == 0.0 {
-            return after;
-        }
-        let mut before = (0.0, width);
-        for _ in 0..NEWTON {
-            let found = value(after);
-            if found >= 0.0 {
-                return after;
-            }
-            let fall = self.rate(after) - self.rate(0.0) + rate - bound * after;
-            let next = after - found / fall;
-            if !(next > before.0 && next < after) {
-                break;
-            }
-            after = next;
-        }
-        // Where the gap is 0 at the beginning and opens, a point between it and the root.
-        let mut inside = 0.5 * after;
-        while before.1 <= 0.0 && rate > 0.0 {
-            let found = value(inside);
-            if found > 0.0 {
-                before = (inside, found);
-            }
-            inside *= 0.5;
-            if bound * inside <= SHORTEST {
-                return SHORTEST / bound;
-            }
-        }
-        let found = value(after);
-        if found >= 0.0 {
-            return after;
-        }
-        let chord = before.0 + (after - before.0) * before.1 / (before.1 - found);
-        if rate < 0.0 {
-            chord
-        } else {
-            chord.max(SHORTEST / bound)
-        }
     }
 }

@@ -165,7 +165,7 @@ impl Bouncing<'_> {
         Contact {
             time,
             state: RigidState {
-                height: -normal.dot(self.body.skin.nearest(part, normal)),
+                height: -normal.dot(self.body.skin.nearest(part, normal, normal.cross(spin))),
                 velocity: pull.mul_add(time, start.velocity),
                 attitude,
                 spin,
@@ -192,7 +192,11 @@ impl Bouncing<'_> {
             spin,
             ..
         } = contact.state;
-        let arm = self.body.skin.nearest(contact.part, up(attitude));
+        let normal = up(attitude);
+        let arm = self
+            .body
+            .skin
+            .nearest(contact.part, normal, normal.cross(spin));
         let inverse = self.body.top.moments().map(|moment| 1.0 / moment);
         let arm_in_space = attitude.rotate(arm);
         let compliance = Compliance::of_body(

@@ -4,6 +4,7 @@ mod clump;
 mod mass;
 mod polyhedron;
 mod revolution;
+mod revolved;
 mod rigid;
 
 use crate::Error;
@@ -12,6 +13,7 @@ use clump::GAUSS;
 pub use clump::Matter;
 
 pub use revolution::*;
+pub(crate) use revolved::Band;
 pub use rigid::{Inertia, Rigid, RigidBall};
 pub(crate) use rigid::{Point, Skin, up};
 

@@ -1,7 +1,7 @@
 //! Convex polyhedra.
 
 use super::check_density;
-use super::rigid::{Moments, Rigid, RigidBall};
+use super::rigid::{Inertia, Moments, Rigid, RigidBall};
 use crate::Error;
 use crate::math::{Symmetric, Vector};
 use std::ops::Add;
@@ -16,38 +16,69 @@ impl Rigid {
         triangles: &[[usize; 3]],
         density: f64,
     ) -> Result<Self, Error> {
-        check_density(density)?;
-        for x in points.iter().flat_map(|point| [point.x, point.y, point.z]) {
-            Error::unless(x.is_finite(), "points", x, "finite (m)")?;
-        }
-        let known = triangles.as_flattened().iter().all(|&i| i < points.len());
-        Error::unless(known, "triangles", triangles.len(), "those of the points")?;
-        let mut vertices: Vec<usize> = triangles.as_flattened().to_vec();
-        vertices.sort_unstable();
-        vertices.dedup();
-        let inside = vertices
-            .iter()
-            .fold(Vector::default(), |sum, &i| sum + points[i])
-            / vertices.len() as f64;
-        // Tetrahedra with their apex inside, all of positive volume.
-        let mut moments = Moments::default();
-        for corners in triangles {
-            let [a, b, c] = corners.map(|i| points[i] - inside);
-            let volume = a.dot(b.cross(c)).abs() / 6.0;
-            moments = moments.and(tetrahedron(volume, [a, b, c]));
-        }
-        let allowed = "not all in one plane";
-        let solid = moments.content > 0.0 && moments.content.is_finite();
-        Error::unless(solid, "points", points.len(), allowed)?;
-        let mut inertia = moments.inertia(density);
-        inertia.centre = inertia.centre + inside;
-        let vertex = |&centre: &Vector| RigidBall {
-            centre,
-            radius: 0.0,
-        };
+        let inertia = solid(points, triangles, f64::abs, density)?;
         let vertices: Vec<_> = points.iter().map(vertex).collect();
         Self::of_balls(inertia, &vertices)
     }
+
+    /// The homogeneous solid within closed surfaces of triangles of points (m), each seen counter-clockwise from outside, of which these
+    /// `hull` points are the vertices of the convex hull, and can touch.
+    ///
+    /// # Errors
+    /// As [`Rigid::polyhedron`].
+    pub fn mesh(
+        points: &[Vector],
+        triangles: &[[usize; 3]],
+        hull: &[usize],
+        density: f64,
+    ) -> Result<Self, Error> {
+        let inertia = solid(points, triangles, |volume| volume, density)?;
+        let known = hull.iter().all(|&i| i < points.len());
+        Error::unless(known, "hull", hull.len(), "those of the points")?;
+        let vertices: Vec<_> = hull.iter().map(|&i| vertex(&points[i])).collect();
+        Self::of_balls(inertia, &vertices)
+    }
+}
+
+fn vertex(&centre: &Vector) -> RigidBall {
+    RigidBall {
+        centre,
+        radius: 0.0,
+    }
+}
+
+/// The sum of the tetrahedra that triangles make with a point among them. `counted` is how their signed volumes count.
+fn solid(
+    points: &[Vector],
+    triangles: &[[usize; 3]],
+    counted: impl Fn(f64) -> f64,
+    density: f64,
+) -> Result<Inertia, Error> {
+    check_density(density)?;
+    for x in points.iter().flat_map(|point| [point.x, point.y, point.z]) {
+        Error::unless(x.is_finite(), "points", x, "finite (m)")?;
+    }
+    let known = triangles.as_flattened().iter().all(|&i| i < points.len());
+    Error::unless(known, "triangles", triangles.len(), "those of the points")?;
+    let mut vertices: Vec<usize> = triangles.as_flattened().to_vec();
+    vertices.sort_unstable();
+    vertices.dedup();
+    let inside = vertices
+        .iter()
+        .fold(Vector::default(), |sum, &i| sum + points[i])
+        / vertices.len() as f64;
+    let mut moments = Moments::default();
+    for corners in triangles {
+        let [a, b, c] = corners.map(|i| points[i] - inside);
+        let volume = counted(a.dot(b.cross(c)) / 6.0);
+        moments = moments.and(tetrahedron(volume, [a, b, c]));
+    }
+    let allowed = "not all in one plane";
+    let positive = moments.content > 0.0 && moments.content.is_finite();
+    Error::unless(positive, "points", points.len(), allowed)?;
+    let mut inertia = moments.inertia(density);
+    inertia.centre = inertia.centre + inside;
+    Ok(inertia)
 }
 
 /// The tetrahedron of the origin and three other corners: ∫**x**⊗**x** = V/20 (Σ**x**ᵢ⊗**x**ᵢ + **s**⊗**s**), **s** = Σ**x**ᵢ.

@@ -1,6 +1,7 @@
 //! Bodies of any shape: mass, principal axes, and what can touch the plane.
 
 use super::check_density;
+use super::revolved::Band;
 use crate::Error;
 use crate::math::{Quaternion, Symmetric, Vector};
 use crate::motion::Top;
@@ -49,6 +50,8 @@ pub(crate) enum Skin {
     Points(Vec<Point>),
     /// An ellipsoid about the centre of mass with these semi-axes along the principal axes.
     Ellipsoid([f64; 3]),
+    /// Bands of a body whose axis of revolution is the third principal axis.
+    Bands(Vec<Band>),
 }
 
 /// A rigid body of any shape. Its unit of length R is the largest distance of a part of it from the centre of mass.
@@ -212,12 +215,16 @@ impl Skin {
                 lowest.fold(f64::NEG_INFINITY, f64::max)
             }
             Self::Ellipsoid([a, b, c]) => Vector::new(a * up.x, b * up.y, c * up.z).norm(),
+            Self::Bands(bands) => bands
+                .iter()
+                .map(|band| band.support(up * -1.0))
+                .fold(f64::NEG_INFINITY, f64::max),
         }
     }
 }
 
 /// The principal moments over mR², and the rotation from the principal axes.
-fn principal(inertia: &Inertia, unit: f64) -> Result<(Top, Quaternion), Error> {
+pub(super) fn principal(inertia: &Inertia, unit: f64) -> Result<(Top, Quaternion), Error> {
     let (moments, axes) = inertia.tensor.principal();
     let scale = 1.0 / (inertia.mass * unit * unit);
     let moments = moments.map(|moment| scale * moment);

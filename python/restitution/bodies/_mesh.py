@@ -1,0 +1,181 @@
+"""Solids within closed surfaces of triangles, as scanners and design programs write them."""
+
+import os
+from functools import cached_property
+from pathlib import Path
+from typing import Annotated, Any, Self
+
+import numpy as np
+from pydantic import BeforeValidator, Field
+
+from restitution import _core
+from restitution._internal import files
+from restitution._internal.arrays import FloatArray, IntArray, real, reals
+from restitution._internal.parameters import Allowed, Number, ParameterError, Problem, renamed, shown, wrong
+from restitution.bodies._polyhedra import hull_of
+from restitution.bodies._rigid import RigidBody
+
+_VERTICES = "four or more points (x, y, z) in m, finite, not all in one plane"
+_TRIANGLES = "triples of numbers of the vertices, from 0"
+_SMALLEST, _LARGEST = 1e-60, 1e60
+"""Sizes in m whose fifth power is a number."""
+_SUFFIXES = (".stl", ".obj", ".ply")
+
+
+def _vertices(value: Any) -> tuple[tuple[float, ...], ...]:
+    points = reals("vertices", value, _VERTICES, unit="m", dimensions=(2,))
+    if points.shape[0] < 4 or points.shape[1] != 3:
+        raise ParameterError(wrong("vertices", value, _VERTICES))
+    return tuple(map(tuple, points.tolist()))
+
+
+def _triangles(value: Any) -> tuple[tuple[int, ...], ...]:
+    found = reals("triangles", value, _TRIANGLES, dimensions=(2,))
+    if found.shape[0] == 0 or found.shape[1] != 3 or (found < 0).any() or (found % 1.0 != 0.0).any():
+        raise ParameterError(wrong("triangles", value, _TRIANGLES))
+    return tuple(map(tuple, found.astype(np.int64).tolist()))
+
+
+class Mesh(RigidBody):
+    """A homogeneous solid within closed surfaces of triangles, convex or not.
+
+    Only its convex hull touches the plane, so that the motion of any solid is exact; mass, centre of mass and
+    inertia are its own. A surface within another one is a cavity if its triangles are oriented to it. Solids
+    that overlap count twice there.
+
+    Parameters
+    ----------
+    vertices : array_like, shape (n, 3)
+        Points (x, y, z), in m; finite, not all in one plane.
+    triangles : array_like of int, shape (m, 3)
+        Numbers of three vertices, from 0, counter-clockwise as seen from outside. Every edge is that of as
+        many triangles in one direction as in the other, or the surface is not closed, or not oriented.
+    density : float, default 2500
+        Density in kg/m³; finite and > 0. Only mass and inertia depend on it, the motion does not.
+
+    Examples
+    --------
+    >>> import restitution as rs
+    >>> corners = [(0, 0, 0), (6e-3, 0, 0), (0, 6e-3, 0), (0, 0, 6e-3)]
+    >>> mesh = rs.Mesh(vertices=corners, triangles=[(0, 2, 1), (0, 1, 3), (0, 3, 2), (1, 2, 3)])
+    >>> mesh.centre_of_mass.round(9).tolist()
+    [0.0015, 0.0015, 0.0015]
+    """
+
+    vertices: Annotated[Any, Allowed(_VERTICES), BeforeValidator(_vertices), Field(description="m")]
+    triangles: Annotated[Any, Allowed(_TRIANGLES), BeforeValidator(_triangles)]
+    density: Annotated[Number, Field(gt=0, description="kg/m³")] = 2500.0
+
+    @classmethod
+    def from_file(cls, path: str | os.PathLike[str], *, scale: float = 1.0, density: float = 2500.0) -> Self:
+        """Read an STL, OBJ or PLY file.
+
+        Parameters
+        ----------
+        path : str or path-like
+            The file. Vertices at the same place are one; what else is in it, such as colours, is not read.
+        scale : float, default 1
+            What a unit of the file is in m: 1e-3 for millimetres. > 0.
+        density : float, default 2500
+            As that of the body.
+
+        Raises
+        ------
+        ValueError
+            If the file is none of these, or its surface is not closed or not oriented; the message says
+            where. Or if trimesh, which reads these files, is not installed: ``pip install
+            'restitution[mesh]'``.
+        OSError
+            If the file cannot be read.
+        """
+        unit = real("scale", scale, "a finite number > 0 (m)", lambda x: 0.0 < x < np.inf)
+        place = files.path_from("path", path)
+        vertices, triangles = _read(place)
+        size = float(np.abs(vertices).max())
+        if not _SMALLEST <= unit * size <= _LARGEST:
+            allowed = f"such that the mesh is {_SMALLEST:g} to {_LARGEST:g} m in size"
+            raise ParameterError(wrong("scale", scale, allowed))
+        with renamed(lambda name: f"{place}: {name}" if name in ("vertices", "triangles") else name):
+            return cls(vertices=unit * vertices, triangles=triangles, density=density)
+
+    @cached_property
+    def hull(self) -> IntArray:
+        """Numbers of the vertices of the convex hull; ``contact`` numbers these, from 1."""
+        hull = hull_of(np.array(self.vertices))
+        if hull is None:
+            raise ParameterError(wrong("vertices", np.array(self.vertices), _VERTICES))
+        return np.sort(hull.vertices).astype(np.int64)
+
+    @cached_property
+    def compiled(self) -> _core.Rigid:
+        """The body as the core knows it, made and checked once."""
+        points, triangles = np.array(self.vertices), np.array(self.triangles)
+        if triangles.max() >= len(points):
+            raise ParameterError(wrong("triangles", triangles.max(), f"{_TRIANGLES} to {len(points) - 1}"))
+        problem = _open_edge(points, triangles) or _inside_out(points, triangles)
+        if problem:
+            raise ParameterError(Problem("triangles", problem))
+        return _core.mesh(self.vertices, self.triangles, self.hull.tolist(), self.density)
+
+
+def _open_edge(points: FloatArray, triangles: IntArray) -> str:
+    """Say where a surface ends, or turns its inside out."""
+    ends = np.stack([triangles, np.roll(triangles, -1, axis=1)], axis=-1).reshape(-1, 2)
+    number = np.repeat(np.arange(len(triangles)), 3)
+    proper = ends[:, 0] != ends[:, 1]
+    ends, number = ends[proper], number[proper]
+    edges, of = np.unique(np.sort(ends, axis=1), axis=0, return_inverse=True)
+    of = of.reshape(-1)
+    balance = np.bincount(of, np.where(ends[:, 0] < ends[:, 1], 1, -1), len(edges))
+    wrong_ones = np.flatnonzero(balance)
+    if wrong_ones.size == 0:
+        return ""
+    single = np.bincount(of, minlength=len(edges)) % 2 == 1
+    odd = np.flatnonzero(single)
+    first = odd[0] if odd.size else wrong_ones[0]
+    place = " and ".join(f"{i} {shown(tuple(points[i].tolist()))}" for i in edges[first].tolist())
+    faces = number[of == first].tolist()
+    if odd.size:
+        count = "one triangle" if len(faces) == 1 else f"{len(faces)} triangles"
+        return (
+            f": not closed at {odd.size} edges, of which the first, between the vertices {place}, is that of "
+            f"{count}; must be that of as many in one direction as in the other"
+        )
+    return (
+        f": not oriented at {wrong_ones.size} edges, of which the first, between the vertices {place}, "
+        f"has one direction in the triangles {' and '.join(map(str, faces))}; must have both"
+    )
+
+
+def _inside_out(points: FloatArray, triangles: IntArray) -> str:
+    """Say that a volume is not positive."""
+    corners = points[triangles] - points.mean(axis=0)
+    volume = np.linalg.det(corners).sum() / 6.0
+    if volume > 0.0:
+        return ""
+    return f": enclose {volume:g} m³; must be counter-clockwise as seen from outside"
+
+
+def _read(path: Path) -> tuple[FloatArray, IntArray]:
+    """Read vertices, each once, and triangles."""
+    if path.suffix.lower() not in _SUFFIXES:
+        raise ParameterError(wrong("path", str(path), f"the name of a mesh, {', '.join(_SUFFIXES)}"))
+    files.check_regular(path)
+    path.open("rb").close()  # an OSError that names the file, if it cannot be read
+    try:
+        import trimesh
+    except ImportError:
+        text = ": reading meshes needs trimesh: pip install 'restitution[mesh]'"
+        raise ParameterError(Problem(str(path), text)) from None
+    try:
+        found = trimesh.load_mesh(path, process=False, skip_materials=True)
+        corners = np.array(found.vertices, dtype=np.float64).reshape(-1, 3)[np.array(found.faces)]
+    except MemoryError:
+        raise
+    except Exception as error:  # what readers raise on damaged files is anything
+        raise ParameterError(Problem(str(path), f": not a mesh that can be read ({error})")) from None
+    if corners.ndim != 3 or corners.shape[1:] != (3, 3) or not len(corners):
+        raise ParameterError(Problem(str(path), ": no triangles; must be a mesh of them"))
+    # In STL each triangle has vertices of its own; where they are the same is exact, but for the sign of 0.
+    vertices, triangles = np.unique(corners.reshape(-1, 3) + 0.0, axis=0, return_inverse=True)
+    return vertices, triangles.reshape(-1, 3).astype(np.int64)

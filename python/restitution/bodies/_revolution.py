@@ -1,0 +1,201 @@
+"""Solids of revolution: any profile, and cylinders, rings and eggs."""
+
+from functools import cached_property
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar
+
+import numpy as np
+from pydantic import BeforeValidator, Field
+
+from restitution import _core
+from restitution._internal.arrays import FloatArray, check_each, reals
+from restitution._internal.parameters import Allowed, Number, ParameterError, Problem, wrong
+from restitution.bodies._rigid import RigidBody, of_lengths
+
+_PROFILE = "two or more points (z, r) in m, finite, r >= 0, around an area"
+_DENSITY = Annotated[Number, Field(gt=0, description="kg/m³")]
+_LENGTH = Annotated[Number, Field(gt=0, description="m")]
+
+
+def _profile(value: Any) -> tuple[tuple[float, ...], ...]:
+    points = reals("profile", value, _PROFILE, unit="m", dimensions=(2,))
+    if points.shape[0] < 2 or points.shape[1] != 2:
+        raise ParameterError(wrong("profile", value, _PROFILE))
+    check_each("profile", points, (points >= 0.0) | [True, False], _PROFILE)
+    if not 0.0 < _volume(points) < np.inf:
+        raise ParameterError(wrong("profile", value, _PROFILE))
+    crossing = _crossing(points)
+    if crossing is not None:
+        text = ": its lines from the points {} and {} cross; must be an outline that does not"
+        raise ParameterError(Problem("profile", text.format(*crossing)))
+    return tuple(map(tuple, points.tolist()))
+
+
+def _volume(points: FloatArray) -> float:
+    """Sum up the frusta of a profile, over π/3."""
+    z, r = points.T
+    with np.errstate(over="ignore", invalid="ignore"):
+        return abs(float(np.diff(z) @ (r[1:] ** 2 + r[1:] * r[:-1] + r[:-1] ** 2)))
+
+
+def _crossing(points: FloatArray) -> tuple[int, int] | None:
+    """Find two lines of a polygon that cross, by their first points."""
+    begin, end = points[:-1], points[1:]
+
+    def side(a: FloatArray, b: FloatArray, c: FloatArray) -> FloatArray:
+        (u, v), (x, y) = (b - a).T, (c - a).T
+        return np.asarray(np.sign(u * y - v * x))
+
+    for i in range(len(begin)):
+        a, b, c, d = begin[i : i + 1], end[i : i + 1], begin[:i], end[:i]
+        apart = (side(a, b, c) * side(a, b, d) < 0.0) & (side(c, d, a) * side(c, d, b) < 0.0)
+        if apart.any():
+            return int(np.argmax(apart)), i
+    return None
+
+
+class Revolution(RigidBody):
+    """A homogeneous solid of revolution with any profile.
+
+    Its axis is z of the body. Only its convex hull touches the plane, with circular rims; `contact` numbers
+    those of `rims`, from 1.
+
+    Parameters
+    ----------
+    profile : array_like, shape (n, 2)
+        Points (z, r) of its outline from one end to the other, in m, joined by straight lines; r ≥ 0 is the
+        distance from the axis. Where it ends off the axis, a flat face closes it; where it ends at its
+        first point, it is closed itself, as that of a ring or a cup.
+    density : float, default 2500
+        Density in kg/m³; finite and > 0. Only mass and inertia depend on it, the motion does not.
+
+    Examples
+    --------
+    >>> import restitution as rs
+    >>> cone = rs.Revolution(profile=[(0, 4e-3), (12e-3, 0)])
+    >>> cone.centre_of_mass.round(9).tolist()
+    [0.0, 0.0, 0.003]
+    """
+
+    by_place: ClassVar[tuple[str, ...]] = ("profile",)
+
+    profile: Annotated[Any, Allowed(_PROFILE), BeforeValidator(_profile), Field(description="m")]
+    density: _DENSITY = 2500.0
+
+    if TYPE_CHECKING:  # or type checkers would take the fields for keyword arguments
+
+        def __init__(self, profile: Any, *, density: float = 2500.0) -> None: ...
+
+    @property
+    def rims(self) -> FloatArray:
+        """Where the rims of its convex hull are, (z, r) in m, from the end at the largest z; shape (n, 2)."""
+        return np.array(self.compiled.rims)
+
+    @cached_property
+    def compiled(self) -> _core.Rigid:
+        """The body as the core knows it, made and checked once."""
+        return _core.revolution(self.profile, self.density)
+
+
+class Cylinder(RigidBody):
+    """A homogeneous cylinder with its axis along z of the body: a coin, a tablet, a rod.
+
+    Parameters
+    ----------
+    radius, height : float
+        In m; finite and > 0.
+    density : float, default 2500
+        Density in kg/m³; finite and > 0. Only mass and inertia depend on it, the motion does not.
+
+    Examples
+    --------
+    >>> import restitution as rs
+    >>> coin = rs.Cylinder(radius=1e-2, height=2e-3)
+    >>> round(coin.mass * 1e3, 4)  # g
+    1.5708
+    """
+
+    by_place: ClassVar[tuple[str, ...]] = ("radius", "height")
+
+    radius: _LENGTH
+    height: _LENGTH
+    density: _DENSITY = 2500.0
+
+    if TYPE_CHECKING:
+
+        def __init__(self, radius: float, height: float, *, density: float = 2500.0) -> None: ...
+
+    @cached_property
+    def compiled(self) -> _core.Rigid:
+        """The body as the core knows it, made and checked once."""
+        half = 0.5 * self.height
+        with of_lengths(radius=self.radius, height=self.height):
+            return _core.revolution([(-half, self.radius), (half, self.radius)], self.density)
+
+
+class Ring(RigidBody):
+    """A homogeneous ring, or washer, or tube, with its axis along z of the body.
+
+    Parameters
+    ----------
+    outer, inner, height : float
+        Outer and inner radius and height, in m; finite and > 0, the inner radius below the outer one.
+    density : float, default 2500
+        Density in kg/m³; finite and > 0. Only mass and inertia depend on it, the motion does not.
+    """
+
+    by_place: ClassVar[tuple[str, ...]] = ("outer", "inner", "height")
+
+    outer: _LENGTH
+    inner: _LENGTH
+    height: _LENGTH
+    density: _DENSITY = 2500.0
+
+    if TYPE_CHECKING:
+
+        def __init__(self, outer: float, inner: float, height: float, *, density: float = 2500.0) -> None: ...
+
+    @cached_property
+    def compiled(self) -> _core.Rigid:
+        """The body as the core knows it, made and checked once."""
+        if self.inner >= self.outer:
+            raise ParameterError(wrong("inner", self.inner, f"less than outer = {self.outer!r} (m)"))
+        half = 0.5 * self.height
+        corners = [(-half, self.inner), (-half, self.outer), (half, self.outer), (half, self.inner)]
+        with of_lengths(outer=self.outer, inner=self.inner, height=self.height):
+            return _core.revolution([*corners, corners[0]], self.density)
+
+
+class Egg(RigidBody):
+    """A homogeneous egg: two spherical caps, joined by an arc that is tangent to both.
+
+    It stands on its blunt end at z = 0 of the body. `contact` is 1 at the tip, 2 at the flank, 3 at the blunt
+    end.
+
+    Parameters
+    ----------
+    length, width : float
+        In m; finite and > 0, the width at most the length.
+    blunt_end, tip : float
+        Radii of curvature at the ends in m; > 0 and at most half of the width, one of them less.
+    density : float, default 2500
+        Density in kg/m³; finite and > 0. Only mass and inertia depend on it, the motion does not.
+
+    Examples
+    --------
+    >>> import restitution as rs
+    >>> egg = rs.Egg(length=57e-3, width=44e-3, blunt_end=20e-3, tip=14e-3, density=1050.0)
+    >>> round(egg.mass * 1e3, 1)  # g
+    59.6
+    """
+
+    length: _LENGTH
+    width: _LENGTH
+    blunt_end: _LENGTH
+    tip: _LENGTH
+    density: _DENSITY = 2500.0
+
+    @cached_property
+    def compiled(self) -> _core.Rigid:
+        """The body as the core knows it, made and checked once."""
+        with of_lengths(length=self.length, width=self.width, blunt_end=self.blunt_end, tip=self.tip):
+            return _core.egg((self.length, self.width), (self.blunt_end, self.tip), self.density)

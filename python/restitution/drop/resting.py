@@ -1,0 +1,297 @@
+"""Where a body comes to rest: its potential wells, and the passes between them."""
+
+from __future__ import annotations
+
+from itertools import pairwise
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+
+from restitution._internal.arrays import FloatArray, IntArray, reals
+from restitution._internal.parameters import ParameterError, Problem, wrong
+from restitution.bodies import (
+    Box,
+    ConvexPolyhedron,
+    Cylinder,
+    Die,
+    Mesh,
+    Revolution,
+    RigidBody,
+    Ring,
+)
+from restitution.drop.recorded import RECORDS, check_filled, check_successive, pull, variables
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+_BODIES = "a Box, ConvexPolyhedron, Cylinder, Die, Mesh, Revolution or Ring"
+_STATE = ("velocity_after", "angular_velocity_after", "position")
+_FLAT = 1e-9
+"""Faces of a hull are one where their normals and distances differ by less, relative to the size."""
+
+
+class _Pass(NamedTuple):
+    """Between two faces, over an edge or a rim: the height of the centre of mass above the plane there."""
+
+    faces: tuple[int, int]
+    height: float
+
+
+class _Landscape(NamedTuple):
+    """The height of the centre of mass, where a direction of the body points down, by its critical points."""
+
+    normals: FloatArray
+    heights: FloatArray
+    passes: list[_Pass]
+
+    def wells(self) -> IntArray:
+        """Faces that a body rests on: every way out of them leads up."""
+        lowest = np.full(len(self.heights), np.inf)
+        for (f, g), height in self.passes:
+            lowest[f], lowest[g] = min(lowest[f], height), min(lowest[g], height)
+        return np.flatnonzero(lowest > self.heights * (1.0 + _FLAT))
+
+    def levels(self) -> FloatArray:
+        """Find the lowest pass from the well of each face into another one, infinite where there is none."""
+        level = np.full(len(self.heights), np.inf)
+        part = [{face} for face in range(len(self.heights))]
+        wells = set(self.wells().tolist())
+        for (f, g), height in sorted(self.passes, key=lambda one: one.height):
+            if part[f] is part[g]:
+                continue
+            held = [part[f] & wells, part[g] & wells]
+            if all(held):
+                for face in held[0] | held[1]:
+                    level[face] = min(level[face], height)
+            joined = part[f] | part[g]
+            for face in joined:
+                part[face] = joined
+        return level
+
+    def well_of(self, face: int, height: float) -> int:
+        """Find the only well that can be reached from a face below a height; -1 if there are others."""
+        reached, new = {face}, [face]
+        while new:
+            at = new.pop()
+            for pair, over in self.passes:
+                if at in pair and over < height and not set(pair) <= reached:
+                    new.extend(set(pair) - reached)
+                    reached.update(pair)
+        wells = reached & set(self.wells().tolist())
+        return wells.pop() if len(wells) == 1 else -1
+
+
+class _Edge(NamedTuple):
+    """An edge of a polyhedron with its faces: normals turn from one to the other along an arc of a circle."""
+
+    faces: tuple[int, int]
+    ends: tuple[int, int]
+    axis: FloatArray
+    start: FloatArray
+    foot: FloatArray
+
+    def angle(self, direction: FloatArray) -> float:
+        """Give the angle from the normal of the first face, along the arc."""
+        return float(np.arctan2(np.cross(self.start, direction) @ self.axis, self.start @ direction))
+
+
+class _Polyhedron:
+    """Of the convex hull of points about the centre of mass."""
+
+    def __init__(self, points: FloatArray) -> None:
+        from scipy.spatial import ConvexHull
+
+        size = float(np.abs(points).max())
+        hull = ConvexHull(points / size)
+        planes = hull.equations * [1.0, 1.0, 1.0, -1.0]
+        face = np.full(len(planes), -1)
+        for i, plane in enumerate(planes):
+            if face[i] < 0:
+                face[(face < 0) & (np.abs(planes - plane).max(axis=1) < _FLAT)] = face.max() + 1
+        first = [int(np.argmax(face == number)) for number in range(face.max() + 1)]
+        normals, heights = planes[first, :3], size * planes[first, 3]
+        self.points, self.edges = points, list[_Edge]()
+        passes = []
+        for i, near in enumerate(hull.neighbors):
+            for corner, j in enumerate(near):
+                if i < j and face[i] != face[j]:
+                    ends = tuple(int(k) for k in np.delete(hull.simplices[i], corner))
+                    edge = self._edge((int(face[i]), int(face[j])), (ends[0], ends[1]), normals)
+                    self.edges.append(edge)
+                    turn = edge.angle(normals[face[j]])
+                    over = 0.0 < edge.angle(edge.foot) < turn
+                    highest = np.linalg.norm(edge.foot) if over else max(heights[list(edge.faces)])
+                    passes.append(_Pass(edge.faces, float(highest)))
+        self.landscape = _Landscape(normals, heights, passes)
+
+    def _edge(self, faces: tuple[int, int], ends: tuple[int, int], normals: FloatArray) -> _Edge:
+        a, b = self.points[list(ends)]
+        along = (b - a) / np.linalg.norm(b - a)
+        start = normals[faces[0]]
+        axis = np.cross(start, normals[faces[1]])
+        return _Edge(faces, ends, axis / np.linalg.norm(axis), start, a - (a @ along) * along)
+
+    def below(self, down: FloatArray) -> int:
+        """Find the face that is reached downhill from where a direction points down.
+
+        Away from the direction of the lowest vertex the centre of mass comes lower, until one of its edges
+        touches, and from there to one of the faces of the edge.
+        """
+        vertex = int(np.argmax(self.points @ down))
+        around = np.cross(self.points[vertex], down)
+        found, lowest = int(np.argmax(self.landscape.normals @ down)), np.inf
+        for edge in self.edges:
+            if vertex not in edge.ends:
+                continue
+            first, last = (self.landscape.normals[face] for face in edge.faces)
+            a, b = float(around @ first), float(around @ last)
+            if a * b > 0.0 or a == b:
+                continue
+            crossing = (b * first - a * last) / (b - a)
+            crossing /= np.linalg.norm(crossing)
+            height = float(self.points[vertex] @ crossing)
+            if height < lowest and np.cross(self.points[vertex], crossing) @ around > 0.0:
+                lowest = height
+                found = edge.faces[0] if edge.angle(crossing) < edge.angle(edge.foot) else edge.faces[1]
+        return found
+
+
+class _Turned:
+    """Of a solid of revolution: its rims, with a face between two, and at an end that is off the axis."""
+
+    def __init__(self, rims: FloatArray) -> None:
+        angles = [np.arctan2(a[0] - b[0], b[1] - a[1]) for a, b in pairwise(rims)]
+        self.before = int(rims[0, 1] > 0.0)
+        angles = [0.0] * self.before + angles + [np.pi] * int(rims[-1, 1] > 0.0)
+        normals = np.stack([np.sin(angles), np.zeros(len(angles)), np.cos(angles)], axis=1)
+        self.rims, self.tops = rims, np.arctan2(rims[:, 1], rims[:, 0])
+        heights = (rims @ normals[:, [2, 0]].T).max(axis=0)
+        passes = []
+        for i, (rim, top) in enumerate(zip(rims, self.tops, strict=True)):
+            f, g = i + self.before - 1, i + self.before
+            if f >= 0 and g < len(angles):
+                over = angles[f] < top < angles[g]
+                passes.append(_Pass((f, g), float(np.hypot(*rim) if over else max(heights[[f, g]]))))
+        self.landscape = _Landscape(normals, heights, passes)
+
+    def below(self, down: FloatArray) -> int:
+        """Find the face that is reached downhill from where a direction points down."""
+        across = float(np.hypot(down[0], down[1]))
+        rim = int(np.argmax(self.rims @ [down[2], across]))
+        face = rim + self.before - int(np.arctan2(across, down[2]) < self.tops[rim])
+        return min(max(face, 0), len(self.landscape.heights) - 1)
+
+
+def _shape(body: Any) -> _Polyhedron | _Turned:
+    if isinstance(body, Revolution | Cylinder | Ring):
+        return _Turned(np.array(body.compiled.rims) - [body.centre_of_mass[2], 0.0])
+    if isinstance(body, Box | ConvexPolyhedron | Die | Mesh):
+        points = np.array(body.points if isinstance(body, ConvexPolyhedron) else body.vertices)
+        return _Polyhedron(points - body.centre_of_mass)
+    raise ParameterError(wrong("body", body, _BODIES))
+
+
+def resting(body: RigidBody, data: xr.Dataset) -> xr.Dataset:
+    """Say on which face each particle comes to rest.
+
+    A body rests on the faces over which its centre of mass lies; between them are passes, the edges and rims
+    over which it would have to tip. Where the energy of a particle after an impact is below the lowest pass
+    out of the well that it is in, it comes to rest there. Under a frictionless law its horizontal motion does
+    not count. One that collapses above that, or whose impacts end, is undecided: rocking and rolling are
+    lasting contact, which the model does not have.
+
+    Parameters
+    ----------
+    body : Box, ConvexPolyhedron, Cylinder, Die, Mesh, Revolution or Ring
+        The body of the run.
+    data : xarray.Dataset
+        Impacts from `restitution.simulate` with ``record="state"``, over a level plane, in which no impact
+        creates energy.
+
+    Returns
+    -------
+    xarray.Dataset
+        Over ``face``, from 0: its outward ``normal`` in the axes of the body, of a solid of revolution that
+        at y = 0, the ``height`` of the centre of mass on it, and that of the lowest pass, ``barrier``, both
+        in m; ``least`` and ``most``, the share of the particles that rest on it, without and with the
+        undecided ones. Over ``particle``: ``resting``, the face, -1 where it is undecided, and
+        ``decided_after``, the number of impacts after which it was decided, 0 where it was not.
+
+    Raises
+    ------
+    ValueError
+        If the data lack states, are of another body, an inclined plane or impacts that create energy, or the
+        body has no faces.
+
+    Examples
+    --------
+    >>> import restitution as rs
+    >>> brick = rs.Box(a=1e-2, b=2e-2, c=3e-2)
+    >>> data = rs.simulate(brick, rs.Frictionless(normal=0.5), particles=50, impacts=200, record="state")
+    >>> found = rs.resting(brick, data)
+    >>> found.height.round(4).values.tolist()
+    [0.015, 0.015, 0.01, 0.01, 0.005, 0.005]
+    """
+    import xarray as xr
+
+    shape = _shape(body)
+    needed: dict[str, tuple[str, ...]] = dict.fromkeys(_STATE, (*RECORDS, "component"))
+    needed |= {"energy_ratio": RECORDS, "attitude": (*RECORDS, "quaternion")}
+    velocity, spin, position, ratio, attitude = variables("data", data, "restitution.simulate", needed)
+    check_filled("data", ratio)
+    check_successive("data", data, start=0)
+    gravity, incline = pull("data", data)
+    mass = reals("data.mass", data.attrs.get("mass", np.nan), "that of the body", unit=None)
+    if data.attrs.get("body") != type(body).__name__ or mass != body.mass:
+        text = f" is of a {data.attrs.get('body')} of {mass:g} kg: must be of the body, {body!r}"
+        raise ParameterError(Problem("data", text))
+    if incline != 0.0:
+        raise ParameterError(wrong("data.incline", incline, "0, a level plane"))
+    if np.nanmax(ratio, initial=0.0) > 1.0 + 1e-9:
+        text = " has impacts that create energy, after which nothing is decided: must be of another law"
+        raise ParameterError(Problem("data.energy_ratio", text))
+
+    moving = velocity if data.attrs.get("law") != "Frictionless" else velocity[..., 2:]
+    turning = _in_body(attitude, spin)
+    rotation = (turning @ body.inertia_tensor * turning).sum(-1) / mass
+    energy = position[..., 2] + 0.5 * ((moving**2).sum(-1) + rotation) / gravity
+    impacts = np.isfinite(energy).sum(axis=1)
+    down = _in_body(attitude, np.array([0.0, 0.0, -1.0]))
+
+    landscape = shape.landscape
+    wells, level = landscape.wells(), landscape.levels()
+    order = wells[np.argsort(-landscape.heights[wells], kind="stable")]
+    number = {int(face): i for i, face in enumerate(order)}
+    rests, after = np.full(len(impacts), -1), np.zeros(len(impacts), np.int64)
+    for particle, count in enumerate(impacts):
+        if count:
+            last = count - 1
+            well = landscape.well_of(shape.below(down[particle, last]), energy[particle, last])
+            if well >= 0:
+                rests[particle] = number[well]
+                after[particle] = 1 + int(np.argmax(energy[particle] < level[well]))
+    decided = np.bincount(rests[rests >= 0], minlength=len(order)) / len(rests)
+    undecided = float(np.mean(rests < 0))
+    about = {
+        "normal": (("face", "component"), landscape.normals[order], "outward normal, axes of the body", "1"),
+        "height": ("face", landscape.heights[order], "height of the centre of mass at rest", "m"),
+        "barrier": ("face", level[order], "height of the centre of mass on the lowest pass", "m"),
+        "least": ("face", decided, "share of the particles that rest there", "1"),
+        "most": ("face", decided + undecided, "the same with all that are undecided", "1"),
+        "resting": ("particle", rests, "number of the face, -1: undecided", "1"),
+        "decided_after": ("particle", after, "number of impacts after which it was decided", "1"),
+    }
+    found = {
+        name: (dims, values, {"long_name": text, "units": unit})
+        for name, (dims, values, text, unit) in about.items()
+    }
+    coordinates = {name: data[name] for name in ("particle", "component") if name in data.coords}
+    return xr.Dataset(found, coordinates, data.attrs | {"undecided": undecided})
+
+
+def _in_body(attitude: FloatArray, vector: FloatArray) -> FloatArray:
+    """Turn vectors of space to the axes of the body."""
+    scalar, axis = attitude[..., :1], -attitude[..., 1:]
+    twice = 2.0 * np.cross(axis, vector)
+    result: FloatArray = vector + scalar * twice + np.cross(axis, twice)
+    return result
