@@ -115,7 +115,7 @@ impl<'a> BandSupport<'a> {
         }
     }
 
-    /// Whether a whole rim is lowest.
+    /// Returns whether a whole rim is lowest.
     pub fn is_flat(&self) -> bool {
         self.across.size == 0.0 && self.weights[1] != 0.0
     }

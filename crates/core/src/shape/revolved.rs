@@ -11,7 +11,7 @@ use std::f64::consts::PI;
 /// A point (z, r) of a half-plane through the axis.
 type Place = [f64; 2];
 
-/// What a circular arc of the profile makes when it turns about the axis, in units of R from the centre of mass: a band of a torus, the rim
+/// The surface that an arc of the profile makes as it turns about the axis, in units of R from the centre of mass: a band of a torus, the rim
 /// of an edge or face where its radius is 0, a cap where its centre is on the axis.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Band {
@@ -208,7 +208,7 @@ impl Rigid {
         Self::turned(&outline, &outline, density)
     }
 
-    /// Where the rims of a solid of revolution are that can touch, (z, r) in m, in the order of their numbers.
+    /// Returns the rims of a solid of revolution that can touch, (z, r) in m, in the order of their numbers.
     pub fn rims(&self) -> Vec<[f64; 2]> {
         let Skin::Bands(bands) = &self.skin else {
             return Vec::new();
