@@ -117,6 +117,27 @@ def test_a_grain_is_as_large_as_it_is_and_touches_where_the_core_says(name: str)
     assert cover.sum() * side**2 == pytest.approx(area, rel=0.003)
 
 
+def test_the_picture_of_a_rim_is_a_polygon_as_fine_as_the_eye() -> None:
+    """A cylinder covers πR²|n_z| + 2RH√(1 − n_z²); a die is a polyhedron."""
+    coin = rs.Cylinder(radius=4e-3, height=2e-3)
+    turn = Rotation.from_euler("zxy", [0.4, 0.3, 0.2])
+    attitude = UPRIGHT @ turn.as_matrix()
+    x, y, z, w = turn.as_quat()
+    height = coin.compiled.lowest(np.array([[w, x, y, z]]))
+    assert -grain.lowest(coin, attitude)[1] == pytest.approx(height, rel=3e-3)
+    along = abs(float(attitude[2, 2]))
+    area = math.pi * 16e-6 * along + 16e-6 * math.sqrt(1.0 - along**2)
+    cover = grain.picture(coin, attitude)[..., 3]
+    side = 2.1 * coin.compiled.farthest() / cover.shape[0]
+    assert cover.sum() * side**2 == pytest.approx(area, rel=5e-3)
+    die = rs.Die(4, 5e-3)
+    shown = grain.picture(rs.ConvexPolyhedron(die.vertices), attitude)
+    np.testing.assert_allclose(grain.picture(die, attitude), shown, atol=1e-6)
+    egg = rs.Egg(length=6e-3, width=4e-3, blunt_end=1.9e-3, tip=1.2e-3)
+    with pytest.raises(ValueError, match="body = Egg"):
+        rs.figures.body(egg)
+
+
 def arrows(figure: Figure) -> list[np.ndarray[Any, Any]]:
     """Tip minus start of every straight arrow of a figure, in its order."""
     found = []

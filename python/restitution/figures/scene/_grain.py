@@ -1,4 +1,4 @@
-"""The picture of a body without a symmetry axis: spheres, an ellipsoid or a convex polyhedron."""
+"""The picture of a rigid body: spheres, an ellipsoid or a convex hull."""
 
 from dataclasses import dataclass
 
@@ -6,12 +6,26 @@ import numpy as np
 from scipy.spatial import ConvexHull
 
 from restitution._internal.arrays import FloatArray
-from restitution.bodies import Box, Clump, ConvexPolyhedron, Ellipsoid, RigidBody
+from restitution._internal.parameters import ParameterError, wrong
+from restitution.bodies import (
+    Box,
+    Clump,
+    ConvexPolyhedron,
+    Cylinder,
+    Die,
+    Ellipsoid,
+    Mesh,
+    Revolution,
+    RigidBody,
+    Ring,
+)
 from restitution.figures.scene._solid import PIXELS, shade
 
 _FINE = 3
 """Rays across a pixel, so that edges are soft."""
 _TONE = 0.8
+_SIDES = 48
+"""Corners of the polygon that stands for a circular rim."""
 
 
 @dataclass(frozen=True)
@@ -76,13 +90,27 @@ def surfaces(body: RigidBody, attitude: FloatArray) -> list[_Round | _Faces]:
             return [_Round(attitude @ (np.array(s[:3]) - middle), np.eye(3) / s[3] ** 2) for s in spheres]
         case Ellipsoid(semi_axes=axes):
             return [_Round(np.zeros(3), attitude @ np.diag(np.array(axes) ** -2.0) @ attitude.T)]
-        case Box(vertices=points) | ConvexPolyhedron(points=points):
-            corners = (np.array(points) - middle) @ attitude.T
-            size = np.abs(corners).max()
-            hull = ConvexHull(corners / size)
-            faces = hull.equations
-            return [_Faces(faces[:, :3], -size * faces[:, 3], corners)]
-    raise AssertionError(body)
+        case Box(vertices=points) | ConvexPolyhedron(points=points) | Die(vertices=points):
+            return [_hull((np.array(points) - middle) @ attitude.T)]
+        case Mesh(vertices=points, hull=hull):
+            return [_hull((np.array(points)[hull] - middle) @ attitude.T)]
+        case Revolution() | Cylinder() | Ring():
+            return [_hull((_rims(np.array(body.compiled.rims)) - middle) @ attitude.T)]
+    raise ParameterError(wrong("body", body, "a body whose picture is known, which that of an Egg is not"))
+
+
+def _hull(corners: FloatArray) -> _Faces:
+    size = np.abs(corners).max()
+    faces = np.unique(ConvexHull(corners / size).equations.round(9), axis=0)
+    return _Faces(faces[:, :3], -size * faces[:, 3], corners)
+
+
+def _rims(rims: FloatArray) -> FloatArray:
+    """Make polygons of circles (z, r), fine enough for the eye."""
+    angles = 2.0 * np.pi * np.arange(_SIDES) / _SIDES
+    (z, r), circle = rims.T[:, :, None], np.stack([np.cos(angles), np.sin(angles)])
+    points = np.broadcast_arrays(r * circle[0], r * circle[1], z)
+    return np.stack(points, axis=-1).reshape(-1, 3)
 
 
 def lowest(body: RigidBody, attitude: FloatArray) -> FloatArray:
