@@ -14,14 +14,15 @@ import numpy as np
 
 import restitution as rs
 from benchmarks.work import Array, Grid, Work
+from restitution.bodies import RigidBody
 
 SECONDS = 0.4
 LEAST = 100  # particles
 LEAST_LEARNED = 2000  # so that every speed has enough impacts to be learned from
 ROUNDS_LEARNED = 3  # they take long
 MOST = 200_000
-Bodies = rs.Dumbbell | rs.LoadedSphere | rs.Spherocylinder | rs.Spheroid
-Laws = rs.TangentialRestitution | rs.Coulomb
+Bodies = rs.Dumbbell | rs.LoadedSphere | rs.Spherocylinder | rs.Spheroid | RigidBody
+Laws = rs.TangentialRestitution | rs.Coulomb | rs.Frictionless
 
 WORK = Work()
 R = WORK.radius
@@ -39,6 +40,10 @@ THROWN: dict[str, Any] = {
     "incline": 0.1,
 }
 REST: dict[str, Any] = {}
+
+
+TETRAPOD = [(1, 1, 1, 1), (1, -1, -1, 1), (-1, 1, -1, 1.2), (-1, -1, 1, 0.8)]
+ROUGH: dict[str, Any] = {"radius": R, "asperity_radius": 1e-3 * R}
 
 
 def spheroid(aspect: float) -> rs.Spheroid:
@@ -87,7 +92,30 @@ def coulomb(hypothesis: Any) -> rs.Coulomb:
     return rs.Coulomb(normal=WORK.normal, friction=0.3, hypothesis=hypothesis)
 
 
+def clump(spheres: int) -> rs.Clump:
+    """Spheres of 0.4 R within R, at random places; overlaps count several times."""
+    random = np.random.default_rng(1)
+    places = random.normal(size=(spheres, 3))
+    places *= 0.6 * R * random.uniform(0.5, 1.0, (spheres, 1)) / np.linalg.norm(places, axis=1)[:, None]
+    return rs.Clump(spheres=np.column_stack([places, np.full(spheres, 0.4 * R)]), inertia="sum")
+
+
 HYPOTHESES = ("stronge", "poisson", "newton")
+SMOOTH = rs.Frictionless(normal=WORK.normal)
+SPINNING: dict[str, Any] = {"orientation": "isotropic", "spin": rs.RandomSpin(rate=(10.0, 90.0))}
+SPUN = Row("equal dumbbell spinning, frictionless", 1.0, DUMBBELL, SMOOTH, SPINNING)
+RIGID = tuple(
+    Row(f"{name} spinning, frictionless", target, body, SMOOTH, SPINNING)
+    for name, target, body in (
+        ("clump of 4", 30.0, rs.Clump(spheres=0.5 * R * np.array(TETRAPOD))),
+        ("clump of 16", 45.0, clump(16)),
+        ("clump of 1000", 135.0, clump(1000)),
+        ("triaxial ellipsoid", 30.0, rs.Ellipsoid(semi_axes=(R, 0.8 * R, 0.6 * R))),
+        ("die", 30.0, rs.Box(R, R, R)),
+        ("rough sphere, 10² asperities", 30.0, rs.RoughSphere(asperities=100, **ROUGH)),
+        ("rough sphere, 10⁴ asperities", 100.0, rs.RoughSphere(asperities=10_000, **ROUGH)),
+    )
+)
 YARDSTICK = Row("equal dumbbell at rest", 1.0, DUMBBELL, PAPER, REST)
 ROWS = (
     Row("logarithmic bins of velocity", 1.5, DUMBBELL, PAPER, REST, bins={"velocity_bins": LOGARITHMIC}),
@@ -130,7 +158,7 @@ LEARN = Row(
     learned=True,
 )
 
-EVERY = (YARDSTICK, *ROWS, LEARN_YARDSTICK, LEARN)
+EVERY = (YARDSTICK, *ROWS, SPUN, *RIGID, LEARN_YARDSTICK, LEARN)
 
 
 @dataclass(frozen=True)
@@ -187,7 +215,7 @@ def timed(row: Row, threads: int = 1) -> Timed:
 
 def table(rounds: int, only: str = "") -> Iterator[str]:
     """Every row over the yardstick, one thread; `only` those whose name contains this."""
-    for yardstick, rows in ((YARDSTICK, ROWS), (LEARN_YARDSTICK, (LEARN,))):
+    for yardstick, rows in ((YARDSTICK, ROWS), (SPUN, RIGID), (LEARN_YARDSTICK, (LEARN,))):
         chosen = [row for row in rows if only in row.name]
         if not chosen:
             continue

@@ -57,6 +57,7 @@ __all__ = [
 _HOMES = {
     **dict.fromkeys((entry["name"] for entry in _core.BODIES), "bodies"),
     **dict.fromkeys((entry["name"] for entry in (*_core.LAWS, *_core.MATERIALS)), "laws"),
+    **dict.fromkeys(("Rough", "RoughSphere"), "bodies"),
     **dict.fromkeys(("Box", "Clump", "ConvexPolyhedron", "Cylinder", "Die", "Egg", "Ellipsoid"), "bodies"),
     **dict.fromkeys(("Mesh", "Revolution", "Ring"), "bodies"),
     "ball_grade": "bodies",

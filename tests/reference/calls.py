@@ -128,6 +128,27 @@ CALLS: dict[str, Call] = {
     "Clump.from_file": (rs.Clump.from_file, lambda: {"path": folder() / "clump.csv", "scale": 1e-3}),
     "Clump.to_csv": (rs.Clump.to_csv, of("clump", path="clump.csv", replace=True)),
     "Ellipsoid": (rs.Ellipsoid, lambda: {"semi_axes": (3e-3, 2e-3, 1e-3), "density": 1e3}),
+    "RoughSphere": (
+        rs.RoughSphere,
+        lambda: {
+            "radius": 3e-3,
+            "asperities": 20,
+            "asperity_radius": 1e-5,
+            "heights": 1e-5,
+            "density": 1e3,
+            "seed": 2,
+        },
+    ),
+    "Rough": (
+        rs.Rough,
+        lambda: {
+            "body": rs.Dumbbell(radius=3e-3, separation=3e-5),
+            "asperities": 20,
+            "asperity_radius": 1e-5,
+            "heights": 1e-5,
+            "seed": 2,
+        },
+    ),
     "ConvexPolyhedron": (rs.ConvexPolyhedron, lambda: {"points": np.eye(4, 3), "density": 1e3}),
     "Box": (rs.Box, lambda: {"a": 1e-2, "b": 2e-2, "c": 3e-2, "density": 1e3}),
     "Die": (rs.Die, lambda: {"faces": 8, "edge": 1e-2, "density": 1e3}),

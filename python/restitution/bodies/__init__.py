@@ -15,6 +15,7 @@ from restitution.bodies._mesh import Mesh
 from restitution.bodies._polyhedra import Box, ConvexPolyhedron
 from restitution.bodies._revolution import Cylinder, Egg, Revolution, Ring
 from restitution.bodies._rigid import RigidBody as RigidBody
+from restitution.bodies._rough import Rough, RoughSphere
 from restitution.bodies._roundness import GRADES as GRADES
 from restitution.bodies._roundness import ROUGHNESS as ROUGHNESS
 from restitution.bodies._roundness import Form as Form
@@ -35,6 +36,8 @@ __all__ = [
     "Mesh",
     "Revolution",
     "Ring",
+    "Rough",
+    "RoughSphere",
     "Spherocylinder",
     "Spheroid",
     "ball_grade",
@@ -46,6 +49,7 @@ KINDS: tuple[type[Body], ...] = tuple(globals()[entry["name"]] for entry in _cor
 """Every body of the core's table, all of revolution."""
 RIGID: tuple[type[RigidBody], ...] = (
     *(Clump, Ellipsoid, ConvexPolyhedron, Box, Die, Mesh, Revolution, Cylinder, Ring, Egg),
+    *(RoughSphere, Rough),
 )
 """Every other body."""
 BODIES = one_of(_core.BODIES)

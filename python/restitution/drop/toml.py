@@ -217,7 +217,7 @@ class _Reader:
         *selector: str,
     ) -> P | None:
         """Make one set of parameters from a table and the parts that have tables of their own."""
-        fields = [field for field in kind.model_fields if field not in _PARTS]
+        fields = [field for field in kind.model_fields if kind is not Run or field not in _PARTS]
         keys = [*selector, *fields]
         strangers = (key for key in table if key not in keys)
         self.problems.extend(unknown(key, f"[{name}]", keys, prefix=f"{name}.") for key in strangers)

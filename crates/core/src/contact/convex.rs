@@ -1,9 +1,9 @@
 //! Supports of convex hulls whose normal turns along its tangent, **n** + s**n**′, and the first root of the bound that they make.
 
 use super::certify::SHORTEST;
-use super::plane::{Instant, first_root};
+use super::plane::first_root;
 use crate::math::Vector;
-use crate::shape::Band;
+use crate::shape::{Band, Instant};
 
 /// Steps of Newton's method towards the root of the bound of a convex body.
 const NEWTON: usize = 3;

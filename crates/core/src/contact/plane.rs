@@ -16,18 +16,11 @@
 use super::certify::{SHORTEST, TOUCHING};
 use super::convex::{BandSupport, Length, convex_root};
 use crate::math::Vector;
-use crate::shape::{Band, Point, Skin};
+use crate::shape::{Band, Instant, Least, Point, Skin};
 
-/// A body over the plane at one time of its flight.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Instant {
-    /// Height of the centre of mass and its rate.
-    pub height: f64,
-    pub rate: f64,
-    /// **n** and **n**′, in the axes of the body.
-    pub up: Vector,
-    pub turning: Vector,
-}
+/// Nodes of the tree are not looked into where they allow a step of this part of the length that is found: at the end, where lengths must be
+/// exact, others allow far more or none at all.
+const ENOUGH: f64 = 0.5;
 
 /// A part of the body whose gap is known exactly: the one on the plane at the beginning of a flight, and the speed at which it leaves.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -58,29 +51,44 @@ pub(super) fn first_root(width: f64, rate: f64, bound: f64) -> f64 {
 }
 
 impl Skin {
-    /// A step that passes no contact. `turn` is cΩ²; `departure` holds at the beginning of a flight.
-    #[inline]
-    pub(crate) fn step(&self, at: &Instant, turn: f64, departure: Option<Departure>) -> Step {
+    /// A step that passes no contact. `turn` is cΩ²; `departure` holds at the beginning of a flight; `near` is a part that may be the first.
+    #[inline(always)]
+    pub(crate) fn step(
+        &self,
+        at: &Instant,
+        turn: f64,
+        departure: Option<Departure>,
+        near: Option<usize>,
+    ) -> Step {
         match self {
-            Self::Points(points) => {
-                let mut first = Step::never();
-                for (part, point) in points.iter().enumerate() {
-                    let (width, rate) = match departure {
-                        Some(left) if left.part == part => (0.0, left.speed),
-                        _ => at.opening(point),
-                    };
-                    let bound = 1.0 + turn * point.distance;
-                    let length = first_root(width.max(0.0), rate, bound);
-                    if length < first.length {
-                        first = Step {
-                            length,
-                            part,
-                            closes: rate < 0.0,
-                            bound,
-                        };
+            Self::Points(balls) => {
+                let opening = |part: usize, point: &Point| match departure {
+                    Some(left) if left.part == part => (0.0, left.speed),
+                    _ => point.opening(at),
+                };
+                let bound = |reach: f64| 1.0 + turn * reach;
+                // The parabola of the least gap, the least rate and the largest M of a node lies below those of all its balls.
+                let exceeds = |least: &Least, limit: f64| {
+                    let below = limit * (least.rate - 0.5 * limit * bound(least.reach));
+                    least.gap.max(0.0) + below > 0.0
+                };
+                let cost = |part: usize, point: &Point, limit: f64| {
+                    let (width, rate) = opening(part, point);
+                    let (width, bound) = (width.max(0.0), bound(f64::from(point.reach)));
+                    if width + limit * (rate - 0.5 * limit * bound) > 0.0 {
+                        f64::INFINITY
+                    } else {
+                        first_root(width, rate, bound)
                     }
+                };
+                let first = balls.cheapest(at, (near, ENOUGH), exceeds, cost);
+                let point = &balls.points()[first.place];
+                Step {
+                    length: first.cost.min(first.sure),
+                    part: first.place,
+                    closes: first.cost <= first.sure && opening(first.place, point).1 < 0.0,
+                    bound: bound(f64::from(point.reach)),
                 }
-                first
             }
             Self::Ellipsoid(axes) => {
                 let bound = 1.0 + turn;
@@ -124,9 +132,13 @@ impl Skin {
 
     /// The point of a part that is nearest to the plane, from the centre of mass, in the axes of the body; of several the one that
     /// comes down first, while **n** changes with **n**′.
+    #[inline(always)]
     pub(crate) fn nearest(&self, part: usize, up: Vector, turning: Vector) -> Vector {
         match self {
-            Self::Points(points) => points[part].place - up * points[part].radius,
+            Self::Points(balls) => {
+                let point = &balls.points()[part];
+                point.place - up * point.radius
+            }
             Self::Ellipsoid([a, b, c]) => {
                 let stretched = Vector::new(a * up.x, b * up.y, c * up.z);
                 let size = -1.0 / stretched.norm();
@@ -139,7 +151,7 @@ impl Skin {
     /// f″ of a part, with **n**″, but for gravity.
     pub(crate) fn curvature(&self, part: usize, at: &Instant, bending: Vector) -> f64 {
         match self {
-            Self::Points(points) => points[part].place.dot(bending),
+            Self::Points(balls) => balls.points()[part].place.dot(bending),
             Self::Ellipsoid(axes) => {
                 let [x, y, z] = axes.map(|axis| axis * axis);
                 let bent = Vector::new(x * at.up.x, y * at.up.y, z * at.up.z).dot(bending);
@@ -153,11 +165,19 @@ impl Skin {
     pub(crate) fn another_touches(&self, departure: Departure, at: &Instant) -> bool {
         let touches = |(width, rate): (f64, f64), still: f64| width <= TOUCHING && rate < still;
         match self {
-            Self::Points(points) => {
-                let still = at.opening(&points[departure.part]).1;
-                points.iter().enumerate().any(|(part, point)| {
-                    part != departure.part && touches(at.opening(point), still)
-                })
+            Self::Points(balls) => {
+                let still = balls.points()[departure.part].opening(at).1;
+                let exceeds =
+                    |least: &Least, limit: f64| least.gap > TOUCHING || least.rate > limit;
+                let cost = |part: usize, point: &Point, _: f64| {
+                    let (gap, rate) = point.opening(at);
+                    if part != departure.part && gap <= TOUCHING {
+                        rate
+                    } else {
+                        f64::INFINITY
+                    }
+                };
+                balls.cheapest(at, (None, 1.0), exceeds, cost).cost < still
             }
             Self::Ellipsoid(_) => false,
             Self::Bands(bands) => {
@@ -173,6 +193,14 @@ impl Skin {
             }
         }
     }
+
+    /// The number of a part among those that the body was given.
+    pub(crate) fn number(&self, part: usize) -> usize {
+        match self {
+            Self::Points(balls) => balls.points()[part].number as usize,
+            Self::Ellipsoid(_) | Self::Bands(_) => part,
+        }
+    }
 }
 
 impl Step {
@@ -186,14 +214,93 @@ impl Step {
     }
 }
 
-impl Instant {
-    /// f and f′ of a ball or vertex.
-    #[inline(always)]
-    fn opening(&self, point: &Point) -> (f64, f64) {
-        let (n, p, w) = (self.up, point.place, self.turning);
-        (
-            self.height + (n.x * p.x + n.y * p.y + n.z * p.z) - point.radius,
-            self.rate + (w.x * p.x + w.y * p.y + w.z * p.z),
-        )
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::random::pair;
+    use crate::shape::Balls;
+
+    fn vector(seed: u64, index: u64) -> Vector {
+        let ((x, y), (z, _)) = (pair(seed, 2 * index), pair(seed, 2 * index + 1));
+        Vector::new(2.0 * x - 1.0, 2.0 * y - 1.0, 2.0 * z - 1.0)
+    }
+
+    /// Balls in a cube or on a sphere, near and far from each other, as many as are in one leaf or in a tree of ten levels.
+    fn balls(seed: u64, count: u64) -> Balls {
+        let point = |i: u64| {
+            let mut place = vector(seed, i) * 0.5;
+            if seed.is_multiple_of(2) {
+                place = place * (0.9 / place.norm());
+            }
+            Point::new(place, 0.1 * pair(seed, i + 100_000).0, i as usize)
+        };
+        Balls::new("spheres", (0..count).map(point).collect()).unwrap()
+    }
+
+    /// Steps are no longer than those of the exhaustive search, and no shorter than the part that is enough; one that is taken for a contact
+    /// is the same. The lowest ball is the lowest, and what touches beside a departing one is found.
+    #[test]
+    fn the_tree_finds_what_asking_every_ball_finds() {
+        let mut exact = 0;
+        for count in [1, 2, 8, 9, 16, 17, 100, 1000, 5000] {
+            for seed in 0..40 {
+                let skin = Skin::Points(balls(seed, count));
+                let Skin::Points(balls) = &skin else {
+                    unreachable!()
+                };
+                let up = vector(seed, 1_000_000);
+                let up = up / up.norm();
+                let lowest = |point: &Point| point.radius - up.dot(point.place);
+                let support = balls
+                    .points()
+                    .iter()
+                    .map(lowest)
+                    .fold(f64::NEG_INFINITY, f64::max);
+                assert!((skin.support(up) - support).abs() <= 1e-15);
+                for (height, rate) in [
+                    (0.0, -1.0),
+                    (1e-9, -0.3),
+                    (1e-3, -2.0),
+                    (0.2, 0.5),
+                    (0.0, 0.2),
+                ] {
+                    let at = Instant {
+                        height: support + height,
+                        rate,
+                        up,
+                        turning: up.cross(vector(seed, 1_000_001)),
+                    };
+                    let turn = 2.0 * pair(seed, 7).0;
+                    let length = |point: &Point| {
+                        let (width, rate) = point.opening(&at);
+                        let bound = 1.0 + turn * f64::from(point.reach);
+                        first_root(width.max(0.0), rate, bound)
+                    };
+                    let least = balls
+                        .points()
+                        .iter()
+                        .map(length)
+                        .fold(f64::INFINITY, f64::min);
+                    let near = (seed % 3 == 0).then_some(0);
+                    let step = skin.step(&at, turn, None, near);
+                    assert!(step.length <= least && step.length >= ENOUGH * least);
+                    if step.closes && step.length < 1e-6 {
+                        assert_eq!(step.length, least);
+                        exact += 1;
+                    }
+                    let left = Departure {
+                        part: step.part,
+                        speed: 0.0,
+                    };
+                    let still = balls.points()[step.part].opening(&at).1;
+                    let touches = balls.points().iter().enumerate().any(|(part, point)| {
+                        let (width, rate) = point.opening(&at);
+                        part != step.part && width <= TOUCHING && rate < still
+                    });
+                    assert_eq!(skin.another_touches(left, &at), touches);
+                }
+            }
+        }
+        assert!(exact > 400);
     }
 }

@@ -77,7 +77,7 @@ impl<R: Source, T: Sink> WithSimd for Block<'_, R, T> {
     fn with_simd<S: Simd>(self, simd: S) -> Self::Output {
         let plan = self.source.plan();
         let body = match &plan.run.body {
-            AnyBody::Rigid(body) => return self.rigid(body),
+            AnyBody::Rigid(body) => return self.rigid(simd, body),
             AnyBody::Revolution(solid) => &solid.scaled,
         };
         let (law, slope) = (&plan.law, plan.slope);
@@ -119,7 +119,7 @@ impl<R: Source, T: Sink> Block<'_, R, T> {
 
     /// Bodies of any shape, one after the other.
     #[inline(always)]
-    fn rigid(self, body: &Rigid) -> Result<(), Error> {
+    fn rigid<S: Simd>(self, simd: S, body: &Rigid) -> Result<(), Error> {
         let Self {
             source,
             particles,
@@ -142,7 +142,9 @@ impl<R: Source, T: Sink> Block<'_, R, T> {
             let start = plan.rigid(body, number);
             let chance = |impact| of_impact(plan.run.seed, number as u64, impact);
             bouncing
-                .bounce((particle, start), chance, sink, || !monitor.is_cancelled())
+                .bounce(simd, (particle, start), chance, sink, || {
+                    !monitor.is_cancelled()
+                })
                 .map_err(|lost| error(source, lost))?;
         }
         Ok(())

@@ -2,14 +2,14 @@
 
 use super::lanes::{Impact, Lost, Pose, Sink};
 use super::stop::{COLLAPSE_RUN, Limits, StopReason, UNRESOLVED};
-use crate::contact::{Departure, INVISIBLE, Instant, LAST, MOST_STEPS};
+use crate::contact::{Departure, INVISIBLE, LAST, MOST_STEPS};
 use crate::law::{Compliance, Fault, Law, Respond};
 use crate::math::{Quaternion, Symmetric, Vector, Vectors};
 use crate::motion::Rotation;
-use crate::shape::{Rigid, up};
+use crate::shape::{Instant, Rigid, up};
 use crate::simd::elementary::RANGE;
 use crate::simd::{Mask, Pack, one};
-use pulp::Scalar;
+use pulp::{Scalar, Simd, WithSimd};
 
 /// Position and motion of a particle, in the core's units. The horizontal position is omitted, because the motion does not depend on it.
 #[derive(Debug, Clone, Copy)]
@@ -30,6 +30,22 @@ pub(super) struct Bouncing<'a> {
     /// tan α.
     pub slope: f64,
     pub limits: Limits,
+}
+
+/// The search for the first contact of a flight, compiled for each SIMD level.
+struct Flight<'a, 'b> {
+    bouncing: &'a Bouncing<'b>,
+    start: &'a RigidState,
+    departure: Option<Departure>,
+}
+
+impl WithSimd for Flight<'_, '_> {
+    type Output = Result<Contact, NoContact>;
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) -> Self::Output {
+        self.bouncing.first_contact(self.start, self.departure)
+    }
 }
 
 /// A contact: the flight time to it, the state then, and the part that touches.
@@ -56,8 +72,9 @@ struct Bounce {
 
 impl Bouncing<'_> {
     /// Follows a particle from impact to impact until it stops. `chance` gives the uniform number of an impact, for an ε_n that scatters.
-    pub fn bounce(
+    pub fn bounce<S: Simd>(
         &self,
+        simd: S,
         (particle, start): (usize, RigidState),
         chance: impl Fn(u64) -> f64,
         sink: &mut impl Sink,
@@ -74,7 +91,12 @@ impl Bouncing<'_> {
             if !go_on() {
                 break StopReason::Interrupted;
             }
-            let contact = match self.first_contact(&state, departure) {
+            let flight = Flight {
+                bouncing: self,
+                start: &state,
+                departure,
+            };
+            let contact = match simd.vectorize(flight) {
                 Ok(contact) => contact,
                 Err(NoContact::Ends(reason)) => break reason,
                 Err(NoContact::Unconverged) => return Err(lost(impacts, None)),
@@ -106,6 +128,7 @@ impl Bouncing<'_> {
     }
 
     /// The first contact of the flight from a state, in which a part may be leaving the plane.
+    #[inline(always)]
     fn first_contact(
         &self,
         start: &RigidState,
@@ -131,19 +154,20 @@ impl Bouncing<'_> {
                 time
             }
         };
-        let mut time = 0.0;
+        let (mut time, mut near) = (0.0, departure.map(|left| left.part));
         for _ in 0..MOST_STEPS {
             if fastest * time > RANGE {
                 return Err(NoContact::Ends(StopReason::NeverLands));
             }
-            let attitude = rotation.attitude(time);
-            let spin = rotation.spin(time);
+            let (attitude, spin) = rotation.at(time);
             let at = instant(start, time, attitude, spin);
-            let step = body.skin.step(&at, turn, departure.filter(|_| time == 0.0));
+            let left = departure.filter(|_| time == 0.0);
+            let step = body.skin.step(&at, turn, left, near);
+            near = Some(step.part);
             let end = time + step.length;
             let invisible = step.bound * step.length * step.length <= INVISIBLE;
             if step.closes && invisible && step.length <= LAST * end {
-                return Ok(self.land(start, end, step.part, rotation, turn));
+                return Ok(self.land(start, end, step.part, &mut rotation, turn));
             }
             time = skip(end.max(time * (1.0 + f64::EPSILON)));
         }
@@ -151,15 +175,16 @@ impl Bouncing<'_> {
     }
 
     /// The state at a contact. The height is that at which the part touches.
+    #[inline(always)]
     fn land(
         &self,
         start: &RigidState,
         time: f64,
         part: usize,
-        mut rotation: Rotation,
+        rotation: &mut Rotation,
         turn: f64,
     ) -> Contact {
-        let (attitude, spin) = (rotation.attitude(time), rotation.spin(time));
+        let (attitude, spin) = rotation.at(time);
         let normal = up(attitude);
         let pull = Vector::new(self.slope, 0.0, -1.0);
         Contact {
@@ -253,7 +278,7 @@ impl Bouncing<'_> {
             rotation: one(rotation),
             energy_before: one(energy_before),
             energy_after: one(self.energies(after).1),
-            part: one((contact.part + 1) as f64),
+            part: one((self.body.skin.number(contact.part) + 1) as f64),
             approach: one(bounce.approach),
             pose: RigidPose {
                 body: self.body,
@@ -268,6 +293,7 @@ impl Bouncing<'_> {
 }
 
 /// The body at a time of the flight from `start`.
+#[inline(always)]
 fn instant(start: &RigidState, time: f64, attitude: Quaternion, spin: Vector) -> Instant {
     let normal = up(attitude);
     let speed = start.velocity.z;

@@ -1,12 +1,16 @@
 //! The free flight between two impacts.
 
-mod asymmetric;
 mod bounds;
+mod elliptic;
+mod rotation;
+mod series;
 mod symmetric;
+mod top;
 
-pub use asymmetric::{Rotation, Top};
+pub use rotation::Rotation;
 pub use symmetric::State;
 pub(crate) use symmetric::{
     Attitude, Flight, PlanarFlight, PlanarMotion, PlanarState, SpatialFlight, SpatialMotion,
     SpatialState, SymmetricState,
 };
+pub use top::Top;

@@ -31,7 +31,7 @@ impl Rigid {
                 .map(whole)
                 .fold(Moments::default(), Moments::and),
         };
-        Self::of_balls(moments.inertia(density), balls)
+        Self::of_balls(moments.inertia(density), "spheres", balls.iter().copied())
     }
 
     /// Balls with a given mass and inertia.
@@ -40,11 +40,11 @@ impl Rigid {
     /// As [`Rigid::clump`], and unless a body with this inertia is possible.
     pub fn clump_with(balls: &[RigidBall], inertia: Inertia) -> Result<Self, Error> {
         check(balls)?;
-        Self::of_balls(inertia, balls)
+        Self::of_balls(inertia, "spheres", balls.iter().copied())
     }
 }
 
-fn check(balls: &[RigidBall]) -> Result<(), Error> {
+pub(super) fn check(balls: &[RigidBall]) -> Result<(), Error> {
     Error::unless(!balls.is_empty(), "spheres", balls.len(), "one or more")?;
     for RigidBall { centre, radius } in balls {
         let allowed = "finite, and the radius > 0 (m)";

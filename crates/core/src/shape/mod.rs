@@ -6,6 +6,8 @@ mod polyhedron;
 mod revolution;
 mod revolved;
 mod rigid;
+mod rough;
+mod tree;
 
 use crate::Error;
 
@@ -15,7 +17,11 @@ pub use clump::Matter;
 pub use revolution::*;
 pub(crate) use revolved::Band;
 pub use rigid::{Inertia, Rigid, RigidBall};
-pub(crate) use rigid::{Point, Skin, up};
+pub(crate) use rigid::{Skin, up};
+pub use rough::{Heights, Roughness};
+#[cfg(test)]
+pub(crate) use tree::Balls;
+pub(crate) use tree::{Instant, Least, Point};
 
 /// A body that can be dropped.
 #[derive(Debug, Clone, Copy, PartialEq)]

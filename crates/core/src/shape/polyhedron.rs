@@ -18,7 +18,7 @@ impl Rigid {
     ) -> Result<Self, Error> {
         let inertia = solid(points, triangles, f64::abs, density)?;
         let vertices: Vec<_> = points.iter().map(vertex).collect();
-        Self::of_balls(inertia, &vertices)
+        Self::of_balls(inertia, "points", vertices.into_iter())
     }
 
     /// The homogeneous solid within closed surfaces of triangles of points (m), each seen counter-clockwise from outside, of which these
@@ -36,7 +36,7 @@ impl Rigid {
         let known = hull.iter().all(|&i| i < points.len());
         Error::unless(known, "hull", hull.len(), "those of the points")?;
         let vertices: Vec<_> = hull.iter().map(|&i| vertex(&points[i])).collect();
-        Self::of_balls(inertia, &vertices)
+        Self::of_balls(inertia, "points", vertices.into_iter())
     }
 }
 

@@ -2,8 +2,10 @@
 
 use super::check_density;
 use super::revolved::Band;
+use super::tree::{Balls, Instant, Least, Point};
 use crate::Error;
 use crate::math::{Quaternion, Symmetric, Vector};
+use crate::memory::{collected, filled};
 use crate::motion::Top;
 
 /// Volume, or mass, with its first and second moments: the integrals of 1, **x** and **x**⊗**x**.
@@ -34,25 +36,19 @@ pub struct RigidBall {
     pub radius: f64,
 }
 
-/// A ball or vertex of a body, in units of R and the principal axes.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Point {
-    /// Its centre, and the distance of that from the centre of mass.
-    pub place: Vector,
-    pub distance: f64,
-    pub radius: f64,
-}
-
 /// What of a body can touch.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) enum Skin {
     /// Balls, or the vertices of a polyhedron.
-    Points(Vec<Point>),
+    Points(Balls),
     /// An ellipsoid about the centre of mass with these semi-axes along the principal axes.
     Ellipsoid([f64; 3]),
     /// Bands of a body whose axis of revolution is the third principal axis.
     Bands(Vec<Band>),
 }
+
+/// Most balls, so that their numbers can be recorded.
+const MOST: usize = i32::MAX as usize;
 
 /// A rigid body of any shape. Its unit of length R is the largest distance of a part of it from the centre of mass.
 #[derive(Debug, Clone, PartialEq)]
@@ -117,28 +113,53 @@ impl Moments {
 }
 
 impl Rigid {
-    /// A body with these parts, in m and the axes of its inertia.
-    pub(super) fn of_balls(inertia: Inertia, balls: &[RigidBall]) -> Result<Self, Error> {
-        let from_centre = |ball: &RigidBall| ball.centre - inertia.centre;
-        let reach = |ball: &RigidBall| from_centre(ball).norm() + ball.radius;
-        let unit = balls.iter().map(reach).fold(0.0, f64::max);
+    /// A body with these parts, in m and the axes of its inertia; `what` is for the error.
+    pub(super) fn of_balls(
+        inertia: Inertia,
+        what: &'static str,
+        balls: impl ExactSizeIterator<Item = RigidBall>,
+    ) -> Result<Self, Error> {
+        Error::unless(balls.len() < MOST, what, balls.len(), "fewer than 2^31")?;
+        let about_centre = balls
+            .enumerate()
+            .map(|(number, ball)| Point::new(ball.centre - inertia.centre, ball.radius, number));
+        let mut points = collected(what, about_centre)?;
+        let reach = |point: &Point| point.place.norm() + point.radius;
+        let unit = points.iter().map(reach).fold(0.0, f64::max);
         let (top, axes) = principal(&inertia, unit)?;
         let back = axes.inverse();
-        let points = balls.iter().map(|ball| {
-            let place = back.rotate(from_centre(ball)) / unit;
-            Point {
-                place,
-                distance: place.norm(),
-                radius: ball.radius / unit,
-            }
-        });
+        for (number, point) in points.iter_mut().enumerate() {
+            *point = Point::new(back.rotate(point.place) / unit, point.radius / unit, number);
+        }
         Ok(Self {
             inertia,
             unit,
             axes,
             top,
-            skin: Skin::Points(points.collect()),
+            skin: Skin::Points(Balls::new(what, points)?),
         })
+    }
+
+    /// The balls or vertices, in m and the axes that the body was given in; none of an ellipsoid.
+    ///
+    /// # Errors
+    /// [`Error::Memory`].
+    pub fn balls(&self) -> Result<Vec<RigidBall>, Error> {
+        let Skin::Points(balls) = &self.skin else {
+            return Ok(Vec::new());
+        };
+        let none = RigidBall {
+            centre: Vector::default(),
+            radius: 0.0,
+        };
+        let mut found = filled("asperities", none, balls.points().len())?;
+        for point in balls.points() {
+            found[point.number as usize] = RigidBall {
+                centre: self.axes.rotate(point.place * self.unit) + self.inertia.centre,
+                radius: self.unit * point.radius,
+            };
+        }
+        Ok(found)
     }
 
     /// A homogeneous ellipsoid with these semi-axes (m) along its own axes.
@@ -208,11 +229,18 @@ impl Skin {
     /// The distance from the centre of mass to the lowest part, in the direction against `up`.
     pub(crate) fn support(&self, up: Vector) -> f64 {
         match self {
-            Self::Points(points) => {
-                let lowest = points
-                    .iter()
-                    .map(|point| point.radius - up.dot(point.place));
-                lowest.fold(f64::NEG_INFINITY, f64::max)
+            Self::Points(balls) => {
+                let at = Instant {
+                    height: 0.0,
+                    rate: 0.0,
+                    up,
+                    turning: Vector::default(),
+                };
+                let exceeds = |least: &Least, limit: f64| least.gap > limit;
+                let lowest = balls.cheapest(&at, (None, 1.0), exceeds, |_, point, _| {
+                    point.opening(&at).0
+                });
+                -lowest.cost
             }
             Self::Ellipsoid([a, b, c]) => Vector::new(a * up.x, b * up.y, c * up.z).norm(),
             Self::Bands(bands) => bands

@@ -1,0 +1,125 @@
+//! The free rotation of any body.
+//!
+//! With equal moments ω is constant. With two equal ones, J across and J_z along the axis **e**, Euler's equations turn ω about **e** at the rate
+//! −λ, λ = (1 − J_z/J)ω_z, and the attitude is q(t) = q(0) exp(**Λ**t/2J) exp(λ**e**t/2), **Λ** the angular momentum in the axes of the body at
+//! the beginning. Otherwise both are [`Elliptic`] functions, or where these do not serve follow from their [`Series`].
+
+use super::elliptic::Elliptic;
+use super::series::Series;
+use super::top::{Symmetry, Top};
+use crate::math::{Quaternion, Vector};
+use crate::simd::elementary::sincos;
+
+/// The rotation of a body in flight, evaluated forward in time.
+#[derive(Debug, Clone)]
+pub struct Rotation {
+    top: Top,
+    /// The attitude, and ω in the axes of the body, at the beginning.
+    attitude: Quaternion,
+    spin: Vector,
+    way: Way,
+}
+
+#[derive(Debug, Clone)]
+#[expect(
+    clippy::large_enum_variant,
+    reason = "one lives at a time, on the stack"
+)]
+enum Way {
+    /// About ω: its half, and the direction.
+    Steady(f64, Vector),
+    /// Half the rate and the direction of **Λ**/J, then λ about an axis.
+    Precession((f64, Vector), f64, usize),
+    Elliptic(Elliptic),
+    Series(Series),
+}
+
+impl Rotation {
+    /// The rotation with this attitude and this ω, in the axes of the body, at the time 0.
+    #[inline(always)]
+    pub fn new(top: Top, attitude: Quaternion, spin: Vector) -> Self {
+        let rests = spin == Vector::default();
+        let way = match top.symmetry() {
+            Symmetry::Asymmetric if !rests => match Elliptic::new(&top, attitude, spin) {
+                Some(elliptic) => Way::Elliptic(elliptic),
+                None => Way::Series(Series::new(&top, attitude, spin)),
+            },
+            Symmetry::About(axis) if !rests => {
+                let moments = top.moments();
+                let across = moments[(axis + 1) % 3];
+                let parts = [spin.x, spin.y, spin.z];
+                let [x, y, z] = [0, 1, 2].map(|i| moments[i] / across * parts[i]);
+                let own = (1.0 - moments[axis] / across) * parts[axis];
+                Way::Precession(half_and_direction(Vector::new(x, y, z)), own, axis)
+            }
+            _ => {
+                let (half, direction) = half_and_direction(spin);
+                Way::Steady(half, direction)
+            }
+        };
+        Self {
+            top,
+            attitude,
+            spin,
+            way,
+        }
+    }
+
+    /// The attitude, and ω in the axes of the body, at a time that is not before the last one.
+    #[inline(always)]
+    pub fn at(&mut self, time: f64) -> (Quaternion, Vector) {
+        match &mut self.way {
+            Way::Steady(half, direction) => {
+                let turned = self.attitude * about(*direction, *half * time);
+                (turned.normalized(), self.spin)
+            }
+            Way::Precession((half, direction), own, axis) => {
+                let precessed = self.attitude * about(*direction, *half * time);
+                let (sine, cosine) = sincos(0.5 * *own * time);
+                let mut parts = [0.0; 3];
+                parts[*axis] = sine;
+                let [x, y, z] = parts;
+                let turn = Quaternion::new(cosine, x, y, z);
+                (
+                    (precessed * turn).normalized(),
+                    turn.inverse().rotate(self.spin),
+                )
+            }
+            Way::Elliptic(elliptic) => elliptic.at(time),
+            Way::Series(series) => series.at(&self.top, time),
+        }
+    }
+
+    /// The attitude at such a time.
+    pub fn attitude(&mut self, time: f64) -> Quaternion {
+        self.at(time).0
+    }
+
+    /// ω in the axes of the body, at such a time.
+    pub fn spin(&mut self, time: f64) -> Vector {
+        self.at(time).1
+    }
+}
+
+/// Half the length of a vector, and its direction; none of no vector.
+#[inline(always)]
+fn half_and_direction(v: Vector) -> (f64, Vector) {
+    let length = (v.x * v.x + v.y * v.y + v.z * v.z).sqrt();
+    if length > 0.0 {
+        (0.5 * length, v / length)
+    } else {
+        (0.0, v)
+    }
+}
+
+/// The rotation about a direction by twice this angle.
+#[inline(always)]
+fn about(direction: Vector, half: f64) -> Quaternion {
+    let (sine, cosine) = sincos(half);
+    Quaternion::new(
+        cosine,
+        sine * direction.x,
+        sine * direction.y,
+        sine * direction.z,
+    )
+}

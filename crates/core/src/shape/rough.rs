@@ -1,0 +1,258 @@
+//! Rough bodies: asperities, small balls, on the surface of a body of balls.
+
+use super::rigid::{Inertia, Rigid, RigidBall};
+use crate::Error;
+use crate::math::{Quaternion, Vector};
+use crate::random::of_asperity;
+use crate::simd::elementary::{exp_in_lanes, ln, sincos};
+use crate::simd::one;
+use std::f64::consts::TAU;
+
+/// How far the tops of asperities stand above the surface, in m.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Heights<'a> {
+    /// All alike.
+    Equal(f64),
+    /// One each.
+    Given(&'a [f64]),
+    /// With the density exp(−h/m)/m, m the mean.
+    Exponential(f64),
+    /// Normal with this mean and this deviation, where it is not negative.
+    Normal(f64, f64),
+    /// With a density ∝ h to the power −γ from the least to the most: γ, least, most.
+    Power(f64, f64, f64),
+}
+
+/// What makes a body rough.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Roughness<'a> {
+    /// Number of asperities.
+    pub asperities: usize,
+    /// Their radius, in m.
+    pub radius: f64,
+    /// How high they stand.
+    pub heights: Heights<'a>,
+    /// Seed of their places and heights.
+    pub seed: u64,
+}
+
+/// Draws of an asperity until it has a place on the surface and a height.
+const DRAWS: u32 = 100_000;
+
+impl Rigid {
+    /// Balls (m) with a given inertia, and asperities that lie uniformly on the free surface of their union. With `barrel` the surface of the
+    /// cylinder between two balls of the same radius belongs to it. The balls come first; asperity i does not depend on the number of them.
+    ///
+    /// # Errors
+    /// [`Error::Parameter`] for an asperity larger than the smallest ball, heights below 0 or larger than that, and balls without a free surface;
+    /// [`Error::Memory`].
+    pub fn rough(
+        balls: &[RigidBall],
+        barrel: bool,
+        inertia: Inertia,
+        roughness: &Roughness<'_>,
+    ) -> Result<Self, Error> {
+        super::clump::check(balls)?;
+        let smallest = balls
+            .iter()
+            .map(|ball| ball.radius)
+            .fold(f64::INFINITY, f64::min);
+        roughness.check(smallest)?;
+        let surface = Surface::new(balls, barrel);
+        let free = surface.draw(roughness.seed, 0).is_some();
+        Error::unless(free, "spheres", balls.len(), "with a surface of their own")?;
+        let all = balls.len() + roughness.asperities;
+        let parts = (0..all).map(|i| match balls.get(i) {
+            Some(ball) => *ball,
+            None => roughness.asperity(&surface, i - balls.len()),
+        });
+        Self::of_balls(inertia, "asperities", parts)
+    }
+}
+
+impl Roughness<'_> {
+    fn check(&self, smallest: f64) -> Result<(), Error> {
+        let fits = self.radius > 0.0 && self.radius <= smallest;
+        let allowed = "> 0, and no larger than the smallest sphere of the body (m)";
+        Error::unless(fits, "asperity_radius", self.radius, allowed)?;
+        let allowed = "finite, >= 0, and no larger than the smallest sphere of the body (m)";
+        let within = |height: f64| {
+            Error::unless(
+                (0.0..=smallest).contains(&height),
+                "heights",
+                height,
+                allowed,
+            )
+        };
+        match self.heights {
+            Heights::Equal(height) => within(height),
+            Heights::Given(heights) => {
+                let allowed = "one for each of the asperities";
+                let count = heights.len();
+                Error::unless(count == self.asperities, "heights", count, allowed)?;
+                heights.iter().try_for_each(|&height| within(height))
+            }
+            Heights::Exponential(mean) => within(mean),
+            Heights::Normal(mean, deviation) => within(mean).and(within(deviation)),
+            Heights::Power(exponent, least, most) => {
+                let allowed = "with a finite exponent and 0 < least <= most (m)";
+                let holds = exponent.is_finite() && 0.0 < least && least <= most;
+                Error::unless(holds, "heights", least, allowed)?;
+                within(most)
+            }
+        }
+    }
+
+    /// The ball that is asperity `i`.
+    fn asperity(&self, surface: &Surface<'_>, i: usize) -> RigidBall {
+        let (place, normal) = surface.draw(self.seed, i as u64).unwrap_or_default();
+        RigidBall {
+            centre: place + normal * (self.height(i) - self.radius),
+            radius: self.radius,
+        }
+    }
+
+    /// How far the top of asperity `i` stands above the surface.
+    fn height(&self, i: usize) -> f64 {
+        let draw = |number: u32| of_asperity(self.seed, i as u64, 3 * number);
+        match self.heights {
+            Heights::Equal(height) => height,
+            Heights::Given(heights) => heights[i],
+            Heights::Exponential(mean) => -mean * ln(1.0 - draw(0).0),
+            // Box and Muller's, until one is not negative.
+            Heights::Normal(mean, deviation) => (0..DRAWS)
+                .map(|number| {
+                    let (u, v) = draw(number);
+                    let size = (-2.0 * ln(1.0 - u)).sqrt();
+                    mean + deviation * size * sincos(TAU * v).1
+                })
+                .find(|&height| height >= 0.0)
+                .unwrap_or(0.0),
+            Heights::Power(exponent, least, most) => {
+                let (power, range) = (1.0 - exponent, ln(most / least));
+                let exp = |x: f64| exp_in_lanes(one(x)).as_slice()[0];
+                let u = draw(0).0;
+                // The inverse of (xᵖ − 1)/(Xᵖ − 1), with x = h/least up to X, and p = 1 − γ.
+                let logarithm = if (power * range).abs() < 1e-9 {
+                    u * range
+                } else {
+                    ln(1.0 + u * (exp(power * range) - 1.0)) / power
+                };
+                least * exp(logarithm)
+            }
+        }
+    }
+}
+
+/// The free surface of balls, and of the barrel between two.
+struct Surface<'a> {
+    balls: &'a [RigidBall],
+    /// Up to each ball and the barrel, the part of the area of all before any is covered.
+    shares: Vec<f64>,
+    barrel: Option<Barrel>,
+}
+
+/// A cylinder from one place to another.
+struct Barrel {
+    from: Vector,
+    axis: Vector,
+    length: f64,
+    /// The rotation of z to the axis.
+    attitude: Quaternion,
+    radius: f64,
+}
+
+impl<'a> Surface<'a> {
+    fn new(balls: &'a [RigidBall], barrel: bool) -> Self {
+        let barrel = match balls {
+            [one, other] if barrel => Barrel::new(one, other),
+            _ => None,
+        };
+        let mut shares = Vec::new();
+        let mut sum = 0.0;
+        for ball in balls {
+            sum += 2.0 * ball.radius * ball.radius;
+            shares.push(sum);
+        }
+        if let Some(barrel) = &barrel {
+            shares.push(sum + barrel.radius * barrel.length);
+        }
+        let all = shares[shares.len() - 1];
+        for share in &mut shares {
+            *share /= all;
+        }
+        Self {
+            balls,
+            shares,
+            barrel,
+        }
+    }
+
+    /// A place of the free surface and its normal there: uniform on all surfaces, until it is free.
+    fn draw(&self, seed: u64, asperity: u64) -> Option<(Vector, Vector)> {
+        (0..DRAWS).find_map(|number| {
+            let (u, v) = of_asperity(seed, asperity, 3 * number + 1);
+            let part = if self.shares.len() > 1 {
+                let (chosen, _) = of_asperity(seed, asperity, 3 * number + 2);
+                self.shares.partition_point(|&share| share <= chosen)
+            } else {
+                0
+            };
+            let (sine, cosine) = sincos(TAU * v);
+            match (self.balls.get(part), &self.barrel) {
+                (Some(ball), barrel) => {
+                    let z = 2.0 * u - 1.0;
+                    let level = ((1.0 - z) * (1.0 + z)).sqrt();
+                    let normal = Vector::new(level * cosine, level * sine, z);
+                    let place = ball.centre + normal * ball.radius;
+                    let covered = self.covers(part, place)
+                        || barrel.as_ref().is_some_and(|barrel| barrel.covers(place));
+                    (!covered).then_some((place, normal))
+                }
+                (None, Some(barrel)) => {
+                    let normal = barrel.attitude.rotate(Vector::new(cosine, sine, 0.0));
+                    let middle = barrel.from + barrel.axis * (u * barrel.length);
+                    Some((middle + normal * barrel.radius, normal))
+                }
+                (None, None) => None,
+            }
+        })
+    }
+
+    /// Whether a place on the sphere of a ball lies in another.
+    fn covers(&self, own: usize, place: Vector) -> bool {
+        let inside =
+            |(i, ball): (usize, &RigidBall)| i != own && (place - ball.centre).norm() < ball.radius;
+        self.balls.iter().enumerate().any(inside)
+    }
+}
+
+impl Barrel {
+    fn new(one: &RigidBall, other: &RigidBall) -> Option<Self> {
+        let apart = other.centre - one.centre;
+        let length = apart.norm();
+        if length == 0.0 {
+            return None;
+        }
+        let axis = apart / length;
+        // Half the rotation that takes z to the axis: 1 + cos, and their vector product.
+        let attitude = if axis.z > -1.0 {
+            Quaternion::new(1.0 + axis.z, -axis.y, axis.x, 0.0).normalized()
+        } else {
+            Quaternion::new(0.0, 1.0, 0.0, 0.0)
+        };
+        Some(Self {
+            from: one.centre,
+            axis,
+            length,
+            attitude,
+            radius: one.radius,
+        })
+    }
+
+    /// Whether a place on the sphere of either end lies between both ends.
+    fn covers(&self, place: Vector) -> bool {
+        let along = (place - self.from).dot(self.axis);
+        along > 0.0 && along < self.length
+    }
+}

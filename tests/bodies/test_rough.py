@@ -1,0 +1,174 @@
+"""Rough bodies: where their asperities are, and that they bounce as clumps of the same balls do."""
+
+from typing import Any
+
+import numpy as np
+import pytest
+from scipy import stats
+
+import restitution as rs
+from restitution.drop.run import Run
+from restitution.drop.toml import run_of, tables_of
+
+R, RHO = 3e-3, 3e-5
+LAW = rs.TangentialRestitution(normal=0.9, tangential=1.0)
+SHAPES: dict[str, Any] = {
+    "dumbbell": rs.Dumbbell(radius=(R, 2e-3), separation=4e-3),
+    "loaded": rs.LoadedSphere(radius=R, load=1e-4, offset=1e-3),
+    "capsule": rs.Spherocylinder(radius=R, separation=2 * R),
+    "clump": rs.Clump(
+        spheres=R * np.array([(1, 1, 1, 1), (1, -1, -1, 1), (-1, 1, -1, 1.2), (-1, -1, 1, 0.8)])
+    ),
+}
+
+
+def sphere(asperities: int, **others: Any) -> rs.RoughSphere:
+    return rs.RoughSphere(**{"radius": R, "asperities": asperities, "asperity_radius": RHO, **others})
+
+
+def test_asperities_are_uniform_and_do_not_depend_on_their_number() -> None:
+    """The tops stand ρ above the sphere; every coordinate of a uniform direction is uniform in [-1, 1]."""
+    balls = sphere(20_000).asperity_balls
+    np.testing.assert_allclose(np.linalg.norm(balls[:, :3], axis=1), R, rtol=1e-14)
+    np.testing.assert_allclose(balls[:, 3], RHO, rtol=1e-14)
+    for coordinate in balls[:, :3].T / R:
+        assert stats.kstest(coordinate, stats.uniform(-1, 2).cdf).pvalue > 1e-3
+    np.testing.assert_allclose(sphere(100).asperity_balls, balls[:100], rtol=0, atol=1e-17)
+    assert np.abs(sphere(100, seed=2).asperity_balls - balls[:100]).max() > R
+
+
+@pytest.mark.parametrize(
+    ("heights", "law"),
+    [
+        (("exponential", 1e-5), stats.expon(scale=1e-5)),
+        (("normal", 1e-5, 1e-5), stats.truncnorm(-1.0, np.inf, loc=1e-5, scale=1e-5)),
+        (("power", 2.5, 1e-6, 1e-4), stats.truncpareto(1.5, 100.0, scale=1e-6)),
+        (("power", 1.0, 1e-6, 1e-4), stats.loguniform(1e-6, 1e-4)),
+    ],
+)
+def test_heights_have_their_distribution(heights: tuple[Any, ...], law: Any) -> None:
+    balls = sphere(5000, heights=heights).asperity_balls
+    tops = np.linalg.norm(balls[:, :3], axis=1) + RHO - R
+    assert tops.min() >= -1e-17
+    assert stats.kstest(tops, law.cdf).pvalue > 1e-3
+
+
+def test_heights_of_ones_own() -> None:
+    heights = np.linspace(0.0, RHO, 50)
+    balls = sphere(50, heights=heights).asperity_balls
+    np.testing.assert_allclose(np.linalg.norm(balls[:, :3], axis=1) + RHO - R, heights, atol=1e-17)
+
+
+@pytest.mark.parametrize("asperities", [3, 30])
+def test_the_lowest_asperity_touches(asperities: int) -> None:
+    """P(cos a < x) = ((1 + x)/2)^N for the angle a of the lowest one, over bodies at rest in any attitude."""
+    cosines = []
+    for seed in range(60):
+        body = sphere(asperities, heights=2 * RHO, asperity_radius=RHO, seed=seed)
+        run = Run(body=body, law=LAW, particles=1, impacts=1, seed=seed)
+        data = rs.simulate(body, LAW, particles=1, impacts=1, seed=seed, record="state")
+        part = int(data.contact[0, 0])
+        if part == 1:  # the sphere itself, where no asperity is near
+            continue
+        w, x, y, z = data.attitude.to_numpy()[0, 0]
+        up = np.array([2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)])
+        balls = body.asperity_balls
+        assert (balls[:, :3] @ up).argmin() == part - 2
+        cosines.append(-balls[part - 2, :3] @ up / np.linalg.norm(balls[part - 2, :3]))
+        assert run.body == body
+    within = (1 + (1 - 2 * RHO / (R + RHO))) / 2  # farther away than this the sphere touches
+    part = (((1 + np.array(cosines)) / 2) ** asperities - within**asperities) / (1 - within**asperities)
+    assert len(cosines) < 20 or stats.kstest(part, "uniform").pvalue > 1e-3
+
+
+@pytest.mark.parametrize("shape", SHAPES)
+def test_asperities_lie_on_the_free_surface(shape: str) -> None:
+    """None is inside the body, and shares of the area have their share of asperities."""
+    body = SHAPES[shape]
+    rough = rs.Rough(body, asperities=4000, asperity_radius=1e-6, heights=1e-6)
+    assert rough.mass == body.mass
+    places = rough.asperity_balls[:, :3]
+    if shape == "capsule":
+        along = np.clip(places[:, 2], -R, R)
+        np.testing.assert_allclose(
+            np.hypot(np.hypot(places[:, 0], places[:, 1]), places[:, 2] - along), R, rtol=1e-12
+        )
+        share = np.mean(np.abs(places[:, 2]) < R)  # barrel 2πR·2R of 4πR² + 4πR²
+        assert abs(share - 0.5) < 5 * 0.5 / np.sqrt(4000)
+        return
+    spheres = {
+        "dumbbell": np.array([(0, 0, 2e-3, R), (0, 0, -2e-3, 2e-3)]),
+        "loaded": np.array([(0, 0, 0, R)]),
+        "clump": np.array(getattr(body, "spheres", [])),
+    }[shape]
+    gaps = np.linalg.norm(places[:, None] - spheres[:, :3], axis=2) - spheres[:, 3]
+    np.testing.assert_allclose(gaps.min(axis=1), 0.0, atol=1e-14)
+    if shape == "dumbbell":  # caps of height h have the area 2πrh; the spheres meet at z from the middle
+        (_, _, a, r), (_, _, b, s) = spheres
+        cut = ((r * r - s * s) / (b - a) + a + b) / 2
+        areas = r * (a + r - cut), s * (cut - b + s)
+        share = np.mean(places[:, 2] > cut)
+        expected = areas[0] / sum(areas)
+        assert abs(share - expected) < 5 * np.sqrt(expected * (1 - expected) / 4000)
+
+
+def test_a_rough_body_is_the_clump_of_its_balls() -> None:
+    """With the same mass and inertia, to the last digits, over several impacts."""
+    rough = sphere(5, heights=0.3 * R, asperity_radius=0.5 * R)
+    spheres = np.vstack([[(0, 0, 0, R)], rough.asperity_balls])
+    density = 2500.0 * rough.mass / rs.Clump(spheres=spheres).mass
+    tensor = rough.inertia_tensor
+    clump = rs.Clump(spheres=spheres, density=density, inertia=tensor, centre=(0, 0, 0))
+    run: dict[str, Any] = {"particles": 50, "impacts": 3, "spin": (20.0, -30.0, 10.0)}
+    law = rs.Frictionless(normal=0.9)
+    one, other = (rs.simulate(body, law, **run) for body in (rough, clump))
+    np.testing.assert_array_equal(one.contact, other.contact)
+    np.testing.assert_allclose(one.time, other.time, rtol=1e-9)
+
+
+def test_a_smooth_sphere_bounces_straight_back() -> None:
+    """Asperities of no height change nothing."""
+    data = rs.simulate(sphere(200, heights=0.0), LAW, particles=20, impacts=5)
+    np.testing.assert_allclose(data.restitution, 0.9, rtol=1e-9)
+
+
+def test_runs_are_alike_on_any_threads_and_through_files() -> None:
+    body = rs.Rough(SHAPES["dumbbell"], asperities=300, asperity_radius=RHO, heights=("exponential", RHO))
+    run: dict[str, Any] = {"particles": 200, "impacts": 4, "spin": rs.RandomSpin(rate=30.0)}
+    law = rs.Frictionless(normal=0.9)
+    one = rs.simulate(body, law, threads=1, **run)
+    assert one.identical(rs.simulate(body, law, threads=2, **run))
+    assert one.attrs["rough_body"] == "Dumbbell"
+    assert one.attrs["asperity_seed"] == 1
+    for made in (body, sphere(10), sphere(3, heights=[1e-6, 2e-6, 3e-6])):
+        asked = Run(body=made, law=law)
+        assert run_of(tables_of(asked), "file").body == made
+
+
+@pytest.mark.parametrize(
+    ("changed", "message"),
+    [
+        ({"asperities": 0}, "asperities = 0"),
+        ({"asperities": 2**31}, "asperities"),
+        ({"asperities": 2**31 - 1, "radius": 1.0}, "asperities = 2147483647: must be as many as memory"),
+        ({"asperity_radius": 0.0}, "asperity_radius = 0.0"),
+        ({"asperity_radius": 2 * R}, "asperity_radius = 0.006"),
+        ({"heights": -1e-6}, "heights"),
+        ({"heights": np.nan}, "heights"),
+        ({"heights": 2 * R}, "heights"),
+        ({"heights": [1e-6, 1e-6]}, "heights"),
+        ({"heights": [1e-6] * 9 + [-1e-6]}, "heights"),
+        ({"heights": ("uniform", 1e-6)}, "heights"),
+        ({"heights": ("normal", 1e-6)}, "heights"),
+        ({"heights": ("exponential", -1e-6)}, "heights"),
+        ({"heights": ("power", 2.0, 0.0, 1e-6)}, "heights"),
+    ],
+)
+def test_rough_bodies_that_cannot_be_are_refused_by_name(changed: dict[str, Any], message: str) -> None:
+    with pytest.raises(ValueError, match=message):
+        sphere(**{"asperities": 10, **changed})
+
+
+def test_only_bodies_of_spheres_are_made_rough() -> None:
+    with pytest.raises(ValueError, match=r"body = .*must be a Dumbbell, LoadedSphere"):
+        rs.Rough(rs.Spheroid(equatorial=R, polar=2 * R), asperities=10, asperity_radius=RHO)
