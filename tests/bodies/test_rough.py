@@ -23,7 +23,8 @@ SHAPES: dict[str, Any] = {
 
 
 def sphere(asperities: int, **others: Any) -> rs.RoughSphere:
-    return rs.RoughSphere(**{"radius": R, "asperities": asperities, "asperity_radius": RHO, **others})
+    given: dict[str, Any] = {"radius": R, "asperities": asperities, "asperity_radius": RHO} | others
+    return rs.RoughSphere(**given)
 
 
 def test_asperities_are_uniform_and_do_not_depend_on_their_number() -> None:
@@ -77,8 +78,9 @@ def test_the_lowest_asperity_touches(asperities: int) -> None:
         cosines.append(-balls[part - 2, :3] @ up / np.linalg.norm(balls[part - 2, :3]))
         assert run.body == body
     within = (1 + (1 - 2 * RHO / (R + RHO))) / 2  # farther away than this the sphere touches
-    part = (((1 + np.array(cosines)) / 2) ** asperities - within**asperities) / (1 - within**asperities)
-    assert len(cosines) < 20 or stats.kstest(part, "uniform").pvalue > 1e-3
+    least = within**asperities
+    chances = (((1 + np.array(cosines)) / 2) ** asperities - least) / (1 - least)
+    assert len(cosines) < 20 or stats.kstest(chances, "uniform").pvalue > 1e-3
 
 
 @pytest.mark.parametrize("shape", SHAPES)

@@ -178,8 +178,8 @@ impl Elliptic {
             imaginary[n] = -sign * products[n] * (up - down);
         }
         let mut fourth = 1.0;
-        for n in 1..TERMS {
-            fourth += if n % 2 == 0 { 2.0 } else { -2.0 } * squares[n];
+        for (n, term) in squares.iter().enumerate().skip(1) {
+            fourth += if n % 2 == 0 { 2.0 } else { -2.0 } * term;
         }
         let mut found = Self {
             order,
