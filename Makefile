@@ -9,7 +9,7 @@ FUZZ ?= 300
 JOBS ?= 2
 CORE := $(shell find crates -name '*.rs' -o -name 'Cargo.toml') Cargo.toml Cargo.lock pyproject.toml
 
-.PHONY: help install pages paper calibrate onsets test fuzz hostile audit mutants test-arm test-web rust-tests bench-web look web docs wheel licences coverage lint bench clean
+.PHONY: help install pages paper rough calibrate onsets test fuzz hostile audit mutants test-arm test-web rust-tests bench-web look web docs wheel licences coverage lint bench clean
 
 help:  ## list the targets
 	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed 's/:.*##/\t/' | expand -t 12
@@ -23,6 +23,9 @@ install: $(STAMP)  ## build the core and install the package into .venv
 
 paper: $(STAMP)  ## redraw and judge the whole paper into $(OUT)/
 	$(BIN)/restitution paper --overwrite --out $(OUT) --impacts $(IMPACTS)
+
+rough: $(STAMP)  ## simulate and judge rough spheres into rough/
+	$(BIN)/restitution rough --overwrite --out rough
 
 calibrate: $(STAMP)  ## 120 synthetic experiments: do posteriors cover? Some minutes on one core
 	$(BIN)/python -m benchmarks.calibration build/calibration
@@ -133,4 +136,4 @@ coverage: $(STAMP)  ## lines that the tests reach, in Python and in Rust, into b
 	cargo llvm-cov --package restitution-core --locked --html --output-dir build/coverage/rust
 
 clean:  ## remove everything that was built
-	rm -rf $(VENV) target build dist paper web/node_modules web/shots
+	rm -rf $(VENV) target build dist paper rough web/node_modules web/shots

@@ -214,3 +214,79 @@ def test_bad_falls() -> None:
         rough_spin(SMOOTH, contact, speed=2.0, release_speed=1.0, radius=1.0)
     with pytest.raises(ValueError, match="law = "):
         rough_spin(rs.Frictionless(normal=1.0), contact, speed=0.5, release_speed=1.0, radius=1.0)
+
+
+ROUGH = {"radius": 1.0, "asperities": 2000, "asperity_radius": 0.05, "heights": 0.01}
+LAWS = [
+    (SMOOTH, None),
+    (PAPER, 1.0),
+    (rs.Coulomb(normal=0.9, friction=0.3), 1.0),
+    (rs.ChatterjeeRuina(normal=0.9, tangential=0.9, friction=0.3), 1.0),
+]
+
+
+@pytest.mark.parametrize(
+    ("number", "height", "law", "tangential"),
+    # At the large angles of few asperities friction reaches its limit.
+    [(4, 0.3, *law) for law in LAWS[:2]] + [(300, 0.02, *law) for law in LAWS] + [(2000, 0.01, *LAWS[0])],
+)
+def test_the_first_impact_of_rough_spheres(
+    number: int, height: float, law: rs.Frictionless, tangential: float | None
+) -> None:
+    """Spheres at rest over the plane, some of which touch themselves: the law of large angles, too."""
+    body = rs.RoughSphere(**(ROUGH | {"asperities": number, "heights": height}))
+    exact = rs.analytic.first_impact(body, law)
+    met = hits(Rough(number, 0.05, height), np.zeros((2000, 3)), 70 + number)
+    e, _ = rebound(Rough(number, 0.05, height), met, 0.9, tangential)
+    assert abs(e.mean() - exact.mean()) < 5.0 * e.std() / np.sqrt(e.size) + 1e-12
+    low, high = exact.support()
+    assert low - 1e-12 < e.min() <= e.max() < high + 1e-12
+    assert abs((e > 0.9 - 1e-12).mean() - exact._sphere) < 5.0 * np.sqrt(exact._sphere / e.size) + 1e-3
+    rest = np.where(e > 0.9 - 1e-12, 0.9, e)
+    assert kstest(rest[rest < 0.9], lambda x: exact.cdf(x) / (1.0 - exact._sphere)).pvalue > RARE
+
+
+@pytest.mark.parametrize("number", [1, 30, 10**4, 10**5])
+@pytest.mark.parametrize("law", [one for one, _ in LAWS])
+def test_the_methods_of_a_first_impact_agree(number: int, law: rs.Frictionless) -> None:
+    """Moments are those of the quantiles; density, quantile and draws are of one distribution."""
+    exact = rs.analytic.first_impact(rs.RoughSphere(**(ROUGH | {"asperities": number})), law)
+    t, weight = np.polynomial.legendre.leggauss(400)
+    u = 0.5 * (1.0 + t)
+    e = exact.ppf(u)
+    mean = float(0.5 * weight @ e)
+    assert exact.mean() == pytest.approx(mean, rel=1e-5)
+    assert 0.9 - exact.mean() == pytest.approx(0.9 - mean, rel=2e-2)
+    inside = e[(e < exact.support()[1] - 1e-14) & (e > exact.support()[0])][20::80]
+    if inside.size:
+        step = 1e-4 * (exact.support()[1] - inside)
+        slope = (exact.cdf(inside + step) - exact.cdf(inside - step)) / (2.0 * step)
+        assert exact.pdf(inside) == pytest.approx(slope, rel=1e-4)
+        assert exact.cdf(inside) + exact.sf(inside) == pytest.approx(1.0)
+    draws = exact.rvs(size=4000, random_state=1)
+    assert abs(draws.mean() - exact.mean()) < 5.0 * exact.std() / np.sqrt(4000) + 1e-12
+    assert exact.expect() == pytest.approx(exact.mean(), rel=1e-6)
+    assert exact.stats("v")[0] == pytest.approx(exact.std() ** 2)
+
+
+def test_many_asperities_make_the_one_sided_exponential() -> None:
+    """(4): mean and deviation of the loss are both (1 + ε_n) κ 4/N."""
+    exact = rs.analytic.first_impact(rs.RoughSphere(**(ROUGH | {"asperities": 10**6})), SMOOTH)
+    centre = 1.0 + 0.01 - 0.05
+    loss = 1.9 * 2.5 * centre**2 * 4e-6
+    assert 0.9 - exact.mean() == pytest.approx(loss, rel=1e-4)
+    assert exact.std() == pytest.approx(loss, rel=1e-4)
+    assert exact.entropy() == pytest.approx(1.0 + np.log(loss), rel=1e-4)
+    assert exact.stats("sk") == pytest.approx((-2.0, 9.0), rel=1e-3)
+
+
+def test_material_and_threshold_of_a_rough_sphere() -> None:
+    body = rs.RoughSphere(**(ROUGH | {"asperities": 50}))
+    plastic = rs.Frictionless(normal=rs.Plastic(yield_speed=0.5))
+    fast = rs.analytic.first_impact(body, plastic, release_height=3.0, gravity=9.81)
+    assert fast.support()[1] == pytest.approx(plastic.normal(np.sqrt(2 * 9.81 * 2.0)), rel=0.01)
+    # Without friction a²/J at the greatest angle, where the sphere touches too: cos a = 1 - h/R_c.
+    threshold = 0.96**2 * (1.0 - (1.0 - 0.01 / 0.96) ** 2) / 0.4
+    assert rs.analytic.negative_threshold(body, SMOOTH) == pytest.approx(threshold)
+    with pytest.raises(ValueError, match=r"body\.heights = "):
+        rs.analytic.first_impact(rs.RoughSphere(**(ROUGH | {"heights": ("exponential", 0.01)})), SMOOTH)

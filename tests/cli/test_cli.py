@@ -1,5 +1,6 @@
 """The command line: the results of the call, errors in a line, files whole or not at all, nothing lost."""
 
+import importlib
 import re
 import resource
 import subprocess
@@ -227,9 +228,12 @@ def test_a_saved_dataset_is_read_unchanged(tmp_path: Path) -> None:
     xr.testing.assert_identical(load(tmp_path / "run.nc"), data)
 
 
-def test_paper_hands_over_its_options(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+@pytest.mark.parametrize(("command", "name"), [("paper", "glielmo2014"), ("rough", "gunkelmann2014")])
+def test_papers_hand_over_their_options(
+    command: str, name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     """The command adds nothing to `redraw` but the report of errors."""
-    import restitution.papers.glielmo2014
+    module = importlib.import_module(f"restitution.papers.{name}")
 
     given: list[Any] = []
 
@@ -239,10 +243,10 @@ def test_paper_hands_over_its_options(tmp_path: Path, monkeypatch: pytest.Monkey
             raise ValueError(f"impacts = {options['impacts']}: must be at least 400000")
         return out / "report.html"
 
-    monkeypatch.setattr(restitution.papers.glielmo2014, "redraw", redraw, raising=False)
-    result = invoke("paper", "--out", tmp_path, "--impacts", 500_000, "--seed", 7, "--threads", 2)
+    monkeypatch.setattr(module, "redraw", redraw, raising=False)
+    result = invoke(command, "--out", tmp_path, "--impacts", 500_000, "--seed", 7, "--threads", 2)
     assert (result.exit_code, result.stdout) == (0, f"{tmp_path / 'report.html'}\n")
     options = {"impacts": 500_000, "seed": 7, "threads": 2, "progress": False, "overwrite": False}
     assert given == [tmp_path, options]
-    result = invoke("paper", "--out", tmp_path, "--impacts", 3)
+    result = invoke(command, "--out", tmp_path, "--impacts", 3)
     assert (result.exit_code, result.stderr) == (BAD_INPUT, "error: impacts = 3: must be at least 400000\n")

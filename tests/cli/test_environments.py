@@ -63,6 +63,7 @@ ENDED = {
     "distribution": ("distribution run.toml --out dist.nc --header dist.h", signal.SIGINT, set()),
     "laws": ("laws --out laws --impacts 100000000", signal.SIGTERM, set()),
     "paper": ("paper --out paper", signal.SIGHUP, set()),
+    "rough": ("rough --out rough --impacts 1000000000", signal.SIGTERM, set()),
     "sweep": ("sweep study.toml --out study.zarr", signal.SIGTERM, {"study.zarr"}),
     "fit": ("fit data.nc --velocity 0.5 0.9 --resamples 1000000", signal.SIGTERM, set()),
     "listen": ("listen ball.wav --diameter 0.02 --out ball.html", signal.SIGHUP, set()),

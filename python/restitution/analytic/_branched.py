@@ -110,7 +110,8 @@ class BranchedFirstImpact(FirstImpact):
     def entropy(self) -> float:
         """Return the differential entropy, -∫ p ln p dε, to 1e-7."""
         branches = self._curve.branches
-        levels = np.unique([value for branch in branches for value in (branch.first, branch.last)])
+        ends = [value for branch in branches for value in (branch.first, branch.last)]
+        levels = np.unique([*ends, *self._curve.restitution(self._tilt.edges)])
         nodes, weights = np.polynomial.legendre.leggauss(128)
         u = 0.5 * (1.0 + nodes)
         # Flat at both ends, where ln p may diverge.
@@ -124,8 +125,9 @@ class BranchedFirstImpact(FirstImpact):
                 share = (stop - start) * rate * self._tilt.density(theta)
                 own = self._branch_density(branch, theta)
                 others = self._density(branch.piece.restitution(theta), without=branch)
-                # At an extreme, to rounding, both sides of it have the same density.
-                total -= float(share @ np.log(own + np.where(np.isfinite(others), others, own)))
+                # At an extreme, to rounding, both sides have the same density. Where it is 0, so is p ln p.
+                density = own + np.where(np.isfinite(others), others, own)
+                total -= float(share @ np.log(np.maximum(density, np.finfo(float).tiny)))
         return total
 
     @property
@@ -190,7 +192,9 @@ class BranchedFirstImpact(FirstImpact):
         """Return the mean of a function of ε that is a polynomial of this order."""
         total = 0.0
         for piece, edges in zip(self._curve.pieces, self._curve.edges, strict=True):
-            theta, weights = nodes(edges, order)
+            inner = self._tilt.edges
+            inner = inner[(inner > edges[0]) & (inner < edges[-1])]
+            theta, weights = nodes(np.union1d(edges, inner), order)
             total += float((weights * self._tilt.density(theta)) @ function(piece.restitution(theta)))
         return total
 

@@ -18,7 +18,7 @@ from restitution.analytic._impulse import Impulse, Mode
 from restitution.analytic._normal import Fall, coefficient, kinks
 from restitution.analytic._orientation import Floats
 from restitution.analytic._panels import distinct, extremes, panels, roots, solve
-from restitution.bodies import Body
+from restitution.bodies import Body, RoughSphere
 from restitution.laws import Law
 
 _STEP = 1e-150
@@ -79,7 +79,7 @@ class Piece:
 class Curve:
     """ε as a function of θ from 0 to ``limit``."""
 
-    body: Body
+    body: Body | RoughSphere
     law: Law
     fall: Fall  # without effect on a law with a number for ``normal``
 

@@ -5,10 +5,12 @@ from __future__ import annotations
 from restitution._internal.parameters import ParameterError, Problem, wrong
 from restitution.analytic._branched import BranchedFirstImpact
 from restitution.analytic._frozen import FirstImpact, check
+from restitution.analytic._hull import Outline
 from restitution.analytic._normal import Fall
 from restitution.analytic._orientation import ORIENTATIONS, OrientationName
+from restitution.analytic._rough_first import RoughFirstImpact
 from restitution.analytic._two_balls import TwoBallsFirstImpact
-from restitution.bodies import Body, Dumbbell, Spherocylinder
+from restitution.bodies import Body, Dumbbell, RoughSphere, Spherocylinder
 from restitution.laws import Frictionless, Law, TangentialRestitution
 
 SHORTEST, LONGEST = 1e-100, 1e100  # L/R whose powers, up to the third, are normal numbers
@@ -16,7 +18,7 @@ NARROWEST = 1e-9  # support of ε that leaves the density seven digits
 
 
 def first_impact(
-    body: Body,
+    body: Body | RoughSphere,
     law: Law,
     orientation: OrientationName = "uniform-angle",
     *,
@@ -32,7 +34,9 @@ def first_impact(
     Parameters
     ----------
     body : Dumbbell or another body
-        Not a sphere about its centre of mass. For two equal balls under the paper's law or without friction,
+        Not a sphere about its centre of mass; or a RoughSphere with equal heights, of which the distribution
+        is that over all such spheres, whose orientation does not matter. For two equal balls under the
+        paper's law or without friction,
         L/R from 1e-100 to 1e100; else such that ε varies by 1e-9 at least.
     law : TangentialRestitution or another law
         Law of the impact.
@@ -72,6 +76,8 @@ def first_impact(
     if not (isinstance(orientation, str) and orientation in ORIENTATIONS):
         raise ParameterError(wrong("orientation", orientation, " or ".join(map(repr, ORIENTATIONS))))
     fall = _fall(body, law, release_height, gravity)
+    if isinstance(body, RoughSphere):
+        return _wide_enough(RoughFirstImpact(body, law, "isotropic", fall))
     _not_a_sphere(body, law)
     equal = isinstance(body, Spherocylinder) or (isinstance(body, Dumbbell) and body.is_equal)
     if equal and isinstance(law, TangentialRestitution | Frictionless) and isinstance(law.normal, float):
@@ -80,7 +86,11 @@ def first_impact(
             allowed = f"{SHORTEST:g} to {LONGEST:g} times body.radius"
             raise ParameterError(wrong("body.separation", body.separation, allowed))
         return TwoBallsFirstImpact(body, law, orientation)
-    distribution = BranchedFirstImpact(body, law, orientation, fall)
+    return _wide_enough(BranchedFirstImpact(body, law, orientation, fall))
+
+
+def _wide_enough(distribution: BranchedFirstImpact) -> FirstImpact:
+    body = distribution.body
     low, high = distribution.support()
     if high - low < NARROWEST:
         allowed = f"a body for which restitution varies by {NARROWEST:g} at least; here by {high - low:.1e}"
@@ -88,7 +98,7 @@ def first_impact(
     return distribution
 
 
-def _fall(body: Body, law: Law, release_height: float | None, gravity: float | None) -> Fall:
+def _fall(body: Body | RoughSphere, law: Law, release_height: float | None, gravity: float | None) -> Fall:
     given = {"release_height": release_height, "gravity": gravity}
     if isinstance(law.normal, float):
         for name, value in given.items():
@@ -96,13 +106,13 @@ def _fall(body: Body, law: Law, release_height: float | None, gravity: float | N
                 raise ParameterError(
                     wrong(name, value, f"left out: law.normal = {law.normal!r} at any speed")
                 )
-        return Fall(release_height=2.0 * body.compiled.farthest(), gravity=1.0)  # any: nothing depends on it
+        return Fall(release_height=2.0 * Outline.of(body).unit, gravity=1.0)  # any: nothing depends on it
     for name, value in given.items():
         if value is None:
             text = f": missing; law.normal = {type(law.normal).__name__} depends on the speed"
             raise ParameterError(Problem(name, text))
     fall = Fall(**given)
-    highest = body.compiled.farthest()
+    highest = Outline.of(body).unit
     if not fall.release_height > highest * (1.0 + 1e-9):
         allowed = f"more than {highest!r} m, or the body may touch the plane at release"
         raise ParameterError(wrong("release_height", release_height, allowed))

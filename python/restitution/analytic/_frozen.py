@@ -18,7 +18,7 @@ from restitution._internal.parameters import ParameterError, wrong
 from restitution._internal.resources import check_size
 from restitution._internal.text import table, value
 from restitution.analytic._orientation import Floats, OrientationName
-from restitution.bodies import BODIES, Body
+from restitution.bodies import BODIES, Body, RoughSphere
 from restitution.laws import LAWS, Law, check_steady
 
 Values: TypeAlias = Any  # np.float64 for a scalar argument, an array of floats otherwise
@@ -52,7 +52,7 @@ class FirstImpact(ABC):
     (3,)
     """
 
-    body: Body
+    body: Body | RoughSphere
     law: Law
     orientation: OrientationName
 
@@ -253,10 +253,12 @@ class FirstImpact(ABC):
         return self.ppf(tail), self.isf(tail)
 
 
-def check(body: Body, law: Law) -> None:
-    """Refuse what is not a body or not a law, and a law that scatters."""
-    if not isinstance(body, Body):
-        raise ParameterError(wrong("body", body, BODIES))
+def check(body: Body | RoughSphere, law: Law) -> None:
+    """Refuse what is not a body or not a law, random heights of asperities, and a law that scatters."""
+    if not isinstance(body, Body | RoughSphere):
+        raise ParameterError(wrong("body", body, f"{BODIES}, or a RoughSphere"))
+    if isinstance(body, RoughSphere) and (isinstance(body.heights, tuple) or body.heights == 0.0):
+        raise ParameterError(wrong("body.heights", body.heights, "a number > 0 in m, the same for all"))
     if not isinstance(law, Law):
         raise ParameterError(wrong("law", law, LAWS))
     check_steady(law)

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 from restitution.analytic._disc import Number
-from restitution.bodies import Body
+from restitution.bodies import Body, RoughSphere
 
 
 @dataclass(frozen=True)
@@ -67,11 +67,22 @@ class Outline:
     sides: tuple[Side, ...]  # from θ = 0 to π/2 if the body looks the same upside down, else to π
 
     @classmethod
-    def of(cls, body: Body) -> "Outline":
-        """Make the hull of a body."""
+    def of(cls, body: Body | RoughSphere) -> "Outline":
+        """Make the hull of a body; of a rough sphere that of the asperity that touches."""
+        if isinstance(body, RoughSphere):
+            return _rough(body)
         unit = body.compiled.farthest()
         inertia = body.transverse_inertia / unit / body.mass / unit
         return cls(unit, inertia, _sides(body, unit))
+
+
+def _rough(body: RoughSphere) -> Outline:
+    """Place an asperity on the axis, down to where the sphere itself touches."""
+    height = body.asperity_radius if body.heights is None else body.heights
+    unit = body.radius + height
+    ball = Ball(body.asperity_radius / unit, body.asperity_radius / unit - 1.0)
+    least = max(-1.0, 1.0 - height / (unit - body.asperity_radius))
+    return Outline(unit, 0.4 * (body.radius / unit) ** 2, (Side(0.0, math.acos(least), ball),))
 
 
 def _sides(body: Body, unit: float) -> tuple[Side, ...]:

@@ -9,11 +9,11 @@ from restitution.analytic._frozen import check
 from restitution.analytic._hull import Outline, Side
 from restitution.analytic._impulse import Impulse, Mode
 from restitution.analytic._panels import extremes
-from restitution.bodies import Body
+from restitution.bodies import Body, RoughSphere
 from restitution.laws import Law
 
 
-def negative_threshold(body: Body, law: Law) -> float:
+def negative_threshold(body: Body | RoughSphere, law: Law) -> float:
     """Return ε_n below which ε < 0 occurs at the first impact from rest; from it on ε >= 0 at every angle.
 
     In each mode of the contact ε rises with ε_n and is 0 at a closed form in height h and lever arm a; where

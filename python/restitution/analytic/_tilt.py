@@ -15,6 +15,11 @@ class Tilt:
     orientation: OrientationName
     limit: float  # π/2 where θ and π - θ are taken as one, else π
 
+    @property
+    def edges(self) -> Floats:
+        """Angles between which the density is smooth."""
+        return np.empty(0)
+
     def below(self, theta: ArrayLike) -> Floats:
         """Return the probability of angles up to θ."""
         angle = np.asarray(theta, dtype=np.float64)

@@ -67,6 +67,7 @@ _EXAMPLES: dict[Callable[..., None], str] = {
     _listen.listen: "restitution listen ball.wav --diameter 0.040 --mass 2.7e-3 --out ball.html",
     _pages.laws: "restitution laws --out laws",
     _pages.paper: "restitution paper --out paper",
+    _pages.rough: "restitution rough --out rough",
     _explore.explore: "restitution explore run.toml",
 }
 for command, example in _EXAMPLES.items():

@@ -1,4 +1,4 @@
-"""`restitution paper` and `restitution laws`: figures, data and reports in a folder."""
+"""`restitution paper`, `rough` and `laws`: figures, data and reports in a folder."""
 
 from typing import Annotated
 
@@ -31,6 +31,33 @@ def paper(
     """
     with errors_in_a_line("netCDF4", "scipy.stats", "matplotlib.figure"):
         from restitution.papers.glielmo2014 import redraw
+
+        how = {"seed": seed, "threads": threads, "progress": progress(quiet)}
+        report = redraw(out, impacts=impacts, overwrite=overwrite, **how)  # type: ignore[arg-type]
+        if not quiet:
+            say(str(report))
+
+
+def rough(
+    out: Folder,
+    impacts: Annotated[
+        int,
+        typer.Option(metavar="N", help="Impacts in the map of restitution and velocity; at least 10000."),
+    ] = 10_000_000,
+    seed: Annotated[int, typer.Option(metavar="S", help="Seed of the random numbers, in [0, 2**64).")] = 1,
+    threads: Threads = None,
+    overwrite: Overwrite = False,
+    quiet: Quiet = False,
+) -> None:
+    """Simulate spheres with a million asperities and check what is said of them.
+
+    The model is that of Phys. Rev. E 84, 041306 (2011) and 89, 022205 (2014).
+    Writes four figures as PNG and PDF, the data behind each as netCDF, and one
+    HTML page that needs nothing else, with every claim, the measured number,
+    its standard error and a verdict.
+    """
+    with errors_in_a_line("netCDF4", "scipy.stats", "matplotlib.figure"):
+        from restitution.papers.gunkelmann2014 import redraw
 
         how = {"seed": seed, "threads": threads, "progress": progress(quiet)}
         report = redraw(out, impacts=impacts, overwrite=overwrite, **how)  # type: ignore[arg-type]

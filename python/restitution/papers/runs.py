@@ -8,7 +8,7 @@ import numpy as np
 import xarray as xr
 
 import restitution as rs
-from restitution.bodies import Body
+from restitution.bodies import AnyBody
 from restitution.drop.energy import reported_elsewhere
 from restitution.laws import Law
 
@@ -66,7 +66,7 @@ class Runner:
     threads: int | None = None
     done: Callable[[], object] = lambda: None
 
-    def record(self, name: str, body: Body, law: Law, **how: Any) -> xr.Dataset:
+    def record(self, name: str, body: AnyBody, law: Law, **how: Any) -> xr.Dataset:
         """Record every impact of a run; `how` as in `restitution.simulate`."""
         with reported_elsewhere():  # by a claim, or a section of the report
             seed = derived_seed(self.seed, name)
@@ -74,7 +74,9 @@ class Runner:
         self.done()
         return data.assign_attrs(run=name)
 
-    def count(self, recorded: xr.Dataset, body: Body, law: Law, *, particles: int, **bins: Any) -> xr.Dataset:
+    def count(
+        self, recorded: xr.Dataset, body: AnyBody, law: Law, *, particles: int, **bins: Any
+    ) -> xr.Dataset:
         """Count the impacts of at least so many particles, of which the recorded ones are the first."""
         about = recorded.attrs
         same = {name: about[name] for name in ("impacts", "release_height", "gravity", "orientation", "seed")}

@@ -1,0 +1,330 @@
+"""What PRE 90, 052204 and the abstract of its ref. 10 say of rough spheres, each sentence judged."""
+
+import numpy as np
+import xarray as xr
+
+from restitution.papers.claims import SIGNIFICANT, Claims, Finding, Measurement, listed, verdict
+from restitution.papers.estimate import Array, Estimate, in_windows, jackknife
+from restitution.papers.gunkelmann2014._data import mean_share
+from restitution.papers.gunkelmann2014._runs import Runs
+from restitution.papers.gunkelmann2014._settings import Settings
+from restitution.papers.runs import derived_seed
+from restitution.papers.shape import LAPLACE_RULE, Shape, shape, tests
+from restitution.papers.successive import followed, following
+from restitution.papers.trend import RISING_RULE, falling, trend
+
+CLAIMS: Claims[Runs, Settings] = Claims()
+SPEED_BINS = 14
+_MONTAINE = "abstract of ref. 10 (PRE 84, 041306)"
+
+
+def deviations(data: xr.Dataset, s: Settings) -> Estimate:
+    """Return σ(ε) in the windows of the four speeds."""
+    impacts = in_windows(data["impact_velocity"], s.speed_windows)
+    return impacts.deviations(impacts.of(data["restitution"]))
+
+
+def _shapes(runs: Runs, s: Settings, data: xr.Dataset) -> list[Shape]:
+    """Return the densities at the four speeds, slowest first."""
+    name = f"shapes, {data.attrs['run']}"
+
+    def measure() -> list[Shape]:
+        impacts = in_windows(data["impact_velocity"], s.speed_windows)
+        seed = derived_seed(runs.seed, name)
+        drawn = impacts.one_per_particle(seed)
+        every, some = (one.of(data["restitution"]) for one in (impacts, drawn))
+        return [
+            shape(
+                label,
+                every[impacts.cell == k],
+                impacts.where[0][impacts.cell == k],
+                some[drawn.cell == k],
+                seed,
+            )
+            for k, label in enumerate(s.labels)
+        ]
+
+    return runs.once(name, measure)
+
+
+@CLAIMS.add("non-gaussian", "non-trivial (non-Gaussian) fluctuations of the measured values", _MONTAINE)
+def non_gaussian(runs: Runs, s: Settings) -> Finding:
+    gains = {one.label: one.rivals["Gaussian"] for one in _shapes(runs, s, runs.main)}
+    better = [gain.z > SIGNIFICANT for gain in gains.values()]
+    return Finding(
+        measured=tuple(
+            Measurement("gain in ln L an impact over a Gaussian", gain.difference, gain.standard_error, at=at)
+            for at, gain in gains.items()
+        ),
+        verdict=verdict(all(better), any(better)),
+        rule="Holds if the asymmetric Laplace density has the greater likelihood at each of the four "
+        f"speeds, by more than {SIGNIFICANT:g} standard errors; in part if at some; fails otherwise.",
+        why=f"Two exponentials are better than a Gaussian at {sum(better)} of {len(better)} speeds.",
+    )
+
+
+@CLAIMS.add(
+    "two-exponentials",
+    "the probability density of the coefficient of restitution, p(ε), is formed by two exponential "
+    "functions (one increasing, one decreasing)",
+    f"{_MONTAINE}; Secs. I and V: “a characteristic probability distribution [11]”, “of Laplace type”",
+)
+def two_exponentials(runs: Runs, s: Settings) -> Finding:
+    shapes = _shapes(runs, s, runs.main)
+    measured = [
+        measurement
+        for one in shapes
+        for measurement in (
+            Measurement("independent draws", float(one.goodness.fit.samples), at=one.label),
+            *tests(one),
+            *(
+                Measurement(
+                    f"gain in ln L an impact over {name}", c.difference, c.standard_error, at=one.label
+                )
+                for name, c in one.rivals.items()
+            ),
+        )
+    ]
+    verdicts = [one.verdict for one in shapes]
+    return Finding(
+        measured=tuple(measured),
+        verdict=verdict(all(v == "holds" for v in verdicts), any(v != "fails" for v in verdicts)),
+        rule=LAPLACE_RULE,
+        why="; ".join(
+            f"at {one.label} it {one.verdict}, with flanks exp(−|x|^k), k = {one.exponent[0]:.3f} ± "
+            f"{one.exponent[1]:.3f}"
+            for one in shapes
+        ).capitalize()
+        + ".",
+    )
+
+
+@CLAIMS.add("different-slope", "two exponential functions … of different slope", _MONTAINE)
+def different_slope(runs: Runs, s: Settings) -> Finding:
+    shapes = _shapes(runs, s, runs.main)
+    clear = [abs(value) > SIGNIFICANT * error for value, error in (one.asymmetry for one in shapes)]
+    contact = s.contact()
+    exact = []
+    for v in s.speeds:  # 2 ln κ of SciPy's parameter κ
+        exact.append(-2.0 * float(np.log(s.density(contact, v).args[0])))
+    return Finding(
+        measured=(
+            *(Measurement("ln(a/b)", *one.asymmetry, at=one.label) for one in shapes),
+            *listed("ln(a/b) in closed form", s.labels, exact),
+        ),
+        verdict=verdict(all(clear), any(clear)),
+        rule="a, b: decay lengths above and below the fitted cusp. Holds if ln(a/b) differs from 0 by more "
+        f"than {SIGNIFICANT:g} standard errors at each speed; in part if at some; fails otherwise.",
+        why="The decay lengths differ at "
+        + (", ".join(one.label for one, c in zip(shapes, clear, strict=True) if c) or "no speed")
+        + "; b > a where the impact is fast against the rotation.",
+    )
+
+
+@CLAIMS.add(
+    "energy-transfer",
+    "a certain roughness of the particle which leads to energy transfer between the linear and rotational "
+    "degrees of freedom",
+    _MONTAINE,
+)
+def energy_transfer(runs: Runs, s: Settings) -> Finding:
+    """Correlate ε with what the rotational share does from this impact to the next one."""
+    impacts = followed(in_windows(runs.main["impact_velocity"], s.speed_windows), runs.main)
+    share = runs.main["rotational_fraction"].to_numpy()
+    change = following(impacts, share) - impacts.of(share)
+    found = impacts.correlations(impacts.of(runs.main["restitution"]), change)
+    negative = found.beyond(0.0) < -SIGNIFICANT
+    return Finding(
+        measured=listed("correlation of ε with the change of E_rot/E_tot", s.labels, found),
+        verdict=verdict(bool(negative.all()), bool(negative.any())),
+        rule="Holds if ε and the change of the rotational share to the next impact have a negative "
+        f"correlation at each speed, by more than {SIGNIFICANT:g} standard errors; in part if at some; fails "
+        "otherwise.",
+        why="Where ε is above its mean, the rotation has paid for it.",
+    )
+
+
+@CLAIMS.add(
+    "scatter-grows",
+    "an increasing uncertainty of the data (enhanced scatter) with decreasing impact velocity … The same "
+    "effect is observed in experiments [10] and simulations of other nonspherical rough particles [11]",
+    "Sec. III",
+)
+def scatter_grows(runs: Runs, s: Settings) -> Finding:
+    bins = falling(runs.main, s.velocity_range[0], SPEED_BINS)
+    sigma = bins.impacts.deviations(bins.impacts.of(runs.main["restitution"]))
+    found, shown = trend(sigma), slice(None, None, 3)
+    contact = s.contact()
+    exact = [float(s.density(contact, v).std()) for v in bins.speeds]
+    return Finding(
+        measured=(
+            *listed("σ(ε)", bins.labels[shown], sigma.take(shown)),
+            *listed("σ(ε) in closed form", bins.labels[shown], exact[shown]),
+            found.step,
+        ),
+        verdict=found.verdict,
+        rule=f"{SPEED_BINS} logarithmic bins of impact velocity, fastest first. {RISING_RULE}",
+        why=f"σ(ε) goes from {sigma.value[0]:.2g} at {bins.labels[0]} to {sigma.value[-1]:.2g} at "
+        f"{bins.labels[-1]}.",
+    )
+
+
+@CLAIMS.add("superelastic", "the coefficient of restitution may exceed unity", "Sec. III, there of dumbbells")
+def superelastic(runs: Runs, s: Settings) -> Finding:
+    impacts = in_windows(runs.main["impact_velocity"], s.speed_windows)
+    share = impacts.means((impacts.of(runs.main["restitution"]) > 1.0).astype(np.float64))
+    contact = s.contact()
+    exact = [float(s.density(contact, v).sf(1.0)) for v in s.speeds]
+    some = (share.value > SIGNIFICANT * share.error) & (share.value > 0.0)
+    return Finding(
+        measured=(*listed("P(ε > 1)", s.labels, share), *listed("P(ε > 1) in closed form", s.labels, exact)),
+        verdict=verdict(bool(some.any()), bool((share.value > 0.0).any())),
+        rule=f"Holds if the share of ε > 1 is above 0 by more than {SIGNIFICANT:g} standard errors at some "
+        "speed; in part if there is any such impact; fails otherwise.",
+        why=f"{100 * share.value[0]:.2g} % of the impacts at {s.labels[0]} have ε > 1. It depends on our "
+        "heights: with the scatter.",
+    )
+
+
+@CLAIMS.add(
+    "independence",
+    "successive collisions of particles are only weakly correlated, which suggests one considers the "
+    "coefficient of restitution as a random variable",
+    "Sec. I, there of dilute gases",
+)
+def independence(runs: Runs, s: Settings) -> Finding:
+    impacts = followed(in_windows(runs.main["impact_velocity"], s.speed_windows), runs.main)
+    e = runs.main["restitution"].to_numpy()
+    signed = impacts.correlations(impacts.of(e), following(impacts, e))
+    away = np.abs(e - s.normal)
+    sizes = impacts.correlations(impacts.of(away), following(impacts, away))
+    free = np.abs(signed.beyond(0.0)) < SIGNIFICANT
+    weak = np.abs(signed.value) < 0.1
+    return Finding(
+        measured=(
+            *listed("correlation of successive ε", s.labels, signed),
+            *listed("correlation of successive |ε − ε_n|", s.labels, sizes),
+        ),
+        verdict=verdict(bool(free.all()), bool(weak.all())),
+        rule=f"Holds if the correlation of successive ε is within {SIGNIFICANT:g} standard errors of 0 at "
+        "each speed; in part if it is below 0.1 at each; fails otherwise.",
+        why="Successive signs are nearly independent; successive sizes are not, because the particle keeps "
+        f"its spin: their correlation is {sizes.value[0]:.2f} to {sizes.value[-1]:.2f}.",
+    )
+
+
+@CLAIMS.add(
+    "rotation-grows",
+    "the amount of rotational energy of the particle which increases on average with the number of bounces",
+    "Sec. III, there of dumbbells",
+)
+def rotation_grows(runs: Runs, s: Settings) -> Finding:
+    bins = falling(runs.main, s.velocity_range[0], SPEED_BINS)
+    share = bins.impacts.means(bins.impacts.of(runs.main["rotational_fraction"]))
+    found, shown = trend(share), slice(None, None, 3)
+    contact = s.contact()
+    exact = [mean_share(s, contact, v) for v in bins.speeds]
+    return Finding(
+        measured=(
+            *listed("mean E_rot/E_tot", bins.labels[shown], share.take(shown)),
+            *listed("mean E_rot/E_tot in closed form", bins.labels[shown], exact[shown]),
+            found.step,
+        ),
+        verdict=found.verdict,
+        rule=f"The share E_rot/E_tot in {SPEED_BINS} logarithmic bins of impact velocity, fastest first. "
+        f"{RISING_RULE}",
+        why=f"The mean share goes from {share.value[0]:.2g} at {bins.labels[0]} to {share.value[-1]:.2g} at "
+        f"{bins.labels[-1]}.",
+    )
+
+
+@CLAIMS.add(
+    "same-density",
+    "both types of imperfection lead to the same probability density of the scatter of Laplace type",
+    "Sec. V",
+)
+def same_density(runs: Runs, s: Settings) -> Finding:
+    rough, dumbbell = (_shapes(runs, s, data) for data in (runs.main, runs.dumbbell))
+    apart = [
+        (a.exponent[0] - b.exponent[0]) / np.hypot(a.exponent[1], b.exponent[1])
+        for a, b in zip(rough, dumbbell, strict=True)
+    ]
+    kurtosis = {"rough sphere": runs.main, "dumbbell": runs.dumbbell}
+    same = np.abs(apart) < SIGNIFICANT
+    return Finding(
+        measured=(
+            *(Measurement("flank exponent, rough sphere", *one.exponent, at=one.label) for one in rough),
+            *(Measurement("flank exponent, dumbbell", *one.exponent, at=one.label) for one in dumbbell),
+            *(
+                Measurement(f"kurtosis, {name}", *_kurtosis(data, window), at=label)
+                for name, data in kurtosis.items()
+                for label, window in zip(s.labels, s.speed_windows, strict=True)
+            ),
+        ),
+        verdict=verdict(bool(same.all()), bool(same.any())),
+        rule="Flanks exp(−|x|^k) by maximum likelihood; 1 is Laplace, 2 Gaussian. Holds if the exponents of "
+        f"a rough sphere and of a dumbbell with L/R = {s.elongation:g} differ by less than {SIGNIFICANT:g} "
+        "standard errors at each speed; in part if at some; fails otherwise.",
+        why=f"The exponents agree at {int(same.sum())} of {same.size} speeds. The lever arm of a dumbbell is "
+        "at most L/2, that of a rough sphere has no such end.",
+    )
+
+
+def _kurtosis(data: xr.Dataset, window: tuple[float, float]) -> tuple[float, float]:
+    impacts = in_windows(data["impact_velocity"], (window,))
+    values = impacts.of(data["restitution"])
+
+    def kurtosis(x: Array) -> float:
+        return float(np.mean((x - x.mean()) ** 4) / x.var() ** 2)
+
+    return jackknife(kurtosis, values, impacts.where[0])
+
+
+@CLAIMS.add(
+    "number-of-asperities",
+    "a central sphere with a large number (typically 10^6 or more) of asperities",
+    "Sec. V",
+)
+def number_of_asperities(runs: Runs, s: Settings) -> Finding:
+    """How σ goes with N at equal heights, and with the mean height at one N."""
+    k = 1  # 0.2 m/s
+    by_number = [deviations(data, s).take([k]) for data in runs.by_number.values()]
+    by_height = [deviations(data, s).take([k]) for data in runs.by_height.values()]
+    steeper = _slope(list(runs.by_number), by_number)
+    higher = _slope(list(runs.by_height), by_height)
+    rules = (
+        abs(steeper[0] + 1.0) < SIGNIFICANT * steeper[1] + 0.1,
+        abs(higher[0] - 1.0) < SIGNIFICANT * higher[1] + 0.1,
+    )
+    at = s.labels[k]
+    return Finding(
+        measured=(
+            Measurement("d ln σ/d ln N, equal heights", *steeper, at=at),
+            Measurement("d ln σ/d ln ⟨h⟩, random heights", *higher, at=at),
+            *(
+                Measurement(
+                    f"σ(ε), N = {n:g}, equal heights", float(one.value[0]), float(one.error[0]), at=at
+                )
+                for n, one in zip(runs.by_number, by_number, strict=True)
+            ),
+            *(
+                Measurement(f"σ(ε), ⟨h⟩ = {1e6 * h:g} µm", float(one.value[0]), float(one.error[0]), at=at)
+                for h, one in zip(runs.by_height, by_height, strict=True)
+            ),
+        ),
+        verdict=verdict(False, all(rules)),
+        rule="The number says what the scatter is only if heights are equal. In part if σ falls as 1/N with "
+        "equal heights, and with random ones grows as their mean, both exponents within 0.1 and "
+        f"{SIGNIFICANT:g} standard errors; fails otherwise.",
+        why=f"With equal heights σ goes as N^{steeper[0]:.2f}; with random ones as ⟨h⟩^{higher[0]:.2f}, and "
+        "the number has dropped out: 10⁶ asperities alone do not say how a ball scatters.",
+    )
+
+
+def _slope(x: list[float], y: list[Estimate]) -> tuple[float, float]:
+    """Fit ln y against ln x; return the slope and its standard error."""
+    weight = np.array([(one.value[0] / one.error[0]) ** 2 for one in y])
+    at, value = np.log(np.array(x, dtype=np.float64)), np.log([one.value[0] for one in y])
+    mean = weight @ at / weight.sum()
+    spread = weight @ (at - mean) ** 2
+    return float(weight @ ((at - mean) * value) / spread), float(spread**-0.5)

@@ -1,0 +1,109 @@
+"""Data of each figure: the runs, reduced to the numbers that are drawn."""
+
+from collections.abc import Callable, Mapping
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from restitution import fit
+from restitution.analytic import RoughContact
+from restitution.papers.estimate import Estimate
+from restitution.papers.figures import counted, recorded
+from restitution.papers.gunkelmann2014._runs import Runs
+from restitution.papers.gunkelmann2014._settings import Settings
+from restitution.papers.histograms import binned, density, design_effect, in_window
+from restitution.papers.trend import Falling, falling
+
+
+def lattice(runs: Runs, s: Settings) -> xr.Dataset:
+    """Count the impacts on the lattice of impact velocity and restitution."""
+    return runs.lattice.assign_attrs(counted(runs.lattice))
+
+
+def densities(runs: Runs, s: Settings) -> xr.Dataset:
+    """Bin the restitution at each speed, with its asymmetric Laplace fit, and the closed form."""
+    parts = []
+    for speed, window in zip(s.speeds, s.speed_windows, strict=True):
+        particle, values = in_window(runs.main, "restitution", window)
+        edges = s.normal + 6.0 * values.std() * np.linspace(-1.0, 1.0, s.histogram_bins + 1)
+        bins, inside = binned(values, edges)
+        count = np.bincount(bins[inside], minlength=edges.size - 1)
+        part = density(count, values.size, edges, design_effect(particle, values, edges))
+        fitted = fit.asymmetric_laplace(values)
+        points = np.sort(np.append(np.linspace(edges[0], edges[-1], 400), fitted.parameters["location"]))
+        part["point"] = ("at", points)
+        part["fit_density"] = ("at", fitted.pdf(points))
+        part["closed_density"] = ("at", s.density(s.contact(), speed).pdf(points))
+        for name, value in fitted.parameters.items():
+            part[f"fit_{name}"] = value
+        parts.append(part)
+    speeds = xr.DataArray(list(s.speeds), dims="speed", name="speed", attrs={"units": "m s-1"})
+    return xr.concat(parts, speeds).assign_attrs(recorded(runs.main))
+
+
+def deviations(runs: Runs, s: Settings) -> xr.Dataset:
+    """Return σ against impact velocity, by number and by mean height, and the closed forms."""
+
+    def measure(bins: Falling, data: xr.Dataset) -> Estimate:
+        return bins.impacts.deviations(bins.impacts.of(data["restitution"]))
+
+    def closed(contact: RoughContact, speed: float) -> float:
+        return float(s.density(contact, speed).std())
+
+    return _curves(runs, s, measure, closed)
+
+
+def rotation(runs: Runs, s: Settings) -> xr.Dataset:
+    """Return the mean rotational share against impact velocity, by number and by mean height."""
+
+    def measure(bins: Falling, data: xr.Dataset) -> Estimate:
+        return bins.impacts.means(bins.impacts.of(data["rotational_fraction"]))
+
+    def closed(contact: RoughContact, speed: float) -> float:
+        return mean_share(s, contact, speed)
+
+    return _curves(runs, s, measure, closed)
+
+
+def mean_share(s: Settings, contact: RoughContact, speed: float) -> float:
+    """Return <E_rot/E_tot> of a Gaussian spin; the contact keeps its tangential velocity, 0, so v_h = ωR.
+
+    With x = Jω_h²/mv², exponential with the mean ξ, the share is x/(x(1 + mR²/J) + 1).
+    """
+    nodes, weights = np.polynomial.laguerre.laggauss(64)
+    x = nodes * 2.0 * 0.4 * (s.spin(contact, speed) * s.radius / speed) ** 2
+    return float(weights @ (x / (x * (1.0 + 1.0 / 0.4) + 1.0)))
+
+
+def _curves(
+    runs: Runs,
+    s: Settings,
+    measure: Callable[[Falling, xr.Dataset], Estimate],
+    closed: Callable[[RoughContact, float], float],
+) -> xr.Dataset:
+    """Measure every run of both sets in bins of impact velocity, and evaluate the closed form there."""
+
+    def side(by: Mapping[Any, xr.Dataset], contact: Callable[[Any], RoughContact], axis: str) -> xr.Dataset:
+        parts = []
+        for value, data in by.items():
+            bins = falling(data, s.velocity_range[0], s.curve_bins)
+            found = measure(bins, data)
+            exact = [closed(contact(value), v) for v in bins.speeds]
+            parts.append(
+                xr.Dataset(
+                    {
+                        f"velocity_by_{axis}": ("bin", bins.speeds, {"units": "m s-1"}),
+                        f"by_{axis}": ("bin", found.value),
+                        f"error_by_{axis}": ("bin", found.error),
+                        f"closed_by_{axis}": ("bin", exact),
+                    }
+                )
+            )
+        return xr.concat(parts, xr.DataArray(list(by), dims=axis, name=axis))
+
+    sides = [
+        side(runs.by_number, lambda n: s.contact(asperities=n), "number"),
+        side(runs.by_height, lambda h: s.contact(mean_height=h), "height"),
+    ]
+    return xr.merge(sides).assign_attrs(recorded(*runs.by_number.values(), *runs.by_height.values()))
