@@ -184,15 +184,16 @@ def test_the_wall_of_a_spheroid_weighs_what_steiner_says(ratio: float, share: fl
     assert body.mass == pytest.approx(DENSITY * volume, rel=1e-9)
 
 
-def hollow(kind: type[Body], wall: float | None, **others: Any) -> Body:
+def hollow(kind: Any, wall: float | None, **others: Any) -> Body:
     """A round body of R = 20 mm, and nearly so where it has no shape otherwise."""
-    shapes: dict[type[Body], dict[str, float]] = {
+    shapes: dict[Any, dict[str, float]] = {
         rs.Dumbbell: {"radius": 0.02, "separation": 0.0},
         rs.LoadedSphere: {"radius": 0.02, "load": 0.0, "offset": 0.0},
         rs.Spherocylinder: {"radius": 0.02, "separation": 0.0},
         rs.Spheroid: {"equatorial": 0.02, "polar": 0.02},
     }
-    return kind(**shapes[kind] | others, density=DENSITY, wall=wall)
+    body: Body = kind(**shapes[kind] | others, density=DENSITY, wall=wall)
+    return body
 
 
 @pytest.mark.parametrize("kind", KINDS)
@@ -210,10 +211,12 @@ def test_a_thin_shell_has_two_thirds(kind: type[Body]) -> None:
 
 
 @pytest.mark.parametrize("kind", KINDS)
-def test_a_wall_as_thick_as_the_body_leaves_it_full(kind: type[Body]) -> None:
+def test_a_wall_as_thick_as_the_body_leaves_it_full(kind: Any) -> None:
     """The same bits of the body and of every impact."""
     full = kind.example(density=DENSITY)
-    thickest = {rs.Spheroid: min(getattr(full, name, np.inf) for name in ("equatorial", "polar"))}
+    thickest: dict[Any, float] = {
+        rs.Spheroid: min(getattr(full, name, np.inf) for name in ("equatorial", "polar"))
+    }
     filled = kind.example(density=DENSITY, wall=thickest.get(kind, getattr(full, "radius", None)))
     assert (filled.mass, filled.transverse_inertia, filled.axial_inertia) == (
         full.mass,

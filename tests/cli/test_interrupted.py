@@ -51,7 +51,7 @@ def test_ctrl_c_keeps_what_was_finished(tmp_path: Path) -> None:
     assert 0 < cut.sum() < cut.size < particles
     done_and_cut = f"{(~cut).sum()} of {particles} particles are finished, {cut.sum()} cut short"
     assert data.attrs["incomplete"] == f"interrupted: {done_and_cut}"
-    assert f"interrupted {cut.sum()}" in done.stdout
+    assert f"{cut.sum()} particles ended because the run was interrupted" in done.stdout
     run = read(parameters)
     whole = rs.simulate(run.body, run.law, particles=run.particles, impacts=run.impacts)
     for name in whole.data_vars:

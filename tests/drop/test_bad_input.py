@@ -104,7 +104,7 @@ def test_missing_and_unknown_names() -> None:
         "radius: missing; must be a finite number > 0",
         "separation: missing; must be a finite number >= 0",
         "density = -1: must be a finite number > 0",
-        "radus: unknown; did you mean radius? Dumbbell takes radius, separation, density",
+        "radus: unknown; did you mean radius? Dumbbell takes radius, separation, density, wall, inertia",
     ]
     assert message(lambda: rs.TangentialRestitution(normal=1, friction=0.3)) == (  # type: ignore[call-arg]
         "friction: unknown; TangentialRestitution takes normal, tangential"

@@ -136,7 +136,7 @@ def test_everything_that_public_functions_return_compares(
                 kinds.setdefault(type(found), found)
     assert sum(issubclass(kind, Content) for kind in kinds) > 12
     for kind, thing in kinds.items():
-        if kind.__name__ == "_Displayed":
+        if kind.__name__ in ("_Displayed", "Film"):  # equal to themselves alone
             continue
         for again in (pickle.loads(pickle.dumps(thing)), copy.deepcopy(thing)):
             assert again == thing, kind

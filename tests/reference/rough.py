@@ -114,11 +114,10 @@ def rebound(body: Rough, met: Hits, normal: float, tangential: float | None) -> 
     velocity = np.array([0.0, 0.0, -1.0]) + np.cross(met.spin, met.arm)
     units = np.eye(3)
     kicked = [unit + np.cross(np.cross(met.arm, unit) / body.inertia, met.arm) for unit in units]
-    matrix = np.stack(
-        kicked, axis=-1
-    )  # (10): change of the contact velocity by a unit impulse along each axis
+    # (10): change of the contact velocity by a unit impulse along each axis.
+    matrix = np.stack(kicked, axis=-1)
     if tangential is None:
-        impulse = np.zeros((n, 3))
+        impulse: Floats = np.zeros((n, 3))
         impulse[:, 2] = -(1.0 + normal) * velocity[:, 2] / matrix[:, 2, 2]
     else:
         wanted = np.column_stack([(tangential - 1.0) * velocity[:, :2], -(1.0 + normal) * velocity[:, 2]])

@@ -78,7 +78,7 @@ def test_ctrl_c_leaves_a_store_that_can_be_read(whole: dict[str, str], tmp_path:
     process.send_signal(signal.SIGINT)
     code, _, error = finished(process, 60)
     assert code == 130, error
-    assert "the same command continues" in error
+    assert "The same command continues" in error
     found = xr.open_zarr(store, chunks=None)
     done = int((found["status"] == 1).sum())
     assert 1 <= done < 12

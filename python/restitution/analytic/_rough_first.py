@@ -40,12 +40,14 @@ class ContactTilt(Tilt):
     def quantile(self, share: Floats) -> Floats:
         """Return the angle up to which the probability is ``share``."""
         rest = np.log1p(-share * self._nearer(self.limit))
-        return np.asarray(2.0 * np.arcsin(np.sqrt(-np.expm1(rest / self.asperities))))
+        theta: Floats = 2.0 * np.arcsin(np.sqrt(-np.expm1(rest / self.asperities)))
+        return theta
 
     @property
     def edges(self) -> Floats:
         """Angles between which the density is smooth."""
-        return 2.0 / np.sqrt(self.asperities) * np.arange(1.0, _FARTHEST + 1.0)
+        edges: Floats = 2.0 / np.sqrt(self.asperities) * np.arange(1.0, _FARTHEST + 1.0)
+        return edges
 
     def _nearer(self, theta: Floats | float) -> Floats:
         """Return the probability that an asperity is nearer to the lowest point than a."""

@@ -141,6 +141,13 @@ class Ring(RigidBody):
         Outer and inner radius and height, in m; finite and > 0, the inner radius below the outer one.
     density : float, default 2500
         Density in kg/m³; finite and > 0. Only mass and inertia depend on it, the motion does not.
+
+    Examples
+    --------
+    >>> import numpy as np, restitution as rs
+    >>> washer = rs.Ring(outer=10e-3, inner=5e-3, height=2e-3)
+    >>> bool(np.isclose(washer.mass, 2500 * np.pi * (10e-3**2 - 5e-3**2) * 2e-3))
+    True
     """
 
     by_place: ClassVar[tuple[str, ...]] = ("outer", "inner", "height")
