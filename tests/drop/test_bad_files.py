@@ -82,7 +82,8 @@ def test_a_file_with_much_wrong(tmp_path: Path) -> None:
     lines = refused(write(tmp_path / "run.toml", tables))
     assert [re.sub(r" \(.*\)$", "", line) for line in lines] == [  # without units and such
         "boddy: unknown; did you mean body? the file takes body, law, run, statistics, distribution",
-        "body.raduis: unknown; did you mean body.radius? [body] takes shape, radius, separation, density, wall, inertia",
+        "body.raduis: unknown; did you mean body.radius? [body] takes shape, radius, separation, density, "
+        "wall, inertia",
         "body.radius: missing; must be a finite number > 0",
         "body.separation = -1: must be a finite number >= 0",
         f"law.type = 'friction': must be {LAW_TYPES}",

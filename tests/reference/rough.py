@@ -121,5 +121,5 @@ def rebound(body: Rough, met: Hits, normal: float, tangential: float | None) -> 
         impulse[:, 2] = -(1.0 + normal) * velocity[:, 2] / matrix[:, 2, 2]
     else:
         wanted = np.column_stack([(tangential - 1.0) * velocity[:, :2], -(1.0 + normal) * velocity[:, 2]])
-        impulse = np.linalg.solve(matrix, wanted[..., None])[..., 0]
+        impulse = np.asarray(np.linalg.solve(matrix, wanted[..., None])[..., 0], dtype=np.float64)
     return impulse[:, 2] - 1.0, met.spin + np.cross(met.arm, impulse) / body.inertia
