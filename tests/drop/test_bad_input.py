@@ -85,7 +85,10 @@ def test_body_and_law(body: rs.Dumbbell, law: rs.TangentialRestitution) -> None:
     """Refuse what is no body or no law, be it as much as the other of the two or their parameters."""
     no_bodies: list[Any] = [law, None, 3, "dumbbell", {"radius": 1.0, "separation": 0.1}, rs.Dumbbell]
     for wrong in no_bodies:
-        for call, allowed in ((rs.simulate, BODIES), (rs.analytic.first_impact, REVOLVED)):
+        for call, allowed in (
+            (rs.simulate, BODIES),
+            (rs.analytic.first_impact, f"{REVOLVED}, or a RoughSphere"),
+        ):
             text = message(partial(call, wrong, law))
             assert text.startswith("body = ")
             assert text.endswith(f": must be {allowed}")
