@@ -117,6 +117,7 @@ SLOW_ONES = {
     "explorer.serve",
     "laws.write",
     "glielmo2014.redraw",
+    "gunkelmann2014.redraw",
 }
 """Pages, and calls that a test ends."""
 

@@ -14,7 +14,7 @@ from restitution.drop.run import Run
 from restitution.experiment import budget, inference, listen
 from restitution.experiment.listen._analysis import Setting
 from restitution.figures import laws
-from restitution.papers import glielmo2014 as paper
+from restitution.papers import glielmo2014, gunkelmann2014
 
 ENOUGH = "the attack has come far enough"
 
@@ -26,7 +26,13 @@ def _leave(*_: Any, **__: Any) -> None:
 def _redraw(**given: Any) -> Any:
     """Call up to where the work would begin, which takes minutes."""
     with patch("restitution.papers.runs.Runner.record", _leave):
-        return paper.redraw(**given)
+        return glielmo2014.redraw(**given)
+
+
+def _rough(**given: Any) -> Any:
+    """Likewise."""
+    with patch("restitution.papers.runs.Runner.record", _leave):
+        return gunkelmann2014.redraw(**given)
 
 
 def _laws(**given: Any) -> Any:
@@ -179,6 +185,10 @@ CALLS: dict[str, Call] = {
     "glielmo2014.redraw": (
         _redraw,
         lambda: {"out": Path("paper"), "impacts": 400_000, "seed": 1, "progress": False},
+    ),
+    "gunkelmann2014.redraw": (
+        _rough,
+        lambda: {"out": Path("rough"), "impacts": 400_000, "seed": 1, "progress": False},
     ),
     "study.study_of": (study.study_of, lambda: {"source": study_tables()}),
     "study.Study.run": (study.Study.run, lambda: {"self": study.study_of(study_tables()), "point": 0}),

@@ -48,7 +48,10 @@ def _heights(value: Any) -> Any:
         return (name, *numbers)
     if np.ndim(plain_number(value)) == 0:
         return float(reals("heights", value, _HEIGHTS, unit="m", dimensions=(0,)))
-    return tuple(reals("heights", value, _HEIGHTS, unit="m", dimensions=(1,)).tolist())
+    each = reals("heights", value, _HEIGHTS, unit="m", dimensions=(1,)).tolist()
+    if not each:
+        raise ParameterError(wrong("heights", value, _HEIGHTS))
+    return tuple(each)
 
 
 def _body(value: Any) -> Any:
