@@ -1,5 +1,6 @@
 """Roughness in the budget: spheres with exponential heights that fall, spin and bounce; ISO 3290."""
 
+import math
 from typing import Any
 
 import numpy as np
@@ -33,7 +34,7 @@ def test_the_scatter_is_that_of_rough_spheres(law: Any, tangential: float | None
         speed = speed * epsilon
         found.append(epsilon)
     # Ra is 2/e of the mean height.
-    data = budget(law, roughness=2.0 / np.e * mean_height * 3e-3).sel(source="roughness")
+    data = budget(law, roughness=2.0 / math.e * mean_height * 3e-3).sel(source="roughness")
     told, there = np.array(found).T, data.standard_deviation.values
     assert np.abs(told.std(axis=0) / there - 1.0) == pytest.approx(0.0, abs=5.0 * 0.029 + 0.06)
     away = told.mean(axis=0) - law.normal - data.bias.values
@@ -59,7 +60,7 @@ def test_spin_at_release_scatters_a_rough_ball_at_once() -> None:
     """σ₀ = (1 + ε_n)(ω/v) √(⟨d²⟩/3) at the first impact, ⟨d²⟩ = e Ra R, beside the loss."""
     data = budget(roughness=1e-8, spin=30.0)
     v = np.sqrt(2.0 * 9.81 * 0.1)
-    expected = 1.95 * 30.0 / v * np.sqrt(np.e * 1e-8 * 3e-3 / 3.0)
+    expected = 1.95 * 30.0 / v * np.sqrt(math.e * 1e-8 * 3e-3 / 3.0)
     first = data.sel(source="roughness").isel(impact=0)
     assert np.hypot(expected, first.bias) == pytest.approx(float(first.standard_deviation))
 

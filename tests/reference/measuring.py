@@ -1,6 +1,6 @@
 """Calls about experiments, studies, recordings and pages; as in `calls`."""
 
-from functools import cache
+from functools import cache, partial
 from pathlib import Path
 from typing import Any
 from unittest.mock import patch
@@ -23,16 +23,10 @@ def _leave(*_: Any, **__: Any) -> None:
     raise ValueError(f"arguments: {ENOUGH}")
 
 
-def _redraw(**given: Any) -> Any:
+def _redraw(_paper: Any, **given: Any) -> Any:
     """Call up to where the work would begin, which takes minutes."""
     with patch("restitution.papers.runs.Runner.record", _leave):
-        return glielmo2014.redraw(**given)
-
-
-def _rough(**given: Any) -> Any:
-    """Likewise."""
-    with patch("restitution.papers.runs.Runner.record", _leave):
-        return gunkelmann2014.redraw(**given)
+        return _paper.redraw(**given)
 
 
 def _laws(**given: Any) -> Any:
@@ -183,11 +177,11 @@ CALLS: dict[str, Call] = {
     ),
     "laws.write": (_laws, lambda: {"out": Path("laws"), "impacts": 20_000, "seed": 1}),
     "glielmo2014.redraw": (
-        _redraw,
+        partial(_redraw, glielmo2014),
         lambda: {"out": Path("paper"), "impacts": 400_000, "seed": 1, "progress": False},
     ),
     "gunkelmann2014.redraw": (
-        _rough,
+        partial(_redraw, gunkelmann2014),
         lambda: {"out": Path("rough"), "impacts": 400_000, "seed": 1, "progress": False},
     ),
     "study.study_of": (study.study_of, lambda: {"source": study_tables()}),

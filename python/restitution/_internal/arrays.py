@@ -93,6 +93,11 @@ def real(
     return number
 
 
+def positive(name: str, value: Any, unit: str) -> float:
+    """Take a finite number > 0 in this unit."""
+    return real(name, value, f"a finite number > 0, in {unit}", lambda x: 0.0 < x < math.inf, unit=unit)
+
+
 def pair(
     name: str,
     value: Any,

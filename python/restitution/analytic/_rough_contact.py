@@ -13,7 +13,7 @@ from typing import Annotated
 from pydantic import Field
 from scipy.special import betainc
 
-from restitution._internal.arrays import real, whole
+from restitution._internal.arrays import positive, real, whole
 from restitution._internal.parameters import Number, ParameterError, Parameters, Problem, wrong
 
 _MOST = 10**12
@@ -84,7 +84,7 @@ def rough_contact(
     >>> f"{rough_contact(mean_height=3e-5, **ball).mean_square:.4e}"
     '2.0000e-02'
     """
-    size = real("radius", radius, "a finite number > 0, in m", lambda x: 0.0 < x < math.inf, unit="m")
+    size = positive("radius", radius, "m")
     number = whole("asperities", asperities, 1, _MOST)
     rho = real(
         "asperity_radius",

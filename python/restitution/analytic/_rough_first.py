@@ -34,7 +34,7 @@ class ContactTilt(Tilt):
     def density(self, theta: ArrayLike) -> Floats:
         """Return the probability density of a, per rad."""
         angle = np.asarray(theta, dtype=np.float64)
-        none = np.exp((self.asperities - 1) * np.log1p(-(np.sin(0.5 * angle) ** 2)))
+        none = np.exp((self.asperities - 1) * _log_farther(angle))
         return np.asarray(0.5 * self.asperities * none * np.sin(angle) / self._nearer(self.limit))
 
     def quantile(self, share: Floats) -> Floats:
@@ -51,7 +51,12 @@ class ContactTilt(Tilt):
 
     def _nearer(self, theta: Floats | float) -> Floats:
         """Return the probability that an asperity is nearer to the lowest point than a."""
-        return np.asarray(-np.expm1(self.asperities * np.log1p(-(np.sin(0.5 * theta) ** 2))))
+        return np.asarray(-np.expm1(self.asperities * _log_farther(theta)))
+
+
+def _log_farther(theta: Floats | float) -> Floats:
+    """Return the logarithm of the probability that one asperity is farther from the lowest point than a."""
+    return np.asarray(np.log1p(-(np.sin(0.5 * theta) ** 2)))
 
 
 @dataclass(frozen=True)
@@ -72,7 +77,7 @@ class RoughFirstImpact(BranchedFirstImpact):
     @cached_property
     def _sphere(self) -> float:
         """Probability that the sphere itself touches."""
-        return float(np.exp(self.body.asperities * np.log1p(-(np.sin(0.5 * self._curve.limit) ** 2))))
+        return float(np.exp(self.body.asperities * _log_farther(self._curve.limit)))
 
     @cached_property
     def _bounce(self) -> float:

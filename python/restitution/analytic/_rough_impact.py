@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from scipy.stats import laplace_asymmetric
 
-from restitution._internal.arrays import real
+from restitution._internal.arrays import positive, real
 from restitution._internal.parameters import ParameterError, wrong
 from restitution.analytic._orientation import Floats
 from restitution.analytic._rough_contact import RoughContact
@@ -82,8 +82,8 @@ def rough_impact(
     """
     normal, coupling = _law(law, inertia)
     square = _contact(contact)
-    size = real("radius", radius, "a finite number > 0, in m", lambda x: 0.0 < x < math.inf, unit="m")
-    v = real("speed", speed, "a finite number > 0, in m/s", lambda x: 0.0 < x < math.inf, unit="m/s")
+    size = positive("radius", radius, "m")
+    v = positive("speed", speed, "m/s")
     omega = real("spin", spin, "a finite number >= 0, in rad/s", lambda x: 0.0 <= x < math.inf, unit="rad/s")
     turned = (omega * size / v) ** 2
     shift, spread = square * (turned - coupling), square * turned  # (7), (8)
@@ -149,14 +149,8 @@ def rough_spin(
     if normal == 1.0:
         raise ParameterError(wrong("law", law, "one with normal < 1, or the sphere never gets slower"))
     square = _contact(contact)
-    size = real("radius", radius, "a finite number > 0, in m", lambda x: 0.0 < x < math.inf, unit="m")
-    first = real(
-        "release_speed",
-        release_speed,
-        "a finite number > 0, in m/s",
-        lambda x: 0.0 < x < math.inf,
-        unit="m/s",
-    )
+    size = positive("radius", radius, "m")
+    first = positive("release_speed", release_speed, "m/s")
     allowed = f"in (0, {first!r}] m/s: at most release_speed"
     v = real("speed", speed, allowed, lambda x: 0.0 < x <= first, unit="m/s")
     loss = coupling * (1.0 + normal) * square  # γ
@@ -182,12 +176,8 @@ def _law(law: Law, inertia: float) -> tuple[float, float]:
 def _contact(contact: RoughContact) -> float:
     if not isinstance(contact, RoughContact):
         raise ParameterError(wrong("contact", contact, "a RoughContact, from `rough_contact`"))
-    mean_square = real("contact.mean_square", contact.mean_square, "in (0, 1]", _is_share)
+    mean_square = real("contact.mean_square", contact.mean_square, "in (0, 1]", lambda x: 0.0 < x <= 1.0)
     if not contact.sphere <= 0.01:
         allowed = "of a sphere that touches itself in less than one impact in a hundred"
         raise ParameterError(wrong("contact", contact, allowed))
     return mean_square
-
-
-def _is_share(x: float) -> bool:
-    return 0.0 < x <= 1.0

@@ -10,16 +10,14 @@ from pydantic import BeforeValidator, Field, ValidationInfo
 
 from restitution import _core
 from restitution._internal import files
-from restitution._internal.arrays import FloatArray, check_each, flag, real, reals
-from restitution._internal.parameters import Allowed, Number, ParameterError, Problem, shown, wrong
+from restitution._internal.arrays import FloatArray, check_each, flag, reals
+from restitution._internal.parameters import Allowed, ParameterError, Problem, shown, wrong
 from restitution.bodies import _clump_files
-from restitution.bodies._rigid import RigidBody
+from restitution.bodies._rigid import LARGEST, SMALLEST, Density, RigidBody, scale_of
 
 Rows = tuple[tuple[float, ...], ...]
 
-_SMALLEST, _LARGEST = 1e-60, 1e60
-"""Sizes in m whose fifth power is a number."""
-_SPHERES = f"rows (x, y, z, radius) in m, one or more, |x| to {_LARGEST:g}, radius >= {_SMALLEST:g}"
+_SPHERES = f"rows (x, y, z, radius) in m, one or more, |x| to {LARGEST:g}, radius >= {SMALLEST:g}"
 _INERTIA = '"union", "sum" or a symmetric matrix, shape (3, 3), in kg m²'
 _CENTRE = "None or (x, y, z), finite, in m"
 
@@ -42,7 +40,7 @@ def _spheres(value: Any) -> Rows:
 
 
 def _within(spheres: FloatArray) -> NDArray[np.bool_]:
-    return np.asarray((np.abs(spheres) <= _LARGEST) & (spheres >= [*3 * [-_LARGEST], _SMALLEST]))
+    return np.asarray((np.abs(spheres) <= LARGEST) & (spheres >= [*3 * [-LARGEST], SMALLEST]))
 
 
 def _inertia(value: Any) -> str | Rows:
@@ -94,7 +92,7 @@ class Clump(RigidBody):
     """
 
     spheres: Annotated[Any, Allowed(_SPHERES), BeforeValidator(_spheres), Field(description="m")]
-    density: Annotated[Number, Field(gt=0, description="kg/m³")] = 2500.0
+    density: Density = 2500.0
     inertia: Annotated[Any, Allowed(_INERTIA), BeforeValidator(_inertia), Field(description="kg m²")] = (
         "union"
     )
@@ -135,7 +133,7 @@ class Clump(RigidBody):
         OSError
             If the file cannot be read.
         """
-        unit = real("scale", scale, "a finite number > 0 (m)", lambda x: 0.0 < x < np.inf)
+        unit = scale_of(scale)
         spheres = np.array(_clump_files.read(files.path_from("path", path), format))
         with np.errstate(over="ignore"):
             scaled = unit * spheres

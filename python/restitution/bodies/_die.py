@@ -5,13 +5,13 @@ from itertools import permutations, product
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar
 
 import numpy as np
-from pydantic import BeforeValidator, Field
+from pydantic import BeforeValidator
 
 from restitution import _core
 from restitution._internal.arrays import FloatArray
-from restitution._internal.parameters import Allowed, Number, ParameterError, wrong
+from restitution._internal.parameters import Allowed, ParameterError, wrong
 from restitution.bodies._polyhedra import hull_of
-from restitution.bodies._rigid import RigidBody, of_lengths
+from restitution.bodies._rigid import Density, Length, RigidBody, of_lengths
 
 _FACES = "4, 6, 8, 12 or 20"
 _GOLDEN = 0.5 * (1.0 + 5.0**0.5)
@@ -66,8 +66,8 @@ class Die(RigidBody):
     by_place: ClassVar[tuple[str, ...]] = ("faces", "edge")
 
     faces: Annotated[int, Allowed(_FACES), BeforeValidator(_faces)]
-    edge: Annotated[Number, Field(gt=0, description="m")]
-    density: Annotated[Number, Field(gt=0, description="kg/m³")] = 2500.0
+    edge: Length
+    density: Density = 2500.0
 
     if TYPE_CHECKING:  # or type checkers would take the fields for keyword arguments
 

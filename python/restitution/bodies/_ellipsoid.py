@@ -8,8 +8,8 @@ from pydantic import BeforeValidator, Field
 
 from restitution import _core
 from restitution._internal.arrays import reals
-from restitution._internal.parameters import Allowed, Number, ParameterError, wrong
-from restitution.bodies._rigid import RigidBody
+from restitution._internal.parameters import Allowed, ParameterError, wrong
+from restitution.bodies._rigid import Density, RigidBody
 
 _AXES = "three finite numbers > 0 in m, the largest at most 1000 times the smallest"
 
@@ -40,7 +40,7 @@ class Ellipsoid(RigidBody):
     """
 
     semi_axes: Annotated[Any, Allowed(_AXES), BeforeValidator(_semi_axes), Field(description="m")]
-    density: Annotated[Number, Field(gt=0, description="kg/m³")] = 2500.0
+    density: Density = 2500.0
 
     @cached_property
     def compiled(self) -> _core.Rigid:

@@ -10,15 +10,13 @@ from pydantic import BeforeValidator, Field
 
 from restitution import _core
 from restitution._internal import files
-from restitution._internal.arrays import FloatArray, IntArray, real, reals
-from restitution._internal.parameters import Allowed, Number, ParameterError, Problem, renamed, shown, wrong
+from restitution._internal.arrays import FloatArray, IntArray, reals
+from restitution._internal.parameters import Allowed, ParameterError, Problem, renamed, shown, wrong
 from restitution.bodies._polyhedra import hull_of
-from restitution.bodies._rigid import RigidBody
+from restitution.bodies._rigid import LARGEST, SMALLEST, Density, RigidBody, scale_of
 
 _VERTICES = "four or more points (x, y, z) in m, finite, not all in one plane"
 _TRIANGLES = "triples of numbers of the vertices, from 0"
-_SMALLEST, _LARGEST = 1e-60, 1e60
-"""Sizes in m whose fifth power is a number."""
 _SUFFIXES = (".stl", ".obj", ".ply")
 
 
@@ -64,7 +62,7 @@ class Mesh(RigidBody):
 
     vertices: Annotated[Any, Allowed(_VERTICES), BeforeValidator(_vertices), Field(description="m")]
     triangles: Annotated[Any, Allowed(_TRIANGLES), BeforeValidator(_triangles)]
-    density: Annotated[Number, Field(gt=0, description="kg/m³")] = 2500.0
+    density: Density = 2500.0
 
     @classmethod
     def from_file(cls, path: str | os.PathLike[str], *, scale: float = 1.0, density: float = 2500.0) -> Self:
@@ -88,12 +86,12 @@ class Mesh(RigidBody):
         OSError
             If the file cannot be read.
         """
-        unit = real("scale", scale, "a finite number > 0 (m)", lambda x: 0.0 < x < np.inf)
+        unit = scale_of(scale)
         place = files.path_from("path", path)
         vertices, triangles = _read(place)
         size = float(np.abs(vertices).max())
-        if not _SMALLEST <= unit * size <= _LARGEST:
-            allowed = f"such that the mesh is {_SMALLEST:g} to {_LARGEST:g} m in size"
+        if not SMALLEST <= unit * size <= LARGEST:
+            allowed = f"such that the mesh is {SMALLEST:g} to {LARGEST:g} m in size"
             raise ParameterError(wrong("scale", scale, allowed))
         with renamed(lambda name: f"{place}: {name}" if name in ("vertices", "triangles") else name):
             return cls(vertices=unit * vertices, triangles=triangles, density=density)

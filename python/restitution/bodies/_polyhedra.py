@@ -9,14 +9,13 @@ from pydantic import BeforeValidator, Field
 
 from restitution import _core
 from restitution._internal.arrays import FloatArray, reals
-from restitution._internal.parameters import Allowed, Number, ParameterError, wrong
-from restitution.bodies._rigid import RigidBody, of_lengths
+from restitution._internal.parameters import Allowed, ParameterError, wrong
+from restitution.bodies._rigid import Density, Length, RigidBody, of_lengths
 
 if TYPE_CHECKING:
     from scipy.spatial import ConvexHull
 
 _POINTS = "four or more points (x, y, z) in m, finite, not all in one plane"
-_DENSITY = Annotated[Number, Field(gt=0, description="kg/m³")]
 
 
 def _points(value: Any) -> tuple[tuple[float, ...], ...]:
@@ -58,7 +57,7 @@ class ConvexPolyhedron(RigidBody):
     by_place: ClassVar[tuple[str, ...]] = ("points",)
 
     points: Annotated[Any, Allowed(_POINTS), BeforeValidator(_points), Field(description="m")]
-    density: _DENSITY = 2500.0
+    density: Density = 2500.0
 
     if TYPE_CHECKING:  # or type checkers would take the fields for keyword arguments
 
@@ -94,10 +93,10 @@ class Box(RigidBody):
 
     by_place: ClassVar[tuple[str, ...]] = ("a", "b", "c")
 
-    a: Annotated[Number, Field(gt=0, description="m")]
-    b: Annotated[Number, Field(gt=0, description="m")]
-    c: Annotated[Number, Field(gt=0, description="m")]
-    density: _DENSITY = 2500.0
+    a: Length
+    b: Length
+    c: Length
+    density: Density = 2500.0
 
     if TYPE_CHECKING:
 

@@ -8,12 +8,10 @@ from pydantic import BeforeValidator, Field
 
 from restitution import _core
 from restitution._internal.arrays import FloatArray, check_each, reals
-from restitution._internal.parameters import Allowed, Number, ParameterError, Problem, wrong
-from restitution.bodies._rigid import RigidBody, of_lengths
+from restitution._internal.parameters import Allowed, ParameterError, Problem, wrong
+from restitution.bodies._rigid import Density, Length, RigidBody, of_lengths
 
 _PROFILE = "two or more points (z, r) in m, finite, r >= 0, around an area"
-_DENSITY = Annotated[Number, Field(gt=0, description="kg/m³")]
-_LENGTH = Annotated[Number, Field(gt=0, description="m")]
 
 
 def _profile(value: Any) -> tuple[tuple[float, ...], ...]:
@@ -79,7 +77,7 @@ class Revolution(RigidBody):
     by_place: ClassVar[tuple[str, ...]] = ("profile",)
 
     profile: Annotated[Any, Allowed(_PROFILE), BeforeValidator(_profile), Field(description="m")]
-    density: _DENSITY = 2500.0
+    density: Density = 2500.0
 
     if TYPE_CHECKING:  # or type checkers would take the fields for keyword arguments
 
@@ -116,9 +114,9 @@ class Cylinder(RigidBody):
 
     by_place: ClassVar[tuple[str, ...]] = ("radius", "height")
 
-    radius: _LENGTH
-    height: _LENGTH
-    density: _DENSITY = 2500.0
+    radius: Length
+    height: Length
+    density: Density = 2500.0
 
     if TYPE_CHECKING:
 
@@ -152,10 +150,10 @@ class Ring(RigidBody):
 
     by_place: ClassVar[tuple[str, ...]] = ("outer", "inner", "height")
 
-    outer: _LENGTH
-    inner: _LENGTH
-    height: _LENGTH
-    density: _DENSITY = 2500.0
+    outer: Length
+    inner: Length
+    height: Length
+    density: Density = 2500.0
 
     if TYPE_CHECKING:
 
@@ -195,11 +193,11 @@ class Egg(RigidBody):
     59.6
     """
 
-    length: _LENGTH
-    width: _LENGTH
-    blunt_end: _LENGTH
-    tip: _LENGTH
-    density: _DENSITY = 2500.0
+    length: Length
+    width: Length
+    blunt_end: Length
+    tip: Length
+    density: Density = 2500.0
 
     @cached_property
     def compiled(self) -> _core.Rigid:

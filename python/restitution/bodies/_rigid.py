@@ -4,16 +4,21 @@ from abc import abstractmethod
 from collections.abc import Iterator
 from contextlib import contextmanager
 from functools import cached_property
-from typing import Any
+from typing import Annotated, Any
 
 import numpy as np
+from pydantic import Field
 
 from restitution import _core
 from restitution._internal import text as _text
-from restitution._internal.arrays import FloatArray
-from restitution._internal.parameters import ParameterError, Problem
+from restitution._internal.arrays import FloatArray, real
+from restitution._internal.parameters import Number, ParameterError, Problem
 from restitution.bodies._body import AnyBody
 
+Density = Annotated[Number, Field(gt=0, description="kg/m³")]
+Length = Annotated[Number, Field(gt=0, description="m")]
+SMALLEST, LARGEST = 1e-60, 1e60
+"""Sizes in m whose fifth power is a number."""
 _HALF = np.sqrt(0.5)
 _FACES = np.array(
     [
@@ -41,6 +46,11 @@ def of_lengths(**lengths: float) -> Iterator[None]:
         text = f" = {', '.join([value, *others])}: must be "
         allowed = "such that the volume neither overflows nor underflows"
         raise ParameterError(Problem(name, text, allowed)) from None
+
+
+def scale_of(scale: Any) -> float:
+    """Take what a unit of a file is in m."""
+    return real("scale", scale, "a finite number > 0 (m)", lambda x: 0.0 < x < np.inf)
 
 
 class RigidBody(AnyBody):

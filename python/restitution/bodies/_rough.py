@@ -10,7 +10,6 @@ from restitution import _core
 from restitution._internal.arrays import FloatArray, reals
 from restitution._internal.parameters import (
     Allowed,
-    Number,
     ParameterError,
     TooLargeError,
     Whole,
@@ -22,7 +21,7 @@ from restitution.bodies._body import AnyBody
 from restitution.bodies._clump import Clump
 from restitution.bodies._dumbbell import Dumbbell
 from restitution.bodies._loaded_sphere import LoadedSphere
-from restitution.bodies._rigid import RigidBody
+from restitution.bodies._rigid import Density, Length, RigidBody
 from restitution.bodies._spherocylinder import Spherocylinder
 
 _HEIGHTS = (
@@ -61,7 +60,6 @@ def _body(value: Any) -> Any:
 
 
 Asperities = Annotated[Whole, Field(ge=1, lt=2**31, description="number of asperities")]
-AsperityRadius = Annotated[Number, Field(gt=0, description="m")]
 Heights = Annotated[Any, Allowed(_HEIGHTS), BeforeValidator(_heights), Field(description="m, or drawn")]
 Seed = Annotated[Whole, Field(ge=0, lt=2**64)]
 
@@ -139,11 +137,11 @@ class RoughSphere(RigidBody):
     (1000, 4)
     """
 
-    radius: Annotated[Number, Field(gt=0, description="m")]
+    radius: Length
     asperities: Asperities
-    asperity_radius: AsperityRadius
+    asperity_radius: Length
     heights: Heights = None
-    density: Annotated[Number, Field(gt=0, description="kg/m³")] = 2500.0
+    density: Density = 2500.0
     seed: Seed = 1
 
     @cached_property
@@ -196,7 +194,7 @@ class Rough(RigidBody):
 
     body: Annotated[InstanceOf[AnyBody], Allowed(_BODIES), BeforeValidator(_body)]
     asperities: Asperities
-    asperity_radius: AsperityRadius
+    asperity_radius: Length
     heights: Heights = None
     seed: Seed = 1
 

@@ -32,8 +32,7 @@ def paper(
     with errors_in_a_line("netCDF4", "scipy.stats", "matplotlib.figure"):
         from restitution.papers.glielmo2014 import redraw
 
-        how = {"seed": seed, "threads": threads, "progress": progress(quiet)}
-        report = redraw(out, impacts=impacts, overwrite=overwrite, **how)  # type: ignore[arg-type]
+        report = redraw(out, impacts, seed, threads, progress(quiet), overwrite=overwrite)
         if not quiet:
             say(str(report))
 
@@ -59,8 +58,7 @@ def rough(
     with errors_in_a_line("netCDF4", "scipy.stats", "matplotlib.figure"):
         from restitution.papers.gunkelmann2014 import redraw
 
-        how = {"seed": seed, "threads": threads, "progress": progress(quiet)}
-        report = redraw(out, impacts=impacts, overwrite=overwrite, **how)  # type: ignore[arg-type]
+        report = redraw(out, impacts, seed, threads, progress(quiet), overwrite=overwrite)
         if not quiet:
             say(str(report))
 

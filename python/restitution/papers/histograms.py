@@ -7,6 +7,11 @@ import xarray as xr
 from restitution._internal.arrays import FloatArray, IntArray
 
 
+def mesh(low: float, high: float, step: float) -> FloatArray:
+    """Return edges of the lattice with origin 0 and this step, from `low` to `high`, shape (n + 1,)."""
+    return step * np.arange(round(low / step), round(high / step) + 1, dtype=np.float64)
+
+
 def in_window(data: xr.Dataset, name: str, window: tuple[float, float]) -> tuple[IntArray, FloatArray]:
     """Return particle and value of `name` of impacts with impact velocity in [lo, hi), shapes (n,)."""
     velocity = data["impact_velocity"].to_numpy()

@@ -1,5 +1,6 @@
 """Settings of a redrawn paper: every number it depends on, each marked as the paper's or as ours."""
 
+from abc import ABC, abstractmethod
 from collections.abc import Iterator
 from dataclasses import dataclass, field, fields
 from typing import Any, NamedTuple
@@ -23,6 +24,28 @@ class Setting(NamedTuple):
     unit: str
     source: str
     text: str
+
+
+class AtSpeeds(ABC):
+    """What follows from the speeds at which densities are shown."""
+
+    speed_tolerance: float
+    """Half-width of the windows, as a share of the speed."""
+
+    @property
+    @abstractmethod
+    def speeds(self) -> tuple[float, ...]:
+        """The speeds in m/s, in increasing order."""
+
+    @property
+    def speed_windows(self) -> tuple[tuple[float, float], ...]:
+        """The half-open window of impact velocity [lo, hi) in m/s that stands for each of `speeds`."""
+        return tuple((v * (1 - self.speed_tolerance), v * (1 + self.speed_tolerance)) for v in self.speeds)
+
+    @property
+    def labels(self) -> list[str]:
+        """The speeds as text."""
+        return [f"{v:g} m/s" for v in self.speeds]
 
 
 @dataclass(frozen=True)

@@ -1,13 +1,16 @@
 """The density of ε at one speed beside the asymmetric Laplace distribution: tests, flanks and rivals."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+import xarray as xr
 
 from restitution import fit
 from restitution.papers.claims import SIGNIFICANT, Measurement, Verdict, verdict
-from restitution.papers.estimate import Array, Index, jackknife
+from restitution.papers.estimate import Array, Index, in_windows, jackknife
 
+Windows = tuple[tuple[float, float], ...]
 RIVALS = (fit.gaussian, fit.logistic, fit.student_t)
 RESAMPLES = 499
 IN_TAILS = 100
@@ -53,6 +56,23 @@ LAPLACE_RULE = (
     f"every speed, fails if it fails at every one. The p-values come from {RESAMPLES} draws, so none is "
     f"below {1 / (RESAMPLES + 1):g}."
 )
+
+
+def shapes(data: xr.Dataset, windows: Windows, labels: Sequence[str], seed: int) -> list[Shape]:
+    """Measure the density of ε of a run in each window of impact velocity; the seed chooses the draws."""
+    impacts = in_windows(data["impact_velocity"], windows)
+    drawn = impacts.one_per_particle(seed)
+    every, some = (chosen.of(data["restitution"]) for chosen in (impacts, drawn))
+    return [
+        shape(
+            label,
+            every[impacts.cell == k],
+            impacts.where[0][impacts.cell == k],
+            some[drawn.cell == k],
+            seed,
+        )
+        for k, label in enumerate(labels)
+    ]
 
 
 def shape(label: str, values: Array, particle: Index, independent: Array, seed: int) -> Shape:

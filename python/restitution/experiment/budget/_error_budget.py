@@ -133,7 +133,7 @@ def error_budget(
     shape = _sources.shape(experiment, body)
     sources = {
         "shape": shape,
-        "roughness": rough(experiment, body) if setting.roughness > 0.0 else _sources.nothing(n),
+        "roughness": rough(experiment, body),
         "timing": _sources.timing(experiment),
         "gravity": _sources.gravity(experiment),
         "drop": _sources.drop(experiment),

@@ -13,7 +13,7 @@ from restitution.bodies import Body, Form, from_roundness
 from restitution.experiment.budget._error_budget import weights
 from restitution.experiment.budget._results import RequiredRoundness
 from restitution.experiment.budget._rough import roughness as rough
-from restitution.experiment.budget._sources import nothing, shape
+from restitution.experiment.budget._sources import shape
 from restitution.experiment.budget.experiment import Experiment, Setting
 from restitution.laws import Law
 
@@ -102,8 +102,7 @@ def required_roundness(
         drop=drop, impacts=impacts, gravity=gravity, roughness=roughness, particles=particles, seed=seed
     )
     experiment = Experiment.of(law, setting)
-    smooth = setting.roughness == 0.0
-    surface = nothing(setting.impacts) if smooth else rough(experiment, ball(0.0))
+    surface = rough(experiment, ball(0.0))
     deviations: list[float] = []
     rows: list[tuple[float, float, float]] = []
     for share in np.geomspace(_ROUNDEST, _LEAST_ROUND * 2.0 / lobes, _STEPS):

@@ -18,7 +18,7 @@ import numpy as np
 from restitution._internal.parameters import ParameterError, wrong
 from restitution.bodies import Body
 from restitution.experiment.budget._near_round import coupling
-from restitution.experiment.budget._sources import Source
+from restitution.experiment.budget._sources import Source, nothing
 from restitution.experiment.budget.experiment import Experiment, mean_radius
 
 _HEIGHT = 0.5 * math.e
@@ -30,12 +30,16 @@ _ROUGHEST = 1e-3
 def roughness(experiment: Experiment, body: Body) -> Source:
     """Take the roughness alone, of a round ball with its mass and inertia, with the spin at its release.
 
+    A smooth ball has no error, whatever the law.
+
     Raises
     ------
     ValueError
         If the closed form is not known for the law, or the ball too rough for it.
     """
     rough, law = experiment.setting.roughness, experiment.law
+    if rough == 0.0:
+        return nothing(experiment.setting.impacts)
     q, radius = coupling(law, body), mean_radius(body)
     if q is None:
         allowed = "0 but for Frictionless and TangentialRestitution with tangential = 1"

@@ -12,8 +12,8 @@ from restitution.papers.figures import counted, recorded
 from restitution.papers.glielmo2014._checks import printed_density
 from restitution.papers.glielmo2014._runs import Runs
 from restitution.papers.glielmo2014._settings import Settings
-from restitution.papers.glielmo2014._windows import at_speeds, coarse, histogram_edges, mesh
-from restitution.papers.histograms import binned, density, design_effect, in_window
+from restitution.papers.glielmo2014._windows import at_speeds, coarse, histogram_edges
+from restitution.papers.histograms import binned, density, design_effect, in_window, mesh
 
 QUANTILES = (0.01, 0.5, 0.99)
 """Quantiles of restitution in the sensitivity figure of Fig. 2."""

@@ -11,7 +11,7 @@ from restitution._internal.arrays import FloatArray
 from restitution.papers import runs
 from restitution.papers.glielmo2014 import _windows as windows
 from restitution.papers.glielmo2014._settings import Settings
-from restitution.papers.glielmo2014._windows import mesh
+from restitution.papers.histograms import mesh
 from restitution.papers.runs import Runner
 
 # Sensitivity runs keep what is drawn and why each trajectory ended, half the memory.

@@ -5,11 +5,11 @@ from dataclasses import dataclass
 from restitution.bodies import Dumbbell
 from restitution.laws import TangentialRestitution
 from restitution.papers import settings
-from restitution.papers.settings import chosen, stated
+from restitution.papers.settings import AtSpeeds, chosen, stated
 
 
 @dataclass(frozen=True)
-class Settings(settings.Settings):
+class Settings(AtSpeeds, settings.Settings):
     """Settings that PRE 90, 052204 states, and our choices where it states none, in SI units.
 
     The motion depends on L/R, the law, and release height and speed in units of R and √(gR): a body with
@@ -78,16 +78,6 @@ class Settings(settings.Settings):
     def speeds(self) -> tuple[float, ...]:
         """The four speeds of Figs. 4 and 5, in m/s, in increasing order."""
         return (self.lowest_speed, *self.other_speeds)
-
-    @property
-    def speed_windows(self) -> tuple[tuple[float, float], ...]:
-        """The half-open window of impact velocity [lo, hi) in m/s that stands for each of `speeds`."""
-        return tuple((v * (1 - self.speed_tolerance), v * (1 + self.speed_tolerance)) for v in self.speeds)
-
-    @property
-    def labels(self) -> list[str]:
-        """The four speeds as text."""
-        return [f"{v:g} m/s" for v in self.speeds]
 
     @property
     def law(self) -> TangentialRestitution:

@@ -7,11 +7,7 @@ import xarray as xr
 
 from restitution._internal.arrays import FloatArray, IntArray
 from restitution.papers.glielmo2014._settings import Settings
-
-
-def mesh(low: float, high: float, step: float) -> FloatArray:
-    """Return edges of the lattice with origin 0 and this step, from `low` to `high`, shape (n + 1,)."""
-    return step * np.arange(round(low / step), round(high / step) + 1, dtype=np.float64)
+from restitution.papers.histograms import mesh
 
 
 def histogram_edges(s: Settings, width: float) -> FloatArray:

@@ -1,5 +1,7 @@
 """What PRE 90, 052204 and the abstract of its ref. 10 say of rough spheres, each sentence judged."""
 
+from functools import partial
+
 import numpy as np
 import xarray as xr
 
@@ -9,7 +11,7 @@ from restitution.papers.gunkelmann2014._data import mean_share
 from restitution.papers.gunkelmann2014._runs import Runs
 from restitution.papers.gunkelmann2014._settings import Settings
 from restitution.papers.runs import derived_seed
-from restitution.papers.shape import LAPLACE_RULE, Shape, shape, tests
+from restitution.papers.shape import LAPLACE_RULE, Shape, shapes, tests
 from restitution.papers.successive import followed, following
 from restitution.papers.trend import RISING_RULE, falling, trend
 
@@ -27,24 +29,8 @@ def deviations(data: xr.Dataset, s: Settings) -> Estimate:
 def _shapes(runs: Runs, s: Settings, data: xr.Dataset) -> list[Shape]:
     """Return the densities at the four speeds, slowest first."""
     name = f"shapes, {data.attrs['run']}"
-
-    def measure() -> list[Shape]:
-        impacts = in_windows(data["impact_velocity"], s.speed_windows)
-        seed = derived_seed(runs.seed, name)
-        drawn = impacts.one_per_particle(seed)
-        every, some = (one.of(data["restitution"]) for one in (impacts, drawn))
-        return [
-            shape(
-                label,
-                every[impacts.cell == k],
-                impacts.where[0][impacts.cell == k],
-                some[drawn.cell == k],
-                seed,
-            )
-            for k, label in enumerate(s.labels)
-        ]
-
-    return runs.once(name, measure)
+    seed = derived_seed(runs.seed, name)
+    return runs.once(name, partial(shapes, data, s.speed_windows, s.labels, seed))
 
 
 @CLAIMS.add("non-gaussian", "non-trivial (non-Gaussian) fluctuations of the measured values", _MONTAINE)

@@ -5,13 +5,12 @@ from dataclasses import dataclass
 from math import ceil
 from typing import Any
 
-import numpy as np
 import xarray as xr
 
-from restitution._internal.arrays import FloatArray
 from restitution.bodies import AnyBody
 from restitution.papers import runs
 from restitution.papers.gunkelmann2014._settings import Settings
+from restitution.papers.histograms import mesh
 from restitution.papers.runs import Runner
 
 
@@ -19,8 +18,7 @@ from restitution.papers.runs import Runner
 class Runs(runs.Runs):
     """All data: recorded, or counted without being kept."""
 
-    main: xr.Dataset  # random heights, the law of all
-    smooth: xr.Dataset  # as `main` without friction
+    main: xr.Dataset  # random heights
     dumbbell: xr.Dataset  # as `main`, the dumbbell
     by_number: Mapping[int, xr.Dataset]  # by N, equal heights
     by_height: Mapping[float, xr.Dataset]  # by the mean height, random heights
@@ -29,12 +27,7 @@ class Runs(runs.Runs):
 
 def number(s: Settings) -> int:
     """Return the number of runs that `simulate` makes."""
-    return 4 + len(s.numbers) + len(s.mean_heights)
-
-
-def lattice(low: float, high: float, step: float) -> FloatArray:
-    """Return edges of the lattice with origin 0 and this step, from `low` to `high`."""
-    return step * np.arange(round(low / step), round(high / step) + 1, dtype=np.float64)
+    return 3 + len(s.numbers) + len(s.mean_heights)
 
 
 def simulate(s: Settings, impacts: int, runner: Runner) -> Runs:
@@ -42,14 +35,13 @@ def simulate(s: Settings, impacts: int, runner: Runner) -> Runs:
 
     def drop(name: str, body: AnyBody, **other: Any) -> xr.Dataset:
         usual: dict[str, Any] = {
-            "law": s.law,
             "particles": s.secondary_particles,
             "impacts": s.impacts_per_particle,
             "release_height": s.release_height,
             "gravity": s.gravity,
             "orientation": "isotropic",
         }
-        return runner.record(name, body, **(usual | other))
+        return runner.record(name, body, s.law, **(usual | other))
 
     particles = ceil(min(impacts, s.recorded_impacts) / s.impacts_per_particle)
     main = drop("main", s.body(), particles=particles)
@@ -57,7 +49,6 @@ def simulate(s: Settings, impacts: int, runner: Runner) -> Runs:
         seed=runner.seed,
         asked=impacts,
         main=main,
-        smooth=drop("without friction", s.body(), law=s.smooth_law),
         dumbbell=drop("dumbbell", s.dumbbell, impacts=4 * s.impacts_per_particle),
         by_number={n: drop(f"N {n:g}", s.body(asperities=n)) for n in s.numbers},
         by_height={h: drop(f"mean height {h:g} m", s.body(mean_height=h)) for h in s.mean_heights},
@@ -66,7 +57,7 @@ def simulate(s: Settings, impacts: int, runner: Runner) -> Runs:
             s.body(),
             s.law,
             particles=ceil(impacts / s.impacts_per_particle),
-            velocity_bins=lattice(*s.velocity_range, s.velocity_mesh),
-            restitution_bins=lattice(*s.restitution_range, s.restitution_mesh),
+            velocity_bins=mesh(*s.velocity_range, s.velocity_mesh),
+            restitution_bins=mesh(*s.restitution_range, s.restitution_mesh),
         ),
     )

@@ -7,13 +7,13 @@ import numpy as np
 
 from restitution.analytic import RoughContact, rough_contact, rough_impact, rough_spin
 from restitution.bodies import Dumbbell, RoughSphere
-from restitution.laws import Frictionless, TangentialRestitution
+from restitution.laws import TangentialRestitution
 from restitution.papers import settings
-from restitution.papers.settings import chosen, stated
+from restitution.papers.settings import AtSpeeds, chosen, stated
 
 
 @dataclass(frozen=True)
-class Settings(settings.Settings):
+class Settings(AtSpeeds, settings.Settings):
     """What PRE 90, 052204 says of its refs. 10 and 11, and our choices where it is silent, in SI units."""
 
     # The body and the law.
@@ -49,29 +49,14 @@ class Settings(settings.Settings):
     curve_bins: int = chosen(14, "1", "logarithmic bins of impact velocity where curves are drawn")
 
     @property
-    def speed_windows(self) -> tuple[tuple[float, float], ...]:
-        """The half-open window of impact velocity [lo, hi) in m/s that stands for each of `speeds`."""
-        return tuple((v * (1 - self.speed_tolerance), v * (1 + self.speed_tolerance)) for v in self.speeds)
-
-    @property
-    def labels(self) -> list[str]:
-        """The four speeds as text."""
-        return [f"{v:g} m/s" for v in self.speeds]
-
-    @property
     def release_speed(self) -> float:
         """Velocity of the first impact, in m/s."""
         return float(np.sqrt(2.0 * self.gravity * (self.release_height - self.radius)))
 
     @property
     def law(self) -> TangentialRestitution:
-        """The law of all runs but one."""
+        """The law of all runs."""
         return TangentialRestitution(normal=self.normal, tangential=self.tangential)
-
-    @property
-    def smooth_law(self) -> Frictionless:
-        """The law of the run without friction."""
-        return Frictionless(normal=self.normal)
 
     def contact(self, asperities: int | None = None, mean_height: float | None = None) -> RoughContact:
         """Return where a sphere touches: of equal heights if the number is given, else of random ones."""

@@ -1,5 +1,7 @@
 """Claims on Fig. 4: the density of ε at given speed, and how successive impacts depend when slow."""
 
+from functools import partial
+
 import numpy as np
 
 from restitution.papers.claims import SIGNIFICANT, Claims, Finding, Measurement, listed, verdict
@@ -7,7 +9,7 @@ from restitution.papers.estimate import Array, Impacts, in_windows
 from restitution.papers.glielmo2014._runs import Runs
 from restitution.papers.glielmo2014._settings import Settings
 from restitution.papers.runs import derived_seed
-from restitution.papers.shape import LAPLACE_RULE, Shape, shape, tests
+from restitution.papers.shape import LAPLACE_RULE, Shape, shapes, tests
 from restitution.papers.successive import followed, following
 from restitution.papers.trend import falling
 
@@ -17,24 +19,9 @@ SLOW_BINS = 12
 
 def _shapes(runs: Runs, settings: Settings) -> list[Shape]:
     """Return the shapes at the four speeds, slowest first, which three claims share."""
-    return runs.once("shapes", lambda: _each_shape(runs, settings))
-
-
-def _each_shape(runs: Runs, settings: Settings) -> list[Shape]:
-    impacts = in_windows(runs.main["impact_velocity"], settings.speed_windows)
     seed = derived_seed(runs.seed, "goodness of fit")
-    drawn = impacts.one_per_particle(seed)
-    every, some = (chosen.of(runs.main["restitution"]) for chosen in (impacts, drawn))
-    return [
-        shape(
-            f"{v:g} m/s",
-            every[impacts.cell == k],
-            impacts.where[0][impacts.cell == k],
-            some[drawn.cell == k],
-            seed,
-        )
-        for k, v in enumerate(settings.speeds)
-    ]
+    measure = partial(shapes, runs.main, settings.speed_windows, settings.labels, seed)
+    return runs.once("shapes", measure)
 
 
 @CLAIMS.add(
