@@ -48,7 +48,7 @@ impl<'a> Followed<'a> {
     ) -> Result<StopReason, Error> {
         let plan = &self.plan;
         let mut impacts = 0;
-        let counted = |impact: &SingleImpact| {
+        let mut counted = |impact: &SingleImpact| {
             impacts += 1;
             record(impact)
         };
@@ -57,12 +57,18 @@ impl<'a> Followed<'a> {
             state: self.release,
             drawn: (plan.run.seed, self.particle as u64),
         };
-        trajectory_of(&release, &self.body, &plan.law, plan.slope, limits, counted).map_err(
-            |NoConvergence| Error::Numerical {
-                particle: self.particle as u64,
-                seed: plan.run.seed,
-                flight: impacts,
-            },
+        trajectory_of(
+            &release,
+            &self.body,
+            &plan.law,
+            plan.slope,
+            limits,
+            &mut counted,
         )
+        .map_err(|NoConvergence| Error::Numerical {
+            particle: self.particle as u64,
+            seed: plan.run.seed,
+            flight: impacts,
+        })
     }
 }

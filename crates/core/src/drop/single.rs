@@ -132,23 +132,23 @@ pub fn trajectory(
     slope: f64,
     start: State,
     limits: Limits,
-    record: impl FnMut(&SingleImpact) -> bool,
+    mut record: impl FnMut(&SingleImpact) -> bool,
 ) -> Result<StopReason, NoConvergence> {
     let release = Lone {
         state: start,
         drawn: (0, 0),
     };
-    trajectory_of(&release, body, law, slope, limits, record)
+    trajectory_of(&release, body, law, slope, limits, &mut record)
 }
 
-/// [`trajectory`] of a particle of a run.
+/// [`trajectory`] of a particle of a run. The engine is compiled once here, not for every `record`.
 pub(super) fn trajectory_of(
     release: &Lone,
     body: &Body,
     law: &Law<'_>,
     slope: f64,
     limits: Limits,
-    record: impl FnMut(&SingleImpact) -> bool,
+    record: &mut dyn FnMut(&SingleImpact) -> bool,
 ) -> Result<StopReason, NoConvergence> {
     let start = release.state;
     if limits.impacts == 0 {
@@ -191,19 +191,19 @@ impl Release for Lone {
 }
 
 /// The sink that hands the impacts to `record`.
-struct Reporter<'a, F> {
-    record: F,
+struct Reporter<'a> {
+    record: &'a mut dyn FnMut(&SingleImpact) -> bool,
     go_on: &'a Cell<bool>,
     ended: StopReason,
 }
 
-impl<F> Meanwhile for Reporter<'_, F> {
+impl Meanwhile for Reporter<'_> {
     const INTERLEAVED: bool = false;
 
     fn meanwhile(&mut self, _: usize) {}
 }
 
-impl<F: FnMut(&SingleImpact) -> bool> Sink for Reporter<'_, F> {
+impl Sink for Reporter<'_> {
     fn begin(&mut self) {}
 
     fn impact<S: Simd, P: Pose<S, K>, const K: usize>(
