@@ -9,7 +9,7 @@ FUZZ ?= 300
 JOBS ?= 2
 CORE := $(shell find crates -name '*.rs' -o -name 'Cargo.toml') Cargo.toml Cargo.lock pyproject.toml
 
-.PHONY: help install pages paper rough calibrate onsets test fuzz hostile audit mutants test-arm test-web rust-tests bench-web look web docs wheel licences coverage lint bench clean
+.PHONY: help install pages paper rough calibrate onsets test fuzz hostile audit mutants test-arm test-web rust-tests bench-web look web docs wheel licences coverage lint lint-rust lint-python bench clean
 
 help:  ## list the targets
 	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed 's/:.*##/\t/' | expand -t 12
@@ -33,19 +33,23 @@ calibrate: $(STAMP)  ## 120 synthetic experiments: do posteriors cover? Some min
 onsets: $(STAMP)  ## errors of onsets, slopes and second balls over many recordings: two minutes
 	$(BIN)/python -m pytest tests/manual/onsets.py
 
-lint: $(STAMP)
+lint: lint-rust lint-python
+
+lint-rust:
 	cargo fmt --all --check
 	$(PYTHON) packaging/licences.py --check
 	cargo clippy --workspace --all-targets --locked -- -D warnings
+
+lint-python: $(STAMP)
 	$(BIN)/ruff check
 	$(BIN)/ruff format --check
 	$(BIN)/mypy
 	$(BIN)/lint-imports
 
-# The package is built by one core; the other builds the Rust tests meanwhile.
+# The package is built by one core; the other builds the Rust tests meanwhile. So are both languages checked side by side.
 test:  ## every check: Rust format, clippy, Rust tests, ruff, mypy, the explorer, pytest
 	$(MAKE) --jobs=2 $(STAMP) rust-tests
-	$(MAKE) lint
+	$(MAKE) --jobs=2 lint
 	cargo test --workspace --locked
 	$(MAKE) test-web
 	$(BIN)/python -m pytest -n $(JOBS) --dist loadfile

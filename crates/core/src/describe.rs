@@ -7,7 +7,7 @@ use crate::Error;
 pub struct Kind<T> {
     /// Its name, as in `Dumbbell`.
     pub name: &'static str,
-    /// What it is, in one line.
+    /// Its description, in one line.
     pub text: &'static str,
     /// Its parameters, in the order in which it is given them.
     pub parameters: &'static [Parameter],
@@ -20,7 +20,7 @@ pub struct Kind<T> {
 pub struct Parameter {
     /// Its name.
     pub name: &'static str,
-    /// What it is.
+    /// Its description.
     pub text: &'static str,
     /// Its unit; "1" for a ratio, none for a name.
     pub unit: Option<&'static str>,
@@ -52,7 +52,7 @@ pub struct Interval {
     pub low: f64,
     /// The upper end.
     pub high: f64,
-    /// Whether the lower end belongs to it.
+    /// True if the lower end belongs to it.
     pub closed: bool,
 }
 
@@ -155,7 +155,7 @@ impl Parameter {
         }
     }
 
-    /// Whether it is usually left out.
+    /// True if it is usually left out.
     pub const fn is_optional(&self) -> bool {
         matches!(self.default, Some(Argument::Absent))
     }

@@ -58,7 +58,7 @@ impl Solid {
         Ok(heights.fold(0.0, f64::max))
     }
 
-    /// Whether no part is below the plane at a height of the centre of mass, in m, for any cos θ in `cosines`, or at any angle if
+    /// True if no part is below the plane at a height of the centre of mass, in m, for any cos θ in `cosines`, or at any angle if
     /// these are not given.
     #[pyo3(signature = (height, cosines=None))]
     fn clears(&self, height: f64, cosines: Option<PyReadonlyArray1<'_, f64>>) -> PyResult<bool> {
@@ -131,7 +131,7 @@ impl Rigid {
         [w, x, y, z]
     }
 
-    /// Where the rims of a solid of revolution are that can touch, rows (z, r) in m.
+    /// The rims of a solid of revolution that can touch, rows (z, r) in m.
     #[getter]
     fn rims(&self) -> Vec<[f64; 2]> {
         self.0.rims()
@@ -146,7 +146,7 @@ impl Rigid {
         Ok(heights.fold(0.0, f64::max))
     }
 
-    /// Whether no part is below the plane at a height of the centre of mass, in m, in any of these attitudes, or in none at all.
+    /// True if no part is below the plane at a height of the centre of mass, in m, in any of these attitudes, or in none at all.
     #[pyo3(signature = (height, attitudes=None))]
     fn clears(&self, height: f64, attitudes: Option<PyReadonlyArray2<'_, f64>>) -> PyResult<bool> {
         let lowest = match attitudes {
@@ -273,7 +273,7 @@ fn egg(size: [f64; 2], caps: [f64; 2], density: f64) -> PyResult<Rigid> {
     rigid(restitution_core::Rigid::egg(size, caps, density))
 }
 
-/// How far asperities stand above the surface, as Python says it.
+/// The heights of asperities above the surface, as Python says them.
 #[derive(FromPyObject)]
 enum GivenHeights<'py> {
     Equal(f64),

@@ -18,7 +18,7 @@ pub enum Given<'py> {
     Pair([f64; 2]),
 }
 
-/// What the table has under a name, made from its parameters.
+/// The entry of the table with a name, made from its parameters.
 pub fn made<'a, T: 'static>(
     mut table: impl Iterator<Item = &'a Kind<T>>,
     name: &str,

@@ -3,7 +3,7 @@
 use restitution_core::describe::{Allowed, Argument, Kind, Parameter};
 use restitution_core::{BODIES, Error, LAWS, Law, Orientation, Run, Solid, Spin, Vector};
 
-/// How many of these parameters the page asks for: those before the ones that are usually left out.
+/// The number of these parameters that the page asks for: those before the ones that are usually left out.
 pub const fn asked(parameters: &[Parameter]) -> usize {
     let mut count = 0;
     while count < parameters.len() && !parameters[count].is_optional() {

@@ -34,7 +34,7 @@ pub(crate) struct Departure {
 pub(crate) struct Step {
     pub length: f64,
     pub part: usize,
-    /// Whether its gap closes.
+    /// True if its gap closes.
     pub closes: bool,
     /// M.
     pub bound: f64,
@@ -161,7 +161,7 @@ impl Skin {
         }
     }
 
-    /// Whether some part but one overlaps, or touches within rounding, and approaches faster than that one.
+    /// True if some part but one overlaps, or touches within rounding, and approaches faster than that one.
     pub(crate) fn another_touches(&self, departure: Departure, at: &Instant) -> bool {
         let touches = |(width, rate): (f64, f64), still: f64| width <= TOUCHING && rate < still;
         match self {

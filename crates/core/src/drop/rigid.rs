@@ -57,13 +57,13 @@ struct Contact {
     size: f64,
 }
 
-/// How a flight goes on without a contact.
+/// The outcome of a flight without a contact.
 enum NoContact {
     Ends(StopReason),
     Unconverged,
 }
 
-/// What an impact does.
+/// The outcome of an impact.
 struct Bounce {
     after: RigidState,
     departure: Departure,
@@ -200,7 +200,7 @@ impl Bouncing<'_> {
         }
     }
 
-    /// Whether the part on the plane, which has no normal speed, stays there: f″ ≤ 0, and no other part is about to touch as well.
+    /// True if the part on the plane, which has no normal speed, stays there: f″ ≤ 0, and no other part is about to touch as well.
     fn rests(&self, state: &RigidState, left: Departure) -> bool {
         let at = instant(state, 0.0, state.attitude, state.spin);
         let change = self.body.top.change(state.spin);

@@ -153,7 +153,7 @@ impl<'a> Law<'a> {
     /// ε_n as in [`Self::respond`].
     ///
     /// # Errors
-    /// Where a law of one's own gives no impulse that is possible.
+    /// [`Fault`] if a law of one's own gives no impulse that is possible.
     pub fn answer(&self, compliance: &Compliance, velocity: Vector) -> Result<Answer, Fault> {
         self.answer_with(compliance, velocity, |normal| normal)
     }

@@ -20,7 +20,7 @@ pub struct Top {
     pub(super) reach: f64,
 }
 
-/// What moments are equal.
+/// The moments that are equal.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Symmetry {
     /// All: **ω** is constant.

@@ -76,7 +76,7 @@ pub(super) const GAUSS: [[f64; 2]; 8] = [
     [0.281_603_550_779_258_9, 0.182_603_415_044_923_58],
     [0.095_012_509_837_637_44, 0.189_450_610_455_068_5],
 ];
-/// What the halves of an interval may differ by from the whole, relative to the volume of the balls.
+/// Largest difference between an interval and its halves, relative to the volume of the balls.
 const EXACT: f64 = 1e-15;
 /// Largest number of halvings.
 const DEPTH: u32 = 48;
@@ -130,7 +130,7 @@ pub(super) fn union(balls: &[RigidBall]) -> (Moments, f64) {
     (moved, error / all.content)
 }
 
-/// What other balls cover of the sphere of ball `i`; nothing is left of it if there are none.
+/// The part of the sphere of ball `i` that other balls cover; nothing is left of it if there are none.
 fn caps(balls: &[RigidBall], i: usize) -> Option<Vec<Cap>> {
     let own = balls[i];
     let mut caps = Vec::new();

@@ -36,7 +36,7 @@ pub struct RigidBall {
     pub radius: f64,
 }
 
-/// What of a body can touch.
+/// The parts of a body that can touch.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) enum Skin {
     /// Balls, or the vertices of a polyhedron.
@@ -61,7 +61,7 @@ pub struct Rigid {
     pub axes: Quaternion,
     /// The principal moments over mR².
     pub top: Top,
-    /// What can touch, in units of R and the principal axes.
+    /// The parts that can touch, in units of R and the principal axes.
     pub(crate) skin: Skin,
 }
 

@@ -8,7 +8,7 @@ use crate::simd::elementary::{exp_in_lanes, ln, sincos};
 use crate::simd::one;
 use std::f64::consts::TAU;
 
-/// How far the tops of asperities stand above the surface, in m.
+/// Heights of the tops of asperities above the surface, in m.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Heights<'a> {
     /// All alike.
@@ -23,14 +23,14 @@ pub enum Heights<'a> {
     Power(f64, f64, f64),
 }
 
-/// What makes a body rough.
+/// The asperities of a body.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Roughness<'a> {
     /// Number of asperities.
     pub asperities: usize,
     /// Their radius, in m.
     pub radius: f64,
-    /// How high they stand.
+    /// Their heights.
     pub heights: Heights<'a>,
     /// Seed of their places and heights.
     pub seed: u64,
@@ -112,7 +112,7 @@ impl Roughness<'_> {
         }
     }
 
-    /// How far the top of asperity `i` stands above the surface.
+    /// Height of the top of asperity `i` above the surface.
     fn height(&self, i: usize) -> f64 {
         let draw = |number: u32| of_asperity(self.seed, i as u64, 3 * number);
         match self.heights {
@@ -219,7 +219,7 @@ impl<'a> Surface<'a> {
         })
     }
 
-    /// Whether a place on the sphere of a ball lies in another.
+    /// True if a place on the sphere of a ball lies in another.
     fn covers(&self, own: usize, place: Vector) -> bool {
         let inside =
             |(i, ball): (usize, &RigidBall)| i != own && (place - ball.centre).norm() < ball.radius;
@@ -250,7 +250,7 @@ impl Barrel {
         })
     }
 
-    /// Whether a place on the sphere of either end lies between both ends.
+    /// True if a place on the sphere of either end lies between both ends.
     fn covers(&self, place: Vector) -> bool {
         let along = (place - self.from).dot(self.axis);
         along > 0.0 && along < self.length

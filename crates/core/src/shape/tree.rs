@@ -18,9 +18,9 @@ use std::ops::Range;
 const LEAF: usize = 8;
 /// Most levels of a tree.
 const DEEPEST: usize = 32;
-/// What a node's bounds are enlarged by, for they are rounded to single precision.
+/// The enlargement of a node's bounds, which are rounded to single precision.
 const ROUNDED: f64 = 1e-6;
-/// What a sine may be off by where the cosine is off by 2⁻²³.
+/// Largest error of a sine where the cosine is off by 2⁻²³.
 const SINE: f64 = 5e-4;
 
 /// A ball or vertex of a body, in units of R and the principal axes.
@@ -35,7 +35,7 @@ pub(crate) struct Point {
     pub number: u32,
 }
 
-/// What bounds the gaps of the balls of a node.
+/// Bounds on the gaps of the balls of a node.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 struct Node {
     /// **c** and |**c**|.
@@ -62,7 +62,7 @@ pub(crate) struct Balls {
     depth: usize,
 }
 
-/// What is known of all balls of a node: their gaps and rates are no less than these, their |**p**| no more.
+/// Bounds for all balls of a node: their gaps and rates are no less than these, their |**p**| no more.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Least {
     pub gap: f64,
@@ -139,7 +139,7 @@ impl Node {
         }
     }
 
-    /// What is known of its balls, where |**n**′| is `turning`.
+    /// The bounds for its balls, where |**n**′| is `turning`.
     #[inline(always)]
     fn least(&self, at: &Instant, turning: f64) -> Least {
         let (x, y, z) = (

@@ -74,7 +74,7 @@ impl Dumbbell {
         representable(body, "radius")
     }
 
-    /// Whether the spheres are equal.
+    /// True if the spheres are equal.
     fn is_equal(&self) -> bool {
         self.radius[0] == self.radius[1] && self.density[0] == self.density[1]
     }

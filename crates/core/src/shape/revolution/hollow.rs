@@ -65,7 +65,7 @@ pub(super) fn checked(
     Ok((wall < thickest).then_some(wall))
 }
 
-/// What a function of L/R gives for a shape of two equal caps in units of R, less what it gives for the shape drawn in by the wall,
+/// The value of a function of L/R for a shape of two equal caps in units of R, less that for the shape drawn in by the wall,
 /// `power` being that of the length.
 pub(super) fn of_wall(
     factor: fn(f64) -> f64,

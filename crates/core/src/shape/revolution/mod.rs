@@ -114,7 +114,7 @@ impl Solid {
         self.unit * self.scaled.hull.support(cosine)
     }
 
-    /// Whether a `height` of the centre of mass is at least `lowest` up to rounding, both in m, so that a body may be placed on the
+    /// True if a `height` of the centre of mass is at least `lowest` up to rounding, both in m, so that a body may be placed on the
     /// plane.
     pub fn clears(height: f64, lowest: f64) -> bool {
         height >= lowest * (1.0 - 4.0 * f64::EPSILON)

@@ -18,7 +18,7 @@ pub struct Spheroid {
     equatorial: f64,
     polar: f64,
     density: f64,
-    /// What a hollow one has inside.
+    /// The inside of a hollow one.
     cavity: Option<Cavity>,
 }
 
