@@ -125,6 +125,14 @@ def laws(contacts: int, images: Path | None) -> str:
     return "\n\n".join([_parameters("law", core.LAWS), impulse, _parameters("material", core.MATERIALS)])
 
 
+def dice(particles: int, images: Path | None) -> str:
+    """Make the table and the figure of examples/dice.py."""
+    script = _script("dice")
+    if images is not None:
+        script.draw(images / "dice.png", particles)
+    return str(script.table(particles, rows=None if images else 2))
+
+
 def real_collisions(share: int, images: Path | None) -> str:
     """Make the tables and the figure of examples/real_collisions.py."""
     script = _script("real_collisions")
@@ -150,6 +158,7 @@ class Block:
 
 BLOCKS = {
     "api": Block(api, 0, 0),
+    "dice": Block(dice, 1000, 5, ("dice.png",)),
     "energy": Block(energy, 10_000_000, 20_000, ("laws.png",)),
     "fits": Block(fits, 4000, 100),
     "laws": Block(laws, 0, 0),

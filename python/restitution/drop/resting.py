@@ -14,6 +14,7 @@ from restitution.bodies import (
     ConvexPolyhedron,
     Cylinder,
     Die,
+    Ellipsoid,
     Mesh,
     Revolution,
     RigidBody,
@@ -24,7 +25,9 @@ from restitution.drop.recorded import RECORDS, check_filled, check_successive, p
 if TYPE_CHECKING:
     import xarray as xr
 
-_BODIES = "a Box, ConvexPolyhedron, Cylinder, Die, Mesh, Revolution or Ring"
+_BODIES = (
+    "a Box, ConvexPolyhedron, Cylinder, Die, Mesh, Revolution, Ring or an Ellipsoid with one shortest axis"
+)
 _STATE = ("velocity_after", "angular_velocity_after", "position")
 _FLAT = 1e-9
 """Faces of a hull are one where their normals and distances differ by less, relative to the size."""
@@ -182,7 +185,27 @@ class _Turned:
         return min(max(face, 0), len(self.landscape.heights) - 1)
 
 
-def _shape(body: Any) -> _Polyhedron | _Turned:
+class _Lying:
+    """Of an ellipsoid: it lies on an end of its shortest axis, and rolls to the other over the middle one.
+
+    Below h = b the directions have (a² - b²)x² < (b² - c²)z², so that z keeps its sign.
+    """
+
+    def __init__(self, semi_axes: FloatArray) -> None:
+        self.axis = int(np.argmin(semi_axes))
+        normals = np.zeros((2, 3))
+        normals[:, self.axis] = 1.0, -1.0
+        shortest, middle, _ = np.sort(semi_axes)
+        self.landscape = _Landscape(normals, np.full(2, shortest), [_Pass((0, 1), float(middle))])
+
+    def below(self, down: FloatArray) -> int:
+        """Find the end on the side that points down."""
+        return int(down[self.axis] < 0.0)
+
+
+def _shape(body: Any) -> _Polyhedron | _Turned | _Lying:
+    if isinstance(body, Ellipsoid) and (lying := _Lying(np.array(body.semi_axes))).landscape.wells().size:
+        return lying
     if isinstance(body, Revolution | Cylinder | Ring):
         return _Turned(np.array(body.compiled.rims) - [body.centre_of_mass[2], 0.0])
     if isinstance(body, Box | ConvexPolyhedron | Die | Mesh):
@@ -198,11 +221,11 @@ def resting(body: RigidBody, data: xr.Dataset) -> xr.Dataset:
     over which it would have to tip. Where the energy of a particle after an impact is below the lowest pass
     out of the well that it is in, it comes to rest there. Under a frictionless law its horizontal motion does
     not count. One that collapses above that, or whose impacts end, is undecided: rocking and rolling are
-    lasting contact, which the model does not have.
+    lasting contact, which the model does not have. An ellipsoid with one shortest axis lies on an end of it.
 
     Parameters
     ----------
-    body : Box, ConvexPolyhedron, Cylinder, Die, Mesh, Revolution or Ring
+    body : Box, ConvexPolyhedron, Cylinder, Die, Ellipsoid, Mesh, Revolution or Ring
         The body of the run.
     data : xarray.Dataset
         Impacts from `restitution.simulate` with ``record="state"``, over a level plane, in which no impact
