@@ -100,6 +100,8 @@ CARDS = {
     "fits": ("fits.png", 0.675, 0.0, 1.0, 0.5),
     "theory": ("fits.png", 0.675, 0.5, 1.0, 1.0),
     "near-round": ("near_round.png", 0.0, 0.0, 0.33, 1.0),
+    "real-collisions": ("real-collisions.png", 0.0, 0.5, 0.5, 1.0),
+    "dice": ("dice.png", 0.0, 0.0, 0.5, 1.0),
     "gas": ("cooling.png", 0.0, 0.1, 0.33, 1.0),
     "shapes": ("shapes.png", 0.0, 0.0, 1.0, 1.0),
     "records": ("locking.png", 0.53, 0.0, 1.0, 1.0),

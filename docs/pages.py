@@ -125,6 +125,22 @@ def laws(contacts: int, images: Path | None) -> str:
     return "\n\n".join([_parameters("law", core.LAWS), impulse, _parameters("material", core.MATERIALS)])
 
 
+def dice(particles: int, images: Path | None) -> str:
+    """Make the table and the figure of examples/dice.py."""
+    script = _script("dice")
+    if images is not None:
+        script.draw(images / "dice.png", particles)
+    return str(script.table(particles, rows=None if images else 2))
+
+
+def real_collisions(share: int, images: Path | None) -> str:
+    """Make the tables and the figure of examples/real_collisions.py."""
+    script = _script("real_collisions")
+    if images is not None:
+        script.draw(images / "real-collisions.png")
+    return str(script.table(share))
+
+
 def theory(percent: int, images: Path | None) -> str:
     """Make the table of benchmarks/accuracy.py."""
     return str(_script("benchmarks.accuracy").table(percent / 100, rows=None if images else 2))
@@ -142,11 +158,13 @@ class Block:
 
 BLOCKS = {
     "api": Block(api, 0, 0),
+    "dice": Block(dice, 1000, 5, ("dice.png",)),
     "energy": Block(energy, 10_000_000, 20_000, ("laws.png",)),
     "fits": Block(fits, 4000, 100),
     "laws": Block(laws, 0, 0),
     "names": Block(names, 0, 0),
     "near-round": Block(locking, 5000, 100, ("locking.png",)),
+    "real-collisions": Block(real_collisions, 1, 15, ("real-collisions.png",)),
     "shapes": Block(golf, 0, 0, ("golf.png",)),
     "theory": Block(theory, 100, 1),
 }

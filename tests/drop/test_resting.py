@@ -10,7 +10,7 @@ from scipy.spatial import cKDTree
 
 import restitution as rs
 from restitution.bodies import RigidBody
-from restitution.drop.resting import _Polyhedron, _shape
+from restitution.drop.resting import _Polyhedron, _Sampled, _shape
 
 A, B, C = 1e-2, 1.4e-2, 2e-2
 PLASTIC = rs.Coulomb(normal=0.2, friction=0.3)
@@ -137,10 +137,71 @@ def test_dropped_flat_it_stays_on_that_face() -> None:
     assert found.normal.to_numpy()[faces[:2], 2].tolist() == pytest.approx([-1.0, 1.0])
 
 
+CORNERS = np.array([(1, 1, 1), (1, -1, -1), (-1, 1, -1), (-1, -1, 1)]) * A / np.sqrt(8)
+BRICK = np.array(np.meshgrid([-A, A], [-B, B], [-C, C])).reshape(3, 8).T / 2
+GRIDS = [
+    # Spheres at the corners of a tetrahedron or a cuboid: as of those, and their radius more.
+    (rs.Clump(spheres=[(*p, 1e-3) for p in CORNERS]), A / np.sqrt(24) + 1e-3, A / np.sqrt(8) + 1e-3, 4),
+    (rs.Clump(spheres=[(*p, 1e-3) for p in BRICK]), A / 2 + 1e-3, np.hypot(A, B) / 2 + 1e-3, 6),
+    # It lies on an end of the shortest axis, and rolls to the other over the middle one.
+    (rs.Ellipsoid(semi_axes=(2e-3, 1.2e-3, 1.7e-3)), 1.2e-3, 1.7e-3, 2),
+    # Round about an axis: one well all around, which nothing leaves.
+    (rs.Ellipsoid(semi_axes=(2e-3, 1.2e-3, 1.2e-3)), 1.2e-3, np.inf, 1),
+    (rs.Clump(spheres=[(0, 0, 0, 1e-3), (2e-3, 0, 0, 1e-3)]), 1e-3, np.inf, 1),
+    # One that rights itself: its centre of mass is 1 mm below that of its only sphere.
+    (
+        rs.Clump(spheres=[(0, 0, 0, 5e-3)], centre=(0, 0, -1e-3), inertia=np.diag([1e-8] * 3)),
+        4e-3,
+        np.inf,
+        1,
+    ),
+]
+
+
+@pytest.mark.parametrize(("body", "lowest", "barrier", "number"), GRIDS)
+def test_wells_on_a_grid_in_closed_form(body: RigidBody, lowest: float, barrier: float, number: int) -> None:
+    """Wells to rounding; passes are never too high, and too low by twice the resolution at most."""
+    shape = _shape(body)
+    assert isinstance(shape, _Sampled)
+    wells = shape.landscape.wells()
+    assert len(wells) == number
+    at = wells[np.argmin(shape.landscape.heights[wells])]
+    assert shape.landscape.heights[at] == pytest.approx(lowest, rel=1e-8)
+    level = shape.landscape.levels()[at]
+    assert level == barrier or barrier - 2 * shape.miss <= level <= barrier
+    # The grid leaves no gap that is wider than what the passes are lowered by.
+    directions = np.random.default_rng(1).normal(size=(50_000, 3))
+    directions /= np.linalg.norm(directions, axis=1)[:, None]
+    assert np.max(shape.tree.query(directions)[0]) < np.sqrt(4 * np.pi / shape.tree.n)
+
+
+@pytest.mark.parametrize("body", [GRIDS[0][0], GRIDS[2][0]])
+def test_clumps_and_ellipsoids_stay_where_they_are_decided(body: RigidBody) -> None:
+    """The side that is down when one is decided is down at the end; equal sides are equally often."""
+    data = run(body, particles=300, law=rs.Frictionless(normal=0.8), impacts=600)
+    found = rs.resting(body, data)
+    assert 0 < found.attrs["resolution"] < 0.05 * float(found.height.min())
+    early = rs.resting(body, data.isel(impact=slice(0, 80)))
+    known = early.resting.to_numpy() >= 0
+    assert known.mean() > 0.1
+    np.testing.assert_array_equal(early.resting[known], found.resting[known])
+    w, *v = np.moveaxis(data.attitude.to_numpy(), -1, 0)
+    last = data.impacts.to_numpy() - 1
+    decided = found.resting.to_numpy() >= 0
+    each = np.flatnonzero(decided)
+    w, v = w[each, last[each]][:, None], np.stack(v, axis=-1)[each, last[each]]
+    normal = found.normal.to_numpy()[found.resting.to_numpy()[each]]
+    turned = normal + 2 * np.cross(v, w * normal + np.cross(v, normal))
+    assert (turned[:, 2] < 0).all()
+    share, sides = 1 / len(found.face), decided.sum()
+    error = np.sqrt(share * (1 - share) / sides)
+    assert np.abs(found.least * 300 / sides - share).max() < 4 * error
+
+
 @pytest.mark.parametrize(
     ("change", "message"),
     [
-        ({"body": rs.Ellipsoid(semi_axes=(1e-3, 2e-3, 3e-3))}, "body = .*: must be a Box, ConvexPolyhedron"),
+        ({"body": rs.RoughSphere(radius=3e-3, asperities=9, asperity_radius=3e-6)}, "must be a Box, Clump"),
         ({"body": rs.Box(1e-2, 1e-2, 1.1e-2)}, "data is of a Box of .* kg: must be of the body"),
         ({"incline": 0.1}, "data.incline = 0.1: must be 0"),
         ({"law": rs.TangentialRestitution(normal=0.9, tangential=1.0)}, "create energy"),

@@ -11,9 +11,11 @@ from restitution._internal.arrays import FloatArray, IntArray, reals
 from restitution._internal.parameters import ParameterError, Problem, wrong
 from restitution.bodies import (
     Box,
+    Clump,
     ConvexPolyhedron,
     Cylinder,
     Die,
+    Ellipsoid,
     Mesh,
     Revolution,
     RigidBody,
@@ -22,10 +24,14 @@ from restitution.bodies import (
 from restitution.drop.recorded import RECORDS, check_filled, check_successive, pull, variables
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     import xarray as xr
 
-_BODIES = "a Box, ConvexPolyhedron, Cylinder, Die, Mesh, Revolution or Ring"
+_BODIES = "a Box, Clump, ConvexPolyhedron, Cylinder, Die, Ellipsoid, Mesh, Revolution or Ring"
 _STATE = ("velocity_after", "angular_velocity_after", "position")
+_DIRECTIONS = 40_000
+"""In the grid on which wells and passes of a clump or an ellipsoid are looked for."""
 _FLAT = 1e-9
 """Faces of a hull are one where their normals and distances differ by less, relative to the size."""
 
@@ -182,7 +188,94 @@ class _Turned:
         return min(max(face, 0), len(self.landscape.heights) - 1)
 
 
-def _shape(body: Any) -> _Polyhedron | _Turned:
+class _Sampled:
+    """Of a body with the support function h, on a grid of directions.
+
+    h changes by at most `arm` times the angle, so that between two points of the grid a pass can be lower
+    than on it by `miss`: passes are lowered by that, and wells that are shallower are one.
+    """
+
+    def __init__(self, h: Callable[[FloatArray], FloatArray], arm: float) -> None:
+        from scipy.spatial import cKDTree
+
+        number = np.arange(_DIRECTIONS) + 0.5
+        polar, azimuth = np.arccos(1.0 - 2.0 * number / _DIRECTIONS), np.pi * (1.0 + 5.0**0.5) * number
+        grid = np.stack(
+            [np.cos(azimuth) * np.sin(polar), np.sin(azimuth) * np.sin(polar), np.cos(polar)], axis=1
+        )
+        near = float(np.sqrt(4.0 * np.pi / _DIRECTIONS))  # no direction is farther from the grid
+        self.tree, self.miss, heights = cKDTree(grid), arm * near, h(grid)
+        pairs = self.tree.query_pairs(2.0 * near, output_type="ndarray")
+        # Each point leads to its lowest neighbour, and so to the bottom of a basin.
+        here, there = np.concatenate([pairs, pairs[:, ::-1]]).T
+        order = np.lexsort((heights[there], here))
+        lowest = there[order][np.unique(here[order], return_index=True)[1]]
+        down = np.where(heights[lowest] < heights, lowest, np.arange(_DIRECTIONS))
+        while (down != down[down]).any():
+            down = down[down]
+        bottom = np.arange(_DIRECTIONS)  # of the well that a basin belongs to
+
+        def well(point: int) -> int:
+            while bottom[point] != point:
+                point = bottom[point]
+            return point
+
+        apart = pairs[down[pairs[:, 0]] != down[pairs[:, 1]]]
+        over = heights[apart].max(axis=1) - self.miss
+        lowered: dict[tuple[int, int], float] = {}
+        for one in np.argsort(over, kind="stable"):
+            deep, shallow = sorted(
+                (well(point) for point in down[apart[one]]), key=lambda point: heights[point]
+            )
+            if deep != shallow and over[one] <= heights[shallow]:
+                bottom[shallow] = deep
+            elif deep != shallow:
+                lowered.setdefault((deep, shallow), float(over[one]))
+        of_grid = np.array([well(point) for point in down])
+        wells, self.well = np.unique(of_grid, return_inverse=True)
+        normals = np.array([_lowest(h, grid[point], near) for point in wells])
+        number_of = {int(point): i for i, point in enumerate(wells)}
+        passes = [
+            _Pass((number_of[well(f)], number_of[well(g)]), height)
+            for (f, g), height in lowered.items()
+            if well(f) != well(g)
+        ]
+        self.landscape = _Landscape(normals, h(normals), passes)
+
+    def below(self, down: FloatArray) -> int:
+        """Find the well in whose basin a direction lies that points down."""
+        return int(self.well[self.tree.query(down)[1]])
+
+
+def _lowest(h: Callable[[FloatArray], FloatArray], start: FloatArray, reach: float) -> FloatArray:
+    """Find the lowest direction about another one, by looking around closer and closer."""
+    offsets = np.random.default_rng(0).normal(size=(200, 3))
+    while reach > 1e-9:
+        around = start + reach * np.concatenate([np.zeros((1, 3)), offsets])
+        around /= np.linalg.norm(around, axis=1)[:, None]
+        start = around[np.argmin(h(around))]
+        reach *= 0.5
+    return start
+
+
+def _clump(body: Clump) -> _Sampled:
+    spheres = np.array(body.spheres) - [*body.centre_of_mass, 0.0]
+
+    def h(u: FloatArray) -> FloatArray:
+        highest = np.full(len(u), -np.inf)
+        for *centre, radius in spheres:  # one by one: there may be many
+            np.maximum(highest, u @ centre + radius, out=highest)
+        return highest
+
+    return _Sampled(h, float(np.linalg.norm(spheres[:, :3], axis=1).max()))
+
+
+def _shape(body: Any) -> _Polyhedron | _Turned | _Sampled:
+    if isinstance(body, Clump):
+        return _clump(body)
+    if isinstance(body, Ellipsoid):
+        axes = np.array(body.semi_axes)
+        return _Sampled(lambda u: np.linalg.norm(u * axes, axis=1), float(axes.max() - axes.min()))
     if isinstance(body, Revolution | Cylinder | Ring):
         return _Turned(np.array(body.compiled.rims) - [body.centre_of_mass[2], 0.0])
     if isinstance(body, Box | ConvexPolyhedron | Die | Mesh):
@@ -198,11 +291,13 @@ def resting(body: RigidBody, data: xr.Dataset) -> xr.Dataset:
     over which it would have to tip. Where the energy of a particle after an impact is below the lowest pass
     out of the well that it is in, it comes to rest there. Under a frictionless law its horizontal motion does
     not count. One that collapses above that, or whose impacts end, is undecided: rocking and rolling are
-    lasting contact, which the model does not have.
+    lasting contact, which the model does not have. Wells and passes of a clump or an ellipsoid are found on a
+    grid of directions: their passes are stated too low by ``resolution``, so that a particle is decided later
+    but not wrongly, and wells that are shallower are one.
 
     Parameters
     ----------
-    body : Box, ConvexPolyhedron, Cylinder, Die, Mesh, Revolution or Ring
+    body : Box, Clump, ConvexPolyhedron, Cylinder, Die, Ellipsoid, Mesh, Revolution or Ring
         The body of the run.
     data : xarray.Dataset
         Impacts from `restitution.simulate` with ``record="state"``, over a level plane, in which no impact
@@ -286,7 +381,8 @@ def resting(body: RigidBody, data: xr.Dataset) -> xr.Dataset:
         for name, (dims, values, text, unit) in about.items()
     }
     coordinates = {name: data[name] for name in ("particle", "component") if name in data.coords}
-    return xr.Dataset(found, coordinates, data.attrs | {"undecided": undecided})
+    attributes = data.attrs | {"undecided": undecided, "resolution": getattr(shape, "miss", 0.0)}
+    return xr.Dataset(found, coordinates, attributes)
 
 
 def _in_body(attitude: FloatArray, vector: FloatArray) -> FloatArray:
