@@ -94,7 +94,7 @@ licences:  ## list the licences of what is compiled into the package and the pag
 	$(PYTHON) packaging/licences.py
 
 fuzz:  ## random runs beside the oracle and between the SIMD levels, $(FUZZ) seconds each
-	RESTITUTION_FUZZ_SECONDS=$(FUZZ) cargo test -p restitution-core --locked --test agreement --test fuzz -- --nocapture
+	RESTITUTION_FUZZ_SECONDS=$(FUZZ) cargo test -p restitution-core --locked --test core -- --nocapture agreement:: fuzz::
 
 hostile: $(STAMP)  ## every public function with every hostile value and every harmed Dataset, harmed files and random tables for $(FUZZ) seconds, every command in every hostile environment
 	PYTHONPATH=tests $(BIN)/python tests/manual/hostile.py

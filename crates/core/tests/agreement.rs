@@ -1,16 +1,13 @@
 //! The product beside the oracle: random runs of every body under every law from every release, and the statistics of long ones.
 
-mod common;
-mod oracle;
-
-use common::all_bits;
-use oracle::cases::{RULES, SHAPES, case};
-use oracle::compare::{Case, Seen, Start};
-use oracle::impact::Rule;
-use oracle::normal::Restitution;
-use oracle::random::Random;
-use oracle::solid::Shape;
-use oracle::{Noise, Particle, World};
+use crate::common::all_bits;
+use crate::oracle::cases::{RULES, SHAPES, case};
+use crate::oracle::compare::{Case, Seen, Start};
+use crate::oracle::impact::Rule;
+use crate::oracle::normal::Restitution;
+use crate::oracle::random::Random;
+use crate::oracle::solid::Shape;
+use crate::oracle::{Noise, Particle, World};
 use restitution_core::statistics::{Axis, Bins, By};
 use restitution_core::{Level, Monitor, Orientation, Resources, Spin};
 use std::time::{Duration, Instant};

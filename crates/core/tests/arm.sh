@@ -33,9 +33,5 @@ export PATH
 export RUSTC_BOOTSTRAP=1 # -Zbuild-std is not stable
 export CARGO_TARGET_AARCH64_UNKNOWN_LINUX_GNU_LINKER=aarch64-linux-gnu-gcc
 export CARGO_TARGET_AARCH64_UNKNOWN_LINUX_GNU_RUNNER='qemu-aarch64 -L /usr/aarch64-linux-gnu'
-tests=
-for name in "${@:-digest}"; do
-    tests="$tests --test $name"
-done
 # shellcheck disable=SC2086
-exec cargo test $build_std --package restitution-core --locked --target $target --target-dir target/arm $tests
+exec cargo test $build_std --package restitution-core --locked --target $target --target-dir target/arm --test core -- "${@:-digest::}"

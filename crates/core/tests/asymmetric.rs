@@ -1,8 +1,6 @@
 //! The free rotation of any body: beside solutions with 50 digits, in closed form where there is one, what is conserved, and the bounds.
 
-mod oracle;
-
-use oracle::random::Random;
+use crate::oracle::random::Random;
 use restitution_core::{Quaternion, Rotation, Top, Vector};
 use std::f64::consts::PI;
 

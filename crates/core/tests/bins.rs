@@ -1,10 +1,7 @@
 //! Every impact in its bin, none lost, and moments that are those of the impacts.
 
-mod common;
-mod histograms;
-
-use common::*;
-use histograms::*;
+use crate::common::*;
+use crate::histograms::*;
 use proptest::prelude::*;
 use restitution_core::statistics::{
     Axis, Bins, By, CREATES_ENERGY, Gains, Grid, Histogram, Moments, Sums,

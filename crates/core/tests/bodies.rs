@@ -1,16 +1,13 @@
 //! Every shape: no contact missed and none invented, the balances at an impact, and the limits in which shapes coincide.
 
-mod common;
-mod scalar;
-
-use common::*;
+use crate::common::*;
+use crate::scalar::*;
 use proptest::prelude::*;
 use restitution_core::collide;
 use restitution_core::{
     Body, Dumbbell, FlightEnd, Law, LoadedSphere, Shape, Solid, Sphere, Spherocylinder, Spheroid,
     State, Surface, Vector,
 };
-use scalar::*;
 
 /// A shape with what the tests know of its outside by themselves.
 #[derive(Debug, Clone)]

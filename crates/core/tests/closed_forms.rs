@@ -1,12 +1,9 @@
 //! Motions with a solution on paper.
 
-mod common;
-mod scalar;
-
-use common::*;
+use crate::common::*;
+use crate::scalar::*;
 use proptest::prelude::*;
 use restitution_core::{Orientation, Run, Solid};
-use scalar::*;
 use std::f64::consts::{FRAC_PI_2, PI};
 
 /// Half an ulp of 1.

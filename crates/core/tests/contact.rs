@@ -1,12 +1,9 @@
 //! No contact is missed and none invented: every flight is looked at between its ends in another way.
 
-mod common;
-mod scalar;
-
-use common::*;
+use crate::common::*;
+use crate::scalar::*;
 use proptest::prelude::*;
 use restitution_core::{Body, FlightEnd, FlightStart, Sphere, State, StopReason, Vector};
-use scalar::*;
 
 /// The smallest gap under a sphere within a flight: sampled, and refined around every local minimum.
 fn deepest(start: &State, body: &Body, time: f64, sphere: Sphere, samples: usize) -> f64 {

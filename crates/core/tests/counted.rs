@@ -1,8 +1,6 @@
 //! Impacts counted for a learned distribution: as a plain sum over impacts has them, whatever the threads.
 
-mod common;
-
-use common::cases;
+use crate::common::cases;
 use proptest::prelude::*;
 use restitution_core::distribution::{
     At, Broadcast, COARSE, Counter, FINE, Impacts, Layout, Levels, Mixture, Nodes,

@@ -2,14 +2,11 @@
 //! on every machine.
 //!
 //! The digests are in `digests.txt` beside this file. A change that alters a bit of a result on purpose has to write them
-//! anew, with `RESTITUTION_WRITE_DIGESTS=1 cargo test -p restitution-core --test digest`; the difference then shows in review.
+//! anew, with `RESTITUTION_WRITE_DIGESTS=1 cargo test -p restitution-core --test core digest::`; the difference then shows in review.
 //! Where nobody meant to alter a result, a failure here is a defect: on one machine, of the change; on another, of the promise.
 
-mod common;
-mod digested;
-
-use common::*;
-use digested::{angles, jobs, kinds};
+use crate::common::*;
+use crate::digested::{angles, jobs, kinds};
 use restitution_core::statistics::{Axis, Bins, By, Grid, Histogram};
 use restitution_core::{Level, Monitor, Orientation, Records, Resources, Run};
 use std::collections::BTreeMap;
@@ -17,7 +14,7 @@ use std::collections::BTreeMap;
 const FILE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/digests.txt");
 const HEADER: &str = "\
 # Digests (FNV-1a, 64 bits) of the runs in digested/mod.rs. Every machine must find them.
-# Written by: RESTITUTION_WRITE_DIGESTS=1 cargo test -p restitution-core --test digest
+# Written by: RESTITUTION_WRITE_DIGESTS=1 cargo test -p restitution-core --test core digest::
 # To be written anew only with a change that is meant to alter the bits of a result.
 ";
 

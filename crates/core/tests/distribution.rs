@@ -1,8 +1,6 @@
 //! Tables of p(ε | v): the functions belong to one distribution, and no schedule shows in the draws.
 
-mod common;
-
-use common::cases;
+use crate::common::cases;
 use proptest::prelude::*;
 use restitution_core::distribution::{At, Broadcast, Layout, Mixture, Nodes, values};
 use restitution_core::{Error, Level, Monitor, Resources};

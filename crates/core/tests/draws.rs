@@ -1,8 +1,6 @@
 //! What particles are released with, beside the distributions that are promised: 20 000 draws of each.
 
-mod common;
-
-use common::*;
+use crate::common::*;
 use restitution_core::{About, Height, Orientation, Run, Spin, Vector};
 use std::f64::consts::{PI, TAU};
 

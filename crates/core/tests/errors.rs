@@ -1,8 +1,6 @@
 //! A parameter outside its range is an error that names it, and says what is allowed.
 
-mod common;
-
-use common::*;
+use crate::common::*;
 use restitution_core::statistics::{Axis, Bins, By};
 use restitution_core::{
     About, ChatterjeeRuina, Coulomb, Dumbbell, Error, Frictionless, Height, Hypothesis, Law, Level,

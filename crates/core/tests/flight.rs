@@ -1,12 +1,9 @@
 //! The free flight against what mechanics conserves, and against an integrator that knows only Euler's equations.
 
-mod common;
-mod scalar;
-
-use common::*;
+use crate::common::*;
+use crate::scalar::*;
 use proptest::prelude::*;
 use restitution_core::{Body, FlightEnd, FlightStart, State, Vector};
-use scalar::*;
 
 proptest! {
     #![proptest_config(cases(2000))]

@@ -1,13 +1,10 @@
 //! One particle of a run, followed by itself.
 
-mod common;
-mod scalar;
-
-use common::*;
+use crate::common::*;
+use crate::scalar::Observed;
 use restitution_core::{
     About, AnyBody, Followed, LoadedSphere, Orientation, Run, Sphere, Spheroid, Spin, Vector,
 };
-use scalar::Observed;
 
 fn bodies() -> [AnyBody<'static>; 3] {
     [

@@ -1,11 +1,9 @@
 //! Random runs, ordinary and outlandish, through every SIMD level: the same bits or none.
 //!
-//! Short by default; `RESTITUTION_FUZZ_SECONDS=600 cargo test --release -p restitution-core --test fuzz -- --nocapture` goes on
+//! Short by default; `RESTITUTION_FUZZ_SECONDS=600 cargo test --release -p restitution-core --test core -- --nocapture fuzz::` goes on
 //! for ten minutes with more cases. A failure prints the smallest case of its kind that was found, with every parameter.
 
-mod common;
-
-use common::*;
+use crate::common::*;
 use proptest::prelude::*;
 use proptest::test_runner::{Config, RngSeed, TestError, TestRunner};
 use restitution_core::{

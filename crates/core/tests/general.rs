@@ -1,16 +1,14 @@
 //! The laws for any K: beside the oracle, beside an independent solution to 30 digits, in closed form where there is one, and beside the
 //! law of bodies of revolution.
 
-mod contacts;
-mod oracle;
-
-use contacts::{HYPOTHESES, chatterjee_ruina, coulomb, frictionless};
-use oracle::algebra::{
+use crate::contacts;
+use crate::contacts::{HYPOTHESES, chatterjee_ruina, coulomb, frictionless};
+use crate::oracle::algebra::{
     Matrix, Vector as Array, apply, cross, dot, minus, norm, plus, solve, times,
 };
-use oracle::impact::{Contact, Rule, response};
-use oracle::normal::Restitution;
-use oracle::random::Random;
+use crate::oracle::impact::{Contact, Rule, response};
+use crate::oracle::normal::Restitution;
+use crate::oracle::random::Random;
 use restitution_core::law::{Answer, Compliance};
 use restitution_core::{Hypothesis, Law, Symmetric, Vector};
 

@@ -1,8 +1,6 @@
 //! Bodies that are the same both ways: where their centre of mass is, and which half of them touched.
 
-mod common;
-
-use common::*;
+use crate::common::*;
 use restitution_core::{Orientation, Run, Shape, Spherocylinder, Spheroid};
 use std::f64::consts::PI;
 

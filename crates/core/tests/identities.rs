@@ -1,13 +1,10 @@
 //! What every impact must obey, whatever the state: the balances of momentum, of angular momentum and of energy, and the
 //! law itself.
 
-mod common;
-mod scalar;
-
-use common::*;
+use crate::common::*;
+use crate::scalar::*;
 use proptest::prelude::*;
 use restitution_core::collide;
-use scalar::*;
 
 proptest! {
     #![proptest_config(cases(4000))]

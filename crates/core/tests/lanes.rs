@@ -1,15 +1,12 @@
 //! Particles side by side in SIMD lanes: those of the oracle one by one, and the same bits at every level.
 
-mod common;
-mod oracle;
-
-use common::*;
-use oracle::World;
-use oracle::cases::HYPOTHESES;
-use oracle::compare::{Case, Seen, Start};
-use oracle::impact::Rule;
-use oracle::normal::Restitution;
-use oracle::solid::Shape;
+use crate::common::*;
+use crate::oracle::World;
+use crate::oracle::cases::HYPOTHESES;
+use crate::oracle::compare::{Case, Seen, Start};
+use crate::oracle::impact::Rule;
+use crate::oracle::normal::Restitution;
+use crate::oracle::solid::Shape;
 use restitution_core::{
     Coulomb, Law, Level, Monitor, Orientation, Resources, Run, Spin, StopReason,
 };

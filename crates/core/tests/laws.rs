@@ -1,9 +1,7 @@
 //! The laws where they are known on paper: limits in which they coincide, spheres, published closed forms in the plane, and
 //! grazing contacts.
 
-mod contacts;
-
-use contacts::*;
+use crate::contacts::*;
 use restitution_core::describe::{Allowed, Argument, Parameter};
 use restitution_core::law::{AxialCompliance, Compliance, Components, Contact, Creation, Response};
 use restitution_core::{Hypothesis, LAWS, Law, Rule, Symmetric, TangentialRestitution, Vector};

@@ -1,8 +1,6 @@
 //! Which laws can make energy: ten million random impacts of each.
 
-mod contacts;
-
-use contacts::*;
+use crate::contacts::*;
 use restitution_core::law::Contact;
 use restitution_core::{Hypothesis, Law, TangentialRestitution};
 

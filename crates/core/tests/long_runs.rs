@@ -1,11 +1,8 @@
 //! A million impacts.
 
-mod common;
-mod scalar;
-
-use common::*;
+use crate::common::*;
+use crate::scalar::*;
 use restitution_core::{Body, Limits, Orientation, Run, State, StopReason, Vector};
-use scalar::*;
 
 /// A particle let go at rest, 20 R high.
 fn released(orientation: Orientation<'_>, body: &Body, seed: u64, particle: u64) -> State {

@@ -1,8 +1,6 @@
 //! The table of a run: it has the variables that it was asked for, and of a run that was cancelled what happened, and no more.
 
-mod common;
-
-use common::*;
+use crate::common::*;
 use restitution_core::{
     About, Columns, Height, Level, Monitor, PER_IMPACT, PER_PARTICLE, Plastic, Records, Resources,
     Rigid, Run, Spin, StopReason, Values, Vector, When,

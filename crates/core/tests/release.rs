@@ -1,15 +1,12 @@
 //! Particles let go with spin and velocity, over a plane that may be inclined.
 
-mod common;
-mod scalar;
-
-use common::*;
+use crate::common::*;
+use crate::scalar::Observed;
 use restitution_core::{
     About, AnyBody, Frictionless, Law, Level, Limits, LoadedSphere, Monitor, Orientation, Plastic,
     Records, Resources, Run, Scales, SingleImpact, Spheroid, Spin, State, StopReason, Vector,
     trajectory,
 };
-use scalar::Observed;
 
 const TUMBLING: Spin<'_> = Spin::Random {
     low: 10.0,

@@ -1,8 +1,6 @@
 //! A coefficient that scatters: the same bits whatever the schedule, and no trace where it does not scatter.
 
-mod common;
-
-use common::*;
+use crate::common::*;
 use restitution_core::{
     Columns, Coulomb, Followed, Frictionless, Hypothesis, Law, Level, Material, Monitor, Plastic,
     Resources, Rule, Run, Scattered, Spin, TangentialRestitution, Vector, simulate_series,

@@ -1,14 +1,11 @@
 //! Bodies that are no equal dumbbells: their tables are the oracle's, and their statistics those of their tables.
 
-mod common;
-mod oracle;
-
-use common::*;
-use oracle::World;
-use oracle::compare::{Case, Start};
-use oracle::impact::Rule;
-use oracle::normal::Restitution;
-use oracle::solid::Shape;
+use crate::common::*;
+use crate::oracle::World;
+use crate::oracle::compare::{Case, Start};
+use crate::oracle::impact::Rule;
+use crate::oracle::normal::Restitution;
+use crate::oracle::solid::Shape;
 use restitution_core::statistics::{Axis, Bins, By};
 use restitution_core::{
     AnyBody, Dumbbell, Level, LoadedSphere, Monitor, Orientation, Resources, Run, Spheroid, Spin,

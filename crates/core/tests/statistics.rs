@@ -1,10 +1,7 @@
 //! Sums without rounding: histograms merged in any order, of any portions of a run, have the same bits.
 
-mod common;
-mod histograms;
-
-use common::*;
-use histograms::*;
+use crate::common::*;
+use crate::histograms::*;
 use proptest::prelude::*;
 use restitution_core::statistics::{Bins, By, Histogram};
 use restitution_core::{

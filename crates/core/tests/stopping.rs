@@ -1,14 +1,11 @@
 //! Every trajectory says why it ended, and the table says as much as happened and no more.
 
-mod common;
-mod scalar;
-
-use common::*;
+use crate::common::*;
+use crate::scalar::*;
 use restitution_core::{
     About, COLLAPSE_RUN, ChatterjeeRuina, Coulomb, Hypothesis, Law, Limits, Monitor, Orientation,
     Records, Run, SingleImpact as Impact, Spin, State, StopReason, Vector,
 };
-use scalar::*;
 
 /// What happened is finite, what did not is NaN or 0, and each particle's count tells where one ends and the other begins.
 fn is_consistent(run: &Run<'_>, records: &Records) {

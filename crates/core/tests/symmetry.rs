@@ -1,15 +1,12 @@
 //! What the plane and gravity do not tell apart, the engine must not either: planar motions, mirror images, exchanged
 //! spheres, rotations about the normal, units.
 
-mod common;
-mod scalar;
-
-use common::*;
+use crate::common::*;
+use crate::scalar::*;
 use proptest::prelude::*;
 use restitution_core::{
     Dumbbell, FlightEnd, Orientation, Run, SingleImpact as Impact, Sphere, State, Vector, collide,
 };
-use scalar::*;
 use std::f64::consts::PI;
 
 /// Both trajectories, impact by impact, after `image` has been applied to the first: equal to the last bit.

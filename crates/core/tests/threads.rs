@@ -1,8 +1,6 @@
 //! The schedule must not show in the result.
 
-mod common;
-
-use common::*;
+use crate::common::*;
 use restitution_core::{
     Columns, Error, Level, Monitor, Orientation, Records, Resources, Run, Spin, Vector,
     default_threads, simulate_series,

@@ -1,5 +1,4 @@
 //! What the tests share: runs, and random parameters.
-#![allow(dead_code, reason = "each test file uses its own part")]
 
 use proptest::prelude::*;
 use proptest::test_runner::{Config, RngSeed};

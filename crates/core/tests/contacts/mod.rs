@@ -1,5 +1,4 @@
 //! What the tests of the laws share: random contacts, with the corners of the laws among them, and the energy of an impulse.
-#![allow(dead_code, reason = "each test file uses its own part")]
 
 use restitution_core::law::{AxialCompliance, Components, Contact, Response};
 use restitution_core::{ChatterjeeRuina, Coulomb, Frictionless, Hypothesis, Law};

@@ -1,5 +1,4 @@
 //! What the tests of statistics share: bins, and runs whose coefficients have every size.
-#![allow(dead_code, reason = "each test file uses its own part")]
 
 use crate::common::*;
 use proptest::prelude::*;

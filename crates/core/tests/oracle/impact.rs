@@ -1,6 +1,6 @@
 //! What an impact does: the matrix K of the contact from the full tensor of inertia, and every law from its own definition.
 
-use super::algebra::{Matrix, NORMAL, Vector, apply, cross, minus, norm, plus, solve, times};
+use super::algebra::{Matrix, NORMAL, Vector, cross, minus, norm, plus, solve, times};
 use super::friction;
 use super::normal::Restitution;
 use restitution_core::{
@@ -138,10 +138,5 @@ impl Contact {
             }
         }
         impulse(low)
-    }
-
-    /// **v**_c after an impulse.
-    pub fn after(&self, impulse: Vector) -> Vector {
-        plus(self.velocity, apply(&self.response, impulse))
     }
 }

@@ -7,7 +7,6 @@
 //! OneBall impacts of a chaotic motion can only be compared as long as rounding has not grown too far. How far it has is
 //! measured: [`Noise`] makes every number of the motion that is kept from one stage of an impact to the next wrong at random, in
 //! several particles beside the one that is compared.
-#![allow(dead_code, reason = "each test file uses its own part")]
 
 pub mod algebra;
 pub mod cases;

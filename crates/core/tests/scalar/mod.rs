@@ -1,5 +1,4 @@
 //! States, flights and impacts one by one, for the tests of what a run does not show, and the gaps worked out in another way.
-#![allow(dead_code, reason = "each test file uses its own part")]
 
 use crate::common::*;
 use proptest::prelude::*;
