@@ -161,7 +161,7 @@ def test_a_rough_body_shows_its_asperities_and_what_cannot_be_drawn_is_named() -
     assert len(shown) == 42
     away = UPRIGHT @ (clump.centre_of_mass - rough.centre_of_mass)
     for one, other in zip(shown, alike, strict=True):
-        np.testing.assert_allclose(one.centre, other.centre + away, atol=1e-12)
+        np.testing.assert_allclose(one.lowest, other.lowest + away, atol=1e-12)
     capsule = rs.Rough(rs.Spherocylinder(radius=2e-3, separation=5e-3), asperities=40, asperity_radius=4e-4)
     with pytest.raises(ValueError, match=r"body = Rough.*: no Egg, no rough Spherocylinder"):
         rs.figures.body(capsule)
