@@ -1,4 +1,4 @@
-"""Follow every link of the built site, in build/site or the folder that is named.
+"""Follow every link of the built site, in build/site or the folder that is named; find refused formulas.
 
 Links inside must lead to a page, and to an anchor that is there. DOIs are looked up, where the network
 allows.
@@ -41,6 +41,8 @@ def inside(site: Path) -> tuple[list[str], set[str]]:
     for path, page in pages.items():
         if path.name == "explorer.html":
             continue  # its own tests load it
+        if _unset(path):
+            dead.append(f"{path.relative_to(site)}: a formula of several lines has a number")
         for link in page.links:
             parts = urlsplit(link)
             if parts.scheme or parts.netloc:
@@ -54,6 +56,14 @@ def inside(site: Path) -> tuple[list[str], set[str]]:
             if not target.exists() or not (state or known is None or anchor in known.anchors):
                 dead.append(f"{path.relative_to(site)}: {link}")
     return sorted(dead), others
+
+
+def _unset(path: Path) -> bool:
+    """Tell whether a page has a numbered formula of several lines, which MathJax does not set."""
+    formulas = path.read_text(encoding="utf-8").split('<div class="math')[1:]
+    return any(
+        "\\begin{split}" in one and "\\tag{" in one for one in (f.split("</div>")[0] for f in formulas)
+    )
 
 
 def outside(links: set[str]) -> list[str]:
@@ -83,4 +93,4 @@ if __name__ == "__main__":
     dead, others = inside(site)
     dead += outside(others)
     print(*dead, sep="\n")
-    sys.exit(f"{len(dead)} dead links" if dead else 0)
+    sys.exit(f"{len(dead)} dead links or formulas" if dead else 0)

@@ -109,7 +109,7 @@ def draw(found: list[Compared]) -> Figure:
     axes.set_xlim(0.07, 1.1)
     axes.set_xlabel("impact velocity $v$ (m/s)")
     axes.set_ylabel("$|\\varepsilon_{\\mathrm{clock}} - \\varepsilon|$")
-    axes.legend(ncols=2, fontsize=6.5)
+    axes.legend(ncols=2, fontsize=6.5, columnspacing=1.0, handlelength=1.5)
     return figure
 
 

@@ -121,12 +121,18 @@ def main(path: str) -> None:
         "ε = √<ε²>(v)": lambda v, _: np.sqrt(dist.mean(v) ** 2 + dist.var(v)),
         "ε random, p(ε | v)": lambda v, rng: dist.rvs(v, random_state=rng, threads=1),
     }
+    labels = (
+        rf"$\varepsilon = {law.normal}$",
+        rf"$\varepsilon = {constant:.3f}$",
+        r"$\varepsilon = \sqrt{\langle\varepsilon^2\rangle(v)}$",
+        r"$\varepsilon$ random, $p(\varepsilon\,|\,v)$",
+    )
     figure, [[cooling, loss, shape]] = fg.panels(fg.PAGE, 2.8, 1, 3)
     for k, (name, rule) in enumerate(rules.items()):
         cooled, a2 = repeat(rule, theta, times, replicas=8)
         slope = -np.gradient(np.log(cooled[0, 1:]), np.log(times[1:]))
         print(name, *(f"{x:.5f}±{error:.5f}" for x, error in cooled[:, [17, 33, 49]].T), f"{slope[-2]:.2f}")
-        style = {"color": fg.COLORS[k], "marker": fg.MARKERS[k], "linestyle": "none", "label": name}
+        style = {"color": fg.COLORS[k], "marker": fg.MARKERS[k], "linestyle": "none", "label": labels[k]}
         cooling.errorbar(times[1::3], *cooled[:, 1::3], **style, fillstyle="none")
         if k != 1:
             shape.errorbar(times[1::3], *a2[:, 1::3], **style, fillstyle="none")

@@ -109,7 +109,8 @@ def draw(found: dict[str, Array]) -> Figure:
             for j in range(y.size):
                 text = f"{value[i, j, k]:.2f}\n±{max(error[i, j, k], 0.005):.2f}"
                 dark = abs(value[i, j, k] - 0.5) > 0.35
-                axes.text(x[i], y[j], text, ha="center", va="center", fontsize=6, color="w" if dark else "k")
+                place = x[i] - 0.07, y[j] + 0.09  # clear of the line
+                axes.text(*place, text, ha="center", va="center", fontsize=6, color="w" if dark else "k")
         line = np.linspace(x[0] - 0.2, x[-1] + 0.2, 50)
         axes.plot(line, np.log10(1e6 * RADIUS * 10 ** (2 * line) / (8 * np.sqrt(2))), "k--")
         axes.set_xlim(x[0] - 0.17, x[-1] + 0.17)

@@ -7,10 +7,12 @@ from pathlib import Path
 
 import numpy as np
 import xarray as xr
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from PIL import Image
 
 import restitution as rs
+from restitution.bodies import AnyBody
 from restitution.figures.style import Style
 
 IMPACT, GAIN, NEGATIVE = (79, 7), (391, 4), (24, (9, 10))
@@ -86,11 +88,7 @@ def grains(style: Style) -> Figure:
     }
     figure, (above, below) = rs.figures.panels(rs.figures.PAGE, 3.4, rows=2, columns=len(bodies))
     for picture, axes, (name, body) in zip(above, below, bodies.items(), strict=True):
-        content = io.BytesIO()
-        rs.figures.body(body, 0.5, style=style).savefig(content, dpi=300)
-        picture.imshow(Image.open(content))
-        picture.set_axis_off()
-        picture.set_title(name)
+        _portrait(picture, name, body, style)
         data = rs.simulate(body, rs.Frictionless(normal=0.9), particles=1500, impacts=40, release_height=0.06)
         near = data.restitution.values[abs(data.impact_velocity.values - 0.4) < 0.05]
         edges = np.linspace(-0.5, 2.0, 41)
@@ -99,6 +97,31 @@ def grains(style: Style) -> Figure:
         axes.set(xlabel=r"$\varepsilon$", xlim=(edges[0], edges[-1]), ylim=(0.0, None))
     below[0].set_ylabel(r"$p(\varepsilon \mid v = 0.4$ m/s$)$")
     return figure
+
+
+def hulls(style: Style) -> Figure:
+    """Draw solids of revolution, a die, and rough bodies."""
+    profile = 1e-3 * np.array([(-4, 0), (-3, 1), (0, 3), (1, 3), (3, 1), (4, 0)])
+    heights = ("exponential", 1e-4)
+    bodies = {
+        "Cylinder": rs.Cylinder(radius=2e-3, height=6e-3),
+        "Revolution": rs.Revolution(profile=profile),
+        "Die": rs.Die(12, 3e-3),
+        "Rough": rs.Rough(rs.Dumbbell(radius=2e-3, separation=3e-3), asperities=300, asperity_radius=2e-4),
+        "RoughSphere": rs.RoughSphere(radius=3e-3, asperities=1000, asperity_radius=2e-4, heights=heights),
+    }
+    figure, [row] = rs.figures.panels(rs.figures.PAGE, 1.6, columns=len(bodies))
+    for axes, (name, body) in zip(row, bodies.items(), strict=True):
+        _portrait(axes, name, body, style)
+    return figure
+
+
+def _portrait(axes: Axes, name: str, body: AnyBody, style: Style) -> None:
+    content = io.BytesIO()
+    rs.figures.body(body, 0.5, style=style).savefig(content, dpi=300)
+    axes.imshow(Image.open(content))
+    axes.set_axis_off()
+    axes.set_title(name)
 
 
 def _side_by_side(drawn: list[Image.Image]) -> Image.Image:
@@ -115,8 +138,9 @@ def main(folder: Path) -> None:
     grounds: tuple[Style, ...] = ("page", "page-dark")
     for ground in grounds:
         shapes(ground).save(folder / f"shapes{ground.removeprefix('page')}.png")
-        drawn = rs.figures.styled(grains)(style=ground)
-        rs.figures.save(drawn, folder / f"grains{ground.removeprefix('page')}.png", title="Grains")
+        for name, draw in (("grains", grains), ("hulls", hulls)):
+            drawn = rs.figures.styled(draw)(style=ground)
+            rs.figures.save(drawn, folder / f"{name}{ground.removeprefix('page')}.png", title=name.title())
         laws(ground).save(folder / f"impulses{ground.removeprefix('page')}.png")
         drawn = rs.figures.impact(data, *IMPACT, style=ground)
         name = f"impact{ground.removeprefix('page')}.png"

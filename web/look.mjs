@@ -47,6 +47,12 @@ for (const [name, { hash, scheme = "light", whole = false, print = false, act, w
   page.on("pageerror", (error) => console.log(name, error.stack));
   await page.goto(`file://${PAGE}#${hash}`);
   await page.waitForFunction(() => document.documentElement.dataset.state === "done");
+  // Charts are drawn where somebody looks.
+  if (whole) {
+    for (const chart of await page.locator(".chart:visible").all()) await chart.scrollIntoViewIfNeeded();
+    await page.waitForTimeout(300);
+    await page.evaluate(() => scrollTo(0, 0));
+  }
   await act?.(page);
   if (print) await page.emulateMedia({ media: "print" });
   await page.waitForTimeout(700);

@@ -1,6 +1,8 @@
 """Pictures and films of bodies: what is drawn is where the body is, and the drawn vectors obey mechanics."""
 
 import math
+import shutil
+import subprocess
 from pathlib import Path
 from typing import Any
 
@@ -88,8 +90,17 @@ GRAINS: dict[str, RigidBody] = {
     "ellipsoid": rs.Ellipsoid(semi_axes=(4e-3, 3e-3, 2e-3)),
     "box": rs.Box(8e-3, 6e-3, 4e-3),
     "tetrahedron": rs.ConvexPolyhedron(1e-3 * np.array([(0, 0, 0), (6, 0, 0), (0, 5, 0), (0, 0, 4)])),
+    "rough": rs.RoughSphere(radius=3e-3, asperities=1, asperity_radius=1e-3, heights=1e-3),
 }
 UPRIGHT = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, -1.0, 0.0]])
+
+
+def _lens(a: float, b: float, d: float) -> float:
+    """Area that circles of the radii a > b at the distance d have in common."""
+    if d <= a - b:
+        return math.pi * b * b
+    x, y = (d * d + a * a - b * b) / (2.0 * d), (d * d + b * b - a * a) / (2.0 * d)
+    return a * a * math.acos(x / a) + b * b * math.acos(y / b) - d * math.sqrt(a * a - x * x)
 
 
 @pytest.mark.parametrize("name", GRAINS)
@@ -110,6 +121,9 @@ def test_a_grain_is_as_large_as_it_is_and_touches_where_the_core_says(name: str)
             area = math.pi * float(np.linalg.norm(n * [b * c, c * a, a * b]))
         case rs.Box(a=a, b=b, c=c):
             area = float(n @ [b * c, c * a, a * b])
+        case rs.RoughSphere(asperity_balls=balls):
+            aside = float(np.hypot(*(attitude @ balls[0, :3])[:2]))  # of circles of 3 and 1 mm
+            area = math.pi * 10e-6 - _lens(3e-3, 1e-3, aside)
         case rs.ConvexPolyhedron():
             small = 0.5e-6 * np.array([5 * 4, 4 * 6, 6 * 5])  # of its faces on the planes of its axes
             area = 0.5 * float(n @ small + abs(attitude[2] @ small))
@@ -136,6 +150,21 @@ def test_the_picture_of_a_rim_is_a_polygon_as_fine_as_the_eye() -> None:
     egg = rs.Egg(length=6e-3, width=4e-3, blunt_end=1.9e-3, tip=1.2e-3)
     with pytest.raises(ValueError, match="body = Egg"):
         rs.figures.body(egg)
+
+
+def test_a_rough_body_shows_its_asperities_and_what_cannot_be_drawn_is_named() -> None:
+    """The picture of a rough dumbbell is that of a clump of all its balls, about the same centre."""
+    dumbbell = rs.Dumbbell(radius=3e-3, separation=4e-3)
+    rough = rs.Rough(dumbbell, asperities=40, asperity_radius=4e-4)
+    clump = rs.Clump(spheres=rough.compiled.balls())
+    shown, alike = (grain.surfaces(body, UPRIGHT) for body in (rough, clump))
+    assert len(shown) == 42
+    away = UPRIGHT @ (clump.centre_of_mass - rough.centre_of_mass)
+    for one, other in zip(shown, alike, strict=True):
+        np.testing.assert_allclose(one.lowest, other.lowest + away, atol=1e-12)
+    capsule = rs.Rough(rs.Spherocylinder(radius=2e-3, separation=5e-3), asperities=40, asperity_radius=4e-4)
+    with pytest.raises(ValueError, match=r"body = Rough.*: no Egg, no rough Spherocylinder"):
+        rs.figures.body(capsule)
 
 
 def arrows(figure: Figure) -> list[np.ndarray[Any, Any]]:
@@ -201,6 +230,21 @@ def test_a_film_is_in_its_style(style: Style | None) -> None:
     for number in (VELOCITY, ROTATION, IMPULSE, CONTACT):
         color = np.array(to_rgb((ON_DARK if dark else COLORS)[number])) * 255
         assert np.abs(shown - color).max(axis=-1).min() <= 12, number
+
+
+@pytest.mark.skipif(shutil.which("ffmpeg") is None, reason="takes the program ffmpeg")
+def test_an_mp4_shows_the_pictures_of_the_film(tmp_path: Path) -> None:
+    """As a player decodes it: every picture in its place, with colours rounded as the codec does."""
+    film = rs.figures.animate(states(BODIES["dumbbell"]), 1, 2, style="page")
+    path = film.save(tmp_path / "film.mp4")
+    command = ["ffmpeg", "-v", "error", "-i", str(path), "-f", "rawvideo", "-pix_fmt", "rgb24", "-"]
+    shown = np.frombuffer(subprocess.run(command, capture_output=True, check=True).stdout, np.uint8)
+    images = film._images()
+    width, height = (2 * (n // 2) for n in images[0].size)
+    shown = shown.reshape(film.frames, height, width, 3)
+    for number, image in enumerate(images):
+        drawn = np.asarray(image)[:height, :width].astype(float)
+        assert np.abs(shown[number] - drawn).mean() < 3.0, number
 
 
 def test_films_say_what_they_cannot_do(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -115,7 +115,7 @@ export class Controls {
     const there = ORDER.filter((key) => applies(key, setup));
     const wanted = there.find((key) => key === this.quick.value) ?? first(setup);
     // An open list stays as it is.
-    if (this.quick.options.length !== there.length) this.quick.replaceChildren(...there.map((key) => new Option(nameOf(key), key)));
+    if ([...this.quick.options].map(({ value }) => value).join() !== there.join()) this.quick.replaceChildren(...there.map((key) => new Option(nameOf(key), key)));
     this.quick.value = wanted;
     for (const [key, { row, show }] of this.fields) {
       row.hidden = !applies(key, setup);

@@ -12,7 +12,7 @@ export const KINDS = {
   superelastic: "Largest ε with v > fall/10",
   downward: "ε < 0: goes on downwards",
   upward: "ε < 0: hit while it rises",
-  locked: "Locked: in step with its rotation",
+  locked: "Locked to its rotation",
 } as const;
 export type Kind = keyof typeof KINDS;
 

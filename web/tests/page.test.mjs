@@ -260,6 +260,18 @@ test("text, scene and the chart of every stop are on one screen, on a laptop and
   }
 });
 
+test("on a phone the sliders to choose from are those of the body", async () => {
+  const { page, close } = await open(SMALL, PHONE);
+  const offered = () => page.locator("#quick option").evaluateAll((options) => options.map(({ value }) => value));
+  assert.ok((await offered()).includes("separation"));
+  await page.locator("#quick").selectOption("shape");
+  await page.locator("#shape").selectOption("spheroid"); // which has as many parameters as a dumbbell
+  await done(page);
+  assert.ok((await offered()).includes("polar") && !(await offered()).includes("separation"));
+  assert.equal(await page.locator("#quick").inputValue(), "shape");
+  await close();
+});
+
 test("the replay of a stop ends at its impact and holds, and leaves no words behind", async () => {
   const { page, close } = await open("particles=50&impacts=100&stop=3&chart=drawing", { motion: "no-preference" });
   await page.waitForFunction(() => /particle/.test(document.getElementById("found").textContent));

@@ -66,9 +66,12 @@ export function draw(pen: Pen, picture: Picture, at: Frame, colours: Palette, fo
   });
   levels(pen, picture, at, colours, font);
   if (picture.lattice) bar(pen, picture.lattice.most, box, colours, font);
-  legend(pen, picture, box, colours, font);
+  legend(pen, picture, at, colours, font);
   if (picture.note) {
     picture.note.split("\n").forEach((part, k) => {
+      const width = 0.65 * font * part.length;
+      // A marked value is behind the words.
+      if (picture.mark !== undefined) pen.rectangles([{ left: box.left + (box.width - width) / 2, top: box.top + box.height * 0.4 + (1.5 * k - 1.2) * font, width, height: 1.7 * font }], colours.paper);
       pen.text(part, [box.left + box.width / 2, box.top + box.height * 0.4 + 1.5 * k * font], { colour: colours.ink, size: 1.1 * font, anchor: "middle", rim: colours.paper });
     });
   }
@@ -120,6 +123,7 @@ export function sites(pen: Pen, picture: Picture, at: Frame): void {
 function line(pen: Pen, { x, y, of, kind }: Curve, picture: Picture, at: Frame, colours: Palette): void {
   let places: Place[] = [];
   const end = () => {
+    if (picture.lattice) pen.line(places, colours.paper, 5); // on colours of every kind
     pen.line(places, colours[of], kind === "steps" ? 1.6 : 2, kind === "dashes" ? [6, 4] : []);
     places = [];
   };
@@ -132,13 +136,17 @@ function line(pen: Pen, { x, y, of, kind }: Curve, picture: Picture, at: Frame, 
   end();
 }
 
-/** Names of the levels at the right, the upper one above its line and the other below. */
-function levels(pen: Pen, { levels = [], y }: Picture, at: Frame, colours: Palette, font: number): void {
+/** Names of the levels at the right, the upper one above its line and the other below, clear of an impact that is marked there. */
+function levels(pen: Pen, { levels = [], y, spot }: Picture, at: Frame, colours: Palette, font: number): void {
   const { box } = at;
   const seen = levels.filter((x) => x.y > y.low && x.y < y.high).sort((a, b) => b.y - a.y);
   seen.forEach((level, k) => {
-    const place = at.y(level.y) + (k === 0 ? -0.35 : 1.05) * font;
-    pen.text(level.label, [box.left + box.width - 5, place], { colour: colours.ink, size: font, anchor: "end", rim: colours.paper });
+    let place = at.y(level.y) + (k === 0 ? -0.35 : 1.05) * font;
+    const right = box.left + box.width - 5;
+    if (spot && at.x(spot[0]) > right - 3 * font - 11 && Math.abs(place - 0.35 * font - at.y(spot[1])) < 11 + 0.5 * font) {
+      place = at.y(spot[1]) + (k === 0 ? -13 : 13 + 0.8 * font);
+    }
+    pen.text(level.label, [right, place], { colour: colours.ink, size: font, anchor: "end", rim: colours.paper });
   });
 }
 
@@ -167,16 +175,22 @@ function bar(pen: Pen, most: number, box: Box, colours: Palette, font: number): 
   pen.text("impacts", [left + width + 3.1 * font, box.top + box.height / 2], label);
 }
 
-function legend(pen: Pen, { curves, x: axis }: Picture, box: Box, colours: Palette, font: number): void {
+function legend(pen: Pen, { curves }: Picture, at: Frame, colours: Palette, font: number): void {
   if (curves.length < 2) return;
+  const { box } = at;
   const width = 0.58 * font * Math.max(...curves.map(({ label }) => label.length)) + 2.6 * font;
-  const peak = (part: (x: number) => boolean) => Math.max(0, ...curves.flatMap(({ x, y }) => y.map((value, k) => (part(x[k]) ? (value ?? 0) : 0))));
-  const middle = (axis.low + axis.high) / 2;
-  // On the side where the curves are lower.
-  const left = !axis.log && peak((x) => x > middle) > peak((x) => x <= middle) ? box.left + 0.6 * font : box.left + box.width - width - 0.6 * font;
-  pen.rectangles([{ left, top: box.top + 4, width, height: 1.45 * font * curves.length + 4 }], colours.paper);
+  const height = 1.45 * font * curves.length + 4;
+  const corners = [box.top + 4, box.top + box.height - height - 4].flatMap((top) =>
+    [box.left + box.width - width - 0.6 * font, box.left + 0.6 * font].map((left) => ({ left, top, width, height })),
+  );
+  const hidden = ({ left, top }: Box) =>
+    curves.reduce((sum, { x, y }) => sum + y.filter((value, k) => value !== null && at.x(x[k]) > left && at.x(x[k]) < left + width && at.y(value) > top && at.y(value) < top + height).length, 0);
+  // In the corner where it hides least of the curves.
+  const least = Math.min(...corners.map(hidden));
+  const { left, top } = corners.find((corner) => hidden(corner) === least)!;
+  pen.rectangles([{ left, top, width, height }], colours.paper);
   curves.forEach(({ label, of, kind }, k) => {
-    const y = box.top + 1.45 * font * (k + 0.75);
+    const y = top - 4 + 1.45 * font * (k + 0.75);
     pen.line([[left + 0.3 * font, y], [left + 2 * font, y]], colours[of], 2, kind === "dashes" ? [6, 4] : []);
     pen.text(label, [left + 2.4 * font, y + 0.35 * font], { colour: colours.ink, size: font });
   });

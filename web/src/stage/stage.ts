@@ -72,8 +72,9 @@ export class Stage {
   private readonly overlay = document.createElement("canvas");
   private readonly controls: OrbitControls;
   private readonly sun = new DirectionalLight("#ffffff", 2.2);
-  private readonly ground = new Mesh(new PlaneGeometry(2000, 2000), new MeshBasicMaterial());
-  private readonly shade = new Mesh(new PlaneGeometry(2000, 2000), new ShadowMaterial({ opacity: 0.45 }));
+  /** Ground, shadow and lines lie in one another: what is below hides nothing of what is above it. */
+  private readonly ground = new Mesh(new PlaneGeometry(2000, 2000), new MeshBasicMaterial({ depthWrite: false }));
+  private readonly shade = new Mesh(new PlaneGeometry(2000, 2000), new ShadowMaterial({ opacity: 0.45, depthWrite: false }));
   private grid = new GridHelper();
   private readonly floor = new Group();
   /** Distance of the lines on the ground, in R of A. */

@@ -13,11 +13,15 @@ from restitution.bodies import (
     ConvexPolyhedron,
     Cylinder,
     Die,
+    Dumbbell,
     Ellipsoid,
+    LoadedSphere,
     Mesh,
     Revolution,
     RigidBody,
     Ring,
+    Rough,
+    RoughSphere,
 )
 from restitution.figures.scene._solid import PIXELS, shade
 
@@ -34,6 +38,12 @@ class _Round:
 
     centre: FloatArray
     matrix: FloatArray
+
+    @property
+    def window(self) -> list[tuple[float, float]]:
+        """Between which heights, and how far to the left and the right, it is seen."""
+        half = np.sqrt(np.diag(np.linalg.inv(self.matrix)))
+        return [(self.centre[k] - half[k], self.centre[k] + half[k]) for k in (1, 0)]
 
     @property
     def lowest(self) -> FloatArray:
@@ -62,6 +72,11 @@ class _Faces:
     corners: FloatArray
 
     @property
+    def window(self) -> list[tuple[float, float]]:
+        """As of what is round."""
+        return [(self.corners[:, k].min(), self.corners[:, k].max()) for k in (1, 0)]
+
+    @property
     def lowest(self) -> FloatArray:
         lowest: FloatArray = self.corners[self.corners[:, 1].argmin()]
         return lowest
@@ -86,8 +101,9 @@ def surfaces(body: RigidBody, attitude: FloatArray) -> list[_Round | _Faces]:
     """Return what there is to see about the centre of mass; `attitude` is from the body to the picture."""
     middle = body.centre_of_mass
     match body:
-        case Clump(spheres=spheres):
-            return [_Round(attitude @ (np.array(s[:3]) - middle), np.eye(3) / s[3] ** 2) for s in spheres]
+        case Clump() | RoughSphere() | Rough(body=Dumbbell() | LoadedSphere() | Clump()):
+            balls = body.compiled.balls()
+            return [_Round(attitude @ (ball[:3] - middle), np.eye(3) / ball[3] ** 2) for ball in balls]
         case Ellipsoid(semi_axes=axes):
             return [_Round(np.zeros(3), attitude @ np.diag(np.array(axes) ** -2.0) @ attitude.T)]
         case Box(vertices=points) | ConvexPolyhedron(points=points) | Die(vertices=points):
@@ -96,7 +112,7 @@ def surfaces(body: RigidBody, attitude: FloatArray) -> list[_Round | _Faces]:
             return [_hull((np.array(points)[hull] - middle) @ attitude.T)]
         case Revolution() | Cylinder() | Ring():
             return [_hull((_rims(np.array(body.compiled.rims)) - middle) @ attitude.T)]
-    raise ParameterError(wrong("body", body, "a body whose picture is known, which that of an Egg is not"))
+    raise ParameterError(wrong("body", body, "a body that can be drawn: no Egg, no rough Spherocylinder"))
 
 
 def _hull(corners: FloatArray) -> _Faces:
@@ -125,9 +141,10 @@ def picture(body: RigidBody, attitude: FloatArray) -> FloatArray:
     right, up = np.meshgrid(places, places)
     depth, grey = np.full(right.shape, -np.inf), np.zeros(right.shape)
     for one in surfaces(body, attitude):
-        z, normal = one.seen(right, up)
-        nearer = z > depth
-        depth[nearer], grey[nearer] = z[nearer], shade(normal[nearer], _TONE)
+        part = tuple(slice(*np.searchsorted(places, ends)) for ends in one.window)
+        z, normal = one.seen(right[part], up[part])
+        nearer = z > depth[part]
+        depth[part][nearer], grey[part][nearer] = z[nearer], shade(normal[nearer], _TONE)
     parts = (PIXELS, _FINE, PIXELS, _FINE)
     cover = np.isfinite(depth).reshape(parts).mean(axis=(1, 3))
     grey = grey.reshape(parts).mean(axis=(1, 3)) / np.maximum(cover, 1e-300)

@@ -47,7 +47,7 @@ def laplace(runs: Runs, settings: Settings) -> Finding:
     verdicts = [one.verdict for one in shapes]
     by_speed = "; ".join(
         f"at {one.label} it {one.verdict} (flanks exp(−|x|^k) with k = {one.exponent[0]:.3g}, in the tails "
-        f"{100 * one.tails[0] ** 2:.2g} % of the impacts that the fit has there)"
+        f"{100 * one.tails[0] ** 2:.0f} % of the impacts that the fit has there)"
         for one in shapes
     )
     return Finding(
