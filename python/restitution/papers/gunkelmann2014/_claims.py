@@ -289,7 +289,9 @@ def number_of_asperities(runs: Runs, s: Settings) -> Finding:
         agree.append(abs(slope - closed) < SIGNIFICANT * uncertain + 0.05)
         measured.append(Measurement(f"d ln σ/d ln {name}", slope, uncertain, at=at))
         measured.append(Measurement(f"d ln σ/d ln {name} in closed form", closed, at=at))
-        texts = [f"σ(ε), {name} = {grouped(value) if name == 'N' else f'{1e6 * value:g} µm'}" for value in by]
+        texts = [
+            f"σ(ε), {name} = {grouped(int(value)) if name == 'N' else f'{1e6 * value:g} µm'}" for value in by
+        ]
         for text, value, one, other in zip(texts, sigma, error, exact, strict=True):
             measured.append(Measurement(text, float(value), float(one), at=at))
             measured.append(Measurement(f"{text}, in closed form", float(other), at=at))
