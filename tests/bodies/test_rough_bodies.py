@@ -194,7 +194,7 @@ def test_rough_bodies_side_by_side() -> None:
 def test_studies_of_rough_bodies(tmp_path: Path) -> None:
     """Each point is the run alone; a closed form where there is one, else a refusal before anything runs."""
     study: dict[str, Any] = {"law": LAW, "run": {"particles": 32, "impacts": 4}, "statistics": BINS}
-    cases = [
+    cases: list[tuple[Any, str, list[float]]] = [
         (sphere(100), "body.asperities", [100, 300]),
         (ROUGH_DUMBBELL, "body.body.separation", [4e-3, 2e-3]),
         (ROUGH_DUMBBELL, "body.seed", [1, 2]),

@@ -34,11 +34,12 @@ def test_what_the_page_derives(in_space: bool, seed: int) -> None:
     height = elongation**2 / (8.0 * np.sqrt(2.0))
 
     def arms(shape: bool, rough: bool, space: bool) -> Array:
-        found = random.normal(0.0, np.sqrt(height) if rough else 0.0, (bodies, 2))
+        found: Array = random.normal(0.0, np.sqrt(height) if rough else 0.0, (bodies, 2))
         angle = random.uniform(0.0, 2.0 * np.pi, bodies)
         sine = np.sqrt(1.0 - random.uniform(-1.0, 1.0, bodies) ** 2) if space else np.sin(angle)
         way = np.array([np.cos(angle), np.sin(angle)]) if space else np.sign([np.cos(angle), 0.0 * angle])
-        return found + (0.5 * elongation * shape * sine * way).T
+        found += (0.5 * elongation * shape * sine * way).T
+        return found
 
     def scatter(*how: bool) -> float:
         spin = np.sum([arms(*how) for _ in range(12)], axis=0)
