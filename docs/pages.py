@@ -64,6 +64,15 @@ def locking(particles: int, images: Path | None) -> str:
     return str(script.table(particles, seeds=2))
 
 
+def imperfections(particles: int, images: Path | None) -> str:
+    """Make the table and the figure of examples/imperfections.py."""
+    script = _script("imperfections")
+    found = script.measure(particles, 12 if images else 2)
+    if images is not None:
+        script.draw(found).savefig(images / "imperfections.png", dpi=200)
+    return str(script.table(found))
+
+
 def _parameters(what: str, table: list[dict[str, Any]]) -> str:
     """Tell what the core's table says of the parameters of every body, law or material."""
     rows = [f"| {what} | | parameter | | unit | allowed | default |", "|---|---|---|---|---|---|---|"]
@@ -161,6 +170,7 @@ BLOCKS = {
     "dice": Block(dice, 1000, 5, ("dice.png",)),
     "energy": Block(energy, 10_000_000, 20_000, ("laws.png",)),
     "fits": Block(fits, 4000, 100),
+    "imperfections": Block(imperfections, 100, 4, ("imperfections.png",)),
     "laws": Block(laws, 0, 0),
     "names": Block(names, 0, 0),
     "near-round": Block(locking, 5000, 100, ("locking.png",)),

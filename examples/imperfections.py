@@ -1,7 +1,8 @@
 """Shape or roughness? Rough dumbbells beside smooth ones and rough spheres: docs/imperfections.md.
 
-Run ``python examples/imperfections.py OUT`` to write ``imperfections.png`` and ``imperfections.md`` into the
-folder OUT: some two minutes.
+    python examples/imperfections.py imperfections.png
+
+draws docs/images/imperfections.png; `python docs/pages.py imperfections` also writes the table of the page.
 """
 
 import sys
@@ -10,67 +11,62 @@ from pathlib import Path
 import numpy as np
 import numpy.typing as npt
 from matplotlib.figure import Figure
-from scipy.spatial import ConvexHull
 
 import restitution as rs
 from restitution import figures as fg
-from restitution.papers.estimate import Estimate, in_windows
+from restitution.papers.estimate import in_windows
 
 Array = npt.NDArray[np.float64]
 
 RADIUS, RELEASE, ASPERITY = 3e-3, 0.06, 3e-5
 LAW = rs.TangentialRestitution(normal=0.9)
-ELONGATIONS = (0.05, 0.1, 0.2)
+ELONGATIONS = (0.02, 0.05, 0.1, 0.2)
 """L/R."""
-HEIGHTS = (3e-6, 9e-6, 3e-5)
+HEIGHTS = (3e-7, 1e-6, 3e-6, 1e-5, 3e-5)
 """Mean heights of the asperities in m, exponentially distributed."""
 ENOUGH = 14.0
 """Number of asperities times mean height over R: the body itself touches with probability exp(-7)."""
 SPEEDS = (0.8, 0.55, 0.35, 0.2)
-PARTICLES, IMPACTS, SEED = 300, 26, 1
+IMPACTS = 26
 
 
-def scatter(body: rs.Dumbbell | rs.Clump) -> Estimate:
-    """Return σ(ε) at the speeds, within a tenth, with errors in which a particle is one draw."""
-    data = rs.simulate(
-        body,
-        LAW,
-        particles=PARTICLES,
-        impacts=IMPACTS,
-        release_height=RELEASE,
-        orientation="isotropic",
-        seed=SEED,
+def body(elongation: float, height: float, surface: int) -> rs.Dumbbell | rs.Rough:
+    """Make a dumbbell, with asperities if they have a height."""
+    smooth = rs.Dumbbell(radius=RADIUS, separation=elongation * RADIUS)
+    if height == 0.0:
+        return smooth
+    return rs.Rough(
+        smooth,
+        asperities=round(ENOUGH * RADIUS / height),
+        asperity_radius=ASPERITY,
+        heights=("exponential", height),
+        seed=surface,
     )
+
+
+def scatter(elongation: float, height: float, particles: int, surfaces: int) -> tuple[Array, Array]:
+    """Return σ(ε) at the speeds, within a tenth, and its standard error.
+
+    Every surface has so many particles of its own; the error is that of the mean over the surfaces.
+    """
     windows = [(0.9 * v, 1.1 * v) for v in reversed(SPEEDS)]
-    impacts = in_windows(data["impact_velocity"], windows)
-    return impacts.deviations(impacts.of(data["restitution"])).take(slice(None, None, -1))
+    found = []
+    for surface in range(1, surfaces + 1):
+        data = rs.simulate(
+            body(elongation, height, surface),
+            LAW,
+            particles=particles,
+            impacts=IMPACTS,
+            release_height=RELEASE,
+            orientation="isotropic",
+            seed=surface,
+        )
+        impacts = in_windows(data["impact_velocity"], windows)
+        found.append(impacts.deviations(impacts.of(data["restitution"])).value[::-1])
+    return np.mean(found, axis=0), np.std(found, axis=0, ddof=1) / np.sqrt(surfaces)
 
 
-def smooth(elongation: float) -> rs.Dumbbell:
-    """Make the dumbbell without asperities."""
-    return rs.Dumbbell(radius=RADIUS, separation=elongation * RADIUS)
-
-
-def rough(body: rs.Dumbbell, height: float) -> rs.Clump:
-    """Cover a body with asperities, of which only those on their convex hull are kept: no other can touch."""
-    random = np.random.default_rng(SEED)
-    number = round(ENOUGH * RADIUS / height)
-    way = random.normal(size=(number, 3))
-    way /= np.linalg.norm(way, axis=1, keepdims=True)
-    half = 0.5 * body.separation
-    places = way * (RADIUS + random.exponential(height, number) - ASPERITY)[:, None]
-    places[:, 2] += np.where(way[:, 2] > 0.0, half, -half)
-    tops = places[ConvexHull(places).vertices]
-    spheres = [(0.0, 0.0, half, RADIUS), (0.0, 0.0, -half, RADIUS)]
-    inertia = np.diag([body.transverse_inertia, body.transverse_inertia, body.axial_inertia])
-    return rs.Clump(
-        spheres=np.vstack([spheres, np.column_stack([tops, np.full(len(tops), ASPERITY)])]),
-        inertia=inertia,
-        centre=(0.0, 0.0, 0.0),
-    )
-
-
-def measure() -> dict[str, Array]:
+def measure(particles: int = 100, surfaces: int = 12) -> dict[str, Array]:
     """Measure σ of both, of the shape alone and of roughness alone, and their standard errors.
 
     Returns
@@ -78,15 +74,15 @@ def measure() -> dict[str, Array]:
     dict of ndarray, shapes (elongations, heights, speeds), (elongations, speeds), (heights, speeds)
         "both", "shape" and "roughness", and each with "_error".
     """
-    shape = [scatter(smooth(x)) for x in ELONGATIONS]
-    surface = [scatter(rough(smooth(0.0), h)) for h in HEIGHTS]
-    both = [[scatter(rough(smooth(x), h)) for h in HEIGHTS] for x in ELONGATIONS]
+    cases = {
+        "shape": [[scatter(x, 0.0, particles, surfaces) for x in ELONGATIONS]],
+        "roughness": [[scatter(0.0, h, particles, surfaces) for h in HEIGHTS]],
+        "both": [[scatter(x, h, particles, surfaces) for h in HEIGHTS] for x in ELONGATIONS],
+    }
     found = {}
-    for name in ("value", "error"):
-        end = "" if name == "value" else "_error"
-        found["shape" + end] = np.array([getattr(one, name) for one in shape])
-        found["roughness" + end] = np.array([getattr(one, name) for one in surface])
-        found["both" + end] = np.array([[getattr(one, name) for one in row] for row in both])
+    for name, rows in cases.items():
+        value, error = np.moveaxis(np.array(rows), 2, 0)
+        found[name], found[f"{name}_error"] = (x if name == "both" else x[0] for x in (value, error))
     return found
 
 
@@ -100,7 +96,7 @@ def share(found: dict[str, Array]) -> tuple[Array, Array]:
 @fg.styled
 def draw(found: dict[str, Array]) -> Figure:
     """Draw the share of roughness over L/R and the mean height, at each speed."""
-    figure, panels = fg.panels(fg.PAGE, 5.0, 2, 2, sharex=True, sharey=True)
+    figure, panels = fg.panels(fg.PAGE, 5.8, 2, 2, sharex=True, sharey=True)
     value, error = share(found)
     x, y = np.log10(ELONGATIONS), np.log10(np.array(HEIGHTS) * 1e6)
     for k, axes in enumerate([axes for row in panels for axes in row]):
@@ -108,15 +104,17 @@ def draw(found: dict[str, Array]) -> Figure:
         for i in range(x.size):
             for j in range(y.size):
                 text = f"{value[i, j, k]:.2f}\n±{max(error[i, j, k], 0.005):.2f}"
-                dark = abs(value[i, j, k] - 0.5) > 0.35
-                place = x[i] - 0.07, y[j] + 0.09  # clear of the line
-                axes.text(*place, text, ha="center", va="center", fontsize=6, color="w" if dark else "k")
-        line = np.linspace(x[0] - 0.2, x[-1] + 0.2, 50)
-        axes.plot(line, np.log10(1e6 * RADIUS * 10 ** (2 * line) / (8 * np.sqrt(2))), "k--")
-        axes.set_xlim(x[0] - 0.17, x[-1] + 0.17)
-        axes.set_ylim(y[0] - 0.26, y[-1] + 0.26)
+                color = "w" if abs(value[i, j, k] - 0.5) > 0.35 else "k"
+                axes.text(x[i], y[j], text, ha="center", va="center", fontsize=6, color=color).set_bbox(
+                    {"facecolor": image.cmap(value[i, j, k]), "edgecolor": "none", "pad": 0.5}
+                )
+        ends = axes.axis()
+        line = np.linspace(*ends[:2], 50)
+        axes.plot(line, np.log10(1e6 * RADIUS * 10 ** (2 * line) / (8 * np.sqrt(2))), "k--", zorder=1.5)
+        axes.axis(ends)
         axes.set_xticks(x, [f"{e:g}" for e in ELONGATIONS])
         axes.set_yticks(y, [f"{1e6 * h:g}" for h in HEIGHTS])
+        axes.minorticks_off()
         axes.set_title(f"{SPEEDS[k]:g} m/s", fontsize=8)
     for axes in panels[1]:
         axes.set_xlabel("$L/R$")
@@ -129,25 +127,19 @@ def draw(found: dict[str, Array]) -> Figure:
 
 
 def table(found: dict[str, Array]) -> str:
-    """Tabulate σ of both over the sum of σ of either."""
-    lines = ["| L/R | mean height | " + " | ".join(f"{v:g} m/s" for v in SPEEDS) + " |"]
-    lines.append("|---" * (2 + len(SPEEDS)) + "|")
-    for i, x in enumerate(ELONGATIONS):
-        for j, height in enumerate(HEIGHTS):
-            total = found["shape"][i] + found["roughness"][j]
-            ratio = found["both"][i, j] / total
-            error = ratio * np.sqrt(
-                (found["both_error"][i, j] / found["both"][i, j]) ** 2
-                + (found["shape_error"][i] ** 2 + found["roughness_error"][j] ** 2) / total**2
-            )
-            cells = [f"{a:.2f} ± {b:.2f}" for a, b in zip(ratio, error, strict=True)]
-            lines.append(f"| {x:g} | {1e6 * height:g} µm | {' | '.join(cells)} |")
-    return "\n".join(lines) + "\n"
+    """Tabulate σ of both over the sum of σ of either, the mean over the speeds."""
+    lines = ["| L/R | " + " | ".join(f"{1e6 * h:g} µm" for h in HEIGHTS) + " |"]
+    lines.append("|---" * (1 + len(HEIGHTS)) + "|")
+    total = found["shape"][:, None] + found["roughness"]
+    ratio = found["both"] / total
+    parts = (found["both_error"] / found["both"], found["shape_error"][:, None] / total)
+    error = ratio * np.sqrt(parts[0] ** 2 + parts[1] ** 2 + (found["roughness_error"] / total) ** 2)
+    # Speeds of one fall are not independent: the error is that at one speed.
+    for x, row, errors in zip(ELONGATIONS, ratio.mean(axis=2), error.mean(axis=2), strict=True):
+        cells = (f"{a:.2f} ± {b:.2f}" for a, b in zip(row, errors, strict=True))
+        lines.append(f"| {x:g} | " + " | ".join(cells) + " |")
+    return "\n".join(lines)
 
 
 if __name__ == "__main__":
-    out = Path(sys.argv[1])
-    out.mkdir(parents=True, exist_ok=True)
-    measured = measure()
-    draw(measured).savefig(out / "imperfections.png", dpi=200)
-    (out / "imperfections.md").write_text(table(measured), encoding="utf-8")
+    draw(measure()).savefig(Path(sys.argv[1]), dpi=200)

@@ -1,12 +1,16 @@
 """Rough bodies: where their asperities are, and that they bounce as clumps of the same balls do."""
 
+import json
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
+import xarray as xr
 from scipy import stats
 
 import restitution as rs
+from reference.command import invoke
 from restitution.drop.run import Run
 from restitution.drop.toml import run_of, tables_of
 
@@ -145,6 +149,89 @@ def test_runs_are_alike_on_any_threads_and_through_files() -> None:
     for made in (body, sphere(10), sphere(3, heights=[1e-6, 2e-6, 3e-6])):
         asked = Run(body=made, law=law)
         assert run_of(tables_of(asked), "file").body == made
+
+
+ROUGH_DUMBBELL = rs.Rough(
+    SHAPES["dumbbell"], asperities=500, asperity_radius=RHO, heights=("exponential", 1e-5)
+)
+BINS: dict[str, Any] = {"velocity_bins": [0.5, 0.7, 1.2], "restitution_bins": np.linspace(-1.0, 3.0, 41)}
+
+
+def test_the_learned_density_is_the_closed_form(tmp_path: Path) -> None:
+    """(9) and (12) of docs/rough.md, with nothing fitted: to 0.03, of six seeds the worst 0.02."""
+    body, law = sphere(10_000), rs.Frictionless(normal=0.9)
+    run: dict[str, Any] = {"particles": 8000, "impacts": 8, "heights_about": 0.06}
+    learned = rs.FluctuatingRestitution.learn(body, law, velocities=(0.5, 0.8), **run)
+    how: dict[str, Any] = {"radius": R, "asperities": 10_000, "asperity_radius": RHO, "height": RHO}
+    contact = rs.analytic.rough_contact(**how)
+    release = np.sqrt(2 * 9.81 * (0.06 - R))
+    for v in (0.55, 0.65, 0.75):
+        spin = rs.analytic.rough_spin(law, contact, speed=v, release_speed=release, radius=R)
+        exact = rs.analytic.rough_impact(law, contact, speed=v, spin=spin, radius=R)
+        e = exact.ppf(np.linspace(0.01, 0.99, 99))
+        assert np.abs(learned.cdf(e, v) - exact.cdf(e)).max() < 0.03
+    for write, path in ((learned.to_c, tmp_path / "rough.h"), (learned.to_fortran, tmp_path / "rough.f90")):
+        write(path)
+        assert {"asperities = 10000", "asperity_seed = 1"} <= {
+            line.strip(" *!>") for line in path.read_text().splitlines()
+        }
+
+
+def test_rough_bodies_side_by_side() -> None:
+    """What differs stands beside the names, that of the asperities' seed and of what is rough too."""
+    bodies = [sphere(200), ROUGH_DUMBBELL, SHAPES["dumbbell"]]
+    found = rs.compare(bodies, [LAW], particles=20, impacts=5, **BINS)
+    assert list(found.body.values) == ["RoughSphere", "Rough", "Dumbbell"]
+    np.testing.assert_array_equal(found.asperities, [200.0, 500.0, np.nan])
+    np.testing.assert_array_equal(found.separation, [np.nan, 4e-3, 4e-3])
+    assert list(found.heights.values) == ["", "exponential 1e-05", ""]
+    assert list(found.rough_body.values) == ["", "Dumbbell", ""]
+    assert found.asperity_radius.attrs["units"] == found.separation.attrs["units"] == "m"
+    alone = rs.statistics(ROUGH_DUMBBELL, LAW, particles=20, impacts=5, **BINS)
+    np.testing.assert_array_equal(found.restitution_count[1, 0], alone.restitution_count)
+
+
+def test_studies_of_rough_bodies(tmp_path: Path) -> None:
+    """Each point is the run alone; a closed form where there is one, else a refusal before anything runs."""
+    study: dict[str, Any] = {"law": LAW, "run": {"particles": 32, "impacts": 4}, "statistics": BINS}
+    cases: list[tuple[Any, str, list[float]]] = [
+        (sphere(100), "body.asperities", [100, 300]),
+        (ROUGH_DUMBBELL, "body.body.separation", [4e-3, 2e-3]),
+        (ROUGH_DUMBBELL, "body.seed", [1, 2]),
+    ]
+    for body, name, values in cases:
+        found = rs.sweep(study | {"body": body, "sweep": {name: values}}, out=tmp_path / f"{name}.zarr")
+        alone = rs.statistics(body, LAW, particles=32, impacts=4, **BINS)
+        here = found.sel({name.rpartition(".")[2]: values[0]})
+        np.testing.assert_array_equal(here.restitution_count, alone.restitution_count)
+    points = study | {"body": sphere(100), "sweep": {"body.asperities": [100, 300]}, "first_impact": {}}
+    means = rs.sweep(points, out=tmp_path / "first.zarr").first_impact_mean
+    assert list(means.values) == [rs.analytic.first_impact(sphere(n), LAW).mean() for n in (100, 300)]
+    drawn = points | {"body": sphere(100, heights=("exponential", 1e-5))}
+    with pytest.raises(ValueError, match="RoughSphere with equal heights, for the closed form"):
+        rs.sweep(drawn, out=tmp_path / "drawn.zarr")
+
+
+@pytest.mark.parametrize("body", [sphere(200, heights=("exponential", 1e-5)), ROUGH_DUMBBELL])
+def test_commands_and_rough_bodies(body: Any, tmp_path: Path) -> None:
+    """Every command that reads a run takes them; the explorer says what it does not show."""
+    written = tables_of(Run(body=body, law=LAW, particles=30, impacts=4))
+    nested = written["body"].pop("body", None)
+    text = "\n".join(
+        f"[{name}]\n" + "\n".join(f"{key} = {json.dumps(value)}" for key, value in table.items())
+        for name, table in (written | ({"body.body": nested} if nested else {})).items()
+    )
+    run, out = tmp_path / "run.toml", tmp_path / "run.nc"
+    bins = "[statistics]\nvelocity_bins = [0.5, 0.7, 1.2]\nrestitution_bins = [-1, 0.9, 3]\n"
+    run.write_text(f"{text}\n{bins}")
+    for command in ("simulate", "statistics"):
+        assert invoke(command, run, "--out", out, "--overwrite").exit_code == 0
+        with xr.open_dataset(out) as data:
+            assert data.attrs["asperities"] == body.asperities
+            assert data.attrs["heights"] == "exponential 1e-05"
+    result = invoke("explore", run, "--no-browser")
+    assert result.exit_code == 2
+    assert f"body = {type(body).__name__}: the explorer shows this only if" in result.stderr
 
 
 @pytest.mark.parametrize(

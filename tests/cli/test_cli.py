@@ -237,16 +237,17 @@ def test_papers_hand_over_their_options(
 
     given: list[Any] = []
 
-    def redraw(out: Path, **options: Any) -> Path:
-        given.extend([out, options])
-        if options["impacts"] < 400_000:
-            raise ValueError(f"impacts = {options['impacts']}: must be at least 400000")
+    def redraw(
+        out: Path, impacts: int, seed: int, threads: int | None, progress: bool, *, overwrite: bool
+    ) -> Path:
+        given.extend([out, impacts, seed, threads, progress, overwrite])
+        if impacts < 400_000:
+            raise ValueError(f"impacts = {impacts}: must be at least 400000")
         return out / "report.html"
 
     monkeypatch.setattr(module, "redraw", redraw, raising=False)
     result = invoke(command, "--out", tmp_path, "--impacts", 500_000, "--seed", 7, "--threads", 2)
     assert (result.exit_code, result.stdout) == (0, f"{tmp_path / 'report.html'}\n")
-    options = {"impacts": 500_000, "seed": 7, "threads": 2, "progress": False, "overwrite": False}
-    assert given == [tmp_path, options]
+    assert given == [tmp_path, 500_000, 7, 2, False, False]
     result = invoke(command, "--out", tmp_path, "--impacts", 3)
     assert (result.exit_code, result.stderr) == (BAD_INPUT, "error: impacts = 3: must be at least 400000\n")

@@ -94,7 +94,9 @@ def test_every_claim_is_judged(runs: Runs, monkeypatch: pytest.MonkeyPatch) -> N
     claims = {claim.key: claim.finding for claim in PAPER.claims.judge(runs, SMALL)}
     assert len(claims) == 10
     assert all(np.isfinite(one.value) for finding in claims.values() for one in finding.measured)
-    for key in ("energy-transfer", "scatter-grows", "rotation-grows"):
+    for key in ("energy-transfer", "scatter-grows", "rotation-grows", "number-of-asperities"):
         assert claims[key].verdict != "fails", key
+    exponents = {one.name: one for one in claims["number-of-asperities"].measured if "d ln σ" in one.name}
+    assert [round(exponents[f"d ln σ/d ln {name} in closed form"].value) for name in ("N", "⟨h⟩")] == [-1, 1]
     text = report(SMALL_PAPER, runs, [], PAPER.claims.judge(runs, SMALL, "superelastic"))
     assert "restitution rough --out rough --impacts 12000 --seed 3" in text

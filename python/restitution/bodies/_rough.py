@@ -59,8 +59,8 @@ def _body(value: Any) -> Any:
     return value
 
 
-Asperities = Annotated[Whole, Field(ge=1, lt=2**31, description="number of asperities")]
-Heights = Annotated[Any, Allowed(_HEIGHTS), BeforeValidator(_heights), Field(description="m, or drawn")]
+Asperities = Annotated[Whole, Field(ge=1, lt=2**31)]
+Heights = Annotated[Any, Allowed(_HEIGHTS), BeforeValidator(_heights), Field(description="m")]
 Seed = Annotated[Whole, Field(ge=0, lt=2**64)]
 
 

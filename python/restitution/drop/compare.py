@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import inspect
 import warnings
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from itertools import product
 from typing import Any, TypeVar
 
@@ -14,7 +14,7 @@ import xarray as xr
 from restitution._internal.arrays import several
 from restitution._internal.parameters import ParameterError, Parameters, Problem, shown, wrong
 from restitution._internal.resources import progress_bar
-from restitution.bodies import AnyBody
+from restitution.bodies import AnyBody, Rough, RoughSphere
 from restitution.drop.energy import LEDGER, WHY, EnergyWarning, factor, percent, reported_elsewhere
 from restitution.drop.simulate import SimulationInterrupted
 from restitution.drop.statistics import statistics
@@ -233,11 +233,8 @@ def _parameters(axis: str, objects: Iterable[Parameters]) -> dict[str, Any]:
     units: dict[str, str] = {}
     for one in objects:
         row: dict[str, Any] = {}
-        for name in _written(one):
-            value = getattr(one, name)
-            if value is None:
-                continue
-            units.setdefault(name, unit_of(type(one), name))
+        for name, value, unit in _values(one):
+            units.setdefault(name, unit)
             if isinstance(value, tuple) and len(value) == 2:
                 row |= {f"{name}_1": value[0], f"{name}_2": value[1]}
             else:
@@ -257,6 +254,18 @@ def _parameters(axis: str, objects: Iterable[Parameters]) -> dict[str, Any]:
             words = ["" if value is None else str(value) for value in values]
             found[name] = ((axis,), words, {"long_name": f"{name} of the {axis}"})
     return found
+
+
+def _values(one: Parameters) -> Iterator[tuple[str, Any, str]]:
+    """Yield name, value and unit of what was given; of a rough body as `attributes` names and writes it."""
+    if not isinstance(one, Rough | RoughSphere):
+        given = {name: getattr(one, name) for name in _written(one)}
+    else:
+        given = one.attributes() | {"asperities": float(one.asperities)}
+    kinds = [type(one), *([type(one.body)] if isinstance(one, Rough) else [])]
+    for name, value in given.items():
+        if value is not None:
+            yield name, value, next((unit_of(kind, name) for kind in kinds if name in kind.model_fields), "1")
 
 
 def _warn(found: xr.Dataset) -> None:

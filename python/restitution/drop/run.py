@@ -210,7 +210,7 @@ class Run(Parameters):
         for name, field in type(self.body).model_fields.items():
             length = getattr(self.body, name)
             in_metres = (field.description or "").split(";")[0] == "m" and length is not None
-            if in_metres and np.max(length) > 1.0:
+            if in_metres and name != "heights" and np.max(length) > 1.0:  # heights are below a radius
                 units.append(f"{name} = {shown(length)} is taken in metres")
         if self.heights[1] > 10.0:
             units.append(f"release_height = {self.heights[1]:g} is taken in metres")
