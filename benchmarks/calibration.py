@@ -151,7 +151,7 @@ def draw(found: Calibration) -> Figure:
     for axes, rank, name in zip(row, found.rank.T, (r"$\varepsilon_n$", "$L/R$", "scatter"), strict=True):
         axes.axhspan(low, high, color="0.85")
         axes.hist(rank, bins=bins, range=(0.0, 1.0), color=fg.COLORS[0], histtype="step")
-        axes.set_xlabel(f"rank of the true {name} among its draws")
+        axes.set_xlabel(f"rank of the true {name}")
         axes.set_ylabel("experiments")
         axes.set_xlim(0.0, 1.0)
     return figure
