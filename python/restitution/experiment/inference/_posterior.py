@@ -94,7 +94,8 @@ def posterior(
     scatter : (float, float) or None
         Prior of the standard deviation with which ε_n itself scatters from impact to impact, as by
         `restitution.Scattered`: its logarithm is uniform between these, 10⁻⁹ <= low < high <= 1, and the low
-        end stands for none; up to 10⁻⁶ there is none. With None no material scatters, and all scatter of ε is of the shape.
+        end stands for none; up to 10⁻⁶ there is none. With None no material scatters, and all scatter of ε is
+        of the shape.
     friction : (float, float), optional
         Prior of the friction of a `Coulomb` law: uniform between these, 0 <= low < high. Not inferred unless
         given.
@@ -182,7 +183,7 @@ def posterior(
 
 
 def _resolved(series: Sequence[Series], family: Family, low: float, setting: Setting) -> float:
-    """Return an L/R, at most `low`, that no series tells from 0; the shape's part of a variance goes as (L/R)⁴."""
+    """Return an L/R, at most `low`, that no series tells from 0; a shape's variance goes as (L/R)⁴."""
     law = family.law_of(family.inside(series[0].observed[0]), None, None)
     part = 0.0
     for one in series:
