@@ -183,7 +183,7 @@ def by_power(part: Band, windows: Array, noise: Array, onsets: Array) -> tuple[A
     lead, tail = (round(time * part.rate) for time in (_LEAST_LEAD, _LEAST_TAIL))
     spectrum = np.mean(np.abs(np.fft.rfft(windows)) ** 2, axis=0)
     # Half the number of independent values in a point.
-    independent = np.sum(spectrum) ** 2 / np.sum(spectrum**2) / windows.shape[1]
+    independent = 1.0 / np.sum((spectrum / spectrum.sum()) ** 2) / windows.shape[1]
     power = windows**2
     pieces = np.lib.stride_tricks.sliding_window_view(power, lead + tail, axis=1)
     places = np.arange(pieces.shape[1])
