@@ -98,7 +98,7 @@ def measure(condition: Condition, seeds: int = SEEDS) -> Heard:
     errors, claimed = [], []
     true = missed = false = 0
     for seed in range(1, seeds + 1):
-        samples, times = _recorded(condition, seed)
+        samples, times = recorded(condition, seed)
         true += times.size
         try:
             heard = rs.sound.impacts(samples, condition.rate)
@@ -114,7 +114,7 @@ def measure(condition: Condition, seeds: int = SEEDS) -> Heard:
     return Heard(np.concatenate([*errors, []]), np.concatenate([*claimed, []]), true, missed, false)
 
 
-def _recorded(condition: Condition, seed: int) -> tuple[Array, Array]:
+def recorded(condition: Condition, seed: int) -> tuple[Array, Array]:
     """Simulate a nearly round ball, and record it."""
     body = rs.Dumbbell(radius=3e-3, separation=6e-6)
     data = rs.simulate(

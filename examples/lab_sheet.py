@@ -1,7 +1,7 @@
 """Draw what a student should get: docs/images/lab-sheet.png.
 
 Run ``python examples/lab_sheet.py OUT`` to write ``lab-sheet.png`` and ``lab-sheet.pdf`` into the folder OUT:
-a simulated ball that is not quite round, timed with an error of 20 µs.
+a simulated table-tennis ball that is not quite round, timed with an error of 20 µs.
 """
 
 import sys
@@ -17,8 +17,8 @@ ERROR = 20e-6
 
 
 def measured() -> tuple[xr.Dataset, rs.flight.LawFit]:
-    """Drop a ball of L = 0.4 mm once, and fit a constant to it."""
-    ball = rs.Dumbbell(radius=19.8e-3, separation=0.4e-3)
+    """Drop a shell of L = 0.4 mm once, and fit a constant to it."""
+    ball = rs.Dumbbell(radius=19.8e-3, separation=0.4e-3, wall=0.4e-3)
     law = rs.Frictionless(normal=0.94)
     run = rs.simulate(ball, law, particles=1, impacts=40, release_height=0.25, seed=3)
     noise = np.random.default_rng(1).normal(0.0, ERROR, run.sizes["impact"])

@@ -1,5 +1,6 @@
 """Onsets of balls that scatter themselves, from recordings whose times are known; `make onsets` has more."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -7,6 +8,7 @@ import pytest
 import soundfile
 
 import restitution as rs
+from benchmarks.listening import CONDITIONS, off_and_stated, recorded
 from reference.clicks import KINDS, RATE, bouncing, clicks, put
 from reference.onsets import errors, heard, second_ball_is_heard, slopes, spreads_over_stated, two_balls
 from restitution.experiment.listen import Setting, analyse
@@ -37,6 +39,21 @@ def test_stated_errors_are_honest(noise: float) -> None:
     assert 0.7 < np.median(bulk) < 1.3
     assert 0.8 < np.median(whole) < 1.3
     assert whole.max() < 2.5
+
+
+@pytest.mark.parametrize("ball", ["rubber", "basketball", "steel on steel"])
+def test_stated_errors_are_honest_however_clear_the_recording_is(ball: str) -> None:
+    """The upper bands of a soft ball then have what their filters leak of its low tones."""
+    [condition] = [one for one in CONDITIONS if one.name == ball]
+    samples, times = recorded(replace(condition, trouble=condition.trouble | {"noise": -110.0}), 1)
+    pulls = np.divide(*off_and_stated(rs.sound.impacts(samples, condition.rate), times))
+    assert np.std(pulls) < 1.5
+
+
+def test_bursts_that_differ_are_timed_to_20_us() -> None:
+    """As the root mean square; who knew all of their envelope, spectrum and noise could reach 12."""
+    spreads = [float(np.std(errors("slap", seed, -45.0)[0])) for seed in (101, 102, 103)]
+    assert np.sqrt(np.mean(np.square(spreads))) < 22e-6
 
 
 def test_no_slope_is_claimed_that_is_not_there() -> None:

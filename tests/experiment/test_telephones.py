@@ -1,5 +1,7 @@
-"""Recordings of telephones, decoded by a program that stands for ffmpeg on the PATH."""
+"""Recordings of telephones, decoded by ffmpeg, and by a program that stands for it on the PATH."""
 
+import shutil
+import subprocess
 import sys
 from pathlib import Path
 
@@ -8,6 +10,8 @@ import pytest
 import soundfile
 
 import restitution as rs
+from reference.clicks import RATE as FULL
+from reference.clicks import bouncing
 from reference.command import invoke
 from reference.measuring import samples
 from restitution.experiment.listen import Setting, analyse
@@ -88,3 +92,18 @@ def test_a_file_that_ffmpeg_does_not_read(recording: Path, monkeypatch: pytest.M
     installed(recording, monkeypatch, FAILS)
     with pytest.raises(ValueError, match=r"my ball\.m4a: not a sound that ffmpeg can read: .*Invalid data"):
         rs.sound.impacts(recording)
+
+
+@pytest.mark.skipif(shutil.which("ffmpeg") is None, reason="there is no ffmpeg on this machine")
+@pytest.mark.parametrize(("codec", "off"), [("alac", 0.5e-6), ("aac", 1e-6)])
+def test_what_ffmpeg_itself_writes_is_read(
+    codec: str, off: float, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Of a ball whose times are known; the name looks like an option."""
+    monkeypatch.chdir(tmp_path)
+    truth = bouncing("ping", seed=101, noise=-45.0)
+    soundfile.write("ball.wav", 0.9 * truth.samples, FULL)
+    encode = ["ffmpeg", "-v", "error", "-i", "ball.wav", "-c:a", codec, "-b:a", "128k", "file:-my ball é.m4a"]
+    subprocess.run(encode, stdin=subprocess.DEVNULL, check=True)
+    times = rs.sound.impacts("-my ball é.m4a").time.values
+    assert np.std(times - truth.times) < off

@@ -17,6 +17,12 @@ def test_times_are_good_to_20_us_whatever_the_ball_does() -> None:
     assert max(np.std(errors(*one, -45.0)[0]) for one in SAME) < 2e-6
 
 
+def test_bursts_that_differ_are_timed_to_20_us() -> None:
+    """As the root mean square over the recordings."""
+    spreads = [np.std(errors("slap", seed, -45.0)[0]) for seed in range(101, 116)]
+    assert np.sqrt(np.mean(np.square(spreads))) < 21e-6
+
+
 @pytest.mark.parametrize("noise", [-30.0, -20.0])
 def test_noise_leaves_times_good_to_20_us_where_clicks_repeat(noise: float) -> None:
     spreads = [float(np.std(errors(*one, noise)[0])) for one in SAME]

@@ -42,6 +42,11 @@ class Family:
         """Between what the parameter is."""
         return (0.0, 1.0) if self.parameter == "normal" else (0.0, np.inf)
 
+    def inside(self, value: float) -> float:
+        """Return the parameter that is nearest to a value."""
+        low, high = self.range
+        return min(max(value, low + 1e-6), high - 1e-6)
+
     def body(self, elongation: float) -> Body:
         """Return the ball of an L/R, with L = 2t."""
         t = 0.25 * elongation * self.diameter

@@ -27,6 +27,10 @@ Array = npt.NDArray[np.float64]
 _SHAPES, _SCATTERS, _FRICTIONS = 10, 4, 6
 """Values of L/R and of the scatter of ε_n in a decade, and values of friction."""
 _LEAST_SCATTER = 1e-9
+_USUAL = (1e-3, 0.3)
+"""L/R of balls that are inferred unless told otherwise."""
+_UNSEEN = 0.1
+"""Part of the variance of ε that a shape may add and is not seen."""
 _ROUNDEST = 1e-9
 """L/R below which no ball is: of a millimetre it is less than an atom."""
 _WALKERS, _CHAINS, _BURN = 32, 4, 100
@@ -53,7 +57,7 @@ def posterior(
     form: Form = "dumbbell",
     lobes: int = 2,
     wall: float | None = None,
-    elongation: tuple[float, float] = (1e-3, 0.3),
+    elongation: tuple[float, float] | None = None,
     scatter: tuple[float, float] | None = (1e-6, 0.05),
     friction: tuple[float, float] | None = None,
     particles: int = 500,
@@ -84,12 +88,14 @@ def posterior(
     wall : float, optional
         Thickness of the wall of a hollow ball, in m. A table-tennis ball that is taken for a full one has an
         L/R that is too small by a fifth.
-    elongation : (float, float)
-        Prior: ln(L/R) is uniform between these, 10⁻⁹ <= low < high < 10⁶ low.
+    elongation : (float, float), optional
+        Prior: ln(L/R) is uniform between these, 10⁻⁹ <= low < high < 10⁶ low, and the low end stands for a
+        round ball. Without it from 10⁻³ to 0.3, or from as low as the times tell a ball from a round one.
     scatter : (float, float) or None
         Prior of the standard deviation with which ε_n itself scatters from impact to impact, as by
-        `restitution.Scattered`: its logarithm is uniform between these, 10⁻⁹ <= low < high <= 1, and at the
-        low end there is none. With None no material scatters, and all scatter of ε is of the shape.
+        `restitution.Scattered`: its logarithm is uniform between these, 10⁻⁹ <= low < high <= 1, and the low
+        end stands for none; up to 10⁻⁶ there is none. With None no material scatters, and all scatter of ε is
+        of the shape.
     friction : (float, float), optional
         Prior of the friction of a `Coulomb` law: uniform between these, 0 <= low < high. Not inferred unless
         given.
@@ -139,13 +145,13 @@ def posterior(
     setting = Setting(diameter=diameter, lobes=lobes, wall=wall, particles=particles, draws=draws, seed=seed)
     if not isinstance(law, Law):
         raise ParameterError(wrong("law", law, "a law such as Frictionless(normal=0.9)"))
-    low, high = _prior("elongation", elongation, least=_ROUNDEST)
+    low, high = _USUAL if elongation is None else _prior("elongation", elongation, least=_ROUNDEST)
     if not high < _MOST_RANGE * low:
         raise ParameterError(wrong("elongation", elongation, f"high < {_MOST_RANGE:g} low"))
     family = Family(law, setting.diameter, form, setting.lobes, setting.wall)
     family.check_friction(friction)
     hollow = {} if wall is None else {"wall": wall}
-    with in_terms_of(elongation=elongation, diameter=diameter, **hollow):
+    with in_terms_of(elongation=(low, high), diameter=diameter, **hollow):
         family.body(high)
     frictions: Sequence[float | None] = [None]
     if friction is not None:
@@ -165,13 +171,28 @@ def posterior(
     )
     reference = next(iter(first.parameters.values()))
     series = [Series.of(one, family.of_speed, reference, first.scatter, name) for name, one in named.items()]
-    with in_terms_of(diameter=diameter, elongation=elongation):
+    with in_terms_of(diameter=diameter, elongation=(low, high)):
         for measured, end in product(series, (low, high)):
             measured.check_release(family.body(end), law, setting.particles)
+    if elongation is None:
+        low = max(_resolved(series, family, low, setting), 1.01 * high / _MOST_RANGE)
     nodes = np.geomspace(low, high, 1 + math.ceil(_SHAPES * math.log10(high / low)))
     found = table(series, family, nodes, scatters, frictions, setting.particles, setting.seed)
     chain, log = _sampled(emcee, found, setting)
     return _tree(from_dict, family, setting, found, chain, log, series, scatters=scatter is not None)
+
+
+def _resolved(series: Sequence[Series], family: Family, low: float, setting: Setting) -> float:
+    """Return an L/R, at most `low`, that no series tells from 0; a shape's variance goes as (L/R)⁴."""
+    law = family.law_of(family.inside(series[0].observed[0]), None, None)
+    part = 0.0
+    for one in series:
+        shape, none = (
+            one.simulated(family.body(x), law, setting.particles, 1, setting.seed).statistics[:, 1:]
+            for x in (low, 0.0)
+        )
+        part = max(part, float(np.expm1(np.median(shape, axis=0) - np.median(none, axis=0)).max()))
+    return low * min(1.0, (_UNSEEN / part) ** 0.25) if part > 0.0 else low
 
 
 def _packages() -> tuple[Any, Any]:

@@ -20,6 +20,8 @@ Array = npt.NDArray[np.float64]
 
 _GRID = 81
 """Values of the parameter of ε_n."""
+_NO_SCATTER = 1e-6
+"""A scatter of ε_n as small as this is taken to be none."""
 _NOISES = 2
 """Times each simulated drop is timed."""
 _FINER = 4
@@ -65,15 +67,16 @@ class Table:
         return largest + math.log(mean)
 
     def limit(self, axis: int) -> float:
-        """Return the upper limit, 95 %, of what an axis has the logarithm of, uniform from the low end.
+        """Return the upper limit, 95 %, of what an axis has the logarithm of, uniform from 0.
 
         It gives equal intervals equal weight, and so does not depend on where a prior in the logarithm ends.
+        Below the low end all is as likely as there.
         """
         marginal: Any = np.moveaxis(np.exp(self.values - self.values.max()), axis, 0)
         for place in reversed([k for k in range(self.values.ndim) if k != axis]):
             marginal = np.trapezoid(marginal, self.axes[place], axis=-1)
-        value = np.exp(self.axes[axis])
-        below = cumulative_trapezoid(marginal, value, initial=0)
+        value = np.concatenate([[0.0], np.exp(self.axes[axis])])
+        below = cumulative_trapezoid(np.concatenate([marginal[:1], marginal]), value, initial=0)
         return float(np.interp(0.95 * below[-1], below, value))
 
 
@@ -91,12 +94,12 @@ def table(
     What the numbers of a series are, less the true parameter, hardly depends on the parameter: they are
     simulated at one value of it, that which the series have by least squares.
     """
-    middle = float(np.mean([one.observed[0] for one in series]))
+    middle = family.inside(float(np.mean([one.observed[0] for one in series])))
     low, high = family.range
-    middle = min(max(middle, low + 1e-6), high - 1e-6)
     densities = []
     for number, (x, scatter, mu) in enumerate(product(elongations, scatters, frictions)):
-        body, law = family.body(float(x)), family.law_of(middle, scatter, mu)
+        none = scatter is None or scatter <= _NO_SCATTER
+        body, law = family.body(float(x)), family.law_of(middle, None if none else scatter, mu)
         start = seed + 1000003 * number
         densities.append(
             [

@@ -60,7 +60,7 @@ def disagreement(found: Table) -> str:
     """Say first what disagrees: that the best ball does not give the scatter that was observed."""
     if found.agreement >= _DISAGREES:
         return ""
-    p = f"p = {found.agreement:.1g}" if found.agreement > 0.0 else "p < 0.001"
+    p = f"p = {found.agreement:.1g}" if found.agreement > 0.0 else f"p < {_DISAGREES:g}"
     return (
         f"No ball of this kind gives the observed scatter of ε, early and late ({p} for the best); what "
         "follows holds only for such balls. "

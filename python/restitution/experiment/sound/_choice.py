@@ -7,8 +7,8 @@ import numpy as np
 import numpy.typing as npt
 from scipy.optimize import nnls
 
-from restitution.experiment.sound._envelope import bands
-from restitution.experiment.sound._pickers import MATCHED, RULES, Band, Matched, Picker
+from restitution.experiment.sound._envelope import bands, rounding
+from restitution.experiment.sound._pickers import MATCHED, RULES, Band, Matched, Picker, by_power
 
 Array = npt.NDArray[np.float64]
 
@@ -22,6 +22,13 @@ _HIDDEN = 0.45
 """Part of its reach that the error of a time has if noise hides the impact; of any time within, 0.58."""
 _FAR_OFF = 6.0
 """Standard errors by which a time must be off to be doubted."""
+_CLEAREST = 5e-4
+"""Noise, over the loudest sample of the impacts, that every recording is given. Of a low tone a band far
+above has only what its filter leaks: in silence it would be heard there, and taken for another sound."""
+_LOUD = 3e-3
+"""Time in s after an impact in which its sound is loud."""
+_READING = 0.01
+"""Points by which a parabola through three of the eight points of a period is off its summit, at most."""
 _REACH, _MOST_REACH = 0.1e-3, 3e-3
 """Time in s on either side of an impact in which it is looked for once rules agree where it is; at most."""
 _TINY = 1e-18
@@ -83,6 +90,10 @@ def choose(samples: Array, rate: float, times: Array, before: Array, after: Arra
     times, before, after : ndarray, shape (n,)
         When the level rises at each impact, and how far before and after that its onset may be, in s.
     """
+    heard = (times[:, None] * rate).astype(np.int64) + np.arange(int(_LOUD * rate))
+    loudest = np.abs(samples[np.clip(heard, 0, samples.size - 1)]).max()
+    hiss = max(np.sqrt(rounding(samples)), _CLEAREST * loudest)
+    samples = samples + hiss * np.random.default_rng(0).standard_normal(samples.size)
     parts = [Band(samples, rate, band) for band in bands(rate)[1:]]
     places = _Places(times, before, after)
     rough = [picks for part in parts for picks in places.picked(part)]
@@ -107,6 +118,13 @@ def choose(samples: Array, rate: float, times: Array, before: Array, after: Arra
     whole = own[:, None] + np.array([picks.whole for picks in fine]) + _TINY
     order = np.argsort(np.mean(np.log(whole), axis=1))
     chosen = fine[order[0]]
+    if chosen.rule != MATCHED:
+        together = _of_all(Band(samples, rate, bands(rate)[0]), middle, reach)
+        if np.mean(np.log(together.whole)) < np.mean(np.log(whole[order[0]])):
+            chosen = together
+            fine.append(chosen)
+            own, whole = np.append(own, 0.0), np.vstack([whole, chosen.whole])
+            order = np.concatenate([[len(fine) - 1], order])
     errors = np.sqrt(own[order[0]] + chosen.noise + _TINY)
     off, error = _beside_others([fine[one] for one in order], own[order])
     lost = (chosen.lost > _LOST) | (errors > _HIDDEN * reach)
@@ -173,8 +191,6 @@ def _tried(part: Band, times: Array, reach: float) -> list[_Picks]:
     gaps = np.diff(times, prepend=2.0 * times[0] - times[1])
     starts = (first - length)[:, None] - 0.3 * gaps[:, None] * rng.random((times.size, _DRAWS))
     noise = part.windows(starts.ravel(), length)[0].reshape(times.size, _DRAWS, -1)
-    # Silence may be digital, where a sound has the noise of rounding.
-    noise = noise + part.rounding * rng.standard_normal(noise.shape)
     power, of_noise = np.mean(windows**2, axis=1), np.mean(noise**2, axis=(1, 2))
     loudness = np.sqrt(np.maximum(power - of_noise, 1e-4 * power))
     clear = np.argsort(loudness / np.sqrt(of_noise + 1e-300))[::-1][:_CLEAR]
@@ -189,8 +205,9 @@ def _tried(part: Band, times: Array, reach: float) -> list[_Picks]:
         off -= np.median(off, axis=1, keepdims=True)
         # Of normal numbers, three quarters are within 1.15 standard deviations.
         inside = np.abs(off) <= 5.0 / 1.15 * np.quantile(np.abs(off), 0.75, axis=1, keepdims=True)
-        noise_variance = np.sum(inside * off**2, axis=1) / np.maximum(inside.sum(axis=1) - 1, 1)
-        whole, lost = np.sum(off**2, axis=1) / (_DRAWS - 1), 1.0 - inside.mean(axis=1)
+        reading = (_READING / part.rate) ** 2
+        noise_variance = reading + np.sum(inside * off**2, axis=1) / np.maximum(inside.sum(axis=1) - 1, 1)
+        whole, lost = reading + np.sum(off**2, axis=1) / (_DRAWS - 1), 1.0 - inside.mean(axis=1)
         # At the edge of its window a rule has found nothing.
         early, late = part.points if rule == MATCHED else (2, 2)
         pinned = (places < early + 1.0) | (places > windows.shape[1] - late - 2.0)
@@ -205,6 +222,16 @@ def _tried(part: Band, times: Array, reach: float) -> list[_Picks]:
             )
         )
     return found
+
+
+def _of_all(part: Band, times: Array, reach: float) -> _Picks:
+    """Pick onsets by the power in all bands together; how well is known from its likelihood."""
+    windows, begins = part.windows(times - reach - 1.5e-3, 2.0 * reach + 4e-3)
+    silence, _ = part.windows(times - 2.0 * reach - 5e-3, reach + 3e-3)
+    places, variances = by_power(part, windows, np.mean(silence**2, axis=1), (times - begins) * part.rate)
+    variance = variances / part.rate**2
+    none = np.zeros(times.size)
+    return _Picks("mean power", part.name, begins + places / part.rate, variance, variance, none)
 
 
 def _variances(found: list[_Picks]) -> tuple[Array, Array]:

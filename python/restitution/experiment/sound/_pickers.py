@@ -6,9 +6,8 @@ from typing import Any
 
 import numpy as np
 import numpy.typing as npt
+from scipy.ndimage import gaussian_filter1d
 from scipy.signal import butter, firwin, resample_poly, sosfilt
-
-from restitution.experiment.sound._envelope import rounding
 
 Array = npt.NDArray[np.float64]
 Picker = Callable[[Array], Array]
@@ -36,8 +35,6 @@ class Band:
         How far before and after an onset rules look, in s.
     independent : float
         Half the number of independent values in this time.
-    rounding : float
-        Standard deviation of the noise of rounding.
     rate : float
         Points per second of its windows.
     """
@@ -48,7 +45,6 @@ class Band:
         middle = np.sqrt(low * high)
         self.lead, self.tail = max(_LEAST_LEAD, _LEAD / middle), max(_LEAST_TAIL, _TAIL / middle)
         self.independent = (high - low) * (self.lead + self.tail)
-        self.rounding = math.sqrt(rounding(samples) * 2.0 * (high - low) / rate)
         self._own = rate
         self._up, self._down = max(math.ceil(_POINTS * high / rate), 1), max(int(rate / (_POINTS * high)), 1)
         self.rate = rate * self._up / self._down
@@ -162,3 +158,47 @@ class Matched:
         size = np.sqrt((energy + _SILENT * energy.max()) * np.sum(self._mean**2))
         r = np.maximum(np.correlate(window, self._mean, "valid"), 0.0) / np.maximum(size, 1e-300)
         return self._lead + np.arange(r.size), np.log1p(-(np.minimum(r, 1.0 - 1e-9) ** 2))
+
+
+def by_power(part: Band, windows: Array, noise: Array, onsets: Array) -> tuple[Array, Array]:
+    """Pick onsets of sounds that differ, each noise whose power rises and falls as the mean of all does.
+
+    Of Gaussian noise of the power V(t) the logarithm of the likelihood is -½ Σ (ln V + x²/V) over independent
+    points. V is the mean over all sounds, each where its own likelihood says that it is.
+
+    Parameters
+    ----------
+    part : Band
+    windows : ndarray, shape (m, n)
+    noise : ndarray, shape (m,)
+        Its mean power in each window.
+    onsets : ndarray, shape (m,)
+        Where each sound begins, nearly, in points.
+
+    Returns
+    -------
+    tuple of ndarray
+        Mean and variance of the onset, all places being as likely before, in points.
+    """
+    lead, tail = (round(time * part.rate) for time in (_LEAST_LEAD, _LEAST_TAIL))
+    spectrum = np.mean(np.abs(np.fft.rfft(windows)) ** 2, axis=0)
+    # Half the number of independent values in a point.
+    independent = 1.0 / np.sum((spectrum / spectrum.sum()) ** 2) / windows.shape[1]
+    power = windows**2
+    pieces = np.lib.stride_tricks.sliding_window_view(power, lead + tail, axis=1)
+    places = np.arange(pieces.shape[1])
+    likely = 1.0 * (places == np.clip(np.round(onsets) - lead, 0, places[-1])[:, None])
+    loud = np.einsum("mk,mkj->m", likely, pieces)[:, None] / (lead + tail)
+    below = np.cumsum(np.pad(power, ((0, 0), (1, 0))), axis=1)
+    before, after = below[:, places], below[:, -1:] - below[:, places + lead + tail]
+    quiet = noise[:, None]
+    for _ in range(2 * _ROUNDS):
+        mean = np.einsum("mk,mkj->j", likely / loud, pieces) / len(windows)
+        model = loud * gaussian_filter1d(mean, 0.5 / independent) + quiet
+        late = model[:, -1:]
+        surprise = np.einsum("mkj,mj->mk", pieces, 1.0 / model) + np.log(model).sum(axis=1)[:, None]
+        surprise += before / quiet + places * np.log(quiet) + after / late - places * np.log(late)
+        likely = np.exp(-independent * (surprise - surprise.min(axis=1)[:, None]))
+        likely /= likely.sum(axis=1)[:, None]
+    found = likely @ places
+    return found + lead, likely @ places**2.0 - found**2
