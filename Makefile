@@ -9,7 +9,7 @@ FUZZ ?= 300
 JOBS ?= 2
 CORE := $(shell find crates -name '*.rs' -o -name 'Cargo.toml') Cargo.toml Cargo.lock pyproject.toml
 
-.PHONY: help install pages paper rough calibrate onsets test fuzz hostile audit mutants test-arm test-web rust-tests bench-web look web docs wheel licences coverage lint lint-rust lint-python bench clean
+.PHONY: help install pages paper rough calibrate slow onsets test fuzz hostile audit mutants test-arm test-web rust-tests bench-web look web docs wheel licences coverage lint lint-rust lint-python bench clean
 
 help:  ## list the targets
 	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed 's/:.*##/\t/' | expand -t 12
@@ -29,6 +29,9 @@ rough: $(STAMP)  ## simulate and judge rough spheres into rough/
 
 calibrate: $(STAMP)  ## 120 synthetic experiments: do posteriors cover? Some minutes on one core
 	$(BIN)/python -m benchmarks.calibration build/calibration
+
+slow: $(STAMP)  ## tests that take long, of which make test does smaller ones
+	$(BIN)/python -m pytest -n $(JOBS) --dist loadfile -m slow
 
 onsets: $(STAMP)  ## errors of onsets, slopes and second balls over many recordings: two minutes
 	$(BIN)/python -m pytest tests/manual/onsets.py
@@ -52,7 +55,7 @@ test:  ## every check: Rust format, clippy, Rust tests, ruff, mypy, the explorer
 	$(MAKE) --jobs=2 lint
 	cargo test --workspace --locked
 	$(MAKE) test-web
-	$(BIN)/python -m pytest -n $(JOBS) --dist loadfile
+	$(BIN)/python -m pytest -n $(JOBS) --dist loadfile --no-loadscope-reorder
 
 rust-tests:
 	cargo test --workspace --locked --no-run
@@ -83,7 +86,7 @@ docs: $(STAMP) web/node_modules/.package-lock.json build/extra/paper/report.html
 	rm -rf build/site
 	$(BIN)/python -m sphinx -W --keep-going -b html -d build/doctrees docs build/site
 	$(BIN)/python docs/check.py build/site
-	$(BIN)/python -m pytest tests/project/test_import.py -q -k pages
+	$(BIN)/python -m pytest tests/project/test_import.py -q -m '' -k pages
 
 wheel: $(STAMP)  ## wheels for Linux into dist/, each installed and run in an environment of its own
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check --upgrade 'pip>=25.1'

@@ -36,7 +36,7 @@ def test_every_command_is_tried() -> None:
 @pytest.mark.parametrize(
     ("name", "surroundings"),
     [
-        ("laws", "four files"),  # which figures take for their fonts
+        pytest.param("laws", "four files", marks=pytest.mark.slow),  # which figures take for their fonts
         ("sweep", "six files"),
         ("simulate", "two files"),
         ("distribution", "ten files"),
@@ -47,7 +47,9 @@ def test_few_open_files(name: str, surroundings: str) -> None:
     assert command(name, surroundings, random.Random(1)) is None
 
 
-@pytest.mark.parametrize("surroundings", ["stopped and continued", "no assertions"])
+@pytest.mark.parametrize(
+    "surroundings", ["stopped and continued", pytest.param("no assertions", marks=pytest.mark.slow)]
+)
 @pytest.mark.parametrize("name", ["statistics", "sweep"])
 def test_other_surroundings(name: str, surroundings: str) -> None:
     """Who is stopped goes on, and ends at Ctrl-C; where Python leaves assertions out, Zarr's are named."""

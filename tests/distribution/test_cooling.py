@@ -97,6 +97,7 @@ def test_only_the_mean_square_cools(example: ModuleType) -> None:
     assert (1.0 - 0.36) / (1.0 - square) > 1.49
 
 
+@pytest.mark.slow
 def test_from_both_sides_to_the_same_temperature(example: ModuleType, learned: Any) -> None:
     """Where <v³ε²> = <v³> nothing cools: hotter and colder gases get there, as the Gaussian closure says.
 

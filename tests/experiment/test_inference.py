@@ -78,7 +78,9 @@ def test_a_round_ball_gives_an_upper_limit_and_an_egg_a_shape() -> None:
     assert 0.05 < float(egg["posterior"].to_dataset().elongation.median()) < 0.3
 
 
-@pytest.mark.parametrize(("error", "one", "four"), [(2e-5, 0.03, 8e-3), (9e-8, 0.03, 1e-3)])
+@pytest.mark.parametrize(
+    ("error", "one", "four"), [pytest.param(2e-5, 0.03, 8e-3, marks=pytest.mark.slow), (9e-8, 0.03, 1e-3)]
+)
 def test_the_limit_of_a_sphere_is_what_its_times_resolve(error: float, one: float, four: float) -> None:
     """The scatter of a shape goes as (L/R)², so that times 220 times as good resolve a fifteenth of L/R.
 

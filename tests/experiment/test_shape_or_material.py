@@ -91,6 +91,7 @@ def test_five_drops_of_a_round_ball_tell_that_the_material_scatters() -> None:
     assert "the material scatters, ε_n scatters by 0.00" in tree.attrs["verdict"]
 
 
+@pytest.mark.slow
 def test_ten_drops_of_a_dumbbell_tell_its_shape() -> None:
     tree = inferred([dumbbell(0.05, 10 + i) for i in range(10)], 500)
     assert tree.attrs["explained_by"] == "shape"
@@ -109,6 +110,7 @@ def test_one_drop_of_a_dumbbell_covers_its_shape() -> None:
     assert sum(low < 0.05 < high for low, high in ends) >= 5
 
 
+@pytest.mark.slow
 def test_ten_drops_of_a_rounder_dumbbell_cover_its_shape() -> None:
     tree = inferred([dumbbell(0.02, 30 + i) for i in range(10)], 500)
     assert tree.attrs["explained_by"] == "shape"
@@ -116,6 +118,7 @@ def test_ten_drops_of_a_rounder_dumbbell_cover_its_shape() -> None:
     assert low < 0.02 < high < 0.03
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", [10, 30])
 def test_ten_drops_of_a_hollow_dumbbell_tell_its_shape_if_its_wall_is_known(seed: int) -> None:
     """J = 0.654 mR² for 0.4 mR²: the wall's posterior covers L/R, that of a full ball is at 0.78 of it."""

@@ -45,6 +45,7 @@ def test_errors_of_times_are_not_taken_for_a_scatter_of_the_ball() -> None:
     assert spread_of_pulls(found) < 1.0
 
 
+@pytest.mark.slow
 def test_both_are_fitted_where_both_are_there() -> None:
     """A time error of 300 µs beside a scatter of .003 is found in three of four series."""
     found = fits(0.003, 3e-4)

@@ -27,6 +27,7 @@ def test_errors_are_those_of_repetition_and_count_particles() -> None:
     assert naive < 0.5 * stated
 
 
+@pytest.mark.slow
 def test_intervals_cover_the_truth_as_often_as_they_say() -> None:
     """90 sets of 200 correlated particles: intervals and bands of 90 % hold the truth in 90 %.
 
@@ -87,6 +88,7 @@ def test_the_penalty_grows_with_the_correlation() -> None:
     assert copies.bic - copies.aic == pytest.approx(copies.effective_parameters * (np.log(100) - 2))
 
 
+@pytest.mark.slow
 def test_p_values_are_uniform_under_correlation() -> None:
     """Eighty sets of correlated samples of the family have uniform p-values.
 

@@ -137,7 +137,12 @@ def promised(code: str) -> Iterator[str]:
             yield found[1]
 
 
-@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
+SLOW = {"inference.md"}
+
+
+@pytest.mark.parametrize(
+    "page", [pytest.param(p, id=p.name, marks=[pytest.mark.slow] * (p.name in SLOW)) for p in PAGES]
+)
 def test_code_in_the_pages(page: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """The blocks of a page run from top to bottom as one program, and print what their comments say."""
     monkeypatch.chdir(tmp_path)
