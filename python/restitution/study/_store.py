@@ -21,6 +21,7 @@ import numpy.typing as npt
 import xarray as xr
 
 from restitution._internal.files import draft_of
+from restitution._internal.process import undisturbed
 from restitution.drop.compare import unit_of
 from restitution.drop.dataset import version_here
 from restitution.study._axes import Design
@@ -65,7 +66,8 @@ def _make(path: Path, study: Study, width: int) -> None:
     draft = draft_of(target)
     try:
         target.parent.mkdir(parents=True, exist_ok=True)
-        with readable(path):
+        # A signal within the first call would leave half a loop of asyncio, which complains at the end.
+        with undisturbed(), readable(path):
             _fill(draft, study, width)
         os.rename(draft, target)
     except OSError as error:
@@ -138,7 +140,7 @@ class Store:
         self._arrays: dict[str, Any] = {}  # those that were seen; what they are does not change
         self.group: Any
         self.words: Any
-        with readable(path):
+        with undisturbed(), readable(path):
             path.stat()  # Zarr would make a folder that is not there
             self.group = zarr.open_group(str(path), mode="r+", zarr_format=3, use_consolidated=False)
             self.words = self.group["tasks/words"]
