@@ -26,8 +26,8 @@ COUNTS = {
     1.55: (0.040, 606),
 }
 """Math. Gazette 97 (2013), 97.16, Table 1: height over side, share of throws on a square face, throws."""
-LAWS = {"0.5": 0.3, "0.7": 0.3, "0.9": 0.3, "0.9, μ = 0": 0.0}
-"""ε_n as it is written, and μ."""
+LAWS = {"0.5": (0.5, 0.3), "0.7": (0.7, 0.3), "0.9": (0.9, 0.3), "0.9, μ = 0": (0.9, 0.0)}
+"""What is written of a law, ε_n and μ."""
 WIDTHS = (0.1, 0.3, 0.5, 0.7, 0.9)
 NICKEL = rs.Cylinder(radius=10.605e-3, height=1.95e-3)
 
@@ -64,8 +64,8 @@ def table(particles: int = 1000, rows: int | None = None) -> str:
 
     def cells(body: rs.Box | rs.Cylinder, edge: bool = False) -> str:
         each = []
-        for law, friction in LAWS.items():
-            least, undecided = rests(body, float(law[:3]), friction, particles)
+        for law in LAWS.values():
+            least, undecided = rests(body, *law, particles)
             least = 1.0 - least - undecided if edge else least
             each.append(f"{abs(least):.3f} to {least + undecided:.3f}")
         return " | ".join(each)
@@ -84,8 +84,9 @@ def draw(path: Path, particles: int = 1000) -> None:
     ratios = np.array(list(COUNTS))
     share, throws = np.array(list(COUNTS.values())).T
     for law, color, shift in (("0.5", 3, -0.012), ("0.9", 0, 0.0), ("0.9, μ = 0", 2, 0.012)):
-        found = np.array([rests(cuboid(r), float(law[:3]), LAWS[law], particles) for r in COUNTS])
-        name = f"$\\varepsilon_n = {law[:3]}$, $\\mu = {LAWS[law]:g}$"
+        normal, friction = LAWS[law]
+        found = np.array([rests(cuboid(r), normal, friction, particles) for r in COUNTS])
+        name = f"$\\varepsilon_n = {normal:g}$, $\\mu = {friction:g}$"
         ends = found[:, 0], found.sum(axis=1)
         left.vlines(ratios + shift, *ends, color=fg.COLORS[color], linewidth=3, alpha=0.7, label=name)
     error = np.sqrt(share * (1 - share) / throws)
