@@ -101,6 +101,15 @@ impl Rotation {
     }
 }
 
+impl Top {
+    /// The attitude of the principal axes, and ω in the axes of space, of a free body after a time; both are given at its beginning.
+    pub fn turned(&self, attitude: Quaternion, spin: Vector, time: f64) -> (Quaternion, Vector) {
+        let spin = attitude.inverse().rotate(spin);
+        let (attitude, spin) = Rotation::new(*self, attitude, spin).at(time);
+        (attitude, attitude.rotate(spin))
+    }
+}
+
 /// Half the length of a vector, and its direction; none of no vector.
 #[inline(always)]
 fn half_and_direction(v: Vector) -> (f64, Vector) {

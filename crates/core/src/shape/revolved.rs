@@ -131,7 +131,7 @@ impl Rigid {
             Error::unless(r.is_finite() && r >= 0.0, "profile", r, allowed)?;
         }
         let outline: Vec<_> = profile.iter().copied().map(Arc::point).collect();
-        Self::turned(&outline, &hull(profile), density)
+        Self::of_outline(&outline, &hull(profile), density)
     }
 
     /// An egg that stands on z = 0: a cap of the radius `blunt` below, one of the radius `tip` above, joined by an arc that is tangent to both and has the
@@ -205,7 +205,7 @@ impl Rigid {
                 ends: [lower, [-1.0, 0.0]],
             },
         ];
-        Self::turned(&outline, &outline, density)
+        Self::of_outline(&outline, &outline, density)
     }
 
     /// Returns the rims of a solid of revolution that can touch, (z, r) in m, in the order of their numbers.
@@ -221,7 +221,7 @@ impl Rigid {
     }
 
     /// The solid that an outline makes, of which only these arcs can touch.
-    fn turned(outline: &[Arc], touching: &[Arc], density: f64) -> Result<Self, Error> {
+    fn of_outline(outline: &[Arc], touching: &[Arc], density: f64) -> Result<Self, Error> {
         check_density(density)?;
         let from_origin = sums(outline, 0.0);
         let centre = from_origin[1] / from_origin[0];

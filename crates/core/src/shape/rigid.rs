@@ -208,6 +208,12 @@ impl Rigid {
         self.top.moments().map(|moment| scale * moment)
     }
 
+    /// The attitude of the axes that the body was given in, and ω in those of space, after a time of free rotation.
+    pub fn turned(&self, attitude: Quaternion, spin: Vector, time: f64) -> (Quaternion, Vector) {
+        let (attitude, spin) = self.top.turned(attitude * self.axes, spin, time);
+        (attitude * self.axes.inverse(), spin)
+    }
+
     /// Smallest height of the centre of mass, in m, at which no part of the body is below the plane in an attitude of the axes that
     /// the body was given in.
     pub fn lowest(&self, attitude: Quaternion) -> f64 {
