@@ -88,8 +88,8 @@ def _cells(about: dict[str, Any]) -> str:
     if about["type"] == "name":
         allowed = ", ".join(f"`{name}`" for name in about["names"])
     else:
-        described = import_module("restitution._internal.described")
-        allowed = described.interval(about).replace(">=", "≥")
+        template = import_module("restitution.cli._template")
+        allowed = template.interval(about).replace(">=", "≥")
     unit = {None: "", "1": "", "kg m-3": "kg/m³", "m s-1": "m/s", "kg m2": "kg m²"}.get(
         about["unit"], about["unit"]
     )

@@ -25,14 +25,6 @@ def kebab(name: str) -> str:
     return re.sub(r"(?<!^)(?=[A-Z])", "-", name).lower()
 
 
-def interval(about: Mapping[str, Any]) -> str:
-    """Write the numbers that a parameter may be: `[0, 1]` or `> 0`."""
-    low, high = (f"{about[end]:g}" for end in ("low", "high"))
-    if high == "inf":
-        return f"{'>=' if about['closed'] else '>'} {low}"
-    return f"{'[' if about['closed'] else '('}{low}, {high}]"
-
-
 class Described(Parameters):
     """A body, a law or a material, under the name and with the parameters that the core describes."""
 

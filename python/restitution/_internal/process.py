@@ -1,20 +1,16 @@
-"""Signals that end a command, and standard streams, which may be closed or missing."""
+"""Signals that end a process, kept from a short block or passed to a function."""
 
-import os
 import signal
-import sys
 import threading
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager, suppress
+from contextlib import contextmanager
 from typing import Any
 
 _ENDING = [getattr(signal, name) for name in ("SIGINT", "SIGTERM", "SIGHUP") if hasattr(signal, name)]
-# What a terminal would obey, as it may stand in the name of a file.
-_CONTROLS = {code: f"\\x{code:02x}" for code in (*range(32), *range(127, 160)) if chr(code) not in "\n\t"}
 
 
 @contextmanager
-def _handled(handle: Callable[[int], None]) -> Iterator[None]:
+def handled(handle: Callable[[int], None]) -> Iterator[None]:
     """Pass signals that end a process to `handle`, except those that are ignored, as under nohup."""
     before: dict[int, Any] = {}
     if threading.current_thread() is threading.main_thread():  # which alone has handlers
@@ -30,87 +26,12 @@ def _handled(handle: Callable[[int], None]) -> Iterator[None]:
 
 
 @contextmanager
-def ending() -> Iterator[list[int]]:
-    """Raise a KeyboardInterrupt in the block for each signal that ends a process; yields those that came."""
-    came: list[int] = []
-
-    def end(number: int) -> None:
-        came.append(number)
-        raise KeyboardInterrupt
-
-    with _handled(end):
-        yield came
-
-
-@contextmanager
-def leaving() -> Iterator[None]:
-    """Leave at once at a signal that ends a process: before a command begins, and after it has ended."""
-
-    def leave(number: int) -> None:
-        raise SystemExit(128 + number)
-
-    with _handled(leave):
-        yield
-
-
-@contextmanager
-def put_off(notify: Callable[[], None]) -> Iterator[list[int]]:
-    """Defer a signal to the end of the block and put it into the list; a second one ends the block."""
-    late: list[int] = []
-
-    def wait(number: int) -> None:
-        late.append(number)
-        if len(late) > 1:
-            raise KeyboardInterrupt
-        notify()
-
-    with _handled(wait):
-        yield late
-
-
-@contextmanager
 def undisturbed() -> Iterator[None]:
     """Defer signals to the end of a short block."""
     late: list[int] = []
     try:
-        with _handled(late.append):
+        with handled(late.append):
             yield
     finally:
         for number in late[:1]:
             signal.raise_signal(number)
-
-
-def is_terminal(stream: Any) -> bool:
-    """Test whether a stream is a terminal; one that is closed or missing is not."""
-    try:
-        return bool(stream.isatty())
-    except (AttributeError, OSError, ValueError):  # there is none, or it is closed
-        return False
-
-
-def say(line: str) -> None:
-    """Write a line to standard output; one that is missing, or a pipe that was closed, takes nothing."""
-    import typer
-
-    try:
-        typer.echo(line.translate(_CONTROLS))
-    except BrokenPipeError:  # as after `head`
-        sys.stdout = open(os.devnull, "w", encoding="utf-8")  # noqa: SIM115
-
-
-def tell(line: str) -> None:
-    """Write a line to standard error, if that can be."""
-    import typer
-
-    with suppress(OSError, ValueError, RuntimeError):  # RuntimeError: a signal in the midst of another line
-        typer.echo(line.translate(_CONTROLS), err=True)
-
-
-def open_missing() -> None:
-    """Replace missing standard streams by the null device; escape letters that the others cannot encode."""
-    for number, name in enumerate(("stdin", "stdout", "stderr")):
-        stream: Any = getattr(sys, name)
-        if stream is None:
-            setattr(sys, name, open(os.devnull, "r" if number == 0 else "w", encoding="utf-8"))  # noqa: SIM115
-        elif number > 0 and hasattr(stream, "reconfigure"):
-            stream.reconfigure(errors="backslashreplace")

@@ -8,8 +8,7 @@ from math import floor, isfinite, isnan, log10
 
 from pydantic import BaseModel
 
-_DIGITS, _RAISED = "-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹"
-_PLAIN = str.maketrans(_RAISED, _DIGITS)
+_RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
 
 class Text(str):
@@ -83,19 +82,7 @@ def with_error(value: float, error: float | None) -> str:
     return f"{round(value, digits):.{max(digits, 0)}f} ± {round(error, digits):.{max(digits, 0)}f}"
 
 
-def latex(title: str, rows: Iterable[tuple[str, str]]) -> str:
-    """Write names and values, such as `with_error` gives, as a LaTeX table with the rules of booktabs."""
-    lines = [rf"{name} & ${_formula(number)}$ \\" for name, number in rows]
-    head = [r"\begin{tabular}{lr}", r"\toprule", rf"\multicolumn{{2}}{{l}}{{{title}}} \\", r"\midrule"]
-    return "\n".join([*head, *lines, r"\bottomrule", r"\end{tabular}"]) + "\n"
-
-
-def _formula(text: str) -> str:
-    text = text.replace("±", r"\pm").replace("×", r"\times").replace("\u202f", r"\,")
-    return re.sub(f"[{_RAISED}]+", lambda power: f"^{{{power[0].translate(_PLAIN)}}}", text)
-
-
 def _superscript(text: str) -> str:
     mantissa, mark, exponent = text.partition("e")
-    power = str(int(exponent)).translate(str.maketrans(_DIGITS, _RAISED)) if mark else ""
+    power = str(int(exponent)).translate(_RAISED) if mark else ""
     return f"{'' if mantissa == '1' else f'{mantissa} × '}10{power}" if mark else mantissa

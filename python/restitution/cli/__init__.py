@@ -6,9 +6,9 @@ from typing import Annotated
 
 import typer
 
-from restitution._internal.process import leaving, open_missing, say, tell
 from restitution.cli import _explore, _fit, _listen, _pages, _runs, _sweep, _template
 from restitution.cli._common import BAD_INPUT, FAILED, INTERRUPTED, WARNED, Command, Group
+from restitution.cli._process import leaving, open_missing, say, tell
 
 __all__ = ["BAD_INPUT", "FAILED", "INTERRUPTED", "WARNED", "app", "main"]
 

@@ -12,7 +12,7 @@ from typing import Annotated, Any, NoReturn
 import typer
 from typer.core import TyperCommand, TyperGroup
 
-from restitution._internal.process import ending, is_terminal, tell
+from restitution.cli._process import ending, is_terminal, tell
 
 FAILED, BAD_INPUT, WARNED, INTERRUPTED = 1, 2, 3, 130
 """Exit statuses: files or numbers in trouble; input that is refused; doubtful accuracy; Ctrl-C.

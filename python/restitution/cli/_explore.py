@@ -5,8 +5,8 @@ from typing import Annotated
 
 import typer
 
-from restitution._internal.process import say
 from restitution.cli._common import Quiet, errors_in_a_line
+from restitution.cli._process import say
 
 
 def explore(

@@ -6,8 +6,8 @@ from typing import Annotated, Any
 
 import typer
 
-from restitution._internal.process import say
 from restitution.cli._common import Overwrite, Quiet, errors_in_a_line
+from restitution.cli._process import say
 
 _CUSP = ("asymmetric-laplace", "asymmetric-power", "cusp-mixture")
 """Families that take the location of the cusp."""

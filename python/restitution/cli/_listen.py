@@ -5,8 +5,8 @@ from typing import Annotated
 
 import typer
 
-from restitution._internal.process import say, tell
 from restitution.cli._common import Overwrite, Quiet, errors_in_a_line
+from restitution.cli._process import say, tell
 
 
 def listen(

@@ -4,8 +4,8 @@ from typing import Annotated
 
 import typer
 
-from restitution._internal.process import say
 from restitution.cli._common import Folder, Overwrite, Quiet, Threads, errors_in_a_line, progress
+from restitution.cli._process import say
 
 
 def paper(

@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from restitution._internal.process import put_off, say, tell
 from restitution.cli._common import (
     WARNED,
     Kept,
@@ -23,6 +22,7 @@ from restitution.cli._common import (
     press_again,
     progress,
 )
+from restitution.cli._process import put_off, say, tell
 
 if TYPE_CHECKING:
     import xarray as xr

@@ -6,8 +6,8 @@ from typing import Annotated, Any
 
 import typer
 
-from restitution._internal.process import say, tell
 from restitution.cli._common import Command, Group, Quiet, Threads, errors_in_a_line, progress
+from restitution.cli._process import say, tell
 
 
 class _RunUnlessNamed(Group):

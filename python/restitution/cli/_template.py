@@ -5,8 +5,8 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 from restitution import _core
-from restitution._internal.described import interval, kebab
-from restitution._internal.process import say
+from restitution._internal.described import kebab
+from restitution.cli._process import say
 
 _NORMAL = [("normal = 0.98", "in [0, 1]; or a table [law.normal], see below")]
 
@@ -26,6 +26,14 @@ def _lines(
         for text, comment in rows:
             yield f"{mark + text:<34}# {comment}" if comment else mark + text
     yield ""
+
+
+def interval(about: Mapping[str, Any]) -> str:
+    """Write the numbers that a parameter may be: `[0, 1]` or `> 0`."""
+    low, high = (f"{about[end]:g}" for end in ("low", "high"))
+    if high == "inf":
+        return f"{'>=' if about['closed'] else '>'} {low}"
+    return f"{'[' if about['closed'] else '('}{low}, {high}]"
 
 
 def _what(parameter: Mapping[str, Any]) -> str:

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from math import log, sqrt
 from types import MappingProxyType
 from typing import Any
+from unicodedata import normalize
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -15,7 +17,7 @@ from restitution._internal.arrays import generator, real, reals, whole
 from restitution._internal.datasets import Content
 from restitution._internal.parameters import ParameterError, wrong
 from restitution._internal.resources import check_size
-from restitution._internal.text import latex, table, value, with_error
+from restitution._internal.text import table, value, with_error
 from restitution.fit import _in_parts as in_parts
 
 Array = NDArray[np.float64]
@@ -107,7 +109,14 @@ class Fit(Content):
         }
         rows = [(name, with_error(number, known.get(name))) for name, number in self.parameters.items()]
         rows += [("samples", str(self.samples)), (r"$\ln L$", f"{self.loglikelihood:.1f}")]
-        return latex(self.family, rows)
+        lines = [rf"{name} & ${_formula(number)}$ \\" for name, number in rows]
+        head = [
+            r"\begin{tabular}{lr}",
+            r"\toprule",
+            rf"\multicolumn{{2}}{{l}}{{{self.family}}} \\",
+            r"\midrule",
+        ]
+        return "\n".join([*head, *lines, r"\bottomrule", r"\end{tabular}"]) + "\n"
 
     def _repr_html_(self) -> str:
         rows = [(name, value(number)) for name, number in self.parameters.items()]
@@ -154,6 +163,12 @@ class Fit(Content):
             return in_parts.drawn(self.distribution, number, random)
         check_size("size", size, number, 4 * 8, "draws")  # of a mixture, from both parts
         return np.asarray(self.distribution.rvs(size=number, random_state=random))
+
+
+def _formula(text: str) -> str:
+    """Write what `with_error` gives as a formula of LaTeX."""
+    text = re.sub("[⁻⁰¹²³⁴⁵⁶⁷⁸⁹]+", lambda power: f"^{{{normalize('NFKC', power[0])}}}", text)
+    return text.replace("±", r"\pm").replace("×", r"\times").replace("\u202f", r"\,").replace("−", "-")
 
 
 def finite_samples(samples: ArrayLike, location: float | None = None) -> Array:

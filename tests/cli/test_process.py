@@ -14,7 +14,8 @@ from typing import Any
 import pytest
 
 from reference.command import AMONG_TESTS
-from restitution._internal.process import ending, is_terminal, leaving, put_off, say, tell, undisturbed
+from restitution._internal.process import undisturbed
+from restitution.cli._process import ending, is_terminal, leaving, put_off, say, tell
 
 ALL = [signal.SIGINT, signal.SIGTERM, signal.SIGHUP]
 
@@ -179,7 +180,7 @@ def test_a_run_in_another_thread_goes_on_to_its_end() -> None:
 
 def test_a_stream_that_lacks_a_letter() -> None:
     """As ε in Latin-1: what was written to files stays written, and the line is said."""
-    code = "from restitution._internal.process import open_missing, say, tell\n"
+    code = "from restitution.cli._process import open_missing, say, tell\n"
     code += "open_missing(); say('1 ε'); tell('2 ε\\x1b[31m')"
     words = [sys.executable, "-c", code]
     env = os.environ | {"PYTHONIOENCODING": "latin-1:strict"}
