@@ -1,13 +1,16 @@
 """The command line, and a small run to give it."""
 
+import os
 import sys
+from multiprocessing import get_context
 from pathlib import Path
 
 import xarray as xr
 from typer.testing import CliRunner, Result
 
 import restitution as rs
-from restitution.cli import app
+from reference.signals import arm
+from restitution.cli import app, main
 
 COMMAND = [sys.executable, "-c", "from restitution.cli import main; main()"]
 AMONG_TESTS = f"import sys; sys.path.insert(0, {str(Path(__file__).parents[1])!r})\n"
@@ -52,6 +55,29 @@ particles = """
 def invoke(*words: object) -> Result:
     """Run a command in this process."""
     return CliRunner().invoke(app, [str(word) for word in words])
+
+
+SERVER = get_context("forkserver")
+SERVER.set_forkserver_preload(["restitution.cli", "xarray", "netCDF4", "scipy.stats", "matplotlib.figure"])
+
+
+def forked(number: int, name: str, words: list[str], folder: Path, told: Path) -> int | None:
+    """Run a command in a process that has imported all, with a signal when it is at work; give its status."""
+    process = SERVER.Process(target=_command, args=(number, name, words, folder, told))
+    process.start()
+    process.join(120)
+    process.kill()
+    return process.exitcode
+
+
+def _command(number: int, name: str, words: list[str], folder: Path, told: Path) -> None:
+    os.chdir(folder)
+    with told.open("wb") as file:
+        os.dup2(file.fileno(), 1)
+        os.dup2(file.fileno(), 2)
+    arm(number, name)
+    sys.argv = ["restitution", *words]
+    main()
 
 
 def small() -> xr.Dataset:
