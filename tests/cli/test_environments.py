@@ -1,14 +1,17 @@
 """Commands where something is missing: a part, drawn with a fixed seed, of `make hostile`."""
 
+import contextlib
 import random
 import signal
+from functools import partial
 from pathlib import Path
 
 import pytest
 
-from reference.command import forked
+from reference.command import Command
 from reference.environments import ENVIRONMENTS
 from reference.processes import COMMANDS, LONG, RUN, STUDY, command, inputs
+from reference.signals import arm
 from restitution.cli import app
 
 TESTS = Path(__file__).parents[1]
@@ -82,7 +85,8 @@ def test_a_signal_ends_a_command(name: str, tmp_path: Path) -> None:
         (tmp_path / read).symlink_to(inputs() / read)
     before = set(tmp_path.iterdir())
     # The signal comes at the first step of the work, whatever this machine takes to get there.
-    told = tmp_path / "told"
-    assert forked(number, name, line.split(), tmp_path, told) == 128 + number, told.read_text()
-    assert "Traceback" not in told.read_text()
-    assert {file.name for file in set(tmp_path.iterdir()) - before - {told}} <= files
+    with contextlib.chdir(tmp_path):
+        started = Command(*line.split(), before=partial(arm, number, name))
+    status, _, error = started.finished(120.0)
+    assert (status, "Traceback" in error) == (128 + number, False), error
+    assert {file.name for file in set(tmp_path.iterdir()) - before} <= files

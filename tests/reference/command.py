@@ -1,7 +1,10 @@
 """The command line, and a small run to give it."""
 
 import os
+import shutil
 import sys
+import tempfile
+from collections.abc import Callable
 from multiprocessing import get_context
 from pathlib import Path
 
@@ -9,7 +12,6 @@ import xarray as xr
 from typer.testing import CliRunner, Result
 
 import restitution as rs
-from reference.signals import arm
 from restitution.cli import app, main
 
 COMMAND = [sys.executable, "-c", "from restitution.cli import main; main()"]
@@ -58,24 +60,44 @@ def invoke(*words: object) -> Result:
 
 
 SERVER = get_context("forkserver")
-SERVER.set_forkserver_preload(["restitution.cli", "xarray", "netCDF4", "scipy.stats", "matplotlib.figure"])
+SERVER.set_forkserver_preload(
+    ["restitution.cli", "xarray", "netCDF4", "scipy.stats", "matplotlib.figure", "zarr"]
+)
 
 
-def forked(number: int, name: str, words: list[str], folder: Path, told: Path) -> int | None:
-    """Run a command in a process that has imported all, with a signal when it is at work; give its status."""
-    process = SERVER.Process(target=_command, args=(number, name, words, folder, told))
-    process.start()
-    process.join(120)
-    process.kill()
-    return process.exitcode
+class Command:
+    """A command in a process of its own, which has imported what commands take; `before` is called first."""
+
+    def __init__(self, *words: object, before: Callable[[], object] = int) -> None:
+        self._told = Path(tempfile.mkdtemp(prefix="command-"))
+        given = (self._told, before, [str(word) for word in words], Path.cwd())
+        self._process = SERVER.Process(target=_command, args=given)
+        self._process.start()
+
+    def send_signal(self, number: int) -> None:
+        """Send a signal to the process and those that it has started."""
+        os.killpg(self._process.pid or 0, number)
+
+    def poll(self) -> int | None:
+        """Give the exit status, once there is one."""
+        return self._process.exitcode
+
+    def finished(self, seconds: float = 300.0) -> tuple[int, str, str]:
+        """Wait for it; it must not hang. Give its exit status and what it says."""
+        self._process.join(seconds)
+        self._process.kill()
+        self._process.join()
+        said = [(self._told / name).read_text(encoding="utf-8") for name in ("out", "error")]
+        shutil.rmtree(self._told)
+        return self._process.exitcode or 0, said[0], said[1]
 
 
-def _command(number: int, name: str, words: list[str], folder: Path, told: Path) -> None:
+def _command(told: Path, before: Callable[[], object], words: list[str], folder: Path) -> None:
+    os.setsid()
     os.chdir(folder)
-    with told.open("wb") as file:
-        os.dup2(file.fileno(), 1)
-        os.dup2(file.fileno(), 2)
-    arm(number, name)
+    for number, name in ((1, "out"), (2, "error")):
+        os.dup2(os.open(told / name, os.O_WRONLY | os.O_CREAT), number)
+    before()
     sys.argv = ["restitution", *words]
     main()
 

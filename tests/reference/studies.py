@@ -2,14 +2,13 @@
 
 import hashlib
 import os
-import subprocess
 import time
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 import restitution as rs
-from reference.command import COMMAND
+from reference.command import Command
 
 SMALL_STUDY = """
 [body]
@@ -57,31 +56,12 @@ def written(folder: Path, *, impacts: int = 60, normals: int = 2) -> Path:
     return path
 
 
-def started(*words: object, code: str = "", **more: Any) -> "subprocess.Popen[str]":
-    """Start `restitution sweep` in a process of its own, after some other code."""
-    program = COMMAND if not code else [COMMAND[0], "-c", f"{code}\n{COMMAND[2]}"]
-    pipes = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, "text": True} | more
-    return subprocess.Popen([*program, "sweep", *map(str, words)], start_new_session=True, **pipes)
-
-
-def finished(process: "subprocess.Popen[str]", seconds: float = 300.0) -> tuple[int, str, str]:
-    """Wait for a process; it must not hang."""
-    try:
-        out, error = process.communicate(timeout=seconds)
-    except subprocess.TimeoutExpired:
-        process.kill()
-        raise
-    return process.returncode, out, error
-
-
-def when(
-    holds: Callable[[], bool], process: "subprocess.Popen[str] | None" = None, seconds: float = 120
-) -> None:
+def when(holds: Callable[[], bool], process: Command | None = None, seconds: float = 120) -> None:
     """Wait until something holds, as long as a process lives."""
     end = time.monotonic() + seconds
     while not holds():
         assert time.monotonic() < end, "it never came to hold"
-        assert process is None or process.poll() is None, finished(process)
+        assert process is None or process.poll() is None, process.finished()
         time.sleep(0.01)
 
 

@@ -6,12 +6,14 @@ import subprocess
 import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
+from functools import partial
 from pathlib import Path
 from typing import TypeAlias
 
 import pytest
 
-from reference.studies import bits, chunks, finished, started, when, written
+from reference.command import Command
+from reference.studies import bits, chunks, when, written
 from restitution.study import status, sweep
 
 Process: TypeAlias = "subprocess.Popen[bytes]"
@@ -28,8 +30,9 @@ def slow_count(*arguments):
 work.count = slow_count
 """
 
+
 # A scheduler that does not answer is waited for as long as Dask is told, half a minute unless told.
-IMPATIENT = {**os.environ, "DASK_DISTRIBUTED__COMM__TIMEOUTS__CONNECT": "5s"}
+IMPATIENT = "import os; os.environ['DASK_DISTRIBUTED__COMM__TIMEOUTS__CONNECT'] = '{}s'"
 
 
 @pytest.fixture(scope="module")
@@ -65,10 +68,12 @@ def cluster(folder: Path, workers: int) -> Iterator[tuple[str, Process, list[Pro
 
 def test_a_client_of_a_local_cluster(whole: dict[str, str], tmp_path: Path) -> None:
     """Two worker processes of two threads each."""
+    import dask
     from distributed import Client, LocalCluster
 
     study, store = written(tmp_path, normals=4), tmp_path / "study.zarr"
     with (
+        dask.config.set({"distributed.worker.multiprocessing-method": "forkserver"}),
         LocalCluster(  # type: ignore[no-untyped-call]
             n_workers=2, threads_per_worker=2, processes=True, dashboard_address=":0"
         ) as local,
@@ -88,18 +93,26 @@ def test_workers_and_the_scheduler_are_killed(whole: dict[str, str], tmp_path: P
     """A worker first, which the other makes up for; then the scheduler, and the command says how to go on."""
     study, store = written(tmp_path, normals=4), tmp_path / "study.zarr"
     with cluster(tmp_path, 2) as (address, scheduler, workers):
-        driver = started(study, "--out", store, "--scheduler", address, env=IMPATIENT)
+        driver = Command(
+            "sweep",
+            study,
+            "--out",
+            store,
+            "--scheduler",
+            address,
+            before=partial(exec, IMPATIENT.format(5), {}),
+        )
         when(lambda: len(chunks(store)) >= 2, driver)
         os.kill(workers[0].pid, signal.SIGKILL)
         when(lambda: len(chunks(store)) >= 5, driver)
         os.kill(scheduler.pid, signal.SIGKILL)
-        code, _, error = finished(driver, 120)
+        code, _, error = driver.finished(120.0)
         assert code == 1, error
         assert "the same command continues" in error
     assert 5 <= len(chunks(store)) < 12
     (tmp_path / "scheduler.json").unlink()
     with cluster(tmp_path, 1) as (address, _, _):
-        code, out, error = finished(started(study, "--out", store, "--scheduler", address))
+        code, out, error = Command("sweep", study, "--out", store, "--scheduler", address).finished()
         assert code == 0, error
         assert "12 of 12 points are finished" in out
     assert bits(store) == whole
@@ -108,7 +121,14 @@ def test_workers_and_the_scheduler_are_killed(whole: dict[str, str], tmp_path: P
 
 def test_a_scheduler_that_is_not_there(tmp_path: Path) -> None:
     nobody = ("--scheduler", "tcp://127.0.0.1:9")
-    driver = started(written(tmp_path), "--out", tmp_path / "s.zarr", *nobody, env=IMPATIENT)
-    code, _, error = finished(driver)
+    driver = Command(
+        "sweep",
+        written(tmp_path),
+        "--out",
+        tmp_path / "s.zarr",
+        *nobody,
+        before=partial(exec, IMPATIENT.format(1), {}),
+    )
+    code, _, error = driver.finished()
     assert code == 1
     assert "no Dask scheduler answers there" in error

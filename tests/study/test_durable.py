@@ -12,7 +12,8 @@ from typing import Any
 
 import pytest
 
-from reference.studies import bits, chunks, finished, started, when, written
+from reference.command import Command
+from reference.studies import bits, chunks, when, written
 from restitution.study import status, sweep
 from restitution.study._store import Store
 
@@ -55,10 +56,10 @@ def test_killed_drivers(whole: dict[str, str], tmp_path: Path) -> None:
     """Two are killed, one after the other, and their work is not done again, whatever the clocks show."""
     study, store = written(tmp_path, normals=4), tmp_path / "study.zarr"
     for target, code in ((3, SLOWLY), (7, SLOWLY + JUMPS)):
-        process = started(study, "--out", store, code=code)
+        process = Command("sweep", study, "--out", store, before=partial(exec, code, {}))
         when(partial(has_chunks, store, target), process)
-        os.killpg(process.pid, signal.SIGKILL)
-        finished(process)
+        process.send_signal(signal.SIGKILL)
+        process.finished()
         for i, path in enumerate(chunks(store)):
             at = (0, 4_000_000_000)[i % 2]
             os.utime(path, (at, at))
@@ -73,10 +74,10 @@ def test_ctrl_c_leaves_a_store_that_can_be_read(whole: dict[str, str], tmp_path:
     import xarray as xr
 
     study, store = written(tmp_path, normals=4), tmp_path / "study.zarr"
-    process = started(study, "--out", store, code=SLOWLY)
+    process = Command("sweep", study, "--out", store, before=partial(exec, SLOWLY, {}))
     when(lambda: len(chunks(store)) >= 9, process)
     process.send_signal(signal.SIGINT)
-    code, _, error = finished(process, 60)
+    code, _, error = process.finished(60.0)
     assert code == 130, error
     assert "The same command continues" in error
     found = xr.open_zarr(store, chunks=None)
@@ -159,7 +160,7 @@ def limited() -> None:
 def test_files_that_cannot_grow(whole: dict[str, str], tmp_path: Path) -> None:
     """No file may have more than 3000 bytes: tasks fit, results do not. The error names the reason."""
     study, store = written(tmp_path, normals=4), tmp_path / "study.zarr"
-    code, _, error = finished(started(study, "--out", store, preexec_fn=limited))
+    code, _, error = Command("sweep", study, "--out", store, before=limited).finished()
     assert code == 1
     assert "File too large" in error
     assert len(error.splitlines()) <= 2
@@ -178,7 +179,7 @@ def test_a_full_disk(whole: dict[str, str], tmp_path: Path) -> None:
         pytest.skip("no right to mount a small file system here; test_files_that_cannot_grow does without")
     try:
         study, store = written(tmp_path, normals=4), disk / "study.zarr"
-        code, _, error = finished(started(study, "--out", store))
+        code, _, error = Command("sweep", study, "--out", store).finished()
         assert code == 1
         assert error.startswith(f"error: {disk}")
         assert "No space left on device" in error
@@ -195,9 +196,10 @@ def test_a_full_disk(whole: dict[str, str], tmp_path: Path) -> None:
 def test_two_drivers_on_one_store(whole: dict[str, str], tmp_path: Path) -> None:
     """Both end well, and the second spares itself what the first has done."""
     study, store = written(tmp_path, normals=4), tmp_path / "study.zarr"
-    both = [started(study, "--out", store, "--threads", 1, code=SLOWLY) for _ in range(2)]
+    words = ("sweep", study, "--out", store, "--threads", 1)
+    both = [Command(*words, before=partial(exec, SLOWLY, {})) for _ in range(2)]
     for process in both:
-        code, out, error = finished(process)
+        code, out, error = process.finished()
         assert code == 0, error
         assert "12 of 12 points are finished" in out
     assert bits(store) == whole
