@@ -14,7 +14,6 @@ import xarray as xr
 import restitution as rs
 from reference.command import COMMAND, SMALL, invoke, load, small
 from restitution._core import STOP_REASONS
-from restitution._internal.datasets import save
 from restitution.cli import BAD_INPUT, FAILED, INTERRUPTED
 from restitution.drop.toml import read
 
@@ -136,47 +135,11 @@ def test_an_existing_file_is_replaced_only_if_asked(parameters: Path) -> None:
     assert out.stat().st_mode == fresh.stat().st_mode
 
 
-def places(folder: Path) -> dict[Path, str]:
-    """Return places where nothing can be written, and what is said of each."""
-    (folder / "taken.nc").write_text("precious", encoding="utf-8")
-    (folder / "folder.nc").mkdir()
-    no_file = "not a file that can be written"
-    return {
-        folder / "none" / "run.nc": f"{folder / 'none'}: No such file or directory",
-        folder / "taken.nc" / "run.nc": f"{folder / 'taken.nc'}: Not a directory",
-        folder / "taken.nc": f"{folder / 'taken.nc'}: exists already; --overwrite replaces it",
-        folder / "folder.nc": f"{folder / 'folder.nc'}: {no_file}",
-        Path("/dev/null"): f"/dev/null: {no_file}",
-    }
-
-
-def test_an_output_that_cannot_be_written(parameters: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """It is refused before the work begins, and what was there is untouched."""
-
-    def begun(*_: object, **__: object) -> None:
-        raise AssertionError("the work began")
-
-    monkeypatch.setattr("restitution.drop.simulate.simulate_run", begun)
-    for out, expected in places(parameters.parent).items():
-        before = sorted(parameters.parent.rglob("*"))
-        result = invoke("simulate", parameters, "--out", out)
-        assert (result.exit_code, result.stderr) == (FAILED, f"error: {expected}\n")
-        assert sorted(parameters.parent.rglob("*")) == before
-    assert (parameters.parent / "taken.nc").read_text(encoding="utf-8") == "precious"
-
-
 def test_a_run_file_that_cannot_be_read(tmp_path: Path) -> None:
     for path, reason in ((tmp_path / "none.toml", "No such file or directory"), (tmp_path, "Is a directory")):
         result = invoke("simulate", path, "--out", tmp_path / "run.nc")
         assert (result.exit_code, result.stderr) == (FAILED, f"error: {path}: {reason}\n")
     assert list(tmp_path.iterdir()) == []
-
-
-def test_threads(parameters: Path) -> None:
-    result = invoke("simulate", parameters, "--out", parameters.with_name("run.nc"), "--threads", 0)
-    expected = "error: threads = 0: must be a whole number in [1, 1024] or None\n"
-    assert (result.exit_code, result.stderr) == (BAD_INPUT, expected)
-    assert list(parameters.parent.iterdir()) == [parameters]
 
 
 def test_a_full_disk_leaves_nothing(parameters: Path) -> None:
@@ -220,12 +183,6 @@ def test_other_trouble_is_a_line_too(
     result = invoke("simulate", parameters, "--out", parameters.with_name("run.nc"))
     assert (result.exit_code, result.stderr) == (code, text)
     assert list(parameters.parent.iterdir()) == [parameters]
-
-
-def test_a_saved_dataset_is_read_unchanged(tmp_path: Path) -> None:
-    data = small()
-    save(data, tmp_path / "run.nc")
-    xr.testing.assert_identical(load(tmp_path / "run.nc"), data)
 
 
 @pytest.mark.parametrize(("command", "name"), [("paper", "glielmo2014"), ("rough", "gunkelmann2014")])

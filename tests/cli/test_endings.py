@@ -109,16 +109,20 @@ def test_two_runs_to_one_name(tmp_path: Path) -> None:
         ("folder", "not a file that can be written"),
         ("none/run.nc", "No such file or directory"),
         ("run.toml/run.nc", "Not a directory"),
+        ("/dev/null", "not a file that can be written"),
     ],
     ids=str,
 )
-def test_names_that_are_refused_at_once(parameters: Path, name: str, text: str) -> None:
+def test_names_that_are_refused_at_once(
+    parameters: Path, monkeypatch: pytest.MonkeyPatch, name: str, text: str
+) -> None:
     """Before anything is computed, with --overwrite too, and nothing is touched."""
+    monkeypatch.setattr("restitution.drop.simulate.simulate_run", lambda *_, **__: pytest.fail("begun"))
     folder = parameters.parent
     (folder / "link.toml").symlink_to(parameters)
     (folder / "folder").mkdir()
     before = sorted(folder.iterdir())
-    done = invoke("simulate", parameters, "--overwrite", "--out", f"{folder}/{name}")
+    done = invoke("simulate", parameters, "--overwrite", "--out", folder / name)
     assert (done.exit_code, done.stdout) == (1, "")
     assert done.stderr.startswith("error: ")
     assert text in done.stderr

@@ -113,12 +113,13 @@ def test_the_figure_is_for_counts_too(tmp_path: Path) -> None:
     counts = rs.statistics(
         rs.Dumbbell(radius=3e-3, separation=3e-3),
         rs.TangentialRestitution(normal=0.9),
+        particles=200,
         velocity_bins=np.linspace(0.1, 0.5, 9),
         restitution_bins=np.linspace(-1.0, 3.0, 401),
     )
     dist = rs.FluctuatingRestitution.from_statistics(counts)
     with mpl.rc_context({"text.usetex": True}):  # as a user's settings may ask for: there is no LaTeX here
         assert image(dist, "png").startswith(b"\x89PNG")
-    for suffix, start in ((".pdf", b"%PDF"), (".svg", b"<?xml"), (".png", b"\x89PNG")):
+    for suffix, start in ((".pdf", b"%PDF"), (".svg", b"<?xml")):
         dist.figure().savefig(tmp_path / f"dist{suffix}")
         assert (tmp_path / f"dist{suffix}").read_bytes().startswith(start)

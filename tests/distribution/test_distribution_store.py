@@ -136,15 +136,6 @@ def test_a_table_is_not_of_two_dimensions(name: str, conditional: xr.Dataset) ->
         _store.check(conditional.drop_vars(name).assign({name: (("one", "other"), values[None])}))
 
 
-def test_an_attribute_of_another_name_breaks_the_seal(conditional: xr.Dataset) -> None:
-    """With the same values, in the same order."""
-    sealed = _store.sealed(conditional)
-    there = sealed["impacts"].attrs
-    renamed = {f"{name}s": value for name, value in there.items()}
-    with pytest.raises(ParameterError, match=r"is damaged"):
-        _store.unsealed(sealed.assign(impacts=sealed.impacts.drop_attrs().assign_attrs(renamed)), "d.nc")
-
-
 @pytest.mark.parametrize("thing", [None, 3, "file.nc", {}])
 def test_what_is_no_dataset_is_refused(thing: Any) -> None:
     shown = re.escape(repr(thing))
@@ -200,21 +191,3 @@ def test_the_checksum_of_a_file_of_before(data: xr.Dataset) -> None:
         digest.update(repr([(key, [text]) for key, text in sorted(data[name].attrs.items())]).encode())
     digest.update(b"[('beyond', ['raise']), ('source', ['here'])]")
     assert _store.sealed(data).attrs["checksum"] == digest.hexdigest()
-
-
-@pytest.mark.parametrize(
-    ("attrs", "told"),
-    [
-        ({"format_version": None}, "^d.nc: lacks format version or checksum: must be a file that Fluct"),
-        ({"checksum": None}, r"^d.nc: lacks .*FluctuatingRestitution\.save wrote$"),
-        (
-            {"format_version": 99},
-            "^d.nc: is of format version 99: must be 1; save it again",
-        ),
-    ],
-)
-def test_a_file_of_another_kind(attrs: dict[str, Any], told: str, data: xr.Dataset) -> None:
-    sealed = _store.sealed(data)
-    sealed.attrs = {k: v for k, v in (sealed.attrs | attrs).items() if v is not None}
-    with pytest.raises(ParameterError, match=told):
-        _store.unsealed(sealed, "d.nc")

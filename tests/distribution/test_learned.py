@@ -20,30 +20,33 @@ from restitution.drop.run import Run
 Floats = NDArray[np.float64]
 
 
-def test_every_speed_is_as_simulated() -> None:
+@pytest.mark.parametrize(
+    ("particles", "within"), [pytest.param(110_000, 0.01, marks=pytest.mark.slow), (27_500, 0.02)]
+)
+def test_every_speed_is_as_simulated(particles: int, within: float) -> None:
     """Nine million impacts: no interval of one per cent in v is farther than 0.01 from fresh particles.
 
-    Slower impacts are left to docs/theory.md: below 0.2 m/s p(ε | v) has lines that no node resolves.
-
-    There are twice as many of those: 0.87/√100 000 = 0.003 of a typical distance is their own noise.
+    A quarter of them is within twice as much. Slower impacts are left to docs/theory.md: below 0.2 m/s
+    p(ε | v) has lines that no node resolves. There are twice as many fresh ones: of the full number
+    0.87/√100 000 = 0.003 of a typical distance is their own noise.
     """
     how: dict[str, Any] = {"impacts": 250, "seed": 1}
     released = tuple(heights(40))
     dist = FluctuatingRestitution.learn(
-        BODY, LAW, particles=110_000, **how, release_height=released, velocities=(0.2, 0.85)
+        BODY, LAW, particles=particles, **how, release_height=released, velocities=(0.2, 0.85)
     )
-    assert 0.8e7 < float(dist.data.impacts.sum()) < 1e7
-    assert np.diff(np.log(dist.data.velocity)).max() < 0.015
+    assert 80.0 < float(dist.data.impacts.sum()) / particles < 91.0
+    assert np.diff(np.log(dist.data.velocity)).max() < 1.5 * within
     # Of what is stated the fresh particles' own scatter makes the most: its like is in what was learned.
     scatter = dist.data.ks_scatter
     assert 0.8 < float((scatter / (0.87 / np.sqrt(dist.data.fresh_impacts))).median()) < 1.3
     assert float((dist.data.ks_distance / scatter).median()) < 2.0
-    fresh = Ensemble(Run(body=BODY, law=LAW, particles=220_000, impacts=250, seed=1000), released)
+    fresh = Ensemble(Run(body=BODY, law=LAW, particles=2 * particles, impacts=250, seed=1000), released)
     check = Check.of(dist._table, fresh.blocks(FRESH))
-    assert check.impacts().min() > 80_000
-    assert check.distances().max() < 0.01
+    assert check.impacts().min() > 0.7 * particles
+    assert check.distances().max() < within
     # What the distribution states rests on as many impacts as it was learned from.
-    assert float(dist.data.ks_distance.max()) < 0.012
+    assert float(dist.data.ks_distance.max()) < 1.2 * within
 
 
 @pytest.mark.parametrize(

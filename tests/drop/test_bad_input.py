@@ -11,8 +11,6 @@ import restitution as rs
 from reference.refused import (
     ANGLE,
     BODIES,
-    BODY,
-    LAW,
     LAWS,
     REVOLVED,
     RUN,
@@ -23,34 +21,11 @@ from reference.refused import (
 )
 
 
-@pytest.mark.parametrize(("name", "value", "allowed"), BODY, ids=identify)
-def test_body(name: str, value: Any, allowed: str) -> None:
-    check(
-        message(lambda: rs.Dumbbell(**{"radius": 1.0, "separation": 0.1} | {name: value})),
-        name,
-        value,
-        allowed,
-    )
-
-
-@pytest.mark.parametrize(("name", "value", "allowed"), LAW, ids=identify)
-def test_law(name: str, value: Any, allowed: str) -> None:
-    check(message(lambda: rs.TangentialRestitution(**{"normal": 0.5} | {name: value})), name, value, allowed)
-
-
 @pytest.mark.parametrize(("name", "value", "allowed"), [*RUN, *THREADS_CASES], ids=identify)
 def test_simulate(
     body: rs.Dumbbell, law: rs.TangentialRestitution, name: str, value: Any, allowed: str
 ) -> None:
     check(message(lambda: rs.simulate(body, law, **{name: value})), name, value, allowed)
-
-
-@pytest.mark.parametrize(("name", "value", "allowed"), [*RUN, *THREADS_CASES], ids=identify)
-def test_statistics_refuses_what_simulate_refuses(
-    body: rs.Dumbbell, law: rs.TangentialRestitution, name: str, value: Any, allowed: str
-) -> None:
-    bins: Any = {"velocity_bins": [0.0, 1.0], "restitution_bins": [0.0, 1.0]}
-    check(message(lambda: rs.statistics(body, law, **bins, **{name: value})), name, value, allowed)
 
 
 def test_angles(body: rs.Dumbbell, law: rs.TangentialRestitution) -> None:

@@ -252,15 +252,6 @@ def test_bad_input_is_named(bodies: Any, laws: Any, reason: str) -> None:
         rs.compare(bodies, laws, **RUN)
 
 
-def test_arguments_of_the_runs_are_checked_in_its_own_name() -> None:
-    with pytest.raises(TypeError, match=r"compare\(\): missing a required .*'velocity_bins'"):
-        rs.compare(BODIES, LAWS, restitution_bins=RUN["restitution_bins"])
-    with pytest.raises(TypeError, match=r"argument: 'velocity_bins' and 'restitution_bins'$"):
-        rs.compare(BODIES, LAWS)
-    with pytest.raises(TypeError, match=r"compare\(\): got an unexpected keyword argument 'particle'"):
-        rs.compare(BODIES, LAWS, **RUN, particle=3)
-
-
 def test_progress_counts_combinations(capsys: pytest.CaptureFixture[str]) -> None:
     rs.compare(BODIES, LAWS[1:3], **RUN, progress=True)
     assert re.search(r"compare: .*4/4 .*combinations", capsys.readouterr().err)

@@ -49,7 +49,7 @@ def test_nothing_is_said_where_budget_and_times_agree(
     tmp_path: Path, out_of_roundness: float, timing: float
 ) -> None:
     """Errors of times alone, of both, and of the shape alone."""
-    for seed in (1, 2, 3):
+    for seed in (1, 2):
         found = analyse(
             table(tmp_path, out_of_roundness, timing, seed), setting(out_of_roundness, timing)
         ).series[0]

@@ -281,30 +281,6 @@ def test_errors_of_drag_and_drop_are_those_of_the_coefficients() -> None:
     assert both.errors["restitution"] == pytest.approx(math.sqrt(variance / 2), rel=1e-6)
 
 
-def test_a_sphere_whose_drag_is_not_given() -> None:
-    """C_d of 0.45 ± 0.05, between the 0.4 and 0.5 of smooth spheres."""
-    usual = flight.Drag.of_sphere(diameter=0.04, mass=2.7e-3)
-    area = math.pi * 0.02**2
-    assert 0.5 * 1.2 * 0.45 * area * usual.terminal_velocity**2 == pytest.approx(2.7e-3 * 9.81, rel=1e-12)
-    assert usual.uncertainty == pytest.approx(0.5 * 0.05 / 0.45 * usual.terminal_velocity, rel=1e-12)
-
-
-def test_columns_of_a_dataset_that_is_fitted_are_named() -> None:
-    good = Series("constant", 8, 2e-5, None, 1, 0.0).data()
-    for name in ("time", "uncertainty"):
-        words = good.copy()
-        words[name] = ("impact", ["a"] * 8)
-        with pytest.raises(ValueError, match=rf"^data\.{name} = .*: must be real numbers"):
-            flight.fit(words)
-        square = good.copy()
-        square[name] = (("impact", "way"), np.ones((8, 2)))
-        with pytest.raises(ValueError, match=rf"^data\.{name} has dimensions .*: must be \(impact\)"):
-            flight.fit(square)
-    gap = Series("constant", 8, 2e-5, None, 1, 0.0)
-    gap.times[3] = math.nan
-    assert flight.fit(gap.data()).impacts == 3
-
-
 def test_variables_say_what_they_are() -> None:
     """Dimensions, units, symbols, and all numbers that were given: a fit needs the Dataset alone."""
     data = flight.restitution(
@@ -385,17 +361,6 @@ def test_laws_are_compared_by_their_criterion() -> None:
     ):
         with pytest.raises(ValueError, match=re.escape(message)):
             flight.compare(*bad)
-
-
-def test_a_fit_that_does_not_exist_is_refused() -> None:
-    """Errors as large as the intervals: the chain of flights cannot be straightened out."""
-    with pytest.raises(ValueError, match=r'^scatter = \'other\': must be "fit" or a number in \[0, 1e30\]'):
-        flight.fit(Series("constant", 8, 2e-5, None, 1, 0.0).data(), scatter="other")  # type: ignore[arg-type]
-    data = Series("constant", 8, 2e-5, None, 1, 0.0).data().drop_vars("uncertainty")
-    with pytest.raises(
-        ValueError, match=r"^data lacks uncertainty: must be a Dataset from flight\.restitution"
-    ):
-        flight.fit(data)
 
 
 def test_slopes_of_a_law_at_all_speeds() -> None:

@@ -59,10 +59,10 @@ def test_some_of_the_experiments_come_out_as_they_are_kept() -> None:
     The last bits of a linear algebra library make other walks of the sampler; the rank of one among 640
     correlated draws has a standard error of some 0.05, and the difference of two 0.07.
     """
-    found, kept = calibration.calibrate(2), calibration.read(KEPT)
-    assert found.truth == pytest.approx(kept.truth[:2], rel=1e-5)
-    assert np.abs(found.rank - kept.rank[:2]).max() < 0.2
-    assert calibration.written(found).count("\n") == 3
+    found, kept = calibration.calibrate(1), calibration.read(KEPT)
+    assert found.truth == pytest.approx(kept.truth[:1], rel=1e-5)
+    assert np.abs(found.rank - kept.rank[:1]).max() < 0.2
+    assert calibration.written(found).count("\n") == 2
 
 
 def test_a_round_ball_gives_an_upper_limit_and_an_egg_a_shape() -> None:
@@ -90,7 +90,7 @@ def test_the_limit_of_a_sphere_is_what_its_times_resolve(error: float, one: floa
     law = rs.Frictionless(normal=0.93)
     drops = [heard(0.0, law, seed, error=error) for seed in (3, 4, 5, 6)]
     for data, most in ((drops[0], one), (drops, four)):
-        found = quick(data, law).attrs
+        found = quick(data, law, particles=100).attrs
         assert found["explained_by"] == "neither"
         assert found["verdict"].startswith("The times do not determine the shape")
         assert found["elongation_upper_limit"] < most
@@ -186,30 +186,6 @@ def test_what_cannot_be_inferred_is_refused(change: dict[str, Any], message: str
     given: dict[str, Any] = {"data": heard(0.05, law, 1), "law": law, "diameter": 6e-3} | change
     with pytest.raises(ValueError, match=message):
         rs.posterior(given.pop("data"), given.pop("law"), **given)
-
-
-@pytest.mark.parametrize(
-    ("change", "message"),
-    [
-        (
-            lambda data: data.isel(impact=slice(2, None), other_impact=slice(2, None)),
-            r"^data\.impact\[0\] = 2\.0: must be whole numbers .*, from 0, the first after the release",
-        ),
-        (
-            lambda data: data.drop_vars("restitution_covariance"),
-            r"^data lacks restitution_covariance: must be a Dataset from flight\.restitution",
-        ),
-        (
-            lambda data: data.drop_vars("impact_velocity"),
-            r"^data lacks impact_velocity: must be a Dataset from flight\.restitution",
-        ),
-    ],
-)
-def test_a_part_of_a_series_is_refused(change: Any, message: str) -> None:
-    """A drop begins with its release."""
-    law = rs.Frictionless(normal=0.93)
-    with pytest.raises(ValueError, match=message):
-        quick(change(heard(0.05, law, 1)), law)
 
 
 def test_the_first_impacts_of_a_series_are_a_series() -> None:

@@ -36,7 +36,7 @@ def ball(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def few_particles() -> Iterator[None]:
     """Simulate few for the shape: what is asked here is not how well it is known."""
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr("restitution.experiment.listen._shape._PARTICLES", 200)
+        patch.setattr("restitution.experiment.listen._shape._PARTICLES", 100)
         yield
 
 

@@ -59,13 +59,13 @@ def test_bursts_that_differ_are_timed_to_20_us() -> None:
 def test_no_slope_is_claimed_that_is_not_there() -> None:
     """The exponent of a constant law over its error is as Student's t has it.
 
-    Of 10 its spread is below 1.55 in 99 %. What the sound adds to that of the coefficients is a fraction.
+    Of 6 its spread is below 1.74 in 99 %. What the sound adds to that of the coefficients is a fraction.
     """
-    normal, added, scatters = slopes([101, 102, 103, 104, 105])
-    assert np.std(normal) < 1.55
+    normal, added, scatters = slopes([101, 102, 103])
+    assert np.std(normal) < 1.74
     assert np.std(added) < 0.3
-    # The ball scatters by .003; of 23 coefficients each is known to 15 %, the mean of 10 to 5 %.
-    assert np.mean(scatters) == pytest.approx(0.003, rel=0.12)
+    # The ball scatters by .003; of 23 coefficients each is known to 15 %, the mean of 6 to 6 %.
+    assert np.mean(scatters) == pytest.approx(0.003, rel=0.18)
 
 
 @pytest.mark.parametrize("kind", KINDS)

@@ -1,5 +1,6 @@
 """Figures of one's own results: what is drawn is what was simulated."""
 
+import io
 from pathlib import Path
 from typing import Any
 
@@ -42,8 +43,10 @@ def test_a_figure_of_ones_own_takes_three_lines(tmp_path: Path) -> None:
         "moments": rs.figures.moments(found),
         "trajectory": rs.figures.trajectory(data, 1),
     }
-    for name, drawn in figures.items():
-        assert [path.name for path in rs.figures.save(drawn, str(tmp_path / name))] == [
+    for drawn in figures.values():
+        drawn.savefig(io.BytesIO(), dpi=30)
+    for name in ("map", "moments"):
+        assert [path.name for path in rs.figures.save(figures[name], str(tmp_path / name))] == [
             f"{name}.png",
             f"{name}.pdf",
         ]

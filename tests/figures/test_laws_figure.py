@@ -17,9 +17,9 @@ PAGE = (Path(__file__).parents[2] / "docs" / "energy.md").read_text(encoding="ut
 
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """What the command writes with less than a tenth of the impacts of the page, and another seed."""
+    """What the command writes with less than a twentieth of the impacts of the page, and another seed."""
     out = tmp_path_factory.mktemp("laws")
-    result = CliRunner().invoke(app, ["laws", "--out", str(out), "--impacts", "600000", "--seed", "2"])
+    result = CliRunner().invoke(app, ["laws", "--out", str(out), "--impacts", "300000", "--seed", "2"])
     assert result.exit_code == 0, result.output
     assert result.output.strip() == str(out / "laws.png")
     return out

@@ -206,7 +206,7 @@ def test_a_film_shows_the_body_where_it_is(tmp_path: Path) -> None:
         assert 0.5 * (low + high) == pytest.approx(1e3 * float(path["position"][k, 2]), rel=1e-9)
         assert 0.5 * (left + right) == pytest.approx(film.centre(k)[0], rel=1e-9)
     assert {when[2], when[3]} <= set(film.times)
-    short = rs.figures.animate(data, 2, 3)
+    short = rs.figures.animate(data, 2, 1)
     with Image.open(short.save(tmp_path / "film.gif")) as saved:
         total = sum(one.info["duration"] for one in ImageSequence.Iterator(saved))
     assert total == 60 * short.frames

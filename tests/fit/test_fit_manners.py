@@ -223,15 +223,6 @@ def test_bad_input_is_named() -> None:
             call()
 
 
-@pytest.mark.parametrize("family", [fit.asymmetric_laplace, fit.gaussian, fit.student_t])
-def test_samples_that_are_no_numbers_are_named(family: Any) -> None:
-    """Strings and objects are refused with what they are."""
-    with pytest.raises(ValueError, match="samples = 'fast': must be numbers"):
-        family("fast")
-    with pytest.raises(ValueError, match="samples = 'fast'"):
-        fit.bootstrap(family, "fast", resamples=2)
-
-
 def test_student_t_is_not_fitted_to_a_single_value() -> None:
     """At k of n equal samples L ~ s^(ν(n−k) − k) grows without bound as s falls, for ν < k/(n−k)."""
     x = np.random.default_rng(3).standard_t(3.0, 2000)

@@ -182,22 +182,6 @@ def test_a_refusal_has_number_words_and_name(
     assert str(error.value.strerror).startswith(text)
 
 
-def test_a_folder_that_is_not_there_is_named(tmp_path: Path) -> None:
-    with pytest.raises(FileNotFoundError) as error:
-        check(tmp_path / "none" / "run.nc", replace=True)
-    assert (error.value.filename, error.value.strerror) == (str(tmp_path / "none"), os.strerror(errno.ENOENT))
-
-
-def test_write_replaces_only_if_asked(tmp_path: Path) -> None:
-    path = tmp_path / "dist.h"
-    write(path, "old")
-    with pytest.raises(FileExistsError):
-        write(path, "new")
-    assert path.read_text() == "old"
-    write(path, b"new", replace=True)
-    assert path.read_text() == "new"
-
-
 @contextmanager
 def naming(number: int, path: Path | str) -> Iterator[None]:
     with pytest.raises(OSError, match=r"\w") as raised:

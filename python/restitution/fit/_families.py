@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from math import exp
 from typing import Any
 
@@ -30,11 +31,7 @@ def gaussian(samples: Samples, *, velocity: Window | None = None) -> Fit:
     >>> 0.028 < fit.gaussian(x).parameters["deviation"] < 0.032
     True
     """
-    x = taken(samples, velocity)
-    if isinstance(x, Counts):
-        return _located("Gaussian", x, stats.norm, ("mean", "deviation"))
-    mean, deviation = stats.norm.fit(x)
-    return fitted("Gaussian", x, stats.norm(mean, deviation), mean=mean, deviation=deviation)
+    return _located("Gaussian", taken(samples, velocity), stats.norm, stats.norm, ("mean", "deviation"))
 
 
 def laplace(samples: Samples, *, velocity: Window | None = None) -> Fit:
@@ -48,11 +45,7 @@ def laplace(samples: Samples, *, velocity: Window | None = None) -> Fit:
     >>> 0.028 < fit.laplace(x).parameters["scale"] < 0.032
     True
     """
-    x = taken(samples, velocity)
-    if isinstance(x, Counts):
-        return _located("symmetric Laplace", x, _laplace, ("location", "scale"))
-    location, scale = stats.laplace.fit(x)
-    return fitted("symmetric Laplace", x, _laplace(location, scale), location=location, scale=scale)
+    return _located("symmetric Laplace", taken(samples, velocity), _laplace, stats.laplace)
 
 
 def _laplace(location: float, scale: float) -> Any:
@@ -71,11 +64,7 @@ def logistic(samples: Samples, *, velocity: Window | None = None) -> Fit:
     >>> 0.028 < fit.logistic(x).parameters["scale"] < 0.032
     True
     """
-    x = taken(samples, velocity)
-    if isinstance(x, Counts):
-        return _located("logistic", x, stats.logistic, ("location", "scale"))
-    location, scale = stats.logistic.fit(x)
-    return fitted("logistic", x, stats.logistic(location, scale), location=location, scale=scale)
+    return _located("logistic", taken(samples, velocity), stats.logistic, stats.logistic)
 
 
 def student_t(samples: Samples, *, velocity: Window | None = None) -> Fit:
@@ -101,7 +90,7 @@ def student_t(samples: Samples, *, velocity: Window | None = None) -> Fit:
     """
     x = taken(samples, velocity)
     if isinstance(x, Counts):
-        return _student(x)
+        return _counted("Student t", x, stats.t, ("degrees", "location", "scale"), 1.6)
     low, median, high = np.quantile(x, [0.25, 0.5, 0.75])
     width = (high - low) / 1.349 or float(np.std(x))  # a Gaussian's quartiles are 1.349 deviations apart
     furthest = float(np.abs(x - median).max())
@@ -118,21 +107,28 @@ def student_t(samples: Samples, *, velocity: Window | None = None) -> Fit:
     )
 
 
-def _located(family: str, counts: Counts, kind: Any, names: tuple[str, str]) -> Fit:
-    """Fit location and scale to binned counts."""
+def _located(
+    family: str,
+    x: Array | Counts,
+    density: Callable[[float, float], Any],
+    scipys: Any,
+    names: tuple[str, str] = ("location", "scale"),
+) -> Fit:
+    """Fit location and scale: to samples as SciPy does, to counts by their own likelihood."""
+    if isinstance(x, Counts):
+        return _counted(family, x, density, names)
+    location, scale = scipys.fit(x)
+    return fitted(family, x, density(location, scale), **dict(zip(names, (location, scale), strict=True)))
+
+
+def _counted(
+    family: str, counts: Counts, density: Callable[..., Any], names: tuple[str, ...], *degrees: float
+) -> Fit:
+    """Fit location, scale and, from where a search for them begins, degrees of freedom to binned counts."""
 
     def make(point: Array, median: float, spread: float) -> tuple[Any, dict[str, float]]:
         location, scale = median + spread * float(point[0]), spread * exp(np.clip(point[1], -20.0, 20.0))
-        return kind(location, scale), dict(zip(names, (location, scale), strict=True))
+        values = (*(exp(np.clip(log, -3.0, 15.0)) for log in point[2:]), location, scale)
+        return density(*values), dict(zip(names, values, strict=True))
 
-    return fit_counts(family, counts, make, [0.0, 0.0])
-
-
-def _student(counts: Counts) -> Fit:
-    def make(point: Array, median: float, spread: float) -> tuple[Any, dict[str, float]]:
-        location, scale = median + spread * float(point[0]), spread * exp(np.clip(point[1], -20.0, 20.0))
-        degrees = exp(np.clip(point[2], -3.0, 15.0))
-        named = {"degrees": degrees, "location": location, "scale": scale}
-        return stats.t(degrees, location, scale), named
-
-    return fit_counts("Student t", counts, make, [0.0, 0.0, 1.6])
+    return fit_counts(family, counts, make, [0.0, 0.0, *degrees])
