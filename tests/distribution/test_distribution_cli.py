@@ -109,7 +109,7 @@ def test_nothing_is_replaced_unasked_and_nothing_begun_in_vain(run: Path, tmp_pa
 
 
 def test_the_figure_is_for_counts_too(tmp_path: Path) -> None:
-    """Without particles there are no bands and no fresh impacts, but a figure there is, in every format."""
+    """Without particles there are no bands and no fresh impacts, but a figure there is."""
     counts = rs.statistics(
         rs.Dumbbell(radius=3e-3, separation=3e-3),
         rs.TangentialRestitution(normal=0.9),
@@ -120,6 +120,5 @@ def test_the_figure_is_for_counts_too(tmp_path: Path) -> None:
     dist = rs.FluctuatingRestitution.from_statistics(counts)
     with mpl.rc_context({"text.usetex": True}):  # as a user's settings may ask for: there is no LaTeX here
         assert image(dist, "png").startswith(b"\x89PNG")
-    for suffix, start in ((".pdf", b"%PDF"), (".svg", b"<?xml")):
-        dist.figure().savefig(tmp_path / f"dist{suffix}")
-        assert (tmp_path / f"dist{suffix}").read_bytes().startswith(start)
+    dist.figure().savefig(tmp_path / "dist.pdf")
+    assert (tmp_path / "dist.pdf").read_bytes().startswith(b"%PDF")

@@ -35,7 +35,7 @@ def test_every_speed_is_as_simulated(particles: int, within: float) -> None:
     dist = FluctuatingRestitution.learn(
         BODY, LAW, particles=particles, **how, release_height=released, velocities=(0.2, 0.85)
     )
-    assert 80.0 < float(dist.data.impacts.sum()) / particles < 91.0
+    assert 70.0 < float(dist.data.impacts.sum()) / particles < 91.0
     assert np.diff(np.log(dist.data.velocity)).max() < 1.5 * within
     # Of what is stated the fresh particles' own scatter makes the most: its like is in what was learned.
     scatter = dist.data.ks_scatter
