@@ -1,7 +1,6 @@
 """The Dataset of a run, and the file that it is written to and read from."""
 
 import errno
-import inspect
 import re
 from pathlib import Path
 
@@ -10,7 +9,7 @@ import pytest
 import xarray as xr
 
 import restitution as rs
-from restitution._internal.datasets import load, put, save
+from restitution._internal.datasets import load, put
 
 
 @pytest.fixture(scope="module")
@@ -37,18 +36,6 @@ def test_a_run_that_was_finished_does_not_say_that_it_was_not(data: xr.Dataset) 
     assert "incomplete" not in data.attrs
 
 
-def test_a_file_gives_back_what_was_written(data: xr.Dataset, tmp_path: Path) -> None:
-    """And is not replaced unless that is asked for."""
-    save(data, tmp_path / "run.nc")
-    assert load(tmp_path / "run.nc").identical(data)
-    with pytest.raises(FileExistsError):
-        save(data, tmp_path / "run.nc")
-    other = data.isel(particle=[1])
-    save(other, tmp_path / "run.nc", replace=True)
-    assert load(tmp_path / "run.nc").identical(other)
-    assert inspect.signature(save).parameters["replace"].default is False
-
-
 def test_a_file_that_cannot_be_read_is_named(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     (spoilt := tmp_path / "spoilt.nc").write_bytes(b"x" * 100)
     for path, told in ((spoilt, "NetCDF: Unknown file format"), (tmp_path / "none.nc", "No such file")):
@@ -64,17 +51,6 @@ def test_a_file_that_cannot_be_read_is_named(tmp_path: Path, monkeypatch: pytest
     with pytest.raises(OSError, match="cannot be read as netCDF: of a decoder") as raised:
         load(spoilt)
     assert raised.value.filename == str(spoilt)
-
-
-def test_a_file_that_memory_does_not_hold_is_named(
-    data: xr.Dataset, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    save(data, tmp_path / "run.nc")
-    monkeypatch.setattr("restitution._internal.resources.available_memory", lambda: data.nbytes)
-    assert load(tmp_path / "run.nc").identical(data)
-    monkeypatch.setattr("restitution._internal.resources.available_memory", lambda: data.nbytes - 1)
-    with pytest.raises(MemoryError, match=re.escape(str(tmp_path / "run.nc"))):
-        load(tmp_path / "run.nc")
 
 
 def test_records_say_how_many_impacts_there_were(data: xr.Dataset) -> None:

@@ -107,14 +107,6 @@ def test_moments_look_beyond_the_restitution_bins() -> None:
     assert float(found["mean_restitution"][0]) == 5.0
 
 
-def test_equal_values_have_no_variance_at_all() -> None:
-    """A sphere's restitution is one number; rounding in a mean of 0.98s must not invent a spread."""
-    found = reduce(impacts([0.1] * 7, [0.98] * 7), [0.0, 1.0], E_EDGES)
-    assert float(found["mean_restitution"][0]) == 0.98
-    assert float(found["variance"][0]) == 0.0
-    assert np.isnan(float(found["kurtosis"][0]))
-
-
 def test_negative_zero_is_zero() -> None:
     """-0.0 equals the edge 0.0, so it belongs to the bin above."""
     found = reduce(impacts([-0.0], [-0.0]), [-1.0, 0.0, 1.0], [-1.0, 0.0, 1.0])

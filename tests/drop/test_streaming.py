@@ -276,24 +276,3 @@ def test_memory_does_not_grow_with_the_particles() -> None:
     )
     printed = subprocess.run([sys.executable, "-c", program], capture_output=True, check=True, text=True)
     assert int(printed.stdout) < 200_000
-
-
-def test_equal_values_have_no_spread() -> None:
-    """Seven particles with one angle: the variance of their equal ε is 0, not rounding; no skewness."""
-    body, law = rs.Dumbbell(radius=3e-3, separation=3e-3), rs.TangentialRestitution(normal=0.9)
-    orientation = np.full(7, 1.6335593220338984)
-    arguments = call(particles=7, impacts=12, velocity_bins=None, orientation=orientation)
-    found = rs.statistics(body, law, **arguments)
-    np.testing.assert_array_equal(found.variance, 0.0)
-    assert bool(found.skewness.isnull().all())
-    assert bool(found.kurtosis.isnull().all())
-
-
-def test_grids_beyond_the_memory_are_refused() -> None:
-    """Bins whose grids the machine cannot hold are an error before anything is computed, not an abort."""
-    body = rs.Dumbbell(radius=3e-3, separation=3e-4)
-    fine = np.linspace(0.0, 1.0, 2**20)
-    with pytest.raises(ValueError, match=r"velocity_bins, restitution_bins.*GB: must be at most"):
-        rs.statistics(body, LAW, **call(velocity_bins=fine, restitution_bins=fine))
-    with pytest.raises(ValueError, match=r"rows of .* must be at most"):
-        rs.statistics(body, LAW, **call(velocity_bins=None, impacts=2**39))

@@ -34,8 +34,6 @@ class Environment:
         Whether the superuser must become somebody else first, whom the limit binds.
     lost : tuple of int
         Standard streams on which nothing can be said.
-    writes : bool
-        Whether files can be written.
     """
 
     enter: Callable[[int], None] = lambda _: None
@@ -43,7 +41,6 @@ class Environment:
     signals: tuple[int, ...] = ()
     ordinary: bool = False
     lost: tuple[int, ...] = ()
-    writes: bool = True
 
 
 def memory(room: int) -> Environment:
@@ -149,14 +146,14 @@ ENVIRONMENTS: dict[str, Environment] = {
     "nothing": Environment(),
     "512 MiB": memory(512 * MIB),
     "no threads": Environment(_soft(resource.RLIMIT_NPROC, 0), ordinary=True),
-    "no large files": Environment(_soft(resource.RLIMIT_FSIZE, 256), writes=False),
-    "no files at all": Environment(_soft(resource.RLIMIT_FSIZE, 0), writes=False),
+    "no large files": Environment(_soft(resource.RLIMIT_FSIZE, 256)),
+    "no files at all": Environment(_soft(resource.RLIMIT_FSIZE, 0)),
     "two files": files(2),
     "four files": files(4),
     "six files": files(6),
     "ten files": files(10),
-    "a full disk": Environment(writes=False),
-    "a folder to read": Environment(prepare=lambda folder: folder.chmod(0o555), ordinary=True, writes=False),
+    "a full disk": Environment(),
+    "a folder to read": Environment(prepare=lambda folder: folder.chmod(0o555), ordinary=True),
     "no input": closed(0),
     "no output": closed(1),
     "no errors": closed(2),
@@ -184,7 +181,7 @@ ENVIRONMENTS: dict[str, Environment] = {
     "a strange terminal": variables(TERM="none-such", COLUMNS="1", LINES="x"),
     "one core": Environment(_one_core),
     "a private umask": Environment(_private),
-    "a folder that is gone": Environment(_gone_folder, writes=False),
+    "a folder that is gone": Environment(_gone_folder),
 }
 """By name."""
 
