@@ -12,7 +12,6 @@ from reference.refused import (
     ANGLE,
     BODIES,
     LAWS,
-    REVOLVED,
     RUN,
     THREADS_CASES,
     check,
@@ -62,7 +61,7 @@ def test_body_and_law(body: rs.Dumbbell, law: rs.TangentialRestitution) -> None:
     for wrong in no_bodies:
         for call, allowed in (
             (rs.simulate, BODIES),
-            (rs.analytic.first_impact, f"{REVOLVED}, or a RoughSphere"),
+            (rs.analytic.first_impact, BODIES),
         ):
             text = message(partial(call, wrong, law))
             assert text.startswith("body = ")

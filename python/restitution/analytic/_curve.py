@@ -13,7 +13,7 @@ from typing import NamedTuple
 import numpy as np
 
 from restitution.analytic._disc import Number, turned
-from restitution.analytic._hull import Ball, Ellipsoid, Outline
+from restitution.analytic._hull import Hull, Outline, Turned
 from restitution.analytic._impulse import Impulse, Mode
 from restitution.analytic._normal import Fall, coefficient, kinks
 from restitution.analytic._orientation import Floats
@@ -44,7 +44,7 @@ class Piece:
 
     low: float
     high: float
-    hull: Ball | Ellipsoid
+    hull: Hull
     impulse: Impulse
     unit: float  # in m
     fall: Fall
@@ -79,7 +79,7 @@ class Piece:
 class Curve:
     """ε as a function of θ from 0 to ``limit``."""
 
-    body: Body | RoughSphere
+    body: Body | RoughSphere | Turned
     law: Law
     fall: Fall  # without effect on a law with a number for ``normal``
 
@@ -91,7 +91,7 @@ class Curve:
         found: list[Piece] = []
         for side in outline.sides:
             heights = [self.fall.height(speed) / outline.unit for speed in kinks(self.law.normal)]
-            cosines = [side.hull.cosine(height) for height in heights]
+            cosines = [cosine for height in heights for cosine in side.hull.cosines(height)]
             bends = [float(np.arccos(c)) for c in cosines if -1.0 < c < 1.0]
             for low, high in _between(side.low, side.high, bends):
                 height, _ = side.hull.contact(*turned(0.5 * (low + high)))

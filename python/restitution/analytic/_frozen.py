@@ -18,7 +18,7 @@ from restitution._internal.parameters import ParameterError, wrong
 from restitution._internal.resources import check_size
 from restitution._internal.text import table, value
 from restitution.analytic._orientation import Floats, OrientationName
-from restitution.bodies import BODIES, Body, RoughSphere
+from restitution.bodies import ANY_BODIES, AnyBody, Body, RigidBody, RoughSphere
 from restitution.laws import LAWS, Law, check_steady
 
 Values: TypeAlias = Any  # np.float64 for a scalar argument, an array of floats otherwise
@@ -52,7 +52,7 @@ class FirstImpact(ABC):
     (3,)
     """
 
-    body: Body | RoughSphere
+    body: Body | RigidBody
     law: Law
     orientation: OrientationName
 
@@ -86,6 +86,35 @@ class FirstImpact(ABC):
     @abstractmethod
     def cos_theta(self, restitution: ArrayLike) -> Values:
         """Return the greatest |cos θ| that gives ε; nan outside the support."""
+
+    @property
+    def cdf_error(self) -> float:
+        """How far `cdf` may be off: 0 where ε is a function of the angle θ, which is solved to rounding.
+
+        For other rigid bodies an estimate, of the second differences of ε.
+        """
+        return 0.0
+
+    def at(self, normal: ArrayLike) -> Values:
+        """Return ε where the normal of the plane, away from it, has a direction in the axes of the body.
+
+        Parameters
+        ----------
+        normal : array_like, shape (..., 3)
+            Vectors of any length > 0. The axis of a body of revolution is z.
+        """
+        allowed = "vectors of a length > 0, shape (..., 3)"
+        vectors = reals("normal", normal, allowed, unit="1")
+        if vectors.ndim == 0 or vectors.shape[-1] != 3 or not np.all(np.any(vectors != 0.0, axis=-1)):
+            raise ParameterError(wrong("normal", normal, allowed))
+        flat = vectors.reshape(-1, 3)
+        flat = flat / np.abs(flat).max(axis=1, keepdims=True)
+        flat = flat / np.linalg.norm(flat, axis=1, keepdims=True)
+        return scalar(self._at(flat).reshape(vectors.shape[:-1]))
+
+    def _at(self, normal: Floats) -> Floats:
+        """Return ε for unit vectors, shape (directions, 3)."""
+        return np.asarray(self.restitution(np.clip(normal[:, 2], -1.0, 1.0)))
 
     @property
     def probability_above_normal(self) -> float:
@@ -253,10 +282,10 @@ class FirstImpact(ABC):
         return self.ppf(tail), self.isf(tail)
 
 
-def check(body: Body | RoughSphere, law: Law) -> None:
+def check(body: Body | RigidBody, law: Law) -> None:
     """Refuse what is not a body or not a law, random heights of asperities, and a law that scatters."""
-    if not isinstance(body, Body | RoughSphere):
-        raise ParameterError(wrong("body", body, f"{BODIES}, or a RoughSphere"))
+    if not isinstance(body, AnyBody):
+        raise ParameterError(wrong("body", body, ANY_BODIES))
     if isinstance(body, RoughSphere) and (isinstance(body.heights, tuple) or body.heights == 0.0):
         raise ParameterError(wrong("body.heights", body.heights, "a number > 0 in m, the same for all"))
     if not isinstance(law, Law):

@@ -2,15 +2,23 @@
 
 The centre of mass of a body that stands on the plane is h(θ) high, its support function. The point of contact
 is h below it and a = |h′| beside it. For a ball of radius ϱ at s on the axis h = ϱ - s cos θ, a = |s| sin θ;
-for a spheroid h² = A² sin²θ + C² cos²θ, a = |C² - A²| sin θ cos θ/h.
+for a spheroid h² = A² sin²θ + C² cos²θ, a = |C² - A²| sin θ cos θ/h; for what a circle of radius ϱ makes as
+it turns about the axis, its centre d beside it, h = ϱ - s cos θ + d sin θ, a = |s sin θ + d cos θ|. With
+ϱ = 0 that is a rim, with d < 0 the flank of an egg.
 """
 
 import math
 from dataclasses import dataclass
-from typing import NamedTuple
+from itertools import pairwise
+from typing import NamedTuple, TypeAlias
+
+import numpy as np
 
 from restitution.analytic._disc import Number
-from restitution.bodies import Body, RoughSphere
+from restitution.bodies import Body, Cylinder, Egg, Revolution, Ring, RoughSphere
+
+Turned = Revolution | Cylinder | Ring | Egg
+"""Rigid bodies that are solids of revolution."""
 
 
 @dataclass(frozen=True)
@@ -24,9 +32,35 @@ class Ball:
         """Return the height h and lever arm a."""
         return self.radius - self.place * cosine, abs(self.place) * sine
 
-    def cosine(self, height: float) -> float:
-        """Cos θ at which the centre of mass is so high; nan if it never is."""
-        return (self.radius - height) / self.place if self.place else math.nan
+    def cosines(self, height: float) -> tuple[float, ...]:
+        """Cos θ at which the centre of mass is so high, if it ever is."""
+        return ((self.radius - height) / self.place,) if self.place else ()
+
+
+@dataclass(frozen=True)
+class Band:
+    """A circle turned about the axis: its radius ϱ, its centre s along the axis and d beside it.
+
+    The lever arm s sin θ + d cos θ has one sign where the band is used, that of ``side``.
+    """
+
+    radius: float
+    place: float
+    offset: float
+    side: float = 1.0
+
+    def contact(self, sine: Number, cosine: Number) -> tuple[Number, Number]:
+        """Return the height h and lever arm a."""
+        height = self.radius - self.place * cosine + self.offset * sine
+        return height, (self.place * sine + self.offset * cosine) * self.side
+
+    def cosines(self, height: float) -> tuple[float, ...]:
+        """Cos θ at which the centre of mass is so high, if it ever is."""
+        distance, middle = math.hypot(self.place, self.offset), math.atan2(self.offset, -self.place)
+        share = (height - self.radius) / distance if distance else math.nan
+        if not abs(share) <= 1.0:
+            return ()
+        return tuple(math.cos(middle + sign * math.acos(share)) for sign in (-1.0, 1.0))
 
 
 @dataclass(frozen=True)
@@ -43,11 +77,14 @@ class Ellipsoid:
         excess = abs((self.polar - self.equatorial) * (self.polar + self.equatorial))
         return height, excess * sine * cosine / height
 
-    def cosine(self, height: float) -> float:
-        """Cos θ at which the centre of mass is so high; nan if it never is."""
+    def cosines(self, height: float) -> tuple[float, ...]:
+        """Cos θ at which the centre of mass is so high, if it ever is."""
         a, c = self.equatorial, self.polar
         square = (height - a) * (height + a) / ((c - a) * (c + a)) if a != c else math.nan
-        return math.sqrt(square) if square >= 0.0 else math.nan
+        return (math.sqrt(square),) if square >= 0.0 else ()
+
+
+Hull: TypeAlias = Ball | Band | Ellipsoid
 
 
 class Side(NamedTuple):
@@ -55,7 +92,7 @@ class Side(NamedTuple):
 
     low: float
     high: float
-    hull: Ball | Ellipsoid
+    hull: Hull
 
 
 @dataclass(frozen=True)
@@ -67,11 +104,14 @@ class Outline:
     sides: tuple[Side, ...]  # from θ = 0 to π/2 if the body looks the same upside down, else to π
 
     @classmethod
-    def of(cls, body: Body | RoughSphere) -> "Outline":
+    def of(cls, body: Body | RoughSphere | Turned) -> "Outline":
         """Make the hull of a body; of a rough sphere that of the asperity that touches."""
         if isinstance(body, RoughSphere):
             return _rough(body)
         unit = body.compiled.farthest()
+        if not isinstance(body, Body):
+            inertia = float(body.inertia_tensor[0, 0]) / unit / body.mass / unit
+            return cls(unit, inertia, _turned(body, unit))
         inertia = body.transverse_inertia / unit / body.mass / unit
         return cls(unit, inertia, _sides(body, unit))
 
@@ -83,6 +123,30 @@ def _rough(body: RoughSphere) -> Outline:
     ball = Ball(body.asperity_radius / unit, body.asperity_radius / unit - 1.0)
     least = max(-1.0, 1.0 - height / (unit - body.asperity_radius))
     return Outline(unit, 0.4 * (body.radius / unit) ** 2, (Side(0.0, math.acos(least), ball),))
+
+
+def _turned(body: Turned, unit: float) -> tuple[Side, ...]:
+    """Find which rim or arc of a solid of revolution touches, from θ = 0, its axis upright, to π."""
+    circles = (np.array(body.compiled.rims) - [body.centre_of_mass[2], 0.0])[::-1] / unit
+    if isinstance(body, Egg):
+        flank = 0.5 * body.width / unit - circles[1, 1]
+        radii = np.array([body.blunt_end / unit, flank, body.tip / unit])
+        joints = np.diff(circles, axis=0) / np.diff(-radii)[:, None]  # normals where two arcs meet
+    else:
+        radii = np.zeros(len(circles))
+        joints = np.diff(circles, axis=0)[:, ::-1] * [-1.0, 1.0]  # along the edge between two rims
+    angles = np.arctan2(joints[:, 1], -joints[:, 0])
+    sides = []
+    for radius, (place, offset), (low, high) in zip(
+        radii, circles, pairwise([0.0, *angles, math.pi]), strict=True
+    ):
+        rocking = math.atan2(-offset, place) % math.pi  # there the lever arm changes its sign
+        cuts = [low, *([rocking] if low < rocking < high else []), high]
+        for start, stop in pairwise(cuts):
+            middle = 0.5 * (start + stop)
+            arm = place * math.sin(middle) + offset * math.cos(middle)
+            sides.append(Side(start, stop, Band(radius, place, offset, math.copysign(1.0, arm))))
+    return tuple(sides)
 
 
 def _sides(body: Body, unit: float) -> tuple[Side, ...]:
@@ -98,7 +162,7 @@ def _sides(body: Body, unit: float) -> tuple[Side, ...]:
     return Side(0.0, turn, lower), Side(turn, math.pi, upper)
 
 
-def _hull(arc: list[float], unit: float) -> Ball | Ellipsoid:
+def _hull(arc: list[float], unit: float) -> Hull:
     centre, along, across, *_ = arc
     if along == across:
         return Ball(across / unit, centre / unit)

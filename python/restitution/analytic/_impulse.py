@@ -47,10 +47,10 @@ class Impulse:
             return 0.0
         inertia, couple = self.inertia, height * arm
         if within == "stuck":
-            return couple - self._friction * (inertia + height * height)
-        room = inertia + arm * arm - self._friction * couple
+            return couple - self.friction * (inertia + height * height)
+        room = inertia + arm * arm - self.friction * couple
         whole = inertia + arm * arm + height * height
-        return self._kept * couple * room - self._friction * inertia * (1.0 + normal) * whole
+        return self.kept * couple * room - self.friction * inertia * (1.0 + normal) * whole
 
     def loss(self, mode: Mode, normal: Number, height: Number, arm: Number) -> Number:
         """Return λ = ε_n - ε, ε_n = normal."""
@@ -58,18 +58,18 @@ class Impulse:
         if mode == "stuck":  # (17)
             return (1.0 + normal) * square / (inertia + square + height * height)
         if mode == "sliding":
-            dragged = square - self._friction * (height * arm)
+            dragged = square - self.friction * (height * arm)
             return (1.0 + normal) * dragged / (inertia + dragged)
         share = height * height / (inertia + square + height * height)
-        return square / (inertia + square) * (1.0 + normal - self._kept * share)
+        return square / (inertia + square) * (1.0 + normal - self.kept * share)
 
     def raised(self, mode: Mode, normal: Number, height: Number, arm: Number) -> Number:
         """Positive where ε > ε_n."""
         if mode == "sliding":
-            return self._friction * height - arm
+            return self.friction * height - arm
         if mode == "part":
             square = height * height
-            return self._kept * square - (1.0 + normal) * (self.inertia + arm * arm + square)
+            return self.kept * square - (1.0 + normal) * (self.inertia + arm * arm + square)
         return -1.0
 
     def threshold(self, mode: Mode, height: Number, arm: Number) -> Number:
@@ -78,16 +78,16 @@ class Impulse:
         if mode == "stuck":
             return square / (inertia + height * height)
         if mode == "sliding":
-            return (square - self._friction * (height * arm)) / inertia
+            return (square - self.friction * (height * arm)) / inertia
         share = height * height / (inertia + square + height * height)
-        return square / inertia * (1.0 - self._kept * share)
+        return square / inertia * (1.0 - self.kept * share)
 
     @property
-    def _friction(self) -> float:
+    def friction(self) -> float:
         """μ, of the laws that have it."""
         return float(getattr(self.law, "friction"))  # noqa: B009
 
     @property
-    def _kept(self) -> float:
+    def kept(self) -> float:
         """1 + e_t, the share of the impulse that sticking adds to that without friction; 0 without any."""
         return 1.0 + getattr(self.law, "tangential") if "part" in self.modes() else 0.0  # noqa: B009

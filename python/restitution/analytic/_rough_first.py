@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
+from restitution._internal.parameters import ParameterError, wrong
 from restitution.analytic._branched import BranchedFirstImpact
 from restitution.analytic._frozen import Values, cosine_of, floats, scalar
 from restitution.analytic._normal import coefficient
@@ -94,6 +95,10 @@ class RoughFirstImpact(BranchedFirstImpact):
         cosine = cosine_of(cos_theta)
         theta = np.arccos(np.where(np.abs(cosine) <= 1.0, cosine, np.nan))
         return scalar(np.where(theta <= self._curve.limit, self._curve.restitution(theta), np.nan))
+
+    def at(self, normal: ArrayLike) -> Values:
+        """Raise a ValueError: the distribution is that over spheres whose asperities are not given."""
+        raise ParameterError(wrong("body", self.body, "one whose contact follows from its attitude"))
 
     def pdf(self, x: ArrayLike) -> Values:
         return scalar((1.0 - self._sphere) * self._density(floats(x)))

@@ -4,16 +4,17 @@ from __future__ import annotations
 
 import numpy as np
 
+from restitution._internal.parameters import ParameterError, wrong
 from restitution.analytic._disc import Number, turned
 from restitution.analytic._frozen import check
-from restitution.analytic._hull import Outline, Side
+from restitution.analytic._hull import Outline, Side, Turned
 from restitution.analytic._impulse import Impulse, Mode
 from restitution.analytic._panels import extremes
 from restitution.bodies import Body, RoughSphere
 from restitution.laws import Law
 
 
-def negative_threshold(body: Body | RoughSphere, law: Law) -> float:
+def negative_threshold(body: Body | RoughSphere | Turned, law: Law) -> float:
     """Return ε_n below which ε < 0 occurs at the first impact from rest; from it on ε >= 0 at every angle.
 
     In each mode of the contact ε rises with ε_n and is 0 at a closed form in height h and lever arm a; where
@@ -23,7 +24,7 @@ def negative_threshold(body: Body | RoughSphere, law: Law) -> float:
     Parameters
     ----------
     body : Dumbbell or another body
-        The body that is dropped.
+        The body that is dropped: one of revolution, or a RoughSphere.
     law : TangentialRestitution or another law
         The collision law; its own ``normal`` does not matter.
 
@@ -48,6 +49,8 @@ def negative_threshold(body: Body | RoughSphere, law: Law) -> float:
     5.0
     """
     check(body, law)
+    if not isinstance(body, Body | RoughSphere | Turned):
+        raise ParameterError(wrong("body", body, "a body of revolution, or a RoughSphere"))
     outline = Outline.of(body)
     impulse = Impulse(law, outline.inertia)
     modes = sorted(set(impulse.modes()))

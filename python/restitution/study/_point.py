@@ -11,7 +11,7 @@ import xarray as xr
 
 from restitution import _core
 from restitution._core import STOP_REASONS
-from restitution.bodies import Body, RoughSphere
+from restitution.bodies import Body, RigidBody
 from restitution.drop.dataset import dataset
 from restitution.drop.run import Run
 from restitution.drop.statistics import MOMENTS, Edges, Table, dataset_of
@@ -245,7 +245,7 @@ def _first_impact(run: Run) -> xr.Dataset:
     """Return mean and standard deviation of the first impact from their closed form."""
     from restitution.analytic import first_impact
 
-    assert isinstance(run.body, Body | RoughSphere)  # as the study has checked
+    assert isinstance(run.body, Body | RigidBody)
     fall = {"release_height": run.release_height, "gravity": run.gravity}
     varies = not isinstance(run.standard_law.normal, float)
     law = first_impact(run.body, run.standard_law, orientation=run.orientation, **(fall if varies else {}))

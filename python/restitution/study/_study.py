@@ -24,7 +24,7 @@ from restitution._internal.parameters import (
     unknown,
     wrong,
 )
-from restitution.bodies import BODIES, Body, RoughSphere
+from restitution.bodies import RoughSphere
 from restitution.drop.bins import edges_from
 from restitution.drop.release import RandomHeight
 from restitution.drop.run import Run
@@ -212,10 +212,9 @@ def _first_impact(own: Mapping[str, Any], run: Run) -> bool:
     given = own["first_impact"]
     if not isinstance(given, Mapping) or len(given) > 0:
         raise ParameterError(wrong("first_impact", given, "an empty table"))
-    alike = isinstance(run.body, RoughSphere) and not isinstance(run.body.heights, tuple)
-    if not (isinstance(run.body, Body) or alike):
-        allowed = f"{BODIES}, or a RoughSphere with equal heights, for the closed form of [first_impact]"
-        raise ParameterError(wrong("body", run.body, allowed))
+    if isinstance(run.body, RoughSphere) and isinstance(run.body.heights, tuple):
+        allowed = "one number, for the closed form of [first_impact]"
+        raise ParameterError(wrong("body.heights", run.body.heights, allowed))
     if isinstance(run.release_height, RandomHeight) and isinstance(run.standard_law.normal, Material):
         allowed = "a number, for the closed form of [first_impact] where the coefficient varies"
         raise ParameterError(wrong("run.release_height", run.release_height, allowed))

@@ -1,0 +1,240 @@
+"""Distribution of a function that is sampled on triangles: a sum of triangular distributions.
+
+A function that is linear over a triangle has, with points uniform on it, a triangular distribution between
+its values at the corners. Each triangle is taken in four, by the middles of its sides; where the function is
+nearly level in 64, of the quadratic function through its six values.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from functools import cached_property, lru_cache
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.interpolate import CubicHermiteSpline
+
+from restitution.analytic._cells import Ints
+from restitution.analytic._orientation import Floats
+from restitution.analytic._panels import gauss, solve
+
+_NODES = 257
+_HALVINGS = 10
+_TOLERANCE = 2e-6
+_BLOCK = 1 << 21
+_LEVEL = 0.02
+
+
+class Triangles(NamedTuple):
+    """Triangles of which the sphere consists."""
+
+    unit: Ints  # to which each belongs
+    share: Floats
+    values: Floats  # at the corners, and at the middles of the sides from each to the next, (triangles, 6)
+    middle: Floats  # the share that counts for each middle of a side, (triangles, 3)
+    alone: Floats  # 1 where the function is one number, else 0
+
+    def only(self, rows: NDArray[np.bool_]) -> Triangles:
+        """Take some of them."""
+        return Triangles(
+            self.unit[rows], self.share[rows], self.values[rows], self.middle[rows], self.alone[rows]
+        )
+
+    def joined(self, other: Triangles) -> Triangles:
+        """Append others."""
+        return Triangles(
+            np.concatenate([self.unit, other.unit]),
+            np.concatenate([self.share, other.share]),
+            np.concatenate([self.values, other.values]),
+            np.concatenate([self.middle, other.middle]),
+            np.concatenate([self.alone, other.alone]),
+        )
+
+    @property
+    def bend(self) -> Floats:
+        """How far the function may be from what `parts` make of it: by second differences.
+
+        Of the quadratic function that is taken where it is nearly level, an eighth of them, which is much
+        unless the function has a kink there.
+        """
+        return np.where(self.level, 0.125, 1.0) * self._second
+
+    @property
+    def level(self) -> NDArray[np.bool_]:
+        """Where the function is nearly at an extreme, and linear parts would have to be many."""
+        return np.asarray(self._second > _LEVEL * np.ptp(self.values, axis=1))
+
+    @property
+    def _second(self) -> Floats:
+        a, b, c, ab, bc, ca = self.values.T
+        off = np.abs([ab - 0.5 * (a + b), bc - 0.5 * (b + c), ca - 0.5 * (c + a)])
+        return np.asarray(0.25 * np.maximum(off.max(axis=0), off.sum(axis=0) / 2.25))
+
+    def parts(self) -> tuple[Floats, Floats, Floats]:
+        """Return parts of the triangles: values at the corners, ascending, share and bend."""
+        found = []
+        for rows, fine in ((~self.level, _quadratic(2)), (self.level, _quadratic(8))):
+            basis, corners = fine
+            values = (self.values[rows] @ basis.T)[:, corners].reshape(-1, 3)
+            number = len(corners)
+            found.append(
+                (
+                    np.sort(values, axis=1),
+                    np.repeat(self.share[rows] / number, number),
+                    np.repeat(self.bend[rows], number),
+                )
+            )
+        parts, share, bend = (np.concatenate(pair) for pair in zip(*found, strict=True))
+        return parts, share, bend
+
+    def mean(self, function: Callable[[Floats], Floats]) -> float:
+        """Return the mean of a function of the values, by the rule of the middles."""
+        return float(np.sum(self.middle * function(self.values[:, 3:])))
+
+
+@dataclass(frozen=True)
+class Table:
+    """The distribution function at nodes, its density there, and a cubic between them."""
+
+    nodes: Floats
+    below: Floats
+    density: Floats
+    error: float  # of the distribution function
+    step: tuple[float, float]  # value of the function with a probability of its own, and that probability
+
+    @classmethod
+    def of(cls, found: Triangles, support: tuple[float, float]) -> Table:
+        """Sum up the triangular distributions."""
+        atom = found.alone > 0.0
+        size = float(found.share[atom].sum())
+        place = float(found.values[atom].mean()) if size else np.nan
+        rest = found.only(~atom)
+        parts, weight, wide = rest.parts()
+        middles = np.sort(rest.values[:, 3:], axis=None)
+        even = middles[np.linspace(0, len(middles) - 1, _NODES).astype(int)] if len(middles) else middles
+        nodes = np.unique(np.clip(np.concatenate([np.linspace(*support, _NODES), even]), *support))
+        below, density = _summed(nodes, parts, weight)
+        _, blurred = _summed(nodes, parts + wide[:, None] * [-1.0, 0.0, 1.0], weight * wide)
+        new, between = 0.5 * (nodes[1:] + nodes[:-1]), 0.0
+        for left in reversed(range(_HALVINGS)):
+            curve = cls(nodes, below, density, 0.0, (place, size)).curve
+            new_below, new_density = _summed(new, parts, weight)
+            off = np.abs(curve(new) - new_below)
+            order = np.argsort(np.concatenate([nodes, new]), kind="stable")
+            nodes = np.concatenate([nodes, new])[order]
+            below, density = np.append(below, new_below)[order], np.append(density, new_density)[order]
+            rough = np.searchsorted(nodes, new[off > _TOLERANCE]) if left else np.empty(0, dtype=int)
+            between = max(between, float(np.max(off[(off <= _TOLERANCE) | (left == 0)], initial=0.0)))
+            new = np.unique(0.5 * (nodes[rough, None] + nodes[rough[:, None] + [-1, 1]]))
+            new = np.setdiff1d(new, nodes)
+            if not new.size:
+                break
+        return cls(nodes, below, density, float(blurred.max()) + between, (place, size))
+
+    @cached_property
+    def curve(self) -> CubicHermiteSpline:
+        """The cubic, its slopes small enough for it to rise.
+
+        F. N. Fritsch, R. E. Carlson, SIAM J. Numer. Anal. 17, 238 (1980).
+        """
+        rise = np.maximum(np.diff(self.below), 0.0) / np.diff(self.nodes)
+        most = 3.0 * np.minimum(np.append(rise, rise[-1]), np.append(rise[0], rise))
+        return CubicHermiteSpline(self.nodes, self.below, np.minimum(self.density, most))
+
+    def probability(self, x: Floats, *, above: bool = False) -> Floats:
+        """Return the probability of values up to x, or above it."""
+        low, high = self.nodes[[0, -1]]
+        place, size = self.step
+        inner = np.where(np.isnan(x), x, self.curve(np.clip(x, low, high)))
+        below = np.clip(inner, 0.0, 1.0 - size) + size * (x >= place)
+        below = np.where(x >= high, 1.0, np.where(x < low, 0.0, below))
+        return 1.0 - below if above else below
+
+    def slope(self, x: Floats) -> Floats:
+        """Return the density, of what is continuous."""
+        low, high = self.nodes[[0, -1]]
+        inside = (x >= low) & (x <= high)
+        found = np.maximum(self.curve.derivative()(np.clip(x, low, high)), 0.0)
+        return np.where(np.isnan(x), np.nan, np.where(inside, found, 0.0))
+
+    def quantile(self, q: Floats) -> Floats:
+        """Return x up to which the probability is q."""
+        place, size = self.step
+        before = float(self.curve(place)) if size else np.inf  # of the step
+        rest = np.where(q > before, np.maximum(q - size, before), q)
+        after = np.clip(np.searchsorted(self.below, rest), 1, len(self.nodes) - 1)
+        found = solve(lambda x: self.curve(x) - rest, self.nodes[after - 1], self.nodes[after])
+        found = np.where((q >= before) & (q <= before + size), place, found)
+        return np.where(np.isnan(q), np.nan, found)
+
+    def weights(self) -> tuple[Floats, Floats]:
+        """Return points between all nodes, and the shares for which they count."""
+        points, weights = gauss(3)
+        width = np.diff(self.nodes)[:, None]
+        x = self.nodes[:-1, None] + width * points
+        return x, width * weights * self.slope(x)
+
+
+@lru_cache(maxsize=2)
+def _quadratic(number: int) -> tuple[Floats, Ints]:
+    """Return the quadratic through six values at points of a triangle, and the parts between them."""
+    place: dict[tuple[int, int], int] = {}
+    for i in range(number + 1):
+        for j in range(number + 1 - i):
+            place[i, j] = len(place)
+    y, z = np.array(list(place)).T / number
+    x = 1.0 - y - z
+    corner, middle = [t * (2.0 * t - 1.0) for t in (x, y, z)], [4.0 * x * y, 4.0 * y * z, 4.0 * z * x]
+    parts = [[(i, j), (i + 1, j), (i, j + 1)] for i, j in place if i + j < number]
+    parts += [[(i + 1, j), (i + 1, j + 1), (i, j + 1)] for i, j in place if i + j < number - 1]
+    return np.stack(corner + middle, axis=1), np.array([[place[at] for at in part] for part in parts])
+
+
+def _summed(nodes: Floats, parts: Floats, weight: Floats) -> tuple[Floats, Floats]:
+    """Return weighted sums of triangular distributions at nodes, and their densities."""
+    low, middle, high = parts.T
+    start, stop = np.searchsorted(nodes, low, "right"), np.searchsorted(nodes, high, "left")
+    width, least = high - low, np.minimum(middle - low, high - middle)
+    span = nodes[-1] - nodes[0]
+    wide = (stop - start > 8) & (least > 0.05 * width) & (width > 1e-3 * span)
+    below, density = _cumulated(nodes, parts[wide], weight[wide])
+    low, middle, high, weight = low[~wide], middle[~wide], high[~wide], weight[~wide]
+    start, stop = start[~wide], stop[~wide]
+    below += np.cumsum(np.bincount(stop, weight, len(nodes) + 1))[:-1]
+    for node, part in _pairs(start, stop):
+        x, w = nodes[node], weight[part]
+        a, b, c = low[part], middle[part], high[part]
+        rising = x < b
+        side = np.where(rising, x - a, c - x)
+        slope = 2.0 * w * side / ((c - a) * np.where(rising, b - a, c - b))
+        below += np.bincount(node, np.where(rising, 0.5 * slope * side, w - 0.5 * slope * side), len(nodes))
+        density += np.bincount(node, slope, len(nodes))
+    return below, density
+
+
+def _cumulated(nodes: Floats, parts: Floats, weight: Floats) -> tuple[Floats, Floats]:
+    """Sum up distributions that are wide, so that little is lost where changes of slope are summed first."""
+    knots, x = parts - nodes[0], nodes - nodes[0]
+    a, b, c = knots.T
+    up, down = 2.0 * weight / ((c - a) * (b - a)), 2.0 * weight / ((c - a) * (c - b))
+    change = np.stack([up, -up - down, down], axis=1)
+    place = np.searchsorted(x, knots.ravel())
+    none, one, two = (
+        np.cumsum(np.bincount(place, (change * knots**k).ravel(), len(nodes) + 1))[:-1] for k in range(3)
+    )
+    return 0.5 * (x * x * none - 2.0 * x * one + two), x * none - one
+
+
+def _pairs(start: Ints, stop: Ints) -> Iterator[tuple[Ints, Ints]]:
+    """Go through the nodes that are inside of each part, in blocks."""
+    inside = np.maximum(stop - start, 0)
+    end = np.cumsum(inside)
+    first = 0
+    while first < len(end):
+        done = end[first - 1] if first else 0
+        last = max(first + 1, int(np.searchsorted(end, done + _BLOCK)))
+        part = np.repeat(np.arange(first, last), inside[first:last])
+        yield start[part] + np.arange(len(part)) - (end - inside)[part] + done, part
+        first = last
