@@ -28,6 +28,10 @@ const LOOKS = {
   "present-5": { hash: "stop=5&present=1" },
   spheroid: { hash: "shape=spheroid&elongation=1&particles=50&impacts=50&impact=9&chart=drawing" },
   capsule: { hash: "shape=spherocylinder&elongation=2&spin_y=80&particles=50&impacts=50&impact=4&chart=drawing&law=coulomb" },
+  ...Object.fromEntries(["ellipsoid", "box", "die", "clump", "rough-sphere", "mesh"].flatMap((shape) => {
+    const hash = `shape=${shape}&law=coulomb&faces=20&particles=50&impacts=50&impact=2`;
+    return [[shape, { hash }], [`${shape}-dark`, { hash, scheme: "dark" }], [`${shape}-phone`, { hash, ...PHONE }]];
+  })),
   print: { hash: "stop=3", print: true },
 };
 

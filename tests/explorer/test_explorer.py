@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Any
 from urllib.parse import parse_qs
 
+import numpy as np
 import pytest
 
 import restitution as rs
@@ -24,6 +25,9 @@ from restitution.explorer._widget import _run_of
 ROOT = Path(__file__).parents[2]
 BODY = rs.Dumbbell(radius=3e-3, separation=3e-4)
 LAW = rs.TangentialRestitution(normal=0.98)
+FREE: dict[str, Any] = {"orientation": "isotropic"}
+ROUGH: dict[str, Any] = {"radius": 3e-3, "asperities": 10, "asperity_radius": 1e-5}
+CORNERS = [(0, 0, 0), (6e-3, 0, 0), (0, 6e-3, 0), (0, 0, 6e-3)]
 
 
 def test_the_module_in_the_repository_is_whole() -> None:
@@ -94,6 +98,31 @@ def test_a_link_holds_every_parameter_of_any_body(kind: Any) -> None:
     assert {name: float(found[name]) for name in body.attributes()} == body.attributes()
 
 
+BODIES: list[Any] = [
+    rs.Box(a=8e-3, b=6e-3, c=4e-3),
+    rs.Die(faces=20, edge=1e-2),
+    rs.Ellipsoid(semi_axes=(3e-3, 2e-3, 1e-3)),
+    rs.Clump(spheres=[(0, 0, 0, 1e-3), (0, 0, 1e-3, 2e-3)]),
+    rs.Mesh(vertices=CORNERS, triangles=[(0, 2, 1), (0, 1, 3), (0, 3, 2), (1, 2, 3)]),
+    rs.RoughSphere(**ROUGH, seed=7),
+]
+
+
+@pytest.mark.parametrize("body", BODIES, ids=lambda body: type(body).__name__)
+def test_a_dataset_of_a_body_without_an_axis_is_the_link_of_its_run(body: Any) -> None:
+    run = Run(body=body, law=LAW, particles=2, impacts=3, release_height=0.06, **FREE)
+    assert values(_run_of(rs.simulate(body, LAW, particles=2, impacts=3, **FREE))) == values(run)
+    assert values(run)["shape"] == kebab(type(body).__name__)
+
+
+def test_tables_of_numbers_are_in_the_link_in_their_order() -> None:
+    found = values(Run(body=BODIES[3], law=LAW, **FREE))["spheres"]
+    assert np.array(found.split("_"), dtype=float).reshape(-1, 4).tolist() == [*map(list, BODIES[3].spheres)]
+    vertices, triangles = values(Run(body=BODIES[4], law=LAW, **FREE))["mesh"].split("*")
+    assert np.array(vertices.split("_"), dtype=float).reshape(-1, 3).tolist() == [*map(list, CORNERS)]
+    assert triangles == "0_2_1_0_1_3_0_3_2_1_2_3"
+
+
 def test_large_runs_are_shown_in_part() -> None:
     shown = values(Run(body=BODY, law=LAW, particles=10**6, impacts=400))
     assert int(shown["particles"]) * 400 == MOST_IMPACTS
@@ -103,7 +132,15 @@ def test_large_runs_are_shown_in_part() -> None:
     ("change", "word"),
     [
         ({"body": rs.Dumbbell(radius=(3e-3, 2e-3), separation=1e-3)}, "the same for both spheres"),
-        ({"body": rs.Ellipsoid(semi_axes=(1e-3, 2e-3, 3e-3))}, "body = Ellipsoid"),
+        ({"body": rs.Cylinder(radius=1e-3, height=2e-3), **FREE}, "body = Cylinder"),
+        ({"body": rs.Clump(spheres=1001 * [(0, 0, 0, 1e-3)]), **FREE}, "body.spheres = 1001 rows"),
+        ({"body": rs.Clump(spheres=[(0, 0, 0, 1e-3)], inertia="sum"), **FREE}, "body.inertia"),
+        ({"body": rs.RoughSphere(**ROUGH, heights=1e-6), **FREE}, "body.heights"),
+        ({"body": rs.RoughSphere(**ROUGH | {"asperities": 20_000}), **FREE}, "body.asperities"),
+        (
+            {"body": rs.Box(a=1e-3, b=2e-3, c=3e-3), "orientation": [[1, 0, 0, 0]], "particles": 1},
+            "quaternions",
+        ),
         ({"law": rs.Frictionless(normal=rs.Plastic(yield_speed=0.1))}, "law.normal = Plastic"),
         ({"orientation": [0.1, 0.2], "particles": 2}, "orientation = an array"),
         ({"spin": rs.RandomSpin(rate=10.0)}, "spin"),
@@ -127,8 +164,9 @@ def test_a_dataset_knows_its_run() -> None:
     assert float(values(_run_of(one))["angle"]) == pytest.approx(0.75, abs=1e-15)
     with pytest.raises(ValueError, match="data: must be a Dataset"):
         rs.explore(data.drop_attrs())
-    rigid = rs.simulate(rs.Box(1e-3, 2e-3, 3e-3), LAW, particles=1, impacts=2)
-    with pytest.raises(ValueError, match=r"data\.body = Box: the explorer shows bodies of revolution only"):
+    rough = rs.Rough(BODY, asperities=3, asperity_radius=1e-5)
+    rigid = rs.simulate(rough, LAW, particles=1, impacts=2, **FREE)
+    with pytest.raises(ValueError, match=r"data\.body = Rough: of rough bodies the explorer shows Rough"):
         rs.explore(rigid)
 
 

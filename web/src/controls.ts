@@ -3,9 +3,10 @@
 import { problem } from "./link";
 import { outlineOf } from "./outline";
 import { part } from "./page";
+import { spheresOf, surfaceOf } from "./rigid";
 import { applies, bodyOf, MOST_IMPACTS, ORIENTATIONS, rounded, type Setup } from "./setup";
 import { nice } from "./statistics";
-import { beside, BODIES, LAWS, PARAMETERS, sizeOf, type Parameter } from "./table";
+import { beside, CLUMPS, LAWS, PARAMETERS, SHAPES, sizeOf, written, type Parameter } from "./table";
 
 interface Slider {
   key: string;
@@ -37,17 +38,25 @@ const capital = (text: string) => text[0].toUpperCase() + text.slice(1);
 /** Of a number in the table: over its interval, or from its lower end to some times a usual value. */
 function sliderOf({ name, text, unit, low, high, example, ...about }: Parameter): Slider {
   const usual = Number(example);
-  const body = BODIES.some(({ parameters }) => parameters.some((one) => one.name === name));
+  const body = SHAPES.some(({ parameters }) => parameters.some((one) => one.name === name));
   const size = beside(name);
   const label = capital(unit === "1" ? text : name.replaceAll("_", " "));
-  if (size) return { key: name, name: `${label} / ${size}`, title: text, unit: "", factor: 1, beside: size, low: about.closed ? 0 : 0.05, high: 3, step: 0.01 };
+  if (size) return { key: name, name: `${label} / ${size.replaceAll("_", " ")}`, title: text, unit: "", factor: 1, beside: size, low: about.closed ? 0 : 0.05, high: 3, step: 0.01 };
   const [shown, factor] = UNITS[unit!] ?? [unit!, 1];
-  const most = (high != null && high < 1e6 ? high : (unit === "m" ? 6 : 5) * usual) * factor;
-  const step = nice((most - low! * factor) / 200);
+  const most = (high != null && high < 1e6 && !(about.whole && high > 1e4) ? high : (unit === "m" ? 6 : 5) * usual) * factor;
+  const step = about.whole ? 1 : nice((most - low! * factor) / 200);
   return { key: name, name: label, title: text, unit: shown, factor, low: about.closed ? low! * factor : step, high: most, step, more: body && about.default !== undefined };
 }
 
-const NUMBERS = [...PARAMETERS.values()].filter(({ names }) => !names);
+const NUMBERS = [...PARAMETERS.values()].filter(({ names, type }) => !names && type !== "table");
+/** Fields that are neither a slider nor a choice. */
+const TABLES = [
+  { key: "spheres", name: "Spheres" },
+  { key: "mesh", name: "Mesh" },
+  { key: "file", name: "From a file" },
+];
+/** What a unit of a file may be, in m. */
+const FILE_UNITS = { m: 1, cm: 1e-2, mm: 1e-3, "µm": 1e-6 };
 const SLIDERS: readonly Slider[] = [
   ...NUMBERS.map(sliderOf),
   { key: "release_height", name: "Release height of the centre", unit: "mm", factor: 1e3, low: 5, high: 300, step: 1 },
@@ -74,7 +83,7 @@ const kinds = (key: string, name: string, table: readonly { key: string; name: s
 });
 
 const CHOICES: readonly Choice[] = [
-  kinds("shape", "Shape", BODIES),
+  kinds("shape", "Shape", SHAPES),
   kinds("law", "Collision law", LAWS),
   ...[...PARAMETERS.values()].flatMap(({ name, names }) => (names ? [{ key: name, name: capital(name), options: names, labels: names.map(capital) }] : [])),
   { key: "orientation", name: "Axis at release", options: ORIENTATIONS, labels: ["θ uniform", "every direction alike", "one particle, θ given"] },
@@ -84,19 +93,22 @@ const named = (table: readonly { parameters: Parameter[] }[]) =>
   [...new Set(table.flatMap(({ parameters }) => parameters.map(({ name }) => name)))].filter((name) => !later(name));
 /** The choices and sliders in the order of the page; what follows the last is under "More". */
 const ORDER: readonly string[] = [
-  "shape", ...named(BODIES), "law", ...named(LAWS), "release_height", "orientation", "angle", "spin_y", "particles", "impacts", "seed",
+  "shape", ...named(SHAPES), "file", "law", ...named(LAWS), "release_height", "orientation", "angle", "spin_y", "particles", "impacts", "seed",
 ];
 
-const nameOf = (key: string) => [...SLIDERS, ...CHOICES].find((x) => x.key === key)!.name;
+const nameOf = (key: string) => [...SLIDERS, ...CHOICES, ...TABLES].find((x) => x.key === key)!.name;
 
 /** The slider that is shown where there is room for one only, until another is chosen: a length beside the size of the body. */
 const first = (s: Setup) => (bodyOf(s).parameters.find(({ name }) => beside(name)) ?? bodyOf(s).parameters[0]).name;
+
+/** Where a file goes, with what a unit of it is in m. */
+type Load = (file: File, unit: number) => void;
 
 export class Controls {
   private setup!: Setup;
   private readonly fields = new Map<string, { row: HTMLElement; show: () => void }>();
 
-  constructor(host: HTMLFormElement, private readonly changed: (key: string, value: string | number) => void) {
+  constructor(host: HTMLFormElement, private readonly changed: (key: string, value: string | number) => void, private readonly load: Load) {
     host.addEventListener("submit", (event) => event.preventDefault());
     const more = document.createElement("details");
     more.innerHTML = "<summary>More</summary>";
@@ -125,6 +137,7 @@ export class Controls {
   }
 
   private field(key: string): HTMLElement {
+    if (TABLES.some((x) => x.key === key)) return this.table(key);
     const slider = SLIDERS.find((x) => x.key === key);
     const row = slider ? this.slider(slider) : this.choice(CHOICES.find((x) => x.key === key)!);
     return row;
@@ -139,6 +152,51 @@ export class Controls {
     const select = row.querySelector("select")!;
     select.addEventListener("change", () => this.changed(key, select.value));
     this.fields.set(key, { row, show: () => (select.value = String(this.setup[key])) });
+    return row;
+  }
+
+  /** What a unit of the next file is, in m. */
+  get unit(): number {
+    return FILE_UNITS[part<HTMLSelectElement>("unit").value as keyof typeof FILE_UNITS];
+  }
+
+  private table(key: string): HTMLElement {
+    const row = document.createElement("div");
+    row.className = "field wide";
+    const options = (names: string[]) => names.map((name) => `<option>${name}</option>`).join("");
+    const html: Record<string, string> = {
+      spheres: `<label class="name" for="spheres">Spheres</label><select id="preset" aria-label="A clump to begin with"><option value="">your own</option>${options(Object.keys(CLUMPS))}</select>
+        <textarea id="spheres" rows="5" spellcheck="false" aria-describedby="spheres-hint"></textarea><p id="spheres-hint" class="soft small">x y z r in mm, one sphere a line</p>`,
+      mesh: `<p id="mesh" class="small"></p>`,
+      file: `<label class="name" for="unit">From a file in</label><select id="unit">${options(Object.keys(FILE_UNITS))}</select>
+        <input type="file" id="file" accept=".txt,.csv,.dat,.obj,.stl" aria-label="File of a body"><p class="soft small">or drop it on the page: rows x y z r, CSV, OBJ, STL in text</p>`,
+    };
+    row.innerHTML = html[key];
+    const on = (selector: string, act: (value: string) => void) => {
+      const field = row.querySelector<HTMLInputElement>(selector)!;
+      field.addEventListener("change", () => act(field.value));
+      return field;
+    };
+    let show = () => {};
+    if (key === "spheres") {
+      const preset = on("#preset", (name) => name && this.changed(key, written(CLUMPS[name as keyof typeof CLUMPS], 1e-3)));
+      const text = on("textarea", (value) => this.load(new File([value], "Spheres"), 1e-3));
+      show = () => {
+        preset.value = Object.entries(CLUMPS).find(([, rows]) => written(rows, 1e-3) === this.setup.spheres)?.[0] ?? "";
+        const lines = spheresOf(this.setup).map((sphere) => sphere.map((x) => rounded(x * 1e3)).join(" "));
+        if (document.activeElement !== text) text.value = lines.join("\n");
+      };
+    } else if (key === "mesh") {
+      show = () => {
+        const surface = this.setup.shape === "mesh" && surfaceOf(this.setup);
+        if (surface) row.querySelector("p")!.textContent = `${surface.triangles.length} triangles, ${surface.points.length} vertices. Only the convex hull touches.`;
+      };
+    } else {
+      const again = () => file.files?.[0] && this.load(file.files[0], this.unit);
+      const file = on("#file", again);
+      on("#unit", again);
+    }
+    this.fields.set(key, { row, show });
     return row;
   }
 

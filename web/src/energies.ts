@@ -1,6 +1,7 @@
 /** Energies of the body in the scene, as bars; the last impact, as a table. */
 
 import type { Run } from "./engine/run";
+import { isRigid } from "./setup";
 import type { Moment, Path } from "./stage/path";
 
 const NAMES = ["potential energy", "vertical motion", "sideways motion", "rotational energy", "total energy"] as const;
@@ -47,16 +48,19 @@ const ratio = (x: number) => (Math.abs(x - 1) < 1e-12 ? "1" : x.toFixed(4));
 const ROWS: [string, (run: Run, place: number) => string][] = [
   ["impact velocity v", (run, i) => `${run.columns.impact_velocity[i].toPrecision(3).replace("-", "−")} m/s`],
   ["restitution ε", (run, i) => run.columns.restitution[i].toPrecision(4).replace("-", "−")],
-  ["tilt θ of the axis", (run, i) => `${((run.columns.angle[i] * 180) / Math.PI).toFixed(1)}°`],
   ["rotational share", (run, i) => `${(100 * run.columns.rotational_fraction[i]).toPrecision(3)} %`],
   ["energy after/before", (run, i) => ratio(run.columns.energy_ratio[i])],
   ["time since release", (run, i) => duration(run.columns.time[i])],
 ];
 
+const tilt = (run: Run, i: number) => `${((run.columns.angle[i] * 180) / Math.PI).toFixed(1)}°`;
+/** What describes the contact: the tilt, or which ball or vertex it is. */
+const contact = ({ setup }: Run): (typeof ROWS)[number] => (isRigid(setup) ? ["part that touched", (run, i) => String(run.columns.contact[i])] : ["tilt θ of the axis", tilt]);
+
 export function showImpact(table: HTMLTableElement, run: Run, particle: number, impact: number): void {
   const place = particle * run.setup.impacts + impact;
   const there = impact >= 0 && impact < run.counts[particle];
   const head = there ? `Impact ${impact + 1} of particle ${particle}` : "No impact yet";
-  const rows = ROWS.map(([name, value]) => `<tr><th scope="row">${name}</th><td>${there ? value(run, place) : "–"}</td></tr>`);
+  const rows = [...ROWS.slice(0, 2), contact(run), ...ROWS.slice(2)].map(([name, value]) => `<tr><th scope="row">${name}</th><td>${there ? value(run, place) : "–"}</td></tr>`);
   table.innerHTML = `<caption>${head}</caption><tbody>${rows.join("")}</tbody>`;
 }

@@ -2,17 +2,18 @@
 
 export { Engine } from "./engine/module";
 export { COLUMNS, numbers } from "./engine/layout";
-export { DIGESTED } from "./engine/run";
+export { digested } from "./engine/run";
 export { python, toml } from "./export/text";
 export { restitution, transverseInertia } from "./first-impact";
 export { density as laplaceDensity, laplace } from "./laplace";
 export * as pictures from "./charts/pictures";
 export { ticks } from "./charts/ticks";
 export { fromHash, initial, toHash } from "./link";
-export { contactArm, drawWith, outlineOf, pointsOf } from "./outline";
+export { armOf, contactArm, drawWith, freely, outlineOf, pointsOf } from "./outline";
+export { readBody } from "./files";
 export { Vector3 } from "three";
 export { DEFAULT, particlesOf } from "./setup";
-export { BODIES, LAWS } from "./table";
+export { BODIES, LAWS, RIGID } from "./table";
 export { Path } from "./stage/path";
 export { Statistics } from "./statistics";
 export { at, TOUR } from "./tour";

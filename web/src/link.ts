@@ -1,7 +1,8 @@
 /** The state of the page as the part of its address after #, so that a link is a set-up. */
 
 import { DEFAULT, MOST_IMPACTS, ORIENTATIONS, rounded, type Setup } from "./setup";
-import { BODIES, LAWS, PARAMETERS } from "./table";
+import { wrongTable } from "./rigid";
+import { LAWS, PARAMETERS, SHAPES } from "./table";
 import { TOUR, at } from "./tour";
 
 export const RANGES = ["fig2", "near", "fig7", "all"] as const;
@@ -11,6 +12,12 @@ export const CHARTS = ["scatter-b", "density", "sigma", "reservoir", "drawing"] 
 
 /** In a link: of what the density is shown. */
 const DENSITY_OF = "density-of";
+
+/** In a link: a table of more characters than this, which the link does not hold, for not every program takes such a one. */
+export const MOST_TEXT = 20_000;
+const LEFT_OUT = "*";
+/** Whether a link lacks a body. */
+export const lacks = (hash: string): boolean => [...new URLSearchParams(hash).values()].includes(LEFT_OUT);
 
 /** In a link: the page is to open as it is projected. */
 export const PRESENT = "present";
@@ -47,7 +54,7 @@ export const initial = (): State => ({
 
 const keys = (table: readonly { key: string }[]) => table.map(({ key }) => key);
 const CHOICES: Record<string, readonly string[]> = {
-  shape: keys(BODIES),
+  shape: keys(SHAPES),
   law: keys(LAWS),
   orientation: ORIENTATIONS,
   ...Object.fromEntries([...PARAMETERS.values()].flatMap(({ name, names }) => (names ? [[name, names]] : []))),
@@ -76,7 +83,8 @@ export function problem(key: string, value: string | number): string {
     return allowed.includes(String(value)) ? "" : `${key} = ${value}: must be ${allowed.join(" or ")}`;
   }
   const about = PARAMETERS.get(key);
-  const [low, high, whole] = about ? [about.low!, about.high ?? Infinity] : LIMITS[key];
+  if (about?.type === "table") return value === LEFT_OUT ? `${key}: of a file too large for a link; drop the file on the page` : wrongTable(key, String(value));
+  const [low, high, whole] = about ? [about.low!, about.high ?? Infinity, about.whole] : LIMITS[key];
   const [x, open] = [Number(value), about?.closed === false];
   const fits = value !== "" && Number.isFinite(x) && (open ? x > low : x >= low) && x <= high && (!whole || Number.isInteger(x));
   const interval = high < Infinity ? `in ${open ? "(" : "["}${low}, ${high}]` : `${open ? ">" : ">="} ${low}`;
@@ -85,7 +93,8 @@ export function problem(key: string, value: string | number): string {
 
 function write(prefix: string, setup: Setup, out: URLSearchParams): void {
   for (const key of Object.keys(DEFAULT)) {
-    if (setup[key] !== DEFAULT[key]) out.set(prefix + key, String(setup[key]));
+    const text = String(setup[key]);
+    if (setup[key] !== DEFAULT[key]) out.set(prefix + key, text.length > MOST_TEXT ? LEFT_OUT : text);
   }
 }
 
@@ -105,7 +114,7 @@ function read(prefix: string, from: URLSearchParams, problems: string[]): Setup 
     if (text === null) continue;
     const wrong = problem(key, text);
     if (wrong) problems.push(wrong);
-    else setup[key] = key in CHOICES ? text : Number(text);
+    else setup[key] = key in CHOICES || PARAMETERS.get(key)?.type === "table" ? text : Number(text);
   }
   longAs(from.get(`${prefix}elongation`), from.has(`${prefix}radius`), setup);
   if (setup.particles * setup.impacts > MOST_IMPACTS) {

@@ -8,12 +8,13 @@ import { Explorer, type ChartName } from "./explorer";
 import { canRecord } from "./export/record";
 import { save } from "./export/save";
 import { csv, python, toml } from "./export/text";
-import { CHARTS, fromHash, initial, PRESENT, type State } from "./link";
+import { CHARTS, fromHash, initial, lacks, PRESENT, type State } from "./link";
 import { onChange, onClick, part } from "./page";
 import { KINDS, type Kind } from "./pick";
 import { onGround } from "./charts/chart";
 import { theme } from "./charts/colours";
-import { drawWith, fallSpeed } from "./outline";
+import { readBody } from "./files";
+import { drawWith, fallSpeed, outlineOf } from "./outline";
 import type { Pace } from "./stage/clock";
 import { at, TOUR } from "./tour";
 
@@ -47,8 +48,32 @@ function begin(pool: Pool): void {
     const { state } = explorer;
     const setup = changed(state[which]!, key, value);
     explorer.go({ ...state, [which]: setup, particle: 0, impact: 0, stop: state.stop }, explorer.player.clock.playing);
-  });
+  }, (file, unit) => void take(file, unit));
   const explorer = new Explorer(pool, () => refresh());
+
+  /** Takes the body of a file, or says what is wrong with it. */
+  async function take(file: File, unit: number): Promise<void> {
+    const { state } = explorer;
+    try {
+      const { shape, key, text } = readBody(file.name, await file.text(), unit);
+      const setup = changed({ ...state[which]!, shape }, key, text);
+      const { reach } = outlineOf(setup);
+      if (!(reach > 1e-6 && reach < 1)) throw new Error(`${file.name}: a body of ${Number((2 * reach).toPrecision(2))} m; choose the unit of the file beside it`);
+      explorer.problem("");
+      explorer.go({ ...state, [which]: setup, particle: 0, impact: 0 }, explorer.player.clock.playing);
+    } catch (error) {
+      explorer.problem((error as Error).message);
+    }
+  }
+  addEventListener("dragover", (event) => {
+    if (event.dataTransfer?.types.includes("Files")) event.preventDefault();
+  });
+  addEventListener("drop", (event) => {
+    const file = event.dataTransfer?.files[0];
+    if (!file) return;
+    event.preventDefault();
+    void take(file, controls.unit);
+  });
 
   function refresh(): void {
     if (!explorer) return; // the first frame
@@ -314,6 +339,7 @@ function linkFor(state: string): { text: string; note: string } {
 async function share(explorer: Explorer): Promise<void> {
   const { text, note } = linkFor(explorer.hash());
   const button = part("share");
+  if (lacks(explorer.hash())) return explorer.problem("This body is too large for a link: send its file as well, to be dropped on the page.");
   try {
     await navigator.clipboard.writeText(text);
     button.textContent = note;

@@ -1,9 +1,11 @@
 /** The outline of a body, as the core has it: crates/web/src/lib.rs. Lengths in m, from the centre of mass. */
 
-import type { Vector3 } from "three";
+import { Quaternion, Vector3 } from "three";
 import { numbers } from "./engine/layout";
 import type { Engine } from "./engine/module";
-import { bodyOf, type Setup } from "./setup";
+import { semiAxesOf } from "./rigid";
+import { bodyOf, isRigid, type Setup } from "./setup";
+import type { Flight, Turn } from "./stage/path";
 import { sizeOf } from "./table";
 
 /** An arc about a point of the axis: the places centre + along cos t on the axis and across sin t beside it, t from `from` to `to`. */
@@ -26,6 +28,15 @@ export interface Outline {
   reach: number;
 }
 
+/** A body without an axis: its outline is the least and the largest distance of a tangent plane from the centre of mass. */
+interface Free extends Outline {
+  /** Principal moments, and the rotation from the principal axes: what its rotation follows from. */
+  rotor: number[];
+  centre: Vector3;
+  /** Balls or vertices that can touch, in the order of their numbers, from the centre of mass; none of an ellipsoid. */
+  balls: { place: Vector3; radius: number }[];
+}
+
 /** Points of an arc. */
 const POINTS = 32;
 
@@ -38,7 +49,51 @@ const known = new Map<string, Outline>();
 /** How many of them are kept: more than are on the page at once, less than a slider passes. */
 const KEPT = 16;
 
+const free = new WeakMap<Setup, Free>();
+/** The outline of a body without an axis. A set-up is never changed once it is on the page. */
+export function freeOf(setup: Setup): Free {
+  const found = free.get(setup) ?? ofRigid(setup);
+  free.set(setup, found);
+  return found;
+}
+
+/** Directions that look every way, about alike. */
+const DIRECTIONS = Array.from({ length: 200 }, (_, k) => {
+  const [z, azimuth] = [1 - (2 * k + 1) / 200, k * Math.PI * (3 - Math.sqrt(5))];
+  const across = Math.sqrt(1 - z * z);
+  return new Vector3(across * Math.cos(azimuth), across * Math.sin(azimuth), z);
+});
+
+function ofRigid(setup: Setup): Free {
+  const row = drawn(setup, numbers(setup));
+  const centre = new Vector3(row[7], row[8], row[9]);
+  const balls = Array.from({ length: (row.length - 10) / 4 }, (_, k) => {
+    const at = 10 + 4 * k;
+    return { place: new Vector3(row[at], row[at + 1], row[at + 2]).sub(centre), radius: row[at + 3] };
+  });
+  const axes = semiAxesOf(setup);
+  let [size, reach] = [Math.min(...axes), Math.max(...axes)];
+  if (setup.shape !== "ellipsoid") {
+    const supports = DIRECTIONS.map((direction) => balls.reduce((most, { place, radius }) => Math.max(most, place.dot(direction) + radius), 0));
+    size = Math.min(...supports);
+    reach = balls.reduce((most, { place, radius }) => Math.max(most, place.length() + radius), 0);
+  }
+  const arc = (from: number): Arc => ({ centre: 0, along: size, across: size, from, to: from + Math.PI / 2 });
+  return { arcs: [arc(0), arc(Math.PI / 2)], size, length: 2 * reach, reach, rotor: [...row.subarray(0, 7)], centre, balls };
+}
+
+/** How a body without an axis turns. */
+export function freely(setup: Setup): Turn | undefined {
+  if (!isRigid(setup)) return undefined;
+  const { rotor } = freeOf(setup);
+  return ({ w, x, y, z }, spin, time) => {
+    const found = engine.turn(Float64Array.of(...rotor, w, x, y, z, spin.x, spin.y, spin.z, time));
+    return { attitude: new Quaternion(found[1], found[2], found[3], found[0]), spin: new Vector3(found[4], found[5], found[6]) };
+  };
+}
+
 export function outlineOf(setup: Setup): Outline {
+  if (isRigid(setup)) return freeOf(setup);
   const row = numbers(setup);
   const key = row.slice(0, 5).join();
   const found = known.get(key) ?? made(drawn(setup, row));
@@ -53,7 +108,8 @@ function drawn(setup: Setup, row: Float64Array): Float64Array {
   try {
     return engine.outline(row);
   } catch {
-    const radius = Number(setup[sizeOf(bodyOf(setup))]);
+    const radius = Number(setup[sizeOf(bodyOf(setup)) ?? "radius"]);
+    if (isRigid(setup)) return Float64Array.of(1, 1, 1, 1, 0, 0, 0, 0, 0, 0, 0, 0, 0, radius);
     return Float64Array.of(0, radius, radius, 0, Math.PI / 2, 0, radius, radius, Math.PI / 2, Math.PI);
   }
 }
@@ -90,4 +146,15 @@ export function contactArm(setup: Setup, axis: Vector3, end: number): Vector3 {
   const q = axis.clone().multiplyScalar((along * along - across * across) * axis.z);
   q.z += across * across;
   return q.multiplyScalar(-1 / Math.sqrt(q.z)).addScaledVector(axis, centre);
+}
+
+/** The same of any body, at the beginning of a flight, after its impact. */
+export function armOf(setup: Setup, { axis, attitude, sphere }: Flight): Vector3 {
+  if (!isRigid(setup)) return contactArm(setup, axis, sphere);
+  const ball = freeOf(setup).balls[sphere - 1];
+  if (ball) return ball.place.clone().applyQuaternion(attitude).add(new Vector3(0, 0, -ball.radius));
+  const [a, b, c] = semiAxesOf(setup);
+  const normal = new Vector3(0, 0, 1).applyQuaternion(attitude.clone().invert());
+  const scaled = new Vector3(a * a * normal.x, b * b * normal.y, c * c * normal.z);
+  return scaled.multiplyScalar(-1 / Math.sqrt(scaled.dot(normal))).applyQuaternion(attitude);
 }

@@ -4,7 +4,9 @@ import { drawing, type Struck } from "./charts/drawing";
 import { Energies, showImpact } from "./energies";
 import type { Run } from "./engine/run";
 import { record, type Film } from "./export/record";
+import { freely } from "./outline";
 import { part } from "./page";
+import { isRigid } from "./setup";
 import { Clock } from "./stage/clock";
 import { Path } from "./stage/path";
 import { Stage } from "./stage/stage";
@@ -45,7 +47,7 @@ export class Player {
     this.film?.finish();
     const rows = await Promise.all(runs.map((run) => run.follow(Math.min(particle, run.particles - 1))));
     if (asked !== this.asked) return;
-    this.paths = rows.map((row, k) => new Path(row, runs[k].setup.gravity, runs[k].setup.incline));
+    this.paths = rows.map((row, k) => new Path(row, runs[k].setup.gravity, runs[k].setup.incline, freely(runs[k].setup)));
     [this.runs, this.particle, this.shown] = [runs, particle, NaN];
     this.stage?.show(this.paths.map((path, k) => ({ path, setup: runs[k].setup, of: k ? "b" : "a" })));
     this.awaited = impact ?? 0;
@@ -99,11 +101,12 @@ export class Player {
     return end();
   }
 
-  /** The last impact before now, as it is drawn on paper. */
-  get struck(): Struck | undefined {
+  /** The last impact before now, as it is drawn on paper, or why it is not. */
+  get struck(): Struck | string {
     const path = this.paths[0];
+    if (path && isRigid(this.runs[0].setup)) return "Only of bodies of revolution is the impact drawn in a plane.";
     const impacts = path?.flightAt(this.clock.time) ?? 0;
-    return impacts > 0 ? drawing(path, this.runs[0].setup, impacts) : undefined;
+    return impacts > 0 ? drawing(path, this.runs[0].setup, impacts) : "No impact yet: play, or step to one.";
   }
 
   private draw(lasted: number): void {

@@ -1,6 +1,6 @@
 /** A set-up: what falls, under which law, and how it is let go. Names and SI units are those of the package. */
 
-import { BODIES, kindOf, LAWS, PARAMETERS } from "./table";
+import { BODIES, kindOf, LAWS, PARAMETERS, RIGID, SHAPES } from "./table";
 
 export const ORIENTATIONS = ["uniform-angle", "isotropic", "given"] as const;
 
@@ -52,10 +52,13 @@ export const DEFAULT: Readonly<Setup> = {
 /** Most impacts that a page keeps: 64 bytes each. */
 export const MOST_IMPACTS = 2_000_000;
 
-export const bodyOf = (s: Setup) => kindOf(BODIES, s.shape);
+export const bodyOf = (s: Setup) => kindOf(SHAPES, s.shape);
+/** Whether it has no axis; it is then released in any attitude alike. */
+export const isRigid = (s: Setup): boolean => RIGID.some(({ key }) => key === s.shape);
+export const orientationOf = (s: Setup): Setup["orientation"] => (isRigid(s) ? "isotropic" : s.orientation);
 export const lawOf = (s: Setup) => kindOf(LAWS, s.law);
 
-export const particlesOf = (s: Setup): number => (s.orientation === "given" ? 1 : s.particles);
+export const particlesOf = (s: Setup): number => (orientationOf(s) === "given" ? 1 : s.particles);
 
 /** To twelve digits, so that 0.1 times 3 mm is 0.3 mm, as somebody would write it, and not a bit more. */
 export const rounded = (x: number): number => Number(x.toPrecision(12));
@@ -63,7 +66,9 @@ export const rounded = (x: number): number => Number(x.toPrecision(12));
 /** Whether a parameter has a meaning in this set-up. */
 export function applies(key: string, s: Setup): boolean {
   if (PARAMETERS.has(key)) return [bodyOf(s), lawOf(s)].some(({ parameters }) => parameters.some(({ name }) => name === key));
-  if (key === "angle") return s.orientation === "given";
-  if (key === "particles") return s.orientation !== "given";
+  if (key === "orientation") return !isRigid(s);
+  if (key === "angle") return orientationOf(s) === "given";
+  if (key === "particles") return orientationOf(s) !== "given";
+  if (key === "file") return bodyOf(s).parameters.some(({ type }) => type === "table");
   return true;
 }

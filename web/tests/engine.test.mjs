@@ -37,7 +37,7 @@ test("the TOML file of the page is the same run on the desktop", () => {
   const folder = mkdtempSync(join(tmpdir(), "restitution-"));
   writeFileSync(join(folder, "run.toml"), page.toml(setup));
   command("simulate", join(folder, "run.toml"), "--out", join(folder, "run.nc"));
-  const names = JSON.stringify(page.DIGESTED);
+  const names = JSON.stringify(page.digested(setup));
   const lines = `import hashlib, xarray\ndata = xarray.open_dataset(${JSON.stringify(join(folder, "run.nc"))})\n` +
     `print(hashlib.sha256(b"".join(data[name].values.tobytes() for name in ${names})).hexdigest())`;
   assert.equal(digest(setup), native(lines));
@@ -54,6 +54,95 @@ test("every body under every law of the table is that of the native engine", () 
   const setups = page.BODIES.flatMap((body) => page.LAWS.map((law) => ({ ...page.DEFAULT, particles: 3, impacts: 20, shape: body.key, law: law.key })));
   const printed = native(setups.map((setup) => page.python(setup)).join("\n")).split("\n");
   setups.forEach((setup, k) => assert.equal(digest(setup), printed[k], `${setup.shape}, ${setup.law}`));
+});
+
+const RIGID = {
+  "a box": { shape: "box", orientation: "given" },
+  "a box, thrown with spin": { shape: "box", spin_y: 40, spin_z: -25, velocity_x: 0.3, incline: 0.1 },
+  ...Object.fromEntries(["4", "6", "8", "12", "20"].map((faces) => [`a die with ${faces} faces`, { shape: "die", faces }])),
+  "a flat ellipsoid": { shape: "ellipsoid", axis_z: 5e-4 },
+  "a clump": { shape: "clump" },
+  "a rough sphere": { shape: "rough-sphere", asperities: 300 },
+  "a mesh": { shape: "mesh" },
+};
+
+test("bodies without an axis have the same bits as in Python, by the lines that the page shows", () => {
+  const setups = Object.entries(RIGID).map(([name, change]) => [name, { ...page.DEFAULT, particles: 4, impacts: 20, law: "coulomb", normal: 0.9, ...change }]);
+  const printed = native(setups.map(([, setup]) => page.python(setup)).join("\n")).split("\n");
+  setups.forEach(([name, setup], k) => assert.equal(digest(setup), printed[k], name));
+  assert.equal(new Set(printed).size, printed.length);
+});
+
+test("the path of a body without an axis goes through its impacts, with the lowest point on the plane", () => {
+  for (const [name, change] of Object.entries(RIGID)) {
+    const setup = { ...page.DEFAULT, particles: 4, impacts: 8, law: "coulomb", normal: 0.9, ...change };
+    const { columns, counts } = simulate(setup);
+    const path = new page.Path(engine.follow(page.numbers(setup), 2), setup.gravity, setup.incline, page.freely(setup));
+    const { reach, size } = page.outlineOf(setup);
+    assert.ok(size > 0 && size <= reach, name);
+    assert.equal(path.flights.length, counts[2] + 1);
+    for (let i = 0; i < counts[2]; i++) {
+      const [flight, next] = [path.flights[i], path.flights[i + 1]];
+      assert.equal(next.start, columns.time[2 * setup.impacts + i]);
+      assert.equal(next.sphere, columns.contact[2 * setup.impacts + i]);
+      const arm = page.armOf(setup, next);
+      assert.ok(Math.abs(next.place.z + arm.z) < 1e-9 * reach, `${name}: gap ${next.place.z + arm.z}`);
+      // The flight ends where the next one begins: the same place and attitude; and its energy of rotation does not change on the way.
+      const end = path.at(flight.start + (next.start - flight.start) * (1 - 1e-9));
+      assert.ok(end.place.distanceTo(next.place) < 1e-6 * reach, `${name}: ${end.place.distanceTo(next.place)}`);
+      assert.ok(end.attitude.angleTo(next.attitude) < 1e-5, `${name}: turned by ${end.attitude.angleTo(next.attitude)}`);
+    }
+  }
+});
+
+test("the spin of an ellipsoid keeps its angular momentum in flight, and is not constant", () => {
+  const setup = { ...page.DEFAULT, particles: 1, impacts: 3, law: "coulomb", normal: 0.9, shape: "ellipsoid" };
+  const path = new page.Path(engine.follow(page.numbers(setup), 0), setup.gravity, 0, page.freely(setup));
+  const squares = [setup.axis_x, setup.axis_y, setup.axis_z].map((x) => x * x);
+  const whole = squares.reduce((a, b) => a + b);
+  const momentum = ({ attitude, spin }) => {
+    const within = spin.clone().applyQuaternion(attitude.clone().invert());
+    return new page.Vector3(...within.toArray().map((x, k) => x * (whole - squares[k]))).applyQuaternion(attitude);
+  };
+  const start = path.flights[2].start;
+  const [one, two] = [path.at(start), path.at(start + 0.6 * path.duration(2))];
+  assert.ok(momentum(one).distanceTo(momentum(two)) < 1e-12 * momentum(one).length());
+  assert.ok(one.spin.distanceTo(two.spin) > 1e-3 * one.spin.length());
+});
+
+test("files are the bodies in them, to the bits that the package reads", () => {
+  const folder = mkdtempSync(join(tmpdir(), "restitution-"));
+  const files = {
+    "dem.txt": ["# x y z r\n0 0 0 2.5\n1.5, 0.1 0 2 7\n", 1e-3, "rs.Clump.from_file"],
+    "engine.csv": ["type,x,y,z,r\n1,0,0,0,0.003\n1,0,0,0.001,0.002\n", 1, "rs.Clump.from_file"],
+    "corner.obj": ["v 0 0 0\nv 6 0 0\nv 0 7 0\nv 0 0 8\nf 1/1 3/1 2/1\nf 1 2 4\nf 1 4 3\nf -3 -2 -1\n", 1e-3, "rs.Mesh.from_file"],
+  };
+  const facet = (...corners) => `facet normal 0 0 0\nouter loop\n${corners.map((corner) => `vertex ${corner}\n`).join("")}endloop\nendfacet\n`;
+  const [o, x, y, z] = ["0 0 0", "6e-3 0 0", "0 7e-3 0", "0 0 8e-3"];
+  files["corner.stl"] = [`solid\n${facet(o, y, x)}${facet(o, x, z)}${facet(o, z, y)}${facet(x, y, z)}endsolid\n`, 1, "rs.Mesh.from_file"];
+  const setups = Object.entries(files).map(([name, [text, unit]]) => {
+    const { shape, key, text: table } = page.readBody(name, text, unit);
+    writeFileSync(join(folder, name), text);
+    return { ...page.DEFAULT, particles: 3, impacts: 10, law: "coulomb", normal: 0.9, shape, [key]: table };
+  });
+  const lines = Object.entries(files).map(([name, [, unit, from]], k) =>
+    page.python(setups[k]).replace(/^body = .*$/m, `body = ${from}(${JSON.stringify(join(folder, name))}, scale=${unit})`));
+  const printed = native(lines.join("\n")).split("\n");
+  setups.forEach((setup, k) => assert.equal(digest(setup), printed[k], Object.keys(files)[k]));
+});
+
+test("a file that is none is refused, with the line and the reason", () => {
+  const refused = (name, text, words) => assert.throws(() => page.readBody(name, text, 1), words);
+  refused("a.txt", "0 0 0 1\n\n1 2 3\n", /^Error: a\.txt, line 3: 1 2 3: must be x y z r/);
+  refused("a.txt", "0 0 0 -1\n", /line 1: .*r > 0/);
+  refused("a.txt", "0 0 zero 1\n", /line 1: .*finite/);
+  refused("a.txt", "", /1 to 1000 rows/);
+  refused("a.bin", "\0\0", /not a text file/);
+  refused("a.csv", "x,y,z\n0,0,0\n", /line 1: x y z: must be a header with the columns x, y, z and r/);
+  refused("a.csv", "x,y,z,r\n0,0,0,1\n0,0,0\n", /line 3: .*4 values/);
+  refused("a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 4\n", /line 4: f 1 2 4: must be f with the numbers of vertices/);
+  refused("a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", /not closed, or not oriented, at 3 edges/);
+  refused("a.stl", "solid\nvertex 0 0\n", /line 2: vertex 0 0: must be vertex x y z/);
 });
 
 test("an outline is the same after many others were asked for", () => {
@@ -146,6 +235,21 @@ test("a link is a set-up: what goes in comes out, and nonsense is named", () => 
     const { state: safe } = page.fromHash(hash);
     assert.ok(safe.a.particles * safe.a.impacts <= 2_000_000);
   }
+});
+
+test("a link holds a body without an axis, a clump with its spheres; of a large one it says that the file is needed", () => {
+  for (const change of [...Object.values(RIGID), { shape: "clump", spheres: "0_0_0_0.001_0.001_0_0_0.002" }]) {
+    const state = page.initial();
+    state.a = { ...state.a, ...change, axis_y: 2.5e-3 };
+    state.b = { ...state.a, edge: 7e-3 };
+    assert.deepEqual(page.fromHash(`#${page.toHash(state)}`), { state, problems: [] });
+  }
+  const state = page.initial();
+  Object.assign(state.a, { shape: "clump", spheres: Array.from({ length: 900 }, (_, k) => `${k / 7}_0_0_0.123456789`).join("_") });
+  const { problems } = page.fromHash(`#${page.toHash(state)}`);
+  assert.match(problems.join(), /spheres: of a file too large for a link/);
+  const bad = page.fromHash("#shape=clump&spheres=0_0_1&faces=5&mesh=0_0_0*0_1_2&asperities=1.5").problems;
+  assert.equal(bad.length, 4, bad.join("\n"));
 });
 
 test("links that give L/R are still those of their bodies", () => {

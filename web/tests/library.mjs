@@ -31,7 +31,7 @@ export function simulate(setup) {
 export function digest(setup) {
   const { columns } = simulate(setup);
   const hash = createHash("sha256");
-  for (const name of page.DIGESTED) {
+  for (const name of page.digested(setup)) {
     const { buffer, byteOffset, byteLength } = columns[name];
     hash.update(new Uint8Array(buffer, byteOffset, byteLength));
   }

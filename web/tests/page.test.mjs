@@ -92,6 +92,53 @@ test("a slider changes the run, the address and the lines of Python; the address
   await close();
 });
 
+/** Drops a file on the page. */
+const drop = (page, name, text) =>
+  page.evaluate(([name, text]) => {
+    const dataTransfer = new DataTransfer();
+    dataTransfer.items.add(new File([text], name));
+    document.body.dispatchEvent(new DragEvent("drop", { dataTransfer, bubbles: true, cancelable: true }));
+  }, [name, text]);
+
+test("a clump that is dropped is the body, replayed and in the link; a malformed one is refused with its line", async () => {
+  const { page, close } = await open(`${SMALL}&shape=ellipsoid&impact=2`);
+  assert.match(await page.locator("#impact").textContent(), /Impact 3.*part that touched/);
+  assert.equal(await page.locator("#orientation").isVisible(), false);
+  await drop(page, "bead.txt", "0 0 0 0.003\n0 0 0.001 0.002\n");
+  await page.waitForFunction(() => location.hash.includes("shape=clump"));
+  await done(page);
+  const clump = { ...library.DEFAULT, particles: 20, impacts: 100, shape: "clump", spheres: "0_0_0_0.003_0_0_0.001_0.002" };
+  assert.deepEqual(await shown(page), [digest(clump)]);
+  assert.equal(await page.locator("#spheres").inputValue(), "0 0 0 3\n0 0 1 2");
+  const hash = await hashOf(page);
+  await drop(page, "bead.txt", "0 0 0 0.003\n0 0 0.001\n");
+  await page.waitForFunction(() => !document.getElementById("problem").hidden);
+  assert.match(await page.locator("#problem").textContent(), /^bead\.txt, line 2: 0 0 0\.001: must be x y z r/);
+  assert.equal(await hashOf(page), hash);
+  await page.locator("#spheres").fill("0 0 0 3\n0 0 2 2.5");
+  await page.locator("#spheres").blur();
+  await page.waitForFunction((old) => location.hash.slice(1) !== old, hash);
+  await done(page);
+  assert.deepEqual(await shown(page), [digest({ ...clump, spheres: "0_0_0_0.003_0_0_0.002_0.0025" })]);
+  await close();
+});
+
+for (const shape of library.RIGID.map(({ key }) => key)) {
+  test(`${shape}: chosen from the list it is run, drawn and replayed, without a word of complaint`, async () => {
+    const { page, close } = await open(SMALL);
+    await set(page, "shape", shape);
+    await done(page);
+    assert.deepEqual(await shown(page), [digest({ ...library.DEFAULT, particles: 20, impacts: 100, shape })]);
+    await page.locator("#later").click();
+    await page.waitForFunction(() => /^Impact 1 /.test(document.querySelector("#impact caption").textContent));
+    assert.equal(await page.locator("#problem").isVisible(), false);
+    await page.evaluate(AXE);
+    const { violations } = await page.evaluate(() => axe.run());
+    assert.deepEqual(violations.map((v) => `${v.id}: ${v.nodes.map((n) => n.html).join("; ")}`), []);
+    await close();
+  });
+}
+
 test("what cannot be is said in words, and the next slider heals it", async () => {
   const { page, close } = await open(`${SMALL}&orientation=given&angle=1`);
   const radius = page.locator("#normal-number");

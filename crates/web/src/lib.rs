@@ -1,8 +1,8 @@
 //! The binding for the browser: it takes a run as a row of numbers and returns tables of numbers. It contains no physics, no threads
 //! and no unsafe block; only the functions that the page calls are exported.
 //!
-//! The page writes `parameters::COUNT` numbers at [`run_parameters`], calls [`simulate`], [`follow`] or [`outline`], and reads the table
-//! at [`table`], of as many numbers as the call returned. A call that fails returns −1, and [`message`] says why. What bodies and laws
+//! The page writes numbers at [`parameters`], calls [`simulate`], [`follow`], [`outline`] or [`turn`], and reads the table at [`table`],
+//! of as many numbers as the call returned. A call that fails returns −1, and [`message`] says why. What bodies of revolution and laws
 //! there are, and with which parameters, [`describe`] says.
 #![deny(unsafe_code)]
 
@@ -10,25 +10,29 @@ mod catalogue;
 mod parameters;
 mod path;
 mod records;
+mod rigid;
 
 use parameters::Parameters;
-use restitution_core::Error;
+use restitution_core::{AnyBody, Error};
 use std::cell::RefCell;
 use std::sync::atomic::{AtomicU64, Ordering};
 
-/// The parameters, as the bits of `f64`, written by the page.
-static PARAMETERS: [AtomicU64; parameters::COUNT] =
-    [const { AtomicU64::new(0) }; parameters::COUNT];
-
 thread_local! {
+    /// What the page writes, as the bits of `f64`.
+    static PARAMETERS: RefCell<Vec<AtomicU64>> = const { RefCell::new(Vec::new()) };
     static TABLE: RefCell<Vec<f64>> = const { RefCell::new(Vec::new()) };
     static MESSAGE: RefCell<String> = const { RefCell::new(String::new()) };
 }
 
-/// Runs `work` on the parameters and keeps the table that it makes. Returns the number of its entries, or −1 after an error.
-fn keep(work: impl FnOnce(&Parameters) -> Result<Vec<f64>, Error>) -> f64 {
-    let numbers = std::array::from_fn(|i| f64::from_bits(PARAMETERS[i].load(Ordering::Relaxed)));
-    match work(&Parameters(numbers)) {
+/// What the page has written.
+fn given() -> Vec<f64> {
+    let number = |bits: &AtomicU64| f64::from_bits(bits.load(Ordering::Relaxed));
+    PARAMETERS.with_borrow(|all| all.iter().map(number).collect())
+}
+
+/// Keeps a table. Returns the number of its entries, or −1 after an error.
+fn keep(made: Result<Vec<f64>, Error>) -> f64 {
+    match made {
         Ok(table) => {
             let count = table.len() as f64;
             TABLE.set(table);
@@ -41,39 +45,59 @@ fn keep(work: impl FnOnce(&Parameters) -> Result<Vec<f64>, Error>) -> f64 {
     }
 }
 
-/// Address of the parameters.
+/// Runs `work` on the parameters of a run and keeps the table that it makes.
+fn of_run(work: impl FnOnce(&Parameters<'_>) -> Result<Vec<f64>, Error>) -> f64 {
+    keep(Parameters::read(&given()).and_then(|parameters| work(&parameters)))
+}
+
+/// Address of the place for `count` numbers: `parameters::COUNT` of them, and behind these a body without an axis.
 #[allow(unsafe_code)]
 #[unsafe(no_mangle)]
-pub extern "C" fn run_parameters() -> *const AtomicU64 {
-    PARAMETERS.as_ptr()
+pub extern "C" fn parameters(count: usize) -> *const AtomicU64 {
+    PARAMETERS.with_borrow_mut(|all| {
+        all.resize_with(count, AtomicU64::default);
+        all.as_ptr()
+    })
 }
 
 /// Simulates `count` particles of the run from number `first` on; the table is that of `records::simulate`.
 #[allow(unsafe_code)]
 #[unsafe(no_mangle)]
 pub extern "C" fn simulate(first: usize, count: usize) -> f64 {
-    keep(|parameters| records::simulate(&parameters.run()?, first, count))
+    of_run(|parameters| records::simulate(&parameters.run()?, first, count))
 }
 
-/// Follows one particle in three dimensions; the table is that of `path::follow`.
+/// Follows one particle in three dimensions; the table is that of `path::follow`, for a body without an axis that of
+/// `path::follow_rigid`.
 #[allow(unsafe_code)]
 #[unsafe(no_mangle)]
 pub extern "C" fn follow(particle: usize) -> f64 {
-    keep(|parameters| path::follow(&parameters.run()?, particle))
+    of_run(|parameters| path::follow(&parameters.run()?, particle))
 }
 
-/// The outline of the body: two rows, of the arcs at the ends of the axis, each centre, semi-axes along and across the axis, and the
-/// angles from and to which the arc goes.
+/// The outline of a body of revolution: two rows, of the arcs at the ends of the axis, each centre, semi-axes along and across the axis,
+/// and the angles from and to which the arc goes. Of a body without an axis the table is that of `rigid::outline`.
 #[allow(unsafe_code)]
 #[unsafe(no_mangle)]
 pub extern "C" fn outline() -> f64 {
-    keep(|parameters| {
-        let arcs = parameters.run()?.body.revolution()?.outline;
-        Ok(arcs
+    of_run(|parameters| match parameters.run()?.body {
+        AnyBody::Rigid(body) => rigid::outline(body),
+        AnyBody::Revolution(solid) => Ok(solid
+            .outline
             .iter()
             .flat_map(|arc| [arc.centre, arc.along, arc.across, arc.from, arc.to])
-            .collect())
+            .collect()),
     })
+}
+
+/// The free rotation of a body without an axis, of the fifteen numbers that `rigid::turned` takes.
+#[allow(unsafe_code)]
+#[unsafe(no_mangle)]
+pub extern "C" fn turn() -> f64 {
+    let given = given();
+    keep(Ok(rigid::turned(
+        given.first_chunk().expect("fifteen numbers"),
+    )))
 }
 
 /// Address of the table that the last call made.

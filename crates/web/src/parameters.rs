@@ -1,7 +1,11 @@
 //! The parameters of a run as a row of numbers, in SI units, written by the page.
 
+use crate::rigid;
 use restitution_core::describe::{Allowed, Argument, Kind, Parameter};
-use restitution_core::{BODIES, Error, LAWS, Law, Orientation, Run, Solid, Spin, Vector};
+use restitution_core::{
+    AnyBody, BODIES, Error, LAWS, Law, Orientation, Rigid, Run, Solid, Spin, Vector,
+};
+use std::rc::Rc;
 
 /// The number of these parameters that the page asks for: those before the ones that are usually left out.
 pub const fn asked(parameters: &[Parameter]) -> usize {
@@ -36,8 +40,12 @@ pub const OF_LAW: usize = {
 pub const COUNT: usize = 1 + OF_BODY + 1 + 1 + OF_LAW + 16;
 
 /// The parameters, in the order of `web/src/engine/layout.ts`: the number of the body in the table of bodies, its parameters in their
-/// order, and the same of the law; a name is given as its number. Places that are not needed may hold anything.
-pub struct Parameters(pub [f64; COUNT]);
+/// order, and the same of the law; a name is given as its number. Places that are not needed may hold anything. A body without an axis
+/// is behind them.
+pub struct Parameters<'a> {
+    row: &'a [f64],
+    rigid: Option<Rc<Rigid>>,
+}
 
 /// The numbers that are not read yet.
 struct Row<'a>(&'a [f64]);
@@ -84,12 +92,24 @@ fn make<T>(kind: &Kind<T>, numbers: &[f64]) -> Result<T, Error> {
     (kind.make)(&arguments)
 }
 
-impl Parameters {
+impl<'a> Parameters<'a> {
+    /// The parameters at the beginning of these numbers, and the body behind them, if there is one.
+    pub fn read(numbers: &'a [f64]) -> Result<Self, Error> {
+        let (row, behind) = numbers.split_at(COUNT);
+        let made = (!behind.is_empty()).then(|| rigid::body(behind));
+        let rigid = made.transpose()?;
+        Ok(Self { row, rigid })
+    }
+
     /// The run, if the parameters of body and law are valid. The others are checked when the run starts.
     pub fn run(&self) -> Result<Run<'_>, Error> {
-        let mut row = Row(&self.0);
+        let mut row = Row(self.row);
+        let solid = body(&mut row);
         Ok(Run {
-            body: body(&mut row)?.into(),
+            body: match &self.rigid {
+                Some(body) => AnyBody::Rigid(body),
+                None => solid?.into(),
+            },
             law: law(&mut row)?,
             particles: row.number() as usize,
             impacts: row.number() as usize,
@@ -133,7 +153,7 @@ mod tests {
         let mut row = [1.0; COUNT];
         row[COUNT - 1] = 7.0;
         row[COUNT - 2] = 3.0;
-        let parameters = Parameters(row);
+        let parameters = Parameters::read(&row).unwrap();
         assert_eq!(parameters.run().unwrap().seed, 3 << 32 | 7);
     }
 }

@@ -8,13 +8,16 @@ import numpy as np
 
 from restitution._internal.described import kebab
 from restitution._internal.parameters import ParameterError, wrong
-from restitution.bodies import KINDS
+from restitution.bodies import KINDS, Box, Clump, Die, Ellipsoid, Mesh, RoughSphere
 from restitution.drop.release import RandomHeight, RandomSpin
 from restitution.drop.run import Run
 from restitution.laws import Law
 
 MOST_IMPACTS = 2_000_000
 """More than these the page does not keep."""
+
+MOST_SPHERES, MOST_TRIANGLES, MOST_ASPERITIES, MOST_TEXT = 1000, 20_000, 10_000, 20_000
+"""Larger bodies it does not draw, and longer tables a link does not hold: ``web/src/``, rigid.ts, link.ts."""
 
 NUMBERS = ("release_height", "gravity", "incline", "minimum_speed")
 
@@ -30,9 +33,10 @@ def link(run: Run) -> str:
     Parameters
     ----------
     run : Run
-        A run that the page can show: of a body that has no parameter of its own for each of two spheres,
-        under a law with a constant normal coefficient, all particles with the same spin and velocity. Of a
-        run of more than 2 000 000 impacts the page shows the first particles.
+        A run that the page can show: of a body of revolution that has no parameter of its own for each of
+        two spheres, or a box, clump, die, ellipsoid, mesh or rough sphere of moderate size, under a law with
+        a constant normal coefficient, all particles with the same spin and velocity. Of a run of more than
+        2 000 000 impacts the page shows the first particles.
 
     Raises
     ------
@@ -65,7 +69,7 @@ def _cannot(name: str, value: object, allowed: str) -> ValueError:
 
 def _body(run: Run) -> dict[str, Any]:
     if not isinstance(run.body, KINDS):
-        raise _cannot("body", type(run.body).__name__, "a body of revolution")
+        return _rigid(run.body)
     values = run.body.attributes()
     for name in ("wall", "inertia"):
         if name in values:
@@ -78,6 +82,47 @@ def _body(run: Run) -> dict[str, Any]:
     return values
 
 
+def _rigid(body: Any) -> dict[str, Any]:
+    match body:
+        case Box():
+            return {"edge_x": body.a, "edge_y": body.b, "edge_z": body.c, "density": body.density}
+        case Die():
+            return {"faces": body.faces, "edge": body.edge, "density": body.density}
+        case Ellipsoid():
+            axes = zip("xyz", body.semi_axes, strict=True)
+            return {**{f"axis_{name}": axis for name, axis in axes}, "density": body.density}
+        case Clump():
+            if body.inertia != "union":
+                raise _cannot("body.inertia", "not that of the union", '"union"')
+            spheres = _table("spheres", body.spheres, MOST_SPHERES)
+            return {"spheres": spheres, "density": body.density}
+        case Mesh():
+            vertices = _table("vertices", body.vertices, 3 * MOST_TRIANGLES)
+            mesh = f"{vertices}*{_table('triangles', body.triangles, MOST_TRIANGLES)}"
+            if len(mesh) > MOST_TEXT:
+                raise _cannot("body.vertices", f"{len(body.vertices)} of them", "fewer")
+            return {"mesh": mesh, "density": body.density}
+        case RoughSphere():
+            if body.heights not in (None, body.asperity_radius):
+                raise _cannot("body.heights", body.heights, "left out")
+            if body.asperities > MOST_ASPERITIES:
+                raise _cannot("body.asperities", body.asperities, f"at most {MOST_ASPERITIES}")
+            if body.seed >= 2**53:
+                raise _cannot("body.seed", body.seed, "below 2**53")
+            found = {"radius": body.radius, "asperities": body.asperities, "density": body.density}
+            return {**found, "asperity_radius": body.asperity_radius, "asperity_seed": body.seed}
+    allowed = "of revolution, or a Box, Clump, Die, Ellipsoid, Mesh or RoughSphere"
+    raise _cannot("body", type(body).__name__, allowed)
+
+
+def _table(name: str, rows: Any, most: int) -> str:
+    """Write a table as a link has it."""
+    text = "_".join(str(number) for row in rows for number in row)
+    if len(rows) > most or len(text) > MOST_TEXT:
+        raise _cannot(f"body.{name}", f"{len(rows)} rows", f"at most {most} rows and {MOST_TEXT} characters")
+    return text
+
+
 def _law(run: Run) -> dict[str, Any]:
     if not isinstance(run.law, Law) or not run.law.entry():
         raise _cannot("law", repr(run.law), "a law of the core")
@@ -88,8 +133,10 @@ def _law(run: Run) -> dict[str, Any]:
 
 
 def _orientation(run: Run) -> dict[str, Any]:
-    if run.angles is None:
+    if run.orientations is None:
         return {"orientation": run.orientation}
+    if run.angles is None:
+        raise _cannot("orientation", "quaternions", "a name")
     if run.angles.size != 1 or np.ndim(run.orientation) != 1:
         raise _cannot("orientation", "an array", "a name, or the one angle of one particle")
     return {"orientation": "given", "angle": float(run.angles[0])}

@@ -2,6 +2,8 @@
 
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from restitution._internal.arrays import whole
 from restitution._internal.parameters import ParameterError, renamed, wrong
 from restitution.drop.run import Run
@@ -87,15 +89,15 @@ def _run_of(data: "xr.Dataset") -> Run:
     try:
         with renamed(lambda name: f"data.{name}"):
             body_type = getattr(bodies, str(attributes["body"]))
-            if body_type in bodies.RIGID:
-                raise ValueError(
-                    f"data.body = {attributes['body']}: the explorer shows bodies of revolution only"
-                )
+            if body_type is bodies.Rough:
+                raise ValueError("data.body = Rough: of rough bodies the explorer shows RoughSphere only")
             law_type = getattr(laws, str(attributes["law"]))
-            body = bodies.of_attributes(body_type, attributes)
+            body = bodies.of_attributes(body_type, _tables(attributes))
             law = law_type(**{name: attributes[name] for name in law_type.model_fields})
             orientation = attributes["orientation"]
             if orientation == "given":
+                if "release_angle" not in data:
+                    raise ValueError("data.orientation = given: the explorer shows this of an angle only")
                 orientation = data["release_angle"]
             spin = attributes["spin"]
             if isinstance(spin, str):
@@ -108,3 +110,16 @@ def _run_of(data: "xr.Dataset") -> Run:
         raise ValueError(
             f"data: must be a Dataset from restitution.simulate, with the numbers of its law: {error}"
         ) from None
+
+
+def _tables(attributes: dict[str, Any]) -> dict[str, Any]:
+    """Give tables their rows back, and asperities their seed under the name that it has in the body."""
+    found = dict(attributes)
+    for name, width in (("spheres", 4), ("vertices", 3), ("triangles", 3)):
+        if name in found:
+            found[name] = np.reshape(found[name], (-1, width))
+    if np.size(found.get("inertia", "")) == 9:
+        found["inertia"] = np.reshape(found["inertia"], (3, 3))
+    if "asperity_seed" in found:
+        found["seed"] = found["asperity_seed"]
+    return found

@@ -56,14 +56,14 @@ const FILE = { width: 720, height: 360, font: 14 };
 /** The place on the page where it is drawn. */
 export class Paper {
   readonly canvas = document.createElement("canvas");
-  private struck: Struck | undefined;
+  private struck: Struck | string = "";
 
   constructor(readonly host: HTMLElement) {
     host.append(this.canvas);
     new ResizeObserver(() => this.draw()).observe(host);
   }
 
-  show(struck: Struck | undefined): void {
+  show(struck: Struck | string): void {
     this.struck = struck;
     this.draw();
   }
@@ -84,9 +84,9 @@ export class Paper {
   }
 }
 
-function draw(pen: Pen, struck: Struck | undefined, width: number, height: number, colours: Palette, font: number): void {
-  if (!struck) {
-    pen.text("No impact yet: play, or step to one.", [width / 2, height / 2], { colour: colours.ink, size: 1.1 * font, anchor: "middle" });
+function draw(pen: Pen, struck: Struck | string, width: number, height: number, colours: Palette, font: number): void {
+  if (typeof struck === "string") {
+    pen.text(struck, [width / 2, height / 2], { colour: colours.ink, size: 1.1 * font, anchor: "middle" });
     return;
   }
   for (const [name, k] of [["just before", 0], ["just after", 1]] as const) {

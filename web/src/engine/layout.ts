@@ -1,6 +1,7 @@
-/** A run as the row of numbers that crates/web/src/parameters.rs reads. */
+/** A run as the row of numbers that crates/web/src/parameters.rs reads; behind it a body without an axis: crates/web/src/rigid.rs. */
 
-import { bodyOf, lawOf, particlesOf, type Setup } from "../setup";
+import { dataOf } from "../rigid";
+import { bodyOf, isRigid, lawOf, orientationOf, particlesOf, type Setup } from "../setup";
 import { BODIES, LAWS, type Kind } from "../table";
 
 /** Columns of the table of impacts, as in crates/web/src/records.rs. */
@@ -23,14 +24,14 @@ const [OF_BODY, OF_LAW] = [most(BODIES), most(LAWS)];
 export function numbers(s: Setup): Float64Array {
   const [body, law] = [bodyOf(s), lawOf(s)];
   const row = [
-    ...[BODIES.indexOf(body), ...filled(body, s, OF_BODY)],
+    ...(isRigid(s) ? Array<number>(1 + OF_BODY).fill(0) : [BODIES.indexOf(body), ...filled(body, s, OF_BODY)]),
     ...[LAWS.indexOf(law as (typeof LAWS)[number]), ...filled(law, s, OF_LAW)],
     ...[particlesOf(s), s.impacts, s.release_height, s.gravity],
-    ...[["uniform-angle", "isotropic", "given"].indexOf(s.orientation), s.angle],
+    ...[["uniform-angle", "isotropic", "given"].indexOf(orientationOf(s)), s.angle],
     ...[0, s.spin_y, s.spin_z, s.velocity_x, 0, s.velocity_z, s.incline, s.minimum_speed],
     ...[Math.floor(s.seed / 2 ** 32), s.seed % 2 ** 32],
   ];
-  return Float64Array.from(row);
+  return Float64Array.from(isRigid(s) ? row.concat(dataOf(s)) : row);
 }
 
 /** A name is given as its number. */

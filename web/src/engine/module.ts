@@ -2,11 +2,12 @@
 
 interface Exports {
   memory: WebAssembly.Memory;
-  run_parameters(): number;
+  parameters(count: number): number;
   simulate(first: number, count: number): number;
   follow(particle: number): number;
   table(): number;
   outline(): number;
+  turn(): number;
   message(): number;
   message_length(): number;
 }
@@ -33,9 +34,15 @@ export class Engine {
     return this.call(parameters, () => this.core.outline());
   }
 
+  /** Attitude and ω of a free body after a time; see crates/web/src/rigid.rs. */
+  turn(given: Float64Array): Float64Array {
+    return this.call(given, () => this.core.turn());
+  }
+
   private call(parameters: Float64Array, work: () => number): Float64Array {
     const core = this.core;
-    new Float64Array(core.memory.buffer, core.run_parameters(), parameters.length).set(parameters);
+    const place = core.parameters(parameters.length); // which may move the memory
+    new Float64Array(core.memory.buffer, place, parameters.length).set(parameters);
     const size = work();
     if (size < 0) throw new Error(this.message());
     return new Float64Array(core.memory.buffer, core.table(), size).slice();

@@ -1,13 +1,13 @@
 /** A run in the workers: its impacts come in portions, in any order, and fill one table. */
 
-import { particlesOf, type Setup } from "../setup";
+import { isRigid, particlesOf, type Setup } from "../setup";
 import { COLUMNS, numbers, type Column } from "./layout";
 import type { Pool } from "./pool";
 
 /** Impacts in a portion: a few milliseconds of work. */
 const PORTION = 2000;
-/** The columns behind the digest, in its order. */
-export const DIGESTED: readonly Column[] = ["time", "restitution", "energy_ratio", "angle"];
+/** The columns behind the digest, in its order; only a body with an axis has an angle. */
+export const digested = (s: Setup): Column[] => ["time", "restitution", "energy_ratio", ...(isRigid(s) ? [] : (["angle"] as const))];
 
 export type Portion = { first: number; count: number };
 
@@ -56,7 +56,7 @@ export class Run {
     }
     await Promise.all(portions);
     this.took = performance.now() - this.started;
-    const columns = DIGESTED.map((name) => this.columns[name]);
+    const columns = digested(this.setup).map((name) => this.columns[name]);
     this.digest = (await this.pool.run({ kind: "digest", columns }, this)) as string;
   }
 

@@ -1,15 +1,10 @@
 /** A set-up as the file of the desktop program, as Python, and its impacts as CSV. */
 
 import { COLUMNS } from "../engine/layout";
-import { DIGESTED, type Run } from "../engine/run";
-import { bodyOf, lawOf, particlesOf, type Setup } from "../setup";
+import { digested, type Run } from "../engine/run";
+import { argumentsOf, float } from "../rigid";
+import { bodyOf, isRigid, lawOf, orientationOf, particlesOf, type Setup } from "../setup";
 import type { Kind } from "../table";
-
-/** As Python and TOML write a float. */
-function float(x: number): string {
-  const text = String(x);
-  return Number.isInteger(x) && !text.includes("e") ? `${text}.0` : text;
-}
 
 const quoted = (text: string) => JSON.stringify(text);
 
@@ -17,13 +12,15 @@ function given({ parameters }: Kind, s: Setup): [string, string][] {
   return parameters.map(({ name, names }) => [name, names ? quoted(String(s[name])) : float(Number(s[name]))]);
 }
 
+const body = (s: Setup) => (isRigid(s) ? argumentsOf(s) : given(bodyOf(s), s));
+
 function run(s: Setup): [string, string][] {
   return [
     ["particles", String(particlesOf(s))],
     ["impacts", String(s.impacts)],
     ["release_height", float(s.release_height)],
     ["gravity", float(s.gravity)],
-    ["orientation", s.orientation === "given" ? `[${float(s.angle)}]` : quoted(s.orientation)],
+    ["orientation", orientationOf(s) === "given" ? `[${float(s.angle)}]` : quoted(orientationOf(s))],
     ["spin", `[0.0, ${float(s.spin_y)}, ${float(s.spin_z)}]`],
     ["release_velocity", `[${float(s.velocity_x)}, 0.0, ${float(s.velocity_z)}]`],
     ["incline", float(s.incline)],
@@ -38,7 +35,7 @@ export function toml(s: Setup): string {
     `[${name}]\n${rows.map(([key, value]) => `${key} = ${value}\n`).join("")}`;
   return [
     "# restitution simulate run.toml --out run.nc\n",
-    table("body", [["shape", quoted(s.shape)], ...given(bodyOf(s), s)]),
+    table("body", [["shape", quoted(s.shape)], ...body(s)]),
     table("law", [["type", quoted(s.law)], ...given(lawOf(s), s)]),
     table("run", run(s)),
   ].join("\n");
@@ -48,12 +45,12 @@ export function toml(s: Setup): string {
 export function python(s: Setup): string {
   const list = (rows: [string, string][], separator: string) =>
     rows.map(([key, value]) => `${key}=${value}`).join(separator);
-  const names = DIGESTED.map(quoted).join(", ");
+  const names = digested(s).map(quoted).join(", ");
   return `import hashlib
 
 import restitution as rs
 
-body = rs.${bodyOf(s).name}(${list(given(bodyOf(s), s), ", ")})
+body = rs.${bodyOf(s).name}(${list(body(s), ", ")})
 law = rs.${lawOf(s).name}(${list(given(lawOf(s), s), ", ")})
 data = rs.simulate(
     body,
@@ -67,11 +64,12 @@ print(hashlib.sha256(b"".join(data[name].values.tobytes() for name in columns)).
 
 /** One line an impact. */
 export function csv({ columns, counts, particles, setup }: Run): string {
-  const lines = [`particle,impact,${COLUMNS.join(",")}`];
+  const names = COLUMNS.filter((name) => name !== "angle" || !isRigid(setup));
+  const lines = [`particle,impact,${names.join(",")}`];
   for (let particle = 0; particle < particles; particle++) {
     for (let i = 0; i < counts[particle]; i++) {
       const place = particle * setup.impacts + i;
-      lines.push(`${particle},${i},${COLUMNS.map((name) => columns[name][place]).join(",")}`);
+      lines.push(`${particle},${i},${names.map((name) => columns[name][place]).join(",")}`);
     }
   }
   return lines.join("\n") + "\n";

@@ -28,6 +28,8 @@ export interface Written {
   most: number;
   /** Two bodies are shown, so that each has a name. */
   named: boolean;
+  /** What of the picture is not to scale, or "". */
+  note: string;
 }
 
 /** Three digits; what is rounding is nothing. */
@@ -58,13 +60,14 @@ export function write(context: CanvasRenderingContext2D, written: Written, font:
   altimeter(pen, written, font);
 }
 
-function scale(pen: CanvasPen, { left, height, width, perMetre }: Written, font: number): void {
+function scale(pen: CanvasPen, { left, height, width, perMetre, note }: Written, font: number): void {
   const { ink, paper } = theme();
   const length = nice((0.1 * width) / perMetre);
   const [from, y] = [left + 0.8 * font, height - 0.9 * font];
   const to = from + length * perMetre;
   pen.line([[from, y - 4], [from, y], [to, y], [to, y - 4]], ink, 2);
   pen.text(`${Number((length * 1e3).toPrecision(3))} mm`, [from, y - 0.6 * font], { colour: ink, size: font, rim: paper });
+  if (note) pen.text(note, [from, y - 2 * font], { colour: ink, size: font, rim: paper });
 }
 
 /** A line as high as the flight, with the body on it. */

@@ -1,8 +1,13 @@
-/** The motion of one particle in closed form, from the starts of its flights: crates/web/src/path.rs. */
+/** The motion of one particle, from the starts of its flights: crates/web/src/path.rs. */
 
 import { Quaternion, Vector3 } from "three";
 
 const COLUMNS = 14;
+/** Of a body without an axis. */
+const FREE = 16;
+
+/** The attitude and ω of a free body without an axis some time after it had these. */
+export type Turn = (attitude: Quaternion, spin: Vector3, time: number) => { attitude: Quaternion; spin: Vector3 };
 
 export interface Flight {
   start: number;
@@ -11,8 +16,11 @@ export interface Flight {
   axis: Vector3;
   turning: Vector3;
   roll: number;
+  /** ω at its start, of a body without an axis; that of another is `turning` and `roll` about the axis. */
+  spin: Vector3;
   /** Energy of rotation over the mass, m²/s². */
   rotation: number;
+  /** The sphere, ball or vertex that touched, 0 at release. */
   sphere: number;
   attitude: Quaternion;
 }
@@ -21,6 +29,8 @@ export interface Moment {
   place: Vector3;
   velocity: Vector3;
   attitude: Quaternion;
+  /** ω in rad/s. */
+  spin: Vector3;
   flight: Flight;
   /** Number of impacts so far. */
   impacts: number;
@@ -32,11 +42,18 @@ export class Path {
   readonly flights: Flight[] = [];
   readonly gravity: Vector3;
 
-  constructor(rows: Float64Array, gravity: number, incline: number) {
+  /** `turn` is that of a body without an axis, whose rows have other columns. */
+  constructor(rows: Float64Array, gravity: number, incline: number, private readonly turn?: Turn) {
     this.gravity = new Vector3(gravity * Math.sin(incline), 0, -gravity * Math.cos(incline));
-    for (let i = 0; i < rows.length; i += COLUMNS) {
+    for (let i = 0; i < rows.length; i += turn ? FREE : COLUMNS) {
       const at = (k: number) => rows[i + k];
       const vector = (k: number) => new Vector3(at(k), at(k + 1), at(k + 2));
+      if (turn) {
+        const attitude = new Quaternion(at(8), at(9), at(10), at(7));
+        const none = { axis: UP.clone(), turning: new Vector3(), roll: 0 };
+        this.flights.push({ ...none, start: at(0), place: vector(1), velocity: vector(4), attitude, spin: vector(11), rotation: at(14), sphere: at(15) });
+        continue;
+      }
       const flight: Flight = {
         start: at(0),
         place: new Vector3(0, 0, at(1)),
@@ -44,6 +61,7 @@ export class Path {
         axis: vector(5),
         turning: vector(8),
         roll: at(11),
+        spin: new Vector3(),
         rotation: at(12),
         sphere: at(13),
         attitude: new Quaternion().setFromUnitVectors(UP, vector(5)),
@@ -113,20 +131,19 @@ export class Path {
   }
 
   /** Place, velocity and attitude some time after the start of a flight: (3), (5). */
-  private during(flight: Flight, time: number): { place: Vector3; velocity: Vector3; attitude: Quaternion } {
+  private during(flight: Flight, time: number): Omit<Moment, "flight" | "impacts"> {
     const place = flight.place.clone().addScaledVector(flight.velocity, time).addScaledVector(this.gravity, (time * time) / 2);
     const velocity = flight.velocity.clone().addScaledVector(this.gravity, time);
+    if (this.turn) return { place, velocity, ...this.turn(flight.attitude, flight.spin, time) };
     const rate = flight.turning.length();
     const turned = new Quaternion();
     if (rate > 0) turned.setFromAxisAngle(flight.turning.clone().divideScalar(rate), rate * time);
     const rolled = new Quaternion().setFromAxisAngle(UP, flight.roll * time);
-    return { place, velocity, attitude: turned.multiply(flight.attitude).multiply(rolled) };
+    const attitude = turned.multiply(flight.attitude).multiply(rolled);
+    // The precession, and the roll about the axis.
+    const spin = flight.turning.clone().addScaledVector(UP.clone().applyQuaternion(attitude), flight.roll);
+    return { place, velocity, attitude, spin };
   }
-}
-
-/** ω at a moment, in rad/s: the precession, and the roll about the axis. */
-export function spinOf({ attitude, flight }: Moment): Vector3 {
-  return flight.turning.clone().addScaledVector(UP.clone().applyQuaternion(attitude), flight.roll);
 }
 
 /** Velocity at the end of the flight before an impact, in m/s; the first impact has number 1. */

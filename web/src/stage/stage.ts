@@ -26,10 +26,12 @@ import { theme } from "../charts/colours";
 import type { Setup } from "../setup";
 import { nice } from "../statistics";
 import { Arrow } from "./arrow";
-import { contactArm, outlineOf } from "../outline";
+import { armOf, outlineOf } from "../outline";
+import { isRigid } from "../setup";
 import { solidOf } from "./body";
+import { noteOf, rigidOf } from "./rigid";
 import { write, type Arrowhead } from "./overlay";
-import { impulseOf, spinOf, type Moment, type Path } from "./path";
+import { impulseOf, type Moment, type Path } from "./path";
 
 /** Points of the trace in a flight, and flights that it goes back. */
 const TRACE = { each: 40, flights: 6 };
@@ -175,7 +177,7 @@ export class Stage {
       const arrows = this.arrows(actor, moment).map((arrow) => ({ ...arrow, tip: arrow.tip && this.onScreen(arrow.tip, k * each, each, height) }));
       const perMetre = height / (2 * Math.tan((ANGLE * Math.PI) / 360) * this.camera.position.length() * outlineOf(this.actors[0].setup).size);
       const most = Math.max(...actor.path.peaks(moment.impacts));
-      write(context, { left: k * each, width: each, height, of: actor.of, arrows, perMetre, now: moment.place.z, most, named: this.actors.length > 1 }, font);
+      write(context, { left: k * each, width: each, height, of: actor.of, arrows, perMetre, now: moment.place.z, most, named: this.actors.length > 1, note: noteOf(actor.setup) }, font);
     });
     this.camera.position.copy(home);
     return lead;
@@ -200,7 +202,7 @@ export class Stage {
       path,
       of,
       world: new Group(),
-      body: solidOf(setup, colours[of]),
+      body: isRigid(setup) ? rigidOf(setup, colours[of]) : solidOf(setup, colours[of]),
       velocity: new Arrow(colours.velocity),
       spin: new Arrow(colours.spin),
       impulse: new Arrow(colours.impulse),
@@ -254,12 +256,12 @@ export class Stage {
     const arrow = (vector: Vector3, unit: number) => vector.multiplyScalar((ARROW.whole * length) / unit).clampLength(0, ARROW.most * length);
     actor.velocity.point(place, arrow(moment.velocity.clone(), whole), thick);
     // A surface that turns with a third of that speed has an arrow as long.
-    actor.spin.point(place, arrow(spinOf(moment), whole / (3 * outlineOf(setup).size)), thick);
+    actor.spin.point(place, arrow(moment.spin.clone(), whole / (3 * outlineOf(setup).size)), thick);
     const { flight, impacts } = moment;
     const hit = impacts > 0;
     actor.contact.visible = actor.impulse.visible = hit;
     if (!hit) return;
-    const at = flight.place.clone().add(contactArm(setup, flight.axis, flight.sphere)).divideScalar(unit);
+    const at = flight.place.clone().add(armOf(setup, flight)).divideScalar(unit);
     actor.contact.position.set(at.x, at.y, 0.01);
     actor.contact.scale.setScalar(length / 2);
     actor.impulse.point(at, arrow(impulseOf(actor.path, impacts), 2 * whole), thick);
@@ -270,7 +272,7 @@ export class Stage {
     const impulse = moment.impacts > 0 ? impulseOf(actor.path, moment.impacts).length() : 0;
     return [
       { name: "v", hue: "velocity", value: moment.velocity.length(), unit: "m/s", words: "velocity of the centre of mass", tip: tip(actor.velocity) },
-      { name: "ω", hue: "spin", value: spinOf(moment).length(), unit: "rad/s", words: "angular velocity", tip: tip(actor.spin) },
+      { name: "ω", hue: "spin", value: moment.spin.length(), unit: "rad/s", words: "angular velocity", tip: tip(actor.spin) },
       { name: "P/m", hue: "impulse", value: impulse, unit: "m/s", words: "impulse of the last impact, over the mass", tip: tip(actor.impulse) },
     ];
   }

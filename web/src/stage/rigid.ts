@@ -1,0 +1,95 @@
+/** A body without an axis, about its centre of mass, in three tones so that one sees it turn. Lengths in m. */
+
+import {
+  BufferGeometry, Color, DoubleSide, EdgesGeometry, Float32BufferAttribute, Group, IcosahedronGeometry, InstancedMesh, LineBasicMaterial, LineSegments,
+  Matrix4, Mesh, MeshPhongMaterial, SphereGeometry, Vector3,
+} from "three";
+import { freeOf } from "../outline";
+import { semiAxesOf, spheresOf, surfaceOf, type Surface } from "../rigid";
+import type { Setup } from "../setup";
+
+const SHINE = { shininess: 40, specular: "#333333" };
+/** Edges at which faces meet at a larger angle than this, in degrees, are drawn. */
+const CREASE = 15;
+/** Asperities are drawn as large as this part of the sphere, unless they would cover more of it than `cover`. */
+const ASPERITY = { size: 0.03, cover: 0.25 };
+
+interface Ball {
+  place: Vector3;
+  radius: number;
+}
+
+export function rigidOf(s: Setup, colour: string): Group {
+  const tones = [new Color(colour), new Color(colour).lerp(new Color("#ffffff"), 0.45), new Color(colour).lerp(new Color("#000000"), 0.35)];
+  const surface = surfaceOf(s);
+  if (surface) return faces(surface, freeOf(s).centre, tones);
+  if (s.shape === "ellipsoid") return octants(semiAxesOf(s), tones);
+  if (s.shape === "rough-sphere") return rough(s, tones);
+  const { centre } = freeOf(s);
+  const clump = spheresOf(s).map(([x, y, z, radius]) => ({ place: new Vector3(x, y, z).sub(centre), radius }));
+  return new Group().add(balls(clump, new SphereGeometry(1, 32, 20), tones));
+}
+
+/** Each of the balls in the next of the tones. */
+function balls(all: Ball[], shape: BufferGeometry, tones: Color[]): InstancedMesh {
+  const mesh = new InstancedMesh(shape, new MeshPhongMaterial(SHINE), all.length);
+  all.forEach(({ place, radius }, k) => {
+    mesh.setMatrixAt(k, new Matrix4().makeScale(radius, radius, radius).setPosition(place));
+    mesh.setColorAt(k, tones[k % tones.length]);
+  });
+  mesh.frustumCulled = false;
+  return mesh;
+}
+
+function faces({ points, triangles }: Surface, centre: Vector3, tones: Color[]): Group {
+  const [places, colours]: [number[], number[]] = [[], []];
+  for (const corners of triangles) {
+    const [a, b, c] = corners.map((k) => new Vector3().fromArray(points[k]).sub(centre));
+    const normal = b.clone().sub(a).cross(c.clone().sub(a)).toArray().map(Math.abs);
+    const tone = tones[normal.indexOf(Math.max(...normal))];
+    for (const corner of [a, b, c]) {
+      places.push(...corner);
+      colours.push(tone.r, tone.g, tone.b);
+    }
+  }
+  const geometry = new BufferGeometry().setAttribute("position", new Float32BufferAttribute(places, 3)).setAttribute("color", new Float32BufferAttribute(colours, 3));
+  geometry.computeVertexNormals();
+  const lines = new LineSegments(new EdgesGeometry(geometry, CREASE), new LineBasicMaterial({ color: tones[2].clone().lerp(new Color("#000000"), 0.4) }));
+  return new Group().add(new Mesh(geometry, new MeshPhongMaterial({ ...SHINE, vertexColors: true, flatShading: true, side: DoubleSide })), lines);
+}
+
+/** An ellipsoid in octants. */
+function octants([a, b, c]: number[], [base, light, dark]: Color[]): Group {
+  const group = new Group();
+  for (let k = 0; k < 8; k++) {
+    const upper = k < 4;
+    const shape = new SphereGeometry(1, 16, 16, (k * Math.PI) / 2, Math.PI / 2, upper ? 0 : Math.PI / 2, Math.PI / 2).rotateX(Math.PI / 2).scale(a, b, c);
+    group.add(new Mesh(shape, new MeshPhongMaterial({ ...SHINE, color: k % 2 ? (upper ? light : dark) : base })));
+  }
+  return group;
+}
+
+/** How many times as large as they are the asperities are drawn. */
+function exaggeration(s: Setup): number {
+  const [radius, count, asperity] = [s.radius, s.asperities, s.asperity_radius].map(Number);
+  const size = Math.min(ASPERITY.size, Math.sqrt((4 * ASPERITY.cover) / count)) * radius;
+  return Math.max(1, Number((size / asperity).toPrecision(2)));
+}
+
+/** What is written into the picture. */
+export function noteOf(s: Setup): string {
+  const times = s.shape === "rough-sphere" ? exaggeration(s) : 1;
+  return times > 1 ? `asperities drawn ${times} times as large` : "";
+}
+
+function rough(s: Setup, [base, light, dark]: Color[]): Group {
+  const [sphere, ...asperities] = freeOf(s).balls;
+  const times = exaggeration(s);
+  const large = asperities.map(({ place, radius }) => {
+    const over = sphere.radius + times * (place.length() - sphere.radius);
+    return { place: place.clone().setLength(over), radius: times * radius };
+  });
+  // Small ones have few faces.
+  const shape = large.length > 2000 ? new IcosahedronGeometry(1, 0) : new IcosahedronGeometry(1, 2);
+  return new Group().add(octants([sphere.radius, sphere.radius, sphere.radius], [base, base, base.clone().lerp(dark, 0.5)]), balls(large, shape, [light]));
+}
