@@ -98,8 +98,13 @@ const ORDER: readonly string[] = [
 
 const nameOf = (key: string) => [...SLIDERS, ...CHOICES, ...TABLES].find((x) => x.key === key)!.name;
 
-/** The slider that is shown where there is room for one only, until another is chosen: a length beside the size of the body. */
-const first = (s: Setup) => (bodyOf(s).parameters.find(({ name }) => beside(name)) ?? bodyOf(s).parameters[0]).name;
+/** The slider that is shown where there is room for one only, until another is chosen: a length beside the size of the body; of a table
+ * the choice of the shape. */
+function first(s: Setup): string {
+  const { parameters } = bodyOf(s);
+  const one = parameters.find(({ name }) => beside(name)) ?? parameters[0];
+  return one.type === "table" ? "shape" : one.name;
+}
 
 /** Where a file goes, with what a unit of it is in m. */
 type Load = (file: File, unit: number) => void;

@@ -54,13 +54,16 @@ const ROWS: [string, (run: Run, place: number) => string][] = [
 ];
 
 const tilt = (run: Run, i: number) => `${((run.columns.angle[i] * 180) / Math.PI).toFixed(1)}°`;
-/** What describes the contact: the tilt, or which ball or vertex it is. */
-const contact = ({ setup }: Run): (typeof ROWS)[number] => (isRigid(setup) ? ["part that touched", (run, i) => String(run.columns.contact[i])] : ["tilt θ of the axis", tilt]);
+/** What describes the contact: the tilt, or which ball or vertex it is; an ellipsoid has none. */
+function contact({ setup }: Run): typeof ROWS {
+  if (!isRigid(setup)) return [["tilt θ of the axis", tilt]];
+  return setup.shape === "ellipsoid" ? [] : [["part that touched", (run, i) => String(run.columns.contact[i])]];
+}
 
 export function showImpact(table: HTMLTableElement, run: Run, particle: number, impact: number): void {
   const place = particle * run.setup.impacts + impact;
   const there = impact >= 0 && impact < run.counts[particle];
   const head = there ? `Impact ${impact + 1} of particle ${particle}` : "No impact yet";
-  const rows = [...ROWS.slice(0, 2), contact(run), ...ROWS.slice(2)].map(([name, value]) => `<tr><th scope="row">${name}</th><td>${there ? value(run, place) : "–"}</td></tr>`);
+  const rows = [...ROWS.slice(0, 2), ...contact(run), ...ROWS.slice(2)].map(([name, value]) => `<tr><th scope="row">${name}</th><td>${there ? value(run, place) : "–"}</td></tr>`);
   table.innerHTML = `<caption>${head}</caption><tbody>${rows.join("")}</tbody>`;
 }

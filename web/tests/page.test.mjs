@@ -101,7 +101,7 @@ const drop = (page, name, text) =>
   }, [name, text]);
 
 test("a clump that is dropped is the body, replayed and in the link; a malformed one is refused with its line", async () => {
-  const { page, close } = await open(`${SMALL}&shape=ellipsoid&impact=2`);
+  const { page, close } = await open(`${SMALL}&shape=die&impact=2`);
   assert.match(await page.locator("#impact").textContent(), /Impact 3.*part that touched/);
   assert.equal(await page.locator("#orientation").isVisible(), false);
   await drop(page, "bead.txt", "0 0 0 0.003\n0 0 0.001 0.002\n");

@@ -40,6 +40,10 @@ const LINES = 80;
 const ANGLE = 35;
 /** The body fills a third of the height of the picture. */
 const SHARE = 1 / 3;
+/** Distance of the camera in lengths of the body. */
+const DISTANCE = 1 / SHARE / 2 / Math.tan((ANGLE * Math.PI) / 360);
+/** Distances of the camera at which things begin to fade, and are gone. */
+const FADE = { near: 1.5, far: 7 };
 /** Lengths of arrows in lengths of the body: of a velocity that holds all energy of motion, and at most. */
 const ARROW = { whole: 1.3, most: 2 };
 
@@ -69,6 +73,7 @@ interface Actor extends Part {
 
 export class Stage {
   private readonly scene = new Scene();
+  private readonly fog = new Fog("#ffffff");
   private readonly camera = new PerspectiveCamera(ANGLE, 1, 0.1, 2000);
   private readonly renderer: WebGLRenderer;
   private readonly overlay = document.createElement("canvas");
@@ -98,8 +103,7 @@ export class Stage {
       host.append(canvas);
     }
     this.camera.up.set(0, 0, 1);
-    const distance = 1 / SHARE / 2 / Math.tan((ANGLE * Math.PI) / 360);
-    this.camera.position.set(0.12, -1, 0.24).setLength(distance);
+    this.camera.position.set(0.12, -1, 0.24).setLength(DISTANCE);
     this.sun.position.set(-4, -3, 12);
     this.sun.castShadow = true;
     this.sun.shadow.mapSize.set(1024, 1024);
@@ -108,12 +112,12 @@ export class Stage {
     this.shade.position.z = 0.002;
     this.floor.add(this.ground, this.shade);
     this.scene.add(new AmbientLight("#ffffff", 1.3), this.sun, this.sun.target, this.floor);
-    this.scene.fog = new Fog("#ffffff", 3 * distance, 14 * distance);
+    this.scene.fog = this.fog;
     this.controls = new OrbitControls(this.camera, this.renderer.domElement);
     this.controls.enablePan = false;
     this.controls.maxPolarAngle = Math.PI / 2 - 0.02;
-    this.controls.minDistance = distance / 4;
-    this.controls.maxDistance = distance * 8;
+    this.controls.minDistance = DISTANCE / 4;
+    this.controls.maxDistance = DISTANCE * 8;
     this.controls.listenToKeyEvents(host);
     this.controls.addEventListener("change", () => (this.stale = true));
     // The wheel and a finger that goes up or down scroll the page; who has chosen the scene comes nearer by the wheel.
@@ -142,7 +146,7 @@ export class Stage {
   restyle(): void {
     const colours = theme();
     this.renderer.setClearColor(colours.paper);
-    this.scene.fog!.color.set(colours.paper);
+    this.fog.color.set(colours.paper);
     (this.ground.material as MeshBasicMaterial).color.set(colours.ground);
     this.rule();
     this.show(this.actors);
@@ -168,6 +172,7 @@ export class Stage {
       this.pose(actor, moment, each / height);
       for (const other of this.actors) other.world.visible = other === actor;
       this.camera.position.copy(home).multiplyScalar(actor.length);
+      [this.fog.near, this.fog.far] = [FADE.near, FADE.far].map((x) => x * DISTANCE * actor.length);
       this.camera.aspect = each / height;
       this.camera.updateProjectionMatrix();
       this.camera.updateMatrixWorld();
