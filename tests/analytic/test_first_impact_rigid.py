@@ -3,6 +3,7 @@
 import pickle
 from functools import lru_cache
 from itertools import product
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -238,6 +239,14 @@ def test_it_is_used_like_the_others() -> None:
     assert distribution.probability_above_normal == pytest.approx(above.mean(), abs=0.02)
     assert first("clump", "Coulomb").probability_above_normal == 0.0
     assert pickle.loads(pickle.dumps(distribution)).mean() == mean
+
+
+def test_a_study_has_it_beside_its_statistics(tmp_path: Path) -> None:
+    body, law = TURNED["coin"], LAWS["Coulomb"]
+    study = {"body": body, "law": law, "sweep": {"body.height": [2e-3, 4e-3]}, "first_impact": {}}
+    bins = {"velocity_bins": [0.0, 1.0], "restitution_bins": [-1.0, 1.0]}
+    found = rs.sweep(study | {"run": {"particles": 10, "impacts": 2}, "statistics": bins}, out=tmp_path / "s")
+    assert found.first_impact_mean.values[0] == first_impact(body, law).mean()
 
 
 def test_what_it_refuses_says_what_is_allowed() -> None:

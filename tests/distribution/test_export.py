@@ -141,6 +141,22 @@ def test_draws_follow_the_distribution(plain: FluctuatingRestitution, language: 
     assert np.mean(draws) == pytest.approx(plain.mean(0.2345), abs=4 * plain.std(0.2345) / np.sqrt(20_000))
 
 
+@pytest.mark.parametrize("language", ["C99", "Fortran 2008"])
+def test_a_body_without_an_axis_is_exported_too(language: str, tmp_path: Path) -> None:
+    """A box, which has its parameters in the source, and the same bits as any other."""
+    how: dict[str, Any] = {"particles": 3000, "impacts": 20, "velocities": (0.2, 0.5), "seed": 2}
+    box = rs.Box(a=3e-3, b=4e-3, c=5e-3)
+    dist = FluctuatingRestitution.learn(box, rs.Coulomb(normal=0.8, friction=0.2), **how)
+    program = compiled(dist, language, "box_sample(v, u1, u2)", tmp_path, "box")
+    table = np.random.default_rng(5).random((500, 4))
+    table[:, 0] = np.random.default_rng(6).uniform(*dist.velocities, 500)
+    nodes = dist.data.velocity.to_numpy()
+    expected = [dist.ppf(u2, nodes[chosen(nodes, v, u1)[0]]) for v, _, u1, u2 in table]
+    np.testing.assert_array_equal(ask(program, table), expected)
+    source = next(tmp_path.glob("box.*")).read_text(encoding="utf-8")
+    assert "Box" in source
+
+
 @pytest.mark.parametrize("language", ["C99", "C++11", "Fortran 2008"])
 def test_speeds_beyond_are_not_a_number_unless_clamped(
     plain: FluctuatingRestitution, language: str, tmp_path: Path
