@@ -156,37 +156,37 @@ def scatter_over_error(estimates: npt.NDArray[np.float64], errors: npt.NDArray[n
 
 
 def test_standard_errors_match_repetition_of_correlated_samples() -> None:
-    """Particles that differ from each other: 1000 repetitions scatter as the errors say, mean and variance.
+    """Particles that differ from each other: 400 repetitions scatter as the errors say, mean and variance.
 
-    The ratio of 1000 repetitions has a standard deviation of 0.022 (by bootstrap); ± 0.13 is five of
+    The ratio of 400 repetitions has a standard deviation of 0.035 (by bootstrap); ± 0.2 is five of
     these (1 in 10⁶) and 0.02 for the bias of 60 clusters. Errors for independent impacts would be four
     times too small.
     """
     random = np.random.default_rng(3)
     shape = (60, 16)
     found = []
-    for _ in range(1000):
+    for _ in range(400):
         values = random.normal(size=(60, 1)) + 0.25 * random.normal(size=shape)
         data = impacts(np.full(shape, 0.1), values)
         errors = standard_errors(data, [0.0, 1.0])
         names = ("mean_standard_error", "variance_standard_error")
         found.append([values.mean(), values.var(), *(float(errors[name][0]) for name in names)])
     mean, variance, mean_error, variance_error = np.array(found).T
-    assert scatter_over_error(mean, mean_error) == pytest.approx(1, abs=0.13)
-    assert scatter_over_error(variance, variance_error) == pytest.approx(1, abs=0.13)
+    assert scatter_over_error(mean, mean_error) == pytest.approx(1, abs=0.2)
+    assert scatter_over_error(variance, variance_error) == pytest.approx(1, abs=0.2)
     independent = np.sqrt(variance / values.size)
     assert scatter_over_error(mean, independent) > 3
 
 
 def test_standard_errors_match_repeated_simulations() -> None:
-    """The same for 300 independent runs of 60 particles between 0.3 and 0.5 m/s.
+    """The same for 150 independent runs of 60 particles between 0.3 and 0.5 m/s.
 
-    The ratio's standard deviation is 0.043 (by bootstrap); ± 0.23 is five of these and 0.02 for the bias.
+    The ratio's standard deviation is 0.061 (by bootstrap); ± 0.33 is five of these and 0.02 for the bias.
     """
     body, law = rs.Dumbbell(radius=3e-3, separation=3e-4), rs.TangentialRestitution(normal=0.98)
     bins = [0.3, 0.5]
     found = []
-    for seed in range(300):
+    for seed in range(150):
         data = rs.simulate(body, law, particles=60, impacts=100, seed=seed)
         moments = reduce(data, bins, [0.0, 1.0])
         errors = standard_errors(data, bins)
@@ -196,8 +196,8 @@ def test_standard_errors_match_repeated_simulations() -> None:
             [float(moments["mean_restitution"][0]), deviation, *(float(errors[name][0]) for name in names)]
         )
     mean, deviations, mean_error, deviation_error = np.array(found).T
-    assert scatter_over_error(mean, mean_error) == pytest.approx(1, abs=0.23)
-    assert scatter_over_error(deviations, deviation_error) == pytest.approx(1, abs=0.23)
+    assert scatter_over_error(mean, mean_error) == pytest.approx(1, abs=0.33)
+    assert scatter_over_error(deviations, deviation_error) == pytest.approx(1, abs=0.33)
 
 
 def test_errors_that_are_not_there_say_why() -> None:

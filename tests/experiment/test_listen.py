@@ -34,9 +34,11 @@ def ball(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture(scope="module", autouse=True)
 def few_particles() -> Iterator[None]:
-    """Simulate few for the shape: what is asked here is not how well it is known."""
+    """Simulate few, of few shapes: what is asked here is not how well the shape is known."""
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr("restitution.experiment.listen._shape._PARTICLES", 100)
+        for name in ("_SHAPES", "_SCATTERS"):
+            patch.setattr(f"restitution.experiment.inference._posterior.{name}", 2)
         yield
 
 

@@ -81,6 +81,8 @@ def test_a_single_ball_is_not_taken_for_two(noise: float) -> None:
 
 def test_the_page_says_that_there_was_a_second_ball(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("restitution.experiment.listen._shape._PARTICLES", 100)
+    for name in ("_SHAPES", "_SCATTERS"):
+        monkeypatch.setattr(f"restitution.experiment.inference._posterior.{name}", 2)
     samples = two_balls("ping", 101, -45.0)[2]
     soundfile.write(tmp_path / "two.wav", 0.4 * samples, RATE)
     analysis = analyse(tmp_path / "two.wav", Setting(diameter=0.02))

@@ -56,7 +56,14 @@ def samples() -> Any:
 
 @cache
 def heard() -> listen.Analysis:
-    return listen.analyse(recording(), Setting(diameter=0.02))
+    return analysed()
+
+
+def analysed() -> listen.Analysis:
+    """Analyse the recording with few shapes and scatters in the posterior, which takes long."""
+    rough: dict[str, Any] = dict.fromkeys(("_SHAPES", "_SCATTERS"), 2)
+    with patch.multiple("restitution.experiment.inference._posterior", **rough):
+        return listen.analyse(recording(), Setting(diameter=0.02))
 
 
 def study_tables() -> dict[str, Any]:
