@@ -28,7 +28,6 @@ def quoted(place: str) -> str:
     return " or ".join(f'"{name}"' for name in _KINDS[place][1])
 
 
-REVOLVED = one_of(bodies.KINDS)
 BODIES = one_of((*bodies.KINDS, *bodies.RIGID))
 LAWS = one_of(laws.KINDS)
 SHAPES, LAW_TYPES, MATERIAL_TYPES = map(quoted, ("body", "law", "normal"))

@@ -38,7 +38,8 @@ class RigidFirstImpact(FirstImpact):
     ε is a closed form in the direction of the plane as seen from the body. The sphere of these directions is
     divided into triangles, smaller where ε bends, on each of which one ball or vertex touches; there ε is
     taken as linear, so that the distribution is a sum of triangular ones. `cdf_error` says how far the
-    distribution function may be off, by second differences; moments come closer.
+    distribution function may be off, by second differences; moments come closer. `expect` is a sum over the
+    table of the distribution function, whatever accuracy is asked for.
 
     Examples
     --------
