@@ -59,7 +59,7 @@ _HOMES = {
     **dict.fromkeys((entry["name"] for entry in (*_core.LAWS, *_core.MATERIALS)), "laws"),
     **dict.fromkeys(("Rough", "RoughSphere"), "bodies"),
     **dict.fromkeys(("Box", "Clump", "ConvexPolyhedron", "Cylinder", "Die", "Egg", "Ellipsoid"), "bodies"),
-    **dict.fromkeys(("Mesh", "Revolution", "Ring"), "bodies"),
+    **dict.fromkeys(("Mesh", "Revolution", "Ring", "Superellipsoid"), "bodies"),
     "ball_grade": "bodies",
     "ball_roughness": "bodies",
     "from_roundness": "bodies",

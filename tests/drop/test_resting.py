@@ -199,9 +199,55 @@ def test_clumps_and_ellipsoids_stay_where_they_are_decided(body: RigidBody) -> N
 
 
 @pytest.mark.parametrize(
+    "body",
+    [
+        rs.Box(A, B, C),
+        rs.Cylinder(A, B),
+        rs.Cylinder(A, B, inertia=rs.Cylinder(A, B).inertia_tensor, centre=(1e-3, 0, 0)),
+        rs.Superellipsoid(semi_axes=(A, B, C), exponents=(4, 4)),
+        GRIDS[0][0],
+    ],
+)
+@pytest.mark.parametrize("law", [PLASTIC, rs.Frictionless(normal=0.7)])
+def test_until_settled_the_same_are_decided(body: RigidBody, law: Any) -> None:
+    """A run that ends where nothing can change has the same impacts up to there, and the same faces."""
+    heights: dict[str, Any] = {"release_height": 0.1, "particles": 60}
+    whole, short = run(body, law=law, **heights), run(body, law=law, until="settled", **heights)
+    settled = short.stop_reason.to_numpy() == 5
+    assert settled.any()
+    assert (short.impacts <= whole.impacts).all()
+    last = short.sizes["impact"]
+    kept = np.isfinite(short.time.to_numpy())
+    np.testing.assert_array_equal(short.time.to_numpy()[kept], whole.time.to_numpy()[:, :last][kept])
+    found, expected = rs.resting(body, short), rs.resting(body, whole)
+    np.testing.assert_array_equal(found.resting, expected.resting)
+    assert (found.resting.to_numpy()[settled] >= 0).all()
+    assert short.attrs["settling_height"] <= float(found.barrier.min())
+
+
+@pytest.mark.parametrize(
     ("change", "message"),
     [
-        ({"body": rs.RoughSphere(radius=3e-3, asperities=9, asperity_radius=3e-6)}, "must be a Box, Clump"),
+        ({"until": "tired"}, "until = 'tired': must be 'settled', or left out"),
+        ({"incline": 0.1}, "incline = 0.1: must be 0, a level plane"),
+        ({"law": rs.TangentialRestitution(normal=0.9)}, "law = .*must be one that cannot create energy"),
+        ({"body": rs.Dumbbell(radius=A, separation=A)}, "body = .*must be a rigid body that is not rough"),
+        ({"body": GRIDS[-1][0]}, "body = .*must be one that can come to rest in two ways or more"),
+    ],
+)
+def test_what_cannot_settle_is_named(change: dict[str, Any], message: str) -> None:
+    given: dict[str, Any] = {"body": rs.Box(A, B, C), "until": "settled"} | change
+    with pytest.raises(ValueError, match=message):
+        run(**given)
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        (
+            {"body": rs.RoughSphere(radius=3e-3, asperities=9, asperity_radius=3e-6)},
+            "must be a rigid body that is not rough",
+        ),
         ({"body": rs.Box(1e-2, 1e-2, 1.1e-2)}, "data is of a Box of .* kg: must be of the body"),
         ({"incline": 0.1}, "data.incline = 0.1: must be 0"),
         ({"law": rs.TangentialRestitution(normal=0.9, tangential=1.0)}, "create energy"),

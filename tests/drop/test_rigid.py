@@ -248,11 +248,3 @@ def test_moments_of_bodies_that_are_known() -> None:
     np.testing.assert_array_equal(given.inertia_tensor, tensor)
     np.testing.assert_array_equal(given.centre_of_mass, (0.1, 0.2, 0.3))
     np.testing.assert_allclose(np.sort(given.principal_moments), np.linalg.eigvalsh(tensor), rtol=1e-14)
-
-
-def test_between_impacts_the_motion_of_other_bodies_is_refused() -> None:
-    data = rs.simulate(
-        rs.Box(1e-3, 2e-3, 3e-3), rs.Frictionless(normal=0.9), particles=1, impacts=2, record="state"
-    )
-    with pytest.raises(ValueError, match="data is of a Box: must be of a body of revolution"):
-        rs.trajectory(data, 0, [0.01])

@@ -88,7 +88,7 @@ def test_it_counts_what_simulate_records(
     np.testing.assert_array_less(abs(found.variance - expected.variance).fillna(0), allowed)
     np.testing.assert_allclose(found.mean_fraction, expected.mean_fraction, atol=2.0**-42)
     np.testing.assert_array_equal(
-        found.particles_ended, np.bincount(data.stop_reason.to_numpy().astype(int), minlength=5)
+        found.particles_ended, np.bincount(data.stop_reason.to_numpy().astype(int), minlength=6)
     )
 
 

@@ -7,6 +7,7 @@ import numpy.typing as npt
 import pytest
 import xarray as xr
 from scipy.integrate import solve_ivp
+from scipy.spatial.transform import Rotation
 
 import restitution as rs
 
@@ -121,6 +122,75 @@ def test_a_flight_is_that_of_a_general_integrator() -> None:
             np.testing.assert_allclose(w, [spin(axis) for axis in solved[:, 6:]], rtol=0.0, atol=1e-8)
 
 
+TENSOR = np.array([[2e-6, 1e-7, 0.0], [1e-7, 1.5e-6, 2e-7], [0.0, 2e-7, 1e-6]])
+RIGID = {
+    "three moments": rs.Box(1e-2, 2e-2, 3e-2, inertia=TENSOR, centre=(1e-3, 0.0, 0.0)),
+    "two moments": rs.Cylinder(radius=1e-2, height=3e-3),
+    "equal moments": rs.Die(faces=4, edge=1e-2),
+}
+
+
+@pytest.mark.parametrize("kind", RIGID)
+def test_a_flight_of_any_body_is_that_of_a_general_integrator(kind: str) -> None:
+    """Newton's and Euler's equations, and dq/dt = ω q/2, by DOP853, from the release or from an impact on."""
+    body = RIGID[kind]
+    moved: dict[str, Any] = {"spin": (30.0, -10.0, 20.0), "release_velocity": (0.1, 0.2, 0.0), "incline": 0.1}
+    law = rs.Coulomb(normal=0.8, friction=0.3)
+    data = rs.simulate(body, law, particles=2, impacts=6, record="state", **moved)
+    gravity = 9.81 * np.array([np.sin(0.1), 0.0, -np.cos(0.1)])
+
+    def motion(_: float, state: Floats) -> Floats:
+        velocity, (w, *v), spin = state[3:6], state[6:10], state[10:]
+        turned = Rotation.from_quat([*v, w]).as_matrix()
+        tensor = turned @ body.inertia_tensor @ turned.T
+        quaternion = 0.5 * np.array([-spin @ v, *(w * spin + np.cross(spin, v))])
+        change = np.linalg.solve(tensor, -np.cross(spin, tensor @ spin))
+        return np.concatenate([velocity, gravity, quaternion, change])
+
+    for particle in range(2):
+        times = at_impacts(data, particle)
+        for begin, end in ((0.0, times[0]), (times[3], times[4])):
+            within = np.linspace(begin, np.nextafter(end, 0.0), 5)
+            path = rs.trajectory(data, particle, within)
+            names = ("position", "velocity", "attitude", "angular_velocity")
+            states = np.hstack([path[name].to_numpy() for name in names])
+            solved = solve_ivp(
+                motion, (begin, within[-1]), states[0], "DOP853", within, rtol=1e-12, atol=1e-14
+            ).y.T
+            # A quaternion and its negative are the same attitude.
+            states[:, 6:10] *= np.sign(np.sum(states[:, 6:10] * solved[:, 6:10], axis=1))[:, None]
+            np.testing.assert_allclose(states[:, :10], solved[:, :10], rtol=0.0, atol=1e-10)
+            np.testing.assert_allclose(states[:, 10:], solved[:, 10:], rtol=0.0, atol=1e-8)
+        later = rs.trajectory(data, particle, np.nextafter(times, 0.0))
+        here = data.isel(particle=particle)
+        alike = np.abs(np.sum(later["attitude"].to_numpy() * here["attitude"].to_numpy(), axis=1))
+        np.testing.assert_allclose(alike, 1.0, atol=1e-14)
+        np.testing.assert_allclose(later["angular_velocity"], here["angular_velocity_before"], atol=1e-8)
+        after = rs.trajectory(data, particle, times)
+        np.testing.assert_allclose(after["angular_velocity"], here["angular_velocity_after"], atol=1e-13)
+        first = rs.trajectory(data, particle, 0.0)
+        np.testing.assert_allclose(first["attitude"][0], here["release_attitude"], atol=1e-15)
+
+
+@pytest.mark.parametrize(
+    ("harm", "said"),
+    [
+        ({"principal_moments": [1.0, 1.0, 3.0]}, r"data\.principal_moments = .*moments of inertia of a body"),
+        ({"principal_moments": [1.0, 1.0]}, r"data\.principal_moments = .*moments of inertia of a body"),
+        ({"principal_axes": "up"}, r"data\.principal_axes = 'up': must be 4 finite numbers"),
+    ],
+)
+def test_states_of_no_body_are_named(harm: dict[str, Any], said: str) -> None:
+    data = rs.simulate(
+        RIGID["two moments"], rs.Frictionless(normal=0.9), particles=1, impacts=3, record="state"
+    )
+    with pytest.raises(ValueError, match=said):
+        rs.trajectory(data.assign_attrs(harm), 0, 0.1)
+    fast = data.assign(angular_velocity_after=1e12 * data.angular_velocity_after)
+    with pytest.raises(ValueError, match=r"data: turns by .* rad in a flight"):
+        rs.trajectory(fast, 0, float(data.time[0, 2]) * 0.999)
+
+
 def test_times_in_any_order_and_one_alone() -> None:
     data = run("at rest")
     times = at_impacts(data, 2)
@@ -163,7 +233,7 @@ def test_the_state_is_recorded_for_who_asks() -> None:
     ("wrong", "said"),
     [
         ({"data": 3}, r'data = 3: must be a Dataset from restitution.simulate\(..., record="state"\)'),
-        ({"data": "impacts"}, r"data lacks position, axis, velocity_after, angular_velocity_after: must be"),
+        ({"data": "impacts"}, r"data lacks position, velocity_after, angular_velocity_after, axis: must be"),
         ({"particle": 6}, r"particle = 6: must be one of 0 to 5"),
         ({"particle": [1, 2]}, r"particle = \[1, 2\]: must be one of 0 to 5"),
         ({"times": -0.1}, r"times.* = -0\.1: must be in \[0, .*\] s, from the release to the last recorded"),

@@ -6,7 +6,7 @@ use proptest::prelude::*;
 use restitution_core::statistics::{
     Axis, Bins, By, CREATES_ENERGY, Gains, Grid, Histogram, Moments, Sums,
 };
-use restitution_core::{Level, Monitor, Records, Resources, Run};
+use restitution_core::{Level, Monitor, Records, Resources, Run, StopReason};
 
 /// What a histogram should say, worked out from the table of impacts, one at a time.
 struct Expected {
@@ -18,7 +18,7 @@ struct Expected {
     /// Σ E_rot/E_tot in whole quanta.
     fractions: Vec<u128>,
     gains: Vec<Gains>,
-    stops: [u64; 5],
+    stops: [u64; StopReason::NAMES.len()],
 }
 
 /// The multiple of 2⁻²⁴ that stands for an offset: the next one, or beyond 2 the next multiple of 2⁻²⁰.
@@ -50,7 +50,7 @@ impl Expected {
             values: vec![Vec::new(); rows],
             fractions: vec![0; rows],
             gains: vec![Gains::default(); rows],
-            stops: [0; 5],
+            stops: [0; StopReason::NAMES.len()],
         };
         for particle in 0..run.particles {
             expected.stops[records.stop_reason[particle] as usize] += 1;

@@ -60,6 +60,7 @@ impl Case {
             gravity: self.gravity,
             orientation,
             minimum_speed: self.minimum_speed * (self.gravity * self.radius).sqrt(),
+            settled: 0.0,
             spin: Spin::NONE,
             release_velocity: Vector::default(),
             incline: 0.0,

@@ -116,6 +116,7 @@ fn every_law_is_the_oracles_in_lanes() {
 fn every_level_and_thread_count_gives_the_same_bits() {
     let run = Run {
         minimum_speed: 0.05,
+        settled: 0.0,
         particles: 333,
         impacts: 200,
         ..paper(0.5, law(0.9, 0.5))

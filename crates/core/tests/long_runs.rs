@@ -34,6 +34,7 @@ fn a_million_impacts_are_in_order_and_above_the_plane() {
                 let limits = Limits {
                     impacts: 2000,
                     minimum_speed: 1e-4,
+                    settled: 0.0,
                 };
                 let reason = restitution_core::trajectory(
                     &body,
@@ -85,6 +86,7 @@ fn energy_never_grows_where_it_cannot() {
             let limits = Limits {
                 impacts: 2000,
                 minimum_speed: 1e-4,
+                settled: 0.0,
             };
             restitution_core::trajectory(
                 &body,
@@ -118,6 +120,7 @@ fn reversal_conserves_energy() {
         let limits = Limits {
             impacts: 10_000,
             minimum_speed: 0.0,
+            settled: 0.0,
         };
         let mut end = 0.0;
         restitution_core::trajectory(&body, &law(1.0, -1.0), 0.0, release, limits, |impact| {

@@ -46,6 +46,7 @@ fn of_two_kinds(impacts: usize) -> Run<'static> {
             highest: 0.115,
         },
         minimum_speed: 1.05,
+        settled: 0.0,
         ..paper(0.5, law(1.0, 1.0))
     }
 }

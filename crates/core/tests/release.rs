@@ -68,6 +68,7 @@ fn the_records_tell_the_release() {
         let limits = Limits {
             impacts: 1,
             minimum_speed: 0.0,
+            settled: 0.0,
         };
         for particle in 0..run.particles {
             let i = particle * run.impacts;
@@ -112,6 +113,7 @@ fn what_a_frictionless_plane_conserves() {
             let limits = Limits {
                 impacts: run.impacts,
                 minimum_speed: 0.0,
+                settled: 0.0,
             };
             let (mut left, mut since, mut way) = (release, 0.0, 0.0);
             trajectory(

@@ -30,6 +30,7 @@ fn runs(material: &Material) -> Vec<Run<'_>> {
                 impacts: 40,
                 spin,
                 minimum_speed: 0.2,
+                settled: 0.0,
                 ..paper(0.4, Law::of(material, rule))
             })
         })

@@ -35,6 +35,7 @@ fn run(body: AnyBody<'static>) -> Run<'static> {
         impacts: 60,
         orientation: Orientation::Isotropic,
         minimum_speed: 0.02,
+        settled: 0.0,
         ..paper(0.0, law(0.6, 0.3))
     }
 }

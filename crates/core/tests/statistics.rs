@@ -267,6 +267,7 @@ fn every_impact_and_every_end_is_counted_once() {
             particles: 1300,
             impacts: 40,
             minimum_speed: 0.4,
+            settled: 0.0,
             ..paper(0.0, law(0.9, 0.5))
         };
         if thrown {

@@ -151,6 +151,7 @@ fn the_speed_threshold_is_obeyed_exactly() {
         let limits = Limits {
             impacts: 200,
             minimum_speed,
+            settled: 0.0,
         };
         let reason = restitution_core::trajectory(&body, &law, 0.0, release, limits, |impact| {
             all.push(*impact);
@@ -174,6 +175,7 @@ fn the_threshold_is_a_speed_in_metres_per_second() {
         impacts: 300,
         orientation: Orientation::Given(&angles),
         minimum_speed: 0.2,
+        settled: 0.0,
         ..paper(0.5, law(0.9, 0.3))
     };
     let records = simulate(&run);
@@ -243,6 +245,7 @@ fn the_recorder_may_stop() {
     let limits = Limits {
         impacts: 100,
         minimum_speed: 0.0,
+        settled: 0.0,
     };
     let mut count = 0;
     let reason = restitution_core::trajectory(

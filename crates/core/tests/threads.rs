@@ -32,6 +32,7 @@ fn uneven() -> Run<'static> {
         particles: 300,
         impacts: 150,
         minimum_speed: 0.3,
+        settled: 0.0,
         ..paper(0.7, law(0.92, 0.4))
     }
 }
@@ -166,6 +167,7 @@ fn runs_that_differ_are_no_series() {
         },
         Run {
             minimum_speed: 0.2,
+            settled: 0.0,
             ..run
         },
         Run {

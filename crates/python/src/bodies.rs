@@ -2,7 +2,7 @@
 
 use crate::describe::{self, Given};
 use crate::errors::python_error;
-use numpy::{IntoPyArray, PyArray2, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2};
+use numpy::{IntoPyArray, PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use restitution_core::{
@@ -161,6 +161,25 @@ impl Rigid {
         self.0.unit
     }
 
+    /// The distances from the centre of mass to the planes that touch the body, with these outward normals, unit vectors in the axes that it
+    /// was given in; in m.
+    fn supports<'py>(
+        &self,
+        py: Python<'py>,
+        normals: PyReadonlyArray2<'_, f64>,
+    ) -> PyResult<Bound<'py, PyArray1<f64>>> {
+        let (rows, _) = normals.as_slice()?.as_chunks::<3>();
+        let distances = rows
+            .iter()
+            .map(|&[x, y, z]| self.0.support(Vector::new(x, y, z)));
+        Ok(distances.collect::<Vec<_>>().into_pyarray(py))
+    }
+
+    /// The same parts with another mass, centre of mass and tensor of inertia, in the axes that the body was given in.
+    fn with_inertia(&self, inertia: GivenInertia) -> PyResult<Self> {
+        rigid(self.0.clone().with_inertia(inertia.inertia()))
+    }
+
     /// Centre and radius of each ball or vertex, rows (x, y, z, radius) in m and the axes that the body was given in.
     fn balls<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
         let balls = self.0.balls().map_err(python_error)?;
@@ -210,15 +229,6 @@ fn clump(spheres: Vec<[f64; 4]>, density: f64, sum: bool) -> PyResult<Rigid> {
     ))
 }
 
-/// Balls with a given inertia.
-#[pyfunction]
-fn clump_with(spheres: Vec<[f64; 4]>, inertia: GivenInertia) -> PyResult<Rigid> {
-    rigid(restitution_core::Rigid::clump_with(
-        &balls(&spheres),
-        inertia.inertia(),
-    ))
-}
-
 fn balls(spheres: &[[f64; 4]]) -> Vec<RigidBall> {
     let ball = |&[x, y, z, radius]: &[f64; 4]| RigidBall {
         centre: Vector::new(x, y, z),
@@ -230,6 +240,48 @@ fn balls(spheres: &[[f64; 4]]) -> Vec<RigidBall> {
 #[pyfunction]
 fn ellipsoid(semi_axes: [f64; 3], density: f64) -> PyResult<Rigid> {
     rigid(restitution_core::Rigid::ellipsoid(semi_axes, density))
+}
+
+/// A superellipsoid with the exponents n₁ and n₂.
+#[pyfunction]
+fn superellipsoid(semi_axes: [f64; 3], exponents: [f64; 2], density: f64) -> PyResult<Rigid> {
+    rigid(restitution_core::Rigid::superellipsoid(
+        semi_axes, exponents, density,
+    ))
+}
+
+/// The attitudes (w, x, y, z) and ω in space of free bodies with these principal moments and axes, each after a time in s.
+#[pyfunction]
+fn turned<'py>(
+    py: Python<'py>,
+    moments: [f64; 3],
+    axes: [f64; 4],
+    attitudes: PyReadonlyArray2<'_, f64>,
+    spins: PyReadonlyArray2<'_, f64>,
+    times: PyReadonlyArray1<'_, f64>,
+) -> PyResult<[Bound<'py, PyArray2<f64>>; 2]> {
+    let top = restitution_core::Top::new(moments).map_err(python_error)?;
+    let [w, x, y, z] = axes;
+    let axes = Quaternion::new(w, x, y, z).normalized();
+    let (attitudes, _) = attitudes.as_slice()?.as_chunks::<4>();
+    let (spins, _) = spins.as_slice()?.as_chunks::<3>();
+    let each = attitudes.iter().zip(spins).zip(times.as_slice()?);
+    let (attitudes, spins): (Vec<_>, Vec<_>) = each
+        .map(|((&[w, x, y, z], &[a, b, c]), &time)| {
+            let principal = Quaternion::new(w, x, y, z).normalized() * axes;
+            let (principal, spin) = top.turned(principal, Vector::new(a, b, c), time);
+            let Quaternion { w, x, y, z } = principal * axes.inverse();
+            ([w, x, y, z], [spin.x, spin.y, spin.z])
+        })
+        .unzip();
+    let table = |rows: Vec<f64>, width: usize| {
+        let count = rows.len() / width;
+        rows.into_pyarray(py).reshape([count, width])
+    };
+    Ok([
+        table(attitudes.into_flattened(), 4)?,
+        table(spins.into_flattened(), 3)?,
+    ])
 }
 
 /// The convex hull of points with triangles of them as faces.
@@ -332,8 +384,9 @@ pub fn add_to(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<Solid>()?;
     module.add_class::<Rigid>()?;
     module.add_function(wrap_pyfunction!(clump, module)?)?;
-    module.add_function(wrap_pyfunction!(clump_with, module)?)?;
     module.add_function(wrap_pyfunction!(ellipsoid, module)?)?;
+    module.add_function(wrap_pyfunction!(superellipsoid, module)?)?;
+    module.add_function(wrap_pyfunction!(turned, module)?)?;
     module.add_function(wrap_pyfunction!(polyhedron, module)?)?;
     module.add_function(wrap_pyfunction!(rough, module)?)?;
     module.add_function(wrap_pyfunction!(mesh, module)?)?;

@@ -60,6 +60,7 @@ parameters! {
     release_velocity: [f64; 3] = |given| Vector::new(given[0], given[1], given[2]);
     incline: f64 = |given| *given;
     minimum_speed: f64 = |given| *given;
+    settled: f64 = |given| *given;
     seed: u64 = |given| *given;
 }
 

@@ -127,6 +127,7 @@ impl<'a> Parameters<'a> {
             release_velocity: row.vector(),
             incline: row.number(),
             minimum_speed: row.number(),
+            settled: 0.0,
             // Two halves, because a double holds integers of 53 bits only.
             seed: (row.number() as u64) << 32 | row.number() as u64,
         })

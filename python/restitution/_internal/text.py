@@ -21,7 +21,7 @@ class Text(str):
 
 
 def signature(cls: type[BaseModel], by_place: tuple[str, ...]) -> inspect.Signature:
-    """Return the fields of a class as its arguments, by keyword but for those in `by_place`."""
+    """Return the fields of a class as its arguments, optional ones last, by keyword but for `by_place`."""
     keyword, positional = inspect.Parameter.KEYWORD_ONLY, inspect.Parameter.POSITIONAL_OR_KEYWORD
     parameters = []
     for name, field in cls.model_fields.items():
@@ -30,7 +30,8 @@ def signature(cls: type[BaseModel], by_place: tuple[str, ...]) -> inspect.Signat
         default = inspect.Parameter.empty if field.is_required() else field.default
         place = positional if name in by_place else keyword
         parameters.append(inspect.Parameter(name, place, default=default, annotation=Text(text)))
-    return inspect.Signature(parameters)
+    empty = inspect.Parameter.empty
+    return inspect.Signature(sorted(parameters, key=lambda one: (one.kind, one.default is not empty)))
 
 
 def table(title: str, rows: Iterable[tuple[str, object]]) -> str:

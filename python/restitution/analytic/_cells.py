@@ -18,6 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from restitution.analytic._orientation import Floats
+from restitution.bodies import RigidBody
 
 Ints: TypeAlias = NDArray[np.intp]
 
@@ -40,14 +41,15 @@ class Balls:
 
 @dataclass(frozen=True)
 class Smooth(Balls):
-    """An ellipsoid about its centre: one element, about which the support need not be known here."""
+    """A smooth convex body: one element, about which the support need not be known here."""
 
-    semi_axes: Floats
+    body: RigidBody
+    axes: Floats  # principal ones, as columns
 
     def contact(self, down: Floats, element: Ints) -> Floats:
         """Return the point that is farthest down."""
-        scaled = down * self.semi_axes
-        return np.asarray(scaled * self.semi_axes / np.linalg.norm(scaled, axis=-1, keepdims=True))
+        found = self.body.farthest(np.reshape(down @ self.axes.T, (-1, 3)))
+        return np.reshape(found @ self.axes / self.body.compiled.farthest(), down.shape)
 
 
 @dataclass(frozen=True)

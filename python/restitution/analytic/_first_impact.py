@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import numpy as np
+
 from restitution._internal.parameters import ParameterError, Problem, wrong
 from restitution.analytic._branched import BranchedFirstImpact
 from restitution.analytic._frozen import FirstImpact, check
@@ -85,6 +87,7 @@ def first_impact(
     if isinstance(body, RoughSphere):
         return _wide_enough(RoughFirstImpact(body, law, "isotropic", fall))
     if isinstance(body, Turned):
+        _about_its_axis(body)
         return _wide_enough(BranchedFirstImpact(body, law, orientation, fall))
     if isinstance(body, RigidBody):
         return _exact_enough(RigidFirstImpact(body, law, orientation, fall))
@@ -97,6 +100,15 @@ def first_impact(
             raise ParameterError(wrong("body.separation", body.separation, allowed))
         return TwoBallsFirstImpact(body, law, orientation)
     return _wide_enough(BranchedFirstImpact(body, law, orientation, fall))
+
+
+def _about_its_axis(body: Turned) -> None:
+    """Refuse solids of revolution whose matter is not that of one."""
+    tensor, size = body.inertia_tensor, body.compiled.farthest()
+    beside = max(abs(tensor[0, 0] - tensor[1, 1]), *np.abs(tensor[[0, 0, 1], [1, 2, 2]]))
+    if beside > 1e-9 * tensor[0, 0] or np.abs(body.centre_of_mass[:2]).max() > 1e-9 * size:
+        allowed = "with an inertia and a centre of mass of a body of revolution"
+        raise ParameterError(wrong("body", body, allowed))
 
 
 def _oriented(body: Body | RigidBody, orientation: OrientationName | None) -> OrientationName:

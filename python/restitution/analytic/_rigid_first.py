@@ -18,7 +18,7 @@ from restitution.analytic._impulse import Impulse
 from restitution.analytic._normal import Fall
 from restitution.analytic._orientation import Floats
 from restitution.analytic._triangular import Table, Triangles
-from restitution.bodies import Ellipsoid, RigidBody
+from restitution.bodies import Ellipsoid, RigidBody, Superellipsoid
 from restitution.laws import Material
 
 _AIM = 2e-5
@@ -148,9 +148,8 @@ class RigidFirstImpact(FirstImpact):
     def _hull(self) -> Balls:
         """What can touch, in principal axes and units of the size."""
         _, axes = self._axes
-        if isinstance(self.body, Ellipsoid):
-            semi_axes = np.array(self.body.semi_axes) @ np.abs(axes) / self._size  # a permutation
-            return Smooth(np.zeros((1, 3)), np.ones(1), semi_axes)
+        if isinstance(self.body, Ellipsoid | Superellipsoid):
+            return Smooth(np.zeros((1, 3)), np.ones(1), self.body, axes)
         balls = np.unique(self.body.compiled.balls(), axis=0)
         centres = (balls[:, :3] - self.body.centre_of_mass) @ axes
         return Balls(centres / self._size, balls[:, 3] / self._size)

@@ -8,7 +8,7 @@ from restitution.bodies._body import of_attributes as of_attributes
 from restitution.bodies._clump import Clump
 from restitution.bodies._die import Die
 from restitution.bodies._dumbbell import Dumbbell
-from restitution.bodies._ellipsoid import Ellipsoid
+from restitution.bodies._ellipsoid import Ellipsoid, Superellipsoid
 from restitution.bodies._hollow import Wall as Wall
 from restitution.bodies._loaded_sphere import LoadedSphere
 from restitution.bodies._mesh import Mesh
@@ -40,6 +40,7 @@ __all__ = [
     "RoughSphere",
     "Spherocylinder",
     "Spheroid",
+    "Superellipsoid",
     "ball_grade",
     "ball_roughness",
     "from_roundness",
@@ -48,7 +49,7 @@ __all__ = [
 KINDS: tuple[type[Body], ...] = tuple(globals()[entry["name"]] for entry in _core.BODIES)
 """Every body of the core's table, all of revolution."""
 RIGID: tuple[type[RigidBody], ...] = (
-    *(Clump, Ellipsoid, ConvexPolyhedron, Box, Die, Mesh, Revolution, Cylinder, Ring, Egg),
+    *(Clump, Ellipsoid, Superellipsoid, ConvexPolyhedron, Box, Die, Mesh, Revolution, Cylinder, Ring, Egg),
     *(RoughSphere, Rough),
 )
 """Every other body."""

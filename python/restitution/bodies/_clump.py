@@ -6,20 +6,27 @@ from typing import Annotated, Any, Self
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import BeforeValidator, Field, ValidationInfo
+from pydantic import BeforeValidator, Field
 
 from restitution import _core
 from restitution._internal import files
 from restitution._internal.arrays import FloatArray, check_each, flag, reals
-from restitution._internal.parameters import Allowed, ParameterError, Problem, shown, wrong
+from restitution._internal.parameters import Allowed, ParameterError, wrong
 from restitution.bodies import _clump_files
-from restitution.bodies._rigid import LARGEST, SMALLEST, Density, RigidBody, scale_of
-
-Rows = tuple[tuple[float, ...], ...]
+from restitution.bodies._rigid import (
+    LARGEST,
+    SMALLEST,
+    Centre,
+    Density,
+    RigidBody,
+    Rows,
+    scale_of,
+    tensor_of,
+    with_inertia,
+)
 
 _SPHERES = f"rows (x, y, z, radius) in m, one or more, |x| to {LARGEST:g}, radius >= {SMALLEST:g}"
 _INERTIA = '"union", "sum" or a symmetric matrix, shape (3, 3), in kg m²'
-_CENTRE = "None or (x, y, z), finite, in m"
 
 
 def _rows(numbers: Any) -> Rows:
@@ -46,24 +53,7 @@ def _within(spheres: FloatArray) -> NDArray[np.bool_]:
 def _inertia(value: Any) -> str | Rows:
     if isinstance(value, str) and value in ("union", "sum"):
         return value
-    tensor = reals("inertia", value, _INERTIA, unit="kg m2", dimensions=(2,))
-    if tensor.shape != (3, 3) or not np.allclose(tensor, tensor.T, rtol=1e-9, atol=0.0):
-        raise ParameterError(wrong("inertia", value, _INERTIA))
-    return _rows(0.5 * (tensor + tensor.T))
-
-
-def _centre(value: Any, about: ValidationInfo) -> tuple[float, ...] | None:
-    if value is None:
-        return None
-    if isinstance(about.data.get("inertia"), str):
-        text = f" = {shown(value)}, inertia = {about.data['inertia']!r}: must be "
-        raise ParameterError(
-            Problem("centre", text, "left out, or given with the tensor of inertia about it")
-        )
-    centre = reals("centre", value, _CENTRE, unit="m", dimensions=(1,))
-    if centre.shape != (3,):
-        raise ParameterError(wrong("centre", value, _CENTRE))
-    return tuple(centre.tolist())
+    return tensor_of(value, _INERTIA)
 
 
 class Clump(RigidBody):
@@ -96,7 +86,7 @@ class Clump(RigidBody):
     inertia: Annotated[Any, Allowed(_INERTIA), BeforeValidator(_inertia), Field(description="kg m²")] = (
         "union"
     )
-    centre: Annotated[Any, Allowed(_CENTRE), BeforeValidator(_centre), Field(description="m")] = None
+    centre: Centre = None
 
     @classmethod
     def from_file(
@@ -163,8 +153,5 @@ class Clump(RigidBody):
     def compiled(self) -> _core.Rigid:
         """The body as the core knows it, made and checked once."""
         union = _core.clump(self.spheres, self.density, self.inertia == "sum")
-        if isinstance(self.inertia, str):
-            return union
-        centre = union.centre if self.centre is None else self.centre
-        given = {"mass": union.mass, "centre": centre, "tensor": self.inertia}
-        return _core.clump_with(self.spheres, given)
+        given = not isinstance(self.inertia, str)
+        return with_inertia(union, self.inertia, self.centre) if given else union

@@ -1,6 +1,5 @@
 """Dice: the five Platonic solids."""
 
-from functools import cached_property
 from itertools import permutations, product
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar
 
@@ -11,7 +10,7 @@ from restitution import _core
 from restitution._internal.arrays import FloatArray
 from restitution._internal.parameters import Allowed, ParameterError, wrong
 from restitution.bodies._polyhedra import hull_of
-from restitution.bodies._rigid import Density, Length, RigidBody, of_lengths
+from restitution.bodies._rigid import Density, Length, Matter, of_lengths
 
 _FACES = "4, 6, 8, 12 or 20"
 _GOLDEN = 0.5 * (1.0 + 5.0**0.5)
@@ -43,7 +42,7 @@ def _faces(value: Any) -> int:
     return int(value)
 
 
-class Die(RigidBody):
+class Die(Matter):
     """A homogeneous die with 4, 6, 8, 12 or 20 equal faces: a tetrahedron, cube, octahedron and so on.
 
     Parameters
@@ -54,6 +53,11 @@ class Die(RigidBody):
         Length of an edge in m; finite and > 0.
     density : float, default 2500
         Density in kg/m³; finite and > 0. Only mass and inertia depend on it, the motion does not.
+    inertia : array_like, shape (3, 3), optional
+        Tensor of inertia about the centre of mass in kg m², in the axes of the body, where the matter is not
+        homogeneous. The mass stays that of the density.
+    centre : array_like, shape (3,), optional
+        Its centre of mass in m, where a tensor of inertia is given; that of homogeneous matter if left out.
 
     Examples
     --------
@@ -71,7 +75,9 @@ class Die(RigidBody):
 
     if TYPE_CHECKING:  # or type checkers would take the fields for keyword arguments
 
-        def __init__(self, faces: int, edge: float, *, density: float = 2500.0) -> None: ...
+        def __init__(
+            self, faces: int, edge: float, *, density: float = 2500.0, inertia: Any = None, centre: Any = None
+        ) -> None: ...
 
     @property
     def vertices(self) -> FloatArray:
@@ -80,9 +86,8 @@ class Die(RigidBody):
         with np.errstate(over="ignore"):
             return np.asarray(self.edge / edge * np.array(points))
 
-    @cached_property
-    def compiled(self) -> _core.Rigid:
-        """The body as the core knows it, made and checked once."""
+    def _homogeneous(self) -> _core.Rigid:
+        """Make the body of homogeneous matter."""
         hull = hull_of(np.array(_SOLIDS[self.faces][1]))
         assert hull is not None
         with of_lengths(edge=self.edge):

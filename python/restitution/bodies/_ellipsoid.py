@@ -1,6 +1,5 @@
-"""Ellipsoids with three semi-axes."""
+"""Ellipsoids and superellipsoids."""
 
-from functools import cached_property
 from typing import Annotated, Any
 
 import numpy as np
@@ -9,7 +8,7 @@ from pydantic import BeforeValidator, Field
 from restitution import _core
 from restitution._internal.arrays import reals
 from restitution._internal.parameters import Allowed, ParameterError, wrong
-from restitution.bodies._rigid import Density, RigidBody
+from restitution.bodies._rigid import Density, Matter
 
 _AXES = "three finite numbers > 0 in m, the largest at most 1000 times the smallest"
 
@@ -21,7 +20,7 @@ def _semi_axes(value: Any) -> tuple[float, ...]:
     return tuple(axes.tolist())
 
 
-class Ellipsoid(RigidBody):
+class Ellipsoid(Matter):
     """A homogeneous ellipsoid.
 
     Parameters
@@ -30,6 +29,11 @@ class Ellipsoid(RigidBody):
         Semi-axes along x, y and z of the body, in m; > 0, the largest at most 1000 times the smallest.
     density : float, default 2500
         Density in kg/m³; finite and > 0. Only mass and inertia depend on it, the motion does not.
+    inertia : array_like, shape (3, 3), optional
+        Tensor of inertia about the centre of mass in kg m², in the axes of the body, where the matter is not
+        homogeneous. The mass stays that of the density.
+    centre : array_like, shape (3,), optional
+        Its centre of mass in m, where a tensor of inertia is given; that of homogeneous matter if left out.
 
     Examples
     --------
@@ -42,7 +46,55 @@ class Ellipsoid(RigidBody):
     semi_axes: Annotated[Any, Allowed(_AXES), BeforeValidator(_semi_axes), Field(description="m")]
     density: Density = 2500.0
 
-    @cached_property
-    def compiled(self) -> _core.Rigid:
-        """The body as the core knows it, made and checked once."""
+    def _homogeneous(self) -> _core.Rigid:
+        """Make the body of homogeneous matter."""
         return _core.ellipsoid(self.semi_axes, self.density)
+
+
+_EXPONENTS = "two numbers (n1, n2), each from 1.1 to 100"
+
+
+def _exponents(value: Any) -> tuple[float, ...]:
+    exponents = reals("exponents", value, _EXPONENTS, dimensions=(1,))
+    if exponents.shape != (2,) or not np.all((exponents >= 1.1) & (exponents <= 100.0)):
+        raise ParameterError(wrong("exponents", value, _EXPONENTS))
+    return tuple(exponents.tolist())
+
+
+class Superellipsoid(Matter):
+    """A homogeneous superellipsoid, the superquadric of discrete-element codes.
+
+    Its surface is (|x/a|^n2 + |y/b|^n2)^(n1/n2) + |z/c|^n1 = 1.
+
+    Parameters
+    ----------
+    semi_axes : array_like, shape (3,)
+        Semi-axes a, b and c along x, y and z of the body, in m; > 0, the largest at most 1000 times the
+        smallest.
+    exponents : array_like, shape (2,)
+        n1, along z, and n2, across, each from 1.1 to 100: with 2 and 2 it is an ellipsoid, with larger ones
+        it becomes a box with round edges, with smaller ones an octahedron.
+    density : float, default 2500
+        Density in kg/m³; finite and > 0. Only mass and inertia depend on it, the motion does not.
+    inertia : array_like, shape (3, 3), optional
+        Tensor of inertia about the centre of mass in kg m², in the axes of the body, where the matter is not
+        homogeneous. The mass stays that of the density.
+    centre : array_like, shape (3,), optional
+        Its centre of mass in m, where a tensor of inertia is given; that of homogeneous matter if left out.
+
+    Examples
+    --------
+    >>> import restitution as rs
+    >>> tablet = rs.Superellipsoid(semi_axes=(3e-3, 3e-3, 1e-3), exponents=(4, 2))
+    >>> ellipsoid = rs.Ellipsoid(semi_axes=(3e-3, 3e-3, 1e-3))
+    >>> round(tablet.mass / ellipsoid.mass, 3)
+    1.311
+    """
+
+    semi_axes: Annotated[Any, Allowed(_AXES), BeforeValidator(_semi_axes), Field(description="m")]
+    exponents: Annotated[Any, Allowed(_EXPONENTS), BeforeValidator(_exponents)]
+    density: Density = 2500.0
+
+    def _homogeneous(self) -> _core.Rigid:
+        """Make the body of homogeneous matter."""
+        return _core.superellipsoid(self.semi_axes, self.exponents, self.density)

@@ -13,7 +13,7 @@ from restitution._internal import files
 from restitution._internal.arrays import FloatArray, IntArray, reals
 from restitution._internal.parameters import Allowed, ParameterError, Problem, renamed, shown, wrong
 from restitution.bodies._polyhedra import hull_of
-from restitution.bodies._rigid import LARGEST, SMALLEST, Density, RigidBody, scale_of
+from restitution.bodies._rigid import LARGEST, SMALLEST, Density, Matter, scale_of
 
 _VERTICES = "four or more points (x, y, z) in m, finite, not all in one plane"
 _TRIANGLES = "triples of numbers of the vertices, from 0"
@@ -34,7 +34,7 @@ def _triangles(value: Any) -> tuple[tuple[int, ...], ...]:
     return tuple(map(tuple, found.astype(np.int64).tolist()))
 
 
-class Mesh(RigidBody):
+class Mesh(Matter):
     """A homogeneous solid within closed surfaces of triangles, convex or not.
 
     Only its convex hull touches the plane, so that the motion of any solid is exact; mass, centre of mass and
@@ -50,6 +50,11 @@ class Mesh(RigidBody):
         many triangles in one direction as in the other, or the surface is not closed, or not oriented.
     density : float, default 2500
         Density in kg/m³; finite and > 0. Only mass and inertia depend on it, the motion does not.
+    inertia : array_like, shape (3, 3), optional
+        Tensor of inertia about the centre of mass in kg m², in the axes of the body, where the matter is not
+        homogeneous. The mass stays that of the density.
+    centre : array_like, shape (3,), optional
+        Its centre of mass in m, where a tensor of inertia is given; that of homogeneous matter if left out.
 
     Examples
     --------
@@ -65,7 +70,15 @@ class Mesh(RigidBody):
     density: Density = 2500.0
 
     @classmethod
-    def from_file(cls, path: str | os.PathLike[str], *, scale: float = 1.0, density: float = 2500.0) -> Self:
+    def from_file(
+        cls,
+        path: str | os.PathLike[str],
+        *,
+        scale: float = 1.0,
+        density: float = 2500.0,
+        inertia: Any = None,
+        centre: Any = None,
+    ) -> Self:
         """Read an STL, OBJ or PLY file.
 
         Parameters
@@ -74,8 +87,8 @@ class Mesh(RigidBody):
             The file. Vertices at the same place are one; what else is in it, such as colours, is not read.
         scale : float, default 1
             What a unit of the file is in m: 1e-3 for millimetres. > 0.
-        density : float, default 2500
-            As that of the body.
+        density, inertia, centre
+            As those of the body.
 
         Raises
         ------
@@ -94,7 +107,13 @@ class Mesh(RigidBody):
             allowed = f"such that the mesh is {SMALLEST:g} to {LARGEST:g} m in size"
             raise ParameterError(wrong("scale", scale, allowed))
         with renamed(lambda name: f"{place}: {name}" if name in ("vertices", "triangles") else name):
-            return cls(vertices=unit * vertices, triangles=triangles, density=density)
+            return cls(
+                vertices=unit * vertices,
+                triangles=triangles,
+                density=density,
+                inertia=inertia,
+                centre=centre,
+            )
 
     @cached_property
     def hull(self) -> IntArray:
@@ -104,9 +123,8 @@ class Mesh(RigidBody):
             raise ParameterError(wrong("vertices", np.array(self.vertices), _VERTICES))
         return np.sort(hull.vertices).astype(np.int64)
 
-    @cached_property
-    def compiled(self) -> _core.Rigid:
-        """The body as the core knows it, made and checked once."""
+    def _homogeneous(self) -> _core.Rigid:
+        """Make the body of homogeneous matter."""
         points, triangles = np.array(self.vertices), np.array(self.triangles)
         if triangles.max() >= len(points):
             raise ParameterError(wrong("triangles", triangles.max(), f"{_TRIANGLES} to {len(points) - 1}"))

@@ -1,6 +1,5 @@
 """Convex polyhedra."""
 
-from functools import cached_property
 from itertools import product
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar
 
@@ -10,7 +9,7 @@ from pydantic import BeforeValidator, Field
 from restitution import _core
 from restitution._internal.arrays import FloatArray, reals
 from restitution._internal.parameters import Allowed, ParameterError, wrong
-from restitution.bodies._rigid import Density, Length, RigidBody, of_lengths
+from restitution.bodies._rigid import Density, Length, Matter, of_lengths
 
 if TYPE_CHECKING:
     from scipy.spatial import ConvexHull
@@ -36,7 +35,7 @@ def hull_of(points: FloatArray) -> "ConvexHull | None":
         return None
 
 
-class ConvexPolyhedron(RigidBody):
+class ConvexPolyhedron(Matter):
     """The homogeneous convex hull of points.
 
     Parameters
@@ -45,6 +44,11 @@ class ConvexPolyhedron(RigidBody):
         Its vertices (x, y, z), in m; finite, not all in one plane. Points inside of it do not matter.
     density : float, default 2500
         Density in kg/m³; finite and > 0. Only mass and inertia depend on it, the motion does not.
+    inertia : array_like, shape (3, 3), optional
+        Tensor of inertia about the centre of mass in kg m², in the axes of the body, where the matter is not
+        homogeneous. The mass stays that of the density.
+    centre : array_like, shape (3,), optional
+        Its centre of mass in m, where a tensor of inertia is given; that of homogeneous matter if left out.
 
     Examples
     --------
@@ -61,11 +65,12 @@ class ConvexPolyhedron(RigidBody):
 
     if TYPE_CHECKING:  # or type checkers would take the fields for keyword arguments
 
-        def __init__(self, points: Any, *, density: float = 2500.0) -> None: ...
+        def __init__(
+            self, points: Any, *, density: float = 2500.0, inertia: Any = None, centre: Any = None
+        ) -> None: ...
 
-    @cached_property
-    def compiled(self) -> _core.Rigid:
-        """The body as the core knows it, made and checked once."""
+    def _homogeneous(self) -> _core.Rigid:
+        """Make the body of homogeneous matter."""
         points = np.array(self.points)
         hull = hull_of(points)
         if hull is None:
@@ -73,7 +78,7 @@ class ConvexPolyhedron(RigidBody):
         return _core.polyhedron(self.points, hull.simplices.tolist(), self.density)
 
 
-class Box(RigidBody):
+class Box(Matter):
     """A homogeneous cuboid.
 
     Parameters
@@ -82,6 +87,11 @@ class Box(RigidBody):
         Lengths of the edges along x, y and z of the body, in m; finite and > 0.
     density : float, default 2500
         Density in kg/m³; finite and > 0. Only mass and inertia depend on it, the motion does not.
+    inertia : array_like, shape (3, 3), optional
+        Tensor of inertia about the centre of mass in kg m², in the axes of the body, where the matter is not
+        homogeneous. The mass stays that of the density.
+    centre : array_like, shape (3,), optional
+        Its centre of mass in m, where a tensor of inertia is given; that of homogeneous matter if left out.
 
     Examples
     --------
@@ -100,7 +110,16 @@ class Box(RigidBody):
 
     if TYPE_CHECKING:
 
-        def __init__(self, a: float, b: float, c: float, *, density: float = 2500.0) -> None: ...
+        def __init__(
+            self,
+            a: float,
+            b: float,
+            c: float,
+            *,
+            density: float = 2500.0,
+            inertia: Any = None,
+            centre: Any = None,
+        ) -> None: ...
 
     @property
     def vertices(self) -> tuple[tuple[float, float, float], ...]:
@@ -108,9 +127,8 @@ class Box(RigidBody):
         x, y, z = 0.5 * self.a, 0.5 * self.b, 0.5 * self.c
         return tuple(product((-x, x), (-y, y), (-z, z)))
 
-    @cached_property
-    def compiled(self) -> _core.Rigid:
-        """The body as the core knows it, made and checked once."""
+    def _homogeneous(self) -> _core.Rigid:
+        """Make the body of homogeneous matter."""
         with of_lengths(a=self.a, b=self.b, c=self.c):
             return _core.polyhedron(self.vertices, _TRIANGLES, self.density)
 

@@ -1,6 +1,5 @@
 """Solids of revolution: any profile, and cylinders, rings and eggs."""
 
-from functools import cached_property
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar
 
 import numpy as np
@@ -9,7 +8,7 @@ from pydantic import BeforeValidator, Field
 from restitution import _core
 from restitution._internal.arrays import FloatArray, check_each, reals
 from restitution._internal.parameters import Allowed, ParameterError, Problem, wrong
-from restitution.bodies._rigid import Density, Length, RigidBody, of_lengths
+from restitution.bodies._rigid import Density, Length, Matter, of_lengths
 
 _PROFILE = "two or more points (z, r) in m, finite, r >= 0, around an area"
 
@@ -51,7 +50,7 @@ def _crossing(points: FloatArray) -> tuple[int, int] | None:
     return None
 
 
-class Revolution(RigidBody):
+class Revolution(Matter):
     """A homogeneous solid of revolution with any profile.
 
     Its axis is z of the body. Only its convex hull touches the plane, with circular rims; `contact` numbers
@@ -65,6 +64,11 @@ class Revolution(RigidBody):
         first point, it is closed itself, as that of a ring or a cup.
     density : float, default 2500
         Density in kg/m³; finite and > 0. Only mass and inertia depend on it, the motion does not.
+    inertia : array_like, shape (3, 3), optional
+        Tensor of inertia about the centre of mass in kg m², in the axes of the body, where the matter is not
+        homogeneous. The mass stays that of the density.
+    centre : array_like, shape (3,), optional
+        Its centre of mass in m, where a tensor of inertia is given; that of homogeneous matter if left out.
 
     Examples
     --------
@@ -81,20 +85,21 @@ class Revolution(RigidBody):
 
     if TYPE_CHECKING:  # or type checkers would take the fields for keyword arguments
 
-        def __init__(self, profile: Any, *, density: float = 2500.0) -> None: ...
+        def __init__(
+            self, profile: Any, *, density: float = 2500.0, inertia: Any = None, centre: Any = None
+        ) -> None: ...
 
     @property
     def rims(self) -> FloatArray:
         """Where the rims of its convex hull are, (z, r) in m, from the end at the largest z; shape (n, 2)."""
         return np.array(self.compiled.rims)
 
-    @cached_property
-    def compiled(self) -> _core.Rigid:
-        """The body as the core knows it, made and checked once."""
+    def _homogeneous(self) -> _core.Rigid:
+        """Make the body of homogeneous matter."""
         return _core.revolution(self.profile, self.density)
 
 
-class Cylinder(RigidBody):
+class Cylinder(Matter):
     """A homogeneous cylinder with its axis along z of the body: a coin, a tablet, a rod.
 
     Parameters
@@ -103,6 +108,11 @@ class Cylinder(RigidBody):
         In m; finite and > 0.
     density : float, default 2500
         Density in kg/m³; finite and > 0. Only mass and inertia depend on it, the motion does not.
+    inertia : array_like, shape (3, 3), optional
+        Tensor of inertia about the centre of mass in kg m², in the axes of the body, where the matter is not
+        homogeneous. The mass stays that of the density.
+    centre : array_like, shape (3,), optional
+        Its centre of mass in m, where a tensor of inertia is given; that of homogeneous matter if left out.
 
     Examples
     --------
@@ -120,17 +130,24 @@ class Cylinder(RigidBody):
 
     if TYPE_CHECKING:
 
-        def __init__(self, radius: float, height: float, *, density: float = 2500.0) -> None: ...
+        def __init__(
+            self,
+            radius: float,
+            height: float,
+            *,
+            density: float = 2500.0,
+            inertia: Any = None,
+            centre: Any = None,
+        ) -> None: ...
 
-    @cached_property
-    def compiled(self) -> _core.Rigid:
-        """The body as the core knows it, made and checked once."""
+    def _homogeneous(self) -> _core.Rigid:
+        """Make the body of homogeneous matter."""
         half = 0.5 * self.height
         with of_lengths(radius=self.radius, height=self.height):
             return _core.revolution([(-half, self.radius), (half, self.radius)], self.density)
 
 
-class Ring(RigidBody):
+class Ring(Matter):
     """A homogeneous ring, or washer, or tube, with its axis along z of the body.
 
     Parameters
@@ -139,6 +156,11 @@ class Ring(RigidBody):
         Outer and inner radius and height, in m; finite and > 0, the inner radius below the outer one.
     density : float, default 2500
         Density in kg/m³; finite and > 0. Only mass and inertia depend on it, the motion does not.
+    inertia : array_like, shape (3, 3), optional
+        Tensor of inertia about the centre of mass in kg m², in the axes of the body, where the matter is not
+        homogeneous. The mass stays that of the density.
+    centre : array_like, shape (3,), optional
+        Its centre of mass in m, where a tensor of inertia is given; that of homogeneous matter if left out.
 
     Examples
     --------
@@ -157,11 +179,19 @@ class Ring(RigidBody):
 
     if TYPE_CHECKING:
 
-        def __init__(self, outer: float, inner: float, height: float, *, density: float = 2500.0) -> None: ...
+        def __init__(
+            self,
+            outer: float,
+            inner: float,
+            height: float,
+            *,
+            density: float = 2500.0,
+            inertia: Any = None,
+            centre: Any = None,
+        ) -> None: ...
 
-    @cached_property
-    def compiled(self) -> _core.Rigid:
-        """The body as the core knows it, made and checked once."""
+    def _homogeneous(self) -> _core.Rigid:
+        """Make the body of homogeneous matter."""
         if self.inner >= self.outer:
             raise ParameterError(wrong("inner", self.inner, f"less than outer = {self.outer!r} (m)"))
         half = 0.5 * self.height
@@ -170,7 +200,7 @@ class Ring(RigidBody):
             return _core.revolution([*corners, corners[0]], self.density)
 
 
-class Egg(RigidBody):
+class Egg(Matter):
     """A homogeneous egg: two spherical caps, joined by an arc that is tangent to both.
 
     It stands on its blunt end at z = 0 of the body. `contact` is 1 at the tip, 2 at the flank, 3 at the blunt
@@ -184,6 +214,11 @@ class Egg(RigidBody):
         Radii of curvature at the ends in m; > 0 and at most half of the width, one of them less.
     density : float, default 2500
         Density in kg/m³; finite and > 0. Only mass and inertia depend on it, the motion does not.
+    inertia : array_like, shape (3, 3), optional
+        Tensor of inertia about the centre of mass in kg m², in the axes of the body, where the matter is not
+        homogeneous. The mass stays that of the density.
+    centre : array_like, shape (3,), optional
+        Its centre of mass in m, where a tensor of inertia is given; that of homogeneous matter if left out.
 
     Examples
     --------
@@ -199,8 +234,7 @@ class Egg(RigidBody):
     tip: Length
     density: Density = 2500.0
 
-    @cached_property
-    def compiled(self) -> _core.Rigid:
-        """The body as the core knows it, made and checked once."""
+    def _homogeneous(self) -> _core.Rigid:
+        """Make the body of homogeneous matter."""
         with of_lengths(length=self.length, width=self.width, blunt_end=self.blunt_end, tip=self.tip):
             return _core.egg((self.length, self.width), (self.blunt_end, self.tip), self.density)

@@ -31,6 +31,10 @@ Bins = Annotated[int | None, typer.Option(metavar="N", help="Number of bins; if 
 Record = Annotated[
     str, typer.Option(metavar="WHAT", help='"impacts", or "state": also position, axis and velocities.')
 ]
+Until = Annotated[
+    str | None,
+    typer.Option(metavar="WHAT", help='"settled": a particle ends where it will come to rest as it lies.'),
+]
 Span = Annotated[
     tuple[float, float] | None,
     typer.Option(metavar="LOW HIGH", help="Range of these bins; if not given, as in RUN.toml."),
@@ -41,6 +45,7 @@ def simulate(
     run: RunFile,
     out: Out,
     record: Record = "impacts",
+    until: Until = None,
     threads: Threads = None,
     overwrite: Overwrite = False,
     quiet: Quiet = False,
@@ -56,7 +61,7 @@ def simulate(
         from restitution.drop.toml import read
 
         parameters = read(run)
-        how = {"threads": threads, "progress": progress(quiet)}
+        how = {"until": until, "threads": threads, "progress": progress(quiet)}
         _written(
             lambda: simulate_run(parameters, record=checked_record(record), **how),  # type: ignore[arg-type]
             lambda data: () if quiet else _summary(data),
@@ -334,6 +339,7 @@ _ENDED = {
     "collapse": "impacts accumulate",
     "never_lands": "the next impact is too many turns away",
     "interrupted": "the run was interrupted",
+    "settled": "no pass out of the well that it was in is so low",
 }
 """Why a particle ended, by the name of the reason."""
 

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from restitution._internal.arrays import FloatArray, IntArray, reals
+from restitution._internal.arrays import FloatArray, IntArray, directions, reals
 from restitution._internal.parameters import ParameterError, Problem, wrong
 from restitution.bodies import (
     Box,
@@ -20,15 +20,20 @@ from restitution.bodies import (
     Revolution,
     RigidBody,
     Ring,
+    Rough,
+    RoughSphere,
 )
 from restitution.drop.recorded import RECORDS, check_filled, check_successive, pull, variables
+from restitution.laws import Law
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
     import xarray as xr
 
-_BODIES = "a Box, Clump, ConvexPolyhedron, Cylinder, Die, Ellipsoid, Mesh, Revolution or Ring"
+    from restitution.drop.run import Run
+
+_BODIES = "a rigid body that is not rough: a Box, Clump, Die, Egg, Ellipsoid, Mesh and so on"
 _STATE = ("velocity_after", "angular_velocity_after", "position")
 _DIRECTIONS = 40_000
 """In the grid on which wells and passes of a clump or an ellipsoid are looked for."""
@@ -198,11 +203,7 @@ class _Sampled:
     def __init__(self, h: Callable[[FloatArray], FloatArray], arm: float) -> None:
         from scipy.spatial import cKDTree
 
-        number = np.arange(_DIRECTIONS) + 0.5
-        polar, azimuth = np.arccos(1.0 - 2.0 * number / _DIRECTIONS), np.pi * (1.0 + 5.0**0.5) * number
-        grid = np.stack(
-            [np.cos(azimuth) * np.sin(polar), np.sin(azimuth) * np.sin(polar), np.cos(polar)], axis=1
-        )
+        grid = directions(_DIRECTIONS)
         near = float(np.sqrt(4.0 * np.pi / _DIRECTIONS))  # no direction is farther from the grid
         self.tree, self.miss, heights = cKDTree(grid), arm * near, h(grid)
         pairs = self.tree.query_pairs(2.0 * near, output_type="ndarray")
@@ -258,30 +259,41 @@ def _lowest(h: Callable[[FloatArray], FloatArray], start: FloatArray, reach: flo
     return start
 
 
-def _clump(body: Clump) -> _Sampled:
-    spheres = np.array(body.spheres) - [*body.centre_of_mass, 0.0]
-
-    def h(u: FloatArray) -> FloatArray:
-        highest = np.full(len(u), -np.inf)
-        for *centre, radius in spheres:  # one by one: there may be many
-            np.maximum(highest, u @ centre + radius, out=highest)
-        return highest
-
-    return _Sampled(h, float(np.linalg.norm(spheres[:, :3], axis=1).max()))
+def _arm(body: RigidBody) -> float:
+    """Bound the distance of the place that touches from the normal through the centre of mass."""
+    if isinstance(body, Clump):
+        spheres = np.array(body.spheres)
+        return float(np.linalg.norm(spheres[:, :3] - body.centre_of_mass, axis=1).max())
+    if isinstance(body, Ellipsoid) and not body.centre_of_mass.any():
+        return float(max(body.semi_axes) - min(body.semi_axes))
+    return body.compiled.farthest()
 
 
 def _shape(body: Any) -> _Polyhedron | _Turned | _Sampled:
-    if isinstance(body, Clump):
-        return _clump(body)
-    if isinstance(body, Ellipsoid):
-        axes = np.array(body.semi_axes)
-        return _Sampled(lambda u: np.linalg.norm(u * axes, axis=1), float(axes.max() - axes.min()))
     if isinstance(body, Revolution | Cylinder | Ring):
-        return _Turned(np.array(body.compiled.rims) - [body.centre_of_mass[2], 0.0])
+        x, y, z = body.centre_of_mass
+        if x == y == 0.0:
+            return _Turned(np.array(body.compiled.rims) - [z, 0.0])
     if isinstance(body, Box | ConvexPolyhedron | Die | Mesh):
         points = np.array(body.points if isinstance(body, ConvexPolyhedron) else body.vertices)
         return _Polyhedron(points - body.centre_of_mass)
+    if isinstance(body, RigidBody) and not isinstance(body, Rough | RoughSphere):
+        return _Sampled(body.compiled.supports, _arm(body))
     raise ParameterError(wrong("body", body, _BODIES))
+
+
+def settling_height(run: Run) -> float:
+    """Find the energy over mg, in m, below which a particle of a run cannot leave the well that it is in."""
+    shape = _shape(run.body)
+    levels = shape.landscape.levels()
+    if not np.isfinite(levels).any():
+        raise ParameterError(wrong("body", run.body, "one that can come to rest in two ways or more"))
+    if run.incline != 0.0:
+        raise ParameterError(wrong("incline", run.incline, "0, a level plane, if until = 'settled'"))
+    creates = run.law.entry().get("creates_energy", True) if isinstance(run.law, Law) else True
+    if creates is not False and (creates is True or getattr(run.law, creates[0]) == creates[1]):
+        raise ParameterError(wrong("law", run.law, "one that cannot create energy, if until = 'settled'"))
+    return float(levels.min())
 
 
 def resting(body: RigidBody, data: xr.Dataset) -> xr.Dataset:
@@ -291,14 +303,14 @@ def resting(body: RigidBody, data: xr.Dataset) -> xr.Dataset:
     over which it would have to tip. Where the energy of a particle after an impact is below the lowest pass
     out of the well that it is in, it comes to rest there. Under a frictionless law its horizontal motion does
     not count. One that collapses above that, or whose impacts end, is undecided: rocking and rolling are
-    lasting contact, which the model does not have. Wells and passes of a clump or an ellipsoid are found on a
+    lasting contact, which the model does not have. Wells and passes of bodies that are round are found on a
     grid of directions: their passes are stated too low by ``resolution``, so that a particle is decided later
     but not wrongly, and wells that are shallower are one.
 
     Parameters
     ----------
-    body : Box, Clump, ConvexPolyhedron, Cylinder, Die, Ellipsoid, Mesh, Revolution or Ring
-        The body of the run.
+    body : Box, Clump, Egg, Ellipsoid or another rigid body
+        The body of the run, but for a rough one.
     data : xarray.Dataset
         Impacts from `restitution.simulate` with ``record="state"``, over a level plane, in which no impact
         creates energy.

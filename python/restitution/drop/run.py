@@ -314,7 +314,8 @@ class Run(Parameters):
             value = getattr(self, name)
             random = isinstance(value, RandomHeight | RandomSpin)
             compiled[name] = value.parameters() if random else value
-        return {name: compiled.get(name, getattr(self, name)) for name in type(self).model_fields}
+        parameters = {name: compiled.get(name, getattr(self, name)) for name in type(self).model_fields}
+        return parameters | {"settled": 0.0}
 
     def attributes(self) -> dict[str, Any]:
         """Return every parameter under its own name, as plain values that a netCDF file can hold."""

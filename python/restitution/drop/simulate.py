@@ -18,6 +18,7 @@ if TYPE_CHECKING:
 
 
 Record: TypeAlias = Literal["impacts", "state"]
+Until: TypeAlias = Literal["settled"]
 POSITION = 24
 """Bytes of a position."""
 
@@ -52,6 +53,7 @@ def simulate(
     law: CollisionLaw,
     *,
     record: Record = "impacts",
+    until: Until | None = None,
     threads: int | None = None,
     progress: bool = False,
     **run: Unpack[RunArguments],
@@ -67,6 +69,10 @@ def simulate(
     %(run)s
     record : {"impacts", "state"}
         With "state" also the full state at each impact, in 144 bytes more.
+    until : {"settled"}, optional
+        Ends a particle also when its energy is below every pass out of a potential well of its body, so that
+        it comes to rest in the well where it is (stop reason ``settled``): `resting` says in which. For the
+        bodies that `resting` takes, over a level plane, under a law that cannot create energy.
     threads : int, optional
         Number of threads; one for each core if not given.
     progress : bool
@@ -126,7 +132,7 @@ def simulate(
     from restitution.drop.energy import warn
 
     checked = Run.called("simulate", body, law, run)
-    data = simulate_run(checked, threads=threads, progress=progress, record=record)
+    data = simulate_run(checked, threads=threads, progress=progress, record=record, until=until)
     warn(data)
     return data
 
@@ -138,20 +144,37 @@ def checked_record(record: object) -> Record:
     raise ParameterError(wrong("record", record, " or ".join(map(repr, get_args(Record)))))
 
 
+def checked_until(until: object) -> bool:
+    """Return whether particles end where they have settled."""
+    if until is None or (isinstance(until, str) and until in get_args(Until)):
+        return until is not None
+    raise ParameterError(wrong("until", until, f"{' or '.join(map(repr, get_args(Until)))}, or left out"))
+
+
 def simulate_run(
-    run: Run, *, threads: int | None = None, progress: bool = False, record: Record = "impacts"
+    run: Run,
+    *,
+    threads: int | None = None,
+    progress: bool = False,
+    record: Record = "impacts",
+    until: Until | None = None,
 ) -> xr.Dataset:
     """`simulate` for parameters that are already checked."""
     from restitution.drop.dataset import dataset
+    from restitution.drop.resting import settling_height
     from restitution.drop.trajectory import with_positions
 
     number = checked_threads(threads)
     state = checked_record(record) == "state"
     columns = _core.columns(run.body.compiled, run.law.compiled, state)
+    settled = settling_height(run) if checked_until(until) else 0.0
     check_memory(run.particles * run.impacts, _core.bytes_per_impact(columns) + state * POSITION)
     with progress_bar("simulate", run.particles, "particles", show=progress) as tell:
-        table, interrupted = _core.simulate(run.parameters(), number, tell, columns=columns)
+        parameters = run.parameters() | {"settled": settled}
+        table, interrupted = _core.simulate(parameters, number, tell, columns=columns)
     data = dataset(run, table)
+    if until:
+        data = data.assign_attrs(until=until, settling_height=settled)
     if state:
         data = with_positions(data)
     if interrupted:

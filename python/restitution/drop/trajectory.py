@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import numpy.typing as npt
 
+from restitution import _core
 from restitution._internal.arrays import FloatArray, check_each, reals, whole
 from restitution._internal.parameters import ParameterError, Problem, wrong
 from restitution.drop.recorded import (
@@ -22,14 +24,17 @@ from restitution.drop.recorded import (
 if TYPE_CHECKING:
     import xarray as xr
 
-_STATES = ("position", "axis", "velocity_after", "angular_velocity_after")
-_NEEDED = {"time": RECORDS, **dict.fromkeys(_STATES, (*RECORDS, "component")), "release_angle": ("particle",)}
+_STATES = ("position", "velocity_after", "angular_velocity_after")
+_NEEDED = {"time": RECORDS, **dict.fromkeys(_STATES, (*RECORDS, "component"))}
+_WITH_AXIS = {"axis": (*RECORDS, "component"), "release_angle": ("particle",)}
+_WITHOUT = {"attitude": (*RECORDS, "quaternion"), "release_attitude": ("particle", "quaternion")}
 _RELEASED = {"release_azimuth": ("particle",), "release_spin": ("particle", "component")}
 """Of each particle, or not there where it is 0."""
 _ABOUT = {
     "position": ("position of the centre of mass; the release is over the origin, z = 0 the plane", "m"),
     "velocity": ("velocity of the centre of mass", "m s-1"),
     "axis": ("unit vector of the symmetry axis, from sphere 2 to sphere 1", "1"),
+    "attitude": ("rotation from the axes of the body to those of space, a quaternion", "1"),
     "angular_velocity": ("angular velocity", "rad s-1"),
 }
 
@@ -54,8 +59,9 @@ def trajectory(data: xr.Dataset, particle: int, times: npt.ArrayLike) -> xr.Data
     """Return the exact motion of a particle at any times, from its release to its last recorded impact.
 
     Between impacts the centre of mass moves on a parabola, and a free body of revolution turns about its
-    angular momentum **Λ** at the constant rate Λ/J', its moment of inertia across the axis being J'; the
-    formulas are closed, no step is taken. At the time of an impact it is the motion after it.
+    angular momentum **Λ** at the constant rate Λ/J', its moment of inertia across the axis being J'; a body
+    without an axis turns as Euler's equations say, by elliptic functions. At the time of an impact it is the
+    motion after it.
 
     Parameters
     ----------
@@ -72,7 +78,7 @@ def trajectory(data: xr.Dataset, particle: int, times: npt.ArrayLike) -> xr.Data
         Over ``time`` and ``component`` (x, y, z, in the frame of the plane): ``position`` of the centre of
         mass in m, relative to the point of the plane under the release, ``velocity`` in m/s, ``axis``, the
         unit vector of the symmetry axis, and ``angular_velocity`` in rad/s; over ``time`` the number of
-        ``impacts`` up to then.
+        ``impacts`` up to then. For a body without an axis instead of that, over ``quaternion``, ``attitude``.
 
     Raises
     ------
@@ -91,8 +97,7 @@ def trajectory(data: xr.Dataset, particle: int, times: npt.ArrayLike) -> xr.Data
     """
     import xarray as xr
 
-    _check(data)
-    slender = _slender(data)
+    turns = _check(data)
     pulled = np.array(_gravity(*pull("data", data)))
     heights = np.broadcast_to(released_from("data", data), data.sizes["particle"])
     one = _particle(data.assign(release_height=("particle", heights)), particle)
@@ -105,31 +110,29 @@ def trajectory(data: xr.Dataset, particle: int, times: npt.ArrayLike) -> xr.Data
 
     flight = np.searchsorted(happened, when, side="right")
     with np.errstate(over="ignore", invalid="ignore"):
-        begin = _begin(one, happened.size)
-        elapsed = (when - begin["time"][flight])[:, None]
-        position, velocity, axis, spin = (
-            begin[name][flight] for name in ("position", "velocity", "axis", "angular_velocity")
-        )
-        along = np.sum(spin * axis, axis=1, keepdims=True)
-        precession = spin - slender * along * axis  # Λ/J'
-        turned = _turned(axis, precession * elapsed)
+        begin = {name: values[flight] for name, values in _begin(one, happened.size).items()}
+        elapsed = (when - begin["time"])[:, None]
+        position, velocity = begin["position"], begin["velocity"]
         found = {
             "position": position + elapsed * (velocity + 0.5 * elapsed * pulled),
             "velocity": velocity + elapsed * pulled,
-            "axis": turned,
-            "angular_velocity": precession + slender * along * turned,
+            **turns(begin, elapsed),
         }
     if not all(np.isfinite(values).all() for values in found.values()):
         text = ": the motion at these times is not finite; must be the states and settings of a run"
         raise ParameterError(Problem("data", text))
     variables: dict[str, Any] = {
-        name: (("time", "component"), values, {"long_name": _ABOUT[name][0], "units": _ABOUT[name][1]})
+        name: (
+            ("time", "quaternion" if name == "attitude" else "component"),
+            values,
+            {"long_name": _ABOUT[name][0], "units": _ABOUT[name][1]},
+        )
         for name, values in found.items()
     }
     variables["impacts"] = ("time", flight, {"long_name": "number of impacts up to then"})
     coordinates = {
         "time": ("time", when, {"long_name": "time since release", "units": "s"}),
-        "component": data["component"],
+        **{name: data[name] for name in ("component", "quaternion") if name in data.coords},
     }
     return xr.Dataset(variables, coordinates, data.attrs | {"particle": int(particle)})
 
@@ -146,19 +149,59 @@ def _particle(data: xr.Dataset, particle: int) -> xr.Dataset:
     return data.isel(particle=int(at[0]))
 
 
-def _check(data: xr.Dataset) -> None:
-    """Refuse states that are no numbers, or not those of all impacts from the release on."""
-    if "attitude" in getattr(data, "variables", ()):
-        text = f" is of a {data.attrs.get('body')}: must be of a body of revolution between impacts"
-        raise ParameterError(Problem("data", text))
-    given = {name: needed for name, needed in _RELEASED.items() if name in getattr(data, "variables", ())}
-    variables("data", data, 'restitution.simulate(..., record="state")', _NEEDED | given)
+_Turns = Callable[[dict[str, FloatArray], FloatArray], dict[str, FloatArray]]
+"""The rotation after some times, from its beginnings."""
+
+
+def _check(data: xr.Dataset) -> _Turns:
+    """Refuse states that are no numbers, or not those of all impacts; say how such a body turns."""
+    there = getattr(data, "variables", ())
+    free = "attitude" in there
+    given = {name: needed for name, needed in _RELEASED.items() if name in there}
+    own = _WITHOUT if free else _WITH_AXIS
+    variables("data", data, 'restitution.simulate(..., record="state")', _NEEDED | own | given)
     check_successive("data", data, start=0)
     check_frame("data", data)
     allowed = "three finite numbers"
     velocity = data.attrs.get("release_velocity")
     if reals("data.release_velocity", velocity, allowed).shape != (3,):
         raise ParameterError(wrong("data.release_velocity", velocity, allowed))
+    return _top(data) if free else _symmetric(_slender(data))
+
+
+def _symmetric(slender: float) -> _Turns:
+    def turns(begin: dict[str, FloatArray], elapsed: FloatArray) -> dict[str, FloatArray]:
+        axis, spin = begin["axis"], begin["angular_velocity"]
+        along = np.sum(spin * axis, axis=1, keepdims=True)
+        precession = spin - slender * along * axis  # Λ/J'
+        turned = _turned(axis, precession * elapsed)
+        return {"axis": turned, "angular_velocity": precession + slender * along * turned}
+
+    return turns
+
+
+def _top(data: xr.Dataset) -> _Turns:
+    moments, axes = (
+        reals(f"data.{name}", data.attrs.get(name), f"{count} finite numbers", dimensions=(1,)).tolist()
+        for name, count in (("principal_moments", 3), ("principal_axes", 4))
+    )
+
+    def turns(begin: dict[str, FloatArray], elapsed: FloatArray) -> dict[str, FloatArray]:
+        attitude, spin = begin["attitude"], begin["angular_velocity"]
+        angle = np.linalg.norm(spin, axis=1) * elapsed[:, 0]
+        if not (angle <= _core.MOST_RADIANS).all():
+            text = (
+                f": turns by {np.nanmax(angle, initial=0.0):g} rad in a flight; must be the states of a run"
+            )
+            raise ParameterError(Problem("data", text))
+        try:
+            turned, later = _core.turned(moments, axes, attitude, spin, elapsed[:, 0].copy())
+        except ValueError:
+            text = f" = {moments}: must be the moments of inertia of a body"
+            raise ParameterError(Problem("data.principal_moments", text)) from None
+        return {"attitude": turned, "angular_velocity": later}
+
+    return turns
 
 
 def _slender(data: xr.Dataset) -> float:
@@ -185,16 +228,19 @@ def _gravity(gravity: float, incline: float) -> tuple[float, float, float]:
 
 def _begin(one: xr.Dataset, impacts: int) -> dict[str, FloatArray]:
     """Return the states from which the flights begin: the release, then the state after each impact."""
-    angle = float(one["release_angle"])
-    azimuth = float(one["release_azimuth"]) if "release_azimuth" in one else 0.0
-    level = np.sin(angle)
     released = {
         "time": 0.0,
         "position": [0.0, 0.0, float(one["release_height"])],
         "velocity": one.attrs["release_velocity"],
-        "axis": [level * np.cos(azimuth), level * np.sin(azimuth), np.cos(angle)],
         "angular_velocity": one["release_spin"].to_numpy() if "release_spin" in one else np.zeros(3),
     }
+    if "attitude" in one:
+        released["attitude"] = one["release_attitude"].to_numpy()
+    else:
+        angle = float(one["release_angle"])
+        azimuth = float(one["release_azimuth"]) if "release_azimuth" in one else 0.0
+        level = np.sin(angle)
+        released["axis"] = [level * np.cos(azimuth), level * np.sin(azimuth), np.cos(angle)]
     after = {"velocity": "velocity_after", "angular_velocity": "angular_velocity_after"}
     states = one.transpose("impact", ...)
     return {

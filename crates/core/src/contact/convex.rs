@@ -1,19 +1,19 @@
 //! Supports of convex hulls whose normal turns along its tangent, **n** + s**n**′, and the first root of the bound that they make.
 
-use super::certify::SHORTEST;
-use super::plane::first_root;
+use super::certify::{SHORTEST, TOUCHING};
+use super::plane::{Departure, Step, first_root};
 use crate::math::Vector;
-use crate::shape::{Band, Instant};
+use crate::shape::{Band, Convex, ConvexSurface, Instant, Superellipsoid};
 
 /// Steps of Newton's method towards the root of the bound of a convex body.
 const NEWTON: usize = 3;
 
 /// A convex function h of s.
 pub(super) trait Support {
-    /// h′(s).
-    fn slope(&self, s: f64) -> f64;
-    /// h(s) − h(0) − s h′(0) ≥ 0, without cancellation.
-    fn beyond(&self, s: f64) -> f64;
+    /// h′(0).
+    fn begins(&self) -> f64;
+    /// h(s) − h(0) − s h′(0) ≥ 0, without cancellation where it can be, and h′(s).
+    fn at(&self, s: f64) -> (f64, f64);
 }
 
 /// h = |**a** + s**b**|.
@@ -28,6 +28,7 @@ pub(super) struct Length {
 }
 
 impl Length {
+    #[inline(always)]
     pub fn new(a: Vector, b: Vector) -> Self {
         let size = a.norm();
         let (slope, across) = if size > 0.0 {
@@ -45,13 +46,10 @@ impl Length {
     }
 
     /// |A**n**| of an ellipsoid with these semi-axes.
+    #[inline(always)]
     pub fn of_ellipsoid([a, b, c]: [f64; 3], at: &Instant) -> Self {
         let stretched = |v: Vector| Vector::new(a * v.x, b * v.y, c * v.z);
         Self::new(stretched(at.up), stretched(at.turning))
-    }
-
-    fn at(&self, s: f64) -> f64 {
-        self.b.mul_add(s, self.a).norm()
     }
 
     /// h″ at 0 where **a** also has the second derivative **c**, and `bent` is **a**·**c**.
@@ -60,26 +58,39 @@ impl Length {
     }
 }
 
-impl Support for Length {
-    fn slope(&self, s: f64) -> f64 {
+impl Length {
+    /// h(s), and its two parts as a [`Support`].
+    #[inline(always)]
+    fn along(&self, s: f64) -> (f64, f64, f64) {
         let moved = self.b.mul_add(s, self.a);
         let size = moved.norm();
-        if size > 0.0 {
+        let slope = if size > 0.0 {
             moved.dot(self.b) / size
         } else {
             self.b.norm()
-        }
-    }
-
-    fn beyond(&self, s: f64) -> f64 {
+        };
         let tangent = s.mul_add(self.slope, self.size);
-        if tangent < 0.0 {
-            self.at(s) - tangent
+        let beyond = if tangent < 0.0 {
+            size - tangent
         } else if self.spread > 0.0 {
-            s * s * self.spread / (self.at(s) + tangent)
+            s * s * self.spread / (size + tangent)
         } else {
             0.0
-        }
+        };
+        (size, beyond, slope)
+    }
+}
+
+impl Support for Length {
+    #[inline(always)]
+    fn begins(&self) -> f64 {
+        self.slope
+    }
+
+    #[inline(always)]
+    fn at(&self, s: f64) -> (f64, f64) {
+        let (_, beyond, slope) = self.along(s);
+        (beyond, slope)
     }
 }
 
@@ -98,6 +109,7 @@ pub(super) struct BandSupport<'a> {
 }
 
 impl<'a> BandSupport<'a> {
+    #[inline(always)]
     pub fn new(band: &'a Band, at: &Instant) -> Self {
         let along = (-at.up.z, -at.turning.z);
         let level = |v: Vector| Vector::new(v.x, v.y, 0.0);
@@ -120,11 +132,6 @@ impl<'a> BandSupport<'a> {
         self.across.size == 0.0 && self.weights[1] != 0.0
     }
 
-    fn weights_at(&self, s: f64) -> (f64, f64, [f64; 3]) {
-        let (along, across) = (s.mul_add(self.along.1, self.along.0), self.across.at(s));
-        (along, across, self.band.weights(along, across))
-    }
-
     /// f″, with **n**″, but for gravity.
     pub fn curvature(&self, at: &Instant, bending: Vector) -> f64 {
         if self.is_flat() {
@@ -142,48 +149,241 @@ impl<'a> BandSupport<'a> {
 }
 
 impl Support for BandSupport<'_> {
-    fn slope(&self, s: f64) -> f64 {
-        let [z, r, radius] = self.weights_at(s).2;
-        z * self.along.1 + r * self.across.slope(s) + radius * self.whole.slope(s)
+    #[inline(always)]
+    fn begins(&self) -> f64 {
+        self.slope
     }
 
-    fn beyond(&self, s: f64) -> f64 {
-        let (along, across, weights) = self.weights_at(s);
+    #[inline(always)]
+    fn at(&self, s: f64) -> (f64, f64) {
+        let along = s.mul_add(self.along.1, self.along.0);
+        let (across, across_beyond, across_slope) = self.across.along(s);
+        let (whole, whole_beyond, whole_slope) = self.whole.along(s);
+        let weights = self.band.weights(along, across);
         let [z, r, radius] = weights;
-        if weights == self.weights {
-            return r * self.across.beyond(s) + radius * self.whole.beyond(s);
+        let slope = z * self.along.1 + r * across_slope + radius * whole_slope;
+        let beyond = if weights == self.weights {
+            r * across_beyond + radius * whole_beyond
+        } else {
+            z * along + r * across + radius * whole - s.mul_add(self.slope, self.size)
+        };
+        (beyond, slope)
+    }
+}
+
+/// The support of a superellipsoid.
+pub(super) struct SuperellipsoidSupport<'a> {
+    body: &'a Superellipsoid,
+    up: Vector,
+    turning: Vector,
+    /// h and h′ at s = 0.
+    pub size: f64,
+    pub slope: f64,
+}
+
+impl<'a> SuperellipsoidSupport<'a> {
+    #[inline(always)]
+    pub fn new(body: &'a Superellipsoid, at: &Instant) -> Self {
+        let (size, place) = body.farthest(at.up);
+        Self {
+            body,
+            up: at.up,
+            turning: at.turning,
+            size,
+            slope: place.dot(at.turning),
         }
-        let support = z * along + r * across + radius * self.whole.at(s);
-        support - s.mul_add(self.slope, self.size)
+    }
+}
+
+impl Support for SuperellipsoidSupport<'_> {
+    #[inline(always)]
+    fn begins(&self) -> f64 {
+        self.slope
+    }
+
+    #[inline(always)]
+    fn at(&self, s: f64) -> (f64, f64) {
+        let (size, place) = self.body.farthest(self.turning.mul_add(s, self.up));
+        (
+            size - s.mul_add(self.slope, self.size),
+            place.dot(self.turning),
+        )
+    }
+}
+
+impl Convex {
+    /// As [`crate::shape::Skin`]'s.
+    #[inline(always)]
+    pub(super) fn step(&self, at: &Instant, turn: f64, departure: Option<Departure>) -> Step {
+        match self.frame {
+            Some(frame) => self.surface.step(&frame.own(at), turn, departure),
+            None => self.surface.step(at, turn, departure),
+        }
+    }
+
+    #[inline(always)]
+    pub(super) fn nearest(&self, part: usize, up: Vector, turning: Vector) -> Vector {
+        match self.frame {
+            Some(frame) => {
+                let [up, turning] = [up, turning].map(|v| frame.axes.rotate(v));
+                frame.place(self.surface.nearest(part, up, turning))
+            }
+            None => self.surface.nearest(part, up, turning),
+        }
+    }
+
+    pub(super) fn curvature(&self, part: usize, at: &Instant, bending: Vector) -> f64 {
+        match self.frame {
+            Some(frame) => {
+                let bending = frame.axes.rotate(bending);
+                self.surface.curvature(part, &frame.own(at), bending) - frame.centre.dot(bending)
+            }
+            None => self.surface.curvature(part, at, bending),
+        }
+    }
+
+    pub(super) fn another_touches(&self, departure: Departure, at: &Instant) -> bool {
+        let own = self.frame.map_or(*at, |frame| frame.own(at));
+        let ConvexSurface::Bands(bands) = &self.surface else {
+            return false;
+        };
+        let opening = |band: &Band| {
+            let support = BandSupport::new(band, &own);
+            (own.height - support.size, own.rate - support.slope)
+        };
+        let still = opening(&bands[departure.part]).1;
+        bands.iter().enumerate().any(|(part, band)| {
+            let (width, rate) = opening(band);
+            part != departure.part && width <= TOUCHING && rate < still
+        })
+    }
+}
+
+impl ConvexSurface {
+    #[inline(always)]
+    fn step(&self, at: &Instant, turn: f64, departure: Option<Departure>) -> Step {
+        match self {
+            Self::Ellipsoid(axes) => {
+                let support = Length::of_ellipsoid(*axes, at);
+                whole(&support, (support.size, support.slope), at, turn, departure)
+            }
+            Self::Superellipsoid(body) => {
+                let support = SuperellipsoidSupport::new(body, at);
+                whole(&support, (support.size, support.slope), at, turn, departure)
+            }
+            Self::Bands(bands) => {
+                let mut first = Step::never();
+                for (part, band) in bands.iter().enumerate() {
+                    let support = BandSupport::new(band, at);
+                    let (width, rate) = match departure {
+                        // Flat on its rim a body has no single point there, whose speed that is.
+                        Some(left) if left.part == part && !support.is_flat() => (0.0, left.speed),
+                        Some(left) if left.part == part => (0.0, at.rate - support.slope),
+                        _ => (at.height - support.size, at.rate - support.slope),
+                    };
+                    let bound = 1.0 + turn * band.reach;
+                    let length = convex_root(&support, width.max(0.0), rate, bound);
+                    if length < first.length {
+                        first = Step {
+                            length,
+                            part,
+                            closes: rate < 0.0,
+                            bound,
+                        };
+                    }
+                }
+                first
+            }
+        }
+    }
+
+    #[inline(always)]
+    fn nearest(&self, part: usize, up: Vector, turning: Vector) -> Vector {
+        match self {
+            Self::Ellipsoid([a, b, c]) => {
+                let stretched = Vector::new(a * up.x, b * up.y, c * up.z);
+                let size = -1.0 / stretched.norm();
+                Vector::new(a * stretched.x, b * stretched.y, c * stretched.z) * size
+            }
+            Self::Superellipsoid(body) => body.farthest(up * -1.0).1,
+            Self::Bands(bands) => bands[part].farthest(up * -1.0, turning * -1.0),
+        }
+    }
+
+    fn curvature(&self, part: usize, at: &Instant, bending: Vector) -> f64 {
+        match self {
+            Self::Ellipsoid(axes) => {
+                let [x, y, z] = axes.map(|axis| axis * axis);
+                let bent = Vector::new(x * at.up.x, y * at.up.y, z * at.up.z).dot(bending);
+                -Length::of_ellipsoid(*axes, at).bent(bent)
+            }
+            Self::Superellipsoid(body) => -body.bent(at.up, at.turning, bending),
+            Self::Bands(bands) => BandSupport::new(&bands[part], at).curvature(at, bending),
+        }
+    }
+}
+
+/// The step of a surface of one part, whose support and its rate are these now.
+#[inline(always)]
+fn whole(
+    support: &impl Support,
+    (size, slope): (f64, f64),
+    at: &Instant,
+    turn: f64,
+    departure: Option<Departure>,
+) -> Step {
+    let bound = 1.0 + turn;
+    let (width, rate) = match departure {
+        Some(left) => (0.0, left.speed),
+        None => (at.height - size, at.rate - slope),
+    };
+    Step {
+        length: convex_root(support, width.max(0.0), rate, bound),
+        part: 0,
+        closes: rate < 0.0,
+        bound,
+    }
+}
+
+impl Step {
+    fn never() -> Self {
+        Self {
+            length: f64::INFINITY,
+            part: 0,
+            closes: false,
+            bound: 1.0,
+        }
     }
 }
 
 /// A time no later than the first root of width + rate s − (h(s) − h(0) − s h′(0)) − Ms²/2, which is concave. Its tangents lie above it, so that
 /// Newton's method comes from behind the root; the last chord, which lies below it, ends in front of it.
+#[inline(always)]
 pub(super) fn convex_root(support: &impl Support, width: f64, rate: f64, bound: f64) -> f64 {
-    let value = |s: f64| width + s * (rate - 0.5 * bound * s) - support.beyond(s);
+    let parabola = |s: f64| width + s * (rate - 0.5 * bound * s);
     let mut after = first_root(width, rate, bound);
-    if support.beyond(after) <= 0.0 {
+    let (mut beyond, mut slope) = support.at(after);
+    if beyond <= 0.0 {
         return after;
     }
-    let begins = support.slope(0.0);
     let mut before = (0.0, width);
     for _ in 0..NEWTON {
-        let found = value(after);
+        let found = parabola(after) - beyond;
         if found >= 0.0 {
             return after;
         }
-        let fall = rate - bound * after - (support.slope(after) - begins);
+        let fall = rate - bound * after - (slope - support.begins());
         let next = after - found / fall;
         if !(next > before.0 && next < after) {
             break;
         }
         after = next;
+        (beyond, slope) = support.at(after);
     }
     // Where the gap is 0 at the beginning and opens, a point between it and the root.
     let mut inside = 0.5 * after;
     while before.1 <= 0.0 && rate > 0.0 {
-        let found = value(inside);
+        let found = parabola(inside) - support.at(inside).0;
         if found > 0.0 {
             before = (inside, found);
         }
@@ -192,7 +392,7 @@ pub(super) fn convex_root(support: &impl Support, width: f64, rate: f64, bound: 
             return SHORTEST / bound;
         }
     }
-    let found = value(after);
+    let found = parabola(after) - beyond;
     if found >= 0.0 {
         return after;
     }

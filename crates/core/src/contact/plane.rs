@@ -14,9 +14,8 @@
 //! the resolution. An overlap is rounding: one that approaches is a contact now, one that separates is none.
 
 use super::certify::{SHORTEST, TOUCHING};
-use super::convex::{BandSupport, Length, convex_root};
 use crate::math::Vector;
-use crate::shape::{Band, Instant, Least, Point, Skin};
+use crate::shape::{Instant, Least, Point, Skin};
 
 /// Nodes of the tree are not looked into where they allow a step of this part of the length that is found: at the end, where lengths must be
 /// exact, others allow far more or none at all.
@@ -41,6 +40,7 @@ pub(crate) struct Step {
 }
 
 /// The first root ≥ 0 of f + f′s − Ms²/2 with f ≥ 0, in that of its two forms in which no digits cancel.
+#[inline(always)]
 pub(super) fn first_root(width: f64, rate: f64, bound: f64) -> f64 {
     let speed = rate.abs() + (rate * rate + 2.0 * bound * width).sqrt();
     if rate < 0.0 {
@@ -90,43 +90,7 @@ impl Skin {
                     bound: bound(f64::from(point.reach)),
                 }
             }
-            Self::Ellipsoid(axes) => {
-                let bound = 1.0 + turn;
-                let support = Length::of_ellipsoid(*axes, at);
-                let (width, rate) = match departure {
-                    Some(left) => (0.0, left.speed),
-                    None => (at.height - support.size, at.rate - support.slope),
-                };
-                Step {
-                    length: convex_root(&support, width.max(0.0), rate, bound),
-                    part: 0,
-                    closes: rate < 0.0,
-                    bound,
-                }
-            }
-            Self::Bands(bands) => {
-                let mut first = Step::never();
-                for (part, band) in bands.iter().enumerate() {
-                    let support = BandSupport::new(band, at);
-                    let (width, rate) = match departure {
-                        // Flat on its rim a body has no single point there, whose speed that is.
-                        Some(left) if left.part == part && !support.is_flat() => (0.0, left.speed),
-                        Some(left) if left.part == part => (0.0, at.rate - support.slope),
-                        _ => (at.height - support.size, at.rate - support.slope),
-                    };
-                    let bound = 1.0 + turn * band.reach;
-                    let length = convex_root(&support, width.max(0.0), rate, bound);
-                    if length < first.length {
-                        first = Step {
-                            length,
-                            part,
-                            closes: rate < 0.0,
-                            bound,
-                        };
-                    }
-                }
-                first
-            }
+            Self::Convex(convex) => convex.step(at, turn, departure),
         }
     }
 
@@ -139,12 +103,7 @@ impl Skin {
                 let point = &balls.points()[part];
                 point.place - up * point.radius
             }
-            Self::Ellipsoid([a, b, c]) => {
-                let stretched = Vector::new(a * up.x, b * up.y, c * up.z);
-                let size = -1.0 / stretched.norm();
-                Vector::new(a * stretched.x, b * stretched.y, c * stretched.z) * size
-            }
-            Self::Bands(bands) => bands[part].farthest(up * -1.0, turning * -1.0),
+            Self::Convex(convex) => convex.nearest(part, up, turning),
         }
     }
 
@@ -152,18 +111,12 @@ impl Skin {
     pub(crate) fn curvature(&self, part: usize, at: &Instant, bending: Vector) -> f64 {
         match self {
             Self::Points(balls) => balls.points()[part].place.dot(bending),
-            Self::Ellipsoid(axes) => {
-                let [x, y, z] = axes.map(|axis| axis * axis);
-                let bent = Vector::new(x * at.up.x, y * at.up.y, z * at.up.z).dot(bending);
-                -Length::of_ellipsoid(*axes, at).bent(bent)
-            }
-            Self::Bands(bands) => BandSupport::new(&bands[part], at).curvature(at, bending),
+            Self::Convex(convex) => convex.curvature(part, at, bending),
         }
     }
 
     /// True if some part but one overlaps, or touches within rounding, and approaches faster than that one.
     pub(crate) fn another_touches(&self, departure: Departure, at: &Instant) -> bool {
-        let touches = |(width, rate): (f64, f64), still: f64| width <= TOUCHING && rate < still;
         match self {
             Self::Points(balls) => {
                 let still = balls.points()[departure.part].opening(at).1;
@@ -179,18 +132,7 @@ impl Skin {
                 };
                 balls.cheapest(at, (None, 1.0), exceeds, cost).cost < still
             }
-            Self::Ellipsoid(_) => false,
-            Self::Bands(bands) => {
-                let opening = |band: &Band| {
-                    let support = BandSupport::new(band, at);
-                    (at.height - support.size, at.rate - support.slope)
-                };
-                let still = opening(&bands[departure.part]).1;
-                bands
-                    .iter()
-                    .enumerate()
-                    .any(|(part, band)| part != departure.part && touches(opening(band), still))
-            }
+            Self::Convex(convex) => convex.another_touches(departure, at),
         }
     }
 
@@ -198,18 +140,7 @@ impl Skin {
     pub(crate) fn number(&self, part: usize) -> usize {
         match self {
             Self::Points(balls) => balls.points()[part].number as usize,
-            Self::Ellipsoid(_) | Self::Bands(_) => part,
-        }
-    }
-}
-
-impl Step {
-    fn never() -> Self {
-        Self {
-            length: f64::INFINITY,
-            part: 0,
-            closes: false,
-            bound: 1.0,
+            Self::Convex(_) => part,
         }
     }
 }

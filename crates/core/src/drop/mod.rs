@@ -54,6 +54,9 @@ pub struct Run<'a> {
     pub incline: f64,
     /// Value of √(2 E_kin/m) after an impact, in m/s, below which a particle stops; with 0 none does.
     pub minimum_speed: f64,
+    /// Energy over m g, in m, below which a particle stops because no pass out of a potential well of its body is so low; with 0 none
+    /// does. Horizontal motion does not count under a frictionless law. Only for a body without an axis.
+    pub settled: f64,
     /// Seed of the random numbers.
     pub seed: u64,
 }
@@ -112,6 +115,7 @@ impl Run<'_> {
             && self.gravity == other.gravity
             && self.incline == other.incline
             && self.minimum_speed == other.minimum_speed
+            && self.settled == other.settled
             && self.is_at_rest() == other.is_at_rest()
     }
 }

@@ -168,6 +168,7 @@ impl<'a> Plan<'a> {
         Limits {
             impacts: self.run.impacts,
             minimum_speed: self.run.minimum_speed / self.scales.speed,
+            settled: self.run.settled / self.scales.length,
         }
     }
 

@@ -3,7 +3,7 @@
 use super::lanes::{Impact, Lost, Pose, Sink};
 use super::stop::{COLLAPSE_RUN, Limits, StopReason, UNRESOLVED};
 use crate::contact::{Departure, INVISIBLE, LAST, MOST_STEPS};
-use crate::law::{Compliance, Fault, Law, Respond};
+use crate::law::{Compliance, Fault, Law, Respond, Rule};
 use crate::math::{Quaternion, Symmetric, Vector, Vectors};
 use crate::motion::Rotation;
 use crate::shape::{Instant, Rigid, up};
@@ -117,6 +117,8 @@ impl Bouncing<'_> {
             let slowest = self.limits.minimum_speed;
             if slowest > 0.0 && 2.0 * self.energies(&state).1 < slowest * slowest {
                 break StopReason::SpeedBelowThreshold;
+            } else if self.level(&state) < self.limits.settled {
+                break StopReason::Settled;
             } else if unresolved == COLLAPSE_RUN {
                 break StopReason::Collapse;
             } else if impacts == self.limits.impacts {
@@ -248,6 +250,16 @@ impl Bouncing<'_> {
             },
             approach: (-at_contact.z).max(0.0),
         })
+    }
+
+    /// The energy in m g R that can lift the centre of mass: without friction the horizontal motion stays as it is.
+    fn level(&self, state: &RigidState) -> f64 {
+        let v = state.velocity;
+        let moving = match (self.law.custom, self.law.rule) {
+            (None, Rule::Frictionless(_)) => v.z * v.z,
+            _ => v.dot(v),
+        };
+        state.height + 0.5 * (self.body.top.twice_energy(state.spin) + moving)
     }
 
     /// Kinetic energies of the rotation and of all motion, in m g R.

@@ -14,16 +14,19 @@ pub enum StopReason {
     NeverLands,
     /// The run was cancelled.
     Interrupted,
+    /// The energy after an impact was below [`Limits::settled`].
+    Settled,
 }
 
 impl StopReason {
     /// The names of all reasons, in the order of their numbers.
-    pub const NAMES: [&'static str; 5] = [
+    pub const NAMES: [&'static str; 6] = [
         "impacts_reached",
         "speed_below_threshold",
         "collapse",
         "never_lands",
         "interrupted",
+        "settled",
     ];
 }
 
@@ -34,6 +37,9 @@ pub struct Limits {
     pub impacts: usize,
     /// Value of √(2 E_kin/m) below which a particle stops, in √(gR); with 0 none does.
     pub minimum_speed: f64,
+    /// Energy in m g R, of which a frictionless law leaves out the horizontal motion, below which a body without an axis stops; with 0
+    /// none does.
+    pub settled: f64,
 }
 
 /// M T² below which a flight of duration T counts as unresolved: no gap can then have exceeded M T²/8 = 2⁻⁴³ R, since M ≥ −f″.

@@ -49,6 +49,7 @@ impl Vector {
     }
 
     /// `self * factor + addend`, each component rounded once.
+    #[inline(always)]
     pub fn mul_add(self, factor: f64, addend: Self) -> Self {
         Self {
             x: self.x.mul_add(factor, addend.x),

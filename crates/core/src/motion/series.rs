@@ -41,6 +41,7 @@ pub(super) struct Series {
 }
 
 impl Series {
+    #[inline(always)]
     pub fn new(top: &Top, attitude: Quaternion, spin: Vector) -> Self {
         let mut series = Self {
             start: 0.0,

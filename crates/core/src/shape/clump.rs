@@ -1,7 +1,7 @@
 //! Clumps: unions of balls.
 
 use super::check_density;
-use super::rigid::{Inertia, Moments, Rigid, RigidBall};
+use super::rigid::{Moments, Rigid, RigidBall};
 use crate::Error;
 use crate::math::{Symmetric, Vector};
 use crate::simd::elementary::{angle, sincos};
@@ -32,15 +32,6 @@ impl Rigid {
                 .fold(Moments::default(), Moments::and),
         };
         Self::of_balls(moments.inertia(density), "spheres", balls.iter().copied())
-    }
-
-    /// Balls with a given mass and inertia.
-    ///
-    /// # Errors
-    /// As [`Rigid::clump`], and unless a body with this inertia is possible.
-    pub fn clump_with(balls: &[RigidBall], inertia: Inertia) -> Result<Self, Error> {
-        check(balls)?;
-        Self::of_balls(inertia, "spheres", balls.iter().copied())
     }
 }
 

@@ -1,12 +1,14 @@
 //! Bodies: mass, inertia, and the surface that can touch.
 
 mod clump;
+mod convex;
 mod mass;
 mod polyhedron;
 mod revolution;
 mod revolved;
 mod rigid;
 mod rough;
+mod superellipsoid;
 mod tree;
 
 use crate::Error;
@@ -14,11 +16,13 @@ use crate::Error;
 use clump::GAUSS;
 pub use clump::Matter;
 
+pub(crate) use convex::{Convex, ConvexSurface};
 pub use revolution::*;
 pub(crate) use revolved::Band;
 pub use rigid::{Inertia, Rigid, RigidBall};
 pub(crate) use rigid::{Skin, up};
 pub use rough::{Heights, Roughness};
+pub(crate) use superellipsoid::Superellipsoid;
 #[cfg(test)]
 pub(crate) use tree::Balls;
 pub(crate) use tree::{Instant, Least, Point};

@@ -2,7 +2,8 @@
 
 use super::check_density;
 use super::clump::GAUSS;
-use super::rigid::{Inertia, Rigid, Skin, principal};
+use super::convex::{Convex, ConvexSurface};
+use super::rigid::{Inertia, Rigid, Skin};
 use crate::Error;
 use crate::math::{Symmetric, Vector};
 use crate::simd::elementary::{angle, sincos};
@@ -48,6 +49,16 @@ impl Band {
             band.reach = band.reach.max((z + radius * a).hypot(r + radius * b));
         }
         band
+    }
+
+    /// The same in units of `part` of the present one, in a body whose centre of mass is this far from the present one.
+    pub fn scaled(self, part: f64, shift: f64) -> Self {
+        Self {
+            centre: self.centre.map(|x| x / part),
+            radius: self.radius / part,
+            ends: self.ends,
+            reach: (self.reach + shift) / part,
+        }
     }
 
     /// The weights of the support in a direction (u_z, |u_⊥|): those of the whole torus where the arc has that normal, else those of the
@@ -210,12 +221,21 @@ impl Rigid {
 
     /// Returns the rims of a solid of revolution that can touch, (z, r) in m, in the order of their numbers.
     pub fn rims(&self) -> Vec<[f64; 2]> {
-        let Skin::Bands(bands) = &self.skin else {
+        let Skin::Convex(Convex {
+            surface: ConvexSurface::Bands(bands),
+            frame,
+        }) = &self.skin
+        else {
             return Vec::new();
+        };
+        // The distance of the bands' origin from that of the axes is the same in both.
+        let origin = match frame {
+            Some(frame) => self.axes.rotate(frame.place(Vector::default())) * self.unit,
+            None => Vector::default(),
         };
         let place = |band: &Band| {
             let [z, r] = band.centre.map(|x| self.unit * x);
-            [self.inertia.centre.z + z, r]
+            [self.inertia.centre.z + origin.z + z, r]
         };
         bands.iter().map(place).collect()
     }
@@ -248,14 +268,9 @@ impl Rigid {
         };
         let unit = touching.iter().map(|arc| band(1.0)(arc).reach);
         let unit = unit.fold(0.0, f64::max);
-        let (top, axes) = principal(&inertia, unit)?;
-        Ok(Self {
-            inertia,
-            unit,
-            axes,
-            top,
-            skin: Skin::Bands(touching.iter().map(band(unit)).collect()),
-        })
+        let bands = touching.iter().map(band(unit)).collect();
+        let surface = Convex::new(ConvexSurface::Bands(bands));
+        Self::new(inertia, unit, Skin::Convex(surface))
     }
 }
 

@@ -1,7 +1,7 @@
 //! Bodies of any shape: mass, principal axes, and what can touch the plane.
 
 use super::check_density;
-use super::revolved::Band;
+use super::convex::{Convex, ConvexSurface};
 use super::tree::{Balls, Instant, Least, Point};
 use crate::Error;
 use crate::math::{Quaternion, Symmetric, Vector};
@@ -41,10 +41,7 @@ pub struct RigidBall {
 pub(crate) enum Skin {
     /// Balls, or the vertices of a polyhedron.
     Points(Balls),
-    /// An ellipsoid about the centre of mass with these semi-axes along the principal axes.
-    Ellipsoid([f64; 3]),
-    /// Bands of a body whose axis of revolution is the third principal axis.
-    Bands(Vec<Band>),
+    Convex(Convex),
 }
 
 /// Most balls, so that their numbers can be recorded.
@@ -167,20 +164,9 @@ impl Rigid {
     /// # Errors
     /// Unless they and the density are positive, and the largest is at most 1000 times the smallest.
     pub fn ellipsoid(semi_axes: [f64; 3], density: f64) -> Result<Self, Error> {
-        for axis in semi_axes {
-            let positive = axis.is_finite() && axis > 0.0;
-            Error::unless(positive, "semi_axes", axis, "finite and > 0 (m)")?;
-        }
+        Self::check_semi_axes(semi_axes)?;
         check_density(density)?;
         let [a, b, c] = semi_axes;
-        let unit = a.max(b).max(c);
-        let least = a.min(b).min(c);
-        Error::unless(
-            unit <= 1000.0 * least * (1.0 + 4.0 * f64::EPSILON),
-            "semi_axes",
-            least,
-            "at least 1/1000 of the largest",
-        )?;
         let mass = density * (4.0 / 3.0 * std::f64::consts::PI) * a * b * c;
         let fifth = mass / 5.0;
         let inertia = Inertia {
@@ -192,13 +178,62 @@ impl Rigid {
                 fifth * (a * a + b * b),
             ]),
         };
+        let unit = a.max(b).max(c);
+        let surface = ConvexSurface::Ellipsoid(semi_axes.map(|axis| axis / unit));
+        Self::new(inertia, unit, Skin::Convex(Convex::new(surface)))
+    }
+
+    /// Refuses semi-axes that are no positive numbers, or differ by more than 1000 times.
+    pub(super) fn check_semi_axes(semi_axes: [f64; 3]) -> Result<(), Error> {
+        for axis in semi_axes {
+            let positive = axis.is_finite() && axis > 0.0;
+            Error::unless(positive, "semi_axes", axis, "finite and > 0 (m)")?;
+        }
+        let [most, least] =
+            [f64::max, f64::min].map(|of| semi_axes.into_iter().fold(semi_axes[0], of));
+        Error::unless(
+            most <= 1000.0 * least * (1.0 + 4.0 * f64::EPSILON),
+            "semi_axes",
+            least,
+            "at least 1/1000 of the largest",
+        )
+    }
+
+    /// A body whose parts are given in the principal axes of the matter and in units of `unit`.
+    pub(super) fn new(inertia: Inertia, unit: f64, skin: Skin) -> Result<Self, Error> {
         let (top, axes) = principal(&inertia, unit)?;
         Ok(Self {
             inertia,
             unit,
             axes,
             top,
-            skin: Skin::Ellipsoid(semi_axes.map(|axis| axis / unit)),
+            skin,
+        })
+    }
+
+    /// The same parts with another inertia: mass, centre and tensor, in the axes that the body was given in.
+    ///
+    /// # Errors
+    /// Unless the mass is positive, and the tensor is that of a body.
+    pub fn with_inertia(self, inertia: Inertia) -> Result<Self, Error> {
+        let Skin::Convex(convex) = &self.skin else {
+            return Self::of_balls(inertia, "points", self.balls()?.into_iter());
+        };
+        let shift = self
+            .axes
+            .inverse()
+            .rotate(inertia.centre - self.inertia.centre);
+        // No part is farther from the new centre than this.
+        let unit = self.unit + shift.norm();
+        let (top, axes) = principal(&inertia, unit)?;
+        let turn = self.axes.inverse() * axes;
+        let skin = Skin::Convex(convex.with_frame(turn, shift / self.unit, unit / self.unit));
+        Ok(Self {
+            inertia,
+            unit,
+            axes,
+            top,
+            skin,
         })
     }
 
@@ -212,6 +247,11 @@ impl Rigid {
     pub fn turned(&self, attitude: Quaternion, spin: Vector, time: f64) -> (Quaternion, Vector) {
         let (attitude, spin) = self.top.turned(attitude * self.axes, spin, time);
         (attitude * self.axes.inverse(), spin)
+    }
+
+    /// The distance in m from the centre of mass to the plane that touches the body with this outward normal, in the axes that it was given in.
+    pub fn support(&self, normal: Vector) -> f64 {
+        self.unit * self.skin.support(self.axes.inverse().rotate(normal) * -1.0)
     }
 
     /// Smallest height of the centre of mass, in m, at which no part of the body is below the plane in an attitude of the axes that
@@ -248,11 +288,7 @@ impl Skin {
                 });
                 -lowest.cost
             }
-            Self::Ellipsoid([a, b, c]) => Vector::new(a * up.x, b * up.y, c * up.z).norm(),
-            Self::Bands(bands) => bands
-                .iter()
-                .map(|band| band.support(up * -1.0))
-                .fold(f64::NEG_INFINITY, f64::max),
+            Self::Convex(convex) => convex.support(up),
         }
     }
 }

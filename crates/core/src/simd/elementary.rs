@@ -195,6 +195,7 @@ pub(crate) fn exp_in_lanes<S: Simd, const K: usize>(x: Pack<S, K>) -> Pack<S, K>
 ///
 /// x = 2^k m with m in [√½, √2): ln m = 2 artanh s with s = (m − 1)/(m + 1), by the series of artanh; the first neglected term is
 /// below 10⁻¹⁷ of the sum.
+#[inline(always)]
 pub(crate) fn ln(x: f64) -> f64 {
     let shifted = x.to_bits().wrapping_sub(FRAC_1_SQRT_2.to_bits());
     let exponent = (shifted as i64 >> 52) as f64;

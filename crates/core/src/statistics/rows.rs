@@ -4,6 +4,7 @@ use super::histogram::{Bins, WHAT};
 use super::moments::{Moments, Sums};
 use super::recent::FRACTION_QUANTA;
 use crate::Error;
+use crate::StopReason;
 use crate::memory::{copied, filled, zeros};
 
 /// Energy ratio above which an impact counts as creating kinetic energy. Rounding errors of the ratio are a few 10⁻¹⁵.
@@ -22,8 +23,8 @@ pub struct Rows {
     pub(super) fractions: Vec<u128>,
     /// Impacts that create energy.
     pub gains: Vec<Gains>,
-    /// Number of particles by [`crate::StopReason`].
-    pub stops: [u64; 5],
+    /// Number of particles by [`StopReason`].
+    pub stops: [u64; StopReason::NAMES.len()],
 }
 
 /// The impacts whose energy ratio exceeds [`CREATES_ENERGY`].
@@ -61,7 +62,7 @@ impl Rows {
             sums: filled(WHAT, Sums::EMPTY, summed)?,
             fractions: zeros(WHAT, summed)?,
             gains: filled(WHAT, Gains::default(), rows)?,
-            stops: [0; 5],
+            stops: [0; StopReason::NAMES.len()],
         })
     }
 

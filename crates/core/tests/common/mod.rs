@@ -42,6 +42,7 @@ pub fn paper(elongation: f64, law: Law<'_>) -> Run<'_> {
         gravity: 9.81,
         orientation: Orientation::UniformAngle,
         minimum_speed: 0.0,
+        settled: 0.0,
         spin: Spin::NONE,
         release_velocity: Vector::default(),
         incline: 0.0,

@@ -93,6 +93,7 @@ pub fn jobs(angles: &[f64]) -> Vec<(&'static str, Run<'_>)> {
                 particles: 1500,
                 impacts: 400,
                 minimum_speed: 0.1,
+                settled: 0.0,
                 ..paper(1.0, law(0.9, 0.6))
             },
         ),

@@ -118,6 +118,7 @@ impl Case {
             release_velocity: Vector::new(x, y, z),
             incline: *incline,
             minimum_speed: *minimum_speed,
+            settled: 0.0,
             seed: self.seed,
         })
     }

@@ -73,6 +73,7 @@ pub fn trajectory(
     let limits = Limits {
         impacts,
         minimum_speed: 0.0,
+        settled: 0.0,
     };
     let reason = restitution_core::trajectory(body, law, 0.0, release, limits, |impact| {
         all.push(*impact);

@@ -5,8 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.spatial import ConvexHull
 
-from restitution._internal.arrays import FloatArray
-from restitution._internal.parameters import ParameterError, wrong
+from restitution._internal.arrays import FloatArray, directions
 from restitution.bodies import (
     Box,
     Clump,
@@ -30,6 +29,8 @@ _FINE = 3
 _TONE = 0.8
 _SIDES = 48
 """Corners of the polygon that stands for a circular rim."""
+_POINTS = 2000
+"""Of a surface that is known by its support."""
 
 
 @dataclass(frozen=True)
@@ -105,14 +106,14 @@ def surfaces(body: RigidBody, attitude: FloatArray) -> list[_Round | _Faces]:
             balls = body.compiled.balls()
             return [_Round(attitude @ (ball[:3] - middle), np.eye(3) / ball[3] ** 2) for ball in balls]
         case Ellipsoid(semi_axes=axes):
-            return [_Round(np.zeros(3), attitude @ np.diag(np.array(axes) ** -2.0) @ attitude.T)]
+            return [_Round(attitude @ -middle, attitude @ np.diag(np.array(axes) ** -2.0) @ attitude.T)]
         case Box(vertices=points) | ConvexPolyhedron(points=points) | Die(vertices=points):
             return [_hull((np.array(points) - middle) @ attitude.T)]
         case Mesh(vertices=points, hull=hull):
             return [_hull((np.array(points)[hull] - middle) @ attitude.T)]
         case Revolution() | Cylinder() | Ring():
             return [_hull((_rims(np.array(body.compiled.rims)) - middle) @ attitude.T)]
-    raise ParameterError(wrong("body", body, "a body that can be drawn: no Egg, no rough Spherocylinder"))
+    return [_hull(body.farthest(directions(_POINTS)) @ attitude.T)]
 
 
 def _hull(corners: FloatArray) -> _Faces:

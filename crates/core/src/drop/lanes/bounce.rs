@@ -192,6 +192,7 @@ mod tests {
             gravity: 9.81,
             incline: 0.0,
             minimum_speed: 0.0,
+            settled: 0.0,
             seed: 1,
         };
         let plan = Plan::new(&run).unwrap();

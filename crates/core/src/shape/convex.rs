@@ -1,0 +1,112 @@
+//! Convex surfaces that are not made of balls or vertices, and where they are in their body.
+
+use super::revolved::Band;
+use super::superellipsoid::Superellipsoid;
+use super::tree::Instant;
+use crate::math::{Quaternion, Vector};
+
+/// A convex surface in a body, in units of R.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Convex {
+    /// None where its centre is the centre of mass, and its axes are the principal ones.
+    pub frame: Option<Frame>,
+    pub surface: ConvexSurface,
+}
+
+/// A convex surface in its own axes.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) enum ConvexSurface {
+    /// An ellipsoid with these semi-axes.
+    Ellipsoid([f64; 3]),
+    Superellipsoid(Superellipsoid),
+    /// Bands about the third axis.
+    Bands(Vec<Band>),
+}
+
+/// Where the centre of mass and the principal axes of a body are in the axes of its surface.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Frame {
+    /// The rotation from the principal axes to those of the surface.
+    pub axes: Quaternion,
+    /// The centre of mass.
+    pub centre: Vector,
+}
+
+impl Frame {
+    /// The body in the axes of the surface. From its origin the height is z − **n**·**c**.
+    #[inline(always)]
+    pub fn own(&self, at: &Instant) -> Instant {
+        let [up, turning] = [at.up, at.turning].map(|v| self.axes.rotate(v));
+        Instant {
+            height: at.height - self.centre.dot(up),
+            rate: at.rate - self.centre.dot(turning),
+            up,
+            turning,
+        }
+    }
+
+    /// A place of the surface, from the centre of mass and in the principal axes.
+    pub fn place(&self, own: Vector) -> Vector {
+        self.axes.inverse().rotate(own - self.centre)
+    }
+}
+
+impl Convex {
+    /// A surface about the centre of mass, its axes the principal ones.
+    pub fn new(surface: ConvexSurface) -> Self {
+        Self {
+            frame: None,
+            surface,
+        }
+    }
+
+    /// The same surface in another body, whose centre of mass and axes are these in the present ones, in units of `part` of the present one.
+    pub fn with_frame(&self, axes: Quaternion, centre: Vector, part: f64) -> Self {
+        let (turn, shift) = match self.frame {
+            Some(frame) => (frame.axes, frame.centre),
+            None => (Quaternion::IDENTITY, Vector::default()),
+        };
+        let surface = match &self.surface {
+            ConvexSurface::Ellipsoid(semi_axes) => {
+                ConvexSurface::Ellipsoid(semi_axes.map(|axis| axis / part))
+            }
+            ConvexSurface::Superellipsoid(body) => ConvexSurface::Superellipsoid(body.scaled(part)),
+            ConvexSurface::Bands(bands) => {
+                let moved = |band: &Band| band.scaled(part, centre.norm());
+                ConvexSurface::Bands(bands.iter().map(moved).collect())
+            }
+        };
+        Self {
+            frame: Some(Frame {
+                axes: (turn * axes).normalized(),
+                centre: (shift + turn.rotate(centre)) / part,
+            }),
+            surface,
+        }
+    }
+
+    /// The distance from the centre of mass to the lowest place, in the direction against `up`.
+    pub fn support(&self, up: Vector) -> f64 {
+        let at = Instant {
+            height: 0.0,
+            rate: 0.0,
+            up,
+            turning: Vector::default(),
+        };
+        let own = self.frame.map_or(at, |frame| frame.own(&at));
+        self.surface.support(own.up) - own.height
+    }
+}
+
+impl ConvexSurface {
+    fn support(&self, up: Vector) -> f64 {
+        match self {
+            Self::Ellipsoid([a, b, c]) => Vector::new(a * up.x, b * up.y, c * up.z).norm(),
+            Self::Superellipsoid(body) => body.support(up),
+            Self::Bands(bands) => bands
+                .iter()
+                .map(|band| band.support(up * -1.0))
+                .fold(f64::NEG_INFINITY, f64::max),
+        }
+    }
+}
