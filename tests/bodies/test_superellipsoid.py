@@ -62,10 +62,12 @@ def test_the_support_is_the_largest_projection(exponents: tuple[float, float]) -
     surface = np.array([place(pair) for pair in grid])
     for normal, distance in zip(normals, found, strict=True):
         start = grid[np.argmax(surface @ normal)]
+
+        def away(pair: Any, u: Any = normal) -> float:
+            return -1e3 * float(place(pair) @ u)
+
         options: Any = {"xatol": 1e-12, "fatol": 1e-14, "maxfev": 2000}
-        best = minimize(
-            lambda pair, u=normal: -float(place(pair) @ u) * 1e3, start, method="Nelder-Mead", options=options
-        )
+        best = minimize(away, start, method="Nelder-Mead", options=options)
         assert -1e-3 * best.fun == pytest.approx(distance, rel=1e-8)
         assert distance <= body.compiled.farthest() * (1.0 + 1e-12)
 

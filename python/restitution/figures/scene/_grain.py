@@ -29,7 +29,7 @@ _FINE = 3
 _TONE = 0.8
 _SIDES = 48
 """Corners of the polygon that stands for a circular rim."""
-_POINTS = 2000
+_POINTS = 600
 """Of a surface that is known by its support."""
 
 
