@@ -212,11 +212,3 @@ def check_units(name: str, value: Any, unit: str) -> None:
     if said is not None and _spelt(str(said)) not in alike:
         text = f" has units {shown(said)}: must be in {unit}; drop_attrs() removes units that xarray copied"
         raise ParameterError(Problem(name, text))
-
-
-def directions(number: int) -> FloatArray:
-    """Return unit vectors, shape (number, 3), evenly all around: a spiral that turns by the golden angle."""
-    place = np.arange(number) + 0.5
-    polar, azimuth = np.arccos(1.0 - 2.0 * place / number), np.pi * (1.0 + 5.0**0.5) * place
-    level = np.sin(polar)
-    return np.stack([np.cos(azimuth) * level, np.sin(azimuth) * level, np.cos(polar)], axis=1)

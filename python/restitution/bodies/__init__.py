@@ -15,6 +15,7 @@ from restitution.bodies._mesh import Mesh
 from restitution.bodies._polyhedra import Box, ConvexPolyhedron
 from restitution.bodies._revolution import Cylinder, Egg, Revolution, Ring
 from restitution.bodies._rigid import RigidBody as RigidBody
+from restitution.bodies._rigid import directions as directions
 from restitution.bodies._rough import Rough, RoughSphere
 from restitution.bodies._roundness import GRADES as GRADES
 from restitution.bodies._roundness import ROUGHNESS as ROUGHNESS

@@ -11,7 +11,7 @@ from pydantic import BeforeValidator, Field, ValidationInfo
 
 from restitution import _core
 from restitution._internal import text as _text
-from restitution._internal.arrays import FloatArray, directions, real, reals
+from restitution._internal.arrays import FloatArray, real, reals
 from restitution._internal.parameters import Allowed, Number, ParameterError, Problem, shown, wrong
 from restitution.bodies._body import AnyBody
 
@@ -35,8 +35,14 @@ _FACES = np.array(
 )
 """Attitudes with each axis of the body up or down."""
 _STEP = 1e-5
-_AROUND = directions(400)
-"""Directions, about 6 degrees apart."""
+
+
+def directions(number: int) -> FloatArray:
+    """Return unit vectors, shape (number, 3), evenly all around: a spiral that turns by the golden angle."""
+    place = np.arange(number) + 0.5
+    polar, azimuth = np.arccos(1.0 - 2.0 * place / number), np.pi * (1.0 + 5.0**0.5) * place
+    level = np.sin(polar)
+    return np.stack([np.cos(azimuth) * level, np.sin(azimuth) * level, np.cos(polar)], axis=1)
 
 
 @contextmanager
@@ -170,6 +176,6 @@ def with_inertia(body: _core.Rigid, tensor: Rows, centre: tuple[float, ...] | No
     """Give a body of the same mass a tensor of inertia, about another centre of mass or its own."""
     place = body.centre if centre is None else centre
     given = body.with_inertia({"mass": body.mass, "centre": place, "tensor": tensor})
-    if (given.supports(_AROUND) <= 0.0).any():
+    if (given.supports(directions(400)) <= 0.0).any():
         raise ParameterError(wrong("centre", place, "within the body (m)"))
     return given

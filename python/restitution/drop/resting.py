@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from restitution._internal.arrays import FloatArray, IntArray, directions, reals
+from restitution._internal.arrays import FloatArray, IntArray, reals
 from restitution._internal.parameters import ParameterError, Problem, wrong
 from restitution.bodies import (
     Box,
@@ -22,6 +22,7 @@ from restitution.bodies import (
     Ring,
     Rough,
     RoughSphere,
+    directions,
 )
 from restitution.drop.recorded import RECORDS, check_filled, check_successive, pull, variables
 from restitution.laws import Law

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.spatial import ConvexHull
 
-from restitution._internal.arrays import FloatArray, directions
+from restitution._internal.arrays import FloatArray
 from restitution.bodies import (
     Box,
     Clump,
@@ -21,6 +21,7 @@ from restitution.bodies import (
     Ring,
     Rough,
     RoughSphere,
+    directions,
 )
 from restitution.figures.scene._solid import PIXELS, shade
 
