@@ -135,6 +135,7 @@ def test_large_runs_are_shown_in_part() -> None:
         ({"body": rs.Cylinder(radius=1e-3, height=2e-3), **FREE}, "body = Cylinder"),
         ({"body": rs.Clump(spheres=1001 * [(0, 0, 0, 1e-3)]), **FREE}, "body.spheres = 1001 rows"),
         ({"body": rs.Clump(spheres=[(0, 0, 0, 1e-3)], inertia="sum"), **FREE}, "body.inertia"),
+        ({"body": rs.Box(1e-3, 1e-3, 1e-3, inertia=1e-12 * np.eye(3)), **FREE}, "body.inertia"),
         ({"body": rs.RoughSphere(**ROUGH, heights=1e-6), **FREE}, "body.heights"),
         ({"body": rs.RoughSphere(**ROUGH | {"asperities": 20_000}), **FREE}, "body.asperities"),
         (

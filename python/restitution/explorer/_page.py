@@ -83,6 +83,8 @@ def _body(run: Run) -> dict[str, Any]:
 
 
 def _rigid(body: Any) -> dict[str, Any]:
+    if getattr(body, "inertia", None) not in (None, "union"):
+        raise _cannot("body.inertia", "another", "that of homogeneous matter")
     match body:
         case Box():
             return {"edge_x": body.a, "edge_y": body.b, "edge_z": body.c, "density": body.density}
@@ -92,8 +94,6 @@ def _rigid(body: Any) -> dict[str, Any]:
             axes = zip("xyz", body.semi_axes, strict=True)
             return {**{f"axis_{name}": axis for name, axis in axes}, "density": body.density}
         case Clump():
-            if body.inertia != "union":
-                raise _cannot("body.inertia", "not that of the union", '"union"')
             spheres = _table("spheres", body.spheres, MOST_SPHERES)
             return {"spheres": spheres, "density": body.density}
         case Mesh():
