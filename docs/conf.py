@@ -102,7 +102,7 @@ CARDS = {
     "near-round": ("near_round.png", 0.0, 0.0, 0.33, 1.0),
     "real-collisions": ("real-collisions.png", 0.0, 0.5, 0.5, 1.0),
     "dice": ("dice.png", 0.0, 0.0, 0.5, 1.0),
-    "rough": ("hulls.png", 0.8, 0.0, 1.0, 1.0),
+    "rough": ("rough-bodies.png", 0.52, 0.06, 0.75, 0.5),
     "imperfections": ("imperfections.png", 0.0, 0.0, 0.46, 0.5),
     "homework": ("impulses.png", 0.67, 0.5, 1.0, 1.0),
     "gas": ("cooling.png", 0.0, 0.1, 0.33, 1.0),

@@ -78,14 +78,60 @@ def laws(style: str) -> Image.Image:
 
 
 def grains(style: Style) -> Figure:
-    """Draw bodies without an axis, and under each the density of ε at impacts with 0.35 to 0.45 m/s."""
+    """Draw bodies without an axis."""
     stone = np.random.default_rng(2).normal(size=(24, 3)) * [3e-3, 2.5e-3, 2e-3]
     bodies = {
         "Clump": rs.Clump(spheres=1e-3 * np.array([(0, 0, 2, 3), (2.5, 0, -1.5, 2.5), (-2, 1, -1.5, 2)])),
         "Ellipsoid": rs.Ellipsoid(semi_axes=(4e-3, 3e-3, 2e-3)),
+        "Superellipsoid": rs.Superellipsoid(semi_axes=(4e-3, 3e-3, 2e-3), exponents=(5, 5)),
         "Box": rs.Box(8e-3, 6e-3, 4e-3),
         "ConvexPolyhedron": rs.ConvexPolyhedron(stone),
     }
+    return _with_densities(bodies, style)
+
+
+def hulls(style: Style) -> Figure:
+    """Draw solids of revolution and a die."""
+    profile = 1e-3 * np.array([(-4, 0), (-3, 1), (0, 3), (1, 3), (3, 1), (4, 0)])
+    bodies = {
+        "Cylinder": rs.Cylinder(radius=2e-3, height=6e-3),
+        "Ring": rs.Ring(outer=4e-3, inner=2e-3, height=2e-3),
+        "Revolution": rs.Revolution(profile=profile),
+        "Egg": rs.Egg(length=7e-3, width=5e-3, blunt_end=2.3e-3, tip=1.5e-3),
+        "Die": rs.Die(12, 3e-3),
+    }
+    return _with_densities(bodies, style)
+
+
+def rough(style: Style) -> Figure:
+    """Draw rough bodies, and the mesh of a bracket."""
+    heights = ("exponential", 1e-4)
+    spherocylinder = rs.Spherocylinder(radius=2e-3, separation=4e-3)
+    bodies = {
+        "Rough(Dumbbell)": rs.Rough(
+            rs.Dumbbell(radius=2e-3, separation=3e-3), asperities=300, asperity_radius=2e-4
+        ),
+        "Rough(Spherocylinder)": rs.Rough(spherocylinder, asperities=300, asperity_radius=2e-4),
+        "RoughSphere": rs.RoughSphere(radius=3e-3, asperities=1000, asperity_radius=2e-4, heights=heights),
+        "Mesh": _bracket(),
+    }
+    return _with_densities(bodies, style)
+
+
+def _bracket() -> rs.Mesh:
+    """Make an angle with two legs, which is not convex: a plane touches its hull."""
+    outline = 1e-3 * np.array([(0, 0), (6, 0), (6, 2), (2, 2), (2, 5), (0, 5)])
+    number = len(outline)
+    corners = [(x, y, z) for z in (0.0, 3e-3) for x, y in outline]
+    below = [(0, 2, 1), (0, 3, 2), (0, 4, 3), (0, 5, 4)]
+    above = [tuple(number + i for i in reversed(triangle)) for triangle in below]
+    around = [(i, (i + 1) % number) for i in range(number)]
+    sides = [[(i, j, number + j), (i, number + j, number + i)] for i, j in around]
+    return rs.Mesh(vertices=corners, triangles=[*below, *above, *(one for side in sides for one in side)])
+
+
+def _with_densities(bodies: dict[str, AnyBody], style: Style) -> Figure:
+    """Draw bodies, and under each the density of ε at impacts with 0.35 to 0.45 m/s."""
     figure, (above, below) = rs.figures.panels(rs.figures.PAGE, 3.4, rows=2, columns=len(bodies))
     for picture, axes, (name, body) in zip(above, below, bodies.items(), strict=True):
         _portrait(picture, name, body, style)
@@ -96,23 +142,6 @@ def grains(style: Style) -> Figure:
         axes.stairs(number / near.size / np.diff(edges), edges)
         axes.set(xlabel=r"$\varepsilon$", xlim=(edges[0], edges[-1]), ylim=(0.0, None))
     below[0].set_ylabel(r"$p(\varepsilon \mid v = 0.4$ m/s$)$")
-    return figure
-
-
-def hulls(style: Style) -> Figure:
-    """Draw solids of revolution, a die, and rough bodies."""
-    profile = 1e-3 * np.array([(-4, 0), (-3, 1), (0, 3), (1, 3), (3, 1), (4, 0)])
-    heights = ("exponential", 1e-4)
-    bodies = {
-        "Cylinder": rs.Cylinder(radius=2e-3, height=6e-3),
-        "Revolution": rs.Revolution(profile=profile),
-        "Die": rs.Die(12, 3e-3),
-        "Rough": rs.Rough(rs.Dumbbell(radius=2e-3, separation=3e-3), asperities=300, asperity_radius=2e-4),
-        "RoughSphere": rs.RoughSphere(radius=3e-3, asperities=1000, asperity_radius=2e-4, heights=heights),
-    }
-    figure, [row] = rs.figures.panels(rs.figures.PAGE, 1.6, columns=len(bodies))
-    for axes, (name, body) in zip(row, bodies.items(), strict=True):
-        _portrait(axes, name, body, style)
     return figure
 
 
@@ -138,7 +167,7 @@ def main(folder: Path) -> None:
     grounds: tuple[Style, ...] = ("page", "page-dark")
     for ground in grounds:
         shapes(ground).save(folder / f"shapes{ground.removeprefix('page')}.png")
-        for name, draw in (("grains", grains), ("hulls", hulls)):
+        for name, draw in (("grains", grains), ("hulls", hulls), ("rough-bodies", rough)):
             drawn = rs.figures.styled(draw)(style=ground)
             rs.figures.save(drawn, folder / f"{name}{ground.removeprefix('page')}.png", title=name.title())
         laws(ground).save(folder / f"impulses{ground.removeprefix('page')}.png")
