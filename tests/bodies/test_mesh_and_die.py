@@ -7,8 +7,10 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 import pytest
+from scipy.spatial import ConvexHull
 
 import restitution as rs
+from restitution.bodies import directions
 
 Array = npt.NDArray[np.float64]
 
@@ -204,3 +206,21 @@ def test_files_that_hold_no_closed_mesh_are_refused(tmp_path: Path, monkeypatch:
 def test_surfaces_that_enclose_nothing_are_refused(given: dict[str, Any], message: str) -> None:
     with pytest.raises(ValueError, match=message):
         rs.Mesh(**({"vertices": 1e-3 * CORNERS, "triangles": FACES} | given))
+
+
+@pytest.mark.slow
+def test_a_mesh_of_a_hundred_thousand_vertices() -> None:
+    """One on an ellipsoid: mass and inertia within its resolution, and the first impacts of the ellipsoid."""
+    axes = (3e-3, 2e-3, 1.5e-3)
+    points = directions(100_000) * axes
+    triangles = ConvexHull(points).simplices
+    a, b, c = np.moveaxis(points[triangles], 1, 0)
+    inwards = np.einsum("ij,ij->i", np.cross(b - a, c - a), a) < 0.0
+    triangles[inwards] = triangles[inwards][:, ::-1]
+    mesh, ellipsoid = rs.Mesh(vertices=points, triangles=triangles), rs.Ellipsoid(semi_axes=axes)
+    assert len(mesh.hull) == len(points)
+    assert mesh.mass == pytest.approx(ellipsoid.mass, rel=1e-4)
+    np.testing.assert_allclose(mesh.principal_moments, ellipsoid.principal_moments, rtol=2e-4)
+    law = rs.Frictionless(normal=0.9)
+    one, other = (rs.simulate(body, law, particles=200, impacts=1) for body in (mesh, ellipsoid))
+    np.testing.assert_allclose(one.restitution, other.restitution, atol=0.03)
