@@ -55,11 +55,10 @@ impl Digest {
 
     fn histogram(&mut self, histogram: &Histogram, rows: usize) {
         let grids: [&Grid; 2] = [&histogram.restitution, &histogram.fraction];
-        for count in grids
-            .into_iter()
-            .flat_map(Grid::counts)
-            .chain(&histogram.rows.stops)
-        {
+        // Bodies of revolution do not settle: the last reason counts nobody.
+        let [stops @ .., settled] = &histogram.rows.stops;
+        assert_eq!(*settled, 0);
+        for count in grids.into_iter().flat_map(Grid::counts).chain(stops) {
             self.word(*count);
         }
         for row in 0..rows {
