@@ -127,6 +127,10 @@ CALLS: dict[str, Call] = {
     ),
     "Clump.from_file": (rs.Clump.from_file, lambda: {"path": folder() / "clump.csv", "scale": 1e-3}),
     "Clump.to_csv": (rs.Clump.to_csv, of("clump", path="clump.csv", replace=True)),
+    "Superellipsoid": (
+        rs.Superellipsoid,
+        lambda: {"semi_axes": (3e-3, 2e-3, 1e-3), "exponents": (4.0, 3.0), "density": 1e3},
+    ),
     "Ellipsoid": (rs.Ellipsoid, lambda: {"semi_axes": (3e-3, 2e-3, 1e-3), "density": 1e3}),
     "RoughSphere": (
         rs.RoughSphere,

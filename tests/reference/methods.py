@@ -51,6 +51,7 @@ FIRST, LEARNED = analytic.FirstImpact, rs.FluctuatingRestitution
 CALLS: dict[str, Call] = {
     **_methods("analytic.FirstImpact", FIRST, "first", _FROZEN),
     "analytic.FirstImpact.expect": (_own(FIRST, "expect"), of("first", func=_wave)),
+    "analytic.FirstImpact.at": (_own(FIRST, "at"), of("first", normal=[(0.0, 0.0, 1.0), (0.6, 0.0, 0.8)])),
     "analytic.FirstImpact.cos_theta": (_own(FIRST, "cos_theta"), of("first", restitution=0.8)),
     "analytic.FirstImpact.restitution": (_own(FIRST, "restitution"), of("first", cos_theta=0.5)),
     **_methods("FluctuatingRestitution", LEARNED, "dist", _LEARNED, v=0.8),

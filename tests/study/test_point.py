@@ -81,7 +81,7 @@ def test_standard_errors_leave_out_each_group_of_both_blocks(tmp_path: Path) -> 
         assert found[f"{name}_error"].attrs["long_name"] == f"standard error of {about}"
     reasons = data.stop_reason.attrs["flag_meanings"]
     assert found.stop_reason.attrs["flag_meanings"] == reasons
-    assert found.stop_reason.values.tolist() == found.stop_reason.attrs["flag_values"] == list(range(5))
+    assert found.stop_reason.values.tolist() == found.stop_reason.attrs["flag_values"] == list(range(6))
 
 
 def moments(found: xr.Dataset) -> xr.Dataset:

@@ -18,7 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from restitution.analytic._orientation import Floats
-from restitution.bodies import RigidBody
+from restitution.bodies import RigidBody, farthest
 
 Ints: TypeAlias = NDArray[np.intp]
 
@@ -48,7 +48,7 @@ class Smooth(Balls):
 
     def contact(self, down: Floats, element: Ints) -> Floats:
         """Return the point that is farthest down."""
-        found = self.body.farthest(np.reshape(down @ self.axes.T, (-1, 3)))
+        found = farthest(self.body, np.reshape(down @ self.axes.T, (-1, 3)))
         return np.reshape(found @ self.axes / self.body.compiled.farthest(), down.shape)
 
 

@@ -9,6 +9,7 @@ from restitution.bodies._clump import Clump
 from restitution.bodies._die import Die
 from restitution.bodies._dumbbell import Dumbbell
 from restitution.bodies._ellipsoid import Ellipsoid, Superellipsoid
+from restitution.bodies._ellipsoid import farthest as farthest
 from restitution.bodies._hollow import Wall as Wall
 from restitution.bodies._loaded_sphere import LoadedSphere
 from restitution.bodies._mesh import Mesh

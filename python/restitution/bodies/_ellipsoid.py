@@ -1,4 +1,4 @@
-"""Ellipsoids and superellipsoids."""
+"""Ellipsoids and superellipsoids, and points of smooth surfaces."""
 
 from typing import Annotated, Any
 
@@ -6,9 +6,9 @@ import numpy as np
 from pydantic import BeforeValidator, Field
 
 from restitution import _core
-from restitution._internal.arrays import reals
+from restitution._internal.arrays import FloatArray, reals
 from restitution._internal.parameters import Allowed, ParameterError, wrong
-from restitution.bodies._rigid import Density, Matter
+from restitution.bodies._rigid import Density, Matter, RigidBody
 
 _AXES = "three finite numbers > 0 in m, the largest at most 1000 times the smallest"
 
@@ -98,3 +98,25 @@ class Superellipsoid(Matter):
     def _homogeneous(self) -> _core.Rigid:
         """Make the body of homogeneous matter."""
         return _core.superellipsoid(self.semi_axes, self.exponents, self.density)
+
+
+_STEP = 1e-5
+
+
+def farthest(body: RigidBody, normals: FloatArray) -> FloatArray:
+    """Return the points farthest along unit vectors, from the centre of mass, in m; shape (n, 3).
+
+    Of an ellipsoid in closed form. Others have the gradient of the support function h, by differences: to
+    1e-9 where the surface is smooth.
+    """
+    if isinstance(body, Ellipsoid):
+        axes = np.array(body.semi_axes)
+        size = np.linalg.norm(normals * axes, axis=1, keepdims=True)
+        return np.asarray(normals * axes**2 / size - body.centre_of_mass)
+
+    def h(vectors: FloatArray) -> FloatArray:
+        size = np.linalg.norm(vectors, axis=1)
+        return np.asarray(size * body.compiled.supports(vectors / size[:, None]))
+
+    changes = [h(normals + _STEP * axis) - h(normals - _STEP * axis) for axis in np.eye(3)]
+    return np.stack(changes, axis=1) / (2.0 * _STEP)

@@ -34,7 +34,6 @@ _FACES = np.array(
     ]
 )
 """Attitudes with each axis of the body up or down."""
-_STEP = 1e-5
 
 
 def directions(number: int) -> FloatArray:
@@ -128,19 +127,6 @@ class RigidBody(AnyBody):
     def principal_moments(self) -> FloatArray:
         """The three principal moments of inertia, in kg m²."""
         return np.array(self.compiled.principal_moments)
-
-    def farthest(self, normals: FloatArray) -> FloatArray:
-        """Return the points farthest along unit vectors, from the centre of mass, in m; shape (n, 3).
-
-        They are the gradient of the support function h, by differences: to 1e-9 where the surface is smooth.
-        """
-
-        def h(vectors: FloatArray) -> FloatArray:
-            size = np.linalg.norm(vectors, axis=1)
-            return np.asarray(size * self.compiled.supports(vectors / size[:, None]))
-
-        changes = [h(normals + _STEP * axis) - h(normals - _STEP * axis) for axis in np.eye(3)]
-        return np.stack(changes, axis=1) / (2.0 * _STEP)
 
     def attributes(self) -> dict[str, Any]:
         """Return every parameter under its own name, rows of tables one after the other."""

@@ -22,6 +22,7 @@ from restitution.bodies import (
     Rough,
     RoughSphere,
     directions,
+    farthest,
 )
 from restitution.figures.scene._solid import PIXELS, shade
 
@@ -114,7 +115,7 @@ def surfaces(body: RigidBody, attitude: FloatArray) -> list[_Round | _Faces]:
             return [_hull((np.array(points)[hull] - middle) @ attitude.T)]
         case Revolution() | Cylinder() | Ring():
             return [_hull((_rims(np.array(body.compiled.rims)) - middle) @ attitude.T)]
-    return [_hull(body.farthest(directions(_POINTS)) @ attitude.T)]
+    return [_hull(farthest(body, directions(_POINTS)) @ attitude.T)]
 
 
 def _hull(corners: FloatArray) -> _Faces:
