@@ -97,7 +97,8 @@ def trajectory(data: xr.Dataset, particle: int, times: npt.ArrayLike) -> xr.Data
     """
     import xarray as xr
 
-    turns = _check(data)
+    _check(data)
+    turns = _top(data) if "attitude" in data else _symmetric(_slender(data))
     pulled = np.array(_gravity(*pull("data", data)))
     heights = np.broadcast_to(released_from("data", data), data.sizes["particle"])
     one = _particle(data.assign(release_height=("particle", heights)), particle)
@@ -153,12 +154,11 @@ _Turns = Callable[[dict[str, FloatArray], FloatArray], dict[str, FloatArray]]
 """The rotation after some times, from its beginnings."""
 
 
-def _check(data: xr.Dataset) -> _Turns:
-    """Refuse states that are no numbers, or not those of all impacts; say how such a body turns."""
+def _check(data: xr.Dataset) -> None:
+    """Refuse states that are no numbers, or not those of all impacts from the release on."""
     there = getattr(data, "variables", ())
-    free = "attitude" in there
     given = {name: needed for name, needed in _RELEASED.items() if name in there}
-    own = _WITHOUT if free else _WITH_AXIS
+    own = _WITHOUT if "attitude" in there else _WITH_AXIS
     variables("data", data, 'restitution.simulate(..., record="state")', _NEEDED | own | given)
     check_successive("data", data, start=0)
     check_frame("data", data)
@@ -166,7 +166,6 @@ def _check(data: xr.Dataset) -> _Turns:
     velocity = data.attrs.get("release_velocity")
     if reals("data.release_velocity", velocity, allowed).shape != (3,):
         raise ParameterError(wrong("data.release_velocity", velocity, allowed))
-    return _top(data) if free else _symmetric(_slender(data))
 
 
 def _symmetric(slender: float) -> _Turns:
