@@ -42,7 +42,11 @@ THROWN: dict[str, Any] = {
 REST: dict[str, Any] = {}
 
 
-TETRAPOD = [(1, 1, 1, 1), (1, -1, -1, 1), (-1, 1, -1, 1.2), (-1, -1, 1, 0.8)]
+FOUR = rs.Clump(
+    spheres=0.5 * R * np.array([(1, 1, 1, 1), (1, -1, -1, 1), (-1, 1, -1, 1.2), (-1, -1, 1, 0.8)])
+)
+ELLIPSOID = rs.Ellipsoid(semi_axes=(R, 0.8 * R, 0.6 * R))
+DIE = rs.Box(R, R, R)
 ROUGH: dict[str, Any] = {"radius": R, "asperity_radius": 1e-3 * R}
 
 
@@ -107,11 +111,11 @@ SPUN = Row("equal dumbbell spinning, frictionless", 1.0, DUMBBELL, SMOOTH, SPINN
 RIGID = tuple(
     Row(f"{name} spinning, frictionless", target, body, SMOOTH, SPINNING)
     for name, target, body in (
-        ("clump of 4", 30.0, rs.Clump(spheres=0.5 * R * np.array(TETRAPOD))),
+        ("clump of 4", 30.0, FOUR),
         ("clump of 16", 45.0, clump(16)),
         ("clump of 1000", 135.0, clump(1000)),
-        ("triaxial ellipsoid", 30.0, rs.Ellipsoid(semi_axes=(R, 0.8 * R, 0.6 * R))),
-        ("die", 30.0, rs.Box(R, R, R)),
+        ("triaxial ellipsoid", 30.0, ELLIPSOID),
+        ("die", 30.0, DIE),
         ("rough sphere, 10² asperities", 30.0, rs.RoughSphere(asperities=100, **ROUGH)),
         ("rough sphere, 10⁴ asperities", 100.0, rs.RoughSphere(asperities=10_000, **ROUGH)),
     )

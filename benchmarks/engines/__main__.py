@@ -14,8 +14,10 @@ BODIES = 96
 
 
 def main() -> None:
-    angles = problem.read("first_impacts")["angle"]
+    first = problem.read("first_impacts")
+    leaning = problem.leaning(first["angle"])
     spread = (np.random.default_rng(1).permutation(BODIES) + 0.5) * np.pi / BODIES
+    spread = problem.leaning(spread)
     print(
         "| engine | step | stiffness | error of the first ε: median | above 0.02 "
         "| σ over the exact one | ⟨ε⟩ less it |"
@@ -29,8 +31,12 @@ def main() -> None:
             print(f"{module}: left out: {error}", flush=True)
             continue
         for step, stiffness in settings:
-            median, share = problem.of_first_impacts(engine.run(angles, FIRST, step, stiffness))
-            ratio, scatter, shift, number = problem.of_spread(engine.run(spread, LONG, step, stiffness))
+            median, share = problem.of_first_impacts(
+                engine.run(problem.DUMBBELL, leaning, FIRST, step, stiffness), first["restitution"]
+            )
+            ratio, scatter, shift, number = problem.of_spread(
+                engine.run(problem.DUMBBELL, spread, LONG, step, stiffness)
+            )
             hard = f"{stiffness:.0e}" if stiffness else "rigid"
             print(
                 f"| {engine.NAME} | {step:.2g} s | {hard} | {median:.4f} | {100 * share:.0f} % "

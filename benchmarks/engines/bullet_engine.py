@@ -4,26 +4,27 @@ import numpy as np
 import pybullet as bullet
 
 from benchmarks.engines.problem import (
-    AXIAL,
     GRAVITY,
     HEIGHT,
-    MASS,
     NORMAL,
-    RADIUS,
-    SEPARATION,
     SPACING,
-    TRANSVERSE,
     Floats,
     Motion,
+    Solid,
     record,
-)  # fmt: skip
+)
 
 NAME = "Bullet (pybullet 3.2.7)"
 SCALE = 100.0
 """Lengths are multiplied by it, for Bullet is made for bodies of 5 cm to 10 m; times stay as they are."""
 
 
-def run(angles: Floats, seconds: float, step: float, stiffness: float) -> Motion:
+def sprung(solid: Solid) -> float:
+    """Give no mass: contacts are rigid."""
+    return 0.0
+
+
+def run(solid: Solid, attitudes: Floats, seconds: float, step: float, stiffness: float) -> Motion:
     """Drop bodies; contacts are rigid, and there is no `stiffness`."""
     client = bullet.connect(bullet.DIRECT)
     try:
@@ -36,18 +37,19 @@ def run(angles: Floats, seconds: float, step: float, stiffness: float) -> Motion
         )
         ground = bullet.createMultiBody(0, bullet.createCollisionShape(bullet.GEOM_PLANE))
         bullet.changeDynamics(ground, -1, restitution=1.0, lateralFriction=0.0)
-        ends = [[0, 0, end * SCALE * SEPARATION / 2] for end in (-1, 1)]
-        shape = bullet.createCollisionShapeArray(
-            shapeTypes=[bullet.GEOM_SPHERE] * 2, radii=[RADIUS * SCALE] * 2, collisionFramePositions=ends
-        )
+        sizes, places = SCALE * np.array(solid.sizes), (SCALE * np.array(solid.places)).tolist()
+        if solid.kind == "sphere":
+            shape = bullet.createCollisionShapeArray(
+                shapeTypes=[bullet.GEOM_SPHERE] * len(sizes),
+                radii=sizes[:, 0].tolist(),
+                collisionFramePositions=places,
+            )
+        else:
+            shape = bullet.createCollisionShape(bullet.GEOM_BOX, halfExtents=sizes[0].tolist())
         bodies = []
-        for i, theta in enumerate(angles):
+        for i, (w, x, y, z) in enumerate(attitudes):
             body = bullet.createMultiBody(
-                MASS,
-                shape,
-                -1,
-                [i * SPACING * SCALE, 0, HEIGHT * SCALE],
-                [0, np.sin(theta / 2), 0, np.cos(theta / 2)],
+                solid.mass, shape, -1, [i * SPACING * SCALE, 0, HEIGHT * SCALE], [x, y, z, w]
             )
             bullet.changeDynamics(
                 body,
@@ -58,15 +60,16 @@ def run(angles: Floats, seconds: float, step: float, stiffness: float) -> Motion
                 spinningFriction=0.0,
                 linearDamping=0.0,
                 angularDamping=0.0,
-                localInertiaDiagonal=[SCALE**2 * own for own in (TRANSVERSE, TRANSVERSE, AXIAL)],
+                localInertiaDiagonal=[SCALE**2 * own for own in solid.moments],
                 activationState=bullet.ACTIVATION_STATE_DISABLE_SLEEPING,
             )
             bodies.append(body)
-
-        def advance(_: int) -> list[float]:
-            bullet.stepSimulation()
-            return [bullet.getBaseVelocity(body)[0][2] / SCALE for body in bodies]
-
-        return record(advance, angles.size, seconds, step)
+        return record(
+            lambda _: bullet.stepSimulation(),
+            lambda: [bullet.getBaseVelocity(body)[0][2] / SCALE for body in bodies],
+            len(bodies),
+            seconds,
+            step,
+        )
     finally:
         bullet.disconnect(client)

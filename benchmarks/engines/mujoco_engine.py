@@ -4,41 +4,40 @@ import mujoco
 import numpy as np
 
 from benchmarks.engines.problem import (
-    AXIAL,
     GRAVITY,
     HEIGHT,
-    MASS,
-    RADIUS,
-    SEPARATION,
     SPACING,
-    TRANSVERSE,
     Floats,
     Motion,
+    Solid,
     damping,
     record,
-)  # fmt: skip
+)
 
 NAME = f"MuJoCo {mujoco.__version__}"
 
 
-def run(angles: Floats, seconds: float, step: float, stiffness: float) -> Motion:
+def sprung(solid: Solid) -> float:
+    """Give the mass in the unit of the stiffness, which is that of a unit mass."""
+    return 1.0
+
+
+def run(solid: Solid, attitudes: Floats, seconds: float, step: float, stiffness: float) -> Motion:
     """Drop bodies; `stiffness` is that of MuJoCo's ``solref``, in 1/s², the damping follows from ε_n."""
     contact = (
         f'condim="1" solref="{-stiffness} {-damping(stiffness)}" solimp="0.9999 0.9999 0.001" margin="0"'
     )
-    bodies = []
-    for i, theta in enumerate(angles):
-        quaternion = f"{np.cos(theta / 2)} 0 {np.sin(theta / 2)} 0"
-        spheres = "".join(
-            f'<geom type="sphere" size="{RADIUS}" pos="0 0 {end * SEPARATION / 2}" mass="0" contype="1" '
-            f'conaffinity="0" {contact}/>'
-            for end in (-1, 1)
-        )
-        bodies.append(
-            f'<body pos="{i * SPACING} 0 {HEIGHT}" quat="{quaternion}"><freejoint/>'
-            f'<inertial pos="0 0 0" mass="{MASS}" diaginertia="{TRANSVERSE} {TRANSVERSE} {AXIAL}"/>'
-            f"{spheres}</body>"
-        )
+    parts = "".join(
+        f'<geom type="{solid.kind}" size="{_words(size)}" pos="{_words(place)}" mass="0" contype="1" '
+        f'conaffinity="0" {contact}/>'
+        for size, place in zip(solid.sizes, solid.places, strict=True)
+    )
+    bodies = [
+        f'<body pos="{i * SPACING} 0 {HEIGHT}" quat="{_words(attitude)}"><freejoint/>'
+        f'<inertial pos="0 0 0" mass="{solid.mass}" diaginertia="{_words(solid.moments)}"/>'
+        f"{parts}</body>"
+        for i, attitude in enumerate(attitudes)
+    ]
     plane = f'<geom type="plane" size="0 0 1" contype="0" conaffinity="1" {contact}/>'
     option = f'<option timestep="{step}" gravity="0 0 {-GRAVITY}" integrator="Euler" tolerance="0"/>'
     size = '<size memory="200M"/>'
@@ -46,9 +45,14 @@ def run(angles: Floats, seconds: float, step: float, stiffness: float) -> Motion
         f"<mujoco>{option}{size}<worldbody>{plane}{''.join(bodies)}</worldbody></mujoco>"
     )
     data = mujoco.MjData(model)
+    return record(
+        lambda _: mujoco.mj_step(model, data),
+        lambda: np.asarray(data.qvel[2::6]),
+        len(attitudes),
+        seconds,
+        step,
+    )
 
-    def advance(_: int) -> Floats:
-        mujoco.mj_step(model, data)
-        return np.asarray(data.qvel[2::6])
 
-    return record(advance, angles.size, seconds, step)
+def _words(numbers: Floats | tuple[float, ...]) -> str:
+    return " ".join(str(float(number)) for number in numbers)

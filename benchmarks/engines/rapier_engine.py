@@ -3,24 +3,26 @@
 import rapier3d as rapier
 
 from benchmarks.engines.problem import (
-    AXIAL,
     GRAVITY,
     HEIGHT,
-    MASS,
     NORMAL,
     RADIUS,
-    SEPARATION,
     SPACING,
-    TRANSVERSE,
     Floats,
     Motion,
+    Solid,
     record,
-)  # fmt: skip
+)
 
 NAME = "Rapier (rapier3d 0.36.1)"
 
 
-def run(angles: Floats, seconds: float, step: float, stiffness: float) -> Motion:
+def sprung(solid: Solid) -> float:
+    """Give no mass: contacts are rigid."""
+    return 0.0
+
+
+def run(solid: Solid, attitudes: Floats, seconds: float, step: float, stiffness: float) -> Motion:
     """Drop bodies; contacts are nearly rigid, and `stiffness` is left at what the engine chooses."""
     world = rapier.PhysicsWorld(gravity=(0.0, 0.0, -GRAVITY))
     world.integration_parameters.dt = step
@@ -29,30 +31,28 @@ def run(angles: Floats, seconds: float, step: float, stiffness: float) -> Motion
     world.add_body(
         ground, [rapier.Collider.halfspace((0.0, 0.0, 1.0)).friction(0.0).restitution(NORMAL).build()]
     )
-    properties = rapier.MassProperties((0.0, 0.0, 0.0), MASS, (TRANSVERSE, TRANSVERSE, AXIAL))
+    properties = rapier.MassProperties((0.0, 0.0, 0.0), solid.mass, solid.moments)
+    collider = rapier.Collider.ball if solid.kind == "sphere" else rapier.Collider.cuboid
     handles = []
-    for i, theta in enumerate(angles):
+    for i, attitude in enumerate(attitudes):
+        turn = rapier.Rotation3(*map(float, attitude))
         body = (
             rapier.RigidBody.dynamic()
             .translation((i * SPACING, 0.0, HEIGHT))
-            .rotation((0.0, float(theta), 0.0))
+            .rotation(turn.scaled_axis)
             .additional_mass_properties(properties)
             .can_sleep(False)
             .build()
         )
-        spheres = [
-            rapier.Collider.ball(RADIUS)
-            .translation((0.0, 0.0, end * SEPARATION / 2))
-            .density(0.0)
-            .friction(0.0)
-            .restitution(NORMAL)
-            .build()
-            for end in (-1, 1)
+        parts = [
+            collider(*size).translation(place).density(0.0).friction(0.0).restitution(NORMAL).build()
+            for size, place in zip(solid.sizes, solid.places, strict=True)
         ]
-        handles.append(world.add_body(body, spheres))
-
-    def advance(_: int) -> list[float]:
-        world.step()
-        return [world.rigid_bodies[handle].linvel.z for handle in handles]
-
-    return record(advance, angles.size, seconds, step)
+        handles.append(world.add_body(body, parts))
+    return record(
+        lambda _: world.step(),
+        lambda: [world.rigid_bodies[handle].linvel.z for handle in handles],
+        len(handles),
+        seconds,
+        step,
+    )
