@@ -49,7 +49,7 @@ each = pytest.mark.parametrize("distribution", ALL, ids=named)
 every = pytest.mark.parametrize("distribution", ALL + CLOSED, ids=named)
 
 
-@settings(max_examples=50)
+@settings(max_examples=25)
 @given(distribution=st.sampled_from(ALL), q=st.floats(0, 1))
 def test_quantiles_invert_the_distribution_function(distribution: FirstImpact, q: float) -> None:
     """To what the neighbouring ε of the quantile have as probability."""
@@ -295,12 +295,12 @@ def test_errors_name_the_argument(told: str, use: Callable[[FirstImpact], object
 
 def test_draws_are_what_fits_into_memory(monkeypatch: pytest.MonkeyPatch) -> None:
     """Three numbers a draw: the uniform one, the quantile, and what it is found with."""
-    monkeypatch.setattr("restitution._internal.resources.available_memory", lambda: 2399)
-    assert np.shape(ALL[0].rvs(size=(9, 11), random_state=1)) == (9, 11)
+    monkeypatch.setattr("restitution._internal.resources.available_memory", lambda: 71_999)
+    assert np.shape(ALL[0].rvs(size=(1, 2999), random_state=1)) == (1, 2999)
     with pytest.raises(
-        MemoryError, match=r"^size = 100: must be at most 99 draws, which this process can hold$"
+        MemoryError, match=r"^size = 3000: must be at most 2999 draws, which this process can hold$"
     ):
-        ALL[0].rvs(size=100)
+        ALL[0].rvs(size=3000)
 
 
 def test_the_shortest_and_the_longest_pair() -> None:

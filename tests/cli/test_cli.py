@@ -3,7 +3,7 @@
 import importlib
 import re
 import resource
-import subprocess
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -12,7 +12,7 @@ import pytest
 import xarray as xr
 
 import restitution as rs
-from reference.command import COMMAND, SMALL, invoke, load, small
+from reference.command import SMALL, Command, invoke, load, small
 from restitution._core import STOP_REASONS
 from restitution.cli import BAD_INPUT, FAILED, INTERRUPTED
 from restitution.drop.toml import read
@@ -146,15 +146,9 @@ def test_a_full_disk_leaves_nothing(parameters: Path) -> None:
     """A limit on the size of files stands for the disk; the old file stays, no part of the new one does."""
     out = parameters.with_name("run.nc")
     out.write_text("precious", encoding="utf-8")
-    done = subprocess.run(
-        [*COMMAND, "simulate", str(parameters), "--out", str(out), "--overwrite"],
-        preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (4096, 4096)),
-        capture_output=True,
-        text=True,
-        check=False,
-    )
-    assert done.returncode == FAILED
-    assert done.stderr == f"error: {out}: File too large\n"
+    limited = partial(resource.setrlimit, resource.RLIMIT_FSIZE, (4096, 4096))
+    status, _, told = Command("simulate", parameters, "--out", out, "--overwrite", before=limited).finished()
+    assert (status, told) == (FAILED, f"error: {out}: File too large\n")
     assert sorted(parameters.parent.iterdir()) == [out, parameters]
     assert out.read_text(encoding="utf-8") == "precious"
 

@@ -1,18 +1,20 @@
 """Signals, kills and streams: what is finished is kept, what is not leaves nothing behind."""
 
 import io
+import os
 import re
 import signal
 import subprocess
 import sys
 import time
 import tomllib
+from functools import partial
 from pathlib import Path
 
 import pytest
 
 import restitution as rs
-from reference.command import AMONG_TESTS, COMMAND, LONG, SMALL, invoke, load
+from reference.command import LONG, SMALL, Command, Program, invoke, load
 
 
 @pytest.fixture
@@ -33,7 +35,7 @@ def wait_for(pattern: str, folder: Path) -> None:
 
 # The command, which tells by a file when the engine is at work.
 TELLING = """
-import pathlib
+import pathlib, sys
 from reference.signals import watched
 from restitution.cli import main
 
@@ -48,24 +50,36 @@ def test_a_signal_ends_a_run_as_ctrl_c_does(long: Path, tmp_path: Path, number: 
     """The impacts so far are written, nothing else is left, and the exit status names the signal."""
     out = tmp_path / "run.nc"
     words = ["simulate", str(long), "--out", str(out), "--threads", "1", str(tmp_path / "begun")]
-    process = subprocess.Popen(
-        [sys.executable, "-c", AMONG_TESTS + TELLING, *words], stderr=subprocess.PIPE, text=True
-    )
+    process = Program(TELLING, *words)
     wait_for("begun", tmp_path)
     process.send_signal(number)
-    _, told = process.communicate(timeout=60)
-    assert (process.returncode, told) == (128 + number, "interrupted; writing the impacts so far\n")
+    status, _, told = process.finished(60)
+    assert (status, told) == (128 + number, "interrupted; writing the impacts so far\n")
     assert "incomplete" in load(out).attrs
     assert {file.name for file in tmp_path.iterdir()} == {"run.nc", "long.toml", "begun"}
     out.unlink()
 
 
-@pytest.mark.parametrize("closed", [">&-", "<&- >&- 2>&-", "2>&1 | true"])
-def test_closed_streams_do_not_matter(parameters: Path, closed: str) -> None:
+def close(numbers: tuple[int, ...]) -> None:
+    """Have no standard streams of these numbers, as after `>&-` of a shell."""
+    for number in numbers:
+        setattr(sys, ("stdin", "stdout", "stderr")[number], None)
+        os.close(number)
+
+
+@pytest.mark.parametrize("closed", [(1,), (0, 1, 2)])
+def test_closed_streams_do_not_matter(parameters: Path, closed: tuple[int, ...]) -> None:
     """The file is written, whole: no other takes the place of a standard stream."""
     out = parameters.with_name("run.nc")
+    status, _, told = Command("simulate", parameters, "--out", out, before=partial(close, closed)).finished()
+    assert (status, told) == (0, "")
+    assert load(out).sizes["particle"] == 7
+
+
+def test_a_pipe_that_nobody_reads_does_not_matter(parameters: Path) -> None:
+    out = parameters.with_name("run.nc")
     code = "from restitution.cli import main; main()"
-    line = f"'{sys.executable}' -c '{code}' simulate '{parameters}' --out '{out}' {closed}"
+    line = f"'{sys.executable}' -c '{code}' simulate '{parameters}' --out '{out}' 2>&1 | true"
     done = subprocess.run(["bash", "-o", "pipefail", "-c", line], capture_output=True, text=True, check=False)
     assert (done.returncode, done.stderr) == (0, "")
     assert load(out).sizes["particle"] == 7
@@ -88,14 +102,13 @@ def test_two_runs_to_one_name(tmp_path: Path) -> None:
         text = re.sub("seed = .*", f"seed = {seed}", SMALL)
         (tmp_path / f"{seed}.toml").write_text(text, encoding="utf-8")
     out = tmp_path / "run.nc"
-    words = [[*COMMAND, "simulate", str(tmp_path / f"{seed}.toml"), "--out", str(out)] for seed in range(2)]
-    runs = [subprocess.Popen(one, stderr=subprocess.PIPE, text=True) for one in words]
-    told = [(run.communicate(timeout=120)[1], run.returncode) for run in runs]
-    assert sorted(code for _, code in told) == [0, 1]
+    runs = [Command("simulate", tmp_path / f"{seed}.toml", "--out", out) for seed in range(2)]
+    told = [run.finished(120) for run in runs]
+    assert sorted(code for code, *_ in told) == [0, 1]
     assert all(
-        text == f"error: {out}: exists already; --overwrite replaces it\n" for text, code in told if code
+        text == f"error: {out}: exists already; --overwrite replaces it\n" for code, _, text in told if code
     )
-    winner = next(seed for seed, (_, code) in enumerate(told) if code == 0)
+    winner = next(seed for seed, (code, *_) in enumerate(told) if code == 0)
     assert load(out).attrs["seed"] == winner
     assert len(list(tmp_path.iterdir())) == 3
 
@@ -154,9 +167,8 @@ typer.run(work)
 
 def test_a_signal_in_an_import() -> None:
     """Of which a compiled library makes an error of its own: the command was interrupted all the same."""
-    command = [sys.executable, "-c", BROKEN]
-    done = subprocess.run(command, capture_output=True, text=True, check=False, timeout=30)
-    assert (done.returncode, done.stderr) == (128 + signal.SIGHUP, "interrupted\n")
+    status, _, told = Program(BROKEN).finished(30)
+    assert (status, told) == (128 + signal.SIGHUP, "interrupted\n")
 
 
 EARLY = """

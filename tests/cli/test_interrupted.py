@@ -3,9 +3,9 @@
 import os
 import pty
 import signal
-import subprocess
 import sys
 import termios
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -14,7 +14,7 @@ import pytest
 import xarray as xr
 
 import restitution as rs
-from reference.command import AMONG_TESTS, COMMAND, LONG, invoke, load, small
+from reference.command import LONG, Command, Program, invoke, load, small
 from restitution._core import STOP_REASONS
 from restitution.cli import INTERRUPTED
 from restitution.drop.toml import read
@@ -41,17 +41,16 @@ def test_ctrl_c_keeps_what_was_finished(tmp_path: Path) -> None:
     # Until this machine takes long enough to be interrupted, and not between two blocks of particles.
     for particles in (400_000, 800_000, 1_600_000):
         parameters.write_text(f"{LONG}{particles}", encoding="utf-8")
-        command = [sys.executable, "-c", AMONG_TESTS + PRESSING, *words]
-        done = subprocess.run(command, capture_output=True, text=True, check=False)
+        status, said, told = Program(PRESSING, *words).finished()
         data = load(out)
         cut = (data.stop_reason == STOP_REASONS.index("interrupted")).to_numpy()
-        if done.returncode != 0 and cut.any():
+        if status != 0 and cut.any():
             break
-    assert (done.returncode, done.stderr) == (INTERRUPTED, "interrupted; writing the impacts so far\n")
+    assert (status, told) == (INTERRUPTED, "interrupted; writing the impacts so far\n")
     assert 0 < cut.sum() < cut.size < particles
     done_and_cut = f"{(~cut).sum()} of {particles} particles are finished, {cut.sum()} cut short"
     assert data.attrs["incomplete"] == f"interrupted: {done_and_cut}"
-    assert f"{cut.sum()} particles ended because the run was interrupted" in done.stdout
+    assert f"{cut.sum()} particles ended because the run was interrupted" in said
     run = read(parameters)
     whole = rs.simulate(run.body, run.law, particles=run.particles, impacts=run.impacts)
     for name in whole.data_vars:
@@ -60,14 +59,20 @@ def test_ctrl_c_keeps_what_was_finished(tmp_path: Path) -> None:
     out.unlink()
 
 
+def in_terminal(name: str) -> None:
+    """Have the terminal as standard error."""
+    sys.stderr = open(os.open(name, os.O_WRONLY | os.O_NOCTTY), "w", encoding="utf-8")  # noqa: SIM115
+
+
 def test_a_terminal_gets_a_progress_bar(parameters: Path) -> None:
     """And nothing else does, as the empty standard error of the other tests shows."""
     terminal, end = pty.openpty()
     termios.tcsetwinsize(end, (24, 80))  # a bar needs room
-    command = [*COMMAND, "simulate", str(parameters), "--out", str(parameters.with_name("run.nc"))]
-    subprocess.run(command, stderr=end, stdout=subprocess.DEVNULL, check=True)
+    words = ("simulate", parameters, "--out", parameters.with_name("run.nc"))
+    status = Command(*words, before=partial(in_terminal, os.ttyname(end))).finished()[0]
+    shown = os.read(terminal, 10_000).decode()
+    assert (status, "simulate: 100%" in shown) == (0, True), shown
     os.close(end)
-    assert "simulate: 100%" in os.read(terminal, 10_000).decode()
     os.close(terminal)
 
 

@@ -13,7 +13,7 @@ from typing import Any
 
 import pytest
 
-from reference.command import AMONG_TESTS
+from reference.command import Program
 from restitution._internal.process import undisturbed
 from restitution.cli._process import ending, is_terminal, leaving, put_off, say, tell
 
@@ -140,9 +140,7 @@ def test_signals_are_of_the_main_thread(block: Callable[[], AbstractContextManag
     assert found == [before]
 
 
-CODE = (
-    AMONG_TESTS
-    + """
+CODE = """
 import json, os, signal, threading
 import restitution as rs
 from reference.signals import watched
@@ -167,15 +165,11 @@ except KeyboardInterrupt:
 ended.wait()
 print(json.dumps([interrupted, found[0].identical(alone)]))
 """
-)
 
 
 def test_a_run_in_another_thread_goes_on_to_its_end() -> None:
     """The main thread is interrupted at once; the run has the result of one that was never disturbed."""
-    done = subprocess.run(
-        [sys.executable, "-c", CODE], capture_output=True, text=True, check=True, timeout=60
-    )
-    assert json.loads(done.stdout) == [True, True]
+    assert json.loads(Program(CODE).said()) == [True, True]
 
 
 def test_a_stream_that_lacks_a_letter() -> None:

@@ -2,8 +2,6 @@
 
 import math
 import re
-import subprocess
-import sys
 import textwrap
 from contextlib import nullcontext
 from pathlib import Path
@@ -17,6 +15,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import restitution as rs
+from reference.command import Program
 from restitution import _core
 from restitution._core import sincos
 from restitution.drop import simulate as simulation
@@ -279,9 +278,7 @@ def test_ctrl_c_stops_within_a_second_and_keeps_what_was_done() -> None:
 
     Seconds are the processor's, for a machine may be busy with other things.
     """
-    command = [sys.executable, "-c", textwrap.dedent(LONG)]
-    answer = subprocess.run(command, stdout=subprocess.PIPE, text=True, check=True).stdout
-    word, seconds, done = answer.split()
+    word, seconds, done = Program(textwrap.dedent(LONG)).said().split()
     assert word == "stopped"
     assert float(seconds) < 1.0
     assert 0 < int(done) < 3000

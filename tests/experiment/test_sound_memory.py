@@ -1,14 +1,12 @@
 """Recordings that no memory holds: the error names them, wherever memory ends."""
 
 import json
-import subprocess
-import sys
 
 import numpy as np
 import pytest
 
 from reference import measuring
-from reference.command import AMONG_TESTS
+from reference.command import Program
 from restitution import sound
 
 
@@ -30,9 +28,7 @@ def test_a_recording_that_no_memory_holds_is_refused(monkeypatch: pytest.MonkeyP
 
 def test_memory_that_ends_in_the_midst_of_it() -> None:
     """SciPy's filters have a MemoryError without words, NumPy's names no argument."""
-    code = (
-        AMONG_TESTS
-        + """
+    code = """
 import json, resource
 import numpy as np
 from reference import measuring
@@ -54,8 +50,4 @@ for room in (1, 60, 120):
         found.append(str(error))
 print(json.dumps(found))
 """
-    )
-    done = subprocess.run(
-        [sys.executable, "-c", code], capture_output=True, text=True, check=True, timeout=100
-    )
-    assert set(json.loads(done.stdout)) == {"source: takes more memory than this process can have"}
+    assert set(json.loads(Program(code).said())) == {"source: takes more memory than this process can have"}

@@ -3,13 +3,10 @@
 import copy
 import json
 import pickle
-import subprocess
-import sys
 from collections.abc import Callable, Iterator
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import fields, is_dataclass, replace
 from functools import cache
-from multiprocessing import get_context
 from operator import itemgetter
 from pathlib import Path
 from typing import Any
@@ -20,7 +17,7 @@ import xarray as xr
 
 import restitution as rs
 from reference import measuring
-from reference.command import AMONG_TESTS
+from reference.command import SERVER, Program
 from reference.contract import CALLS
 from restitution import fit
 from restitution._internal.datasets import Content, same
@@ -204,25 +201,23 @@ def objects() -> dict[str, Any]:
     return {f"{i} {type(thing).__name__}": thing for i, thing in enumerate(things)}
 
 
-@pytest.mark.parametrize("name", list(objects()))
-def test_an_object_travels(name: str) -> None:
+def test_an_object_travels() -> None:
     """By pickle and by copy, to one that is equal and has the same hash."""
-    thing = objects()[name]
-    for protocol in (2, pickle.HIGHEST_PROTOCOL):
-        again = pickle.loads(pickle.dumps(thing, protocol))
-        assert again == thing
-        assert hash(again) == hash(thing)
-    assert copy.deepcopy(thing) == thing
-    assert copy.copy(thing) == thing
-    assert thing != name
-    assert len({thing, copy.deepcopy(thing)}) == 1
-    others = [other for other in objects().values() if other is not thing]
-    assert all(other != thing for other in others)
+    for name, thing in objects().items():
+        for protocol in (2, pickle.HIGHEST_PROTOCOL):
+            again = pickle.loads(pickle.dumps(thing, protocol))
+            assert again == thing, name
+            assert hash(again) == hash(thing), name
+        assert copy.deepcopy(thing) == thing, name
+        assert copy.copy(thing) == thing, name
+        assert thing != name
+        assert len({thing, copy.deepcopy(thing)}) == 1, name
+        assert all(other != thing for other in objects().values() if other is not thing), name
 
 
 def test_objects_come_back_from_a_process_pool() -> None:
     things = objects()
-    with ProcessPoolExecutor(1, mp_context=get_context("spawn")) as pool:
+    with ProcessPoolExecutor(1, mp_context=SERVER) as pool:
         there_and_back = pool.map(itemgetter(0), [(thing,) for thing in things.values()])
         for name, again in zip(things, there_and_back, strict=True):
             assert again == things[name], name
@@ -262,21 +257,20 @@ def fields_of(thing: Any) -> list[str]:
     return [one.name for one in fields(kind)] if is_dataclass(kind) else ["data"]
 
 
-@pytest.mark.parametrize("name", list(objects()))
-def test_a_pickle_of_another_version(name: str) -> None:
+def test_a_pickle_of_another_version() -> None:
     """With a field more or less: an error that names it, or what the default makes of one that is missing."""
-    thing = objects()[name]
-    with pytest.raises(ValueError, match=r"another|pickled by another version"):
-        of_another_version(thing, lambda state: state.update(another=1))
-    for field in fields_of(thing):
-        default = type(thing).model_fields[field] if isinstance(thing, Parameters) else None
-        if default is None or default.is_required():
-            with pytest.raises(ValueError, match=field):
-                of_another_version(thing, without(field))
-            continue
-        again = of_another_version(thing, without(field))
-        assert getattr(again, field) == default.default
-    assert of_another_version(thing, lambda _: None) == thing
+    for name, thing in objects().items():
+        with pytest.raises(ValueError, match=r"another|pickled by another version"):
+            of_another_version(thing, lambda state: state.update(another=1))
+        for field in fields_of(thing):
+            default = type(thing).model_fields[field] if isinstance(thing, Parameters) else None
+            if default is None or default.is_required():
+                with pytest.raises(ValueError, match=field):
+                    of_another_version(thing, without(field))
+                continue
+            again = of_another_version(thing, without(field))
+            assert getattr(again, field) == default.default, name
+        assert of_another_version(thing, lambda _: None) == thing, name
 
 
 @pytest.mark.parametrize(
@@ -299,9 +293,7 @@ def test_a_pickle_whose_numbers_are_not_allowed(name: str, field: str, bad: Any,
 
 def test_the_error_is_the_systems_wherever_room_ends(tmp_path: Path) -> None:
     """A limit on the size of files stands for the disk; HDF5 keeps something beside the numbers."""
-    code = (
-        AMONG_TESTS
-        + f"""
+    code = f"""
 import errno, json, os, resource, signal
 from pathlib import Path
 from reference.command import small
@@ -319,9 +311,7 @@ for limit in (0, 512, data.nbytes, data.nbytes + 4096, size // 2, size - 4096, s
         found.append(errno.errorcode[error.errno])
 print(json.dumps([*found, os.listdir(file.parent)]))
 """
-    )
-    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
-    numbers, size, *errors, left = json.loads(done.stdout)
+    numbers, size, *errors, left = json.loads(Program(code).said())
     assert numbers < size // 2
     assert errors == ["EFBIG"] * 7
     assert left == ["run.nc"]

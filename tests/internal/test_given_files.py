@@ -3,8 +3,6 @@
 import errno
 import os
 import shutil
-import subprocess
-import sys
 import zipfile
 from collections.abc import Callable
 from pathlib import Path
@@ -15,7 +13,7 @@ import pytest
 import xarray as xr
 
 import restitution as rs
-from reference.command import COMMAND, SMALL, invoke
+from reference.command import SMALL, invoke
 from reference.refused import message
 from reference.studies import written
 from restitution import figures, flight
@@ -143,10 +141,12 @@ def test_an_error_names_the_file_as_it_was_given(tmp_path: Path, monkeypatch: py
 
 def test_a_run_may_come_through_a_pipe(tmp_path: Path) -> None:
     """As of `<(...)` of a shell."""
-    (tmp_path / "run.toml").write_text(SMALL, encoding="utf-8")
-    line = f"{sys.executable} -c '{COMMAND[-1]}' simulate <(cat run.toml) --out run.nc --quiet"
-    done = subprocess.run(["bash", "-c", line], cwd=tmp_path, capture_output=True, text=True, check=False)
-    assert (done.returncode, done.stderr) == (0, "")
+    end, start = os.pipe()
+    os.write(start, SMALL.encode())
+    os.close(start)
+    done = invoke("simulate", f"/dev/fd/{end}", "--out", tmp_path / "run.nc", "--quiet")
+    os.close(end)
+    assert (done.exit_code, done.stderr) == (0, "")
     assert xr.load_dataset(tmp_path / "run.nc").sizes["particle"] == 7
 
 

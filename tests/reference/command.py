@@ -4,7 +4,9 @@ import os
 import shutil
 import sys
 import tempfile
+import warnings
 from collections.abc import Callable
+from functools import partial
 from multiprocessing import get_context
 from pathlib import Path
 
@@ -61,17 +63,25 @@ def invoke(*words: object) -> Result:
 
 SERVER = get_context("forkserver")
 SERVER.set_forkserver_preload(
-    ["restitution.cli", "xarray", "netCDF4", "scipy.stats", "matplotlib.figure", "zarr"]
+    [
+        "restitution.cli",
+        "xarray",
+        "netCDF4",
+        "scipy.stats",
+        "matplotlib.figure",
+        "zarr",
+        "restitution.fit",
+        "soundfile",
+    ]
 )
 
 
-class Command:
-    """A command in a process of its own, which has imported what commands take; `before` is called first."""
+class Apart:
+    """A function in a process of its own, which has imported what commands take."""
 
-    def __init__(self, *words: object, before: Callable[[], object] = int) -> None:
-        self._told = Path(tempfile.mkdtemp(prefix="command-"))
-        given = (self._told, before, [str(word) for word in words], Path.cwd())
-        self._process = SERVER.Process(target=_command, args=given)
+    def __init__(self, act: Callable[[], object]) -> None:
+        self._told = Path(tempfile.mkdtemp(prefix="apart-"))
+        self._process = SERVER.Process(target=_apart, args=(self._told, act, Path.cwd()))
         self._process.start()
 
     def send_signal(self, number: int) -> None:
@@ -92,14 +102,45 @@ class Command:
         return self._process.exitcode or 0, said[0], said[1]
 
 
-def _command(told: Path, before: Callable[[], object], words: list[str], folder: Path) -> None:
+class Command(Apart):
+    """A command in a process of its own; `before` is called first."""
+
+    def __init__(self, *words: object, before: Callable[[], object] = int) -> None:
+        super().__init__(partial(_command, before, [str(word) for word in words]))
+
+
+class Program(Apart):
+    """A program in a process of its own, which may have words and more environment; warnings are silent."""
+
+    def __init__(self, code: str, *words: object, **environment: str) -> None:
+        super().__init__(partial(_program, code, [str(word) for word in words], environment))
+
+    def said(self) -> str:
+        """Give what it prints when all goes well."""
+        status, out, error = self.finished(120.0)
+        assert (status, error) == (0, ""), error
+        return out
+
+
+def _apart(told: Path, act: Callable[[], object], folder: Path) -> None:
     os.setsid()
     os.chdir(folder)
     for number, name in ((1, "out"), (2, "error")):
         os.dup2(os.open(told / name, os.O_WRONLY | os.O_CREAT), number)
+    act()
+
+
+def _command(before: Callable[[], object], words: list[str]) -> None:
     before()
     sys.argv = ["restitution", *words]
     main()
+
+
+def _program(code: str, words: list[str], environment: dict[str, str]) -> None:
+    os.environ |= environment
+    sys.argv = ["program", *words]
+    warnings.simplefilter("ignore")
+    exec(code, {"__name__": "__main__"})
 
 
 def small() -> xr.Dataset:
