@@ -10,6 +10,8 @@ from restitution._internal.arrays import flag, whole
 from restitution._internal.parameters import ParameterError, TooLargeError, wrong
 
 _MOST_THREADS = 1024
+_LITTLE = 1 << 16
+"""Bytes that any process can have; to ask how many it can have takes milliseconds."""
 
 
 def available_memory() -> int:
@@ -67,6 +69,8 @@ def check_memory(impacts: int, bytes_per_impact: int) -> None:
 
 def check_size(name: str, value: Any, number: int, bytes_of_each: int, what: str) -> None:
     """Refuse an argument by which an array is larger than this process can hold; raises a TooLargeError."""
+    if number * bytes_of_each < _LITTLE:
+        return
     available = available_memory()
     if number * bytes_of_each > available:
         allowed = f"at most {available // bytes_of_each:.4g} {what}, which this process can hold"

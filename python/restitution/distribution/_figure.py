@@ -22,9 +22,10 @@ _RESTITUTION = r"coefficient of restitution $\varepsilon$"
 
 
 def _ticks(low: float, high: float) -> list[float]:
-    """Return round numbers for a logarithmic axis: more of them where it is short."""
+    """Return round numbers for a logarithmic axis and a little beyond: more of them where it is short."""
     steps = (1, 2, 3, 4, 6) if high < 10.0 * low else (1, 2, 5) if high < 1000.0 * low else (1,)
-    return [step * 10.0**power for power in range(-9, 7) for step in steps]
+    ticks = (step * 10.0**power for power in range(-9, 7) for step in steps)
+    return [tick for tick in ticks if 0.1 * low < tick < 10.0 * high]
 
 
 def image(dist: EstimatedDistribution, suffix: str) -> bytes:

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from scipy import optimize, special, stats
 
-from restitution.fit._counts import Counts, fit_counts
+from restitution.fit._counts import Counts, Unfrozen, fit_counts
 from restitution.fit._result import Array, Fit, fitted
 from restitution.fit.source import Samples, Window, cusp, taken
 
@@ -152,13 +152,13 @@ def asymmetric_power(
 def _counted(family: str, counts: Counts, location: float | None, exponent: float | None) -> Fit:
     """Fit binned counts; what is not None is fixed."""
 
-    def make(point: Array, median: float, spread: float) -> tuple[Any, dict[str, float]]:
+    def make(point: Array, median: float, spread: float) -> tuple[Unfrozen, dict[str, float]]:
         a, b = (float(width) for width in spread * np.exp(np.clip(point[:2], -20.0, 20.0)))
         rest = list(point[2:])
         m = median + spread * float(rest.pop(0)) if location is None else float(location)
         k = float(np.clip(exp(min(rest.pop(0), 3.0)), 0.5, 20.0)) if exponent is None else exponent
         named = {"location": m, "above": a, "below": b, **({"exponent": k} if exponent is None else {})}
-        return frozen(k, m, a, b), named
+        return unfrozen(k, m, a, b), named
 
     start = np.zeros(2 + (location is None) + (exponent is None))
     return fit_counts(family, counts, make, start, fixed=0 if location is None else 1)
@@ -196,7 +196,12 @@ class _AsymmetricPower(stats.rv_continuous):
 _POWER = _AsymmetricPower(name="asymmetric_power", shapes="k, kappa")
 
 
-def frozen(k: float, m: float, a: float, b: float) -> Any:
-    """Freeze the density; an empty side gets a width far too small to matter in floating point."""
+def unfrozen(k: float, m: float, a: float, b: float) -> Unfrozen:
+    """Make the distribution; an empty side gets a width far too small to matter in floating point."""
     a, b = max(a, 1e-100 * b), max(b, 1e-100 * a)
-    return _POWER(k, sqrt(b / a), loc=m, scale=sqrt(a) * sqrt(b))
+    return Unfrozen(_POWER, k, sqrt(b / a), loc=m, scale=sqrt(a) * sqrt(b))
+
+
+def frozen(k: float, m: float, a: float, b: float) -> Any:
+    """Freeze it."""
+    return unfrozen(k, m, a, b).frozen()

@@ -22,6 +22,26 @@ from restitution.fit._result import Array, Fit
 Maker: TypeAlias = Callable[[Array, float, float], tuple[Any, dict[str, float]]]
 """From an unbounded point, the median and the spread to a distribution and its parameters."""
 
+
+class Unfrozen:
+    """A distribution of SciPy's with its parameters, which takes longer to freeze than to evaluate."""
+
+    def __init__(self, family: Any, *values: float, **where: float) -> None:
+        self._family, self._values, self._where = family, values, where
+
+    def cdf(self, x: Array) -> Any:
+        """Return the probability below x."""
+        return self._family.cdf(x, *self._values, **self._where)
+
+    def sf(self, x: Array) -> Any:
+        """Return the probability above x."""
+        return self._family.sf(x, *self._values, **self._where)
+
+    def frozen(self) -> Any:
+        """Freeze it."""
+        return self._family(*self._values, **self._where)
+
+
 _IMPOSSIBLE = 1e-300
 """Probability of a bin where the distribution says 0: the likelihood must stay a number to be maximised."""
 
@@ -175,6 +195,8 @@ def fit_counts(family: str, counts: Counts, make: Maker, start: ArrayLike, *, fi
     ).x
     point = optimize.minimize(cost, near, method="BFGS", options={"gtol": 1e-8}).x
     distribution, parameters = make(point, median, spread)
+    if isinstance(distribution, Unfrozen):
+        distribution = distribution.frozen()
     return Fit(
         family=family,
         parameters=MappingProxyType({name: float(value) for name, value in parameters.items()}),

@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import partial
 from math import exp
 from typing import Any
 
 import numpy as np
 from scipy import stats
 
-from restitution.fit._asymmetric import frozen
-from restitution.fit._counts import Counts, fit_counts
+from restitution.fit._asymmetric import unfrozen
+from restitution.fit._counts import Counts, Unfrozen, fit_counts
 from restitution.fit._result import Array, Fit, fitted
 from restitution.fit.source import Samples, Window, taken
 
@@ -31,7 +32,7 @@ def gaussian(samples: Samples, *, velocity: Window | None = None) -> Fit:
     >>> 0.028 < fit.gaussian(x).parameters["deviation"] < 0.032
     True
     """
-    return _located("Gaussian", taken(samples, velocity), stats.norm, stats.norm, ("mean", "deviation"))
+    return _located("Gaussian", taken(samples, velocity), stats.norm, names=("mean", "deviation"))
 
 
 def laplace(samples: Samples, *, velocity: Window | None = None) -> Fit:
@@ -45,12 +46,12 @@ def laplace(samples: Samples, *, velocity: Window | None = None) -> Fit:
     >>> 0.028 < fit.laplace(x).parameters["scale"] < 0.032
     True
     """
-    return _located("symmetric Laplace", taken(samples, velocity), _laplace, stats.laplace)
+    return _located("symmetric Laplace", taken(samples, velocity), stats.laplace, _laplace)
 
 
-def _laplace(location: float, scale: float) -> Any:
-    """Freeze the density; SciPy's own has a logarithm that is -inf where the density underflows."""
-    return frozen(1.0, location, scale, scale)
+def _laplace(location: float, scale: float) -> Unfrozen:
+    """Make the distribution; SciPy's own has a logarithm that is -inf where the density underflows."""
+    return unfrozen(1.0, location, scale, scale)
 
 
 def logistic(samples: Samples, *, velocity: Window | None = None) -> Fit:
@@ -64,7 +65,7 @@ def logistic(samples: Samples, *, velocity: Window | None = None) -> Fit:
     >>> 0.028 < fit.logistic(x).parameters["scale"] < 0.032
     True
     """
-    return _located("logistic", taken(samples, velocity), stats.logistic, stats.logistic)
+    return _located("logistic", taken(samples, velocity), stats.logistic)
 
 
 def student_t(samples: Samples, *, velocity: Window | None = None) -> Fit:
@@ -90,7 +91,7 @@ def student_t(samples: Samples, *, velocity: Window | None = None) -> Fit:
     """
     x = taken(samples, velocity)
     if isinstance(x, Counts):
-        return _counted("Student t", x, stats.t, ("degrees", "location", "scale"), 1.6)
+        return _counted("Student t", x, partial(Unfrozen, stats.t), ("degrees", "location", "scale"), 1.6)
     low, median, high = np.quantile(x, [0.25, 0.5, 0.75])
     width = (high - low) / 1.349 or float(np.std(x))  # a Gaussian's quartiles are 1.349 deviations apart
     furthest = float(np.abs(x - median).max())
@@ -110,23 +111,26 @@ def student_t(samples: Samples, *, velocity: Window | None = None) -> Fit:
 def _located(
     family: str,
     x: Array | Counts,
-    density: Callable[[float, float], Any],
     scipys: Any,
+    density: Callable[[float, float], Unfrozen] | None = None,
     names: tuple[str, str] = ("location", "scale"),
 ) -> Fit:
     """Fit location and scale: to samples as SciPy does, to counts by their own likelihood."""
+    density = density or partial(Unfrozen, scipys)
     if isinstance(x, Counts):
         return _counted(family, x, density, names)
     location, scale = scipys.fit(x)
-    return fitted(family, x, density(location, scale), **dict(zip(names, (location, scale), strict=True)))
+    return fitted(
+        family, x, density(location, scale).frozen(), **dict(zip(names, (location, scale), strict=True))
+    )
 
 
 def _counted(
-    family: str, counts: Counts, density: Callable[..., Any], names: tuple[str, ...], *degrees: float
+    family: str, counts: Counts, density: Callable[..., Unfrozen], names: tuple[str, ...], *degrees: float
 ) -> Fit:
     """Fit location, scale and, from where a search for them begins, degrees of freedom to binned counts."""
 
-    def make(point: Array, median: float, spread: float) -> tuple[Any, dict[str, float]]:
+    def make(point: Array, median: float, spread: float) -> tuple[Unfrozen, dict[str, float]]:
         location, scale = median + spread * float(point[0]), spread * exp(np.clip(point[1], -20.0, 20.0))
         values = (*(exp(np.clip(log, -3.0, 15.0)) for log in point[2:]), location, scale)
         return density(*values), dict(zip(names, values, strict=True))

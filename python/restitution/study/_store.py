@@ -221,7 +221,7 @@ class Store:
                     continue
                 own = name in found.data_vars and not _is_common(name, variable)
                 shape = (*design.shape, *variable.shape) if own else variable.shape
-                if name not in self.group:
+                if name not in self._arrays and name not in self.group:
                     attrs = _plain(variable.attrs)
                     if own and design.kind != "grid":  # Xarray must be given the names of the coordinates
                         attrs["coordinates"] = " ".join(axis.name for axis in design.axes)
@@ -236,7 +236,7 @@ class Store:
                             compressors=_fast(variable.dtype.itemsize),
                             fill_value=np.nan if variable.dtype.kind == "f" else 0,
                         )
-                _check_array(self.group[name], shape, variable.dtype)
+                _check_array(self._array(name), shape, variable.dtype)
                 if not own:
                     self._correct(name, variable.to_numpy())
                 self._ensured.add(name)
@@ -245,13 +245,18 @@ class Store:
         """Write an array again where it is not what it should be."""
         there = self._values(name)
         if there is None or not np.array_equal(there, values):
-            self.group[name][...] = values
+            self._array(name)[...] = values
+
+    def _array(self, name: str) -> Any:
+        if name not in self._arrays:
+            self._arrays[name] = self.group[name]
+        return self._arrays[name]
 
     def write_large(self, found: xr.Dataset, place: tuple[int, ...]) -> None:
         """Write the variables that have a chunk for each point."""
         with readable(self.path):
             for name in large(found):
-                self.group[name][place] = found.variables[name].to_numpy()
+                self._array(name)[place] = found.variables[name].to_numpy()
 
     def read_large(self, names: list[str], place: tuple[int, ...]) -> dict[str, npt.NDArray[Any]] | None:
         """Read them back; None if one is damaged."""
@@ -274,7 +279,7 @@ class Store:
         """Write them, the marks of what is finished last."""
         with readable(self.path):
             for name in sorted(values, key=lambda name: (name == "status", name)):
-                array = self.group[name]
+                array = self._array(name)
                 array[...] = values[name].reshape(array.shape)
             self.consolidate()
 
@@ -290,9 +295,8 @@ class Store:
 
         own = len(design.shape)
         for name in sorted(os.listdir(self.path)):
-            if name not in self._arrays and (self.path / name / "zarr.json").is_file():
-                self._arrays[name] = self.group[name]
-            array = self._arrays.get(name)
+            there = name in self._arrays or (self.path / name / "zarr.json").is_file()
+            array = self._array(name) if there else None
             if isinstance(array, zarr.Array) and array.shape[:own] == design.shape:
                 names: Any = array.metadata.dimension_names or ()  # type: ignore[union-attr]
                 if tuple(names[:own]) == design.dims:
@@ -300,7 +304,7 @@ class Store:
 
     def _values(self, name: str, place: Any = ...) -> npt.NDArray[Any] | None:
         """Read an array, or what it has at a point; None if its chunk is cut or spoilt."""
-        array = self.group[name]
+        array = self._array(name)
         try:
             return np.asarray(array[place])
         except PermissionError:

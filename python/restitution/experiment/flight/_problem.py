@@ -1,5 +1,6 @@
 """Least squares and likelihood of a law ε_n(v), with the covariance of the measurement."""
 
+from functools import lru_cache
 from types import MappingProxyType
 from typing import Literal
 
@@ -75,6 +76,9 @@ class Misfit:
         self.before_by, self.after_by = links.before_by[known], links.after_by[known]
         self.variances = links.variances
         self.shift = np.zeros_like(links.variances) if shift is None else shift
+        # Likelihood and information ask for both at each point of a search.
+        self._jacobian = lru_cache(1)(self._jacobian_at)
+        self._covariance = lru_cache(1)(self._covariance_at)
 
     @property
     def errors_are_known(self) -> bool:
@@ -82,6 +86,10 @@ class Misfit:
 
     def jacobian(self, values: Array) -> Array:
         """Differentiate the residuals by the numbers measured."""
+        return self._jacobian(tuple(values))
+
+    def _jacobian_at(self, point: tuple[float, ...]) -> Array:
+        values = np.array(point)
         slope = (
             self.form.coefficient(self.before, values)
             + by_speed(self.form, self.before, values) * self.before
@@ -94,7 +102,10 @@ class Misfit:
 
     def covariance(self, values: Array, scatter: float) -> Array:
         """Return the covariance of the residuals, shape (n, n)."""
-        by = self.jacobian(values)
+        return self._covariance(tuple(values), scatter)
+
+    def _covariance_at(self, values: tuple[float, ...], scatter: float) -> Array:
+        by = self._jacobian(values)
         return np.asarray((by * self.variances) @ by.T + np.diag((scatter * self.before) ** 2))
 
     def improve(self, values: Array, scatter: float) -> bool:
