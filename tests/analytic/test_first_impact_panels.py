@@ -187,7 +187,7 @@ NORMALS = st.one_of(
 FRICTION = st.floats(-2, 1).map(lambda x: 10**x)
 
 
-@settings(max_examples=60)
+@settings(max_examples=30)
 @given(
     body=SHAPES,
     normal=NORMALS,

@@ -132,7 +132,7 @@ def test_a_given_spin_shifts_the_mean_and_hardly_skews(law: Any, tangential: flo
     assert abs(third + 6.0 * loss / q) < 5.0 * np.sqrt(15.0 / number) + 3.0 * q**3
 
 
-@pytest.mark.parametrize("seed", [1, 2, 3])
+@pytest.mark.parametrize("seed", [1, 2])
 @pytest.mark.parametrize(
     ("ratio", "law", "tangential"), [(0.5, SMOOTH, None), (1.0, PAPER, 1.0), (3.0, SMOOTH, None)]
 )

@@ -141,12 +141,19 @@ def test_draws_follow_the_distribution(plain: FluctuatingRestitution, language: 
     assert np.mean(draws) == pytest.approx(plain.mean(0.2345), abs=4 * plain.std(0.2345) / np.sqrt(20_000))
 
 
-@pytest.mark.parametrize("language", ["C99", "Fortran 2008"])
-def test_a_body_without_an_axis_is_exported_too(language: str, tmp_path: Path) -> None:
-    """A box, which has its parameters in the source, and the same bits as any other."""
+@pytest.fixture(scope="module")
+def of_a_box() -> FluctuatingRestitution:
     how: dict[str, Any] = {"particles": 3000, "impacts": 20, "velocities": (0.2, 0.5), "seed": 2}
     box = rs.Box(a=3e-3, b=4e-3, c=5e-3)
-    dist = FluctuatingRestitution.learn(box, rs.Coulomb(normal=0.8, friction=0.2), **how)
+    return FluctuatingRestitution.learn(box, rs.Coulomb(normal=0.8, friction=0.2), **how)
+
+
+@pytest.mark.parametrize("language", ["C99", "Fortran 2008"])
+def test_a_body_without_an_axis_is_exported_too(
+    of_a_box: FluctuatingRestitution, language: str, tmp_path: Path
+) -> None:
+    """A box, which has its parameters in the source, and the same bits as any other."""
+    dist = of_a_box
     program = compiled(dist, language, "box_sample(v, u1, u2)", tmp_path, "box")
     table = np.random.default_rng(5).random((500, 4))
     table[:, 0] = np.random.default_rng(6).uniform(*dist.velocities, 500)

@@ -211,7 +211,7 @@ def test_clumps_and_ellipsoids_stay_where_they_are_decided(body: RigidBody) -> N
 @pytest.mark.parametrize("law", [PLASTIC, rs.Frictionless(normal=0.7)])
 def test_until_settled_the_same_are_decided(body: RigidBody, law: Any) -> None:
     """A run that ends where nothing can change has the same impacts up to there, and the same faces."""
-    heights: dict[str, Any] = {"release_height": 0.1, "particles": 60}
+    heights: dict[str, Any] = {"release_height": 0.1, "particles": 30}
     whole, short = run(body, law=law, **heights), run(body, law=law, until="settled", **heights)
     settled = short.stop_reason.to_numpy() == 5
     assert settled.any()

@@ -49,13 +49,11 @@ def test_nothing_is_said_where_budget_and_times_agree(
     tmp_path: Path, out_of_roundness: float, timing: float
 ) -> None:
     """Errors of times alone, of both, and of the shape alone."""
-    for seed in (1, 2):
-        found = analyse(
-            table(tmp_path, out_of_roundness, timing, seed), setting(out_of_roundness, timing)
-        ).series[0]
-        assert found.shape is not None
-        assert found.shape.budget is not None
-        assert found.shape.disagreement == ""
+    file = table(tmp_path, out_of_roundness, timing, 1)
+    found = analyse(file, setting(out_of_roundness, timing)).series[0]
+    assert found.shape is not None
+    assert found.shape.budget is not None
+    assert found.shape.disagreement == ""
 
 
 def numbers(said: str, name: str) -> list[float]:

@@ -22,8 +22,8 @@ def budget(law: Any = LAW, **change: Any) -> Any:
     ("law", "tangential"), [(LAW, None), (rs.TangentialRestitution(normal=0.95, tangential=1.0), 1.0)]
 )
 def test_the_scatter_is_that_of_rough_spheres(law: Any, tangential: float | None) -> None:
-    """Six impacts of 1500 spheres; to five standard errors (kurtosis 6), and 6 % of the next order."""
-    mean_height, number = 1e-3, 1500
+    """Six impacts of 700 spheres; to five standard errors (kurtosis 6), and 6 % of the next order."""
+    mean_height, number = 1e-3, 700
     body = Rough(20_000, 0.01, mean_height, exponential=True)
     spin, speed, found = np.zeros((number, 3)), np.ones(number), []
     for impact in range(6):
@@ -36,11 +36,11 @@ def test_the_scatter_is_that_of_rough_spheres(law: Any, tangential: float | None
     # Ra is 2/e of the mean height.
     data = budget(law, roughness=2.0 / math.e * mean_height * 3e-3).sel(source="roughness")
     told, there = np.array(found).T, data.standard_deviation.values
-    assert np.abs(told.std(axis=0) / there - 1.0) == pytest.approx(0.0, abs=5.0 * 0.029 + 0.06)
+    assert np.abs(told.std(axis=0) / there - 1.0) == pytest.approx(0.0, abs=5.0 * 0.042 + 0.06)
     away = told.mean(axis=0) - law.normal - data.bias.values
     assert np.all(np.abs(away) < 5.0 * there / np.sqrt(number) + 0.1 * np.abs(data.bias.values).max())
     mean = float(data.mean_standard_deviation)
-    assert told.mean(axis=1).std() == pytest.approx(mean, rel=5.0 * 0.029 + 0.06)
+    assert told.mean(axis=1).std() == pytest.approx(mean, rel=5.0 * 0.042 + 0.06)
 
 
 def test_roughness_adds_up_with_the_others() -> None:

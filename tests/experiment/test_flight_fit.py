@@ -9,7 +9,7 @@ import pytest
 import restitution as rs
 from reference.bouncing import impact_times
 
-EXPERIMENTS = 50
+EXPERIMENTS = 25
 ERROR = 3e-5
 
 SOFT = rs.Viscoelastic(young_modulus=1e8, poisson_ratio=0.4, dissipation=5e-6, density=1200.0, radius=5e-3)
@@ -89,7 +89,7 @@ def test_the_wrong_law_is_found_out() -> None:
 def test_scatter_of_the_ball_is_told_from_errors_of_the_clock() -> None:
     """ε scatters by 0.01 as if by shape; the mean over N fits of 28 impacts has the error 0.01/√(2·28·N)."""
     rng = np.random.default_rng(5)
-    number, spreads, pulls = 20, [], []
+    number, spreads, pulls = 10, [], []
     for _ in range(number):
         times = impact_times(lambda _: 0.93 + 0.01 * rng.standard_normal(), 2.5, 30)
         data = rs.flight.restitution(times + rng.normal(0.0, ERROR, 30), ERROR)

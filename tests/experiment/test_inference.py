@@ -35,7 +35,7 @@ def heard(
 
 
 def quick(data: Any, law: Any, **options: Any) -> xr.DataTree:
-    return rs.posterior(data, law, **({"diameter": 6e-3, "particles": 200, "draws": 800} | options))
+    return rs.posterior(data, law, **({"diameter": 6e-3, "particles": 100, "draws": 800} | options))
 
 
 KEPT = Path(__file__).parents[2] / "docs" / "data" / "calibration.csv"
@@ -138,7 +138,8 @@ def test_the_same_seed_gives_the_same_draws() -> None:
     assert one.identical(other.assign_attrs(one.attrs))
 
 
-def test_friction_and_materials_are_inferred_with_the_shape() -> None:
+def test_friction_and_materials_are_inferred_with_the_shape(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("restitution.experiment.inference._posterior._SHAPES", 4)
     law = rs.Coulomb(normal=0.93, friction=0.1)
     tree = quick(
         heard(0.1, law, 2),

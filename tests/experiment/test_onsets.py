@@ -23,12 +23,12 @@ def test_times_are_good_to_20_us_whatever_the_ball_does() -> None:
     assert max(np.std(errors(*one, -45.0)[0]) for one in SAME) < 2e-6
 
 
-@pytest.mark.parametrize("noise", [-30.0, -20.0])
+@pytest.mark.parametrize("noise", [pytest.param(-30.0, marks=pytest.mark.slow), -20.0])
 def test_noise_leaves_times_good_to_20_us_where_clicks_repeat(noise: float) -> None:
     assert max(np.std(errors(*one, noise)[0]) for one in SAME) < 20e-6
 
 
-@pytest.mark.parametrize("noise", [-45.0, -30.0, -20.0])
+@pytest.mark.parametrize("noise", [-45.0, pytest.param(-30.0, marks=pytest.mark.slow), -20.0])
 def test_stated_errors_are_honest(noise: float) -> None:
     """Errors over what they are said to be spread by 1, their bulk and as a whole.
 
@@ -59,13 +59,13 @@ def test_bursts_that_differ_are_timed_to_20_us() -> None:
 def test_no_slope_is_claimed_that_is_not_there() -> None:
     """The exponent of a constant law over its error is as Student's t has it.
 
-    Of 6 its spread is below 1.74 in 99 %. What the sound adds to that of the coefficients is a fraction.
+    Of 4 its spread is below 1.68 in 99 %. What the sound adds to that of the coefficients is a fraction.
     """
-    normal, added, scatters = slopes([101, 102, 103])
-    assert np.std(normal) < 1.74
+    normal, added, scatters = slopes([101, 102])
+    assert np.std(normal) < 1.68
     assert np.std(added) < 0.3
-    # The ball scatters by .003; of 23 coefficients each is known to 15 %, the mean of 6 to 6 %.
-    assert np.mean(scatters) == pytest.approx(0.003, rel=0.18)
+    # The ball scatters by .003; of 23 coefficients each is known to 15 %, the mean of 4 to 7.5 %.
+    assert np.mean(scatters) == pytest.approx(0.003, rel=0.22)
 
 
 @pytest.mark.parametrize("kind", KINDS)

@@ -62,6 +62,13 @@ def dumbbell(elongation: float, seed: int, impacts: int = 15, wall: float = 0.0)
     return heard(np.array(times), seed)
 
 
+@pytest.fixture(autouse=True)
+def coarse(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Half the shapes, for the likelihood of few drops is broad."""
+    if request.node.get_closest_marker("slow") is None:
+        monkeypatch.setattr("restitution.experiment.inference._posterior._SHAPES", 5)
+
+
 @cache
 def one_round_ball(scatter: float) -> xr.DataTree:
     return inferred(round_ball(scatter, 1))
@@ -72,7 +79,7 @@ def one_dumbbell(seed: int) -> xr.DataTree:
     return inferred(dumbbell(0.05, seed))
 
 
-def inferred(data: Any, particles: int = 200, **options: Any) -> xr.DataTree:
+def inferred(data: Any, particles: int = 100, **options: Any) -> xr.DataTree:
     """Infer, with few particles unless there are many drops, over which sampling errors add up."""
     return rs.posterior(data, LAW, diameter=DIAMETER, particles=particles, draws=800, **options)
 

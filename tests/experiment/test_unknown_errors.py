@@ -6,7 +6,7 @@ import pytest
 import restitution as rs
 from restitution.experiment.flight import LawFit
 
-SERIES = 50
+SERIES = 30
 FOUND, TIMES, BALL, EITHER = "together with", "fitted to the scatter", "ε itself scatters, and", "may be"
 
 
@@ -30,17 +30,17 @@ def spread_of_pulls(of: list[LawFit]) -> float:
 
 
 def test_a_scatter_of_the_ball_is_not_taken_for_errors_of_times() -> None:
-    """Each of two wrong claims has a level of 5 %; among 50 no more than 8 with 99 %."""
+    """Each of two wrong claims has a level of 5 %; among 30 no more than 5 with 99 %."""
     found = fits(0.003, 1e-6)
     assert share(found, BALL) >= 0.8
-    assert share(found, FOUND) <= 0.16
-    assert np.mean([one.scatter for one in found]) == pytest.approx(0.003, rel=0.05)
+    assert share(found, FOUND) <= 0.17
+    assert np.mean([one.scatter for one in found]) == pytest.approx(0.003, rel=0.065)
 
 
 def test_errors_of_times_are_not_taken_for_a_scatter_of_the_ball() -> None:
     found = fits(0.0, 1e-4)
     assert share(found, TIMES) >= 0.8
-    assert share(found, FOUND) <= 0.16
+    assert share(found, FOUND) <= 0.17
     # A scatter that is not shown widens the error of ε: it cannot be excluded.
     assert spread_of_pulls(found) < 1.0
 

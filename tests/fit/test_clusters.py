@@ -14,15 +14,15 @@ from restitution import fit
 
 
 def test_errors_are_those_of_repetition_and_count_particles() -> None:
-    """Forty sets of correlated samples: the stated error of a width is its scatter, within 4/√78 of it.
+    """Thirty sets of correlated samples: the stated error of a width is its scatter, within 4/√58 of it.
 
     Single samples drawn again would say a third of that.
     """
-    sets = [correlated(60, 20, seed) for seed in range(40)]
-    found = [fit.bootstrap(fit.asymmetric_laplace, *one, resamples=60) for one in sets]
+    sets = [correlated(60, 20, seed) for seed in range(30)]
+    found = [fit.bootstrap(fit.asymmetric_laplace, *one, resamples=40) for one in sets]
     scatter = np.std([one.fit.parameters["below"] for one in found], ddof=1)
     stated = np.sqrt(np.mean([one.standard_errors["below"] ** 2 for one in found]))
-    assert abs(stated / scatter - 1) < 4 / np.sqrt(78)
+    assert abs(stated / scatter - 1) < 4 / np.sqrt(58)
     naive = fit.bootstrap(fit.asymmetric_laplace, sets[0][0], resamples=60).standard_errors["below"]
     assert naive < 0.5 * stated
 
@@ -123,16 +123,16 @@ WRONG: dict[str, Callable[[Array], Array]] = {
 def test_wrong_densities_are_rejected_though_the_cusp_is_free(
     truth: str, particles: int, each: int, correlation: float
 ) -> None:
-    """1200 values of what has no cusp pass as asymmetric Laplace at 0.05 in one of 20 sets at most."""
+    """1200 values of what has no cusp do not pass as asymmetric Laplace at 0.05 in any of 10 sets."""
     level, found = stats.norm(scale=1.0), []
-    for seed in range(20):
+    for seed in range(10):
         rng = np.random.default_rng([seed, each])
         score = np.sqrt(correlation) * rng.normal(size=(particles, 1))
         score = score + np.sqrt(1.0 - correlation) * rng.normal(size=(particles, each))
         x, particle = WRONG[truth](level.cdf(score)), np.repeat(np.arange(particles), each)
         judged = fit.goodness(fit.asymmetric_laplace, x, clusters=particle, resamples=19, seed=seed)
         found.append(min(judged.kolmogorov_smirnov_p, judged.anderson_darling_p))
-    assert np.mean(np.array(found) <= 0.05) >= 0.95
+    assert max(found) <= 0.05
 
 
 def test_families_get_their_keywords() -> None:
@@ -189,13 +189,13 @@ def test_runs_of_counts_take_the_place_of_particles() -> None:
     edges = np.linspace(0.5, 1.3, 401)
     runs = [flanks(rng.random(500)) for _ in range(20)]
     counts = [binned(run, edges) for run in runs]
-    found = fit.bootstrap(fit.asymmetric_laplace, counts, resamples=12)
+    found = fit.bootstrap(fit.asymmetric_laplace, counts, resamples=9)
     samples = fit.bootstrap(
-        fit.asymmetric_laplace, np.concatenate(runs), np.repeat(np.arange(20), 500), resamples=12
+        fit.asymmetric_laplace, np.concatenate(runs), np.repeat(np.arange(20), 500), resamples=9
     )
     assert found.clusters == 20
     assert found.fit.parameters["below"] == pytest.approx(samples.fit.parameters["below"], rel=5e-3)
     ratio = found.standard_errors["below"] / samples.standard_errors["below"]
-    assert 0.4 < ratio < 2.5  # both know their error to 1/√22
+    assert 0.4 < ratio < 2.5  # both know their error to a quarter
     assert fit.goodness(fit.asymmetric_laplace, counts, resamples=9).kolmogorov_smirnov_p > 0.1
     assert fit.goodness(fit.gaussian, counts, resamples=19).kolmogorov_smirnov_p == 0.05

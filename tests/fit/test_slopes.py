@@ -13,7 +13,7 @@ def test_growth_laws_come_back() -> None:
     """Exponents -1 and -1.5 within four stated errors, which are small; a bin's finite width adds 0.005."""
     data = scaled_flanks(1000, 1)
     edges = np.linspace(0.1, 0.5, 41)
-    found = fit.slopes(data, edges, location=CUSP, resamples=40)
+    found = fit.slopes(data, edges, location=CUSP, resamples=20)
     for side, exponent, amplitude in (("above", -1.0, 0.01), ("below", -1.5, 0.02)):
         law = found.power_law(side)
         assert law.exponent_error < 0.02
@@ -39,7 +39,7 @@ def test_independent_kicks_give_the_growth_law_of_the_reservoir() -> None:
     data = xr.Dataset(
         {"impact_velocity": (("particle", "impact"), v), "restitution": (("particle", "impact"), e)}
     )
-    found = fit.slopes(data, CUSP ** np.arange(79.5, 0, -2), location=CUSP, resamples=40)
+    found = fit.slopes(data, CUSP ** np.arange(79.5, 0, -2), location=CUSP, resamples=20)
     for side in ("above", "below"):
         law = found.power_law(side, release_speed=1.0)
         assert law.exponent_error < 0.02
@@ -51,7 +51,7 @@ def test_slopes_of_counts_are_those_of_the_impacts() -> None:
     data = scaled_flanks(500, 2)
     edges = np.linspace(0.1, 0.5, 9)
     counts = rs.reduce(data, edges, np.linspace(-1.0, 2.0, 3001))
-    one, other = fit.slopes(counts, location=CUSP), fit.slopes(data, edges, location=CUSP, resamples=20)
+    one, other = fit.slopes(counts, location=CUSP), fit.slopes(data, edges, location=CUSP, resamples=12)
     for side in ("above", "below"):
         gap = np.abs(one.table[side] - other.table[side])
         assert np.all(gap < 0.2 * other.table[f"{side}_error"])

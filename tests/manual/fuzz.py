@@ -64,12 +64,16 @@ def main() -> int:
         "--seconds", type=float, default=0.0, help="go on for so long, at least once through all"
     )
     parser.add_argument("--rounds", type=int, default=1, help="go through all so many times at least")
+    parser.add_argument(
+        "--every", type=int, default=1, help="of so many one, beginning with the first seed's"
+    )
     parser.add_argument("--seed", type=int, default=0, help="the first")
     parser.add_argument("only", nargs="*", help="a kind of file, a function or its argument")
     asked = parser.parse_args()
     warnings.filterwarnings("ignore", category=rs.EnergyWarning)
     places = [(kind,) for kind in reading.KINDS] + list(tables.ARGUMENTS)
     chosen = [names for names in places if all(word in names for word in asked.only)]
+    chosen = chosen[asked.seed % asked.every :: asked.every]
     good()  # once, before any process is forked; but Zarr has threads, which a fork does not copy
     apart(lambda: measuring.store().name and None)
     started, trials, failures = time.monotonic(), 0, 0

@@ -96,6 +96,14 @@ def test_examples_in_docstrings(name: str) -> None:
     assert result.failed == 0
 
 
+@pytest.fixture(autouse=True)
+def coarse_posteriors(monkeypatch: pytest.MonkeyPatch, request: pytest.FixtureRequest) -> None:
+    """Few shapes and scatters in posteriors, but where a page tells their numbers."""
+    if "inference.md" not in request.node.name:
+        for name in ("_SHAPES", "_SCATTERS"):
+            monkeypatch.setattr(f"restitution.experiment.inference._posterior.{name}", 2)
+
+
 def public_names(module: ModuleType, prefix: str = "") -> Iterator[tuple[str, Any, ModuleType]]:
     """Every public name of the package with what it stands for, and the module that it is a name of."""
     for name in module.__all__:

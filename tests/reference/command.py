@@ -16,10 +16,6 @@ from typer.testing import CliRunner, Result
 import restitution as rs
 from restitution.cli import app, main
 
-COMMAND = [sys.executable, "-c", "from restitution.cli import main; main()"]
-AMONG_TESTS = f"import sys; sys.path.insert(0, {str(Path(__file__).parents[1])!r})\n"
-"""How a program begins that imports from here."""
-
 SMALL = """
 [body]
 shape = "dumbbell"
@@ -62,18 +58,8 @@ def invoke(*words: object) -> Result:
 
 
 SERVER = get_context("forkserver")
-SERVER.set_forkserver_preload(
-    [
-        "restitution.cli",
-        "xarray",
-        "netCDF4",
-        "scipy.stats",
-        "matplotlib.figure",
-        "zarr",
-        "restitution.fit",
-        "soundfile",
-    ]
-)
+_PRELOADED = "restitution.cli restitution.fit xarray netCDF4 scipy.stats matplotlib.figure zarr soundfile"
+SERVER.set_forkserver_preload(_PRELOADED.split())
 
 
 class Apart:
