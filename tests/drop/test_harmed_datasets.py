@@ -14,3 +14,7 @@ from reference.harmed import every_harm, harm, takers
 def test_every_function_that_takes_one(name: str, data: st.DataObject) -> None:
     """Drawn from the catalogue, of all public functions; `make hostile` goes through all of it."""
     assert harm(name, data.draw(st.sampled_from(list(every_harm(name))))) is None
+
+
+def test_a_mass_is_one_number() -> None:
+    assert harm("resting", "attribute mass three") is None

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from restitution._internal.arrays import FloatArray, IntArray, reals
+from restitution._internal.arrays import FloatArray, IntArray, real
 from restitution._internal.parameters import ParameterError, Problem, wrong
 from restitution.bodies import (
     Box,
@@ -349,7 +349,7 @@ def resting(body: RigidBody, data: xr.Dataset) -> xr.Dataset:
     check_filled("data", ratio)
     check_successive("data", data, start=0)
     gravity, incline = pull("data", data)
-    mass = reals("data.mass", data.attrs.get("mass", np.nan), "that of the body", unit=None)
+    mass = real("data.mass", data.attrs.get("mass", np.nan), "that of the body")
     if data.attrs.get("body") != type(body).__name__ or mass != body.mass:
         text = f" is of a {data.attrs.get('body')} of {mass:g} kg: must be of the body, {body!r}"
         raise ParameterError(Problem("data", text))
