@@ -1,7 +1,7 @@
 //! The binding for the browser: it takes a run as a row of numbers and returns tables of numbers. It contains no physics, no threads
 //! and no unsafe block; only the functions that the page calls are exported.
 //!
-//! The page writes numbers at [`parameters`], calls [`simulate`], [`follow`], [`outline`] or [`turn`], and reads the table at [`table`],
+//! The page writes numbers at [`parameters`], calls [`simulate`], [`follow`], [`outline`], [`farthest`] or [`turn`], and reads the table at [`table`],
 //! of as many numbers as the call returned. A call that fails returns −1, and [`message`] says why. What bodies of revolution and laws
 //! there are, and with which parameters, [`describe`] says.
 #![deny(unsafe_code)]
@@ -88,6 +88,20 @@ pub extern "C" fn outline() -> f64 {
             .flat_map(|arc| [arc.centre, arc.along, arc.across, arc.from, arc.to])
             .collect()),
     })
+}
+
+/// The table of `rigid::farthest` of a body without an axis, for `count` directions, which are behind it.
+#[allow(unsafe_code)]
+#[unsafe(no_mangle)]
+pub extern "C" fn farthest(count: usize) -> f64 {
+    let given = given();
+    let (run, directions) = given.split_at(given.len() - 3 * count);
+    keep(
+        Parameters::read(run).and_then(|parameters| match parameters.run()?.body {
+            AnyBody::Rigid(body) => rigid::farthest(body, directions),
+            AnyBody::Revolution(_) => Ok(Vec::new()),
+        }),
+    )
 }
 
 /// The free rotation of a body without an axis, of the fifteen numbers that `rigid::turned` takes.

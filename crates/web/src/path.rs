@@ -1,7 +1,7 @@
 //! The states at the start of each flight of one particle, from which the page draws the motion in closed form.
 
 use crate::records::alone;
-use crate::rigid::{components, quaternion};
+use crate::rigid::{components, quaternion, vector};
 use restitution_core::{
     AnyBody, Body, Columns, Error, Followed, Height, Quaternion, Rigid, Run, Scales, Sphere, State,
     Vector, elementary,
@@ -32,9 +32,9 @@ pub fn follow(run: &Run<'_>, particle: usize) -> Result<Vec<f64>, Error> {
     Ok(rows)
 }
 
-/// Of a body without an axis, in 16 columns: start time; place of the centre of mass, along the plane from the release (3); velocity
+/// Of a body without an axis, in 19 columns: start time; place of the centre of mass, along the plane from the release (3); velocity
 /// (3); attitude (4: w, x, y, z), from the axes that the body was given in; ω (3); rotational energy divided by the mass; the part that
-/// touched, 0 at release.
+/// touched, 0 at release; where it touched, from the centre of mass (3).
 fn follow_rigid(run: &Run<'_>, body: &Rigid, particle: usize) -> Result<Vec<f64>, Error> {
     let columns = Columns::usual(run.body, &run.law, true);
     let records = alone(run, particle, 1, &columns)?;
@@ -44,9 +44,9 @@ fn follow_rigid(run: &Run<'_>, body: &Rigid, particle: usize) -> Result<Vec<f64>
     };
     let (sine, cosine) = elementary::sincos(run.incline);
     let gravity = Vector::new(run.gravity * sine, 0.0, -run.gravity * cosine);
-    let row = |time, place, velocity, [w, x, y, z]: [f64; 4], spin: [f64; 3], part| {
-        let [along, across, up] = spin;
-        let spin = Vector::new(along, across, up);
+    let normal = Vector::new(0.0, 0.0, 1.0);
+    let row = |time, place, velocity, [w, x, y, z]: [f64; 4], spin: [f64; 3], part: i32, before| {
+        let spin = vector(&spin);
         let attitude = Quaternion::new(w, x, y, z);
         let within = (attitude * body.axes).inverse().rotate(spin);
         let rotation = 0.5 * body.unit * body.unit * body.top.twice_energy(within);
@@ -56,22 +56,33 @@ fn follow_rigid(run: &Run<'_>, body: &Rigid, particle: usize) -> Result<Vec<f64>
         row.extend(quaternion(attitude));
         row.extend(components(spin));
         row.extend([rotation, f64::from(part)]);
+        let [up, turning] =
+            [normal, normal.cross(vector(&before))].map(|v| attitude.inverse().rotate(v));
+        let arm = match part {
+            0 => Vector::default(),
+            part => attitude.rotate(body.nearest(part as usize - 1, up, turning)),
+        };
+        row.extend(components(arm));
         row
     };
     let (mut time, mut place) = (0.0, Vector::new(0.0, 0.0, height));
     let mut velocity = run.release_velocity;
     let (attitude, spin) = (records.release_attitude[0], records.release_spin[0]);
-    let mut rows = row(time, place, velocity, attitude, spin, 0);
+    let mut rows = row(time, place, velocity, attitude, spin, 0, spin);
     for i in 0..records.impacts[0] as usize {
         let lasted = records.time[i] - time;
         // In flight gravity alone acts (5); the height is that of the contact.
         place = place + velocity * lasted + gravity * (0.5 * lasted * lasted);
         place.z = records.height[i];
         time = records.time[i];
-        let [x, y, z] = records.velocity_after[i];
-        velocity = Vector::new(x, y, z);
-        let (attitude, spin) = (records.attitude[i], records.angular_velocity_after[i]);
-        rows.extend(row(time, place, velocity, attitude, spin, records.part[i]));
+        velocity = vector(&records.velocity_after[i]);
+        let spins = [
+            &records.angular_velocity_after,
+            &records.angular_velocity_before,
+        ];
+        let [spin, before] = spins.map(|spins| spins[i]);
+        let (attitude, part) = (records.attitude[i], records.part[i]);
+        rows.extend(row(time, place, velocity, attitude, spin, part, before));
     }
     Ok(rows)
 }

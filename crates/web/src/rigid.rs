@@ -48,7 +48,7 @@ fn make(numbers: &[f64]) -> Result<Rigid, Error> {
             Rigid::clump(&balls, density, Matter::Union)
         }
         2 => Rigid::ellipsoid(*rest.first_chunk().expect("three semi-axes"), density),
-        _ => {
+        3 => {
             let &[radius, count, asperity, seed] = rest.first_chunk().expect("four numbers");
             let sphere = [ball([0.0; 3], radius)];
             let inertia: Inertia = Rigid::clump(&sphere, density, Matter::Sum)?.inertia;
@@ -60,11 +60,30 @@ fn make(numbers: &[f64]) -> Result<Rigid, Error> {
             };
             Rigid::rough(&sphere, false, inertia, &roughness)
         }
+        4 => {
+            let &[a, b, c, n1, n2] = rest.first_chunk().expect("semi-axes and exponents");
+            Rigid::superellipsoid([a, b, c], [n1, n2], density)
+        }
+        5 => {
+            let &[outer, inner, height] = rest.first_chunk().expect("three lengths");
+            if inner >= outer {
+                return Err(Error::Parameter {
+                    name: "inner",
+                    value: inner.into(),
+                    allowed: format!("less than outer = {outer:?} (m)"),
+                });
+            }
+            let half = 0.5 * height;
+            let first = [-half, inner];
+            let corners = [first, [-half, outer], [half, outer], [half, inner], first];
+            Rigid::revolution(&corners, density)
+        }
+        6 => {
+            let &[length, width, blunt_end, tip] = rest.first_chunk().expect("four lengths");
+            Rigid::egg([length, width], [blunt_end, tip], density)
+        }
+        _ => Rigid::revolution(rest.as_chunks().0, density),
     }
-}
-
-fn vector(&[x, y, z]: &[f64; 3]) -> Vector {
-    Vector::new(x, y, z)
 }
 
 fn ball(centre: [f64; 3], radius: f64) -> RigidBall {
@@ -72,15 +91,29 @@ fn ball(centre: [f64; 3], radius: f64) -> RigidBall {
     RigidBall { centre, radius }
 }
 
-/// The principal moments over mR², the rotation from the principal axes, the centre of mass, and the balls or vertices that can touch,
+/// The principal moments over mR², the rotation from the principal axes, the centre of mass, R, and the balls or vertices that can touch,
 /// each centre and radius, in the order of their numbers.
 pub fn outline(body: &Rigid) -> Result<Vec<f64>, Error> {
     let mut row = body.top.moments().to_vec();
     row.extend(quaternion(body.axes));
     row.extend(components(body.inertia.centre));
+    row.push(body.unit);
     for RigidBall { centre, radius } in body.balls()? {
         row.extend(components(centre));
         row.push(radius);
+    }
+    Ok(row)
+}
+
+/// The places that lie farthest in these directions, unit vectors, from the centre of mass and in the axes that the body was given in.
+pub fn farthest(body: &Rigid, directions: &[f64]) -> Result<Vec<f64>, Error> {
+    let parts = body.balls()?.len().max(body.rims().len()).max(1);
+    let mut row = Vec::with_capacity(directions.len());
+    for direction in directions.as_chunks().0.iter().map(vector) {
+        let places = (0..parts).map(|k| body.nearest(k, direction * -1.0, Vector::default()));
+        let along = |place: &Vector| place.dot(direction);
+        let farthest = places.max_by(|a, b| along(a).total_cmp(&along(b)));
+        row.extend(components(farthest.unwrap_or_default()));
     }
     Ok(row)
 }
@@ -107,6 +140,11 @@ pub fn quaternion(given: Quaternion) -> [f64; 4] {
     [given.w, given.x, given.y, given.z]
 }
 
+/// The vector with these x, y and z.
+pub fn vector(&[x, y, z]: &[f64; 3]) -> Vector {
+    Vector::new(x, y, z)
+}
+
 /// x, y and z.
 pub fn components(of: Vector) -> [f64; 3] {
     [of.x, of.y, of.z]
@@ -123,7 +161,7 @@ mod tests {
         let clump = body(&numbers).unwrap();
         assert!(Rc::ptr_eq(&clump, &body(&numbers).unwrap()));
         let row = outline(&clump).unwrap();
-        for (found, given) in row[10..].iter().zip(&numbers[2..]) {
+        for (found, given) in row[11..].iter().zip(&numbers[2..]) {
             assert!((found - given).abs() < 1e-18, "{found} for {given}");
         }
         let corners = [
@@ -136,6 +174,30 @@ mod tests {
             let centre = made.inertia.centre;
             assert!((centre - Vector::new(1e-3, 1e-3, 1e-3)).norm() < 1e-18);
         }
+    }
+
+    /// Where a body lies farthest, it has the support of that direction; a ring is one.
+    #[test]
+    fn the_farthest_place_has_the_support() {
+        let bodies: [&[f64]; 4] = [
+            &[1.0, 2500.0, 0.0, 0.0, 1e-3, 2e-3, 0.0, 0.0, -1e-3, 3e-3],
+            &[4.0, 2500.0, 4e-3, 3e-3, 2e-3, 3.0, 5.0],
+            &[5.0, 2500.0, 4e-3, 2e-3, 1e-3],
+            &[6.0, 2500.0, 6e-3, 4.6e-3, 2.1e-3, 1.5e-3],
+        ];
+        for numbers in bodies {
+            let body = body(numbers).unwrap();
+            for direction in [[0.6, 0.0, 0.8], [0.48, -0.64, -0.6]] {
+                let place = farthest(&body, &direction).unwrap();
+                let direction = vector(&direction);
+                let [found, support] = [
+                    vector(place.first_chunk().unwrap()).dot(direction),
+                    body.support(direction),
+                ];
+                assert!((found - support).abs() < 1e-16, "{found} for {support}");
+            }
+        }
+        assert!(body(&[5.0, 2500.0, 4e-3, 4e-3, 1e-3]).is_err());
     }
 
     /// A free body keeps its angular momentum, of which its rotation about a principal axis is a simple one.

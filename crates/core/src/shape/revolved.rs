@@ -25,6 +25,11 @@ pub(crate) struct Band {
     pub reach: f64,
 }
 
+/// The length of a vector with these components. That of the platform's library has another last bit on another platform.
+fn norm(a: f64, b: f64) -> f64 {
+    (a * a + b * b).sqrt()
+}
+
 /// Of what the support of a band is the sum, for a direction **u**: of z u_z, r |u_⊥| and ϱ|**u**|.
 pub(crate) type Weights = [f64; 3];
 
@@ -37,7 +42,7 @@ impl Band {
             reach: 0.0,
         };
         let [z, r] = centre;
-        let distance = z.hypot(r);
+        let distance = norm(z, r);
         // The farthest point of the arc is on the line through the centre of mass and its centre, or an end.
         band.reach = if distance > 0.0 {
             let [a, b, c] = band.weights(z / distance, r / distance);
@@ -46,7 +51,7 @@ impl Band {
             radius
         };
         for [a, b] in ends {
-            band.reach = band.reach.max((z + radius * a).hypot(r + radius * b));
+            band.reach = band.reach.max(norm(z + radius * a, r + radius * b));
         }
         band
     }
@@ -189,7 +194,7 @@ impl Rigid {
         // Of a sphere the arc can be all of it.
         let towards = |[a, b]: Place, pole: Place| {
             let (x, y) = (a - centre[0], b - centre[1]);
-            let size = x.hypot(y);
+            let size = norm(x, y);
             if size > 0.0 {
                 [x / size, y / size]
             } else {

@@ -254,6 +254,24 @@ impl Rigid {
         self.unit * self.skin.support(self.axes.inverse().rotate(normal) * -1.0)
     }
 
+    /// The place of the part with this number, from 0, that is nearest to a plane with this normal, from the centre of mass in m; of several the
+    /// one that comes down first as the normal changes with `turning`. All are in the axes that the body was given in.
+    pub fn nearest(&self, number: usize, up: Vector, turning: Vector) -> Vector {
+        let part = match &self.skin {
+            Skin::Points(balls) => {
+                let mut points = balls.points().iter();
+                let place = points.position(|point| point.number as usize == number);
+                place.expect("the number of a part")
+            }
+            Skin::Convex(_) => number,
+        };
+        let back = self.axes.inverse();
+        let nearest = self
+            .skin
+            .nearest(part, back.rotate(up), back.rotate(turning));
+        self.axes.rotate(nearest) * self.unit
+    }
+
     /// Smallest height of the centre of mass, in m, at which no part of the body is below the plane in an attitude of the axes that
     /// the body was given in.
     pub fn lowest(&self, attitude: Quaternion) -> f64 {
