@@ -11,6 +11,7 @@ from scipy.spatial import ConvexHull
 
 import restitution as rs
 from restitution.bodies import directions
+from restitution.bodies._polyhedra import _triangles, hull_of
 
 Array = npt.NDArray[np.float64]
 
@@ -94,6 +95,24 @@ def test_a_convex_mesh_is_the_polyhedron() -> None:
     one, other = (rs.simulate(body, rs.Frictionless(normal=0.8), **run) for body in (mesh, hull))
     np.testing.assert_allclose(one.restitution, other.restitution, rtol=1e-9)
     np.testing.assert_array_equal(one.contact, other.contact)
+
+
+def test_the_triangles_of_a_polyhedron_depend_on_its_points_only() -> None:
+    """A grid with points within faces and edges, each twice, has the triangles of a cube, however turned."""
+    grid = np.stack(np.meshgrid(*(np.arange(3.0),) * 3, indexing="ij"), axis=-1).reshape(-1, 3)
+    points = 1.7e-3 * np.concatenate([grid, grid])
+    triangles = [(0, 2, 8), (0, 2, 20), (0, 6, 8), (0, 6, 24), (0, 18, 20), (0, 18, 24)]
+    triangles += [(2, 8, 26), (2, 20, 26), (6, 8, 26), (6, 24, 26), (18, 20, 26), (18, 24, 26)]
+    for turned in (
+        points,
+        points[:, [1, 2, 0]],
+        -points,
+        points @ np.array([[0.6, 0.8, 0], [-0.8, 0.6, 0], [0, 0, 1]]),
+    ):
+        hull = hull_of(turned)
+        assert hull is not None
+        assert _triangles(hull) == triangles
+    assert rs.ConvexPolyhedron(points).mass == pytest.approx(2500 * (2 * 1.7e-3) ** 3, rel=1e-14)
 
 
 def test_hollow_and_holed_solids_have_their_own_mass() -> None:
