@@ -3,7 +3,7 @@
 import { mkdirSync } from "node:fs";
 import { fileURLToPath } from "node:url";
 import { launch } from "./tests/browser.mjs";
-import { PAGE } from "./tests/library.mjs";
+import { PAGE, page as library } from "./tests/library.mjs";
 
 export const LAPTOP = { width: 1280, height: 800 };
 export const PHONE = { width: 390, height: 844 };
@@ -28,7 +28,7 @@ const LOOKS = {
   "present-5": { hash: "stop=5&present=1" },
   spheroid: { hash: "shape=spheroid&elongation=1&particles=50&impacts=50&impact=9&chart=drawing" },
   capsule: { hash: "shape=spherocylinder&elongation=2&spin_y=80&particles=50&impacts=50&impact=4&chart=drawing&law=coulomb" },
-  ...Object.fromEntries(["ellipsoid", "box", "die", "clump", "rough-sphere", "mesh"].flatMap((shape) => {
+  ...Object.fromEntries(library.RIGID.flatMap(({ key: shape }) => {
     const hash = `shape=${shape}&law=coulomb&faces=20&particles=50&impacts=50&impact=2`;
     return [[shape, { hash }], [`${shape}-dark`, { hash, scheme: "dark" }], [`${shape}-phone`, { hash, ...PHONE }]];
   })),

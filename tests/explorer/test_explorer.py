@@ -105,6 +105,12 @@ BODIES: list[Any] = [
     rs.Clump(spheres=[(0, 0, 0, 1e-3), (0, 0, 1e-3, 2e-3)]),
     rs.Mesh(vertices=CORNERS, triangles=[(0, 2, 1), (0, 1, 3), (0, 3, 2), (1, 2, 3)]),
     rs.RoughSphere(**ROUGH, seed=7),
+    rs.Superellipsoid(semi_axes=(3e-3, 2e-3, 1e-3), exponents=(4, 2)),
+    rs.ConvexPolyhedron(CORNERS),
+    rs.Revolution([(0, 2e-3), (5e-3, 0)]),
+    rs.Cylinder(radius=3e-3, height=2e-3),
+    rs.Ring(outer=3e-3, inner=2e-3, height=1e-3),
+    rs.Egg(length=6e-3, width=5e-3, blunt_end=2e-3, tip=1e-3),
 ]
 
 
@@ -132,7 +138,7 @@ def test_large_runs_are_shown_in_part() -> None:
     ("change", "word"),
     [
         ({"body": rs.Dumbbell(radius=(3e-3, 2e-3), separation=1e-3)}, "the same for both spheres"),
-        ({"body": rs.Cylinder(radius=1e-3, height=2e-3), **FREE}, "body = Cylinder"),
+        ({"body": rs.Rough(BODY, asperities=3, asperity_radius=1e-5), **FREE}, "body = Rough"),
         ({"body": rs.Clump(spheres=1001 * [(0, 0, 0, 1e-3)]), **FREE}, "body.spheres = 1001 rows"),
         ({"body": rs.Clump(spheres=[(0, 0, 0, 1e-3)], inertia="sum"), **FREE}, "body.inertia"),
         ({"body": rs.Box(1e-3, 1e-3, 1e-3, inertia=1e-12 * np.eye(3)), **FREE}, "body.inertia"),

@@ -3,10 +3,10 @@
 import { problem } from "./link";
 import { outlineOf } from "./outline";
 import { part } from "./page";
-import { spheresOf, surfaceOf } from "./rigid";
+import { rowsOf, surfaceOf } from "./rigid";
 import { applies, bodyOf, MOST_IMPACTS, ORIENTATIONS, rounded, type Setup } from "./setup";
 import { nice } from "./statistics";
-import { beside, CLUMPS, LAWS, PARAMETERS, SHAPES, sizeOf, written, type Parameter } from "./table";
+import { beside, LAWS, LISTS, PARAMETERS, SHAPES, sizeOf, written, type Parameter } from "./table";
 
 interface Slider {
   key: string;
@@ -41,7 +41,7 @@ function sliderOf({ name, text, unit, low, high, example, ...about }: Parameter)
   const body = SHAPES.some(({ parameters }) => parameters.some((one) => one.name === name));
   const size = beside(name);
   const label = capital(unit === "1" ? text : name.replaceAll("_", " "));
-  if (size) return { key: name, name: `${label} / ${size.replaceAll("_", " ")}`, title: text, unit: "", factor: 1, beside: size, low: about.closed ? 0 : 0.05, high: 3, step: 0.01 };
+  if (size) return { key: name, name: `${label} / ${size.replaceAll("_", " ")}`, title: text, unit: "", factor: 1, beside: size, low: about.closed ? 0 : 0.05, high: about.most ?? 3, step: 0.01 };
   const [shown, factor] = UNITS[unit!] ?? [unit!, 1];
   const most = (high != null && high < 1e6 && !(about.whole && high > 1e4) ? high : (unit === "m" ? 6 : 5) * usual) * factor;
   const step = about.whole ? 1 : nice((most - low! * factor) / 200);
@@ -51,7 +51,7 @@ function sliderOf({ name, text, unit, low, high, example, ...about }: Parameter)
 const NUMBERS = [...PARAMETERS.values()].filter(({ names, type }) => !names && type !== "table");
 /** Fields that are neither a slider nor a choice. */
 const TABLES = [
-  { key: "spheres", name: "Spheres" },
+  ...Object.keys(LISTS).map((key) => ({ key, name: capital(key) })),
   { key: "mesh", name: "Mesh" },
   { key: "file", name: "From a file" },
 ];
@@ -106,8 +106,8 @@ function first(s: Setup): string {
   return one.type === "table" ? "shape" : one.name;
 }
 
-/** Where a file goes, with what a unit of it is in m. */
-type Load = (file: File, unit: number) => void;
+/** Where a file goes, with what a unit of it is in m, and which table it is, if that is known. */
+type Load = (file: File, unit: number, key?: string) => void;
 
 export class Controls {
   private setup!: Setup;
@@ -169,12 +169,13 @@ export class Controls {
     const row = document.createElement("div");
     row.className = "field wide";
     const options = (names: string[]) => names.map((name) => `<option>${name}</option>`).join("");
+    const list = LISTS[key];
     const html: Record<string, string> = {
-      spheres: `<label class="name" for="spheres">Spheres</label><select id="preset" aria-label="A clump to begin with"><option value="">your own</option>${options(Object.keys(CLUMPS))}</select>
-        <textarea id="spheres" rows="5" spellcheck="false" aria-describedby="spheres-hint"></textarea><p id="spheres-hint" class="soft small">x y z r in mm, one sphere a line</p>`,
+      [key]: list && `<label class="name" for="${key}">${nameOf(key)}</label><select id="${key}-preset" aria-label="${nameOf(key)} to begin with"><option value="">your own</option>${options(Object.keys(list.presets))}</select>
+        <textarea id="${key}" rows="5" spellcheck="false" aria-describedby="${key}-hint"></textarea><p id="${key}-hint" class="soft small">${list.columns.join(" ")} in mm, ${list.line}</p>`,
       mesh: `<p id="mesh" class="small"></p>`,
       file: `<label class="name" for="unit">From a file in</label><select id="unit">${options(Object.keys(FILE_UNITS))}</select>
-        <input type="file" id="file" accept=".txt,.csv,.dat,.obj,.stl" aria-label="File of a body"><p class="soft small">or drop it on the page: rows x y z r, CSV, OBJ, STL in text</p>`,
+        <input type="file" id="file" accept=".txt,.csv,.dat,.obj,.stl" aria-label="File of a body"><p class="soft small">or drop it on the page: rows x y z r (spheres), x y z (points) or z r (profile), CSV, OBJ, STL in text</p>`,
     };
     row.innerHTML = html[key];
     const on = (selector: string, act: (value: string) => void) => {
@@ -183,12 +184,12 @@ export class Controls {
       return field;
     };
     let show = () => {};
-    if (key === "spheres") {
-      const preset = on("#preset", (name) => name && this.changed(key, written(CLUMPS[name as keyof typeof CLUMPS], 1e-3)));
-      const text = on("textarea", (value) => this.load(new File([value], "Spheres"), 1e-3));
+    if (list) {
+      const preset = on("select", (name) => name && this.changed(key, written(list.presets[name], 1e-3)));
+      const text = on("textarea", (value) => this.load(new File([value], nameOf(key)), 1e-3, key));
       show = () => {
-        preset.value = Object.entries(CLUMPS).find(([, rows]) => written(rows, 1e-3) === this.setup.spheres)?.[0] ?? "";
-        const lines = spheresOf(this.setup).map((sphere) => sphere.map((x) => rounded(x * 1e3)).join(" "));
+        preset.value = Object.entries(list.presets).find(([, rows]) => written(rows, 1e-3) === this.setup[key])?.[0] ?? "";
+        const lines = rowsOf(this.setup, key).map((row) => row.map((x) => rounded(x * 1e3)).join(" "));
         if (document.activeElement !== text) text.value = lines.join("\n");
       };
     } else if (key === "mesh") {

@@ -54,10 +54,10 @@ const ROWS: [string, (run: Run, place: number) => string][] = [
 ];
 
 const tilt = (run: Run, i: number) => `${((run.columns.angle[i] * 180) / Math.PI).toFixed(1)}°`;
-/** What describes the contact: the tilt, or which ball or vertex it is; an ellipsoid has none. */
+/** What describes the contact: the tilt, or which ball, vertex or rim it is; an ellipsoid has none. */
 function contact({ setup }: Run): typeof ROWS {
   if (!isRigid(setup)) return [["tilt θ of the axis", tilt]];
-  return setup.shape === "ellipsoid" ? [] : [["part that touched", (run, i) => String(run.columns.contact[i])]];
+  return setup.shape.endsWith("ellipsoid") ? [] : [["part that touched", (run, i) => String(run.columns.contact[i])]];
 }
 
 export function showImpact(table: HTMLTableElement, run: Run, particle: number, impact: number): void {

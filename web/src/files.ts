@@ -1,9 +1,15 @@
-/** Bodies from files: the spheres of a clump as rows or as a table with a header, a mesh as OBJ or as STL in text. Whatever is wrong is
- * said with its line. The formats are those of the package: python/restitution/bodies/_clump_files.py. */
+/** Bodies from files: the spheres of a clump as rows or as a table with a header, the points of a convex polyhedron or of a profile as
+ * rows, a mesh as OBJ or as STL in text. Whatever is wrong is said with its line. The formats are those of the package: python/restitution/bodies/_clump_files.py. */
 
 import { wrongTable } from "./rigid";
+import { LISTS } from "./table";
 
-export type Read = { shape: "clump"; key: "spheres"; text: string } | { shape: "mesh"; key: "mesh"; text: string };
+/** A body, and the table of it under its key. */
+export interface Read {
+  shape: string;
+  key: string;
+  text: string;
+}
 
 /** A line without its comment, and its number. */
 interface Line {
@@ -11,19 +17,19 @@ interface Line {
   words: string[];
 }
 
-const ROW = "x y z r, with spaces or commas between them and perhaps a type after them; r > 0";
-
-/** The body in a file of this name, of which a unit is so many metres. Throws what is wrong with it. */
-export function readBody(name: string, text: string, unit: number): Read {
-  if (/[\0\uFFFD]/.test(text)) throw new Error(`${name}: not a text file; must be a clump of spheres x y z r, or a mesh as OBJ or as STL in text`);
+/** The body in a file of this name, of which a unit is so many metres. Which table its rows are, their number of columns says, if `key` does
+ * not. Throws what is wrong with it. */
+export function readBody(name: string, text: string, unit: number, key?: string): Read {
+  if (/[\0\uFFFD]/.test(text)) throw new Error(`${name}: not a text file; must be rows of numbers, or a mesh as OBJ or as STL in text`);
   const lines = linesOf(text.replace(/^\uFEFF/, ""));
   const wrong = (line: Line, allowed: string): never => {
     throw new Error(`${name}, line ${line.number}: ${line.words.join(" ").slice(0, 60)}: must be ${allowed}`);
   };
   const mesh = /\.(obj|stl)$/i.exec(name)?.[1].toLowerCase();
+  const list = key ?? Object.keys(LISTS).find((one) => LISTS[one].columns.length === lines[0]?.words.length && !lines[0].words.includes("z")) ?? "spheres";
   const read: Read = mesh
     ? { shape: "mesh", key: "mesh", text: meshText(triangles(mesh, lines, wrong), unit) }
-    : { shape: "clump", key: "spheres", text: spheres(lines, wrong).flatMap((row) => row.map((x) => unit * x)).join("_") };
+    : { shape: LISTS[list].shape, key: list, text: table(list, lines, wrong).flatMap((row) => row.map((x) => unit * x)).join("_") };
   const problem = wrongTable(read.key, read.text);
   if (problem) throw new Error(`${name}: ${problem}`);
   return read;
@@ -41,21 +47,24 @@ function numbers(line: Line, words: string[], allowed: string, wrong: Wrong): nu
   return found.every(Number.isFinite) ? found : wrong(line, `${allowed}; finite`);
 }
 
-function spheres(lines: Line[], wrong: Wrong): number[][] {
-  const sphere = (line: Line, words: string[], allowed: string) => {
+function table(key: string, lines: Line[], wrong: Wrong): number[][] {
+  const { columns, fits, rule } = LISTS[key];
+  const row = (line: Line, words: string[], allowed: string) => {
     const found = numbers(line, words, allowed, wrong);
-    return found[3] > 0 ? found : wrong(line, allowed);
+    return fits(found.at(-1)!) ? found : wrong(line, allowed);
   };
   const names = lines[0]?.words.map((word) => word.replace(/["']/g, "").toLowerCase()) ?? [];
   if (!["x", "y", "z"].every((column) => names.includes(column))) {
-    return lines.map((line) => ([4, 5].includes(line.words.length) ? sphere(line, line.words.slice(0, 4), ROW) : wrong(line, ROW)));
+    const [lengths, more] = key === "spheres" ? [[4, 5], " and perhaps a type after them"] : [[columns.length], ""];
+    const allowed = `${columns.join(" ")}, with spaces or commas between them${more}${rule}`;
+    return lines.map((line) => (lengths.includes(line.words.length) ? row(line, line.words.slice(0, columns.length), allowed) : wrong(line, allowed)));
   }
-  const columns = ["x", "y", "z", "r"];
-  if (columns.some((column) => names.filter((name) => name === column).length !== 1)) wrong(lines[0], "a header with the columns x, y, z and r, each once");
+  const once = columns.every((column) => names.filter((name) => name === column).length === 1);
+  if (!once) wrong(lines[0], `a header with the columns ${columns.slice(0, -1).join(", ")} and ${columns.at(-1)}, each once`);
   return lines.slice(1).map((line) => {
-    const allowed = `${names.length} values, as many as the header has names; x, y, z finite, r > 0`;
+    const allowed = `${names.length} values, as many as the header has names; finite${rule}`;
     if (line.words.length !== names.length) wrong(line, allowed);
-    return sphere(line, columns.map((column) => line.words[names.indexOf(column)]), allowed);
+    return row(line, columns.map((column) => line.words[names.indexOf(column)]), allowed);
   });
 }
 

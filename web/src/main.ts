@@ -48,15 +48,15 @@ function begin(pool: Pool): void {
     const { state } = explorer;
     const setup = changed(state[which]!, key, value);
     explorer.go({ ...state, [which]: setup, particle: 0, impact: 0, stop: state.stop }, explorer.player.clock.playing);
-  }, (file, unit) => void take(file, unit));
+  }, (file, unit, key) => void take(file, unit, key));
   const explorer = new Explorer(pool, () => refresh());
 
   /** Takes the body of a file, or says what is wrong with it. */
-  async function take(file: File, unit: number): Promise<void> {
+  async function take(file: File, unit: number, key?: string): Promise<void> {
     const { state } = explorer;
     try {
-      const { shape, key, text } = readBody(file.name, await file.text(), unit);
-      const setup = changed({ ...state[which]!, shape }, key, text);
+      const read = readBody(file.name, await file.text(), unit, key);
+      const setup = changed({ ...state[which]!, shape: read.shape }, read.key, read.text);
       const { reach } = outlineOf(setup);
       if (!(reach > 1e-6 && reach < 1)) throw new Error(`${file.name}: a body of ${Number((2 * reach).toPrecision(2))} m; choose the unit of the file beside it`);
       explorer.problem("");

@@ -3,7 +3,6 @@
 import { Quaternion, Vector3 } from "three";
 import { numbers } from "./engine/layout";
 import type { Engine } from "./engine/module";
-import { semiAxesOf } from "./rigid";
 import { bodyOf, isRigid, type Setup } from "./setup";
 import type { Flight, Turn } from "./stage/path";
 import { sizeOf } from "./table";
@@ -33,7 +32,7 @@ interface Free extends Outline {
   /** Principal moments, and the rotation from the principal axes: what its rotation follows from. */
   rotor: number[];
   centre: Vector3;
-  /** Balls or vertices that can touch, in the order of their numbers, from the centre of mass; none of an ellipsoid. */
+  /** Balls or vertices that can touch, in the order of their numbers, from the centre of mass; none of a smooth body. */
   balls: { place: Vector3; radius: number }[];
 }
 
@@ -66,20 +65,23 @@ const DIRECTIONS = Array.from({ length: 200 }, (_, k) => {
 
 function ofRigid(setup: Setup): Free {
   const row = drawn(setup, numbers(setup));
-  const centre = new Vector3(row[7], row[8], row[9]);
-  const balls = Array.from({ length: (row.length - 10) / 4 }, (_, k) => {
-    const at = 10 + 4 * k;
+  const [centre, reach] = [new Vector3(row[7], row[8], row[9]), row[10]];
+  const balls = Array.from({ length: (row.length - 11) / 4 }, (_, k) => {
+    const at = 11 + 4 * k;
     return { place: new Vector3(row[at], row[at + 1], row[at + 2]).sub(centre), radius: row[at + 3] };
   });
-  const axes = semiAxesOf(setup);
-  let [size, reach] = [Math.min(...axes), Math.max(...axes)];
-  if (setup.shape !== "ellipsoid") {
-    const supports = DIRECTIONS.map((direction) => balls.reduce((most, { place, radius }) => Math.max(most, place.dot(direction) + radius), 0));
-    size = Math.min(...supports);
-    reach = balls.reduce((most, { place, radius }) => Math.max(most, place.length() + radius), 0);
-  }
+  const supports = balls.length
+    ? DIRECTIONS.map((direction) => balls.reduce((most, { place, radius }) => Math.max(most, place.dot(direction) + radius), 0))
+    : farthestOf(setup, DIRECTIONS).map((place, k) => place.dot(DIRECTIONS[k]));
+  const size = Math.min(...supports);
   const arc = (from: number): Arc => ({ centre: 0, along: size, across: size, from, to: from + Math.PI / 2 });
   return { arcs: [arc(0), arc(Math.PI / 2)], size, length: 2 * reach, reach, rotor: [...row.subarray(0, 7)], centre, balls };
+}
+
+/** The places of a body without an axis that lie farthest in these directions, unit vectors, from its centre of mass. */
+export function farthestOf(setup: Setup, directions: Vector3[]): Vector3[] {
+  const found = engine.farthest(numbers(setup), Float64Array.from(directions.flatMap((direction) => direction.toArray())));
+  return directions.map((_, k) => new Vector3().fromArray(found, 3 * k));
 }
 
 /** How a body without an axis turns. */
@@ -109,7 +111,7 @@ function drawn(setup: Setup, row: Float64Array): Float64Array {
     return engine.outline(row);
   } catch {
     const radius = Number(setup[sizeOf(bodyOf(setup)) ?? "radius"]);
-    if (isRigid(setup)) return Float64Array.of(1, 1, 1, 1, 0, 0, 0, 0, 0, 0, 0, 0, 0, radius);
+    if (isRigid(setup)) return Float64Array.of(1, 1, 1, 1, 0, 0, 0, 0, 0, 0, radius, 0, 0, 0, radius);
     return Float64Array.of(0, radius, radius, 0, Math.PI / 2, 0, radius, radius, Math.PI / 2, Math.PI);
   }
 }
@@ -149,12 +151,4 @@ export function contactArm(setup: Setup, axis: Vector3, end: number): Vector3 {
 }
 
 /** The same of any body, at the beginning of a flight, after its impact. */
-export function armOf(setup: Setup, { axis, attitude, sphere }: Flight): Vector3 {
-  if (!isRigid(setup)) return contactArm(setup, axis, sphere);
-  const ball = freeOf(setup).balls[sphere - 1];
-  if (ball) return ball.place.clone().applyQuaternion(attitude).add(new Vector3(0, 0, -ball.radius));
-  const [a, b, c] = semiAxesOf(setup);
-  const normal = new Vector3(0, 0, 1).applyQuaternion(attitude.clone().invert());
-  const scaled = new Vector3(a * a * normal.x, b * b * normal.y, c * c * normal.z);
-  return scaled.multiplyScalar(-1 / Math.sqrt(scaled.dot(normal))).applyQuaternion(attitude);
-}
+export const armOf = (setup: Setup, { axis, arm, sphere }: Flight): Vector3 => (isRigid(setup) ? arm.clone() : contactArm(setup, axis, sphere));

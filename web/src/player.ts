@@ -7,6 +7,7 @@ import { record, type Film } from "./export/record";
 import { freely } from "./outline";
 import { part } from "./page";
 import { isRigid } from "./setup";
+import { BODIES } from "./table";
 import { Clock } from "./stage/clock";
 import { Path } from "./stage/path";
 import { Stage } from "./stage/stage";
@@ -104,7 +105,7 @@ export class Player {
   /** The last impact before now, as it is drawn on paper, or why it is not. */
   get struck(): Struck | string {
     const path = this.paths[0];
-    if (path && isRigid(this.runs[0].setup)) return "Only of bodies of revolution is the impact drawn in a plane.";
+    if (path && isRigid(this.runs[0].setup)) return `Only of these is the impact drawn in a plane: ${BODIES.map(({ key }) => key.replace("-", " ")).join(", ")}.`;
     const impacts = path?.flightAt(this.clock.time) ?? 0;
     return impacts > 0 ? drawing(path, this.runs[0].setup, impacts) : "No impact yet: play, or step to one.";
   }

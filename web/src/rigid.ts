@@ -3,6 +3,7 @@
 import { Vector3 } from "three";
 import { ConvexHull } from "three/addons/math/ConvexHull.js";
 import type { Setup } from "./setup";
+import { LISTS } from "./table";
 
 export type Triple = [number, number, number];
 export interface Surface {
@@ -10,8 +11,10 @@ export interface Surface {
   triangles: number[][];
 }
 
-/** Most spheres of a clump, and triangles of a mesh, on this page. */
-export const MOST = { spheres: 1000, triangles: 20_000 };
+/** Most rows of a table, and triangles of a mesh, on this page. */
+const MOST = { rows: 1000, triangles: 20_000 };
+/** As those of the package: python/restitution/bodies/_polyhedra.py. */
+const [COPLANAR, COLLINEAR] = [1e-12, 1e-14];
 
 const SIGNS = [-1, 1];
 const CUBE = SIGNS.flatMap((x) => SIGNS.flatMap((y) => SIGNS.map((z) => [x, y, z])));
@@ -36,38 +39,109 @@ const rows = (numbers: number[], width: number): number[][] =>
   Array.from({ length: Math.ceil(numbers.length / width) }, (_, k) => numbers.slice(width * k, width * (k + 1)));
 const read = (text: string, width: number) => rows(text === "" ? [] : text.split("_").map((x) => (x === "" ? NaN : Number(x))), width);
 
-/** The rows of a table, or of the two of a mesh. They are asked for at every picture, and seldom change. */
-const kept = new Map<string, { spheres: number[][]; mesh: Surface; hull: number[] | undefined }>();
-function tableOf(text: string) {
-  let found = kept.get(text);
+/** A table, or the two of a mesh. They are asked for at every picture, and seldom change. */
+interface Table {
+  rows: number[][];
+  triangles: number[][];
+  /** What was found of its convex hull. */
+  hull?: number[];
+  faces?: number[][];
+}
+const kept = new Map<string, Table>();
+function tableOf(name: string, text: string): Table {
+  const key = `${name} ${text}`;
+  let found = kept.get(key);
   if (!found) {
     const [points, triangles = ""] = text.split("*");
-    found = { spheres: read(points, 4), mesh: { points: read(points, 3), triangles: read(triangles, 3) }, hull: undefined };
+    found = { rows: read(points, LISTS[name]?.columns.length ?? 3), triangles: read(triangles, 3) };
     if (kept.size > 7) kept.delete(kept.keys().next().value!);
-    kept.set(text, found);
+    kept.set(key, found);
   }
   return found;
 }
-export const spheresOf = (s: Setup): number[][] => tableOf(String(s.spheres)).spheres;
+/** The rows of the table with this name. */
+export const rowsOf = (s: Setup, name: string): number[][] => tableOf(name, String(s[name])).rows;
+
+/** Points and the triangles of their convex hull, of which those on a line have none. */
+function hullFaces(points: number[][]) {
+  const places = points.map(([x, y, z]) => new Vector3(x, y, z));
+  try {
+    return { places, faces: new ConvexHull().setFromPoints(places).faces };
+  } catch {
+    return { places, faces: [] };
+  }
+}
 
 /** Numbers of the vertices of the convex hull, in order. */
-function hullOf(text: string): number[] {
-  const found = tableOf(text);
-  if (!found.hull) {
-    const places = found.mesh.points.map(([x, y, z]) => new Vector3(x, y, z));
+function hullOf(mesh: Table): number[] {
+  if (!mesh.hull) {
+    const { places, faces } = hullFaces(mesh.rows);
     const numbers = new Map(places.map((place, k) => [place, k]));
     const touched = new Set<number>();
-    for (const { edge } of new ConvexHull().setFromPoints(places).faces) {
+    for (const { edge } of faces) {
       for (let at = edge, k = 0; k < 3; k++, at = at.next) touched.add(numbers.get(at.head().point)!);
     }
-    found.hull = [...touched].sort((a, b) => a - b);
+    mesh.hull = [...touched].sort((a, b) => a - b);
   }
-  return found.hull;
+  return mesh.hull;
+}
+
+/** The faces of a convex hull in triangles, which do not depend on how it was found: fans from the first corner of each, in order. */
+function trianglesOf(polyhedron: Table): number[][] {
+  if (!polyhedron.faces) {
+    const { rows } = polyhedron;
+    const size = Math.max(...[0, 1, 2].map((k) => Math.max(...rows.map((row) => row[k])) - Math.min(...rows.map((row) => row[k])))) || 1;
+    const { places, faces } = hullFaces(rows.map((row) => row.map((x, k) => (x - rows[0][k]) / size)));
+    // Of points at the same place the first counts.
+    const first = new Map(places.map((place, k) => [place.toArray().join(), k] as const).reverse());
+    const free = new Map(faces.map((of) => {
+      const edges = [of.edge, of.edge.next, of.edge.prev];
+      const corners = edges.map((edge) => edge.head().point);
+      const normal = corners[1].clone().sub(corners[0]).cross(corners[2].clone().sub(corners[0]));
+      return [of, { corners, normal, near: edges.map((edge) => edge.twin.face) }];
+    }));
+    const found: number[][] = [];
+    for (const [seed, { corners, normal }] of [...free].sort(([, a], [, b]) => b.normal.length() - a.normal.length())) {
+      if (!free.has(seed) || normal.length() === 0) continue;
+      const up = normal.clone().normalize();
+      const isFlat = (one: { corners: Vector3[]; normal: Vector3 }) =>
+        one.corners.every((corner) => Math.abs(corner.clone().sub(corners[0]).dot(up)) < COPLANAR) && one.normal.dot(up) > -COPLANAR;
+      const face = [free.get(seed)!];
+      free.delete(seed);
+      for (const { near } of face) {
+        for (const next of near) {
+          const one = free.get(next);
+          if (one && isFlat(one) && free.delete(next)) face.push(one);
+        }
+      }
+      found.push(...fan(places, up, face.map((one) => one.corners.map((corner) => first.get(corner.toArray().join())!))));
+    }
+    polyhedron.faces = found.sort((a, b) => a[0] - b[0] || a[1] - b[1] || a[2] - b[2]);
+  }
+  return polyhedron.faces;
+}
+
+/** A face, given as any triangles of it, cut anew. */
+function fan(places: Vector3[], up: Vector3, face: number[][]): number[][] {
+  const edges = face.flatMap(([x, y, z]) => [[x, y], [y, z], [z, x]]);
+  const there = new Set(edges.map((edge) => edge.join()));
+  const after = new Map(edges.filter(([a, b]) => !there.has([b, a].join())).map(([a, b]) => [a, b]));
+  // Or a needle so thin that all of it is one face.
+  if (face.length === 1 || !after.size) return face.map((corners) => [...corners].sort((a, b) => a - b));
+  const around = [Math.min(...after.keys())];
+  while (around.length < after.size) around.push(after.get(around.at(-1)!)!);
+  const side = (from: number, to: number) => places[to].clone().sub(places[from]);
+  const kept = around.filter((corner, k) => side(around.at(k - 1)!, corner).cross(side(corner, around[(k + 1) % around.length])).dot(up) > COLLINEAR);
+  const least = kept.indexOf(Math.min(...kept));
+  const [corner, ...others] = [...kept.slice(least), ...kept.slice(0, least)];
+  return others.slice(1).map((last, k) => [corner, others[k], last].sort((a, b) => a - b));
 }
 
 /** The surface of a polyhedron or a mesh, in m. */
 export function surfaceOf(s: Setup): Surface | undefined {
-  if (s.shape === "mesh") return tableOf(String(s.mesh)).mesh;
+  const table = (name: string) => tableOf(name, String(s[name]));
+  if (s.shape === "mesh") return { points: table("mesh").rows, triangles: table("mesh").triangles };
+  if (s.shape === "convex-polyhedron") return { points: table("points").rows, triangles: trianglesOf(table("points")) };
   if (s.shape === "box") {
     const half = three(s, "edge_").map((edge) => 0.5 * edge);
     return { points: CUBE.map((corner) => corner.map((sign, k) => sign * half[k])), triangles: BOX };
@@ -78,20 +152,35 @@ export function surfaceOf(s: Setup): Surface | undefined {
   return { points: points.map((point) => point.map((x) => scale * x)), triangles };
 }
 
-export const semiAxesOf = (s: Setup): number[] => three(s, "axis_");
+/** The profile (z, r) of a solid of revolution, in m. */
+export function profileOf(s: Setup): number[][] | undefined {
+  if (s.shape === "revolution") return rowsOf(s, "profile");
+  if (s.shape === "cylinder") return [-0.5, 0.5].map((half) => [half * Number(s.height), Number(s.radius)]);
+  if (s.shape !== "ring") return undefined;
+  const [outer, inner, half] = [Number(s.outer), Number(s.inner), 0.5 * Number(s.ring_height)];
+  return [[-half, inner], [-half, outer], [half, outer], [half, inner], [-half, inner]];
+}
+
+const semiAxesOf = (s: Setup): number[] => three(s, "axis_");
+const several = (s: Setup, ...names: string[]) => names.map((name) => Number(s[name]));
 
 /** The body as numbers. */
 export function dataOf(s: Setup): number[] {
   const surface = surfaceOf(s);
   if (surface) {
-    const hull = s.shape === "mesh" ? hullOf(String(s.mesh)) : [];
+    const hull = s.shape === "mesh" ? hullOf(tableOf("mesh", String(s.mesh))) : [];
     const { points, triangles } = surface;
     return [0, s.density as number, points.length, triangles.length, hull.length, ...points.flat(), ...triangles.flat(), ...hull];
   }
   const of: Record<string, () => number[]> = {
-    clump: () => [1, ...spheresOf(s).flat()],
+    clump: () => [1, ...rowsOf(s, "spheres").flat()],
     ellipsoid: () => [2, ...semiAxesOf(s)],
-    "rough-sphere": () => [3, ...[s.radius, s.asperities, s.asperity_radius, s.asperity_seed].map(Number)],
+    "rough-sphere": () => [3, ...several(s, "radius", "asperities", "asperity_radius", "asperity_seed")],
+    superellipsoid: () => [4, ...semiAxesOf(s), ...several(s, "exponent_1", "exponent_2")],
+    ring: () => [5, ...several(s, "outer", "inner", "ring_height")],
+    egg: () => [6, ...several(s, "length", "width", "blunt_end", "tip")],
+    cylinder: () => [7, ...profileOf(s)!.flat()],
+    revolution: () => [7, ...profileOf(s)!.flat()],
   };
   const [kind, ...rest] = of[s.shape]();
   return [kind, s.density as number, ...rest];
@@ -113,7 +202,13 @@ export function argumentsOf(s: Setup): [string, string][] {
     ellipsoid: () => [["semi_axes", list(semiAxesOf(s))]],
     box: () => [number("a", "edge_x"), number("b", "edge_y"), number("c", "edge_z")],
     die: () => [whole("faces"), number("edge")],
-    clump: () => [["spheres", table(spheresOf(s))]],
+    superellipsoid: () => [["semi_axes", list(semiAxesOf(s))], ["exponents", list(several(s, "exponent_1", "exponent_2"))]],
+    "convex-polyhedron": () => [["points", table(rowsOf(s, "points"))]],
+    cylinder: () => [number("radius"), number("height")],
+    ring: () => [number("outer"), number("inner"), number("height", "ring_height")],
+    egg: () => [number("length"), number("width"), number("blunt_end"), number("tip")],
+    revolution: () => [["profile", table(rowsOf(s, "profile"))]],
+    clump: () => [["spheres", table(rowsOf(s, "spheres"))]],
     "rough-sphere": () => [number("radius"), whole("asperities"), number("asperity_radius"), whole("seed", "asperity_seed")],
     mesh: () => [["vertices", table(surfaceOf(s)!.points)], ["triangles", table(surfaceOf(s)!.triangles, String)]],
   };
@@ -122,16 +217,31 @@ export function argumentsOf(s: Setup): [string, string][] {
 
 /** Why a table of this name cannot be, or "". */
 export function wrongTable(name: string, text: string): string {
-  const { spheres, mesh } = tableOf(text);
+  const { rows, triangles } = tableOf(name, text);
   const whole = (all: number[][], width: number) => all.every((row) => row.length === width && row.every(Number.isFinite));
-  if (name === "spheres") {
-    const fits = spheres.length > 0 && spheres.length <= MOST.spheres && whole(spheres, 4) && spheres.every(([, , , r]) => r > 0);
-    return fits ? "" : `spheres: must be 1 to ${MOST.spheres} rows x, y, z, r of finite numbers, r > 0`;
+  const list = LISTS[name];
+  if (list) {
+    const { columns, least, rule } = list;
+    const fits = rows.length >= least && rows.length <= MOST.rows && whole(rows, columns.length) && rows.every((row) => list.fits(row.at(-1)!));
+    if (!fits) return `${name}: must be ${least} to ${MOST.rows} rows ${columns.join(", ")} of finite numbers${rule}`;
+    return name === "profile" ? crossing(rows) : "";
   }
-  const { points, triangles } = mesh;
-  if (!whole(points, 3) || !whole(triangles, 3) || triangles.length > MOST.triangles) return `mesh: must be vertices x, y, z and at most ${MOST.triangles} triangles of finite numbers`;
-  if (!triangles.flat().every((k) => Number.isInteger(k) && k >= 0 && k < points.length)) return "mesh: must have triangles of its vertices";
+  const mesh = { points: rows, triangles };
+  if (!whole(rows, 3) || !whole(triangles, 3) || triangles.length > MOST.triangles) return `mesh: must be vertices x, y, z and at most ${MOST.triangles} triangles of finite numbers`;
+  if (!triangles.flat().every((k) => Number.isInteger(k) && k >= 0 && k < rows.length)) return "mesh: must have triangles of its vertices";
   return openEdge(mesh) || (volumeOf(mesh) > 0 ? "" : "mesh: encloses no volume; its triangles must be counter-clockwise as seen from outside");
+}
+
+/** Where lines of a profile cross, or "". */
+function crossing(profile: number[][]): string {
+  const side = ([x, y]: number[], [p, q]: number[], [u, v]: number[]) => Math.sign((p - x) * (v - y) - (q - y) * (u - x));
+  for (let i = 1; i < profile.length; i++) {
+    for (let j = 1; j < i; j++) {
+      const [a, b, c, d] = [profile[i - 1], profile[i], profile[j - 1], profile[j]];
+      if (side(a, b, c) * side(a, b, d) < 0 && side(c, d, a) * side(c, d, b) < 0) return `profile: its lines from the points ${j} and ${i} cross`;
+    }
+  }
+  return "";
 }
 
 /** Where a surface ends or turns its inside out, or "". */

@@ -64,6 +64,12 @@ const RIGID = {
   "a clump": { shape: "clump" },
   "a rough sphere": { shape: "rough-sphere", asperities: 300 },
   "a mesh": { shape: "mesh" },
+  "a superellipsoid": { shape: "superellipsoid" },
+  "a superellipsoid with edges": { shape: "superellipsoid", exponent_1: 1.3, exponent_2: 6.5 },
+  "a coin": { shape: "cylinder", height: 6e-4 },
+  "a ring": { shape: "ring" },
+  "an egg": { shape: "egg" },
+  ...Object.fromEntries(["points", "profile"].flatMap((name) => Object.entries(page.LISTS[name].presets).map(([preset, rows]) => [preset, { shape: page.LISTS[name].shape, [name]: page.written(rows, 1e-3) }]))),
 };
 
 test("bodies without an axis have the same bits as in Python, by the lines that the page shows", () => {
@@ -87,11 +93,31 @@ test("the path of a body without an axis goes through its impacts, with the lowe
       assert.equal(next.sphere, columns.contact[2 * setup.impacts + i]);
       const arm = page.armOf(setup, next);
       assert.ok(Math.abs(next.place.z + arm.z) < 1e-9 * reach, `${name}: gap ${next.place.z + arm.z}`);
+      // It is on the surface, and nothing is lower.
+      const [lowest] = page.farthestOf(setup, [new page.Vector3(0, 0, -1).applyQuaternion(next.attitude.clone().invert())]);
+      assert.ok(Math.abs(lowest.applyQuaternion(next.attitude).z - arm.z) < 1e-9 * reach && arm.length() < reach * (1 + 1e-9), `${name}: ${lowest.z} for ${arm.z}`);
       // The flight ends where the next one begins: the same place and attitude; and its energy of rotation does not change on the way.
       const end = path.at(flight.start + (next.start - flight.start) * (1 - 1e-9));
       assert.ok(end.place.distanceTo(next.place) < 1e-6 * reach, `${name}: ${end.place.distanceTo(next.place)}`);
       assert.ok(end.attitude.angleTo(next.attitude) < 1e-5, `${name}: turned by ${end.attitude.angleTo(next.attitude)}`);
     }
+  }
+});
+
+test("where a smooth body lies farthest is on its surface, with that normal", () => {
+  const at = ([a, b, c], [m, n], { x, y, z }) => (Math.abs(x / a) ** n + Math.abs(y / b) ** n) ** (m / n) + Math.abs(z / c) ** m;
+  const directions = [[0.6, 0, 0.8], [0.48, 0.64, -0.6], [-2 / 3, 1 / 3, 2 / 3]].map((u) => new page.Vector3(...u));
+  for (const [change, exponents] of [[{ shape: "ellipsoid" }, [2, 2]], [{ shape: "superellipsoid", exponent_1: 3, exponent_2: 5 }, [3, 5]]]) {
+    const found = page.farthestOf({ ...page.DEFAULT, ...change }, directions);
+    found.forEach((place, k) => {
+      assert.ok(Math.abs(at([4e-3, 3e-3, 2e-3], exponents, place) - 1) < 1e-12);
+      // No place of a grid of the surface lies farther.
+      for (let i = 0; i < 400; i++) {
+        const other = new page.Vector3(Math.sin(i), Math.sin(7.3 * i + 1), Math.sin(3.1 * i + 2));
+        other.multiplyScalar(at([4e-3, 3e-3, 2e-3], exponents, other) ** (-1 / exponents[0]));
+        assert.ok(other.dot(directions[k]) <= place.dot(directions[k]) * (1 + 1e-12));
+      }
+    });
   }
 });
 
@@ -137,6 +163,10 @@ test("a file that is none is refused, with the line and the reason", () => {
   refused("a.txt", "0 0 0 -1\n", /line 1: .*r > 0/);
   refused("a.txt", "0 0 zero 1\n", /line 1: .*finite/);
   refused("a.txt", "", /1 to 1000 rows/);
+  refused("a.txt", "0 0 0\n1 0\n", /line 2: 1 0: must be x y z, with/);
+  refused("a.txt", "0 0 0\n", /points: must be 4 to 1000 rows/);
+  refused("a.txt", "0 1\n2 -1\n", /line 2: 2 -1: .*r >= 0/);
+  refused("a.txt", "0 1\n2 1\n0 2\n1 0\n", /profile: its lines from the points 1 and 3 cross/);
   refused("a.bin", "\0\0", /not a text file/);
   refused("a.csv", "x,y,z\n0,0,0\n", /line 1: x y z: must be a header with the columns x, y, z and r/);
   refused("a.csv", "x,y,z,r\n0,0,0,1\n0,0,0\n", /line 3: .*4 values/);
@@ -176,6 +206,9 @@ test("a set-up that cannot be is refused in the engine's words", () => {
   refused({ release_height: 1e-3 }, /release_height = 0\.001: must be finite and high enough/);
   refused({ normal: 1.5 }, /1\.5: must be/);
   refused({ gravity: 0 }, /gravity = 0\.0: must be finite and > 0/);
+  refused({ shape: "ring", inner: 4e-3 }, /inner = 0\.004: must be less than outer = 0\.004/);
+  refused({ shape: "egg", width: 7e-3 }, /width = 0\.007: must be > 0 and <= length/);
+  for (const points of ["0_0_0_1_0_0_0_1_0_1_1_0", "0_0_0_1_0_0_2_0_0_3_0_0", "1_1_1_1_1_1_1_1_1_1_1_1"]) refused({ shape: "convex-polyhedron", points }, /must be not all in one plane/);
 });
 
 test("the closed form of the first impact agrees with the engine, angle by angle", () => {
@@ -248,6 +281,7 @@ test("a link holds a body without an axis, a clump with its spheres; of a large 
   Object.assign(state.a, { shape: "clump", spheres: Array.from({ length: 900 }, (_, k) => `${k / 7}_0_0_0.123456789`).join("_") });
   const { problems } = page.fromHash(`#${page.toHash(state)}`);
   assert.match(problems.join(), /spheres: of a file too large for a link/);
+  assert.match(page.fromHash("#exponent_1=1").problems.join(), /exponent_1 = 1: must be >= 1\.1/);
   const bad = page.fromHash("#shape=clump&spheres=0_0_1&faces=5&mesh=0_0_0*0_1_2&asperities=1.5").problems;
   assert.equal(bad.length, 4, bad.join("\n"));
 });

@@ -123,6 +123,25 @@ test("a clump that is dropped is the body, replayed and in the link; a malformed
   await close();
 });
 
+for (const [key, text, table] of [["points", "0 0 0\n6 0 0\n0 5 0\n0 0 4", "0_0_0_0.006_0_0_0_0.005_0_0_0_0.004"], ["profile", "0 2\n5 0", "0_0.002_0.005_0"]]) {
+  test(`${key} that are typed are the body; a line that is none is named`, async () => {
+    const { shape } = library.LISTS[key];
+    const { page, close } = await open(`${SMALL}&shape=${shape}`);
+    const type = async (lines) => {
+      await page.locator(`#${key}`).fill(lines);
+      await page.locator(`#${key}`).blur();
+    };
+    await type(text);
+    await page.waitForFunction((words) => location.hash.includes(words), `${key}=${table}`);
+    await done(page);
+    assert.deepEqual(await shown(page), [digest({ ...library.DEFAULT, particles: 20, impacts: 100, shape, [key]: table })]);
+    await type(`${text}\n1`);
+    await page.waitForFunction(() => !document.getElementById("problem").hidden);
+    assert.match(await page.locator("#problem").textContent(), new RegExp(`^${key}, line \\d: 1: must be`, "i"));
+    await close();
+  });
+}
+
 for (const shape of library.RIGID.map(({ key }) => key)) {
   test(`${shape}: chosen from the list it is run, drawn and replayed, without a word of complaint`, async () => {
     const { page, close } = await open(SMALL);

@@ -8,7 +8,21 @@ import numpy as np
 
 from restitution._internal.described import kebab
 from restitution._internal.parameters import ParameterError, wrong
-from restitution.bodies import KINDS, Box, Clump, Die, Ellipsoid, Mesh, RoughSphere
+from restitution.bodies import (
+    KINDS,
+    Box,
+    Clump,
+    ConvexPolyhedron,
+    Cylinder,
+    Die,
+    Egg,
+    Ellipsoid,
+    Mesh,
+    Revolution,
+    Ring,
+    RoughSphere,
+    Superellipsoid,
+)
 from restitution.drop.release import RandomHeight, RandomSpin
 from restitution.drop.run import Run
 from restitution.laws import Law
@@ -16,7 +30,7 @@ from restitution.laws import Law
 MOST_IMPACTS = 2_000_000
 """More than these the page does not keep."""
 
-MOST_SPHERES, MOST_TRIANGLES, MOST_ASPERITIES, MOST_TEXT = 1000, 20_000, 10_000, 20_000
+MOST_ROWS, MOST_TRIANGLES, MOST_ASPERITIES, MOST_TEXT = 1000, 20_000, 10_000, 20_000
 """Larger bodies it does not draw, and longer tables a link does not hold: ``web/src/``, rigid.ts, link.ts."""
 
 NUMBERS = ("release_height", "gravity", "incline", "minimum_speed")
@@ -34,8 +48,8 @@ def link(run: Run) -> str:
     ----------
     run : Run
         A run that the page can show: of a body of revolution that has no parameter of its own for each of
-        two spheres, or a box, clump, die, ellipsoid, mesh or rough sphere of moderate size, under a law with
-        a constant normal coefficient, all particles with the same spin and velocity. Of a run of more than
+        two spheres, or of any rigid body but `Rough`, of moderate size and homogeneous, under a law with a
+        constant normal coefficient, all particles with the same spin and velocity. Of a run of more than
         2 000 000 impacts the page shows the first particles.
 
     Raises
@@ -85,23 +99,37 @@ def _body(run: Run) -> dict[str, Any]:
 def _rigid(body: Any) -> dict[str, Any]:
     if getattr(body, "inertia", None) not in (None, "union"):
         raise _cannot("body.inertia", "another", "that of homogeneous matter")
+    return {**_shape(body), "density": body.density}
+
+
+def _shape(body: Any) -> dict[str, Any]:
     match body:
         case Box():
-            return {"edge_x": body.a, "edge_y": body.b, "edge_z": body.c, "density": body.density}
+            return {"edge_x": body.a, "edge_y": body.b, "edge_z": body.c}
         case Die():
-            return {"faces": body.faces, "edge": body.edge, "density": body.density}
+            return {"faces": body.faces, "edge": body.edge}
         case Ellipsoid():
-            axes = zip("xyz", body.semi_axes, strict=True)
-            return {**{f"axis_{name}": axis for name, axis in axes}, "density": body.density}
+            return _along("xyz", "axis", body.semi_axes)
+        case Superellipsoid():
+            return _along("xyz", "axis", body.semi_axes) | _along("12", "exponent", body.exponents)
+        case Cylinder():
+            return {"radius": body.radius, "height": body.height}
+        case Ring():
+            return {"outer": body.outer, "inner": body.inner, "ring_height": body.height}
+        case Egg():
+            return {name: getattr(body, name) for name in ("length", "width", "blunt_end", "tip")}
         case Clump():
-            spheres = _table("spheres", body.spheres, MOST_SPHERES)
-            return {"spheres": spheres, "density": body.density}
+            return {"spheres": _table("spheres", body.spheres, MOST_ROWS)}
+        case ConvexPolyhedron():
+            return {"points": _table("points", body.points, MOST_ROWS)}
+        case Revolution():
+            return {"profile": _table("profile", body.profile, MOST_ROWS)}
         case Mesh():
             vertices = _table("vertices", body.vertices, 3 * MOST_TRIANGLES)
             mesh = f"{vertices}*{_table('triangles', body.triangles, MOST_TRIANGLES)}"
             if len(mesh) > MOST_TEXT:
                 raise _cannot("body.vertices", f"{len(body.vertices)} of them", "fewer")
-            return {"mesh": mesh, "density": body.density}
+            return {"mesh": mesh}
         case RoughSphere():
             if body.heights not in (None, body.asperity_radius):
                 raise _cannot("body.heights", body.heights, "left out")
@@ -109,10 +137,13 @@ def _rigid(body: Any) -> dict[str, Any]:
                 raise _cannot("body.asperities", body.asperities, f"at most {MOST_ASPERITIES}")
             if body.seed >= 2**53:
                 raise _cannot("body.seed", body.seed, "below 2**53")
-            found = {"radius": body.radius, "asperities": body.asperities, "density": body.density}
+            found = {"radius": body.radius, "asperities": body.asperities}
             return {**found, "asperity_radius": body.asperity_radius, "asperity_seed": body.seed}
-    allowed = "of revolution, or a Box, Clump, Die, Ellipsoid, Mesh or RoughSphere"
-    raise _cannot("body", type(body).__name__, allowed)
+    raise _cannot("body", type(body).__name__, "any other, of rough ones a RoughSphere")
+
+
+def _along(names: str, of: str, values: Any) -> dict[str, float]:
+    return {f"{of}_{name}": value for name, value in zip(names, values, strict=True)}
 
 
 def _table(name: str, rows: Any, most: int) -> str:

@@ -115,7 +115,7 @@ def _run_of(data: "xr.Dataset") -> Run:
 def _tables(attributes: dict[str, Any]) -> dict[str, Any]:
     """Give tables their rows back, and asperities their seed under the name that it has in the body."""
     found = dict(attributes)
-    for name, width in (("spheres", 4), ("vertices", 3), ("triangles", 3)):
+    for name, width in (("spheres", 4), ("points", 3), ("profile", 2), ("vertices", 3), ("triangles", 3)):
         if name in found:
             found[name] = np.reshape(found[name], (-1, width))
     if np.size(found.get("inertia", "")) == 9:

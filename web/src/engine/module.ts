@@ -7,6 +7,7 @@ interface Exports {
   follow(particle: number): number;
   table(): number;
   outline(): number;
+  farthest(count: number): number;
   turn(): number;
   message(): number;
   message_length(): number;
@@ -32,6 +33,11 @@ export class Engine {
   /** The outline of the body; see crates/web/src/lib.rs. */
   outline(parameters: Float64Array): Float64Array {
     return this.call(parameters, () => this.core.outline());
+  }
+
+  /** The places of a body without an axis that lie farthest in some directions; see crates/web/src/rigid.rs. */
+  farthest(parameters: Float64Array, directions: Float64Array): Float64Array {
+    return this.call(Float64Array.of(...parameters, ...directions), () => this.core.farthest(directions.length / 3));
   }
 
   /** Attitude and ω of a free body after a time; see crates/web/src/rigid.rs. */

@@ -14,19 +14,21 @@ export function solidOf(s: Setup, colour: string): Group {
   const mixed = (other: string, share: number) => new MeshPhongMaterial({ color: new Color(colour).lerp(new Color(other), share), ...SHINE });
   const [light, dark] = [mixed("#ffffff", 0.45), mixed("#000000", 0.35)];
   const group = new Group();
-  /** Four quarters in two colours, seen to roll. */
-  const turned = (points: [number, number][], second: MeshPhongMaterial) => {
-    const curve = points.map(([z, r]) => new Vector2(Math.max(r, 0), z)).reverse();
-    for (let k = 0; k < 4; k++) {
-      // Three's solids of revolution stand along y.
-      const geometry = new LatheGeometry(curve, 16, (k * Math.PI) / 2, Math.PI / 2).rotateX(Math.PI / 2);
-      group.add(new Mesh(geometry, k % 2 ? second : base));
-    }
-  };
+  const turned = (points: [number, number][], second: MeshPhongMaterial) => group.add(...quarters(points, base, second));
   const [one, two] = arcs.map(pointsOf);
   turned(one, light);
   turned(two, dark);
   const side = [one.at(-1)!, two[0]];
   if (side[0][0] - side[1][0] > 1e-9 * size) turned(side.map(([z, r]) => [z, Math.max(r, ROD * size)]), base);
   return group;
+}
+
+/** What points (z, r) make as they turn about the axis: four quarters in two colours, seen to roll. */
+export function quarters(points: number[][], base: MeshPhongMaterial, second: MeshPhongMaterial): Mesh[] {
+  const curve = points.map(([z, r]) => new Vector2(Math.max(r, 0), z)).reverse();
+  return [0, 1, 2, 3].map((k) => {
+    // Three's solids of revolution stand along y.
+    const geometry = new LatheGeometry(curve, 16, (k * Math.PI) / 2, Math.PI / 2).rotateX(Math.PI / 2);
+    return new Mesh(geometry, k % 2 ? second : base);
+  });
 }

@@ -4,7 +4,7 @@ import { Quaternion, Vector3 } from "three";
 
 const COLUMNS = 14;
 /** Of a body without an axis. */
-const FREE = 16;
+const FREE = 19;
 
 /** The attitude and ω of a free body without an axis some time after it had these. */
 export type Turn = (attitude: Quaternion, spin: Vector3, time: number) => { attitude: Quaternion; spin: Vector3 };
@@ -22,6 +22,8 @@ export interface Flight {
   rotation: number;
   /** The sphere, ball or vertex that touched, 0 at release. */
   sphere: number;
+  /** Where a body without an axis touched, from the centre of mass. */
+  arm: Vector3;
   attitude: Quaternion;
 }
 
@@ -51,7 +53,7 @@ export class Path {
       if (turn) {
         const attitude = new Quaternion(at(8), at(9), at(10), at(7));
         const none = { axis: UP.clone(), turning: new Vector3(), roll: 0 };
-        this.flights.push({ ...none, start: at(0), place: vector(1), velocity: vector(4), attitude, spin: vector(11), rotation: at(14), sphere: at(15) });
+        this.flights.push({ ...none, start: at(0), place: vector(1), velocity: vector(4), attitude, spin: vector(11), rotation: at(14), sphere: at(15), arm: vector(16) });
         continue;
       }
       const flight: Flight = {
@@ -64,6 +66,7 @@ export class Path {
         spin: new Vector3(),
         rotation: at(12),
         sphere: at(13),
+        arm: new Vector3(),
         attitude: new Quaternion().setFromUnitVectors(UP, vector(5)),
       };
       const last = this.flights.at(-1);

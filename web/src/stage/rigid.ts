@@ -4,9 +4,10 @@ import {
   BufferGeometry, Color, DoubleSide, EdgesGeometry, Float32BufferAttribute, Group, IcosahedronGeometry, InstancedMesh, LineBasicMaterial, LineSegments,
   Matrix4, Mesh, MeshPhongMaterial, SphereGeometry, Vector3,
 } from "three";
-import { freeOf } from "../outline";
-import { semiAxesOf, spheresOf, surfaceOf, type Surface } from "../rigid";
+import { farthestOf, freeOf } from "../outline";
+import { profileOf, rowsOf, surfaceOf, type Surface } from "../rigid";
 import type { Setup } from "../setup";
+import { quarters } from "./body";
 
 const SHINE = { shininess: 40, specular: "#333333" };
 /** Edges at which faces meet at a larger angle than this, in degrees, are drawn. */
@@ -21,12 +22,14 @@ interface Ball {
 
 export function rigidOf(s: Setup, colour: string): Group {
   const tones = [new Color(colour), new Color(colour).lerp(new Color("#ffffff"), 0.45), new Color(colour).lerp(new Color("#000000"), 0.35)];
-  const surface = surfaceOf(s);
-  if (surface) return faces(surface, freeOf(s).centre, tones);
-  if (s.shape === "ellipsoid") return octants(semiAxesOf(s), tones);
-  if (s.shape === "rough-sphere") return rough(s, tones);
   const { centre } = freeOf(s);
-  const clump = spheresOf(s).map(([x, y, z, radius]) => ({ place: new Vector3(x, y, z).sub(centre), radius }));
+  const surface = surfaceOf(s);
+  if (surface) return faces(surface, centre, tones, s.shape !== "mesh");
+  const profile = profileOf(s);
+  if (profile) return revolved(profile.map(([z, r]) => [z - centre.z, r]), tones);
+  if (s.shape === "rough-sphere") return rough(s, tones);
+  if (s.shape !== "clump") return octants((normals) => farthestOf(s, normals), tones);
+  const clump = rowsOf(s, "spheres").map(([x, y, z, radius]) => ({ place: new Vector3(x, y, z).sub(centre), radius }));
   return new Group().add(balls(clump, new SphereGeometry(1, 32, 20), tones));
 }
 
@@ -41,13 +44,15 @@ function balls(all: Ball[], shape: BufferGeometry, tones: Color[]): InstancedMes
   return mesh;
 }
 
-function faces({ points, triangles }: Surface, centre: Vector3, tones: Color[]): Group {
+/** The triangles of a convex body are turned outwards, or each would have edges of its own. */
+function faces({ points, triangles }: Surface, centre: Vector3, tones: Color[], convex: boolean): Group {
   const [places, colours]: [number[], number[]] = [[], []];
   for (const corners of triangles) {
     const [a, b, c] = corners.map((k) => new Vector3().fromArray(points[k]).sub(centre));
-    const normal = b.clone().sub(a).cross(c.clone().sub(a)).toArray().map(Math.abs);
-    const tone = tones[normal.indexOf(Math.max(...normal))];
-    for (const corner of [a, b, c]) {
+    const normal = b.clone().sub(a).cross(c.clone().sub(a));
+    const sides = normal.toArray().map(Math.abs);
+    const tone = tones[sides.indexOf(Math.max(...sides))];
+    for (const corner of convex && normal.dot(a) < 0 ? [a, c, b] : [a, b, c]) {
       places.push(...corner);
       colours.push(tone.r, tone.g, tone.b);
     }
@@ -58,14 +63,31 @@ function faces({ points, triangles }: Surface, centre: Vector3, tones: Color[]):
   return new Group().add(new Mesh(geometry, new MeshPhongMaterial({ ...SHINE, vertexColors: true, flatShading: true, side: DoubleSide })), lines);
 }
 
-/** An ellipsoid in octants. */
-function octants([a, b, c]: number[], [base, light, dark]: Color[]): Group {
+/** A convex surface in octants, of its places with these outward normals. */
+function octants(places: (normals: Vector3[]) => Vector3[], [base, light, dark]: Color[]): Group {
   const group = new Group();
   for (let k = 0; k < 8; k++) {
     const upper = k < 4;
-    const shape = new SphereGeometry(1, 16, 16, (k * Math.PI) / 2, Math.PI / 2, upper ? 0 : Math.PI / 2, Math.PI / 2).rotateX(Math.PI / 2).scale(a, b, c);
-    group.add(new Mesh(shape, new MeshPhongMaterial({ ...SHINE, color: k % 2 ? (upper ? light : dark) : base })));
+    const shape = new SphereGeometry(1, 16, 16, (k * Math.PI) / 2, Math.PI / 2, upper ? 0 : Math.PI / 2, Math.PI / 2).rotateX(Math.PI / 2);
+    const normal = shape.getAttribute("normal");
+    const found = places(Array.from({ length: normal.count }, (_, i) => new Vector3().fromBufferAttribute(normal, i)));
+    shape.setAttribute("position", new Float32BufferAttribute(found.flatMap((place) => place.toArray()), 3));
+    group.add(new Mesh(shape, new MeshPhongMaterial({ ...SHINE, color: (k % 2 === 1) === upper ? light : upper ? base : dark })));
   }
+  return group;
+}
+
+/** A solid of revolution, line by line of its profile; the ends are joined to the axis, unless it is closed. */
+function revolved(profile: number[][], [base, light, dark]: Color[]): Group {
+  const [[z, r], [end, last]] = [profile[0], profile.at(-1)!];
+  const closed = z === end && r === last;
+  const outline = closed ? profile : [[z, 0], ...profile, [end, 0]];
+  const [above, pale, below] = [base, light, dark].map((color) => new MeshPhongMaterial({ ...SHINE, color, side: DoubleSide }));
+  const group = new Group();
+  outline.slice(1).forEach((to, k) => {
+    const from = outline[k];
+    if (from[0] !== to[0] || from[1] !== to[1]) group.add(...quarters([from, to], to[1] > from[1] ? below : above, pale));
+  });
   return group;
 }
 
@@ -91,5 +113,5 @@ function rough(s: Setup, [base, light, dark]: Color[]): Group {
   });
   // Small ones have few faces.
   const shape = large.length > 2000 ? new IcosahedronGeometry(1, 0) : new IcosahedronGeometry(1, 2);
-  return new Group().add(octants([sphere.radius, sphere.radius, sphere.radius], [base, base, base.clone().lerp(dark, 0.5)]), balls(large, shape, [light]));
+  return new Group().add(octants((normals) => normals.map((normal) => normal.setLength(sphere.radius)), [base, base, base.clone().lerp(dark, 0.5)]), balls(large, shape, [light]));
 }
