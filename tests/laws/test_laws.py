@@ -45,7 +45,7 @@ def contact(random: np.random.Generator, *, planar: bool) -> Contact:
 def test_coulomb_is_the_integral_over_the_impulse(hypothesis: Any, planar: bool) -> None:
     """Slip, stick, reversal and jam, in the plane in closed form and in space by series, against DOP853.
 
-    The reference stops the slip at 1e-9 of the velocity; what a slip of that size still moves is of its size.
+    Its relative tolerance is 1e-13 a step; measured: at most 1e-12.
     """
     random = np.random.default_rng(14)
     for _ in range(60):
@@ -55,7 +55,7 @@ def test_coulomb_is_the_integral_over_the_impulse(hypothesis: Any, planar: bool)
         expected = respond(one, normal, friction, hypothesis)
         triple, separation = law.compiled.respond(*one)
         impulse, size = np.array(triple), float(np.linalg.norm(expected))
-        np.testing.assert_allclose(impulse, expected, rtol=0, atol=3e-8 * size)
+        np.testing.assert_allclose(impulse, expected, rtol=0, atol=1e-11 * size)
         left = one.slip[0] + one.matrix[0] @ impulse
         assert separation == pytest.approx(left, abs=1e-13 * size)
 
@@ -63,19 +63,19 @@ def test_coulomb_is_the_integral_over_the_impulse(hypothesis: Any, planar: bool)
 def test_turning_slip_is_solved_alike_by_two_references() -> None:
     """The impulses to 28 digits that the core is held to, against DOP853; every tenth of them.
 
-    DOP853 leaves out impacts so slow that the slip at which it stops, 1e-9 of the velocity, moves them.
+    The ends that SciPy finds are right to 1e-15 of the whole path, which is too much for the slowest impacts.
     """
     text = (Path(__file__).parents[2] / "crates/core/tests/turning/random.txt").read_text(encoding="utf-8")
     names = {"s": "stronge", "p": "poisson", "n": "newton"}
     for line in text.splitlines()[::10]:
         hypothesis, *numbers = line.split()
         v, u, w, inertia, height, side, across, friction, normal, *expected = map(float, numbers)
-        if v < 1e-3:
+        if v < 1e-9:
             continue
         one = Contact(slip=(-v, u, w), arm=(height, side), inertia=inertia, across=across)
         found = respond(one, normal, friction, names[hypothesis])
         size = float(np.linalg.norm(expected[:3]))
-        np.testing.assert_allclose(found, expected[:3], rtol=0, atol=3e-8 * size)
+        np.testing.assert_allclose(found, expected[:3], rtol=0, atol=1e-11 * size)
 
 
 def test_the_first_impact_without_friction(body: rs.Dumbbell) -> None:

@@ -2,11 +2,12 @@
 
 from collections.abc import Iterator
 from itertools import islice
+from pathlib import Path
 
 import numpy as np
 import pytest
 
-from reference import initial_value
+from reference import friction, initial_value
 from reference.arithmetic import Real, Vector, add, cross, dot, mp, scaled, vector
 from reference.flight import Flight
 from reference.multiprecision import Law, bounce, collide
@@ -146,3 +147,15 @@ def test_the_two_references_agree(
         np.testing.assert_allclose(
             np.array(other[:7]), np.array([float(x) for x in one[:7]]), rtol=1e-10, atol=1e-12
         )
+
+
+def test_friction_for_any_matrix_has_thirty_digits() -> None:
+    """DOP853 beside Taylor series, `general/reference.py` of the core; four are pressed twice."""
+    path = Path(__file__).parents[2] / "crates/core/tests/general/reference.txt"
+    for line in path.read_text(encoding="utf-8").splitlines():
+        hypothesis, *numbers = line.split()
+        xx, yy, nn, xy, nx, ny, x, y, n, mu, normal, *expected = map(float, numbers)
+        matrix = np.array([(nn, nx, ny), (nx, xx, xy), (ny, xy, yy)])
+        found = friction.follow(matrix, np.array([n, x, y]), normal, mu, hypothesis)
+        size = float(np.linalg.norm(expected))
+        np.testing.assert_allclose(found, np.roll(expected, 1), rtol=0, atol=3e-12 * size)

@@ -1,14 +1,19 @@
 """An impact with Coulomb friction, followed in the normal impulse by SciPy's general integrator."""
 
-from typing import NamedTuple
+import math
+from collections.abc import Callable, Sequence
+from typing import Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 from scipy.integrate import solve_ivp
+from scipy.optimize import brentq, newton
 
 Floats = npt.NDArray[np.float64]
+Rate = Callable[[float, Floats], list[float]]
+Event = Callable[[float, Floats], float]
 
-VANISHED = 1e-9
+VANISHED = 1e-14
 """Slip that counts as none, relative to the contact velocity."""
 
 
@@ -30,61 +35,121 @@ class Contact(NamedTuple):
 
 def respond(contact: Contact, restitution: float, friction: float, hypothesis: str) -> Floats:
     """Return the impulse of the impact along n, u and w."""
-    matrix = contact.matrix
-    start = np.array(contact.slip)
-    speed = -start[0]
-    size = float(np.linalg.norm(start))
-    # Contact velocity, impulse along u and w, work of the normal force.
-    state = np.array([*start, 0.0, 0.0, 0.0])
-    p = 0.0
-    compressed: tuple[float, float] | None = None  # impulse and work at the end of the compression
-    at_rest = False
+    return follow(contact.matrix, np.array(contact.slip), restitution, friction, hypothesis)
 
-    def direction(y: Floats) -> Floats:
-        """DP/dp along n, u and w."""
-        if at_rest:
-            along = np.clip(-matrix[0, 1] / matrix[1, 1], -friction, friction)
-            return np.array([1.0, along, 0.0])
-        return np.array([1.0, *(-friction * y[1:3] / np.hypot(y[1], y[2]))])
 
-    def rate(_: float, y: Floats) -> Floats:
-        impulse = direction(y)
-        return np.array([*(matrix @ impulse), *impulse[1:], y[0]])
+def at_rest(matrix: Floats, friction: float) -> list[float]:
+    """Return dP_t/dp where the slip is 0: what holds the contact, or what goes with the slip that starts.
+
+    Slip starts along d if its rate κ - μ K_t d is along d; one such direction is there if none can hold it.
+    """
+    push, block = matrix[1:, 0], matrix[1:, 1:]
+    hold = -np.linalg.solve(block, push)
+    if np.hypot(*hold) <= friction:
+        return [float(x) for x in hold]
+
+    def along(angle: float) -> Floats:
+        return np.array([np.cos(angle), np.sin(angle)])
+
+    def aside(angle: float) -> float:
+        d = along(angle)
+        rate = push - friction * block @ d
+        return float(d[0] * rate[1] - d[1] * rate[0])
+
+    angles = np.linspace(0.0, 2.0 * np.pi, 361) + 0.1234
+    values = [aside(angle) for angle in angles]
+    zeros = [
+        along(brentq(aside, angles[i], angles[i + 1], xtol=1e-15))
+        for i in range(360)
+        if values[i] * values[i + 1] < 0.0
+    ]
+    (starting,) = (d for d in zeros if d @ (push - friction * block @ d) > 0.0)
+    return [float(-friction * x) for x in starting]
+
+
+def integrated(rate: Rate, start: Floats, events: Sequence[Event], smallest: float) -> tuple[Event, Floats]:
+    """Integrate until the first of the events: which it is, and the state there.
+
+    SciPy finds it between two steps by interpolation, with some digits less than the steps have. The last
+    step is taken again, to where the event is 0 by the secant method.
+    """
+
+    def path(begin: float, end: float, state: Floats, watched: Sequence[Event] = ()) -> Any:
+        span = (begin, end)
+        return solve_ivp(rate, span, state, "DOP853", rtol=1e-13, atol=smallest, events=watched or None)
+
+    found = path(0.0, 1e6, start, events)
+    (happened,) = (e for e, times in zip(events, found.t_events, strict=True) if len(times))
+    (begin, end), state = found.t[-2:], found.y[:, -2]
+
+    def there(end: float) -> Floats:
+        return np.asarray(path(begin, end, state).y[:, -1])
+
+    near = end - 1e-3 * (end - begin)
+    exact = newton(lambda t: happened(t, there(t)), end, x1=near, tol=1e-15 * end, rtol=1e-15)
+    return happened, there(exact)
+
+
+def follow(matrix: Floats, velocity: Floats, restitution: float, friction: float, hypothesis: str) -> Floats:
+    """Return the impulse of a contact with the matrix K and the velocity v_c, both with the normal first.
+
+    While the contact slips, the variable is θ with dp = |s| dθ, in which a slip that stops does so at ∞, with
+    steps of ordinary length.
+    A contact may be compressed again before it has separated. The restitution then owes its part of all
+    compressions, less what it has given; Newton's asks for the first p with its velocity.
+    """
+    speed, size = -velocity[0], float(np.linalg.norm(velocity))
+    # Contact velocity, impulse, work of the normal force.
+    state = np.array([*velocity, 0.0, 0.0, 0.0, 0.0])
+    pressed = taken = 0.0  # impulse, and work done by the contact, of all compressions
+    given = returned = 0.0  # of all restitutions before the last
+    compressing = True
+    held = at_rest(matrix, friction) if np.hypot(*velocity[1:]) <= VANISHED * size else None
+
+    rows = matrix.tolist()
+
+    def rate(_: float, y: Floats) -> list[float]:
+        u, x, z = y[:3].tolist()
+        n, a, b = (math.hypot(x, z), -friction * x, -friction * z) if held is None else (1.0, *held)
+        return [*(row[0] * n + row[1] * a + row[2] * b for row in rows), n, a, b, u * n]
 
     def separates(_: float, y: Floats) -> float:
         return float(y[0])
 
-    def stops(_: float, y: Floats) -> float:
-        return float(np.hypot(y[1], y[2]) - VANISHED * size)
+    def approaches(_: float, y: Floats) -> float:
+        return float(-y[0])
 
-    def over(p: float, y: Floats) -> float:
-        assert compressed is not None
+    def stops(_: float, y: Floats) -> float:
+        return float(VANISHED * size - np.hypot(y[1], y[2]))
+
+    def over(_: float, y: Floats) -> float:
         if hypothesis == "newton":
             return float(y[0] - restitution * speed)
         if hypothesis == "poisson":
-            return p - (1 + restitution) * compressed[0]
-        return float(y[5] - (1 - restitution**2) * compressed[1])
+            return float(y[3] - (1 + restitution) * pressed)
+        return float(y[6] + (1 - restitution**2) * taken)
 
-    if np.hypot(start[1], start[2]) <= VANISHED * size:
-        at_rest = True
+    for event in (separates, approaches, stops, over):
+        vars(event).update(terminal=True, direction=1)
     for _ in range(20):
-        ending = separates if compressed is None else over
-        events = [ending] if at_rest else [ending, stops]
-        for event in events:
-            vars(event).update(terminal=True, direction=0 if event is stops else 1)
-        step = solve_ivp(
-            rate, (p, p + 1e4 * size), state, method="DOP853", rtol=1e-11, atol=1e-13 * size, events=events
-        )
-        p, state = float(step.t[-1]), step.y[:, -1]
-        if step.t_events and len(step.t_events[0]):
-            if compressed is not None:
-                break
-            compressed = (p, float(state[5]))
+        events = [separates] if compressing else [over, approaches]
+        if held is None:
+            events.append(stops)
+        happened, state = integrated(rate, state, events, 1e-17 * size)
+        if happened is over:
+            break
+        if happened is stops:
+            state[1:3] = 0.0
+            held = at_rest(matrix, friction)
+            continue
+        state[0] = 0.0
+        if compressing:
+            pressed, taken = state[3] - given, returned - state[6]
             if restitution == 0:
                 break
         else:
-            at_rest = True
-            state[1:3] = 0.0
+            given, returned = state[3] - pressed, state[6] + taken
+        compressing = not compressing
     else:
         raise AssertionError("the impact does not end")
-    return np.array([p, state[3], state[4]])
+    return np.asarray(state[3:6])
