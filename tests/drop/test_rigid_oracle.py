@@ -23,12 +23,13 @@ from restitution.laws import Law
 
 Array = NDArray[np.float64]
 
-R, HEIGHT, IMPACTS = 0.01, 0.08, 5
+R, HEIGHT, IMPACTS = 0.01, 0.08, 4
 OFF, ACCURACY = 1e-9, 2e-13
 TURNED = Rotation.from_rotvec([0.4, -0.9, 1.3]).as_matrix()
 BALLS = R * np.array([(0.5, 0.1, -0.2, 1.0), (-0.8, 0.3, 0.1, 0.8), (0.2, -1.1, 0.6, 0.6)])
 EDGES = R * np.array([1.0, 2.0, 3.0])
 PLATE = R * np.array([2.0, 1.5, 0.1])
+POINTS = R * np.array([(0, 0, 0), (2, 0, 0), (0, 1.5, 0), (0.3, 0.2, 1.2), (1, 1, 0.8)])
 AXES = R * np.array([2.0, 1.4, 1.0])
 ROUNDED = (3.0, 4.0)
 TENSOR = 3e-6 * np.array([(1.0, 0.2, -0.1), (0.2, 1.4, 0.15), (-0.1, 0.15, 0.9)])  # kg m²
@@ -41,9 +42,13 @@ BODIES: dict[str, tuple[RigidBody, solids.Solid]] = {
         rs.Clump(spheres=BALLS, inertia=TENSOR, centre=CENTRE),
         solids.Balls(BALLS, inertia=TENSOR, centre=CENTRE),
     ),
-    "box": (rs.Box(*EDGES), solids.Cuboid(EDGES)),
-    "box with equal moments": (rs.Box(*EDGES, inertia=EQUAL), solids.Cuboid(EDGES, inertia=EQUAL)),
-    "plate": (rs.Box(*PLATE), solids.Cuboid(PLATE)),
+    "box": (rs.Box(*EDGES), solids.Polyhedron(solids.corners(EDGES))),
+    "box with equal moments": (
+        rs.Box(*EDGES, inertia=EQUAL),
+        solids.Polyhedron(solids.corners(EDGES), inertia=EQUAL),
+    ),
+    "plate": (rs.Box(*PLATE), solids.Polyhedron(solids.corners(PLATE))),
+    "shard": (rs.ConvexPolyhedron(POINTS), solids.Polyhedron(POINTS)),
     "ellipsoid": (rs.Ellipsoid(semi_axes=AXES), solids.Superquadric(AXES)),
     "superellipsoid": (
         rs.Superellipsoid(semi_axes=AXES, exponents=ROUNDED),
@@ -176,6 +181,8 @@ def assert_follows(
         ("box", "paper", 4),
         ("box", "poisson", 5),
         ("box with equal moments", "stronge", 6),
+        ("shard", "newton", 12),
+        ("shard", "frictionless", 13),
         ("ellipsoid", "paper", 7),
         ("ellipsoid", "newton", 8),
         ("superellipsoid", "frictionless", 9),

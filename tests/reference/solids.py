@@ -12,6 +12,7 @@ import numpy as np
 from numpy.polynomial.legendre import leggauss
 from numpy.typing import ArrayLike, NDArray
 from scipy.optimize import brentq
+from scipy.spatial import ConvexHull
 from scipy.special import beta
 
 Array = NDArray[np.float64]
@@ -50,6 +51,9 @@ class Matter(NamedTuple):
         return np.asarray(np.trace(spread) * np.eye(3) - spread)
 
 
+NOTHING = Matter(0.0, np.zeros(3), np.zeros((3, 3)))
+
+
 class Solid(ABC):
     """A body; `inertia` (kg m²) and `centre` take the place of those of homogeneous matter."""
 
@@ -83,7 +87,7 @@ class Balls(Solid):
         centre: ArrayLike | None = None,
     ) -> None:
         rows = np.asarray(balls, dtype=np.float64)
-        matter = Matter(0.0, np.zeros(3), np.zeros((3, 3)))
+        matter = NOTHING
         for row in rows:
             matter = matter.plus(ball(row))
         for one, other in combinations(rows, 2):
@@ -112,7 +116,7 @@ def lens(one: Array, other: Array) -> Matter:
     along = other[:3] - one[:3]
     distance = float(np.linalg.norm(along))
     if distance >= one[3] + other[3]:
-        return Matter(0.0, np.zeros(3), np.zeros((3, 3)))
+        return NOTHING
     e = along / distance
     rim = (distance**2 + one[3] ** 2 - other[3] ** 2) / (2.0 * distance)
     nodes, weights = leggauss(4)  # exact: polynomials up to the fourth degree
@@ -131,31 +135,46 @@ def lens(one: Array, other: Array) -> Matter:
     return Matter(volume, first, second)
 
 
-class Cuboid(Solid):
-    """A box, its corners in the order of the digits of their signs."""
+class Polyhedron(Solid):
+    """The convex hull of vertices: tetrahedra from its middle to the triangles of its surface."""
 
     def __init__(
         self,
-        edges: ArrayLike,
+        vertices: ArrayLike,
         density: float = 2500.0,
         inertia: Array | None = None,
         centre: ArrayLike | None = None,
     ) -> None:
-        half = 0.5 * np.asarray(edges, dtype=np.float64)
-        volume = float(8.0 * half.prod())
-        super().__init__(
-            Matter.about(np.zeros(3), volume, volume / 3.0 * np.diag(half**2)), density, inertia, centre
-        )
-        self.places = np.array(list(product((-1.0, 1.0), repeat=3))) * half - self.centre
+        rows = np.asarray(vertices, dtype=np.float64)
+        middle, matter = rows.mean(axis=0), NOTHING
+        for triangle in ConvexHull(rows).simplices:
+            matter = matter.plus(tetrahedron(np.array([middle, *rows[triangle]])))
+        super().__init__(matter, density, inertia, centre)
+        self.places = rows - self.centre
         self.reach = float(np.linalg.norm(self.places, axis=1).max())
 
     def depths(self, up: Array) -> Array:
-        """One for each corner."""
+        """One for each vertex."""
         return np.asarray(-self.places @ up)
 
     def lowest(self, up: Array, part: int) -> Array:
-        """The corner."""
+        """The vertex."""
         return np.asarray(self.places[part])
+
+
+def tetrahedron(corners: Array) -> Matter:
+    """Return the matter of a tetrahedron."""
+    volume = abs(float(np.linalg.det(corners[1:] - corners[0]))) / 6.0
+    total = corners.sum(axis=0)
+    return Matter(
+        volume, volume * total / 4.0, volume / 20.0 * (corners.T @ corners + np.outer(total, total))
+    )
+
+
+def corners(edges: ArrayLike) -> Array:
+    """Return the corners of a box, in the order of their signs read as digits."""
+    half = 0.5 * np.asarray(edges, dtype=np.float64)
+    return np.array(list(product((-1.0, 1.0), repeat=3))) * half
 
 
 class Superquadric(Solid):
