@@ -9,17 +9,17 @@
 
 use super::top::Top;
 use crate::math::{Quaternion, Vector};
-use crate::simd::elementary::{angle_in_lanes, exp_in_lanes, sincos};
+use crate::simd::elementary::{exp_in_lanes, sincos};
 use crate::simd::one;
-use std::f64::consts::{FRAC_PI_2, TAU};
+use std::f64::consts::FRAC_PI_2;
 
 /// Terms of the theta functions, and the largest nome for which these are enough: q to the power `TERMS`² is less than rounding.
 const TERMS: usize = 6;
 const LARGEST: f64 = 0.33;
 /// Least sine of the angle between **Λ** and axis 3.
 const APART: f64 = 0.1;
-/// Largest number of steps of the arithmetic-geometric mean; it takes five or six.
-const MEANS: usize = 12;
+/// Terms less than this part of the first one are left out.
+const SMALL: f64 = 1e-18;
 
 #[derive(Debug, Clone)]
 pub(super) struct Elliptic {
@@ -36,7 +36,8 @@ pub(super) struct Elliptic {
     turn: f64,
     /// Ω₁, Ω₂, Ω₃, each with the ratio of theta functions of 0.
     sizes: [f64; 3],
-    /// q to the powers n² and n(n + 1), these with the real and the imaginary part of ϑ₁(ν − iη), too.
+    /// The number of terms that are needed; q to the powers n² and n(n + 1), these with the real and the imaginary part of ϑ₁(ν − iη), too.
+    terms: usize,
     squares: [f64; TERMS],
     products: [f64; TERMS],
     real: [f64; TERMS],
@@ -46,49 +47,46 @@ pub(super) struct Elliptic {
     start: Quaternion,
 }
 
-/// The arithmetic-geometric mean of 1 and another number, with its steps.
-struct Mean {
-    steps: [(f64, f64); MEANS],
-    count: usize,
-    mean: f64,
+/// The complete integral K of the modulus with this complement, by the arithmetic-geometric mean.
+#[inline(always)]
+fn complete(complement: f64) -> f64 {
+    let (mut a, mut b) = (1.0, complement);
+    while (a - b).abs() > 1e-15 * a {
+        (a, b) = (0.5 * (a + b), (a * b).sqrt());
+    }
+    FRAC_PI_2 / a
 }
 
-impl Mean {
-    #[inline(always)]
-    fn new(other: f64) -> Self {
-        let mut steps = [(0.0, 0.0); MEANS];
-        let (mut a, mut b) = (1.0, other);
-        let mut count = 0;
-        while count < MEANS && (a - b).abs() > 1e-15 * a {
-            steps[count] = (a, b);
-            (a, b) = (0.5 * (a + b), (a * b).sqrt());
-            count += 1;
+/// The incomplete integral F of the modulus with this complement and complete integral, up to the angle with this sine and this cosine, in
+/// (−π, π]: sin φ R_F(cos²φ, 1 − k²sin²φ, 1), or what is left of 2K beyond the quarter.
+///
+/// R_F: B. C. Carlson, *Numer. Algorithms* **10**, 13 (1995); his series in the differences from the mean, here to the seventh order, is
+/// DLMF 19.36.1.
+#[inline(always)]
+fn incomplete((complement, complete): (f64, f64), sine: f64, cosine: f64) -> f64 {
+    let shrunk = complement * sine;
+    let (mut x, mut y, mut z) = (cosine * cosine, cosine * cosine + shrunk * shrunk, 1.0);
+    let mean = loop {
+        let mean = (x + y + z) / 3.0;
+        // Of three numbers with x ≤ y ≤ z these are farthest from it.
+        if z - x <= 4e-3 * mean {
+            break mean;
         }
-        Self {
-            steps,
-            count,
-            mean: a,
-        }
-    }
-
-    /// The complete integral K of the modulus whose complement the number is.
-    #[inline(always)]
-    fn complete(&self) -> f64 {
-        FRAC_PI_2 / self.mean
-    }
-
-    /// The incomplete integral F up to the angle with this sine and this cosine, in (−π, π], by Landen's transformation.
-    #[inline(always)]
-    fn incomplete(&self, mut sine: f64, mut cosine: f64) -> f64 {
-        let mut phi = azimuth(sine, cosine);
-        let mut part = 1.0;
-        for (a, b) in &self.steps[..self.count] {
-            let whole = TAU * (phi / TAU).round();
-            phi += azimuth(b * sine, a * cosine) + whole;
-            (sine, cosine) = sincos(phi);
-            part *= 0.5;
-        }
-        part * phi / self.mean
+        let (a, b, c) = (x.sqrt(), y.sqrt(), z.sqrt());
+        let sum = a * b + b * c + c * a;
+        (x, y, z) = (0.25 * (x + sum), 0.25 * (y + sum), 0.25 * (z + sum));
+    };
+    let (x, y) = (1.0 - x / mean, 1.0 - y / mean);
+    let z = -x - y;
+    let (e2, e3) = (x * y - z * z, x * y * z);
+    let series = 1.0
+        + e2 * (-1.0 / 10.0 + e2 * (1.0 / 24.0 - e2 * (5.0 / 208.0)) - e3 * (3.0 / 44.0))
+        + e3 * (1.0 / 14.0 + e3 * (3.0 / 104.0) + e2 * e2 / 16.0);
+    let part = sine * series / mean.sqrt();
+    if cosine < 0.0 {
+        (2.0 * complete).copysign(sine) - part
+    } else {
+        part
     }
 }
 
@@ -129,9 +127,8 @@ impl Elliptic {
         if !(cosine > APART && modulus > 0.0 && complement > 1e-3) {
             return None;
         }
-        let mean = Mean::new(complement.sqrt());
-        let other = Mean::new(modulus.sqrt());
-        let (k, k_prime) = (mean.complete(), other.complete());
+        let (modulus, complement) = (modulus.sqrt(), complement.sqrt());
+        let (k, k_prime) = (complete(complement), complete(modulus));
         let logarithm = -2.0 * FRAC_PI_2 * k_prime / k;
         if logarithm < -32.0 {
             return None;
@@ -142,8 +139,9 @@ impl Elliptic {
         }
         let to_nu = FRAC_PI_2 / k;
         let rate = to_nu * ((j3 - j2) / j1) * (size2 * size3 / size1);
-        let phase = to_nu * mean.incomplete(w2 / size2, w1 / size1);
-        let eta = (to_nu * (k_prime - other.incomplete(sine, cosine))).copysign(size3);
+        let phase = to_nu * incomplete((complement, k), w2 / size2, w1 / size1);
+        let eta =
+            (to_nu * (k_prime - incomplete((modulus, k_prime), sine, cosine))).copysign(size3);
 
         let (e, back) = (exp(eta), exp(-eta));
         let (xi, xi_back) = (e * e, back * back);
@@ -162,6 +160,7 @@ impl Elliptic {
         let (mut real, mut imaginary) = ([0.0; TERMS], [0.0; TERMS]);
         let (mut power, mut up, mut down, mut sign) = (1.0, e, back, 1.0);
         let (mut third, mut second) = (1.0, 1.0);
+        let mut terms = 0;
         for n in 0..TERMS {
             if n > 0 {
                 // n² − n(n − 1) = n, and n(n + 1) − n² = n.
@@ -176,9 +175,13 @@ impl Elliptic {
             }
             real[n] = sign * products[n] * (up + down);
             imaginary[n] = -sign * products[n] * (up - down);
+            terms = n + 1;
+            if squares[n] < SMALL && real[n].abs() < SMALL * real[0] {
+                break;
+            }
         }
         let mut fourth = 1.0;
-        for (n, term) in squares.iter().enumerate().skip(1) {
+        for (n, term) in squares[..terms].iter().enumerate().skip(1) {
             fourth += if n % 2 == 0 { 2.0 } else { -2.0 } * term;
         }
         let mut found = Self {
@@ -194,6 +197,7 @@ impl Elliptic {
                 size2 * third / second,
                 size3 * fourth / third,
             ],
+            terms,
             squares,
             products,
             real,
@@ -235,7 +239,7 @@ impl Elliptic {
         let (mut even, mut before) = (1.0, c2);
         let (mut first, mut second, mut third, mut fourth) = (0.0, 0.0, 0.0, 0.0);
         let (mut real, mut imaginary, mut sign) = (0.0, 0.0, 1.0);
-        for n in 0..TERMS {
+        for n in 0..self.terms {
             first += sign * self.products[n] * s;
             second += self.products[n] * c;
             let term = if n == 0 {
@@ -277,9 +281,15 @@ impl Elliptic {
         let (turn_sine, turn_cosine) = sincos(self.turn * time);
         let psi_sine = turn_sine * own_cosine - turn_cosine * own_sine;
         let psi_cosine = turn_cosine * own_cosine + turn_sine * own_sine;
-        let turned = Quaternion::new(psi_cosine, 0.0, 0.0, psi_sine)
-            * Quaternion::new(tilt_cosine, 0.0, -tilt_sine, 0.0)
-            * Quaternion::new(about_cosine, 0.0, 0.0, -about_sine);
+        // By ψ about the third axis, back by the tilt about the second, back by the angle about the third.
+        let (near, far) = (psi_cosine * about_cosine, psi_sine * about_sine);
+        let (one, other) = (psi_sine * about_cosine, psi_cosine * about_sine);
+        let turned = Quaternion::new(
+            tilt_cosine * (near + far),
+            tilt_sine * (one + other),
+            tilt_sine * (far - near),
+            tilt_cosine * (one - other),
+        );
         (turned, spin)
     }
 }
@@ -294,14 +304,6 @@ fn half(y: f64, x: f64, length: f64) -> (f64, f64) {
     } else {
         (larger.copysign(y), smaller.abs())
     }
-}
-
-/// The angle of the vector (x, y) from the x axis, in [−π, π].
-#[inline(always)]
-fn azimuth(y: f64, x: f64) -> f64 {
-    let part = 1.0 / (x * x + y * y).sqrt();
-    let angle = angle_in_lanes(one(y.abs() * part), one(x * part));
-    angle.as_slice()[0].copysign(y)
 }
 
 /// To a few rounding errors for negative numbers, too; |x| ≤ 32.
