@@ -3,17 +3,14 @@
 use super::certify::{SHORTEST, TOUCHING};
 use super::plane::{Departure, Step, first_root};
 use crate::math::Vector;
+#[cfg(test)]
+use crate::shape::evaluations::{self, Evaluation};
 use crate::shape::{Band, Convex, ConvexSurface, Instant, Superellipsoid};
-
-/// Steps of Newton's method towards the root of the bound of a convex body.
-const NEWTON: usize = 3;
 
 /// A convex function h of s.
 pub(super) trait Support {
-    /// h′(0).
-    fn begins(&self) -> f64;
-    /// h(s) − h(0) − s h′(0) ≥ 0, without cancellation where it can be, and h′(s).
-    fn at(&self, s: f64) -> (f64, f64);
+    /// h(s) − h(0) − s h′(0) ≥ 0, without cancellation where it can be.
+    fn beyond_tangent(&self, s: f64) -> f64;
 }
 
 /// h = |**a** + s**b**|.
@@ -59,16 +56,10 @@ impl Length {
 }
 
 impl Length {
-    /// h(s), and its two parts as a [`Support`].
+    /// h(s), and what of it is beyond the tangent.
     #[inline(always)]
-    fn along(&self, s: f64) -> (f64, f64, f64) {
-        let moved = self.b.mul_add(s, self.a);
-        let size = moved.norm();
-        let slope = if size > 0.0 {
-            moved.dot(self.b) / size
-        } else {
-            self.b.norm()
-        };
+    fn along(&self, s: f64) -> (f64, f64) {
+        let size = self.b.mul_add(s, self.a).norm();
         let tangent = s.mul_add(self.slope, self.size);
         let beyond = if tangent < 0.0 {
             size - tangent
@@ -77,20 +68,14 @@ impl Length {
         } else {
             0.0
         };
-        (size, beyond, slope)
+        (size, beyond)
     }
 }
 
 impl Support for Length {
     #[inline(always)]
-    fn begins(&self) -> f64 {
-        self.slope
-    }
-
-    #[inline(always)]
-    fn at(&self, s: f64) -> (f64, f64) {
-        let (_, beyond, slope) = self.along(s);
-        (beyond, slope)
+    fn beyond_tangent(&self, s: f64) -> f64 {
+        self.along(s).1
     }
 }
 
@@ -150,24 +135,17 @@ impl<'a> BandSupport<'a> {
 
 impl Support for BandSupport<'_> {
     #[inline(always)]
-    fn begins(&self) -> f64 {
-        self.slope
-    }
-
-    #[inline(always)]
-    fn at(&self, s: f64) -> (f64, f64) {
+    fn beyond_tangent(&self, s: f64) -> f64 {
         let along = s.mul_add(self.along.1, self.along.0);
-        let (across, across_beyond, across_slope) = self.across.along(s);
-        let (whole, whole_beyond, whole_slope) = self.whole.along(s);
+        let (across, across_beyond) = self.across.along(s);
+        let (whole, whole_beyond) = self.whole.along(s);
         let weights = self.band.weights(along, across);
         let [z, r, radius] = weights;
-        let slope = z * self.along.1 + r * across_slope + radius * whole_slope;
-        let beyond = if weights == self.weights {
+        if weights == self.weights {
             r * across_beyond + radius * whole_beyond
         } else {
             z * along + r * across + radius * whole - s.mul_add(self.slope, self.size)
-        };
-        (beyond, slope)
+        }
     }
 }
 
@@ -197,39 +175,36 @@ impl<'a> SuperellipsoidSupport<'a> {
 
 impl Support for SuperellipsoidSupport<'_> {
     #[inline(always)]
-    fn begins(&self) -> f64 {
-        self.slope
-    }
-
-    #[inline(always)]
-    fn at(&self, s: f64) -> (f64, f64) {
-        let (size, place) = self.body.farthest(self.turning.mul_add(s, self.up));
-        (
-            size - s.mul_add(self.slope, self.size),
-            place.dot(self.turning),
-        )
+    fn beyond_tangent(&self, s: f64) -> f64 {
+        let moved = self.turning.mul_add(s, self.up);
+        self.body.support(moved) - s.mul_add(self.slope, self.size)
     }
 }
 
 impl Convex {
     /// As [`crate::shape::Skin`]'s.
     #[inline(always)]
-    pub(super) fn step(&self, at: &Instant, turn: f64, departure: Option<Departure>) -> Step {
-        match self.frame {
-            Some(frame) => self.surface.step(&frame.own(at), turn, departure),
-            None => self.surface.step(at, turn, departure),
-        }
+    pub(super) fn step(
+        &self,
+        at: &Instant,
+        turn: f64,
+        departure: Option<Departure>,
+        most: f64,
+    ) -> Step {
+        #[cfg(test)]
+        evaluations::add(Evaluation::Support);
+        let own = self.frame.map_or(*at, |frame| frame.own(at));
+        self.surface.step(&own, turn, departure, most)
     }
 
     #[inline(always)]
     pub(super) fn nearest(&self, part: usize, up: Vector, turning: Vector) -> Vector {
-        match self.frame {
-            Some(frame) => {
-                let [up, turning] = [up, turning].map(|v| frame.axes.rotate(v));
-                frame.place(self.surface.nearest(part, up, turning))
-            }
-            None => self.surface.nearest(part, up, turning),
-        }
+        let [own, tie] = match self.frame {
+            Some(frame) => [up, turning].map(|v| frame.axes.rotate(v)),
+            None => [up, turning],
+        };
+        let place = self.surface.nearest(part, own, tie);
+        self.frame.map_or(place, |frame| frame.place(place))
     }
 
     pub(super) fn curvature(&self, part: usize, at: &Instant, bending: Vector) -> f64 {
@@ -261,15 +236,25 @@ impl Convex {
 
 impl ConvexSurface {
     #[inline(always)]
-    fn step(&self, at: &Instant, turn: f64, departure: Option<Departure>) -> Step {
+    fn step(&self, at: &Instant, turn: f64, departure: Option<Departure>, most: f64) -> Step {
         match self {
             Self::Ellipsoid(axes) => {
                 let support = Length::of_ellipsoid(*axes, at);
-                whole(&support, (support.size, support.slope), at, turn, departure)
+                whole(
+                    &support,
+                    (support.size, support.slope),
+                    (at, turn, most),
+                    departure,
+                )
             }
             Self::Superellipsoid(body) => {
                 let support = SuperellipsoidSupport::new(body, at);
-                whole(&support, (support.size, support.slope), at, turn, departure)
+                whole(
+                    &support,
+                    (support.size, support.slope),
+                    (at, turn, most),
+                    departure,
+                )
             }
             Self::Bands(bands) => {
                 let mut first = Step::never();
@@ -282,13 +267,14 @@ impl ConvexSurface {
                         _ => (at.height - support.size, at.rate - support.slope),
                     };
                     let bound = 1.0 + turn * band.reach;
-                    let length = convex_root(&support, width.max(0.0), rate, bound);
+                    let length = convex_root(&support, (width.max(0.0), rate, bound), most);
                     if length < first.length {
                         first = Step {
                             length,
                             part,
-                            closes: rate < 0.0,
+                            closes: rate < 0.0 && length < most,
                             bound,
+                            alone: 0.0,
                         };
                     }
                 }
@@ -328,8 +314,7 @@ impl ConvexSurface {
 fn whole(
     support: &impl Support,
     (size, slope): (f64, f64),
-    at: &Instant,
-    turn: f64,
+    (at, turn, most): (&Instant, f64, f64),
     departure: Option<Departure>,
 ) -> Step {
     let bound = 1.0 + turn;
@@ -337,11 +322,13 @@ fn whole(
         Some(left) => (0.0, left.speed),
         None => (at.height - size, at.rate - slope),
     };
+    let length = convex_root(support, (width.max(0.0), rate, bound), most);
     Step {
-        length: convex_root(support, width.max(0.0), rate, bound),
+        length,
         part: 0,
-        closes: rate < 0.0,
+        closes: rate < 0.0 && length < most,
         bound,
+        alone: 0.0,
     }
 }
 
@@ -352,38 +339,35 @@ impl Step {
             part: 0,
             closes: false,
             bound: 1.0,
+            alone: 0.0,
         }
     }
 }
 
-/// A time no later than the first root of width + rate s − (h(s) − h(0) − s h′(0)) − Ms²/2, which is concave. Its tangents lie above it, so that
-/// Newton's method comes from behind the root; the last chord, which lies below it, ends in front of it.
+/// A time no later than `most` and the first root of width + rate s − (h(s) − h(0) − s h′(0)) − Ms²/2: this is concave, so that its chord from 0
+/// to a place behind the root ends in front of it. Without h the root is behind it.
 #[inline(always)]
-pub(super) fn convex_root(support: &impl Support, width: f64, rate: f64, bound: f64) -> f64 {
+pub(super) fn convex_root(
+    support: &impl Support,
+    (width, rate, bound): (f64, f64, f64),
+    most: f64,
+) -> f64 {
     let parabola = |s: f64| width + s * (rate - 0.5 * bound * s);
-    let mut after = first_root(width, rate, bound);
-    let (mut beyond, mut slope) = support.at(after);
-    if beyond <= 0.0 {
+    let after = first_root(width, rate, bound).min(most);
+    #[cfg(test)]
+    evaluations::add(Evaluation::Support);
+    let beyond = support.beyond_tangent(after);
+    let found = parabola(after) - beyond;
+    if beyond <= 0.0 || found >= 0.0 {
         return after;
     }
-    let mut before = (0.0, width);
-    for _ in 0..NEWTON {
-        let found = parabola(after) - beyond;
-        if found >= 0.0 {
-            return after;
-        }
-        let fall = rate - bound * after - (slope - support.begins());
-        let next = after - found / fall;
-        if !(next > before.0 && next < after) {
-            break;
-        }
-        after = next;
-        (beyond, slope) = support.at(after);
-    }
     // Where the gap is 0 at the beginning and opens, a point between it and the root.
+    let mut before = (0.0, width);
     let mut inside = 0.5 * after;
     while before.1 <= 0.0 && rate > 0.0 {
-        let found = parabola(inside) - support.at(inside).0;
+        #[cfg(test)]
+        evaluations::add(Evaluation::Support);
+        let found = parabola(inside) - support.beyond_tangent(inside);
         if found > 0.0 {
             before = (inside, found);
         }
@@ -391,10 +375,6 @@ pub(super) fn convex_root(support: &impl Support, width: f64, rate: f64, bound: 
         if bound * inside <= SHORTEST {
             return SHORTEST / bound;
         }
-    }
-    let found = parabola(after) - beyond;
-    if found >= 0.0 {
-        return after;
     }
     let chord = before.0 + (after - before.0) * before.1 / (before.1 - found);
     if rate < 0.0 {

@@ -15,11 +15,14 @@
 
 use super::certify::{SHORTEST, TOUCHING};
 use crate::math::Vector;
-use crate::shape::{Instant, Least, Point, Skin};
+#[cfg(test)]
+use crate::shape::evaluations::{self, Evaluation};
+use crate::shape::{Effort, Instant, Least, Point, Skin};
 
-/// Nodes of the tree are not looked into where they allow a step of this part of the length that is found: at the end, where lengths must be
-/// exact, others allow far more or none at all.
+/// Far from the contact nodes of the tree are not looked into where they allow a step of this part of the length that is found.
 const ENOUGH: f64 = 0.5;
+/// A step is short where M changes the rate by less than this part of it: what touches after one is then nearly as late as its parabola says.
+const SHORT: f64 = 0.0625;
 
 /// A part of the body whose gap is known exactly: the one on the plane at the beginning of a flight, and the speed at which it leaves.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -37,6 +40,8 @@ pub(crate) struct Step {
     pub closes: bool,
     /// M.
     pub bound: f64,
+    /// For so long no other part touches.
+    pub alone: f64,
 }
 
 /// The first root ≥ 0 of f + f′s − Ms²/2 with f ≥ 0, in that of its two forms in which no digits cancel.
@@ -51,14 +56,16 @@ pub(super) fn first_root(width: f64, rate: f64, bound: f64) -> f64 {
 }
 
 impl Skin {
-    /// A step that passes no contact. `turn` is cΩ²; `departure` holds at the beginning of a flight; `near` is a part that may be the first.
+    /// A step that passes no contact, no longer than `most` > 0. `turn` is cΩ²; `departure` holds at the beginning of a flight; `near` is a part
+    /// that may be the first, and no other touches for as long as it is alone.
     #[inline(always)]
     pub(crate) fn step(
         &self,
         at: &Instant,
         turn: f64,
         departure: Option<Departure>,
-        near: Option<usize>,
+        near: Option<(usize, f64)>,
+        most: f64,
     ) -> Step {
         match self {
             Self::Points(balls) => {
@@ -81,16 +88,33 @@ impl Skin {
                         first_root(width, rate, bound)
                     }
                 };
-                let first = balls.cheapest(at, (near, ENOUGH), exceeds, cost);
-                let point = &balls.points()[first.place];
-                Step {
-                    length: first.cost.min(first.sure),
-                    part: first.place,
-                    closes: first.cost <= first.sure && opening(first.place, point).1 < 0.0,
-                    bound: bound(f64::from(point.reach)),
+                let found = |part: usize, root: f64, alone: f64| {
+                    let point = &balls.points()[part];
+                    Step {
+                        length: root.min(alone),
+                        part,
+                        closes: root <= alone && opening(part, point).1 < 0.0,
+                        bound: bound(f64::from(point.reach)),
+                        alone,
+                    }
+                };
+                if let Some((part, alone)) = near {
+                    #[cfg(test)]
+                    evaluations::add(Evaluation::Gap);
+                    let root = cost(part, &balls.points()[part], f64::INFINITY);
+                    if root < alone {
+                        return found(part, root, alone);
+                    }
                 }
+                let effort = Effort {
+                    most,
+                    enough: ENOUGH,
+                    short: SHORT * at.rate.abs() / (1.0 + turn),
+                };
+                let first = balls.cheapest(at, near.map(|near| near.0), effort, exceeds, cost);
+                found(first.place, first.cost, first.others)
             }
-            Self::Convex(convex) => convex.step(at, turn, departure),
+            Self::Convex(convex) => convex.step(at, turn, departure, most),
         }
     }
 
@@ -130,7 +154,7 @@ impl Skin {
                         f64::INFINITY
                     }
                 };
-                balls.cheapest(at, (None, 1.0), exceeds, cost).cost < still
+                balls.cheapest(at, None, Effort::EXACT, exceeds, cost).cost < still
             }
             Self::Convex(convex) => convex.another_touches(departure, at),
         }
@@ -169,10 +193,11 @@ mod tests {
     }
 
     /// Steps are no longer than those of the exhaustive search, and no shorter than the part that is enough; one that is taken for a contact
-    /// is the same. The lowest ball is the lowest, and what touches beside a departing one is found.
+    /// is the same. None is longer than what is asked for, and no other ball touches while one is alone. The lowest ball is the lowest, and what
+    /// touches beside a departing one is found.
     #[test]
     fn the_tree_finds_what_asking_every_ball_finds() {
-        let mut exact = 0;
+        let (mut exact, mut alone) = (0, 0);
         for count in [1, 2, 8, 9, 16, 17, 100, 1000, 5000] {
             for seed in 0..40 {
                 let skin = Skin::Points(balls(seed, count));
@@ -212,9 +237,28 @@ mod tests {
                         .iter()
                         .map(length)
                         .fold(f64::INFINITY, f64::min);
-                    let near = (seed % 3 == 0).then_some(0);
-                    let step = skin.step(&at, turn, None, near);
+                    let near = (seed % 3 == 0).then_some((0, 0.0));
+                    let step = skin.step(&at, turn, None, near, f64::INFINITY);
                     assert!(step.length <= least && step.length >= ENOUGH * least);
+                    let others = balls.points().iter().enumerate();
+                    let others = others.filter(|&(part, _)| part != step.part);
+                    assert!(others.clone().all(|(_, point)| length(point) >= step.alone));
+                    let cut = skin.step(&at, turn, None, near, 0.25 * least);
+                    assert!(cut.length == 0.25 * least && (!cut.closes || least == 0.0));
+                    if step.alone > step.length {
+                        let same = skin.step(
+                            &at,
+                            turn,
+                            None,
+                            Some((step.part, step.alone)),
+                            f64::INFINITY,
+                        );
+                        assert_eq!(
+                            (same.part, same.length, same.closes),
+                            (step.part, step.length, step.closes)
+                        );
+                        alone += 1;
+                    }
                     if step.closes && step.length < 1e-6 {
                         assert_eq!(step.length, least);
                         exact += 1;
@@ -232,6 +276,6 @@ mod tests {
                 }
             }
         }
-        assert!(exact > 400);
+        assert!(exact > 400 && alone > 400);
     }
 }

@@ -6,6 +6,8 @@ use crate::contact::{Departure, INVISIBLE, LAST, MOST_STEPS};
 use crate::law::{Compliance, Fault, Law, Respond, Rule};
 use crate::math::{Quaternion, Symmetric, Vector, Vectors};
 use crate::motion::Rotation;
+#[cfg(test)]
+use crate::shape::evaluations::{self, Evaluation};
 use crate::shape::{Instant, Rigid, up};
 use crate::simd::elementary::RANGE;
 use crate::simd::{Mask, Pack, one};
@@ -156,22 +158,30 @@ impl Bouncing<'_> {
                 time
             }
         };
-        let (mut time, mut near) = (0.0, departure.map(|left| left.part));
+        let (mut time, mut near) = (0.0, departure.map(|left| (left.part, 0.0)));
         for _ in 0..MOST_STEPS {
             if fastest * time > RANGE {
                 return Err(NoContact::Ends(StopReason::NeverLands));
             }
+            #[cfg(test)]
+            evaluations::add(Evaluation::Attitude);
             let (attitude, spin) = rotation.at(time);
             let at = instant(start, time, attitude, spin);
             let left = departure.filter(|_| time == 0.0);
-            let step = body.skin.step(&at, turn, left, near);
-            near = Some(step.part);
+            let clear = if above > 0.0 && time < up_at {
+                up_at - time
+            } else {
+                f64::INFINITY
+            };
+            let step = body.skin.step(&at, turn, left, near, clear);
             let end = time + step.length;
             let invisible = step.bound * step.length * step.length <= INVISIBLE;
             if step.closes && invisible && step.length <= LAST * end {
                 return Ok(self.land(start, end, step.part, &mut rotation, turn));
             }
+            let begun = time;
             time = skip(end.max(time * (1.0 + f64::EPSILON)));
+            near = Some((step.part, begun + step.alone - time));
         }
         Err(NoContact::Unconverged)
     }
@@ -362,5 +372,130 @@ impl Pose<Scalar, 1> for RigidPose<'_> {
 
     fn spin_after(&self) -> Vectors<Scalar, 1> {
         lane(self.after.attitude.rotate(self.after.spin))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::drop::{About, Orientation, Run, Spin};
+    use crate::random::pair;
+    use crate::shape::{AnyBody, Heights, Inertia, Matter, RigidBall, Roughness};
+    use crate::{Frictionless, Level, Monitor, Resources};
+
+    /// Of R = 10 mm, as in `benchmarks/bodies.py`.
+    fn bodies() -> Vec<(&'static str, Rigid)> {
+        let ball = |[x, y, z, radius]: [f64; 4]| RigidBall {
+            centre: Vector::new(x, y, z),
+            radius,
+        };
+        let clump = |balls: &[RigidBall]| Rigid::clump(balls, 2500.0, Matter::Sum).unwrap();
+        let corners = [
+            [5e-3, 5e-3, 5e-3, 5e-3],
+            [5e-3, -5e-3, -5e-3, 5e-3],
+            [-5e-3, 5e-3, -5e-3, 6e-3],
+            [-5e-3, -5e-3, 5e-3, 4e-3],
+        ];
+        let within = |i: u64| {
+            let ((x, y), (z, u)) = (pair(1, 2 * i), pair(1, 2 * i + 1));
+            let place = Vector::new(2.0 * x - 1.0, 2.0 * y - 1.0, 2.0 * z - 1.0);
+            let place = place * (3e-3 * (1.0 + u) / place.norm());
+            ball([place.x, place.y, place.z, 4e-3])
+        };
+        let many = |count: u64| clump(&(0..count).map(within).collect::<Vec<_>>());
+        let rough = |asperities: usize| {
+            let roughness = Roughness {
+                asperities,
+                radius: 1e-5,
+                heights: Heights::Equal(1e-5),
+                seed: 1,
+            };
+            let inertia = Inertia {
+                mass: 1.0,
+                centre: Vector::default(),
+                tensor: Symmetric::diagonal([4e-5; 3]),
+            };
+            Rigid::rough(&[ball([0.0, 0.0, 0.0, 1e-2])], false, inertia, &roughness).unwrap()
+        };
+        let corner = |i: usize| {
+            let [x, y, z] = [0, 1, 2].map(|axis| 1e-2 * ((i >> axis & 1) as f64 - 0.5));
+            Vector::new(x, y, z)
+        };
+        let vertices: Vec<_> = (0..8).map(corner).collect();
+        let sides = [
+            [0, 2, 3, 1],
+            [4, 5, 7, 6],
+            [0, 1, 5, 4],
+            [2, 6, 7, 3],
+            [0, 4, 6, 2],
+            [1, 3, 7, 5],
+        ];
+        let halves = sides
+            .iter()
+            .flat_map(|&[a, b, c, d]| [[a, b, c], [a, c, d]]);
+        let die = Rigid::polyhedron(&vertices, &halves.collect::<Vec<_>>(), 2500.0);
+        vec![
+            ("die", die.unwrap()),
+            ("clump of 4 spheres", clump(&corners.map(ball))),
+            ("clump of 16 spheres", many(16)),
+            ("clump of 1000 spheres", many(1000)),
+            (
+                "triaxial ellipsoid",
+                Rigid::ellipsoid([1e-2, 8e-3, 6e-3], 2500.0).unwrap(),
+            ),
+            (
+                "superellipsoid",
+                Rigid::superellipsoid([1e-2, 8e-3, 6e-3], [4.0, 3.0], 2500.0).unwrap(),
+            ),
+            ("sphere with 10² asperities", rough(100)),
+            ("sphere with 10⁴ asperities", rough(10_000)),
+            ("sphere with 10⁶ asperities", rough(1_000_000)),
+        ]
+    }
+
+    /// `docs/shapes.md` has a row for each body: how often an impact needs the attitude of the body, the gap of a sphere or vertex or the support
+    /// function, and the bounds of four nodes of the tree.
+    #[test]
+    fn the_page_says_what_an_impact_evaluates() {
+        let page = include_str!("../../../../docs/shapes.md");
+        let mut missing = String::new();
+        for (name, body) in bodies() {
+            let run = Run {
+                body: AnyBody::Rigid(&body),
+                law: Law::new(0.98, Frictionless).unwrap(),
+                particles: 50,
+                impacts: 200,
+                release_height: 0.08.into(),
+                gravity: 9.81,
+                orientation: Orientation::Isotropic,
+                spin: Spin::Random {
+                    low: 10.0,
+                    high: 90.0,
+                    about: About::Isotropic,
+                },
+                release_velocity: Vector::default(),
+                incline: 0.0,
+                minimum_speed: 0.0,
+                settled: 0.0,
+                seed: 1,
+            };
+            let resources = Resources {
+                threads: 1,
+                level: Level::best(),
+            };
+            evaluations::taken();
+            let records = run.simulate(resources, &Monitor::default()).unwrap();
+            let impacts = records.time.len() as f64;
+            let [attitudes, gaps, quarters, supports] =
+                evaluations::taken().map(|count| count as f64 / impacts);
+            let row = format!(
+                "| {name} | {attitudes:.1} | {:.1} | {quarters:.1} |",
+                gaps + supports
+            );
+            if !page.contains(&row) {
+                missing += &format!("{row}\n");
+            }
+        }
+        assert!(missing.is_empty(), "docs/shapes.md lacks\n{missing}");
     }
 }

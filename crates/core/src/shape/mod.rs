@@ -24,8 +24,8 @@ pub(crate) use rigid::{Skin, up};
 pub use rough::{Heights, Roughness};
 pub(crate) use superellipsoid::Superellipsoid;
 #[cfg(test)]
-pub(crate) use tree::Balls;
-pub(crate) use tree::{Instant, Least, Point};
+pub(crate) use tree::{Balls, evaluations};
+pub(crate) use tree::{Effort, Instant, Least, Point};
 
 /// A body that can be dropped.
 #[derive(Debug, Clone, Copy, PartialEq)]

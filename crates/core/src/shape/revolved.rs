@@ -275,7 +275,7 @@ impl Rigid {
         let unit = unit.fold(0.0, f64::max);
         let bands = touching.iter().map(band(unit)).collect();
         let surface = Convex::new(ConvexSurface::Bands(bands));
-        Self::new(inertia, unit, Skin::Convex(surface))
+        Self::new(inertia, unit, |_| Ok(Skin::Convex(surface)))
     }
 }
 

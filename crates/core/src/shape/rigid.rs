@@ -2,7 +2,7 @@
 
 use super::check_density;
 use super::convex::{Convex, ConvexSurface};
-use super::tree::{Balls, Instant, Least, Point};
+use super::tree::{Balls, Effort, Instant, Least, Point};
 use crate::Error;
 use crate::math::{Quaternion, Symmetric, Vector};
 use crate::memory::{collected, filled};
@@ -123,17 +123,12 @@ impl Rigid {
         let mut points = collected(what, about_centre)?;
         let reach = |point: &Point| point.place.norm() + point.radius;
         let unit = points.iter().map(reach).fold(0.0, f64::max);
-        let (top, axes) = principal(&inertia, unit)?;
-        let back = axes.inverse();
-        for (number, point) in points.iter_mut().enumerate() {
-            *point = Point::new(back.rotate(point.place) / unit, point.radius / unit, number);
-        }
-        Ok(Self {
-            inertia,
-            unit,
-            axes,
-            top,
-            skin: Skin::Points(Balls::new(what, points)?),
+        Self::new(inertia, unit, |axes| {
+            let back = axes.inverse();
+            for (number, point) in points.iter_mut().enumerate() {
+                *point = Point::new(back.rotate(point.place) / unit, point.radius / unit, number);
+            }
+            Ok(Skin::Points(Balls::new(what, points)?))
         })
     }
 
@@ -180,7 +175,7 @@ impl Rigid {
         };
         let unit = a.max(b).max(c);
         let surface = ConvexSurface::Ellipsoid(semi_axes.map(|axis| axis / unit));
-        Self::new(inertia, unit, Skin::Convex(Convex::new(surface)))
+        Self::new(inertia, unit, |_| Ok(Skin::Convex(Convex::new(surface))))
     }
 
     /// Refuses semi-axes that are no positive numbers, or differ by more than 1000 times.
@@ -199,15 +194,19 @@ impl Rigid {
         )
     }
 
-    /// A body whose parts are given in the principal axes of the matter and in units of `unit`.
-    pub(super) fn new(inertia: Inertia, unit: f64, skin: Skin) -> Result<Self, Error> {
+    /// A body whose parts, in its principal axes and in units of `unit`, follow from the rotation of these to the axes of its inertia.
+    pub(super) fn new(
+        inertia: Inertia,
+        unit: f64,
+        skin: impl FnOnce(Quaternion) -> Result<Skin, Error>,
+    ) -> Result<Self, Error> {
         let (top, axes) = principal(&inertia, unit)?;
         Ok(Self {
             inertia,
             unit,
             axes,
             top,
-            skin,
+            skin: skin(axes)?,
         })
     }
 
@@ -225,15 +224,10 @@ impl Rigid {
             .rotate(inertia.centre - self.inertia.centre);
         // No part is farther from the new centre than this.
         let unit = self.unit + shift.norm();
-        let (top, axes) = principal(&inertia, unit)?;
-        let turn = self.axes.inverse() * axes;
-        let skin = Skin::Convex(convex.with_frame(turn, shift / self.unit, unit / self.unit));
-        Ok(Self {
-            inertia,
-            unit,
-            axes,
-            top,
-            skin,
+        Self::new(inertia, unit, |axes| {
+            let turn = self.axes.inverse() * axes;
+            let moved = convex.with_frame(turn, shift / self.unit, unit / self.unit);
+            Ok(Skin::Convex(moved))
         })
     }
 
@@ -301,7 +295,7 @@ impl Skin {
                     turning: Vector::default(),
                 };
                 let exceeds = |least: &Least, limit: f64| least.gap > limit;
-                let lowest = balls.cheapest(&at, (None, 1.0), exceeds, |_, point, _| {
+                let lowest = balls.cheapest(&at, None, Effort::EXACT, exceeds, |_, point, _| {
                     point.opening(&at).0
                 });
                 -lowest.cost
@@ -312,7 +306,7 @@ impl Skin {
 }
 
 /// The principal moments over mR², and the rotation from the principal axes.
-pub(super) fn principal(inertia: &Inertia, unit: f64) -> Result<(Top, Quaternion), Error> {
+fn principal(inertia: &Inertia, unit: f64) -> Result<(Top, Quaternion), Error> {
     let (moments, axes) = inertia.tensor.principal();
     let scale = 1.0 / (inertia.mass * unit * unit);
     let moments = moments.map(|moment| scale * moment);

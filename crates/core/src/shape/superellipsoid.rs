@@ -13,7 +13,7 @@ use super::convex::{Convex, ConvexSurface};
 use super::rigid::{Inertia, Rigid, Skin};
 use crate::Error;
 use crate::math::{Symmetric, Vector};
-use crate::simd::elementary::{exp_in_lanes, ln};
+use crate::simd::elementary::{exp_m1_in_lanes, ln};
 use crate::simd::one;
 use std::f64::consts::TAU;
 
@@ -31,25 +31,23 @@ pub(crate) struct Superellipsoid {
 /// xʸ for 0 ≤ x ≤ 2, y > 0; 0 where it is below 10⁻²⁷.
 #[inline(always)]
 fn power(x: f64, y: f64) -> f64 {
-    if x < f64::MIN_POSITIVE {
-        return 0.0;
-    }
-    let logarithm = y * ln(x);
-    if logarithm >= 0.0 {
-        return exp(logarithm);
-    }
-    if logarithm < -62.0 {
-        return 0.0;
-    }
+    let logarithm = y * ln(x.max(f64::MIN_POSITIVE));
     // Of a negative number the exponential has fewer digits.
-    let root = 1.0 / exp(-0.5 * logarithm);
-    root * root
+    let root = exp(0.5 * logarithm.abs().min(64.0));
+    let large = root * root;
+    if logarithm >= 0.0 {
+        large
+    } else if logarithm < -62.0 {
+        0.0
+    } else {
+        1.0 / large
+    }
 }
 
 /// eˣ for 0 ≤ x ≤ 32.
 #[inline(always)]
 fn exp(x: f64) -> f64 {
-    exp_in_lanes(one(x)).as_slice()[0]
+    1.0 + exp_m1_in_lanes(one(x)).as_slice()[0]
 }
 
 /// ln Γ(x) by Stirling's series, for x > 0.
@@ -104,9 +102,23 @@ impl Superellipsoid {
         if most == 0.0 {
             return (0.0, [0.0, 0.0]);
         }
-        let size = power(1.0 + power(least / most, p), 1.0 / p);
-        let change = |of: f64| power(of / most / size, p - 1.0);
-        (most * size, [change(x), change(y)])
+        // With t the smaller over the larger, N = most (1 + tᵖ)^(1/p), and dN/dmost = (1 + tᵖ)^(1/p − 1), dN/dleast = tᵖ⁻¹ as much.
+        let ratio = least / most;
+        let change = if ratio > 0.0 {
+            power(ratio, p - 1.0)
+        } else {
+            0.0
+        };
+        let sum = ratio.mul_add(change, 1.0);
+        let size = power(sum, 1.0 / p);
+        let first = size / sum;
+        let second = change * first;
+        let changes = if x >= y {
+            [first, second]
+        } else {
+            [second, first]
+        };
+        (most * size, changes)
     }
 
     /// h(**u**), and the place on the surface with that outward normal.
@@ -124,6 +136,7 @@ impl Superellipsoid {
         (size, place)
     }
 
+    #[inline(always)]
     pub fn support(&self, u: Vector) -> f64 {
         self.farthest(u).0
     }
@@ -198,6 +211,6 @@ impl Rigid {
         let unit = reach(n1, [reach(n2, [a * a, b * b]), c * c]).sqrt() * (1.0 + 1e-15);
         let body = Superellipsoid::new(semi_axes.map(|axis| axis / unit), exponents);
         let surface = Convex::new(ConvexSurface::Superellipsoid(body));
-        Self::new(inertia, unit, Skin::Convex(surface))
+        Self::new(inertia, unit, |_| Ok(Skin::Convex(surface)))
     }
 }

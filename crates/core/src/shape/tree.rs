@@ -1,27 +1,32 @@
 //! The balls of a body in a tree, so that one that is looked for costs what those near it cost.
 //!
-//! The balls lie in one array in the order of the tree's leaves. Node i of level d holds those from (iN) >> d to ((i + 1)N) >> d; its halves
-//! are nodes 2i and 2i + 1 of the next level, divided at the median of the longest side of what it holds. Of its balls, **p** and r, a node
-//! knows what bounds gap and rate of each of them: with **c** their middle, **u** = **c**/|**c**|, **p** − **c** = a**u** + **b**, **b** ⊥ **u**,
-//! and the cosine −**n**·**u** > 0
+//! The balls lie in one array in the order of the tree's leaves. Node i of level d holds those from iN/4ᵈ to (i + 1)N/4ᵈ; its quarters are nodes
+//! 4i to 4i + 3 of the next level: halves of halves, each divided at the median of the longest side of what it holds. Of its balls, **p** and
+//! r, a node knows what bounds gap and rate of each of them: with **c** their middle, **u** = **c**/c, **p** − **c** = a**u** + **b**,
+//! **b** ⊥ **u**, and α < π/2 the angle from **u** to −**n**,
 //!
-//! r − **n**·(**p** − **c**) = cos a + r − **n**·**b** ≤ cos max(a + r) + (1 − cos) max r + sin max|**b**|,
+//! r − **n**·(**p** − **c**) = a cos α + r − **n**·**b** ≤ (a + r) cos α + r(1 − cos α) + b sin α.
 //!
-//! a disc that is as thin as the surface where the balls lie on one; and r − **n**·(**p** − **c**) ≤ max r + max|**p** − **c**| for every **n**.
+//! With the largest a + r, r and b this is the bound of a disc. Balls on a curved surface lie in the paraboloid a + r + b²/2c ≤ t about the same
+//! axis, which is as thin as the surface: (a + r) cos α + b sin α ≤ (t − b²/2c) cos α + b sin α, which is largest at b = c tan α or at the
+//! largest b. A node has the bound that is lower. And r − **n**·(**p** − **c**) ≤ max r + max|**p** − **c**| for every **n**.
 
 use crate::Error;
 use crate::math::Vector;
 use crate::memory::filled;
+use crate::simd::Pack;
+#[cfg(test)]
+use evaluations::Evaluation;
+use pulp::Scalar;
 use std::ops::Range;
 
 /// Most balls of a leaf.
 const LEAF: usize = 8;
 /// Most levels of a tree.
-const DEEPEST: usize = 32;
-/// The enlargement of a node's bounds, which are rounded to single precision.
+const DEEPEST: usize = 16;
+/// The enlargement of a node's bounds, which are rounded to single precision, and the largest error of its cosine.
 const ROUNDED: f64 = 1e-6;
-/// Largest error of a sine where the cosine is off by 2⁻²³.
-const SINE: f64 = 5e-4;
+const COSINE: f64 = 2e-7;
 
 /// A ball or vertex of a body, in units of R and the principal axes.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -35,30 +40,40 @@ pub(crate) struct Point {
     pub number: u32,
 }
 
-/// Bounds on the gaps of the balls of a node.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+/// What bounds the gaps of the balls of a node.
 struct Node {
-    /// **c** and |**c**|.
+    /// **c** and c.
     middle: [f32; 3],
     far: f32,
-    /// The largest |**p** − **c**|, a + r, |**b**| and r.
+    /// The largest |**p** − **c**|, b and r.
     spread: f32,
-    top: f32,
     side: f32,
     radius: f32,
+    /// The largest a + r, or t.
+    top: f32,
+    /// True for a paraboloid.
+    curved: bool,
 }
 
-/// The two halves of a node, in one line of the cache.
+/// The four quarters of a node, side by side.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 #[repr(align(64))]
-struct Halves([Node; 2]);
+struct Quarters {
+    middle: [[f32; 4]; 3],
+    /// Negative for a paraboloid.
+    far: [f32; 4],
+    spread: [f32; 4],
+    side: [f32; 4],
+    radius: [f32; 4],
+    top: [f32; 4],
+}
 
 /// The balls of a body.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Balls {
     points: Vec<Point>,
-    /// Those of node i of level d have the number 2ᵈ − 1 + i.
-    halves: Vec<Halves>,
+    /// Those of node i of level d have the number (4ᵈ − 1)/3 + i.
+    quarters: Vec<Quarters>,
     depth: usize,
 }
 
@@ -119,52 +134,96 @@ impl Node {
         let c = Vector::new(x, y, z);
         let far = length(c);
         let u = if far > 0.0 { c / far } else { c };
-        let (mut spread, mut top) = (0.0_f64, f64::NEG_INFINITY);
-        let (mut side, mut radius) = (0.0_f64, 0.0_f64);
+        let far = far as f32;
+        let bulge = |side: f64| 0.5 * side * side / f64::from(far);
+        let (mut spread, mut side, mut radius) = (0.0_f64, 0.0_f64, 0.0_f64);
+        let (mut top, mut crown) = (f64::NEG_INFINITY, f64::NEG_INFINITY);
         for point in points {
             let from = point.place - c;
             let along = from.x * u.x + from.y * u.y + from.z * u.z;
+            let across = length(from - u * along);
             spread = spread.max(length(from));
-            top = top.max(along + point.radius);
-            side = side.max(length(from - u * along));
+            side = side.max(across);
             radius = radius.max(point.radius);
+            top = top.max(along + point.radius);
+            crown = crown.max(along + point.radius + bulge(across));
         }
+        let curved = crown < top + 0.5 * bulge(side);
         Self {
             middle,
-            far: far as f32,
+            far,
             spread: above(spread),
-            top: above(top),
             side: above(side),
             radius: above(radius),
+            top: above(if curved { crown } else { top }),
+            curved,
+        }
+    }
+}
+
+impl Quarters {
+    fn new(nodes: [Node; 4]) -> Self {
+        let each = |of: fn(&Node) -> f32| nodes.each_ref().map(of);
+        Self {
+            middle: [
+                each(|node| node.middle[0]),
+                each(|node| node.middle[1]),
+                each(|node| node.middle[2]),
+            ],
+            far: each(|node| if node.curved { -node.far } else { node.far }),
+            spread: each(|node| node.spread),
+            side: each(|node| node.side),
+            radius: each(|node| node.radius),
+            top: each(|node| node.top),
         }
     }
 
-    /// The bounds for its balls, where |**n**′| is `turning`.
+    /// The bounds for the balls of each, where |**n**′| is `turning`.
     #[inline(always)]
-    fn least(&self, at: &Instant, turning: f64) -> Least {
-        let (x, y, z) = (
-            f64::from(self.middle[0]),
-            f64::from(self.middle[1]),
-            f64::from(self.middle[2]),
-        );
-        let (far, spread) = (f64::from(self.far), f64::from(self.spread));
+    fn least(&self, at: &Instant, turning: f64) -> Bounds {
         let (n, w) = (at.up, at.turning);
+        let [x, y, z] = [0, 1, 2].map(|i| four(&self.middle[i]));
+        let signed = four(&self.far);
+        let (far, spread, radius) = (signed.abs(), four(&self.spread), four(&self.radius));
+        let (side, top) = (four(&self.side), four(&self.top));
         let across = n.x * x + n.y * y + n.z * z;
-        let mut below = spread + f64::from(self.radius);
-        if across < 0.0 {
-            let cosine = (-across / far).min(1.0);
-            let sine = (1.0 - cosine * cosine).sqrt() + SINE;
-            let disc = cosine * f64::from(self.top)
-                + (1.0 - cosine) * f64::from(self.radius)
-                + sine * f64::from(self.side);
-            below = below.min(disc);
-        }
-        Least {
-            gap: at.height + across - below,
-            rate: at.rate + (w.x * x + w.y * y + w.z * z) - turning * spread,
+        let inverse = 1.0 / far;
+        let cosine = (-across * inverse).min(1.0);
+        let (a, b, c) = (n.y * z - n.z * y, n.z * x - n.x * z, n.x * y - n.y * x);
+        let sine = (a * a + b * b + c * c).sqrt() * inverse;
+        let disc = cosine * top + sine * side;
+        let within = cosine * top + (0.5 + ROUNDED) * far * sine * sine / cosine;
+        let beyond = disc - cosine * (0.5 * side * side * inverse);
+        let cap = (sine * far).lt(side * cosine).select(within, beyond);
+        let surface = signed.lt(0.0).select(cap, disc);
+        let lower = surface + ((1.0 + COSINE) - cosine) * radius;
+        let round = spread + radius;
+        let below = across.lt(0.0).select(round.min(lower), round);
+        Bounds {
+            gap: across - below + at.height,
+            rate: w.x * x + w.y * y + w.z * z - turning * spread + at.rate,
             reach: far + spread,
         }
     }
+}
+
+/// Four numbers side by side.
+type Four = Pack<Scalar, 4>;
+
+/// What bounds the balls of four nodes.
+struct Bounds {
+    gap: Four,
+    rate: Four,
+    reach: Four,
+}
+
+#[inline(always)]
+fn four(numbers: &[f32; 4]) -> Four {
+    let mut all = Pack::splat(Scalar::new(), 0.0);
+    for (to, from) in all.as_mut_slice().iter_mut().zip(numbers) {
+        *to = f64::from(*from);
+    }
+    all
 }
 
 /// The least and the largest coordinates of the centres.
@@ -182,41 +241,58 @@ fn sides(points: &[Point]) -> [[f64; 3]; 2] {
 /// The balls of node `i` of a level, of so many.
 #[inline(always)]
 fn range(balls: usize, level: usize, i: usize) -> (usize, usize) {
-    ((i * balls) >> level, ((i + 1) * balls) >> level)
+    let end = |i: usize| ((i as u64 * balls as u64) >> (2 * level)) as usize;
+    (end(i), end(i + 1))
+}
+
+/// The number of the first node of a level.
+#[inline(always)]
+fn first(level: usize) -> usize {
+    ((1 << (2 * level)) - 1) / 3
+}
+
+/// Divides balls at the median of their longest side, so many in front of it.
+fn divide(points: &mut [Point], front: usize) -> (&mut [Point], &mut [Point]) {
+    let [least, most] = sides(points);
+    let [x, y, z] = [0, 1, 2].map(|i| most[i] - least[i]);
+    let along: fn(&Point) -> f64 = if x >= y && x >= z {
+        |point| point.place.x
+    } else if y >= z {
+        |point| point.place.y
+    } else {
+        |point| point.place.z
+    };
+    points.select_nth_unstable_by(front, |a, b| {
+        let order = along(a).total_cmp(&along(b));
+        order.then(a.number.cmp(&b.number))
+    });
+    points.split_at_mut(front)
 }
 
 impl Balls {
     /// The balls in an order that depends on nothing but them; `what` is for the error.
     pub fn new(what: &'static str, mut points: Vec<Point>) -> Result<Self, Error> {
         let count = points.len();
-        let leaves = count.div_ceil(LEAF).next_power_of_two();
-        let depth = leaves.trailing_zeros() as usize;
-        let mut halves = filled(what, Halves::default(), leaves - 1)?;
+        let mut depth = 0;
+        while LEAF << (2 * depth) < count {
+            depth += 1;
+        }
+        let mut quarters = filled(what, Quarters::default(), first(depth))?;
         for level in 0..depth {
-            for i in 0..1 << level {
+            for i in 0..1 << (2 * level) {
                 let (low, high) = range(count, level, i);
-                let (middle, _) = range(count, level + 1, 2 * i + 1);
-                let part = &mut points[low..high];
-                let [least, most] = sides(part);
-                let [x, y, z] = [0, 1, 2].map(|i| most[i] - least[i]);
-                let along: fn(&Point) -> f64 = if x >= y && x >= z {
-                    |point| point.place.x
-                } else if y >= z {
-                    |point| point.place.y
-                } else {
-                    |point| point.place.z
-                };
-                part.select_nth_unstable_by(middle - low, |a, b| {
-                    let order = along(a).total_cmp(&along(b));
-                    order.then(a.number.cmp(&b.number))
-                });
-                let (first, second) = part.split_at(middle - low);
-                halves[(1 << level) - 1 + i] = Halves([Node::new(first), Node::new(second)]);
+                let ends = [1, 2, 3].map(|k| range(count, level + 1, 4 * i + k).0);
+                let [one, two, three] = ends.map(|end| end - low);
+                let (front, back) = divide(&mut points[low..high], two);
+                let (a, b) = divide(front, one);
+                let (c, d) = divide(back, three - two);
+                quarters[first(level) + i] =
+                    Quarters::new([a, b, c, d].map(|part| Node::new(part)));
             }
         }
         Ok(Self {
             points,
-            halves,
+            quarters,
             depth,
         })
     }
@@ -227,59 +303,70 @@ impl Balls {
     }
 
     /// The ball that costs least, of several the one that the body was given first. `exceeds` says whether every ball of a node, of which this
-    /// is known, costs more than a limit, and `cost` gives that of a ball, or more than the limit if that is less. Nodes of which all balls
-    /// cost more than a part `enough` of what is found need not be looked into. A ball that may be the one is asked first.
+    /// is known, costs more than a limit, and `cost` gives that of a ball, or infinity if it is more than a limit. `near` is a ball that may be
+    /// the one, and is asked first.
     #[inline(always)]
     pub fn cheapest(
         &self,
         at: &Instant,
-        (first, enough): (Option<usize>, f64),
+        near: Option<usize>,
+        effort: Effort,
         exceeds: impl Fn(&Least, f64) -> bool,
         cost: impl Fn(usize, &Point, f64) -> f64,
     ) -> Cheapest {
         let mut best = Cheapest {
             cost: f64::INFINITY,
             place: 0,
-            sure: f64::INFINITY,
+            others: effort.most,
         };
         if self.depth == 0 {
-            self.ask(&mut best, 0..self.points.len(), &cost);
+            self.ask(&mut best, 0..self.points.len(), effort, &cost);
             return best;
         }
-        if let Some(place) = first {
-            self.ask(&mut best, place..place + 1, &cost);
+        if let Some(place) = near {
+            self.ask(&mut best, place..place + 1, effort, &cost);
         }
         let turning = length(at.turning);
-        // Depth first, into the half that is lower.
+        // Depth first, into the quarter that is lowest.
         let all = Least {
             gap: f64::NEG_INFINITY,
             rate: f64::NEG_INFINITY,
             reach: f64::INFINITY,
         };
-        let mut waiting = [(all, 0, 0); DEEPEST];
+        let mut waiting = [(all, 0_u32, 0_u32); 3 * DEEPEST + 1];
         let mut count = 1;
         while count > 0 {
             count -= 1;
             let (least, level, i) = waiting[count];
-            if exceeds(&least, best.cost) {
+            if best.leaves_out(&least, effort, &exceeds) {
                 continue;
             }
-            if exceeds(&least, enough * best.cost) {
-                best.sure = best.sure.min(enough * best.cost);
+            let (deep, i) = (level as usize, i as usize);
+            if deep == self.depth {
+                let (low, high) = range(self.points.len(), deep, i);
+                self.ask(&mut best, low..high, effort, &cost);
                 continue;
             }
-            if level == self.depth {
-                let (low, high) = range(self.points.len(), level, i);
-                self.ask(&mut best, low..high, &cost);
-                continue;
+            // The lowest is the last, which is looked into first.
+            #[cfg(test)]
+            evaluations::add(Evaluation::Quarters);
+            let nodes = self.quarters[first(deep) + i].least(at, turning);
+            let lower = count;
+            for k in 0..4 {
+                let [gap, rate, reach] =
+                    [&nodes.gap, &nodes.rate, &nodes.reach].map(|four| four.as_slice()[k]);
+                let node = Least { gap, rate, reach };
+                if best.leaves_out(&node, effort, &exceeds) {
+                    continue;
+                }
+                let mut place = count;
+                while place > lower && waiting[place - 1].0.gap < gap {
+                    waiting[place] = waiting[place - 1];
+                    place -= 1;
+                }
+                waiting[place] = (node, level + 1, (4 * i + k) as u32);
+                count += 1;
             }
-            let Halves([one, other]) = &self.halves[(1 << level) - 1 + i];
-            let one = (one.least(at, turning), level + 1, 2 * i);
-            let other = (other.least(at, turning), level + 1, 2 * i + 1);
-            let lower = other.0.gap < one.0.gap;
-            waiting[count] = if lower { one } else { other };
-            waiting[count + 1] = if lower { other } else { one };
-            count += 2;
         }
         best
     }
@@ -289,18 +376,62 @@ impl Balls {
         &self,
         best: &mut Cheapest,
         places: Range<usize>,
+        effort: Effort,
         cost: &impl Fn(usize, &Point, f64) -> f64,
     ) {
         for place in places {
+            if place == best.place && best.cost < f64::INFINITY {
+                continue;
+            }
+            #[cfg(test)]
+            evaluations::add(Evaluation::Gap);
             let point = &self.points[place];
-            let found = cost(place, point, best.cost);
+            let (limit, _) = effort.limits(best.cost);
+            let found = cost(place, point, limit);
             if found < best.cost
                 || (found == best.cost && point.number < self.points[best.place].number)
             {
+                best.others = best.others.min(best.cost);
                 best.cost = found;
                 best.place = place;
+            } else {
+                best.others = best.others.min(found.min(limit));
             }
         }
+    }
+}
+
+/// How far a search goes.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Effort {
+    /// What costs more is not looked for.
+    pub most: f64,
+    /// Nodes are not looked into where all balls cost more than this part of the best, unless that is below `short`: then others are looked
+    /// for up to [`BEYOND`] times the best, so that it is known for how long it is the only one.
+    pub enough: f64,
+    pub short: f64,
+}
+
+/// See [`Effort::short`].
+const BEYOND: f64 = 1.0625;
+
+impl Effort {
+    /// The one that costs least, whatever it is.
+    pub const EXACT: Self = Self {
+        most: f64::INFINITY,
+        enough: 1.0,
+        short: f64::NEG_INFINITY,
+    };
+
+    /// The cost up to which balls are looked for, and that up to which nodes are.
+    #[inline(always)]
+    fn limits(self, best: f64) -> (f64, f64) {
+        let (balls, nodes) = if best < self.short {
+            (BEYOND * best, BEYOND * best)
+        } else {
+            (best, self.enough * best)
+        };
+        (balls.min(self.most), nodes.min(self.most))
     }
 }
 
@@ -310,6 +441,59 @@ pub(crate) struct Cheapest {
     pub cost: f64,
     /// Its place in the tree.
     pub place: usize,
-    /// Balls that were not asked cost more than this.
-    pub sure: f64,
+    /// No other costs less than this.
+    pub others: f64,
+}
+
+impl Cheapest {
+    /// True if the balls of a node need not be asked; then it is known what they cost at least.
+    #[inline(always)]
+    fn leaves_out(
+        &mut self,
+        node: &Least,
+        effort: Effort,
+        exceeds: &impl Fn(&Least, f64) -> bool,
+    ) -> bool {
+        let (balls, nodes) = effort.limits(self.cost);
+        let limit = if exceeds(node, balls) {
+            balls
+        } else if nodes < balls && exceeds(node, nodes) {
+            nodes
+        } else {
+            return false;
+        };
+        self.others = self.others.min(limit);
+        true
+    }
+}
+
+/// What a search evaluates, counted for `docs/shapes.md`.
+#[cfg(test)]
+pub(crate) mod evaluations {
+    use std::cell::Cell;
+
+    #[derive(Clone, Copy)]
+    pub(crate) enum Evaluation {
+        /// Attitude and spin of the body.
+        Attitude,
+        /// The gap of a ball or vertex.
+        Gap,
+        /// The bounds of the four quarters of a node.
+        Quarters,
+        /// The support function of a convex surface.
+        Support,
+    }
+
+    thread_local! {
+        static COUNTS: [Cell<u64>; 4] = const { [const { Cell::new(0) }; 4] };
+    }
+
+    pub(crate) fn add(what: Evaluation) {
+        COUNTS.with(|counts| counts[what as usize].update(|count| count + 1));
+    }
+
+    /// How many there were on this thread since the last call.
+    pub(crate) fn taken() -> [u64; 4] {
+        COUNTS.with(|counts| counts.each_ref().map(Cell::take))
+    }
 }
