@@ -12,7 +12,7 @@ import numpy as np
 
 from restitution import _core, laws
 from restitution._internal.parameters import ParameterError
-from restitution.bodies import KINDS
+from restitution.bodies import KINDS, Box, Cylinder, Ellipsoid, RoughSphere, Superellipsoid
 from restitution.drop.dataset import version_here
 from restitution.drop.run import Run
 from restitution.study._study import Study
@@ -40,8 +40,8 @@ class Refused(ValueError):
 def fingerprint() -> dict[str, str]:
     """Return the version, and SHA-256 of what the impacts of short runs of every body and law add up to.
 
-    Takes milliseconds. Runs at rest and with spin go through both engines of the core; bodies are full and
-    hollow.
+    Takes milliseconds. Runs at rest and with spin go through all engines of the core; bodies are full and
+    hollow, and without an axis of every kind of surface.
     """
     edges = {
         "velocity": np.linspace(0.0, 1.2, 9),
@@ -49,7 +49,15 @@ def fingerprint() -> dict[str, str]:
         "fraction": np.linspace(0.0, 1.0, 11),
     }
     digest = hashlib.sha256()
-    bodies = [kind.example(wall=wall) for wall in (None, 4e-4) for kind in KINDS]
+    axes = (4e-3, 3e-3, 2e-3)
+    rigid = (
+        Box(*axes),
+        Cylinder(3e-3, 8e-3),
+        Ellipsoid(semi_axes=axes),
+        Superellipsoid(semi_axes=axes, exponents=(3, 4)),
+        RoughSphere(radius=3e-3, asperities=100, asperity_radius=3e-5),
+    )
+    bodies = [*(kind.example(wall=wall) for wall in (None, 4e-4) for kind in KINDS), *rigid]
     for law in [kind.example(normal=0.9) for kind in laws.KINDS]:
         for body in bodies:
             for spin in ((0.0, 0.0, 0.0), (30.0, 20.0, 10.0)):
