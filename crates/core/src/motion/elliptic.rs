@@ -57,19 +57,13 @@ fn complete(complement: f64) -> f64 {
     FRAC_PI_2 / a
 }
 
-/// The incomplete integral F of the modulus with this complement and complete integral, up to the angle with this sine and this cosine, in
-/// (−π, π]: sin φ R_F(cos²φ, 1 − k²sin²φ, 1), or what is left of 2K beyond the quarter.
-///
-/// R_F: B. C. Carlson, *Numer. Algorithms* **10**, 13 (1995); his series in the differences from the mean, here to the seventh order, is
-/// DLMF 19.36.1.
+/// R_F of three numbers in order: B. C. Carlson, *Numer. Algorithms* **10**, 13 (1995); his series in the differences from the mean, here to the
+/// seventh order, is DLMF 19.36.1. The incomplete integral F(φ) is sin φ R_F(cos²φ, 1 − k²sin²φ, 1).
 #[inline(always)]
-fn incomplete((complement, complete): (f64, f64), sine: f64, cosine: f64) -> f64 {
-    let shrunk = complement * sine;
-    let (mut x, mut y, mut z) = (cosine * cosine, cosine * cosine + shrunk * shrunk, 1.0);
+fn carlson(mut x: f64, mut y: f64, mut z: f64) -> f64 {
     let mean = loop {
         let mean = (x + y + z) / 3.0;
-        // Of three numbers with x ≤ y ≤ z these are farthest from it.
-        if z - x <= 4e-3 * mean {
+        if z - x <= 1e-2 * mean {
             break mean;
         }
         let (a, b, c) = (x.sqrt(), y.sqrt(), z.sqrt());
@@ -79,15 +73,9 @@ fn incomplete((complement, complete): (f64, f64), sine: f64, cosine: f64) -> f64
     let (x, y) = (1.0 - x / mean, 1.0 - y / mean);
     let z = -x - y;
     let (e2, e3) = (x * y - z * z, x * y * z);
-    let series = 1.0
-        + e2 * (-1.0 / 10.0 + e2 * (1.0 / 24.0 - e2 * (5.0 / 208.0)) - e3 * (3.0 / 44.0))
-        + e3 * (1.0 / 14.0 + e3 * (3.0 / 104.0) + e2 * e2 / 16.0);
-    let part = sine * series / mean.sqrt();
-    if cosine < 0.0 {
-        (2.0 * complete).copysign(sine) - part
-    } else {
-        part
-    }
+    let second = -1.0 / 10.0 + e2 * (1.0 / 24.0 - e2 * (5.0 / 208.0)) - e3 * (3.0 / 44.0);
+    let third = 1.0 / 14.0 + e3 * (3.0 / 104.0) + e2 * e2 / 16.0;
+    (1.0 + (e2 * second + e3 * third)) / mean.sqrt()
 }
 
 impl Elliptic {
@@ -127,8 +115,7 @@ impl Elliptic {
         if !(cosine > APART && modulus > 0.0 && complement > 1e-3) {
             return None;
         }
-        let (modulus, complement) = (modulus.sqrt(), complement.sqrt());
-        let (k, k_prime) = (complete(complement), complete(modulus));
+        let (k, k_prime) = (complete(complement.sqrt()), complete(modulus.sqrt()));
         let logarithm = -2.0 * FRAC_PI_2 * k_prime / k;
         if logarithm < -32.0 {
             return None;
@@ -139,9 +126,18 @@ impl Elliptic {
         }
         let to_nu = FRAC_PI_2 / k;
         let rate = to_nu * ((j3 - j2) / j1) * (size2 * size3 / size1);
-        let phase = to_nu * incomplete((complement, k), w2 / size2, w1 / size1);
-        let eta =
-            (to_nu * (k_prime - incomplete((modulus, k_prime), sine, cosine))).copysign(size3);
+        // F of the angle from axis 1 to ω, which has up to 2K.
+        let (x, y) = (w1 / size1, w2 / size2);
+        let quarter = y * carlson(x * x, x * x + complement * y * y, 1.0);
+        let phase = if x < 0.0 {
+            to_nu * ((2.0 * k).copysign(y) - quarter)
+        } else {
+            to_nu * quarter
+        };
+        // K′ − F′ of the angle of **Λ**, without the difference.
+        let level = modulus * sine * sine;
+        let left = cosine * carlson(level, modulus, cosine * cosine + level);
+        let eta = (to_nu * left).copysign(size3);
 
         let (e, back) = (exp(eta), exp(-eta));
         let (xi, xi_back) = (e * e, back * back);
