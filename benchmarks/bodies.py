@@ -111,7 +111,7 @@ def clump(spheres: int) -> rs.Clump:
 
 @cache
 def million() -> rs.RoughSphere:
-    """Of 46 MB, which takes a second."""
+    """Make one of 51 MB, which takes a second."""
     return rs.RoughSphere(asperities=1_000_000, **ROUGH)
 
 
