@@ -1,16 +1,69 @@
 //! Supports of convex hulls whose normal turns along its tangent, **n** + s**n**′, and the first root of the bound that they make.
 
 use super::certify::{SHORTEST, TOUCHING};
-use super::plane::{Departure, Step, first_root};
+use super::plane::{Departure, Past, Step, first_root};
 use crate::math::Vector;
 #[cfg(test)]
 use crate::shape::evaluations::{self, Evaluation};
 use crate::shape::{Band, Convex, ConvexSurface, Instant, Superellipsoid};
 
-/// A convex function h of s.
+/// A convex function h of s, the support of a part along the tangent of its normal.
 pub(super) trait Support {
+    /// h and h′ at s = 0.
+    fn tangent(&self) -> (f64, f64);
+
     /// h(s) − h(0) − s h′(0) ≥ 0, without cancellation where it can be.
     fn beyond_tangent(&self, s: f64) -> f64;
+
+    /// True if a whole rim is lowest: it has no single point whose speed is that of the part.
+    #[inline(always)]
+    fn is_flat(&self) -> bool {
+        false
+    }
+
+    /// Gap and rate.
+    #[inline(always)]
+    fn opening(&self, at: &Instant) -> (f64, f64) {
+        let (size, slope) = self.tangent();
+        (at.height - size, at.rate - slope)
+    }
+
+    /// The step of a part of this number and M, as [`crate::shape::Skin`]'s.
+    #[inline(always)]
+    fn step(
+        &self,
+        (part, bound): (usize, f64),
+        at: &Instant,
+        departure: Option<Departure>,
+        most: f64,
+    ) -> Step {
+        let now = self.opening(at);
+        let (width, rate) = match departure {
+            Some(left) if left.part == part && self.is_flat() => (0.0, now.1),
+            Some(left) if left.part == part => (0.0, left.speed),
+            _ => now,
+        };
+        let length = convex_root(self, (width.max(0.0), rate, bound), most);
+        Step {
+            length,
+            part,
+            width,
+            rate,
+            closes: rate < 0.0 && length < most,
+            bound,
+            alone: f64::INFINITY,
+        }
+    }
+
+    /// As [`crate::shape::Skin`]'s; `back` is the body whose motion is turned round.
+    #[inline(always)]
+    fn past(&self, bound: f64, back: &Instant, since: f64) -> Past {
+        #[cfg(test)]
+        evaluations::add(Evaluation::Support);
+        let (width, rate) = self.opening(back);
+        let before = width + since * (rate - 0.5 * bound * since) - self.beyond_tangent(since);
+        Past::new((width, -rate), before, since)
+    }
 }
 
 /// h = |**a** + s**b**|.
@@ -18,8 +71,8 @@ pub(super) struct Length {
     a: Vector,
     b: Vector,
     /// h and h′ at s = 0, where h = 0 behind it.
-    pub size: f64,
-    pub slope: f64,
+    size: f64,
+    slope: f64,
     /// |**b**|² − h′².
     spread: f64,
 }
@@ -27,9 +80,10 @@ pub(super) struct Length {
 impl Length {
     #[inline(always)]
     pub fn new(a: Vector, b: Vector) -> Self {
-        let size = a.norm();
-        let (slope, across) = if size > 0.0 {
-            (a.dot(b) / size, a.cross(b).norm() / size)
+        let (size, across) = (a.norm(), a.cross(b));
+        let (slope, spread) = if size > 0.0 {
+            let part = 1.0 / size;
+            (a.dot(b) * part, across.dot(across) * (part * part))
         } else {
             (b.norm(), 0.0)
         };
@@ -38,7 +92,7 @@ impl Length {
             b,
             size,
             slope,
-            spread: across * across,
+            spread,
         }
     }
 
@@ -50,12 +104,11 @@ impl Length {
     }
 
     /// h″ at 0 where **a** also has the second derivative **c**, and `bent` is **a**·**c**.
+    #[inline(always)]
     pub fn bent(&self, bent: f64) -> f64 {
         (self.spread + bent) / self.size
     }
-}
 
-impl Length {
     /// h(s), and what of it is beyond the tangent.
     #[inline(always)]
     fn along(&self, s: f64) -> (f64, f64) {
@@ -74,6 +127,11 @@ impl Length {
 
 impl Support for Length {
     #[inline(always)]
+    fn tangent(&self) -> (f64, f64) {
+        (self.size, self.slope)
+    }
+
+    #[inline(always)]
     fn beyond_tangent(&self, s: f64) -> f64 {
         self.along(s).1
     }
@@ -88,9 +146,8 @@ pub(super) struct BandSupport<'a> {
     /// |**n**|.
     whole: Length,
     weights: [f64; 3],
-    /// h and h′ at s = 0.
-    pub size: f64,
-    pub slope: f64,
+    size: f64,
+    slope: f64,
 }
 
 impl<'a> BandSupport<'a> {
@@ -112,12 +169,8 @@ impl<'a> BandSupport<'a> {
         }
     }
 
-    /// Returns whether a whole rim is lowest.
-    pub fn is_flat(&self) -> bool {
-        self.across.size == 0.0 && self.weights[1] != 0.0
-    }
-
     /// f″, with **n**″, but for gravity.
+    #[inline(always)]
     pub fn curvature(&self, at: &Instant, bending: Vector) -> f64 {
         if self.is_flat() {
             return f64::NEG_INFINITY;
@@ -134,6 +187,16 @@ impl<'a> BandSupport<'a> {
 }
 
 impl Support for BandSupport<'_> {
+    #[inline(always)]
+    fn tangent(&self) -> (f64, f64) {
+        (self.size, self.slope)
+    }
+
+    #[inline(always)]
+    fn is_flat(&self) -> bool {
+        self.across.size == 0.0 && self.weights[1] != 0.0
+    }
+
     #[inline(always)]
     fn beyond_tangent(&self, s: f64) -> f64 {
         let along = s.mul_add(self.along.1, self.along.0);
@@ -154,9 +217,8 @@ pub(super) struct SuperellipsoidSupport<'a> {
     body: &'a Superellipsoid,
     up: Vector,
     turning: Vector,
-    /// h and h′ at s = 0.
-    pub size: f64,
-    pub slope: f64,
+    size: f64,
+    slope: f64,
 }
 
 impl<'a> SuperellipsoidSupport<'a> {
@@ -174,6 +236,11 @@ impl<'a> SuperellipsoidSupport<'a> {
 }
 
 impl Support for SuperellipsoidSupport<'_> {
+    #[inline(always)]
+    fn tangent(&self) -> (f64, f64) {
+        (self.size, self.slope)
+    }
+
     #[inline(always)]
     fn beyond_tangent(&self, s: f64) -> f64 {
         let moved = self.turning.mul_add(s, self.up);
@@ -197,6 +264,18 @@ impl Convex {
         self.surface.step(&own, turn, departure, most)
     }
 
+    /// As [`crate::shape::Skin`]'s.
+    #[inline(always)]
+    pub(super) fn past(&self, part: usize, at: &Instant, turn: f64, since: f64) -> Past {
+        let own = self.frame.map_or(*at, |frame| frame.own(at));
+        let back = Instant {
+            rate: -own.rate,
+            turning: own.turning * -1.0,
+            ..own
+        };
+        self.surface.past(part, &back, turn, since)
+    }
+
     #[inline(always)]
     pub(super) fn nearest(&self, part: usize, up: Vector, turning: Vector) -> Vector {
         let [own, tie] = match self.frame {
@@ -207,6 +286,7 @@ impl Convex {
         self.frame.map_or(place, |frame| frame.place(place))
     }
 
+    #[inline(always)]
     pub(super) fn curvature(&self, part: usize, at: &Instant, bending: Vector) -> f64 {
         match self.frame {
             Some(frame) => {
@@ -222,10 +302,7 @@ impl Convex {
         let ConvexSurface::Bands(bands) = &self.surface else {
             return false;
         };
-        let opening = |band: &Band| {
-            let support = BandSupport::new(band, &own);
-            (own.height - support.size, own.rate - support.slope)
-        };
+        let opening = |band: &Band| BandSupport::new(band, &own).opening(&own);
         let still = opening(&bands[departure.part]).1;
         bands.iter().enumerate().any(|(part, band)| {
             let (width, rate) = opening(band);
@@ -239,46 +316,37 @@ impl ConvexSurface {
     fn step(&self, at: &Instant, turn: f64, departure: Option<Departure>, most: f64) -> Step {
         match self {
             Self::Ellipsoid(axes) => {
-                let support = Length::of_ellipsoid(*axes, at);
-                whole(
-                    &support,
-                    (support.size, support.slope),
-                    (at, turn, most),
-                    departure,
-                )
+                Length::of_ellipsoid(*axes, at).step((0, 1.0 + turn), at, departure, most)
             }
             Self::Superellipsoid(body) => {
-                let support = SuperellipsoidSupport::new(body, at);
-                whole(
-                    &support,
-                    (support.size, support.slope),
-                    (at, turn, most),
-                    departure,
-                )
+                SuperellipsoidSupport::new(body, at).step((0, 1.0 + turn), at, departure, most)
             }
             Self::Bands(bands) => {
-                let mut first = Step::never();
-                for (part, band) in bands.iter().enumerate() {
-                    let support = BandSupport::new(band, at);
-                    let (width, rate) = match departure {
-                        // Flat on its rim a body has no single point there, whose speed that is.
-                        Some(left) if left.part == part && !support.is_flat() => (0.0, left.speed),
-                        Some(left) if left.part == part => (0.0, at.rate - support.slope),
-                        _ => (at.height - support.size, at.rate - support.slope),
-                    };
+                let each = |(part, band): (usize, &Band)| {
                     let bound = 1.0 + turn * band.reach;
-                    let length = convex_root(&support, (width.max(0.0), rate, bound), most);
-                    if length < first.length {
-                        first = Step {
-                            length,
-                            part,
-                            closes: rate < 0.0 && length < most,
-                            bound,
-                            alone: 0.0,
-                        };
-                    }
-                }
-                first
+                    BandSupport::new(band, at).step((part, bound), at, departure, most)
+                };
+                bands
+                    .iter()
+                    .enumerate()
+                    .map(each)
+                    .fold(Step::NEVER, Step::or)
+            }
+        }
+    }
+
+    #[inline(always)]
+    fn past(&self, part: usize, back: &Instant, turn: f64, since: f64) -> Past {
+        match self {
+            Self::Ellipsoid(axes) => {
+                Length::of_ellipsoid(*axes, back).past(1.0 + turn, back, since)
+            }
+            Self::Superellipsoid(body) => {
+                SuperellipsoidSupport::new(body, back).past(1.0 + turn, back, since)
+            }
+            Self::Bands(bands) => {
+                let band = &bands[part];
+                BandSupport::new(band, back).past(1.0 + turn * band.reach, back, since)
             }
         }
     }
@@ -296,6 +364,7 @@ impl ConvexSurface {
         }
     }
 
+    #[inline(always)]
     fn curvature(&self, part: usize, at: &Instant, bending: Vector) -> f64 {
         match self {
             Self::Ellipsoid(axes) => {
@@ -309,46 +378,36 @@ impl ConvexSurface {
     }
 }
 
-/// The step of a surface of one part, whose support and its rate are these now.
-#[inline(always)]
-fn whole(
-    support: &impl Support,
-    (size, slope): (f64, f64),
-    (at, turn, most): (&Instant, f64, f64),
-    departure: Option<Departure>,
-) -> Step {
-    let bound = 1.0 + turn;
-    let (width, rate) = match departure {
-        Some(left) => (0.0, left.speed),
-        None => (at.height - size, at.rate - slope),
-    };
-    let length = convex_root(support, (width.max(0.0), rate, bound), most);
-    Step {
-        length,
-        part: 0,
-        closes: rate < 0.0 && length < most,
-        bound,
-        alone: 0.0,
-    }
-}
-
 impl Step {
-    fn never() -> Self {
-        Self {
-            length: f64::INFINITY,
-            part: 0,
-            closes: false,
-            bound: 1.0,
-            alone: 0.0,
-        }
+    /// That of no part.
+    const NEVER: Self = Self {
+        length: f64::INFINITY,
+        part: 0,
+        width: f64::INFINITY,
+        rate: 0.0,
+        closes: false,
+        bound: 1.0,
+        alone: f64::INFINITY,
+    };
+
+    /// The shorter one, of the first part of both if they are equal.
+    #[inline(always)]
+    fn or(self, other: Self) -> Self {
+        let (mut first, later) = if other.length < self.length {
+            (other, self)
+        } else {
+            (self, other)
+        };
+        first.alone = first.alone.min(later.length);
+        first
     }
 }
 
 /// A time no later than `most` and the first root of width + rate s − (h(s) − h(0) − s h′(0)) − Ms²/2: this is concave, so that its chord from 0
 /// to a place behind the root ends in front of it. Without h the root is behind it.
 #[inline(always)]
-pub(super) fn convex_root(
-    support: &impl Support,
+fn convex_root<S: Support + ?Sized>(
+    support: &S,
     (width, rate, bound): (f64, f64, f64),
     most: f64,
 ) -> f64 {

@@ -10,17 +10,21 @@
 //! cΩ²s²/2; hence f(t + s) ≥ z + v s − h(−**n** − s**n**′) − (1 + cΩ²R)s²/2. This lower bound is concave, too, and has one root s > 0 behind which
 //! it stays negative. It holds for rims, edges and flats alike.
 //!
-//! Steps to the first root of these bounds converge quadratically to the contact. The search ends when what a step leaves of the gap is below
-//! the resolution. An overlap is rounding: one that approaches is a contact now, one that separates is none.
+//! Steps to the first root of these bounds converge quadratically to the contact. The same bounds hold backward in time, with −f′ for f′ and −**n**′
+//! for **n**′, so that the search may look on behind a step: where f, f′ and f″ expect the contact, or else almost as far again. If the bound from
+//! there is positive where the step ended, nothing touched in between ([`Skin::past`]), or an overlap began there once only, as late as the bound
+//! says; if not, the search goes on at the end of the step. To where f″ expects it the search converges with the third order. It ends when what
+//! is left of the gap is below the resolution. An overlap at the end of a step is rounding: one that approaches is a contact now, one that
+//! separates is none.
 
 use super::certify::{SHORTEST, TOUCHING};
 use crate::math::Vector;
 #[cfg(test)]
 use crate::shape::evaluations::{self, Evaluation};
-use crate::shape::{Effort, Instant, Least, Point, Skin};
+use crate::shape::{ConvexSurface, Effort, Instant, Least, Point, Skin};
 
 /// Far from the contact nodes of the tree are not looked into where they allow a step of this part of the length that is found.
-const ENOUGH: f64 = 0.5;
+const ENOUGH: f64 = 0.7;
 /// A step is short where M changes the rate by less than this part of it: what touches after one is then nearly as late as its parabola says.
 const SHORT: f64 = 0.0625;
 
@@ -36,12 +40,50 @@ pub(crate) struct Departure {
 pub(crate) struct Step {
     pub length: f64,
     pub part: usize,
-    /// True if its gap closes.
+    /// Its gap and the rate of it.
+    pub width: f64,
+    pub rate: f64,
+    /// True if the step leads to where it closes.
     pub closes: bool,
     /// M.
     pub bound: f64,
     /// For so long no other part touches.
     pub alone: f64,
+}
+
+/// What is known of the flight before a time, and the gap and its rate then.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Past {
+    pub width: f64,
+    pub rate: f64,
+    /// The part did not touch before so long ago, 0 if it does not overlap; none if it may have.
+    pub clear: Option<f64>,
+}
+
+impl Past {
+    /// From the lower bound of the gap so long ago. The bound is concave, so that it lies above its chord.
+    #[inline(always)]
+    pub fn new((width, rate): (f64, f64), before: f64, since: f64) -> Self {
+        let clear = (before > 0.0).then(|| {
+            if width < 0.0 {
+                since * width / (width - before)
+            } else {
+                0.0
+            }
+        });
+        Self { width, rate, clear }
+    }
+}
+
+/// When a gap will be 0, or was if it is negative, by f + f′s + f″s²/2; no number if it never is.
+#[inline(always)]
+pub(crate) fn expected(width: f64, rate: f64, second: f64) -> f64 {
+    let speed = rate.abs() + (rate * rate - 2.0 * second * width).sqrt();
+    if rate < 0.0 {
+        2.0 * width / speed
+    } else {
+        -speed / second
+    }
 }
 
 /// The first root ≥ 0 of f + f′s − Ms²/2 with f ≥ 0, in that of its two forms in which no digits cancel.
@@ -90,10 +132,13 @@ impl Skin {
                 };
                 let found = |part: usize, root: f64, alone: f64| {
                     let point = &balls.points()[part];
+                    let (width, rate) = opening(part, point);
                     Step {
                         length: root.min(alone),
                         part,
-                        closes: root <= alone && opening(part, point).1 < 0.0,
+                        width,
+                        rate,
+                        closes: root <= alone && rate < 0.0,
                         bound: bound(f64::from(point.reach)),
                         alone,
                     }
@@ -118,6 +163,31 @@ impl Skin {
         }
     }
 
+    /// False where f″ and the bound backward take longer than the steps that they save.
+    pub(crate) fn looks_back(&self) -> bool {
+        match self {
+            Self::Points(_) => true,
+            Self::Convex(convex) => !matches!(convex.surface, ConvexSurface::Superellipsoid(_)),
+        }
+    }
+
+    /// When in the time `since` before this one a part can have touched.
+    #[inline(always)]
+    pub(crate) fn past(&self, part: usize, at: &Instant, turn: f64, since: f64) -> Past {
+        match self {
+            Self::Points(balls) => {
+                #[cfg(test)]
+                evaluations::add(Evaluation::Gap);
+                let point = &balls.points()[part];
+                let (width, rate) = point.opening(at);
+                let bound = 1.0 + turn * f64::from(point.reach);
+                let before = width - since * (rate + 0.5 * bound * since);
+                Past::new((width, rate), before, since)
+            }
+            Self::Convex(convex) => convex.past(part, at, turn, since),
+        }
+    }
+
     /// The point of a part that is nearest to the plane, from the centre of mass, in the axes of the body; of several the one that
     /// comes down first, while **n** changes with **n**′.
     #[inline(always)]
@@ -132,6 +202,7 @@ impl Skin {
     }
 
     /// f″ of a part, with **n**″, but for gravity.
+    #[inline(always)]
     pub(crate) fn curvature(&self, part: usize, at: &Instant, bending: Vector) -> f64 {
         match self {
             Self::Points(balls) => balls.points()[part].place.dot(bending),

@@ -2,7 +2,7 @@
 
 use super::lanes::{Impact, Lost, Pose, Sink};
 use super::stop::{COLLAPSE_RUN, Limits, StopReason, UNRESOLVED};
-use crate::contact::{Departure, INVISIBLE, LAST, MOST_STEPS};
+use crate::contact::{Departure, INVISIBLE, LAST, MOST_STEPS, expected};
 use crate::law::{Compliance, Fault, Law, Respond, Rule};
 use crate::math::{Quaternion, Symmetric, Vector, Vectors};
 use crate::motion::Rotation;
@@ -12,6 +12,13 @@ use crate::shape::{Instant, Rigid, up};
 use crate::simd::elementary::RANGE;
 use crate::simd::{Mask, Pack, one};
 use pulp::{Scalar, Simd, WithSimd};
+
+/// Most angle by which the search looks on behind what is certified.
+const FAR: f64 = 1.0;
+/// From so far behind a step, in its length, it nearly always can be certified that nothing touched.
+const BACK: f64 = 0.9;
+/// Most angle of an expansion of the rotation: the fourth power of it is less than rounding.
+const SOON: f64 = 1.0 / 8192.0;
 
 /// Position and motion of a particle, in the core's units. The horizontal position is omitted, because the motion does not depend on it.
 #[derive(Debug, Clone, Copy)]
@@ -55,6 +62,8 @@ struct Contact {
     time: f64,
     state: RigidState,
     part: usize,
+    /// Where it touches, from the centre of mass and in the principal axes.
+    arm: Vector,
     /// M T², with M the bound on |f″| and T the flight time.
     size: f64,
 }
@@ -158,30 +167,96 @@ impl Bouncing<'_> {
                 time
             }
         };
-        let (mut time, mut near) = (0.0, departure.map(|left| (left.part, 0.0)));
+        // The rotation where it was last computed, not expanded.
+        let mut known = (0.0, (start.attitude, start.spin));
+        // Nothing touches up to `certain`; `time`, at which the body is looked at, may be later. `near` is the part that may be first, and the time
+        // up to which no other touches.
+        let (mut certain, mut time) = (0.0, 0.0);
+        let mut near = departure.map(|left| (left.part, 0.0));
+        let looks_back = body.skin.looks_back();
+        let mut looks_on = looks_back;
         for _ in 0..MOST_STEPS {
             if fastest * time > RANGE {
                 return Err(NoContact::Ends(StopReason::NeverLands));
             }
-            #[cfg(test)]
-            evaluations::add(Evaluation::Attitude);
-            let (attitude, spin) = rotation.at(time);
-            let at = instant(start, time, attitude, spin);
-            let left = departure.filter(|_| time == 0.0);
-            let clear = if above > 0.0 && time < up_at {
-                up_at - time
+            let (attitude, spin) = if fastest * (time - known.0).abs() <= SOON {
+                let (attitude, spin) = known.1;
+                body.top.soon(attitude, spin, time - known.0)
             } else {
-                f64::INFINITY
+                #[cfg(test)]
+                evaluations::add(Evaluation::Attitude);
+                known = (time, rotation.at(time));
+                known.1
             };
-            let step = body.skin.step(&at, turn, left, near, clear);
-            let end = time + step.length;
-            let invisible = step.bound * step.length * step.length <= INVISIBLE;
-            if step.closes && invisible && step.length <= LAST * end {
-                return Ok(self.land(start, end, step.part, &mut rotation, turn));
+            let at = instant(start, time, attitude, spin);
+            let mut overlap = None;
+            if let Some((part, alone)) = near.filter(|_| certain < time) {
+                let past = body.skin.past(part, &at, turn, time - certain);
+                let Some(ago) = past.clear else {
+                    (time, looks_on) = (certain, false);
+                    continue;
+                };
+                certain = time - ago;
+                if ago > 0.0 {
+                    overlap = Some((part, alone, past));
+                }
             }
-            let begun = time;
-            time = skip(end.max(time * (1.0 + f64::EPSILON)));
-            near = Some((step.part, begun + step.alone - time));
+            let (part, alone, width, rate) = match overlap {
+                // It touches between `certain` and this time.
+                Some((part, alone, past)) => {
+                    let ago = time - certain;
+                    if (1.0 + turn) * ago * ago <= INVISIBLE {
+                        let end = time + past.width / past.rate.abs();
+                        let then = body.top.soon(attitude, spin, end - time);
+                        return Ok(self.land(start, end, part, then, turn));
+                    }
+                    (part, alone, past.width, past.rate)
+                }
+                None => {
+                    let left = departure.filter(|_| time == 0.0);
+                    let clear = if above > 0.0 && time < up_at {
+                        up_at - time
+                    } else {
+                        f64::INFINITY
+                    };
+                    let near = near.map(|(part, alone)| (part, alone - time));
+                    let step = body.skin.step(&at, turn, left, near, clear);
+                    let end = time + step.length;
+                    let square = step.length * step.length;
+                    if step.closes && step.bound * square <= INVISIBLE && step.length <= LAST * end
+                    {
+                        // The body turns by as little, but where all of it is near its centre of mass.
+                        let then = if turn * square <= INVISIBLE {
+                            body.top.soon(attitude, spin, step.length)
+                        } else {
+                            rotation.at(end)
+                        };
+                        return Ok(self.land(start, end, step.part, then, turn));
+                    }
+                    certain = skip(end.max(time * (1.0 + f64::EPSILON)));
+                    (step.part, time + step.alone, step.width, step.rate)
+                }
+            };
+            near = Some((part, alone));
+            let from = std::mem::replace(&mut time, certain);
+            if !std::mem::replace(&mut looks_on, looks_back) || alone <= certain {
+                continue;
+            }
+            // Where the contact is expected, if it can be certified from there that nothing touched since `certain`.
+            let bending = at.turning.cross(spin) + at.up.cross(body.top.change(spin));
+            let second = body.skin.curvature(part, &at, bending) - 1.0;
+            let ahead = expected(width, rate, second);
+            let closing = -(rate + second * ahead);
+            let contact = from + ahead;
+            let sure = (contact - certain) * (1.0 + turn) <= closing;
+            // Or else almost as far behind `certain` as that is from here.
+            let further = certain + BACK * (certain - from);
+            let within = |later: f64| later <= alone && fastest * (later - from).abs() <= FAR;
+            if certain < contact && sure && within(contact) {
+                time = contact;
+            } else if !(certain < contact && contact < further) && within(further) {
+                time = further.max(certain);
+            }
         }
         Err(NoContact::Unconverged)
     }
@@ -193,21 +268,22 @@ impl Bouncing<'_> {
         start: &RigidState,
         time: f64,
         part: usize,
-        rotation: &mut Rotation,
+        (attitude, spin): (Quaternion, Vector),
         turn: f64,
     ) -> Contact {
-        let (attitude, spin) = rotation.at(time);
         let normal = up(attitude);
         let pull = Vector::new(self.slope, 0.0, -1.0);
+        let arm = self.body.skin.nearest(part, normal, normal.cross(spin));
         Contact {
             time,
             state: RigidState {
-                height: -normal.dot(self.body.skin.nearest(part, normal, normal.cross(spin))),
+                height: -normal.dot(arm),
                 velocity: pull.mul_add(time, start.velocity),
                 attitude,
                 spin,
             },
             part,
+            arm,
             size: (1.0 + turn) * time * time,
         }
     }
@@ -229,11 +305,7 @@ impl Bouncing<'_> {
             spin,
             ..
         } = contact.state;
-        let normal = up(attitude);
-        let arm = self
-            .body
-            .skin
-            .nearest(contact.part, normal, normal.cross(spin));
+        let arm = contact.arm;
         let inverse = self.body.top.moments().map(|moment| 1.0 / moment);
         let arm_in_space = attitude.rotate(arm);
         let compliance = Compliance::of_body(

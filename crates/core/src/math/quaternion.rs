@@ -27,18 +27,29 @@ impl Quaternion {
     }
 
     /// The rotation backward.
+    #[inline(always)]
     pub const fn inverse(self) -> Self {
         Self::new(self.w, -self.x, -self.y, -self.z)
     }
 
     /// The same direction with length 1.
+    #[inline(always)]
     pub fn normalized(self) -> Self {
         let Self { w, x, y, z } = self;
         let part = 1.0 / (w * w + x * x + y * y + z * z).sqrt();
         Self::new(part * w, part * x, part * y, part * z)
     }
 
+    /// The same, but for rounding, of one whose length is 1 but for rounding.
+    #[inline(always)]
+    pub(crate) fn renormalized(self) -> Self {
+        let Self { w, x, y, z } = self;
+        let part = 1.5 - 0.5 * (w * w + x * x + y * y + z * z);
+        Self::new(part * w, part * x, part * y, part * z)
+    }
+
     /// A vector of the body in the axes of space: **v** + 2w **q** × **v** + 2**q** × (**q** × **v**).
+    #[inline(always)]
     pub fn rotate(self, v: Vector) -> Vector {
         let Self { w, x, y, z } = self;
         let (a, b, c) = (
@@ -58,6 +69,7 @@ impl Quaternion {
 impl Mul for Quaternion {
     type Output = Self;
 
+    #[inline(always)]
     fn mul(self, b: Self) -> Self {
         let a = self;
         Self::new(

@@ -25,11 +25,13 @@ impl Vector {
     }
 
     /// Scalar product.
+    #[inline(always)]
     pub fn dot(self, b: Self) -> f64 {
         self.x.mul_add(b.x, self.y.mul_add(b.y, self.z * b.z))
     }
 
     /// Vector product.
+    #[inline(always)]
     pub fn cross(self, b: Self) -> Self {
         Self {
             x: self.y.mul_add(b.z, -(self.z * b.y)),
@@ -39,6 +41,7 @@ impl Vector {
     }
 
     /// Length.
+    #[inline(always)]
     pub fn norm(self) -> f64 {
         self.dot(self).sqrt()
     }

@@ -3,21 +3,25 @@
 //! R. van Zon and J. Schofield, *Numerical implementation of the exact dynamics of free rigid bodies*, J. Comput. Phys. **225**, 145 (2007),
 //! with axis 3 that about which **Λ** turns: J₃ is the largest moment where Λ² > 2EJ₂, else the least; J₂ is the middle one. Then
 //! ω₁ = Ω₁cn(u), ω₂ = Ω₂sn(u), ω₃ = Ω₃dn(u) with u = ω_p t + u₀, and the axes of the body are turned about **Λ** by
-//! ψ = A₂t − arg ϑ₁(ν − iη) + constant, ν = πu/2K. Everything is by theta functions of the nome q.
+//! ψ = A₂t − arg ϑ₁(ν − iη) + constant, ν = πu/2K. Everything is by theta functions of the nome q. Of A₂ they give Λ/J₁ less a logarithmic derivative
+//! of ϑ₁; here it is Λ/J₂ less that of ϑ₂, which is the same and loses no digits where **Λ** passes near axis 3.
 //!
-//! Near the separatrix q is nearly 1, and for **Λ** near axis 3 the angles are not determined: there is none, and a series is used.
+//! Near the separatrix q is nearly 1, and with **Λ** along axis 3 η is infinite: there is none, and a series is used.
 
 use super::top::Top;
 use crate::math::{Quaternion, Vector};
-use crate::simd::elementary::{exp_in_lanes, sincos};
-use crate::simd::one;
-use std::f64::consts::FRAC_PI_2;
+use crate::simd::elementary::{exp_m1_in_lanes, sincos, sincos_in_lanes};
+use crate::simd::{Pack, one};
+use pulp::Scalar;
+use std::f64::consts::PI;
 
 /// Terms of the theta functions, and the largest nome for which these are enough: q to the power `TERMS`² is less than rounding.
-const TERMS: usize = 6;
-const LARGEST: f64 = 0.33;
-/// Least sine of the angle between **Λ** and axis 3.
-const APART: f64 = 0.1;
+const TERMS: usize = 7;
+const LARGEST: f64 = 0.42;
+/// Least modulus: below it **Λ** is so near to axis 3 that η is large.
+const LEAST: f64 = 1e-10;
+/// See [`nome`].
+const SERIES: f64 = 0.17;
 /// Terms less than this part of the first one are left out.
 const SMALL: f64 = 1e-18;
 
@@ -36,34 +40,56 @@ pub(super) struct Elliptic {
     turn: f64,
     /// Ω₁, Ω₂, Ω₃, each with the ratio of theta functions of 0.
     sizes: [f64; 3],
-    /// The number of terms that are needed; q to the powers n² and n(n + 1), these with the real and the imaginary part of ϑ₁(ν − iη), too.
+    /// The number of terms that are needed: of ϑ₃, of ϑ₁ and the real part of ϑ₁(ν − iη), and of ϑ₂ and the imaginary part.
     terms: usize,
     squares: [f64; TERMS],
-    products: [f64; TERMS],
-    real: [f64; TERMS],
-    imaginary: [f64; TERMS],
-    /// The attitude at the beginning, and then the rotation back from that at the time 0 in the axes of **Λ**.
-    attitude: Quaternion,
+    sines: [[f64; 2]; TERMS],
+    cosines: [[f64; 2]; TERMS],
+    /// The attitude at the beginning after the rotation back from that at the time 0 in the axes of **Λ**, in axes 1, 2 and 3.
     start: Quaternion,
 }
 
-/// The complete integral K of the modulus with this complement, by the arithmetic-geometric mean.
+/// The nome of a modulus m with its complement m′: A. Abramowitz and I. A. Stegun, *Handbook of Mathematical Functions*, 17.3.21, whose terms beyond these
+/// are less than rounding for ε ≤ [`SERIES`]. Where ε is larger, it is the root of that of the modulus after a step of Landen's, which is q².
 #[inline(always)]
-fn complete(complement: f64) -> f64 {
-    let (mut a, mut b) = (1.0, complement);
-    while (a - b).abs() > 1e-15 * a {
-        (a, b) = (0.5 * (a + b), (a * b).sqrt());
+fn nome(modulus: f64, complement: f64) -> f64 {
+    let series = |e: f64| {
+        let e4 = (e * e) * (e * e);
+        let terms = [
+            1.0,
+            2.0,
+            15.0,
+            150.0,
+            1707.0,
+            20910.0,
+            268_616.0,
+            3_567_400.0,
+            48_555_069.0,
+        ];
+        e * terms.iter().rev().fold(0.0, |sum, term| sum * e4 + term)
+    };
+    // ½(1 − √k′)/(1 + √k′) without the difference.
+    let epsilon = |modulus: f64, complement: f64, root: f64| {
+        0.5 * modulus / ((1.0 + complement) * ((1.0 + root) * (1.0 + root)))
+    };
+    let k = complement.sqrt();
+    let root = k.sqrt();
+    let e = epsilon(modulus, k, root);
+    if e <= SERIES {
+        return series(e);
     }
-    FRAC_PI_2 / a
+    let part = modulus / ((1.0 + k) * (1.0 + k));
+    let k = 2.0 * root / (1.0 + k);
+    series(epsilon(part * part, k, k.sqrt())).sqrt()
 }
 
-/// R_F of three numbers in order: B. C. Carlson, *Numer. Algorithms* **10**, 13 (1995); his series in the differences from the mean, here to the
-/// seventh order, is DLMF 19.36.1. The incomplete integral F(φ) is sin φ R_F(cos²φ, 1 − k²sin²φ, 1).
+/// R_F of three numbers in order, of two sets side by side: B. C. Carlson, *Numer. Algorithms* **10**, 13 (1995); his series in the differences from
+/// the mean, here to the eleventh order, is DLMF 19.19.7. The incomplete integral F(φ) is sin φ R_F(cos²φ, 1 − k²sin²φ, 1).
 #[inline(always)]
-fn carlson(mut x: f64, mut y: f64, mut z: f64) -> f64 {
+fn carlson(mut x: Two, mut y: Two, mut z: Two) -> Two {
     let mean = loop {
-        let mean = (x + y + z) / 3.0;
-        if z - x <= 1e-2 * mean {
+        let mean = (x + y + z) * (1.0 / 3.0);
+        if (z - x).le(0.1 * mean).all() {
             break mean;
         }
         let (a, b, c) = (x.sqrt(), y.sqrt(), z.sqrt());
@@ -73,9 +99,31 @@ fn carlson(mut x: f64, mut y: f64, mut z: f64) -> f64 {
     let (x, y) = (1.0 - x / mean, 1.0 - y / mean);
     let z = -x - y;
     let (e2, e3) = (x * y - z * z, x * y * z);
-    let second = -1.0 / 10.0 + e2 * (1.0 / 24.0 - e2 * (5.0 / 208.0)) - e3 * (3.0 / 44.0);
-    let third = 1.0 / 14.0 + e3 * (3.0 / 104.0) + e2 * e2 / 16.0;
-    (1.0 + (e2 * second + e3 * third)) / mean.sqrt()
+    let square = e2 * e2;
+    // The powers 0, 1, 2 and 3 of E₃.
+    let none = e2 * (-1.0 / 10.0)
+        + square
+            * ((1.0 / 24.0 - e2 * (5.0 / 208.0)) + square * (35.0 / 2176.0 - e2 * (3.0 / 256.0)));
+    let first = (1.0 / 14.0 - e2 * (3.0 / 44.0))
+        + square * ((1.0 / 16.0 - e2 * (35.0 / 608.0)) + square * (315.0 / 5888.0));
+    let second = 3.0 / 104.0 + e2 * (e2 * (5.0 / 64.0) - 15.0 / 272.0);
+    let third = 5.0 / 304.0 - e2 * (35.0 / 736.0);
+    (1.0 + (none + e3 * (first + e3 * (second + e3 * third)))) / mean.sqrt()
+}
+
+/// Two numbers side by side.
+type Two = Pack<Scalar, 2>;
+
+#[inline(always)]
+fn two(one: f64, other: f64) -> Two {
+    let mut pair = Pack::splat(Scalar::new(), one);
+    pair.as_mut_slice()[1] = other;
+    pair
+}
+
+#[inline(always)]
+fn both(pair: Two) -> [f64; 2] {
+    [0, 1].map(|i| pair.as_slice()[i])
 }
 
 impl Elliptic {
@@ -112,73 +160,91 @@ impl Elliptic {
         let modulus = d3 * (j1 - j2) / whole;
         let complement = above * (j3 - j1) / whole;
         // Also where there is no number.
-        if !(cosine > APART && modulus > 0.0 && complement > 1e-3) {
+        if !(modulus > LEAST && complement > 0.0) {
             return None;
         }
-        let (k, k_prime) = (complete(complement.sqrt()), complete(modulus.sqrt()));
-        let logarithm = -2.0 * FRAC_PI_2 * k_prime / k;
-        if logarithm < -32.0 {
-            return None;
-        }
-        let nome = exp(logarithm);
+        let nome = nome(modulus, complement);
         if nome > LARGEST {
             return None;
         }
-        let to_nu = FRAC_PI_2 / k;
-        let rate = to_nu * ((j3 - j2) / j1) * (size2 * size3 / size1);
-        // F of the angle from axis 1 to ω, which has up to 2K.
-        let (x, y) = (w1 / size1, w2 / size2);
-        let quarter = y * carlson(x * x, x * x + complement * y * y, 1.0);
-        let phase = if x < 0.0 {
-            to_nu * ((2.0 * k).copysign(y) - quarter)
-        } else {
-            to_nu * quarter
-        };
-        // K′ − F′ of the angle of **Λ**, without the difference.
-        let level = modulus * sine * sine;
-        let left = cosine * carlson(level, modulus, cosine * cosine + level);
-        let eta = (to_nu * left).copysign(size3);
-
-        let (e, back) = (exp(eta), exp(-eta));
-        let (xi, xi_back) = (e * e, back * back);
-        let mut sum = (xi + 1.0) / (xi - 1.0);
+        // ϑ₃ = 1 + 2q + 2q⁴ + ..., whose square is 2K/π.
         let square = nome * nome;
-        let (mut power, mut up, mut down) = (square, xi, xi_back);
-        while power * up.max(down) > 1e-18 {
-            sum -= 2.0 * power / (1.0 - power) * (up - down);
-            power *= square;
-            up *= xi;
-            down *= xi_back;
-        }
-        let turn = 0.5 * (momentum / j1 + rate * sum);
+        let (fourth, fifth) = (square * square, square * square * nome);
+        let seventh = fifth * square;
+        let (ninth, eleventh) = (fifth * fourth, seventh * fourth);
+        let theta = 1.0 + fifth * (1.0 + seventh * (1.0 + ninth * (1.0 + eleventh)));
+        let theta = 1.0 + 2.0 * (nome + fourth * theta);
+        let to_nu = 1.0 / (theta * theta);
+        let rate = to_nu * ((j3 - j2) / j1) * (size2 * size3 / size1);
+        // F of the angle from axis 1 to ω, which has up to 2K, and K′ − F′ of the angle of **Λ**, without the difference.
+        let (x, y) = (w1 / size1, w2 / size2);
+        let level = modulus * sine * sine;
+        let integrals = carlson(
+            two(x * x, level),
+            two(x * x + complement * y * y, modulus),
+            two(1.0, cosine * cosine + level),
+        );
+        let [angle, left] = both(integrals);
+        let quarter = to_nu * (y * angle);
+        let phase = if x < 0.0 {
+            PI.copysign(y) - quarter
+        } else {
+            quarter
+        };
+        let eta = (to_nu * (cosine * left)).copysign(size3);
 
-        let (mut squares, mut products) = ([1.0; TERMS], [1.0; TERMS]);
-        let (mut real, mut imaginary) = ([0.0; TERMS], [0.0; TERMS]);
-        let (mut power, mut up, mut down, mut sign) = (1.0, e, back, 1.0);
-        let (mut third, mut second) = (1.0, 1.0);
+        // The hyperbolic sine and cosine of η and of 2η; by them nothing cancels where η is small.
+        let grown = exp_m1_in_lanes(one(eta.abs())).as_slice()[0];
+        let shrunk = grown / (1.0 + grown);
+        let (sinh, cosh) = (
+            (0.5 * (grown + shrunk)).copysign(eta),
+            1.0 + 0.5 * grown * shrunk,
+        );
+        let (double_sinh, double_cosh) = (2.0 * sinh * cosh, 1.0 + 2.0 * sinh * sinh);
+        // −d ln ϑ₂(iη)/dη.
+        let mut sum = sinh / cosh;
+        let (mut power, mut s, mut c) = (square, 4.0 * double_sinh, 4.0 * double_cosh);
+        while power * c.abs() > 1e-18 {
+            sum += power / (1.0 - power) * s;
+            power *= square;
+            (s, c) = (
+                -(s * double_cosh + c * double_sinh),
+                -(c * double_cosh + s * double_sinh),
+            );
+        }
+        let turn = 0.5 * (momentum / j2 + rate * sum);
+
+        // q to the powers n² and n(n + 1).
+        let (mut squared, mut product) = (1.0, 1.0);
+        let mut squares = [1.0; TERMS];
+        let (mut sines, mut cosines) = ([[0.0; 2]; TERMS], [[0.0; 2]; TERMS]);
+        let (mut power, mut s, mut c, mut sign) = (1.0, sinh, cosh, 1.0);
+        // ϑ₂, ϑ₃ and ϑ₄ of 0.
+        let (mut second, mut third, mut fourth) = (1.0, 1.0, 1.0);
         let mut terms = 0;
         for n in 0..TERMS {
             if n > 0 {
                 // n² − n(n − 1) = n, and n(n + 1) − n² = n.
                 power *= nome;
-                squares[n] = products[n - 1] * power;
-                products[n] = squares[n] * power;
-                third += 2.0 * squares[n];
-                second += products[n];
-                up *= xi;
-                down *= xi_back;
+                squared = product * power;
+                product = squared * power;
+                squares[n] = 2.0 * squared;
                 sign = -sign;
+                third += squares[n];
+                fourth += sign * squares[n];
+                second += product;
+                (s, c) = (
+                    s * double_cosh + c * double_sinh,
+                    c * double_cosh + s * double_sinh,
+                );
             }
-            real[n] = sign * products[n] * (up + down);
-            imaginary[n] = -sign * products[n] * (up - down);
-            terms = n + 1;
-            if squares[n] < SMALL && real[n].abs() < SMALL * real[0] {
+            if squared < SMALL && product * c < SMALL * cosh {
                 break;
             }
-        }
-        let mut fourth = 1.0;
-        for (n, term) in squares[..terms].iter().enumerate().skip(1) {
-            fourth += if n % 2 == 0 { 2.0 } else { -2.0 } * term;
+            let alternating = sign * product;
+            sines[n] = [alternating, alternating * c];
+            cosines[n] = [product, -alternating * s];
+            terms = n + 1;
         }
         let mut found = Self {
             order,
@@ -195,24 +261,31 @@ impl Elliptic {
             ],
             terms,
             squares,
-            products,
-            real,
-            imaginary,
-            attitude,
+            sines,
+            cosines,
             start: Quaternion::IDENTITY,
         };
-        found.start = found.turned(0.0).0.inverse();
+        let v = [attitude.x, attitude.y, attitude.z];
+        let [x, y, z] = order.map(|axis| v[axis]);
+        let (sine, cosine) = sincos(phase);
+        let (theta, argument) = found.thetas(sine, cosine);
+        let turned = found.frame(theta, argument, (0.0, 1.0));
+        found.start = Quaternion::new(attitude.w, x, y, hand * z) * turned.inverse();
         Some(found)
     }
 
     /// Attitude and ω at a time.
     #[inline(always)]
     pub fn at(&self, time: f64) -> (Quaternion, Vector) {
-        let (turned, spin) = self.turned(time);
+        let (sines, cosines) =
+            sincos_in_lanes(two(self.rate * time + self.phase, self.turn * time));
+        let [[sine, turn_sine], [cosine, turn_cosine]] = [both(sines), both(cosines)];
+        let (theta, argument) = self.thetas(sine, cosine);
+        let turned = self.frame(theta, argument, (turn_sine, turn_cosine));
         let Quaternion { w, x, y, z } = self.start * turned;
-        let (v, s) = (self.of_body([x, y, z]), self.of_body(spin));
-        let turned = Quaternion::new(w, v.x, v.y, v.z);
-        ((self.attitude * turned).normalized(), s)
+        let v = self.of_body([x, y, z]);
+        let attitude = Quaternion::new(w, v.x, v.y, v.z);
+        (attitude.renormalized(), self.of_body(self.spin(theta)))
     }
 
     /// A vector along axes 1, 2 and 3 in those of the body.
@@ -225,86 +298,82 @@ impl Elliptic {
         Vector::new(v[0], v[1], v[2])
     }
 
-    /// The rotation from axes 1, 2 and 3 to axes that do not move, with **Λ** along z, but for a constant turn about it; and ω along the former.
+    /// ϑ₂, ϑ₁ and ϑ₃ of ν, and the real and the imaginary part of ϑ₁(ν − iη), each but for a factor, from the sine and the cosine of ν.
     #[inline(always)]
-    fn turned(&self, time: f64) -> (Quaternion, [f64; 3]) {
-        let (sine, cosine) = sincos(self.rate * time + self.phase);
+    fn thetas(&self, sine: f64, cosine: f64) -> ([f64; 3], [f64; 2]) {
         let (s2, c2) = (2.0 * sine * cosine, 1.0 - 2.0 * sine * sine);
         // The sine and the cosine of (2n + 1)ν, and the cosine of 2nν.
         let (mut s, mut c) = (sine, cosine);
         let (mut even, mut before) = (1.0, c2);
-        let (mut first, mut second, mut third, mut fourth) = (0.0, 0.0, 0.0, 0.0);
-        let (mut real, mut imaginary, mut sign) = (0.0, 0.0, 1.0);
+        let mut third = 0.0;
+        let (mut odd, mut level) = (two(0.0, 0.0), two(0.0, 0.0));
         for n in 0..self.terms {
-            first += sign * self.products[n] * s;
-            second += self.products[n] * c;
-            let term = if n == 0 {
-                1.0
-            } else {
-                2.0 * self.squares[n] * even
-            };
-            third += term;
-            fourth += sign * term;
-            real += self.real[n] * s;
-            imaginary += self.imaginary[n] * c;
+            odd = odd + two(self.sines[n][0], self.sines[n][1]) * s;
+            level = level + two(self.cosines[n][0], self.cosines[n][1]) * c;
+            third += self.squares[n] * even;
             (s, c) = (s * c2 + c * s2, c * c2 - s * s2);
             (even, before) = (2.0 * c2 * even - before, even);
-            sign = -sign;
         }
-        let part = 1.0 / fourth;
-        let [a, b, c] = self.sizes;
+        let [[first, real], [second, imaginary]] = [both(odd), both(level)];
+        ([second, first, third], [real, imaginary])
+    }
+
+    /// ω along axes 1, 2 and 3, from theta functions.
+    #[inline(always)]
+    fn spin(&self, theta: [f64; 3]) -> [f64; 3] {
+        // ω but for a factor, which makes the energy what it was to less than the last digit, so that rounding does not heat the body or cool it over
+        // many flights.
         let [j1, j2, j3] = self.moments;
-        let (w1, w2, w3) = (a * part * second, b * part * first, c * part * third);
-        let energy = j1 * w1 * w1 + j2 * w2 * w2 + j3 * w3 * w3;
-        // The energy is kept to less than the last digit, lest rounding heat the body or cool it over many flights.
-        let lost = 0.5 * (self.energy - energy) / energy;
-        let exact = |size: f64, theta: f64| {
-            let high = size * part;
-            let low = size.mul_add(part, -high) + lost * high;
-            theta.mul_add(high, theta * low)
-        };
-        let spin = [exact(a, second), exact(b, first), exact(c, third)];
-        // Angles of Λ from axis 3 and about it, and ψ: halves of each.
-        let (x, y, z) = (j1 * spin[0], j2 * spin[1], j3 * spin[2]);
-        let across = (x * x + y * y).sqrt();
-        let (tilt_sine, tilt_cosine) = half(across, z, (across * across + z * z).sqrt());
-        let (about_sine, about_cosine) = half(y, x, across);
-        let (own_sine, own_cosine) = half(
-            imaginary,
-            real,
-            (real * real + imaginary * imaginary).sqrt(),
+        let w = [0, 1, 2].map(|i| self.sizes[i] * theta[i]);
+        let energy = j1 * w[0] * w[0] + j2 * w[1] * w[1] + j3 * w[2] * w[2];
+        let part = (self.energy / energy).sqrt();
+        [0, 1, 2].map(|i| {
+            let low = self.sizes[i].mul_add(theta[i], -w[i]);
+            w[i].mul_add(part, low * part)
+        })
+    }
+
+    /// The rotation from axes 1, 2 and 3 to axes that do not move, with **Λ** along z, but for a constant turn about it: from theta functions and the
+    /// sine and the cosine of ½A₂t.
+    #[inline(always)]
+    fn frame(&self, theta: [f64; 3], [real, imaginary]: [f64; 2], turn: (f64, f64)) -> Quaternion {
+        // **Λ** but for a factor.
+        let [x, y, z] = [0, 1, 2].map(|i| self.moments[i] * (self.sizes[i] * theta[i]));
+        let square = x * x + y * y;
+        let [across, whole] = both(two(square, square + z * z).sqrt());
+        let length = across * (real * real + imaginary * imaginary).sqrt();
+        // Half the tilt of **Λ**; half the sum of its angle about axis 3 and that of ϑ₁; and half the difference, which is the former less that.
+        let (sines, cosines) = half(
+            two(across, y * real + x * imaginary),
+            two(z, x * real - y * imaginary),
+            two(whole, length),
         );
-        let (turn_sine, turn_cosine) = sincos(self.turn * time);
-        let psi_sine = turn_sine * own_cosine - turn_cosine * own_sine;
-        let psi_cosine = turn_cosine * own_cosine + turn_sine * own_sine;
-        // By ψ about the third axis, back by the tilt about the second, back by the angle about the third.
-        let (near, far) = (psi_cosine * about_cosine, psi_sine * about_sine);
-        let (one, other) = (psi_sine * about_cosine, psi_cosine * about_sine);
-        let turned = Quaternion::new(
-            tilt_cosine * (near + far),
-            tilt_sine * (one + other),
-            tilt_sine * (far - near),
-            tilt_cosine * (one - other),
-        );
-        (turned, spin)
+        let [[tilt_sine, plus_sine], [tilt_cosine, plus_cosine]] = [both(sines), both(cosines)];
+        let (about_sine, about_cosine) = (y / across, x / across);
+        let minus_sine = about_sine * plus_cosine - about_cosine * plus_sine;
+        let minus_cosine = about_cosine * plus_cosine + about_sine * plus_sine;
+        // By ψ about the third axis, back by the tilt about the second and back by the angle about the third.
+        let (sine, cosine) = turn;
+        Quaternion::new(
+            tilt_cosine * (cosine * plus_cosine + sine * plus_sine),
+            tilt_sine * (sine * minus_cosine + cosine * minus_sine),
+            -tilt_sine * (cosine * minus_cosine - sine * minus_sine),
+            tilt_cosine * (sine * plus_cosine - cosine * plus_sine),
+        )
     }
 }
 
-/// Sine and cosine of half the angle of the vector (x, y) of this length.
+/// Sines and cosines of half the angles of two vectors (x, y) of these lengths.
 #[inline(always)]
-fn half(y: f64, x: f64, length: f64) -> (f64, f64) {
-    let larger = (0.5 * (1.0 + x.abs() / length)).sqrt();
-    let smaller = 0.5 * y / (length * larger);
-    if x >= 0.0 {
-        (smaller, larger)
-    } else {
-        (larger.copysign(y), smaller.abs())
-    }
-}
-
-/// To a few rounding errors for negative numbers, too; |x| ≤ 32.
-#[inline(always)]
-fn exp(x: f64) -> f64 {
-    let large = exp_in_lanes(one(x.abs())).as_slice()[0];
-    if x < 0.0 { 1.0 / large } else { large }
+fn half(y: Two, x: Two, length: Two) -> (Two, Two) {
+    // The sum of the vector, or of the one that x < 0 mirrors, and one of this length along x.
+    let sum = length + x.abs();
+    let part = 1.0 / (2.0 * length * sum).sqrt();
+    let (larger, smaller) = (sum * part, y * part);
+    let (back, left) = (x.lt(0.0), y.lt(0.0));
+    let signed = left.select(-larger, larger);
+    (
+        back.select(signed, smaller),
+        back.select(smaller.abs(), larger),
+    )
 }

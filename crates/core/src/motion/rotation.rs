@@ -10,7 +10,7 @@ use super::top::{Symmetry, Top};
 use crate::math::{Quaternion, Vector};
 use crate::simd::elementary::sincos;
 
-/// The rotation of a body in flight, evaluated forward in time.
+/// The rotation of a body in flight; where it takes series, fastest forward in time.
 #[derive(Debug, Clone)]
 pub struct Rotation {
     top: Top,
@@ -65,13 +65,16 @@ impl Rotation {
         }
     }
 
-    /// The attitude, and ω in the axes of the body, at a time that is not before the last one.
+    /// The attitude, and ω in the axes of the body, at a time ≥ 0.
     #[inline(always)]
     pub fn at(&mut self, time: f64) -> (Quaternion, Vector) {
+        if time == 0.0 {
+            return (self.attitude, self.spin);
+        }
         match &mut self.way {
             Way::Steady(half, direction) => {
                 let turned = self.attitude * about(*direction, *half * time);
-                (turned.normalized(), self.spin)
+                (turned.renormalized(), self.spin)
             }
             Way::Precession((half, direction), own, axis) => {
                 let precessed = self.attitude * about(*direction, *half * time);
@@ -81,21 +84,26 @@ impl Rotation {
                 let [x, y, z] = parts;
                 let turn = Quaternion::new(cosine, x, y, z);
                 (
-                    (precessed * turn).normalized(),
+                    (precessed * turn).renormalized(),
                     turn.inverse().rotate(self.spin),
                 )
             }
             Way::Elliptic(elliptic) => elliptic.at(time),
-            Way::Series(series) => series.at(&self.top, time),
+            Way::Series(series) => {
+                if time < series.start() {
+                    *series = Series::new(&self.top, self.attitude, self.spin);
+                }
+                series.at(&self.top, time)
+            }
         }
     }
 
-    /// The attitude at such a time.
+    /// The attitude at a time.
     pub fn attitude(&mut self, time: f64) -> Quaternion {
         self.at(time).0
     }
 
-    /// ω in the axes of the body, at such a time.
+    /// ω in the axes of the body, at a time.
     pub fn spin(&mut self, time: f64) -> Vector {
         self.at(time).1
     }

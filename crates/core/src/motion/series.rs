@@ -52,6 +52,11 @@ impl Series {
         series
     }
 
+    /// When the present step begins.
+    pub fn start(&self) -> f64 {
+        self.start
+    }
+
     /// Attitude and ω at a time that is not before the present step.
     #[inline(always)]
     pub fn at(&mut self, top: &Top, time: f64) -> (Quaternion, Vector) {
@@ -84,7 +89,7 @@ impl Series {
     fn expand(&mut self, top: &Top, attitude: Quaternion, spin: Vector) {
         let size = (spin.x * spin.x + spin.y * spin.y + spin.z * spin.z).sqrt();
         self.length = top.reach / size;
-        let [a, b, c] = top.couplings().map(|f| f * self.length);
+        let [a, b, c] = top.couplings.map(|f| f * self.length);
         let half = 0.5 * self.length;
         let mut q = [attitude.w, attitude.x, attitude.y, attitude.z];
         let mut turn = [spin.x, spin.y, spin.z];

@@ -14,6 +14,8 @@ pub struct Top {
     moments: [f64; 3],
     asymmetry: f64,
     symmetry: Symmetry,
+    /// (J₂ − J₃)/J₁ and so on: by Euler's equations ω̇₁ is the first of them times ω₂ω₃.
+    pub(super) couplings: [f64; 3],
     /// The axes from the least moment to the largest.
     order: [usize; 3],
     /// Ω times the length of a step of the series of an asymmetric top.
@@ -53,10 +55,12 @@ impl Top {
         )?;
         let (moments, symmetry) = without_rounding(moments);
         let asymmetry = asymmetry(moments).min(1.0);
+        let [a, b, c] = moments;
         Ok(Self {
             moments,
             asymmetry,
             symmetry,
+            couplings: [(b - c) / a, (c - a) / b, (a - b) / c],
             order: sorted(moments),
             reach: reach(asymmetry),
         })
@@ -87,17 +91,37 @@ impl Top {
         a * spin.x * spin.x + b * spin.y * spin.y + c * spin.z * spin.z
     }
 
-    /// (J₂ − J₃)/J₁ and so on: by Euler's equations ω̇₁ is the first of them times ω₂ω₃.
-    pub(super) fn couplings(&self) -> [f64; 3] {
-        let [a, b, c] = self.moments;
-        [(b - c) / a, (c - a) / b, (a - b) / c]
-    }
-
     /// ω̇ of a free body.
+    #[inline(always)]
     pub(crate) fn change(&self, spin: Vector) -> Vector {
-        let [a, b, c] = self.couplings();
+        let [a, b, c] = self.couplings;
         let Vector { x, y, z } = spin;
         Vector::new(a * y * z, b * z * x, c * x * y)
+    }
+
+    /// Attitude and ω of a free body a short time later or before, by their series up to the third power: less than (Ωt)⁴/8 of them is left out.
+    #[inline(always)]
+    pub(crate) fn soon(
+        &self,
+        attitude: Quaternion,
+        spin: Vector,
+        time: f64,
+    ) -> (Quaternion, Vector) {
+        let [a, b, c] = self.couplings;
+        // Products of the components, by Euler's equations.
+        let euler = |v: Vector, w: Vector| Vector::new(a * v.y * w.z, b * v.z * w.x, c * v.x * w.y);
+        let both = |v: Vector, w: Vector| euler(v, w) + euler(w, v);
+        let first = euler(spin, spin);
+        let second = both(spin, first);
+        let third = both(spin, second) + euler(first, first) * 2.0;
+        // q(t) = q exp u by Magnus' expansion.
+        let cubic = second * (1.0 / 12.0) + spin.cross(first) * (1.0 / 24.0);
+        let u = ((cubic * time + first * 0.25) * time + spin * 0.5) * time;
+        let square = u.x * u.x + u.y * u.y + u.z * u.z;
+        let v = u * (1.0 - square * (1.0 / 6.0));
+        let turned = attitude * Quaternion::new(1.0 - 0.5 * square, v.x, v.y, v.z);
+        let later = ((third * (time / 3.0) + second) * (0.5 * time) + first) * time;
+        (turned.renormalized(), spin + later)
     }
 
     /// The largest |ω|² of a flight.

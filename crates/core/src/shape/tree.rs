@@ -21,7 +21,7 @@ use pulp::Scalar;
 use std::ops::Range;
 
 /// Most balls of a leaf.
-const LEAF: usize = 8;
+const LEAF: usize = 16;
 /// Most levels of a tree.
 const DEEPEST: usize = 16;
 /// The enlargement of a node's bounds, which are rounded to single precision, and the largest error of its cosine.
@@ -320,11 +320,13 @@ impl Balls {
             others: effort.most,
         };
         if self.depth == 0 {
-            self.ask(&mut best, 0..self.points.len(), effort, &cost);
+            // Of all it is known when they can touch.
+            self.ask(&mut best, 0..self.points.len(), |_| f64::INFINITY, &cost);
             return best;
         }
+        let limit = |best: f64| effort.limits(best).0;
         if let Some(place) = near {
-            self.ask(&mut best, place..place + 1, effort, &cost);
+            self.ask(&mut best, place..place + 1, limit, &cost);
         }
         let turning = length(at.turning);
         // Depth first, into the quarter that is lowest.
@@ -344,7 +346,7 @@ impl Balls {
             let (deep, i) = (level as usize, i as usize);
             if deep == self.depth {
                 let (low, high) = range(self.points.len(), deep, i);
-                self.ask(&mut best, low..high, effort, &cost);
+                self.ask(&mut best, low..high, limit, &cost);
                 continue;
             }
             // The lowest is the last, which is looked into first.
@@ -376,7 +378,7 @@ impl Balls {
         &self,
         best: &mut Cheapest,
         places: Range<usize>,
-        effort: Effort,
+        limit: impl Fn(f64) -> f64,
         cost: &impl Fn(usize, &Point, f64) -> f64,
     ) {
         for place in places {
@@ -386,7 +388,7 @@ impl Balls {
             #[cfg(test)]
             evaluations::add(Evaluation::Gap);
             let point = &self.points[place];
-            let (limit, _) = effort.limits(best.cost);
+            let limit = limit(best.cost);
             let found = cost(place, point, limit);
             if found < best.cost
                 || (found == best.cost && point.number < self.points[best.place].number)
