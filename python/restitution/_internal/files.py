@@ -146,9 +146,8 @@ def whole_folder(path: Path, *, replace: bool = False, names: Collection[str] = 
     place = next(folder for folder in (target, *target.parents) if folder.exists())
     remove_old_drafts(place, target.name)
     draft = draft_of(place / target.name)
-    spare = [
-        os.open(os.devnull, os.O_RDONLY) for _ in range(2)
-    ]  # to list the draft where no more may be open
+    # To list the draft where no more may be open.
+    spare = [os.open(os.devnull, os.O_RDONLY) for _ in range(2)]
     try:
         try:
             draft.mkdir()

@@ -52,8 +52,7 @@ def _reworded(change: Callable[[Problem], Problem]) -> Iterator[None]:
     try:
         yield
     except ParameterError as error:
-        kind = type(error)  # too large stays too large
-        raise kind(*map(change, error.problems)) from None
+        raise type(error)(*map(change, error.problems)) from None  # too large stays too large
 
 
 def renamed(rename: Callable[[str], str]) -> AbstractContextManager[None]:

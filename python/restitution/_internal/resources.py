@@ -89,8 +89,7 @@ def checked_threads(threads: int | None) -> int:
 @contextmanager
 def progress_bar(what: str, total: int, unit: str, *, show: bool) -> Iterator[Callable[[int], None] | None]:
     """Show a bar on standard error; yields what takes the amount done, or None where none is shown."""
-    shown = bar(show=flag("progress", show), total=total, desc=what, unit=f" {unit}", smoothing=0)
-    with shown:
+    with bar(show=flag("progress", show), total=total, desc=what, unit=f" {unit}", smoothing=0) as shown:
         yield None if shown.disable else lambda done: shown.update(done - shown.n) and None
 
 
