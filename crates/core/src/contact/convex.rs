@@ -1,7 +1,7 @@
 //! Supports of convex hulls whose normal turns along its tangent, **n** + s**n**′, and the first root of the bound that they make.
 
 use super::certify::{SHORTEST, TOUCHING};
-use super::plane::{Departure, Past, Step, first_root};
+use super::plane::{Departure, Gap, Past, Step, first_root};
 use crate::math::Vector;
 #[cfg(test)]
 use crate::shape::evaluations::{self, Evaluation};
@@ -14,6 +14,9 @@ pub(super) trait Support {
 
     /// h(s) − h(0) − s h′(0) ≥ 0, without cancellation where it can be.
     fn beyond_tangent(&self, s: f64) -> f64;
+
+    /// h″ at s = 0 where the normal has its second derivative, too.
+    fn second(&self) -> f64;
 
     /// True if a whole rim is lowest: it has no single point whose speed is that of the part.
     #[inline(always)]
@@ -62,11 +65,16 @@ pub(super) trait Support {
         evaluations::add(Evaluation::Support);
         let (width, rate) = self.opening(back);
         let before = width + since * (rate - 0.5 * bound * since) - self.beyond_tangent(since);
-        Past::new((width, -rate), before, since)
+        let gap = Gap {
+            width,
+            rate: -rate,
+            acceleration: back.acceleration - self.second(),
+        };
+        Past::new(gap, before, since)
     }
 }
 
-/// h = |**a** + s**b**|.
+/// h = |**a** + s**b**|, where **a** also has the second derivative **c**.
 pub(super) struct Length {
     a: Vector,
     b: Vector,
@@ -75,11 +83,13 @@ pub(super) struct Length {
     slope: f64,
     /// |**b**|² − h′².
     spread: f64,
+    /// **a**·**c**.
+    bent: f64,
 }
 
 impl Length {
     #[inline(always)]
-    pub fn new(a: Vector, b: Vector) -> Self {
+    pub fn new([a, b, c]: [Vector; 3]) -> Self {
         let (size, across) = (a.norm(), a.cross(b));
         let (slope, spread) = if size > 0.0 {
             let part = 1.0 / size;
@@ -93,6 +103,7 @@ impl Length {
             size,
             slope,
             spread,
+            bent: a.dot(c),
         }
     }
 
@@ -100,13 +111,7 @@ impl Length {
     #[inline(always)]
     pub fn of_ellipsoid([a, b, c]: [f64; 3], at: &Instant) -> Self {
         let stretched = |v: Vector| Vector::new(a * v.x, b * v.y, c * v.z);
-        Self::new(stretched(at.up), stretched(at.turning))
-    }
-
-    /// h″ at 0 where **a** also has the second derivative **c**, and `bent` is **a**·**c**.
-    #[inline(always)]
-    pub fn bent(&self, bent: f64) -> f64 {
-        (self.spread + bent) / self.size
+        Self::new([at.up, at.turning, at.bending].map(stretched))
     }
 
     /// h(s), and what of it is beyond the tangent.
@@ -132,6 +137,11 @@ impl Support for Length {
     }
 
     #[inline(always)]
+    fn second(&self) -> f64 {
+        (self.spread + self.bent) / self.size
+    }
+
+    #[inline(always)]
     fn beyond_tangent(&self, s: f64) -> f64 {
         self.along(s).1
     }
@@ -140,8 +150,8 @@ impl Support for Length {
 /// The support of a band in the direction −**n**.
 pub(super) struct BandSupport<'a> {
     band: &'a Band,
-    /// Its parts along the axis, n_z and its rate, and across it.
-    along: (f64, f64),
+    /// Its parts along the axis, −n_z with its derivatives, and across it.
+    along: [f64; 3],
     across: Length,
     /// |**n**|.
     whole: Length,
@@ -153,36 +163,20 @@ pub(super) struct BandSupport<'a> {
 impl<'a> BandSupport<'a> {
     #[inline(always)]
     pub fn new(band: &'a Band, at: &Instant) -> Self {
-        let along = (-at.up.z, -at.turning.z);
-        let level = |v: Vector| Vector::new(v.x, v.y, 0.0);
-        let across = Length::new(level(at.up), level(at.turning));
-        let weights = band.weights(along.0, across.size);
+        let normal = [at.up, at.turning, at.bending];
+        let along = normal.map(|v| -v.z);
+        let across = Length::new(normal.map(|v| Vector::new(v.x, v.y, 0.0)));
+        let weights = band.weights(along[0], across.size);
         let [z, r, radius] = weights;
         Self {
             band,
-            size: z * along.0 + r * across.size + radius,
-            slope: z * along.1 + r * across.slope,
+            size: z * along[0] + r * across.size + radius,
+            slope: z * along[1] + r * across.slope,
             along,
             across,
-            whole: Length::new(at.up, at.turning),
+            whole: Length::new(normal),
             weights,
         }
-    }
-
-    /// f″, with **n**″, but for gravity.
-    #[inline(always)]
-    pub fn curvature(&self, at: &Instant, bending: Vector) -> f64 {
-        if self.is_flat() {
-            return f64::NEG_INFINITY;
-        }
-        let [z, r, radius] = self.weights;
-        let level = at.up.x * bending.x + at.up.y * bending.y;
-        let across = if r == 0.0 {
-            0.0
-        } else {
-            r * self.across.bent(level)
-        };
-        z * bending.z - across - radius * self.whole.bent(at.up.dot(bending))
     }
 }
 
@@ -198,8 +192,22 @@ impl Support for BandSupport<'_> {
     }
 
     #[inline(always)]
+    fn second(&self) -> f64 {
+        if self.is_flat() {
+            return f64::INFINITY;
+        }
+        let [z, r, radius] = self.weights;
+        let across = if r == 0.0 {
+            0.0
+        } else {
+            r * self.across.second()
+        };
+        z * self.along[2] + across + radius * self.whole.second()
+    }
+
+    #[inline(always)]
     fn beyond_tangent(&self, s: f64) -> f64 {
-        let along = s.mul_add(self.along.1, self.along.0);
+        let along = s.mul_add(self.along[1], self.along[0]);
         let (across, across_beyond) = self.across.along(s);
         let (whole, whole_beyond) = self.whole.along(s);
         let weights = self.band.weights(along, across);
@@ -215,20 +223,18 @@ impl Support for BandSupport<'_> {
 /// The support of a superellipsoid.
 pub(super) struct SuperellipsoidSupport<'a> {
     body: &'a Superellipsoid,
-    up: Vector,
-    turning: Vector,
+    at: &'a Instant,
     size: f64,
     slope: f64,
 }
 
 impl<'a> SuperellipsoidSupport<'a> {
     #[inline(always)]
-    pub fn new(body: &'a Superellipsoid, at: &Instant) -> Self {
+    pub fn new(body: &'a Superellipsoid, at: &'a Instant) -> Self {
         let (size, place) = body.farthest(at.up);
         Self {
             body,
-            up: at.up,
-            turning: at.turning,
+            at,
             size,
             slope: place.dot(at.turning),
         }
@@ -242,8 +248,13 @@ impl Support for SuperellipsoidSupport<'_> {
     }
 
     #[inline(always)]
+    fn second(&self) -> f64 {
+        self.body.bent(self.at.up, self.at.turning, self.at.bending)
+    }
+
+    #[inline(always)]
     fn beyond_tangent(&self, s: f64) -> f64 {
-        let moved = self.turning.mul_add(s, self.up);
+        let moved = self.at.turning.mul_add(s, self.at.up);
         self.body.support(moved) - s.mul_add(self.slope, self.size)
     }
 }
@@ -260,14 +271,13 @@ impl Convex {
     ) -> Step {
         #[cfg(test)]
         evaluations::add(Evaluation::Support);
-        let own = self.frame.map_or(*at, |frame| frame.own(at));
-        self.surface.step(&own, turn, departure, most)
+        self.surface.step(&self.own(at), turn, departure, most)
     }
 
     /// As [`crate::shape::Skin`]'s.
     #[inline(always)]
     pub(super) fn past(&self, part: usize, at: &Instant, turn: f64, since: f64) -> Past {
-        let own = self.frame.map_or(*at, |frame| frame.own(at));
+        let own = self.own(at);
         let back = Instant {
             rate: -own.rate,
             turning: own.turning * -1.0,
@@ -287,18 +297,13 @@ impl Convex {
     }
 
     #[inline(always)]
-    pub(super) fn curvature(&self, part: usize, at: &Instant, bending: Vector) -> f64 {
-        match self.frame {
-            Some(frame) => {
-                let bending = frame.axes.rotate(bending);
-                self.surface.curvature(part, &frame.own(at), bending) - frame.centre.dot(bending)
-            }
-            None => self.surface.curvature(part, at, bending),
-        }
+    pub(super) fn acceleration(&self, part: usize, at: &Instant) -> f64 {
+        let own = self.own(at);
+        own.acceleration - self.surface.second(part, &own)
     }
 
     pub(super) fn another_touches(&self, departure: Departure, at: &Instant) -> bool {
-        let own = self.frame.map_or(*at, |frame| frame.own(at));
+        let own = self.own(at);
         let ConvexSurface::Bands(bands) = &self.surface else {
             return false;
         };
@@ -364,16 +369,13 @@ impl ConvexSurface {
         }
     }
 
+    /// h″ of a part.
     #[inline(always)]
-    fn curvature(&self, part: usize, at: &Instant, bending: Vector) -> f64 {
+    fn second(&self, part: usize, at: &Instant) -> f64 {
         match self {
-            Self::Ellipsoid(axes) => {
-                let [x, y, z] = axes.map(|axis| axis * axis);
-                let bent = Vector::new(x * at.up.x, y * at.up.y, z * at.up.z).dot(bending);
-                -Length::of_ellipsoid(*axes, at).bent(bent)
-            }
-            Self::Superellipsoid(body) => -body.bent(at.up, at.turning, bending),
-            Self::Bands(bands) => BandSupport::new(&bands[part], at).curvature(at, bending),
+            Self::Ellipsoid(axes) => Length::of_ellipsoid(*axes, at).second(),
+            Self::Superellipsoid(body) => SuperellipsoidSupport::new(body, at).second(),
+            Self::Bands(bands) => BandSupport::new(&bands[part], at).second(),
         }
     }
 }

@@ -9,4 +9,4 @@ pub(crate) use certify::{INVISIBLE, LAST};
 pub(crate) use lanes::{
     GapEvaluation, LastContact, LocatedContact, MOST_STEPS, Prediction, Search, Steps,
 };
-pub(crate) use plane::{Departure, expected};
+pub(crate) use plane::{Departure, Gap};

@@ -13,9 +13,9 @@
 //! Steps to the first root of these bounds converge quadratically to the contact. The same bounds hold backward in time, with −f′ for f′ and −**n**′
 //! for **n**′, so that the search may look on behind a step: where f, f′ and f″ expect the contact, or else almost as far again. If the bound from
 //! there is positive where the step ended, nothing touched in between ([`Skin::past`]), or an overlap began there once only, as late as the bound
-//! says; if not, the search goes on at the end of the step. To where f″ expects it the search converges with the third order. It ends when what
-//! is left of the gap is below the resolution. An overlap at the end of a step is rounding: one that approaches is a contact now, one that
-//! separates is none.
+//! says; if not, the search goes on at the end of the step. Where the contact is so near that the bound will be positive, the body is looked at
+//! there without a step before. To where f″ expects it the search converges with the third order. It ends when what is left of the gap is below
+//! the resolution. An overlap at the end of a step is rounding: one that approaches is a contact now, one that separates is none.
 
 use super::certify::{SHORTEST, TOUCHING};
 use crate::math::Vector;
@@ -51,11 +51,18 @@ pub(crate) struct Step {
     pub alone: f64,
 }
 
-/// What is known of the flight before a time, and the gap and its rate then.
+/// The gap of a part with its first two derivatives.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Past {
+pub(crate) struct Gap {
     pub width: f64,
     pub rate: f64,
+    pub acceleration: f64,
+}
+
+/// What is known of the flight before a time, and the gap then.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Past {
+    pub gap: Gap,
     /// The part did not touch before so long ago, 0 if it does not overlap; none if it may have.
     pub clear: Option<f64>,
 }
@@ -63,37 +70,60 @@ pub(crate) struct Past {
 impl Past {
     /// From the lower bound of the gap so long ago. The bound is concave, so that it lies above its chord.
     #[inline(always)]
-    pub fn new((width, rate): (f64, f64), before: f64, since: f64) -> Self {
+    pub fn new(gap: Gap, before: f64, since: f64) -> Self {
         let clear = (before > 0.0).then(|| {
-            if width < 0.0 {
-                since * width / (width - before)
+            if gap.width < 0.0 {
+                since * gap.width / (gap.width - before)
             } else {
                 0.0
             }
         });
-        Self { width, rate, clear }
+        Self { gap, clear }
     }
 }
 
-/// When a gap will be 0, or was if it is negative, by f + f′s + f″s²/2; no number if it never is.
-#[inline(always)]
-pub(crate) fn expected(width: f64, rate: f64, second: f64) -> f64 {
-    let speed = rate.abs() + (rate * rate - 2.0 * second * width).sqrt();
-    if rate < 0.0 {
-        2.0 * width / speed
-    } else {
-        -speed / second
+impl Gap {
+    /// When it will be 0, or was if it is negative, by f + f′s + f″s²/2, in that of the two forms of the root in which no digits cancel; no
+    /// number if it never is.
+    #[inline(always)]
+    pub fn closes(&self) -> f64 {
+        let Self {
+            width,
+            rate,
+            acceleration,
+        } = *self;
+        let speed = rate.abs() + (rate * rate - 2.0 * acceleration * width).sqrt();
+        if rate < 0.0 {
+            2.0 * width / speed
+        } else {
+            -speed / acceleration
+        }
+    }
+
+    /// When it will be 0, or was, if that is after `certain` and so near to it that a look from there will certify the time between: M times that
+    /// is less than the speed of the contact.
+    #[inline(always)]
+    pub fn certainly_closes(&self, certain: f64, turn: f64) -> Option<f64> {
+        let ahead = self.closes();
+        let speed = -(self.rate + self.acceleration * ahead);
+        (certain < ahead && (ahead - certain) * (1.0 + turn) <= speed).then_some(ahead)
     }
 }
 
-/// The first root ≥ 0 of f + f′s − Ms²/2 with f ≥ 0, in that of its two forms in which no digits cancel.
+/// The first root ≥ 0 of f + f′s − Ms²/2 with f ≥ 0, and no less than the shortest step where the gap does not close.
 #[inline(always)]
 pub(super) fn first_root(width: f64, rate: f64, bound: f64) -> f64 {
-    let speed = rate.abs() + (rate * rate + 2.0 * bound * width).sqrt();
+    let acceleration = -bound;
+    let root = Gap {
+        width,
+        rate,
+        acceleration,
+    }
+    .closes();
     if rate < 0.0 {
-        2.0 * width / speed
+        root
     } else {
-        speed.max(SHORTEST) / bound
+        root.max(SHORTEST / bound)
     }
 }
 
@@ -182,7 +212,12 @@ impl Skin {
                 let (width, rate) = point.opening(at);
                 let bound = 1.0 + turn * f64::from(point.reach);
                 let before = width - since * (rate + 0.5 * bound * since);
-                Past::new((width, rate), before, since)
+                let gap = Gap {
+                    width,
+                    rate,
+                    acceleration: point.acceleration(at),
+                };
+                Past::new(gap, before, since)
             }
             Self::Convex(convex) => convex.past(part, at, turn, since),
         }
@@ -201,12 +236,12 @@ impl Skin {
         }
     }
 
-    /// f″ of a part, with **n**″, but for gravity.
+    /// f″ of a part.
     #[inline(always)]
-    pub(crate) fn curvature(&self, part: usize, at: &Instant, bending: Vector) -> f64 {
+    pub(crate) fn acceleration(&self, part: usize, at: &Instant) -> f64 {
         match self {
-            Self::Points(balls) => balls.points()[part].place.dot(bending),
-            Self::Convex(convex) => convex.curvature(part, at, bending),
+            Self::Points(balls) => balls.points()[part].acceleration(at),
+            Self::Convex(convex) => convex.acceleration(part, at),
         }
     }
 
@@ -296,6 +331,7 @@ mod tests {
                         rate,
                         up,
                         turning: up.cross(vector(seed, 1_000_001)),
+                        ..Instant::default()
                     };
                     let turn = 2.0 * pair(seed, 7).0;
                     let length = |point: &Point| {

@@ -2,7 +2,7 @@
 
 use super::lanes::{Impact, Lost, Pose, Sink};
 use super::stop::{COLLAPSE_RUN, Limits, StopReason, UNRESOLVED};
-use crate::contact::{Departure, INVISIBLE, LAST, MOST_STEPS, expected};
+use crate::contact::{Departure, Gap, INVISIBLE, LAST, MOST_STEPS};
 use crate::law::{Compliance, Fault, Law, Respond, Rule};
 use crate::math::{Quaternion, Symmetric, Vector, Vectors};
 use crate::motion::Rotation;
@@ -188,8 +188,14 @@ impl Bouncing<'_> {
                 known = (time, rotation.at(time));
                 known.1
             };
-            let at = instant(start, time, attitude, spin);
-            let mut overlap = None;
+            let from = time;
+            let at = self.instant(start, from, attitude, spin);
+            let within =
+                |later: f64, alone: f64| later <= alone && fastest * (later - from).abs() <= FAR;
+            let contact = |gap: Gap, certain: f64, alone: f64| {
+                let contact = from + gap.certainly_closes(certain - from, turn)?;
+                within(contact, alone).then_some(contact)
+            };
             if let Some((part, alone)) = near.filter(|_| certain < time) {
                 let past = body.skin.past(part, &at, turn, time - certain);
                 let Some(ago) = past.clear else {
@@ -197,68 +203,88 @@ impl Bouncing<'_> {
                     continue;
                 };
                 certain = time - ago;
-                if ago > 0.0 {
-                    overlap = Some((part, alone, past));
+                let ahead = past.gap.closes();
+                let end = time + ahead;
+                if (1.0 + turn) * ahead * ahead <= INVISIBLE
+                    && (ahead < 0.0 || past.gap.rate < 0.0 && ahead <= LAST * end)
+                    && end <= alone
+                {
+                    let then = body.top.soon(attitude, spin, ahead);
+                    return Ok(self.land(start, end, part, then, turn));
+                }
+                // Nothing more is to be known here where the contact is, or if there was one since `certain`.
+                if let Some(contact) = contact(past.gap, certain, alone) {
+                    time = contact;
+                    continue;
+                } else if ago > 0.0 {
+                    time = certain;
+                    continue;
                 }
             }
-            let (part, alone, width, rate) = match overlap {
-                // It touches between `certain` and this time.
-                Some((part, alone, past)) => {
-                    let ago = time - certain;
-                    if (1.0 + turn) * ago * ago <= INVISIBLE {
-                        let end = time + past.width / past.rate.abs();
-                        let then = body.top.soon(attitude, spin, end - time);
-                        return Ok(self.land(start, end, part, then, turn));
-                    }
-                    (part, alone, past.width, past.rate)
-                }
-                None => {
-                    let left = departure.filter(|_| time == 0.0);
-                    let clear = if above > 0.0 && time < up_at {
-                        up_at - time
-                    } else {
-                        f64::INFINITY
-                    };
-                    let near = near.map(|(part, alone)| (part, alone - time));
-                    let step = body.skin.step(&at, turn, left, near, clear);
-                    let end = time + step.length;
-                    let square = step.length * step.length;
-                    if step.closes && step.bound * square <= INVISIBLE && step.length <= LAST * end
-                    {
-                        // The body turns by as little, but where all of it is near its centre of mass.
-                        let then = if turn * square <= INVISIBLE {
-                            body.top.soon(attitude, spin, step.length)
-                        } else {
-                            rotation.at(end)
-                        };
-                        return Ok(self.land(start, end, step.part, then, turn));
-                    }
-                    certain = skip(end.max(time * (1.0 + f64::EPSILON)));
-                    (step.part, time + step.alone, step.width, step.rate)
-                }
+            let left = departure.filter(|_| time == 0.0);
+            let clear = if above > 0.0 && time < up_at {
+                up_at - time
+            } else {
+                f64::INFINITY
             };
-            near = Some((part, alone));
-            let from = std::mem::replace(&mut time, certain);
+            let beside = near.map(|(part, alone)| (part, alone - time));
+            let step = body.skin.step(&at, turn, left, beside, clear);
+            let end = time + step.length;
+            let square = step.length * step.length;
+            if step.closes && step.bound * square <= INVISIBLE && step.length <= LAST * end {
+                // The body turns by as little, but where all of it is near its centre of mass.
+                let then = if turn * square <= INVISIBLE {
+                    body.top.soon(attitude, spin, step.length)
+                } else {
+                    rotation.at(end)
+                };
+                return Ok(self.land(start, end, step.part, then, turn));
+            }
+            certain = skip(end.max(time * (1.0 + f64::EPSILON)));
+            let alone = time + step.alone;
+            near = Some((step.part, alone));
+            time = certain;
             if !std::mem::replace(&mut looks_on, looks_back) || alone <= certain {
                 continue;
             }
-            // Where the contact is expected, if it can be certified from there that nothing touched since `certain`.
-            let bending = at.turning.cross(spin) + at.up.cross(body.top.change(spin));
-            let second = body.skin.curvature(part, &at, bending) - 1.0;
-            let ahead = expected(width, rate, second);
-            let closing = -(rate + second * ahead);
-            let contact = from + ahead;
-            let sure = (contact - certain) * (1.0 + turn) <= closing;
+            let gap = Gap {
+                width: step.width,
+                rate: step.rate,
+                acceleration: body.skin.acceleration(step.part, &at),
+            };
             // Or else almost as far behind `certain` as that is from here.
             let further = certain + BACK * (certain - from);
-            let within = |later: f64| later <= alone && fastest * (later - from).abs() <= FAR;
-            if certain < contact && sure && within(contact) {
+            let expected = from + gap.closes();
+            let soon = certain < expected && expected < further;
+            if let Some(contact) = contact(gap, certain, alone) {
                 time = contact;
-            } else if !(certain < contact && contact < further) && within(further) {
-                time = further.max(certain);
+            } else if !soon && within(further, alone) {
+                time = further;
             }
         }
         Err(NoContact::Unconverged)
+    }
+
+    /// The body at a time of the flight from `start`.
+    #[inline(always)]
+    fn instant(
+        &self,
+        start: &RigidState,
+        time: f64,
+        attitude: Quaternion,
+        spin: Vector,
+    ) -> Instant {
+        let up = up(attitude);
+        let turning = up.cross(spin);
+        let speed = start.velocity.z;
+        Instant {
+            height: start.height + time * (speed - 0.5 * time),
+            rate: speed - time,
+            acceleration: -1.0,
+            up,
+            turning,
+            bending: turning.cross(spin) + up.cross(self.body.top.change(spin)),
+        }
     }
 
     /// The state at a contact. The height is that at which the part touches.
@@ -290,11 +316,9 @@ impl Bouncing<'_> {
 
     /// True if the part on the plane, which has no normal speed, stays there: f″ ≤ 0, and no other part is about to touch as well.
     fn rests(&self, state: &RigidState, left: Departure) -> bool {
-        let at = instant(state, 0.0, state.attitude, state.spin);
-        let change = self.body.top.change(state.spin);
-        let bending = at.turning.cross(state.spin) + at.up.cross(change);
+        let at = self.instant(state, 0.0, state.attitude, state.spin);
         let skin = &self.body.skin;
-        skin.curvature(left.part, &at, bending) <= 1.0 && !skin.another_touches(left, &at)
+        skin.acceleration(left.part, &at) <= 0.0 && !skin.another_touches(left, &at)
     }
 
     /// The motion after a contact; where ε_n scatters it is drawn with a uniform number.
@@ -383,19 +407,6 @@ impl Bouncing<'_> {
         };
         sink.impact(0, &impact);
         sink.settle(0..1);
-    }
-}
-
-/// The body at a time of the flight from `start`.
-#[inline(always)]
-fn instant(start: &RigidState, time: f64, attitude: Quaternion, spin: Vector) -> Instant {
-    let normal = up(attitude);
-    let speed = start.velocity.z;
-    Instant {
-        height: start.height + time * (speed - 0.5 * time),
-        rate: speed - time,
-        up: normal,
-        turning: normal.cross(spin),
     }
 }
 
@@ -523,6 +534,71 @@ mod tests {
             ("sphere with 10⁴ asperities", rough(10_000)),
             ("sphere with 10⁶ asperities", rough(1_000_000)),
         ]
+    }
+
+    /// From a time at which a part has just touched or is about to, its gap is followed back along the exact rotation: it is positive where
+    /// [`Past::clear`](crate::contact::Past) says so, and its second difference is f″.
+    #[test]
+    fn nothing_touched_where_the_past_is_clear() {
+        for (name, body) in &bodies()[..7] {
+            let law = Law::new(1.0, Frictionless).unwrap();
+            let bouncing = Bouncing {
+                body,
+                law: &law,
+                slope: 0.0,
+                limits: Limits {
+                    impacts: 1,
+                    minimum_speed: 0.0,
+                    settled: 0.0,
+                },
+            };
+            let (mut clear, mut overlaps) = (0, 0);
+            for i in 0..500 {
+                let uniform = |number: u64| pair(7, 8 * i + number);
+                let ((a, b), (c, d)) = (uniform(0), uniform(1));
+                let spin = Vector::new(a - 0.5, b - 0.5, c - 0.5) * (8.0 * d);
+                let ((a, b), (c, d)) = (uniform(2), uniform(3));
+                let attitude = Quaternion::new(a - 0.5, b - 0.5, c - 0.5, d - 0.5).normalized();
+                let ((speed, time), (since, width)) = (uniform(4), uniform(5));
+                let mut rotation = Rotation::new(body.top, attitude, spin);
+                let turn = body.top.acceleration(spin);
+                let mut start = RigidState {
+                    height: 0.0,
+                    velocity: Vector::new(0.0, 0.0, -2.0 * speed),
+                    attitude,
+                    spin,
+                };
+                let mut at = |start: &RigidState, time: f64| {
+                    let (attitude, spin) = rotation.at(time);
+                    bouncing.instant(start, time, attitude, spin)
+                };
+                let now = at(&start, time);
+                start.height = body.skin.support(now.up) - now.height + 0.02 * (width - 0.5);
+                let now = at(&start, time);
+                let part = body.skin.step(&now, turn, None, None, f64::INFINITY).part;
+                let mut gap = |time: f64| {
+                    let at = at(&start, time);
+                    at.height + at.up.dot(body.skin.nearest(part, at.up, at.turning))
+                };
+                let past = body.skin.past(part, &now, turn, since);
+                assert!((gap(time) - past.gap.width).abs() < 1e-14, "{name}");
+                if body.skin.looks_back() {
+                    let [before, here, after] = [-1e-4, 0.0, 1e-4].map(|s| gap(time + s));
+                    let second = (before - 2.0 * here + after) * 1e8;
+                    let error = (second - past.gap.acceleration).abs();
+                    assert!(error < 1e-4 * (1.0 + turn * turn), "{name}: {error}");
+                }
+                if let Some(ago) = past.clear {
+                    clear += 1;
+                    overlaps += i32::from(ago > 0.0);
+                    for k in 0..=20 {
+                        let back = since + (ago - since) * f64::from(k) / 20.0;
+                        assert!(gap(time - back) > -1e-14, "{name}: {back} before");
+                    }
+                }
+            }
+            assert!(clear > 50 && overlaps > 10, "{name}: {clear}, {overlaps}");
+        }
     }
 
     /// `docs/shapes.md` has a row for each body: how often an impact needs the attitude of the body, the gap of a sphere or vertex or the support

@@ -201,16 +201,21 @@ impl Elliptic {
             1.0 + 0.5 * grown * shrunk,
         );
         let (double_sinh, double_cosh) = (2.0 * sinh * cosh, 1.0 + 2.0 * sinh * sinh);
+        // Those of an argument that is 2η more.
+        let next = |(s, c): (f64, f64)| {
+            (
+                s * double_cosh + c * double_sinh,
+                c * double_cosh + s * double_sinh,
+            )
+        };
         // −d ln ϑ₂(iη)/dη.
         let mut sum = sinh / cosh;
         let (mut power, mut s, mut c) = (square, 4.0 * double_sinh, 4.0 * double_cosh);
         while power * c.abs() > 1e-18 {
             sum += power / (1.0 - power) * s;
             power *= square;
-            (s, c) = (
-                -(s * double_cosh + c * double_sinh),
-                -(c * double_cosh + s * double_sinh),
-            );
+            let (sinh, cosh) = next((s, c));
+            (s, c) = (-sinh, -cosh);
         }
         let turn = 0.5 * (momentum / j2 + rate * sum);
 
@@ -233,10 +238,7 @@ impl Elliptic {
                 third += squares[n];
                 fourth += sign * squares[n];
                 second += product;
-                (s, c) = (
-                    s * double_cosh + c * double_sinh,
-                    c * double_cosh + s * double_sinh,
-                );
+                (s, c) = next((s, c));
             }
             if squared < SMALL && product * c < SMALL * cosh {
                 break;

@@ -36,12 +36,14 @@ impl Frame {
     /// The body in the axes of the surface. From its origin the height is z − **n**·**c**.
     #[inline(always)]
     pub fn own(&self, at: &Instant) -> Instant {
-        let [up, turning] = [at.up, at.turning].map(|v| self.axes.rotate(v));
+        let [up, turning, bending] = [at.up, at.turning, at.bending].map(|v| self.axes.rotate(v));
         Instant {
             height: at.height - self.centre.dot(up),
             rate: at.rate - self.centre.dot(turning),
+            acceleration: at.acceleration - self.centre.dot(bending),
             up,
             turning,
+            bending,
         }
     }
 
@@ -85,15 +87,18 @@ impl Convex {
         }
     }
 
+    /// The body in the axes of the surface.
+    #[inline(always)]
+    pub fn own(&self, at: &Instant) -> Instant {
+        self.frame.map_or(*at, |frame| frame.own(at))
+    }
+
     /// The distance from the centre of mass to the lowest place, in the direction against `up`.
     pub fn support(&self, up: Vector) -> f64 {
-        let at = Instant {
-            height: 0.0,
-            rate: 0.0,
+        let own = self.own(&Instant {
             up,
-            turning: Vector::default(),
-        };
-        let own = self.frame.map_or(at, |frame| frame.own(&at));
+            ..Instant::default()
+        });
         self.surface.support(own.up) - own.height
     }
 }

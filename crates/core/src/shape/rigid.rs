@@ -289,10 +289,8 @@ impl Skin {
         match self {
             Self::Points(balls) => {
                 let at = Instant {
-                    height: 0.0,
-                    rate: 0.0,
                     up,
-                    turning: Vector::default(),
+                    ..Instant::default()
                 };
                 let exceeds = |least: &Least, limit: f64| least.gap > limit;
                 let lowest = balls.cheapest(&at, None, Effort::EXACT, exceeds, |_, point, _| {

@@ -86,14 +86,16 @@ pub(crate) struct Least {
 }
 
 /// A body over the plane at one time of its flight.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct Instant {
-    /// Height of the centre of mass and its rate.
+    /// Height of the centre of mass, its rate and its acceleration.
     pub height: f64,
     pub rate: f64,
-    /// **n** and **n**′, in the axes of the body.
+    pub acceleration: f64,
+    /// **n**, **n**′ and **n**″, in the axes of the body.
     pub up: Vector,
     pub turning: Vector,
+    pub bending: Vector,
 }
 
 impl Point {
@@ -114,6 +116,12 @@ impl Point {
             at.height + (n.x * p.x + n.y * p.y + n.z * p.z) - self.radius,
             at.rate + (w.x * p.x + w.y * p.y + w.z * p.z),
         )
+    }
+
+    /// f″.
+    #[inline(always)]
+    pub fn acceleration(&self, at: &Instant) -> f64 {
+        at.acceleration + self.place.dot(at.bending)
     }
 }
 
