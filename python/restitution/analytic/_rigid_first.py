@@ -17,7 +17,7 @@ from restitution.analytic._full_impulse import Response
 from restitution.analytic._impulse import Impulse
 from restitution.analytic._normal import Fall
 from restitution.analytic._orientation import Floats
-from restitution.analytic._triangular import Table, Triangles
+from restitution.analytic._triangular import POINTS, Table, Triangles
 from restitution.bodies import Ellipsoid, RigidBody, Superellipsoid
 from restitution.laws import Material
 
@@ -38,8 +38,9 @@ class RigidFirstImpact(FirstImpact):
     ε is a closed form in the direction of the plane as seen from the body. The sphere of these directions is
     divided into triangles, smaller where ε bends, on each of which one ball or vertex touches; there ε is
     taken as linear, so that the distribution is a sum of triangular ones. `cdf_error` says how far the
-    distribution function may be off, by second differences; moments come closer. `expect` is a sum over the
-    table of the distribution function, whatever accuracy is asked for.
+    distribution function may be off, by second differences and by samples inside of the triangles; moments
+    come closer. `expect` is a sum over the table of the distribution function, whatever accuracy is asked
+    for.
 
     Examples
     --------
@@ -197,13 +198,13 @@ class RigidFirstImpact(FirstImpact):
         share = solid_angle(corners) / (4.0 * np.pi)
         full = share > 0.0
         corners, pair, share = corners[full], pair[full], share[full]
-        a, b, c = np.moveaxis(corners, 1, 0)
-        points = np.stack([a, b, c, 0.5 * (a + b), 0.5 * (b + c), 0.5 * (c + a)], axis=1)
+        points = POINTS @ corners
         length = np.linalg.norm(points, axis=-1)
         element = units.element[pair]
         down = (points / length[:, :, None]).reshape(-1, 3)
-        values = self._restitution(down, np.repeat(element, 6), raised=raised).reshape(-1, 6)
-        middle = length[:, 3:] ** -3.0  # solid angle over the area of the flat triangle, but for a factor
+        values = self._restitution(down, np.repeat(element, len(POINTS)), raised=raised)
+        values = values.reshape(-1, len(POINTS))
+        middle = length[:, 3:6] ** -3.0  # solid angle over the area of the flat triangle, but for a factor
         middle *= share[:, None] / middle.sum(axis=1, keepdims=True)
         central = np.linalg.norm(self._hull.centres, axis=1) < 1e-12
         alone = central[element] & (not isinstance(self._hull, Smooth))

@@ -25,6 +25,8 @@ _HALVINGS = 10
 _TOLERANCE = 2e-6
 _BLOCK = 1 << 21
 _LEVEL = 0.02
+POINTS = np.concatenate([np.eye(3), 0.5 * (np.eye(3) + np.roll(np.eye(3), 1, 1)), 0.5 * np.eye(3) + 1 / 6])
+"""Where a function is sampled: the corners, the middles of the sides, and inside, each as three weights."""
 
 
 class Triangles(NamedTuple):
@@ -32,7 +34,7 @@ class Triangles(NamedTuple):
 
     unit: Ints  # to which each belongs
     share: Floats
-    values: Floats  # at the corners, and at the middles of the sides from each to the next, (triangles, 6)
+    values: Floats  # at `POINTS`, (triangles, 9)
     middle: Floats  # the share that counts for each middle of a side, (triangles, 3)
     alone: Floats  # 1 where the function is one number, else 0
 
@@ -54,12 +56,14 @@ class Triangles(NamedTuple):
 
     @property
     def bend(self) -> Floats:
-        """How far the function may be from what `parts` make of it: by second differences.
+        """How far the function may be from what `parts` make of it.
 
-        Of the quadratic function that is taken where it is nearly level, an eighth of them, which is much
-        unless the function has a kink there.
+        Of a quadratic function these are second differences, 16 times less for 64 parts than for four. If
+        it is not quadratic, and has a kink for example, twice what the quadratic function is off at the
+        points inside is added: half of the most is what such a point has on the average.
         """
-        return np.where(self.level, 0.125, 1.0) * self._second
+        off = np.abs(self.values @ _OFF.T).max(axis=1)
+        return np.asarray(np.where(self.level, 0.0625, 1.0) * self._second + 2.0 * off)
 
     @property
     def level(self) -> NDArray[np.bool_]:
@@ -68,7 +72,7 @@ class Triangles(NamedTuple):
 
     @property
     def _second(self) -> Floats:
-        a, b, c, ab, bc, ca = self.values.T
+        a, b, c, ab, bc, ca = self.values[:, :6].T
         off = np.abs([ab - 0.5 * (a + b), bc - 0.5 * (b + c), ca - 0.5 * (c + a)])
         return np.asarray(0.25 * np.maximum(off.max(axis=0), off.sum(axis=0) / 2.25))
 
@@ -77,7 +81,7 @@ class Triangles(NamedTuple):
         found = []
         for rows, fine in ((~self.level, _quadratic(2)), (self.level, _quadratic(8))):
             basis, corners = fine
-            values = (self.values[rows] @ basis.T)[:, corners].reshape(-1, 3)
+            values = (self.values[rows, :6] @ basis.T)[:, corners].reshape(-1, 3)
             number = len(corners)
             found.append(
                 (
@@ -91,7 +95,7 @@ class Triangles(NamedTuple):
 
     def mean(self, function: Callable[[Floats], Floats]) -> float:
         """Return the mean of a function of the values, by the rule of the middles."""
-        return float(np.sum(self.middle * function(self.values[:, 3:])))
+        return float(np.sum(self.middle * function(self.values[:, 3:6])))
 
 
 @dataclass(frozen=True)
@@ -109,14 +113,13 @@ class Table:
         """Sum up the triangular distributions."""
         atom = found.alone > 0.0
         size = float(found.share[atom].sum())
-        place = float(found.values[atom].mean()) if size else np.nan
+        place = float(found.values[atom].max()) if size else np.nan  # a mean could be beyond all
         rest = found.only(~atom)
         parts, weight, wide = rest.parts()
-        middles = np.sort(rest.values[:, 3:], axis=None)
+        middles = np.sort(rest.values[:, 3:6], axis=None)
         even = middles[np.linspace(0, len(middles) - 1, _NODES).astype(int)] if len(middles) else middles
         nodes = np.unique(np.clip(np.concatenate([np.linspace(*support, _NODES), even]), *support))
         below, density = _summed(nodes, parts, weight)
-        _, blurred = _summed(nodes, parts + wide[:, None] * [-1.0, 0.0, 1.0], weight * wide)
         new, between = 0.5 * (nodes[1:] + nodes[:-1]), 0.0
         for left in reversed(range(_HALVINGS)):
             curve = cls(nodes, below, density, 0.0, (place, size)).curve
@@ -131,6 +134,7 @@ class Table:
             new = np.setdiff1d(new, nodes)
             if not new.size:
                 break
+        _, blurred = _summed(nodes, parts + wide[:, None] * [-1.0, 0.0, 1.0], weight * wide)
         return cls(nodes, below, density, float(blurred.max()) + between, (place, size))
 
     @cached_property
@@ -166,6 +170,7 @@ class Table:
         rest = np.where(q > before, np.maximum(q - size, before), q)
         after = np.clip(np.searchsorted(self.below, rest), 1, len(self.nodes) - 1)
         found = solve(lambda x: self.curve(x) - rest, self.nodes[after - 1], self.nodes[after])
+        found = np.where(q < 1.0, found, self.nodes[-1])  # where the curve may be 1 already before
         found = np.where((q >= before) & (q <= before + size), place, found)
         return np.where(np.isnan(q), np.nan, found)
 
@@ -177,6 +182,17 @@ class Table:
         return x, width * weights * self.slope(x)
 
 
+def _six(weights: Floats) -> Floats:
+    """Return what six values count for in the quadratic function through them, at points of a triangle."""
+    x, y, z = weights
+    corner, middle = [t * (2.0 * t - 1.0) for t in weights], [4.0 * x * y, 4.0 * y * z, 4.0 * z * x]
+    return np.stack(corner + middle, axis=1)
+
+
+_OFF = np.concatenate([-_six(POINTS[6:].T), np.eye(3)], axis=1)
+"""Of the nine values, by how much those inside are more than the quadratic function."""
+
+
 @lru_cache(maxsize=2)
 def _quadratic(number: int) -> tuple[Floats, Ints]:
     """Return the quadratic through six values at points of a triangle, and the parts between them."""
@@ -185,11 +201,10 @@ def _quadratic(number: int) -> tuple[Floats, Ints]:
         for j in range(number + 1 - i):
             place[i, j] = len(place)
     y, z = np.array(list(place)).T / number
-    x = 1.0 - y - z
-    corner, middle = [t * (2.0 * t - 1.0) for t in (x, y, z)], [4.0 * x * y, 4.0 * y * z, 4.0 * z * x]
+    basis = _six(np.array([1.0 - y - z, y, z]))
     parts = [[(i, j), (i + 1, j), (i, j + 1)] for i, j in place if i + j < number]
     parts += [[(i + 1, j), (i + 1, j + 1), (i, j + 1)] for i, j in place if i + j < number - 1]
-    return np.stack(corner + middle, axis=1), np.array([[place[at] for at in part] for part in parts])
+    return basis, np.array([[place[at] for at in part] for part in parts])
 
 
 def _summed(nodes: Floats, parts: Floats, weight: Floats) -> tuple[Floats, Floats]:
