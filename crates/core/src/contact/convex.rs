@@ -12,7 +12,7 @@ pub(super) trait Support {
     /// h and h′ at s = 0.
     fn tangent(&self) -> (f64, f64);
 
-    /// h(s) − h(0) − s h′(0) ≥ 0, without cancellation where it can be.
+    /// h(s) − h(0) − s h′(0) ≥ 0, without cancellation where it can be, also for s < 0.
     fn beyond_tangent(&self, s: f64) -> f64;
 
     /// h″ at s = 0 where the normal has its second derivative, too.
@@ -58,17 +58,17 @@ pub(super) trait Support {
         }
     }
 
-    /// As [`crate::shape::Skin`]'s; `back` is the body whose motion is turned round.
+    /// As [`crate::shape::Skin`]'s.
     #[inline(always)]
-    fn past(&self, bound: f64, back: &Instant, since: f64) -> Past {
+    fn past(&self, bound: f64, at: &Instant, since: f64) -> Past {
         #[cfg(test)]
         evaluations::add(Evaluation::Support);
-        let (width, rate) = self.opening(back);
-        let before = width + since * (rate - 0.5 * bound * since) - self.beyond_tangent(since);
+        let (width, rate) = self.opening(at);
+        let before = width - since * (rate + 0.5 * bound * since) - self.beyond_tangent(-since);
         let gap = Gap {
             width,
-            rate: -rate,
-            acceleration: back.acceleration - self.second(),
+            rate,
+            acceleration: at.acceleration - self.second(),
         };
         Past::new(gap, before, since)
     }
@@ -271,19 +271,17 @@ impl Convex {
     ) -> Step {
         #[cfg(test)]
         evaluations::add(Evaluation::Support);
-        self.surface.step(&self.own(at), turn, departure, most)
+        let mut moved = Instant::default();
+        let own = self.own(at, &mut moved);
+        self.surface.step(own, turn, departure, most)
     }
 
     /// As [`crate::shape::Skin`]'s.
     #[inline(always)]
     pub(super) fn past(&self, part: usize, at: &Instant, turn: f64, since: f64) -> Past {
-        let own = self.own(at);
-        let back = Instant {
-            rate: -own.rate,
-            turning: own.turning * -1.0,
-            ..own
-        };
-        self.surface.past(part, &back, turn, since)
+        let mut moved = Instant::default();
+        self.surface
+            .past(part, self.own(at, &mut moved), turn, since)
     }
 
     #[inline(always)]
@@ -298,16 +296,18 @@ impl Convex {
 
     #[inline(always)]
     pub(super) fn acceleration(&self, part: usize, at: &Instant) -> f64 {
-        let own = self.own(at);
-        own.acceleration - self.surface.second(part, &own)
+        let mut moved = Instant::default();
+        let own = self.own(at, &mut moved);
+        own.acceleration - self.surface.second(part, own)
     }
 
     pub(super) fn another_touches(&self, departure: Departure, at: &Instant) -> bool {
-        let own = self.own(at);
         let ConvexSurface::Bands(bands) = &self.surface else {
             return false;
         };
-        let opening = |band: &Band| BandSupport::new(band, &own).opening(&own);
+        let mut moved = Instant::default();
+        let own = self.own(at, &mut moved);
+        let opening = |band: &Band| BandSupport::new(band, own).opening(own);
         let still = opening(&bands[departure.part]).1;
         bands.iter().enumerate().any(|(part, band)| {
             let (width, rate) = opening(band);
@@ -341,17 +341,15 @@ impl ConvexSurface {
     }
 
     #[inline(always)]
-    fn past(&self, part: usize, back: &Instant, turn: f64, since: f64) -> Past {
+    fn past(&self, part: usize, at: &Instant, turn: f64, since: f64) -> Past {
         match self {
-            Self::Ellipsoid(axes) => {
-                Length::of_ellipsoid(*axes, back).past(1.0 + turn, back, since)
-            }
+            Self::Ellipsoid(axes) => Length::of_ellipsoid(*axes, at).past(1.0 + turn, at, since),
             Self::Superellipsoid(body) => {
-                SuperellipsoidSupport::new(body, back).past(1.0 + turn, back, since)
+                SuperellipsoidSupport::new(body, at).past(1.0 + turn, at, since)
             }
             Self::Bands(bands) => {
                 let band = &bands[part];
-                BandSupport::new(band, back).past(1.0 + turn * band.reach, back, since)
+                BandSupport::new(band, at).past(1.0 + turn * band.reach, at, since)
             }
         }
     }

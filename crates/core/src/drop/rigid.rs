@@ -332,11 +332,8 @@ impl Bouncing<'_> {
         let arm = contact.arm;
         let inverse = self.body.top.moments().map(|moment| 1.0 / moment);
         let arm_in_space = attitude.rotate(arm);
-        let compliance = Compliance::of_body(
-            1.0,
-            &Symmetric::diagonal(inverse).turned(attitude),
-            arm_in_space,
-        );
+        let compliance =
+            Compliance::of_body(1.0, &Symmetric::turned(inverse, attitude), arm_in_space);
         let at_contact = velocity + attitude.rotate(spin.cross(arm)); // (7)
         let answer = match chance {
             Some(chance) => self.law.answer_drawn(&compliance, at_contact, chance)?,

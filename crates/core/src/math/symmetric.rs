@@ -93,18 +93,11 @@ impl Symmetric {
         }
     }
 
-    /// The matrix of this operation on vectors of the body, in the axes of space.
-    pub fn turned(&self, attitude: Quaternion) -> Self {
-        let back = attitude.inverse();
-        let [x, y, z] = UNITS.map(|unit| attitude.rotate(*self * back.rotate(unit)));
-        Self {
-            xx: x.x,
-            yy: y.y,
-            zz: z.z,
-            xy: 0.5 * (x.y + y.x),
-            xz: 0.5 * (x.z + z.x),
-            yz: 0.5 * (y.z + z.y),
-        }
+    /// The matrix in the axes of space of an operation that is diagonal, with these entries, in those of the body.
+    #[inline(always)]
+    pub fn turned([x, y, z]: [f64; 3], attitude: Quaternion) -> Self {
+        let along = |axis: usize, entry: f64| Self::square(attitude.rotate(UNITS[axis]), entry);
+        along(0, x) + along(1, y) + along(2, z)
     }
 
     /// Eigenvalues, and the rotation from the eigenvectors' axes to those of the matrix: Jacobi's method, which finds even small

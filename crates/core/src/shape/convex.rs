@@ -87,18 +87,22 @@ impl Convex {
         }
     }
 
-    /// The body in the axes of the surface.
+    /// The body in the axes of the surface, in `moved` where these are others.
     #[inline(always)]
-    pub fn own(&self, at: &Instant) -> Instant {
-        self.frame.map_or(*at, |frame| frame.own(at))
+    pub fn own<'a>(&self, at: &'a Instant, moved: &'a mut Instant) -> &'a Instant {
+        let Some(frame) = self.frame else { return at };
+        *moved = frame.own(at);
+        moved
     }
 
     /// The distance from the centre of mass to the lowest place, in the direction against `up`.
     pub fn support(&self, up: Vector) -> f64 {
-        let own = self.own(&Instant {
+        let at = Instant {
             up,
             ..Instant::default()
-        });
+        };
+        let mut moved = Instant::default();
+        let own = self.own(&at, &mut moved);
         self.surface.support(own.up) - own.height
     }
 }
