@@ -9,7 +9,7 @@ FUZZ ?= 300
 JOBS ?= 2
 CORE := $(shell find crates -name '*.rs' -o -name 'Cargo.toml') Cargo.toml Cargo.lock pyproject.toml
 
-.PHONY: help install pages paper rough calibrate slow onsets test fuzz hostile audit mutants test-arm test-web rust-tests bench-web look web docs wheel licences coverage lint lint-rust lint-python bench clean
+.PHONY: help install pages paper rough calibrate slow onsets test fuzz hostile audit mutants test-arm test-web rust-tests test-rust bench-web look web docs wheel licences coverage lint lint-rust lint-python bench clean
 
 help:  ## list the targets
 	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed 's/:.*##/\t/' | expand -t 12
@@ -49,16 +49,18 @@ lint-python: $(STAMP)
 	$(BIN)/mypy
 	$(BIN)/lint-imports
 
-# The package is built by one core; the other builds the Rust tests meanwhile. So are both languages checked side by side.
+# The package is built by one core; the other builds the Rust tests meanwhile. So are both languages checked, and the page beside the Rust tests.
 test:  ## every check: Rust format, clippy, Rust tests, ruff, mypy, the explorer, pytest
 	$(MAKE) --jobs=2 $(STAMP) rust-tests
 	$(MAKE) --jobs=2 lint
-	cargo test --workspace --locked
-	$(MAKE) test-web
+	$(MAKE) --jobs=2 test-rust test-web
 	$(BIN)/python -m pytest -n $(JOBS) --dist loadfile --no-loadscope-reorder
 
 rust-tests:
 	cargo test --workspace --locked --no-run
+
+test-rust:
+	cargo test --workspace --locked
 
 # The kept module and page must be of these sources: built anew here, they would pass where everybody else gets the old ones.
 test-web: $(STAMP) web/node_modules/.package-lock.json  ## the explorer: types, its engine beside the native one, the page in a real browser
