@@ -58,9 +58,9 @@ class Triangles(NamedTuple):
     def bend(self) -> Floats:
         """How far the function may be from what `parts` make of it.
 
-        Of a quadratic function these are second differences, 16 times less for 64 parts than for four. If
-        it is not quadratic, and has a kink for example, twice what the quadratic function is off at the
-        points inside is added: half of the most is what such a point has on the average.
+        Of a quadratic function these are second differences, 16 times less for 64 parts than for four. Where
+        it is not quadratic, and has a kink for example, the largest distance from the quadratic function at
+        the points inside is added twice, for between them it may be larger.
         """
         off = np.abs(self.values @ _OFF.T).max(axis=1)
         return np.asarray(np.where(self.level, 0.0625, 1.0) * self._second + 2.0 * off)
