@@ -59,7 +59,7 @@ pub use error::{Error, Value};
 pub use law::*;
 pub use math::{Quaternion, Symmetric, Vector};
 pub use memory::{collected, copied};
-pub use motion::{Rotation, State, Top};
+pub use motion::{Rotation, State, Top, Turn};
 pub use record::{Columns, PER_IMPACT, PER_PARTICLE, Records, Values, Variable, When};
 pub use shape::*;
 pub use simd::{Level, elementary};

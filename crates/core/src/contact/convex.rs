@@ -3,6 +3,7 @@
 use super::certify::{SHORTEST, TOUCHING};
 use super::plane::{Departure, Gap, Past, Step, first_root};
 use crate::math::Vector;
+use crate::motion::Turn;
 #[cfg(test)]
 use crate::shape::evaluations::{self, Evaluation};
 use crate::shape::{Band, Convex, ConvexSurface, Instant, Superellipsoid};
@@ -31,11 +32,11 @@ pub(super) trait Support {
         (at.height - size, at.rate - slope)
     }
 
-    /// The step of a part of this number and M, as [`crate::shape::Skin`]'s.
+    /// The step of a part of this number and bounds, as [`crate::shape::Skin`]'s.
     #[inline(always)]
     fn step(
         &self,
-        (part, bound): (usize, f64),
+        (part, bounds): (usize, Bounds),
         at: &Instant,
         departure: Option<Departure>,
         most: f64,
@@ -46,14 +47,14 @@ pub(super) trait Support {
             Some(left) if left.part == part => (0.0, left.speed),
             _ => now,
         };
-        let length = convex_root(self, (width.max(0.0), rate, bound), most);
+        let length = convex_root(self, (width.max(0.0), rate, bounds), most);
         Step {
             length,
             part,
             width,
             rate,
             closes: rate < 0.0 && length < most,
-            bound,
+            bound: bounds.up_to(length),
             alone: f64::INFINITY,
         }
     }
@@ -259,13 +260,44 @@ impl Support for SuperellipsoidSupport<'_> {
     }
 }
 
+/// Bounds M on −f″.
+#[derive(Clone, Copy)]
+pub(super) struct Bounds {
+    /// For so long the first of them holds.
+    near: f64,
+    first: f64,
+    whole: f64,
+}
+
+impl Bounds {
+    /// Of points up to `reach` from the centre of mass, with a ball of radius `inner` about it inside of the body.
+    #[inline(always)]
+    fn new(turn: &Turn, reach: f64, inner: f64) -> Self {
+        Self {
+            near: inner * turn.radian,
+            first: 1.0 + turn.across * reach,
+            whole: 1.0 + turn.whole * reach,
+        }
+    }
+
+    /// That which holds for a time.
+    #[inline(always)]
+    fn up_to(&self, time: f64) -> f64 {
+        if time <= self.near {
+            self.first
+        } else {
+            self.whole
+        }
+    }
+}
+
 impl Convex {
     /// As [`crate::shape::Skin`]'s.
     #[inline(always)]
     pub(super) fn step(
         &self,
         at: &Instant,
-        turn: f64,
+        turn: &Turn,
         departure: Option<Departure>,
         most: f64,
     ) -> Step {
@@ -273,15 +305,17 @@ impl Convex {
         evaluations::add(Evaluation::Support);
         let mut moved = Instant::default();
         let own = self.own(at, &mut moved);
-        self.surface.step(own, turn, departure, most)
+        let bounds = |reach: f64| Bounds::new(turn, reach, self.inner);
+        self.surface.step(own, bounds, departure, most)
     }
 
     /// As [`crate::shape::Skin`]'s.
     #[inline(always)]
-    pub(super) fn past(&self, part: usize, at: &Instant, turn: f64, since: f64) -> Past {
+    pub(super) fn past(&self, part: usize, at: &Instant, turn: &Turn, since: f64) -> Past {
         let mut moved = Instant::default();
+        let bound = |reach: f64| Bounds::new(turn, reach, self.inner).up_to(since);
         self.surface
-            .past(part, self.own(at, &mut moved), turn, since)
+            .past(part, self.own(at, &mut moved), bound, since)
     }
 
     #[inline(always)]
@@ -318,18 +352,24 @@ impl Convex {
 
 impl ConvexSurface {
     #[inline(always)]
-    fn step(&self, at: &Instant, turn: f64, departure: Option<Departure>, most: f64) -> Step {
+    fn step(
+        &self,
+        at: &Instant,
+        bounds: impl Fn(f64) -> Bounds,
+        departure: Option<Departure>,
+        most: f64,
+    ) -> Step {
         match self {
             Self::Ellipsoid(axes) => {
-                Length::of_ellipsoid(*axes, at).step((0, 1.0 + turn), at, departure, most)
+                Length::of_ellipsoid(*axes, at).step((0, bounds(1.0)), at, departure, most)
             }
             Self::Superellipsoid(body) => {
-                SuperellipsoidSupport::new(body, at).step((0, 1.0 + turn), at, departure, most)
+                SuperellipsoidSupport::new(body, at).step((0, bounds(1.0)), at, departure, most)
             }
             Self::Bands(bands) => {
                 let each = |(part, band): (usize, &Band)| {
-                    let bound = 1.0 + turn * band.reach;
-                    BandSupport::new(band, at).step((part, bound), at, departure, most)
+                    let bounds = bounds(band.reach);
+                    BandSupport::new(band, at).step((part, bounds), at, departure, most)
                 };
                 bands
                     .iter()
@@ -341,15 +381,15 @@ impl ConvexSurface {
     }
 
     #[inline(always)]
-    fn past(&self, part: usize, at: &Instant, turn: f64, since: f64) -> Past {
+    fn past(&self, part: usize, at: &Instant, bound: impl Fn(f64) -> f64, since: f64) -> Past {
         match self {
-            Self::Ellipsoid(axes) => Length::of_ellipsoid(*axes, at).past(1.0 + turn, at, since),
+            Self::Ellipsoid(axes) => Length::of_ellipsoid(*axes, at).past(bound(1.0), at, since),
             Self::Superellipsoid(body) => {
-                SuperellipsoidSupport::new(body, at).past(1.0 + turn, at, since)
+                SuperellipsoidSupport::new(body, at).past(bound(1.0), at, since)
             }
             Self::Bands(bands) => {
                 let band = &bands[part];
-                BandSupport::new(band, at).past(1.0 + turn * band.reach, at, since)
+                BandSupport::new(band, at).past(bound(band.reach), at, since)
             }
         }
     }
@@ -408,11 +448,17 @@ impl Step {
 #[inline(always)]
 fn convex_root<S: Support + ?Sized>(
     support: &S,
-    (width, rate, bound): (f64, f64, f64),
+    (width, rate, bounds): (f64, f64, Bounds),
     most: f64,
 ) -> f64 {
+    let mut bound = bounds.first;
+    let mut after = first_root(width, rate, bound);
+    if after.min(most) > bounds.near {
+        bound = bounds.whole;
+        after = first_root(width, rate, bound);
+    }
+    let after = after.min(most);
     let parabola = |s: f64| width + s * (rate - 0.5 * bound * s);
-    let after = first_root(width, rate, bound).min(most);
     #[cfg(test)]
     evaluations::add(Evaluation::Support);
     let beyond = support.beyond_tangent(after);

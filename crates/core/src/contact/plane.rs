@@ -1,7 +1,7 @@
 //! The first contact of any body with the plane, certified: the scalar twin of `lanes/`.
 //!
 //! With **n**(t) the plane normal in the axes of the body, a point **p** of a ball of radius r has the gap f = z + **n**·**p** − r. In flight
-//! |**n**″| ≤ cΩ², c = 1 + a/√3 ([`Top::acceleration`]), because **n**′ = **n** × **ω** and so **n**″ = **n**′ × **ω** + **n** × **ω**′, the
+//! |**n**″| ≤ cΩ², c = 1 + a/√3 ([`Turn`]), because **n**′ = **n** × **ω** and so **n**″ = **n**′ × **ω** + **n** × **ω**′, the
 //! acceleration of a material unit vector. So f″ ≥ −(1 + cΩ²|**p**|): the parabola of f, f′ and that bound M lies below f, and its first root
 //! is a step that cannot pass a contact.
 //!
@@ -9,6 +9,11 @@
 //! ≤ h(**v**) + R|**w**| with R the largest |**x**|. The gap is f = z − h(−**n**), and **n**(t + s) differs from **n** + s**n**′ by no more than
 //! cΩ²s²/2; hence f(t + s) ≥ z + v s − h(−**n** − s**n**′) − (1 + cΩ²R)s²/2. This lower bound is concave, too, and has one root s > 0 behind which
 //! it stays negative. It holds for rims, edges and flats alike.
+//!
+//! Most of **n**″ is along **n**: **n**″ = −|**n**′|²**n** + **T**, |**T**| ≤ τΩ² with τ = ½ + a/√3 ([`Turn`]). A point **x** of the body is g = −**n**·**x**
+//! below the centre of mass, and g″ = −|**n**′|²g − **T**·**x** ≤ τΩ²R while g ≥ 0. What touches first has g = z, which is no less than the radius r of
+//! any ball about the centre of mass inside of the body; as |g′| ≤ ΩR, it had g ≥ 0 in the time r/(ΩR) before. So in steps up to that, τ may
+//! stand for c.
 //!
 //! Steps to the first root of these bounds converge quadratically to the contact. The same bounds hold backward in time, with −f′ for f′ and −**n**′
 //! for **n**′, so that the search may look on behind a step: where f, f′ and f″ expect the contact, or else almost as far again. If the bound from
@@ -19,6 +24,7 @@
 
 use super::certify::{SHORTEST, TOUCHING};
 use crate::math::Vector;
+use crate::motion::Turn;
 #[cfg(test)]
 use crate::shape::evaluations::{self, Evaluation};
 use crate::shape::{ConvexSurface, Effort, Instant, Least, Point, Skin};
@@ -128,13 +134,13 @@ pub(super) fn first_root(width: f64, rate: f64, bound: f64) -> f64 {
 }
 
 impl Skin {
-    /// A step that passes no contact, no longer than `most` > 0. `turn` is cΩ²; `departure` holds at the beginning of a flight; `near` is a part
+    /// A step that passes no contact, no longer than `most` > 0. `departure` holds at the beginning of a flight; `near` is a part
     /// that may be the first, and no other touches for as long as it is alone.
     #[inline(always)]
     pub(crate) fn step(
         &self,
         at: &Instant,
-        turn: f64,
+        turn: &Turn,
         departure: Option<Departure>,
         near: Option<(usize, f64)>,
         most: f64,
@@ -145,7 +151,7 @@ impl Skin {
                     Some(left) if left.part == part => (0.0, left.speed),
                     _ => point.opening(at),
                 };
-                let bound = |reach: f64| 1.0 + turn * reach;
+                let bound = |reach: f64| 1.0 + turn.whole * reach;
                 // The parabola of the least gap, the least rate and the largest M of a node lies below those of all its balls.
                 let exceeds = |least: &Least, limit: f64| {
                     let below = limit * (least.rate - 0.5 * limit * bound(least.reach));
@@ -184,7 +190,7 @@ impl Skin {
                 let effort = Effort {
                     most,
                     enough: ENOUGH,
-                    short: SHORT * at.rate.abs() / (1.0 + turn),
+                    short: SHORT * at.rate.abs() / (1.0 + turn.whole),
                 };
                 let first = balls.cheapest(at, near.map(|near| near.0), effort, exceeds, cost);
                 found(first.place, first.cost, first.others)
@@ -203,14 +209,14 @@ impl Skin {
 
     /// When in the time `since` before this one a part can have touched.
     #[inline(always)]
-    pub(crate) fn past(&self, part: usize, at: &Instant, turn: f64, since: f64) -> Past {
+    pub(crate) fn past(&self, part: usize, at: &Instant, turn: &Turn, since: f64) -> Past {
         match self {
             Self::Points(balls) => {
                 #[cfg(test)]
                 evaluations::add(Evaluation::Gap);
                 let point = &balls.points()[part];
                 let (width, rate) = point.opening(at);
-                let bound = 1.0 + turn * f64::from(point.reach);
+                let bound = 1.0 + turn.whole * f64::from(point.reach);
                 let before = width - since * (rate + 0.5 * bound * since);
                 let gap = Gap {
                     width,
@@ -286,14 +292,21 @@ mod tests {
         Vector::new(2.0 * x - 1.0, 2.0 * y - 1.0, 2.0 * z - 1.0)
     }
 
-    /// Balls in a cube or on a sphere, near and far from each other, as many as are in one leaf or in a tree of ten levels.
+    /// Balls in a cube or on a sphere, near and far from each other, as many as are in one leaf or in a tree of ten levels, some among balls that
+    /// are much larger.
     fn balls(seed: u64, count: u64) -> Balls {
         let point = |i: u64| {
             let mut place = vector(seed, i) * 0.5;
             if seed.is_multiple_of(2) {
                 place = place * (0.9 / place.norm());
             }
-            Point::new(place, 0.1 * pair(seed, i + 100_000).0, i as usize)
+            let large = seed.is_multiple_of(5) && i.is_multiple_of(500);
+            let (place, size) = if large {
+                (place * 0.4, 0.6)
+            } else {
+                (place, 0.1)
+            };
+            Point::new(place, size * pair(seed, i + 100_000).0, i as usize)
         };
         Balls::new("spheres", (0..count).map(point).collect()).unwrap()
     }
@@ -333,10 +346,10 @@ mod tests {
                         turning: up.cross(vector(seed, 1_000_001)),
                         ..Instant::default()
                     };
-                    let turn = 2.0 * pair(seed, 7).0;
+                    let turn = &Turn::new(0.5, 2.0 * pair(seed, 7).0);
                     let length = |point: &Point| {
                         let (width, rate) = point.opening(&at);
-                        let bound = 1.0 + turn * f64::from(point.reach);
+                        let bound = 1.0 + turn.whole * f64::from(point.reach);
                         first_root(width.max(0.0), rate, bound)
                     };
                     let least = balls

@@ -41,19 +41,24 @@ pub(super) struct Bouncing<'a> {
     pub limits: Limits,
 }
 
-/// The search for the first contact of a flight, compiled for each SIMD level.
+/// A flight and the impact that ends it, compiled for each SIMD level.
 struct Flight<'a, 'b> {
     bouncing: &'a Bouncing<'b>,
     start: &'a RigidState,
     departure: Option<Departure>,
+    chance: Option<f64>,
 }
 
 impl WithSimd for Flight<'_, '_> {
-    type Output = Result<Contact, NoContact>;
+    type Output = Result<(Contact, Bounce), NoImpact>;
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, _: S) -> Self::Output {
-        self.bouncing.first_contact(self.start, self.departure)
+        let contact = self.bouncing.first_contact(self.start, self.departure)?;
+        match self.bouncing.collide(&contact, self.chance) {
+            Ok(bounce) => Ok((contact, bounce)),
+            Err(fault) => Err(NoImpact::Fault(fault)),
+        }
     }
 }
 
@@ -68,10 +73,11 @@ struct Contact {
     size: f64,
 }
 
-/// The outcome of a flight without a contact.
-enum NoContact {
+/// The outcome of a flight without an impact.
+enum NoImpact {
     Ends(StopReason),
     Unconverged,
+    Fault(Fault),
 }
 
 /// The outcome of an impact.
@@ -106,17 +112,15 @@ impl Bouncing<'_> {
                 bouncing: self,
                 start: &state,
                 departure,
+                chance: self.law.scatters().then(|| chance(impacts as u64)),
             };
-            let contact = match simd.vectorize(flight) {
-                Ok(contact) => contact,
-                Err(NoContact::Ends(reason)) => break reason,
-                Err(NoContact::Unconverged) => return Err(lost(impacts, None)),
+            let (contact, bounce) = match simd.vectorize(flight) {
+                Ok(impact) => impact,
+                Err(NoImpact::Ends(reason)) => break reason,
+                Err(NoImpact::Unconverged) => return Err(lost(impacts, None)),
+                Err(NoImpact::Fault(fault)) => return Err(lost(impacts, Some(Box::new(fault)))),
             };
             clock += contact.time;
-            let drawn = self.law.scatters().then(|| chance(impacts as u64));
-            let bounce = self
-                .collide(&contact, drawn)
-                .map_err(|fault| lost(impacts, Some(Box::new(fault))))?;
             self.report((particle, impacts, clock), &contact, &bounce, sink);
             (state, departure) = (bounce.after, Some(bounce.departure));
             impacts += 1;
@@ -146,15 +150,15 @@ impl Bouncing<'_> {
         &self,
         start: &RigidState,
         departure: Option<Departure>,
-    ) -> Result<Contact, NoContact> {
+    ) -> Result<Contact, NoImpact> {
         let body = self.body;
         let mut rotation = Rotation::new(body.top, start.attitude, start.spin);
-        let fastest = body.top.largest_spin(start.spin).sqrt();
-        let turn = body.top.acceleration(start.spin);
+        let turn = &body.top.turn(start.spin);
+        let fastest = turn.fastest;
         if let Some(left) = departure.filter(|left| left.speed <= 0.0)
             && self.rests(start, left)
         {
-            return Err(NoContact::Ends(StopReason::Collapse));
+            return Err(NoImpact::Ends(StopReason::Collapse));
         }
         // While the centre of mass is higher than the body reaches, nothing touches.
         let above = start.velocity.z * start.velocity.z + 2.0 * (start.height - 1.0);
@@ -177,7 +181,7 @@ impl Bouncing<'_> {
         let mut looks_on = looks_back;
         for _ in 0..MOST_STEPS {
             if fastest * time > RANGE {
-                return Err(NoContact::Ends(StopReason::NeverLands));
+                return Err(NoImpact::Ends(StopReason::NeverLands));
             }
             let (attitude, spin) = if fastest * (time - known.0).abs() <= SOON {
                 let (attitude, spin) = known.1;
@@ -193,7 +197,7 @@ impl Bouncing<'_> {
             let within =
                 |later: f64, alone: f64| later <= alone && fastest * (later - from).abs() <= FAR;
             let contact = |gap: Gap, certain: f64, alone: f64| {
-                let contact = from + gap.certainly_closes(certain - from, turn)?;
+                let contact = from + gap.certainly_closes(certain - from, turn.whole)?;
                 within(contact, alone).then_some(contact)
             };
             if let Some((part, alone)) = near.filter(|_| certain < time) {
@@ -205,12 +209,12 @@ impl Bouncing<'_> {
                 certain = time - ago;
                 let ahead = past.gap.closes();
                 let end = time + ahead;
-                if (1.0 + turn) * ahead * ahead <= INVISIBLE
+                if (1.0 + turn.whole) * ahead * ahead <= INVISIBLE
                     && (ahead < 0.0 || past.gap.rate < 0.0 && ahead <= LAST * end)
                     && end <= alone
                 {
                     let then = body.top.soon(attitude, spin, ahead);
-                    return Ok(self.land(start, end, part, then, turn));
+                    return Ok(self.land(start, end, part, then, turn.whole));
                 }
                 // Nothing more is to be known here where the contact is, or if there was one since `certain`.
                 if let Some(contact) = contact(past.gap, certain, alone) {
@@ -233,12 +237,12 @@ impl Bouncing<'_> {
             let square = step.length * step.length;
             if step.closes && step.bound * square <= INVISIBLE && step.length <= LAST * end {
                 // The body turns by as little, but where all of it is near its centre of mass.
-                let then = if turn * square <= INVISIBLE {
+                let then = if turn.whole * square <= INVISIBLE {
                     body.top.soon(attitude, spin, step.length)
                 } else {
                     rotation.at(end)
                 };
-                return Ok(self.land(start, end, step.part, then, turn));
+                return Ok(self.land(start, end, step.part, then, turn.whole));
             }
             certain = skip(end.max(time * (1.0 + f64::EPSILON)));
             let alone = time + step.alone;
@@ -262,7 +266,7 @@ impl Bouncing<'_> {
                 time = further;
             }
         }
-        Err(NoContact::Unconverged)
+        Err(NoImpact::Unconverged)
     }
 
     /// The body at a time of the flight from `start`.
@@ -322,6 +326,7 @@ impl Bouncing<'_> {
     }
 
     /// The motion after a contact; where ε_n scatters it is drawn with a uniform number.
+    #[inline(always)]
     fn collide(&self, contact: &Contact, chance: Option<f64>) -> Result<Bounce, Fault> {
         let RigidState {
             velocity,
@@ -558,7 +563,7 @@ mod tests {
                 let attitude = Quaternion::new(a - 0.5, b - 0.5, c - 0.5, d - 0.5).normalized();
                 let ((speed, time), (since, width)) = (uniform(4), uniform(5));
                 let mut rotation = Rotation::new(body.top, attitude, spin);
-                let turn = body.top.acceleration(spin);
+                let turn = &body.top.turn(spin);
                 let mut start = RigidState {
                     height: 0.0,
                     velocity: Vector::new(0.0, 0.0, -2.0 * speed),
@@ -583,7 +588,10 @@ mod tests {
                     let [before, here, after] = [-1e-4, 0.0, 1e-4].map(|s| gap(time + s));
                     let second = (before - 2.0 * here + after) * 1e8;
                     let error = (second - past.gap.acceleration).abs();
-                    assert!(error < 1e-4 * (1.0 + turn * turn), "{name}: {error}");
+                    assert!(
+                        error < 1e-4 * (1.0 + turn.whole * turn.whole),
+                        "{name}: {error}"
+                    );
                 }
                 if let Some(ago) = past.clear {
                     clear += 1;

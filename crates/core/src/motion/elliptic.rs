@@ -208,17 +208,6 @@ impl Elliptic {
                 c * double_cosh + s * double_sinh,
             )
         };
-        // −d ln ϑ₂(iη)/dη.
-        let mut sum = sinh / cosh;
-        let (mut power, mut s, mut c) = (square, 4.0 * double_sinh, 4.0 * double_cosh);
-        while power * c.abs() > 1e-18 {
-            sum += power / (1.0 - power) * s;
-            power *= square;
-            let (sinh, cosh) = next((s, c));
-            (s, c) = (-sinh, -cosh);
-        }
-        let turn = 0.5 * (momentum / j2 + rate * sum);
-
         // q to the powers n² and n(n + 1).
         let (mut squared, mut product) = (1.0, 1.0);
         let mut squares = [1.0; TERMS];
@@ -226,6 +215,9 @@ impl Elliptic {
         let (mut power, mut s, mut c, mut sign) = (1.0, sinh, cosh, 1.0);
         // ϑ₂, ϑ₃ and ϑ₄ of 0.
         let (mut second, mut third, mut fourth) = (1.0, 1.0, 1.0);
+        // ϑ₂(iη) and its derivative by η, of which no term is negative but by the sign of η.
+        let (mut value, mut slope) = (0.0, 0.0);
+        let mut odd = 1.0;
         let mut terms = 0;
         for n in 0..TERMS {
             if n > 0 {
@@ -246,6 +238,9 @@ impl Elliptic {
             let alternating = sign * product;
             sines[n] = [alternating, alternating * c];
             cosines[n] = [product, -alternating * s];
+            value += product * c;
+            slope += odd * (product * s);
+            odd += 2.0;
             terms = n + 1;
         }
         let mut found = Self {
@@ -255,7 +250,7 @@ impl Elliptic {
             energy: j1 * w1 * w1 + j2 * w2 * w2 + j3 * w3 * w3,
             rate,
             phase,
-            turn,
+            turn: 0.5 * (momentum / j2 + rate * (slope / value)),
             sizes: [
                 size1 * fourth / second,
                 size2 * third / second,

@@ -7,6 +7,7 @@ mod series;
 mod symmetric;
 mod top;
 
+pub use bounds::Turn;
 pub use rotation::Rotation;
 pub use symmetric::State;
 pub(crate) use symmetric::{

@@ -1,6 +1,6 @@
 //! The moments of inertia of a body, and what a free body does by Euler's equations.
 
-use super::bounds::{acceleration, asymmetry, largest_spin};
+use super::bounds::{Turn, asymmetry, largest_spin};
 use super::series::reach;
 use crate::Error;
 use crate::math::{Quaternion, Vector};
@@ -129,9 +129,9 @@ impl Top {
         largest_spin(self.moments, [spin.x, spin.y, spin.z])
     }
 
-    /// The largest acceleration of a point of the body in a flight, relative to the centre of mass and per distance from it.
-    pub fn acceleration(&self, spin: Vector) -> f64 {
-        acceleration(self.asymmetry, self.largest_spin(spin))
+    /// Bounds on the rotation in a flight.
+    pub fn turn(&self, spin: Vector) -> Turn {
+        Turn::new(self.asymmetry, self.largest_spin(spin))
     }
 }
 

@@ -11,6 +11,8 @@ pub(crate) struct Convex {
     /// None where its centre is the centre of mass, and its axes are the principal ones.
     pub frame: Option<Frame>,
     pub surface: ConvexSurface,
+    /// No more than the radius of the largest ball about the centre of mass inside of the body.
+    pub inner: f64,
 }
 
 /// A convex surface in its own axes.
@@ -58,6 +60,7 @@ impl Convex {
     pub fn new(surface: ConvexSurface) -> Self {
         Self {
             frame: None,
+            inner: surface.inner(),
             surface,
         }
     }
@@ -78,11 +81,13 @@ impl Convex {
                 ConvexSurface::Bands(bands.iter().map(moved).collect())
             }
         };
+        let centre = (shift + turn.rotate(centre)) / part;
         Self {
             frame: Some(Frame {
                 axes: (turn * axes).normalized(),
-                centre: (shift + turn.rotate(centre)) / part,
+                centre,
             }),
+            inner: (surface.inner() - centre.norm()).max(0.0),
             surface,
         }
     }
@@ -108,6 +113,15 @@ impl Convex {
 }
 
 impl ConvexSurface {
+    /// No more than the radius of the largest ball about the origin inside; 0 where that is not needed.
+    fn inner(&self) -> f64 {
+        match self {
+            Self::Ellipsoid([a, b, c]) => a.min(*b).min(*c),
+            Self::Superellipsoid(body) => body.inner(),
+            Self::Bands(_) => 0.0,
+        }
+    }
+
     fn support(&self, up: Vector) -> f64 {
         match self {
             Self::Ellipsoid([a, b, c]) => Vector::new(a * up.x, b * up.y, c * up.z).norm(),

@@ -229,6 +229,7 @@ impl Rigid {
         let Skin::Convex(Convex {
             surface: ConvexSurface::Bands(bands),
             frame,
+            ..
         }) = &self.skin
         else {
             return Vec::new();

@@ -136,6 +136,18 @@ impl Superellipsoid {
         (size, place)
     }
 
+    /// No more than the radius of the largest ball about the origin inside: the surface is outside of the ellipsoid, or of the octahedron, with
+    /// the same semi-axes.
+    pub fn inner(&self) -> f64 {
+        let [a, b, c] = self.semi_axes;
+        let least = a.min(b).min(c);
+        if self.dual.iter().all(|&p| p <= 2.0) {
+            least
+        } else {
+            least / 3.0_f64.sqrt()
+        }
+    }
+
     #[inline(always)]
     pub fn support(&self, u: Vector) -> f64 {
         self.farthest(u).0

@@ -1,9 +1,10 @@
 //! The balls of a body in a tree, so that one that is looked for costs what those near it cost.
 //!
-//! The balls lie in one array in the order of the tree's leaves. Node i of level d holds those from iN/4ᵈ to (i + 1)N/4ᵈ; its quarters are nodes
-//! 4i to 4i + 3 of the next level: halves of halves, each divided at the median of the longest side of what it holds. Of its balls, **p** and
-//! r, a node knows what bounds gap and rate of each of them: with **c** their middle, **u** = **c**/c, **p** − **c** = a**u** + **b**,
-//! **b** ⊥ **u**, and α < π/2 the angle from **u** to −**n**,
+//! The balls lie in one array in the order of the tree's leaves, behind the few that are much larger than the others, as a sphere is below its
+//! asperities: a node that had one would reach far beyond all else that it holds. Of the others, node i of level d holds those from iN/4ᵈ to
+//! (i + 1)N/4ᵈ; its quarters are nodes 4i to 4i + 3 of the next level: halves of halves, each divided at the median of the longest side of what
+//! it holds. Of its balls, **p** and r, a node knows what bounds gap and rate of each of them: with **c** their middle, **u** = **c**/c,
+//! **p** − **c** = a**u** + **b**, **b** ⊥ **u**, and α < π/2 the angle from **u** to −**n**,
 //!
 //! r − **n**·(**p** − **c**) = a cos α + r − **n**·**b** ≤ (a + r) cos α + r(1 − cos α) + b sin α.
 //!
@@ -18,12 +19,15 @@ use crate::simd::Pack;
 #[cfg(test)]
 use evaluations::Evaluation;
 use pulp::Scalar;
-use std::ops::Range;
 
 /// Most balls of a leaf.
 const LEAF: usize = 16;
+/// Balls are in front of the tree, and asked one by one, if they are more than so many times as large as all but [`LEAF`].
+const LARGE: f64 = 4.0;
 /// Most levels of a tree.
 const DEEPEST: usize = 16;
+/// Where so many nodes wait the search goes depth first.
+const CROWDED: usize = 32;
 /// The enlargement of a node's bounds, which are rounded to single precision, and the largest error of its cosine.
 const ROUNDED: f64 = 1e-6;
 const COSINE: f64 = 2e-7;
@@ -72,6 +76,8 @@ struct Quarters {
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Balls {
     points: Vec<Point>,
+    /// The number of those in front of the tree.
+    large: usize,
     /// Those of node i of level d have the number (4ᵈ − 1)/3 + i.
     quarters: Vec<Quarters>,
     depth: usize,
@@ -259,6 +265,20 @@ fn first(level: usize) -> usize {
     ((1 << (2 * level)) - 1) / 3
 }
 
+/// Puts the large in front, and returns how many there are.
+fn large_first(points: &mut [Point]) -> usize {
+    if points.len() <= LEAF {
+        return 0;
+    }
+    let order = |one: &Point, other: &Point| {
+        let sizes = other.radius.total_cmp(&one.radius);
+        sizes.then(one.number.cmp(&other.number))
+    };
+    let (larger, next, _) = points.select_nth_unstable_by(LEAF, order);
+    larger.sort_unstable_by(order);
+    larger.partition_point(|point| point.radius > LARGE * next.radius)
+}
+
 /// Divides balls at the median of their longest side, so many in front of it.
 fn divide(points: &mut [Point], front: usize) -> (&mut [Point], &mut [Point]) {
     let [least, most] = sides(points);
@@ -280,7 +300,8 @@ fn divide(points: &mut [Point], front: usize) -> (&mut [Point], &mut [Point]) {
 impl Balls {
     /// The balls in an order that depends on nothing but them; `what` is for the error.
     pub fn new(what: &'static str, mut points: Vec<Point>) -> Result<Self, Error> {
-        let count = points.len();
+        let large = large_first(&mut points);
+        let count = points.len() - large;
         let mut depth = 0;
         while LEAF << (2 * depth) < count {
             depth += 1;
@@ -291,7 +312,7 @@ impl Balls {
                 let (low, high) = range(count, level, i);
                 let ends = [1, 2, 3].map(|k| range(count, level + 1, 4 * i + k).0);
                 let [one, two, three] = ends.map(|end| end - low);
-                let (front, back) = divide(&mut points[low..high], two);
+                let (front, back) = divide(&mut points[large..][low..high], two);
                 let (a, b) = divide(front, one);
                 let (c, d) = divide(back, three - two);
                 quarters[first(level) + i] =
@@ -300,6 +321,7 @@ impl Balls {
         }
         Ok(Self {
             points,
+            large,
             quarters,
             depth,
         })
@@ -333,17 +355,20 @@ impl Balls {
             return best;
         }
         let limit = |best: f64| effort.limits(best).0;
-        if let Some(place) = near {
-            self.ask(&mut best, place..place + 1, limit, &cost);
-        }
+        self.ask(
+            &mut best,
+            near.into_iter().chain(0..self.large),
+            limit,
+            &cost,
+        );
         let turning = length(at.turning);
-        // Depth first, into the quarter that is lowest.
+        // Depth first, into the quarter that is lowest, or into one of its parent's siblings if that is lower.
         let all = Least {
             gap: f64::NEG_INFINITY,
             rate: f64::NEG_INFINITY,
             reach: f64::INFINITY,
         };
-        let mut waiting = [(all, 0_u32, 0_u32); 3 * DEEPEST + 1];
+        let mut waiting = [(all, 0_u32, 0_u32); CROWDED + 3 * DEEPEST + 1];
         let mut count = 1;
         while count > 0 {
             count -= 1;
@@ -353,15 +378,19 @@ impl Balls {
             }
             let (deep, i) = (level as usize, i as usize);
             if deep == self.depth {
-                let (low, high) = range(self.points.len(), deep, i);
-                self.ask(&mut best, low..high, limit, &cost);
+                let (low, high) = range(self.points.len() - self.large, deep, i);
+                self.ask(&mut best, self.large + low..self.large + high, limit, &cost);
                 continue;
             }
-            // The lowest is the last, which is looked into first.
             #[cfg(test)]
             evaluations::add(Evaluation::Quarters);
             let nodes = self.quarters[first(deep) + i].least(at, turning);
-            let lower = count;
+            // The last is looked into first.
+            let lower = if count < CROWDED {
+                count.saturating_sub(3)
+            } else {
+                count
+            };
             for k in 0..4 {
                 let [gap, rate, reach] =
                     [&nodes.gap, &nodes.rate, &nodes.reach].map(|four| four.as_slice()[k]);
@@ -385,7 +414,7 @@ impl Balls {
     fn ask(
         &self,
         best: &mut Cheapest,
-        places: Range<usize>,
+        places: impl Iterator<Item = usize>,
         limit: impl Fn(f64) -> f64,
         cost: &impl Fn(usize, &Point, f64) -> f64,
     ) {
