@@ -227,7 +227,7 @@ def test_bodies_that_have_an_axis_after_all(shape: str, law: str) -> None:
     """The closed form in θ, to the error that is stated."""
     body, same = SHAPES[shape]
     found, exact = first_impact(body, LAWS[law]), first_impact(same, LAWS[law], "isotropic")
-    assert found.cdf_error < 1e-3
+    assert found.cdf_error < 2e-3
     x = np.concatenate([np.linspace(*exact.support(), 500), exact.ppf(np.linspace(0.0, 1.0, 500))])
     assert np.abs(found.cdf(x) - exact.cdf(x)).max() < found.cdf_error
     assert found.support() == pytest.approx(exact.support(), abs=1e-9)

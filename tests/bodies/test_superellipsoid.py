@@ -116,7 +116,7 @@ def test_its_first_impact_from_rest_is_that_of_samples() -> None:
     tensor = rs.Superellipsoid(semi_axes=AXES, exponents=(4, 3)).inertia_tensor
     body = rs.Superellipsoid(semi_axes=AXES, exponents=(4, 3), inertia=tensor, centre=(3e-4, 2e-4, 1e-4))
     exact = rs.analytic.first_impact(body, law)
-    assert exact.cdf_error < 1e-3
+    assert exact.cdf_error < 2e-3
     for seed in (1, 2):
         found = rs.simulate(body, law, particles=4000, impacts=1, seed=seed).restitution.to_numpy().ravel()
         assert kstest(found, exact.cdf).pvalue > 1e-3

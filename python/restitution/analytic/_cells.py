@@ -5,20 +5,25 @@ touches, c the centre of a ball and r its radius, 0 for a vertex. On a flat tria
 sphere the support, extended to all vectors, is c·p + r|p|. Taken as linear there, it divides the triangle
 into convex cells, one for each element: for equal radii, and so for polyhedra, exactly. The error is at most
 (1 - |p|) |r_i - r_j| for two elements; elements that could touch within it are kept, so that no cell is
-missed, and the share of directions that it can assign to the wrong one is `Units.doubt`.
+missed, and `Units.cells` bounds the share of directions of each cell that it can assign to the wrong one.
 """
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import product
 from typing import TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
 
+from restitution.analytic._disc import Number
+from restitution.analytic._full_impulse import dot
 from restitution.analytic._orientation import Floats
-from restitution.bodies import RigidBody, farthest
+from restitution.analytic._taylor import over_greatest, value
+from restitution.bodies import Ellipsoid, Superellipsoid, outermost
 
 Ints: TypeAlias = NDArray[np.intp]
 
@@ -30,9 +35,21 @@ class Balls:
     centres: Floats
     radii: Floats
 
-    def contact(self, down: Floats, element: Ints) -> Floats:
-        """Return the point of each element that is farthest down."""
-        return np.asarray(self.centres[element] + self.radii[element, None] * down)
+    def contact(self, down: Sequence[Number], element: Ints) -> list[Number]:
+        """Return the point of each element that is farthest down, as components; those may be models."""
+        centres, radii = self.centres[element].T, self.radii[element]
+        if not radii.any():
+            return list(centres)
+        radii = radii * dot(down, down) ** -0.5
+        return [centre + radii * x for centre, x in zip(centres, down, strict=True)]
+
+    def halfway(self, one: Floats, two: Floats) -> Floats:
+        """Return directions between two."""
+        return unit(one + two)
+
+    def touching(self, corners: Floats) -> NDArray[np.bool_]:
+        """Say which corners of triangles, (units, 3, 3), are on which planes where contacts are singular."""
+        return np.zeros(corners.shape, dtype=bool)
 
     def lowest(self, down: Floats) -> Ints:
         """Return which element touches."""
@@ -43,13 +60,29 @@ class Balls:
 class Smooth(Balls):
     """A smooth convex body: one element, about which the support need not be known here."""
 
-    body: RigidBody
+    body: Ellipsoid | Superellipsoid
     axes: Floats  # principal ones, as columns
 
-    def contact(self, down: Floats, element: Ints) -> Floats:
+    def contact(self, down: Sequence[Number], element: Ints) -> list[Number]:
         """Return the point that is farthest down."""
-        found = farthest(self.body, np.reshape(down @ self.axes.T, (-1, 3)))
-        return np.reshape(found @ self.axes / self.body.compiled.farthest(), down.shape)
+        own = [dot(axis, down) for axis in self.axes]
+        sizes: Sequence[Number] = [abs(x) for x in own]
+        if min(getattr(self.body, "exponents", (2.0, 2.0))) < 2.0:  # high powers
+            sizes = over_greatest(sizes, self.body.semi_axes)
+        found = outermost(self.body, sizes)
+        point = [
+            np.sign(value(x)) * y - z for x, y, z in zip(own, found, self.body.centre_of_mass, strict=True)
+        ]
+        return [dot(axis, point) / self.body.compiled.farthest() for axis in self.axes.T]
+
+    def halfway(self, one: Floats, two: Floats) -> Floats:
+        """Return directions between two, half-way on |A d| = 1, where normals of a needle are as contacts."""
+        own = [np.linalg.norm(d @ self.axes.T * self.body.semi_axes, axis=-1)[:, None] for d in (one, two)]
+        return unit(one / own[0] + two / own[1])
+
+    def touching(self, corners: Floats) -> NDArray[np.bool_]:
+        """Say which corners are on which planes of symmetry, where powers of components are singular."""
+        return np.asarray(isinstance(self.body, Superellipsoid) & (np.abs(corners @ self.axes.T) < 1e-12))
 
 
 @dataclass(frozen=True)
@@ -62,27 +95,30 @@ class Units:
     element: Ints
 
     @classmethod
-    def all(cls, body: Balls) -> Units:
-        """Make the faces of an icosahedron."""
-        from scipy.spatial import ConvexHull
-
-        golden = 0.5 * (1.0 + 5.0**0.5)
-        points = np.array([(0.0, a, b * golden) for a in (-1.0, 1.0) for b in (-1.0, 1.0)])
-        points = np.concatenate([np.roll(points, shift, axis=1) for shift in range(3)])
-        corners = points[ConvexHull(points).simplices] / np.hypot(1.0, golden)
+    def all(cls, body: Balls, axes: Floats) -> Units:
+        """Make the faces of an octahedron with its corners on the axes of the body, which are rows."""
+        signs = np.array(list(product((-1.0, 1.0), repeat=3)))
         number = len(body.radii)
-        pairs = np.repeat(np.arange(20), number), np.tile(np.arange(number), 20)
-        return cls(body, corners, *pairs)._pruned()
+        pairs = np.repeat(np.arange(8), number), np.tile(np.arange(number), 8)
+        return cls(body, signs[:, :, None] * axes, *pairs)._pruned()
 
     def split(self) -> Units:
-        """Divide each into four."""
-        a, b, c = np.moveaxis(self.corners, 1, 0)
-        ab, bc, ca = map(unit, (a + b, b + c, c + a))
-        corners = np.concatenate(
-            [np.stack(one, axis=1) for one in ((a, ab, ca), (ab, b, bc), (ca, bc, c), (ab, bc, ca))]
-        )
-        owner = np.concatenate([self.owner + k * len(a) for k in range(4)])
-        return Units(self.body, corners, owner, np.tile(self.element, 4))._pruned()
+        """Divide each into four; one that touches a single plane into three, by a cut along that plane."""
+        touching = self.body.touching(self.corners)
+        mine, number = touching.any(axis=2), touching.sum(axis=(1, 2))
+        cut = (touching.any(axis=1).sum(axis=1) == 1) & (number < 3)
+        alone = np.argmax(mine == (number == 1)[:, None], axis=1)  # the corner by itself
+        order = (np.where(cut, alone, 0)[:, None] + np.arange(3)) % 3
+        a, b, c = np.moveaxis(np.take_along_axis(self.corners, order[:, :, None], 1), 1, 0)
+        ab, bc, ca = (self.body.halfway(*side) for side in ((a, b), (b, c), (c, a)))
+        bc = np.where(cut[:, None], c, bc)
+        fine = [(a, ab, ca), (ab, b, bc), (ab, bc, ca), (ca[~cut], bc[~cut], c[~cut])]
+        corners = np.concatenate([np.stack(one, axis=1) for one in fine])
+        four = ~cut[self.owner]
+        last = 3 * len(a) + (np.cumsum(~cut) - 1)[self.owner[four]]
+        owner = np.concatenate([*(self.owner + k * len(a) for k in range(3)), last])
+        element = np.concatenate([np.tile(self.element, 3), self.element[four]])
+        return Units(self.body, corners, owner, element)._pruned()
 
     def only(self, which: NDArray[np.bool_]) -> Units:
         """Take some of them."""
@@ -116,28 +152,35 @@ class Units:
         """Share of all directions."""
         return solid_angle(self.corners) / (4.0 * np.pi)
 
-    @cached_property
-    def doubt(self) -> Floats:
-        """Share of all directions that may be given to the wrong element."""
-        doubt = np.zeros(len(self.owner))
-        for best in self._best:
-            gap = self.supports[best] - self.supports
-            width = np.maximum(np.ptp(gap, axis=1), np.finfo(float).tiny)
-            doubt = np.maximum(doubt, np.minimum(1.0, 2.0 * self._slack(best) / width))
-        return self.share * np.minimum(1.0, np.bincount(self.owner, doubt, len(self.corners)))
+    def cells(self) -> tuple[Floats, Ints, Floats]:
+        """Return the cells as flat triangles, (cells, 3, 3), the pair of each, and its share in doubt.
 
-    def cells(self) -> tuple[Floats, Ints]:
-        """Return the cells as flat triangles, (cells, 3, 3), and the pair of each."""
+        That is the share of directions in a cell for which the support of another element may be greater.
+        """
         weights = np.broadcast_to(np.eye(3), (len(self.owner), 3, 3))
         pair = np.arange(len(self.owner))
-        for k in range(int(np.diff(self.first).max())):
-            other = self.first[self.owner[pair]] + k
-            there = (other < self.first[self.owner[pair] + 1]) & (other != pair)
-            gap = self.supports[pair[there]] - self.supports[other[there]]
-            cut, origin = clipped(weights[there], np.einsum("tak,tk->ta", weights[there], gap))
+        most = int(np.diff(self.first).max())
+        for k in range(most):
+            there, gap, _ = self._lead(weights, pair, k)
+            cut, origin = clipped(weights[there], gap)
             weights = np.concatenate([weights[~there], cut])
             pair = np.concatenate([pair[~there], pair[there][origin]])
-        return weights @ self.corners[self.owner[pair]], pair
+        doubt = np.zeros(len(pair))
+        for k in range(most if np.ptp(self.body.radii) > 0.0 else 0):
+            there, gap, error = self._lead(weights, pair, k)
+            doubt[there] += _share_below(gap, error)
+        doubt /= self._distance[self.owner[pair]] ** 3  # a flat area has at most so many more directions
+        return weights @ self.corners[self.owner[pair]], pair, np.minimum(doubt, 1.0)
+
+    def _lead(self, weights: Floats, pair: Ints, k: int) -> tuple[NDArray[np.bool_], Floats, Floats]:
+        """Return which cells have a k-th other element, its lag at corners, and how much less it may be."""
+        other = self.first[self.owner[pair]] + k
+        there = (other < self.first[self.owner[pair] + 1]) & (other != pair)
+        mine, other = pair[there], other[there]
+        gap = self.supports[mine] - self.supports[other]
+        radii = self.body.radii[self.element]
+        error = (radii[mine] - radii[other]) * (1.0 - self._distance[self.owner[mine]])
+        return there, np.einsum("tak,tk->ta", weights[there], gap), error
 
     @cached_property
     def _best(self) -> list[Ints]:
@@ -151,12 +194,16 @@ class Units:
             found.append(best[self.owner])
         return found
 
+    @cached_property
+    def _distance(self) -> Floats:
+        """Distance of each flat triangle from the centre of the sphere."""
+        a, b, c = np.moveaxis(self.corners, 1, 0)
+        return np.asarray(np.abs(np.einsum("uk,uk->u", unit(np.cross(b - a, c - a)), a)))
+
     def _slack(self, best: Ints) -> Floats:
         """Bound the error of the difference of two supports."""
-        a, b, c = np.moveaxis(self.corners, 1, 0)
-        distance = np.einsum("uk,uk->u", unit(np.cross(b - a, c - a)), a)
         radii = self.body.radii[self.element]
-        return np.asarray(np.abs(radii[best] - radii) * (1.0 - np.abs(distance))[self.owner])
+        return np.asarray(np.abs(radii[best] - radii) * (1.0 - self._distance)[self.owner])
 
     def _pruned(self) -> Units:
         """Leave out elements that cannot touch, because another one is farther down everywhere."""
@@ -180,6 +227,16 @@ def solid_angle(corners: Floats) -> Floats:
     volume = np.einsum("tk,tk->t", a, np.cross(b - a, c - a))  # without cancellation
     dots = (np.einsum("tk,tk->t", x, y) for x, y in ((a, b), (b, c), (c, a)))
     return np.asarray(2.0 * np.arctan2(np.abs(volume), 1.0 + sum(dots)))
+
+
+def _share_below(corners: Floats, most: Floats) -> Floats:
+    """Return the share of a flat triangle in which a linear function, not negative, is below a bound."""
+    low, middle, high = np.sort(corners, axis=1).T
+    width, below, above = (np.maximum(x, 1e-300) for x in (high - low, middle - low, high - middle))
+    at = np.clip(most, low, high)
+    rising = (at - low) / width * ((np.minimum(at, middle) - low) / below)
+    falling = 1.0 - (high - at) / width * ((high - np.maximum(at, middle)) / above)
+    return np.where(most <= np.maximum(low, 0.0), 0.0, np.where(at < middle, rising, falling))
 
 
 def clipped(triangles: Floats, values: Floats) -> tuple[Floats, Ints]:

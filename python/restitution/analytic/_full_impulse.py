@@ -1,112 +1,242 @@
 """ε of an impact from rest of any rigid body, under every law: the response of the full matrix K.
 
-Per unit mass K = 1 + W Wᵀ, the rows of W being (r × e)/√J for the axes e of the plane and its normal n, r
-from the centre of mass to the contact, J the principal moments over m. The contact comes down along the
-normal, so that the impulse P per mass and speed gives ε = P_n - 1. docs/first-impact.md derives what P is:
+Per unit mass K = 1 + N with N = [r]ᵀ J⁻¹ [r], r from the centre of mass to the contact, J the principal
+moments over m. The contact comes down along the normal n, so that the impulse P per mass and speed gives
+ε = P_n - 1. docs/first-impact.md derives what P is:
 
 * "free": P_n = (1 + ε_n)/K_nn;
 * "stuck": P_n = (1 + ε_n)/(K_nn - K_nt K_tt⁻¹ K_tn);
 * "sliding", beyond the cone of friction of a stuck contact, in a direction s that stays as it begins,
   (μ K_tt + λ) s = K_tn with λ > 0 and |s| = 1: P_n = (1 + ε_n)/(K_nn - μ K_nt s);
 * "part", of Chatterjee and Ruina: P = (1 + e) P_I + κ (P_II - P_I) with κ = 1 + e_t, or less, on the cone.
+
+All follow from K_nn, the determinant of K, trace and determinant of K_tt, |K_tn|² and |adj(K_tt) K_tn|². By
+adj K = 1 + tr N - N + c r rᵀ and det K = 1 + tr N + c r², c = rᵀJr/det J, they are sums of products of the
+components of r and n, which may be numbers or Taylor models.
 """
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
+from numpy.typing import NDArray
 
+from restitution.analytic._disc import Number
 from restitution.analytic._impulse import Impulse
 from restitution.analytic._orientation import Floats
+from restitution.analytic._taylor import Taylor, bounds, value
 
 _NEWTON = 60
 
 
 @dataclass(frozen=True)
 class Response:
-    """What a law makes of K, at many contacts side by side."""
+    """What a law makes of K, at many contacts or on many triangles side by side."""
 
     impulse: Impulse
-    normal: Floats | float  # ε_n
-    nn: Floats
-    tangential: tuple[Floats, Floats, Floats, Floats, Floats]  # K_xx, K_yy, K_xy, K_nx and K_ny
+    normal: Number  # ε_n
+    moments: Floats
+    lever: Sequence[Number]  # r and, of any length, n, in principal axes
+    down: Sequence[Number]
 
-    @classmethod
-    def of(
-        cls, impulse: Impulse, normal: Floats | float, moments: Floats, lever: Floats, up: Floats
-    ) -> Response:
-        """Make K from levers r and normals n in principal axes, shape (contacts, 3)."""
-        n, x, y = (np.cross(lever, axis) / np.sqrt(moments) for axis in (up, *_across(up)))
-        tangential = 1.0 + _dot(x, x), 1.0 + _dot(y, y), _dot(x, y), _dot(n, x), _dot(n, y)
-        return cls(impulse, normal, 1.0 + _dot(n, n), tangential)
+    @cached_property
+    def nn(self) -> Number:
+        return 1.0 + dot(self.down, self._push) * self._scale
 
-    def margin(self) -> Floats:
+    @cached_property
+    def margin(self) -> Number:
         """Positive where a contact that sticks, or the part of it, would be outside of the friction cone."""
-        stuck, along = self._sticking()
+        friction, kept, turned = self.impulse.friction, self.impulse.kept, self._turned**0.5
         if self.impulse.modes()[0] == "stuck":
-            return along - self.impulse.friction
-        kept, more = self.impulse.kept, 1.0 / stuck - 1.0 / self.nn
-        return kept * along / stuck - self.impulse.friction * ((1.0 + self.normal) / self.nn + kept * more)
+            return turned / self._minor - friction  # |P_t|/P_n - μ
+        return kept * (turned / self._whole - friction * self._more) - friction * self._free
 
-    def restitution(self) -> Floats:
+    def restitution(self) -> Number:
         """Return ε."""
         within, beyond = self.impulse.modes()
-        gain, nn = 1.0 + self.normal, self.nn
         if within == "free":
-            return gain / nn - 1.0
-        stuck, along = self._sticking()
-        if beyond == "sliding":
-            friction, slips = self.impulse.friction, self.margin() > 0.0
+            return self._free - 1.0
+        if within == "stuck":
+            found = (1.0 + self.normal) * self._stuck
         else:
-            friction, slips = 0.0, np.zeros(nn.shape, dtype=bool)
-        if within == "part":
-            more = 1.0 / stuck - 1.0 / nn
-            kept = np.full(nn.shape, self.impulse.kept)
-            limit = friction * gain / nn / np.where(slips, along / stuck - friction * more, 1.0)
-            return gain / nn + np.where(slips, limit, kept) * more - 1.0
-        if slips.any():
-            stuck[slips] = nn[slips] - friction * _dragged(friction, *(k[slips] for k in self.tangential))
-        return gain / stuck - 1.0
+            found = self._free + self.impulse.kept * self._more
+        if beyond == "sliding":
+            slips = value(self.margin) > 0.0
+            if slips.any():
+                found[slips] = self._beyond(slips)
+        return found - 1.0
 
-    def _sticking(self) -> tuple[Floats, Floats]:
-        """Return K_nn - K_nt K_tt⁻¹ K_tn, and |P_t|/P_n = |K_tt⁻¹ K_tn|."""
-        xx, yy, xy, nx, ny = self.tangential
-        whole = xx * yy - xy * xy
-        x, y = (yy * nx - xy * ny) / whole, (xx * ny - xy * nx) / whole
-        return self.nn - nx * x - ny * y, np.hypot(x, y)
+    def raised(self) -> Number:
+        """Return by how much ε is more than ε_n."""
+        return self.restitution() - self.normal
+
+    def kink(self) -> Floats:
+        """Bound by how much ε is off on triangles that are not beyond the limit of friction, or not all.
+
+        The model is that of the side of the centroid; m is what the margin is at most on the other side. With
+        M the margin, "part" is off by M (P_II - P_I)/R with R = (M + μ P_I)/κ. A contact that sticks has
+        1/P_n = D, one that slides D + λ K_nt K_tt⁻¹ s. By `_push_aside` |λ| ≤ |M| |K_tn|/|K_tt⁻¹ K_tn|, so
+        that the denominators differ by |M| |K_tn| at most.
+        """
+        within, beyond = self.impulse.modes()
+        if beyond != "sliding":
+            return np.zeros(1)
+        low, high = bounds(self.margin)
+        most = np.where(value(self.margin) > 0.0, -low, high)
+        if within == "stuck":
+            apart, least = most * bounds(self._across)[1] ** 0.5, 1.0 / bounds(self._stuck)[1]
+            off = bounds(1.0 + self.normal)[1] * apart / (least * np.maximum(least - apart, 0.0))
+        else:
+            room = self.impulse.friction * bounds(self._free)[0] - most
+            off = most * self.impulse.kept * bounds(self._more)[1] / np.maximum(room, 0.0)
+        return np.where(most <= 0.0, 0.0, off)
+
+    def _beyond(self, slips: NDArray[np.bool_]) -> Number:
+        """Return P_n where contacts slide."""
+        friction = self.impulse.friction
+        if self.impulse.modes()[0] == "part":
+            free, more, turned, whole = self._rows(slips, self._free, self._more, self._turned, self._whole)
+            return free + friction * (free * more) / (turned**0.5 / whole - friction * more)
+        sums = self._trace, self._minor, self._across, self._turned, self._mixed
+        gain, nn, trace, minor, across, turned, mixed = self._rows(slips, 1.0 + self.normal, self.nn, *sums)
+        push, off = _push_aside(friction, trace, minor, across, turned, mixed)
+        drag = friction * mixed + across * push
+        below = nn - friction * drag / (friction * (friction * minor + trace * push) + push * push)
+        if isinstance(below, Taylor):  # it is not less than K_nn - μ |K_tn|, also where a contact sticks
+            below.rest = below.rest + off
+            half = 0.5 * friction * np.sqrt(bounds(across)[1])
+            flat = ~(below.rest < half)
+            below[flat] = (nn + Taylor(Taylor.constant(-half).terms, half))[flat]
+        return gain / below
+
+    @staticmethod
+    def _rows(rows: NDArray[np.bool_], *values: Number) -> list[Number]:
+        return [x if isinstance(x, float) else x[rows] for x in values]
+
+    @cached_property
+    def _scale(self) -> Number:
+        return 1.0 / dot(self.down, self.down)
+
+    @cached_property
+    def _push(self) -> Sequence[Number]:
+        """N n."""
+        arm = cross(self.lever, self.down)
+        return cross([a / moment for a, moment in zip(arm, self.moments, strict=True)], self.lever)
+
+    @cached_property
+    def _sums(self) -> tuple[Number, Number, Number]:
+        """Return tr N, c and det K."""
+        squares, inverse = [r * r for r in self.lever], 1.0 / self.moments
+        trace = dot(squares, inverse.sum() - inverse)
+        solid = dot(squares, inverse.prod() / inverse)
+        return trace, solid, 1.0 + trace + solid * sum(squares)
+
+    @property
+    def _whole(self) -> Number:
+        return self._sums[2]
+
+    @cached_property
+    def _bent(self) -> tuple[Number, Sequence[Number]]:
+        """Return c (r·n)², and by how much adj(K) n is less than (1 + tr N) n."""
+        reach = dot(self.lever, self.down)
+        push = self._sums[1] * reach
+        return push * reach, [a - push * r for a, r in zip(self._push, self.lever, strict=True)]
+
+    @cached_property
+    def _minor(self) -> Number:
+        """The determinant of K_tt, n·adj(K) n."""
+        return 2.0 + self._sums[0] - self.nn + self._bent[0] * self._scale
+
+    @property
+    def _trace(self) -> Number:
+        """Of K_tt."""
+        return 3.0 + self._sums[0] - self.nn
+
+    @cached_property
+    def _aside(self) -> tuple[Sequence[Number], Sequence[Number]]:
+        """Return K_tn and adj(K_tt) K_tn, turned by a right angle and as long as the square of n."""
+        return cross(self.down, self._push), cross(self.down, self._bent[1])
+
+    @cached_property
+    def _across(self) -> Number:
+        """|K_tn|²."""
+        return dot(self._aside[0], self._aside[0]) * self._scale**2.0
+
+    @cached_property
+    def _turned(self) -> Number:
+        """|adj(K_tt) K_tn|²."""
+        return dot(self._aside[1], self._aside[1]) * self._scale**2.0
+
+    @property
+    def _mixed(self) -> Number:
+        """K_nt adj(K_tt) K_tn."""
+        return dot(self._aside[0], self._aside[1]) * self._scale**2.0
+
+    @cached_property
+    def _free(self) -> Number:
+        return (1.0 + self.normal) / self.nn
+
+    @cached_property
+    def _stuck(self) -> Number:
+        return self._minor / self._whole
+
+    @cached_property
+    def _more(self) -> Number:
+        return self._stuck - 1.0 / self.nn
 
 
-def _dragged(friction: float, xx: Floats, yy: Floats, xy: Floats, nx: Floats, ny: Floats) -> Floats:
-    """Return K_nt s of a contact that slides from rest.
+def _push_aside(
+    friction: float, trace: Number, minor: Number, across: Number, turned: Number, mixed: Number
+) -> tuple[Number, Floats | float]:
+    """Return λ of contacts that slide from rest, and by how much K_nn - μ K_nt s may be off with it.
 
-    |(μ K_tt + λ)⁻¹ K_tn| falls with λ from more than 1 at 0. One over it is concave, so that Newton's steps
-    come to 1 from below.
+    The length of w = (μ K_tt + λ)⁻¹ K_tn is √N/D, N and D quadratic in λ. D/√N rises with λ > -μ, for the
+    eigenvalues of K_tt are 1 at least; it is concave, and comes to rise as λ/|K_tn|, so that it rises no less
+    anywhere. Newton's steps come to 1 from below, and any other λ is off by |D/√N - 1| |K_tn| at most. The
+    derivative of K_nt w is -w².
     """
-    middle, half = 0.5 * (xx + yy), np.hypot(0.5 * (xx - yy), xy)
-    turn = 0.5 * np.arctan2(2.0 * xy, xx - yy)
-    cosine, sine = np.cos(turn), np.sin(turn)
-    first, second = (cosine * nx + sine * ny) ** 2, (cosine * ny - sine * nx) ** 2
-    one, two = friction * (middle + half), friction * (middle - half)
-    push = np.maximum(np.sqrt(first + second) - one, 0.0)  # a lower bound
+
+    def forms(push: Number, *of: Number) -> tuple[Number, Number]:
+        trace, minor, across, turned, mixed = of
+        square = friction * (friction * turned + 2.0 * mixed * push) + across * (push * push)
+        return square, friction * (friction * minor + trace * push) + push * push
+
+    models = trace, minor, across, turned, mixed
+    sums = trace, minor, across, turned, mixed = tuple(map(value, models))
+    largest = 0.5 * (trace + np.sqrt(np.maximum(trace * trace - 4.0 * minor, 0.0)))
+    push = np.maximum(np.sqrt(across) - friction * largest, 0.0)  # a lower bound
     for _ in range(_NEWTON):
-        a, b = one + push, two + push
+        square, whole = forms(push, *sums)
+        rise, steep = friction * mixed + across * push, friction * trace + 2.0 * push
         with np.errstate(divide="ignore", invalid="ignore"):
-            square = first / a**2 + second / b**2
-            step = square * (np.sqrt(square) - 1.0) / (first / a**3 + second / b**3)
+            step = square * (np.sqrt(square) - whole) / (steep * square - rise * whole)
         push, last = push + step, push
-        if np.all(np.abs(push - last) <= 1e-15 * (one + push)):
+        if np.all(np.abs(push - last) <= 1e-15 * (friction * trace + push)):
             break
-    return first / (one + push) + second / (two + push)
+    if not isinstance(models[-1], Taylor):
+        return push, 0.0
+    slope, found = 2.0 * (rise - whole * steep), Taylor.constant(push)
+    for _ in range(3):  # each step gives another order of the polynomial
+        square, whole = forms(found, *models)
+        found = found - (square - whole * whole) / slope
+    found = Taylor(found.terms, np.zeros_like(push))
+    square, whole = forms(found, *models)
+    apart, root = (bounds(x) for x in (square - whole * whole, whole))  # N - D² is small, and D more than 0
+    apart, least = np.abs(apart).max(axis=0), root[0]
+    root = np.sqrt(least * least - apart)
+    off = apart / (root * (root + least)) * np.sqrt(bounds(models[2])[1])
+    off = np.where(bounds(found)[0] - off > -friction, off, np.inf)
+    return found, friction * (1.0 + apart / (least * least)) * off
 
 
-def _across(up: Floats) -> tuple[Floats, Floats]:
-    """Return two directions in the plane."""
-    least = np.eye(3)[np.argmin(np.abs(up), axis=-1)]
-    one = np.cross(up, least)
-    one /= np.linalg.norm(one, axis=-1, keepdims=True)
-    return one, np.cross(up, one)
+def dot(one: Sequence[Number], two: Sequence[Number]) -> Number:
+    """Return the scalar product of vectors, by their components."""
+    return one[0] * two[0] + one[1] * two[1] + one[2] * two[2]
 
 
-def _dot(one: Floats, two: Floats) -> Floats:
-    return np.asarray(np.einsum("...i,...i", one, two))
+def cross(one: Sequence[Number], two: Sequence[Number]) -> list[Number]:
+    """Return the vector product."""
+    return [one[i] * two[j] - one[j] * two[i] for i, j in ((1, 2), (2, 0), (0, 1))]

@@ -8,7 +8,7 @@ nearly level in 64, of the quadratic function through its six values.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache
 from typing import NamedTuple
 
@@ -19,14 +19,17 @@ from scipy.interpolate import CubicHermiteSpline
 from restitution.analytic._cells import Ints
 from restitution.analytic._orientation import Floats
 from restitution.analytic._panels import gauss, solve
+from restitution.analytic._taylor import Taylor, monomials
 
-_NODES = 257
-_HALVINGS = 10
-_TOLERANCE = 2e-6
-_BLOCK = 1 << 21
+_NODES = 1025
+_ROUNDS = 3
+_MOST = 8
+_TOLERANCE = 4e-6
+_NARROWEST = 1e-200
+_BLOCK = 1 << 16
 _LEVEL = 0.02
-POINTS = np.concatenate([np.eye(3), 0.5 * (np.eye(3) + np.roll(np.eye(3), 1, 1)), 0.5 * np.eye(3) + 1 / 6])
-"""Where a function is sampled: the corners, the middles of the sides, and inside, each as three weights."""
+POINTS = np.concatenate([np.eye(3), 0.5 * (np.eye(3) + np.roll(np.eye(3), 1, 1))])
+"""Where a function is sampled: the corners and the middles of the sides, each as three weights."""
 
 
 class Triangles(NamedTuple):
@@ -34,54 +37,58 @@ class Triangles(NamedTuple):
 
     unit: Ints  # to which each belongs
     share: Floats
-    values: Floats  # at `POINTS`, (triangles, 9)
+    values: Floats  # at `POINTS`, (triangles, 6)
     middle: Floats  # the share that counts for each middle of a side, (triangles, 3)
     alone: Floats  # 1 where the function is one number, else 0
+    off: Floats  # how far the function may be from the quadratic one through the values
+    uneven: Floats  # how much of a share there may be more on a part of a triangle than on a flat one
+    doubt: Floats  # the share that may have another function
 
     def only(self, rows: NDArray[np.bool_]) -> Triangles:
         """Take some of them."""
-        return Triangles(
-            self.unit[rows], self.share[rows], self.values[rows], self.middle[rows], self.alone[rows]
-        )
+        return Triangles._make(part[rows] for part in self)
 
     def joined(self, other: Triangles) -> Triangles:
         """Append others."""
-        return Triangles(
-            np.concatenate([self.unit, other.unit]),
-            np.concatenate([self.share, other.share]),
-            np.concatenate([self.values, other.values]),
-            np.concatenate([self.middle, other.middle]),
-            np.concatenate([self.alone, other.alone]),
-        )
+        return Triangles._make(np.concatenate(pair) for pair in zip(self, other, strict=True))
 
     @property
     def bend(self) -> Floats:
-        """How far the function may be from what `parts` make of it.
-
-        Of a quadratic function these are second differences, 16 times less for 64 parts than for four. Where
-        it is not quadratic, and has a kink for example, the largest distance from the quadratic function at
-        the points inside is added twice, for between them it may be larger.
-        """
-        off = np.abs(self.values @ _OFF.T).max(axis=1)
-        return np.asarray(np.where(self.level, 0.0625, 1.0) * self._second + 2.0 * off)
+        """Bound how far the function is from what `parts` make of it."""
+        return np.asarray(np.where(self.level, 1.0 / 64.0, 0.25) * self._second + self.off)
 
     @property
     def level(self) -> NDArray[np.bool_]:
         """Where the function is nearly at an extreme, and linear parts would have to be many."""
-        return np.asarray(self._second > _LEVEL * np.ptp(self.values, axis=1))
+        off = 0.25 * self._second
+        return np.asarray((off > _LEVEL * np.ptp(self.values, axis=1)) & (off > self.off))
 
     @property
     def _second(self) -> Floats:
-        a, b, c, ab, bc, ca = self.values[:, :6].T
+        """Bound how far the quadratic function through the values is from the linear one.
+
+        With second differences δ at the middles it is off by 4 Σ δ_ij x_i x_j at weights x. Let a be the
+        greatest |δ| and c the least; with a in place of the third this is no more than 4a²/(4a - c), and that
+        no more than a + c/3. Parts with sides of 1/n have δ/n².
+        """
+        a, b, c, ab, bc, ca = self.values.T
         off = np.abs([ab - 0.5 * (a + b), bc - 0.5 * (b + c), ca - 0.5 * (c + a)])
-        return np.asarray(0.25 * np.maximum(off.max(axis=0), off.sum(axis=0) / 2.25))
+        return np.asarray(off.max(axis=0) + off.min(axis=0) / 3.0)
+
+    def uneven_at(self, nodes: Floats) -> Floats:
+        """Return how much the distribution function may be off for what is uneven, between each two nodes."""
+        wide, ends = self._second + self.off, len(nodes)
+        first = np.searchsorted(nodes, self.values[:, :3].min(axis=1) - wide, "right")
+        last = np.searchsorted(nodes, self.values[:, :3].max(axis=1) + wide)
+        begin, end = (np.bincount(at, self.uneven, ends + 2) for at in (first, np.maximum(first, last) + 1))
+        return np.maximum(np.cumsum(begin - end)[1:ends], 0.0)
 
     def parts(self) -> tuple[Floats, Floats, Floats]:
         """Return parts of the triangles: values at the corners, ascending, share and bend."""
         found = []
         for rows, fine in ((~self.level, _quadratic(2)), (self.level, _quadratic(8))):
             basis, corners = fine
-            values = (self.values[rows, :6] @ basis.T)[:, corners].reshape(-1, 3)
+            values = (self.values[rows] @ basis.T)[:, corners].reshape(-1, 3)
             number = len(corners)
             found.append(
                 (
@@ -95,7 +102,7 @@ class Triangles(NamedTuple):
 
     def mean(self, function: Callable[[Floats], Floats]) -> float:
         """Return the mean of a function of the values, by the rule of the middles."""
-        return float(np.sum(self.middle * function(self.values[:, 3:6])))
+        return float(np.sum(self.middle * function(self.values[:, 3:])))
 
 
 @dataclass(frozen=True)
@@ -116,36 +123,47 @@ class Table:
         place = float(found.values[atom].max()) if size else np.nan  # a mean could be beyond all
         rest = found.only(~atom)
         parts, weight, wide = rest.parts()
-        middles = np.sort(rest.values[:, 3:6], axis=None)
+        middles = np.sort(rest.values[:, 3:], axis=None)
         even = middles[np.linspace(0, len(middles) - 1, _NODES).astype(int)] if len(middles) else middles
         nodes = np.unique(np.clip(np.concatenate([np.linspace(*support, _NODES), even]), *support))
-        below, density = _summed(nodes, parts, weight)
-        new, between = 0.5 * (nodes[1:] + nodes[:-1]), 0.0
-        for left in reversed(range(_HALVINGS)):
-            curve = cls(nodes, below, density, 0.0, (place, size)).curve
-            new_below, new_density = _summed(new, parts, weight)
-            off = np.abs(curve(new) - new_below)
-            order = np.argsort(np.concatenate([nodes, new]), kind="stable")
-            nodes = np.concatenate([nodes, new])[order]
-            below, density = np.append(below, new_below)[order], np.append(density, new_density)[order]
-            rough = np.searchsorted(nodes, new[off > _TOLERANCE]) if left else np.empty(0, dtype=int)
-            between = max(between, float(np.max(off[(off <= _TOLERANCE) | (left == 0)], initial=0.0)))
-            new = np.unique(0.5 * (nodes[rough, None] + nodes[rough[:, None] + [-1, 1]]))
-            new = np.setdiff1d(new, nodes)
-            if not new.size:
+        for left in reversed(range(_ROUNDS)):
+            below, density, rough = _summed(nodes, parts, weight)
+            number = np.clip(np.ceil(np.sqrt(rough / _TOLERANCE)), 1, _MOST).astype(int)
+            if not left or number.max() == 1:
                 break
-        _, blurred = _summed(nodes, parts + wide[:, None] * [-1.0, 0.0, 1.0], weight * wide)
-        return cls(nodes, below, density, float(blurred.max()) + between, (place, size))
+            step = np.arange(number.sum()) - np.repeat(np.cumsum(number) - number, number)
+            step = step * np.repeat(np.diff(nodes) / number, number)
+            nodes = np.append(np.repeat(nodes[:-1], number) + step, nodes[-1])
+        table = cls(nodes, below, density, 0.0, (place, size))
+        shifted = (_summed(nodes, parts + sign * wide[:, None], weight) for sign in (-1.0, 1.0))
+        (most, _, above), (least, _, under) = shifted
+        more, less = (np.maximum(gap[1:], gap[:-1]) for gap in (most - below, below - least))
+        uneven = rest.uneven_at(nodes)
+        off = np.maximum(more + above, less + under) + table._bend + uneven
+        ends = most[0] + uneven[0], 1.0 - size - least[-1] + uneven[-1]  # where the curve has nothing left
+        return replace(table, error=float(max(off.max(), *ends)))
 
     @cached_property
-    def curve(self) -> CubicHermiteSpline:
-        """The cubic, its slopes small enough for it to rise.
+    def _slopes(self) -> Floats:
+        """Slopes at the nodes, small enough for the curve to rise.
 
         F. N. Fritsch, R. E. Carlson, SIAM J. Numer. Anal. 17, 238 (1980).
         """
         rise = np.maximum(np.diff(self.below), 0.0) / np.diff(self.nodes)
         most = 3.0 * np.minimum(np.append(rise, rise[-1]), np.append(rise[0], rise))
-        return CubicHermiteSpline(self.nodes, self.below, np.minimum(self.density, most))
+        return np.asarray(np.minimum(self.density, most))
+
+    @property
+    def _bend(self) -> Floats:
+        """How far the curve is from linear between each two nodes: u(1 - u)² is 4/27 at most."""
+        step = np.diff(self.nodes)
+        off = np.abs([slope * step - np.diff(self.below) for slope in (self._slopes[1:], self._slopes[:-1])])
+        return np.asarray(off.sum(axis=0) * 4.0 / 27.0)
+
+    @cached_property
+    def curve(self) -> CubicHermiteSpline:
+        """The cubic."""
+        return CubicHermiteSpline(self.nodes, self.below, self._slopes)
 
     def probability(self, x: Floats, *, above: bool = False) -> Floats:
         """Return the probability of values up to x, or above it."""
@@ -189,8 +207,25 @@ def _six(weights: Floats) -> Floats:
     return np.stack(corner + middle, axis=1)
 
 
-_OFF = np.concatenate([-_six(POINTS[6:].T), np.eye(3)], axis=1)
-"""Of the nine values, by how much those inside are more than the quadratic function."""
+def apart(model: Taylor, values: Floats) -> Floats:
+    """Bound how far a function is from the quadratic one through its values at `POINTS`.
+
+    It is within a bound of its model, and the quadratic function through what the model is off at the points
+    within 5/3 of that, the constant of Lebesgue. The quadratic function through a cubic form is off by
+    Σ α_ij x_i x_j (x_i - x_j) + β x_1 x_2 x_3; the products beside α add up to less than 0.118.
+    """
+    cubic = np.abs(_CUBIC @ model.terms[6:])
+    off = np.abs(model.at(POINTS) - values).max(axis=1)
+    return np.asarray(model.rest + 0.118 * cubic[:3].max(axis=0) + cubic[3] / 27.0 + 5.0 / 3.0 * off)
+
+
+_CUBIC = np.concatenate(
+    [
+        0.5 * monomials(np.roll(np.eye(3), 1, axis=1) - np.eye(3)),
+        [3.0, 3.0, 3.0, -12.0, -12.0, -12.0] @ monomials(POINTS)[None],
+    ]
+)[:, 6:]
+"""Of the coefficients of a cubic form, α from its values along the sides, and β from those at the points."""
 
 
 @lru_cache(maxsize=2)
@@ -207,29 +242,40 @@ def _quadratic(number: int) -> tuple[Floats, Ints]:
     return basis, np.array([[place[at] for at in part] for part in parts])
 
 
-def _summed(nodes: Floats, parts: Floats, weight: Floats) -> tuple[Floats, Floats]:
-    """Return weighted sums of triangular distributions at nodes, and their densities."""
+def _summed(nodes: Floats, parts: Floats, weight: Floats) -> tuple[Floats, Floats, Floats]:
+    """Return weighted sums of triangular distributions at nodes, and their densities.
+
+    The third result bounds how far the sum is from linear between each two nodes: for each distribution that
+    is no more than what it rises there, or a quarter of the interval times the range of its density, or an
+    eighth of the square of the interval times the greatest derivative of the density.
+    """
     low, middle, high = parts.T
+    step, ends = np.diff(nodes), len(nodes)
     start, stop = np.searchsorted(nodes, low, "right"), np.searchsorted(nodes, high, "left")
-    width, least = high - low, np.minimum(middle - low, high - middle)
-    span = nodes[-1] - nodes[0]
-    wide = (stop - start > 8) & (least > 0.05 * width) & (width > 1e-3 * span)
-    below, density = _cumulated(nodes, parts[wide], weight[wide])
+    wide = (stop - start > 8) & (np.minimum(middle - low, high - middle) > 1e-4 * (nodes[-1] - nodes[0]))
+    below, density, curved = _cumulated(nodes, parts[wide], weight[wide])
+    rough = 0.125 * step**2 * curved
     low, middle, high, weight = low[~wide], middle[~wide], high[~wide], weight[~wide]
-    start, stop = start[~wide], stop[~wide]
-    below += np.cumsum(np.bincount(stop, weight, len(nodes) + 1))[:-1]
+    start, stop = np.maximum(start[~wide] - 1, 0), np.minimum(stop[~wide] + 1, ends)
+    below += np.cumsum(np.bincount(stop, weight, ends + 1))[:-1]
     for node, part in _pairs(start, stop):
-        x, w = nodes[node], weight[part]
-        a, b, c = low[part], middle[part], high[part]
-        rising = x < b
-        side = np.where(rising, x - a, c - x)
-        slope = 2.0 * w * side / ((c - a) * np.where(rising, b - a, c - b))
-        below += np.bincount(node, np.where(rising, 0.5 * slope * side, w - 0.5 * slope * side), len(nodes))
-        density += np.bincount(node, slope, len(nodes))
-    return below, density
+        x, w, a, b, c = nodes[node], weight[part], low[part], middle[part], high[part]
+        rising = (x < b) | ((x <= a) & (a < c))
+        side = np.maximum(np.where(rising, x - a, c - x), 0.0)
+        peak = 2.0 * w / np.maximum(c - a, _NARROWEST)
+        slope = peak * (side / np.maximum(np.where(rising, b - a, c - b), _NARROWEST))
+        found = np.where(rising, 0.5 * slope * side, w - 0.5 * slope * side)
+        below += np.bincount(node, found, ends)
+        density += np.bincount(node, slope, ends)
+        same = np.flatnonzero(part[1:] == part[:-1])
+        up, down = np.where(rising, slope, peak), np.where(rising, 0.0, peak - slope)
+        range_ = np.maximum(np.diff(up), np.diff(down))[same]
+        at = node[same]
+        rough += np.bincount(at, np.minimum(np.diff(found)[same], 0.25 * step[at] * range_), ends - 1)
+    return below, density, rough
 
 
-def _cumulated(nodes: Floats, parts: Floats, weight: Floats) -> tuple[Floats, Floats]:
+def _cumulated(nodes: Floats, parts: Floats, weight: Floats) -> tuple[Floats, Floats, Floats]:
     """Sum up distributions that are wide, so that little is lost where changes of slope are summed first."""
     knots, x = parts - nodes[0], nodes - nodes[0]
     a, b, c = knots.T
@@ -239,7 +285,16 @@ def _cumulated(nodes: Floats, parts: Floats, weight: Floats) -> tuple[Floats, Fl
     none, one, two = (
         np.cumsum(np.bincount(place, (change * knots**k).ravel(), len(nodes) + 1))[:-1] for k in range(3)
     )
-    return 0.5 * (x * x * none - 2.0 * x * one + two), x * none - one
+    first, bend, last = place.reshape(-1, 3).T  # a side counts for all intervals in which a part of it is
+    curved = sum(
+        np.bincount(start, size, len(nodes) + 1) - np.bincount(stop + 1, size, len(nodes) + 2)[:-1]
+        for start, stop, size in ((first, bend, up), (bend, last, down))
+    )
+    return (
+        0.5 * (x * x * none - 2.0 * x * one + two),
+        x * none - one,
+        np.maximum(np.cumsum(curved)[1 : len(nodes)], 0.0),
+    )
 
 
 def _pairs(start: Ints, stop: Ints) -> Iterator[tuple[Ints, Ints]]:

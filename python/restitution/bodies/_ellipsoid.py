@@ -1,5 +1,6 @@
 """Ellipsoids and superellipsoids, and points of smooth surfaces."""
 
+from collections.abc import Sequence
 from typing import Annotated, Any
 
 import numpy as np
@@ -101,18 +102,19 @@ class Superellipsoid(Matter):
 
 
 _STEP = 1e-5
+_LEAST = 1e-280
+"""Added to what is 0 at a pole, so that it has a power."""
 
 
 def farthest(body: RigidBody, normals: FloatArray) -> FloatArray:
     """Return the points farthest along unit vectors, from the centre of mass, in m; shape (n, 3).
 
-    Of an ellipsoid in closed form. Others have the gradient of the support function h, by differences: to
-    1e-9 where the surface is smooth.
+    Of ellipsoids and superellipsoids in closed form. Others have the gradient of the support function h, by
+    differences: to 1e-9 where the surface is smooth.
     """
-    if isinstance(body, Ellipsoid):
-        axes = np.array(body.semi_axes)
-        size = np.linalg.norm(normals * axes, axis=1, keepdims=True)
-        return np.asarray(normals * axes**2 / size - body.centre_of_mass)
+    if isinstance(body, Ellipsoid | Superellipsoid):
+        found = np.transpose(outermost(body, list(np.abs(normals).T)))
+        return np.asarray(np.sign(normals) * found - body.centre_of_mass)
 
     def h(vectors: FloatArray) -> FloatArray:
         size = np.linalg.norm(vectors, axis=1)
@@ -120,3 +122,23 @@ def farthest(body: RigidBody, normals: FloatArray) -> FloatArray:
 
     changes = [h(normals + _STEP * axis) - h(normals - _STEP * axis) for axis in np.eye(3)]
     return np.stack(changes, axis=1) / (2.0 * _STEP)
+
+
+def outermost(body: Ellipsoid | Superellipsoid, normal: Sequence[Any]) -> list[Any]:
+    """Return the point of the surface with this normal, of any length, in the octant of positive components.
+
+    The support is ((|ax|^q + |by|^q)^(p/q) + |cz|^p)^(1/p), p and q being n/(n - 1) of the exponents n, and
+    the point its gradient. Components may be of any kind that adds, multiplies and has powers.
+    """
+    axes = np.asarray(body.semi_axes)
+    p, q = (n / (n - 1.0) for n in getattr(body, "exponents", (2.0, 2.0)))
+    size = axes / axes.max()
+    x, y, z = (a * u for a, u in zip(size, normal, strict=True))
+    across = x**q + y**q + _LEAST
+    whole = (across ** (p / q) + z**p) ** (1.0 / p - 1.0)
+    side = across ** (p / q - 1.0) * whole
+    return [
+        axes[0] * (x ** (q - 1.0) * side),
+        axes[1] * (y ** (q - 1.0) * side),
+        axes[2] * (z ** (p - 1.0) * whole),
+    ]
