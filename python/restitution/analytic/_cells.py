@@ -81,8 +81,9 @@ class Smooth(Balls):
         return unit(one / own[0] + two / own[1])
 
     def touching(self, corners: Floats) -> NDArray[np.bool_]:
-        """Say which corners are on which planes of symmetry, where powers of components are singular."""
-        return np.asarray(isinstance(self.body, Superellipsoid) & (np.abs(corners @ self.axes.T) < 1e-12))
+        """Say which corners are on which planes of symmetry, where components have powers of less than 2."""
+        sharp = max(getattr(self.body, "exponents", (0.0, 0.0))) > 1.5
+        return np.asarray(sharp & (np.abs(corners @ self.axes.T) < 1e-12))
 
 
 @dataclass(frozen=True)

@@ -7,7 +7,7 @@ nearly level in 64, of the quadratic function through its six values.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache
 from typing import NamedTuple
@@ -26,7 +26,7 @@ _ROUNDS = 3
 _MOST = 8
 _TOLERANCE = 4e-6
 _NARROWEST = 1e-200
-_BLOCK = 1 << 16
+_BLOCK = 1 << 14  # parts, so that their values stay in a cache
 _LEVEL = 0.02
 POINTS = np.concatenate([np.eye(3), 0.5 * (np.eye(3) + np.roll(np.eye(3), 1, 1))])
 """Where a function is sampled: the corners and the middles of the sides, each as three weights."""
@@ -249,62 +249,70 @@ def _summed(nodes: Floats, parts: Floats, weight: Floats) -> tuple[Floats, Float
     is no more than what it rises there, or a quarter of the interval times the range of its density, or an
     eighth of the square of the interval times the greatest derivative of the density.
     """
-    low, middle, high = parts.T
+    if len(weight) > _BLOCK:
+        blocks = (slice(i, i + _BLOCK) for i in range(0, len(weight), _BLOCK))
+        sums = zip(*(_summed(nodes, parts[i], weight[i]) for i in blocks), strict=True)
+        below, density, rough = (np.sum(one, axis=0) for one in sums)
+        return below, density, rough
     step, ends = np.diff(nodes), len(nodes)
-    start, stop = np.searchsorted(nodes, low, "right"), np.searchsorted(nodes, high, "left")
-    wide = (stop - start > 8) & (np.minimum(middle - low, high - middle) > 1e-4 * (nodes[-1] - nodes[0]))
-    below, density, curved = _cumulated(nodes, parts[wide], weight[wide])
-    rough = 0.125 * step**2 * curved
-    low, middle, high, weight = low[~wide], middle[~wide], high[~wide], weight[~wide]
-    start, stop = np.maximum(start[~wide] - 1, 0), np.minimum(stop[~wide] + 1, ends)
-    below += np.cumsum(np.bincount(stop, weight, ends + 1))[:-1]
-    for node, part in _pairs(start, stop):
-        x, w, a, b, c = nodes[node], weight[part], low[part], middle[part], high[part]
-        rising = (x < b) | ((x <= a) & (a < c))
-        side = np.maximum(np.where(rising, x - a, c - x), 0.0)
-        peak = 2.0 * w / np.maximum(c - a, _NARROWEST)
-        slope = peak * (side / np.maximum(np.where(rising, b - a, c - b), _NARROWEST))
-        found = np.where(rising, 0.5 * slope * side, w - 0.5 * slope * side)
-        below += np.bincount(node, found, ends)
-        density += np.bincount(node, slope, ends)
-        same = np.flatnonzero(part[1:] == part[:-1])
-        up, down = np.where(rising, slope, peak), np.where(rising, 0.0, peak - slope)
-        range_ = np.maximum(np.diff(up), np.diff(down))[same]
-        at = node[same]
-        rough += np.bincount(at, np.minimum(np.diff(found)[same], 0.25 * step[at] * range_), ends - 1)
+    place = np.searchsorted(nodes, parts)  # nodes that are less than each corner
+    below = np.cumsum(np.bincount(place[:, 2], weight, ends + 1))[:-1]
+    density, rough = np.zeros(ends), np.zeros(ends - 1)
+    (a, b, c), corners = parts.T, place.T
+    left, right = (np.maximum(side, _NARROWEST) for side in (b - a, c - b))
+    peak = 2.0 * weight / np.maximum(c - a, _NARROWEST)
+    each = np.stack([a, c, left, right, weight, 0.5 * peak * (b - a), peak])
+
+    def at(node: Ints, rows: NDArray[np.bool_]) -> tuple[Floats, Floats, Floats]:
+        """Return distributions at a node of each, and by how much their densities have risen and fallen."""
+        a, c, left, right, w, rise, peak = each[:, rows]
+        x = nodes[node[rows]]
+        up, level = np.clip((x - a) / left, 0.0, 1.0), np.clip((c - x) / right, 0.0, 1.0)
+        return rise * up * up + (w - rise) * (1.0 - level * level), peak * up, peak * (1.0 - level)
+
+    for k, (foot, width, sign) in enumerate(((a, left, 1.0), (c, right, -1.0))):
+        first, last = corners[k], corners[k + 1] - 1  # nodes on a side; all intervals but those of corners
+        rows = first < last
+        curve, base = sign * peak[rows] / width[rows], k * weight[rows]
+        value, slope, bend = _over_nodes(nodes, first[rows], last[rows], foot[rows], curve, base)
+        below, density, rough = below + value, density + slope, rough + 0.125 * step**2 * np.abs(bend[:-1])
+        rows = first <= last
+        value, up, down = at(last, rows)
+        below += np.bincount(last[rows], value, ends)
+        density += np.bincount(last[rows], up - down, ends)
+    for k, node in enumerate(corners):
+        rows = (node > 0) & (node < ends) & np.all(node != corners[:k], axis=0)
+        (low, *less), (high, *more) = at(node - 1, rows), at(node, rows)
+        here = node[rows] - 1
+        range_ = np.maximum(*(y - x for x, y in zip(less, more, strict=True)))
+        rough += np.bincount(here, np.minimum(high - low, 0.25 * step[here] * range_), ends - 1)
     return below, density, rough
 
 
-def _cumulated(nodes: Floats, parts: Floats, weight: Floats) -> tuple[Floats, Floats, Floats]:
-    """Sum up distributions that are wide, so that little is lost where changes of slope are summed first."""
-    knots, x = parts - nodes[0], nodes - nodes[0]
-    a, b, c = knots.T
-    up, down = 2.0 * weight / ((c - a) * (b - a)), 2.0 * weight / ((c - a) * (c - b))
-    change = np.stack([up, -up - down, down], axis=1)
-    place = np.searchsorted(x, knots.ravel())
-    none, one, two = (
-        np.cumsum(np.bincount(place, (change * knots**k).ravel(), len(nodes) + 1))[:-1] for k in range(3)
-    )
-    first, bend, last = place.reshape(-1, 3).T  # a side counts for all intervals in which a part of it is
-    curved = sum(
-        np.bincount(start, size, len(nodes) + 1) - np.bincount(stop + 1, size, len(nodes) + 2)[:-1]
-        for start, stop, size in ((first, bend, up), (bend, last, down))
-    )
-    return (
-        0.5 * (x * x * none - 2.0 * x * one + two),
-        x * none - one,
-        np.maximum(np.cumsum(curved)[1 : len(nodes)], 0.0),
-    )
+def _over_nodes(nodes: Floats, first: Ints, last: Ints, foot: Floats, curve: Floats, base: Floats) -> Floats:
+    """Sum up base + curve (x - foot)²/2, each from one node to before another, and two derivatives.
 
-
-def _pairs(start: Ints, stop: Ints) -> Iterator[tuple[Ints, Ints]]:
-    """Go through the nodes that are inside of each part, in blocks."""
-    inside = np.maximum(stop - start, 0)
-    end = np.cumsum(inside)
-    first = 0
-    while first < len(end):
-        done = end[first - 1] if first else 0
-        last = max(first + 1, int(np.searchsorted(end, done + _BLOCK)))
-        part = np.repeat(np.arange(first, last), inside[first:last])
-        yield start[part] + np.arange(len(part)) - (end - inside)[part] + done, part
-        first = last
+    In blocks of 1, 2, 4, ... nodes, of which few make up any range: so no number of parts in which all nodes
+    are takes long, and nothing cancels.
+    """
+    levels = [nodes[:: 1 << k] for k in range(len(nodes).bit_length() + 1)]
+    sums = []
+    for x in levels:
+        total = np.zeros((3, len(x)))
+        for rows, block in ((first % 2 > 0, first), (last % 2 > 0, last - 1)):
+            at = block[rows]
+            far = x[at] - foot[rows]
+            slope = curve[rows] * far
+            terms = base[rows] + 0.5 * slope * far, slope, curve[rows]
+            total += np.stack([np.bincount(at, term, len(x)) for term in terms])
+        sums.append(total)
+        first, last = (first + 1) // 2, last // 2
+        rows = first < last
+        first, last = first[rows], last[rows]
+        foot, curve, base = foot[rows], curve[rows], base[rows]
+    found = np.zeros((3, 1))
+    for x, total in zip(reversed(levels), reversed(sums), strict=True):
+        far = x - np.repeat(x[::2], 2)[: len(x)]
+        value, slope, bend = np.repeat(found, 2, axis=1)[:, : len(x)]
+        found = total + np.stack([value + (slope + 0.5 * bend * far) * far, slope + bend * far, bend])
+    return found
