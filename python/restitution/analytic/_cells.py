@@ -20,7 +20,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from restitution.analytic._disc import Number
-from restitution.analytic._full_impulse import dot
+from restitution.analytic._full_impulse import cross, dot
 from restitution.analytic._orientation import Floats
 from restitution.analytic._taylor import over_greatest, value
 from restitution.bodies import Ellipsoid, Superellipsoid, outermost
@@ -35,13 +35,17 @@ class Balls:
     centres: Floats
     radii: Floats
 
-    def contact(self, down: Sequence[Number], element: Ints) -> list[Number]:
-        """Return the point of each element that is farthest down, as components; those may be models."""
-        centres, radii = self.centres[element].T, self.radii[element]
+    def contact(self, down: Sequence[Number], element: Ints) -> tuple[list[Number], list[Number]]:
+        """Return the point of each element that is farthest down, and its vector product with that direction.
+
+        All are components, which may be models.
+        """
+        centres, radii = list(self.centres[element].T), self.radii[element]
+        arm = cross(centres, down)
         if not radii.any():
-            return list(centres)
+            return centres, arm
         radii = radii * dot(down, down) ** -0.5
-        return [centre + radii * x for centre, x in zip(centres, down, strict=True)]
+        return [centre + radii * x for centre, x in zip(centres, down, strict=True)], arm
 
     def halfway(self, one: Floats, two: Floats) -> Floats:
         """Return directions between two."""
@@ -63,8 +67,8 @@ class Smooth(Balls):
     body: Ellipsoid | Superellipsoid
     axes: Floats  # principal ones, as columns
 
-    def contact(self, down: Sequence[Number], element: Ints) -> list[Number]:
-        """Return the point that is farthest down."""
+    def contact(self, down: Sequence[Number], element: Ints) -> tuple[list[Number], list[Number]]:
+        """Return the point that is farthest down, and its vector product with that direction."""
         own = [dot(axis, down) for axis in self.axes]
         sizes: Sequence[Number] = [abs(x) for x in own]
         if min(getattr(self.body, "exponents", (2.0, 2.0))) < 2.0:  # high powers
@@ -73,7 +77,8 @@ class Smooth(Balls):
         point = [
             np.sign(value(x)) * y - z for x, y, z in zip(own, found, self.body.centre_of_mass, strict=True)
         ]
-        return [dot(axis, point) / self.body.compiled.farthest() for axis in self.axes.T]
+        lever = [dot(axis, point) / self.body.compiled.farthest() for axis in self.axes.T]
+        return lever, cross(lever, down)
 
     def halfway(self, one: Floats, two: Floats) -> Floats:
         """Return directions between two, half-way on |A d| = 1, where normals of a needle are as contacts."""

@@ -10,9 +10,9 @@ moments over m. The contact comes down along the normal n, so that the impulse P
   (μ K_tt + λ) s = K_tn with λ > 0 and |s| = 1: P_n = (1 + ε_n)/(K_nn - μ K_nt s);
 * "part", of Chatterjee and Ruina: P = (1 + e) P_I + κ (P_II - P_I) with κ = 1 + e_t, or less, on the cone.
 
-All follow from K_nn, the determinant of K, trace and determinant of K_tt, |K_tn|² and |adj(K_tt) K_tn|². By
-adj K = 1 + tr N - N + c r rᵀ and det K = 1 + tr N + c r², c = rᵀJr/det J, they are sums of products of the
-components of r and n, which may be numbers or Taylor models.
+All follow from K_nn, trace and determinant of K_tt, K_nt adj(K_tt) K_tn, |K_tn|² and |adj(K_tt) K_tn|². By
+adj K = 1 + tr N - N + c r rᵀ, c = rᵀJr/det J, they are sums of products of the components of r, n and r × n,
+which may be numbers or Taylor models. The last three are small where r and n are nearly along each other.
 """
 
 from __future__ import annotations
@@ -41,10 +41,11 @@ class Response:
     moments: Floats
     lever: Sequence[Number]  # r and, of any length, n, in principal axes
     down: Sequence[Number]
+    arm: Sequence[Number]  # r × n, which where a ball touches does not depend on its radius
 
     @cached_property
     def nn(self) -> Number:
-        return 1.0 + dot(self.down, self._push) * self._scale
+        return 1.0 + dot(self.arm, self._turn) * self._scale
 
     @cached_property
     def margin(self) -> Number:
@@ -123,32 +124,35 @@ class Response:
     @cached_property
     def _push(self) -> Sequence[Number]:
         """N n."""
-        arm = cross(self.lever, self.down)
-        return cross([a / moment for a, moment in zip(arm, self.moments, strict=True)], self.lever)
+        return cross(self._turn, self.lever)
 
     @cached_property
-    def _sums(self) -> tuple[Number, Number, Number]:
-        """Return tr N, c and det K."""
+    def _turn(self) -> Sequence[Number]:
+        """J⁻¹ (r × n)."""
+        return [a / moment for a, moment in zip(self.arm, self.moments, strict=True)]
+
+    @cached_property
+    def _sums(self) -> tuple[Number, Number]:
+        """Return tr N and c."""
         squares, inverse = [r * r for r in self.lever], 1.0 / self.moments
         trace = dot(squares, inverse.sum() - inverse)
-        solid = dot(squares, inverse.prod() / inverse)
-        return trace, solid, 1.0 + trace + solid * sum(squares)
-
-    @property
-    def _whole(self) -> Number:
-        return self._sums[2]
+        return trace, dot(squares, inverse.prod() / inverse)
 
     @cached_property
-    def _bent(self) -> tuple[Number, Sequence[Number]]:
-        """Return c (r·n)², and by how much adj(K) n is less than (1 + tr N) n."""
+    def _whole(self) -> Number:
+        """The determinant of K."""
+        return self.nn * self._minor - self._mixed
+
+    @cached_property
+    def _reach(self) -> tuple[Number, Number]:
+        """Return r·n and c (r·n)."""
         reach = dot(self.lever, self.down)
-        push = self._sums[1] * reach
-        return push * reach, [a - push * r for a, r in zip(self._push, self.lever, strict=True)]
+        return reach, self._sums[1] * reach
 
     @cached_property
     def _minor(self) -> Number:
         """The determinant of K_tt, n·adj(K) n."""
-        return 2.0 + self._sums[0] - self.nn + self._bent[0] * self._scale
+        return 2.0 + self._sums[0] - self.nn + self._reach[0] * self._reach[1] * self._scale
 
     @property
     def _trace(self) -> Number:
@@ -158,7 +162,8 @@ class Response:
     @cached_property
     def _aside(self) -> tuple[Sequence[Number], Sequence[Number]]:
         """Return K_tn and adj(K_tt) K_tn, turned by a right angle and as long as the square of n."""
-        return cross(self.down, self._push), cross(self.down, self._bent[1])
+        aside = cross(self.down, self._push)
+        return aside, [x + self._reach[1] * a for x, a in zip(aside, self.arm, strict=True)]
 
     @cached_property
     def _across(self) -> Number:
@@ -170,7 +175,7 @@ class Response:
         """|adj(K_tt) K_tn|²."""
         return dot(self._aside[1], self._aside[1]) * self._scale**2.0
 
-    @property
+    @cached_property
     def _mixed(self) -> Number:
         """K_nt adj(K_tt) K_tn."""
         return dot(self._aside[0], self._aside[1]) * self._scale**2.0
@@ -181,11 +186,11 @@ class Response:
 
     @cached_property
     def _stuck(self) -> Number:
-        return self._minor / self._whole
+        return 1.0 / (self.nn - self._mixed / self._minor)
 
     @cached_property
     def _more(self) -> Number:
-        return self._stuck - 1.0 / self.nn
+        return self._stuck * self._mixed / (self._minor * self.nn)
 
 
 def _push_aside(

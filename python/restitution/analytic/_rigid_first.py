@@ -254,12 +254,12 @@ class RigidFirstImpact(FirstImpact):
 
     def _response(self, down: Sequence[Number], element: Ints) -> Response:
         """Make the response to directions as components of any length, or as models."""
-        lever = self._hull.contact(down, element)
+        lever, arm = self._hull.contact(down, element)
         normal = self.law.normal
         if isinstance(normal, Material):
             height = dot(lever, down) * dot(down, down) ** -0.5 * self._size
             normal = at_speed(normal, self.fall.squared_speed(height))
-        return Response(self._impulse, normal, self._axes[0], lever, down)
+        return Response(self._impulse, normal, self._axes[0], lever, down, arm)
 
     @property
     def _impulse(self) -> Impulse:
