@@ -189,6 +189,22 @@ def test_the_error_of_the_distribution_function_is_what_it_says(body: str, law: 
     assert off < distribution.cdf_error + own
 
 
+NARROW: dict[str, tuple[Any, str]] = {
+    "nearly a ball": (rs.Clump(spheres=[(0, 0, 0, 1), (0, 0, 1, 0.05), (0.9, 0.3, 0.2, 0.1)]), "Coulomb"),
+    "octahedron": (
+        rs.Superellipsoid(semi_axes=(1.0, 0.8, 0.6), exponents=(1.1, 1.1)),
+        "Chatterjee-Ruina",
+    ),
+}
+
+
+@pytest.mark.parametrize("name", NARROW)
+def test_bodies_on_which_little_has_most_of_the_distribution(name: str) -> None:
+    """Most ε of the ball are within 1e-6, and the edges of the octahedron are narrow."""
+    body, law = NARROW[name]
+    assert first_impact(body, LAWS[law]).cdf_error < 3e-3
+
+
 def test_moments_of_a_box_beside_a_double_integral() -> None:
     """In an octant of directions the corner (a, b, c)/2 touches; without friction ε = 1.7/K_nn - 1."""
     corner = np.array([0.5, 1.0, 1.5])

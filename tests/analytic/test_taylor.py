@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 import restitution as rs
+from restitution.analytic import _full_impulse
 from restitution.analytic._cells import Units
 from restitution.analytic._normal import Fall
 from restitution.analytic._rigid_first import RigidFirstImpact
@@ -56,6 +57,11 @@ def test_the_bound_falls_with_the_fourth_power_of_the_size(name: str) -> None:
         for size in (0.02, 0.01)
     )
     assert np.median(coarse / fine) == pytest.approx(16.0, rel=0.1)
+
+
+def test_a_function_may_be_as_far_from_its_samples_as_from_its_model() -> None:
+    """Of 0 at all samples no more is known."""
+    assert apart(Taylor(np.zeros((10, 1)), np.full(1, 0.25)), np.zeros((1, 6))) == 0.25
 
 
 LAWS: dict[str, Any] = {
@@ -116,6 +122,13 @@ def test_the_response_inside_of_triangles_is_as_near_as_is_bounded(
     linear = found.values[:, :3] @ INSIDE[:50].T
     assert np.all(np.abs(quadratic - linear) <= found._second[:, None] + 1e-12)
     assert np.median(found.off) < 0.1
+
+
+@pytest.mark.parametrize("body", ["box", "clump"])
+def test_a_slip_in_a_poor_direction_is_bounded(body: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    """λ of the centroid for the whole triangle: what it is off counts."""
+    monkeypatch.setattr(_full_impulse, "_ORDERS", 0)
+    test_the_response_inside_of_triangles_is_as_near_as_is_bounded(body, "Coulomb", monkeypatch)
 
 
 @pytest.mark.parametrize("seed", [1, 2, 3])

@@ -30,6 +30,7 @@ from restitution.analytic._orientation import Floats
 from restitution.analytic._taylor import Taylor, bounds, value
 
 _NEWTON = 60
+_ORDERS = 3  # of the polynomial that a model has
 
 
 @dataclass(frozen=True)
@@ -224,7 +225,7 @@ def _push_aside(
     if not isinstance(models[-1], Taylor):
         return push, 0.0
     slope, found = 2.0 * (rise - whole * steep), Taylor.constant(push)
-    for _ in range(3):  # each step gives another order of the polynomial
+    for _ in range(_ORDERS):  # each step gives another one
         square, whole = forms(found, *models)
         found = found - (square - whole * whole) / slope
     found = Taylor(found.terms, np.zeros_like(push))
