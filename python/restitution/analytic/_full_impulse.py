@@ -123,11 +123,6 @@ class Response:
         return 1.0 / dot(self.down, self.down)
 
     @cached_property
-    def _push(self) -> Sequence[Number]:
-        """N n."""
-        return cross(self._turn, self.lever)
-
-    @cached_property
     def _turn(self) -> Sequence[Number]:
         """J⁻¹ (r × n)."""
         return [a / moment for a, moment in zip(self.arm, self.moments, strict=True)]
@@ -163,7 +158,7 @@ class Response:
     @cached_property
     def _aside(self) -> tuple[Sequence[Number], Sequence[Number]]:
         """Return K_tn and adj(K_tt) K_tn, turned by a right angle and as long as the square of n."""
-        aside = cross(self.down, self._push)
+        aside = cross(self.down, cross(self._turn, self.lever))
         return aside, [x + self._reach[1] * a for x, a in zip(aside, self.arm, strict=True)]
 
     @cached_property
