@@ -34,6 +34,7 @@ _FARTHEST = 4.0
 """4/3 of the range of ε - ε_n, from -2 to 1: half of it, and 5/3 of that for the quadratic function."""
 _NARROW = 1e-200
 _SMALLEST_STEP = 1e-9  # of a search for an extreme, in rad
+_MOST_STEPS = 300
 _BLOCK = 1 << 20
 _FEW = 1 << 11  # triangles, so that their models stay in a cache
 
@@ -272,7 +273,9 @@ class RigidFirstImpact(FirstImpact):
         corners = unit(units.corners[found.unit[row]])
         best, value, step = unit(corners.sum(axis=0)), -np.inf, float(np.ptp(corners, axis=0).max())
         angles, least = 0.25 * np.pi * np.arange(8), 1e-3 * float(np.ptp(found.values))
-        while step > _SMALLEST_STEP:
+        for _ in range(_MOST_STEPS):  # along a sharp ridge there would be many
+            if step <= _SMALLEST_STEP:
+                break
             one = unit(np.cross(best, np.eye(3)[np.argmin(np.abs(best))]))
             ring = np.outer(np.cos(angles), one) + np.outer(np.sin(angles), np.cross(best, one))
             tried = unit(np.concatenate([best[None], best + step * ring]))
