@@ -5,6 +5,7 @@ mod symmetric;
 mod vector;
 
 pub use quaternion::Quaternion;
+pub(crate) use quaternion::sum;
 pub use symmetric::Symmetric;
 pub use vector::Vector;
 pub(crate) use vector::Vectors;

@@ -8,7 +8,7 @@
 //!
 //! Near the separatrix q is nearly 1, and with **Λ** along axis 3 η is infinite: there is none, and a series is used.
 
-use super::top::Top;
+use super::top::{Top, lost};
 use crate::math::{Quaternion, Vector};
 use crate::simd::elementary::{exp_m1_in_lanes, sincos, sincos_in_lanes};
 use crate::simd::{Pack, one};
@@ -31,8 +31,11 @@ pub(super) struct Elliptic {
     order: [usize; 3],
     hand: f64,
     moments: [f64; 3],
-    /// 2E.
-    energy: f64,
+    /// ω at the beginning.
+    first: [f64; 3],
+    /// J₁(J₁ − J₃) and J₂(J₂ − J₃): times ω₁² and ω₂² they are together Λ² − 2EJ₃, which is this.
+    across: [f64; 2],
+    beyond: f64,
     /// ν = `rate` t + `phase`.
     rate: f64,
     phase: f64,
@@ -150,10 +153,11 @@ impl Elliptic {
         let [w1, w2, w3] = [w[order[0]], w[order[1]], hand * w[order[2]]];
         let momentum = (j1 * j1 * w1 * w1 + j2 * j2 * w2 * w2 + j3 * j3 * w3 * w3).sqrt();
         // Λ² − 2EJ₃ and Λ² − 2EJ₁.
-        let d3 = j1 * (j1 - j3) * w1 * w1 + j2 * (j2 - j3) * w2 * w2;
+        let across = [j1 * (j1 - j3), j2 * (j2 - j3)];
+        let d3 = across[0] * w1 * w1 + across[1] * w2 * w2;
         let d1 = j2 * (j2 - j1) * w2 * w2 + j3 * (j3 - j1) * w3 * w3;
-        let size1 = (d3 / (j1 * (j1 - j3))).sqrt();
-        let size2 = -(d3 / (j2 * (j2 - j3))).sqrt();
+        let size1 = (d3 / across[0]).sqrt();
+        let size2 = -(d3 / across[1]).sqrt();
         let size3 = (d1 / (j3 * (j3 - j1))).sqrt().copysign(w3);
         let (sine, cosine) = (j3 * size3.abs() / momentum, j1 * size1 / momentum);
         let whole = d1 * (j3 - j2);
@@ -247,7 +251,9 @@ impl Elliptic {
             order,
             hand,
             moments: [j1, j2, j3],
-            energy: j1 * w1 * w1 + j2 * w2 * w2 + j3 * w3 * w3,
+            first: [w1, w2, w3],
+            across,
+            beyond: d3,
             rate,
             phase,
             turn: 0.5 * (momentum / j2 + rate * (slope / value)),
@@ -265,8 +271,8 @@ impl Elliptic {
         let v = [attitude.x, attitude.y, attitude.z];
         let [x, y, z] = order.map(|axis| v[axis]);
         let (sine, cosine) = sincos(phase);
-        let (theta, argument) = found.thetas(sine, cosine);
-        let turned = found.frame(theta, argument, (0.0, 1.0));
+        let (_, argument) = found.thetas(sine, cosine);
+        let turned = found.frame([w1, w2, w3], argument, (0.0, 1.0), 0.0);
         found.start = Quaternion::new(attitude.w, x, y, hand * z) * turned.inverse();
         Some(found)
     }
@@ -278,11 +284,12 @@ impl Elliptic {
             sincos_in_lanes(two(self.rate * time + self.phase, self.turn * time));
         let [[sine, turn_sine], [cosine, turn_cosine]] = [both(sines), both(cosines)];
         let (theta, argument) = self.thetas(sine, cosine);
-        let turned = self.frame(theta, argument, (turn_sine, turn_cosine));
-        let Quaternion { w, x, y, z } = self.start * turned;
+        let w = [0, 1, 2].map(|i| self.sizes[i] * theta[i]);
+        let (spin, more) = self.spin(w);
+        let turned = self.frame(w, argument, (turn_sine, turn_cosine), more);
+        let Quaternion { w, x, y, z } = self.start.turned(turned);
         let v = self.of_body([x, y, z]);
-        let attitude = Quaternion::new(w, v.x, v.y, v.z);
-        (attitude.renormalized(), self.of_body(self.spin(theta)))
+        (Quaternion::new(w, v.x, v.y, v.z), self.of_body(spin))
     }
 
     /// A vector along axes 1, 2 and 3 in those of the body.
@@ -315,27 +322,30 @@ impl Elliptic {
         ([second, first, third], [real, imaginary])
     }
 
-    /// ω along axes 1, 2 and 3, from theta functions.
+    /// ω along axes 1, 2 and 3, from what is ω but for a factor and rounding. Both constants of the motion are kept, or rounding would add up over many
+    /// flights: Λ² − 2EJ₃, in which all terms have one sign, by the factor, and then the energy by ω₃, which is never 0 and becomes larger by the
+    /// part that is returned, too.
     #[inline(always)]
-    fn spin(&self, theta: [f64; 3]) -> [f64; 3] {
-        // ω but for a factor, which makes the energy what it was to less than the last digit, so that rounding does not heat the body or cool it over
-        // many flights.
-        let [j1, j2, j3] = self.moments;
-        let w = [0, 1, 2].map(|i| self.sizes[i] * theta[i]);
-        let energy = j1 * w[0] * w[0] + j2 * w[1] * w[1] + j3 * w[2] * w[2];
-        let part = (self.energy / energy).sqrt();
-        [0, 1, 2].map(|i| {
-            let low = self.sizes[i].mul_add(theta[i], -w[i]);
-            w[i].mul_add(part, low * part)
-        })
+    fn spin(&self, w: [f64; 3]) -> ([f64; 3], f64) {
+        let [a, b] = self.across;
+        let part = (self.beyond / (a * w[0] * w[0] + b * w[1] * w[1])).sqrt();
+        let [x, y, z] = w.map(|w| part * w);
+        let per = 0.5 / (self.moments[2] * z * z);
+        let more = per * lost(self.moments, self.first, [x, y, z]);
+        ([x, y, z + more * z], more)
     }
 
-    /// The rotation from axes 1, 2 and 3 to axes that do not move, with **Λ** along z, but for a constant turn about it: from theta functions and the
-    /// sine and the cosine of ½A₂t.
+    /// The rotation from axes 1, 2 and 3 to axes that do not move, with **Λ** along z, but for a constant turn about it: from ω but for a
+    /// factor, theta functions, the sine and the cosine of ½A₂t, and the small part by which ω₃ is larger.
     #[inline(always)]
-    fn frame(&self, theta: [f64; 3], [real, imaginary]: [f64; 2], turn: (f64, f64)) -> Quaternion {
-        // **Λ** but for a factor.
-        let [x, y, z] = [0, 1, 2].map(|i| self.moments[i] * (self.sizes[i] * theta[i]));
+    fn frame(
+        &self,
+        w: [f64; 3],
+        [real, imaginary]: [f64; 2],
+        turn: (f64, f64),
+        more: f64,
+    ) -> Quaternion {
+        let [x, y, z] = [0, 1, 2].map(|i| self.moments[i] * w[i]);
         let square = x * x + y * y;
         let [across, whole] = both(two(square, square + z * z).sqrt());
         let length = across * (real * real + imaginary * imaginary).sqrt();
@@ -346,6 +356,12 @@ impl Elliptic {
             two(whole, length),
         );
         let [[tilt_sine, plus_sine], [tilt_cosine, plus_cosine]] = [both(sines), both(cosines)];
+        // By a larger ω₃ the tilt becomes smaller.
+        let back = 0.5 * more * (across * z / (square + z * z));
+        let (tilt_sine, tilt_cosine) = (
+            tilt_sine - back * tilt_cosine,
+            tilt_cosine + back * tilt_sine,
+        );
         let (about_sine, about_cosine) = (y / across, x / across);
         let minus_sine = about_sine * plus_cosine - about_cosine * plus_sine;
         let minus_cosine = about_cosine * plus_cosine + about_sine * plus_sine;

@@ -6,8 +6,8 @@
 
 use super::elliptic::Elliptic;
 use super::series::Series;
-use super::top::{Symmetry, Top};
-use crate::math::{Quaternion, Vector};
+use super::top::{Symmetry, Top, lost};
+use crate::math::{Quaternion, Vector, sum};
 use crate::simd::elementary::sincos;
 
 /// The rotation of a body in flight; where it takes series, fastest forward in time.
@@ -47,9 +47,9 @@ impl Rotation {
             Symmetry::About(axis) if !rests => {
                 let moments = top.moments();
                 let across = moments[(axis + 1) % 3];
-                let parts = [spin.x, spin.y, spin.z];
-                let [x, y, z] = [0, 1, 2].map(|i| moments[i] / across * parts[i]);
-                let own = (1.0 - moments[axis] / across) * parts[axis];
+                let spin = parts(spin);
+                let [x, y, z] = [0, 1, 2].map(|i| moments[i] / across * spin[i]);
+                let own = (1.0 - moments[axis] / across) * spin[axis];
                 Way::Precession(half_and_direction(Vector::new(x, y, z)), own, axis)
             }
             _ => {
@@ -65,7 +65,8 @@ impl Rotation {
         }
     }
 
-    /// The attitude, and ω in the axes of the body, at a time ≥ 0.
+    /// The attitude, and ω in the axes of the body, at a time ≥ 0. Rounding is nearly the same in every flight of a free body and would add up: what
+    /// it adds to the energy is taken off ω.
     #[inline(always)]
     pub fn at(&mut self, time: f64) -> (Quaternion, Vector) {
         if time == 0.0 {
@@ -73,29 +74,51 @@ impl Rotation {
         }
         match &mut self.way {
             Way::Steady(half, direction) => {
-                let turned = self.attitude * about(*direction, *half * time);
-                (turned.renormalized(), self.spin)
+                let turn = about(*direction, *half * time);
+                (self.attitude.turned(turn), self.spin)
             }
             Way::Precession((half, direction), own, axis) => {
                 let precessed = self.attitude * about(*direction, *half * time);
                 let (sine, cosine) = sincos(0.5 * *own * time);
-                let mut parts = [0.0; 3];
-                parts[*axis] = sine;
-                let [x, y, z] = parts;
+                let axis = *axis;
+                let mut along = [0.0; 3];
+                along[axis] = sine;
+                let [x, y, z] = along;
                 let turn = Quaternion::new(cosine, x, y, z);
-                (
-                    (precessed * turn).renormalized(),
-                    turn.inverse().rotate(self.spin),
-                )
+                (precessed.turned(turn), self.back(axis, sine, cosine))
             }
             Way::Elliptic(elliptic) => elliptic.at(time),
             Way::Series(series) => {
                 if time < series.start() {
                     *series = Series::new(&self.top, self.attitude, self.spin);
                 }
-                series.at(&self.top, time)
+                let (attitude, spin) = series.at(&self.top, time);
+                let lost = lost(self.top.moments(), parts(self.spin), parts(spin));
+                let part = 0.5 * lost / self.top.twice_energy(spin);
+                (attitude, spin + spin * part)
             }
         }
+    }
+
+    /// ω at the beginning turned back about the axis of symmetry, by the sine and the cosine of half the angle, with the length that it had.
+    #[inline(always)]
+    fn back(&self, axis: usize, sine: f64, cosine: f64) -> Vector {
+        let mut spin = parts(self.spin);
+        let (i, j) = ((axis + 1) % 3, (axis + 2) % 3);
+        let [a, b] = [spin[i], spin[j]];
+        let (less, across) = (-2.0 * sine * sine, 2.0 * sine * cosine);
+        // As in [`Quaternion::turned`].
+        let (x, dx) = sum(a, less * a + across * b);
+        let (y, dy) = sum(b, less * b - across * a);
+        // Squares, and what they lose by rounding.
+        let [(aa, da), (bb, db), (xx, ex), (yy, ey)] = [a, b, x, y].map(|v| {
+            let square = v * v;
+            (square, v.mul_add(v, -square))
+        });
+        let lost = ((aa - xx) + (bb - yy)) + ((da - ex) + (db - ey)) - 2.0 * (x * dx + y * dy);
+        let part = 0.5 * lost / (xx + yy).max(f64::MIN_POSITIVE);
+        (spin[i], spin[j]) = (x + (dx + part * x), y + (dy + part * y));
+        Vector::new(spin[0], spin[1], spin[2])
     }
 
     /// The attitude at a time.
@@ -116,6 +139,12 @@ impl Top {
         let (attitude, spin) = Rotation::new(*self, attitude, spin).at(time);
         (attitude, attitude.rotate(spin))
     }
+}
+
+/// The components of a vector.
+#[inline(always)]
+fn parts(v: Vector) -> [f64; 3] {
+    [v.x, v.y, v.z]
 }
 
 /// Half the length of a vector, and its direction; none of no vector.

@@ -119,9 +119,9 @@ impl Top {
         let u = ((cubic * time + first * 0.25) * time + spin * 0.5) * time;
         let square = u.x * u.x + u.y * u.y + u.z * u.z;
         let v = u * (1.0 - square * (1.0 / 6.0));
-        let turned = attitude * Quaternion::new(1.0 - 0.5 * square, v.x, v.y, v.z);
+        let turn = Quaternion::new(1.0 - 0.5 * square, v.x, v.y, v.z);
         let later = ((third * (time / 3.0) + second) * (0.5 * time) + first) * time;
-        (turned.renormalized(), spin + later)
+        (attitude.turned(turn), spin + later)
     }
 
     /// The largest |ω|² of a flight.
@@ -133,6 +133,14 @@ impl Top {
     pub fn turn(&self, spin: Vector) -> Turn {
         Turn::new(self.asymmetry, self.largest_spin(spin))
     }
+}
+
+/// Twice the energy by which a later ω is short of an earlier one, to rounding of the small difference.
+#[inline(always)]
+pub(super) fn lost(moments: [f64; 3], before: [f64; 3], later: [f64; 3]) -> f64 {
+    let [a, b, c] =
+        [0, 1, 2].map(|i| moments[i] * ((before[i] - later[i]) * (before[i] + later[i])));
+    a + b + c
 }
 
 fn sorted(moments: [f64; 3]) -> [usize; 3] {

@@ -301,7 +301,8 @@ impl Balls {
     /// The balls in an order that depends on nothing but them; `what` is for the error.
     pub fn new(what: &'static str, mut points: Vec<Point>) -> Result<Self, Error> {
         let large = large_first(&mut points);
-        let count = points.len() - large;
+        let tree = &mut points[large..];
+        let count = tree.len();
         let mut depth = 0;
         while LEAF << (2 * depth) < count {
             depth += 1;
@@ -312,7 +313,7 @@ impl Balls {
                 let (low, high) = range(count, level, i);
                 let ends = [1, 2, 3].map(|k| range(count, level + 1, 4 * i + k).0);
                 let [one, two, three] = ends.map(|end| end - low);
-                let (front, back) = divide(&mut points[large..][low..high], two);
+                let (front, back) = divide(&mut tree[low..high], two);
                 let (a, b) = divide(front, one);
                 let (c, d) = divide(back, three - two);
                 quarters[first(level) + i] =
