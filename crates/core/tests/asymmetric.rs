@@ -93,8 +93,8 @@ fn attitudes_are_those_of_the_reference() {
 }
 
 /// Over ten thousand flights of a few radians after each other, each with its rounding, some 10⁻¹⁶ to any side. Of 12,000 other tops like these 4 were
-/// further off, up to 1.2·10⁻¹³, and 5 in energy, up to 2.3·10⁻¹³: with ω within 10⁻⁶ of an axis its largest component is rounded the same way in flight
-/// after flight.
+/// further off, up to 1.2·10⁻¹³, and 5 in energy, up to 2.3·10⁻¹³: most of them with ω within 10⁻⁶ of an axis, where its largest component is rounded the same
+/// way in flight after flight.
 #[test]
 fn energy_and_angular_momentum_are_kept() {
     let mut random = Random(1);
