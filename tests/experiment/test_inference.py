@@ -1,6 +1,6 @@
 """Posteriors: that they cover, that they say what the data cannot tell, and that the sampler samples them."""
 
-import sys
+from itertools import product
 from pathlib import Path
 from typing import Any
 
@@ -11,9 +11,7 @@ from scipy import stats
 
 import restitution as rs
 from benchmarks import calibration
-from restitution.experiment.inference._family import Family
-from restitution.experiment.inference._series import Series
-from restitution.experiment.inference._table import table
+from restitution.experiment.inference._table import Table
 
 ERROR = 2e-5
 
@@ -54,14 +52,10 @@ def test_ranks_of_the_truth_are_uniform() -> None:
 
 
 def test_some_of_the_experiments_come_out_as_they_are_kept() -> None:
-    """The first of the 120, made anew.
-
-    The last bits of a linear algebra library make other walks of the sampler; the rank of one among 640
-    correlated draws has a standard error of some 0.05, and the difference of two 0.07.
-    """
+    """The first of the 120, made anew: the rank among 640 draws has a standard error of at most 0.02."""
     found, kept = calibration.calibrate(1), calibration.read(KEPT)
     assert found.truth == pytest.approx(kept.truth[:1], rel=1e-5)
-    assert np.abs(found.rank - kept.rank[:1]).max() < 0.2
+    assert np.abs(found.rank - kept.rank[:1]).max() < 0.1
     assert calibration.written(found).count("\n") == 2
 
 
@@ -111,24 +105,72 @@ def test_several_drops_tell_more_than_one() -> None:
     assert width[1] < 0.8 * width[0]
 
 
-def test_draws_are_those_of_the_table() -> None:
-    """Means and deviations of the draws beside sums over the table; 2000 draws, correlated, know 10 %."""
-    law = rs.Frictionless(normal=0.93)
-    data = heard(0.05, law, 5)
-    tree = quick(data, law, draws=4000, elongation=(1e-2, 0.3), scatter=None)
-    drawn = tree["posterior"].to_dataset()
-    reference = rs.flight.fit(data, "constant", scatter="fit")
-    family = Family(law, 6e-3, "dumbbell", 2)
-    one = Series.of(data, family.of_speed, reference.parameters["restitution"], reference.scatter)
-    found = table([one], family, np.geomspace(1e-2, 0.3, 16), [None], [None], 200, 1)
-    fine = [np.linspace(axis[0], axis[-1], 400) for axis in found.axes]
-    mesh = np.stack(np.meshgrid(*fine, indexing="ij"), axis=-1)
-    weight = np.exp(found.between()(mesh) - found.values.max())
-    for place, values in enumerate((drawn.normal.values, np.log(drawn.elongation.values))):
-        mean = np.average(mesh[..., place], weights=weight)
-        deviation = np.sqrt(np.average((mesh[..., place] - mean) ** 2, weights=weight))
-        assert abs(values.mean() - mean) < 0.25 * deviation
-        assert values.std() == pytest.approx(deviation, rel=0.2)
+def two_peaks() -> Table:
+    """A likelihood that is no product: a curved ridge with two peaks, on axes of unequal steps."""
+    axes = (np.sinh(np.linspace(-2.0, 2.0, 21)), np.linspace(-1.0, 2.0, 16), np.array([0.0, 0.1, 0.5]))
+    x, y, z = np.meshgrid(*axes, indexing="ij")
+    values = np.logaddexp(-2.0 * (x - y**2) ** 2 - 3.0 * (y - 1.0) ** 2, 1.0 - (x + 1.0) ** 2 - 8.0 * y**2)
+    return Table(axes, values - 4.0 * z * (x > 0.0))
+
+
+def moments(points: Any, weights: Any) -> Any:
+    """Means, second moments and one product."""
+    x, y, z = points.T
+    columns = np.stack([x, y, z, x * x, y * y, z * z, x * y, x * z], axis=1)
+    return np.average(columns, axis=0, weights=weights), columns
+
+
+def test_draws_have_the_moments_of_the_table() -> None:
+    """By Gauss' rule with four nodes in every cell; draws are independent: 4 of their standard errors."""
+    found = two_peaks()
+    nodes, weights = np.polynomial.legendre.leggauss(4)
+    fine, steps = [], []
+    for axis in found.axes:
+        half = 0.5 * np.diff(axis)[:, None]
+        fine.append((axis[:-1, None] + half * (1.0 + nodes)).ravel())
+        steps.append((half * weights).ravel())
+    mesh = np.stack(np.meshgrid(*fine, indexing="ij"), axis=-1).reshape(-1, 3)
+    volume = np.einsum("i,j,k->ijk", *steps).ravel()
+    exact, _ = moments(mesh, volume * np.exp(found.between()(mesh)))
+    points, logs = found.draws(20_000, np.random.default_rng(1))
+    mean, columns = moments(points, None)
+    assert np.all(np.abs(mean - exact) < 4.0 * columns.std(axis=0) / np.sqrt(len(points)))
+    np.testing.assert_allclose(logs, found.between()(points), rtol=1e-12)
+
+
+def test_draws_are_those_of_another_sampler() -> None:
+    """Metropolis' walk, a thousand walkers of 400 steps, with its own interpolation; each axis by itself.
+
+    The false alarm of a test of Kolmogorov and Smirnov at 1e-3 in three axes is 0.003.
+    """
+    found, rng = two_peaks(), np.random.default_rng(2)
+    low, high = (np.array([axis[end] for axis in found.axes]) for end in (0, -1))
+
+    def value(points: Any) -> Any:
+        total = np.zeros(len(points))
+        places, shares = [], []
+        for axis, x in zip(found.axes, points.T, strict=True):
+            place = np.clip(np.searchsorted(axis, x) - 1, 0, axis.size - 2)
+            places.append(place)
+            shares.append((x - axis[place]) / (axis[place + 1] - axis[place]))
+        for corner in product((0, 1), repeat=3):
+            weight = np.ones(len(points))
+            for up, share in zip(corner, shares, strict=True):
+                weight *= share if up else 1.0 - share
+            total += weight * found.values[tuple(p + up for p, up in zip(places, corner, strict=True))]
+        return total
+
+    walkers = rng.uniform(low, high, (1000, 3))
+    here = value(walkers)
+    for _ in range(400):
+        tried = walkers + rng.normal(0.0, [0.6, 0.5, 0.2], walkers.shape)
+        inside = np.all((tried >= low) & (tried <= high), axis=1)
+        there = np.where(inside, value(np.clip(tried, low, high)), -np.inf)
+        moved = np.log(rng.random(1000)) < there - here
+        walkers[moved], here[moved] = tried[moved], there[moved]
+    points, _ = found.draws(20_000, np.random.default_rng(3))
+    for one, other in zip(points.T, walkers.T, strict=True):
+        assert stats.ks_2samp(one, other).pvalue > 1e-3
 
 
 def test_the_same_seed_gives_the_same_draws() -> None:
@@ -224,10 +266,3 @@ def test_what_was_measured_has_numbers(name: str) -> None:
     data[name] = data[name].copy(data=data[name].values.astype("timedelta64[ns]"))
     with pytest.raises(ValueError, match=rf"^(data|times)\.{name}"):
         quick(data, law)
-
-
-def test_without_the_packages_it_is_said_what_to_install(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setitem(sys.modules, "emcee", None)
-    law = rs.Frictionless(normal=0.93)
-    with pytest.raises(ImportError, match=r"pip install 'restitution\[measure\]'"):
-        quick(heard(0.01, law, 1), law)

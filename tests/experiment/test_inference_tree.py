@@ -60,7 +60,7 @@ def test_the_grid_of_friction_is_dense_where_it_begins(found: tuple[xr.DataTree,
 
 
 def test_each_draw_has_its_own_likelihood(found: tuple[xr.DataTree, Table]) -> None:
-    """Chains are four groups of walkers; parameters and logarithms are in the same order."""
+    """Parameters and logarithms are in the same order; draws are independent."""
     tree, table = found
     drawn = tree["posterior"].to_dataset()
     assert dict(drawn.sizes) == {"chain": 4, "draw": 1000}
@@ -69,10 +69,7 @@ def test_each_draw_has_its_own_likelihood(found: tuple[xr.DataTree, Table]) -> N
     for name, mean, deviation in (("normal", 0.93, 0.01),):
         assert abs(float(drawn[name].mean()) - mean) < 0.2 * deviation
         assert float(drawn[name].std()) == pytest.approx(deviation, rel=0.1)
-    # A walker goes on from its last place; the walkers of two chains do not follow one another.
-    steps = np.abs(np.diff(drawn.normal.values, axis=1))
-    assert np.median(steps) < 0.02
-    assert np.unique(drawn.normal.values).size > 1000
+    assert np.unique(drawn.normal.values).size == 4000
 
 
 def test_the_tree_says_what_it_holds(found: tuple[xr.DataTree, Table]) -> None:
@@ -183,9 +180,8 @@ def test_draws_reach_both_ends_of_the_table(monkeypatch: pytest.MonkeyPatch) -> 
     assert SHAPES[-1] * 0.99 < drawn.max() <= SHAPES[-1]
 
 
-@pytest.mark.parametrize("missing", ["emcee", "arviz_base"])
-def test_what_to_install_is_said(missing: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setitem(sys.modules, missing, None)
-    said = r"^a posterior needs emcee and ArviZ: pip install 'restitution\[measure\]'$"
+def test_what_to_install_is_said(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(sys.modules, "arviz_base", None)
+    said = r"^a posterior needs ArviZ's arviz-base: pip install 'restitution\[measure\]'$"
     with pytest.raises(ImportError, match=said):
         rs.posterior(xr.Dataset(), LAW, diameter=6e-3)

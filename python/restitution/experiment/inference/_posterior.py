@@ -33,7 +33,8 @@ _UNSEEN = 0.1
 """Part of the variance of ε that a shape may add and is not seen."""
 _ROUNDEST = 1e-9
 """L/R below which no ball is: of a millimetre it is less than an atom."""
-_WALKERS, _CHAINS, _BURN = 32, 4, 100
+_CHAINS = 4
+"""Into which the draws, all independent, are divided, as other tools expect them."""
 _MOST_RANGE = 1e6
 """Of L/R: the grid has points all the way."""
 
@@ -69,8 +70,8 @@ def posterior(
     A ball is released from rest at any angle; how it turns is not measured. Its times are compared with
     those of simulated balls with the same errors, through three numbers: the parameter of ε_n by least
     squares, and how large the residuals are early and late. Their joint density is estimated from simulations
-    on a grid of L/R, scatter of ε_n and friction, and the posterior is sampled with emcee. Whether the shape
-    makes ε scatter, or the material, or both, is decided by the Bayes factors of these explanations.
+    on a grid of L/R, scatter of ε_n and friction, and draws are taken from what is interpolated. Whether the
+    shape makes ε scatter, or the material, or both, is decided by the Bayes factors of these explanations.
 
     Parameters
     ----------
@@ -110,7 +111,8 @@ def posterior(
     Returns
     -------
     xarray.DataTree
-        In ArviZ's schema: ``posterior`` with ``normal`` (or ``beta``, ``yield_speed``), ``elongation`` (L/R),
+        In ArviZ's schema, of independent draws: ``posterior`` with ``normal`` (or ``beta``,
+        ``yield_speed``), ``elongation`` (L/R),
         ``out_of_roundness`` (m), ``scatter`` (of ε_n) and ``friction``, over chain and draw; ``sample_stats``
         with ``lp``; ``observed_data``; ``likelihood`` with ``profile``, the log-likelihood as a function of
         L/R, largest over the rest. The attributes hold the settings; ``explained_by``, what makes ε scatter:
@@ -125,7 +127,7 @@ def posterior(
     ValueError
         If a value is out of range or the data are too few; the message names it.
     ImportError
-        If emcee or ArviZ are not installed.
+        If arviz-base is not installed.
 
     Notes
     -----
@@ -141,7 +143,7 @@ def posterior(
     >>> found.attrs["explained_by"]  # of one drop; more drops decide
     'undecided'
     """
-    emcee, from_dict = _packages()
+    from_dict = _from_dict()
     setting = Setting(diameter=diameter, lobes=lobes, wall=wall, particles=particles, draws=draws, seed=seed)
     if not isinstance(law, Law):
         raise ParameterError(wrong("law", law, "a law such as Frictionless(normal=0.9)"))
@@ -178,7 +180,8 @@ def posterior(
         low = max(_resolved(series, family, low, setting), 1.01 * high / _MOST_RANGE)
     nodes = np.geomspace(low, high, 1 + math.ceil(_SHAPES * math.log10(high / low)))
     found = table(series, family, nodes, scatters, frictions, setting.particles, setting.seed)
-    chain, log = _sampled(emcee, found, setting)
+    points, log = found.draws(setting.draws + -setting.draws % _CHAINS, np.random.default_rng(setting.seed))
+    chain, log = points.reshape(_CHAINS, -1, points.shape[1]), log.reshape(_CHAINS, -1)
     return _tree(from_dict, family, setting, found, chain, log, series, scatters=scatter is not None)
 
 
@@ -195,60 +198,19 @@ def _resolved(series: Sequence[Series], family: Family, low: float, setting: Set
     return low * min(1.0, (_UNSEEN / part) ** 0.25) if part > 0.0 else low
 
 
-def _packages() -> tuple[Any, Any]:
+def _from_dict() -> Any:
     """Import what this alone needs."""
     try:
-        import emcee
         from arviz_base import from_dict
     except ImportError:
-        text = "a posterior needs emcee and ArviZ: pip install 'restitution[measure]'"
+        text = "a posterior needs ArviZ's arviz-base: pip install 'restitution[measure]'"
         raise ImportError(text) from None
-    return emcee, from_dict
+    return from_dict
 
 
 def _prior(name: str, value: object, *, least: float) -> tuple[float, float]:
     allowed = f"a pair (low, high) with {least:g} <= low < high"
     return pair(name, value, allowed, lambda low, high: least <= low < high < math.inf)
-
-
-def _sampled(emcee: Any, found: Table, setting: Setting) -> tuple[Array, Array]:
-    """Return draws of walkers that start in the table: shapes (chains, draws, p) and (chains, draws)."""
-    rng = np.random.default_rng(setting.seed)
-    between = found.between()
-    lower = np.array([axis[0] for axis in found.axes])
-    upper = np.array([axis[-1] for axis in found.axes])
-
-    def log(points: Array) -> Array:
-        inside = np.all((points >= lower) & (points <= upper), axis=1)
-        values = np.full(len(points), -np.inf)
-        values[inside] = between(points[inside])
-        return values
-
-    weight = np.exp(found.values - found.values.max())
-    for place, axis in enumerate(found.axes):
-        step = np.gradient(axis)
-        weight *= step.reshape([-1 if other == place else 1 for other in range(len(found.axes))])
-    chosen = rng.choice(weight.size, _WALKERS, p=(weight / weight.sum()).ravel())
-    places = np.unravel_index(chosen, weight.shape)
-    start = np.column_stack([axis[place] for axis, place in zip(found.axes, places, strict=True)])
-    # Walkers must not coincide; half a step of the table apart they are still likely.
-    steps = np.column_stack(
-        [np.gradient(axis)[place] for axis, place in zip(found.axes, places, strict=True)]
-    )
-    start = np.clip(start + 0.5 * steps * rng.uniform(-1.0, 1.0, start.shape), lower, upper)
-    sampler: emcee.EnsembleSampler = emcee.EnsembleSampler(_WALKERS, start.shape[1], log, vectorize=True)
-    sampler.random_state = np.random.RandomState(setting.seed).get_state()
-    thin = 4
-    each = math.ceil(setting.draws / _WALKERS)
-    sampler.run_mcmc(start, _BURN + each * thin, skip_initial_state_check=True)
-    chain = sampler.get_chain(discard=_BURN, thin=thin)
-    lp = sampler.get_log_prob(discard=_BURN, thin=thin)
-    # Walkers together explore as one; a fourth of them is taken for a chain.
-    shape = (_CHAINS, each * _WALKERS // _CHAINS)
-    return (
-        np.swapaxes(chain, 0, 1).reshape(*shape, start.shape[1]),
-        np.swapaxes(lp, 0, 1).reshape(shape),
-    )
 
 
 def _tree(

@@ -1,5 +1,6 @@
 """The likelihood on a grid of parameters, and between its points."""
 
+import functools
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -49,6 +50,32 @@ class Table:
     def between(self) -> RegularGridInterpolator:
         """Interpolate linearly."""
         return RegularGridInterpolator(self.axes, self.values)
+
+    def draws(self, number: int, rng: np.random.Generator) -> tuple[Array, Array]:
+        """Return independent draws of exp of what is interpolated, and ln of it: shapes (n, p) and (n,).
+
+        A cell is chosen by its volume times the largest value at its corners, which nothing inside exceeds,
+        and a point in it is kept in proportion to the value there.
+        """
+        most = self.values
+        for place in range(most.ndim):
+            count = most.shape[place]
+            lower, upper = (most.take(range(k, count - 1 + k), axis=place) for k in (0, 1))
+            most = np.maximum(lower, upper)
+        volume = functools.reduce(np.multiply.outer, (np.diff(axis) for axis in self.axes))
+        shares = np.cumsum(volume * np.exp(most - most.max()))
+        between = self.between()
+        points, logs = np.empty((0, most.ndim)), np.empty(0)
+        while len(points) < number:
+            cell = np.searchsorted(shares, shares[-1] * rng.random(number), side="right")
+            places = np.unravel_index(cell, most.shape)
+            corner = np.column_stack([axis[at] for axis, at in zip(self.axes, places, strict=True)])
+            far = np.column_stack([axis[at + 1] for axis, at in zip(self.axes, places, strict=True)])
+            tried = corner + (far - corner) * rng.random(corner.shape)
+            value = between(tried)
+            kept = rng.random(number) < np.exp(value - most[places])
+            points, logs = np.concatenate([points, tried[kept]]), np.concatenate([logs, value[kept]])
+        return points[:number], logs[:number]
 
     def profile(self, axis: int) -> Array:
         """Return the largest value over all other axes."""
