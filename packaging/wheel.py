@@ -21,7 +21,14 @@ import toolchain
 ROOT = Path(__file__).resolve().parents[1]
 DIST = ROOT / "dist"
 POLICY = "manylinux2014"
-BUNDLED = ("explorer/explorer.html", "licenses/LICENSE", "licenses/packaging/LICENCES.txt", "/_core.abi3.so")
+BUNDLED = (
+    "explorer/explorer.html",
+    "templates/sampler.h",
+    "templates/sampler.f90",
+    "licenses/LICENSE",
+    "licenses/packaging/LICENCES.txt",
+    "/_core.abi3.so",
+)
 
 # What a wheel has to do; it prints the processor, the instructions, and a digest that is the same everywhere.
 PROGRAM = """

@@ -113,8 +113,8 @@ def test_it_is_the_quantile_of_the_chosen_node(
 
 @pytest.mark.parametrize("language", ["C99", "C++11", "Fortran 2008"])
 def test_the_condition_is_exported_too(plain: FluctuatingRestitution, language: str, tmp_path: Path) -> None:
-    """What u1 leaves over chooses the condition; under a name of one's own, and with speeds clamped."""
-    name = "my_grain"
+    """What u1 leaves over chooses the condition; speeds are clamped, the name has a word of the template."""
+    name = "MY_NAME"
     dist = plain.clamped()
     program = compiled(dist, language, f"{name}_sample_given(v, z, u1, u2)", tmp_path, name)
     rng = np.random.default_rng(2)

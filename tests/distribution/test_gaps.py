@@ -15,7 +15,7 @@ from restitution import FluctuatingRestitution
 from restitution.distribution._check import largest_distance
 from restitution.distribution._ensemble import Impacts
 from restitution.distribution._nodes import Met
-from restitution.distribution.c import header
+from restitution.distribution.sources import header
 
 BODY, LAW = rs.Dumbbell(radius=3e-3, separation=3e-4), rs.TangentialRestitution(normal=0.9)
 HOW: dict[str, Any] = {"particles": 4000, "impacts": 8, "release_height": 0.06}

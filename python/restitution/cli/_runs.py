@@ -166,8 +166,8 @@ def distribution(
         )
         from restitution._internal.resources import checked_threads
         from restitution.distribution import FluctuatingRestitution, image, image_format, sealed
-        from restitution.distribution.c import header as c_header
-        from restitution.distribution.fortran import module as fortran_module
+        from restitution.distribution.sources import header as c_header
+        from restitution.distribution.sources import module as fortran_module
         from restitution.drop.energy import EnergyWarning
         from restitution.drop.toml import read_all
 

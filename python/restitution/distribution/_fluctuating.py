@@ -26,8 +26,7 @@ from restitution.distribution._learn import Given, checked_speeds, condition, le
 from restitution.distribution._memory import correlations
 from restitution.distribution._store import sealed, unsealed
 from restitution.distribution._text import released
-from restitution.distribution.c import header
-from restitution.distribution.fortran import module
+from restitution.distribution.sources import header, module
 from restitution.drop import energy
 from restitution.drop.recorded import check_filled, check_successive, records
 from restitution.drop.release import RandomHeight

@@ -12,7 +12,7 @@ import xarray as xr
 
 from restitution._internal.parameters import ParameterError, wrong
 from restitution.distribution._check import largest_distance
-from restitution.distribution._table import Floats, Ints
+from restitution.distribution._table import Floats
 from restitution.drop.energy import percent
 
 _LEFT_OUT = (
@@ -117,9 +117,3 @@ def released(attrs: Mapping[str, Any]) -> str:
         return f"released from {several[0]:.6g} m"
     text = f"released from {several.size} heights, {several.min():.6g} to {several.max():.6g} m"
     return f"{text}, spread about {attrs['heights_about']:.6g} m" if "heights_about" in attrs else text
-
-
-def chunks(values: Floats | Ints, size: int) -> Iterator[Floats | Ints]:
-    """Cut an array into pieces of at most `size`."""
-    for start in range(0, values.size, size):
-        yield values[start : start + size]
