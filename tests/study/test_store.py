@@ -1,11 +1,9 @@
 """The store of a study, by itself: what is written, and what is read back."""
 
-import hashlib
 import inspect
 import os
 import re
 import shutil
-import struct
 import subprocess
 import sys
 from pathlib import Path
@@ -46,7 +44,7 @@ def test_a_new_store(tiny: Study, tmp_path: Path) -> None:
     path = tmp_path / "a" / "b" / "new.zarr"
     with zarr.config.set({"default_zarr_format": 2}):
         made = create_or_open(path, tiny, WORDS)
-    assert (made.path, made.study, made.task_batches) == (path, tiny.digest, 2)
+    assert (made.path, made.task_batches) == (path, 2)
     assert made.group.metadata.zarr_format == 3
     assert [file.name for file in path.parent.iterdir()] == ["new.zarr"]
     (tmp_path / "fresh").mkdir()
@@ -63,8 +61,8 @@ def test_a_new_store(tiny: Study, tmp_path: Path) -> None:
     assert found.attrs["Conventions"] == "CF-1.11"
     assert found.attrs["title"].startswith("Parameter study")
     assert found.attrs["references"] == PAPER
-    assert made.words.shape == (6, 4, WORDS + 4)
-    assert made.words.chunks == (1, 2, WORDS + 4)
+    assert made.words.shape == (6, 4, WORDS)
+    assert made.words.chunks == (1, 2, WORDS)
     assert made.words.dtype == np.uint64
     assert made.number_there() == 0
     assert made.words.metadata.dimension_names == ("point", "batch", "word")
@@ -109,7 +107,7 @@ def test_a_store_that_appears_meanwhile(
         rename(source, target)
 
     monkeypatch.setattr(os, "rename", late)
-    store = create_or_open(path, tiny, Store(done, b"").words.shape[2] - 4)
+    store = create_or_open(path, tiny, Store(done).words.shape[2])
     assert store.there(0) == {0, 1}
     assert [file.name for file in tmp_path.iterdir()] == ["new.zarr"]
 
@@ -130,48 +128,32 @@ def test_a_store_that_cannot_be_made(
     assert not list(tmp_path.iterdir())
 
 
-def test_rows_come_back_with_their_digests(store: Store) -> None:
+def test_rows_come_back(store: Store) -> None:
     assert store.there(1) == set()
     store.write(1, 2, rows())
     assert store.there(1) == {1}
-    assert (store.has(1, 0), store.has(1, 1)) == (False, True)
-    found, good, digests = store.read(1, 2, 2)
+    found = store.read(1, 2, 2)
     assert np.array_equal(found, rows())
     assert found.dtype == np.uint64
-    assert good.dtype == np.bool_
-    assert good.all()
-    assert len(digests) == 2 * 32
-    assert digests[:32] != digests[32:]
-    store.write(1, 0, rows())
-    assert store.there(1) == {0, 1}
-    assert store.read(1, 0, 4)[1].tolist() == [True] * 4
-    assert not store.has(0, 0)
-    assert store.read(1, 0, 2)[2] != digests, "the same words of another batch have another digest"
-
-
-def test_a_digest_is_that_of_the_study_the_place_and_the_words(store: Store) -> None:
-    """As the format says, so that stores of before can be read: BLAKE2b of 32 bytes, numbers in 8 of them."""
-    store.write(3, 2, rows())
-    for i, row in enumerate(rows()):
-        place = struct.pack("<QQ", 3, 2 + i)
-        digest = hashlib.blake2b(store.study + place + row.tobytes(), digest_size=32).digest()
-        assert store.words[3, 2 + i].tobytes() == row.tobytes() + digest
+    store.write(1, 0, np.zeros((2, WORDS), np.uint64))
+    assert store.there(1) == {0, 1}, "zeros are counted as well as anything"
+    assert np.array_equal(store.read(1, 0, 4), np.concatenate([np.zeros((2, WORDS)), rows()]))
 
 
 def test_what_is_no_store(tmp_path: Path) -> None:
     """An empty folder stays one; a store of Zarr's other format is none of a study's."""
     (empty := tmp_path / "empty").mkdir()
     with pytest.raises(Refused, match=f"^{re.escape(str(empty))}: is damaged"):
-        Store(empty, b"")
+        Store(empty)
     assert not list(empty.iterdir())
     group = zarr.open_group(old := tmp_path / "old", mode="w", zarr_format=2)
     group.create_array("tasks/words", shape=(1, 2, 9), chunks=(1, 2, 9), dtype=np.uint64)
     with pytest.raises(Refused, match=f"^{re.escape(str(old))}: is damaged"):
-        Store(old, b"")
+        Store(old)
 
 
 def test_what_is_there_may_not_be_readable(store: Store, monkeypatch: pytest.MonkeyPatch) -> None:
-    """It is not called damaged, or it would be computed again, and overwritten."""
+    """It is not called damaged, or it would be deleted."""
 
     class Forbidden:
         shape = (1, 1, 1)
@@ -179,16 +161,15 @@ def test_what_is_there_may_not_be_readable(store: Store, monkeypatch: pytest.Mon
         def __getitem__(self, _: object) -> None:
             raise PermissionError(13, "Permission denied", "chunk")
 
+    store.write(0, 0, rows())
     monkeypatch.setattr(store, "words", Forbidden())
-    monkeypatch.setattr(store, "group", {"large": Forbidden()})
-    for read in (lambda: store.read(0, 0, 2), lambda: store.read_large(["large"], (0,))):
-        with pytest.raises(PermissionError):
-            read()
+    with pytest.raises(PermissionError):
+        store.read(0, 0, 2)
 
 
 @pytest.mark.parametrize("chunk", [b"", b"\0" * 40, None])
-def test_a_chunk_that_cannot_be_read_is_damaged(store: Store, chunk: bytes | None) -> None:
-    """Others of the point are not; and the digest is that of the study, the point and the batch."""
+def test_a_chunk_that_cannot_be_read_is_named(store: Store, chunk: bytes | None) -> None:
+    """Others of the point can be read, and one that is not there is no row of zeros."""
     for first in (0, 2):
         store.write(2, first, rows())
     file = store.path / "tasks" / "words" / "c" / "2" / "0" / "0"
@@ -196,9 +177,10 @@ def test_a_chunk_that_cannot_be_read_is_damaged(store: Store, chunk: bytes | Non
         file.unlink()
     else:
         file.write_bytes(chunk)
-    assert store.read(2, 0, 4)[1].tolist() == [False, False, True, True]
-    other = Store(store.path, b"another study")
-    assert not other.read(2, 0, 4)[1].any()
+    with pytest.raises(OSError, match="No such file" if chunk is None else "is damaged; delete it") as raised:
+        store.read(2, 0, 4)
+    assert raised.value.filename == str(file)
+    assert np.array_equal(store.read(2, 2, 2), rows())
 
 
 def found_at_a_point() -> xr.Dataset:
@@ -240,11 +222,7 @@ def test_results_have_a_place_for_every_point(store: Store, tiny: Study) -> None
     assert store.group["velocity"].metadata.dimension_names == ("velocity",)
     assert dict(store.group["velocity"].attrs) == {"units": "m s-1"}
     store.write_large(found, (1, 2))
-    again = store.read_large(["grid"], (1, 2))
-    assert again is not None
-    assert np.array_equal(again["grid"], found["grid"].to_numpy())
-    (store.path / "grid" / "c" / "1" / "2" / "0" / "0").write_bytes(b"spoilt")
-    assert store.read_large(["grid"], (1, 2)) is None
+    assert np.array_equal(grid[1, 2], found["grid"].to_numpy())
     assert store.large_arrays(tiny.design) == ["grid"]
     store.consolidate()
     assert set(xr.open_zarr(store.path, chunks=None).variables) == {*found.variables, *AXES, "status"}
@@ -266,12 +244,11 @@ def test_what_all_points_share_is_restored(store: Store, tiny: Study) -> None:
     store.ensure(found, tiny.design)
     store.group["status"][...] = 1
     store.group["velocity_edges"][0] = -1.0
-    (store.path / "separation" / "c" / "0").write_bytes(b"spoilt")
-    for file in ("status/c/0/0", "normal/c/0"):
+    for file in ("status/c/0/0", "normal/c/0", "separation/c/0"):
         (store.path / file).unlink()
     assert not store.group["status"][...].any(), "a chunk that vanished leaves points unfinished"
     before = (store.path / "velocity" / "c" / "0").stat().st_mtime_ns
-    Store(store.path, store.study).ensure(found, tiny.design)
+    Store(store.path).ensure(found, tiny.design)
     assert store.group["velocity_edges"][...].tolist() == [0.0, 1.0, 2.0]
     assert store.group["separation"][...].tolist() == [1e-4, 2e-3]
     assert store.group["normal"][...].tolist() == [0.9, 0.95, 0.98]

@@ -70,9 +70,10 @@ def run(
     r"""Run a study, or resume it.
 
     Every task is kept in the store as soon as it is done. If the command is
-    stopped, the same command continues: what is missing or damaged is
-    computed, and the result has the same bits as that of an undisturbed study. Ctrl-C leaves a
-    store that can be read.
+    stopped, the same command continues: what is missing is computed, and the
+    result has the same bits as that of an undisturbed study. What is damaged is
+    named; delete it, and the same command continues. Ctrl-C leaves a store that
+    can be read.
 
     STUDY.toml is a run as for [bold]restitution simulate[/bold] and:
 
@@ -133,8 +134,8 @@ def merge(
 ) -> None:
     """Merge the shards of a study.
 
-    What is damaged or missing is left out and reported; the command that made the
-    shards, without --shard, computes it.
+    What is missing is left out and reported; the command that made the shards,
+    without --shard, computes it.
     """
     with errors_in_a_line("xarray"):
         from restitution.study import merge as merge_stores

@@ -1,13 +1,12 @@
 """Tasks of a study and its driver: what a worker does, which tasks are to be done, what the store shows."""
 
-import errno
 import hashlib
 import os
 import random
 import threading
 import time
 from collections import deque
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import CancelledError, Future
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass, field
@@ -35,23 +34,10 @@ class Stopped(Exception):
     """The study was asked to stop."""
 
 
-@dataclass(frozen=True)
-class Ended:
-    """The end of a point: tasks that are damaged, that it needs more particles, or what was found.
-
-    Larger variables are written by the worker; of points whose results are there nothing is found.
-    """
-
-    damaged: list[int] = field(default_factory=list)
-    enough: bool = True
-    found: xr.Dataset | None = None
-    digest: bytes = b""
-
-
 def run_task(path: str, point: Point, number: int, stop: threading.Event | None = None) -> bool:
     """Count a range of particles of a point and commit it; return whether that had been done already."""
     store = _open(path, point.digest)
-    if store.has(point.number, number):
+    if store.file(point.number, number).exists():
         return True
     first = number * point.study.effort.task_batches
     batches = range(first, first + point.study.effort.task_batches)
@@ -62,47 +48,22 @@ def run_task(path: str, point: Point, number: int, stop: threading.Event | None 
     return False
 
 
-def end_point(path: str, point: Point, design: Design, blocks: int, known: bytes, small_ones: bytes) -> Ended:
-    """Work out the results of a point, after a look whether all of its tasks are there and undamaged.
-
-    If they have been worked out before, `known` is the digest that they have in the store, else empty, and
-    `small_ones` that of the smaller variables as the driver has read them.
-    """
+def end_point(path: str, point: Point, design: Design, blocks: int) -> xr.Dataset | None:
+    """Work out the results of a point, and write the larger ones; None if it needs more particles."""
     store, effort, place = _open(path, point.digest), point.study.effort, design.place(point.number)
-    rows, good, counted = store.read(point.number, 0, blocks * effort.batches)
-    if not good.all():
-        return Ended(damaged=sorted({int(i) // effort.task_batches for i in np.flatnonzero(~good)}))
-    if known:
-        there = store.read_large(store.large_arrays(design), place)
-        if there is not None and _digest(counted, digest_of(there), small_ones) == known:
-            return Ended()
-    found = evaluate(point, rows)
+    found = evaluate(point, store.read(point.number, 0, blocks * effort.batches))
     if not effort.is_enough(found, blocks):
-        return Ended(enough=False)
+        return None
     store.ensure(found, design)
     store.write_large(found, place)
-    values = {str(name): variable.to_numpy() for name, variable in found.variables.items()}
-    digests = (digest_of({name: values[name] for name in names}) for names in (large(found), small(found)))
-    return Ended(found=found.drop_vars(large(found)), digest=_digest(counted, *digests))
-
-
-def digest_of(arrays: Mapping[str, npt.NDArray[Any]]) -> bytes:
-    """Return a digest of names and values."""
-    digest = hashlib.blake2b(digest_size=32)
-    for name in sorted(arrays):
-        digest.update(name.encode())
-        digest.update(np.ascontiguousarray(arrays[name]).tobytes())
-    return digest.digest()
-
-
-def _digest(*parts: bytes) -> bytes:
-    return hashlib.blake2b(b"".join(parts), digest_size=32).digest()
+    return found.drop_vars(large(found))
 
 
 @lru_cache(maxsize=4)
-def _open(path: str, study: bytes) -> Store:
+def _open(path: str, _: bytes) -> Store:
+    """Open the store of the study that has this digest."""
     try:
-        return Store(Path(path), study)
+        return Store(Path(path))
     except FileNotFoundError as error:
         raise FileNotFoundError(
             error.errno, "not found by a worker; the store must be where all workers reach it", path
@@ -129,19 +90,16 @@ class Progress:
     ended: int = 0
     computed: int = 0
     resumed: int = 0
-    damaged: int = 0
 
 
 @dataclass
 class _Open:
-    """A point under way: its blocks of particles, the digest that it has in the results, and its tasks."""
+    """A point under way: its blocks of particles, and its tasks."""
 
     point: Point
     blocks: int
-    known: bytes
     waiting: set[int] = field(default_factory=set)
     done: set[int] = field(default_factory=set)
-    damaged: set[int] = field(default_factory=set)
 
 
 @dataclass
@@ -228,16 +186,19 @@ class Driver:
         path, point, design = str(self.store.path), opened.point, self.study.design
         if task is not None:
             return self.engine.submit(run_task, path, point, task, stoppable=True)
-        small_ones = self.table.digest(point.number) if opened.known else b""
-        return self.engine.submit(end_point, path, point, design, opened.blocks, opened.known, small_ones)
+        return self.engine.submit(end_point, path, point, design, opened.blocks)
 
     def _begin(self, number: int) -> None:
-        known, blocks = self.table.known(number, self.study.effort)
+        finished = self.table.finished(number, self.study.effort)
+        blocks, there = max(1, finished), self.store.there(number)
         self.progress.tasks += (blocks - 1) * self.study.effort.block_tasks
-        if number == self.points[0]:  # is worked out again, to look at what all points have in common
-            known = b""
-        opened = _Open(point_of(self.study, number, self.template), blocks, known)
-        self._need(opened, self.store.there(number))
+        tasks = range(blocks * self.study.effort.block_tasks)
+        # The first one is worked out again, to look at what all points have in common.
+        if finished and number != self.points[0] and there.issuperset(tasks):
+            self.progress.resumed += len(tasks)
+            self.progress.ended += 1
+        else:
+            self._need(_Open(point_of(self.study, number, self.template), blocks), there)
 
     def _need(self, opened: _Open, there: set[int]) -> None:
         """Submit the tasks that a point lacks, or end the point if it lacks none."""
@@ -271,61 +232,53 @@ class Driver:
         if self.tell is not None:
             self.tell(self.progress)
 
-    def _end(self, opened: _Open, ended: Ended) -> None:
-        number, damaged = opened.point.number, set(ended.damaged)
-        opened.known = b""
-        if damaged:
-            if self.compute and damaged & opened.damaged:
-                file = self.store.file(number, min(damaged & opened.damaged))
-                raise OSError(errno.EIO, f"damaged when it was read back; {_CONTINUES}", str(file))
-            opened.damaged |= damaged
-            self.progress.damaged += len(self.store.there(number) & damaged)
-            self.progress.resumed -= len(opened.done & damaged)
-            opened.done -= damaged
-            self._need(opened, set())
-        elif not ended.enough:
+    def _end(self, opened: _Open, found: xr.Dataset | None) -> None:
+        number = opened.point.number
+        if found is None:
             self.progress.tasks += opened.blocks * self.study.effort.block_tasks
             opened.blocks *= 2
             self._need(opened, self.store.there(number))
         else:
             self.progress.ended += 1
-            if ended.found is not None:
-                self.table.set(number, ended.found, ended.digest)
+            self.table.set(number, found)
 
 
 class Table:
-    """The smaller variables of all points, in memory until they are written out together."""
+    """The smaller variables of all points, in memory until they are written out together.
+
+    Two drivers may write theirs at a time: the digest of a point says whether what is there belongs together.
+    """
 
     def __init__(self, design: Design, store: Store) -> None:
         self.design, self.store = design, store
         self._template: xr.Dataset | None = None
-        self._values = store.read_small(design)  # what cannot be read is worked out again
+        self._values = store.read_small(design)
         self._changed = False
 
-    def known(self, point: int, effort: Effort) -> tuple[bytes, int]:
-        """Return the digest of a point that is finished, and its number of blocks."""
+    def finished(self, point: int, effort: Effort) -> int:
+        """Return the number of blocks of a point that is finished, else 0."""
         values = self._values
         if not {"status", "digest", "particles"} <= values.keys() or values["status"][point] != 1:
-            return b"", 1
-        blocks = int(values["particles"][point]) // effort.particles
-        good = 1 <= blocks <= effort.blocks
-        return (values["digest"][point].tobytes(), blocks) if good else (b"", 1)
+            return 0
+        if values["digest"][point].tobytes() != self._digest(point):
+            return 0
+        return int(values["particles"][point]) // effort.particles
 
-    def digest(self, point: int) -> bytes:
-        """Return the digest of the results of a point."""
-        extra = ("status", "digest")
-        return digest_of({name: values[point] for name, values in self._values.items() if name not in extra})
+    def _digest(self, point: int) -> bytes:
+        digest = hashlib.blake2b(digest_size=32)
+        for name in sorted(self._values.keys() - {"status", "digest"}):
+            digest.update(name.encode() + np.ascontiguousarray(self._values[name][point]).tobytes())
+        return digest.digest()
 
-    def set(self, point: int, found: xr.Dataset, digest: bytes) -> None:
+    def set(self, point: int, found: xr.Dataset) -> None:
         """Store the results of a point."""
-        words = np.frombuffer(digest, np.uint64)
         if self._template is None:
-            about = {"long_name": "digest of the results of the point and of the counts behind them"}
-            self._template = found.assign(digest=("digest_word", words, about))
+            about = {"long_name": "digest of the results of the point"}
+            self._template = found.assign(digest=("digest_word", np.zeros(4, np.uint64), about))
             self.store.ensure(self._template, self.design)
         for name in small(found):
             self._put(name, point, found.variables[name].to_numpy())
-        self._put("digest", point, words)
+        self._put("digest", point, np.frombuffer(self._digest(point), np.uint64))
         self._put("status", point, np.array(1, np.uint8))
 
     def _put(self, name: str, point: int, value: npt.NDArray[Any]) -> None:

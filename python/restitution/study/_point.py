@@ -73,7 +73,7 @@ def with_template(point: Point) -> Point:
 
 def count(point: Point, part: tuple[int, int], tell: Tell | None = None) -> Words:
     """Run the particles of a part, and store the sums over their impacts."""
-    words, edges = [np.empty(0, np.uint64)], point.edges
+    words, edges = list[Words](), point.edges
     if edges is not None:
         histogram, interrupted = _core.histogram(_parameters(point.run, part), edges, 1, tell, part)
         if interrupted:
@@ -82,7 +82,7 @@ def count(point: Point, part: tuple[int, int], tell: Tell | None = None) -> Word
     if point.records:
         found = _measured(point, _recorded(point, part, tell))
         words += [_values(found, name).ravel().view(np.uint64) for name in sorted(map(str, found.data_vars))]
-    return np.concatenate(words)
+    return np.concatenate(words or [np.zeros(1, np.uint64)])  # a task has a chunk if nothing is counted, too
 
 
 def evaluate(point: Point, rows: Words) -> xr.Dataset:

@@ -75,7 +75,7 @@ def status(out: str | Path) -> Status:
     need_zarr()
     found = identity(path)
     with readable(path):
-        effort, store = found["effort"], Store(path, b"")
+        effort, store = found["effort"], Store(path)
         points, marks = int(store.words.shape[0]), store.group["status"]
         if points < 1 or math.prod(marks.shape) != points:
             raise ValueError(f"tasks of {points} points, and the status of {math.prod(marks.shape)}")

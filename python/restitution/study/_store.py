@@ -1,13 +1,13 @@
 """The Zarr store of a study (format 3): what every task counted, and the labelled results.
 
-The array ``tasks/words`` holds a row for each batch of each point: the words of a `_core.Histogram`,
-and after them a digest, BLAKE2b, of the study, the point, the batch and the words. A task writes its rows as
-one chunk, which takes its place in one step: its digest shows whether what is read back is what was written.
-Everything else in the store follows from these rows.
+The array ``tasks/words`` holds a row for each batch of each point: the words of a `_core.Histogram`. A task
+writes its rows as one chunk, which takes its place in one step. Everything else in the store follows from
+these rows. Every chunk has Zarr's checksum, CRC-32C: what is read back as it was not written ends the study
+with an error that names what is to be deleted, and then is computed again.
 """
 
 import contextlib
-import hashlib
+import errno
 import math
 import os
 import shutil
@@ -29,8 +29,8 @@ from restitution.study._identity import attribute, check, readable
 from restitution.study._point import Words
 from restitution.study._study import Study
 
-DIGEST = 4  # words of it
 _LARGE = 4096  # numbers of a variable at a point, from which on each point has a chunk of its own
+_NO_WORD = 2**64 - 1
 _CHUNK = 4_000_000  # bytes of a chunk of the other variables, at most where the shape allows it
 
 
@@ -53,10 +53,10 @@ def create_or_open(path: Path, study: Study, words: int) -> "Store":
     Another study, another version of the physics, and what is no store are `Refused`.
     """
     if not path.exists():
-        _make(path, study, words + DIGEST)
+        _make(path, study, words)
     check(path, study)
-    store = Store(path, study.digest)
-    store.check_layout(study, words + DIGEST)
+    store = Store(path)
+    store.check_layout(study, words)
     return store
 
 
@@ -98,6 +98,7 @@ def _fill(path: Path, study: Study, width: int) -> None:
             dimension_names=(axis.name,) if design.kind == "grid" else ("point",),
             attributes={"long_name": axis.parameter, "units": unit_at(study, axis.parameter)},
             fill_value=np.nan,
+            compressors=_compressed(8),
         )
     states: dict[str, Any] = {"flag_values": [0, 1], "flag_meanings": "unfinished finished"}
     group.create_array(
@@ -106,6 +107,7 @@ def _fill(path: Path, study: Study, width: int) -> None:
         chunks=design.shape,
         dimension_names=design.dims,
         attributes={"long_name": "state of the point", **states},
+        compressors=_compressed(1),
     )
     group.create_group("tasks").create_array(
         "words",
@@ -113,11 +115,11 @@ def _fill(path: Path, study: Study, width: int) -> None:
         chunks=(1, effort.task_batches, width),
         dtype=np.uint64,
         dimension_names=("point", "batch", "word"),
-        compressors=_fast(8),
-        attributes={"long_name": "what each batch of particles counted, and its digest"},
-        fill_value=0,
+        compressors=_compressed(8),
+        attributes={"long_name": "what each batch of particles counted"},
+        fill_value=_NO_WORD,  # a chunk of nothing else is not written; zeros may be counted
     )
-    Store(path, study.digest).consolidate()
+    Store(path).consolidate()
 
 
 def unit_at(study: Study, parameter: str) -> str:
@@ -132,10 +134,10 @@ def unit_at(study: Study, parameter: str) -> str:
 class Store:
     """A store that is open: a directory, which every worker can reach under this name."""
 
-    def __init__(self, path: Path, study: bytes) -> None:
+    def __init__(self, path: Path) -> None:
         import zarr
 
-        self.path, self.study = path, study
+        self.path = path
         self._ensured: set[str] = set()
         self._arrays: dict[str, Any] = {}  # those that were seen; what they are does not change
         self.group: Any
@@ -173,41 +175,20 @@ class Store:
         """Name the chunk of a task; the words of a batch are never divided."""
         return self.path / "tasks" / "words" / "c" / str(point) / str(task) / "0"
 
-    def read(self, point: int, first: int, count: int) -> tuple[Words, npt.NDArray[np.bool_], bytes]:
-        """Read rows of whole tasks of a point, return which are undamaged, and their digests."""
-        width = self.words.shape[2]
-        rows, good = np.zeros((count, width), np.uint64), np.zeros(count, np.bool_)
+    def read(self, point: int, first: int, count: int) -> Words:
+        """Read the rows of whole tasks of a point, which are there."""
+        rows = np.zeros((count, self.words.shape[2]), np.uint64)
         for start in range(0, count, self.task_batches):
+            file = self.file(point, (first + start) // self.task_batches)
+            file.stat()  # Zarr would give what no chunk holds
             part = slice(start, start + self.task_batches)
-            try:
-                rows[part] = self.words[point, first + part.start : first + part.stop]
-            except PermissionError:
-                raise
-            except Exception:  # a chunk that is cut or spoilt fails in any way that a decoder can
-                continue
-            for i in range(part.start, part.stop):
-                good[i] = rows[i, -DIGEST:].tobytes() == self._digest(point, first + i, rows[i, :-DIGEST])
-        return rows[:, :-DIGEST], good, rows[:, -DIGEST:].tobytes()
-
-    def has(self, point: int, task: int) -> bool:
-        """Find out whether a task is there, undamaged."""
-        first = task * self.task_batches
-        return self.file(point, task).exists() and bool(self.read(point, first, self.task_batches)[1].all())
+            rows[part] = _read(self.words, (point, slice(first + part.start, first + part.stop)), file)
+        return rows
 
     def write(self, point: int, first: int, rows: Words) -> None:
         """Commit the rows of a task, in one step."""
         with readable(self.path):
-            signed = [
-                np.concatenate([row, np.frombuffer(self._digest(point, first + i, row), np.uint64)])
-                for i, row in enumerate(rows)
-            ]
-            self.words[point, first : first + len(rows)] = np.stack(signed)
-
-    def _digest(self, point: int, batch: int, row: Words) -> bytes:
-        place = point.to_bytes(8, "little") + batch.to_bytes(8, "little")
-        digest = hashlib.blake2b(self.study + place, digest_size=8 * DIGEST)
-        digest.update(np.ascontiguousarray(row).data)
-        return digest.digest()
+            self.words[point, first : first + len(rows)] = rows
 
     def ensure(self, found: xr.Dataset, design: Design) -> None:
         """Create an array for each variable of a point, and check the values common to all points."""
@@ -233,7 +214,7 @@ class Store:
                             dtype=variable.dtype,
                             dimension_names=(*(design.dims if own else ()), *map(str, variable.dims)),
                             attributes=attrs,
-                            compressors=_fast(variable.dtype.itemsize),
+                            compressors=_compressed(variable.dtype.itemsize),
                             fill_value=np.nan if variable.dtype.kind == "f" else 0,
                         )
                 _check_array(self._array(name), shape, variable.dtype)
@@ -243,8 +224,7 @@ class Store:
 
     def _correct(self, name: str, values: npt.NDArray[Any]) -> None:
         """Write an array again where it is not what it should be."""
-        there = self._values(name)
-        if there is None or not np.array_equal(there, values):
+        if not np.array_equal(self._values(name), values):
             self._array(name)[...] = values
 
     def _array(self, name: str) -> Any:
@@ -258,22 +238,15 @@ class Store:
             for name in large(found):
                 self._array(name)[place] = found.variables[name].to_numpy()
 
-    def read_large(self, names: list[str], place: tuple[int, ...]) -> dict[str, npt.NDArray[Any]] | None:
-        """Read them back; None if one is damaged."""
-        found = {name: self._values(name, place) for name in names}
-        whole = {name: values for name, values in found.items() if values is not None}
-        return whole if len(whole) == len(found) else None
-
     def read_small(self, design: Design) -> dict[str, npt.NDArray[Any]]:
-        """Read the smaller variables of all points, but for those that are damaged."""
+        """Read the smaller variables of all points."""
         with readable(self.path):
             own, other = len(design.shape), {*self.large_arrays(design), *(axis.name for axis in design.axes)}
-            found = {}
-            for name, array in self._by_point(design):
-                values = None if name in other else self._values(name)
-                if values is not None:
-                    found[name] = values.reshape(design.points, *array.shape[own:])
-            return found
+            return {
+                name: self._values(name).reshape(design.points, *array.shape[own:])
+                for name, array in self._by_point(design)
+                if name not in other
+            }
 
     def write_small(self, values: Mapping[str, npt.NDArray[Any]]) -> None:
         """Write them, the marks of what is finished last."""
@@ -302,15 +275,9 @@ class Store:
                 if tuple(names[:own]) == design.dims:
                     yield name, array
 
-    def _values(self, name: str, place: Any = ...) -> npt.NDArray[Any] | None:
-        """Read an array, or what it has at a point; None if its chunk is cut or spoilt."""
-        array = self._array(name)
-        try:
-            return np.asarray(array[place])
-        except PermissionError:
-            raise
-        except Exception:  # in any way that a decoder can fail
-            return None
+    def _values(self, name: str) -> npt.NDArray[Any]:
+        """Read an array."""
+        return _read(self._array(name), ..., self.path / name / "c")
 
     def consolidate(self) -> None:
         """Put the metadata of all arrays in one place, so that the store opens at once."""
@@ -321,6 +288,17 @@ class Store:
                 # Consolidation is not in the specification of format 3, and Xarray uses it.
                 warnings.simplefilter("ignore")
                 zarr.consolidate_metadata(str(self.path), zarr_format=3)
+
+
+def _read(array: Any, place: Any, path: Path) -> npt.NDArray[Any]:
+    """Read what an array has at a place; one that is cut or spoilt, as any decoder finds it, is an error."""
+    try:
+        return np.asarray(array[place])
+    except Exception as error:
+        if isinstance(error, MemoryError) or (isinstance(error, OSError) and error.errno is not None):
+            raise
+        text = "is damaged; delete it, and the same command continues"
+        raise OSError(errno.EIO, text, str(path)) from error
 
 
 def _check_array(array: Any, shape: tuple[int, ...], kind: npt.DTypeLike) -> None:
@@ -350,11 +328,11 @@ def _is_common(name: str, variable: Any) -> bool:
     return name.endswith("_edges") and variable.dims == (f"{name[:-1]}",)
 
 
-def _fast(size: int) -> Any:
-    """Choose a compressor that costs next to nothing; most of what is stored are small numbers and zeros."""
-    from zarr.codecs import BloscCodec
+def _compressed(size: int) -> Any:
+    """Choose a compressor that costs next to nothing: most of what is stored are small numbers and zeros."""
+    from zarr.codecs import BloscCodec, Crc32cCodec
 
-    return BloscCodec(cname="lz4", clevel=5, shuffle="shuffle", typesize=size)
+    return BloscCodec(cname="lz4", clevel=5, shuffle="shuffle", typesize=size), Crc32cCodec()
 
 
 def chunks(design: Design, variable: Any) -> tuple[int, ...]:

@@ -42,9 +42,9 @@ def sweep(
     """Run a study: a run whose parameters are varied, and what is measured at every point.
 
     Every task, a point and a range of its particles, is in the store as soon as it is done. The same call
-    resumes a study that was stopped for any reason; tasks that are missing or damaged are computed
-    again. The result has the same bits as that of an uninterrupted study, for any engine, number of
-    workers and order in which they finish. Several calls may work on one store at a time.
+    resumes a study that was stopped for any reason. What is damaged is named in an error; delete it, and the
+    same call computes it again. The result has the same bits as that of an uninterrupted study, for any
+    engine, number of workers and order in which they finish. Several calls may work on one store at a time.
 
     Parameters
     ----------
@@ -122,7 +122,7 @@ def merge(
     out : str or Path
         The store; it is made if it is not there. One that several shards wrote to needs no other parts.
     parts : sequence of str or Path
-        Other stores of the same study; they are left as they are. What is damaged in them is left out.
+        Other stores of the same study; they are left as they are.
     study : optional
         As in `sweep`; needed where the study has a function that no file can name.
     threads : int, optional
@@ -168,7 +168,7 @@ def merge(
     with engine(None, threads) as work:
         store, template = opened(path, wanted)
         for part in others:
-            other = Store(part, wanted.digest)
+            other = Store(part)
             other.check_layout(wanted, store.words.shape[2])
             _copy(other, store, wanted)
         Driver(wanted, store, work, template, points, compute=False).run(writes=True)
@@ -193,14 +193,11 @@ def _shard(shard: tuple[int, int] | None, points: int) -> Sequence[int]:
 
 
 def _copy(part: Store, store: Store, wanted: Study) -> None:
-    """Copy the tasks that are undamaged in one store and not in the other."""
+    """Copy the tasks that are in one store and not in the other."""
     number = wanted.effort.task_batches
     for point in range(wanted.design.points):
-        for task in sorted(part.there(point)):
-            if not store.has(point, task):
-                rows, good, _ = part.read(point, task * number, number)
-                if good.all():
-                    store.write(point, task * number, rows)
+        for task in sorted(part.there(point) - store.there(point)):
+            store.write(point, task * number, part.read(point, task * number, number))
 
 
 @contextmanager
@@ -216,7 +213,7 @@ def _bar(total: int, *, show: bool) -> Iterator[Any]:
             # The time left follows from what was computed, not from what was there.
             bar.initial = progress.resumed
             points = f"{progress.ended}/{progress.points}"
-            bar.set_postfix(points=points, resumed=progress.resumed, damaged=progress.damaged, refresh=False)
+            bar.set_postfix(points=points, resumed=progress.resumed, refresh=False)
             bar.update(progress.computed + progress.resumed - bar.n)
 
         yield tell
