@@ -9,6 +9,7 @@ if TYPE_CHECKING:
     from restitution._core import NumericalError, build_info
     from restitution.bodies import *  # noqa: F403
     from restitution.distribution import DistanceWarning, FluctuatingRestitution
+    from restitution.drop.budget import energy_budget
     from restitution.drop.compare import compare
     from restitution.drop.energy import EnergyWarning
     from restitution.drop.reduce import reduce
@@ -37,6 +38,7 @@ __all__ = [
     "analytic",
     "build_info",
     "compare",
+    "energy_budget",
     "error_budget",
     "explore",
     "figures",
@@ -72,6 +74,7 @@ _HOMES = {
     "NumericalError": "_core",
     "build_info": "_core",
     "compare": "drop.compare",
+    "energy_budget": "drop.budget",
     "explore": "explorer",
     "posterior": "experiment.inference",
     "EnergyWarning": "drop.energy",

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 import xarray as xr
 
+import restitution as rs
 from reference.made_up_runs import (
     IMPACTS,
     MAIN,
@@ -30,6 +31,7 @@ from reference.made_up_runs import (
 )
 from restitution._core import STOP_REASONS
 from restitution.analytic import first_impact
+from restitution.drop.energy import reported_elsewhere
 from restitution.papers import shape
 from restitution.papers.estimate import jackknife
 from restitution.papers.glielmo2014._claims import CLAIMS, _experiments, _negative
@@ -58,6 +60,25 @@ LOUD = {"restitution": 0.98 + 0.05 * skew(np.random.default_rng(5), SHAPE)}
 )
 def test_scatter(key: str, main: xr.Dataset, verdict: str) -> None:
     assert judged(key, main=main).verdict == verdict
+
+
+def test_rotation_pays_two_sevenths_in_the_papers_own_run() -> None:
+    """The share that the claim finds from what is recorded of every impact is that of the states."""
+    body, law = SETTINGS.body(SETTINGS.elongation), SETTINGS.law
+    with reported_elsewhere():
+        data = rs.simulate(body, law, particles=300, impacts=150, seed=1, record="state")
+    claim = judged("expense-of-rotation", main=data)
+    number, falls, part, sphere = claim.measured
+    low, high = SETTINGS.velocity_range
+    chosen = (data.restitution > 1) & (data.impact_velocity >= low) & (data.impact_velocity < high)
+    budget = rs.energy_budget(data)
+    lost = (budget.before - budget.after).where(chosen)[:, :-1].sum(("particle", "impact")).values
+    assert part.value == pytest.approx(lost[2] / (lost[1] + lost[2]), rel=1e-6)
+    assert sphere.value == pytest.approx(2 / 7, abs=0.015)  # J of L/R = 0.1 is larger by that
+    assert part.error is not None
+    assert 2 / 7 < part.value < sphere.value
+    assert (falls.value, claim.verdict) == (1.0, "holds in part")
+    assert number.value > 1000
 
 
 @pytest.mark.parametrize(
@@ -273,7 +294,7 @@ def gaining(share: float) -> xr.Dataset:
 
 @pytest.mark.parametrize(
     ("drawn", "others", "verdict"),
-    [(0.0, 0.0, "holds"), (0.0, 0.2, "holds in part"), (0.2, 0.2, "fails"), (0.0, 0.7, "fails")],
+    [(0.0, 0.0, "holds"), (0.0, 0.2, "holds in part"), (0.2, 0.2, "fails"), (0.0, 0.7, "holds in part")],
 )
 def test_energy(drawn: float, others: float, verdict: str) -> None:
     energy = dict.fromkeys(SETTINGS.energy_elongations, gaining(others))
@@ -302,7 +323,7 @@ def test_orientation(isotropic: xr.Dataset, verdict: str) -> None:
 
 
 @pytest.mark.parametrize(
-    ("radius", "height", "verdict"), [(1, 1, "holds"), (1, 2, "holds in part"), (2, 2, "fails")]
+    ("radius", "height", "verdict"), [(1, 1, "holds"), (1, 2, "holds in part"), (2, 2, "holds in part")]
 )
 def test_size_and_height(radius: float, height: float, verdict: str) -> None:
     """Scatter at given speed that is so many times larger in runs of another radius, or another height."""

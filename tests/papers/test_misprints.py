@@ -30,7 +30,13 @@ RHO_2 = R**2 - (z - L / 2) ** 2  # A2
 def test_the_records_can_be_shown() -> None:
     """Plain text in the order of the paper, each label once."""
     assert list(RECORDS) == ["2, 3", "3", "6", "14", "18", "19", "21", "A5", "A7"]
-    assert [r.kind for r in MISPRINTS] == ["caveat"] * 3 + ["misprint"] * 6
+    assert [r.kind for r in MISPRINTS] == [
+        *["caveat"] * 3,
+        "misprint",
+        "misprint",
+        "caveat",
+        *["misprint"] * 3,
+    ]
     for record in MISPRINTS:
         for text in (record.printed, record.corrected, record.proof, record.quantity):
             assert text == " ".join(text.split()) != ""

@@ -360,11 +360,11 @@ def resting(body: RigidBody, data: xr.Dataset) -> xr.Dataset:
         raise ParameterError(Problem("data.energy_ratio", text))
 
     moving = velocity if data.attrs.get("law") != "Frictionless" else velocity[..., 2:]
-    turning = _in_body(attitude, spin)
+    turning = in_body(attitude, spin)
     rotation = (turning @ body.inertia_tensor * turning).sum(-1) / mass
     energy = position[..., 2] + 0.5 * ((moving**2).sum(-1) + rotation) / gravity
     impacts = np.isfinite(energy).sum(axis=1)
-    down = _in_body(attitude, np.array([0.0, 0.0, -1.0]))
+    down = in_body(attitude, np.array([0.0, 0.0, -1.0]))
 
     landscape = shape.landscape
     wells, level = landscape.wells(), landscape.levels()
@@ -398,7 +398,7 @@ def resting(body: RigidBody, data: xr.Dataset) -> xr.Dataset:
     return xr.Dataset(found, coordinates, attributes)
 
 
-def _in_body(attitude: FloatArray, vector: FloatArray) -> FloatArray:
+def in_body(attitude: FloatArray, vector: FloatArray) -> FloatArray:
     """Turn vectors of space to the axes of the body."""
     scalar, axis = attitude[..., :1], -attitude[..., 1:]
     twice = 2.0 * np.cross(axis, vector)

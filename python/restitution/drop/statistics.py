@@ -16,6 +16,7 @@ from restitution._internal.resources import available_memory, checked_threads, p
 from restitution.bodies import AnyBody
 from restitution.drop.batches import BATCHES, batches_of, origin, standard_errors
 from restitution.drop.bins import FRACTION_BINS, all_edges_from, assemble, by_velocity, increasing_edges
+from restitution.drop.budget import budget_by_row
 from restitution.drop.dataset import attributes
 from restitution.drop.energy import by_row, ledger, warn
 from restitution.drop.run import Run, RunArguments, takes_run
@@ -46,6 +47,7 @@ def statistics(
     fraction_range: tuple[float, float] | None = None,
     counts_only: bool = False,
     batches: int = BATCHES,
+    energy_budget: bool = False,
     progress: bool = False,
     **run: Unpack[RunArguments],
 ) -> xr.Dataset:
@@ -76,6 +78,9 @@ def statistics(
         Batches of particles whose scatter gives the standard errors of the moments; 1 leaves the errors out
         and saves some milliseconds a batch. With fewer than two particles a batch there are no errors. The
         attribute ``standard_errors`` says how they were found, or why there are none.
+    energy_budget : bool
+        Also the mean energies, vertical, sideways and of rotation, and their changes by the impacts, for
+        which the run is followed a second time.
     progress : bool
         Show a progress bar on standard error.
 
@@ -87,6 +92,11 @@ def statistics(
         by stop reason. Over all impacts, in the bins or not, the attributes ``energy_created_impacts``,
         ``energy_created_share`` and ``largest_energy_ratio``, as from `simulate`. The moments rest on exact
         sums of ε - ε_n rounded to 2⁻²⁴ ≈ 6e-8, or to 2⁻²⁰ ≈ 1e-6 where it exceeds 2.
+
+        With ``energy_budget`` in each row and by kind, dimension ``energy`` as in `energy_budget`, means in
+        J: ``energy_before`` and ``energy_change`` of all impacts, ``energy_change_above_one`` of the
+        ``above_one`` impacts with ε > 1; and of these ``paid_by_rotation``, the share of rotation in what
+        rotation and sideways motion lost together. Their standard errors end in ``_error``.
 
     Raises
     ------
@@ -113,6 +123,7 @@ def statistics(
     """
     ensemble = Run.called("statistics", body, law, run)
     counts_only, batches = flag("counts_only", counts_only), whole("batches", batches, 1)
+    budget = flag("energy_budget", energy_budget)
     velocity, restitution, fraction = all_edges_from(
         velocity_bins=(velocity_bins, velocity_range),
         restitution_bins=(restitution_bins, restitution_range),
@@ -136,6 +147,11 @@ def statistics(
         )
     why = "none: counts_only leaves the moments out" if counts_only else None
     found.attrs["standard_errors"] = why or origin(len(rows), ensemble.particles, batches)
+    if budget and not interrupted:
+        try:
+            found = found.assign(budget_by_row(ensemble, edges["velocity"], number, parts))
+        except KeyboardInterrupt as stopped:
+            interrupted = stopped
     if interrupted:
         raise SimulationInterrupted(found.assign_attrs(incomplete="interrupted by the user")) from interrupted
     warn(found)

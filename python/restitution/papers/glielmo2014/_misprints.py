@@ -62,11 +62,12 @@ MISPRINTS = (
     ),
     Misprint(
         equation="19",
-        kind="misprint",
+        kind="caveat",
         printed="p(s) = 1/(π√(1 − s²))",
         corrected="p(s) = 2/(π√(1 − s²)), 0 ≤ s < 1",
-        proof="It follows from Eq. 18. On 0 ≤ s ≤ 1, where Eq. 17 holds and has one inverse, the printed "
-        "density integrates to 1/2.",
+        proof="The printed density is that of cos θ on −1 < s < 1, where it integrates to 1. Eq. 17 holds, "
+        "and has one inverse, on 0 ≤ s ≤ 1, for |cos θ|, which is what the braces of Eq. 18 are about: "
+        "there it integrates to 1/2.",
         quantity="∫ p(s) ds over 0 ≤ s ≤ 1",
         check=checks.total_probability,
     ),

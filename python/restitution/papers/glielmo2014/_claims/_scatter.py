@@ -57,24 +57,40 @@ def above_one(runs: Runs, settings: Settings) -> Finding:
     "Sec. III, Fig. 2",
 )
 def expense_of_rotation(runs: Runs, settings: Settings) -> Finding:
-    """Test whether E_rot falls when ε > 1; the E_rot after an impact is that before the next one."""
-    rotation = energies(runs.main, settings.gravity) * runs.main["rotational_fraction"].to_numpy()
-    before, after = rotation[:, :-1], rotation[:, 1:]
-    impacts = in_bins(runs.main["impact_velocity"][:, :-1], np.array(settings.velocity_range))
-    impacts = impacts.only((impacts.of(runs.main["restitution"]) > 1) & np.isfinite(impacts.of(after)))
-    paid = impacts.means((impacts.of(after) < impacts.of(before)).astype(np.float64))
-    value, error = float(paid.value[0]), float(paid.error[0])
+    """Compare what rotation and sideways motion lose where ε > 1; no flight changes either."""
+    data = runs.main
+    total = energies(data, settings.gravity)
+    rotation = total * data["rotational_fraction"].to_numpy()
+    sideways = total - rotation - data["impact_velocity"].to_numpy() ** 2 / 2
+    impacts = in_bins(data["impact_velocity"][:, :-1], np.array(settings.velocity_range))
+    impacts = impacts.only((impacts.of(data["restitution"]) > 1) & np.isfinite(impacts.of(rotation[:, 1:])))
+    turning, moving = (impacts.of(kind[:, :-1]) - impacts.of(kind[:, 1:]) for kind in (rotation, sideways))
+    falls = impacts.means((turning > 0).astype(np.float64))
+    value, error = float(falls.value[0]), float(falls.error[0])
+    # The share is a quotient of two means, whose influence is linearised.
+    lost = float(np.mean(turning + moving))
+    part = float(np.mean(turning)) / lost
+    part_error = float(impacts.means((turning - part * (turning + moving)) / lost).error[0])
+    body = settings.body(settings.elongation)
+    sphere = body.transverse_inertia / (body.transverse_inertia + body.mass * settings.radius**2)
     return Finding(
         measured=(
-            Measurement("impacts with ε > 1 in the range of Fig. 2", float(paid.number[0])),
+            Measurement("impacts with ε > 1 in the range of Fig. 2", float(falls.number[0])),
             Measurement("share of them in which E_rot falls", value, error),
+            Measurement(
+                "share of rotation in what rotation and sideways motion lose in them", part, part_error
+            ),
+            Measurement("J_xx/(J_xx + mR²)", sphere),
         ),
-        verdict=verdict(value == 1, value > 0.5),
-        rule="Holds if the rotational energy falls in every impact with ε > 1 in the range of Fig. 2; in "
-        "part if in more than half of them; fails otherwise.",
-        why="Rotational energy falls in every impact with ε > 1."
-        if value == 1
-        else f"Rotational energy does not fall in {100 * (1 - value):.2g} % of the impacts with ε > 1.",
+        verdict=verdict(value == 1 and part > 0.5, value > 0.5),
+        rule="Holds if the rotational energy falls in every impact with ε > 1 in the range of Fig. 2, and "
+        "pays more than half of what rotation and sideways motion lose in them together; in part if it "
+        "falls in more than half of them; fails otherwise. Both halves are our thresholds.",
+        why="Rotational energy falls in "
+        f"{'every impact' if value == 1 else f'{100 * value:.3g} % of the impacts'}"
+        f" with ε > 1, and pays {100 * part:.3g} % of what is lost there; sideways motion pays the rest. A "
+        "nearly round body that does not turn when it is released does not slip at its contacts under this "
+        "law, so that sideways motion and rotation have energies in the ratio mR² : J_xx.",
     )
 
 
@@ -168,6 +184,7 @@ def beads(runs: Runs, settings: Settings) -> Finding:
     longer = np.array([b.apart(a) for a, b in pairwise(ordered)])
     slower = {x: trend(sigma[x].take(slice(None, None, -1))) for x in runs.beads}
     grows, scatters = bool(np.all(longer > SIGNIFICANT)), all(t.monotone for t in slower.values())
+    largest = max(float(np.nanmax(sigma[x].value)) for x in runs.beads)
     return Finding(
         measured=tuple(
             item for x in runs.beads for item in listed(f"σ(ε), L/R = {x:g}", settings.labels, sigma[x])
@@ -175,8 +192,11 @@ def beads(runs: Runs, settings: Settings) -> Finding:
         verdict=verdict(grows and scatters, grows or scatters),
         rule=f"Holds if σ(ε) grows with L/R (up to {settings.elongation:g}) at each of the four speeds, by "
         f"more than {SIGNIFICANT:g} standard errors, and for the beads with falling speed as well; in part "
-        "if only one of the two is so; fails otherwise.",
-        why="Rounder beads scatter less at every speed, and each scatters more the slower it is."
+        "if only one of the two is so; fails otherwise. The paper does not say what is small: this tests the "
+        f"order alone. The least growth with L/R is by {longer.min():.3g} standard errors: where more were "
+        "asked for, the verdict would change.",
+        why=f"σ(ε) of the beads is at most {largest:.2g}. Rounder beads scatter less at every speed, and "
+        "each scatters more the slower it is."
         if grows and scatters
         else f"Growth with L/R: {'yes' if grows else 'no'}; with falling speed: "
         f"{'yes' if scatters else 'no'}.",
