@@ -44,7 +44,9 @@ def body(elongation: float, height: float, surface: int) -> rs.Dumbbell | rs.Rou
     )
 
 
-def scatter(elongation: float, height: float, particles: int, surfaces: int) -> tuple[Array, Array]:
+def scatter(
+    elongation: float, height: float, particles: int, surfaces: int, law: rs.laws.Law = LAW
+) -> tuple[Array, Array]:
     """Return σ(ε) at the speeds, within a tenth, and its standard error.
 
     Every surface has so many particles of its own; the error is that of the mean over the surfaces.
@@ -54,7 +56,7 @@ def scatter(elongation: float, height: float, particles: int, surfaces: int) -> 
     for surface in range(1, surfaces + 1):
         data = rs.simulate(
             body(elongation, height, surface),
-            LAW,
+            law,
             particles=particles,
             impacts=IMPACTS,
             release_height=RELEASE,
@@ -91,6 +93,16 @@ def share(found: dict[str, Array]) -> tuple[Array, Array]:
     s, r = found["shape"][:, None], found["roughness"][None]
     ds, dr = found["shape_error"][:, None], found["roughness_error"][None]
     return r / (s + r), np.hypot(s * dr, r * ds) / (s + r) ** 2
+
+
+def on_the_line(elongation: float, law: rs.laws.Law) -> tuple[float, float]:
+    """Return σ of both over the sum where both alone are alike, the mean over the speeds, and its error."""
+    height = RADIUS * elongation**2 / (8 * np.sqrt(2))
+    cases = ((elongation, 0.0), (0.0, height), (elongation, height))
+    (shape, ds), (rough, dr), (both, db) = (scatter(*case, 100, 16, law) for case in cases)
+    ratio = both / (shape + rough)
+    error = ratio * np.hypot(db / both, np.hypot(ds, dr) / (shape + rough))
+    return float(ratio.mean()), float(error.mean())  # speeds of one fall are not independent
 
 
 @fg.styled

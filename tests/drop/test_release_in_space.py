@@ -68,3 +68,18 @@ def test_newton_euler_equations(
     growth = np.maximum.accumulate(np.abs(solved(ACCURACY) - right), axis=0)
     assert (growth < 1e-6).all(), "chaos parts the trajectories too early to compare"
     assert (np.abs(mine - right) <= 3.0 * growth + ACCURACY * np.abs(right)).all()
+
+
+def test_a_thermal_spin_has_the_energy_of_its_temperature() -> None:
+    """kT/2 for each of the three parts of the rotation, within four standard errors of 4000 particles."""
+    kt = 1e-6
+    for body in (rs.Dumbbell(radius=3e-3, separation=2e-3), rs.Ellipsoid(semi_axes=(1e-3, 2e-3, 3e-3))):
+        spin = rs.RandomSpin.thermal(body, temperature=kt)
+        law = rs.Frictionless(normal=0.9)
+        data = rs.simulate(
+            body, law, particles=4000, impacts=1, orientation="isotropic", spin=spin, record="state"
+        )
+        energy = rs.energy_budget(data).before.sel(energy="rotational").values[:, 0]
+        assert abs(energy.mean() / (1.5 * kt) - 1.0) < 4.0 * np.sqrt(2.0 / 3.0 / 4000)
+    with pytest.raises(ValueError, match="temperature = -1"):
+        rs.RandomSpin.thermal(rs.Dumbbell(radius=3e-3, separation=2e-3), temperature=-1.0)

@@ -19,10 +19,8 @@ from typing import TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from restitution.analytic._disc import Number
 from restitution.analytic._full_impulse import cross, dot
 from restitution.analytic._orientation import Floats
-from restitution.analytic._taylor import over_greatest, value
 from restitution.bodies import Ellipsoid, Superellipsoid, outermost
 
 Ints: TypeAlias = NDArray[np.intp]
@@ -35,11 +33,8 @@ class Balls:
     centres: Floats
     radii: Floats
 
-    def contact(self, down: Sequence[Number], element: Ints) -> tuple[list[Number], list[Number]]:
-        """Return the point of each element that is farthest down, and its vector product with that direction.
-
-        All are components, which may be models.
-        """
+    def contact(self, down: Sequence[Floats], element: Ints) -> tuple[list[Floats], list[Floats]]:
+        """Return the points that are farthest down, and their vector products with that direction."""
         centres, radii = list(self.centres[element].T), self.radii[element]
         arm = cross(centres, down)
         if not radii.any():
@@ -67,16 +62,14 @@ class Smooth(Balls):
     body: Ellipsoid | Superellipsoid
     axes: Floats  # principal ones, as columns
 
-    def contact(self, down: Sequence[Number], element: Ints) -> tuple[list[Number], list[Number]]:
+    def contact(self, down: Sequence[Floats], element: Ints) -> tuple[list[Floats], list[Floats]]:
         """Return the point that is farthest down, and its vector product with that direction."""
         own = [dot(axis, down) for axis in self.axes]
-        sizes: Sequence[Number] = [abs(x) for x in own]
-        if min(getattr(self.body, "exponents", (2.0, 2.0))) < 2.0:  # high powers
-            sizes = over_greatest(sizes, self.body.semi_axes)
-        found = outermost(self.body, sizes)
-        point = [
-            np.sign(value(x)) * y - z for x, y, z in zip(own, found, self.body.centre_of_mass, strict=True)
-        ]
+        sizes = np.abs(own)
+        # High powers of components, of which the point depends on the ratios alone.
+        sizes = sizes / (sizes * np.reshape(self.body.semi_axes, (3, 1))).max(axis=0)
+        found = outermost(self.body, list(sizes))
+        point = [np.sign(x) * y - z for x, y, z in zip(own, found, self.body.centre_of_mass, strict=True)]
         lever = [dot(axis, point) / self.body.compiled.farthest() for axis in self.axes.T]
         return lever, cross(lever, down)
 

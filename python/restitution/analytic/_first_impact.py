@@ -42,7 +42,7 @@ def first_impact(
         over all such spheres, whose orientation does not matter; of other bodies that over their attitudes.
         For two equal balls under the paper's law or without friction, L/R from 1e-100 to 1e100; else such
         that ε varies by 1e-9 at least. Of a Clump, an Ellipsoid, a polyhedron, a Mesh or a Rough body the
-        distribution function is computed in some seconds, and ``cdf_error`` is a proved bound of its error.
+        distribution function is computed in some seconds, and ``cdf_error`` estimates its error.
     law : TangentialRestitution or another law
         Law of the impact.
     orientation : {"uniform-angle", "isotropic"}

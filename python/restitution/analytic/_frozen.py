@@ -91,7 +91,7 @@ class FirstImpact(ABC):
     def cdf_error(self) -> float:
         """How far `cdf` may be off: 0 where ε is a function of the angle θ, which is solved to rounding.
 
-        For other rigid bodies a proved bound, but for rounding.
+        For other rigid bodies a generous estimate, not a bound.
         """
         return 0.0
 

@@ -12,7 +12,7 @@ moments over m. The contact comes down along the normal n, so that the impulse P
 
 All follow from K_nn, trace and determinant of K_tt, K_nt adj(K_tt) K_tn, |K_tn|² and |adj(K_tt) K_tn|². By
 adj K = 1 + tr N - N + c r rᵀ, c = rᵀJr/det J, they are sums of products of the components of r, n and r × n,
-which may be numbers or Taylor models. The last three are small where r and n are nearly along each other.
+The last three are small where r and n are nearly along each other.
 """
 
 from __future__ import annotations
@@ -24,39 +24,36 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from restitution.analytic._disc import Number
 from restitution.analytic._impulse import Impulse
 from restitution.analytic._orientation import Floats
-from restitution.analytic._taylor import Taylor, bounds, value
 
 _NEWTON = 60
-_ORDERS = 3  # of the polynomial that a model has
 
 
 @dataclass(frozen=True)
 class Response:
-    """What a law makes of K, at many contacts or on many triangles side by side."""
+    """What a law makes of K, at many contacts side by side."""
 
     impulse: Impulse
-    normal: Number  # ε_n
+    normal: Floats | float  # ε_n
     moments: Floats
-    lever: Sequence[Number]  # r and, of any length, n, in principal axes
-    down: Sequence[Number]
-    arm: Sequence[Number]  # r × n, which where a ball touches does not depend on its radius
+    lever: Sequence[Floats]  # r and, of any length, n, in principal axes
+    down: Sequence[Floats]
+    arm: Sequence[Floats]  # r × n, which where a ball touches does not depend on its radius
 
     @cached_property
-    def nn(self) -> Number:
+    def nn(self) -> Floats:
         return 1.0 + dot(self.arm, self._turn) * self._scale
 
     @cached_property
-    def margin(self) -> Number:
+    def margin(self) -> Floats:
         """Positive where a contact that sticks, or the part of it, would be outside of the friction cone."""
         friction, kept, turned = self.impulse.friction, self.impulse.kept, self._turned**0.5
         if self.impulse.modes()[0] == "stuck":
             return turned / self._minor - friction  # |P_t|/P_n - μ
         return kept * (turned / self._whole - friction * self._more) - friction * self._free
 
-    def restitution(self) -> Number:
+    def restitution(self) -> Floats:
         """Return ε."""
         within, beyond = self.impulse.modes()
         if within == "free":
@@ -66,37 +63,16 @@ class Response:
         else:
             found = self._free + self.impulse.kept * self._more
         if beyond == "sliding":
-            slips = value(self.margin) > 0.0
+            slips = self.margin > 0.0
             if slips.any():
                 found[slips] = self._beyond(slips)
         return found - 1.0
 
-    def raised(self) -> Number:
+    def raised(self) -> Floats:
         """Return by how much ε is more than ε_n."""
         return self.restitution() - self.normal
 
-    def kink(self) -> Floats:
-        """Bound by how much ε is off on triangles that are not beyond the limit of friction, or not all.
-
-        The model is that of the side of the centroid; m is what the margin is at most on the other side. With
-        M the margin, "part" is off by M (P_II - P_I)/R with R = (M + μ P_I)/κ. A contact that sticks has
-        1/P_n = D, one that slides D + λ K_nt K_tt⁻¹ s. By `_push_aside` |λ| ≤ |M| |K_tn|/|K_tt⁻¹ K_tn|, so
-        that the denominators differ by |M| |K_tn| at most.
-        """
-        within, beyond = self.impulse.modes()
-        if beyond != "sliding":
-            return np.zeros(1)
-        low, high = bounds(self.margin)
-        most = np.where(value(self.margin) > 0.0, -low, high)
-        if within == "stuck":
-            apart, least = most * bounds(self._across)[1] ** 0.5, 1.0 / bounds(self._stuck)[1]
-            off = bounds(1.0 + self.normal)[1] * apart / (least * np.maximum(least - apart, 0.0))
-        else:
-            room = self.impulse.friction * bounds(self._free)[0] - most
-            off = most * self.impulse.kept * bounds(self._more)[1] / np.maximum(room, 0.0)
-        return np.where(most <= 0.0, 0.0, off)
-
-    def _beyond(self, slips: NDArray[np.bool_]) -> Number:
+    def _beyond(self, slips: NDArray[np.bool_]) -> Floats:
         """Return P_n where contacts slide."""
         friction = self.impulse.friction
         if self.impulse.modes()[0] == "part":
@@ -104,140 +80,114 @@ class Response:
             return free + friction * (free * more) / (turned**0.5 / whole - friction * more)
         sums = self._trace, self._minor, self._across, self._turned, self._mixed
         gain, nn, trace, minor, across, turned, mixed = self._rows(slips, 1.0 + self.normal, self.nn, *sums)
-        push, off = _push_aside(friction, trace, minor, across, turned, mixed)
+        push = _push_aside(friction, trace, minor, across, turned, mixed)
         drag = friction * mixed + across * push
         below = nn - friction * drag / (friction * (friction * minor + trace * push) + push * push)
-        if isinstance(below, Taylor):  # it is not less than K_nn - μ |K_tn|, also where a contact sticks
-            below.rest = below.rest + off
-            half = 0.5 * friction * np.sqrt(bounds(across)[1])
-            flat = ~(below.rest < half)
-            below[flat] = (nn + Taylor(Taylor.constant(-half).terms, half))[flat]
         return gain / below
 
     @staticmethod
-    def _rows(rows: NDArray[np.bool_], *values: Number) -> list[Number]:
-        return [x if isinstance(x, float) else x[rows] for x in values]
+    def _rows(rows: NDArray[np.bool_], *values: Floats | float) -> list[Floats]:
+        return [np.broadcast_to(x, rows.shape)[rows] for x in values]
 
     @cached_property
-    def _scale(self) -> Number:
+    def _scale(self) -> Floats:
         return 1.0 / dot(self.down, self.down)
 
     @cached_property
-    def _turn(self) -> Sequence[Number]:
+    def _turn(self) -> Sequence[Floats]:
         """J⁻¹ (r × n)."""
         return [a / moment for a, moment in zip(self.arm, self.moments, strict=True)]
 
     @cached_property
-    def _sums(self) -> tuple[Number, Number]:
+    def _sums(self) -> tuple[Floats, Floats]:
         """Return tr N and c."""
         squares, inverse = [r * r for r in self.lever], 1.0 / self.moments
         trace = dot(squares, inverse.sum() - inverse)
         return trace, dot(squares, inverse.prod() / inverse)
 
     @cached_property
-    def _whole(self) -> Number:
+    def _whole(self) -> Floats:
         """The determinant of K."""
         return self.nn * self._minor - self._mixed
 
     @cached_property
-    def _reach(self) -> tuple[Number, Number]:
+    def _reach(self) -> tuple[Floats, Floats]:
         """Return r·n and c (r·n)."""
         reach = dot(self.lever, self.down)
         return reach, self._sums[1] * reach
 
     @cached_property
-    def _minor(self) -> Number:
+    def _minor(self) -> Floats:
         """The determinant of K_tt, n·adj(K) n."""
         return 2.0 + self._sums[0] - self.nn + self._reach[0] * self._reach[1] * self._scale
 
     @property
-    def _trace(self) -> Number:
+    def _trace(self) -> Floats:
         """Of K_tt."""
         return 3.0 + self._sums[0] - self.nn
 
     @cached_property
-    def _aside(self) -> tuple[Sequence[Number], Sequence[Number]]:
+    def _aside(self) -> tuple[Sequence[Floats], Sequence[Floats]]:
         """Return K_tn and adj(K_tt) K_tn, turned by a right angle and as long as the square of n."""
         aside = cross(self.down, cross(self._turn, self.lever))
         return aside, [x + self._reach[1] * a for x, a in zip(aside, self.arm, strict=True)]
 
     @cached_property
-    def _across(self) -> Number:
+    def _across(self) -> Floats:
         """|K_tn|²."""
         return dot(self._aside[0], self._aside[0]) * self._scale**2.0
 
     @cached_property
-    def _turned(self) -> Number:
+    def _turned(self) -> Floats:
         """|adj(K_tt) K_tn|²."""
         return dot(self._aside[1], self._aside[1]) * self._scale**2.0
 
     @cached_property
-    def _mixed(self) -> Number:
+    def _mixed(self) -> Floats:
         """K_nt adj(K_tt) K_tn."""
         return dot(self._aside[0], self._aside[1]) * self._scale**2.0
 
     @cached_property
-    def _free(self) -> Number:
+    def _free(self) -> Floats:
         return (1.0 + self.normal) / self.nn
 
     @cached_property
-    def _stuck(self) -> Number:
+    def _stuck(self) -> Floats:
         return 1.0 / (self.nn - self._mixed / self._minor)
 
     @cached_property
-    def _more(self) -> Number:
+    def _more(self) -> Floats:
         return self._stuck * self._mixed / (self._minor * self.nn)
 
 
 def _push_aside(
-    friction: float, trace: Number, minor: Number, across: Number, turned: Number, mixed: Number
-) -> tuple[Number, Floats | float]:
-    """Return λ of contacts that slide from rest, and by how much K_nn - μ K_nt s may be off with it.
+    friction: float, trace: Floats, minor: Floats, across: Floats, turned: Floats, mixed: Floats
+) -> Floats:
+    """Return λ of contacts that slide from rest.
 
     The length of w = (μ K_tt + λ)⁻¹ K_tn is √N/D, N and D quadratic in λ. D/√N rises with λ > -μ, for the
-    eigenvalues of K_tt are 1 at least; it is concave, and comes to rise as λ/|K_tn|, so that it rises no less
-    anywhere. Newton's steps come to 1 from below, and any other λ is off by |D/√N - 1| |K_tn| at most. The
-    derivative of K_nt w is -w².
+    eigenvalues of K_tt are 1 at least, and is concave: Newton's steps come to 1 from below. The derivative of
+    K_nt w is -w².
     """
-
-    def forms(push: Number, *of: Number) -> tuple[Number, Number]:
-        trace, minor, across, turned, mixed = of
-        square = friction * (friction * turned + 2.0 * mixed * push) + across * (push * push)
-        return square, friction * (friction * minor + trace * push) + push * push
-
-    models = trace, minor, across, turned, mixed
-    sums = trace, minor, across, turned, mixed = tuple(map(value, models))
     largest = 0.5 * (trace + np.sqrt(np.maximum(trace * trace - 4.0 * minor, 0.0)))
     push = np.maximum(np.sqrt(across) - friction * largest, 0.0)  # a lower bound
     for _ in range(_NEWTON):
-        square, whole = forms(push, *sums)
+        square = friction * (friction * turned + 2.0 * mixed * push) + across * (push * push)
+        whole = friction * (friction * minor + trace * push) + push * push
         rise, steep = friction * mixed + across * push, friction * trace + 2.0 * push
         with np.errstate(divide="ignore", invalid="ignore"):
             step = square * (np.sqrt(square) - whole) / (steep * square - rise * whole)
         push, last = push + step, push
         if np.all(np.abs(push - last) <= 1e-15 * (friction * trace + push)):
             break
-    if not isinstance(models[-1], Taylor):
-        return push, 0.0
-    slope, found = 2.0 * (rise - whole * steep), Taylor.constant(push)
-    for _ in range(_ORDERS):  # each step gives another one
-        square, whole = forms(found, *models)
-        found = found - (square - whole * whole) / slope
-    found = Taylor(found.terms, np.zeros_like(push))
-    square, whole = forms(found, *models)
-    apart, root = (bounds(x) for x in (square - whole * whole, whole))  # N - D² is small, and D more than 0
-    apart, least = np.abs(apart).max(axis=0), root[0]
-    root = np.sqrt(least * least - apart)
-    off = apart / (root * (root + least)) * np.sqrt(bounds(models[2])[1])
-    off = np.where(bounds(found)[0] - off > -friction, off, np.inf)
-    return found, friction * (1.0 + apart / (least * least)) * off
+    return push
 
 
-def dot(one: Sequence[Number], two: Sequence[Number]) -> Number:
+def dot(one: Sequence[Floats], two: Sequence[Floats]) -> Floats:
     """Return the scalar product of vectors, by their components."""
     return one[0] * two[0] + one[1] * two[1] + one[2] * two[2]
 
 
-def cross(one: Sequence[Number], two: Sequence[Number]) -> list[Number]:
+def cross(one: Sequence[Floats], two: Sequence[Floats]) -> list[Floats]:
     """Return the vector product."""
     return [one[i] * two[j] - one[j] * two[i] for i, j in ((1, 2), (2, 0), (0, 1))]

@@ -37,7 +37,8 @@ def near_round(
     takes (v' + v'')/g, with v' and v'' the speeds after an impact and before the next. The two ends of a body
     are not at the same height: v''² = v'² - gL(|cos θ''| - |cos θ'|), in which θ'' is that of a flight
     2v'/g. So nothing is searched for; what is left out is the next order in L of the time of the contact. The
-    error of σ is 2 % rms up to L/R = 0.1 and 3 % at 0.2, that of one bin up to 12 %; docs/near-round.md.
+    error of σ is 2 % rms up to L/R = 0.1, mostly because of the number of `angles`, and 3 % at 0.2, that of
+    one bin up to 12 %; docs/near-round.md.
 
     Parameters
     ----------

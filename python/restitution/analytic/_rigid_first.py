@@ -12,14 +12,12 @@ from numpy.typing import ArrayLike
 
 from restitution._internal.parameters import ParameterError, Problem, wrong
 from restitution.analytic._cells import Balls, Ints, Smooth, Units, clipped, solid_angle, unit
-from restitution.analytic._disc import Number
 from restitution.analytic._frozen import FirstImpact, Values, floats, probability, scalar
 from restitution.analytic._full_impulse import Response, dot
 from restitution.analytic._impulse import Impulse
-from restitution.analytic._normal import Fall, at_speed
+from restitution.analytic._normal import Fall
 from restitution.analytic._orientation import Floats
-from restitution.analytic._taylor import Taylor, bounds
-from restitution.analytic._triangular import POINTS, Table, Triangles, apart
+from restitution.analytic._triangular import POINTS, Table, Triangles
 from restitution.bodies import Ellipsoid, RigidBody, Superellipsoid
 from restitution.laws import Material
 
@@ -30,13 +28,10 @@ _MOST_PAIRS = 10_000_000
 _LEVELS = 4
 _HARD = 1e-3  # an error of the distribution function that is worth twice as many
 _BINS = 4096
-_FARTHEST = 4.0
-"""4/3 of the range of ε - ε_n, from -2 to 1: half of it, and 5/3 of that for the quadratic function."""
 _NARROW = 1e-200
 _SMALLEST_STEP = 1e-9  # of a search for an extreme, in rad
 _MOST_STEPS = 300
 _BLOCK = 1 << 20
-_FEW = 1 << 11  # triangles, so that their models stay in a cache
 
 
 @dataclass(frozen=True)
@@ -45,10 +40,9 @@ class RigidFirstImpact(FirstImpact):
 
     ε is a closed form in the direction of the plane as seen from the body. The sphere of these directions is
     divided into triangles, smaller where ε bends, on each of which one ball or vertex touches; there ε is
-    taken as linear, so that the distribution is a sum of triangular ones. `cdf_error` is a proved bound of
-    how far the distribution function is off, but for rounding: Taylor models bound ε on every triangle.
-    Moments come closer. `expect` is a sum over the table of the distribution function, whatever accuracy is
-    asked for.
+    taken as linear, so that the distribution is a sum of triangular ones. `cdf_error` estimates, generously,
+    how far the distribution function is off, from ε at other points of the triangles; moments come closer.
+    `expect` is a sum over the table of the distribution function, whatever accuracy is asked for.
 
     Examples
     --------
@@ -216,30 +210,12 @@ class RigidFirstImpact(FirstImpact):
             list(points.reshape(-1, 3).T), np.repeat(element, len(POINTS)), raised=raised
         )
         values = values.reshape(-1, len(POINTS))
-        dense = np.einsum("tpk,tpk->tp", points, points) ** -1.5  # solid angle over area, but for a factor
-        middle = dense[:, 3:] * (share / dense[:, 3:].sum(axis=1))[:, None]
+        middle = points[:, 3:6]
+        middle = np.einsum("tpk,tpk->tp", middle, middle) ** -1.5  # solid angle over area, but for a factor
+        middle *= (share / middle.sum(axis=1))[:, None]
         central = np.linalg.norm(self._hull.centres, axis=1) < 1e-12
         alone = central[element] & (not isinstance(self._hull, Smooth))
-        blocks = (slice(i, i + _FEW) for i in range(0, len(corners), _FEW))
-        left = [self._left(corners[i], element[i], values[i], raised=raised) for i in blocks]
-        off, uneven = np.concatenate(left, axis=1)
-        return Triangles(
-            units.owner[pair], share, values, middle, alone.astype(float), off, share * uneven, doubt
-        )
-
-    def _left(self, corners: Floats, element: Ints, values: Floats, *, raised: bool) -> tuple[Floats, Floats]:
-        """Bound how far ε is from the quadratic function through samples, and how uneven directions are.
-
-        Directions are as (1 + x) to 1 on a flat triangle: there is at most x/4 more in a part.
-        """
-        down = [Taylor.linear(part) for part in corners.T]
-        with np.errstate(all="ignore"):  # where a model knows nothing
-            response = self._response(down, element)
-            model = response.raised() if raised else response.restitution()
-            off = apart(model, values) + response.kink()
-            low, high = bounds(dot(down, down))
-            uneven = np.where(high < 2.5 * low, 0.25 * ((high / low) ** 1.5 - 1.0), 1.0)
-        return np.where(off < _FARTHEST, off, _FARTHEST), uneven
+        return Triangles(units.owner[pair], share, values, middle, alone.astype(float), doubt)
 
     def _touching(self, down: Floats) -> Floats:
         """Return ε of what touches in directions."""
@@ -248,18 +224,18 @@ class RigidFirstImpact(FirstImpact):
         found = [self._restitution(list(part.T), self._hull.lowest(part)) for part in parts]
         return np.concatenate(found) if found else np.empty(0)
 
-    def _restitution(self, down: Sequence[Number], element: Ints, *, raised: bool = False) -> Number:
+    def _restitution(self, down: Sequence[Floats], element: Ints, *, raised: bool = False) -> Floats:
         """Return ε where an element touches, or by how much it is more than ε_n."""
         response = self._response(down, element)
         return response.raised() if raised else response.restitution()
 
-    def _response(self, down: Sequence[Number], element: Ints) -> Response:
-        """Make the response to directions as components of any length, or as models."""
+    def _response(self, down: Sequence[Floats], element: Ints) -> Response:
+        """Make the response to directions, as components of any length."""
         lever, arm = self._hull.contact(down, element)
-        normal = self.law.normal
+        normal: Floats | float | Material = self.law.normal
         if isinstance(normal, Material):
             height = dot(lever, down) * dot(down, down) ** -0.5 * self._size
-            normal = at_speed(normal, self.fall.squared_speed(height))
+            normal = normal(np.sqrt(self.fall.squared_speed(height)))
         return Response(self._impulse, normal, self._axes[0], lever, down, arm)
 
     @property
@@ -291,7 +267,7 @@ def _coarse(units: Units, found: Triangles) -> tuple[Floats, float]:
     """Return what is gained by dividing each unit, 0 for most, and how far the distribution may be off."""
     bend, lowest, highest = found.bend, found.values.min(axis=1), found.values.max(axis=1)
     start, width = lowest.min(), max(float(np.ptp(found.values)), _NARROW)
-    blur = found.share * bend / np.maximum(highest - lowest + 2.0 * bend, _NARROW) + found.uneven
+    blur = found.share * bend / np.maximum(highest - lowest + 2.0 * bend, _NARROW)
     ends = lowest - bend, highest + bend
     first, last = (np.clip((end - start) / width * _BINS, 0, _BINS).astype(int) for end in ends)
     last += 1

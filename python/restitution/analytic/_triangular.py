@@ -8,7 +8,7 @@ nearly level in 64, of the quadratic function through its six values.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property, lru_cache
 from typing import NamedTuple
 
@@ -19,17 +19,16 @@ from scipy.interpolate import CubicHermiteSpline
 from restitution.analytic._cells import Ints
 from restitution.analytic._orientation import Floats
 from restitution.analytic._panels import gauss, solve
-from restitution.analytic._taylor import Taylor, monomials
 
-_NODES = 1025
-_ROUNDS = 3
-_MOST = 8
-_TOLERANCE = 4e-6
+_NODES = 257
+_HALVINGS = 10
+_TOLERANCE = 2e-6
 _NARROWEST = 1e-200
 _BLOCK = 1 << 14  # parts, so that their values stay in a cache
 _LEVEL = 0.02
-POINTS = np.concatenate([np.eye(3), 0.5 * (np.eye(3) + np.roll(np.eye(3), 1, 1))])
-"""Where a function is sampled: the corners and the middles of the sides, each as three weights."""
+_SAFETY = 3.0  # over what is seen inside of a triangle, for between the points there may be more
+POINTS = np.concatenate([np.eye(3), 0.5 * (np.eye(3) + np.roll(np.eye(3), 1, 1)), 0.5 * np.eye(3) + 1 / 6])
+"""Where a function is sampled: the corners, the middles of the sides, and inside, each as three weights."""
 
 
 class Triangles(NamedTuple):
@@ -37,11 +36,9 @@ class Triangles(NamedTuple):
 
     unit: Ints  # to which each belongs
     share: Floats
-    values: Floats  # at `POINTS`, (triangles, 6)
+    values: Floats  # at `POINTS`, (triangles, 9)
     middle: Floats  # the share that counts for each middle of a side, (triangles, 3)
     alone: Floats  # 1 where the function is one number, else 0
-    off: Floats  # how far the function may be from the quadratic one through the values
-    uneven: Floats  # how much of a share there may be more on a part of a triangle than on a flat one
     doubt: Floats  # the share that may have another function
 
     def only(self, rows: NDArray[np.bool_]) -> Triangles:
@@ -54,41 +51,38 @@ class Triangles(NamedTuple):
 
     @property
     def bend(self) -> Floats:
-        """Bound how far the function is from what `parts` make of it."""
-        return np.asarray(np.where(self.level, 1.0 / 64.0, 0.25) * self._second + self.off)
+        """Estimate how far the function is from what `parts` make of it."""
+        return np.asarray(np.where(self.level, 1.0 / 64.0, 0.25) * self._second + _SAFETY * self._off)
 
     @property
     def level(self) -> NDArray[np.bool_]:
         """Where the function is nearly at an extreme, and linear parts would have to be many."""
         off = 0.25 * self._second
-        return np.asarray((off > _LEVEL * np.ptp(self.values, axis=1)) & (off > self.off))
+        return np.asarray((off > _LEVEL * np.ptp(self.values, axis=1)) & (off > self._off))
 
     @property
     def _second(self) -> Floats:
-        """Bound how far the quadratic function through the values is from the linear one.
+        """Bound how far the quadratic function through six values is from the linear one.
 
         With second differences δ at the middles it is off by 4 Σ δ_ij x_i x_j at weights x. Let a be the
         greatest |δ| and c the least; with a in place of the third this is no more than 4a²/(4a - c), and that
         no more than a + c/3. Parts with sides of 1/n have δ/n².
         """
-        a, b, c, ab, bc, ca = self.values.T
+        a, b, c, ab, bc, ca = self.values[:, :6].T
         off = np.abs([ab - 0.5 * (a + b), bc - 0.5 * (b + c), ca - 0.5 * (c + a)])
         return np.asarray(off.max(axis=0) + off.min(axis=0) / 3.0)
 
-    def uneven_at(self, nodes: Floats) -> Floats:
-        """Return how much the distribution function may be off for what is uneven, between each two nodes."""
-        wide, ends = self._second + self.off, len(nodes)
-        first = np.searchsorted(nodes, self.values[:, :3].min(axis=1) - wide, "right")
-        last = np.searchsorted(nodes, self.values[:, :3].max(axis=1) + wide)
-        begin, end = (np.bincount(at, self.uneven, ends + 2) for at in (first, np.maximum(first, last) + 1))
-        return np.maximum(np.cumsum(begin - end)[1:ends], 0.0)
+    @property
+    def _off(self) -> Floats:
+        """Return how far the function is from that quadratic one at the points inside."""
+        return np.asarray(np.abs(self.values @ _OFF.T).max(axis=1))
 
     def parts(self) -> tuple[Floats, Floats, Floats]:
         """Return parts of the triangles: values at the corners, ascending, share and bend."""
         found = []
         for rows, fine in ((~self.level, _quadratic(2)), (self.level, _quadratic(8))):
             basis, corners = fine
-            values = (self.values[rows] @ basis.T)[:, corners].reshape(-1, 3)
+            values = (self.values[rows, :6] @ basis.T)[:, corners].reshape(-1, 3)
             number = len(corners)
             found.append(
                 (
@@ -102,7 +96,7 @@ class Triangles(NamedTuple):
 
     def mean(self, function: Callable[[Floats], Floats]) -> float:
         """Return the mean of a function of the values, by the rule of the middles."""
-        return float(np.sum(self.middle * function(self.values[:, 3:])))
+        return float(np.sum(self.middle * function(self.values[:, 3:6])))
 
 
 @dataclass(frozen=True)
@@ -123,47 +117,34 @@ class Table:
         place = float(found.values[atom].max()) if size else np.nan  # a mean could be beyond all
         rest = found.only(~atom)
         parts, weight, wide = rest.parts()
-        middles = np.sort(rest.values[:, 3:], axis=None)
+        middles = np.sort(rest.values[:, 3:6], axis=None)
         even = middles[np.linspace(0, len(middles) - 1, _NODES).astype(int)] if len(middles) else middles
         nodes = np.unique(np.clip(np.concatenate([np.linspace(*support, _NODES), even]), *support))
-        for left in reversed(range(_ROUNDS)):
-            below, density, rough = _summed(nodes, parts, weight)
-            number = np.clip(np.ceil(np.sqrt(rough / _TOLERANCE)), 1, _MOST).astype(int)
-            if not left or number.max() == 1:
+        below, density = _summed(nodes, parts, weight)
+        new, between = 0.5 * (nodes[1:] + nodes[:-1]), 0.0
+        for left in reversed(range(_HALVINGS)):
+            new_below, new_density = _summed(new, parts, weight)
+            off = np.abs(cls(nodes, below, density, 0.0, (place, size)).curve(new) - new_below)
+            order = np.argsort(np.concatenate([nodes, new]), kind="stable")
+            nodes = np.concatenate([nodes, new])[order]
+            below, density = np.append(below, new_below)[order], np.append(density, new_density)[order]
+            rough = np.searchsorted(nodes, new[off > _TOLERANCE]) if left else np.empty(0, dtype=int)
+            between = max(between, float(np.max(off[(off <= _TOLERANCE) | (left == 0)], initial=0.0)))
+            new = np.setdiff1d(0.5 * (nodes[rough, None] + nodes[rough[:, None] + [-1, 1]]), nodes)
+            if not new.size:
                 break
-            step = np.arange(number.sum()) - np.repeat(np.cumsum(number) - number, number)
-            step = step * np.repeat(np.diff(nodes) / number, number)
-            nodes = np.append(np.repeat(nodes[:-1], number) + step, nodes[-1])
-        table = cls(nodes, below, density, 0.0, (place, size))
-        shifted = (_summed(nodes, parts + sign * wide[:, None], weight) for sign in (-1.0, 1.0))
-        (most, _, above), (least, _, under) = shifted
-        more, less = (np.maximum(gap[1:], gap[:-1]) for gap in (most - below, below - least))
-        uneven = rest.uneven_at(nodes)
-        off = np.maximum(more + above, less + under) + table._bend + uneven
-        ends = most[0] + uneven[0], 1.0 - size - least[-1] + uneven[-1]  # where the curve has nothing left
-        return replace(table, error=float(max(off.max(), *ends)))
+        _, blurred = _summed(nodes, parts + wide[:, None] * [-1.0, 0.0, 1.0], weight * wide)
+        return cls(nodes, below, density, float(blurred.max()) + between, (place, size))
 
     @cached_property
-    def _slopes(self) -> Floats:
-        """Slopes at the nodes, small enough for the curve to rise.
+    def curve(self) -> CubicHermiteSpline:
+        """The cubic, its slopes small enough for it to rise.
 
         F. N. Fritsch, R. E. Carlson, SIAM J. Numer. Anal. 17, 238 (1980).
         """
         rise = np.maximum(np.diff(self.below), 0.0) / np.diff(self.nodes)
         most = 3.0 * np.minimum(np.append(rise, rise[-1]), np.append(rise[0], rise))
-        return np.asarray(np.minimum(self.density, most))
-
-    @property
-    def _bend(self) -> Floats:
-        """How far the curve is from linear between each two nodes: u(1 - u)² is 4/27 at most."""
-        step = np.diff(self.nodes)
-        off = np.abs([slope * step - np.diff(self.below) for slope in (self._slopes[1:], self._slopes[:-1])])
-        return np.asarray(off.sum(axis=0) * 4.0 / 27.0)
-
-    @cached_property
-    def curve(self) -> CubicHermiteSpline:
-        """The cubic."""
-        return CubicHermiteSpline(self.nodes, self.below, self._slopes)
+        return CubicHermiteSpline(self.nodes, self.below, np.minimum(self.density, most))
 
     def probability(self, x: Floats, *, above: bool = False) -> Floats:
         """Return the probability of values up to x, or above it."""
@@ -207,25 +188,8 @@ def _six(weights: Floats) -> Floats:
     return np.stack(corner + middle, axis=1)
 
 
-def apart(model: Taylor, values: Floats) -> Floats:
-    """Bound how far a function is from the quadratic one through its values at `POINTS`.
-
-    It is within a bound of its model, and the quadratic function through what the model is off at the points
-    within 5/3 of that, the constant of Lebesgue. The quadratic function through a cubic form is off by
-    Σ α_ij x_i x_j (x_i - x_j) + β x_1 x_2 x_3; the products beside α add up to less than 0.118.
-    """
-    cubic = np.abs(_CUBIC @ model.terms[6:])
-    off = np.abs(model.at(POINTS) - values).max(axis=1)
-    return np.asarray(model.rest + 0.118 * cubic[:3].max(axis=0) + cubic[3] / 27.0 + 5.0 / 3.0 * off)
-
-
-_CUBIC = np.concatenate(
-    [
-        0.5 * monomials(np.roll(np.eye(3), 1, axis=1) - np.eye(3)),
-        [3.0, 3.0, 3.0, -12.0, -12.0, -12.0] @ monomials(POINTS)[None],
-    ]
-)[:, 6:]
-"""Of the coefficients of a cubic form, α from its values along the sides, and β from those at the points."""
+_OFF = np.concatenate([-_six(POINTS[6:].T), np.eye(3)], axis=1)
+"""Of the nine values, by how much those inside are more than the quadratic function."""
 
 
 @lru_cache(maxsize=2)
@@ -242,51 +206,32 @@ def _quadratic(number: int) -> tuple[Floats, Ints]:
     return basis, np.array([[place[at] for at in part] for part in parts])
 
 
-def _summed(nodes: Floats, parts: Floats, weight: Floats) -> tuple[Floats, Floats, Floats]:
-    """Return weighted sums of triangular distributions at nodes, and their densities.
-
-    The third result bounds how far the sum is from linear between each two nodes: for each distribution that
-    is no more than what it rises there, or a quarter of the interval times the range of its density, or an
-    eighth of the square of the interval times the greatest derivative of the density.
-    """
+def _summed(nodes: Floats, parts: Floats, weight: Floats) -> tuple[Floats, Floats]:
+    """Return weighted sums of triangular distributions at nodes, and their densities."""
     if len(weight) > _BLOCK:
         blocks = (slice(i, i + _BLOCK) for i in range(0, len(weight), _BLOCK))
-        sums = zip(*(_summed(nodes, parts[i], weight[i]) for i in blocks), strict=True)
-        below, density, rough = (np.sum(one, axis=0) for one in sums)
-        return below, density, rough
-    step, ends = np.diff(nodes), len(nodes)
+        both = np.sum([_summed(nodes, parts[i], weight[i]) for i in blocks], axis=0)
+        return both[0], both[1]
+    ends = len(nodes)
     place = np.searchsorted(nodes, parts)  # nodes that are less than each corner
-    below = np.cumsum(np.bincount(place[:, 2], weight, ends + 1))[:-1]
-    density, rough = np.zeros(ends), np.zeros(ends - 1)
+    below: Floats = np.cumsum(np.bincount(place[:, 2], weight, ends + 1)[:-1])
+    density = np.zeros(ends)
     (a, b, c), corners = parts.T, place.T
     left, right = (np.maximum(side, _NARROWEST) for side in (b - a, c - b))
     peak = 2.0 * weight / np.maximum(c - a, _NARROWEST)
-    each = np.stack([a, c, left, right, weight, 0.5 * peak * (b - a), peak])
-
-    def at(node: Ints, rows: NDArray[np.bool_]) -> tuple[Floats, Floats, Floats]:
-        """Return distributions at a node of each, and by how much their densities have risen and fallen."""
-        a, c, left, right, w, rise, peak = each[:, rows]
-        x = nodes[node[rows]]
-        up, level = np.clip((x - a) / left, 0.0, 1.0), np.clip((c - x) / right, 0.0, 1.0)
-        return rise * up * up + (w - rise) * (1.0 - level * level), peak * up, peak * (1.0 - level)
-
+    rise = 0.5 * peak * (b - a)
     for k, (foot, width, sign) in enumerate(((a, left, 1.0), (c, right, -1.0))):
-        first, last = corners[k], corners[k + 1] - 1  # nodes on a side; all intervals but those of corners
+        first, last = corners[k], corners[k + 1] - 1  # nodes on a side
         rows = first < last
         curve, base = sign * peak[rows] / width[rows], k * weight[rows]
-        value, slope, bend = _over_nodes(nodes, first[rows], last[rows], foot[rows], curve, base)
-        below, density, rough = below + value, density + slope, rough + 0.125 * step**2 * np.abs(bend[:-1])
-        rows = first <= last
-        value, up, down = at(last, rows)
-        below += np.bincount(last[rows], value, ends)
-        density += np.bincount(last[rows], up - down, ends)
-    for k, node in enumerate(corners):
-        rows = (node > 0) & (node < ends) & np.all(node != corners[:k], axis=0)
-        (low, *less), (high, *more) = at(node - 1, rows), at(node, rows)
-        here = node[rows] - 1
-        range_ = np.maximum(*(y - x for x, y in zip(less, more, strict=True)))
-        rough += np.bincount(here, np.minimum(high - low, 0.25 * step[here] * range_), ends - 1)
-    return below, density, rough
+        value, slope, _ = _over_nodes(nodes, first[rows], last[rows], foot[rows], curve, base)
+        below, density = below + value, density + slope
+        rows = first <= last  # the last node of each side, by itself: nothing cancels
+        far = np.clip(sign * (nodes[last[rows]] - foot[rows]) / width[rows], 0.0, 1.0)
+        part = (rise if k == 0 else weight - rise)[rows] * far * far
+        below += np.bincount(last[rows], weight[rows] - part if k else part, ends)
+        density += np.bincount(last[rows], peak[rows] * far, ends)
+    return below, density
 
 
 def _over_nodes(nodes: Floats, first: Ints, last: Ints, foot: Floats, curve: Floats, base: Floats) -> Floats:

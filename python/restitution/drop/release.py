@@ -7,8 +7,9 @@ import numpy as np
 from pydantic import BeforeValidator, Field, TypeAdapter, ValidationError, model_validator
 
 from restitution import _core
-from restitution._internal.arrays import FloatArray, check_each, reals
+from restitution._internal.arrays import FloatArray, check_each, real, reals
 from restitution._internal.parameters import Allowed, Number, ParameterError, Parameters, wrong
+from restitution.bodies import AnyBody, Body, RigidBody
 
 Orientation = Literal["uniform-angle", "isotropic"]
 Axis = Literal["isotropic", "horizontal", "across", "thermal"]
@@ -160,6 +161,33 @@ class RandomSpin(Parameters):
         if self.axis == "thermal" and isinstance(self.rate, tuple):
             raise ParameterError(wrong("rate", self.rate, "one number, √⟨ω²⟩ in rad/s, of a thermal spin"))
         return self
+
+    @classmethod
+    def thermal(cls, body: AnyBody, temperature: float) -> Self:
+        """Return the spin of a gas: Maxwell's distribution at a temperature kT in J.
+
+        Parameters
+        ----------
+        body : Dumbbell or another body
+            Whose moments of inertia count.
+        temperature : float
+            kT in J, >= 0: twice the mean energy of each of the three parts of the rotation.
+
+        Examples
+        --------
+        >>> import restitution as rs
+        >>> grain = rs.Ellipsoid(semi_axes=(1e-3, 2e-3, 3e-3))
+        >>> rs.RandomSpin.thermal(grain, temperature=grain.mass * 0.4**2).axis
+        'thermal'
+        """
+        kt = real("temperature", temperature, "a finite number >= 0, in J", lambda t: 0.0 <= t < math.inf)
+        if isinstance(body, Body):
+            moments = [body.transverse_inertia, body.transverse_inertia, body.axial_inertia]
+        elif isinstance(body, RigidBody):
+            moments = body.compiled.principal_moments
+        else:
+            raise ParameterError(wrong("body", body, "a body"))
+        return cls(rate=math.sqrt(kt * sum(1.0 / moment for moment in moments)), axis="thermal")
 
     @property
     def rates(self) -> tuple[float, float]:
