@@ -7,6 +7,8 @@ IMPACTS ?= 100000000
 OUT ?= paper
 FUZZ ?= 300
 JOBS ?= 2
+# What is about Linux alone, and has no types elsewhere.
+ELSEWHERE := --exclude 'tests/(manual|reference/(environments|processes)|cli/test_environments)'
 CORE := $(shell find crates -name '*.rs' -o -name 'Cargo.toml') Cargo.toml Cargo.lock pyproject.toml
 
 .PHONY: help install pages paper rough calibrate slow onsets test fuzz hostile audit mutants test-arm test-web rust-tests test-rust bench-web look web docs wheel licences coverage lint lint-rust lint-python bench clean
@@ -47,6 +49,7 @@ lint-python: $(STAMP)
 	$(BIN)/ruff check
 	$(BIN)/ruff format --check
 	$(BIN)/mypy
+	for system in win32 darwin; do $(BIN)/mypy --platform $$system --cache-dir .mypy_cache/$$system $(ELSEWHERE) || exit 1; done
 	$(BIN)/lint-imports
 
 # The package is built by one core; the other builds the Rust tests meanwhile. So are both languages checked, and the page beside the Rust tests.

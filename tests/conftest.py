@@ -1,6 +1,7 @@
 """What all tests share."""
 
 import signal
+import sys
 from collections import defaultdict
 from collections.abc import Iterator
 from pathlib import Path
@@ -21,7 +22,8 @@ matplotlib.use("Agg")
 
 # Programs inherit what is ignored: in the background of a shell it is Ctrl-C, under nohup the hangup.
 signal.signal(signal.SIGINT, signal.default_int_handler)
-signal.signal(signal.SIGHUP, signal.SIG_DFL)
+if sys.platform != "win32":
+    signal.signal(signal.SIGHUP, signal.SIG_DFL)
 
 # The same examples in every run, however busy the machine: a test that fails once fails always.
 settings.register_profile("repeatable", derandomize=True, deadline=None, database=None)

@@ -48,6 +48,8 @@ main()
 @pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGINT])
 def test_a_signal_ends_a_run_as_ctrl_c_does(long: Path, tmp_path: Path, number: signal.Signals) -> None:
     """The impacts so far are written, nothing else is left, and the exit status names the signal."""
+    if sys.platform == "win32":
+        pytest.skip("no signal ends another process in order")
     out = tmp_path / "run.nc"
     words = ["simulate", str(long), "--out", str(out), "--threads", "1", str(tmp_path / "begun")]
     process = Program(TELLING, *words)
@@ -77,6 +79,8 @@ def test_closed_streams_do_not_matter(parameters: Path, closed: tuple[int, ...])
 
 
 def test_a_pipe_that_nobody_reads_does_not_matter(parameters: Path) -> None:
+    if sys.platform == "win32":
+        pytest.skip("there is no bash")
     out = parameters.with_name("run.nc")
     code = "from restitution.cli import main; main()"
     line = f"'{sys.executable}' -c '{code}' simulate '{parameters}' --out '{out}' 2>&1 | true"
@@ -130,6 +134,8 @@ def test_names_that_are_refused_at_once(
     parameters: Path, monkeypatch: pytest.MonkeyPatch, name: str, text: str
 ) -> None:
     """Before anything is computed, with --overwrite too, and nothing is touched."""
+    if sys.platform == "win32":
+        pytest.skip("the system has other words")
     monkeypatch.setattr("restitution.drop.simulate.simulate_run", lambda *_, **__: pytest.fail("begun"))
     folder = parameters.parent
     (folder / "link.toml").symlink_to(parameters)
@@ -167,6 +173,8 @@ typer.run(work)
 
 def test_a_signal_in_an_import() -> None:
     """Of which a compiled library makes an error of its own: the command was interrupted all the same."""
+    if sys.platform == "win32":
+        pytest.skip("there is no hangup")
     status, _, told = Program(BROKEN).finished(30)
     assert (status, told) == (128 + signal.SIGHUP, "interrupted\n")
 
@@ -191,6 +199,8 @@ atexit.register(os.kill, os.getpid(), signal.SIGINT)
 @pytest.mark.parametrize("when", [EARLY, LATE], ids=["early", "late"])
 def test_ctrl_c_in_the_first_and_the_last_moment(when: str) -> None:
     """While the command line is imported, and when it has done its work: no traceback."""
+    if sys.platform == "win32":
+        pytest.skip("no signal ends a process")
     code = when + "sys.argv = ['restitution', '--version']\nfrom restitution.__main__ import main\nmain()"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
     assert (done.returncode, done.stderr) == (-signal.SIGINT, "")

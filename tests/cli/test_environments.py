@@ -3,16 +3,22 @@
 import contextlib
 import random
 import signal
+import sys
 from functools import partial
 from pathlib import Path
 
 import pytest
 
 from reference.command import Command
-from reference.environments import ENVIRONMENTS
-from reference.processes import COMMANDS, LONG, RUN, STUDY, command, inputs
+from reference.commands import COMMANDS, LONG, RUN, STUDY, inputs
 from reference.signals import arm
 from restitution.cli import app
+
+if sys.platform != "linux":
+    pytest.skip("limits of a process, and files in /dev and /proc", allow_module_level=True)
+
+from reference.environments import ENVIRONMENTS
+from reference.processes import command
 
 TESTS = Path(__file__).parents[1]
 

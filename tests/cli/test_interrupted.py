@@ -19,6 +19,9 @@ from restitution._core import STOP_REASONS
 from restitution.cli import INTERRUPTED
 from restitution.drop.toml import read
 
+if sys.platform == "win32":
+    pytest.skip("signals and terminals of POSIX", allow_module_level=True)
+
 # The command, with a Ctrl-C as soon as some particles have finished and others have not.
 PRESSING = """
 import signal

@@ -8,7 +8,7 @@ import pytest
 import typer.main
 
 from reference.command import invoke
-from reference.processes import COMMANDS, inputs
+from reference.commands import COMMANDS, inputs
 from restitution.cli import app
 
 NEVER = {

@@ -17,6 +17,9 @@ from reference.command import Program
 from restitution._internal.process import undisturbed
 from restitution.cli._process import ending, is_terminal, leaving, put_off, say, tell
 
+if sys.platform == "win32":
+    pytest.skip("signals of POSIX", allow_module_level=True)
+
 ALL = [signal.SIGINT, signal.SIGTERM, signal.SIGHUP]
 
 

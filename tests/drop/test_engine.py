@@ -249,7 +249,7 @@ LONG = """
     def press(done):
         if done and not pressed:
             pressed.append(time.process_time())
-            os.kill(os.getpid(), signal.SIGINT)
+            signal.raise_signal(signal.SIGINT)
 
     @contextmanager
     def press_when_begun(*_, **__):

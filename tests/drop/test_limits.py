@@ -1,7 +1,7 @@
 """Memory and threads that a process may not have, and Ctrl-C: errors that name what was asked for."""
 
 import json
-import resource
+import sys
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -10,6 +10,11 @@ import pytest
 
 import restitution as rs
 from reference.command import SMALL, Command, Program
+
+if sys.platform != "linux":
+    pytest.skip("limits of a process, and /proc", allow_module_level=True)
+
+import resource
 
 SETUP = """
 import json, mmap, os, resource, signal, sys, threading, time

@@ -111,7 +111,7 @@ one = {made}
 pressed = []
 def press():
     pressed.append(time.process_time())
-    os.kill(os.getpid(), signal.SIGINT)
+    signal.raise_signal(signal.SIGINT)
 threading.Timer(0.3, press).start()
 try:
     {call}

@@ -12,8 +12,8 @@ import pytest
 import xarray as xr
 
 import restitution as rs
+from reference.commands import same
 from reference.contract import CALLS
-from reference.processes import same
 from reference.refused import message
 from restitution import analytic, flight
 from restitution._internal.arrays import check_units, real, reals, shape, whole

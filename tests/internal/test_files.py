@@ -4,6 +4,7 @@ import errno
 import os
 import re
 import signal
+import sys
 import threading
 import time
 from collections.abc import Callable, Iterator
@@ -140,6 +141,24 @@ def test_a_folder_keeps_what_is_in_it(tmp_path: Path) -> None:
     assert (tmp_path / "figure.png").read_text() == "new"
 
 
+@pytest.mark.parametrize("form", [whole_file, whole_folder])
+def test_what_is_flushed_may_be_written_to(
+    form: Callable[..., Any], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Windows flushes no file that is open to be read alone: it gives EBADF, as here."""
+    flush, flushed = os.fsync, []
+
+    def writing_nothing(handle: int) -> None:
+        os.write(handle, b"")
+        flush(handle)
+        flushed.append(handle)
+
+    monkeypatch.setattr(os, "fsync", writing_nothing)
+    with form(tmp_path / "out") as draft:
+        (draft if form is whole_file else draft / "file").write_text("all")
+    assert len(flushed) == 1
+
+
 def test_a_folder_that_appears_meanwhile_is_not_written_over(tmp_path: Path) -> None:
     out = tmp_path / "paper"
 
@@ -200,6 +219,8 @@ def test_other_files_keep_their_names(tmp_path: Path) -> None:
 
 def test_an_error_that_is_not_of_the_system_stays(tmp_path: Path) -> None:
     """As a time-out, which a program may raise when a signal comes."""
+    if sys.platform == "win32":
+        pytest.skip("there are no alarms")
 
     def late(*_: object) -> None:
         raise TimeoutError("too late")
@@ -228,6 +249,8 @@ def test_a_link_that_leads_to_no_folder(tmp_path: Path, monkeypatch: pytest.Monk
 
 def test_a_pipe_is_no_file(tmp_path: Path) -> None:
     """As /dev/stdout is one where the output goes to another program: it leads to no name of a file."""
+    if sys.platform == "win32":
+        pytest.skip("there is no /dev/fd")
     reading, writing = os.pipe()
     try:
         for replace in (False, True):
@@ -315,6 +338,8 @@ def test_a_file_without_end_is_read_no_farther_than_needed(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """The byte beyond the greatest length is enough to refuse it, while its writer goes on."""
+    if sys.platform == "win32":
+        pytest.skip("there are no named pipes")
     monkeypatch.setattr(_files, "MOST", 1000)
     os.mkfifo(tmp_path / "pipe")
     refused = threading.Event()
@@ -335,6 +360,8 @@ def test_a_file_without_end_is_read_no_farther_than_needed(
 
 
 def test_only_files_that_have_an_end_go_to_libraries(tmp_path: Path) -> None:
+    if sys.platform == "win32":
+        pytest.skip("there are no named pipes")
     path = tmp_path / "run.nc"
     with pytest.raises(FileNotFoundError) as missing:
         check_regular(path)
@@ -378,6 +405,8 @@ def test_what_a_killed_process_left_goes_after_a_day(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("mask", [0o022, 0o077])
 def test_new_files_have_the_permissions_of_any(tmp_path: Path, mask: int) -> None:
+    if sys.platform == "win32":
+        pytest.skip("there is no umask")
     before = os.umask(mask)
     try:
         write(tmp_path / "file", "all")

@@ -3,6 +3,7 @@
 import errno
 import os
 import shutil
+import sys
 import zipfile
 from collections.abc import Callable
 from pathlib import Path
@@ -118,6 +119,8 @@ def test_what_is_no_file_is_refused_at_once(
     """A pipe would be waited for in the libraries, where Ctrl-C does not reach."""
     path = tmp_path / "given"
     if kind == "pipe":
+        if sys.platform == "win32":
+            pytest.skip("there are no named pipes")
         os.mkfifo(path)
     else:
         path.mkdir()
@@ -141,6 +144,8 @@ def test_an_error_names_the_file_as_it_was_given(tmp_path: Path, monkeypatch: py
 
 def test_a_run_may_come_through_a_pipe(tmp_path: Path) -> None:
     """As of `<(...)` of a shell."""
+    if sys.platform == "win32":
+        pytest.skip("there is no /dev/fd")
     end, start = os.pipe()
     os.write(start, SMALL.encode())
     os.close(start)
@@ -152,6 +157,8 @@ def test_a_run_may_come_through_a_pipe(tmp_path: Path) -> None:
 
 def test_what_has_no_end(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     """Is not read until the memory is full."""
+    if sys.platform == "win32":
+        pytest.skip("there is no /dev/zero")
     monkeypatch.setattr(_files, "MOST", 2**20)
     for words in ("simulate /dev/zero --out run.nc", "sweep /dev/zero --out study.zarr"):
         assert invoke(*words.split()).stderr == "error: /dev/zero: longer than 1 MiB\n"

@@ -6,8 +6,9 @@ import sys
 import warnings
 
 import restitution as rs
+from reference.commands import COMMANDS, LONG
 from reference.environments import ENVIRONMENTS
-from reference.processes import COMMANDS, LONG, command
+from reference.processes import command
 
 
 def main() -> int:

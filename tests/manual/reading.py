@@ -21,8 +21,8 @@ from manual.damage import BINARY, TEXT, Harm, harm_store, harmed
 from reference import measuring
 from reference.calls import folder, good
 from reference.command import SMALL, invoke
+from reference.commands import RUN, STUDY, same
 from reference.harmed import harms
-from reference.processes import RUN, STUDY, same
 from restitution import flight, study
 from restitution.distribution._store import sealed
 from restitution.drop import toml as _toml

@@ -6,8 +6,8 @@ from typing import Any
 
 import numpy as np
 
+from reference.commands import same
 from reference.contract import CALLS, attack
-from reference.processes import same
 
 ARGUMENTS: tuple[tuple[str, str], ...] = (
     *(("simulate", name) for name in ("orientation", "spin", "release_velocity", "release_height")),

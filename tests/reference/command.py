@@ -9,6 +9,7 @@ from collections.abc import Callable
 from functools import partial
 from multiprocessing import get_context
 from pathlib import Path
+from typing import Any
 
 import xarray as xr
 from typer.testing import CliRunner, Result
@@ -57,7 +58,7 @@ def invoke(*words: object) -> Result:
     return CliRunner().invoke(app, [str(word) for word in words])
 
 
-SERVER = get_context("forkserver")
+SERVER: Any = get_context("spawn" if sys.platform == "win32" else "forkserver")
 _PRELOADED = "restitution.cli restitution.fit xarray netCDF4 scipy.stats matplotlib.figure zarr soundfile"
 SERVER.set_forkserver_preload(_PRELOADED.split())
 
@@ -72,11 +73,13 @@ class Apart:
 
     def send_signal(self, number: int) -> None:
         """Send a signal to the process and those that it has started."""
-        os.killpg(self._process.pid or 0, number)
+        if sys.platform != "win32":
+            os.killpg(self._process.pid or 0, number)
 
     def poll(self) -> int | None:
         """Give the exit status, once there is one."""
-        return self._process.exitcode
+        found: int | None = self._process.exitcode
+        return found
 
     def finished(self, seconds: float = 300.0) -> tuple[int, str, str]:
         """Wait for it; it must not hang. Give its exit status and what it says."""
@@ -109,7 +112,8 @@ class Program(Apart):
 
 
 def _apart(told: Path, act: Callable[[], object], folder: Path) -> None:
-    os.setsid()
+    if sys.platform != "win32":
+        os.setsid()
     os.chdir(folder)
     for number, name in ((1, "out"), (2, "error")):
         os.dup2(os.open(told / name, os.O_WRONLY | os.O_CREAT), number)

@@ -91,6 +91,8 @@ def test_a_client_of_a_local_cluster(whole: dict[str, str], tmp_path: Path) -> N
 @pytest.mark.slow
 def test_workers_and_the_scheduler_are_killed(whole: dict[str, str], tmp_path: Path) -> None:
     """A worker first, which the other makes up for; then the scheduler, and the command says how to go on."""
+    if sys.platform == "win32":
+        pytest.skip("nothing is killed by a signal")
     study, store = written(tmp_path, normals=4), tmp_path / "study.zarr"
     with cluster(tmp_path, 2) as (address, scheduler, workers):
         driver = Command(

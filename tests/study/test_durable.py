@@ -2,10 +2,10 @@
 
 import errno
 import os
-import resource
 import shutil
 import signal
 import subprocess
+import sys
 from collections.abc import Callable
 from functools import partial
 from pathlib import Path
@@ -18,6 +18,11 @@ import zarr
 from reference.command import Command
 from reference.studies import bits, chunks, when, written
 from restitution.study import status, sweep
+
+if sys.platform == "win32":
+    pytest.skip("signals and limits of POSIX", allow_module_level=True)
+
+import resource
 
 # Each batch takes 20 ms longer, so that there is a middle of the study to strike in.
 SLOWLY = """

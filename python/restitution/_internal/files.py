@@ -236,6 +236,6 @@ def _raise_named(error: OSError, draft: Path, path: Path) -> NoReturn:
 
 
 def _flush(path: Path) -> None:
-    """Flush a file to the disk."""
-    with path.open("rb") as file:
+    """Flush a file to the disk; Windows does so only for those who may write to it."""
+    with path.open("rb+") as file:
         os.fsync(file.fileno())

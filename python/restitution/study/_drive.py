@@ -3,6 +3,7 @@
 import hashlib
 import os
 import random
+import sys
 import threading
 import time
 from collections import deque
@@ -305,11 +306,11 @@ def _first_at(store: Store) -> Iterator[bool]:
     Two begin with different points, and one alone writes out results meanwhile. Nothing else depends on it:
     each looks whether a task is there before it begins it, and both write the same bits.
     """
-    try:
-        import fcntl
-    except ImportError:  # Windows
+    if sys.platform == "win32":
         yield True
         return
+    import fcntl
+
     handle = os.open(store.path, os.O_RDONLY)
     try:
         fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
