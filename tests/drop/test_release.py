@@ -204,7 +204,7 @@ def test_thermal_spins() -> None:
         inertia = np.array([body.axial_inertia, body.transverse_inertia, body.transverse_inertia])
         temperature = 50.0**2 / np.sum(1.0 / inertia)
         for part, own in zip(parts, inertia, strict=True):
-            assert scipy.stats.kstest(part, "norm", args=(0.0, np.sqrt(temperature / own))).pvalue > 1e-4
+            assert scipy.stats.kstest(part / np.sqrt(temperature / own), scipy.stats.norm.cdf).pvalue > 1e-4
         uncorrelated(*parts)
         square = np.sum(spins**2, axis=1)
         assert abs(square.mean() - 2500.0) < 5.0 * square.std() / np.sqrt(square.size)

@@ -78,9 +78,11 @@ def test_a_new_store(tiny: Study, tmp_path: Path) -> None:
 
 def test_what_zarr_needs(monkeypatch: pytest.MonkeyPatch) -> None:
     """The library, in its version."""
-    monkeypatch.setattr(zarr, "__version__", "2.18.3")
-    with pytest.raises(ImportError, match=r"^parameter studies need zarr 3, not zarr 2\.18\.3: pip install"):
-        need_zarr()
+    for version in ("2.18.3", "3.0.8", "3.1.2", "3.1.2.post1"):
+        monkeypatch.setattr(zarr, "__version__", version)
+        told = rf"^parameter studies need zarr 3\.1\.3, not zarr {re.escape(version)}: pip install"
+        with pytest.raises(ImportError, match=told):
+            need_zarr()
     monkeypatch.setitem(sys.modules, "zarr", None)
     for action in (lambda: status("store"), lambda: merge("store", ["store"]), lambda: sweep(TINY, "store")):
         with pytest.raises(ImportError, match=r"^parameter studies need zarr: pip install 'restitution\[sw"):
@@ -89,8 +91,8 @@ def test_what_zarr_needs(monkeypatch: pytest.MonkeyPatch) -> None:
 
 def test_python_without_assertions() -> None:
     """In one of which Zarr reads the metadata of a group."""
-    code = "import sys, types; sys.modules['zarr'] = types.SimpleNamespace(__version__='3.0')\n"
-    code += f"{inspect.getsource(need_zarr)}\nneed_zarr()"
+    code = "import sys, types; sys.modules['zarr'] = types.SimpleNamespace(__version__='3.1.3')\n"
+    code += f"import re\n{inspect.getsource(need_zarr)}\nneed_zarr()"
     done = subprocess.run([sys.executable, "-O", "-c", code], capture_output=True, text=True, check=False)
     assert done.returncode == 1
     assert "\nRuntimeError: parameter studies: zarr does not work under python -O or PYTHON" in done.stderr

@@ -84,6 +84,15 @@ def check_regular(path: Path) -> None:
         raise OSError(number, text, str(path))
 
 
+def there(path: Path) -> bool:
+    """Test whether there is anything of this name; an OSError that Path.exists hides if it is not known."""
+    try:
+        path.stat()
+    except (FileNotFoundError, NotADirectoryError):
+        return False
+    return True
+
+
 def check(path: Path, *, replace: bool) -> None:
     """Find out before the work begins whether a file can be written; raises the OSError if it cannot."""
     draft, _ = _begin(path, replace)
@@ -143,7 +152,7 @@ def whole_folder(path: Path, *, replace: bool = False, names: Collection[str] = 
     for name in names:
         _target(path / name, replace)
     target = Path(os.path.realpath(path))
-    place = next(folder for folder in (target, *target.parents) if folder.exists())
+    place = next(folder for folder in (target, *target.parents) if there(folder))
     remove_old_drafts(place, target.name)
     draft = draft_of(place / target.name)
     # To list the draft where no more may be open.
@@ -157,7 +166,7 @@ def whole_folder(path: Path, *, replace: bool = False, names: Collection[str] = 
         files = sorted(draft.iterdir(), key=lambda file: file.suffix == ".html")
         for file in files:
             _flush(file)
-        if target.exists():
+        if there(target):
             for file in files:
                 (os.replace if replace else claim)(file, target / file.name)
         else:
@@ -217,9 +226,9 @@ def _begin(path: Path, replace: bool) -> tuple[Path, Path]:
 def _target(path: Path, replace: bool, taken: str = "exists already") -> Path:
     """Follow links to where a file is to be, and refuse what is in its way."""
     target = Path(os.path.realpath(path))
-    if path.exists() and not target.is_file():  # a pipe in /dev/fd is there, and leads to no name of a file
+    if there(path) and not target.is_file():  # a pipe in /dev/fd is there, and leads to no name of a file
         raise OSError(errno.EINVAL, "not a file that can be written", str(path))
-    if target.exists() and not replace:
+    if there(target) and not replace:
         raise FileExistsError(errno.EEXIST, taken, str(path))
     return target
 

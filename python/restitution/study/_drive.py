@@ -20,6 +20,7 @@ import numpy as np
 import numpy.typing as npt
 import xarray as xr
 
+from restitution._internal.files import there
 from restitution.study._axes import Design
 from restitution.study._point import Point, Tell, count, evaluate, point_of
 from restitution.study._store import Store, large, small
@@ -38,7 +39,7 @@ class Stopped(Exception):
 def run_task(path: str, point: Point, number: int, stop: threading.Event | None = None) -> bool:
     """Count a range of particles of a point and commit it; return whether that had been done already."""
     store = _open(path, point.digest)
-    if store.file(point.number, number).exists():
+    if there(store.file(point.number, number)):
         return True
     first = number * point.study.effort.task_batches
     batches = range(first, first + point.study.effort.task_batches)

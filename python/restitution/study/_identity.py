@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from restitution import _core, laws
+from restitution._internal.files import there
 from restitution._internal.parameters import ParameterError
 from restitution.bodies import KINDS, Box, Cylinder, Ellipsoid, RoughSphere, Superellipsoid
 from restitution.drop.dataset import version_here
@@ -80,7 +81,7 @@ def identity(path: Path) -> dict[str, Any]:
         raise
     except (OSError, ValueError, LookupError, TypeError, RecursionError):
         found = None
-    if not path.exists():
+    if not there(path):
         raise Refused(f"{path}: does not exist; must be the store of a study")
     if not isinstance(found, dict):
         raise Refused(f"{path}: is not the store of a study, or its zarr.json is damaged; give another path")

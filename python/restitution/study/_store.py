@@ -10,6 +10,7 @@ import contextlib
 import errno
 import math
 import os
+import re
 import shutil
 import warnings
 from collections.abc import Iterator, Mapping
@@ -20,7 +21,7 @@ import numpy as np
 import numpy.typing as npt
 import xarray as xr
 
-from restitution._internal.files import draft_of
+from restitution._internal.files import draft_of, there
 from restitution._internal.process import undisturbed
 from restitution.drop.compare import unit_of
 from restitution.drop.dataset import version_here
@@ -41,8 +42,8 @@ def need_zarr() -> None:
         import zarr
     except ImportError:
         raise ImportError(f"parameter studies need zarr: {install}") from None
-    if int(zarr.__version__.partition(".")[0]) < 3:
-        raise ImportError(f"parameter studies need zarr 3, not zarr {zarr.__version__}: {install}")
+    if tuple(map(int, re.findall(r"\d+", zarr.__version__)[:3])) < (3, 1, 3):
+        raise ImportError(f"parameter studies need zarr 3.1.3, not zarr {zarr.__version__}: {install}")
     if not __debug__:  # it reads metadata of groups in assertions
         raise RuntimeError("parameter studies: zarr does not work under python -O or PYTHONOPTIMIZE")
 
@@ -52,7 +53,7 @@ def create_or_open(path: Path, study: Study, words: int) -> "Store":
 
     Another study, another version of the physics, and what is no store are `Refused`.
     """
-    if not path.exists():
+    if not there(path):
         _make(path, study, words)
     check(path, study)
     store = Store(path)
@@ -71,7 +72,7 @@ def _make(path: Path, study: Study, width: int) -> None:
             _fill(draft, study, width)
         os.rename(draft, target)
     except OSError as error:
-        if not path.exists():
+        if not there(path):
             raise OSError(error.errno, error.strerror, str(path)) from error
     finally:
         shutil.rmtree(draft, ignore_errors=True)

@@ -13,7 +13,7 @@ import numpy as np
 import xarray as xr
 
 from restitution._internal.arrays import flag, several, whole
-from restitution._internal.files import ZARR, check_name, path_from
+from restitution._internal.files import ZARR, check_name, path_from, there
 from restitution._internal.parameters import ParameterError, Problem, shown, wrong
 from restitution._internal.resources import bar as bar_of
 from restitution.study._axes import Design
@@ -101,7 +101,7 @@ def sweep(
     points = _shard(shard, wanted.design.points)
     path = path_from("out", out)
     need_zarr()
-    if path.exists():
+    if there(path):
         check(path, wanted)
     else:
         check_name("out", path, ZARR)
@@ -156,12 +156,12 @@ def merge(
     path = path_from("out", out)
     others = several("parts", parts, "a list of paths", lambda i, part: path_from(f"parts[{i}]", part))
     need_zarr()
-    if not path.exists():
+    if not there(path):
         if not others:
             text = f" = {shown(str(out))}: there is no such store, and no parts for it"
             raise ParameterError(Problem("out", text))
         check_name("out", path, ZARR)
-    wanted = study_of(study if study is not None else study_in(path if path.exists() else others[0]))
+    wanted = study_of(study if study is not None else study_in(path if there(path) else others[0]))
     for part in others:
         check(part, wanted)
     points = range(wanted.design.points)
