@@ -12,6 +12,7 @@ import pytest
 import xarray as xr
 
 import restitution as rs
+from restitution import bodies, laws
 
 BODY = rs.Dumbbell(radius=3e-3, separation=3e-4)
 
@@ -67,6 +68,19 @@ def test_an_object_says_what_it_is(one: Any) -> None:
     assert "validation" not in str(type(one).__init__.__doc__)  # which Jupyter shows at one?
     assert not [name for name in dir(one) if name.startswith(("model_", "_", "parse_", "json", "dict"))]
     assert len(html) < 4000
+
+
+@pytest.mark.parametrize("kind", [*bodies.KINDS, *bodies.RIGID, *laws.KINDS], ids=lambda kind: kind.__name__)
+def test_help_fits_two_screens(kind: type) -> None:
+    """It has parameters, properties and methods, and none of pydantic's."""
+    lines = pydoc.plain(pydoc.render_doc(kind)).splitlines()
+    assert len(lines) < 120
+    assert not any("model_fields" in line or "validat" in line for line in lines)
+
+
+def test_a_large_body_is_printed_short() -> None:
+    spheres = [(0.1 / k, 0.2 / k, 0.3 / k, 1e-3 / k) for k in range(1, 501)]
+    assert len(repr(rs.Clump(spheres=spheres, inertia="sum"))) < 200
 
 
 @pytest.mark.parametrize("one", OBJECTS, ids=lambda one: type(one).__name__)

@@ -10,6 +10,7 @@ from typing import Annotated, Any, ClassVar, NamedTuple, Self
 
 import numpy as np
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, ValidationError
+from pydantic._internal._model_construction import ModelMetaclass
 from pydantic_core import PydanticCustomError
 
 from restitution import _core
@@ -118,7 +119,15 @@ class Allowed:
     text: str
 
 
-class Parameters(BaseModel):
+class _Shown(ModelMetaclass):
+    """Classes of which `help`, `dir` and completion show what is their own, and nothing of pydantic."""
+
+    def __dir__(cls) -> list[str]:
+        hidden = {*dir(BaseModel), "by_place", "compiled", "entry", "example"}
+        return [name for name in type.__dir__(cls) if name[0] != "_" and name not in hidden]
+
+
+class Parameters(BaseModel, metaclass=_Shown):
     """A frozen set of named parameters.
 
     A ValueError names each argument that is wrong, its value, and what is allowed; a TypeError says that they
@@ -170,8 +179,7 @@ class Parameters(BaseModel):
         raise AttributeError(f"{name}: {self!r} cannot be changed; make another")
 
     def __dir__(self) -> list[str]:
-        hidden = dir(BaseModel)
-        return [name for name in super().__dir__() if name[0] != "_" and name not in hidden]
+        return sorted({*dir(type(self)), *type(self).model_fields})
 
     def __str__(self) -> str:
         fields = (f"{name}={_text.short(value)}" for name, value in self._given().items())

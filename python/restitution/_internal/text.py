@@ -47,6 +47,8 @@ def table(title: str, rows: Iterable[tuple[str, object]]) -> str:
 
 def short(value: object) -> str:
     """Write a parameter as `repr` does, with the middle of a long table left out."""
+    if isinstance(value, tuple) and isinstance(value[0], tuple) and len(repr(value)) > 72:
+        return f"({repr(value[0])[:72]}, ... {len(value)} of them)"
     if isinstance(value, tuple) and len(value) > 8:
         return f"({', '.join(map(repr, value[:3]))}, ..., {value[-1]!r})"
     return str(value) if isinstance(value, BaseModel) else repr(value)

@@ -36,6 +36,9 @@ class AnyBody(Described):
         """Return what is given under its own name, as plain values that a netCDF file can hold."""
         return {name: value for name, value in self.model_dump().items() if value is not None}
 
+    def __repr__(self) -> str:
+        return str(self)  # a mesh can have a million triangles
+
     def _rows(self) -> Iterator[tuple[str, str]]:
         yield from super()._rows()
         yield "mass", _text.value(self.mass, "kg")
