@@ -303,9 +303,7 @@ FALL = {"release_height": 4.0, "gravity": 9.81}
     ],
     ids=["prolate", "oblate", "loaded", "capsule", "glass", "plastic"],
 )
-def test_moments_are_exact_to_rounding(
-    body: Body, law: Law, fall: dict[str, float], orientation: Any
-) -> None:
+def test_moments_are_exact_to_rounding(body: Body, law: Law, fall: dict[str, Any], orientation: Any) -> None:
     """Against tanh-sinh quadrature between the angles at which the formula changes."""
     distribution: Any = first_impact(body, law, orientation, **fall)
     cuts = [0.0, *(piece.high for piece in distribution._curve.pieces)]

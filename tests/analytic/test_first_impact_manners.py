@@ -15,7 +15,7 @@ from scipy import stats
 import restitution as rs
 from restitution.analytic import FirstImpact, first_impact, negative_threshold
 
-CUTS = {
+CUTS: dict[str, tuple[Any, Any, dict[str, Any]]] = {
     "spheroid": (rs.Spheroid(equatorial=2.0, polar=3.0), rs.Frictionless(normal=0.7), {}),
     "disc": (rs.Spheroid(equatorial=2.0, polar=0.2), rs.TangentialRestitution(normal=0.7), {}),
     "club": (rs.Dumbbell(radius=(1.0, 0.7), separation=1.5), rs.Coulomb(normal=0.5, friction=0.1), {}),

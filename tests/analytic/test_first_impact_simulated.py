@@ -50,7 +50,9 @@ def laws(normal: Any) -> list[Law]:
 
 
 def closed(body: Body, law: Law, orientation: Any) -> FirstImpact:
-    fall = {} if isinstance(law.normal, float) else {"release_height": HEIGHT, "gravity": 9.81}
+    fall: dict[str, Any] = (
+        {} if isinstance(law.normal, float) else {"release_height": HEIGHT, "gravity": 9.81}
+    )
     return first_impact(body, law, orientation, **fall)
 
 

@@ -329,3 +329,19 @@ def test_material_and_threshold_of_a_rough_sphere() -> None:
     assert rs.analytic.negative_threshold(body, SMOOTH) == pytest.approx(threshold)
     with pytest.raises(ValueError, match=r"body\.heights = "):
         rs.analytic.first_impact(rs.RoughSphere(**(ROUGH | {"heights": ("exponential", 0.01)})), SMOOTH)
+
+
+def test_the_first_impact_of_one_surface_or_of_any() -> None:
+    """Two surfaces differ from their mean, and this one is as 20,000 falls say; any surface has no seed."""
+    how: dict[str, Any] = {"radius": 3e-3, "asperities": 30, "asperity_radius": 3e-4}
+    first, second = (rs.RoughSphere(**how, seed=seed) for seed in (2, 3))
+    own = rs.analytic.first_impact(first, SMOOTH, surface="own")
+    every = rs.analytic.first_impact(first, SMOOTH)
+    assert every.mean() == rs.analytic.first_impact(second, SMOOTH).mean()
+    assert "seed" not in repr(every)
+    assert "seed=2" in repr(own)
+    fallen = rs.simulate(first, SMOOTH, particles=20_000, impacts=1).restitution.values.ravel()
+    error = fallen.std() / np.sqrt(fallen.size)
+    assert abs(fallen.mean() - own.mean()) < 4.0 * error < abs(fallen.mean() - every.mean())
+    with pytest.raises(ValueError, match="surface = 'all': must be 'any' or 'own'"):
+        rs.analytic.first_impact(first, SMOOTH, surface="all")  # type: ignore[arg-type]

@@ -282,7 +282,7 @@ def test_speeds_beyond_are_an_error_unless_clamped(learned: FluctuatingRestituti
     with pytest.raises(ValueError, match=r"random_state = -1: must be a seed in \[0, 2\*\*64\)"):
         learned.rvs(0.1, random_state=-1)
     with pytest.raises(ValueError, match=r"random_state = 'a': must be"):
-        learned.rvs(0.1, random_state="a")  # type: ignore[arg-type]
+        learned.rvs(0.1, random_state="a")  # type: ignore[call-overload]
     with pytest.raises(ValueError, match="data lacks velocity"):
         FluctuatingRestitution(xr.Dataset())
 

@@ -10,7 +10,7 @@ import pytest
 import zarr
 
 from reference.studies import TINY, bits
-from restitution.study import Refused, merge, status, study_of, sweep
+from restitution.study import Refused, Status, merge, status, study_of, sweep
 from restitution.study._identity import attribute, check, identity, readable
 from restitution.study._results import open_store, study_in
 from restitution.study._store import create_or_open
@@ -289,3 +289,8 @@ def test_a_store_whose_arrays_are_others(name: str, done: Path, tmp_path: Path) 
     if "words" in of_sweep:
         with pytest.raises(Refused, match=rf"harmed\.zarr: is damaged \(.*{of_sweep}"):
             merge(tmp_path / "all.zarr", [store])
+
+
+def test_the_status_of_a_study_whose_last_driver_was_stopped() -> None:
+    told = "0 of 8 points are finished (0 %), and 8 of 8 tasks are done. Run the sweep again to finish them."
+    assert str(Status(points=8, finished=0, tasks=8, there=8)) == told

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Literal, get_args
+
 import numpy as np
 
 from restitution._internal.parameters import ParameterError, Problem, wrong
@@ -19,6 +21,7 @@ from restitution.laws import Frictionless, Law, TangentialRestitution
 SHORTEST, LONGEST = 1e-100, 1e100  # L/R whose powers, up to the third, are normal numbers
 NARROWEST = 1e-9  # support of ε that leaves the density seven digits
 LARGEST_ERROR = 0.01  # of a distribution function
+Surface = Literal["any", "own"]
 
 
 def first_impact(
@@ -28,6 +31,7 @@ def first_impact(
     *,
     release_height: float | None = None,
     gravity: float | None = None,
+    surface: Surface = "any",
 ) -> FirstImpact:
     """Distribution of the coefficient of restitution ε at the first impact from rest (the paper's Sec. IV).
 
@@ -38,8 +42,8 @@ def first_impact(
     Parameters
     ----------
     body : Dumbbell or another body
-        Not a sphere about its centre of mass. Of a RoughSphere, with equal heights, the distribution is that
-        over all such spheres, whose orientation does not matter; of other bodies that over their attitudes.
+        Not a sphere about its centre of mass. ``surface`` says what a RoughSphere stands for; of other bodies
+        the distribution is that over their attitudes.
         For two equal balls under the paper's law or without friction, L/R from 1e-100 to 1e100; else such
         that ε varies by 1e-9 at least. Of a Clump, an Ellipsoid, a polyhedron, a Mesh or a Rough body the
         distribution function is computed in some seconds, and ``cdf_error`` estimates its error.
@@ -54,6 +58,10 @@ def first_impact(
         law whose ``normal`` depends on the speed, else not to be given.
     gravity : float
         Acceleration of gravity in m/s², > 0; as `release_height`.
+    surface : {"any", "own"}
+        Of a RoughSphere: "any" is the distribution over all spheres with as many asperities, which are to
+        have equal heights, in closed form whatever the seed; "own" that over the attitudes of this one,
+        computed as for a Clump, which takes some hundred asperities at most.
 
     Returns
     -------
@@ -84,7 +92,9 @@ def first_impact(
     check(body, law)
     orientation = _oriented(body, orientation)
     fall = _fall(body, law, release_height, gravity)
-    if isinstance(body, RoughSphere):
+    if surface not in get_args(Surface):
+        raise ParameterError(wrong("surface", surface, " or ".join(map(repr, get_args(Surface)))))
+    if isinstance(body, RoughSphere) and surface == "any":
         return _wide_enough(RoughFirstImpact(body, law, "isotropic", fall))
     if isinstance(body, Turned):
         _about_its_axis(body)

@@ -6,7 +6,7 @@ import math
 from abc import ABC, abstractmethod
 from collections.abc import Callable
 from dataclasses import dataclass, fields
-from typing import Any, TypeAlias
+from typing import Any, TypeAlias, overload
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -238,12 +238,21 @@ class FirstImpact(ABC):
         with np.errstate(divide="ignore"):
             return scalar(np.log(self.sf(x)))
 
-    def rvs(self, size: int | tuple[int, ...] | None = None, random_state: RandomState = None) -> Values:
+    @overload
+    def rvs(self, size: None = None, random_state: RandomState = None) -> float: ...
+
+    @overload
+    def rvs(self, size: int | tuple[int, ...], random_state: RandomState = None) -> Floats: ...
+
+    def rvs(
+        self, size: int | tuple[int, ...] | None = None, random_state: RandomState = None
+    ) -> float | Floats:
         """Draw independent ε; the same ``random_state`` (seed or generator's state) gives the same ones."""
         lengths = None if size is None else shape("size", size)
         if lengths is not None:
             check_size("size", size, math.prod(lengths), 3 * 8, "draws")
-        return self._drawn(np.asarray(generator(random_state).random(lengths)))
+        drawn: float | Floats = self._drawn(np.asarray(generator(random_state).random(lengths)))
+        return drawn
 
     def _drawn(self, uniform: Floats) -> Values:
         """Return the ε at uniform random numbers from [0, 1)."""

@@ -71,6 +71,10 @@ class RoughFirstImpact(BranchedFirstImpact):
 
     body: RoughSphere
 
+    def __repr__(self) -> str:
+        """Leave out the seed, on which nothing depends."""
+        return super().__repr__().replace(f", seed={self.body.seed!r})", ", any surface)", 1)
+
     @cached_property
     def _tilt(self) -> ContactTilt:
         return ContactTilt("isotropic", self._curve.limit, self.body.asperities)

@@ -14,6 +14,8 @@ from restitution.distribution._table import Floats, Ints, Table
 
 _FAR, _TIMES = 0.05, 3.5
 """A distance beyond both, of fresh impacts and in terms of their scatter, triggers a warning."""
+_COARSE = 0.1
+"""A distance that triggers one also where scatter explains it: so few impacts tell little."""
 _RESAMPLES, _SEED = 64, 1
 
 
@@ -115,14 +117,17 @@ def warn_of_distance(data: xr.Dataset, *, stacklevel: int) -> None:
     scatter = np.where(np.isfinite(scatter), scatter, 0.87 / np.sqrt(np.maximum(impacts, 1)))
     far = (distance > _FAR) & (distance > _TIMES * scatter)
     if far.any():
-        warnings.warn(
-            f"the learned distribution is up to {largest_distance(data)}. {int(far.sum())} of {far.size} "
-            "intervals between nodes are farther than scatter explains. More particles reduce only the "
-            "scatter; where lines or bands of p(ε | v) move with v by more than their width, spread the "
-            "heights of release, or learn another range of velocities",
-            DistanceWarning,
-            stacklevel=stacklevel + 1,
+        why = (
+            f"{int(far.sum())} of {far.size} intervals between nodes are farther than scatter explains. More "
+            "particles reduce only the scatter; where lines or bands of p(ε | v) move with v by more than "
+            "their width, spread the heights of release, or learn another range of velocities"
         )
+    elif (distance > _COARSE).any():
+        why = "So few impacts do not tell whether it is right: learn from more particles"
+    else:
+        return
+    text = f"the learned distribution is up to {largest_distance(data)}. {why}"
+    warnings.warn(text, DistanceWarning, stacklevel=stacklevel + 1)
 
 
 def largest_distance(data: xr.Dataset) -> str:

@@ -142,7 +142,7 @@ class FluctuatingRestitution(EstimatedDistribution):
         -----
         DistanceWarning
             If fresh impacts are farther from the result than 0.05 in the sense of Kolmogorov and Smirnov, and
-            than 3.5 times what their scatter explains. docs/theory.md says what to do.
+            than 3.5 times what their scatter explains, or than 0.1. docs/theory.md says what to do.
         EnergyWarning
             If impacts created kinetic energy: a gas with this distribution may heat itself.
 

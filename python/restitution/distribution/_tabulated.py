@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from functools import cached_property
-from typing import Any, Literal, Self, TypeAlias
+from typing import Any, Literal, Self, TypeAlias, overload
 
 import numpy as np
 import numpy.typing as npt
@@ -20,6 +20,7 @@ from restitution.distribution._learn import Given
 from restitution.distribution._table import Floats, Table
 from restitution.distribution._text import gaps
 
+Numbers: TypeAlias = npt.NDArray[Any] | Sequence[float]
 Values: TypeAlias = Any  # np.float64 for scalar arguments, an array of floats otherwise
 RandomState: TypeAlias = int | np.random.Generator | np.random.RandomState | None
 
@@ -118,6 +119,15 @@ class TabulatedDistribution:
         """Return the least and greatest ε."""
         return self.ppf(0.0, v, given), self.ppf(1.0, v, given)
 
+    @overload
+    def mean(self, v: float, given: float | None = None) -> float: ...
+
+    @overload
+    def mean(self, v: Numbers, given: npt.ArrayLike | None = None) -> Floats: ...
+
+    @overload
+    def mean(self, v: npt.ArrayLike, given: npt.ArrayLike | None = None) -> Values: ...
+
     def mean(self, v: npt.ArrayLike, given: npt.ArrayLike | None = None) -> Values:
         """Return the mean of ε."""
         table, speeds, z = self._at(v, given)
@@ -211,6 +221,46 @@ class TabulatedDistribution:
         """Return the differential entropy, -∫ p ln p dε."""
         table, speeds, z = self._at(v, given)
         return np.asarray(np.vectorize(table.entropy, otypes=[np.float64])(speeds, z))[()]
+
+    @overload
+    def rvs(
+        self,
+        v: float,
+        size: None = None,
+        random_state: RandomState = None,
+        given: float | None = None,
+        threads: int | None = None,
+    ) -> float: ...
+
+    @overload
+    def rvs(
+        self,
+        v: Numbers,
+        size: None = None,
+        random_state: RandomState = None,
+        given: npt.ArrayLike | None = None,
+        threads: int | None = None,
+    ) -> Floats: ...
+
+    @overload
+    def rvs(
+        self,
+        v: npt.ArrayLike,
+        size: int | tuple[int, ...] = ...,
+        random_state: RandomState = None,
+        given: npt.ArrayLike | None = None,
+        threads: int | None = None,
+    ) -> Floats: ...
+
+    @overload
+    def rvs(
+        self,
+        v: npt.ArrayLike,
+        size: int | tuple[int, ...] | None = None,
+        random_state: RandomState = None,
+        given: npt.ArrayLike | None = None,
+        threads: int | None = None,
+    ) -> Values: ...
 
     def rvs(
         self,

@@ -16,8 +16,10 @@ Axis = Literal["isotropic", "horizontal", "across", "thermal"]
 
 _ORIENTATIONS = (
     "'uniform-angle', 'isotropic' or a 1-D array of angles in rad, one per particle, "
-    "or a 2-D array of their pairs (θ, φ), or of quaternions (w, x, y, z)"
+    "or a 2-D array of their pairs (θ, φ), or of quaternions (w, x, y, z), or a SciPy Rotation"
 )
+_LAST = (0.0, 0.0, 0.0, 1.0)
+"""No rotation in the order (x, y, z, w)."""
 _SPINS = "None, (ωx, ωy, ωz) in rad/s, an array of them, one per particle, or a RandomSpin"
 _HEIGHTS = "a finite number > 0 (height of the centre of mass, m), or a RandomHeight"
 _VELOCITIES = "None or (vx, vy, vz), finite, in m/s"
@@ -36,6 +38,15 @@ def _array(name: str, value: Any, allowed: str, unit: str, *dimensions: int) -> 
 def _orientation(value: Any) -> Any:
     if isinstance(value, str) and value in get_args(Orientation):
         return value
+    if hasattr(value, "as_quat"):
+        # as_quat(scalar_first=True) needs SciPy 1.14.
+        value = np.roll(np.atleast_2d(value.as_quat()), 1, axis=1)
+    elif np.shape(value)[1:] == (4,) and np.array_equal(np.abs(value), np.tile(_LAST, (len(value), 1))):
+        allowed = (
+            "in the order (w, x, y, z): this is half a turn about z, or else no turn in the order of SciPy; "
+            "give the Rotation that is meant"
+        )
+        raise ParameterError(wrong("orientation", value, allowed))
     angles = _array("orientation", value, _ORIENTATIONS, "rad", 1, 2)
     if angles.ndim == 2 and angles.shape[1] not in (2, 4):
         raise ParameterError(wrong("orientation", value, _ORIENTATIONS))

@@ -322,8 +322,9 @@ def resting(body: RigidBody, data: xr.Dataset) -> xr.Dataset:
         Over ``face``, from 0: its outward ``normal`` in the axes of the body, of a solid of revolution that
         at y = 0, the ``height`` of the centre of mass on it, and that of the lowest pass, ``barrier``, both
         in m; ``least`` and ``most``, the share of the particles that rest on it, without and with the
-        undecided ones. Over ``particle``: ``resting``, the face, -1 where it is undecided, and
-        ``decided_after``, the number of impacts after which it was decided, 0 where it was not.
+        undecided ones, and their standard errors ``least_error`` and ``most_error``. Over ``particle``:
+        ``resting``, the face, -1 where it is undecided, and ``decided_after``, the number of impacts after
+        which it was decided, 0 where it was not.
 
     Raises
     ------
@@ -380,12 +381,18 @@ def resting(body: RigidBody, data: xr.Dataset) -> xr.Dataset:
                 after[particle] = 1 + int(np.argmax(energy[particle] < level[well]))
     decided = np.bincount(rests[rests >= 0], minlength=len(order)) / len(rests)
     undecided = float(np.mean(rests < 0))
+
+    def error(share: FloatArray) -> FloatArray:
+        return np.sqrt(share * (1.0 - share) / len(rests))
+
     about = {
         "normal": (("face", "component"), landscape.normals[order], "outward normal, axes of the body", "1"),
         "height": ("face", landscape.heights[order], "height of the centre of mass at rest", "m"),
         "barrier": ("face", level[order], "height of the centre of mass on the lowest pass", "m"),
         "least": ("face", decided, "share of the particles that rest there", "1"),
         "most": ("face", decided + undecided, "the same with all that are undecided", "1"),
+        "least_error": ("face", error(decided), "standard error of least", "1"),
+        "most_error": ("face", error(decided + undecided), "standard error of most", "1"),
         "resting": ("particle", rests, "number of the face, -1: undecided", "1"),
         "decided_after": ("particle", after, "number of impacts after which it was decided", "1"),
     }

@@ -6,7 +6,7 @@ import re
 import warnings
 from collections.abc import Callable, Mapping
 from textwrap import dedent, indent
-from typing import Annotated, Any, ClassVar, Literal, Self, TypedDict, TypeVar
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal, Self, TypedDict, TypeVar
 
 import numpy as np
 import numpy.typing as npt
@@ -34,6 +34,10 @@ from restitution.drop.release import (
 )
 from restitution.laws import LAWS, CollisionLaw, Law
 
+if TYPE_CHECKING:
+    from scipy.spatial.transform import Rotation
+
+
 F = TypeVar("F", bound=Callable[..., Any])
 
 _NONE = ("spin", "release_velocity")
@@ -46,7 +50,7 @@ class Surroundings(TypedDict, total=False):
     """Keyword arguments that say how particles are released and what acts on them, with their types."""
 
     gravity: float
-    orientation: "Literal['uniform-angle', 'isotropic'] | npt.ArrayLike"
+    orientation: "Literal['uniform-angle', 'isotropic'] | npt.ArrayLike | Rotation"
     spin: "npt.ArrayLike | RandomSpin | None"
     release_velocity: "npt.ArrayLike | None"
     incline: float
@@ -176,7 +180,10 @@ class Run(Parameters):
             allowed = "angles, for a body of revolution"
             raise ParameterError(wrong("orientation", self.orientation, allowed))
         if not axis and not quaternions and (given is not None or self.orientation != "isotropic"):
-            allowed = "'isotropic' or quaternions, shape (particles, 4), for a body without an axis"
+            allowed = (
+                "'isotropic', a Rotation or quaternions (w, x, y, z), shape (particles, 4), "
+                f"for a {type(self.body).__name__}"
+            )
             raise ParameterError(wrong("orientation", self.orientation, allowed))
         if not axis and isinstance(self.spin, RandomSpin) and self.spin.axis == "across":
             allowed = "'isotropic', 'horizontal' or 'thermal', for a body without an axis"

@@ -54,7 +54,8 @@ class Status:
         share = self.finished / self.points
         of = "" if self.tasks is None else f" of {self.tasks}"
         points = f"{self.finished} of {self.points} points are finished ({100 * share:.0f} %)"
-        return f"{points}, and {self.there}{of} tasks are done."
+        rest = " Run the sweep again to finish them." if self.there == self.tasks and share < 1.0 else ""
+        return f"{points}, and {self.there}{of} tasks are done.{rest}"
 
 
 def status(out: str | Path) -> Status:

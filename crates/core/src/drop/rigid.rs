@@ -85,6 +85,8 @@ struct Bounce {
     after: RigidState,
     departure: Departure,
     approach: f64,
+    /// The kinetic energy that the impact adds, in m g R.
+    gain: f64,
 }
 
 impl Bouncing<'_> {
@@ -344,11 +346,16 @@ impl Bouncing<'_> {
             Some(chance) => self.law.answer_drawn(&compliance, at_contact, chance)?,
             None => self.law.answer(&compliance, at_contact)?,
         };
-        let torque = arm.cross(attitude.inverse().rotate(answer.impulse));
+        let impulse = answer.impulse;
+        let torque = arm.cross(attitude.inverse().rotate(impulse));
         let [x, y, z] = inverse;
+        let approach = (-at_contact.z).max(0.0);
+        // P·(v_c + v_c′)/2. The difference of the energies has the rounding error of the spin, which is large where a moment of inertia is small.
+        let met = at_contact * 2.0 + compliance.change(impulse);
+        let work = impulse.z * (answer.separation_speed - approach);
         Ok(Bounce {
             after: RigidState {
-                velocity: velocity + answer.impulse,
+                velocity: velocity + impulse,
                 spin: spin + Vector::new(x * torque.x, y * torque.y, z * torque.z), // (11)
                 ..contact.state
             },
@@ -356,7 +363,8 @@ impl Bouncing<'_> {
                 part: contact.part,
                 speed: answer.separation_speed,
             },
-            approach: (-at_contact.z).max(0.0),
+            approach,
+            gain: 0.5 * (impulse.x * met.x + impulse.y * met.y + work),
         })
     }
 
@@ -397,7 +405,7 @@ impl Bouncing<'_> {
             rise: one(after.velocity.z),
             rotation: one(rotation),
             energy_before: one(energy_before),
-            energy_after: one(self.energies(after).1),
+            energy_after: one(energy_before + bounce.gain),
             part: one((self.body.skin.number(contact.part) + 1) as f64),
             approach: one(bounce.approach),
             pose: RigidPose {
