@@ -85,6 +85,12 @@ if site := os.environ.get("RESTITUTION_SITE"):
     }
     html_theme_options["check_switcher"] = False
     html_theme_options["navbar_end"] = ["version-switcher", "theme-switcher"]
+    # The card that a link to any of its pages becomes elsewhere.
+    myst_html_meta = {
+        "property=og:title": "restitution: the coefficient of restitution as a distribution",
+        "property=og:image": f"{site}/{os.environ['RESTITUTION_VERSION']}/_images/orbits.png",
+        "name=twitter:card": "summary_large_image",
+    }
 
 # The picture on a card is a part of a figure: its file, then left, top, right and bottom as shares of it.
 CARDS = {

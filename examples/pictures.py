@@ -25,6 +25,42 @@ def drops() -> xr.Dataset:
     return rs.simulate(body, law, particles=400, impacts=12, record="state", seed=1)
 
 
+def orbits() -> Image.Image:
+    """Draw 56 million impacts of slow dumbbells: a line is an orbit, locked to the bounces."""
+    velocity, restitution = (0.03, 0.38), (0.6, 1.4)
+    found = rs.statistics(
+        rs.Dumbbell(radius=3e-3, separation=3e-4),
+        rs.TangentialRestitution(normal=0.98),
+        particles=60_000,
+        impacts=1000,
+        velocity_bins=1400,
+        velocity_range=velocity,
+        restitution_bins=800,
+        restitution_range=restitution,
+    )
+    count = found["restitution_count"].to_numpy().T
+    figure = Figure(figsize=(14.0, 8.0), dpi=100)
+    axes = figure.add_axes((0.0, 0.0, 1.0, 1.0))
+    axes.set_axis_off()
+    # What is dimmer than two impacts in a pixel is the noise of counting.
+    shown = np.log(np.maximum(count, 2) / 2) / math.log(160)
+    extent = (*velocity, *restitution)
+    axes.imshow(shown**1.25, cmap="inferno", vmin=0, vmax=1, origin="lower", extent=extent, aspect="auto")
+    words = {"color": "white", "fontfamily": "DejaVu Sans", "fontsize": 19}
+    axes.text(0.192, 1.06, "half a turn in each bounce", **words)
+    axes.text(0.1, 1.195, "half a turn in two bounces: one gains speed,", **words)
+    axes.text(0.112, 0.8, "the other loses it", **words)
+    axes.text(0.371, 0.945, "as a sphere", ha="right", **words)
+    words |= {"color": "#9a9a9a", "fontsize": 15}
+    for v in (0.1, 0.2, 0.3):
+        axes.text(v, 0.612, f"{v:g} m/s", ha="center", **words)
+    for epsilon in (0.8, 1.2):
+        axes.text(0.376, epsilon, rf"$\varepsilon$ = {epsilon:g}", ha="right", va="center", **words)
+    content = io.BytesIO()
+    figure.savefig(content)
+    return Image.open(content).convert("RGB").quantize(48, dither=Image.Dither.NONE)
+
+
 def shapes(style: str) -> Image.Image:
     """Put bodies side by side: two dumbbells, a loaded sphere, a spherocylinder and two spheroids."""
     bodies = (
@@ -163,6 +199,7 @@ def _side_by_side(drawn: list[Image.Image]) -> Image.Image:
 
 def main(folder: Path) -> None:
     """Write everything."""
+    orbits().save(folder / "orbits.png", optimize=True)
     data = drops()
     grounds: tuple[Style, ...] = ("page", "page-dark")
     for ground in grounds:
