@@ -67,7 +67,7 @@ def test_the_mean_square_by_quadrature(number: int, height: float) -> None:
 
 @pytest.mark.parametrize("number", [1000, 20_000])
 def test_exponential_heights(number: int) -> None:
-    """(10), (11): R a²/2 of an asperity that touches is exponential with the mean height, whatever N."""
+    """(4), (5): R a²/2 of an asperity that touches is exponential with the mean height, whatever N."""
     body = Rough(number, 0.05, 1e-3, exponential=True)
     met = hits(body, np.zeros((1000, 3)), seed=number)
     exact = contact_of(body)
@@ -118,7 +118,7 @@ def test_heights_of_a_power_law() -> None:
 
 @pytest.mark.parametrize(("law", "tangential"), [(SMOOTH, None), (PAPER, 1.0)])
 def test_a_given_spin_shifts_the_mean_and_hardly_skews(law: Any, tangential: float | None) -> None:
-    """(5), (6) at fixed ω: mean, σ and third moment, where the flux would skew if the loss did not."""
+    """(7), (8) at fixed ω: mean, σ and third moment, where the flux would skew if the loss did not."""
     body, ratio, number = Rough(10_000, 0.01, 0.01), 4.0, 8_000
     spin = np.zeros((number, 3))
     spin[:, 0] = ratio
@@ -139,7 +139,7 @@ def test_a_given_spin_shifts_the_mean_and_hardly_skews(law: Any, tangential: flo
 def test_gaussian_spins_make_an_asymmetric_laplace_density(
     ratio: float, law: Any, tangential: float | None, seed: int
 ) -> None:
-    """(9): a Kolmogorov test of 2000 impacts of moving spheres, and mean and σ to five standard errors."""
+    """(11): a Kolmogorov test of 2000 impacts of moving spheres, and mean and σ to five standard errors."""
     body, number = Rough(10_000, 0.01, 0.01), 2000
     e, _ = rebound(body, hits(body, spins(number, ratio, seed), seed), law.normal, tangential)
     exact = rough_impact(law, contact_of(body), speed=1.0, spin=ratio, radius=1.0)
@@ -164,7 +164,7 @@ def test_the_flank_of_spinning_spheres_is_longer_above() -> None:
 
 
 def test_without_spin_it_is_a_one_sided_exponential() -> None:
-    """(4): <ε_n - ε> = (1 + ε_n) κ <sin² a>, and ε from rest of 4000 spheres."""
+    """(6): <ε_n - ε> = (1 + ε_n) κ <sin² a>, and ε from rest of 4000 spheres."""
     body = Rough(10_000, 0.01, 0.01)
     exact = rough_impact(PAPER, contact_of(body), speed=1.0, spin=0.0, radius=1.0)
     assert 0.9 - exact.mean() == pytest.approx(1.9 / 1.4 * 4.0 / 10_000, rel=1e-3)
@@ -308,7 +308,7 @@ def test_the_methods_of_a_first_impact_agree(number: int, law: Any) -> None:
 
 
 def test_many_asperities_make_the_one_sided_exponential() -> None:
-    """(4): mean and deviation of the loss are both (1 + ε_n) κ 4/N."""
+    """(6): mean and deviation of the loss are both (1 + ε_n) κ 4/N."""
     exact = rs.analytic.first_impact(rs.RoughSphere(**(ROUGH | {"asperities": 10**6})), SMOOTH)
     centre = 1.0 + 0.01 - 0.05
     loss = 1.9 * 2.5 * centre**2 * 4e-6

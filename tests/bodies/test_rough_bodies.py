@@ -158,7 +158,7 @@ BINS: dict[str, Any] = {"velocity_bins": [0.5, 0.7, 1.2], "restitution_bins": np
 
 
 def test_the_learned_density_is_the_closed_form(tmp_path: Path) -> None:
-    """(9) and (12) of docs/rough.md, with nothing fitted: to 0.03, of six seeds the worst 0.02."""
+    """(11) and (12) of docs/rough.md, with nothing fitted: to 0.03, of six seeds the worst 0.02."""
     body, law = sphere(10_000), rs.Frictionless(normal=0.9)
     run: dict[str, Any] = {"particles": 8000, "impacts": 8, "heights_about": 0.06}
     learned = rs.FluctuatingRestitution.learn(body, law, velocities=(0.5, 0.8), **run)

@@ -110,7 +110,7 @@ fn what_was_cut_short_in_long_rows_is_left_out() {
     }
 }
 
-/// What spheres in flight have had is not missing: the rows have more than four million cells, of which fewer are to be blanked.
+/// Impacts that spheres in flight have had are not missing: the rows have more than four million cells, of which fewer are to be blanked.
 #[test]
 fn impacts_that_happened_need_not_be_blanked() {
     let run = Run {
@@ -168,7 +168,7 @@ fn of_particles(mut records: Records) -> Vec<&'static str> {
     found.into_iter().map(|(about, _)| about.name).collect()
 }
 
-/// What is the same for all particles is not among their variables.
+/// A quantity that is the same for all particles is not among their variables.
 #[test]
 fn the_variables_of_particles_are_those_that_vary() {
     let run = Run {
@@ -300,5 +300,35 @@ fn the_usual_variables_follow_from_the_law() {
                 assert!(expected.contains(&"contact"));
             }
         }
+    }
+}
+
+/// `docs/records.md` has a row for each variable, with its unit, and for each stop reason, with its number.
+#[test]
+fn the_page_has_every_variable_and_stop_reason() {
+    let page = include_str!("../../../docs/records.md");
+    let rows: Vec<_> = page
+        .lines()
+        .filter(|line| line.starts_with("| `"))
+        .collect();
+    for about in PER_IMPACT.iter().chain(&PER_PARTICLE) {
+        let unit = match about.unit {
+            Some("m s-1") => "m/s",
+            Some("rad s-1") => "rad/s",
+            other => other.unwrap_or("number"),
+        };
+        let name = format!("`{}`", about.name);
+        let end = format!("| {unit} |");
+        let has = |row: &&&str| {
+            let first = row.split('|').nth(1).expect("a cell");
+            first.contains(&name) && row.ends_with(&end)
+        };
+        assert_eq!(rows.iter().filter(has).count(), 1, "{name}, {unit}");
+    }
+    for (number, name) in StopReason::NAMES.iter().enumerate() {
+        assert!(
+            page.contains(&format!("\n| {number} | `{name}` |")),
+            "{name}"
+        );
     }
 }

@@ -18,13 +18,13 @@ use std::cell::RefCell;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 thread_local! {
-    /// What the page writes, as the bits of `f64`.
+    /// The numbers that the page writes, as the bits of `f64`.
     static PARAMETERS: RefCell<Vec<AtomicU64>> = const { RefCell::new(Vec::new()) };
     static TABLE: RefCell<Vec<f64>> = const { RefCell::new(Vec::new()) };
     static MESSAGE: RefCell<String> = const { RefCell::new(String::new()) };
 }
 
-/// What the page has written.
+/// The numbers that the page has written.
 fn given() -> Vec<f64> {
     let number = |bits: &AtomicU64| f64::from_bits(bits.load(Ordering::Relaxed));
     PARAMETERS.with_borrow(|all| all.iter().map(number).collect())

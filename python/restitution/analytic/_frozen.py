@@ -89,7 +89,7 @@ class FirstImpact(ABC):
 
     @property
     def cdf_error(self) -> float:
-        """How far `cdf` may be off: 0 where ε is a function of the angle θ, which is solved to rounding.
+        """Estimated error of `cdf`: 0 where ε is a function of the angle θ, which is solved to rounding.
 
         For other rigid bodies a generous estimate, not a bound.
         """

@@ -32,7 +32,7 @@ _NEWTON = 60
 
 @dataclass(frozen=True)
 class Response:
-    """What a law makes of K, at many contacts side by side."""
+    """Impulse of a law under the full K, at many contacts side by side."""
 
     impulse: Impulse
     normal: Floats | float  # ε_n

@@ -149,7 +149,7 @@ class RigidFirstImpact(FirstImpact):
 
     @cached_property
     def _hull(self) -> Balls:
-        """What can touch, in principal axes and units of the size."""
+        """The parts that can touch, in principal axes and units of the size."""
         _, axes = self._axes
         if isinstance(self.body, Ellipsoid | Superellipsoid):
             return Smooth(np.zeros((1, 3)), np.ones(1), self.body, axes)

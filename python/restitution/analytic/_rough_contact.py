@@ -100,8 +100,8 @@ def rough_contact(
     if mean_height is not None:
         allowed = f"in (0, {0.01 * size:g}] m: no more than a hundredth of the radius"
         mean = real("mean_height", mean_height, allowed, lambda x: 0.0 < x <= 0.01 * size, unit="m")
-        sphere = math.exp(-0.5 * number * mean / size)  # (10)
-        return RoughContact(mean_square=2.0 * mean / size * (1.0 - sphere), sphere=sphere)  # (11)
+        sphere = math.exp(-0.5 * number * mean / size)  # (4)
+        return RoughContact(mean_square=2.0 * mean / size * (1.0 - sphere), sphere=sphere)  # (5)
     top = real("height", height, f"in [0, {2.0 * rho!r}] m", lambda x: 0.0 <= x <= 2.0 * rho, unit="m")
     if not size + top > rho:
         raise ParameterError(wrong("asperity_radius", asperity_radius, "less than radius + height"))

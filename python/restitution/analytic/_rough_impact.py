@@ -86,7 +86,7 @@ def rough_impact(
     v = positive("speed", speed, "m/s")
     omega = real("spin", spin, "a finite number >= 0, in rad/s", lambda x: 0.0 <= x < math.inf, unit="rad/s")
     turned = (omega * size / v) ** 2
-    shift, spread = square * (turned - coupling), square * turned  # (7), (8)
+    shift, spread = square * (turned - coupling), square * turned  # (9), (10)
     above, below = _flanks(shift, spread)
     if not above <= _WIDEST:
         allowed = f"such that the density is narrow: here 1 + ε_n times {above:.3g}, at most {_WIDEST}"
@@ -96,7 +96,7 @@ def rough_impact(
 
 
 def _flanks(shift: float, spread: float) -> tuple[float, float]:
-    """Return the widths a and b of the flanks above and below: a - b = ``shift``, 2ab = ``spread`` (9)."""
+    """Return the widths a and b of the flanks above and below: a - b = ``shift``, 2ab = ``spread`` (11)."""
     longer = 0.5 * (abs(shift) + math.sqrt(shift * shift + 2.0 * spread))
     shorter = 0.5 * spread / longer
     above, below = (longer, shorter) if shift > 0.0 else (shorter, longer)

@@ -29,7 +29,7 @@ _HEIGHTS = (
     '("exponential", mean), ("normal", mean, deviation) and ("power", exponent, least, most)'
 )
 _PARAMETERS = {"exponential": 1, "normal": 2, "power": 3}
-"""How many numbers a distribution of heights has."""
+"""Count of the numbers that a distribution of heights has."""
 _BYTES = 56
 """Memory of an asperity, at most."""
 _ROUGHENED = (Dumbbell, LoadedSphere, Spherocylinder, Clump)

@@ -39,12 +39,12 @@ _COLORMAP_ON_DARK = LinearSegmentedColormap.from_list(
 )
 
 Style: TypeAlias = Literal["paper", "page", "slides", "paper-dark", "page-dark", "slides-dark"]
-"""What a figure is for: a journal, a page on a screen, or slides; the last three on a dark ground."""
+"""Purposes of a figure: a journal, a page on a screen, or slides; the last three on a dark ground."""
 
 
 @dataclass(frozen=True)
 class _Look:
-    """How large the figures of a style are beside those of a journal, their letters, lines and colours."""
+    """Size of the figures of a style over that of a journal's, their letters, lines and colours."""
 
     scale: float
     font: float  # points

@@ -27,7 +27,7 @@ class Setting(NamedTuple):
 
 
 class AtSpeeds(ABC):
-    """What follows from the speeds at which densities are shown."""
+    """Bins that follow from the speeds at which densities are shown."""
 
     speed_tolerance: float
     """Half-width of the windows, as a share of the speed."""

@@ -20,7 +20,7 @@ REJECTED = 0.002
 
 @dataclass(frozen=True)
 class Shape:
-    """What is measured of the density at one speed."""
+    """Measurements of the density at one speed."""
 
     label: str  # the speed
     goodness: fit.Goodness  # of the Laplace fit to independent draws, at most one of each particle

@@ -1,4 +1,4 @@
-"""What the times can decide: whether the scatter of ε is of the shape, of the material, of both, or none."""
+"""Decide from the times whether the scatter of ε is of the shape, of the material, of both, or none."""
 
 import math
 from typing import Literal, NamedTuple

@@ -21,7 +21,7 @@ _POINTS = 8.0
 """Points to a period of the highest frequency at which a band is looked at."""
 _LEAST_LEAD, _LEAD = 0.4e-3, 0.5
 _LEAST_TAIL, _TAIL = 1.2e-3, 3.0
-"""What rules look at before and after the onset: at least this time in s, and so many periods of the band."""
+"""Window of the rules around the onset: at least this time in s, and so many periods of the band."""
 
 
 class Band:

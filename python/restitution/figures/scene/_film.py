@@ -46,7 +46,7 @@ _HEIGHT = 3.0
 
 @dataclass(frozen=True)
 class Frame:
-    """What one picture of a film shows."""
+    """Contents of one picture of a film."""
 
     time: float  # s since release
     slowed: float  # film time over time; infinite while the film stands still
@@ -87,7 +87,7 @@ class Film:
 
     @property
     def frames(self) -> int:
-        """How many pictures the film has, one every 60 ms."""
+        """Number of pictures of the film, one every 60 ms."""
         return len(self._frames)
 
     def __repr__(self) -> str:

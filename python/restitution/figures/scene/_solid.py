@@ -15,7 +15,7 @@ from restitution.bodies import KINDS, Body, of_attributes
 PIXELS = 220
 """Across the picture of a body."""
 _GREYS = {1: 0.62, 2: 0.9, 0: 0.45}
-"""How bright the two ends are, and a rod between them: without a colour, which belongs to the arrows."""
+"""Brightness of the two ends, and of a rod between them: without a colour, which belongs to the arrows."""
 _LIGHT = np.array([-0.45, 0.7, 0.55])
 """Where the light comes from: right, up and towards the reader."""
 

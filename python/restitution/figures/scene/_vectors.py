@@ -1,4 +1,4 @@
-"""What is drawn around a body: the plane, a scale bar, and arrows for velocity, rotation and impulse."""
+"""Plane, scale bar, and arrows for velocity, rotation and impulse, drawn around a body."""
 
 from typing import Any
 

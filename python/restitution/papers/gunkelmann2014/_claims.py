@@ -1,4 +1,4 @@
-"""What PRE 90, 052204 and the abstract of its ref. 10 say of rough spheres, each sentence judged."""
+"""Claims of PRE 90, 052204 and of the abstract of its ref. 10 about rough spheres, each sentence judged."""
 
 from functools import partial
 
@@ -272,7 +272,7 @@ def _kurtosis(data: xr.Dataset, window: tuple[float, float]) -> tuple[float, flo
     "Sec. V",
 )
 def number_of_asperities(runs: Runs, s: Settings) -> Finding:
-    """How σ goes with N at equal heights, and with the mean height at one N; and in closed form."""
+    """Exponents of σ in N at equal heights, and in the mean height at one N; and in closed form."""
     k = 1  # 0.2 m/s
     at, v = s.labels[k], s.speeds[k]
     numbers = [s.contact(asperities=n) for n in s.numbers]
@@ -299,7 +299,7 @@ def number_of_asperities(runs: Runs, s: Settings) -> Finding:
         measured=tuple(measured),
         verdict=verdict(False, all(agree)),
         rule="N: equal heights; ⟨h⟩: random ones. The number says what the scatter is only if heights are "
-        "equal. In part if both exponents are those of the closed form (docs/rough.md, 8 and 12: −1 and 1 "
+        "equal. In part if both exponents are those of the closed form (docs/rough.md, 10 and 12: −1 and 1 "
         f"where the spin is not braked) within 0.05 and {SIGNIFICANT:g} standard errors; fails otherwise.",
         why="With equal heights σ goes as N to the power {:.3f}, in closed form {:.3f}; with random ones as "
         "⟨h⟩ to the power {:.3f}, in closed form {:.3f}, and the number has dropped out: 10⁶ asperities "

@@ -108,7 +108,7 @@ def _explain_densities(drawn: xr.Dataset, s: Settings) -> Caption:
         "Probability density of the coefficient of restitution ε of a rough sphere at four impact "
         "velocities. Points: simulation, ± one standard error, each particle counting as one draw. Lines: "
         "asymmetric Laplace density with decay lengths a above and b below its cusp, by maximum likelihood: "
-        f"{fits}. Dashed: Eqs. 9 and 12 of docs/rough.md.",
+        f"{fits}. Dashed: Eqs. 11 and 12 of docs/rough.md.",
         _model(s),
         [f"windows of ± {s.speed_tolerance:.0%} about {listing(s.speeds)} m/s", *_ours(s)],
         recorded="all",

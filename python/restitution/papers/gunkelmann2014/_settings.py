@@ -14,7 +14,7 @@ from restitution.papers.settings import AtSpeeds, chosen, stated
 
 @dataclass(frozen=True)
 class Settings(AtSpeeds, settings.Settings):
-    """What PRE 90, 052204 says of its refs. 10 and 11, and our choices where it is silent, in SI units."""
+    """Parameters of PRE 90, 052204 for its refs. 10 and 11, our choices where it has none; SI units."""
 
     # The body and the law.
     radius: float = chosen(3e-3, "m", "radius R of the sphere")
@@ -78,7 +78,7 @@ class Settings(AtSpeeds, settings.Settings):
         )
 
     def density(self, contact: RoughContact, speed: float) -> Any:
-        """Return p(ε | v) in closed form, frozen (docs/rough.md, 9)."""
+        """Return p(ε | v) in closed form, frozen (docs/rough.md, 11)."""
         return rough_impact(
             self.law, contact, speed=speed, spin=self.spin(contact, speed), radius=self.radius
         )
