@@ -1,7 +1,7 @@
 //! All particles of a run, on all cores. Particles do not interact, so that the result does not depend on the schedule.
 
 use crate::Error;
-use crate::drop::{BLOCK, Plan, Run, Series, Source, bounce_block, even, share};
+use crate::drop::{BLOCK, JoinedRuns, Plan, Run, Source, bounce_block, even, share};
 use crate::record::Table;
 use crate::record::{Columns, Records};
 use crate::statistics::{
@@ -175,7 +175,7 @@ pub fn simulate_series(
     resources: Resources,
     monitor: &Monitor,
 ) -> Result<Records, Error> {
-    let series = Series::new(runs)?;
+    let series = JoinedRuns::new(runs)?;
     let particles = series.particles();
     let block = |threads| even(particles, threads);
     recorded(&series, 0..particles, block, columns, resources, monitor)

@@ -17,11 +17,11 @@ pub struct Counter {
     edges: Vec<f64>,
     /// One to the edges of each component.
     guides: Vec<Guide>,
-    batches: Vec<Batch>,
+    batches: Vec<CountedBatch>,
 }
 
 #[derive(Debug)]
-struct Batch {
+struct CountedBatch {
     count: Vec<f64>,
     powers: [Vec<f64>; 3],
     lowest: Vec<f64>,
@@ -65,7 +65,7 @@ impl Counter {
         let allowed = "increasing, one or more for each component";
         Error::unless(sound, "edges", edges.len(), allowed)?;
         Error::unless(batches > 0, "batches", batches, "> 0")?;
-        let batches = (0..batches).map(|_| Batch::new(&nodes, components + edges.len()));
+        let batches = (0..batches).map(|_| CountedBatch::new(&nodes, components + edges.len()));
         let batches = batches.collect::<Result<_, _>>()?;
         let guides = start
             .windows(2)
@@ -139,7 +139,7 @@ impl Counter {
             all.copy_from_slice(&batch.count);
         }
         let powers = (0..3).flat_map(|k| self.batches.iter().flat_map(move |b| &b.powers[k]));
-        let over = |values: &dyn Fn(&Batch) -> &[f64], choose: fn(f64, f64) -> f64| {
+        let over = |values: &dyn Fn(&CountedBatch) -> &[f64], choose: fn(f64, f64) -> f64| {
             let mut found = values(&self.batches[0]).to_vec();
             for batch in &self.batches[1..] {
                 for (found, &value) in found.iter_mut().zip(values(batch)) {
@@ -160,7 +160,7 @@ impl Counter {
     }
 }
 
-impl Batch {
+impl CountedBatch {
     fn new(nodes: &Nodes, bins: usize) -> Result<Self, Error> {
         let (speeds, components) = (nodes.number(), nodes.components());
         let zeros = |size| zeros(ROOM, size);

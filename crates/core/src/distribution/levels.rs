@@ -23,11 +23,11 @@ pub struct Levels {
     intervals: usize,
     /// Counts in [`FINE`] parts of each interval, one for each thread that has counted; their sum does not depend on the order.
     fine: Mutex<Vec<Vec<u64>>>,
-    batches: Vec<Batch>,
+    batches: Vec<LevelBatch>,
 }
 
 #[derive(Debug)]
-struct Batch {
+struct LevelBatch {
     number: u64,
     /// The number of levels that were spread.
     spread: u64,
@@ -45,7 +45,7 @@ impl Levels {
         Error::unless(batches > 0, "batches", batches, "> 0")?;
         let intervals = nodes - 1;
         let batches = (0..batches as u64).map(|number| {
-            Ok(Batch {
+            Ok(LevelBatch {
                 number,
                 spread: 0,
                 coarse: zeros(ROOM, intervals * COARSE)?,
@@ -159,7 +159,7 @@ impl Levels {
     }
 }
 
-impl Batch {
+impl LevelBatch {
     /// The next number of this batch that is uniform on [0, 1).
     fn even(&mut self) -> f64 {
         let index = self.spread << 16 | self.number;

@@ -17,7 +17,7 @@ pub(crate) use lanes::{Impact, Meanwhile, PLACES, Pose, Sink, of_group};
 pub(crate) use plan::Plan;
 pub use release::{About, Height, Orientation, Spin};
 pub use scales::Scales;
-pub(crate) use series::{Series, Source};
+pub(crate) use series::{JoinedRuns, Source};
 pub use single::{
     FlightEnd, FlightStart, NoConvergence, SingleImpact, collide, first_contact, trajectory,
 };

@@ -26,7 +26,7 @@ impl Source for Plan<'_> {
 }
 
 /// Parts of several runs, whose particles are numbered from part to part.
-pub(crate) struct Series<'a> {
+pub(crate) struct JoinedRuns<'a> {
     plans: Vec<Plan<'a>>,
     /// Number in its run of the first particle of each part.
     first: Vec<usize>,
@@ -34,7 +34,7 @@ pub(crate) struct Series<'a> {
     ends: Vec<usize>,
 }
 
-impl<'a> Series<'a> {
+impl<'a> JoinedRuns<'a> {
     /// # Errors
     /// As [`Plan::new`], [`Plan::check_part`], and [`Error::Parameter`] if there is no run, or runs differ in more than seed, number of
     /// particles and release.
@@ -65,7 +65,7 @@ impl<'a> Series<'a> {
     }
 }
 
-impl Source for Series<'_> {
+impl Source for JoinedRuns<'_> {
     #[inline(always)]
     fn plan(&self) -> &Plan<'_> {
         &self.plans[0]

@@ -48,7 +48,7 @@ pub(crate) struct MomentSink<'a, const EVEN: bool> {
 /// Impacts to be counted. Integers have [`ROUND`] added to them.
 #[repr(align(64))]
 struct Queue {
-    places: [Place; PLACES],
+    places: [Counted; PLACES],
     /// Contributions to the sums, in halves.
     low: [Half; PLACES],
     high: [Half; PLACES],
@@ -82,7 +82,7 @@ impl Queue {
 }
 
 /// The place at which an impact is counted: indices into the grids of ε and of E_rot/E_tot, and the row; the last number is ε.
-type Place = [f64; 4];
+type Counted = [f64; 4];
 
 /// Transposes four packs into one record of four numbers for each lane.
 #[inline(always)]

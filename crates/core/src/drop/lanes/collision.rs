@@ -170,7 +170,7 @@ impl<S: Simd> Collide<S> for PlanarState<S, 1> {
 const UPRIGHT: f64 = 1e-150;
 
 /// The frame of a contact in space.
-struct Frame<S: Simd> {
+struct ContactFrame<S: Simd> {
     /// **r**_c (6).
     arm: Vectors<S, 1>,
     sine: Pack<S, 1>,
@@ -179,7 +179,7 @@ struct Frame<S: Simd> {
     along_y: Pack<S, 1>,
 }
 
-impl<S: Simd> Frame<S> {
+impl<S: Simd> ContactFrame<S> {
     #[inline(always)]
     fn new(state: &SpatialState<S, 1>, ContactPoint { lever, radius }: ContactPoint<S>) -> Self {
         let axis = state.axis;
@@ -204,12 +204,12 @@ impl<S: Simd> Collide<S> for SpatialState<S, 1> {
     fn contact(&self, body: &Body, point: ContactPoint<S>) -> Contact<Pack<S, 1>> {
         let velocity = self.motion.velocity;
         let ContactPoint { lever, radius } = point;
-        let Frame {
+        let ContactFrame {
             arm,
             sine,
             along_x,
             along_y,
-        } = Frame::new(self, point);
+        } = ContactFrame::new(self, point);
         let turning = self.spin(body).cross(arm);
         let (x, y) = (velocity.x + turning.x, velocity.y + turning.y); // v_c (7)
 
@@ -235,9 +235,9 @@ impl<S: Simd> Collide<S> for SpatialState<S, 1> {
     }
 
     fn along(&self, point: ContactPoint<S>) -> [Pack<S, 1>; 2] {
-        let Frame {
+        let ContactFrame {
             along_x, along_y, ..
-        } = Frame::new(self, point);
+        } = ContactFrame::new(self, point);
         [along_x, along_y]
     }
 
@@ -252,12 +252,12 @@ impl<S: Simd> Collide<S> for SpatialState<S, 1> {
             velocity,
             precession,
         } = self.motion;
-        let Frame {
+        let ContactFrame {
             arm,
             along_x,
             along_y,
             ..
-        } = Frame::new(self, point);
+        } = ContactFrame::new(self, point);
         let Components {
             normal,
             along,

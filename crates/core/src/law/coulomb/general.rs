@@ -7,9 +7,9 @@
 //!
 //! θ goes on for ever, and nothing is singular where the slip nearly vanishes. A zero of h is a ray that the slip does not leave; there
 //! dh/dφ = −r − μk_⊥, k_⊥ = **d**_⊥ᵀK_t**d**_⊥, so that every ray along which a slip grows (r > 0) attracts. Along a ray everything is a
-//! straight line in p. Elsewhere a step is a power series in θ ([`Series`]), and the way to where a slip comes to rest, a power series in
-//! tan(δ/2), δ the angle to the ray that it comes in along ([`Stop`]). A slip at rest stays if |K_t⁻¹κ| ≤ μ; otherwise it leaves along
-//! the only ray that grows ([`Frame::leaving`]).
+//! straight line in p. Elsewhere a step is a power series in θ ([`SlipSeries`]), and the way to where a slip comes to rest, a power series in
+//! tan(δ/2), δ the angle to the ray that it comes in along ([`RayToRest`]). A slip at rest stays if |K_t⁻¹κ| ≤ μ; otherwise it leaves along
+//! the only ray that grows ([`PrincipalFrame::leaving`]).
 //!
 //! The normal velocity, dv_n/dp = K_nn − μκ·**d**, can fall (a jam) where μ|κ| > K_nn. A step is therefore cut where dv_n/dp changes
 //! its sign, so that v_n is monotone in every piece of the path, and a contact that approaches again during the restitution is
@@ -56,9 +56,9 @@ impl Sliding<Scalar> for Compliance {
         }
         // Powers of two, so that nothing is rounded here.
         let (speed_unit, response_unit) = (power_of_two(size), power_of_two(self.normal()));
-        let frame = Frame::new(self, 1.0 / response_unit, rule.friction);
+        let frame = PrincipalFrame::new(self, 1.0 / response_unit, rule.friction);
         let unit = 1.0 / speed_unit;
-        let mut path = Path {
+        let mut path = OngoingImpact {
             frame: &frame,
             restitution: restitution.as_slice()[0],
             hypothesis: rule.hypothesis,
@@ -106,7 +106,7 @@ fn norm(a: [f64; 2]) -> f64 {
 }
 
 /// K and μ in the principal axes of K_t.
-struct Frame {
+struct PrincipalFrame {
     /// Cosine and sine of the angle from x to the first axis.
     axis: [f64; 2],
     nn: f64,
@@ -123,8 +123,8 @@ struct Frame {
     may_jam: bool,
 }
 
-/// Rates at a direction of the slip, in units of [`Frame::rate`].
-struct Rates {
+/// Rates at a direction of the slip, in units of [`PrincipalFrame::rate`].
+struct SlipRates {
     /// h(φ).
     turn: f64,
     /// r(φ).
@@ -133,14 +133,14 @@ struct Rates {
     across: f64,
 }
 
-impl Rates {
+impl SlipRates {
     /// dh/dφ.
     fn turn_slope(&self) -> f64 {
         -self.growth - self.across
     }
 }
 
-impl Frame {
+impl PrincipalFrame {
     fn new(k: &Compliance, unit: f64, friction: f64) -> Self {
         let k = k.entries();
         let (xx, yy, xy) = (k.xx * unit, k.yy * unit, k.xy * unit);
@@ -183,9 +183,9 @@ impl Frame {
         rotate([self.axis[0], -self.axis[1]], v)
     }
 
-    fn rates(&self, d: [f64; 2]) -> Rates {
+    fn rates(&self, d: [f64; 2]) -> SlipRates {
         let (c2, s2) = (d[0] * d[0], d[1] * d[1]);
-        Rates {
+        SlipRates {
             turn: cross(d, self.drive) + self.spread * d[0] * d[1],
             growth: dot(self.drive, d) - (self.brake[0] * c2 + self.brake[1] * s2),
             across: self.brake[0] * s2 + self.brake[1] * c2,
@@ -275,8 +275,8 @@ struct Line {
 }
 
 /// An impact under way.
-struct Path<'a> {
-    frame: &'a Frame,
+struct OngoingImpact<'a> {
+    frame: &'a PrincipalFrame,
     restitution: f64,
     hypothesis: Hypothesis,
     approach: f64,
@@ -305,7 +305,7 @@ struct Gain {
     work: f64,
 }
 
-impl Path<'_> {
+impl OngoingImpact<'_> {
     fn follow(&mut self) {
         let frame = self.frame;
         if self.approach == 0.0 {
@@ -492,7 +492,7 @@ impl Path<'_> {
 
     /// Goes on to where the slip comes to rest, if its direction is next to the ray that it comes in along, v_n is monotone until then, and
     /// nothing else happens before.
-    fn stop(&mut self, rho: f64, d: [f64; 2], rates: &Rates) -> bool {
+    fn stop(&mut self, rho: f64, d: [f64; 2], rates: &SlipRates) -> bool {
         let frame = self.frame;
         if rates.turn.abs() > 2.0 * NEAR * rates.turn_slope().abs() {
             return false;
@@ -511,7 +511,7 @@ impl Path<'_> {
                 return false;
             }
         }
-        let stop = Stop::new(frame, ray);
+        let stop = RayToRest::new(frame, ray);
         if stop.growth[0] >= 0.0 || stop.turn[0] >= 0.0 {
             return false; // the slip grows along the ray, or turns away from it
         }
@@ -531,7 +531,7 @@ impl Path<'_> {
     fn curved(&mut self, rho: f64) -> bool {
         let frame = self.frame;
         let works = self.hypothesis == Hypothesis::Stronge;
-        let series = Series::new(frame, rho, self.slip, self.speed, works);
+        let series = SlipSeries::new(frame, rho, self.slip, self.speed, works);
         let mut length = series.reach();
         if frame.may_jam {
             length = series.monotone(length);
@@ -570,7 +570,7 @@ impl Path<'_> {
     }
 
     /// The distance beyond the end of the present phase, with its derivative; negative before it.
-    fn lack(&self, sums: &Sums) -> (f64, f64) {
+    fn lack(&self, sums: &Integrals) -> (f64, f64) {
         let frame = self.frame;
         let speed = self.speed + frame.rise(&sums.whole);
         if self.compressing {
@@ -591,13 +591,13 @@ impl Path<'_> {
 /// The way of the slip as power series in θ about a point: ρ, **s** and v_nρ.
 ///
 /// ρ′ = κ·**s** − μk₂ρ − μ(k₁ − k₂) s₁²/ρ and **s**′ = κρ − μK_t**s** need the product of two series, and with c = s₁/ρ a quotient.
-struct Series<'a> {
-    frame: &'a Frame,
+struct SlipSeries<'a> {
+    frame: &'a PrincipalFrame,
     terms: [[f64; 4]; TERMS],
 }
 
 /// Integrals over θ from the beginning of a step, and the integrands.
-struct Sums {
+struct Integrals {
     whole: [f64; 4],
     value: [f64; 4],
 }
@@ -613,9 +613,9 @@ const INVERSE: [f64; TERMS] = {
     inverse
 };
 
-impl<'a> Series<'a> {
+impl<'a> SlipSeries<'a> {
     /// The series from a slip of size ρ and a normal velocity, which counts only if work is asked for.
-    fn new(frame: &'a Frame, rho: f64, slip: [f64; 2], speed: f64, works: bool) -> Self {
+    fn new(frame: &'a PrincipalFrame, rho: f64, slip: [f64; 2], speed: f64, works: bool) -> Self {
         let [a, b] = frame.drive;
         let [m1, m2] = frame.brake;
         let mut terms = [[0.0; 4]; TERMS];
@@ -666,7 +666,7 @@ impl<'a> Series<'a> {
         elementary::exp_in_lanes(one(short)).as_slice()[0].min(LONGEST)
     }
 
-    fn sums(&self, t: f64) -> Sums {
+    fn sums(&self, t: f64) -> Integrals {
         let (mut whole, mut value) = ([0.0; 4], [0.0; 4]);
         for (terms, part) in self.terms.iter().zip(&INVERSE).rev() {
             for i in 0..4 {
@@ -674,13 +674,13 @@ impl<'a> Series<'a> {
                 whole[i] = whole[i] * t + terms[i] * part;
             }
         }
-        Sums {
+        Integrals {
             whole: whole.map(|x| x * t),
             value,
         }
     }
 
-    fn gain(&self, sums: &Sums) -> Gain {
+    fn gain(&self, sums: &Integrals) -> Gain {
         let part = 1.0 / self.frame.rate;
         let pull = -self.frame.friction * part;
         let [normal, x, y, work] = sums.whole;
@@ -772,15 +772,15 @@ fn root(mut high: f64, function: impl Fn(f64) -> (f64, f64)) -> f64 {
 /// K_t along and across, and m = μ(A − E), dz/dθ = Y(z)/Q² and r = R(z)/Q² are polynomials but for Q. What is left, from z on, of the integral
 /// of ρg over θ is ρF with RF + YF′ = −Q²g, whose power series has as radius of convergence the distance to the next complex zero of
 /// h, or 1. With 2R it is that of ρ²V, for the work.
-struct Stop<'a> {
-    frame: &'a Frame,
+struct RayToRest<'a> {
+    frame: &'a PrincipalFrame,
     ray: [f64; 2],
     growth: [f64; 6],
     turn: [f64; 6],
 }
 
-impl<'a> Stop<'a> {
-    fn new(frame: &'a Frame, ray: [f64; 2]) -> Self {
+impl<'a> RayToRest<'a> {
+    fn new(frame: &'a PrincipalFrame, ray: [f64; 2]) -> Self {
         let [alpha, beta] = rotate(ray, frame.drive);
         let (c2, s2) = (ray[0] * ray[0], ray[1] * ray[1]);
         let along = frame.brake[0] * c2 + frame.brake[1] * s2;

@@ -6,7 +6,7 @@ use crate::simd::Pack;
 use pulp::Simd;
 
 /// The contact velocity as a function of the normal impulse p: piecewise linear, with a kink at `stop`.
-struct Path<S: Simd> {
+struct PiecewiseLinear<S: Simd> {
     /// Impulse p_s at which the slip velocity vanishes; infinite if it never does.
     stop: Pack<S, 1>,
     /// dv_c^n/dp before and after p_s. The first may be negative (jamming): the contact then sticks before it separates.
@@ -25,7 +25,7 @@ impl<S: Simd> Sliding<S> for AxialCompliance<Pack<S, 1>> {
         velocity: Components<Pack<S, 1>>,
         restitution: Pack<S, 1>,
     ) -> Response<Pack<S, 1>> {
-        let path = Path::new(self, velocity.along, rule.friction);
+        let path = PiecewiseLinear::new(self, velocity.along, rule.friction);
         let (normal, separation_speed) =
             path.end(velocity.normal.abs(), restitution, rule.hypothesis);
         Response {
@@ -39,7 +39,7 @@ impl<S: Simd> Sliding<S> for AxialCompliance<Pack<S, 1>> {
     }
 }
 
-impl<S: Simd> Path<S> {
+impl<S: Simd> PiecewiseLinear<S> {
     #[inline(always)]
     fn new(k: &AxialCompliance<Pack<S, 1>>, along: Pack<S, 1>, friction: f64) -> Self {
         let slip = along.abs();

@@ -8,7 +8,7 @@
 //!
 //! 1/y is an exponential function of θ, ∫y dθ a logarithm, and A the exponential function of −∫(λ + κy) dθ. What is left are
 //! quadratures of functions that are analytic next to the path ([`integrate_panel`]), and where the slip vanishes, a continued fraction
-//! ([`Stop`]). The ends of compression and restitution follow from power series about a point next to
+//! ([`VanishingSlip`]). The ends of compression and restitution follow from power series about a point next to
 //! them ([`Near`]), and where the direction hardly turns any more, from sums of exponential functions ([`Tail`]). Wherever
 //! the slip has come to rest the rest of the impact is a straight line in p.
 
@@ -391,7 +391,7 @@ struct Hodograph<S: Simd, const K: usize> {
 }
 
 /// A point of it.
-struct Point<S: Simd, const K: usize> {
+struct HodographPoint<S: Simd, const K: usize> {
     /// The decrease of y.
     pub lost: Pack<S, K>,
     /// ∫D dθ, and ln A less its first value.
@@ -428,7 +428,7 @@ impl<S: Simd, const K: usize> Hodograph<S, K> {
 
     /// With ζ = D₀(1 − exp(−2σθ))/σ: D₀ − D = (σ + ρ₋D₀)ζ/(1 + ρ₋ζ) and ∫D dθ = ln(1 + ρ₋ζ)/2ρ₋.
     #[inline(always)]
-    pub fn at(&self, theta: Pack<S, K>) -> Point<S, K> {
+    pub fn at(&self, theta: Pack<S, K>) -> HodographPoint<S, K> {
         let zeta = exp_m1_in_lanes(-2.0 * self.sigma * theta) * self.scale;
         let q = self.minus * zeta;
         let (m, n) = (q + 1.0, q + 2.0);
@@ -437,7 +437,7 @@ impl<S: Simd, const K: usize> Hodograph<S, K> {
         let half = m * inverse;
         let s = self.minus * half;
         let turn = half * polynomial(ARTANH, s * s);
-        Point {
+        HodographPoint {
             lost: self.gamma * n * inverse,
             turn,
             growth: -self.decay.mul_add(theta, self.kappa * turn),
@@ -658,7 +658,7 @@ const NEWTON_STEPS: usize = 2;
 
 /// Coefficients of x, x², ...
 #[derive(Clone, Copy)]
-struct Series<S: Simd, const K: usize>(pub [Pack<S, K>; ORDER]);
+struct Polynomial<S: Simd, const K: usize>(pub [Pack<S, K>; ORDER]);
 
 /// The argument at which a series takes a value.
 struct Root<S: Simd, const K: usize> {
@@ -668,7 +668,7 @@ struct Root<S: Simd, const K: usize> {
     pub step: Pack<S, K>,
 }
 
-impl<S: Simd, const K: usize> Series<S, K> {
+impl<S: Simd, const K: usize> Polynomial<S, K> {
     #[inline(always)]
     pub fn at(&self, x: Pack<S, K>) -> Pack<S, K> {
         let mut sum = self.0[ORDER - 1];
@@ -738,7 +738,7 @@ const NEAR: f64 = 3.0;
 const SHORT: f64 = 1.0 / 1_048_576.0; // 2⁻²⁰
 
 /// The way to the next event if the velocity is linear in p and A(1 + y)² exponential in θ; backwards where that is behind.
-struct Way<S: Simd, const K: usize> {
+struct WayToEvent<S: Simd, const K: usize> {
     /// In p and in θ.
     pub impulse: Pack<S, K>,
     pub length: Pack<S, K>,
@@ -767,7 +767,7 @@ fn way<S: Simd, const K: usize>(
     rates: &Rates<S, K>,
     goal: &Goal<S, K>,
     at: &Course<S, K>,
-) -> Way<S, K> {
+) -> WayToEvent<S, K> {
     let whole = 1.0 + at.y;
     let stiff = rates.slope(at.y) / whole;
     let zero = Pack::splat(at.v.simd(), 0.0);
@@ -792,7 +792,7 @@ fn way<S: Simd, const K: usize>(
     let q = fourth.max(0.0).sqrt().sqrt();
     // ln(1 + t) = 8(q − 1)/(q + 1), nearly, with q⁴ = 1 + t.
     let theta = 8.0 * share / ((q + 1.0) * (q + 1.0) * q.mul_add(q, 1.0));
-    Way {
+    WayToEvent {
         impulse: p,
         length: theta,
         leads: zero.lt(stiff) | !at.compressing,
@@ -916,14 +916,14 @@ struct Near<S: Simd, const K: usize> {
     /// 1/R.
     unit: Pack<S, K>,
     /// ∫A dθ, ∫Ay dθ, ∫Ay² dθ, ∫y dθ.
-    first: Series<S, K>,
-    second: Series<S, K>,
-    third: Series<S, K>,
-    turn: Series<S, K>,
+    first: Polynomial<S, K>,
+    second: Polynomial<S, K>,
+    third: Polynomial<S, K>,
+    turn: Polynomial<S, K>,
     /// Impulse along **n**, v_c^n, work of the normal force, as they change.
-    impulse: Series<S, K>,
-    velocity: Series<S, K>,
-    work: Series<S, K>,
+    impulse: Polynomial<S, K>,
+    velocity: Polynomial<S, K>,
+    work: Polynomial<S, K>,
 }
 
 impl<S: Simd, const K: usize> Near<S, K> {
@@ -933,7 +933,7 @@ impl<S: Simd, const K: usize> Near<S, K> {
         let unit = 1.0 / rates.pace(at.y);
         let (plus, minus) = (-2.0 * rates.plus * unit, -2.0 * rates.minus * unit);
         let (decay, kappa) = (-rates.decay * unit, -rates.kappa * unit);
-        let empty = Series([zero; ORDER]);
+        let empty = Polynomial([zero; ORDER]);
         let mut near = Self {
             unit,
             first: empty,
@@ -1120,7 +1120,7 @@ const SETTLED: f64 = 1.0 / 281_474_976_710_656.0; // 2⁻⁴⁸
 const STRAIGHT: f64 = 2.0 * f64::EPSILON;
 
 /// The way of a slip that vanishes.
-struct Stop<S: Simd, const K: usize> {
+struct VanishingSlip<S: Simd, const K: usize> {
     /// True if the slip vanishes, unless the impact is over before.
     pub reached: Mask<S, K>,
     /// True if **u** is taken the other way.
@@ -1138,7 +1138,7 @@ struct Stop<S: Simd, const K: usize> {
 }
 
 /// N₁ to N₆ with a common factor.
-struct Levels<S: Simd, const K: usize>([Pack<S, K>; 6]);
+struct Numerators<S: Simd, const K: usize>([Pack<S, K>; 6]);
 
 /// The terms of the fraction: λ*, κ, 2σ, 2ρ₋, D, and D(λ*ρ₋ − κσ) and 2Dσρ₋.
 struct Terms<S: Simd, const K: usize> {
@@ -1153,7 +1153,7 @@ struct Terms<S: Simd, const K: usize> {
 
 impl<S: Simd, const K: usize> Terms<S, K> {
     #[inline(always)]
-    fn new(stop: &Stop<S, K>, order: f64) -> Self {
+    fn new(stop: &VanishingSlip<S, K>, order: f64) -> Self {
         let d = stop.distance;
         let (decay, kappa) = (stop.decay * order, stop.kappa * order);
         let twice = 2.0 * stop.sigma;
@@ -1187,7 +1187,7 @@ impl<S: Simd, const K: usize> Terms<S, K> {
     }
 }
 
-impl<S: Simd, const K: usize> Stop<S, K> {
+impl<S: Simd, const K: usize> VanishingSlip<S, K> {
     #[inline(always)]
     pub fn new(rates: &Rates<S, K>, at: &Course<S, K>) -> Self {
         let y = at.y;
@@ -1225,7 +1225,7 @@ impl<S: Simd, const K: usize> Stop<S, K> {
 
     /// The fraction for A to the power of `order`: closed as if it went on without change, and cut off.
     #[inline(always)]
-    fn levels(&self, order: f64) -> [Levels<S, K>; 2] {
+    fn levels(&self, order: f64) -> [Numerators<S, K>; 2] {
         let terms = Terms::new(self, order);
         let top = (PAIRS + 1) as f64;
         let (g, n, o) = (
@@ -1238,7 +1238,7 @@ impl<S: Simd, const K: usize> Stop<S, K> {
         let half = square + (n - o);
         let root = half.mul_add(half, 4.0 * square * o).max(0.0).sqrt();
         let one = Pack::splat(g.simd(), 1.0);
-        let mut found = [Levels([one; 6]), Levels([one; 6])];
+        let mut found = [Numerators([one; 6]), Numerators([one; 6])];
         let mut pairs = [(half + root, 2.0 * g), (g, one)];
         for m in (1..=PAIRS).rev() {
             let (n, o) = (terms.even(m as f64), terms.odd(m as f64));
@@ -1261,7 +1261,7 @@ impl<S: Simd, const K: usize> Stop<S, K> {
 
     /// ∫(1 + y)² A dθ from the levels for A, over A/G₁, as a fraction.
     #[inline(always)]
-    fn impulse(&self, Levels(n): &Levels<S, K>) -> (Pack<S, K>, Pack<S, K>) {
+    fn impulse(&self, Numerators(n): &Numerators<S, K>) -> (Pack<S, K>, Pack<S, K>) {
         let (d, q) = (self.distance, 1.0 + self.limit);
         let pull = self.kappa * d;
         let whole = pull.mul_add(n[1], n[0]) * self.decay;
@@ -1271,7 +1271,7 @@ impl<S: Simd, const K: usize> Stop<S, K> {
 
     /// ∫(1 − y)(1 + y)² A² dθ from the levels for A², over A²/G₁, as a fraction.
     #[inline(always)]
-    fn moment(&self, Levels(n): &Levels<S, K>) -> (Pack<S, K>, Pack<S, K>) {
+    fn moment(&self, Numerators(n): &Numerators<S, K>) -> (Pack<S, K>, Pack<S, K>) {
         let (d, q) = (self.distance, 1.0 + self.limit);
         let (decay, pull) = (2.0 * self.decay, 2.0 * self.kappa * d);
         let whole = pull.mul_add(n[1], n[0]) * decay;
@@ -1383,7 +1383,7 @@ struct Tail<S: Simd, const K: usize> {
 }
 
 /// The terms of the sums, in units of A/S(1), and of its square for the work.
-struct Sums<S: Simd, const K: usize> {
+struct TailTerms<S: Simd, const K: usize> {
     /// a_k.
     size: [Pack<S, K>; TERMS],
     /// The coefficients of dp/dθ, of the impulse along **u**, and of u dp/dθ, over their rates.
@@ -1453,7 +1453,7 @@ impl<S: Simd, const K: usize> Tail<S, K> {
 
     /// The sums from here on.
     #[inline(always)]
-    fn sums(&self, rates: &Rates<S, K>, hypothesis: Hypothesis) -> Sums<S, K> {
+    fn sums(&self, rates: &Rates<S, K>, hypothesis: Hypothesis) -> TailTerms<S, K> {
         let zero = Pack::splat(self.zeta.simd(), 0.0);
         let (z, y) = (self.zeta, self.limit);
         let (q, s) = (1.0 + y, 1.0 - y);
@@ -1464,7 +1464,7 @@ impl<S: Simd, const K: usize> Tail<S, K> {
         let moment = [s * (q * q), q * (2.0 * s - q), s - 2.0 * q, zero - 1.0];
         let powers = [1.0 + zero, z, z * z, z * (z * z)];
         let single = [0.0, 1.0, 2.0].map(|j| self.series(1.0, j));
-        let mut sums = Sums {
+        let mut sums = TailTerms {
             size: single[0],
             impulse: [zero; TERMS],
             along: [zero; TERMS],
@@ -1497,7 +1497,7 @@ impl<S: Simd, const K: usize> Tail<S, K> {
         &self,
         rates: &Rates<S, K>,
         goal: &Goal<S, K>,
-        sums: &Sums<S, K>,
+        sums: &TailTerms<S, K>,
         from: &Course<S, K>,
         theta: Pack<S, K>,
     ) -> Course<S, K> {
@@ -1613,7 +1613,7 @@ impl<S: Simd, const K: usize> Tail<S, K> {
 
     /// Goes on by θ.
     #[inline(always)]
-    fn forward(&mut self, sums: &mut Sums<S, K>, theta: Pack<S, K>) {
+    fn forward(&mut self, sums: &mut TailTerms<S, K>, theta: Pack<S, K>) {
         let root = 1.0 + self.half(theta);
         let e = root * root;
         self.zeta = self.zeta * e;
@@ -1622,7 +1622,7 @@ impl<S: Simd, const K: usize> Tail<S, K> {
     }
 }
 
-impl<S: Simd, const K: usize> Sums<S, K> {
+impl<S: Simd, const K: usize> TailTerms<S, K> {
     /// S(1).
     #[inline(always)]
     fn whole(&self) -> Pack<S, K> {
@@ -1662,7 +1662,7 @@ const MOST_PANELS: f64 = 1000.0;
 
 /// Impacts under way, one in each lane.
 #[derive(Clone, Copy)]
-struct Impacts<S: Simd> {
+struct OngoingImpacts<S: Simd> {
     rates: Rates<S, 1>,
     goal: Goal<S, 1>,
     course: Course<S, 1>,
@@ -1676,7 +1676,7 @@ struct Impacts<S: Simd> {
     left: Mask<S, 1>,
 }
 
-impl<S: Simd> Impacts<S> {
+impl<S: Simd> OngoingImpacts<S> {
     #[inline(always)]
     fn new(contact: &Slipping<S, 1>, friction: f64, hypothesis: Hypothesis) -> Self {
         let simd = contact.speed.simd();
@@ -1752,7 +1752,7 @@ impl<S: Simd> Impacts<S> {
         let straight = course.w.le(VANISHED) & rates.decay.le(0.0) & course.y.lt(1.0);
         let straight = straight & !course.is_late(goal);
         let vanished = course.slip.le(VANISHED) | straight | !panels.lt(MOST_PANELS);
-        let stop = Stop::new(rates, course);
+        let stop = VanishingSlip::new(rates, course);
         let candidates = (stop.reached | vanished) & !course.over;
         if candidates.any() {
             let mut stopped = *course;
@@ -1937,7 +1937,7 @@ impl<S: Simd> WithSimd for Turning<'_, S> {
         for (i, (contact, &restitution)) in contacts.iter().zip(restitution).enumerate() {
             let turns = !contact.velocity.across.eq(0.0);
             let slipping = Slipping::new(contact, restitution);
-            let mut impacts = Impacts::new(&slipping, rule.friction, rule.hypothesis);
+            let mut impacts = OngoingImpacts::new(&slipping, rule.friction, rule.hypothesis);
             impacts.stop();
             let mut response = impacts.answer();
             if !turns.all() {

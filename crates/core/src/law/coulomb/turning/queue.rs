@@ -1,7 +1,7 @@
 //! Contacts that take more than one step, out of many vectors: they wait in a queue for a lane, so that no lane is idle while others
 //! are under way. Those whose direction hardly turns any more go on in lanes of their own, where all take the same steps.
 
-use super::{Impacts, Slipping};
+use super::{OngoingImpacts, Slipping};
 use crate::law::{Hypothesis, Response};
 use crate::simd::{LANES, Mask, Pack};
 use pulp::{Simd, WithSimd};
@@ -87,7 +87,7 @@ impl<S: Simd> Slipping<S, 1> {
     }
 }
 
-impl<S: Simd> Impacts<S> {
+impl<S: Simd> OngoingImpacts<S> {
     /// Puts lane k of others into a lane.
     #[inline(always)]
     fn put(&mut self, lane: usize, others: &mut Self, k: usize) {
@@ -113,21 +113,21 @@ impl<S: Simd> Impacts<S> {
 
 /// Contacts under way.
 #[derive(Clone, Copy)]
-pub(super) struct Lanes<S: Simd> {
-    pub impacts: Impacts<S>,
+pub(super) struct TurningLanes<S: Simd> {
+    pub impacts: OngoingImpacts<S>,
     friction: f64,
     hypothesis: Hypothesis,
     /// Vector and lane from which each has come; of lanes without one, none.
     places: [Option<(usize, usize)>; LANES],
 }
 
-impl<S: Simd> Lanes<S> {
+impl<S: Simd> TurningLanes<S> {
     /// No contact, of the law of those that are pending.
     #[inline(always)]
     pub fn new(pending: &[Pending<S>], friction: f64, hypothesis: Hypothesis) -> Self {
         let nothing = Slipping::none(pending[0].open.simd());
         Self {
-            impacts: Impacts::new(&nothing, friction, hypothesis),
+            impacts: OngoingImpacts::new(&nothing, friction, hypothesis),
             friction,
             hypothesis,
             places: [None; LANES],
@@ -157,7 +157,7 @@ impl<S: Simd> Lanes<S> {
             any = true;
         }
         if any {
-            let mut new = Impacts::new(&fresh, self.friction, self.hypothesis);
+            let mut new = OngoingImpacts::new(&fresh, self.friction, self.hypothesis);
             self.impacts.take(taken.eq(1.0), &mut new);
         }
     }
@@ -212,9 +212,9 @@ impl<S: Simd> Lanes<S> {
     }
 }
 
-/// [`Lanes::finish`], to be compiled once.
+/// [`TurningLanes::finish`], to be compiled once.
 struct FinishLanes<'a, S: Simd> {
-    lanes: &'a mut Lanes<S>,
+    lanes: &'a mut TurningLanes<S>,
     pending: &'a mut [Pending<S>],
 }
 
@@ -265,7 +265,7 @@ impl<S: Simd> WithSimd for Finish<'_, S> {
             hypothesis,
         } = self;
         let mut waiting = Waiting::default();
-        let mut turning = Lanes::new(pending, friction, hypothesis);
+        let mut turning = TurningLanes::new(pending, friction, hypothesis);
         let mut straight = turning;
         loop {
             turning.begin(&mut waiting, pending);

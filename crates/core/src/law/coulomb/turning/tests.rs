@@ -32,9 +32,14 @@ impl Case {
     }
 
     /// The impact of [`Self::contact`].
-    pub fn impacts(&self, slip: f64, normal: f64, hypothesis: Hypothesis) -> Impacts<Scalar> {
+    pub fn impacts(
+        &self,
+        slip: f64,
+        normal: f64,
+        hypothesis: Hypothesis,
+    ) -> OngoingImpacts<Scalar> {
         let contact = self.contact(slip, normal);
-        let mut impacts = Impacts::new(&contact, self.friction, hypothesis);
+        let mut impacts = OngoingImpacts::new(&contact, self.friction, hypothesis);
         impacts.course.direction();
         impacts
     }
@@ -42,7 +47,7 @@ impl Case {
 
 /// The slip of a contact and its normal motion, as they change with θ.
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct State {
+struct SlipState {
     pub u: f64,
     pub w: f64,
     /// v_c^n, impulse along **n** and work of the normal force.
@@ -51,7 +56,7 @@ struct State {
     pub work: f64,
 }
 
-impl State {
+impl SlipState {
     pub fn of(at: &Course<Scalar, 1>) -> Self {
         Self {
             u: value(at.u),
@@ -117,7 +122,7 @@ fn value(x: Pack<Scalar, 1>) -> f64 {
 }
 
 /// Puts the end of the restitution where the impact has come to `there`, which is later than `at`.
-fn end_at(goal: &mut Goal<Scalar, 1>, at: &mut Course<Scalar, 1>, there: &State) {
+fn end_at(goal: &mut Goal<Scalar, 1>, at: &mut Course<Scalar, 1>, there: &SlipState) {
     goal.rebound = one(there.v);
     goal.restitution = one(1.0);
     at.compression = one(0.5 * there.normal);
@@ -323,7 +328,7 @@ mod hodograph {
                 let (rates, at) = (impacts.rates, impacts.course);
                 let path = Hodograph::new(&rates, at.y);
                 let theta = path.longest(&rates, &at);
-                let there = State::of(&at).after(&rates, value(theta));
+                let there = SlipState::of(&at).after(&rates, value(theta));
                 let point = path.at(theta);
                 let found = value(at.y - point.lost);
                 assert!((found - there.y()).abs() < 1e-9, "{found} {case:?}");
@@ -339,8 +344,8 @@ mod hodograph {
 mod series {
     use super::*;
 
-    fn series(terms: [f64; ORDER]) -> Series<Scalar, 1> {
-        Series(terms.map(one))
+    fn series(terms: [f64; ORDER]) -> Polynomial<Scalar, 1> {
+        Polynomial(terms.map(one))
     }
 
     fn value(x: Pack<Scalar, 1>) -> f64 {
@@ -429,7 +434,7 @@ mod step {
                 let x = 1e-3;
                 let theta = x / value(rates.pace(at.y));
                 let allowed = if case.nu == 0.0 { 10.0 * x } else { 10.0 } * x * theta;
-                let gained = State::of(&at).after(&rates, theta).v - value(at.v);
+                let gained = SlipState::of(&at).after(&rates, theta).v - value(at.v);
 
                 at.v = one(-gained);
                 let jam = gained < 0.0;
@@ -442,7 +447,7 @@ mod step {
 
                 at.compressing = !at.compressing;
                 at.v = one(3.0 * gained.abs());
-                let there = State::of(&at).after(&rates, theta);
+                let there = SlipState::of(&at).after(&rates, theta);
                 end_at(&mut goal, &mut at, &there);
                 let found = value(guess(&rates, &goal, &at));
                 if jam && hypothesis == Hypothesis::Newton {
@@ -492,7 +497,7 @@ mod step {
                         "{found} {theta} {case:?}"
                     );
                     // To the second order of the bound −ln(1 − t) ≥ 8(1 − q)/(1 + q) it is the extremum itself.
-                    let start = State::of(&at);
+                    let start = SlipState::of(&at);
                     let slope = |theta| {
                         let y = start.after(&rates, theta).y();
                         value(rates.slope(one(y)))
@@ -551,7 +556,7 @@ mod step {
                     let impacts = steady(nn).impacts(0.7, 0.3, hypothesis);
                     let (rates, mut goal, mut at) = (impacts.rates, impacts.goal, impacts.course);
                     let way = share * 2.0 / value(rates.pace(at.y));
-                    let gained = State::of(&at).after(&rates, way).v - value(at.v);
+                    let gained = SlipState::of(&at).after(&rates, way).v - value(at.v);
                     assert_eq!(gained < 0.0, nn < 1.0); // a jam
 
                     if gained > 0.0 {
@@ -560,7 +565,7 @@ mod step {
                     }
                     at.compressing = !at.compressing;
                     at.v = one(0.4);
-                    let there = State::of(&at).after(&rates, way);
+                    let there = SlipState::of(&at).after(&rates, way);
                     end_at(&mut goal, &mut at, &there);
                     if gained > 0.0 || hypothesis != Hypothesis::Newton {
                         behind((&rates, &goal), &at, share);
@@ -568,7 +573,7 @@ mod step {
                     if gained < 0.0 {
                         // The end of a jam, before that of the restitution or with it.
                         at.v = one(-gained);
-                        let there = State::of(&at).after(&rates, way);
+                        let there = SlipState::of(&at).after(&rates, way);
                         end_at(&mut goal, &mut at, &there);
                         behind((&rates, &goal), &at, share);
                         goal.rebound = one(1.0);
@@ -607,9 +612,9 @@ mod stop {
             };
             let impacts = case.impacts(0.5, 0.5, Hypothesis::Newton);
             let (rates, at) = (impacts.rates, impacts.course);
-            let stop: Stop<Scalar, 1> = Stop::new(&rates, &at);
+            let stop: VanishingSlip<Scalar, 1> = VanishingSlip::new(&rates, &at);
             assert!(stop.reached.any());
-            let mut there = State::of(&at);
+            let mut there = SlipState::of(&at);
             while there.u.hypot(there.w) > 1e-12 {
                 there = there.after(&rates, 2.0 / value(rates.pace(at.y)));
             }
@@ -641,12 +646,12 @@ mod tail {
     ];
 
     /// Slips whose direction is off the attracting one by this share of what the sums may have, as far as that is possible.
-    fn slips(share: f64, hypothesis: Hypothesis) -> Vec<Impacts<Scalar>> {
+    fn slips(share: f64, hypothesis: Hypothesis) -> Vec<OngoingImpacts<Scalar>> {
         slips_of(1.0, share, hypothesis)
     }
 
     /// Those of bodies of that mass.
-    fn slips_of(mass: f64, share: f64, hypothesis: Hypothesis) -> Vec<Impacts<Scalar>> {
+    fn slips_of(mass: f64, share: f64, hypothesis: Hypothesis) -> Vec<OngoingImpacts<Scalar>> {
         let slip = |[friction, rest @ ..]: [f64; 5]| {
             let [nn, nu, uu, ww] = rest.map(|k| k / mass);
             let tilt = friction * (ww - uu);
@@ -671,7 +676,7 @@ mod tail {
         RESPONSES.into_iter().filter_map(slip).collect()
     }
 
-    fn tail(impacts: &Impacts<Scalar>) -> Tail<Scalar, 1> {
+    fn tail(impacts: &OngoingImpacts<Scalar>) -> Tail<Scalar, 1> {
         Tail::new(&impacts.rates, impacts.course.y)
     }
 
@@ -680,7 +685,7 @@ mod tail {
     }
 
     /// Some thousand steps of Runge and Kutta's method leave some roundings of each.
-    fn agrees(found: &Course<Scalar, 1>, w: f64, expected: &State) {
+    fn agrees(found: &Course<Scalar, 1>, w: f64, expected: &SlipState) {
         let allowed = 1e-12;
         near(value(found.u), expected.u, allowed);
         near(w, expected.w, allowed);
@@ -695,7 +700,7 @@ mod tail {
         for share in [-0.999, -0.3, 0.01, 0.999] {
             let all = slips(share, Hypothesis::Stronge);
             assert_eq!(all.len(), if share < 0.0 { 3 } else { 7 });
-            for Impacts {
+            for OngoingImpacts {
                 rates,
                 goal,
                 course: from,
@@ -705,7 +710,7 @@ mod tail {
                 let mut tail = Tail::new(&rates, from.y);
                 assert!(tail.straight.all());
                 let mut sums = tail.sums(&rates, Hypothesis::Stronge);
-                let start = State::of(&from);
+                let start = SlipState::of(&from);
                 let near_by = 0.05 / value(tail.sigma);
                 for theta in [near_by, 10.0 * near_by, 40.0 * near_by] {
                     let found = tail.at(&rates, &goal, &sums, &from, one(theta));
@@ -760,16 +765,16 @@ mod tail {
         for hypothesis in HYPOTHESES {
             for (mass, share) in [(1.0, -0.9), (1024.0, 0.05), (1.0 / 1024.0, 0.9)] {
                 for impacts in slips_of(mass, share, hypothesis) {
-                    let Impacts {
+                    let OngoingImpacts {
                         rates,
                         mut goal,
                         mut course,
                         ..
                     } = impacts;
-                    let start = State::of(&course);
+                    let start = SlipState::of(&course);
                     let way = 0.2 / value(rates.pace(course.y));
                     course.v = one(value(course.v) - start.after(&rates, way).v);
-                    let start = State::of(&course);
+                    let start = SlipState::of(&course);
                     let (turned, end) = (start.after(&rates, way), start.after(&rates, 1.5 * way));
                     near(turned.v, 0.0, 1e-14);
                     goal.rebound = one(end.v);
@@ -783,7 +788,7 @@ mod tail {
                             goal.restitution = one(square.sqrt());
                         }
                     }
-                    let mut impacts = Impacts {
+                    let mut impacts = OngoingImpacts {
                         rates,
                         goal,
                         course,
@@ -792,7 +797,7 @@ mod tail {
                     assert!(impacts.is_straight().all());
                     let nowhere = !impacts.is_straight();
                     tail(&impacts).pass(&rates, &goal, nowhere, &mut course);
-                    assert_eq!(State::of(&course), start);
+                    assert_eq!(SlipState::of(&course), start);
                     assert!(course.compressing.all() && !course.over.any());
 
                     impacts.follow();
@@ -821,10 +826,10 @@ mod tail {
                 assert!(!tail(&impacts).straight.any());
             }
             for impacts in slips(0.5, hypothesis) {
-                let leads = |change: &dyn Fn(&mut Impacts<Scalar>)| {
+                let leads = |change: &dyn Fn(&mut OngoingImpacts<Scalar>)| {
                     let mut changed = impacts;
                     change(&mut changed);
-                    let Impacts {
+                    let OngoingImpacts {
                         rates,
                         goal,
                         course,
@@ -860,7 +865,7 @@ mod tail {
     fn a_slip_that_vanishes_is_not_followed() {
         for hypothesis in HYPOTHESES {
             for impacts in slips(0.5, hypothesis) {
-                let Impacts {
+                let OngoingImpacts {
                     rates,
                     mut goal,
                     mut course,
@@ -871,12 +876,12 @@ mod tail {
                 }
                 course.v = one(-1e3);
                 goal.approach = one(1e3);
-                let before = State::of(&course);
+                let before = SlipState::of(&course);
                 let tail = tail(&impacts);
                 let lanes = tail.leads(&rates, &goal, &course);
                 assert!(lanes.all());
                 tail.pass(&rates, &goal, lanes, &mut course);
-                assert_eq!(State::of(&course), before);
+                assert_eq!(SlipState::of(&course), before);
                 assert!(course.compressing.all() && !course.over.any());
             }
         }
@@ -887,7 +892,7 @@ mod tail {
     fn a_restitution_ends_where_it_should() {
         for hypothesis in HYPOTHESES {
             for impacts in slips(0.7, hypothesis) {
-                let Impacts {
+                let OngoingImpacts {
                     rates,
                     mut goal,
                     mut course,
@@ -896,7 +901,7 @@ mod tail {
                 course.v = one(0.1);
                 course.compressing = !course.compressing;
                 let way = 0.3 / value(rates.pace(course.y));
-                let end = State::of(&course).after(&rates, way);
+                let end = SlipState::of(&course).after(&rates, way);
                 end_at(&mut goal, &mut course, &end);
                 let tail = tail(&impacts);
                 let lanes = tail.leads(&rates, &goal, &course);
@@ -943,7 +948,7 @@ mod queue_of_contacts {
         let answers =
             |pending: &[Pending<Scalar>]| [0, 1].map(|i| value(pending[i].response.impulse.normal));
         let mut waiting = Waiting::default();
-        let mut turning = Lanes::new(&pending, friction, hypothesis);
+        let mut turning = TurningLanes::new(&pending, friction, hypothesis);
         let mut straight = turning;
         for answered in [false, true] {
             turning.begin(&mut waiting, &pending);
@@ -967,7 +972,7 @@ mod queue_of_contacts {
     fn turning_contacts_are_not_handed_over() {
         let (mut pending, friction) = contacts(1.0);
         let mut waiting = Waiting::default();
-        let mut turning = Lanes::new(&pending, friction, Hypothesis::Poisson);
+        let mut turning = TurningLanes::new(&pending, friction, Hypothesis::Poisson);
         let mut straight = turning;
         turning.begin(&mut waiting, &pending);
         turning.impacts.stop();
