@@ -1,7 +1,8 @@
 //! Errors: a parameter outside its range, missing memory or threads, or numerical trouble in one particle.
 
-use crate::law::Fault;
+use std::any::Any;
 use std::fmt;
+use std::sync::Arc;
 
 /// Every error of the core. The fields hold name, value and allowed range, so that a binding can word the message itself.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -172,5 +173,59 @@ impl Error {
                 allowed: names.join(" or "),
             }
         })
+    }
+}
+
+/// An error of an [`crate::ImpulseFunction`], handed through to whoever started the run.
+#[derive(Clone)]
+pub struct Raised(pub Arc<dyn Any + Send + Sync>);
+
+impl fmt::Debug for Raised {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("Raised")
+    }
+}
+
+impl PartialEq for Raised {
+    fn eq(&self, other: &Self) -> bool {
+        Arc::ptr_eq(&self.0, &other.0)
+    }
+}
+
+/// Why an impulse is refused; impulses in N s, velocities in m/s.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Fault {
+    /// The function failed.
+    Raised(Raised),
+    /// The value of the function, here as text, is not three numbers.
+    NoVector(String),
+    /// The impulse is not finite.
+    NotFinite([f64; 3]),
+    /// The impulse has a negative normal component.
+    Pulls([f64; 3]),
+    /// The contact still approaches the plane afterwards, at this speed.
+    Approaches([f64; 3], f64),
+}
+
+impl fmt::Display for Fault {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let triple = |[x, y, z]: &[f64; 3]| format!("({x:?}, {y:?}, {z:?})");
+        match self {
+            Self::Raised(_) => f.write_str("raised an exception"),
+            Self::NoVector(given) => {
+                write!(f, "gave {given}: must be three numbers, the impulse in N s")
+            }
+            Self::NotFinite(p) => write!(f, "gave {} N s: must be finite", triple(p)),
+            Self::Pulls(p) => write!(
+                f,
+                "gave {} N s, which pulls: the component along z must be >= 0",
+                triple(p)
+            ),
+            Self::Approaches(p, speed) => write!(
+                f,
+                "gave {} N s, after which the contact still approaches the plane at {speed:?} m/s: must leave it or stay",
+                triple(p)
+            ),
+        }
     }
 }

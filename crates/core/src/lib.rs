@@ -55,11 +55,11 @@ pub use drop::{
     About, COLLAPSE_RUN, FlightEnd, FlightStart, Followed, Height, Limits, NoConvergence,
     Orientation, Run, Scales, SingleImpact, Spin, StopReason, collide, first_contact, trajectory,
 };
-pub use error::{Error, Value};
+pub use error::{Error, Fault, Raised, Value};
 pub use law::*;
 pub use math::{Quaternion, Symmetric, Vector};
 pub use memory::{collected, copied};
-pub use motion::{Rotation, State, Top, Turn};
+pub use motion::{Rotation, SpinBounds, State};
 pub use record::{Columns, PER_IMPACT, PER_PARTICLE, Records, Values, Variable, When};
 pub use shape::*;
 pub use simd::{Level, elementary};

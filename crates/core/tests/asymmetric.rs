@@ -194,7 +194,7 @@ fn spins_and_accelerations_stay_within_their_bounds() {
         let top = top(&mut random, number);
         let start = attitude(&mut random);
         let spin = spin(&mut random, &top);
-        let turn = top.turn(spin);
+        let turn = top.bounds(spin);
         let (largest, bound) = (turn.fastest, turn.whole);
         let mut rotation = Rotation::new(top, start, spin);
         let [x, y, z] = random.direction();

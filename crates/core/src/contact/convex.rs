@@ -3,7 +3,7 @@
 use super::certify::{SHORTEST, TOUCHING};
 use super::plane::{Departure, Gap, Past, Step, first_root};
 use crate::math::Vector;
-use crate::motion::Turn;
+use crate::motion::SpinBounds;
 #[cfg(test)]
 use crate::shape::evaluations::{self, Evaluation};
 use crate::shape::{Band, Convex, ConvexSurface, Instant, Superellipsoid};
@@ -272,7 +272,7 @@ pub(super) struct Bounds {
 impl Bounds {
     /// Of points up to `reach` from the centre of mass, with a ball of radius `inner` about it inside of the body.
     #[inline(always)]
-    fn new(turn: &Turn, reach: f64, inner: f64) -> Self {
+    fn new(turn: &SpinBounds, reach: f64, inner: f64) -> Self {
         Self {
             near: inner * turn.radian,
             first: 1.0 + turn.across * reach,
@@ -297,7 +297,7 @@ impl Convex {
     pub(super) fn step(
         &self,
         at: &Instant,
-        turn: &Turn,
+        turn: &SpinBounds,
         departure: Option<Departure>,
         most: f64,
     ) -> Step {
@@ -311,7 +311,7 @@ impl Convex {
 
     /// As [`crate::shape::Skin`]'s.
     #[inline(always)]
-    pub(super) fn past(&self, part: usize, at: &Instant, turn: &Turn, since: f64) -> Past {
+    pub(super) fn past(&self, part: usize, at: &Instant, turn: &SpinBounds, since: f64) -> Past {
         let mut moved = Instant::default();
         let bound = |reach: f64| Bounds::new(turn, reach, self.inner).up_to(since);
         self.surface

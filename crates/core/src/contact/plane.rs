@@ -1,7 +1,7 @@
 //! The first contact of any body with the plane, certified: the scalar twin of `lanes/`.
 //!
 //! With **n**(t) the plane normal in the axes of the body, a point **p** of a ball of radius r has the gap f = z + **n**·**p** − r. In flight
-//! |**n**″| ≤ cΩ², c = 1 + a/√3 ([`Turn`]), because **n**′ = **n** × **ω** and so **n**″ = **n**′ × **ω** + **n** × **ω**′, the
+//! |**n**″| ≤ cΩ², c = 1 + a/√3 ([`SpinBounds`]), because **n**′ = **n** × **ω** and so **n**″ = **n**′ × **ω** + **n** × **ω**′, the
 //! acceleration of a material unit vector. So f″ ≥ −(1 + cΩ²|**p**|): the parabola of f, f′ and that bound M lies below f, and its first root
 //! is a step that cannot pass a contact.
 //!
@@ -10,7 +10,7 @@
 //! cΩ²s²/2; hence f(t + s) ≥ z + v s − h(−**n** − s**n**′) − (1 + cΩ²R)s²/2. This lower bound is concave, too, and has one root s > 0 behind which
 //! it stays negative. It holds for rims, edges and flats alike.
 //!
-//! Most of **n**″ is along **n**: **n**″ = −|**n**′|²**n** + **T**, |**T**| ≤ τΩ² with τ = ½ + a/√3 ([`Turn`]). A point **x** of the body is g = −**n**·**x**
+//! Most of **n**″ is along **n**: **n**″ = −|**n**′|²**n** + **T**, |**T**| ≤ τΩ² with τ = ½ + a/√3 ([`SpinBounds`]). A point **x** of the body is g = −**n**·**x**
 //! below the centre of mass, and g″ = −|**n**′|²g − **T**·**x** ≤ τΩ²R while g ≥ 0. What touches first has g = z, which is no less than the radius r of
 //! any ball about the centre of mass inside of the body; as |g′| ≤ ΩR, it had g ≥ 0 in the time r/(ΩR) before. So in steps up to that, τ may
 //! stand for c.
@@ -24,7 +24,7 @@
 
 use super::certify::{SHORTEST, TOUCHING};
 use crate::math::Vector;
-use crate::motion::Turn;
+use crate::motion::SpinBounds;
 #[cfg(test)]
 use crate::shape::evaluations::{self, Evaluation};
 use crate::shape::{ConvexSurface, Effort, Instant, Least, Point, Skin};
@@ -140,7 +140,7 @@ impl Skin {
     pub(crate) fn step(
         &self,
         at: &Instant,
-        turn: &Turn,
+        turn: &SpinBounds,
         departure: Option<Departure>,
         near: Option<(usize, f64)>,
         most: f64,
@@ -209,7 +209,7 @@ impl Skin {
 
     /// When in the time `since` before this one a part can have touched.
     #[inline(always)]
-    pub(crate) fn past(&self, part: usize, at: &Instant, turn: &Turn, since: f64) -> Past {
+    pub(crate) fn past(&self, part: usize, at: &Instant, turn: &SpinBounds, since: f64) -> Past {
         match self {
             Self::Points(balls) => {
                 #[cfg(test)]
@@ -346,7 +346,7 @@ mod tests {
                         turning: up.cross(vector(seed, 1_000_001)),
                         ..Instant::default()
                     };
-                    let turn = &Turn::new(0.5, 2.0 * pair(seed, 7).0);
+                    let turn = &SpinBounds::new(0.5, 2.0 * pair(seed, 7).0);
                     let length = |point: &Point| {
                         let (width, rate) = point.opening(&at);
                         let bound = 1.0 + turn.whole * f64::from(point.reach);

@@ -2,8 +2,9 @@
 
 use super::lanes::{Impact, Lost, Pose, Sink};
 use super::stop::{COLLAPSE_RUN, Limits, StopReason, UNRESOLVED};
+use crate::Fault;
 use crate::contact::{Departure, Gap, INVISIBLE, LAST, MOST_STEPS};
-use crate::law::{Compliance, Fault, Law, Respond, Rule};
+use crate::law::{Compliance, Law, Respond, Rule};
 use crate::math::{Quaternion, Symmetric, Vector, Vectors};
 use crate::motion::Rotation;
 #[cfg(test)]
@@ -155,7 +156,7 @@ impl Bouncing<'_> {
     ) -> Result<Contact, NoImpact> {
         let body = self.body;
         let mut rotation = Rotation::new(body.top, start.attitude, start.spin);
-        let turn = &body.top.turn(start.spin);
+        let turn = &body.top.bounds(start.spin);
         let fastest = turn.fastest;
         if let Some(left) = departure.filter(|left| left.speed <= 0.0)
             && self.rests(start, left)
@@ -187,7 +188,7 @@ impl Bouncing<'_> {
             }
             let (attitude, spin) = if fastest * (time - known.0).abs() <= SOON {
                 let (attitude, spin) = known.1;
-                body.top.soon(attitude, spin, time - known.0)
+                body.top.expanded(attitude, spin, time - known.0)
             } else {
                 #[cfg(test)]
                 evaluations::add(Evaluation::Attitude);
@@ -215,7 +216,7 @@ impl Bouncing<'_> {
                     && (ahead < 0.0 || past.gap.rate < 0.0 && ahead <= LAST * end)
                     && end <= alone
                 {
-                    let then = body.top.soon(attitude, spin, ahead);
+                    let then = body.top.expanded(attitude, spin, ahead);
                     return Ok(self.land(start, end, part, then, turn.whole));
                 }
                 // Nothing more is to be known here where the contact is, or if there was one since `certain`.
@@ -240,7 +241,7 @@ impl Bouncing<'_> {
             if step.closes && step.bound * square <= INVISIBLE && step.length <= LAST * end {
                 // The body turns by as little, but where all of it is near its centre of mass.
                 let then = if turn.whole * square <= INVISIBLE {
-                    body.top.soon(attitude, spin, step.length)
+                    body.top.expanded(attitude, spin, step.length)
                 } else {
                     rotation.at(end)
                 };
@@ -571,7 +572,7 @@ mod tests {
                 let attitude = Quaternion::new(a - 0.5, b - 0.5, c - 0.5, d - 0.5).normalized();
                 let ((speed, time), (since, width)) = (uniform(4), uniform(5));
                 let mut rotation = Rotation::new(body.top, attitude, spin);
-                let turn = &body.top.turn(spin);
+                let turn = &body.top.bounds(spin);
                 let mut start = RigidState {
                     height: 0.0,
                     velocity: Vector::new(0.0, 0.0, -2.0 * speed),

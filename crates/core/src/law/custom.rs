@@ -1,10 +1,9 @@
 //! A law of one's own: a function that is asked for the impulse of one contact at a time.
 
 use super::{Answer, AxialCompliance, Compliance, Compliant, Components, Contact, Response};
+use crate::Fault;
 use crate::math::{Symmetric, Vector};
-use std::any::Any;
 use std::fmt;
-use std::sync::Arc;
 
 /// The impulse of a contact in SI units.
 pub trait ImpulseFunction: Sync {
@@ -17,60 +16,6 @@ pub trait ImpulseFunction: Sync {
     /// # Errors
     /// [`Fault::Raised`] or [`Fault::NoVector`], which end the run.
     fn impulse(&self, compliance: [[f64; 3]; 3], velocity: Vector) -> Result<Vector, Fault>;
-}
-
-/// An error of an [`ImpulseFunction`], handed through to whoever started the run.
-#[derive(Clone)]
-pub struct Raised(pub Arc<dyn Any + Send + Sync>);
-
-impl fmt::Debug for Raised {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str("Raised")
-    }
-}
-
-impl PartialEq for Raised {
-    fn eq(&self, other: &Self) -> bool {
-        Arc::ptr_eq(&self.0, &other.0)
-    }
-}
-
-/// Why an impulse is refused; impulses in N s, velocities in m/s.
-#[derive(Debug, Clone, PartialEq)]
-pub enum Fault {
-    /// The function failed.
-    Raised(Raised),
-    /// The value of the function, here as text, is not three numbers.
-    NoVector(String),
-    /// The impulse is not finite.
-    NotFinite(Vector),
-    /// The impulse has a negative normal component.
-    Pulls(Vector),
-    /// The contact still approaches the plane afterwards, at this speed.
-    Approaches(Vector, f64),
-}
-
-impl fmt::Display for Fault {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let triple = |v: &Vector| format!("({:?}, {:?}, {:?})", v.x, v.y, v.z);
-        match self {
-            Self::Raised(_) => f.write_str("raised an exception"),
-            Self::NoVector(given) => {
-                write!(f, "gave {given}: must be three numbers, the impulse in N s")
-            }
-            Self::NotFinite(p) => write!(f, "gave {} N s: must be finite", triple(p)),
-            Self::Pulls(p) => write!(
-                f,
-                "gave {} N s, which pulls: the component along z must be >= 0",
-                triple(p)
-            ),
-            Self::Approaches(p, speed) => write!(
-                f,
-                "gave {} N s, after which the contact still approaches the plane at {speed:?} m/s: must leave it or stay",
-                triple(p)
-            ),
-        }
-    }
 }
 
 /// Share of the largest term by which a sum of a few may be wrong because of rounding, also in the function's own arithmetic.
@@ -134,7 +79,7 @@ impl<'a> CustomLaw<'a> {
         let given = self.function.impulse(in_units, velocity * self.speed)?;
         let impulse = given / (self.mass * self.speed);
         if !impulse.norm().is_finite() {
-            return Err(Fault::NotFinite(given));
+            return Err(Fault::NotFinite(given.parts()));
         }
         let terms = [
             velocity.z,
@@ -147,11 +92,11 @@ impl<'a> CustomLaw<'a> {
                 .iter()
                 .fold(0.0_f64, |most, term| most.max(term.abs()));
         if terms[3] < -rounding {
-            return Err(Fault::Pulls(given));
+            return Err(Fault::Pulls(given.parts()));
         }
         let separation: f64 = terms.iter().sum();
         if separation < -rounding {
-            return Err(Fault::Approaches(given, -separation * self.speed));
+            return Err(Fault::Approaches(given.parts(), -separation * self.speed));
         }
         Ok(Answer {
             impulse,

@@ -23,7 +23,7 @@ pub use compliance::Compliance;
 use compliant::Compliant;
 pub use contact::{Answer, Components, Contact, Response};
 pub use coulomb::{Coulomb, Hypothesis, MOST_FRICTION};
-pub use custom::{CustomLaw, Fault, ImpulseFunction, Raised};
+pub use custom::{CustomLaw, ImpulseFunction};
 pub use frictionless::Frictionless;
 pub use normal::*;
 pub use rule::{Creation, Law, LawKind, Slip};

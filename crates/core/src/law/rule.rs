@@ -1,10 +1,11 @@
 //! The choice of a law.
 
 use super::{
-    Answer, Compliance, Components, Contact, CustomLaw, Fault, Frictionless, ImpulseFunction,
-    Material, Normal, Response, Rule, normal::scattered, tangential::Steady,
+    Answer, Compliance, Components, Contact, CustomLaw, Frictionless, ImpulseFunction, Material,
+    Normal, Response, Rule, normal::scattered, tangential::Steady,
 };
 use crate::Error;
+use crate::Fault;
 use crate::describe::Kind;
 use crate::math::Vector;
 use crate::simd::{Pack, one};

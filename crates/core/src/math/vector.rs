@@ -24,6 +24,12 @@ impl Vector {
         Self { x, y, z }
     }
 
+    /// The components.
+    #[inline(always)]
+    pub const fn parts(self) -> [f64; 3] {
+        [self.x, self.y, self.z]
+    }
+
     /// Scalar product.
     #[inline(always)]
     pub fn dot(self, b: Self) -> f64 {

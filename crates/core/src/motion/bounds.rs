@@ -4,7 +4,7 @@
 ///
 /// With J₁ ≤ J₂ ≤ J₃, J₁J₃|ω|² − 2E(J₁ + J₃) + Λ² = Σω_i²(J_i − J₁)(J_i − J₃) = −ω₂²(J₂ − J₁)(J₃ − J₂) ≤ 0. The energy and Λ² are constant, so
 /// that |ω| is largest where ω₂ = 0: Ω² = |ω|² + ω₂²(J₂ − J₁)(J₃ − J₂)/(J₁J₃) with what it is now.
-pub fn largest_spin(moments: [f64; 3], spin: [f64; 3]) -> f64 {
+pub(super) fn largest_spin(moments: [f64; 3], spin: [f64; 3]) -> f64 {
     let [x, y, z] = spin.map(|w| w * w);
     let [a, b, c] = moments;
     let (squares, [least, middle, most]) = if (a - b) * (b - c) >= 0.0 {
@@ -17,17 +17,9 @@ pub fn largest_spin(moments: [f64; 3], spin: [f64; 3]) -> f64 {
     x + y + z + squares * ((middle - least) * (most - middle) / (least * most))
 }
 
-/// The largest |J_j − J_k|/J_i, in [0, 1] for the moments of any body. |ω̇| ≤ that times |ω|²/√3, for |ω̇_i| ≤ |J_j − J_k||ω_jω_k|/J_i by
-/// Euler's equations, and ω₂²ω₃² + ω₃²ω₁² + ω₁²ω₂² ≤ |ω|⁴/3.
-pub fn asymmetry([a, b, c]: [f64; 3]) -> f64 {
-    ((b - c).abs() / a)
-        .max((c - a).abs() / b)
-        .max((a - b).abs() / c)
-}
-
-/// Bounds on the rotation in a flight, where a is the [`asymmetry`].
+/// Bounds on the rotation in a flight, where a is the asymmetry of the body ([`crate::shape::Top`]).
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Turn {
+pub struct SpinBounds {
     /// Ω, the largest |**ω**|.
     pub fastest: f64,
     /// 1/Ω.
@@ -40,7 +32,7 @@ pub struct Turn {
     pub across: f64,
 }
 
-impl Turn {
+impl SpinBounds {
     /// Of a body of this asymmetry, in a flight with this largest |ω|².
     pub fn new(asymmetry: f64, largest_spin: f64) -> Self {
         let change = asymmetry / 3.0_f64.sqrt();

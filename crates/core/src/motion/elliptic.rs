@@ -8,8 +8,9 @@
 //!
 //! Near the separatrix q is nearly 1, and with **Λ** along axis 3 η is infinite: there is none, and a series is used.
 
-use super::top::{Top, lost};
+use super::top::energy_error;
 use crate::math::{Quaternion, Vector};
+use crate::shape::Top;
 use crate::simd::elementary::{exp_m1_in_lanes, sincos, sincos_in_lanes};
 use crate::simd::{Pack, one};
 use pulp::Scalar;
@@ -133,7 +134,7 @@ impl Elliptic {
     /// The rotation from this attitude and this ω ≠ 0, where it can be computed so.
     #[inline(always)]
     pub fn new(top: &Top, attitude: Quaternion, spin: Vector) -> Option<Self> {
-        let w = [spin.x, spin.y, spin.z];
+        let w = spin.parts();
         let moments = top.moments();
         let [low, middle, high] = top.order();
         let [a, b, c] = [moments[low], moments[middle], moments[high]];
@@ -331,7 +332,7 @@ impl Elliptic {
         let part = (self.beyond / (a * w[0] * w[0] + b * w[1] * w[1])).sqrt();
         let [x, y, z] = w.map(|w| part * w);
         let per = 0.5 / (self.moments[2] * z * z);
-        let more = per * lost(self.moments, self.first, [x, y, z]);
+        let more = per * energy_error(self.moments, self.first, [x, y, z]);
         ([x, y, z + more * z], more)
     }
 

@@ -7,11 +7,10 @@ mod series;
 mod symmetric;
 mod top;
 
-pub use bounds::Turn;
+pub use bounds::SpinBounds;
 pub use rotation::Rotation;
 pub use symmetric::State;
 pub(crate) use symmetric::{
     Attitude, Flight, PlanarFlight, PlanarMotion, PlanarState, SpatialFlight, SpatialMotion,
     SpatialState, SymmetricState,
 };
-pub use top::Top;

@@ -6,8 +6,9 @@
 
 use super::elliptic::Elliptic;
 use super::series::Series;
-use super::top::{Symmetry, Top, lost};
+use super::top::energy_error;
 use crate::math::{Quaternion, Vector, sum};
+use crate::shape::{Symmetry, Top};
 use crate::simd::elementary::sincos;
 
 /// The rotation of a body in flight; where it takes series, fastest forward in time.
@@ -47,7 +48,7 @@ impl Rotation {
             Symmetry::About(axis) if !rests => {
                 let moments = top.moments();
                 let across = moments[(axis + 1) % 3];
-                let spin = parts(spin);
+                let spin = spin.parts();
                 let [x, y, z] = [0, 1, 2].map(|i| moments[i] / across * spin[i]);
                 let own = (1.0 - moments[axis] / across) * spin[axis];
                 Way::Precession(half_and_direction(Vector::new(x, y, z)), own, axis)
@@ -93,7 +94,7 @@ impl Rotation {
                     *series = Series::new(&self.top, self.attitude, self.spin);
                 }
                 let (attitude, spin) = series.at(&self.top, time);
-                let lost = lost(self.top.moments(), parts(self.spin), parts(spin));
+                let lost = energy_error(self.top.moments(), self.spin.parts(), spin.parts());
                 let part = 0.5 * lost / self.top.twice_energy(spin);
                 (attitude, spin + spin * part)
             }
@@ -103,7 +104,7 @@ impl Rotation {
     /// ω at the beginning turned back about the axis of symmetry, by the sine and the cosine of half the angle, with the length that it had.
     #[inline(always)]
     fn back(&self, axis: usize, sine: f64, cosine: f64) -> Vector {
-        let mut spin = parts(self.spin);
+        let mut spin = self.spin.parts();
         let (i, j) = ((axis + 1) % 3, (axis + 2) % 3);
         let [a, b] = [spin[i], spin[j]];
         let (less, across) = (-2.0 * sine * sine, 2.0 * sine * cosine);
@@ -139,12 +140,6 @@ impl Top {
         let (attitude, spin) = Rotation::new(*self, attitude, spin).at(time);
         (attitude, attitude.rotate(spin))
     }
-}
-
-/// The components of a vector.
-#[inline(always)]
-fn parts(v: Vector) -> [f64; 3] {
-    [v.x, v.y, v.z]
 }
 
 /// Half the length of a vector, and its direction; none of no vector.

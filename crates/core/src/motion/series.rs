@@ -3,14 +3,14 @@
 //! In the principal axes Euler's equations give ω, and q′ = ½qω the attitude: both by one Taylor series, [`TERMS`] powers of time from
 //! the beginning of a step.
 //!
-//! **Error of a step.** Let Ω be |ω| at its beginning and a the [`asymmetry`](super::bounds::asymmetry). For complex times, too,
+//! **Error of a step.** Let Ω be |ω| at its beginning and a the asymmetry ([`Top`]). For complex times, too,
 //! |ω̇| ≤ a|ω|²/√3 and |q̇| ≤ |ω||q|/√2 with the norms of complex vectors, so that with R = √3/(aΩ) |ω| ≤ Ω/(1 − |t|/R) and
 //! |q| ≤ (1 − |t|/R)⁻ᵖ, p = √(3/2)/a, for |t| < R. By Cauchy's inequality on a circle of radius yR the powers of t from n on are together less
 //! than (1 − y)⁻ᵖ(t/yR)ⁿ/(1 − t/yR). A step is as long as this allows with y = 1/(1 + p/n), which is best, to stay below 2⁻⁶³, so that
 //! rounding alone is seen after many flights. It has 0.3 to 2.4 radians.
 
-use super::top::Top;
 use crate::math::{Quaternion, Vector};
+use crate::shape::Top;
 use crate::simd::{elementary, one};
 
 /// Powers of a series.
@@ -21,7 +21,7 @@ const LOST: f64 = -44.36;
 const LEAST: f64 = 0.02;
 
 /// Ω times the length of a step, for a body of this asymmetry.
-pub(super) fn reach(asymmetry: f64) -> f64 {
+fn reach(asymmetry: f64) -> f64 {
     let a = asymmetry.max(LEAST);
     let power = 1.5_f64.sqrt() / a;
     let n = TERMS as f64;
@@ -37,6 +37,8 @@ pub(super) fn reach(asymmetry: f64) -> f64 {
 pub(super) struct Series {
     start: f64,
     length: f64,
+    /// Ω times it.
+    reach: f64,
     terms: [[f64; 8]; TERMS],
 }
 
@@ -46,6 +48,7 @@ impl Series {
         let mut series = Self {
             start: 0.0,
             length: 0.0,
+            reach: reach(top.asymmetry),
             terms: [[0.0; 8]; TERMS],
         };
         series.expand(top, attitude, spin);
@@ -88,11 +91,11 @@ impl Series {
     #[inline(never)]
     fn expand(&mut self, top: &Top, attitude: Quaternion, spin: Vector) {
         let size = (spin.x * spin.x + spin.y * spin.y + spin.z * spin.z).sqrt();
-        self.length = top.reach / size;
+        self.length = self.reach / size;
         let [a, b, c] = top.couplings.map(|f| f * self.length);
         let half = 0.5 * self.length;
         let mut q = [attitude.w, attitude.x, attitude.y, attitude.z];
-        let mut turn = [spin.x, spin.y, spin.z];
+        let mut turn = spin.parts();
         // Of each power of q the vectors by which it is multiplied with ω₁, ω₂ and ω₃, and of ω (ω₂, ω₃, ω₁, 0).
         let mut rows = [[[0.0; 4]; 4]; TERMS];
         let mut spins = [[0.0; 4]; TERMS];

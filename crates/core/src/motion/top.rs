@@ -1,94 +1,14 @@
-//! The moments of inertia of a body, and what a free body does by Euler's equations.
+//! Euler's equations of a free body.
 
-use super::bounds::{Turn, asymmetry, largest_spin};
-use super::series::reach;
-use crate::Error;
+use super::bounds::{SpinBounds, largest_spin};
 use crate::math::{Quaternion, Vector};
-
-/// Moments that differ by no more than this part are equal but for the rounding of what they are computed from.
-const EQUAL: f64 = 16.0 * f64::EPSILON;
-
-/// The principal moments of inertia of a body.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Top {
-    moments: [f64; 3],
-    asymmetry: f64,
-    symmetry: Symmetry,
-    /// (J₂ − J₃)/J₁ and so on: by Euler's equations ω̇₁ is the first of them times ω₂ω₃.
-    pub(super) couplings: [f64; 3],
-    /// The axes from the least moment to the largest.
-    order: [usize; 3],
-    /// Ω times the length of a step of the series of an asymmetric top.
-    pub(super) reach: f64,
-}
-
-/// The moments that are equal.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) enum Symmetry {
-    /// All: **ω** is constant.
-    Isotropic,
-    /// The two across this axis.
-    About(usize),
-    /// None.
-    Asymmetric,
-}
+use crate::shape::Top;
 
 impl Top {
-    /// A body with these principal moments, in any unit.
-    ///
-    /// # Errors
-    /// [`Error::Parameter`] unless they are positive and none is larger than the sum of the others.
-    pub fn new(moments: [f64; 3]) -> Result<Self, Error> {
-        let [a, b, c] = moments;
-        let most = a.max(b).max(c);
-        // A flat plate has a = b + c, but for rounding.
-        let holds = a > 0.0
-            && b > 0.0
-            && c > 0.0
-            && most < f64::INFINITY
-            && most <= (a + b + c - most) * (1.0 + 8.0 * f64::EPSILON);
-        Error::unless(
-            holds,
-            "inertia",
-            most,
-            "positive, and no larger than the sum of the other two moments",
-        )?;
-        let (moments, symmetry) = without_rounding(moments);
-        let asymmetry = asymmetry(moments).min(1.0);
-        let [a, b, c] = moments;
-        Ok(Self {
-            moments,
-            asymmetry,
-            symmetry,
-            couplings: [(b - c) / a, (c - a) / b, (a - b) / c],
-            order: sorted(moments),
-            reach: reach(asymmetry),
-        })
-    }
-
-    pub(super) fn symmetry(&self) -> Symmetry {
-        self.symmetry
-    }
-
-    pub(super) fn order(&self) -> [usize; 3] {
-        self.order
-    }
-
-    /// The principal moments.
-    pub fn moments(&self) -> [f64; 3] {
-        self.moments
-    }
-
     /// The angular momentum in the axes of space, from ω in those of the body.
     pub fn momentum(&self, attitude: Quaternion, spin: Vector) -> Vector {
-        let [a, b, c] = self.moments;
+        let [a, b, c] = self.moments();
         attitude.rotate(Vector::new(a * spin.x, b * spin.y, c * spin.z))
-    }
-
-    /// Twice the kinetic energy of rotation.
-    pub fn twice_energy(&self, spin: Vector) -> f64 {
-        let [a, b, c] = self.moments;
-        a * spin.x * spin.x + b * spin.y * spin.y + c * spin.z * spin.z
     }
 
     /// ω̇ of a free body.
@@ -101,7 +21,7 @@ impl Top {
 
     /// Attitude and ω of a free body a short time later or before, by their series up to the third power: less than (Ωt)⁴/8 of them is left out.
     #[inline(always)]
-    pub(crate) fn soon(
+    pub(crate) fn expanded(
         &self,
         attitude: Quaternion,
         spin: Vector,
@@ -126,44 +46,19 @@ impl Top {
 
     /// The largest |ω|² of a flight.
     pub fn largest_spin(&self, spin: Vector) -> f64 {
-        largest_spin(self.moments, [spin.x, spin.y, spin.z])
+        largest_spin(self.moments(), spin.parts())
     }
 
     /// Bounds on the rotation in a flight.
-    pub fn turn(&self, spin: Vector) -> Turn {
-        Turn::new(self.asymmetry, self.largest_spin(spin))
+    pub fn bounds(&self, spin: Vector) -> SpinBounds {
+        SpinBounds::new(self.asymmetry, self.largest_spin(spin))
     }
 }
 
 /// Twice the energy by which a later ω is short of an earlier one, to rounding of the small difference.
 #[inline(always)]
-pub(super) fn lost(moments: [f64; 3], before: [f64; 3], later: [f64; 3]) -> f64 {
+pub(super) fn energy_error(moments: [f64; 3], before: [f64; 3], later: [f64; 3]) -> f64 {
     let [a, b, c] =
         [0, 1, 2].map(|i| moments[i] * ((before[i] - later[i]) * (before[i] + later[i])));
     a + b + c
-}
-
-fn sorted(moments: [f64; 3]) -> [usize; 3] {
-    let mut order = [0, 1, 2];
-    order.sort_by(|&i, &j| moments[i].total_cmp(&moments[j]));
-    order
-}
-
-/// The moments with those made equal that differ by rounding alone, and which these are.
-fn without_rounding(moments: [f64; 3]) -> ([f64; 3], Symmetry) {
-    let [a, b, c] = moments;
-    let near = |x: f64, y: f64| (x - y).abs() <= EQUAL * x.max(y);
-    if near(a, b) && near(b, c) && near(c, a) {
-        return ([(a + b + c) / 3.0; 3], Symmetry::Isotropic);
-    }
-    for axis in 0..3 {
-        let (i, j) = ((axis + 1) % 3, (axis + 2) % 3);
-        if near(moments[i], moments[j]) {
-            let mut equal = moments;
-            equal[i] = 0.5 * (moments[i] + moments[j]);
-            equal[j] = equal[i];
-            return (equal, Symmetry::About(axis));
-        }
-    }
-    (moments, Symmetry::Asymmetric)
 }

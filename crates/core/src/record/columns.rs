@@ -4,11 +4,12 @@
 use super::variable::{Stored, Values, Variable, When};
 use crate::drop::Plan;
 use crate::drop::{Impact, Pose, StopReason};
+use crate::law::{Law, Normal};
 use crate::memory::{filled, zeros};
 use crate::shape::AnyBody;
 use crate::simd::LANES;
 use crate::simd::elementary::angle_in_lanes;
-use crate::{Error, Law, Normal, Value};
+use crate::{Error, Value};
 use pulp::Simd;
 use std::ops::Range;
 

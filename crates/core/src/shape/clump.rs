@@ -3,7 +3,7 @@
 use super::check_density;
 use super::rigid::{Moments, Rigid, RigidBall};
 use crate::Error;
-use crate::math::{Symmetric, Vector};
+use crate::math::{GAUSS, Symmetric, Vector};
 use crate::simd::elementary::{angle, sincos};
 use std::f64::consts::PI;
 
@@ -56,17 +56,6 @@ fn whole(ball: &RigidBall) -> Moments {
     Moments::about(volume, ball.centre, Symmetric::diagonal([second; 3]))
 }
 
-/// Nodes of Gauss's quadrature with 16 points, and their weights; each stands for its mirror image as well.
-pub(super) const GAUSS: [[f64; 2]; 8] = [
-    [0.989_400_934_991_649_9, 0.027_152_459_411_754_096],
-    [0.944_575_023_073_232_6, 0.062_253_523_938_647_894],
-    [0.865_631_202_387_831_8, 0.095_158_511_682_492_79],
-    [0.755_404_408_355_003, 0.124_628_971_255_533_88],
-    [0.617_876_244_402_643_8, 0.149_595_988_816_576_74],
-    [0.458_016_777_657_227_37, 0.169_156_519_395_002_54],
-    [0.281_603_550_779_258_9, 0.182_603_415_044_923_58],
-    [0.095_012_509_837_637_44, 0.189_450_610_455_068_5],
-];
 /// Largest difference between an interval and its halves, relative to the volume of the balls.
 const EXACT: f64 = 1e-15;
 /// Largest number of halvings.

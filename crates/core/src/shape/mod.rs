@@ -9,11 +9,11 @@ mod revolved;
 mod rigid;
 mod rough;
 mod superellipsoid;
+mod top;
 mod tree;
 
 use crate::Error;
 
-use clump::GAUSS;
 pub use clump::Matter;
 
 pub(crate) use convex::{Convex, ConvexSurface};
@@ -23,6 +23,8 @@ pub use rigid::{Inertia, Rigid, RigidBall};
 pub(crate) use rigid::{Skin, up};
 pub use rough::{Heights, Roughness};
 pub(crate) use superellipsoid::Superellipsoid;
+pub(crate) use top::Symmetry;
+pub use top::Top;
 #[cfg(test)]
 pub(crate) use tree::{Balls, evaluations};
 pub(crate) use tree::{Effort, Instant, Least, Point};

@@ -1,11 +1,10 @@
 //! Solids of revolution with any profile.
 
 use super::check_density;
-use super::clump::GAUSS;
 use super::convex::{Convex, ConvexSurface};
 use super::rigid::{Inertia, Rigid, Skin};
 use crate::Error;
-use crate::math::{Symmetric, Vector};
+use crate::math::{GAUSS, Symmetric, Vector};
 use crate::simd::elementary::{angle, sincos};
 use std::f64::consts::PI;
 

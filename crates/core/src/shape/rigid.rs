@@ -2,11 +2,11 @@
 
 use super::check_density;
 use super::convex::{Convex, ConvexSurface};
+use super::top::Top;
 use super::tree::{Balls, Effort, Instant, Least, Point};
 use crate::Error;
 use crate::math::{Quaternion, Symmetric, Vector};
 use crate::memory::{collected, filled};
-use crate::motion::Top;
 
 /// Volume, or mass, with its first and second moments: the integrals of 1, **x** and **x**⊗**x**.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -235,12 +235,6 @@ impl Rigid {
     pub fn principal_moments(&self) -> [f64; 3] {
         let scale = self.inertia.mass * self.unit * self.unit;
         self.top.moments().map(|moment| scale * moment)
-    }
-
-    /// The attitude of the axes that the body was given in, and ω in those of space, after a time of free rotation.
-    pub fn turned(&self, attitude: Quaternion, spin: Vector, time: f64) -> (Quaternion, Vector) {
-        let (attitude, spin) = self.top.turned(attitude * self.axes, spin, time);
-        (attitude * self.axes.inverse(), spin)
     }
 
     /// The distance in m from the centre of mass to the plane that touches the body with this outward normal, in the axes that it was given in.

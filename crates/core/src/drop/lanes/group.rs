@@ -3,11 +3,12 @@
 use super::collision::{Collide, ContactPoint, Dimension};
 use super::impact::{Impact, Sink, SymmetricPose};
 use super::particles::Particles;
+use crate::Fault;
 use crate::contact::{
     GapEvaluation, LastContact, LocatedContact, MOST_STEPS, Prediction, Search, Steps,
 };
 use crate::drop::stop::{Limits, StopReason};
-use crate::law::{Contact, CustomLaw, Fault, MOST_CONTACTS, Response};
+use crate::law::{Contact, CustomLaw, MOST_CONTACTS, Response};
 use crate::motion::{Flight, State, SymmetricState};
 use crate::shape::{Body, Hull};
 use crate::simd::{Mask, Pack};

@@ -6,7 +6,7 @@ use super::{
 };
 use crate::Error;
 use crate::describe::{Arguments, Kind, Parameter};
-use crate::shape::GAUSS;
+use crate::math::GAUSS;
 use std::f64::consts::PI;
 
 /// Largest ratio of the semi-axes; beyond it the relative rounding error of the contact exceeds 10⁻¹².
