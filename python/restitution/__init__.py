@@ -10,6 +10,7 @@ if TYPE_CHECKING:
     from restitution.bodies import *  # noqa: F403
     from restitution.distribution import DistanceWarning, FluctuatingRestitution
     from restitution.drop.budget import energy_budget
+    from restitution.drop.clusters import ClusterWarning, clusters
     from restitution.drop.compare import compare
     from restitution.drop.energy import EnergyWarning
     from restitution.drop.reduce import reduce
@@ -26,6 +27,7 @@ if TYPE_CHECKING:
     from restitution.study import sweep
 
 __all__ = [
+    "ClusterWarning",
     "DistanceWarning",
     "EnergyWarning",
     "ErrorBudget",
@@ -37,6 +39,7 @@ __all__ = [
     "SimulationInterrupted",
     "analytic",
     "build_info",
+    "clusters",
     "compare",
     "energy_budget",
     "error_budget",
@@ -74,6 +77,8 @@ _HOMES = {
     "NumericalError": "_core",
     "build_info": "_core",
     "compare": "drop.compare",
+    "clusters": "drop.clusters",
+    "ClusterWarning": "drop.clusters",
     "energy_budget": "drop.budget",
     "explore": "explorer",
     "posterior": "experiment.inference",
