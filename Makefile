@@ -11,7 +11,7 @@ JOBS ?= 2
 ELSEWHERE := --exclude 'tests/(manual|reference/(environments|processes)|cli/test_environments)'
 CORE := $(shell find crates -name '*.rs' -o -name 'Cargo.toml') Cargo.toml Cargo.lock pyproject.toml
 
-.PHONY: help install pages paper rough calibrate slow onsets test fuzz hostile audit mutants test-arm test-web rust-tests test-rust bench-web look web docs wheel licences coverage lint lint-rust lint-python bench clean
+.PHONY: help install quick minimum sdist crate release pages paper rough calibrate slow onsets test fuzz hostile audit mutants test-arm test-web rust-tests test-rust bench-web look web docs wheel licences coverage lint lint-rust lint-python bench clean
 
 help:  ## list the targets
 	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed 's/:.*##/\t/' | expand -t 12
@@ -58,6 +58,34 @@ test:  ## every check: Rust format, clippy, Rust tests, ruff, mypy, the explorer
 	$(MAKE) --jobs=2 lint
 	$(MAKE) --jobs=2 test-rust test-web
 	$(BIN)/python -m pytest -n $(JOBS) --dist loadfile --no-loadscope-reorder
+
+# Of each folder something that takes no long; with what has been built and checked before, three minutes.
+QUICK := bodies/test_bodies cli/test_commands distribution/test_table drop/test_engine drop/test_bad_input drop/test_rigid \
+    analytic/test_first_impact_manners experiment/test_flight_times fit/test_counts internal/test_files internal/test_parameters \
+    laws/test_laws papers/test_misprints project/test_packaging project/test_names study/test_store
+
+quick: $(STAMP)  ## format, lints, types and a sample of the tests: three minutes on a built tree
+	$(MAKE) --jobs=2 lint
+	$(BIN)/python -m pytest -q -n $(JOBS) --dist loadfile $(QUICK:%=tests/%.py)
+
+minimum:  ## the tests with the lowest versions that pyproject.toml allows, in an environment of its own, by uv
+	$(PYTHON) -m venv build/minimum
+	build/minimum/bin/python -m pip install --quiet --disable-pip-version-check uv
+	build/minimum/bin/uv pip install --python build/minimum/bin/python --resolution lowest-direct '.[test]'
+	build/minimum/bin/python -m pytest -n $(JOBS) --dist loadfile
+
+sdist: $(STAMP)  ## the source distribution; build it outside of a git tree, and run quick tests from it
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check 'maturin>=1.9,<2'
+	$(BIN)/maturin sdist --out dist
+	sh packaging/sdist.sh dist/restitution-*.tar.gz
+
+crate:  ## the core as a crate: documentation without a warning, the package and its tests, examples without optimisation
+	RUSTDOCFLAGS='-D warnings' cargo doc --locked --no-deps -p restitution-core
+	cargo package --locked --allow-dirty -p restitution-core
+	CARGO_PROFILE_DEV_OPT_LEVEL=0 cargo run --locked --target-dir target/plain -p restitution-core --example dumbbell
+
+release:  ## VERSION=0.2.0: set version and date in every place, check them, and say what is left to do
+	$(PYTHON) packaging/release.py $(VERSION)
 
 rust-tests:
 	cargo test --workspace --locked --no-run
@@ -148,4 +176,5 @@ coverage: $(STAMP)  ## lines that the tests reach, in Python and in Rust, into b
 	cargo llvm-cov --package restitution-core --locked --html --output-dir build/coverage/rust
 
 clean:  ## remove everything that was built
-	rm -rf $(VENV) target build dist paper rough web/node_modules web/shots
+	rm -rf $(VENV) target build dist rough web/node_modules web/shots
+	git clean -fqdX paper

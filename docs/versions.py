@@ -2,8 +2,9 @@
 
     python docs/versions.py https://HOST/PATH OUT
 
-Versions are the tags vX.Y.Z; each is built by its own `make docs`, in a work tree of its own. OUT then has a
-folder for each, versions.json for the switch, and an index.html that leads to the newest release.
+Versions are the tags vX.Y.Z; each is built by its own `make docs`, in a work tree of its own, unless OUT has
+it already. OUT then has a folder for each, versions.json for the switch, and an index.html that leads to the
+newest release.
 """
 
 import json
@@ -41,9 +42,11 @@ def main(site: str, out: Path) -> None:
     """Build all of them."""
     tags = git("tag", "--list", "v*", "--sort=-version:refname").split()
     versions = [(tag.removeprefix("v"), tag) for tag in tags] + [("dev", "HEAD")]
-    out.mkdir(parents=True)
+    out.mkdir(parents=True, exist_ok=True)
+    shutil.rmtree(out / "dev", ignore_errors=True)
     for name, commit in versions:
-        build(commit, name, site, out)
+        if not (out / name).exists():
+            build(commit, name, site, out)
     newest = versions[0][0]
     listed = [
         {"name": name, "version": name, "url": f"{site}/{name}/", "preferred": name == newest}

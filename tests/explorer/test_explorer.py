@@ -15,6 +15,7 @@ import numpy as np
 import pytest
 
 import restitution as rs
+from reference.command import Program
 from restitution import bodies
 from restitution._internal.described import kebab
 from restitution.drop.run import Run
@@ -214,3 +215,27 @@ def test_the_page_is_served_to_this_machine(monkeypatch: pytest.MonkeyPatch) -> 
         urllib.request.urlopen(f"{address}other", timeout=10)
     with pytest.raises(ValueError, match="port = -1"):
         serve(port=-1)
+
+
+EARLY = """
+import queue, socket, struct, threading, time, urllib.request
+from restitution.explorer import serve
+
+told = queue.Queue()
+threading.Thread(target=serve, kwargs={"browse": False, "tell": told.put}, daemon=True).start()
+address = told.get(timeout=30)
+port = int(address.split(":")[2].strip("/"))
+for asks in (b"GET / HTTP/1.0\\r\\n\\r\\n", b"GET /"):
+    for _ in range(5):
+        browser = socket.create_connection(("127.0.0.1", port))
+        browser.sendall(asks)
+        browser.setsockopt(socket.SOL_SOCKET, socket.SO_LINGER, struct.pack("ii", 1, 0))
+        browser.close()  # with a reset, while the page is on its way
+        time.sleep(0.05)
+print(len(urllib.request.urlopen(address).read()) > 1_000_000)
+"""
+
+
+def test_a_browser_that_closes_early() -> None:
+    """Has its page later; meanwhile nothing is said."""
+    assert Program(EARLY).said() == "True\n"

@@ -1,16 +1,64 @@
 """What is said of the package in several places is the same."""
 
 import re
+import shutil
+import sys
 import tomllib
 from pathlib import Path
+
+import pytest
 
 ROOT = Path(__file__).resolve().parents[2]
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
 VERSION = tomllib.loads((ROOT / "Cargo.toml").read_text())["workspace"]["package"]["version"]
 
 
-def test_the_page_has_the_version() -> None:
-    assert f'"version": "{VERSION}"' in (ROOT / "web/package.json").read_text()
+sys.path.insert(0, str(ROOT / "packaging"))
+import release  # noqa: E402  # a program, no package
+
+
+def test_all_places_name_one_version() -> None:
+    assert release.wrong(ROOT, None) == []
+    assert release.cited(ROOT, "version") == VERSION
+
+
+@pytest.fixture
+def tree(tmp_path: Path) -> Path:
+    """What a release changes, in a tree that has an address."""
+    changed = {*release.PLACES, "CHANGELOG.md", "paper/paper.md", *(name for name, *_ in release.BEFORE)}
+    for name in changed:
+        (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
+        shutil.copy(ROOT / name, tmp_path / name)
+    with (tmp_path / "CITATION.cff").open("a") as file:
+        file.write("url: https://example.org/r\nrepository-code: https://example.org/code\n")
+    return tmp_path
+
+
+def test_a_release(tree: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Version and date come into every place, no text speaks of the time before; a tag has to be the same."""
+    release.main([VERSION], tree)
+    date = release.cited(tree, "date-released")
+    assert f"## [{VERSION}] - {date}\n" in (tree / "CHANGELOG.md").read_text(encoding="utf-8")
+    for name, old, new in release.BEFORE:
+        text = (tree / name).read_text(encoding="utf-8")
+        assert (old in text, new in text) == (False, True), name
+    told = release.wrong(tree, "v9.9.9")
+    assert told[0] == f"tag v9.9.9, not v{VERSION}"
+    assert all("ORCID" in line or "paper.md" in line for line in told[1:])  # which a person has to fill in
+    with pytest.raises(SystemExit, match=r"^CHANGELOG\.md: has no section ## \[9\.9\.9\]$"):
+        release.main(["9.9.9"], tree)
+    assert len(release.wrong(tree, None)) == 0
+
+
+def test_links_on_a_package_index(tree: Path) -> None:
+    """Every link of the page leads somewhere from there: to the tag of the version."""
+    release.main(["--readme"], tree)
+    text = (tree / "README.md").read_text(encoding="utf-8")
+    links = re.findall(r'(?:\]\(|src=")([^)"]+)', text)
+    assert len(links) > 30
+    assert all(link.startswith("https://") for link in links)
+    assert f"https://example.org/code/raw/v{VERSION}/docs/images/gain.gif" in links
+    assert f"https://example.org/code/blob/v{VERSION}/docs/start.md" in links
 
 
 def test_the_conda_recipe_asks_for_the_same() -> None:

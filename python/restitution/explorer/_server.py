@@ -2,6 +2,7 @@
 
 import webbrowser
 from collections.abc import Callable
+from contextlib import suppress
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 
 from restitution._internal.arrays import flag, whole
@@ -40,6 +41,10 @@ def serve(
     content = page().encode()
 
     class Handler(BaseHTTPRequestHandler):
+        def handle(self) -> None:
+            with suppress(ConnectionError):  # of a browser that closes before it has the page
+                super().handle()
+
         def do_GET(self) -> None:
             if self.path.partition("?")[0] != "/":
                 self.send_error(404)
