@@ -50,10 +50,10 @@ def warn(data: xr.Dataset, *, stacklevel: int = 2) -> None:
         particle, impact = np.argwhere(joined)[0]
         warnings.warn(
             f"particle {particle} struck the plane with several parts at the instant of impact {impact - 1} "
-            f"({np.count_nonzero(joined.any(axis=1))} of {len(joined)} particles did so): one follows the other "
-            "in an order that the model does not decide, and restitution is that of each by itself. "
-            "clusters(data) gives that of all impacts of an instant; a release tilted by 1e-6 rad has an order "
-            "of its own",
+            f"({np.count_nonzero(joined.any(axis=1))} of {len(joined)} particles did so): one follows the "
+            "other in an order that the model does not decide, and restitution is that of each by itself. "
+            "clusters(data) gives that of all impacts of an instant; a release tilted by 1e-6 rad has an "
+            "order of its own",
             ClusterWarning,
             stacklevel=stacklevel + 1,
         )
