@@ -1,39 +1,56 @@
 /** Energies of the body in the scene, as bars; the last impact, as a table. */
 
 import type { Run } from "./engine/run";
+import type { Vector3 } from "three";
+import { part } from "./page";
 import { isRigid } from "./setup";
-import type { Moment, Path } from "./stage/path";
+import { arrivalOf, type Moment, type Path } from "./stage/path";
 
-const NAMES = ["potential energy", "vertical motion", "sideways motion", "rotational energy", "total energy"] as const;
+const NAMES = ["height", "vertical", "sideways", "rotation", "all"] as const;
 const HUES = ["var(--soft)", "var(--velocity)", "var(--velocity)", "var(--spin)", "var(--ink)"];
 
+/** Over the mass, in m²/s²: of motion up and down, sideways, and of rotation. */
+const motion = (velocity: Vector3, rotation: number) => [velocity.z ** 2 / 2, (velocity.x ** 2 + velocity.y ** 2) / 2, rotation];
+const sum = (parts: number[]) => parts.reduce((a, b) => a + b);
+const percent = (x: number, digits: number) => (100 * x).toFixed(digits).replace("-", "−");
+
+/** Each energy in shares of the energy of motion before the last impact, what it was then as an outline; and what the impact changed. */
 export class Energies {
-  private readonly bars: { bar: HTMLElement; text: HTMLElement }[];
+  private readonly bars: { row: HTMLElement; now: HTMLElement; change: HTMLElement }[];
 
   constructor(host: HTMLElement) {
     this.bars = NAMES.map((name, k) => {
       const row = document.createElement("div");
       row.className = "bar";
-      row.innerHTML = `<span>${name}</span><i style="--hue: ${HUES[k]}"></i><b></b>`;
+      row.style.setProperty("--hue", HUES[k]);
+      row.innerHTML = `<span>${name}</span><i class="level"></i><b></b><i class="change"></i><b></b>`;
       host.append(row);
-      return { bar: row.querySelector("i")!, text: row.querySelector("b")! };
+      const [now, change] = row.querySelectorAll("b");
+      return { row, now, change };
     });
   }
 
-  show(path: Path, { place, velocity, flight }: Moment): void {
-    const g = -path.gravity.z;
-    const start = path.flights[0];
-    const along = path.gravity.x * (start.place.x - place.x);
-    const parts = [
-      g * place.z + along,
-      velocity.z ** 2 / 2,
-      (velocity.x ** 2 + velocity.y ** 2) / 2,
-      flight.rotation,
-    ];
-    const unit = g * start.place.z + start.velocity.lengthSq() / 2 + start.rotation;
-    [...parts, parts.reduce((a, b) => a + b)].forEach((value, k) => {
-      this.bars[k].bar.style.setProperty("--share", String(Math.min(Math.max(value / unit, 0), 1)));
-      this.bars[k].text.textContent = (value / unit).toFixed(3);
+  show(path: Path, { place, velocity, flight, impacts }: Moment): void {
+    const contact = path.flights[Math.min(Math.max(impacts, 1), path.flights.length - 1)].place;
+    const height = path.gravity.clone().negate().dot(place.clone().sub(contact));
+    const now = motion(velocity, flight.rotation);
+    const after = motion(flight.velocity, flight.rotation);
+    const before = impacts ? motion(arrivalOf(path, impacts), path.flights[impacts - 1].rotation) : [];
+    // Before the first impact: all that there is.
+    const unit = impacts ? sum(before) : height + sum(now);
+    const change = impacts ? [0, ...after.map((value, k) => (value - before[k]) / unit), (sum(after) - unit) / unit] : [];
+    const most = Math.max(...change.map(Math.abs), 1e-12);
+    const shares = [height, ...now, height + sum(now)].map((value) => value / unit);
+    // No bar is cut: where energy grows, all are drawn smaller.
+    const full = Math.max(1, ...shares);
+    part("ledger-unit").textContent = `; ${impacts ? "motion before" : "all"} = 100`;
+    part("ledger-change").textContent = impacts ? "change" : "";
+    this.bars.forEach(({ row, ...text }, k) => {
+      row.style.setProperty("--share", String(Math.max(shares[k], 0) / full));
+      row.style.setProperty("--before", String(impacts ? (k === 0 ? 0 : k === 4 ? 1 : before[k - 1] / unit) / full : 0));
+      row.style.setProperty("--change", String((change[k] ?? 0) / most));
+      text.now.textContent = percent(shares[k], 1);
+      text.change.textContent = change[k] === undefined || k === 0 ? "" : `${change[k] > 0 ? "+" : ""}${percent(change[k], 2)}`;
     });
   }
 }

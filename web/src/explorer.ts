@@ -8,14 +8,14 @@ import { Paper } from "./charts/drawing";
 import { duration } from "./energies";
 import { initial, toHash, type State } from "./link";
 import { part } from "./page";
-import { endings, KINDS, notable, type Kind } from "./pick";
+import { endings, inStep, KINDS, notable, type Kind } from "./pick";
 import { Player } from "./player";
 import type { Setup } from "./setup";
 import { Statistics } from "./statistics";
 
 /** While impacts arrive the charts are drawn no more often than this, in ms. */
 const PATIENCE = 80;
-export type ChartName = "scatter-a" | "scatter-b" | "density" | "sigma" | "reservoir";
+export type ChartName = "scatter-a" | "scatter-b" | "density" | "sigma" | "reservoir" | "orbit";
 
 export class Explorer {
   state: State = initial();
@@ -36,6 +36,7 @@ export class Explorer {
       density: new Chart(part("density-chart")),
       sigma: new Chart(part("sigma-chart"), { drag }),
       reservoir: new Chart(part("reservoir-chart"), { drag }),
+      orbit: new Chart(part("orbit-chart"), { drag: (number) => this.take(this.state.particle, Math.max(Math.round(number) - 1, 0), false) }),
     };
   }
 
@@ -102,9 +103,14 @@ export class Explorer {
   }
 
   /** Says what is wrong with the set-up; nothing: "". */
-  problem(text: string): void {
+  problem(text: string, mend?: { name: string; act: () => void }): void {
     part("problem").hidden = !text;
     part("problem").textContent = text;
+    if (!mend) return;
+    const button = document.createElement("button");
+    [button.type, button.textContent] = ["button", mend.name];
+    button.addEventListener("click", mend.act);
+    part("problem").append(" ", button);
   }
 
   async replay(impact: number | undefined, play: boolean): Promise<void> {
@@ -112,7 +118,7 @@ export class Explorer {
     const particle = Math.min(this.state.particle, runs[0].particles - 1);
     this.state.particle = particle;
     try {
-      await this.player.show(runs, particle, impact, play);
+      await this.player.show(runs, particle, impact, play, this.state.chart === "orbit");
     } catch (error) {
       this.problem((error as Error).message);
     }
@@ -138,13 +144,14 @@ export class Explorer {
     this.changed();
   }
 
-  /** The impact nearest to a place in the scatter, if one is near. */
+  /** The impact nearest to a place in the scatter, if one is near; of those that can hardly be told apart that of the longest orbit. */
   private pick(which: "a" | "b", v: number, epsilon: number, [dv, de]: [number, number]): void {
     const { columns, setup } = this.runs[which]!.run;
-    let [best, nearest] = [-1, 14 ** 2];
+    let [best, nearest, longest] = [-1, 14 ** 2, 0];
     for (let i = 0; i < columns.restitution.length; i++) {
       const off = ((columns.impact_velocity[i] - v) / dv) ** 2 + ((columns.restitution[i] - epsilon) / de) ** 2;
-      if (off < nearest) [best, nearest] = [i, off];
+      const steps = off < 2 ** 2 ? inStep(this.runs[which]!.run, i) : 0;
+      if (steps > longest || (!longest && off < nearest)) [best, nearest, longest] = [i, off, steps];
     }
     if (best < 0) this.setSpeed(v);
     else this.take(Math.floor(best / setup.impacts), best % setup.impacts, true);
@@ -194,11 +201,12 @@ export class Explorer {
     if (!a) return;
     const started = performance.now();
     const [both, { state, charts }] = [{ a, b }, this];
-    charts["scatter-a"].show(() => pictures.scatter(state, a, "a"));
-    if (b) charts["scatter-b"].show(() => pictures.scatter(state, b, "b"));
+    charts["scatter-a"].show(() => pictures.scatter(state, a, "a", charts["scatter-a"].inner));
+    if (b) charts["scatter-b"].show(() => pictures.scatter(state, b, "b", charts["scatter-b"].inner));
     charts.density.show(() => pictures.density(state, both));
     charts.sigma.show(() => pictures.scatterWidth(state, both));
     charts.reservoir.show(() => pictures.reservoir(state, both));
+    charts.orbit.show(() => pictures.orbit(state, both));
     this.paper.show(this.player.struck);
     this.describe();
     // For those who wait for the page: how long this took, and whether all of it is there to be seen.
@@ -237,5 +245,5 @@ function summary(runs: [string, Statistics | undefined][]): string {
     row("ε &lt; 0", (s) => share(s.negative, s.run.impacts)),
     row("why particles ended", (s) => [...s.stops].map((n, k) => (n ? `${whole(n)} ${endings(s.run)[k]}` : "")).filter(Boolean).join(", ")),
     row("SHA-256 of the numbers", ({ run }) => (run.digest ? `<code>${run.digest}</code>` : "when all are there")),
-  ].join("")}</tbody></table><p class="soft small">The digest is of times, restitutions, energy ratios and angles. The lines of Python below print the same one: every number is the same to the last bit.</p>`;
+  ].join("")}</tbody></table><p class="soft small">The digest is of times, restitutions, energy ratios and angles.<span class="screen"> The lines of Python below print the same one: every number is the same to the last bit.</span></p>`;
 }

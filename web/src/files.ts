@@ -27,8 +27,10 @@ export function readBody(name: string, text: string, unit: number, key?: string)
   };
   const mesh = /\.(obj|stl)$/i.exec(name)?.[1].toLowerCase();
   const list = key ?? Object.keys(LISTS).find((one) => LISTS[one].columns.length === lines[0]?.words.length && !lines[0].words.includes("z")) ?? "spheres";
+  const corners = mesh ? triangles(mesh, lines, wrong) : [];
+  if (mesh && !corners.length) throw new Error(`${name}: has no triangle; must be a mesh as ${mesh === "obj" ? "OBJ, with lines v x y z and f 1 2 3" : "STL in text, with lines vertex x y z"}`);
   const read: Read = mesh
-    ? { shape: "mesh", key: "mesh", text: meshText(triangles(mesh, lines, wrong), unit) }
+    ? { shape: "mesh", key: "mesh", text: meshText(corners, unit) }
     : { shape: LISTS[list].shape, key: list, text: table(list, lines, wrong).flatMap((row) => row.map((x) => unit * x)).join("_") };
   const problem = wrongTable(read.key, read.text);
   if (problem) throw new Error(`${name}: ${problem}`);

@@ -5,10 +5,10 @@ import { wrongTable } from "./rigid";
 import { LAWS, PARAMETERS, SHAPES } from "./table";
 import { TOUR, at } from "./tour";
 
-export const RANGES = ["fig2", "near", "fig7", "all"] as const;
+export const RANGES = ["fig2", "near", "slow", "fig7", "all"] as const;
 export const DENSITIES = ["restitution", "fraction"] as const;
 /** The pictures that can stand beside the scene, below the map of set-up A. */
-export const CHARTS = ["scatter-b", "density", "sigma", "reservoir", "drawing"] as const;
+export const CHARTS = ["scatter-b", "density", "sigma", "reservoir", "drawing", "orbit"] as const;
 
 /** In a link: of what the density is shown. */
 const DENSITY_OF = "density-of";

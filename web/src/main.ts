@@ -11,8 +11,7 @@ import { csv, python, toml } from "./export/text";
 import { CHARTS, fromHash, initial, lacks, PRESENT, type State } from "./link";
 import { onChange, onClick, part } from "./page";
 import { KINDS, type Kind } from "./pick";
-import { onGround } from "./charts/chart";
-import { theme } from "./charts/colours";
+import { rastered } from "./charts/pen";
 import { readBody } from "./files";
 import { drawWith, fallSpeed, outlineOf } from "./outline";
 import type { Pace } from "./stage/clock";
@@ -47,7 +46,9 @@ function begin(pool: Pool): void {
   const controls = new Controls(part<HTMLFormElement>("controls"), (key, value) => {
     const { state } = explorer;
     const setup = changed(state[which]!, key, value);
-    explorer.go({ ...state, [which]: setup, particle: 0, impact: 0, stop: state.stop }, explorer.player.clock.playing);
+    // Another body has its own range.
+    const range = key === "shape" && which === "a" ? "near" : state.range;
+    explorer.go({ ...state, [which]: setup, particle: 0, impact: 0, stop: state.stop, range }, explorer.player.clock.playing);
   }, (file, unit, key) => void take(file, unit, key));
   const explorer = new Explorer(pool, () => refresh());
 
@@ -58,9 +59,12 @@ function begin(pool: Pool): void {
       const read = readBody(file.name, await file.text(), unit, key);
       const setup = changed({ ...state[which]!, shape: read.shape }, read.key, read.text);
       const { reach } = outlineOf(setup);
-      if (!(reach > 1e-6 && reach < 1)) throw new Error(`${file.name}: a body of ${Number((2 * reach).toPrecision(2))} m; choose the unit of the file beside it`);
+      if (!(reach > 1e-6 && reach < 1)) {
+        const mend = reach >= 1 && unit === 1 ? { name: "Read it in mm", act: () => void take(file, 1e-3, key) } : undefined;
+        return explorer.problem(`${file.name}: a body of ${Number((2 * reach).toPrecision(2))} m${mend ? "." : "; must be from 2 µm to 2 m: choose another unit of the file"}`, mend);
+      }
       explorer.problem("");
-      explorer.go({ ...state, [which]: setup, particle: 0, impact: 0 }, explorer.player.clock.playing);
+      explorer.go({ ...state, [which]: setup, particle: 0, impact: 0, range: "near" }, explorer.player.clock.playing);
     } catch (error) {
       explorer.problem((error as Error).message);
     }
@@ -258,10 +262,10 @@ function begin(pool: Pool): void {
   onChange("what", (name) => (part<HTMLButtonElement>("svg").disabled = name === "stage"));
   part<HTMLButtonElement>("svg").disabled = true;
   const picture = () => (what.value === "drawing" ? explorer.paper : explorer.charts[what.value as ChartName]);
-  onClick("png", () => {
-    let { canvas } = what.value === "stage" ? { canvas: document.createElement("canvas") } : picture();
-    if (what.value === "stage") explorer.player.stage?.compose(canvas);
-    else canvas = onGround(canvas, theme().paper);
+  onClick("png", async () => {
+    const canvas = document.createElement("canvas");
+    if (what.value === "stage") explorer.player.stage?.large(canvas, explorer.player.clock.time);
+    else await rastered(picture().svg(), canvas);
     canvas.toBlob((blob) => blob && save(`${what.value}.png`, blob));
   });
   onClick("svg", () => save(`${what.value}.svg`, picture().svg(), "image/svg+xml"));
@@ -279,15 +283,19 @@ function begin(pool: Pool): void {
 }
 
 /** Puts the picture that the state speaks of beside the scene, and the others below. */
-function arrange({ chart, b }: State): void {
+function arrange({ chart, density, b }: State): void {
   const beside = chart === "map" || (chart === "scatter-b" && !b) ? "density" : chart;
+  // The share against v and its density at a speed belong together, in the place of the map.
+  const shares = chart === "reservoir" && density === "fraction";
   for (const name of CHARTS) {
     const section = document.querySelector<HTMLElement>(`[data-chart="${name}"]`)!;
     section.hidden = name === "scatter-b" && !b;
-    const place = part(name === beside ? "slot" : "others");
+    const place = part(name === beside || (shares && name === "density") ? "slot" : "others");
     if (section.parentElement !== place) place.append(section);
   }
-  document.documentElement.dataset.looks = chart === "map" ? "map" : "other";
+  if (shares) part("others").prepend(part("map"));
+  else if (part("map").parentElement !== part("bench")) part("slot").before(part("map"));
+  document.documentElement.dataset.looks = shares ? "shares" : chart === "map" ? "map" : "other";
   part("ledger-of").textContent = b ? " of A" : "";
 }
 

@@ -31,7 +31,7 @@ export function notable(run: Run, kind: Kind): Impact[] {
   const score: Record<Exclude<Kind, "locked">, (i: number) => number> = {
     gain: (i) => (ratio[i] > 1 + 1e-12 ? ratio[i] : NaN),
     superelastic: (i) => (epsilon[i] > 1 && v[i] > 0.1 * fall ? epsilon[i] : NaN),
-    downward: (i) => (epsilon[i] < 0 && v[i] > 0 ? v[i] : NaN),
+    downward: (i) => (epsilon[i] < 0 && v[i] > 0 ? -epsilon[i] * v[i] : NaN),
     upward: (i) => (epsilon[i] < 0 && v[i] < 0 ? -v[i] : NaN),
   };
   const found: [number, Impact][] = [];
@@ -57,6 +57,17 @@ function locked({ columns, counts, particles, setup }: Run): Impact[] {
     if (longest >= IN_STEP) found.push([longest, { particle, impact: start }]);
   }
   return found.sort((a, b) => b[0] - a[0]).slice(0, MOST).map(([, place]) => place);
+}
+
+/** How many impacts in a row about this place in the table are as fast as the one before the last. */
+export function inStep({ columns, setup }: Run, place: number): number {
+  const v = columns.impact_velocity;
+  const first = place - (place % setup.impacts);
+  const repeats = (i: number) => i >= first + 2 && i < first + setup.impacts && Math.abs(v[i] / v[i - 2] - 1) < STEP_TOLERANCE;
+  let [from, to] = [place, place];
+  while (repeats(from)) from--;
+  while (repeats(to + 1)) to++;
+  return to - from;
 }
 
 /** Why particles ended, in words: in the order of the engine's reasons. */

@@ -42,20 +42,22 @@ export class Player {
     requestAnimationFrame(draw);
   }
 
-  /** Shows a particle of the runs, shortly before an impact, at which it holds, or from its release. */
-  async show(runs: Run[], particle: number, impact: number | undefined, play: boolean): Promise<void> {
+  /** Shows a particle of the runs, shortly before an impact, at which it holds, or from its release; as an orbit it goes on, and leaves ghosts. */
+  async show(runs: Run[], particle: number, impact: number | undefined, play: boolean, orbit: boolean): Promise<void> {
     const asked = ++this.asked;
     this.film?.finish();
     const rows = await Promise.all(runs.map((run) => run.follow(Math.min(particle, run.particles - 1))));
     if (asked !== this.asked) return;
     this.paths = rows.map((row, k) => new Path(row, runs[k].setup.gravity, runs[k].setup.incline, freely(runs[k].setup)));
     [this.runs, this.particle, this.shown] = [runs, particle, NaN];
+    if (this.stage) this.stage.ghosts = orbit;
     this.stage?.show(this.paths.map((path, k) => ({ path, setup: runs[k].setup, of: k ? "b" : "a" })));
     this.awaited = impact ?? 0;
     this.clock.until = Infinity;
     if (impact === undefined) this.clock.time = 0;
     else if (play) this.clock.before(this.paths[0], impact);
     else this.clock.time = this.paths[0].impact(impact);
+    if (orbit) this.clock.until = Infinity;
     this.clock.playing = play;
     this.stopped();
   }

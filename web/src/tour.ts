@@ -35,7 +35,7 @@ export const TOUR: readonly Stop[] = [
   },
   {
     title: "Figs. 3 and 5: the reservoir fills",
-    text: "Released from rest, a body has no rotation. The slower it has become, the larger the share of its kinetic energy that rotates (colour and mean). Drag the line to another speed: the density of the rotational share, further down, follows.",
+    text: "Released from rest, a body has no rotation. The slower it has become, the larger the share of its kinetic energy that rotates (colour and mean). Drag the line to another speed: the density of the rotational share, below it, follows.",
     view: { density: "fraction", speed: 0.2, chart: "reservoir" },
   },
   {
@@ -53,7 +53,7 @@ export const TOUR: readonly Stop[] = [
   },
   {
     title: "Fig. 7: ε < 0, in two ways",
-    text: "Slow impacts, and ε from −3 to 4. Right of v = 0 a falling body turns so fast that its centre goes on downwards after the impact. Left of it the body is hit while its centre rises. One of the first kind is replayed; choose the other kind below the scene.",
+    text: "Slow impacts, and ε from −3 to 4. Right of v = 0 a falling body turns so fast that its centre goes on downwards after the impact, which the pale arrow v↓ shows, the vertical part of v, drawn larger. Left of it the body is hit while its centre rises. One of the first kind is replayed; choose the other kind below the scene.",
     a: { particles: 1000 },
     view: { range: "fig7", speed: 0.05 },
     kind: "downward",
@@ -75,9 +75,9 @@ export const TOUR: readonly Stop[] = [
   },
   {
     title: "A surprise: slow bodies fall into step",
-    text: "One in thirty slow bodies turns by half a turn in each bounce, or each two, for hundreds of impacts, and climbs while it loses energy: vω = πg/2. They draw the sharp lines of Fig. 2 at low speed. One is replayed.",
+    text: "One in thirty slow bodies turns by half a turn in each bounce, or each two, for hundreds of impacts, and climbs while it loses energy: vω = πg/2. Each bright line is such an orbit. One is played, with ghosts of the body where it touched; click another line to play it.",
     a: { particles: 1000, impacts: 1000 },
-    view: { speed: 0.1 },
+    view: { speed: 0.1, range: "slow", chart: "orbit" },
     kind: "locked",
   },
 ];

@@ -48,6 +48,11 @@ export class Chart {
     if (this.near) this.draw();
   }
 
+  /** Of what is inside the axes, in pixels; 0 before it was drawn. */
+  get inner(): [number, number] {
+    return [this.plot.clientWidth, this.plot.clientHeight];
+  }
+
   get picture(): Picture | undefined {
     return (this.made ??= this.make?.());
   }
@@ -129,15 +134,4 @@ export function cleared(canvas: HTMLCanvasElement, width: number, height: number
   context.setTransform(scale, 0, 0, scale, 0, 0);
   context.clearRect(0, 0, width, height);
   return context;
-}
-
-/** A canvas on a ground of this colour, for a PNG file. */
-export function onGround(canvas: HTMLCanvasElement, ground: string): HTMLCanvasElement {
-  const copy = document.createElement("canvas");
-  [copy.width, copy.height] = [canvas.width, canvas.height];
-  const context = copy.getContext("2d")!;
-  context.fillStyle = ground;
-  context.fillRect(0, 0, copy.width, copy.height);
-  context.drawImage(canvas, 0, 0);
-  return copy;
 }

@@ -2,15 +2,20 @@
 
 /** Viridis at eight places; between, linear. */
 const VIRIDIS = ["#440154", "#46327e", "#365c8d", "#277f8e", "#1fa187", "#4ac16d", "#a0da39", "#fde725"];
-const STOPS = VIRIDIS.map((hex) => [1, 3, 5].map((i) => parseInt(hex.slice(i, i + 2), 16)));
+/** Inferno, from black. */
+const INFERNO = ["#000004", "#280b53", "#65156e", "#9f2a63", "#d44842", "#f57d15", "#fac127", "#fcffa4"];
 
+const scale = (colours: string[]) => {
+  const stops = colours.map((hex) => [1, 3, 5].map((i) => parseInt(hex.slice(i, i + 2), 16)));
+  return (share: number): string => {
+    const place = Math.min(Math.max(share, 0), 1) * (stops.length - 1);
+    const k = Math.min(Math.floor(place), stops.length - 2);
+    const mix = (c: number) => Math.round(stops[k][c] + (place - k) * (stops[k + 1][c] - stops[k][c]));
+    return `rgb(${mix(0)},${mix(1)},${mix(2)})`;
+  };
+};
 /** The colour at a share of the scale, in [0, 1]. */
-export function viridis(share: number): string {
-  const place = Math.min(Math.max(share, 0), 1) * (STOPS.length - 1);
-  const k = Math.min(Math.floor(place), STOPS.length - 2);
-  const mix = (c: number) => Math.round(STOPS[k][c] + (place - k) * (STOPS[k + 1][c] - STOPS[k][c]));
-  return `rgb(${mix(0)},${mix(1)},${mix(2)})`;
-}
+export const [viridis, inferno] = [scale(VIRIDIS), scale(INFERNO)];
 
 /** Share of the scale for a population: its logarithm, for the largest is hundreds of times the usual one. */
 export const population = (count: number, most: number): number => Math.log1p(count) / Math.log1p(most);

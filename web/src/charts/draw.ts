@@ -1,6 +1,6 @@
 /** Draws a picture: axes, population, curves, marks, colour bar, legend. The same on the screen and in a file. */
 
-import { population, viridis, type Palette } from "./colours";
+import { inferno, population, viridis, type Palette } from "./colours";
 import type { Box, Pen, Place } from "./pen";
 import type { Axis, Curve, Picture } from "./picture";
 import { ticks } from "./ticks";
@@ -20,7 +20,7 @@ export const back = ({ low, high, log }: Axis, part: number): number =>
   log ? low * (high / low) ** part : low + (high - low) * part;
 
 export function frame(picture: Picture, width: number, height: number, font: number): Frame {
-  const right = picture.lattice ? 4.9 * font : 0.9 * font;
+  const right = picture.lattice ? 4.9 * font : 1.4 * font;
   const box = { left: 0, top: 0.8 * font, width: 0, height: Math.max(height - 4.2 * font, 10) };
   box.left = (2.3 + 0.6 * Math.max(...upwards(picture, box, font).map(({ text }) => text.length), 2)) * font;
   box.width = Math.max(width - box.left - right, 10);
@@ -43,7 +43,8 @@ export function grid(pen: Pen, picture: Picture, at: Frame, colours: Palette, fo
 }
 
 const across = ({ x }: Picture, box: Box, font: number) => ticks(x, box.width / (5 * font));
-const upwards = ({ y }: Picture, box: Box, font: number) => ticks(y, box.height / (2.6 * font));
+/** An axis without a name has no numbers. */
+const upwards = ({ y }: Picture, box: Box, font: number) => (y.label ? ticks : () => [])(y, box.height / (2.6 * font));
 
 /** Everything on top of the grid and the population. */
 export function draw(pen: Pen, picture: Picture, at: Frame, colours: Palette, font: number): void {
@@ -65,7 +66,7 @@ export function draw(pen: Pen, picture: Picture, at: Frame, colours: Palette, fo
     }
   });
   levels(pen, picture, at, colours, font);
-  if (picture.lattice) bar(pen, picture.lattice.most, box, colours, font);
+  if (picture.lattice) bar(pen, picture.lattice.most, picture.glow ? inferno : viridis, box, colours, font);
   legend(pen, picture, at, colours, font);
   if (picture.note) {
     picture.note.split("\n").forEach((part, k) => {
@@ -99,8 +100,9 @@ export function sites(pen: Pen, picture: Picture, at: Frame): void {
   const { v, other, counts, most } = picture.lattice!;
   const shades = new Map<number, Box[]>();
   const few = counts.reduce((sum, count) => sum + (count ? 1 : 0), 0) < 500;
+  const least = picture.glow ? 1 : few ? 5 : 2.5;
   const [width, height] = [v.step, other.step].map((step, k) =>
-    Math.max(few ? 5 : 2.5, k ? at.y(0) - at.y(step) : at.x(step) - at.x(0)),
+    Math.max(least, k ? at.y(0) - at.y(step) : at.x(step) - at.x(0)),
   );
   for (let row = 0; row < v.count; row++) {
     for (let k = 0; k < other.count; k++) {
@@ -116,11 +118,19 @@ export function sites(pen: Pen, picture: Picture, at: Frame): void {
   // The most populous on top.
   const order = [...shades.keys()].sort((a, b) => a - b);
   pen.within(at.box, () => {
-    for (const shade of order) pen.rectangles(shades.get(shade)!, viridis(shade / 255));
+    if (picture.glow) pen.rectangles([at.box], inferno(0));
+    for (const shade of order) pen.rectangles(shades.get(shade)!, (picture.glow ? inferno : viridis)(shade / 255));
   });
 }
 
 function line(pen: Pen, { x, y, of, kind }: Curve, picture: Picture, at: Frame, colours: Palette): void {
+  if (kind === "points" || kind === "ticks") {
+    const boxes = y.map((value, k) => {
+      const [left, top] = [at.x(x[k]) - 1, value === null ? NaN : at.y(value)];
+      return kind === "points" ? { left, top: top - 1, width: 2, height: 2 } : { left, top, width: 2, height: at.box.top + at.box.height - top };
+    });
+    return pen.rectangles(boxes.filter(({ top }) => Number.isFinite(top)), colours[of]);
+  }
   let places: Place[] = [];
   const end = () => {
     if (picture.lattice) pen.line(places, colours.paper, 5); // on colours of every kind
@@ -151,14 +161,14 @@ function levels(pen: Pen, { levels = [], y, spot }: Picture, at: Frame, colours:
 }
 
 /** The colour bar, with the number of impacts in a site. */
-function bar(pen: Pen, most: number, box: Box, colours: Palette, font: number): void {
+function bar(pen: Pen, most: number, shade: typeof viridis, box: Box, colours: Palette, font: number): void {
   const left = box.left + box.width + 0.9 * font;
   const width = 0.8 * font;
   const height = (share: number) => box.top + box.height * (1 - share);
   const steps = 64;
   for (let k = 0; k < steps; k++) {
     const top = height((k + 1) / steps);
-    pen.rectangles([{ left, top, width, height: box.height / steps + 0.5 }], viridis((k + 0.5) / steps));
+    pen.rectangles([{ left, top, width, height: box.height / steps + 0.5 }], shade((k + 0.5) / steps));
   }
   // Powers of ten first, then what fits between them.
   const powers = Array.from({ length: 1 + Math.floor(Math.log10(most) + 1e-9) }, (_, k) => 10 ** k);

@@ -148,3 +148,12 @@ export class SvgPen implements Pen {
     return places.map(([x, y], k) => `${k ? "L" : "M"}${short(x)} ${short(y)}`).join("");
   }
 }
+
+/** A drawing in three pixels for each of its own. */
+export async function rastered(svg: string, canvas: HTMLCanvasElement): Promise<void> {
+  const image = new Image();
+  image.src = `data:image/svg+xml,${encodeURIComponent(svg)}`;
+  await image.decode();
+  [canvas.width, canvas.height] = [3 * image.width, 3 * image.height];
+  canvas.getContext("2d")!.drawImage(image, 0, 0, canvas.width, canvas.height);
+}

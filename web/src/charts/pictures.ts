@@ -26,6 +26,8 @@ const SITES = { v: 220, other: 140 };
 const PARTS = 36;
 /** Fewer impacts than this in a bin: no moment of them is drawn. */
 const LEAST = 20;
+/** Fewer impacts than this at a speed have no histogram: each is a tick. */
+const FEW = 200;
 /** Rounding scatters ε and the rotational share by less than this. */
 export const EXACT = 1e-9;
 
@@ -44,6 +46,7 @@ function rangeOf(state: State, s: Statistics): { v: [number, number]; epsilon: [
   const fall = fallSpeed(s.run.setup);
   if (state.range === "fig7") return { v: [-0.024 * fall, 0.1 * fall], epsilon: [-3, 4] };
   if (state.range === "all") return { v: [s.v.low, s.v.high], epsilon: [-3, 4] };
+  if (state.range === "slow") return { v: [0.0285 * fall, 0.285 * fall], epsilon: [0.6, 1.4] };
   const v: [number, number] = [0, Math.min(1.1 * fall, s.v.high)];
   if (state.range === "fig2") return { v, epsilon: [0.4, 1.6] };
   // What one impact each has is in a narrow window of v.
@@ -59,23 +62,41 @@ function roomy([low, high]: [number, number], least: number): [number, number] {
 
 const cover = ([low, high]: [number, number], many: number) => Bins.cover(low, high, many);
 
-/** Figs. 2 and 7: ε against v. */
-export function scatter(state: State, s: Statistics, of: "a" | "b"): Picture {
+/** Figs. 2 and 7: ε against v. Orbits of slow bodies are lines as thin as a pixel, of which there are so many. */
+export function scatter(state: State, s: Statistics, of: "a" | "b", pixels: [number, number]): Picture {
   const { v, epsilon } = rangeOf(state, s);
   const { columns, setup } = s.run;
   const place = state.particle * setup.impacts + state.impact;
+  const glow = state.range === "slow";
+  const bins = ([low, high]: [number, number], many: number, pixels: number) => (glow ? new Bins(low, high, (high - low) / (pixels || many)) : cover([low, high], many));
   const levels = [{ y: 1, label: "ε = 1" }, { y: setup.normal, label: "εₙ" }];
   return {
     title: `Restitution against impact velocity, set-up ${of.toUpperCase()}`,
     x: { label: SPEED, low: v[0], high: v[1] },
     y: { label: EPSILON_UP, low: epsilon[0], high: epsilon[1] },
     curves: [],
-    lattice: s.lattice("restitution", cover(v, SITES.v), cover(epsilon, SITES.other)),
-    levels: setup.normal === 1 ? levels.slice(0, 1) : levels,
-    ...(setup.impacts > 1 ? { mark: state.speed } : {}),
+    lattice: s.lattice("restitution", bins(v, SITES.v, pixels[0]), bins(epsilon, SITES.other, pixels[1])),
+    glow,
+    levels: glow ? [] : setup.normal === 1 ? levels.slice(0, 1) : levels,
+    ...(setup.impacts > 1 && !glow ? { mark: state.speed } : {}),
     ...(of === "a" && Number.isFinite(columns.restitution[place])
       ? { spot: [columns.impact_velocity[place], columns.restitution[place]] as [number, number] }
       : {}),
+  };
+}
+
+/** The impacts of the particle in the scene, in turn: one that is locked climbs. */
+export function orbit(state: State, { a }: Both): Picture {
+  const { columns, counts, setup } = a.run;
+  const number = counts[state.particle] || 1;
+  const first = state.particle * setup.impacts;
+  const v = Array.from(columns.impact_velocity.subarray(first, first + number));
+  return {
+    title: `Impact velocity of particle ${state.particle} against the number of the impact`,
+    x: { label: "number of the impact", low: 0, high: number },
+    y: { label: "v (m/s)", low: 0, high: rangeOf(state, a).v[1] },
+    curves: [{ label: "", of: "a", kind: "points", x: v.map((_, k) => k + 1), y: v }],
+    mark: state.impact + 1,
   };
 }
 
@@ -134,8 +155,8 @@ export function density(state: State, both: Both): Picture {
     y: { label: share ? "p(rotational share | v)" : first ? "p(ε)" : "p(ε | v)", low: 0.1, high: 100, log: !first },
     curves: [],
   };
-  const found = values.filter((x) => x.length >= LEAST);
-  if (!found.length) return { ...picture, note: both.a.run.impacts ? "Too few impacts at this speed." : "" };
+  const found = values.filter((x) => x.length);
+  if (!found.length) return { ...picture, note: both.a.run.impacts ? "No impact at this speed." : "" };
   const ends = (x: Float64Array, tail: number) => [quantile(x, tail), quantile(x, 1 - tail)];
   if (found.every((x) => x.at(-1)! - x[0] < EXACT)) {
     const [value] = found[0];
@@ -143,7 +164,16 @@ export function density(state: State, both: Both): Picture {
     const text = share && value < EXACT ? "Nothing rotates." : `All ${found[0].length.toLocaleString("en")} impacts have ${name} = ${Number(value.toPrecision(6))}:\na line, not a distribution.`;
     return { ...picture, x: { ...picture.x, ...between(value - 0.05, value + 0.05) }, mark: value, note: text };
   }
-  const fits = share || first ? [] : values.map((x) => (x.length >= LEAST ? laplace(x) : undefined));
+  const fewest = Math.min(...found.map((x) => x.length));
+  if (fewest < FEW) {
+    const [low, high] = roomy([Math.min(...found.map((x) => x[0])), Math.max(...found.map((x) => x.at(-1)!))], 1e-3);
+    const curves = each(both, (s, of): Curve => {
+      const x = values[of === "a" ? 0 : 1];
+      return { label: `${label(s, of, both)}: ${x.length} impacts`, of, kind: "ticks", x, y: Array.from(x, () => (of === "a" ? 0.3 : 0.2)) };
+    });
+    return { ...picture, x: { ...picture.x, low, high }, y: { label: "", low: 0, high: 1 }, curves, note: `${fewest} ${fewest === 1 ? "impact" : "impacts"}: too few for a density.\nEach is a tick.` };
+  }
+  const fits = share || first ? [] : values.map((x) => (x.length ? laplace(x) : undefined));
   const bins = share || first ? Bins.cover(Math.min(...found.map((x) => x[0])), Math.max(...found.map((x) => ends(x, 0.001)[1])), 60) : cusped(found, both.a.run.setup.normal);
   const curves = each(both, (s, of): Curve => steps(values[of === "a" ? 0 : 1], bins, label(s, of, both), of));
   const high = Math.max(...curves.flatMap((c) => c.y.map((y) => y ?? 0)));

@@ -9,9 +9,10 @@ const HEAD = new ConeGeometry(1, 1, 20).rotateX(Math.PI / 2).translate(0, 0, -0.
 /** One of each colour: a material that is made anew is compiled anew. */
 const MATERIALS = new Map<string, MeshBasicMaterial>();
 
-function materialOf(colour: string): MeshBasicMaterial {
-  const found = MATERIALS.get(colour) ?? new MeshBasicMaterial({ color: colour, depthTest: false, transparent: true, fog: false });
-  MATERIALS.set(colour, found);
+function materialOf(colour: string, opacity: number): MeshBasicMaterial {
+  const key = `${colour} ${opacity}`;
+  const found = MATERIALS.get(key) ?? new MeshBasicMaterial({ color: colour, depthTest: false, transparent: true, opacity, fog: false });
+  MATERIALS.set(key, found);
   return found;
 }
 
@@ -20,10 +21,10 @@ export class Arrow extends Group {
   private readonly head: Mesh;
   readonly tip = new Vector3();
 
-  constructor(colour: string) {
+  constructor(colour: string, opacity = 1) {
     super();
-    this.shaft = new Mesh(SHAFT, materialOf(colour));
-    this.head = new Mesh(HEAD, materialOf(colour));
+    this.shaft = new Mesh(SHAFT, materialOf(colour, opacity));
+    this.head = new Mesh(HEAD, materialOf(colour, opacity));
     this.shaft.renderOrder = this.head.renderOrder = 10;
     this.add(this.shaft, this.head);
   }

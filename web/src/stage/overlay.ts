@@ -5,7 +5,7 @@ import { CanvasPen, type Place } from "../charts/pen";
 import { nice } from "../statistics";
 
 export interface Arrowhead {
-  name: "v" | "ω" | "P/m";
+  name: "v" | "v↓" | "ω" | "P/m";
   hue: "velocity" | "spin" | "impulse";
   value: number;
   unit: string;
@@ -51,7 +51,7 @@ export function write(context: CanvasRenderingContext2D, written: Written, font:
     pen.fill([[from + 2 * font, y], [from + 1.2 * font, y - 0.35 * font], [from + 1.2 * font, y + 0.35 * font]], colours[hue]);
     pen.text(name, [from + 2.5 * font, y + 0.35 * font], { ...small, bold: true });
     pen.text(`${short(value)} ${unit}`, [from + 5.2 * font, y + 0.35 * font], small);
-    if (width > 36 * font) pen.text(words, [from + 11.5 * font, y + 0.35 * font], { ...small, colour: colours.soft });
+    if (width > 37 * font) pen.text(words, [from + 12.8 * font, y + 0.35 * font], { ...small, colour: colours.soft });
   });
   for (const { name, hue, tip } of arrows) {
     if (tip) pen.text(name, [tip[0] + 0.5 * font, tip[1]], { colour: colours[hue], size: 1.15 * font, bold: true, rim: colours.paper });

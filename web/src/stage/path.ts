@@ -123,6 +123,12 @@ export class Path {
     });
   }
 
+  /** The largest vertical speed in a flight. */
+  steepest(k: number): number {
+    const { velocity } = this.flights[Math.max(k, 0)];
+    return Math.max(Math.abs(velocity.z), Math.abs(velocity.z + this.gravity.z * this.duration(Math.max(k, 0))));
+  }
+
   /** Speed of a body that has all energy of motion that this one has where it is lowest, in this flight or the one before. */
   speed(k: number): number {
     const energies = [Math.max(k - 1, 0), k].map((number) => {

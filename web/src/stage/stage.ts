@@ -5,20 +5,20 @@ import {
   BufferGeometry,
   CircleGeometry,
   DirectionalLight,
+  Float32BufferAttribute,
   Fog,
-  GridHelper,
   Group,
   Line,
   LineBasicMaterial,
   LineSegments,
   Mesh,
   MeshBasicMaterial,
-  BasicShadowMap,
   PerspectiveCamera,
   PlaneGeometry,
   Scene,
   ShadowMaterial,
   Vector3,
+  VSMShadowMap,
   WebGLRenderer,
 } from "three";
 import { OrbitControls } from "three/addons/controls/OrbitControls.js";
@@ -35,8 +35,10 @@ import { impulseOf, type Moment, type Path } from "./path";
 
 /** Points of the trace in a flight, and flights that it goes back. */
 const TRACE = { each: 40, flights: 6 };
-/** Lines of the grid to either side. */
-const LINES = 80;
+/** Cells of the ground to either side. */
+const CELLS = 60;
+/** Ghosts of the body at its contacts: so many before the last one, and the next. */
+const GHOSTS = 4;
 const ANGLE = 35;
 /** The body fills a third of the height of the picture. */
 const SHARE = 1 / 3;
@@ -45,7 +47,11 @@ const DISTANCE = 1 / SHARE / 2 / Math.tan((ANGLE * Math.PI) / 360);
 /** Distances of the camera at which things begin to fade, and are gone. */
 const FADE = { near: 1.5, far: 7 };
 /** Lengths of arrows in lengths of the body: of a velocity that holds all energy of motion, and at most. */
-const ARROW = { whole: 1.3, most: 2 };
+const ARROW = { whole: 1.3, most: 1.3 };
+/** Where arrows end, in halves of the picture: below the key, above the scale, beside the height. */
+const ROOM = { left: -0.92, right: 0.8, bottom: -0.8, top: 0.68 };
+/** A vertical speed less than this part of the speed has an arrow of its own, as long as this for the larger one before and after. */
+const FLAT = { below: 0.5, long: 0.75 };
 
 export interface Part {
   setup: Setup;
@@ -60,7 +66,11 @@ interface Actor extends Part {
   velocity: Arrow;
   spin: Arrow;
   impulse: Arrow;
+  /** The vertical part of the velocity, and how many times as large it is drawn; 0: not at all. */
+  fall: Arrow;
+  times: number;
   contact: Mesh;
+  ghosts: Group[];
   trace: Line;
   /** A staff with marks as far apart as the lines on the ground, beside the body. */
   staff: LineSegments;
@@ -82,12 +92,13 @@ export class Stage {
   /** Ground, shadow and lines lie in one another: what is below hides nothing of what is above it. */
   private readonly ground = new Mesh(new PlaneGeometry(2000, 2000), new MeshBasicMaterial({ depthWrite: false }));
   private readonly shade = new Mesh(new PlaneGeometry(2000, 2000), new ShadowMaterial({ opacity: 0.45, depthWrite: false }));
-  private grid = new GridHelper();
+  private readonly grid = new LineSegments(cells(), new LineBasicMaterial({ transparent: true, opacity: 0.35 }));
   private readonly floor = new Group();
   /** Distance of the lines on the ground, in R of A. */
   private spacing = 1;
   private actors: Actor[] = [];
   private stale = true;
+  private haunted = false;
 
   constructor(private readonly host: HTMLElement) {
     this.renderer = new WebGLRenderer({ antialias: true, preserveDrawingBuffer: true });
@@ -95,7 +106,7 @@ export class Stage {
     // Asking whether a shader is right waits for it.
     this.renderer.debug.checkShaderErrors = false;
     this.renderer.shadowMap.enabled = true;
-    this.renderer.shadowMap.type = BasicShadowMap;
+    this.renderer.shadowMap.type = VSMShadowMap;
     this.renderer.setScissorTest(true);
     this.overlay.className = "overlay";
     for (const canvas of [this.renderer.domElement, this.overlay]) {
@@ -106,11 +117,12 @@ export class Stage {
     this.camera.position.set(0.12, -1, 0.24).setLength(DISTANCE);
     this.sun.position.set(-4, -3, 12);
     this.sun.castShadow = true;
-    this.sun.shadow.mapSize.set(1024, 1024);
+    this.sun.shadow.mapSize.set(256, 256);
+    Object.assign(this.sun.shadow, { radius: 5, blurSamples: 10 });
     Object.assign(this.sun.shadow.camera, { left: -6, right: 6, bottom: -6, top: 6, near: 0.1, far: 60 });
     this.shade.receiveShadow = true;
     this.shade.position.z = 0.002;
-    this.floor.add(this.ground, this.shade);
+    this.floor.add(this.ground, this.shade, this.grid);
     this.scene.add(new AmbientLight("#ffffff", 1.3), this.sun, this.sun.target, this.floor);
     this.scene.fog = this.fog;
     this.controls = new OrbitControls(this.camera, this.renderer.domElement);
@@ -142,13 +154,19 @@ export class Stage {
     this.stale = true;
   }
 
+  /** Whether bodies leave ghosts; the camera then stands back, so that some are seen. */
+  set ghosts(on: boolean) {
+    if (on !== this.haunted) this.camera.position.multiplyScalar(on ? 1.8 : 1 / 1.8);
+    this.haunted = on;
+  }
+
   /** Takes the colours of the theme in force. */
   restyle(): void {
     const colours = theme();
     this.renderer.setClearColor(colours.paper);
     this.fog.color.set(colours.paper);
     (this.ground.material as MeshBasicMaterial).color.set(colours.ground);
-    this.rule();
+    this.grid.material.color.set(colours.soft);
     this.show(this.actors);
   }
 
@@ -169,13 +187,13 @@ export class Stage {
     const home = this.camera.position.clone();
     this.actors.forEach((actor, k) => {
       const moment = actor.path.at(time);
-      this.pose(actor, moment, each / height);
       for (const other of this.actors) other.world.visible = other === actor;
       this.camera.position.copy(home).multiplyScalar(actor.length);
       [this.fog.near, this.fog.far] = [FADE.near, FADE.far].map((x) => x * DISTANCE * actor.length);
       this.camera.aspect = each / height;
       this.camera.updateProjectionMatrix();
       this.camera.updateMatrixWorld();
+      this.pose(actor, moment, each / height);
       this.renderer.setViewport(k * each, 0, each, height);
       this.renderer.setScissor(k * each, 0, each, height);
       this.renderer.render(this.scene, this.camera);
@@ -197,6 +215,17 @@ export class Stage {
     context.drawImage(this.overlay, 0, 0, width, height);
   }
 
+  /** The same in three pixels for each of the page. */
+  large(canvas: HTMLCanvasElement, time: number): void {
+    const ratio = this.renderer.getPixelRatio();
+    for (const each of [3, ratio]) {
+      this.renderer.setPixelRatio(each);
+      this.resize();
+      this.draw(time, true);
+      if (each === 3) this.compose(canvas);
+    }
+  }
+
   private actor({ setup, path, of }: Part, unit: number): Actor {
     const colours = theme();
     const outline = outlineOf(setup);
@@ -211,6 +240,9 @@ export class Stage {
       velocity: new Arrow(colours.velocity),
       spin: new Arrow(colours.spin),
       impulse: new Arrow(colours.impulse),
+      fall: new Arrow(colours.velocity, 0.55),
+      times: 0,
+      ghosts: [],
       contact: new Mesh(new CircleGeometry(0.12, 24), new MeshBasicMaterial({ color: colours.impulse })),
       trace: new Line(new BufferGeometry(), ink),
       staff: new LineSegments(new BufferGeometry(), new LineBasicMaterial({ color: colours.soft, transparent: true, opacity: 0.7 })),
@@ -221,7 +253,9 @@ export class Stage {
     actor.body.scale.setScalar(1 / unit);
     actor.body.traverse((part) => (part.castShadow = true));
     actor.trace.frustumCulled = false;
-    actor.world.add(actor.body, actor.velocity, actor.spin, actor.impulse, actor.contact, actor.trace, actor.staff);
+    actor.world.add(actor.body, actor.velocity, actor.spin, actor.impulse, actor.fall, actor.contact, actor.trace, actor.staff);
+    if (this.haunted) actor.ghosts = Array.from({ length: GHOSTS + 1 }, () => ghostOf(actor.body));
+    if (actor.ghosts.length) actor.world.add(...actor.ghosts);
     const top = (1.2 * Math.max(...path.peaks(path.flights.length - 1), ...path.peaks(0))) / unit;
     const marks: Vector3[] = [new Vector3(), new Vector3(0, 0, top)];
     for (let k = 0; k * this.spacing < top && k < 2000; k++) {
@@ -250,6 +284,15 @@ export class Stage {
     this.sun.shadow.camera.updateProjectionMatrix();
     body.position.copy(place);
     body.quaternion.copy(moment.attitude);
+    actor.ghosts.forEach((ghost, k) => {
+      const number = moment.impacts + k + 1 - GHOSTS;
+      const flight = number > 0 ? actor.path.flights[number] : undefined;
+      ghost.visible = flight !== undefined;
+      if (!flight) return;
+      ghost.position.copy(flight.place).divideScalar(unit);
+      ghost.quaternion.copy(flight.attitude);
+    });
+    world.updateMatrixWorld();
     this.point(actor, moment, place, unit);
     if (actor.traced !== moment.impacts) this.trace(actor, moment.impacts, unit);
   }
@@ -258,8 +301,13 @@ export class Stage {
     const { length, setup } = actor;
     const thick = 0.035 * length;
     const whole = actor.path.speed(moment.impacts);
-    const arrow = (vector: Vector3, unit: number) => vector.multiplyScalar((ARROW.whole * length) / unit).clampLength(0, ARROW.most * length);
+    const arrow = (vector: Vector3, unit: number, from = place) =>
+      this.inside(actor, from, vector.multiplyScalar((ARROW.whole * length) / unit).clampLength(0, ARROW.most * length));
     actor.velocity.point(place, arrow(moment.velocity.clone(), whole), thick);
+    const most = Math.max(...[moment.impacts - 1, moment.impacts].map((k) => actor.path.steepest(k)));
+    const times = (FLAT.long * whole) / (ARROW.whole * most);
+    actor.times = moment.impacts > 0 && most < FLAT.below * whole ? times : 0;
+    actor.fall.point(place, arrow(new Vector3(0, 0, actor.times * moment.velocity.z), whole), thick);
     // A surface that turns with a third of that speed has an arrow as long.
     actor.spin.point(place, arrow(moment.spin.clone(), whole / (3 * outlineOf(setup).size)), thick);
     const { flight, impacts } = moment;
@@ -269,14 +317,26 @@ export class Stage {
     const at = flight.place.clone().add(armOf(setup, flight)).divideScalar(unit);
     actor.contact.position.set(at.x, at.y, 0.01);
     actor.contact.scale.setScalar(length / 2);
-    actor.impulse.point(at, arrow(impulseOf(actor.path, impacts), 2 * whole), thick);
+    actor.impulse.point(at, arrow(impulseOf(actor.path, impacts), 2 * whole, at), thick);
+  }
+
+  /** An arrow from a place, shortened until it ends in the picture. */
+  private inside(actor: Actor, from: Vector3, vector: Vector3): Vector3 {
+    const out = () => {
+      const { x, y } = actor.world.localToWorld(from.clone().add(vector)).project(this.camera);
+      return x < ROOM.left || x > ROOM.right || y < ROOM.bottom || y > ROOM.top;
+    };
+    for (let k = 0; k < 20 && out(); k++) vector.multiplyScalar(0.9);
+    return vector;
   }
 
   private arrows(actor: Actor, moment: Moment): (Omit<Arrowhead, "tip"> & { tip: Vector3 | undefined })[] {
     const tip = (arrow: Arrow) => (arrow.visible ? actor.world.localToWorld(arrow.tip.clone()) : undefined);
     const impulse = moment.impacts > 0 ? impulseOf(actor.path, moment.impacts).length() : 0;
+    const fall = { name: "v↓", hue: "velocity", value: -moment.velocity.z, unit: "m/s", words: `its part downwards, drawn ×${Number(actor.times.toPrecision(2))}`, tip: tip(actor.fall) } as const;
     return [
       { name: "v", hue: "velocity", value: moment.velocity.length(), unit: "m/s", words: "velocity of the centre of mass", tip: tip(actor.velocity) },
+      ...(actor.times ? [fall] : []),
       { name: "ω", hue: "spin", value: moment.spin.length(), unit: "rad/s", words: "angular velocity", tip: tip(actor.spin) },
       { name: "P/m", hue: "impulse", value: impulse, unit: "m/s", words: "impulse of the last impact, over the mass", tip: tip(actor.impulse) },
     ];
@@ -302,18 +362,6 @@ export class Stage {
     actor.traced = impacts;
   }
 
-  /** The lines on the ground, one apart: other distances are another scale, for what is made anew is compiled anew. */
-  private rule(): void {
-    const { soft } = theme();
-    this.floor.remove(this.grid);
-    this.grid.dispose();
-    this.grid = new GridHelper(2 * LINES, 2 * LINES, soft, soft);
-    this.grid.rotateX(Math.PI / 2);
-    this.grid.material.transparent = true;
-    this.grid.material.opacity = 0.35;
-    this.floor.add(this.grid);
-  }
-
   private resize(): void {
     const { clientWidth: width, clientHeight: height } = this.host;
     if (!width || !height) return;
@@ -322,4 +370,24 @@ export class Stage {
     [this.overlay.width, this.overlay.height] = [Math.round(width * scale), Math.round(height * scale)];
     this.stale = true;
   }
+}
+
+/** The lines on the ground, one apart. Each cell has its own: one that begins behind the camera is lost where there is no graphics card. */
+function cells(): BufferGeometry {
+  const places: number[] = [];
+  for (let k = -CELLS; k <= CELLS; k++) {
+    for (let i = -CELLS; i < CELLS; i++) places.push(k, i, 0, k, i + 1, 0, i, k, 0, i + 1, k, 0);
+  }
+  return new BufferGeometry().setAttribute("position", new Float32BufferAttribute(places, 3));
+}
+
+/** A body that one sees through, of the same shape. */
+function ghostOf(body: Group): Group {
+  const ghost = body.clone();
+  ghost.traverse((part) => {
+    part.castShadow = false;
+    const { material } = part as Mesh;
+    if (material) (part as Mesh).material = Object.assign((material as MeshBasicMaterial).clone(), { transparent: true, opacity: 0.22, depthWrite: false });
+  });
+  return ghost;
 }
