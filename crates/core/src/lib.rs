@@ -51,9 +51,10 @@ mod simulate;
 pub mod statistics;
 mod threads;
 
+pub use drop::{About, COLLAPSE_RUN, Height, Limits, Orientation, Run, Scales, Spin, StopReason};
+#[cfg(feature = "one-lane")]
 pub use drop::{
-    About, COLLAPSE_RUN, FlightEnd, FlightStart, Followed, Height, Limits, NoConvergence,
-    Orientation, Run, Scales, SingleImpact, Spin, StopReason, collide, first_contact, trajectory,
+    FlightEnd, FlightStart, NoConvergence, SingleImpact, collide, first_contact, trajectory,
 };
 pub use error::{Error, Fault, Raised, Value};
 pub use law::*;

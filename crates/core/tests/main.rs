@@ -16,7 +16,6 @@ mod distribution;
 mod draws;
 mod errors;
 mod flight;
-mod follow;
 mod fuzz;
 mod general;
 mod halves;

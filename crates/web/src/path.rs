@@ -3,107 +3,116 @@
 use crate::records::alone;
 use crate::rigid::{components, quaternion, vector};
 use restitution_core::{
-    AnyBody, Body, Columns, Error, Followed, Height, Quaternion, Rigid, Run, Scales, Sphere, State,
-    Vector, elementary,
+    AnyBody, Columns, Error, Height, Quaternion, Records, Rigid, Run, Solid, Vector, elementary,
 };
 
-/// Number of columns, one row per flight: start time; height of the centre of mass; velocity (3); axis (3); Λ/J_xx (3); the component
-/// of ω − Λ/J_xx along the axis, the rate at which the body rolls about its axis; rotational energy divided by the mass; the sphere
-/// that touched, 0 at release.
-pub const COLUMNS: usize = 14;
-
-/// The flights, row by row; the first starts at the release. SI units.
-pub fn follow(run: &Run<'_>, particle: usize) -> Result<Vec<f64>, Error> {
-    if let AnyBody::Rigid(body) = run.body {
-        return follow_rigid(run, body, particle);
-    }
-    let followed = Followed::new(run, particle)?;
-    let scales = &followed.scales;
-    let body = &run.body.revolution()?.scaled;
-    let mut rows = row(body, scales, 0.0, &followed.release, 0.0).to_vec();
-    followed.bounce(|impact| {
-        let sphere = match impact.sphere {
-            Sphere::One => 1.0,
-            Sphere::Two => 2.0,
-        };
-        rows.extend(row(body, scales, impact.time, &impact.after, sphere));
-        true
-    })?;
-    Ok(rows)
+/// The start of a flight, in SI units.
+struct Start {
+    time: f64,
+    /// Place of the centre of mass, along the plane from the release.
+    place: Vector,
+    velocity: Vector,
+    spin: Vector,
+    /// The angular velocity before the impact.
+    before: Vector,
+    /// The part that touched, from 1; 0 at release.
+    part: i32,
 }
 
-/// Of a body without an axis, in 19 columns: start time; place of the centre of mass, along the plane from the release (3); velocity
-/// (3); attitude (4: w, x, y, z), from the axes that the body was given in; ω (3); rotational energy divided by the mass; the part that
-/// touched, 0 at release; where it touched, from the centre of mass (3).
-fn follow_rigid(run: &Run<'_>, body: &Rigid, particle: usize) -> Result<Vec<f64>, Error> {
-    let columns = Columns::usual(run.body, &run.law, true);
-    let records = alone(run, particle, 1, &columns)?;
+/// The flights, row by row; the first starts at the release. SI units. Of a body of revolution in 14 columns: start time; height of the
+/// centre of mass; velocity (3); axis (3); Λ/J_xx (3); the component of ω − Λ/J_xx along the axis, the rate at which the body rolls about
+/// its axis; rotational energy divided by the mass; the sphere that touched, 0 at release. Of a rigid body in 19: start time; place of the
+/// centre of mass (3); velocity (3); attitude (4: w, x, y, z), from the axes that the body was given in; ω (3); rotational energy divided
+/// by the mass; the part that touched, 0 at release; where it touched, from the centre of mass (3).
+pub fn follow(run: &Run<'_>, particle: usize) -> Result<Vec<f64>, Error> {
+    let records = alone(run, particle, 1, &Columns::usual(run.body, &run.law, true))?;
+    let starts = starts(run, &records);
+    Ok(match run.body {
+        AnyBody::Revolution(solid) => {
+            let (sine, cosine) = elementary::sincos(records.release_angle[0]);
+            let azimuth = records.release_azimuth.first().copied().unwrap_or(0.0);
+            let (y, x) = elementary::sincos(azimuth);
+            let axes = [[sine * x, sine * y, cosine]];
+            let axes = axes.iter().chain(&records.axis).map(vector);
+            let rows = starts.iter().zip(axes);
+            rows.flat_map(|(start, axis)| revolving(&solid, start, axis))
+                .collect()
+        }
+        AnyBody::Rigid(body) => {
+            let attitudes = records.release_attitude.iter().chain(&records.attitude);
+            let rows = starts.iter().zip(attitudes);
+            rows.flat_map(|(start, &[w, x, y, z])| rigid(body, start, Quaternion::new(w, x, y, z)))
+                .collect()
+        }
+    })
+}
+
+fn starts(run: &Run<'_>, records: &Records) -> Vec<Start> {
     let height = match run.release_height {
         Height::Fixed(height) => height,
         Height::Random { .. } => records.release_height[0],
     };
     let (sine, cosine) = elementary::sincos(run.incline);
     let gravity = Vector::new(run.gravity * sine, 0.0, -run.gravity * cosine);
-    let normal = Vector::new(0.0, 0.0, 1.0);
-    let row = |time, place, velocity, [w, x, y, z]: [f64; 4], spin: [f64; 3], part: i32, before| {
-        let spin = vector(&spin);
-        let attitude = Quaternion::new(w, x, y, z);
-        let within = (attitude * body.axes).inverse().rotate(spin);
-        let rotation = 0.5 * body.unit * body.unit * body.top.twice_energy(within);
-        let mut row = vec![time];
-        row.extend(components(place));
-        row.extend(components(velocity));
-        row.extend(quaternion(attitude));
-        row.extend(components(spin));
-        row.extend([rotation, f64::from(part)]);
-        let [up, turning] =
-            [normal, normal.cross(vector(&before))].map(|v| attitude.inverse().rotate(v));
-        let arm = match part {
-            0 => Vector::default(),
-            part => attitude.rotate(body.nearest(part as usize - 1, up, turning)),
-        };
-        row.extend(components(arm));
-        row
-    };
-    let (mut time, mut place) = (0.0, Vector::new(0.0, 0.0, height));
-    let mut velocity = run.release_velocity;
-    let (attitude, spin) = (records.release_attitude[0], records.release_spin[0]);
-    let mut rows = row(time, place, velocity, attitude, spin, 0, spin);
+    let spin = records.release_spin.first().map(vector).unwrap_or_default();
+    let mut starts = vec![Start {
+        time: 0.0,
+        place: Vector::new(0.0, 0.0, height),
+        velocity: run.release_velocity,
+        spin,
+        before: spin,
+        part: 0,
+    }];
     for i in 0..records.impacts[0] as usize {
-        let lasted = records.time[i] - time;
+        let last = &starts[i];
+        let lasted = records.time[i] - last.time;
         // In flight gravity alone acts (5); the height is that of the contact.
-        place = place + velocity * lasted + gravity * (0.5 * lasted * lasted);
+        let mut place = last.place + last.velocity * lasted + gravity * (0.5 * lasted * lasted);
         place.z = records.height[i];
-        time = records.time[i];
-        velocity = vector(&records.velocity_after[i]);
-        let spins = [
-            &records.angular_velocity_after,
-            &records.angular_velocity_before,
-        ];
-        let [spin, before] = spins.map(|spins| spins[i]);
-        let (attitude, part) = (records.attitude[i], records.part[i]);
-        rows.extend(row(time, place, velocity, attitude, spin, part, before));
+        starts.push(Start {
+            time: records.time[i],
+            place,
+            velocity: vector(&records.velocity_after[i]),
+            spin: vector(&records.angular_velocity_after[i]),
+            before: vector(&records.angular_velocity_before[i]),
+            part: match run.body {
+                AnyBody::Revolution(_) => i32::from(records.contact[i]),
+                AnyBody::Rigid(_) => records.part[i],
+            },
+        });
     }
-    Ok(rows)
+    starts
 }
 
-fn row(body: &Body, scales: &Scales, time: f64, state: &State, sphere: f64) -> [f64; COLUMNS] {
-    let (velocity, axis, turning) = (state.velocity, state.axis, state.precession);
-    let roll = (state.spin(body) - turning).dot(axis);
-    [
-        time * scales.time,
-        (state.height + body.hull.level()) * scales.length,
-        velocity.x * scales.speed,
-        velocity.y * scales.speed,
-        velocity.z * scales.speed,
-        axis.x,
-        axis.y,
-        axis.z,
-        turning.x / scales.time,
-        turning.y / scales.time,
-        turning.z / scales.time,
-        roll / scales.time,
-        state.rotational_energy(body) * scales.speed * scales.speed,
-        sphere,
-    ]
+fn revolving(solid: &Solid, start: &Start, axis: Vector) -> Vec<f64> {
+    let spin = start.spin;
+    let more = solid.axial_inertia / solid.transverse_inertia - 1.0;
+    let turning = axis.mul_add(more * spin.dot(axis), spin); // Λ/J_xx
+    let rotation = 0.5 * solid.transverse_inertia / solid.mass * spin.dot(turning);
+    let mut row = vec![start.time, start.place.z];
+    row.extend(
+        [start.velocity, axis, turning]
+            .map(components)
+            .as_flattened(),
+    );
+    row.extend([(spin - turning).dot(axis), rotation, f64::from(start.part)]);
+    row
+}
+
+fn rigid(body: &Rigid, start: &Start, attitude: Quaternion) -> Vec<f64> {
+    let within = (attitude * body.axes).inverse().rotate(start.spin);
+    let rotation = 0.5 * body.unit * body.unit * body.top.twice_energy(within);
+    let normal = Vector::new(0.0, 0.0, 1.0);
+    let [up, turning] = [normal, normal.cross(start.before)].map(|v| attitude.inverse().rotate(v));
+    let arm = match start.part {
+        0 => Vector::default(),
+        part => attitude.rotate(body.nearest(part as usize - 1, up, turning)),
+    };
+    let mut row = vec![start.time];
+    row.extend([start.place, start.velocity].map(components).as_flattened());
+    row.extend(quaternion(attitude));
+    row.extend(components(start.spin));
+    row.extend([rotation, f64::from(start.part)]);
+    row.extend(components(arm));
+    row
 }

@@ -1,26 +1,24 @@
 //! A run, in SI units, and the initial conditions of its particles.
 
 mod block;
-mod follow;
 mod lanes;
 mod plan;
 mod release;
 mod rigid;
 mod scales;
 mod series;
-mod single;
 mod stop;
 
 pub(crate) use block::{BLOCK, bounce_block, even, share};
-pub use follow::Followed;
+#[cfg(feature = "one-lane")]
+pub use lanes::one_lane::{
+    FlightEnd, FlightStart, NoConvergence, SingleImpact, collide, first_contact, trajectory,
+};
 pub(crate) use lanes::{Impact, Meanwhile, PLACES, Pose, Sink, of_group};
 pub(crate) use plan::Plan;
 pub use release::{About, Height, Orientation, Spin};
 pub use scales::Scales;
 pub(crate) use series::{JoinedRuns, Source};
-pub use single::{
-    FlightEnd, FlightStart, NoConvergence, SingleImpact, collide, first_contact, trajectory,
-};
 pub use stop::{COLLAPSE_RUN, Limits, StopReason};
 
 use crate::law::Law;

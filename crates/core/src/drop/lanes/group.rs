@@ -1,5 +1,9 @@
 //! A group of particles, as many as a vector has lanes, and the stages from one impact to the next.
 
+#[cfg(feature = "one-lane")]
+#[path = "../../../tests/one_lane.rs"]
+pub mod one_lane;
+
 use super::collision::{Collide, ContactPoint, Dimension};
 use super::impact::{Impact, Sink, SymmetricPose};
 use super::particles::Particles;
@@ -58,16 +62,6 @@ impl From<Unconverged> for Lost {
             fault: None,
         }
     }
-}
-
-/// A contact that was located, in each lane.
-pub(crate) struct Found<S: Simd, T: Dimension> {
-    /// Flight time.
-    pub time: Pack<S, 1>,
-    /// The state just before the impact.
-    pub state: StateOf<S, T>,
-    /// +1 or −1: sphere 1 or 2 touches.
-    pub sphere: Pack<S, 1>,
 }
 
 /// The flights of as many particles as a vector has lanes, and the search for their contacts: a lane whose contact is not located yet
@@ -155,24 +149,6 @@ impl<S: Simd, T: Dimension> Group<S, T> {
     #[inline(always)]
     fn before(&self) -> StateOf<S, T> {
         *self.search.flight.start()
-    }
-
-    /// Replaces the departure of the release by that of an impact.
-    pub fn depart_from(&mut self, last_contact: LastContact<S, 1>) {
-        self.search.last_contact = last_contact;
-    }
-
-    /// The contact of lane 0, or the stop reason if there is none.
-    pub fn found(&self) -> Result<Found<S, T>, StopReason> {
-        if self.particles.active.any() {
-            Ok(Found {
-                time: self.located.time,
-                state: self.before(),
-                sphere: self.search.last_contact.sphere,
-            })
-        } else {
-            Err(self.particles.reasons[0])
-        }
     }
 
     /// The angle turned through at the time of the evaluation.

@@ -72,6 +72,7 @@ pub(crate) trait Pose<S: Simd, const K: usize> {
     /// Angular velocity after the impact.
     fn spin_after(&self) -> Vectors<S, K>;
     /// The states before and after the impact of a body of revolution.
+    #[cfg(feature = "one-lane")]
     fn symmetric(&self) -> Option<[&SpatialState<S, K>; 2]> {
         None
     }
@@ -121,7 +122,7 @@ impl<S: Simd, const K: usize> Pose<S, K> for SymmetricPose<'_, S, K> {
         self.after.spin(self.body)
     }
 
-    #[inline(always)]
+    #[cfg(feature = "one-lane")]
     fn symmetric(&self) -> Option<[&SpatialState<S, K>; 2]> {
         Some([&self.before, &self.after])
     }

@@ -10,11 +10,12 @@ mod interleaved;
 mod particles;
 mod passes;
 
-pub(super) use advance::{Advance, General, Inlined, find};
+pub(super) use advance::{Advance, General, Inlined};
 pub(super) use bounce::bounce;
-pub(super) use collision::{Collide, ContactPoint, Dimension, Planar, Spatial};
+pub(super) use collision::{Dimension, Planar, Spatial};
 pub(super) use group::GROUPS;
-pub(super) use group::{Found, Group, Lost, Release};
+#[cfg(feature = "one-lane")]
+pub use group::one_lane;
+pub(super) use group::{Lost, Release};
 pub(crate) use impact::{Impact, Pose, Sink};
-pub(super) use interleaved::Idle;
 pub(crate) use interleaved::{Meanwhile, PLACES, of_group};

@@ -26,17 +26,6 @@ pub(crate) struct SpatialMotion<S: Simd, const K: usize> {
 }
 
 impl<S: Simd, const K: usize> SpatialState<S, K> {
-    /// The state in a lane.
-    #[inline(always)]
-    pub fn lane(&self, lane: usize) -> State {
-        State {
-            height: self.height.as_slice()[lane],
-            velocity: self.motion.velocity.lane(lane),
-            axis: self.axis.lane(lane),
-            precession: self.motion.precession.lane(lane),
-        }
-    }
-
     /// Angular velocity **ω** = Ĵ⁻¹**Λ**.
     #[inline(always)]
     pub fn spin(&self, body: &Body) -> Vectors<S, K> {

@@ -42,12 +42,6 @@ impl State {
         }
     }
 
-    /// Returns whether the body is at rest with its axis in the x–z plane. The motion from such a state stays in that plane.
-    pub(crate) fn is_at_rest(&self) -> bool {
-        let rest = Vector::default();
-        self.velocity == rest && self.precession == rest && self.axis.y == 0.0
-    }
-
     /// Angular velocity **ω** = Ĵ⁻¹**Λ**.
     pub fn spin(&self, body: &Body) -> Vector {
         self.in_lane().spin(body).lane(0)

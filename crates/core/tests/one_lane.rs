@@ -1,14 +1,18 @@
 //! One particle at a time: the engine over a single lane, with scalars as arguments and results, for a single flight, a single
-//! impact, or the states of a trajectory.
+//! impact, or the states of a trajectory from any state. It is a part of the core, of which it takes private parts, that only its tests
+//! compile.
 
-use super::lanes::{
-    Collide, ContactPoint, Found, General, Group, Idle, Impact, Meanwhile, Planar, Pose, Release,
-    Sink, Spatial, bounce, find,
-};
-use super::stop::{Limits, StopReason};
-use crate::contact;
+use super::Group;
+use crate::contact::LastContact;
+use crate::drop::lanes::advance::{General, find};
+use crate::drop::lanes::bounce::bounce;
+use crate::drop::lanes::collision::{Collide, ContactPoint, Planar, Spatial};
+use crate::drop::lanes::group::Release;
+use crate::drop::lanes::interleaved::Idle;
+use crate::drop::{Impact, Limits, Meanwhile, Pose, Sink, StopReason};
 use crate::law::{Law, Respond, Response};
-use crate::motion::{State, SymmetricState};
+use crate::math::Vector;
+use crate::motion::{SpatialState, State, SymmetricState};
 use crate::random::of_impact;
 use crate::shape::{Body, Hull, Sphere, with_hull};
 use crate::simd::one;
@@ -78,29 +82,27 @@ pub fn first_contact(
     with_hull!(&body.hull, hull => {
         let simd = Scalar::new();
         let mut groups = [Group::<Scalar, Spatial>::empty(simd, hull)];
-        let release = Lone {
-            state: *start,
-            drawn: (0, 0),
-        };
-        groups[0].occupy(&release, &mut (0..1), slope, hull);
+        groups[0].occupy(&Lone(*start), &mut (0..1), slope, hull);
         if let FlightStart::Contact { sphere, speed } = departure {
-            groups[0].depart_from(contact::LastContact {
+            groups[0].search.last_contact = LastContact {
                 sphere: one(sphere.sign()),
                 speed: one(speed),
-            });
+            };
         }
         groups[0].start(slope, hull);
         find::<Scalar, Spatial>(&mut groups, hull, &mut Idle).map_err(|_| NoConvergence)?;
         let [mut group] = groups;
         group.land(hull);
-        Ok(match group.found() {
-            Ok(Found { time, state, sphere }) => FlightEnd::Impact {
-                time: time.as_slice()[0],
-                state: state.lane(0),
-                sphere: Sphere::of(sphere.as_slice()[0]),
-            },
-            Err(StopReason::NeverLands) => FlightEnd::Never,
-            Err(_) => FlightEnd::Resting,
+        Ok(if group.particles.active.any() {
+            FlightEnd::Impact {
+                time: group.located.time.as_slice()[0],
+                state: state(&group.before()),
+                sphere: Sphere::of(group.search.last_contact.sphere.as_slice()[0]),
+            }
+        } else if group.particles.reasons[0] == StopReason::NeverLands {
+            FlightEnd::Never
+        } else {
+            FlightEnd::Resting
         })
     })
 }
@@ -116,7 +118,7 @@ pub fn collide(body: &Body, law: &Law<'_>, before: &State, sphere: Sphere) -> (S
         let steady = Law { deviation: 0.0, ..*law };
         steady.respond_all::<_, true>(&[state.contact(body, point)], &[], &mut response);
         let after = state.with_motion(state.after(body, point, &response[0]));
-        (after.lane(0), response[0].separation_speed.as_slice()[0])
+        (self::state(&after), response[0].separation_speed.as_slice()[0])
     })
 }
 
@@ -134,36 +136,21 @@ pub fn trajectory(
     limits: Limits,
     mut record: impl FnMut(&SingleImpact) -> bool,
 ) -> Result<StopReason, NoConvergence> {
-    let release = Lone {
-        state: start,
-        drawn: (0, 0),
-    };
-    trajectory_of(&release, body, law, slope, limits, &mut record)
-}
-
-/// [`trajectory`] of a particle of a run. The engine is compiled once here, not for every `record`.
-pub(super) fn trajectory_of(
-    release: &Lone,
-    body: &Body,
-    law: &Law<'_>,
-    slope: f64,
-    limits: Limits,
-    record: &mut dyn FnMut(&SingleImpact) -> bool,
-) -> Result<StopReason, NoConvergence> {
-    let start = release.state;
     if limits.impacts == 0 {
         return Ok(StopReason::ImpactsReached);
     }
     let go_on = Cell::new(true);
     let mut reporter = Reporter {
-        record,
+        record: &mut record,
         go_on: &go_on,
         ended: StopReason::Interrupted,
     };
     let (simd, job) = (Scalar::new(), (body, limits));
     let cycle = General { body, law, slope };
-    let release = (release, 0..1);
-    if start.is_at_rest() && slope == 0.0 && law.custom.is_none() {
+    let release = (&Lone(start), 0..1);
+    let rest = Vector::default();
+    let at_rest = start.velocity == rest && start.precession == rest && start.axis.y == 0.0;
+    if at_rest && slope == 0.0 && law.custom.is_none() {
         bounce::<_, Planar, _, 1>(simd, job, &cycle, release, &mut reporter, || go_on.get())
     } else {
         bounce::<_, Spatial, _, 1>(simd, job, &cycle, release, &mut reporter, || go_on.get())
@@ -172,21 +159,26 @@ pub(super) fn trajectory_of(
     Ok(reporter.ended)
 }
 
-/// The release of a single particle.
-pub(super) struct Lone {
-    pub state: State,
-    /// Seed and number of the particle whose ε_n are drawn.
-    pub drawn: (u64, u64),
+/// The state in the only lane.
+fn state<S: Simd, const K: usize>(lanes: &SpatialState<S, K>) -> State {
+    State {
+        height: lanes.height.as_slice()[0],
+        velocity: lanes.motion.velocity.lane(0),
+        axis: lanes.axis.lane(0),
+        precession: lanes.motion.precession.lane(0),
+    }
 }
+
+/// The release of a single particle.
+struct Lone(State);
 
 impl Release for Lone {
     fn start(&self, _: usize) -> State {
-        self.state
+        self.0
     }
 
-    fn chance(&self, _: usize, impact: usize) -> f64 {
-        let (seed, particle) = self.drawn;
-        of_impact(seed, particle, impact as u64)
+    fn chance(&self, particle: usize, impact: usize) -> f64 {
+        of_impact(0, particle as u64, impact as u64)
     }
 }
 
@@ -216,8 +208,8 @@ impl Sink for Reporter<'_> {
         };
         self.go_on.set((self.record)(&SingleImpact {
             time: impact.time.as_slice()[0],
-            before: before.lane(0),
-            after: after.lane(0),
+            before: state(before),
+            after: state(after),
             sphere: Sphere::BOTH[impact.part.as_slice()[0] as usize - 1],
         }));
     }
