@@ -1,10 +1,11 @@
 """What is said of the package in several places is the same."""
 
 import re
+import runpy
 import shutil
-import sys
 import tomllib
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 
@@ -13,8 +14,7 @@ PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
 VERSION = tomllib.loads((ROOT / "Cargo.toml").read_text())["workspace"]["package"]["version"]
 
 
-sys.path.insert(0, str(ROOT / "packaging"))
-import release  # noqa: E402  # a program, no package
+release = SimpleNamespace(**runpy.run_path(str(ROOT / "packaging/release.py")))  # a program
 
 
 def test_all_places_name_one_version() -> None:
