@@ -66,3 +66,8 @@ pub use shape::*;
 pub use simd::{Level, elementary};
 pub use simulate::simulate_series;
 pub use threads::{Monitor, Resources, STACK, default_threads};
+
+/// Runs the example of the page.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct ReadMe;

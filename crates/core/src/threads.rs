@@ -13,6 +13,16 @@ pub struct Resources {
     pub level: Level,
 }
 
+impl Default for Resources {
+    /// All cores, and the widest vector instructions of this processor.
+    fn default() -> Self {
+        Self {
+            threads: 0,
+            level: Level::best(),
+        }
+    }
+}
+
 /// Progress and cancellation of a run, shared with the thread that started it.
 #[derive(Default)]
 pub struct Monitor {
@@ -57,7 +67,13 @@ impl Monitor {
 }
 
 /// Bytes of the stack of a thread that the core or the binding starts, independent of `RUST_MIN_STACK`.
-pub const STACK: usize = 2 << 20;
+///
+/// Without optimisation every vector of the loop has a place of its own on the stack.
+pub const STACK: usize = if cfg!(debug_assertions) {
+    32 << 20
+} else {
+    2 << 20
+};
 
 /// The default number of threads: one for each core that the process may use. Environment variables are not read.
 pub fn default_threads() -> usize {

@@ -21,9 +21,9 @@ pub use scales::Scales;
 pub(crate) use series::{JoinedRuns, Source};
 pub use stop::{COLLAPSE_RUN, Limits, StopReason};
 
-use crate::law::Law;
+use crate::law::{Law, TangentialRestitution};
 use crate::math::Vector;
-use crate::shape::AnyBody;
+use crate::shape::{AnyBody, Dumbbell};
 use crate::simd::elementary::sincos;
 use crate::{Error, Value};
 
@@ -57,6 +57,29 @@ pub struct Run<'a> {
     pub settled: f64,
     /// Seed of the random numbers.
     pub seed: u64,
+}
+
+impl Default for Run<'_> {
+    /// One impact of each of 1000 dumbbells of the paper's Fig. 2, from 6 cm, under its law.
+    fn default() -> Self {
+        let body = Dumbbell::new(3e-3, 3e-4, 2500.0);
+        let law = TangentialRestitution::new(1.0).and_then(|tangential| Law::new(0.98, tangential));
+        Self {
+            body: body.expect("sizes are allowed").into(),
+            law: law.expect("coefficients are allowed"),
+            particles: 1000,
+            impacts: 1,
+            release_height: 0.06.into(),
+            gravity: 9.81,
+            orientation: Orientation::UniformAngle,
+            spin: Spin::NONE,
+            release_velocity: Vector::default(),
+            incline: 0.0,
+            minimum_speed: 0.0,
+            settled: 0.0,
+            seed: 0,
+        }
+    }
 }
 
 impl Run<'_> {

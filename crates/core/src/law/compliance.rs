@@ -38,7 +38,7 @@ impl Compliance {
         Self(entries)
     }
 
-    /// I/m + [**r**]ᵀJ⁻¹[**r**]: that of a body with mass m and the inverse tensor of inertia J⁻¹, hit at **r** from its centre of mass.
+    /// I/m + \[**r**\]ᵀJ⁻¹\[**r**\]: that of a body with mass m and the inverse tensor of inertia J⁻¹, hit at **r** from its centre of mass.
     pub fn of_body(mass: f64, inverse_inertia: &Symmetric, arm: Vector) -> Self {
         // Column i of [r] is r × e_i.
         let x = Vector::new(0.0, arm.z, -arm.y);

@@ -3,7 +3,7 @@
 //!
 //! For a body of revolution K separates in the frame of **n**, of **u**, the horizontal direction of the axis, and of
 //! **w** = **n** × **u**, into a 2×2 block {**n**, **u**} and a single entry for **w**. Each formula is written once, for a contact in
-//! each lane and, through [`compliant`], for either K; terms along **w** are omitted where all motion is in the plane of **n** and **u**.
+//! each lane and, through `compliant`, for either K; terms along **w** are omitted where all motion is in the plane of **n** and **u**.
 
 mod axial;
 mod chatterjee_ruina;

@@ -4,8 +4,8 @@ use proptest::prelude::*;
 use proptest::test_runner::{Config, RngSeed};
 use restitution_core::{
     Body, ChatterjeeRuina, Coulomb, Dumbbell, Frictionless, Hypothesis, Law, Level, Monitor,
-    Normal, Orientation, Plastic, Records, Resources, Rule, Run, Shape, Spin, Tabulated,
-    TangentialRestitution, Vector, Viscoelastic,
+    Normal, Plastic, Records, Resources, Rule, Run, Shape, Tabulated, TangentialRestitution,
+    Vector, Viscoelastic,
 };
 use std::f64::consts::PI;
 
@@ -38,15 +38,8 @@ pub fn paper(elongation: f64, law: Law<'_>) -> Run<'_> {
         law,
         particles: 100,
         impacts: 100,
-        release_height: 0.06.into(),
-        gravity: 9.81,
-        orientation: Orientation::UniformAngle,
-        minimum_speed: 0.0,
-        settled: 0.0,
-        spin: Spin::NONE,
-        release_velocity: Vector::default(),
-        incline: 0.0,
         seed: 2014,
+        ..Run::default()
     }
 }
 

@@ -1,0 +1,18 @@
+//! How often a dumbbell leaves the plane faster than it came.
+
+use restitution_core::{Dumbbell, Monitor, Resources, Run};
+
+fn main() -> Result<(), restitution_core::Error> {
+    let run = Run {
+        body: Dumbbell::new(3e-3, 3e-4, 2500.0)?.into(),
+        impacts: 100,
+        ..Run::default()
+    };
+    let records = run.simulate(Resources::default(), &Monitor::default())?;
+    let above = records.restitution.iter().filter(|&&e| e > 1.0).count();
+    println!(
+        "{above} of {} impacts have a restitution above 1",
+        records.impacts.iter().sum::<i64>()
+    );
+    Ok(())
+}
