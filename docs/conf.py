@@ -153,7 +153,7 @@ def _as_written(app: object, what: str, name: str, thing: object, options: objec
 
 PAGES_ABOVE = {
     "changelog": ["CHANGELOG.md"],
-    "contributing": ["CONTRIBUTING.md", "ARCHITECTURE.md", "CODE_OF_CONDUCT.md"],
+    "contributing": ["CONTRIBUTING.md", "ARCHITECTURE.md", "SECURITY.md", "CODE_OF_CONDUCT.md"],
 }
 
 
