@@ -68,11 +68,12 @@ quick: $(STAMP)  ## format, lints, types and a sample of the tests: three minute
 	$(MAKE) --jobs=2 lint
 	$(BIN)/python -m pytest -q -n $(JOBS) --dist loadfile $(QUICK:%=tests/%.py)
 
+# Old packages warn of newer ones, which lowest-direct leaves free.
 minimum:  ## the tests with the lowest versions that pyproject.toml allows, in an environment of its own, by uv
 	$(PYTHON) -m venv build/minimum
 	build/minimum/bin/python -m pip install --quiet --disable-pip-version-check uv
 	build/minimum/bin/uv pip install --python build/minimum/bin/python --resolution lowest-direct '.[test]'
-	build/minimum/bin/python -m pytest -n $(JOBS) --dist loadfile
+	build/minimum/bin/python -m pytest -n $(JOBS) --dist loadfile -W ignore::DeprecationWarning
 
 sdist: $(STAMP)  ## the source distribution; build it outside of a git tree, and run quick tests from it
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check 'maturin>=1.9,<2'
