@@ -85,11 +85,11 @@ def _parameters(what: str, table: list[dict[str, Any]]) -> str:
 
 
 def _cells(about: dict[str, Any]) -> str:
-    if about["type"] == "name":
+    if about["type"] in ("name", "choice"):
         allowed = ", ".join(f"`{name}`" for name in about["names"])
     else:
         template = import_module("restitution.cli._template")
-        allowed = template.interval(about).replace(">=", "≥")
+        allowed = template.allowed(about).replace(">=", "≥").removeprefix("in ")
     unit = {None: "", "1": "", "kg m-3": "kg/m³", "m s-1": "m/s", "kg m2": "kg m²"}.get(
         about["unit"], about["unit"]
     )

@@ -1,4 +1,5 @@
 """The coefficient of restitution as a distribution, not a number."""
+# ruff: noqa: F405 (names of the tables come from the modules that have them)
 
 from typing import TYPE_CHECKING, Any
 
@@ -27,17 +28,45 @@ if TYPE_CHECKING:
     from restitution.study import sweep
 
 __all__ = [
+    "Box",
+    "ChatterjeeRuina",
+    "Clump",
     "ClusterWarning",
+    "ConvexPolyhedron",
+    "Coulomb",
+    "CustomLaw",
+    "Cylinder",
+    "Die",
     "DistanceWarning",
+    "Dumbbell",
+    "Egg",
+    "Ellipsoid",
     "EnergyWarning",
     "ErrorBudget",
     "FluctuatingRestitution",
+    "Frictionless",
+    "LoadedSphere",
+    "Mesh",
     "NumericalError",
+    "Plastic",
     "RandomHeight",
     "RandomSpin",
     "RequiredRoundness",
+    "Revolution",
+    "Ring",
+    "Rough",
+    "RoughSphere",
+    "Scattered",
     "SimulationInterrupted",
+    "Spherocylinder",
+    "Spheroid",
+    "Superellipsoid",
+    "Tabulated",
+    "TangentialRestitution",
+    "Viscoelastic",
     "analytic",
+    "ball_grade",
+    "ball_roughness",
     "build_info",
     "clusters",
     "compare",
@@ -47,6 +76,7 @@ __all__ = [
     "figures",
     "fit",
     "flight",
+    "from_roundness",
     "posterior",
     "reduce",
     "required_roundness",
@@ -62,9 +92,7 @@ __all__ = [
 _HOMES = {
     **dict.fromkeys((entry["name"] for entry in _core.BODIES), "bodies"),
     **dict.fromkeys((entry["name"] for entry in (*_core.LAWS, *_core.MATERIALS)), "laws"),
-    **dict.fromkeys(("Rough", "RoughSphere"), "bodies"),
-    **dict.fromkeys(("Box", "Clump", "ConvexPolyhedron", "Cylinder", "Die", "Egg", "Ellipsoid"), "bodies"),
-    **dict.fromkeys(("Mesh", "Revolution", "Ring", "Superellipsoid"), "bodies"),
+    "Rough": "bodies",
     "ball_grade": "bodies",
     "ball_roughness": "bodies",
     "from_roundness": "bodies",
@@ -97,9 +125,6 @@ _HOMES = {
 """The module that each public name comes from; the others are modules themselves."""
 _FOLDERS = {"flight": "experiment.flight", "sound": "experiment.sound"}
 """The folders of the public modules that do not stand at the root."""
-
-if not TYPE_CHECKING:  # those of the table, which a type checker finds in the modules
-    __all__ = sorted({*__all__, *_HOMES})
 
 
 def __getattr__(name: str) -> Any:

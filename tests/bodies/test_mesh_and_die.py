@@ -10,8 +10,8 @@ import pytest
 from scipy.spatial import ConvexHull
 
 import restitution as rs
+from restitution import _core
 from restitution.bodies import directions
-from restitution.bodies._polyhedra import _triangles, hull_of
 
 Array = npt.NDArray[np.float64]
 
@@ -109,9 +109,7 @@ def test_the_triangles_of_a_polyhedron_depend_on_its_points_only() -> None:
         -points,
         points @ np.array([[0.6, 0.8, 0], [-0.8, 0.6, 0], [0, 0, 1]]),
     ):
-        hull = hull_of(turned)
-        assert hull is not None
-        assert _triangles(hull) == triangles
+        assert [tuple(corners) for corners in _core.hull(turned)] == triangles
     assert rs.ConvexPolyhedron(points).mass == pytest.approx(2500 * (2 * 1.7e-3) ** 3, rel=1e-14)
 
 
@@ -183,7 +181,9 @@ def test_files_that_hold_no_closed_mesh_are_refused(tmp_path: Path, monkeypatch:
     text = path.read_text()
     open_ = tmp_path / "open.stl"
     open_.write_text(text.replace("vertex 0 0 1", "vertex 0 0 1.5", 1))
-    with pytest.raises(ValueError, match=rf"{open_}: triangles: not closed at 4 edges, of which the first"):
+    with pytest.raises(
+        ValueError, match=rf"{open_}: triangles = .*: must be .* not closed at 4 edges, of which the first"
+    ):
         rs.Mesh.from_file(open_)
     broken = tmp_path / "broken.ply"
     broken.write_text("ply\nformat ascii 1.0\n")
@@ -211,8 +211,11 @@ def test_files_that_hold_no_closed_mesh_are_refused(tmp_path: Path, monkeypatch:
             {"triangles": [*FACES[:3], (1, 3, 2)]},
             r"not oriented at 3 edges.* the triangles 0 and 3",
         ),
-        ({"triangles": FACES[:, ::-1]}, r"enclose -1e-09 m³; must be counter-clockwise"),
-        ({"triangles": FACES + 1}, r"triangles = 4: must be triples of numbers of the vertices, from 0 to 3"),
+        ({"triangles": FACES[:, ::-1]}, "must be counter-clockwise"),
+        (
+            {"triangles": FACES + 1},
+            r"triangles = .*: must be triples of numbers of the vertices, from 0 to 3",
+        ),
         ({"triangles": FACES - 1}, "triangles"),
         ({"triangles": FACES + 0.5}, "triangles"),
         ({"triangles": FACES[:, :2]}, "triangles"),

@@ -268,7 +268,11 @@ def test_contact_numbers_the_rims_of_the_hull() -> None:
         (rs.Revolution, {"profile": [(0, 1e-3), (0, 2e-3)]}, "profile"),
         (rs.Revolution, {"profile": [(0, 1), (2, 1), (1, 2), (1, 0)]}, "points 0 and 2 cross"),
         (rs.Cylinder, {"radius": 0.0, "height": 1e-3}, "radius = 0.0"),
-        (rs.Ring, {"outer": 1e-3, "inner": 1e-3, "height": 1e-3}, "inner = 0.001: must be less than outer"),
+        (
+            rs.Ring,
+            {"outer": 1e-3, "inner": 1e-3, "height": 1e-3},
+            "inner = 0.001, outer = 0.001: must be less than outer",
+        ),
         (rs.Egg, EGG | {"width": 6e-3}, "width = 0.006, length = 0.0057: must be"),
         (rs.Egg, EGG | {"tip": 3e-3}, "tip = 0.003, width = 0.0044: must be"),
         (rs.Egg, {"length": 5e-3, "width": 4e-3, "blunt_end": 2e-3, "tip": 2e-3}, "tip"),

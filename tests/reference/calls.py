@@ -112,7 +112,11 @@ def described(kind: type[Any], entry: dict[str, Any]) -> Call:
     return kind, lambda: ({"normal": 0.5} if issubclass(kind, laws.Law) else {}) | values
 
 
-TABLES = ((bodies.KINDS, _core.BODIES), (laws.KINDS, _core.LAWS), (laws.MATERIALS, _core.MATERIALS))
+TABLES = (
+    ((*bodies.KINDS, *bodies.RIGID[:-1]), _core.BODIES),
+    (laws.KINDS, _core.LAWS),
+    (laws.MATERIALS, _core.MATERIALS),
+)
 
 CALLS: dict[str, Call] = {
     **{kind.__name__: described(kind, entry) for table in TABLES for kind, entry in zip(*table, strict=True)},
@@ -121,28 +125,9 @@ CALLS: dict[str, Call] = {
     "ball_grade": (bodies.ball_grade, lambda: {"grade": 10}),
     "ball_roughness": (bodies.ball_roughness, lambda: {"grade": 10}),
     "from_roundness": (bodies.from_roundness, lambda: {"diameter": 0.04, "out_of_roundness": 1e-4}),
-    "Clump": (
-        rs.Clump,
-        lambda: {"spheres": [(0, 0, 1e-3, 3e-3), (0, 0, -1e-3, 3e-3)], "density": 1e3, "inertia": "union"},
-    ),
     "Clump.from_file": (rs.Clump.from_file, lambda: {"path": folder() / "clump.csv", "scale": 1e-3}),
     "Clump.to_csv": (rs.Clump.to_csv, of("clump", path="clump.csv", replace=True)),
-    "Superellipsoid": (
-        rs.Superellipsoid,
-        lambda: {"semi_axes": (3e-3, 2e-3, 1e-3), "exponents": (4.0, 3.0), "density": 1e3},
-    ),
-    "Ellipsoid": (rs.Ellipsoid, lambda: {"semi_axes": (3e-3, 2e-3, 1e-3), "density": 1e3}),
-    "RoughSphere": (
-        rs.RoughSphere,
-        lambda: {
-            "radius": 3e-3,
-            "asperities": 20,
-            "asperity_radius": 1e-5,
-            "heights": 1e-5,
-            "density": 1e3,
-            "seed": 2,
-        },
-    ),
+    "RoughSphere": (rs.RoughSphere, lambda: rs.RoughSphere.example(asperities=20, heights=1e-5).model_dump()),
     "Rough": (
         rs.Rough,
         lambda: {
@@ -153,18 +138,7 @@ CALLS: dict[str, Call] = {
             "seed": 2,
         },
     ),
-    "ConvexPolyhedron": (rs.ConvexPolyhedron, lambda: {"points": np.eye(4, 3), "density": 1e3}),
-    "Box": (rs.Box, lambda: {"a": 1e-2, "b": 2e-2, "c": 3e-2, "density": 1e3}),
-    "Die": (rs.Die, lambda: {"faces": 8, "edge": 1e-2, "density": 1e3}),
-    "Mesh": (rs.Mesh, lambda: {"vertices": np.eye(4, 3), "triangles": TETRAHEDRON, "density": 1e3}),
     "Mesh.from_file": (rs.Mesh.from_file, lambda: {"path": folder() / "mesh.obj", "scale": 1e-3}),
-    "Revolution": (rs.Revolution, lambda: {"profile": [(0, 1e-3), (2e-3, 1e-3)], "density": 1e3}),
-    "Cylinder": (rs.Cylinder, lambda: {"radius": 1e-3, "height": 2e-3, "density": 1e3}),
-    "Ring": (rs.Ring, lambda: {"outer": 2e-3, "inner": 1e-3, "height": 2e-3, "density": 1e3}),
-    "Egg": (
-        rs.Egg,
-        lambda: {"length": 6e-3, "width": 4e-3, "blunt_end": 1.9e-3, "tip": 1.2e-3, "density": 1e3},
-    ),
     "CustomLaw": (rs.CustomLaw, lambda: {"function": _own, "name": "own"}),
     "Tabulated.from_function": (
         rs.Tabulated.from_function,

@@ -3,7 +3,7 @@
 import { problem } from "./link";
 import { outlineOf } from "./outline";
 import { part } from "./page";
-import { rowsOf, surfaceOf } from "./rigid";
+import { meshOf, rowsOf } from "./rigid";
 import { applies, bodyOf, MOST_IMPACTS, ORIENTATIONS, rounded, type Setup } from "./setup";
 import { nice } from "./statistics";
 import { beside, LAWS, LISTS, PARAMETERS, SHAPES, sizeOf, written, type Parameter } from "./table";
@@ -41,9 +41,9 @@ function sliderOf({ name, text, unit, low, high, example, ...about }: Parameter)
   const body = SHAPES.some(({ parameters }) => parameters.some((one) => one.name === name));
   const size = beside(name);
   const label = capital(unit === "1" ? text : name.replaceAll("_", " "));
-  if (size) return { key: name, name: `${label} / ${size.replaceAll("_", " ")}`, title: text, unit: "", factor: 1, beside: size, low: about.closed ? 0 : 0.05, high: about.most ?? 3, step: 0.01 };
+  if (size) return { key: name, name: `${label} / ${size.replaceAll("_", " ")}`, title: text, unit: "", factor: 1, beside: size, low: about.closed ? 0 : 0.05, high: about.beside ?? 3, step: 0.01 };
   const [shown, factor] = UNITS[unit!] ?? [unit!, 1];
-  const most = (high != null && high < 1e6 && !(about.whole && high > 1e4) ? high : (unit === "m" ? 6 : 5) * usual) * factor;
+  const most = (high != null && high < 1e6 && !(about.whole && high > 1e4) && high <= 20 * (usual || 1) ? high : (unit === "m" ? 6 : 5) * usual) * factor;
   const step = about.whole ? 1 : nice((most - low! * factor) / 200);
   return { key: name, name: label, title: text, unit: shown, factor, low: about.closed ? low! * factor : step, high: most, step, more: body && about.default !== undefined };
 }
@@ -194,8 +194,8 @@ export class Controls {
       };
     } else if (key === "mesh") {
       show = () => {
-        const surface = this.setup.shape === "mesh" && surfaceOf(this.setup);
-        if (surface) row.querySelector("p")!.textContent = `${surface.triangles.length} triangles, ${surface.points.length} vertices. Only the convex hull touches.`;
+        const surface = meshOf(this.setup);
+        if (this.setup.shape === "mesh") row.querySelector("p")!.textContent = `${surface.triangles.length} triangles, ${surface.points.length} vertices. Only the convex hull touches.`;
       };
     } else {
       const again = () => file.files?.[0] && this.load(file.files[0], this.unit);

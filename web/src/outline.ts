@@ -3,6 +3,7 @@
 import { Quaternion, Vector3 } from "three";
 import { numbers } from "./engine/layout";
 import type { Engine } from "./engine/module";
+import type { Surface } from "./rigid";
 import { bodyOf, isRigid, type Setup } from "./setup";
 import type { Flight, Turn } from "./stage/path";
 import { sizeOf } from "./table";
@@ -27,7 +28,7 @@ export interface Outline {
   reach: number;
 }
 
-/** A body without an axis: its outline is the least and the largest distance of a tangent plane from the centre of mass. */
+/** A rigid body: its outline is the least and the largest distance of a tangent plane from the centre of mass. */
 interface Free extends Outline {
   /** Principal moments, and the rotation from the principal axes: what its rotation follows from. */
   rotor: number[];
@@ -49,7 +50,7 @@ const known = new Map<string, Outline>();
 const KEPT = 16;
 
 const free = new WeakMap<Setup, Free>();
-/** The outline of a body without an axis. A set-up is never changed once it is on the page. */
+/** The outline of a rigid body. A set-up is never changed once it is on the page. */
 export function freeOf(setup: Setup): Free {
   const found = free.get(setup) ?? ofRigid(setup);
   free.set(setup, found);
@@ -78,13 +79,13 @@ function ofRigid(setup: Setup): Free {
   return { arcs: [arc(0), arc(Math.PI / 2)], size, length: 2 * reach, reach, rotor: [...row.subarray(0, 7)], centre, balls };
 }
 
-/** The places of a body without an axis that lie farthest in these directions, unit vectors, from its centre of mass. */
+/** The places of a rigid body that lie farthest in these directions, unit vectors, from its centre of mass. */
 export function farthestOf(setup: Setup, directions: Vector3[]): Vector3[] {
   const found = engine.farthest(numbers(setup), Float64Array.from(directions.flatMap((direction) => direction.toArray())));
   return directions.map((_, k) => new Vector3().fromArray(found, 3 * k));
 }
 
-/** How a body without an axis turns. */
+/** How a rigid body turns. */
 export function freely(setup: Setup): Turn | undefined {
   if (!isRigid(setup)) return undefined;
   const { rotor } = freeOf(setup);
@@ -92,6 +93,27 @@ export function freely(setup: Setup): Turn | undefined {
     const found = engine.turn(Float64Array.of(...rotor, w, x, y, z, spin.x, spin.y, spin.z, time));
     return { attitude: new Quaternion(found[1], found[2], found[3], found[0]), spin: new Vector3(found[4], found[5], found[6]) };
   };
+}
+
+/** Rows of so many numbers. */
+const rows = (numbers: Float64Array, width: number): number[][] => Array.from({ length: numbers.length / width }, (_, k) => [...numbers.subarray(width * k, width * (k + 1))]);
+
+/** What there is to draw of a rigid body, in m: a surface of triangles, or the profile (z, r) of a solid of revolution; else nothing. */
+export function drawingOf(setup: Setup): { surface?: Surface; profile?: number[][] } {
+  const [count = 0, ...found] = engine.drawing(numbers(setup));
+  const all = Float64Array.from(found);
+  if (count < 0) return { profile: rows(all, 2) };
+  return count > 0 ? { surface: { points: rows(all.subarray(0, count), 3), triangles: rows(all.subarray(count), 3) } } : {};
+}
+
+/** Why the core refuses the body of a set-up, or "". */
+export function refusal(setup: Setup): string {
+  try {
+    if (engine) engine.outline(numbers(setup));
+    return "";
+  } catch (error) {
+    return (error as Error).message;
+  }
 }
 
 export function outlineOf(setup: Setup): Outline {

@@ -53,7 +53,7 @@ export const DEFAULT: Readonly<Setup> = {
 export const MOST_IMPACTS = 2_000_000;
 
 export const bodyOf = (s: Setup) => kindOf(SHAPES, s.shape);
-/** Whether it has no axis; it is then released in any attitude alike. */
+/** Whether it is followed in any attitude; it is then released in all alike. */
 export const isRigid = (s: Setup): boolean => RIGID.some(({ key }) => key === s.shape);
 export const orientationOf = (s: Setup): Setup["orientation"] => (isRigid(s) ? "isotropic" : s.orientation);
 export const lawOf = (s: Setup) => kindOf(LAWS, s.law);

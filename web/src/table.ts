@@ -6,17 +6,15 @@ export interface Parameter {
   /** "1" for a ratio, null for a name. */
   unit: string | null;
   /** A table is written as in a link: numbers with _ between them. */
-  type: "number" | "pair" | "numbers" | "name" | "table";
+  type: "number" | "pair" | "numbers" | "name" | "choice" | "table";
   /** The interval of a number; null for an end that is infinite. Its upper end belongs to it. */
   low?: number;
   high?: number | null;
   closed?: boolean;
   names?: string[];
   whole?: boolean;
-  /** A length that has a slider of its own, and is not given beside the size of the body. */
-  apart?: boolean;
-  /** The end of its slider, beside the size of the body. */
-  most?: number;
+  /** The end of the slider of a length beside the size of the body; null if it has one of its own. */
+  beside?: number | null;
   default?: number | string;
   example: number | string;
 }
@@ -27,29 +25,47 @@ export interface Kind {
   key: string;
   text: string;
   parameters: Parameter[];
+  /** A rigid body: the parameters of the core, which may be several, or a table, of those of the page. */
+  described: Described[];
+}
+
+/** A parameter as the core describes it. */
+export interface Described extends Omit<Parameter, "type" | "example" | "default"> {
+  /** Its name in links. */
+  link: string;
+  type: "number" | "pair" | "numbers" | "whole" | "several" | "rows" | "name" | "choice";
+  /** The names in links, and descriptions, of several numbers. */
+  parts?: [string, string][];
+  columns?: string[];
+  default?: number | string | number[];
+  example: number | string | number[];
 }
 
 /** Put in by build.mjs. */
-declare const TABLE: { bodies: Omit<Kind, "key">[]; laws: Omit<Kind, "key">[] };
+interface Entry {
+  name: string;
+  text: string;
+  rigid?: boolean;
+  parameters: Described[];
+}
+declare const TABLE: { bodies: Entry[]; laws: Entry[] };
 
 const hyphened = (name: string) => name.replace(/(?<!^)(?=[A-Z])/g, "-").toLowerCase();
-const kinds = (table: Omit<Kind, "key">[]): Kind[] => table.map((kind) => ({ ...kind, key: hyphened(kind.name) }));
+/** Most asperities that the page draws. */
+const MOST_ASPERITIES = 10_000;
 
-export const BODIES = kinds(TABLE.bodies);
-/** Their normal coefficient, which all have, first. */
-export const LAWS = kinds(TABLE.laws).map((law) => ({
-  ...law,
-  parameters: [{ name: "normal", text: "normal restitution εₙ", unit: "1", type: "number", low: 0, high: 1, closed: true, default: 0.98, example: 0.98 } as Parameter, ...law.parameters],
-}));
-
-const length = (name: string, text: string, example: number): Parameter => ({ name, text, unit: "m", type: "number", low: 0, high: null, closed: false, example });
-const count = (name: string, text: string, low: number, high: number, example: number): Parameter => ({ name, text, unit: "1", type: "number", low, high, closed: true, whole: true, example });
-const DENSITY: Parameter = { ...length("density", "density of the body", 2500), unit: "kg m-3", default: 2500 };
-const edges = ["x", "y", "z"].map((of, k) => length(`edge_${of}`, `edge along ${of} of the body`, [8e-3, 6e-3, 4e-3][k]));
-const semiAxes = ["x", "y", "z"].map((of, k) => length(`axis_${of}`, `semi-axis along ${of} of the body`, [4e-3, 3e-3, 2e-3][k]));
-const within = (name: string, text: string, example: number, most: number): Parameter => ({ ...length(name, text, example), most });
-const exponent = (name: string, text: string, example: number): Parameter => ({ name, text, unit: "1", type: "number", low: 1.1, high: null, closed: true, example });
-const rigid = (name: string, text: string, ...parameters: Parameter[]): Kind => ({ name, key: hyphened(name), text, parameters: [...parameters, DENSITY] });
+/** A parameter of the core as those of the page. Of a mesh both tables are one. */
+function shown({ parts, columns, ...about }: Described): Parameter[] {
+  const one = { ...about, name: about.link, example: about.example as number | string, default: about.default as number | string };
+  if (about.default === undefined) delete (one as Partial<typeof one>).default;
+  if (parts) return parts.map(([name, text], k) => ({ ...one, name, text, type: "number", example: (about.example as number[])[k] }));
+  if (columns) return about.name === "triangles" ? [] : [table(columns.length === 3 && about.name === "vertices" ? "mesh" : about.link)];
+  if (about.type === "choice") return [{ ...one, type: "choice", default: String(about.default ?? about.example), example: String(about.example) }];
+  if (about.type !== "whole") return [{ ...one, type: about.type as Parameter["type"] }];
+  return [{ ...one, type: "number", whole: true, high: about.high == null ? Number.MAX_SAFE_INTEGER : MOST_ASPERITIES }];
+}
+const kinds = (entries: Entry[]): Kind[] =>
+  entries.map(({ parameters, ...kind }) => ({ ...kind, key: hyphened(kind.name), described: parameters, parameters: parameters.flatMap(shown) }));
 
 interface List {
   /** The body that it makes. */
@@ -94,26 +110,22 @@ export const LISTS: Record<string, List> = {
 };
 /** As they are in a link, in m. */
 export const written = (rows: readonly (readonly number[])[], unit: number): string => rows.flatMap((row) => row.map((x) => Number((x * unit).toPrecision(12)))).join("_");
-const table = (name: string, example = written(Object.values(LISTS[name].presets)[0], 1e-3)): Parameter => ({ name, text: name, unit: null, type: "table", example });
+/** Of a table that has none to begin with: a tetrahedron with unequal edges. */
+const MESH = "0_0_0_0.008_0_0_0_0.006_0_0_0_0.005*0_2_1_0_1_3_0_3_2_1_2_3";
+function table(name: string): Parameter {
+  const example = name in LISTS ? written(Object.values(LISTS[name].presets)[0], 1e-3) : MESH;
+  return { name, text: name, unit: null, type: "table", example };
+}
 
-/** Bodies without an axis, and those of revolution that run as such. A mesh has its vertices, and behind * the numbers of three of them for each triangle. */
-export const RIGID: readonly Kind[] = [
-  rigid("Ellipsoid", "ellipsoid with three semi-axes", ...semiAxes),
-  rigid("Superellipsoid", "superellipsoid, the superquadric of DEM codes", ...semiAxes,
-    exponent("exponent_1", "exponent along z", 4), exponent("exponent_2", "exponent across z", 3)),
-  rigid("Box", "cuboid", ...edges),
-  rigid("Die", "die with equal faces", { name: "faces", text: "number of faces", unit: null, type: "name", names: ["4", "6", "8", "12", "20"], default: "6", example: "6" }, length("edge", "length of an edge", 6e-3)),
-  rigid("ConvexPolyhedron", "convex hull of points", table("points")),
-  rigid("Cylinder", "cylinder: a coin, a tablet, a rod", length("radius", "radius", 3e-3), length("height", "height of the cylinder", 1.8e-3)),
-  rigid("Ring", "ring, washer or tube", length("outer", "outer radius", 4e-3), within("inner", "inner radius", 2.4e-3, 0.99), length("ring_height", "height of the ring", 2e-3)),
-  rigid("Egg", "egg of two caps, joined by an arc", length("length", "length", 6e-3), within("width", "width", 4.5e-3, 1),
-    within("blunt_end", "radius of the blunt end", 2.1e-3, 0.5), within("tip", "radius of the tip", 1.5e-3, 0.5)),
-  rigid("Revolution", "solid of revolution with any profile", table("profile")),
-  rigid("Clump", "spheres fixed to each other", table("spheres")),
-  rigid("RoughSphere", "sphere with small balls on its surface", length("radius", "radius of the sphere", 3e-3), count("asperities", "number of asperities", 1, 10_000, 1000),
-    { ...length("asperity_radius", "radius of the asperities, and their height", 3e-5), apart: true }, count("asperity_seed", "seed of the asperities", 0, Number.MAX_SAFE_INTEGER, 1)),
-  rigid("Mesh", "solid within triangles, whose hull touches", table("mesh", "0_0_0_0.008_0_0_0_0.006_0_0_0_0.005*0_2_1_0_1_3_0_3_2_1_2_3")),
-];
+export const BODIES = kinds(TABLE.bodies.filter(({ rigid }) => !rigid));
+/** Those that are followed in any attitude. A mesh has its vertices, and behind * the numbers of three of them for each triangle. */
+export const RIGID = kinds(TABLE.bodies.filter(({ rigid }) => rigid));
+/** Their normal coefficient, which all have, first. */
+export const LAWS = kinds(TABLE.laws).map((law) => ({
+  ...law,
+  parameters: [{ name: "normal", text: "normal restitution εₙ", unit: "1", type: "number", low: 0, high: 1, closed: true, default: 0.98, example: 0.98 } as Parameter, ...law.parameters],
+}));
+/** The bodies in the order of the core's table. */
 export const SHAPES: readonly Kind[] = [...BODIES, ...RIGID];
 
 /** Every parameter of a body or a law by its name, which several may share. */
@@ -129,5 +141,5 @@ export const sizeOf = ({ parameters }: Kind): string | undefined => parameters.f
 /** The length beside which this one is given, if it is not the size of its body. */
 export function beside(name: string): string | undefined {
   const body = SHAPES.find(({ parameters }) => parameters.some((one) => one.name === name));
-  return body && PARAMETERS.get(name)!.unit === "m" && !PARAMETERS.get(name)!.apart && sizeOf(body) !== name ? sizeOf(body) : undefined;
+  return body && PARAMETERS.get(name)!.unit === "m" && PARAMETERS.get(name)!.beside !== null && sizeOf(body) !== name ? sizeOf(body) : undefined;
 }

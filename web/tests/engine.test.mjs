@@ -166,12 +166,12 @@ test("a file that is none is refused, with the line and the reason", () => {
   refused("a.txt", "0 0 0\n1 0\n", /line 2: 1 0: must be x y z, with/);
   refused("a.txt", "0 0 0\n", /points: must be 4 to 1000 rows/);
   refused("a.txt", "0 1\n2 -1\n", /line 2: 2 -1: .*r >= 0/);
-  refused("a.txt", "0 1\n2 1\n0 2\n1 0\n", /profile: its lines from the points 1 and 3 cross/);
+  refused("a.txt", "0 1\n2 1\n0 2\n1 0\n", /profile = 4: must be an outline whose lines do not cross; those from the points 0 and 2 cross/);
   refused("a.bin", "\0\0", /not a text file/);
   refused("a.csv", "x,y,z\n0,0,0\n", /line 1: x y z: must be a header with the columns x, y, z and r/);
   refused("a.csv", "x,y,z,r\n0,0,0,1\n0,0,0\n", /line 3: .*4 values/);
   refused("a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 4\n", /line 4: f 1 2 4: must be f with the numbers of vertices/);
-  refused("a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", /not closed, or not oriented, at 3 edges/);
+  refused("a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", /not closed at 3 edges/);
   refused("a.stl", "solid\nvertex 0 0\n", /line 2: vertex 0 0: must be vertex x y z/);
 });
 
@@ -206,7 +206,7 @@ test("a set-up that cannot be is refused in the engine's words", () => {
   refused({ release_height: 1e-3 }, /release_height = 0\.001: must be finite and high enough/);
   refused({ normal: 1.5 }, /1\.5: must be/);
   refused({ gravity: 0 }, /gravity = 0\.0: must be finite and > 0/);
-  refused({ shape: "ring", inner: 4e-3 }, /inner = 0\.004: must be less than outer = 0\.004/);
+  refused({ shape: "ring", inner: 4e-3 }, /inner = 0\.004: must be less than outer/);
   refused({ shape: "egg", width: 7e-3 }, /width = 0\.007: must be > 0 and <= length/);
   for (const points of ["0_0_0_1_0_0_0_1_0_1_1_0", "0_0_0_1_0_0_2_0_0_3_0_0", "1_1_1_1_1_1_1_1_1_1_1_1"]) refused({ shape: "convex-polyhedron", points }, /must be not all in one plane/);
 });

@@ -30,6 +30,10 @@ pub struct Parameter {
     pub default: Option<Argument<'static>>,
     /// A usual value, for files that show what can be written, and for tests; those of all parameters go together.
     pub example: Argument<'static>,
+    /// Its name in links and stored data, where parameters of other bodies or of the run have the same one.
+    pub link: &'static str,
+    /// The largest usual value of a length beside the first length of its body, in which sliders give it; infinite if they do not.
+    pub beside: f64,
 }
 
 /// The values that a parameter may have.
@@ -41,6 +45,14 @@ pub enum Allowed {
     Pair(Interval),
     /// Numbers in a row.
     Numbers(Interval),
+    /// A whole number.
+    Whole(Interval),
+    /// One of these whole numbers.
+    Choice(&'static [u64]),
+    /// As many numbers as there are names, which are those of links, each with its description.
+    Several(&'static [[&'static str; 2]], Interval),
+    /// Rows of numbers: the names of the columns, the fewest rows, and the interval of the last column.
+    Rows(&'static [&'static str], usize, Interval),
     /// One of these names.
     Name(&'static [&'static str]),
 }
@@ -63,10 +75,14 @@ pub enum Argument<'a> {
     Number(f64),
     /// A number for each of two spheres.
     Pair([f64; 2]),
-    /// Numbers in a row.
+    /// Numbers in a row, or row by row.
     Numbers(&'a [f64]),
+    /// A whole number.
+    Whole(u64),
     /// A name.
     Name(&'a str),
+    /// A distribution, with its numbers.
+    Drawn(&'a str, &'a [f64]),
     /// None: the parameter is left out.
     Absent,
 }
@@ -82,6 +98,12 @@ impl Interval {
     pub const NOT_NEGATIVE: Self = Self {
         closed: true,
         ..Self::POSITIVE
+    };
+
+    /// All numbers.
+    pub const ANY: Self = Self {
+        low: f64::NEG_INFINITY,
+        ..Self::NOT_NEGATIVE
     };
 
     /// The numbers from `low` to `high`, both included.
@@ -110,6 +132,8 @@ impl Parameter {
             allowed,
             default: None,
             example,
+            link: name,
+            beside: 3.0,
         }
     }
 
@@ -134,6 +158,16 @@ impl Parameter {
     pub(crate) const fn density(text: &'static str) -> Self {
         let glass = Argument::Number(2500.0);
         Self::number("density", text, "kg m-3", Interval::POSITIVE, 2500.0).or(glass)
+    }
+
+    /// The same under another name in links.
+    pub(crate) const fn linked(self, link: &'static str) -> Self {
+        Self { link, ..self }
+    }
+
+    /// The same with another end of its slider.
+    pub(crate) const fn up_to(self, beside: f64) -> Self {
+        Self { beside, ..self }
     }
 
     /// The same, which each of two spheres may have its own of.
@@ -172,6 +206,8 @@ impl Parameter {
 /// Numbers, pairs and names out of arguments, in the order of the parameters.
 pub(crate) trait Arguments {
     fn number(&self, place: usize) -> f64;
+    fn whole(&self, place: usize) -> u64;
+    fn several<const N: usize>(&self, place: usize) -> [f64; N];
     fn pair(&self, place: usize) -> [f64; 2];
     fn numbers(&self, place: usize) -> &[f64];
     fn name(&self, place: usize) -> &str;
@@ -183,8 +219,20 @@ impl Arguments for [Argument<'_>] {
     fn number(&self, place: usize) -> f64 {
         match self.get(place) {
             Some(Argument::Number(number)) => *number,
+            Some(Argument::Whole(number)) => *number as f64,
             _ => f64::NAN,
         }
+    }
+
+    fn whole(&self, place: usize) -> u64 {
+        match self.get(place) {
+            Some(Argument::Whole(number)) => *number,
+            _ => self.number(place) as u64,
+        }
+    }
+
+    fn several<const N: usize>(&self, place: usize) -> [f64; N] {
+        self.numbers(place).try_into().unwrap_or([f64::NAN; N])
     }
 
     fn pair(&self, place: usize) -> [f64; 2] {

@@ -1,13 +1,13 @@
 //! Bodies, made from the parameters of a shape in SI units.
 
-use crate::describe::{self, Given};
+use crate::describe::{Given, arguments};
 use crate::errors::python_error;
 use numpy::{IntoPyArray, PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2};
-use pyo3::exceptions::PyValueError;
+use pyo3::exceptions::PyLookupError;
 use pyo3::prelude::*;
 use restitution_core::{
-    AnyBody, BODIES, Heights, Inertia, Matter, Quaternion, RigidBall, Roughness, Symmetric, Vector,
-    collected,
+    AnyBody, BODIES, BodyKind, Form, Heights, Inertia, Quaternion, RigidBall, Roughness, Symmetric,
+    Vector, collected, convex_hull,
 };
 
 /// A body of revolution, ready for a run.
@@ -175,11 +175,6 @@ impl Rigid {
         Ok(distances.collect::<Vec<_>>().into_pyarray(py))
     }
 
-    /// The same parts with another mass, centre of mass and tensor of inertia, in the axes that the body was given in.
-    fn with_inertia(&self, inertia: GivenInertia) -> PyResult<Self> {
-        rigid(self.0.clone().with_inertia(inertia.inertia()))
-    }
-
     /// Centre and radius of each ball or vertex, rows (x, y, z, radius) in m and the axes that the body was given in.
     fn balls<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
         let balls = self.0.balls().map_err(python_error)?;
@@ -218,38 +213,6 @@ impl GivenInertia {
     }
 }
 
-/// Balls, rows (x, y, z, radius), whose matter is that of their union, or summed ball by ball.
-#[pyfunction]
-fn clump(spheres: Vec<[f64; 4]>, density: f64, sum: bool) -> PyResult<Rigid> {
-    let matter = if sum { Matter::Sum } else { Matter::Union };
-    rigid(restitution_core::Rigid::clump(
-        &balls(&spheres),
-        density,
-        matter,
-    ))
-}
-
-fn balls(spheres: &[[f64; 4]]) -> Vec<RigidBall> {
-    let ball = |&[x, y, z, radius]: &[f64; 4]| RigidBall {
-        centre: Vector::new(x, y, z),
-        radius,
-    };
-    spheres.iter().map(ball).collect()
-}
-
-#[pyfunction]
-fn ellipsoid(semi_axes: [f64; 3], density: f64) -> PyResult<Rigid> {
-    rigid(restitution_core::Rigid::ellipsoid(semi_axes, density))
-}
-
-/// A superellipsoid with the exponents n₁ and n₂.
-#[pyfunction]
-fn superellipsoid(semi_axes: [f64; 3], exponents: [f64; 2], density: f64) -> PyResult<Rigid> {
-    rigid(restitution_core::Rigid::superellipsoid(
-        semi_axes, exponents, density,
-    ))
-}
-
 /// The attitudes (w, x, y, z) and ω in space of free bodies with these principal moments and axes, each after a time in s.
 #[pyfunction]
 fn turned<'py>(
@@ -284,70 +247,6 @@ fn turned<'py>(
     ])
 }
 
-/// The convex hull of points with triangles of them as faces.
-#[pyfunction]
-fn polyhedron(points: Vec<[f64; 3]>, triangles: Vec<[usize; 3]>, density: f64) -> PyResult<Rigid> {
-    rigid(restitution_core::Rigid::polyhedron(
-        &vectors(&points),
-        &triangles,
-        density,
-    ))
-}
-
-/// The solid within triangles of points, some of which are the vertices of its convex hull.
-#[pyfunction]
-fn mesh(
-    points: Vec<[f64; 3]>,
-    triangles: Vec<[usize; 3]>,
-    hull: Vec<usize>,
-    density: f64,
-) -> PyResult<Rigid> {
-    let points = vectors(&points);
-    rigid(restitution_core::Rigid::mesh(
-        &points, &triangles, &hull, density,
-    ))
-}
-
-fn vectors(points: &[[f64; 3]]) -> Vec<Vector> {
-    let vector = |&[x, y, z]: &[f64; 3]| Vector::new(x, y, z);
-    points.iter().map(vector).collect()
-}
-
-/// A solid of revolution with this profile of points (z, r).
-#[pyfunction]
-fn revolution(profile: Vec<[f64; 2]>, density: f64) -> PyResult<Rigid> {
-    rigid(restitution_core::Rigid::revolution(&profile, density))
-}
-
-/// An egg of this length and width, with caps of these radii.
-#[pyfunction]
-fn egg(size: [f64; 2], caps: [f64; 2], density: f64) -> PyResult<Rigid> {
-    rigid(restitution_core::Rigid::egg(size, caps, density))
-}
-
-/// The heights of asperities above the surface, as Python says them.
-#[derive(FromPyObject)]
-enum GivenHeights<'py> {
-    Equal(f64),
-    Drawn((String, Vec<f64>)),
-    Each(PyReadonlyArray1<'py, f64>),
-}
-
-impl GivenHeights<'_> {
-    fn heights(&self) -> PyResult<Heights<'_>> {
-        Ok(match self {
-            Self::Equal(height) => Heights::Equal(*height),
-            Self::Each(heights) => Heights::Given(heights.as_slice()?),
-            Self::Drawn((name, numbers)) => match (name.as_str(), numbers.as_slice()) {
-                ("exponential", &[mean]) => Heights::Exponential(mean),
-                ("normal", &[mean, deviation]) => Heights::Normal(mean, deviation),
-                ("power", &[exponent, least, most]) => Heights::Power(exponent, least, most),
-                _ => return Err(PyValueError::new_err("heights: no such distribution")),
-            },
-        })
-    }
-}
-
 /// Balls with a given inertia, and asperities on their free surface.
 #[pyfunction]
 fn rough(
@@ -356,41 +255,75 @@ fn rough(
     inertia: GivenInertia,
     asperities: usize,
     asperity_radius: f64,
-    heights: GivenHeights<'_>,
+    heights: Option<Given<'_>>,
     seed: u64,
 ) -> PyResult<Rigid> {
+    let given = [heights];
+    let heights = arguments(&given)?;
     let roughness = Roughness {
         asperities,
         radius: asperity_radius,
-        heights: heights.heights()?,
+        heights: Heights::of(heights.first(), asperity_radius).map_err(python_error)?,
         seed,
     };
     let inertia = inertia.inertia();
+    let ball = |&[x, y, z, radius]: &[f64; 4]| RigidBall {
+        centre: Vector::new(x, y, z),
+        radius,
+    };
+    let balls: Vec<_> = spheres.iter().map(ball).collect();
     rigid(restitution_core::Rigid::rough(
-        &balls(&spheres),
-        barrel,
-        inertia,
-        &roughness,
+        &balls, barrel, inertia, &roughness,
     ))
+}
+
+fn entry(name: &str) -> PyResult<&'static BodyKind> {
+    let found = BODIES.iter().find(|kind| kind.about().0 == name);
+    found.ok_or_else(|| PyLookupError::new_err(format!("no {name} in the table")))
 }
 
 /// The body with this name, made from all its parameters in their order.
 #[pyfunction]
-fn body(name: &str, arguments: Vec<Option<Given<'_>>>) -> PyResult<Solid> {
-    describe::made(BODIES.iter(), name, &arguments).map(Solid)
+fn body(py: Python<'_>, name: &str, given: Vec<Option<Given<'_>>>) -> PyResult<Py<PyAny>> {
+    let given = arguments(&given)?;
+    Ok(match entry(name)? {
+        BodyKind::Revolution(kind) => {
+            let made = (kind.make)(&given).map_err(python_error)?;
+            Py::new(py, Solid(made))?.into_any()
+        }
+        BodyKind::Rigid(kind) => Py::new(py, rigid(kind.body(&given))?)?.into_any(),
+    })
+}
+
+/// The triangles of the convex hull of points, by their numbers; none of points in one plane.
+#[pyfunction]
+fn hull(points: Vec<[f64; 3]>) -> Vec<[usize; 3]> {
+    let vector = |[x, y, z]: [f64; 3]| Vector::new(x, y, z);
+    let points: Vec<_> = points.into_iter().map(vector).collect();
+    convex_hull(&points).unwrap_or_default()
+}
+
+/// Points and triangles of a polyhedron with this name and these parameters: what there is to draw of it.
+#[pyfunction]
+fn faces(name: &str, given: Vec<Option<Given<'_>>>) -> PyResult<(Vec<[f64; 3]>, Vec<[usize; 3]>)> {
+    let BodyKind::Rigid(kind) = entry(name)? else {
+        return Ok((vec![], vec![]));
+    };
+    let point = |&Vector { x, y, z }: &Vector| [x, y, z];
+    Ok(
+        match (kind.make)(&arguments(&given)?).map_err(python_error)? {
+            Form::Faces(points, triangles) => (points.iter().map(point).collect(), triangles),
+            _ => (vec![], vec![]),
+        },
+    )
 }
 
 pub fn add_to(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<Solid>()?;
     module.add_class::<Rigid>()?;
-    module.add_function(wrap_pyfunction!(clump, module)?)?;
-    module.add_function(wrap_pyfunction!(ellipsoid, module)?)?;
-    module.add_function(wrap_pyfunction!(superellipsoid, module)?)?;
     module.add_function(wrap_pyfunction!(turned, module)?)?;
-    module.add_function(wrap_pyfunction!(polyhedron, module)?)?;
     module.add_function(wrap_pyfunction!(rough, module)?)?;
-    module.add_function(wrap_pyfunction!(mesh, module)?)?;
-    module.add_function(wrap_pyfunction!(revolution, module)?)?;
-    module.add_function(wrap_pyfunction!(egg, module)?)?;
+    module.add_function(wrap_pyfunction!(faces, module)?)?;
+    module.add_function(wrap_pyfunction!(hull, module)?)?;
     module.add_function(wrap_pyfunction!(body, module)?)
 }

@@ -1,11 +1,11 @@
 //! The table of bodies, laws and materials as JSON.
 
-use crate::parameters::asked;
+use crate::rigid::is_asked;
 use restitution_core::describe::{Allowed, Argument, Interval, Kind, Parameter};
 use restitution_core::law::Creation;
-use restitution_core::{BODIES, LAWS, MATERIALS};
+use restitution_core::{BODIES, BodyKind, LAWS, MATERIALS};
 
-/// Objects with the keys `bodies`, `laws` and `materials`; each entry has `name`, `text` and `parameters`, a law `creates_energy`.
+/// Objects with the keys `bodies`, `laws` and `materials`; each entry has `name`, `text` and `parameters`, a body `rigid`, a law `creates_energy`.
 pub fn json() -> String {
     let laws = LAWS.iter().map(|law| {
         let creates = match law.creates_energy {
@@ -15,9 +15,13 @@ pub fn json() -> String {
         };
         kind(&law.kind, &format!(",\"creates_energy\":{creates}"))
     });
+    let bodies = BODIES.iter().map(|body| match body {
+        BodyKind::Revolution(about) => kind(about, ",\"rigid\":false"),
+        BodyKind::Rigid(about) => kind(about, ",\"rigid\":true"),
+    });
     format!(
         "{{\"bodies\":{},\"laws\":{},\"materials\":{}}}",
-        list(BODIES.iter().map(|about| kind(about, ""))),
+        list(bodies),
         list(laws),
         list(MATERIALS.iter().map(|about| kind(about, "")))
     )
@@ -29,8 +33,10 @@ fn kind<T>(about: &Kind<T>, more: &str) -> String {
         text(about.name),
         text(about.text),
         list(
-            about.parameters[..asked(about.parameters)]
+            about
+                .parameters
                 .iter()
+                .filter(|about| is_asked(about))
                 .map(parameter)
         )
     )
@@ -46,6 +52,26 @@ fn parameter(about: &Parameter) -> String {
         Allowed::Number(allowed) => interval("number", allowed),
         Allowed::Pair(allowed) => interval("pair", allowed),
         Allowed::Numbers(allowed) => interval("numbers", allowed),
+        Allowed::Whole(allowed) => interval("whole", allowed),
+        Allowed::Choice(numbers) => {
+            let names = numbers.iter().map(|number| text(&number.to_string()));
+            format!("\"type\":\"choice\",\"names\":{}", list(names))
+        }
+        Allowed::Several(names, allowed) => {
+            let parts = list(
+                names
+                    .iter()
+                    .map(|[link, about]| list([text(link), text(about)])),
+            );
+            format!("{},\"parts\":{parts}", interval("several", allowed))
+        }
+        Allowed::Rows(columns, least, allowed) => {
+            let columns = list(columns.iter().map(|name| text(name)));
+            format!(
+                "{},\"columns\":{columns},\"least\":{least}",
+                interval("rows", allowed)
+            )
+        }
         Allowed::Name(names) => {
             let names = names.iter().map(|name| text(name));
             format!("\"type\":\"name\",\"names\":{}", list(names))
@@ -56,8 +82,10 @@ fn parameter(about: &Parameter) -> String {
     });
     let example = argument(about.example);
     format!(
-        "{{\"name\":{},\"text\":{},\"unit\":{},{allowed},\"example\":{example}{default}}}",
+        "{{\"name\":{},\"link\":{},\"beside\":{},\"text\":{},\"unit\":{},{allowed},\"example\":{example}{default}}}",
         text(about.name),
+        text(about.link),
+        number(about.beside),
         text(about.text),
         about.unit.map_or("null".to_owned(), text)
     )
@@ -69,7 +97,8 @@ fn argument(given: Argument<'_>) -> String {
         Argument::Pair(values) => list(values.map(number)),
         Argument::Numbers(values) => list(values.iter().copied().map(number)),
         Argument::Name(name) => text(name),
-        Argument::Absent => "null".to_owned(),
+        Argument::Whole(value) => value.to_string(),
+        Argument::Drawn(..) | Argument::Absent => "null".to_owned(),
     }
 }
 

@@ -50,7 +50,7 @@ fn of_run(work: impl FnOnce(&Parameters<'_>) -> Result<Vec<f64>, Error>) -> f64 
     keep(Parameters::read(&given()).and_then(|parameters| work(&parameters)))
 }
 
-/// Address of the place for `count` numbers: `parameters::COUNT` of them, and behind these a body without an axis.
+/// Address of the place for `count` numbers: `parameters::COUNT` of them, and behind these a body of any shape.
 #[allow(unsafe_code)]
 #[unsafe(no_mangle)]
 pub extern "C" fn parameters(count: usize) -> *const AtomicU64 {
@@ -67,7 +67,7 @@ pub extern "C" fn simulate(first: usize, count: usize) -> f64 {
     of_run(|parameters| records::simulate(&parameters.run()?, first, count))
 }
 
-/// Follows one particle in three dimensions; the table is that of `path::follow`, for a body without an axis that of
+/// Follows one particle in three dimensions; the table is that of `path::follow`, for a body of any shape that of
 /// `path::follow_rigid`.
 #[allow(unsafe_code)]
 #[unsafe(no_mangle)]
@@ -76,7 +76,7 @@ pub extern "C" fn follow(particle: usize) -> f64 {
 }
 
 /// The outline of a body of revolution: two rows, of the arcs at the ends of the axis, each centre, semi-axes along and across the axis,
-/// and the angles from and to which the arc goes. Of a body without an axis the table is that of `rigid::outline`.
+/// and the angles from and to which the arc goes. Of a body of any shape the table is that of `rigid::outline`.
 #[allow(unsafe_code)]
 #[unsafe(no_mangle)]
 pub extern "C" fn outline() -> f64 {
@@ -90,7 +90,14 @@ pub extern "C" fn outline() -> f64 {
     })
 }
 
-/// The table of `rigid::farthest` of a body without an axis, for `count` directions, which are behind it.
+/// The table of `rigid::drawing`.
+#[allow(unsafe_code)]
+#[unsafe(no_mangle)]
+pub extern "C" fn drawing() -> f64 {
+    keep(rigid::drawing(&given()[parameters::COUNT..]))
+}
+
+/// The table of `rigid::farthest` of a body of any shape, for `count` directions, which are behind it.
 #[allow(unsafe_code)]
 #[unsafe(no_mangle)]
 pub extern "C" fn farthest(count: usize) -> f64 {
@@ -104,7 +111,7 @@ pub extern "C" fn farthest(count: usize) -> f64 {
     )
 }
 
-/// The free rotation of a body without an axis, of the fifteen numbers that `rigid::turned` takes.
+/// The free rotation of a body of any shape, of the fifteen numbers that `rigid::turned` takes.
 #[allow(unsafe_code)]
 #[unsafe(no_mangle)]
 pub extern "C" fn turn() -> f64 {

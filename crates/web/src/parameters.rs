@@ -3,7 +3,7 @@
 use crate::rigid;
 use restitution_core::describe::{Allowed, Argument, Kind, Parameter};
 use restitution_core::{
-    AnyBody, BODIES, Error, LAWS, Law, Orientation, Rigid, Run, Solid, Spin, Vector,
+    AnyBody, BODIES, BodyKind, Error, LAWS, Law, Orientation, Rigid, Run, Solid, Spin, Vector,
 };
 use std::rc::Rc;
 
@@ -20,8 +20,10 @@ pub const fn asked(parameters: &[Parameter]) -> usize {
 pub const OF_BODY: usize = {
     let (mut most, mut i) = (0, 0);
     while i < BODIES.len() {
-        let count = asked(BODIES[i].parameters);
-        most = if count > most { count } else { most };
+        if let BodyKind::Revolution(kind) = &BODIES[i] {
+            let count = asked(kind.parameters);
+            most = if count > most { count } else { most };
+        }
         i += 1;
     }
     most
@@ -40,8 +42,8 @@ pub const OF_LAW: usize = {
 pub const COUNT: usize = 1 + OF_BODY + 1 + 1 + OF_LAW + 16;
 
 /// The parameters, in the order of `web/src/engine/layout.ts`: the number of the body in the table of bodies, its parameters in their
-/// order, and the same of the law; a name is given as its number. Places that are not needed may hold anything. A body without an axis
-/// is behind them.
+/// order, and the same of the law; a name is given as its number. Places that are not needed may hold anything. The arguments of a rigid body
+/// are behind them.
 pub struct Parameters<'a> {
     row: &'a [f64],
     rigid: Option<Rc<Rigid>>,
@@ -72,7 +74,7 @@ impl<'a> Row<'a> {
 }
 
 /// The entry of a table that a number names; the last one for all that are too large.
-fn chosen<T>(table: &[T], number: f64) -> &T {
+pub fn chosen<T>(table: &[T], number: f64) -> &T {
     &table[(number as usize).min(table.len() - 1)]
 }
 
@@ -106,9 +108,9 @@ impl<'a> Parameters<'a> {
         let mut row = Row(self.row);
         let solid = body(&mut row);
         Ok(Run {
-            body: match &self.rigid {
-                Some(body) => AnyBody::Rigid(body),
-                None => solid?.into(),
+            body: match (&self.rigid, solid) {
+                (Some(body), _) => AnyBody::Rigid(body),
+                (None, solid) => solid.expect("a rigid body is behind")?.into(),
             },
             law: law(&mut row)?,
             particles: row.number() as usize,
@@ -134,8 +136,13 @@ impl<'a> Parameters<'a> {
     }
 }
 
-fn body(row: &mut Row<'_>) -> Result<Solid, Error> {
-    make(chosen(BODIES, row.number()), row.next::<OF_BODY>())
+/// The body of revolution, if it is one; a rigid body is behind the parameters.
+fn body(row: &mut Row<'_>) -> Option<Result<Solid, Error>> {
+    let (kind, numbers) = (chosen(BODIES, row.number()), row.next::<OF_BODY>());
+    match kind {
+        BodyKind::Revolution(kind) => Some(make(kind, numbers)),
+        BodyKind::Rigid(..) => None,
+    }
 }
 
 fn law(row: &mut Row<'_>) -> Result<Law<'static>, Error> {

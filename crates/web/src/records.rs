@@ -3,7 +3,7 @@
 use restitution_core::{AnyBody, Columns, Error, Level, Monitor, Records, Resources, Run};
 
 /// Eight columns of shape (count, impacts): time, impact velocity, rebound velocity, restitution, rotational fraction, energy
-/// ratio, angle, contact; NaN, or 0 in the last, where there was no impact; the angle of a body without an axis is NaN, and its contact the part. Then three numbers per particle: number of impacts,
+/// ratio, angle, contact; NaN, or 0 in the last, where there was no impact; the angle of a rigid body is NaN, and its contact the part. Then three numbers per particle: number of impacts,
 /// stop reason, and angle at release.
 pub fn simulate(run: &Run<'_>, first: usize, count: usize) -> Result<Vec<f64>, Error> {
     let records = alone(

@@ -1,8 +1,9 @@
-//! A body without an axis as a row of numbers, written by `web/src/rigid.ts` behind the parameters: its kind, its density, and what that
-//! kind needs, in SI units.
+//! A rigid body as a row of numbers, written by `web/src/rigid.ts` behind the parameters: its number in the table of bodies, and its
+//! arguments, in SI units.
 
-use restitution_core::{Error, Heights, Matter, Rigid, RigidBall, Roughness, Top, Vector};
-use restitution_core::{Inertia, Quaternion};
+use crate::parameters::chosen;
+use restitution_core::describe::{Allowed, Argument, Parameter};
+use restitution_core::{BODIES, BodyKind, Error, Form, Quaternion, Rigid, RigidBall, Top, Vector};
 use std::cell::RefCell;
 use std::rc::Rc;
 
@@ -25,70 +26,63 @@ pub fn body(numbers: &[f64]) -> Result<Rc<Rigid>, Error> {
     Ok(made)
 }
 
+/// The number of a kind of the table, and its arguments: a number each, that of a name for a name; numbers in a row by themselves, and a table
+/// after the number of its entries. What is usually left out is so here.
 fn make(numbers: &[f64]) -> Result<Rigid, Error> {
-    let (&[kind, density], rest) = numbers.split_first_chunk().expect("kind and density");
-    match kind as u32 {
-        0 => {
-            let (counts, rest) = rest.split_first_chunk::<3>().expect("three counts");
-            let [points, triangles, hull] = counts.map(|count| count as usize);
-            let (points, rest) = rest.split_at(3 * points);
-            let (triangles, rest) = rest.split_at(3 * triangles);
-            let points: Vec<_> = points.as_chunks().0.iter().map(vector).collect();
-            let corners = triangles.as_chunks::<3>().0.iter();
-            let triangles: Vec<_> = corners.map(|row| row.map(|i| i as usize)).collect();
-            if hull == 0 {
-                return Rigid::polyhedron(&points, &triangles, density);
-            }
-            let hull: Vec<_> = rest[..hull].iter().map(|&i| i as usize).collect();
-            Rigid::mesh(&points, &triangles, &hull, density)
-        }
-        1 => {
-            let balls = rest.as_chunks().0.iter();
-            let balls: Vec<_> = balls.map(|&[x, y, z, r]| ball([x, y, z], r)).collect();
-            Rigid::clump(&balls, density, Matter::Union)
-        }
-        2 => Rigid::ellipsoid(*rest.first_chunk().expect("three semi-axes"), density),
-        3 => {
-            let &[radius, count, asperity, seed] = rest.first_chunk().expect("four numbers");
-            let sphere = [ball([0.0; 3], radius)];
-            let inertia: Inertia = Rigid::clump(&sphere, density, Matter::Sum)?.inertia;
-            let roughness = Roughness {
-                asperities: count as usize,
-                radius: asperity,
-                heights: Heights::Equal(asperity),
-                seed: seed as u64,
-            };
-            Rigid::rough(&sphere, false, inertia, &roughness)
-        }
-        4 => {
-            let &[a, b, c, n1, n2] = rest.first_chunk().expect("semi-axes and exponents");
-            Rigid::superellipsoid([a, b, c], [n1, n2], density)
-        }
-        5 => {
-            let &[outer, inner, height] = rest.first_chunk().expect("three lengths");
-            if inner >= outer {
-                return Err(Error::Parameter {
-                    name: "inner",
-                    value: inner.into(),
-                    allowed: format!("less than outer = {outer:?} (m)"),
-                });
-            }
-            let half = 0.5 * height;
-            let first = [-half, inner];
-            let corners = [first, [-half, outer], [half, outer], [half, inner], first];
-            Rigid::revolution(&corners, density)
-        }
-        6 => {
-            let &[length, width, blunt_end, tip] = rest.first_chunk().expect("four lengths");
-            Rigid::egg([length, width], [blunt_end, tip], density)
-        }
-        _ => Rigid::revolution(rest.as_chunks().0, density),
-    }
+    let (&number, mut rest) = numbers.split_first().expect("a kind");
+    let BodyKind::Rigid(kind) = chosen(BODIES, number) else {
+        unreachable!("a rigid body behind the parameters");
+    };
+    kind.body(&arguments(kind.parameters, &mut rest))
 }
 
-fn ball(centre: [f64; 3], radius: f64) -> RigidBall {
-    let centre = vector(&centre);
-    RigidBall { centre, radius }
+/// True if the page asks for it: for nothing that is usually left out, and bodies are homogeneous.
+pub fn is_asked(about: &Parameter) -> bool {
+    !about.is_optional() && about.unit != Some("kg m2")
+}
+
+/// The arguments of a kind with these parameters at the beginning of some numbers.
+fn arguments<'a>(parameters: &[Parameter], numbers: &mut &'a [f64]) -> Vec<Argument<'a>> {
+    let mut take = |count: usize| {
+        let (taken, rest) = numbers.split_at(count);
+        *numbers = rest;
+        taken
+    };
+    let argument = |about: &Parameter| match about.allowed {
+        _ if !is_asked(about) => about.default.unwrap_or(Argument::Absent),
+        Allowed::Several(names, _) => Argument::Numbers(take(names.len())),
+        Allowed::Rows(..) => {
+            let count = take(1)[0] as usize;
+            Argument::Numbers(take(count))
+        }
+        Allowed::Choice(numbers) => Argument::Whole(*chosen(numbers, take(1)[0])),
+        Allowed::Name(names) => Argument::Name(chosen::<&'static str>(names, take(1)[0])),
+        _ => Argument::Number(take(1)[0]),
+    };
+    parameters.iter().map(argument).collect()
+}
+
+/// What there is to draw of a body behind the parameters: three times the number of points and their places, and the numbers of triangles; or
+/// minus twice the number of points (z, r) of a profile, and these; or nothing, where it is its balls or points that lie farthest.
+pub fn drawing(numbers: &[f64]) -> Result<Vec<f64>, Error> {
+    let (&number, mut rest) = numbers.split_first().expect("a kind");
+    let BodyKind::Rigid(kind) = chosen(BODIES, number) else {
+        return Ok(Vec::new());
+    };
+    Ok(match (kind.make)(&arguments(kind.parameters, &mut rest))? {
+        Form::Faces(points, triangles) | Form::Mesh(points, triangles) => {
+            let mut row = vec![3.0 * points.len() as f64];
+            row.extend(points.into_iter().flat_map(components));
+            row.extend(triangles.into_flattened().into_iter().map(|i| i as f64));
+            row
+        }
+        Form::Profile(points) => {
+            let mut row = vec![-2.0 * points.len() as f64];
+            row.extend(points.into_flattened());
+            row
+        }
+        Form::Body(_) => Vec::new(),
+    })
 }
 
 /// The principal moments over mR², the rotation from the principal axes, the centre of mass, R, and the balls or vertices that can touch,
@@ -154,39 +148,54 @@ pub fn components(of: Vector) -> [f64; 3] {
 mod tests {
     use super::*;
 
-    /// Balls come out as they went in; the body is made once; a tetrahedron has the centre of mass of its corners, as hull and as mesh.
+    /// Numbers as the page writes them.
+    fn row(name: &str, arguments: &[f64]) -> Vec<f64> {
+        let number = BODIES
+            .iter()
+            .position(|kind| kind.about().0 == name)
+            .unwrap();
+        [&[number as f64], arguments].concat()
+    }
+
+    const BALLS: [f64; 10] = [8.0, 0.0, 0.0, 1e-3, 2e-3, 0.0, 0.0, -1e-3, 3e-3, 2500.0];
+
+    /// Balls come out as they went in; the body is made once; a tetrahedron has the centre of mass of its corners, as hull and as mesh, and
+    /// four faces.
     #[test]
     fn bodies_are_those_of_their_numbers() {
-        let numbers = [1.0, 2500.0, 0.0, 0.0, 1e-3, 2e-3, 0.0, 0.0, -1e-3, 3e-3];
+        let numbers = row("Clump", &BALLS);
         let clump = body(&numbers).unwrap();
         assert!(Rc::ptr_eq(&clump, &body(&numbers).unwrap()));
-        let row = outline(&clump).unwrap();
-        for (found, given) in row[11..].iter().zip(&numbers[2..]) {
+        for (found, given) in outline(&clump).unwrap()[11..].iter().zip(&BALLS[1..9]) {
             assert!((found - given).abs() < 1e-18, "{found} for {given}");
         }
         let corners = [
-            0.0, 0.0, 0.0, 4e-3, 0.0, 0.0, 0.0, 4e-3, 0.0, 0.0, 0.0, 4e-3,
+            12.0, 0.0, 0.0, 0.0, 4e-3, 0.0, 0.0, 0.0, 4e-3, 0.0, 0.0, 0.0, 4e-3,
         ];
-        let faces = [0.0, 2.0, 1.0, 0.0, 1.0, 3.0, 0.0, 3.0, 2.0, 1.0, 2.0, 3.0];
-        for hull in [&[][..], &[0.0, 1.0, 2.0, 3.0]] {
-            let counts = [0.0, 2500.0, 4.0, 4.0, hull.len() as f64];
-            let made = body(&[&counts[..], &corners, &faces, hull].concat()).unwrap();
-            let centre = made.inertia.centre;
+        let faces = [
+            12.0, 0.0, 2.0, 1.0, 0.0, 1.0, 3.0, 0.0, 3.0, 2.0, 1.0, 2.0, 3.0,
+        ];
+        let hull = row("ConvexPolyhedron", &[&corners[..], &[2500.0]].concat());
+        let mesh = row("Mesh", &[&corners[..], &faces, &[2500.0]].concat());
+        for numbers in [hull, mesh] {
+            let centre = body(&numbers).unwrap().inertia.centre;
             assert!((centre - Vector::new(1e-3, 1e-3, 1e-3)).norm() < 1e-18);
+            let drawn = drawing(&numbers).unwrap();
+            assert_eq!((drawn[0], drawn.len()), (12.0, 25));
         }
     }
 
     /// Where a body lies farthest, it has the support of that direction; a ring is one.
     #[test]
     fn the_farthest_place_has_the_support() {
-        let bodies: [&[f64]; 4] = [
-            &[1.0, 2500.0, 0.0, 0.0, 1e-3, 2e-3, 0.0, 0.0, -1e-3, 3e-3],
-            &[4.0, 2500.0, 4e-3, 3e-3, 2e-3, 3.0, 5.0],
-            &[5.0, 2500.0, 4e-3, 2e-3, 1e-3],
-            &[6.0, 2500.0, 6e-3, 4.6e-3, 2.1e-3, 1.5e-3],
+        let bodies = [
+            row("Clump", &BALLS),
+            row("Superellipsoid", &[4e-3, 3e-3, 2e-3, 3.0, 5.0, 2500.0]),
+            row("Ring", &[4e-3, 2e-3, 1e-3, 2500.0]),
+            row("Egg", &[6e-3, 4.6e-3, 2.1e-3, 1.5e-3, 2500.0]),
         ];
         for numbers in bodies {
-            let body = body(numbers).unwrap();
+            let body = body(&numbers).unwrap();
             for direction in [[0.6, 0.0, 0.8], [0.48, -0.64, -0.6]] {
                 let place = farthest(&body, &direction).unwrap();
                 let direction = vector(&direction);
@@ -197,7 +206,7 @@ mod tests {
                 assert!((found - support).abs() < 1e-16, "{found} for {support}");
             }
         }
-        assert!(body(&[5.0, 2500.0, 4e-3, 4e-3, 1e-3]).is_err());
+        assert!(body(&row("Ring", &[4e-3, 4e-3, 1e-3, 2500.0])).is_err());
     }
 
     /// A free body keeps its angular momentum, of which its rotation about a principal axis is a simple one.

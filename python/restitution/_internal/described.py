@@ -44,9 +44,9 @@ class Described(Parameters):
         given = (about for about in cls.entry()["parameters"] if about.get("default", 0.0) is not None)
         return cls(**{about["name"]: about["example"] for about in given} | others)
 
-    def _arguments(self, *, without: str = "") -> list[Any]:
-        """Return all parameters but one, in the order in which the core takes them."""
-        return [getattr(self, name) for name in type(self).model_fields if name != without]
+    def _arguments(self) -> list[Any]:
+        """Return all parameters in the order in which the core takes them."""
+        return [getattr(self, about["name"]) for about in self.entry()["parameters"]]
 
     @model_validator(mode="after")
     def _is_possible(self) -> Self:

@@ -128,7 +128,7 @@ def _oriented(body: Body | RigidBody, orientation: OrientationName | None) -> Or
     if not (isinstance(orientation, str) and orientation in ORIENTATIONS):
         raise ParameterError(wrong("orientation", orientation, " or ".join(map(repr, ORIENTATIONS))))
     if orientation != "isotropic" and not isinstance(body, Body | RoughSphere):
-        raise ParameterError(wrong("orientation", orientation, "'isotropic', for a body without an axis"))
+        raise ParameterError(wrong("orientation", orientation, "'isotropic', for a rigid body of any shape"))
     return orientation
 
 

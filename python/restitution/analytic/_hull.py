@@ -15,10 +15,8 @@ from typing import NamedTuple, TypeAlias
 import numpy as np
 
 from restitution.analytic._disc import Number
-from restitution.bodies import Body, Cylinder, Egg, Revolution, Ring, RoughSphere
-
-Turned = Revolution | Cylinder | Ring | Egg
-"""Rigid bodies that are solids of revolution."""
+from restitution.bodies import Body, Egg, RoughSphere
+from restitution.bodies import Turned as Turned
 
 
 @dataclass(frozen=True)

@@ -16,6 +16,7 @@ from restitution.bodies._loaded_sphere import LoadedSphere
 from restitution.bodies._mesh import Mesh
 from restitution.bodies._polyhedra import Box, ConvexPolyhedron
 from restitution.bodies._revolution import Cylinder, Egg, Revolution, Ring
+from restitution.bodies._revolution import Turned as Turned
 from restitution.bodies._rigid import RigidBody as RigidBody
 from restitution.bodies._rigid import directions as directions
 from restitution.bodies._rough import Rough, RoughSphere
@@ -49,12 +50,10 @@ __all__ = [
     "from_roundness",
 ]
 
-KINDS: tuple[type[Body], ...] = tuple(globals()[entry["name"]] for entry in _core.BODIES)
-"""Every body of the core's table, all of revolution."""
-RIGID: tuple[type[RigidBody], ...] = (
-    *(Clump, Ellipsoid, Superellipsoid, ConvexPolyhedron, Box, Die, Mesh, Revolution, Cylinder, Ring, Egg),
-    *(RoughSphere, Rough),
-)
-"""Every other body."""
-BODIES = one_of(_core.BODIES)
-ANY_BODIES = one_of([*_core.BODIES, *({"name": kind.__name__} for kind in RIGID)])
+_ENTRIES = [[one for one in _core.BODIES if one["rigid"] is rigid] for rigid in (False, True)]
+KINDS: tuple[type[Body], ...] = tuple(globals()[entry["name"]] for entry in _ENTRIES[0])
+"""Every body of the core's table whose hull has a closed form, all of revolution."""
+RIGID: tuple[type[RigidBody], ...] = (*(globals()[entry["name"]] for entry in _ENTRIES[1]), Rough)
+"""Every other body, and what makes another one rough."""
+BODIES = one_of(_ENTRIES[0])
+ANY_BODIES = one_of([*_core.BODIES, {"name": Rough.__name__}])

@@ -50,7 +50,8 @@ class Body(AnyBody):
     @cached_property
     def compiled(self) -> _core.Solid:
         """The body as the core knows it, made and checked once."""
-        return _core.body(type(self).__name__, self._arguments())
+        made: _core.Solid = _core.body(type(self).__name__, self._arguments())
+        return made
 
     @property
     def lowest_position(self) -> float:

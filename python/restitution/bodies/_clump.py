@@ -1,16 +1,14 @@
 """Clumps of spheres, as discrete-element codes have them."""
 
 import os
-from functools import cached_property
 from typing import Annotated, Any, Self
 
 import numpy as np
 from numpy.typing import NDArray
 from pydantic import BeforeValidator, Field
 
-from restitution import _core
 from restitution._internal import files
-from restitution._internal.arrays import FloatArray, check_each, flag, reals
+from restitution._internal.arrays import FloatArray, flag
 from restitution._internal.parameters import Allowed, ParameterError, wrong
 from restitution.bodies import _clump_files
 from restitution.bodies._rigid import (
@@ -20,30 +18,13 @@ from restitution.bodies._rigid import (
     Density,
     RigidBody,
     Rows,
+    rows,
     scale_of,
     tensor_of,
-    with_inertia,
 )
 
 _SPHERES = f"rows (x, y, z, radius) in m, one or more, |x| to {LARGEST:g}, radius >= {SMALLEST:g}"
 _INERTIA = '"union", "sum" or a symmetric matrix, shape (3, 3), in kg m²'
-
-
-def _rows(numbers: Any) -> Rows:
-    return tuple(map(tuple, numbers.tolist()))
-
-
-def _spheres(value: Any) -> Rows:
-    spheres = reals("spheres", value, _SPHERES, unit="m", dimensions=(2,))
-    if spheres.shape[0] == 0 or spheres.shape[1] != 4:
-        raise ParameterError(wrong("spheres", value, _SPHERES))
-    check_each(
-        "spheres",
-        spheres,
-        _within(spheres),
-        _SPHERES,
-    )
-    return _rows(spheres)
 
 
 def _within(spheres: FloatArray) -> NDArray[np.bool_]:
@@ -81,7 +62,7 @@ class Clump(RigidBody):
     1.0
     """
 
-    spheres: Annotated[Any, Allowed(_SPHERES), BeforeValidator(_spheres), Field(description="m")]
+    spheres: Annotated[Any, Allowed(_SPHERES), rows(_SPHERES, 4, 1, _within), Field(description="m")]
     density: Density = 2500.0
     inertia: Annotated[Any, Allowed(_INERTIA), BeforeValidator(_inertia), Field(description="kg m²")] = (
         "union"
@@ -146,12 +127,5 @@ class Clump(RigidBody):
         OSError
             If the file is there and is not to be replaced, or cannot be written.
         """
-        rows = ["x,y,z,r", *(",".join(map(repr, sphere)) for sphere in self.spheres)]
-        files.write(files.path_from("path", path), "\n".join(rows) + "\n", replace=flag("replace", replace))
-
-    @cached_property
-    def compiled(self) -> _core.Rigid:
-        """The body as the core knows it, made and checked once."""
-        union = _core.clump(self.spheres, self.density, self.inertia == "sum")
-        given = not isinstance(self.inertia, str)
-        return with_inertia(union, self.inertia, self.centre) if given else union
+        lines = ["x,y,z,r", *(",".join(map(repr, sphere)) for sphere in self.spheres)]
+        files.write(files.path_from("path", path), "\n".join(lines) + "\n", replace=flag("replace", replace))

@@ -1,6 +1,5 @@
 """Dice: the five Platonic solids."""
 
-from itertools import permutations, product
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar
 
 import numpy as np
@@ -9,35 +8,13 @@ from pydantic import BeforeValidator
 from restitution import _core
 from restitution._internal.arrays import FloatArray
 from restitution._internal.parameters import Allowed, ParameterError, wrong
-from restitution.bodies._polyhedra import hull_of
-from restitution.bodies._rigid import Density, Length, Matter, of_lengths
+from restitution.bodies._rigid import Density, Length, Matter
 
 _FACES = "4, 6, 8, 12 or 20"
-_GOLDEN = 0.5 * (1.0 + 5.0**0.5)
-
-
-def _cyclic(x: float, y: float) -> list[tuple[float, ...]]:
-    """Give (0, ±x, ±y) and what follows by shifting the axes round."""
-    return [
-        tuple(np.roll((0.0, a, b), shift).tolist())
-        for shift in range(3)
-        for a, b in product((-x, x), (-y, y))
-    ]
-
-
-_CUBE = list(product((-1.0, 1.0), repeat=3))
-_SOLIDS: dict[int, tuple[float, list[tuple[float, ...]]]] = {
-    4: (8.0**0.5, [point for point in _CUBE if np.prod(point) > 0]),
-    6: (2.0, _CUBE),
-    8: (2.0**0.5, sorted({point for sign in (-1.0, 1.0) for point in permutations((sign, 0.0, 0.0))})),
-    12: (2.0 / _GOLDEN, _CUBE + _cyclic(1.0 / _GOLDEN, _GOLDEN)),
-    20: (2.0, _cyclic(1.0, _GOLDEN)),
-}
-"""The length of an edge, and the vertices, of each about its centre."""
 
 
 def _faces(value: Any) -> int:
-    if isinstance(value, bool) or not isinstance(value, int | np.integer) or value not in _SOLIDS:
+    if isinstance(value, bool) or not isinstance(value, int | np.integer) or value not in (4, 6, 8, 12, 20):
         raise ParameterError(wrong("faces", value, _FACES))
     return int(value)
 
@@ -82,13 +59,4 @@ class Die(Matter):
     @property
     def vertices(self) -> FloatArray:
         """The vertices about the centre in m, in the order of the numbers in ``contact``, from 1."""
-        edge, points = _SOLIDS[self.faces]
-        with np.errstate(over="ignore"):
-            return np.asarray(self.edge / edge * np.array(points))
-
-    def _homogeneous(self) -> _core.Rigid:
-        """Make the body of homogeneous matter."""
-        hull = hull_of(np.array(_SOLIDS[self.faces][1]))
-        assert hull is not None
-        with of_lengths(edge=self.edge):
-            return _core.polyhedron(self.vertices.tolist(), hull.simplices.tolist(), self.density)
+        return np.array(_core.faces("Die", self._arguments())[0])

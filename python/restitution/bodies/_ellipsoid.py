@@ -4,21 +4,13 @@ from collections.abc import Sequence
 from typing import Annotated, Any
 
 import numpy as np
-from pydantic import BeforeValidator, Field
+from pydantic import Field
 
-from restitution import _core
-from restitution._internal.arrays import FloatArray, reals
-from restitution._internal.parameters import Allowed, ParameterError, wrong
-from restitution.bodies._rigid import Density, Matter, RigidBody
+from restitution._internal.arrays import FloatArray
+from restitution._internal.parameters import Allowed
+from restitution.bodies._rigid import Density, Matter, RigidBody, several
 
 _AXES = "three finite numbers > 0 in m, the largest at most 1000 times the smallest"
-
-
-def _semi_axes(value: Any) -> tuple[float, ...]:
-    axes = reals("semi_axes", value, _AXES, unit="m", dimensions=(1,))
-    if axes.shape != (3,) or not np.all(axes > 0.0) or axes.max() > 1000.0 * axes.min() * (1.0 + 1e-15):
-        raise ParameterError(wrong("semi_axes", value, _AXES))
-    return tuple(axes.tolist())
 
 
 class Ellipsoid(Matter):
@@ -44,22 +36,11 @@ class Ellipsoid(Matter):
     62.832
     """
 
-    semi_axes: Annotated[Any, Allowed(_AXES), BeforeValidator(_semi_axes), Field(description="m")]
+    semi_axes: Annotated[Any, Allowed(_AXES), several(_AXES, 3, "m"), Field(description="m")]
     density: Density = 2500.0
-
-    def _homogeneous(self) -> _core.Rigid:
-        """Make the body of homogeneous matter."""
-        return _core.ellipsoid(self.semi_axes, self.density)
 
 
 _EXPONENTS = "two numbers (n1, n2), each from 1.1 to 100"
-
-
-def _exponents(value: Any) -> tuple[float, ...]:
-    exponents = reals("exponents", value, _EXPONENTS, dimensions=(1,))
-    if exponents.shape != (2,) or not np.all((exponents >= 1.1) & (exponents <= 100.0)):
-        raise ParameterError(wrong("exponents", value, _EXPONENTS))
-    return tuple(exponents.tolist())
 
 
 class Superellipsoid(Matter):
@@ -92,13 +73,9 @@ class Superellipsoid(Matter):
     1.311
     """
 
-    semi_axes: Annotated[Any, Allowed(_AXES), BeforeValidator(_semi_axes), Field(description="m")]
-    exponents: Annotated[Any, Allowed(_EXPONENTS), BeforeValidator(_exponents)]
+    semi_axes: Annotated[Any, Allowed(_AXES), several(_AXES, 3, "m"), Field(description="m")]
+    exponents: Annotated[Any, Allowed(_EXPONENTS), several(_EXPONENTS, 2, "1")]
     density: Density = 2500.0
-
-    def _homogeneous(self) -> _core.Rigid:
-        """Make the body of homogeneous matter."""
-        return _core.superellipsoid(self.semi_axes, self.exponents, self.density)
 
 
 _STEP = 1e-5

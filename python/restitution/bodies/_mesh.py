@@ -11,20 +11,12 @@ from pydantic import BeforeValidator, Field
 from restitution import _core
 from restitution._internal import files
 from restitution._internal.arrays import FloatArray, IntArray, reals
-from restitution._internal.parameters import Allowed, ParameterError, Problem, renamed, shown, wrong
-from restitution.bodies._polyhedra import hull_of
-from restitution.bodies._rigid import LARGEST, SMALLEST, Density, Matter, scale_of
+from restitution._internal.parameters import Allowed, ParameterError, Problem, renamed, wrong
+from restitution.bodies._rigid import LARGEST, SMALLEST, Density, Matter, rows, scale_of
 
 _VERTICES = "four or more points (x, y, z) in m, finite, not all in one plane"
 _TRIANGLES = "triples of numbers of the vertices, from 0"
 _SUFFIXES = (".stl", ".obj", ".ply")
-
-
-def _vertices(value: Any) -> tuple[tuple[float, ...], ...]:
-    points = reals("vertices", value, _VERTICES, unit="m", dimensions=(2,))
-    if points.shape[0] < 4 or points.shape[1] != 3:
-        raise ParameterError(wrong("vertices", value, _VERTICES))
-    return tuple(map(tuple, points.tolist()))
 
 
 def _triangles(value: Any) -> tuple[tuple[int, ...], ...]:
@@ -65,7 +57,7 @@ class Mesh(Matter):
     [0.0015, 0.0015, 0.0015]
     """
 
-    vertices: Annotated[Any, Allowed(_VERTICES), BeforeValidator(_vertices), Field(description="m")]
+    vertices: Annotated[Any, Allowed(_VERTICES), rows(_VERTICES, 3, 4), Field(description="m")]
     triangles: Annotated[Any, Allowed(_TRIANGLES), BeforeValidator(_triangles)]
     density: Density = 2500.0
 
@@ -118,58 +110,7 @@ class Mesh(Matter):
     @cached_property
     def hull(self) -> IntArray:
         """Numbers of the vertices of the convex hull; ``contact`` numbers these, from 1."""
-        hull = hull_of(np.array(self.vertices))
-        if hull is None:
-            raise ParameterError(wrong("vertices", np.array(self.vertices), _VERTICES))
-        return np.sort(hull.vertices).astype(np.int64)
-
-    def _homogeneous(self) -> _core.Rigid:
-        """Make the body of homogeneous matter."""
-        points, triangles = np.array(self.vertices), np.array(self.triangles)
-        if triangles.max() >= len(points):
-            raise ParameterError(wrong("triangles", triangles.max(), f"{_TRIANGLES} to {len(points) - 1}"))
-        problem = _open_edge(points, triangles) or _inside_out(points, triangles)
-        if problem:
-            raise ParameterError(Problem("triangles", problem))
-        return _core.mesh(self.vertices, self.triangles, self.hull.tolist(), self.density)
-
-
-def _open_edge(points: FloatArray, triangles: IntArray) -> str:
-    """Say where a surface ends, or turns its inside out."""
-    ends = np.stack([triangles, np.roll(triangles, -1, axis=1)], axis=-1).reshape(-1, 2)
-    number = np.repeat(np.arange(len(triangles)), 3)
-    proper = ends[:, 0] != ends[:, 1]
-    ends, number = ends[proper], number[proper]
-    edges, of = np.unique(np.sort(ends, axis=1), axis=0, return_inverse=True)
-    of = of.reshape(-1)
-    balance = np.bincount(of, np.where(ends[:, 0] < ends[:, 1], 1, -1), len(edges))
-    wrong_ones = np.flatnonzero(balance)
-    if wrong_ones.size == 0:
-        return ""
-    single = np.bincount(of, minlength=len(edges)) % 2 == 1
-    odd = np.flatnonzero(single)
-    first = odd[0] if odd.size else wrong_ones[0]
-    place = " and ".join(f"{i} {shown(tuple(points[i].tolist()))}" for i in edges[first].tolist())
-    faces = number[of == first].tolist()
-    if odd.size:
-        count = "one triangle" if len(faces) == 1 else f"{len(faces)} triangles"
-        return (
-            f": not closed at {odd.size} edges, of which the first, between the vertices {place}, is that of "
-            f"{count}; must be that of as many in one direction as in the other"
-        )
-    return (
-        f": not oriented at {wrong_ones.size} edges, of which the first, between the vertices {place}, "
-        f"has one direction in the triangles {' and '.join(map(str, faces))}; must have both"
-    )
-
-
-def _inside_out(points: FloatArray, triangles: IntArray) -> str:
-    """Say that a volume is not positive."""
-    corners = points[triangles] - points.mean(axis=0)
-    volume = np.linalg.det(corners).sum() / 6.0
-    if volume > 0.0:
-        return ""
-    return f": enclose {volume:g} m³; must be counter-clockwise as seen from outside"
+        return np.unique(np.array(_core.hull(self.vertices), dtype=np.int64))
 
 
 def _read(path: Path) -> tuple[FloatArray, IntArray]:

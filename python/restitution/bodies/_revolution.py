@@ -3,54 +3,20 @@
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar
 
 import numpy as np
-from pydantic import BeforeValidator, Field
+from pydantic import Field
 
-from restitution import _core
-from restitution._internal.arrays import FloatArray, check_each, reals
-from restitution._internal.parameters import Allowed, ParameterError, Problem, wrong
-from restitution.bodies._rigid import Density, Length, Matter, of_lengths
+from restitution._internal.arrays import FloatArray
+from restitution._internal.parameters import Allowed
+from restitution.bodies._rigid import Density, Length, Matter, rows
 
 _PROFILE = "two or more points (z, r) in m, finite, r >= 0, around an area"
 
 
-def _profile(value: Any) -> tuple[tuple[float, ...], ...]:
-    points = reals("profile", value, _PROFILE, unit="m", dimensions=(2,))
-    if points.shape[0] < 2 or points.shape[1] != 2:
-        raise ParameterError(wrong("profile", value, _PROFILE))
-    check_each("profile", points, (points >= 0.0) | [True, False], _PROFILE)
-    if not 0.0 < _volume(points) < np.inf:
-        raise ParameterError(wrong("profile", value, _PROFILE))
-    crossing = _crossing(points)
-    if crossing is not None:
-        text = ": its lines from the points {} and {} cross; must be an outline that does not"
-        raise ParameterError(Problem("profile", text.format(*crossing)))
-    return tuple(map(tuple, points.tolist()))
+class Turned(Matter):
+    """A solid of revolution about z of the body: circles, or bands, about its axis touch."""
 
 
-def _volume(points: FloatArray) -> float:
-    """Sum up the frusta of a profile, over π/3."""
-    z, r = points.T
-    with np.errstate(over="ignore", invalid="ignore"):
-        return abs(float(np.diff(z) @ (r[1:] ** 2 + r[1:] * r[:-1] + r[:-1] ** 2)))
-
-
-def _crossing(points: FloatArray) -> tuple[int, int] | None:
-    """Find two lines of a polygon that cross, by their first points."""
-    begin, end = points[:-1], points[1:]
-
-    def side(a: FloatArray, b: FloatArray, c: FloatArray) -> FloatArray:
-        (u, v), (x, y) = (b - a).T, (c - a).T
-        return np.asarray(np.sign(u * y - v * x))
-
-    for i in range(len(begin)):
-        a, b, c, d = begin[i : i + 1], end[i : i + 1], begin[:i], end[:i]
-        apart = (side(a, b, c) * side(a, b, d) < 0.0) & (side(c, d, a) * side(c, d, b) < 0.0)
-        if apart.any():
-            return int(np.argmax(apart)), i
-    return None
-
-
-class Revolution(Matter):
+class Revolution(Turned):
     """A homogeneous solid of revolution with any profile.
 
     Its axis is z of the body. Only its convex hull touches the plane, with circular rims; `contact` numbers
@@ -80,7 +46,12 @@ class Revolution(Matter):
 
     by_place: ClassVar[tuple[str, ...]] = ("profile",)
 
-    profile: Annotated[Any, Allowed(_PROFILE), BeforeValidator(_profile), Field(description="m")]
+    profile: Annotated[
+        Any,
+        Allowed(_PROFILE),
+        rows(_PROFILE, 2, 2, lambda points: (points >= 0.0) | [True, False]),
+        Field(description="m"),
+    ]
     density: Density = 2500.0
 
     if TYPE_CHECKING:  # or type checkers would take the fields for keyword arguments
@@ -94,12 +65,8 @@ class Revolution(Matter):
         """Where the rims of its convex hull are, (z, r) in m, from the end at the largest z; shape (n, 2)."""
         return np.array(self.compiled.rims)
 
-    def _homogeneous(self) -> _core.Rigid:
-        """Make the body of homogeneous matter."""
-        return _core.revolution(self.profile, self.density)
 
-
-class Cylinder(Matter):
+class Cylinder(Turned):
     """A homogeneous cylinder with its axis along z of the body: a coin, a tablet, a rod.
 
     Parameters
@@ -140,14 +107,8 @@ class Cylinder(Matter):
             centre: Any = None,
         ) -> None: ...
 
-    def _homogeneous(self) -> _core.Rigid:
-        """Make the body of homogeneous matter."""
-        half = 0.5 * self.height
-        with of_lengths(radius=self.radius, height=self.height):
-            return _core.revolution([(-half, self.radius), (half, self.radius)], self.density)
 
-
-class Ring(Matter):
+class Ring(Turned):
     """A homogeneous ring, or washer, or tube, with its axis along z of the body.
 
     Parameters
@@ -190,17 +151,8 @@ class Ring(Matter):
             centre: Any = None,
         ) -> None: ...
 
-    def _homogeneous(self) -> _core.Rigid:
-        """Make the body of homogeneous matter."""
-        if self.inner >= self.outer:
-            raise ParameterError(wrong("inner", self.inner, f"less than outer = {self.outer!r} (m)"))
-        half = 0.5 * self.height
-        corners = [(-half, self.inner), (-half, self.outer), (half, self.outer), (half, self.inner)]
-        with of_lengths(outer=self.outer, inner=self.inner, height=self.height):
-            return _core.revolution([*corners, corners[0]], self.density)
 
-
-class Egg(Matter):
+class Egg(Turned):
     """A homogeneous egg: two spherical caps, joined by an arc that is tangent to both.
 
     It stands on its blunt end at z = 0 of the body. `contact` is 1 at the tip, 2 at the flank, 3 at the blunt
@@ -233,8 +185,3 @@ class Egg(Matter):
     blunt_end: Length
     tip: Length
     density: Density = 2500.0
-
-    def _homogeneous(self) -> _core.Rigid:
-        """Make the body of homogeneous matter."""
-        with of_lengths(length=self.length, width=self.width, blunt_end=self.blunt_end, tip=self.tip):
-            return _core.egg((self.length, self.width), (self.blunt_end, self.tip), self.density)

@@ -1,17 +1,16 @@
-"""The base of the bodies without a symmetry axis."""
+"""The base of the rigid bodies of any shape."""
 
-from abc import abstractmethod
-from collections.abc import Iterator
-from contextlib import contextmanager
+from collections.abc import Callable, Iterator
 from functools import cached_property
 from typing import Annotated, Any
 
 import numpy as np
+from numpy.typing import NDArray
 from pydantic import BeforeValidator, Field, ValidationInfo
 
 from restitution import _core
 from restitution._internal import text as _text
-from restitution._internal.arrays import FloatArray, real, reals
+from restitution._internal.arrays import FloatArray, check_each, real, reals
 from restitution._internal.parameters import Allowed, Number, ParameterError, Problem, shown, wrong
 from restitution.bodies._body import AnyBody
 
@@ -44,24 +43,37 @@ def directions(number: int) -> FloatArray:
     return np.stack([np.cos(azimuth) * level, np.sin(azimuth) * level, np.cos(polar)], axis=1)
 
 
-@contextmanager
-def of_lengths(**lengths: float) -> Iterator[None]:
-    """Name the lengths of a body, where the points made of them have no volume that is a number."""
-    try:
-        yield
-    except _core.ParameterError as error:
-        if error.name not in ("points", "profile"):
-            raise
-        first, *others = (f"{name} = {length!r}" for name, length in lengths.items())
-        name, _, value = first.partition(" = ")
-        text = f" = {', '.join([value, *others])}: must be "
-        allowed = "such that the volume neither overflows nor underflows"
-        raise ParameterError(Problem(name, text, allowed)) from None
-
-
 def scale_of(scale: Any) -> float:
     """Take what a unit of a file is in m."""
     return real("scale", scale, "a finite number > 0 (m)", lambda x: 0.0 < x < np.inf)
+
+
+def rows(
+    allowed: str, columns: int, least: int, good: Callable[[FloatArray], NDArray[np.bool_]] | None = None
+) -> BeforeValidator:
+    """Take a table with so many columns and at least so many rows, and numbers that are `good`."""
+
+    def checked(value: Any, about: ValidationInfo) -> Rows:
+        table = reals(str(about.field_name), value, allowed, unit="m", dimensions=(2,))
+        if table.shape[0] < least or table.shape[1] != columns:
+            raise ParameterError(wrong(str(about.field_name), value, allowed))
+        if good is not None:
+            check_each(str(about.field_name), table, good(table), allowed)
+        return tuple(map(tuple, table.tolist()))
+
+    return BeforeValidator(checked)
+
+
+def several(allowed: str, count: int, unit: str | None) -> BeforeValidator:
+    """Take so many numbers."""
+
+    def checked(value: Any, about: ValidationInfo) -> tuple[float, ...]:
+        numbers = reals(str(about.field_name), value, allowed, unit=unit, dimensions=(1,))
+        if numbers.shape != (count,):
+            raise ParameterError(wrong(str(about.field_name), value, allowed))
+        return tuple(numbers.tolist())
+
+    return BeforeValidator(checked)
 
 
 def tensor_of(value: Any, allowed: str = _TENSOR) -> Rows:
@@ -104,9 +116,13 @@ class RigidBody(AnyBody):
     """
 
     @cached_property
-    @abstractmethod
     def compiled(self) -> _core.Rigid:
         """The body as the core knows it, made and checked once."""
+        made: _core.Rigid = _core.body(type(self).__name__, self._arguments())
+        return made
+
+    def _arguments(self) -> list[Any]:
+        return [plain(value) for value in super()._arguments()]
 
     @property
     def lowest_position(self) -> float:
@@ -147,21 +163,10 @@ class Matter(RigidBody):
     inertia: Tensor = None
     centre: Centre = None
 
-    @abstractmethod
-    def _homogeneous(self) -> _core.Rigid:
-        """Make the body of homogeneous matter."""
 
-    @cached_property
-    def compiled(self) -> _core.Rigid:
-        """The body as the core knows it, made and checked once."""
-        body = self._homogeneous()
-        return body if self.inertia is None else with_inertia(body, self.inertia, self.centre)
-
-
-def with_inertia(body: _core.Rigid, tensor: Rows, centre: tuple[float, ...] | None) -> _core.Rigid:
-    """Give a body of the same mass a tensor of inertia, about another centre of mass or its own."""
-    place = body.centre if centre is None else centre
-    given = body.with_inertia({"mass": body.mass, "centre": place, "tensor": tensor})
-    if (given.supports(directions(400)) <= 0.0).any():
-        raise ParameterError(wrong("centre", place, "within the body (m)"))
-    return given
+def plain(value: Any) -> Any:
+    """Write a parameter as the core takes it: a table row by row, a distribution with its numbers."""
+    if not isinstance(value, tuple):
+        return value
+    drawn = isinstance(value[0], str)
+    return (value[0], list(value[1:])) if drawn else np.ravel(np.array(value, dtype=np.float64))

@@ -4,7 +4,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar
 
 import numpy as np
-from pydantic import BeforeValidator, Field, InstanceOf
+from pydantic import AfterValidator, BeforeValidator, Field, InstanceOf
 
 from restitution import _core
 from restitution._internal.arrays import FloatArray, reals
@@ -21,7 +21,7 @@ from restitution.bodies._body import AnyBody
 from restitution.bodies._clump import Clump
 from restitution.bodies._dumbbell import Dumbbell
 from restitution.bodies._loaded_sphere import LoadedSphere
-from restitution.bodies._rigid import Density, Length, RigidBody
+from restitution.bodies._rigid import Density, Length, RigidBody, plain
 from restitution.bodies._spherocylinder import Spherocylinder
 
 _HEIGHTS = (
@@ -59,7 +59,14 @@ def _body(value: Any) -> Any:
     return value
 
 
-Asperities = Annotated[Whole, Field(ge=1, lt=2**31)]
+def _fits(asperities: int) -> int:
+    if asperities > 10**6 and asperities * _BYTES > available_memory():
+        allowed = f"as many as memory holds, at {_BYTES} bytes each"
+        raise TooLargeError(wrong("asperities", asperities, allowed))
+    return asperities
+
+
+Asperities = Annotated[Whole, Field(ge=1, lt=2**31), AfterValidator(_fits)]
 Heights = Annotated[Any, Allowed(_HEIGHTS), BeforeValidator(_heights), Field(description="m")]
 Seed = Annotated[Whole, Field(ge=0, lt=2**64)]
 
@@ -85,20 +92,6 @@ def _spheres(body: AnyBody) -> tuple[tuple[float, ...], ...]:
     if half == 0.0:
         return ((0.0, 0.0, 0.0, max(one, other)),)
     return ((0.0, 0.0, half, one), (0.0, 0.0, -half, other))
-
-
-def _rough(
-    rough: "Rough | RoughSphere", spheres: Any, inertia: dict[str, Any], *, barrel: bool = False
-) -> _core.Rigid:
-    """Make a rough body of spheres with this inertia."""
-    if rough.asperities > 10**6 and rough.asperities * _BYTES > available_memory():
-        allowed = f"as many as memory holds, at {_BYTES} bytes each"
-        raise TooLargeError(wrong("asperities", rough.asperities, allowed))
-    heights = rough.asperity_radius if rough.heights is None else rough.heights
-    if isinstance(heights, tuple):
-        drawn = isinstance(heights[0], str)
-        heights = (heights[0], list(heights[1:])) if drawn else np.array(heights)
-    return _core.rough(spheres, barrel, inertia, rough.asperities, rough.asperity_radius, heights, rough.seed)
 
 
 def _asperities(compiled: _core.Rigid, number: int) -> FloatArray:
@@ -143,12 +136,6 @@ class RoughSphere(RigidBody):
     heights: Heights = None
     density: Density = 2500.0
     seed: Seed = 1
-
-    @cached_property
-    def compiled(self) -> _core.Rigid:
-        """The body as the core knows it, made and checked once."""
-        sphere = ((0.0, 0.0, 0.0, self.radius),)
-        return _rough(self, sphere, _inertia(_core.clump(sphere, self.density, True)))
 
     @property
     def asperity_balls(self) -> FloatArray:
@@ -214,7 +201,9 @@ class Rough(RigidBody):
     def compiled(self) -> _core.Rigid:
         """The body as the core knows it, made and checked once."""
         barrel = isinstance(self.body, Spherocylinder)
-        return _rough(self, _spheres(self.body), _inertia(self.body.compiled), barrel=barrel)
+        spheres, inertia = _spheres(self.body), _inertia(self.body.compiled)
+        own = (self.asperities, self.asperity_radius, plain(self.heights), self.seed)
+        return _core.rough(spheres, barrel, inertia, *own)
 
     @property
     def asperity_balls(self) -> FloatArray:

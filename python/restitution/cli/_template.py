@@ -22,7 +22,10 @@ def _lines(
         rows += _NORMAL if name == "law" else []
         for parameter in entry["parameters"]:
             out = "" if mark or "default" not in parameter else "# "
-            rows.append((f"{out}{parameter['name']} = {json.dumps(parameter['example'])}", _what(parameter)))
+            text = f"{out}{parameter['name']} = {json.dumps(parameter['example'])}"
+            rows.append((text, _what(parameter)))
+        if entry["name"] in ("Clump", "Mesh"):
+            rows.append(('# file = "stone.stl"', "instead of the tables; with scale, what its unit is in m"))
         for text, comment in rows:
             yield f"{mark + text:<34}# {comment}" if comment else mark + text
     yield ""
@@ -36,15 +39,24 @@ def interval(about: Mapping[str, Any]) -> str:
     return f"{'[' if about['closed'] else '('}{low}, {high}]"
 
 
+def allowed(about: Mapping[str, Any]) -> str:
+    """Write the numbers that a parameter may be, or hold."""
+    if about["type"] == "rows":
+        last = f", {about['columns'][-1]} {interval(about)}" if about["low"] == 0.0 and about["unit"] else ""
+        return f"{about['least']} or more rows {', '.join(about['columns'])}{last}"
+    if about["low"] == float("-inf"):
+        return ""
+    text = interval(about)
+    return text if text.startswith(">") else f"in {text}"
+
+
 def _what(parameter: Mapping[str, Any]) -> str:
     unit = parameter["unit"] if parameter["unit"] not in (None, "1") else ""
-    if parameter["type"] == "name":
-        allowed = " or ".join(f'"{name}"' for name in parameter["names"])
+    if parameter["type"] in ("name", "choice"):
+        values = " or ".join(json.dumps(name) for name in parameter["names"])
     else:
-        allowed = interval(parameter)
-        if not allowed.startswith(">"):
-            allowed = f"in {allowed}"
-    return ", ".join(filter(None, [parameter["text"], unit, allowed]))
+        values = allowed(parameter)
+    return ", ".join(filter(None, [parameter["text"], unit, values]))
 
 
 _SEVERAL = 'for compare: a table [[{}]] for each, perhaps with name = "..."'

@@ -13,15 +13,14 @@ from restitution.bodies import (
     Box,
     Clump,
     ConvexPolyhedron,
-    Cylinder,
     Die,
+    Egg,
     Ellipsoid,
     Mesh,
-    Revolution,
     RigidBody,
-    Ring,
     Rough,
     RoughSphere,
+    Turned,
     directions,
 )
 from restitution.drop.recorded import RECORDS, check_filled, check_successive, pull, variables
@@ -271,7 +270,7 @@ def _arm(body: RigidBody) -> float:
 
 
 def _shape(body: Any) -> _Polyhedron | _Turned | _Sampled:
-    if isinstance(body, Revolution | Cylinder | Ring):
+    if isinstance(body, Turned) and not isinstance(body, Egg):
         x, y, z = body.centre_of_mass
         if x == y == 0.0:
             return _Turned(np.array(body.compiled.rims) - [z, 0.0])

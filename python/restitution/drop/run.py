@@ -186,7 +186,7 @@ class Run(Parameters):
             )
             raise ParameterError(wrong("orientation", self.orientation, allowed))
         if not axis and isinstance(self.spin, RandomSpin) and self.spin.axis == "across":
-            allowed = "'isotropic', 'horizontal' or 'thermal', for a body without an axis"
+            allowed = "'isotropic', 'horizontal' or 'thermal', for a rigid body of any shape"
             raise ParameterError(wrong("axis", "across", allowed))
         return self
 

@@ -4,6 +4,7 @@ import re
 import tomllib
 from collections.abc import Iterable
 from dataclasses import dataclass
+from inspect import signature
 from pathlib import Path
 from typing import Any, TypeVar
 
@@ -99,9 +100,14 @@ def tables_in(path: Path) -> dict[str, Any]:
     try:
         if _NESTED.search(text):  # which the parser recurses into
             raise ValueError("lists or tables nested too deeply")
-        return tomllib.loads(text.decode())
+        tables = tomllib.loads(text.decode())
     except (ValueError, RecursionError) as error:  # wrong syntax, or not UTF-8
         raise ValueError(f"{path}: not a TOML file: {error}") from None
+    body = tables.get("body")
+    for table in body if isinstance(body, list) else [body]:
+        if isinstance(table, dict) and isinstance(table.get("file"), str):
+            table["file"] = str(path.parent / table["file"])
+    return tables
 
 
 def run_of(tables: dict[str, Any], source: str) -> Run:
@@ -217,7 +223,11 @@ class _Reader:
         *selector: str,
     ) -> P | None:
         """Make one set of parameters from a table and the parts that have tables of their own."""
+        make: Any = kind
         fields = [field for field in kind.model_fields if kind is not Run or field not in _PARTS]
+        if "file" in table and hasattr(kind, "from_file"):  # a clump or a mesh
+            make = kind.from_file
+            fields = [field.replace("path", "file") for field in signature(make).parameters]
         keys = [*selector, *fields]
         strangers = (key for key in table if key not in keys)
         self.problems.extend(unknown(key, f"[{name}]", keys, prefix=f"{name}.") for key in strangers)
@@ -227,7 +237,9 @@ class _Reader:
         }
         bad = parts.keys() - good.keys()
         try:
-            return kind(**{key: value for key, value in (values | good).items() if key not in bad})
+            given = {key: value for key, value in (values | good).items() if key not in bad}
+            made: P = make(**{"path" if key == "file" else key: value for key, value in given.items()})
+            return made
         except ParameterError as error:
             # A part that is missing has been reported already.
             found = (

@@ -8,21 +8,7 @@ import numpy as np
 
 from restitution._internal.described import kebab
 from restitution._internal.parameters import ParameterError, wrong
-from restitution.bodies import (
-    KINDS,
-    Box,
-    Clump,
-    ConvexPolyhedron,
-    Cylinder,
-    Die,
-    Egg,
-    Ellipsoid,
-    Mesh,
-    Revolution,
-    Ring,
-    RoughSphere,
-    Superellipsoid,
-)
+from restitution.bodies import KINDS
 from restitution.drop.release import RandomHeight, RandomSpin
 from restitution.drop.run import Run
 from restitution.laws import Law
@@ -97,53 +83,33 @@ def _body(run: Run) -> dict[str, Any]:
 
 
 def _rigid(body: Any) -> dict[str, Any]:
-    if getattr(body, "inertia", None) not in (None, "union"):
-        raise _cannot("body.inertia", "another", "that of homogeneous matter")
-    return {**_shape(body), "density": body.density}
-
-
-def _shape(body: Any) -> dict[str, Any]:
-    match body:
-        case Box():
-            return {"edge_x": body.a, "edge_y": body.b, "edge_z": body.c}
-        case Die():
-            return {"faces": body.faces, "edge": body.edge}
-        case Ellipsoid():
-            return _along("xyz", "axis", body.semi_axes)
-        case Superellipsoid():
-            return _along("xyz", "axis", body.semi_axes) | _along("12", "exponent", body.exponents)
-        case Cylinder():
-            return {"radius": body.radius, "height": body.height}
-        case Ring():
-            return {"outer": body.outer, "inner": body.inner, "ring_height": body.height}
-        case Egg():
-            return {name: getattr(body, name) for name in ("length", "width", "blunt_end", "tip")}
-        case Clump():
-            return {"spheres": _table("spheres", body.spheres, MOST_ROWS)}
-        case ConvexPolyhedron():
-            return {"points": _table("points", body.points, MOST_ROWS)}
-        case Revolution():
-            return {"profile": _table("profile", body.profile, MOST_ROWS)}
-        case Mesh():
-            vertices = _table("vertices", body.vertices, 3 * MOST_TRIANGLES)
-            mesh = f"{vertices}*{_table('triangles', body.triangles, MOST_TRIANGLES)}"
-            if len(mesh) > MOST_TEXT:
-                raise _cannot("body.vertices", f"{len(body.vertices)} of them", "fewer")
-            return {"mesh": mesh}
-        case RoughSphere():
-            if body.heights not in (None, body.asperity_radius):
-                raise _cannot("body.heights", body.heights, "left out")
-            if body.asperities > MOST_ASPERITIES:
-                raise _cannot("body.asperities", body.asperities, f"at most {MOST_ASPERITIES}")
-            if body.seed >= 2**53:
-                raise _cannot("body.seed", body.seed, "below 2**53")
-            found = {"radius": body.radius, "asperities": body.asperities}
-            return {**found, "asperity_radius": body.asperity_radius, "asperity_seed": body.seed}
-    raise _cannot("body", type(body).__name__, "any other, of rough ones a RoughSphere")
-
-
-def _along(names: str, of: str, values: Any) -> dict[str, float]:
-    return {f"{of}_{name}": value for name, value in zip(names, values, strict=True)}
+    """Write the parameters of a rigid body as the page names them."""
+    if not body.entry():
+        raise _cannot("body", type(body).__name__, "any other, of rough ones a RoughSphere")
+    values: dict[str, Any] = {}
+    for about in body.entry()["parameters"]:
+        name, value = about["name"], getattr(body, about["name"])
+        if about.get("default", 0.0) is None:
+            if value is not None and not (name == "heights" and value == body.asperity_radius):
+                raise _cannot(f"body.{name}", value, "left out")
+        elif about["type"] == "several":
+            values |= zip(about["names"], value, strict=True)
+        elif about["type"] == "rows":
+            most = {"vertices": 3 * MOST_TRIANGLES, "triangles": MOST_TRIANGLES}.get(name, MOST_ROWS)
+            values[about["link"]] = _table(name, value, most)
+        elif name == "inertia":
+            if value != about["default"]:
+                raise _cannot("body.inertia", "another", "that of homogeneous matter")
+        else:
+            most = {"asperities": MOST_ASPERITIES, "seed": 2**53 - 1}.get(name, np.inf)
+            if about["type"] == "whole" and value > most:
+                raise _cannot(f"body.{name}", value, f"at most {most}")
+            values[about["link"]] = value
+    if "triangles" in values:
+        values["mesh"] = f"{values.pop('vertices')}*{values.pop('triangles')}"
+        if len(values["mesh"]) > MOST_TEXT:
+            raise _cannot("body.vertices", f"{len(body.vertices)} of them", "fewer")
+    return values
 
 
 def _table(name: str, rows: Any, most: int) -> str:

@@ -45,7 +45,7 @@ class Law(Described, CollisionLaw):
     def compiled(self) -> _core.Law:
         """The law as the core knows it, made and checked once."""
         normal = self.normal.compiled if isinstance(self.normal, Material) else self.normal
-        return _core.law(type(self).__name__, normal, self._arguments(without="normal"))
+        return _core.law(type(self).__name__, normal, self._arguments())
 
     @property
     def constant(self) -> float:

@@ -268,7 +268,7 @@ class Tabulated(Material):
         """
         return cls(**dict(zip("ve", _points("function", function, fastest, tolerance), strict=True)))
 
-    def _arguments(self, *, without: str = "") -> list[Any]:
+    def _arguments(self) -> list[Any]:
         return [np.asarray(self.v, dtype=float), np.asarray(self.e, dtype=float)]
 
     def formula(self, squared: Any, among: float) -> Any:

@@ -13,7 +13,7 @@ import numpy as np
 from restitution import _core, laws
 from restitution._internal.files import there
 from restitution._internal.parameters import ParameterError
-from restitution.bodies import KINDS, Box, Cylinder, Ellipsoid, RoughSphere, Superellipsoid
+from restitution.bodies import KINDS, RIGID
 from restitution.drop.dataset import version_here
 from restitution.drop.run import Run
 from restitution.study._study import Study
@@ -42,7 +42,7 @@ def fingerprint() -> dict[str, str]:
     """Return the version, and SHA-256 of what the impacts of short runs of every body and law add up to.
 
     Takes milliseconds. Runs at rest and with spin go through all engines of the core; bodies are full and
-    hollow, and without an axis of every kind of surface.
+    hollow, and rigid with every kind of surface.
     """
     edges = {
         "velocity": np.linspace(0.0, 1.2, 9),
@@ -50,14 +50,7 @@ def fingerprint() -> dict[str, str]:
         "fraction": np.linspace(0.0, 1.0, 11),
     }
     digest = hashlib.sha256()
-    axes = (4e-3, 3e-3, 2e-3)
-    rigid = (
-        Box(*axes),
-        Cylinder(3e-3, 8e-3),
-        Ellipsoid(semi_axes=axes),
-        Superellipsoid(semi_axes=axes, exponents=(3, 4)),
-        RoughSphere(radius=3e-3, asperities=100, asperity_radius=3e-5),
-    )
+    rigid = (kind.example() for kind in RIGID if kind.entry())
     bodies = [*(kind.example(wall=wall) for wall in (None, 4e-4) for kind in KINDS), *rigid]
     for law in [kind.example(normal=0.9) for kind in laws.KINDS]:
         for body in bodies:

@@ -1,8 +1,8 @@
-/** A run as the row of numbers that crates/web/src/parameters.rs reads; behind it a body without an axis: crates/web/src/rigid.rs. */
+/** A run as the row of numbers that crates/web/src/parameters.rs reads; behind it the arguments of a rigid body: crates/web/src/rigid.rs. */
 
 import { dataOf } from "../rigid";
 import { bodyOf, isRigid, lawOf, orientationOf, particlesOf, type Setup } from "../setup";
-import { BODIES, LAWS, type Kind } from "../table";
+import { BODIES, LAWS, SHAPES, type Kind } from "../table";
 
 /** Columns of the table of impacts, as in crates/web/src/records.rs. */
 export const COLUMNS = [
@@ -24,7 +24,7 @@ const [OF_BODY, OF_LAW] = [most(BODIES), most(LAWS)];
 export function numbers(s: Setup): Float64Array {
   const [body, law] = [bodyOf(s), lawOf(s)];
   const row = [
-    ...(isRigid(s) ? Array<number>(1 + OF_BODY).fill(0) : [BODIES.indexOf(body), ...filled(body, s, OF_BODY)]),
+    ...[SHAPES.indexOf(body), ...(isRigid(s) ? Array<number>(OF_BODY).fill(0) : filled(body, s, OF_BODY))],
     ...[LAWS.indexOf(law as (typeof LAWS)[number]), ...filled(law, s, OF_LAW)],
     ...[particlesOf(s), s.impacts, s.release_height, s.gravity],
     ...[["uniform-angle", "isotropic", "given"].indexOf(orientationOf(s)), s.angle],

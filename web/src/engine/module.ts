@@ -7,6 +7,7 @@ interface Exports {
   follow(particle: number): number;
   table(): number;
   outline(): number;
+  drawing(): number;
   farthest(count: number): number;
   turn(): number;
   message(): number;
@@ -35,7 +36,12 @@ export class Engine {
     return this.call(parameters, () => this.core.outline());
   }
 
-  /** The places of a body without an axis that lie farthest in some directions; see crates/web/src/rigid.rs. */
+  /** Points and triangles, or the profile, of a rigid body; see crates/web/src/rigid.rs. */
+  drawing(parameters: Float64Array): Float64Array {
+    return this.call(parameters, () => this.core.drawing());
+  }
+
+  /** The places of a rigid body that lie farthest in some directions; see crates/web/src/rigid.rs. */
   farthest(parameters: Float64Array, directions: Float64Array): Float64Array {
     return this.call(Float64Array.of(...parameters, ...directions), () => this.core.farthest(directions.length / 3));
   }

@@ -3,7 +3,7 @@
 import { Quaternion, Vector3 } from "three";
 
 const COLUMNS = 14;
-/** Of a body without an axis. */
+/** Of a rigid body. */
 const FREE = 19;
 
 /** The attitude and ω of a free body without an axis some time after it had these. */
@@ -16,13 +16,13 @@ export interface Flight {
   axis: Vector3;
   turning: Vector3;
   roll: number;
-  /** ω at its start, of a body without an axis; that of another is `turning` and `roll` about the axis. */
+  /** ω at its start, of a rigid body; that of another is `turning` and `roll` about the axis. */
   spin: Vector3;
   /** Energy of rotation over the mass, m²/s². */
   rotation: number;
   /** The sphere, ball or vertex that touched, 0 at release. */
   sphere: number;
-  /** Where a body without an axis touched, from the centre of mass. */
+  /** Where a rigid body touched, from the centre of mass. */
   arm: Vector3;
   attitude: Quaternion;
 }
@@ -44,7 +44,7 @@ export class Path {
   readonly flights: Flight[] = [];
   readonly gravity: Vector3;
 
-  /** `turn` is that of a body without an axis, whose rows have other columns. */
+  /** `turn` is that of a rigid body, whose rows have other columns. */
   constructor(rows: Float64Array, gravity: number, incline: number, private readonly turn?: Turn) {
     this.gravity = new Vector3(gravity * Math.sin(incline), 0, -gravity * Math.cos(incline));
     for (let i = 0; i < rows.length; i += turn ? FREE : COLUMNS) {

@@ -1,11 +1,11 @@
-/** A body without an axis, about its centre of mass, in three tones so that one sees it turn. Lengths in m. */
+/** A rigid body, about its centre of mass, in three tones so that one sees it turn. Lengths in m. */
 
 import {
   BufferGeometry, Color, DoubleSide, EdgesGeometry, Float32BufferAttribute, Group, IcosahedronGeometry, InstancedMesh, LineBasicMaterial, LineSegments,
   Matrix4, Mesh, MeshPhongMaterial, SphereGeometry, Vector3,
 } from "three";
-import { farthestOf, freeOf } from "../outline";
-import { profileOf, rowsOf, surfaceOf, type Surface } from "../rigid";
+import { drawingOf, farthestOf, freeOf } from "../outline";
+import { rowsOf, type Surface } from "../rigid";
 import type { Setup } from "../setup";
 import { quarters } from "./body";
 
@@ -23,9 +23,8 @@ interface Ball {
 export function rigidOf(s: Setup, colour: string): Group {
   const tones = [new Color(colour), new Color(colour).lerp(new Color("#ffffff"), 0.45), new Color(colour).lerp(new Color("#000000"), 0.35)];
   const { centre } = freeOf(s);
-  const surface = surfaceOf(s);
+  const { surface, profile } = drawingOf(s);
   if (surface) return faces(surface, centre, tones, s.shape !== "mesh");
-  const profile = profileOf(s);
   if (profile) return revolved(profile.map(([z, r]) => [z - centre.z, r]), tones);
   if (s.shape === "rough-sphere") return rough(s, tones);
   if (s.shape !== "clump") return octants((normals) => farthestOf(s, normals), tones);

@@ -53,7 +53,7 @@ pub struct Run<'a> {
     /// Value of √(2 E_kin/m) after an impact, in m/s, below which a particle stops; with 0 none does.
     pub minimum_speed: f64,
     /// Energy over m g, in m, below which a particle stops because no pass out of a potential well of its body is so low; with 0 none
-    /// does. Horizontal motion does not count under a frictionless law. Only for a body without an axis.
+    /// does. Horizontal motion does not count under a frictionless law. Only for a rigid body of any shape.
     pub settled: f64,
     /// Seed of the random numbers.
     pub seed: u64,
@@ -103,7 +103,7 @@ impl Run<'_> {
                 Orientation::Isotropic | Orientation::Attitudes(_) => {
                     return self.spin.check_without_axis();
                 }
-                _ => "'isotropic' or quaternions, for a body without an axis",
+                _ => "'isotropic' or quaternions, for a rigid body of any shape",
             },
         };
         let given = match self.orientation {

@@ -1,8 +1,9 @@
 //! Clumps: unions of balls.
 
-use super::check_density;
-use super::rigid::{Moments, Rigid, RigidBall};
+use super::rigid::{CENTRE, Moments, Rigid, RigidBall, TENSOR};
+use super::{BodyKind, Form, check_density};
 use crate::Error;
+use crate::describe::{Allowed, Argument, Arguments, Interval, Kind, Parameter};
 use crate::math::{GAUSS, Symmetric, Vector};
 use crate::simd::elementary::{angle, sincos};
 use std::f64::consts::PI;
@@ -15,6 +16,45 @@ pub enum Matter {
     /// That of all balls, counted twice where they overlap, as some DEM codes do.
     Sum,
 }
+
+/// Its entry in the table of bodies. Its inertia may be a tensor, too.
+pub(super) const CLUMP: BodyKind = BodyKind::Rigid(Kind {
+    name: "Clump",
+    text: "spheres fixed to each other",
+    parameters: &[
+        Parameter::new(
+            "spheres",
+            "centre and radius of each sphere",
+            Some("m"),
+            Allowed::Rows(&["x", "y", "z", "r"], 1, Interval::POSITIVE),
+            Argument::Numbers(&[
+                0.0, 2e-3, 0.0, 2e-3, -1.7e-3, -1e-3, 0.0, 2e-3, 1.7e-3, -1e-3, 0.0, 2e-3,
+            ]),
+        ),
+        Parameter::density("density"),
+        Parameter {
+            text: "matter of the union of the spheres or of each by itself, or the tensor of inertia",
+            allowed: Allowed::Name(&["union", "sum"]),
+            default: Some(Argument::Name("union")),
+            example: Argument::Name("union"),
+            ..TENSOR
+        },
+        CENTRE,
+    ],
+    make: |given| {
+        let ball = |&[x, y, z, radius]: &[f64; 4]| RigidBall {
+            centre: Vector::new(x, y, z),
+            radius,
+        };
+        let balls: Vec<_> = given.numbers(0).as_chunks().0.iter().map(ball).collect();
+        let matter = match (given.name(2), given.numbers(2).is_empty()) {
+            ("sum", _) => Matter::Sum,
+            ("union", _) | (_, false) => Matter::Union,
+            (other, _) => Error::chosen("inertia", other, &[("union", Matter::Union)])?,
+        };
+        Rigid::clump(&balls, given.number(1), matter).map(Form::Body)
+    },
+});
 
 impl Rigid {
     /// The union of balls with these centres and radii, in m.
@@ -38,11 +78,12 @@ impl Rigid {
 pub(super) fn check(balls: &[RigidBall]) -> Result<(), Error> {
     Error::unless(!balls.is_empty(), "spheres", balls.len(), "one or more")?;
     for RigidBall { centre, radius } in balls {
-        let allowed = "finite, and the radius > 0 (m)";
+        // Sizes in m whose fifth power is a number.
+        let allowed = "rows (x, y, z, radius) in m, one or more, |x| to 1e+60, radius >= 1e-60";
         for x in [centre.x, centre.y, centre.z] {
-            Error::unless(x.is_finite(), "spheres", x, allowed)?;
+            Error::unless(x.abs() <= 1e60, "spheres", x, allowed)?;
         }
-        let positive = radius.is_finite() && *radius > 0.0;
+        let positive = (1e-60..=1e60).contains(radius);
         Error::unless(positive, "spheres", *radius, allowed)?;
     }
     Ok(())

@@ -2,19 +2,30 @@
 
 mod clump;
 mod convex;
+mod cuboid;
+mod cylinder;
+mod die;
+mod egg;
+mod ellipsoid;
+mod hull;
 mod mass;
+mod mesh;
 mod polyhedron;
 mod revolution;
 mod revolved;
 mod rigid;
+mod ring;
 mod rough;
 mod superellipsoid;
 mod top;
 mod tree;
 
 use crate::Error;
+use crate::describe::{Argument, Arguments, Kind, Parameter};
+use crate::math::Vector;
 
 pub use clump::Matter;
+pub use hull::triangles as convex_hull;
 
 pub(crate) use convex::{Convex, ConvexSurface};
 pub use revolution::*;
@@ -28,6 +39,89 @@ pub use top::Top;
 #[cfg(test)]
 pub(crate) use tree::{Balls, evaluations};
 pub(crate) use tree::{Effort, Instant, Least, Point};
+
+/// An entry of the table of bodies.
+#[derive(Debug)]
+pub enum BodyKind {
+    /// A body of revolution whose hull has a closed form: an angle is its orientation.
+    Revolution(Kind<Solid>),
+    /// A body that is followed in any attitude.
+    Rigid(Kind<Form>),
+}
+
+/// The shape of a rigid body, in m and the axes that it is given in: of what it is made, and what there is to draw of it.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Form {
+    /// A convex polyhedron: points, and triangles of their numbers.
+    Faces(Vec<Vector>, Vec<[usize; 3]>),
+    /// The same of a solid within closed surfaces.
+    Mesh(Vec<Vector>, Vec<[usize; 3]>),
+    /// Points (z, r) of an outline that turns about the axis z, closed where it ends at its first one.
+    Profile(Vec<[f64; 2]>),
+    /// Any other, made; it is drawn by its balls, or by the points that lie farthest in every direction.
+    Body(Rigid),
+}
+
+/// Every body, but for those that are another one with asperities.
+pub const BODIES: &[BodyKind] = &[
+    BodyKind::Revolution(Dumbbell::KIND),
+    BodyKind::Revolution(LoadedSphere::KIND),
+    BodyKind::Revolution(Spherocylinder::KIND),
+    BodyKind::Revolution(Spheroid::KIND),
+    ellipsoid::ELLIPSOID,
+    superellipsoid::SUPERELLIPSOID,
+    cuboid::BOX,
+    die::DIE,
+    polyhedron::CONVEX_POLYHEDRON,
+    cylinder::CYLINDER,
+    ring::RING,
+    egg::EGG,
+    revolved::REVOLUTION,
+    clump::CLUMP,
+    rough::ROUGH_SPHERE,
+    mesh::MESH,
+];
+
+impl BodyKind {
+    /// Its name, its description and its parameters.
+    pub const fn about(&self) -> (&'static str, &'static str, &'static [Parameter]) {
+        match self {
+            Self::Revolution(kind) => (kind.name, kind.text, kind.parameters),
+            Self::Rigid(kind) => (kind.name, kind.text, kind.parameters),
+        }
+    }
+}
+
+impl Kind<Form> {
+    /// The body of these parameters, with the density, the inertia and the centre of mass that are among them.
+    ///
+    /// # Errors
+    /// As the constructors of [`Rigid`], under the names of these parameters.
+    pub fn body(&self, given: &[Argument<'_>]) -> Result<Rigid, Error> {
+        let place = |name: &str| self.parameters.iter().position(|about| about.name == name);
+        let density = place("density").map_or(f64::NAN, |place| given.number(place));
+        let made = match (self.make)(given)? {
+            Form::Faces(points, triangles) => Rigid::polyhedron(&points, &triangles, density),
+            Form::Mesh(points, triangles) => Rigid::mesh(&points, &triangles, density),
+            Form::Profile(profile) => Rigid::revolution(&profile, density),
+            Form::Body(body) => Ok(body),
+        };
+        let made = made.map_err(|error| match (error, self.parameters) {
+            (Error::Parameter { name, .. }, [first, ..]) if place(name).is_none() => {
+                Error::Magnitude {
+                    name: first.name,
+                    value: given.number(0).into(),
+                    allowed: "such that the volume neither overflows nor underflows",
+                }
+            }
+            (error, _) => error,
+        })?;
+        match place("inertia") {
+            Some(place) => made.given(given, place),
+            None => Ok(made),
+        }
+    }
+}
 
 /// A body that can be dropped.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -87,4 +181,10 @@ impl AnyBody<'_> {
 fn check_density(value: f64) -> Result<(), Error> {
     let positive = value.is_finite() && value > 0.0;
     Error::unless(positive, "density", value, "finite and > 0 (kg/m^3)")
+}
+
+/// Checks that a length, in m, is positive.
+fn check_length(name: &'static str, value: f64) -> Result<(), Error> {
+    let positive = value.is_finite() && value > 0.0;
+    Error::unless(positive, name, value, "finite and > 0 (m)")
 }

@@ -1,10 +1,50 @@
 //! Convex polyhedra.
 
-use super::check_density;
-use super::rigid::{Inertia, Moments, Rigid, RigidBall};
+use super::rigid::{CENTRE, Inertia, Moments, Rigid, RigidBall, TENSOR, vectors};
+use super::{BodyKind, Form, check_density, hull};
 use crate::Error;
+use crate::describe::{Allowed, Argument, Arguments, Interval, Kind, Parameter};
 use crate::math::{Symmetric, Vector};
 use std::ops::Add;
+
+/// Its entry in the table of bodies.
+pub(super) const CONVEX_POLYHEDRON: BodyKind = BodyKind::Rigid(Kind {
+    name: "ConvexPolyhedron",
+    text: "convex hull of points",
+    parameters: &[
+        Parameter::new(
+            "points",
+            "points, of which the convex hull is the body",
+            Some("m"),
+            Allowed::Rows(&["x", "y", "z"], 4, Interval::ANY),
+            Argument::Numbers(STONE),
+        ),
+        Parameter::density("density"),
+        TENSOR,
+        CENTRE,
+    ],
+    make: |given| {
+        let points = vectors(given.numbers(0));
+        let faces = faces("points", &points)?;
+        Ok(Form::Faces(points, faces))
+    },
+});
+
+#[rustfmt::skip]
+const STONE: &[f64] = &[
+    3.4e-3, 0.2e-3, 0.6e-3, 1.2e-3, 2.6e-3, 1.1e-3, -2.1e-3, 2.2e-3, -0.4e-3, -3.2e-3, -0.6e-3, 0.8e-3, -0.9e-3, -2.7e-3, 0.3e-3,
+    2.3e-3, -2.1e-3, -0.8e-3, 0.4e-3, 0.3e-3, 2.1e-3, 1.5e-3, 1.3e-3, -1.9e-3, -1.4e-3, -0.8e-3, -2.2e-3, -1.1e-3, 1.2e-3, 1.8e-3,
+];
+
+/// The faces of the convex hull of points.
+pub(super) fn faces(name: &'static str, points: &[Vector]) -> Result<Vec<[usize; 3]>, Error> {
+    let allowed = "four or more, finite, not all in one plane (m)";
+    hull::triangles(points).ok_or(Error::Parameter {
+        name,
+        value: points.len().into(),
+        allowed: allowed.to_owned(),
+    })
+}
 
 impl Rigid {
     /// The homogeneous convex hull of points (m), whose faces are these triangles of them.
@@ -20,27 +60,9 @@ impl Rigid {
         let vertices: Vec<_> = points.iter().map(vertex).collect();
         Self::of_balls(inertia, "points", vertices.into_iter())
     }
-
-    /// The homogeneous solid within closed surfaces of triangles of points (m), each seen counter-clockwise from outside, of which these
-    /// `hull` points are the vertices of the convex hull, and can touch.
-    ///
-    /// # Errors
-    /// As [`Rigid::polyhedron`].
-    pub fn mesh(
-        points: &[Vector],
-        triangles: &[[usize; 3]],
-        hull: &[usize],
-        density: f64,
-    ) -> Result<Self, Error> {
-        let inertia = solid(points, triangles, |volume| volume, density)?;
-        let known = hull.iter().all(|&i| i < points.len());
-        Error::unless(known, "hull", hull.len(), "those of the points")?;
-        let vertices: Vec<_> = hull.iter().map(|&i| vertex(&points[i])).collect();
-        Self::of_balls(inertia, "points", vertices.into_iter())
-    }
 }
 
-fn vertex(&centre: &Vector) -> RigidBall {
+pub(super) fn vertex(&centre: &Vector) -> RigidBall {
     RigidBall {
         centre,
         radius: 0.0,
@@ -48,7 +70,7 @@ fn vertex(&centre: &Vector) -> RigidBall {
 }
 
 /// The sum of the tetrahedra that triangles make with a point among them. `counted` is how their signed volumes count.
-fn solid(
+pub(super) fn solid(
     points: &[Vector],
     triangles: &[[usize; 3]],
     counted: impl Fn(f64) -> f64,
@@ -59,7 +81,7 @@ fn solid(
         Error::unless(x.is_finite(), "points", x, "finite (m)")?;
     }
     let known = triangles.as_flattened().iter().all(|&i| i < points.len());
-    Error::unless(known, "triangles", triangles.len(), "those of the points")?;
+    Error::unless(known, "triangles", triangles.len(), "numbers of the points")?;
     let mut vertices: Vec<usize> = triangles.as_flattened().to_vec();
     vertices.sort_unstable();
     vertices.dedup();
@@ -73,7 +95,7 @@ fn solid(
         let volume = counted(a.dot(b.cross(c)) / 6.0);
         moments = moments.and(tetrahedron(volume, [a, b, c]));
     }
-    let allowed = "not all in one plane";
+    let allowed = "four or more that are not all in one plane";
     let positive = moments.content > 0.0 && moments.content.is_finite();
     Error::unless(positive, "points", points.len(), allowed)?;
     let mut inertia = moments.inertia(density);

@@ -1,15 +1,62 @@
 //! Solids of revolution with any profile.
 
-use super::check_density;
 use super::convex::{Convex, ConvexSurface};
-use super::rigid::{Inertia, Rigid, Skin};
+use super::rigid::{CENTRE, Inertia, Rigid, Skin, TENSOR};
+use super::{BodyKind, Form, check_density};
 use crate::Error;
+use crate::describe::{Allowed, Argument, Arguments, Interval, Kind, Parameter};
 use crate::math::{GAUSS, Symmetric, Vector};
 use crate::simd::elementary::{angle, sincos};
 use std::f64::consts::PI;
 
+/// The entry of a body with any profile in the table of bodies.
+pub(super) const REVOLUTION: BodyKind = BodyKind::Rigid(Kind {
+    name: "Revolution",
+    text: "solid of revolution with any profile",
+    parameters: &[
+        Parameter::new(
+            "profile",
+            "points of the outline from one end to the other, r the distance from the axis",
+            Some("m"),
+            Allowed::Rows(&["z", "r"], 2, Interval::NOT_NEGATIVE),
+            Argument::Numbers(&[0.0, 3e-3, 6e-3, 0.0]),
+        ),
+        Parameter::density("density"),
+        TENSOR,
+        CENTRE,
+    ],
+    make: |given| {
+        let profile = given.numbers(0).as_chunks().0;
+        check_outline(profile)?;
+        Ok(Form::Profile(profile.to_vec()))
+    },
+});
+
+/// Refuses an outline with lines that cross.
+fn check_outline(profile: &[Place]) -> Result<(), Error> {
+    let side = |[x, y]: Place, [p, q]: Place, [u, v]: Place| {
+        let turn = (p - x) * (v - y) - (q - y) * (u - x);
+        if turn == 0.0 { 0.0 } else { turn.signum() }
+    };
+    for (i, line) in profile.windows(2).enumerate() {
+        for (j, other) in profile[..i + 1].windows(2).enumerate() {
+            let ([a, b], [c, d]) = ([line[0], line[1]], [other[0], other[1]]);
+            if side(a, b, c) * side(a, b, d) < 0.0 && side(c, d, a) * side(c, d, b) < 0.0 {
+                return Err(Error::Parameter {
+                    name: "profile",
+                    value: profile.len().into(),
+                    allowed: format!(
+                        "an outline whose lines do not cross; those from the points {j} and {i} cross"
+                    ),
+                });
+            }
+        }
+    }
+    Ok(())
+}
+
 /// A point (z, r) of a half-plane through the axis.
-type Place = [f64; 2];
+pub(super) type Place = [f64; 2];
 
 /// The surface that an arc of the profile makes as it turns about the axis, in units of R from the centre of mass: a band of a torus, the rim
 /// of an edge or face where its radius is 0, a cap where its centre is on the axis.
@@ -25,7 +72,7 @@ pub(crate) struct Band {
 }
 
 /// The length of a vector with these components. That of the platform's library has another last bit on another platform.
-fn norm(a: f64, b: f64) -> f64 {
+pub(super) fn norm(a: f64, b: f64) -> f64 {
     (a * a + b * b).sqrt()
 }
 
@@ -106,10 +153,10 @@ impl Band {
 
 /// An arc of an outline, in m: its centre, its radius, and the directions from its centre to its beginning and its end.
 #[derive(Debug, Clone, Copy)]
-struct Arc {
-    centre: Place,
-    radius: f64,
-    ends: [Place; 2],
+pub(super) struct Arc {
+    pub centre: Place,
+    pub radius: f64,
+    pub ends: [Place; 2],
 }
 
 impl Arc {
@@ -149,80 +196,6 @@ impl Rigid {
         Self::of_outline(&outline, &hull(profile), density)
     }
 
-    /// An egg that stands on z = 0: a cap of the radius `blunt` below, one of the radius `tip` above, joined by an arc that is tangent to both and has the
-    /// distance `width`/2 from the axis at its widest (m).
-    ///
-    /// # Errors
-    /// Unless all numbers are positive, `width` ≤ `length`, and both radii are less than half of the width, or one of them as large.
-    pub fn egg(
-        [length, width]: [f64; 2],
-        [blunt, tip]: [f64; 2],
-        density: f64,
-    ) -> Result<Self, Error> {
-        let half = 0.5 * width;
-        for (name, value, most, allowed) in [
-            ("length", length, f64::MAX, "finite and > 0 (m)"),
-            ("width", width, length, "> 0 and <= length (m)"),
-            ("blunt_end", blunt, half, "> 0 and <= width/2 (m)"),
-            ("tip", tip, half, "> 0 and <= width/2 (m)"),
-        ] {
-            Error::unless(value > 0.0 && value <= most, name, value, allowed)?;
-        }
-        let (below, above) = (half - blunt, half - tip);
-        let smaller = below.max(above) > 0.0;
-        Error::unless(
-            smaller,
-            "tip",
-            tip,
-            "less than width/2, as blunt_end is not",
-        )?;
-        // The arc of radius ϱ, its centre at (z, width/2 − ϱ) from that of the blunt cap: z² = below (2ϱ − width/2 − blunt), (D − z)² =
-        // above (2ϱ − width/2 − tip), D the distance of the caps' centres; both have one solution 0 ≤ z ≤ D.
-        let distance = length - blunt - tip;
-        // (above − below) z² + 2 b z = c, without cancellation.
-        let b = below * distance;
-        let c = below * (distance * distance + (below - above) * above);
-        let root = (b * b + (above - below) * c).max(0.0).sqrt();
-        let z = if below == 0.0 { 0.0 } else { c / (b + root) };
-        let radius = if below > above {
-            0.5 * (z * z / below + half + blunt)
-        } else {
-            0.5 * ((distance - z) * (distance - z) / above + half + tip)
-        };
-        let centre = [blunt + z, half - radius];
-        // Of a sphere the arc can be all of it.
-        let towards = |[a, b]: Place, pole: Place| {
-            let (x, y) = (a - centre[0], b - centre[1]);
-            let size = norm(x, y);
-            if size > 0.0 {
-                [x / size, y / size]
-            } else {
-                pole
-            }
-        };
-        let caps = [[length - tip, 0.0], [blunt, 0.0]];
-        let upper = towards(caps[0], [1.0, 0.0]);
-        let lower = towards(caps[1], [-1.0, 0.0]);
-        let outline = [
-            Arc {
-                centre: caps[0],
-                radius: tip,
-                ends: [[1.0, 0.0], upper],
-            },
-            Arc {
-                centre,
-                radius,
-                ends: [upper, lower],
-            },
-            Arc {
-                centre: caps[1],
-                radius: blunt,
-                ends: [lower, [-1.0, 0.0]],
-            },
-        ];
-        Self::of_outline(&outline, &outline, density)
-    }
-
     /// Returns the rims of a solid of revolution that can touch, (z, r) in m, in the order of their numbers.
     pub fn rims(&self) -> Vec<[f64; 2]> {
         let Skin::Convex(Convex {
@@ -246,7 +219,11 @@ impl Rigid {
     }
 
     /// The solid that an outline makes, of which only these arcs can touch.
-    fn of_outline(outline: &[Arc], touching: &[Arc], density: f64) -> Result<Self, Error> {
+    pub(super) fn of_outline(
+        outline: &[Arc],
+        touching: &[Arc],
+        density: f64,
+    ) -> Result<Self, Error> {
         check_density(density)?;
         let from_origin = sums(outline, 0.0);
         let centre = from_origin[1] / from_origin[0];

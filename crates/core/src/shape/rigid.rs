@@ -1,12 +1,14 @@
 //! Bodies of any shape: mass, principal axes, and what can touch the plane.
 
-use super::check_density;
-use super::convex::{Convex, ConvexSurface};
+use super::convex::Convex;
 use super::top::Top;
 use super::tree::{Balls, Effort, Instant, Least, Point};
 use crate::Error;
+use crate::describe::{Allowed, Argument, Arguments, Interval, Parameter};
 use crate::math::{Quaternion, Symmetric, Vector};
 use crate::memory::{collected, filled};
+use crate::simd::elementary::sincos;
+use std::f64::consts::PI;
 
 /// Volume, or mass, with its first and second moments: the integrals of 1, **x** and **x**⊗**x**.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -109,7 +111,63 @@ impl Moments {
     }
 }
 
+/// The parameters with which those of a homogeneous body end.
+pub(super) const TENSOR: Parameter = Parameter::new(
+    "inertia",
+    "tensor of inertia about the centre of mass, instead of that of homogeneous matter",
+    Some("kg m2"),
+    Allowed::Rows(&["x", "y", "z"], 3, Interval::ANY),
+    Argument::Numbers(&[1e-8, 0.0, 0.0, 0.0, 1e-8, 0.0, 0.0, 0.0, 1e-8]),
+)
+.optional();
+pub(super) const CENTRE: Parameter = Parameter::new(
+    "centre",
+    "centre of mass, where a tensor of inertia is given",
+    Some("m"),
+    Allowed::Several(
+        &[["x", "along x"], ["y", "along y"], ["z", "along z"]],
+        Interval::ANY,
+    ),
+    Argument::Numbers(&[0.0; 3]),
+)
+.optional();
+
+/// Triples of numbers as vectors.
+pub(super) fn vectors(numbers: &[f64]) -> Vec<Vector> {
+    let rows = numbers.as_chunks().0.iter();
+    rows.map(|&[x, y, z]| Vector::new(x, y, z)).collect()
+}
+
 impl Rigid {
+    /// The same body, unless [`TENSOR`] at this place, and [`CENTRE`] after it, give it another inertia of the same mass.
+    pub(super) fn given(self, given: &[Argument<'_>], place: usize) -> Result<Self, Error> {
+        let [xx, xy, xz, yx, yy, yz, zx, zy, zz] = match given.get(place) {
+            Some(Argument::Numbers(_)) => given.several(place),
+            _ => return Ok(self),
+        };
+        let [x, y, z] = given.several(place + 1);
+        let own = given.is_absent(place + 1);
+        let inertia = Inertia {
+            mass: self.inertia.mass,
+            centre: if own {
+                self.inertia.centre
+            } else {
+                Vector::new(x, y, z)
+            },
+            tensor: Symmetric::from_rows([[xx, xy, xz], [yx, yy, yz], [zx, zy, zz]]),
+        };
+        let body = self.with_inertia(inertia)?;
+        // Evenly all around: a spiral that turns by the golden angle.
+        let within = (0..400).all(|k| {
+            let z = 1.0 - (2.0 * f64::from(k) + 1.0) / 400.0;
+            let (sine, cosine) = sincos(f64::from(k) * PI * (3.0 - 5.0_f64.sqrt()));
+            let level = (1.0 - z * z).sqrt();
+            body.support(Vector::new(level * cosine, level * sine, z)) > 0.0
+        });
+        Error::unless(within, "centre", x, "within the body (m)")?;
+        Ok(body)
+    }
+
     /// A body with these parts, in m and the axes of its inertia; `what` is for the error.
     pub(super) fn of_balls(
         inertia: Inertia,
@@ -152,46 +210,6 @@ impl Rigid {
             };
         }
         Ok(found)
-    }
-
-    /// A homogeneous ellipsoid with these semi-axes (m) along its own axes.
-    ///
-    /// # Errors
-    /// Unless they and the density are positive, and the largest is at most 1000 times the smallest.
-    pub fn ellipsoid(semi_axes: [f64; 3], density: f64) -> Result<Self, Error> {
-        Self::check_semi_axes(semi_axes)?;
-        check_density(density)?;
-        let [a, b, c] = semi_axes;
-        let mass = density * (4.0 / 3.0 * std::f64::consts::PI) * a * b * c;
-        let fifth = mass / 5.0;
-        let inertia = Inertia {
-            mass,
-            centre: Vector::default(),
-            tensor: Symmetric::diagonal([
-                fifth * (b * b + c * c),
-                fifth * (c * c + a * a),
-                fifth * (a * a + b * b),
-            ]),
-        };
-        let unit = a.max(b).max(c);
-        let surface = ConvexSurface::Ellipsoid(semi_axes.map(|axis| axis / unit));
-        Self::new(inertia, unit, |_| Ok(Skin::Convex(Convex::new(surface))))
-    }
-
-    /// Refuses semi-axes that are no positive numbers, or differ by more than 1000 times.
-    pub(super) fn check_semi_axes(semi_axes: [f64; 3]) -> Result<(), Error> {
-        for axis in semi_axes {
-            let positive = axis.is_finite() && axis > 0.0;
-            Error::unless(positive, "semi_axes", axis, "finite and > 0 (m)")?;
-        }
-        let [most, least] =
-            [f64::max, f64::min].map(|of| semi_axes.into_iter().fold(semi_axes[0], of));
-        Error::unless(
-            most <= 1000.0 * least * (1.0 + 4.0 * f64::EPSILON),
-            "semi_axes",
-            least,
-            "at least 1/1000 of the largest",
-        )
     }
 
     /// A body whose parts, in its principal axes and in units of `unit`, follow from the rotation of these to the axes of its inertia.

@@ -1,7 +1,9 @@
 //! Rough bodies: asperities, small balls, on the surface of a body of balls.
 
 use super::rigid::{Inertia, Rigid, RigidBall};
+use super::{BodyKind, Form, Matter, check_length};
 use crate::Error;
+use crate::describe::{Allowed, Argument, Arguments, Interval, Kind, Parameter};
 use crate::math::{Quaternion, Vector};
 use crate::random::of_asperity;
 use crate::simd::elementary::{exp_in_lanes, ln, sincos};
@@ -36,6 +38,82 @@ pub struct Roughness<'a> {
     pub seed: u64,
 }
 
+/// The entry of a rough sphere in the table of bodies. Its heights may be one for each asperity, or a distribution.
+pub(super) const ROUGH_SPHERE: BodyKind = BodyKind::Rigid(Kind {
+    name: "RoughSphere",
+    text: "sphere with small balls on its surface",
+    parameters: &[
+        Parameter::length("radius", "radius of the sphere", 3e-3),
+        Parameter::new(
+            "asperities",
+            "number of asperities",
+            Some("1"),
+            Allowed::Whole(Interval::from(1.0, 2_147_483_647.0)),
+            Argument::Whole(1000),
+        ),
+        Parameter::length("asperity_radius", "radius of the asperities", 3e-5).up_to(f64::INFINITY),
+        Parameter::number(
+            "heights",
+            "heights of the tops of the asperities above the sphere",
+            "m",
+            Interval::NOT_NEGATIVE,
+            3e-5,
+        )
+        .optional(),
+        Parameter::density("density"),
+        Parameter::new(
+            "seed",
+            "seed of the asperities",
+            Some("1"),
+            Allowed::Whole(Interval::NOT_NEGATIVE),
+            Argument::Whole(1),
+        )
+        .or(Argument::Whole(1))
+        .linked("asperity_seed"),
+    ],
+    make: |given| {
+        check_length("radius", given.number(0))?;
+        let sphere = [RigidBall {
+            centre: Vector::default(),
+            radius: given.number(0),
+        }];
+        let inertia = Rigid::clump(&sphere, given.number(4), Matter::Sum)?.inertia;
+        let roughness = Roughness {
+            asperities: given.whole(1) as usize,
+            radius: given.number(2),
+            heights: Heights::of(given.get(3), given.number(2))?,
+            seed: given.whole(5),
+        };
+        Rigid::rough(&sphere, false, inertia, &roughness).map(Form::Body)
+    },
+});
+
+impl<'a> Heights<'a> {
+    /// Those that an argument gives; all alike if it is left out.
+    ///
+    /// # Errors
+    /// If there is no such distribution.
+    pub fn of(given: Option<&Argument<'a>>, alike: f64) -> Result<Self, Error> {
+        Ok(match given {
+            Some(Argument::Absent) => Self::Equal(alike),
+            Some(Argument::Numbers(each)) => Self::Given(each),
+            Some(&Argument::Drawn(name, numbers)) => match (name, numbers) {
+                ("exponential", &[mean]) => Self::Exponential(mean),
+                ("normal", &[mean, deviation]) => Self::Normal(mean, deviation),
+                ("power", &[exponent, least, most]) => Self::Power(exponent, least, most),
+                _ => {
+                    return Err(Error::Parameter {
+                        name: "heights",
+                        value: crate::Value::Name(name.to_owned()),
+                        allowed: "exponential, normal or power, with its numbers".to_owned(),
+                    });
+                }
+            },
+            other => Self::Equal(other.map_or(f64::NAN, |&given| [given].number(0))),
+        })
+    }
+}
+
 /// Draws of an asperity until it has a place on the surface and a height.
 const DRAWS: u32 = 100_000;
 
@@ -60,7 +138,12 @@ impl Rigid {
         roughness.check(smallest)?;
         let surface = Surface::new(balls, barrel);
         let free = surface.draw(roughness.seed, 0).is_some();
-        Error::unless(free, "spheres", balls.len(), "with a surface of their own")?;
+        Error::unless(
+            free,
+            "spheres",
+            balls.len(),
+            "such that no other covers all of one",
+        )?;
         let all = balls.len() + roughness.asperities;
         let parts = (0..all).map(|i| match balls.get(i) {
             Some(ball) => *ball,
@@ -72,6 +155,12 @@ impl Rigid {
 
 impl Roughness<'_> {
     fn check(&self, smallest: f64) -> Result<(), Error> {
+        Error::unless(
+            self.asperities > 0,
+            "asperities",
+            self.asperities,
+            "one or more",
+        )?;
         let fits = self.radius > 0.0 && self.radius <= smallest;
         let allowed = "> 0, and no larger than the smallest sphere of the body (m)";
         Error::unless(fits, "asperity_radius", self.radius, allowed)?;

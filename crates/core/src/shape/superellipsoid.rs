@@ -8,10 +8,12 @@
 //! Volume and second moments: A. Jaklič, A. Leonardis and F. Solina, *Segmentation and Recovery of Superquadrics* (Kluwer, 2000), Sec. 2.4, with
 //! their ε₁ = 2/n₁ and ε₂ = 2/n₂.
 
-use super::check_density;
 use super::convex::{Convex, ConvexSurface};
-use super::rigid::{Inertia, Rigid, Skin};
+use super::ellipsoid::SEMI_AXES;
+use super::rigid::{CENTRE, Inertia, Rigid, Skin, TENSOR};
+use super::{BodyKind, Form, check_density};
 use crate::Error;
+use crate::describe::{Allowed, Argument, Arguments, Interval, Kind, Parameter};
 use crate::math::{Symmetric, Vector};
 use crate::simd::elementary::{exp_m1_in_lanes, ln};
 use crate::simd::one;
@@ -19,6 +21,34 @@ use std::f64::consts::TAU;
 
 /// Least and largest exponent: below 2 a superellipsoid has edges, and towards 1 is an octahedron; towards infinity it is a box.
 const EXPONENTS: [f64; 2] = [1.1, 100.0];
+
+/// Its entry in the table of bodies.
+pub(super) const SUPERELLIPSOID: BodyKind = BodyKind::Rigid(Kind {
+    name: "Superellipsoid",
+    text: "superellipsoid, the superquadric of DEM codes",
+    parameters: &[
+        SEMI_AXES,
+        Parameter::new(
+            "exponents",
+            "exponents along z and across it",
+            Some("1"),
+            Allowed::Several(
+                &[
+                    ["exponent_1", "exponent along z"],
+                    ["exponent_2", "exponent across z"],
+                ],
+                Interval::from(EXPONENTS[0], EXPONENTS[1]),
+            ),
+            Argument::Numbers(&[4.0, 3.0]),
+        ),
+        Parameter::density("density"),
+        TENSOR,
+        CENTRE,
+    ],
+    make: |given| {
+        Rigid::superellipsoid(given.several(0), given.several(1), given.number(2)).map(Form::Body)
+    },
+});
 
 /// A superellipsoid about the origin, its axes those of space.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -195,7 +225,12 @@ impl Rigid {
         let [least, most] = EXPONENTS;
         for n in exponents {
             let within = (least..=most).contains(&n);
-            Error::unless(within, "exponents", n, "from 1.1 to 100")?;
+            Error::unless(
+                within,
+                "exponents",
+                n,
+                "two numbers (n1, n2), each from 1.1 to 100",
+            )?;
         }
         let [a, b, c] = semi_axes;
         let [e1, e2] = exponents.map(|n| 2.0 / n);

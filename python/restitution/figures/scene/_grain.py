@@ -10,17 +10,16 @@ from restitution.bodies import (
     Box,
     Clump,
     ConvexPolyhedron,
-    Cylinder,
     Die,
     Dumbbell,
+    Egg,
     Ellipsoid,
     LoadedSphere,
     Mesh,
-    Revolution,
     RigidBody,
-    Ring,
     Rough,
     RoughSphere,
+    Turned,
     directions,
     farthest,
 )
@@ -113,7 +112,7 @@ def surfaces(body: RigidBody, attitude: FloatArray) -> list[_Round | _Faces]:
             return [_hull((np.array(points) - middle) @ attitude.T)]
         case Mesh(vertices=points, hull=hull):
             return [_hull((np.array(points)[hull] - middle) @ attitude.T)]
-        case Revolution() | Cylinder() | Ring():
+        case Turned() if not isinstance(body, Egg):
             return [_hull((_rims(np.array(body.compiled.rims)) - middle) @ attitude.T)]
     return [_hull(farthest(body, directions(_POINTS)) @ attitude.T)]
 

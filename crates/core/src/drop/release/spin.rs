@@ -153,7 +153,7 @@ impl Spin<'_> {
             !across,
             "axis",
             Value::Name("across".into()),
-            "'isotropic', 'horizontal' or 'thermal' for a body without an axis",
+            "'isotropic', 'horizontal' or 'thermal' for a rigid body of any shape",
         )
     }
 

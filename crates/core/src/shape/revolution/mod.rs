@@ -1,6 +1,6 @@
 //! Bodies of revolution: the properties on which the motion depends, and one file per shape.
 //!
-//! A new shape is a file with its parameters in SI units that implements [`Shape`], and an entry of [`BODIES`]. Its hull consists of
+//! A new shape is a file with its parameters in SI units that implements [`Shape`], and an entry of [`super::BODIES`]. Its hull consists of
 //! balls or is smooth; [`Hull`] lists what it has to provide.
 
 mod dumbbell;
@@ -19,18 +19,9 @@ pub use outline::Arc;
 pub use spherocylinder::Spherocylinder;
 pub use spheroid::Spheroid;
 
-use super::check_density;
+use super::{check_density, check_length};
 use crate::Error;
-use crate::describe::Kind;
 use hollow::{INERTIA, WALL, made};
-
-/// Every body.
-pub const BODIES: &[Kind<Solid>] = &[
-    Dumbbell::KIND,
-    LoadedSphere::KIND,
-    Spherocylinder::KIND,
-    Spheroid::KIND,
-];
 
 /// A body of revolution in the core's units (lengths in R, masses in m).
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -164,12 +155,6 @@ fn seen(elongation: f64) -> f64 {
     } else {
         elongation
     }
-}
-
-/// Checks that a length, in m, is positive.
-fn check_length(name: &'static str, value: f64) -> Result<(), Error> {
-    let positive = value.is_finite() && value > 0.0;
-    Error::unless(positive, name, value, "finite and > 0 (m)")
 }
 
 /// Checks that a length, in m, is not negative.
