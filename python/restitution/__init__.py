@@ -63,6 +63,7 @@ __all__ = [
     "Superellipsoid",
     "Tabulated",
     "TangentialRestitution",
+    "TruncatedCone",
     "Viscoelastic",
     "analytic",
     "ball_grade",

@@ -21,6 +21,7 @@ BODIES: dict[str, RigidBody] = {
     "ring": rs.Ring(outer=4e-3, inner=2.5e-3, height=1.5e-3),
     "cone": rs.Revolution(profile=[(0, 4e-3), (9e-3, 0)]),
     "vase": rs.Revolution(profile=VASE),
+    "bead": rs.TruncatedCone(base=4e-3, top=2.5e-3, height=3e-3),
     "egg": rs.Egg(**EGG),
 }
 
@@ -32,6 +33,8 @@ def outline(name: str) -> Array:
         return egg_outline(body, 4001)
     if isinstance(body, rs.Revolution):
         return np.array(body.profile)
+    if isinstance(body, rs.TruncatedCone):
+        return np.array([(0.0, body.base), (body.height, body.top)])
     assert isinstance(body, rs.Cylinder | rs.Ring)
     radius = body.radius if isinstance(body, rs.Cylinder) else body.outer
     return np.array([(-0.5 * body.height, radius), (0.5 * body.height, radius)])
@@ -86,6 +89,7 @@ def check_mass(body: RigidBody, expected: tuple[float, float, float, float], rto
 def test_mass_and_inertia_are_those_of_the_slices() -> None:
     check_mass(BODIES["vase"], integrals(VASE))
     check_mass(rs.Revolution(profile=VASE[::-1]), integrals(VASE))
+    check_mass(BODIES["bead"], integrals(outline("bead")))
     cone, (h, r) = BODIES["cone"], (9e-3, 4e-3)
     mass = 2500.0 * np.pi * r * r * h / 3
     across = mass * (3 / 20 * r * r + 3 / 80 * h * h)

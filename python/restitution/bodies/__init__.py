@@ -15,7 +15,7 @@ from restitution.bodies._hollow import Wall as Wall
 from restitution.bodies._loaded_sphere import LoadedSphere
 from restitution.bodies._mesh import Mesh
 from restitution.bodies._polyhedra import Box, ConvexPolyhedron
-from restitution.bodies._revolution import Cylinder, Egg, Revolution, Ring
+from restitution.bodies._revolution import Cylinder, Egg, Revolution, Ring, TruncatedCone
 from restitution.bodies._revolution import Turned as Turned
 from restitution.bodies._rigid import RigidBody as RigidBody
 from restitution.bodies._rigid import directions as directions
@@ -45,6 +45,7 @@ __all__ = [
     "Spherocylinder",
     "Spheroid",
     "Superellipsoid",
+    "TruncatedCone",
     "ball_grade",
     "ball_roughness",
     "from_roundness",

@@ -6,7 +6,7 @@ import numpy as np
 from pydantic import Field
 
 from restitution._internal.arrays import FloatArray
-from restitution._internal.parameters import Allowed
+from restitution._internal.parameters import Allowed, Number
 from restitution.bodies._rigid import Density, Length, Matter, rows
 
 _PROFILE = "two or more points (z, r) in m, finite, r >= 0, around an area"
@@ -144,6 +144,56 @@ class Ring(Turned):
             self,
             outer: float,
             inner: float,
+            height: float,
+            *,
+            density: float = 2500.0,
+            inertia: Any = None,
+            centre: Any = None,
+        ) -> None: ...
+
+
+class TruncatedCone(Turned):
+    """A homogeneous truncated cone, or cone, with its axis along z of the body: a cup, a bullet, a bead.
+
+    Its base is at z = 0 of the body.
+
+    Parameters
+    ----------
+    base : float
+        Radius of the face at z = 0, in m; finite and > 0.
+    top : float
+        Radius of the other face, in m; finite and >= 0. With 0 it is a cone.
+    height : float
+        Distance of the faces, in m; finite and > 0.
+    density : float, default 2500
+        Density in kg/m³; finite and > 0. Only mass and inertia depend on it, the motion does not.
+    inertia : array_like, shape (3, 3), optional
+        Tensor of inertia about the centre of mass in kg m², in the axes of the body, where the matter is not
+        homogeneous. The mass stays that of the density.
+    centre : array_like, shape (3,), optional
+        Its centre of mass in m, where a tensor of inertia is given; that of homogeneous matter if left out.
+
+    Examples
+    --------
+    >>> import restitution as rs
+    >>> cone = rs.TruncatedCone(base=4e-3, top=0.0, height=12e-3)
+    >>> cone.centre_of_mass.round(9).tolist()
+    [0.0, 0.0, 0.003]
+    """
+
+    by_place: ClassVar[tuple[str, ...]] = ("base", "top", "height")
+
+    base: Length
+    top: Annotated[Number, Field(ge=0, description="m")]
+    height: Length
+    density: Density = 2500.0
+
+    if TYPE_CHECKING:
+
+        def __init__(
+            self,
+            base: float,
+            top: float,
             height: float,
             *,
             density: float = 2500.0,

@@ -19,6 +19,7 @@ mod rough;
 mod superellipsoid;
 mod top;
 mod tree;
+mod truncated_cone;
 
 use crate::Error;
 use crate::describe::{Argument, Arguments, Kind, Parameter};
@@ -75,6 +76,7 @@ pub const BODIES: &[BodyKind] = &[
     polyhedron::CONVEX_POLYHEDRON,
     cylinder::CYLINDER,
     ring::RING,
+    truncated_cone::TRUNCATED_CONE,
     egg::EGG,
     revolved::REVOLUTION,
     clump::CLUMP,
