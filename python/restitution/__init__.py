@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     from restitution.drop.clusters import ClusterWarning, clusters
     from restitution.drop.compare import compare
     from restitution.drop.energy import EnergyWarning
+    from restitution.drop.pulls import PullWarning
     from restitution.drop.reduce import reduce
     from restitution.drop.release import RandomHeight, RandomSpin
     from restitution.drop.resting import resting
@@ -49,6 +50,7 @@ __all__ = [
     "Mesh",
     "NumericalError",
     "Plastic",
+    "PullWarning",
     "RandomHeight",
     "RandomSpin",
     "RequiredRoundness",
@@ -108,6 +110,7 @@ _HOMES = {
     "compare": "drop.compare",
     "clusters": "drop.clusters",
     "ClusterWarning": "drop.clusters",
+    "PullWarning": "drop.pulls",
     "energy_budget": "drop.budget",
     "explore": "explorer",
     "posterior": "experiment.inference",

@@ -174,7 +174,12 @@ def test_bad_returns_name_particle_and_seed(given: Any, text: str, threads: int)
 
     with pytest.raises(ValueError, match="particle ") as caught:
         rs.simulate(
-            BODIES[0], rs.CustomLaw(bad, name="mine"), particles=500, impacts=10, seed=7, threads=threads
+            BODIES[0],
+            rs.CustomLaw(bad, name="mine", pull="stop"),
+            particles=500,
+            impacts=10,
+            seed=7,
+            threads=threads,
         )
     assert text in str(caught.value)
     assert "(seed 7), impact 0: mine gave" in str(caught.value)
@@ -333,3 +338,40 @@ def test_arguments() -> None:
         rs.CustomLaw()  # type: ignore[call-arg]
     with pytest.raises(ValueError, match=r"law = 3: must be a .*, or a CustomLaw"):
         rs.simulate(BODIES[0], 3)  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize(
+    "body", [BODIES[0], rs.Ellipsoid(semi_axes=(1e-3, 1.5e-3, 3e-3))], ids=["axis", "none"]
+)
+def test_one_rule_for_impulses_that_pull(body: Any) -> None:
+    """A law of the package, the same as a function, and both with another rule."""
+    known = rs.TangentialRestitution(normal=0.5, tangential=-0.5)
+
+    pulled: list[bool] = []
+
+    def function(K: Floats, velocity: Floats) -> Any:
+        impulse = np.linalg.solve(K, -1.5 * velocity)
+        pulled.append(bool(impulse[2] < -1e-12 * body.mass))
+        return impulse
+
+    how: dict[str, Any] = IN_SPACE | {
+        "particles": 200,
+        "impacts": 40,
+        "orientation": "isotropic",
+        "incline": 0.0,
+    }
+    for law in (known, rs.CustomLaw(known), rs.CustomLaw(function)):
+        with pytest.warns(rs.PullWarning, match="let the plane pull"):
+            data = rs.simulate(body, law, **how)
+        assert data.attrs["pulling_impacts"] > 0
+    assert data.attrs["pulling_impacts"] == pytest.approx(sum(pulled), abs=0.02 * sum(pulled))
+    for clipped in (rs.CustomLaw(known, pull="clip"), rs.CustomLaw(function, pull="clip")):
+        data = rs.simulate(body, clipped, **how)
+        assert "pulling_impacts" not in data.attrs
+        assert float((data.impact_velocity + data.rebound_velocity).min()) > -1e-14
+        with pytest.raises(ValueError, match="which pulls"):
+            rs.simulate(body, rs.CustomLaw(clipped.function, pull="stop"), **how)
+    with pytest.raises(ValueError, match="pull = 'keep': must be 'stop', 'clip' or None"):
+        rs.CustomLaw(known, pull="keep")  # type: ignore[arg-type]
+    with pytest.raises(ValueError, match="does not scatter"):
+        rs.CustomLaw(rs.Frictionless(normal=rs.Scattered(normal=0.9, deviation=0.01)))

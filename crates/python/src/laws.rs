@@ -7,11 +7,11 @@ use numpy::{IntoPyArray, PyArray1, PyReadonlyArray1, ToPyArray};
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 use restitution_core::law::{
-    AxialCompliance, Components, Contact, MOST_FRICTION, PADE_ABOVE, PADE_BELOW,
+    AxialCompliance, Compliance, Components, Contact, MOST_FRICTION, PADE_ABOVE, PADE_BELOW,
 };
 use restitution_core::{
-    Error, Fault, ImpulseFunction, LAWS, MATERIALS, Normal, Raised, Rule, Scattered, Vector,
-    collected,
+    Error, Fault, ImpulseFunction, LAWS, MATERIALS, Normal, Raised, Rule, Scattered, Symmetric,
+    Vector, collected,
 };
 use std::sync::Arc;
 
@@ -97,10 +97,27 @@ impl Law {
     }
 }
 
-/// A Python function of K and the contact velocity, which returns an impulse.
+/// A function of K and the contact velocity, which gives an impulse: one in Python, or a law of the core.
 struct Function {
     name: String,
-    function: Py<PyAny>,
+    asked: Asked,
+    pull: Pull,
+}
+
+enum Asked {
+    Python(Py<PyAny>),
+    Known(Arc<restitution_core::Material>, Rule),
+}
+
+/// What becomes of an impulse that pulls.
+#[derive(Clone, Copy, PartialEq)]
+enum Pull {
+    /// It acts.
+    Acts,
+    /// It ends the run.
+    Stop,
+    /// Its normal component is left out.
+    Clip,
 }
 
 /// Most characters of what a function returned that an error shows.
@@ -109,14 +126,13 @@ const SHOWN: usize = 72;
 impl Function {
     /// The impulse, or what was given instead.
     fn call(
-        &self,
+        function: &Py<PyAny>,
         py: Python<'_>,
         compliance: [[f64; 3]; 3],
         velocity: Vector,
     ) -> PyResult<Result<Vector, String>> {
         let velocity = [velocity.x, velocity.y, velocity.z].to_pyarray(py);
-        let given = self
-            .function
+        let given = function
             .bind(py)
             .call1((arr2(&compliance).to_pyarray(py), velocity))?;
         if let Ok([x, y, z]) = given.extract::<[f64; 3]>() {
@@ -133,11 +149,37 @@ impl ImpulseFunction for Function {
         &self.name
     }
 
+    fn may_pull(&self) -> bool {
+        self.pull != Pull::Stop
+    }
+
     fn impulse(&self, compliance: [[f64; 3]; 3], velocity: Vector) -> Result<Vector, Fault> {
-        Python::attach(|py| match self.call(py, compliance, velocity) {
-            Ok(given) => given.map_err(Fault::NoVector),
-            Err(error) => Err(Fault::Raised(Raised(Arc::new(error)))),
-        })
+        let mut given = match &self.asked {
+            Asked::Python(function) => {
+                Python::attach(|py| match Self::call(function, py, compliance, velocity) {
+                    Ok(given) => given.map_err(Fault::NoVector),
+                    Err(error) => Err(Fault::Raised(Raised(Arc::new(error)))),
+                })?
+            }
+            Asked::Known(coefficient, rule) => {
+                let [[xx, xy, xz], [_, yy, yz], [.., zz]] = compliance;
+                let entries = Symmetric {
+                    xx,
+                    yy,
+                    zz,
+                    xy,
+                    xz,
+                    yz,
+                };
+                let k = Compliance::new(entries).expect("the compliance of a body");
+                let law = restitution_core::Law::of(coefficient, *rule);
+                law.answer(&k, velocity)?.impulse
+            }
+        };
+        if self.pull == Pull::Clip {
+            given.z = given.z.max(0.0);
+        }
+        Ok(given)
     }
 }
 
@@ -190,10 +232,20 @@ fn law(name: &str, normal: Coefficient<'_>, arguments: Vec<Option<Given<'_>>>) -
     Ok(Law(Chosen::Known(coefficient, rule)))
 }
 
-/// The law of a function.
+/// The law of a function, or of a law of the core, and what becomes of an impulse that pulls: it acts unless "stop" or "clip" is given.
 #[pyfunction]
-fn custom(function: Py<PyAny>, name: String) -> Law {
-    Law(Chosen::Custom(Function { name, function }))
+#[pyo3(signature = (function, name, pull))]
+fn custom(py: Python<'_>, function: Py<PyAny>, name: String, pull: Option<&str>) -> Law {
+    let asked = match function.cast_bound::<Law>(py).ok().map(|law| &law.get().0) {
+        Some(Chosen::Known(coefficient, rule)) => Asked::Known(Arc::clone(coefficient), *rule),
+        _ => Asked::Python(function),
+    };
+    let pull = match pull {
+        Some("stop") => Pull::Stop,
+        Some(_) => Pull::Clip,
+        None => Pull::Acts,
+    };
+    Law(Chosen::Custom(Function { name, asked, pull }))
 }
 
 pub fn add_to(module: &Bound<'_, PyModule>) -> PyResult<()> {

@@ -38,19 +38,20 @@ def _array(name: str, value: Any, allowed: str, unit: str, *dimensions: int) -> 
 def _orientation(value: Any) -> Any:
     if isinstance(value, str) and value in get_args(Orientation):
         return value
-    if hasattr(value, "as_quat"):
+    turned = hasattr(value, "as_quat")
+    if turned:
         # as_quat(scalar_first=True) needs SciPy 1.14.
         value = np.roll(np.atleast_2d(value.as_quat()), 1, axis=1)
-    elif np.shape(value)[1:] == (4,) and np.array_equal(np.abs(value), np.tile(_LAST, (len(value), 1))):
-        allowed = (
-            "in the order (w, x, y, z): this is half a turn about z, or else no turn in the order of SciPy; "
-            "give the Rotation that is meant"
-        )
-        raise ParameterError(wrong("orientation", value, allowed))
     angles = _array("orientation", value, _ORIENTATIONS, "rad", 1, 2)
     if angles.ndim == 2 and angles.shape[1] not in (2, 4):
         raise ParameterError(wrong("orientation", value, _ORIENTATIONS))
     if angles.ndim == 2 and angles.shape[1] == 4:
+        if not turned and np.array_equal(np.abs(angles), np.tile(_LAST, (len(angles), 1))):
+            allowed = (
+                "in the order (w, x, y, z): this is half a turn about z, or else no turn in the order of "
+                "SciPy; give the Rotation that is meant"
+            )
+            raise ParameterError(wrong("orientation", value, allowed))
         lengths = np.linalg.norm(angles, axis=1)
         possible = (lengths > 1e-100) & (lengths < 1e100)
         check_each("orientation", lengths, possible, "the finite length > 0 of a quaternion")

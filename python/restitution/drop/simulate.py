@@ -97,7 +97,8 @@ def simulate(
         ``angular_velocity_after``; `trajectory` makes of them the motion between impacts. Units are in the
         variables' attributes, all parameters in the Dataset's, as are ``energy_created_impacts``, the
         number of impacts that multiplied the kinetic energy by more than 1 + 1e-12, their share of all
-        impacts, ``energy_created_share``, and if there are any ``largest_energy_ratio``.
+        impacts, ``energy_created_share``, and if there are any ``largest_energy_ratio`` and
+        ``pulling_impacts``, those in which the law let the plane pull.
 
     Raises
     ------
@@ -130,12 +131,13 @@ def simulate(
     >>> bool((data.restitution.isel(impact=0) <= 0.98).all())
     True
     """
-    from restitution.drop import clusters
+    from restitution.drop import clusters, pulls
     from restitution.drop.energy import warn
 
     checked = Run.called("simulate", body, law, run)
     data = simulate_run(checked, threads=threads, progress=progress, record=record, until=until)
     warn(data)
+    pulls.warn(data)
     if checked.orientations is not None:  # no random attitude lands flat
         clusters.warn(data)
     return data
@@ -164,6 +166,7 @@ def simulate_run(
     until: Until | None = None,
 ) -> xr.Dataset:
     """`simulate` for parameters that are already checked."""
+    from restitution.drop import pulls
     from restitution.drop.dataset import dataset
     from restitution.drop.resting import settling_height
     from restitution.drop.trajectory import with_positions
@@ -176,7 +179,7 @@ def simulate_run(
     with progress_bar("simulate", run.particles, "particles", show=progress) as tell:
         parameters = run.parameters() | {"settled": settled}
         table, interrupted = _core.simulate(parameters, number, tell, columns=columns)
-    data = dataset(run, table)
+    data = pulls.counted(dataset(run, table))
     if until:
         data = data.assign_attrs(until=until, settling_height=settled)
     if state:

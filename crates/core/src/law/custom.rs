@@ -10,6 +10,9 @@ pub trait ImpulseFunction: Sync {
     /// Its name in errors.
     fn name(&self) -> &str;
 
+    /// True if an impulse that pulls counts as given; otherwise it ends the run.
+    fn may_pull(&self) -> bool;
+
     /// The impulse in N s on the body, for K in 1/kg and the velocity of the point of contact in m/s. The z axis is the plane normal, x
     /// descends the slope.
     ///
@@ -91,7 +94,7 @@ impl<'a> CustomLaw<'a> {
             * terms
                 .iter()
                 .fold(0.0_f64, |most, term| most.max(term.abs()));
-        if terms[3] < -rounding {
+        if terms[3] < -rounding && !self.function.may_pull() {
             return Err(Fault::Pulls(given.parts()));
         }
         let separation: f64 = terms.iter().sum();
