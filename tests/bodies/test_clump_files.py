@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 import restitution as rs
+from restitution.drop.toml import read
 
 SPHERES = np.array([(0.0, -0.41, 0.0, 0.8), (-0.33, 0.19, 0.05, 0.8), (0.29, 0.19, -1.5e-2, 0.75)])
 LIGGGHTS = """# multisphere template of three spheres
@@ -52,6 +53,14 @@ Diameters
 """
 
 
+SCRIPT = """# an input script of LIGGGHTS
+fix pts1 all particletemplate/multisphere 15485867 atom_type 1 density constant 2500 nspheres 3 &
+    ntry 100000 spheres 0 -0.41 0 0.8 -0.33 0.19 0.05 0.8 &
+    0.29 0.19 -0.015 0.75 type 1
+fix pdd1 all particledistribution/discrete 15485867 1 pts1 1.0
+"""
+
+
 def written(folder: Path, text: str | bytes) -> Path:
     path = folder / "clump.txt"
     path.write_bytes(text if isinstance(text, bytes) else text.encode())
@@ -67,6 +76,7 @@ def written(folder: Path, text: str | bytes) -> Path:
         ("\ufeff" + ENGINE, "csv"),
         (RENAMED, "csv"),
         (LAMMPS, "lammps"),
+        (SCRIPT, "liggghts"),
     ],
 )
 def test_the_same_spheres_in_every_format(tmp_path: Path, text: str, format: str) -> None:
@@ -140,3 +150,14 @@ def test_arguments_that_cannot_be_are_refused_by_name(tmp_path: Path) -> None:
         rs.Clump.from_file(None)  # type: ignore[arg-type]
     with pytest.raises(FileNotFoundError):
         rs.Clump.from_file(tmp_path / "none")
+
+
+def test_a_file_of_a_run_names_that_of_its_clump(tmp_path: Path) -> None:
+    """Beside it, with the arguments of `from_file`; what it takes besides is refused by name."""
+    stone, run = written(tmp_path, MERCURY), tmp_path / "run.toml"
+    head = '[law]\ntype = "frictionless"\nnormal = 0.9\n[body]\nshape = "clump"\nfile = "clump.txt"\n'
+    run.write_text(head + "scale = 1e-3\ndensity = 1e3\n", encoding="utf-8")
+    assert read(run).body == rs.Clump.from_file(stone, scale=1e-3, density=1e3)
+    run.write_text(head + "spheres = [[0, 0, 0, 1]]\n", encoding="utf-8")
+    with pytest.raises(ValueError, match=r"body\.spheres: unknown"):
+        read(run)

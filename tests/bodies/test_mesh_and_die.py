@@ -184,7 +184,7 @@ def test_files_that_hold_no_closed_mesh_are_refused(tmp_path: Path, monkeypatch:
     with pytest.raises(
         ValueError, match=rf"{open_}: triangles = .*: must be .* not closed at 4 edges, of which the first"
     ):
-        rs.Mesh.from_file(open_)
+        rs.Mesh.from_file(open_, scale=1e-3)
     broken = tmp_path / "broken.ply"
     broken.write_text("ply\nformat ascii 1.0\n")
     with pytest.raises(ValueError, match=f"{broken}: "):

@@ -86,11 +86,12 @@ class Clump(RigidBody):
         ----------
         path : str or path-like
             A text file. What follows a ``#`` is a comment.
-        format : {"rows", "csv", "lammps"}, optional
+        format : {"rows", "csv", "lammps", "liggghts"}, optional
             Rows ``x y z r`` with spaces or commas between them, after which a type may stand, and which ``&``
             continues on the next line, as LIGGGHTS (multisphere), CLUMP and MercuryDPM have them; a table
             whose header names columns x, y, z and r, as DEM-Engine has them; or a molecule of LAMMPS, of
-            which ``Coords`` and ``Diameters`` are read, but neither mass nor inertia. None finds out.
+            which ``Coords`` and ``Diameters`` are read, but neither mass nor inertia; or an input script of
+            LIGGGHTS with a ``particletemplate/multisphere`` that has its spheres in it. None finds out.
         scale : float, default 1
             What a unit of the file is in m: 1e-3 for millimetres. > 0.
         density, inertia, centre

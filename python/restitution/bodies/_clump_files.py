@@ -9,7 +9,7 @@ from typing import Any, Literal, NamedTuple, get_args
 from restitution._internal.files import content
 from restitution._internal.parameters import ParameterError, Problem, shown, wrong
 
-Format = Literal["rows", "csv", "lammps"]
+Format = Literal["rows", "csv", "lammps", "liggghts"]
 Spheres = list[tuple[float, ...]]
 
 _ROW = "x y z r, with spaces or commas between them and perhaps a type after them; r > 0"
@@ -64,7 +64,8 @@ def read(path: Path, format: Any) -> Spheres:
     file = _File(name, list(_lines(text)))
     if not file.lines:
         raise file.lacks("empty; must have the spheres of a clump, x y z r")
-    spheres = {"rows": _rows, "csv": _csv, "lammps": _lammps}[format or _guess(file)](file)
+    reader = {"rows": _rows, "csv": _csv, "lammps": _lammps, "liggghts": _liggghts}[format or _guess(file)]
+    spheres = reader(file)
     if not spheres:
         raise file.lacks("no spheres; must have one or more, x y z r")
     return spheres
@@ -84,6 +85,8 @@ def _lines(text: str) -> Iterator[_Line]:
 
 
 def _guess(file: _File) -> Format:
+    if any("particletemplate/multisphere" in line.words for line in file.lines):
+        return "liggghts"
     if {"x", "y", "z"} <= {word.strip("\"'").lower() for word in file.lines[0].words}:
         return "csv"
     return "lammps" if any(line.words[0] == "Coords" for line in file.lines) else "rows"
@@ -97,6 +100,20 @@ def _rows(file: _File) -> Spheres:
             raise file.wrong(line, _ROW)
         spheres.append(file.sphere(line, line.words[:4], _ROW))
     return spheres
+
+
+def _liggghts(file: _File) -> Spheres:
+    """Read what stands behind ``spheres`` in a particletemplate/multisphere of an input script."""
+    line = next((line for line in file.lines if "particletemplate/multisphere" in line.words), file.lines[0])
+    row = "a particletemplate/multisphere with nspheres and spheres x y z r, one behind the other"
+    if "nspheres" not in line.words or "spheres" not in line.words[:-1]:
+        raise file.wrong(line, row)
+    count, place = line.words.index("nspheres") + 1, line.words.index("spheres") + 1
+    number = int(line.words[count]) if line.words[count].isdecimal() else 0
+    words = line.words[place : place + 4 * number]
+    if number < 1 or len(words) < 4 * number:
+        raise file.wrong(line, row)
+    return [file.sphere(line, words[4 * k : 4 * k + 4], row) for k in range(number)]
 
 
 def _csv(file: _File) -> Spheres:

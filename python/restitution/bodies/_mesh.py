@@ -1,6 +1,7 @@
 """Solids within closed surfaces of triangles, as scanners and design programs write them."""
 
 import os
+import warnings
 from functools import cached_property
 from pathlib import Path
 from typing import Annotated, Any, Self
@@ -98,6 +99,9 @@ class Mesh(Matter):
         if not SMALLEST <= unit * size <= LARGEST:
             allowed = f"such that the mesh is {SMALLEST:g} to {LARGEST:g} m in size"
             raise ParameterError(wrong("scale", scale, allowed))
+        if unit == 1.0 and size > 1.0:
+            text = f"{place}: lengths are in m, and the mesh is {size:g} m in size; scale=1e-3?"
+            warnings.warn(text, UserWarning, stacklevel=2)
         with renamed(lambda name: f"{place}: {name}" if name in ("vertices", "triangles") else name):
             return cls(
                 vertices=unit * vertices,
