@@ -188,7 +188,7 @@ def test_materials_are_fitted_by_their_own_law() -> None:
         ({"tilt": 1.0}, r"^tilt = 1.0: must be a real number in \[0, 0.5\)"),
         ({"drag": 3}, r'^drag = 3: must be a Drag, "sphere" or None'),
         ({"body": 1}, r"^body = 1: must be a Dumbbell"),
-        ({"law": 0.9}, r"^law = 0.9: must be a law"),
+        ({"law": "hard"}, r"^law = 'hard': must be a law"),
         ({"law": rs.Frictionless(normal=0.0)}, r"^law = .*under which a ball bounces"),
         (
             {"body": rs.Dumbbell(radius=3e-3, separation=3e-3), "impacts": 30},
@@ -207,7 +207,7 @@ def test_what_cannot_be_budgeted_is_refused(change: dict[str, object], message: 
     [
         ({"precision": 0.0}, r"^precision = 0.0"),
         ({"quantity": "all"}, r"^quantity = 'all'"),
-        ({"law": 1}, "^law"),
+        ({"law": "smooth"}, "^law"),
         ({"lobes": "two"}, r"^lobes = 'two'"),
         ({"lobes": 0}, r"^lobes = 0"),
     ],
@@ -216,3 +216,33 @@ def test_what_no_roundness_gives_is_refused(change: dict[str, object], message: 
     given: dict[str, object] = {"precision": 1e-3, "diameter": 6e-3, "law": LAW, "drop": 0.1} | change
     with pytest.raises(ValueError, match=message):
         rs.required_roundness(given.pop("precision"), **given)  # type: ignore[arg-type]
+
+
+def test_unknown_friction_is_between_none_and_sticking() -> None:
+    """Half of the balls slide, half stick: mean and mean square of the errors are those of the two halves."""
+    given = {"drop": 0.1, "impacts": 12, "particles": 400, "roughness": 1e-8, "drag": None}
+    ball = rs.from_roundness(6e-3, 6e-5)
+    slides, sticks, unknown = (
+        rs.error_budget(ball, law, **given).data
+        for law in (rs.Frictionless(normal=0.93), rs.Coulomb(normal=0.93, friction=0.3), 0.93)
+    )
+    for source in ("shape", "roughness"):
+        one, other, both = (data.sel(source=source) for data in (slides, sticks, unknown))
+        np.testing.assert_allclose(both.bias, 0.5 * (one.bias + other.bias), atol=1e-12)
+        squares = [each.bias**2 + each.standard_deviation**2 for each in (one, other, both)]
+        np.testing.assert_allclose(squares[2], 0.5 * (squares[0] + squares[1]), rtol=5e-3)
+    assert "friction unknown" in unknown.attrs["law"]
+    # A full ball that sticks has 2/7 of the spin, and its scatter goes as the spin.
+    ratio = float(
+        sticks.standard_deviation.sel(source="shape")[-1] / slides.standard_deviation.sel(source="shape")[-1]
+    )
+    assert 2 / 7 * 0.75 < ratio < 2 / 7 * 1.35
+
+
+@pytest.mark.parametrize(
+    ("law", "needed"),
+    [(rs.Frictionless(normal=0.95), 33e-6), (rs.Coulomb(normal=0.95, friction=0.2), 57e-6), (0.95, 40e-6)],
+)
+def test_friction_allows_balls_that_are_less_round(law: object, needed: float) -> None:
+    found = rs.required_roundness(1e-3, diameter=6e-3, law=law, drop=0.1)  # type: ignore[arg-type]
+    assert float(found) == pytest.approx(needed, rel=0.05)

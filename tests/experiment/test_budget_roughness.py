@@ -87,7 +87,7 @@ def test_the_roughness_of_grades() -> None:
         ({"roughness": -1.0}, "roughness = -1.0"),
         ({"roughness": 1e-5}, "roughness = 1e-05: must be at most 0.001 of the radius"),
         (
-            {"roughness": 1e-8, "law": rs.Coulomb(normal=0.9, friction=0.1)},
+            {"roughness": 1e-8, "law": rs.Coulomb(normal=0.9, friction=0.05)},
             "roughness = 1e-08: must be 0 but",
         ),
     ],

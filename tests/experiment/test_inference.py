@@ -211,7 +211,7 @@ def test_friction_and_materials_are_inferred_with_the_shape(monkeypatch: pytest.
     ("change", "message"),
     [
         ({"diameter": 0.0}, r"^diameter = 0.0"),
-        ({"law": 1}, r"^law = 1: must be a law"),
+        ({"law": "smooth"}, r"^law = 'smooth': must be a law"),
         (
             {"elongation": (0.0, 0.1)},
             r"^elongation = .*: must be a pair \(low, high\) with 1e-09 <= low < high",

@@ -14,7 +14,7 @@ from restitution.experiment.inference import _posterior
 from restitution.experiment.inference._table import Table
 
 LAW = rs.Coulomb(normal=0.93, friction=0.1)
-SHAPES = np.geomspace(0.03, 0.3, 11)
+SHAPES = np.geomspace(0.03, 0.3, 9)
 
 
 def inferred(monkeypatch: pytest.MonkeyPatch, of_shape: Callable[[Any], Any]) -> tuple[xr.DataTree, Table]:
@@ -78,7 +78,7 @@ def test_the_tree_says_what_it_holds(found: tuple[xr.DataTree, Table]) -> None:
     xr.testing.assert_allclose(drawn.out_of_roundness, 0.25 * 6e-3 * drawn.elongation)
     assert drawn.out_of_roundness.attrs["units"] == "m"
     numbers = tree["observed_data"].numbers
-    assert numbers.shape == (1, 3)
+    assert numbers.shape == (1, 6)
     profile = tree["likelihood"].profile
     assert profile.dims == ("elongation",)
     assert profile.attrs["long_name"] == "ln L, less its largest"

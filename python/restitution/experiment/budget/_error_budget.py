@@ -15,12 +15,12 @@ from restitution.experiment.budget._rough import roughness as rough
 from restitution.experiment.budget._sources import Source
 from restitution.experiment.budget.experiment import Array, Experiment, Setting, mean_radius
 from restitution.experiment.flight.drag import Drag
-from restitution.laws import Law
+from restitution.laws import Law, Material
 
 
 def error_budget(
     body: Body,
-    law: Law,
+    law: Law | Material | float,
     *,
     drop: float,
     impacts: int = 20,
@@ -47,9 +47,11 @@ def error_budget(
     ----------
     body : Dumbbell or another body
         The ball; `restitution.from_roundness` makes it from a diameter and an out-of-roundness.
-    law : Law
-        The collision law. Fitted is what goes with its normal coefficient: a constant, the Padé
-        approximant of viscoelastic spheres, plastic spheres, or for a table a power law.
+    law : Law, Material or float
+        The collision law; or its normal coefficient alone, where friction is unknown: errors are then those
+        of balls of which half slide at contacts without friction, and half stick. Fitted is what goes with
+        its normal coefficient: a constant, the Padé approximant of viscoelastic spheres, plastic spheres, or
+        for a table a power law.
     drop : float
         Height of the fall to the first impact, in m, > 0.
     impacts : int
@@ -67,8 +69,8 @@ def error_budget(
     roughness : float
         Arithmetic mean roughness Ra of the surface, in m, >= 0, and at most a thousandth of the radius;
         `restitution.ball_roughness` gives that of a grade. Asperities with exponentially distributed heights,
-        of which impacts flatten none: the most that roughness can do. For Frictionless, and for
-        TangentialRestitution with ``tangential=1``.
+        of which impacts flatten none: the most that roughness can do. For unknown friction, Frictionless,
+        TangentialRestitution with ``tangential=1`` and Coulomb with ``friction`` of 0.1 or more.
     drag : Drag, "sphere" or None
         Air drag; "sphere" is a sphere with the diameter and mass of the body in air, for which the body needs
         its true density.
@@ -110,8 +112,6 @@ def error_budget(
     """
     if not isinstance(body, Body):
         raise ParameterError(wrong("body", body, BODIES))
-    if not isinstance(law, Law):
-        raise ParameterError(wrong("law", law, "a law such as Frictionless(normal=0.9)"))
     setting = Setting(
         drop=drop,
         impacts=impacts,
@@ -201,7 +201,7 @@ def _dataset(
         "title": "Error budget of a bouncing-ball experiment",
         "source": f"restitution {version('restitution')}",
         "body": repr(body),
-        "law": repr(experiment.law),
+        "law": experiment.words,
         "fitted_law": experiment.form.name,
         **experiment.setting.model_dump(),
     }

@@ -8,14 +8,14 @@ import numpy as np
 import xarray as xr
 from pydantic import Field
 
-from restitution._internal.parameters import Allowed, Number, ParameterError, Parameters, TooLargeError, wrong
+from restitution._internal.parameters import Allowed, Number, ParameterError, Parameters, TooLargeError
 from restitution.bodies import Body, Form, from_roundness
 from restitution.experiment.budget._error_budget import weights
 from restitution.experiment.budget._results import RequiredRoundness
 from restitution.experiment.budget._rough import roughness as rough
 from restitution.experiment.budget._sources import shape
 from restitution.experiment.budget.experiment import Experiment, Setting
-from restitution.laws import Law
+from restitution.laws import Law, Material
 
 _ROUNDEST, _LEAST_ROUND, _STEPS = 1e-6, 0.03, 19
 """Out-of-roundness over diameter that is looked at: four steps a decade."""
@@ -31,7 +31,7 @@ def required_roundness(
     precision: float,
     *,
     diameter: float,
-    law: Law,
+    law: Law | Material | float,
     drop: float,
     impacts: int = 20,
     quantity: Literal["single", "mean", "fit"] = "mean",
@@ -54,8 +54,9 @@ def required_roundness(
         The error over ε, in (0, 1): 1e-3 is 0.1 %.
     diameter : float
         In m, > 0.
-    law : Law
-        The collision law.
+    law : Law, Material or float
+        The collision law; or its normal coefficient alone, where friction is unknown, as in
+        `restitution.error_budget`.
     drop : float
         Height of the fall to the first impact, in m, > 0.
     impacts : int
@@ -90,8 +91,6 @@ def required_roundness(
     True
     """
     asked = _Asked(precision=precision, diameter=diameter, quantity=quantity)
-    if not isinstance(law, Law):
-        raise ParameterError(wrong("law", law, "a law such as Frictionless(normal=0.9)"))
     # The errors of what makes the balls come first.
 
     def ball(share: float) -> Body:
@@ -141,7 +140,7 @@ def required_roundness(
         attrs={
             "title": "Error of the coefficient of restitution that an out-of-roundness causes",
             "source": f"restitution {version('restitution')}",
-            "law": repr(law),
+            "law": experiment.words,
             "form": form,
             "lobes": lobes,
             "diameter": asked.diameter,

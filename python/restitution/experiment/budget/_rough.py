@@ -37,17 +37,27 @@ def roughness(experiment: Experiment, body: Body) -> Source:
     ValueError
         If the closed form is not known for the law, or the ball too rough for it.
     """
-    rough, law = experiment.setting.roughness, experiment.law
+    rough = experiment.setting.roughness
     if rough == 0.0:
         return nothing(experiment.setting.impacts)
-    q, radius = coupling(law, body), mean_radius(body)
-    if q is None:
-        allowed = "0 but for Frictionless and TangentialRestitution with tangential = 1"
-        raise ParameterError(wrong("roughness", rough, allowed))
+    radius = mean_radius(body)
     if not rough <= _ROUGHEST * radius:
         allowed = f"at most {_ROUGHEST:g} of the radius, {_ROUGHEST * radius:.6g} m"
         raise ParameterError(wrong("roughness", rough, allowed))
-    square = 2.0 * _HEIGHT * rough * radius  # ⟨d²⟩; of either component half
+    sources = []
+    for known in experiment.laws:
+        q = coupling(known, body)
+        if q is None:
+            allowed = "0 but for Frictionless, tangential = 1, or Coulomb with friction >= 0.1"
+            raise ParameterError(wrong("roughness", rough, allowed))
+        sources.append(_of_one(experiment, q, 2.0 * _HEIGHT * rough * radius))
+    bias = np.mean([one.bias for one in sources], axis=0)
+    second = np.mean([one.covariance + np.outer(one.bias, one.bias) for one in sources], axis=0)
+    return Source(bias, second - np.outer(bias, bias))
+
+
+def _of_one(experiment: Experiment, q: float, square: float) -> Source:
+    """Return the errors with one q, of lever arms with ⟨d²⟩ in m², of either component half."""
     v, e = experiment.speed, experiment.coefficient
     c = 1.0 + e
     kicks = 0.5 * square * np.concatenate([[0.0], np.cumsum((c * q * v) ** 2)[:-1]])

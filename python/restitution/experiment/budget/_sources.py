@@ -14,6 +14,7 @@ from restitution.drop.release import RandomSpin
 from restitution.drop.simulate import simulate
 from restitution.experiment.budget.experiment import Array, Experiment, at, mean_radius
 from restitution.experiment.flight.drag import Drag, fall, launched
+from restitution.laws import Law
 
 _LEAST_KEPT = 0.9
 """Share of the particles that must bounce as often as asked."""
@@ -156,20 +157,26 @@ def _source(errors: Array) -> Source:
 
 @reported_elsewhere()
 def simulated(experiment: Experiment, body: Body, *, spin: bool, tilt: bool) -> npt.NDArray[np.float64]:
-    """Return errors of ε of many drops by times alone, shape (particles, n); NaN for those that are left out.
+    """Return errors of ε of many drops by times alone, shape (m, n); NaN for those that are left out.
+
+    Every law of the experiment has as many drops, m/laws, at the same angles.
 
     Raises
     ------
     ValueError
         If too few particles bounce as often as asked.
     """
+    return np.vstack([_simulated(experiment, law, body, spin=spin, tilt=tilt) for law in experiment.laws])
+
+
+def _simulated(experiment: Experiment, law: Law, body: Body, *, spin: bool, tilt: bool) -> Array:
     setting = experiment.setting
     angle = setting.tilt if tilt else 0.0
     n = setting.impacts
     with in_terms_of(drop=setting.drop, gravity=setting.gravity, spin=setting.spin):
         run = simulate(
             body,
-            experiment.law,
+            law,
             particles=setting.particles,
             impacts=n + 1,
             # Heights of fall are measured along the vertical, distances from the plane along its normal.

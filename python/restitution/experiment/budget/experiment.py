@@ -3,6 +3,7 @@
 import math
 from dataclasses import dataclass
 from functools import cached_property
+from numbers import Real
 from typing import Annotated, Self
 
 import numpy as np
@@ -10,12 +11,19 @@ import numpy.typing as npt
 from pydantic import Field, model_validator
 from scipy.optimize import least_squares
 
-from restitution._internal.parameters import Number, ParameterError, Parameters, Whole, wrong
+from restitution._internal.parameters import (
+    Number,
+    ParameterError,
+    Parameters,
+    Whole,
+    in_terms_of,
+    wrong,
+)
 from restitution.bodies import Body
 from restitution.experiment.flight.chain import COMMON, Measured, chain
 from restitution.experiment.flight.laws import LAWS, LawOfSpeed, by_parameters
 from restitution.experiment.flight.times import LARGEST
-from restitution.laws import Law, Material, Plastic, Viscoelastic, check_steady
+from restitution.laws import Coulomb, Frictionless, Law, Material, Plastic, Viscoelastic, check_steady
 
 Array = npt.NDArray[np.float64]
 
@@ -57,6 +65,26 @@ def mean_radius(body: Body) -> float:
     return 0.25 * (up + down) + 0.5 * across
 
 
+STICKS = 0.3
+"""A coefficient of friction with which contacts of nearly round balls stick, to L/R of about 0.5."""
+
+
+def frictions(law: object) -> tuple[Law, ...]:
+    """Return the laws that stand for one, or for a normal coefficient whose friction is unknown.
+
+    Friction acts on a nearly round ball between two limits: a contact that slides gives the spin m v d/J, one
+    that sticks m v d/(J + m R²), with the lever arm d; for a full ball that is 2/7. Both have the same prior
+    probability.
+    """
+    if isinstance(law, Law):
+        return (law,)
+    if isinstance(law, bool) or not isinstance(law, (Real, Material)):
+        allowed = "a law such as Coulomb(normal=0.9, friction=0.2), or its normal coefficient alone"
+        raise ParameterError(wrong("law", law, allowed))
+    with in_terms_of(normal=law):
+        return Frictionless(normal=law), Coulomb(normal=law, friction=STICKS)
+
+
 def law_of_speed(law: Law) -> LawOfSpeed:
     """Find what an experimenter fits to balls that bounce by a law."""
     normal = law.normal
@@ -74,7 +102,9 @@ class Experiment:
     Attributes
     ----------
     setting : Setting
-    law : Law
+    laws : tuple of Law
+        Those whose average the errors are: of unknown friction two, without and with so much that contacts
+        stick.
     form : LawOfSpeed
         The law of speed that is fitted.
     speed, coefficient : ndarray, shape (n,)
@@ -84,15 +114,17 @@ class Experiment:
     """
 
     setting: Setting
-    law: Law
+    laws: tuple[Law, ...]
     form: LawOfSpeed
     speed: Array
     coefficient: Array
     times: Array
 
     @classmethod
-    def of(cls, law: Law, setting: Setting) -> "Experiment":
-        """Follow the bouncing ball."""
+    def of(cls, given: object, setting: Setting) -> "Experiment":
+        """Follow the ball that bounces by a law, or by a normal coefficient with unknown friction."""
+        laws = frictions(given)
+        law = laws[0]
         check_steady(law)
         speed, coefficient = [math.sqrt(2.0 * setting.gravity * setting.drop)], []
         for _ in range(setting.impacts):
@@ -105,9 +137,19 @@ class Experiment:
         if not np.all(flights >= _SHORTEST * (speed[0] / setting.gravity + times[1:])):
             allowed = f"one whose flights last at least {_SHORTEST:g} of the time since release"
             raise ParameterError(wrong("law", law, f"{allowed}, for impacts = {setting.impacts} of them"))
-        found = cls(setting, law, law_of_speed(law), np.array(speed[:-1]), np.array(coefficient), times)
+        found = cls(setting, laws, law_of_speed(law), np.array(speed[:-1]), np.array(coefficient), times)
         found._check_fit()
         return found
+
+    @property
+    def law(self) -> Law:
+        """The law that says what ε_n is."""
+        return self.laws[0]
+
+    @property
+    def words(self) -> str:
+        """The law, or what is known of it, as the attributes name it."""
+        return repr(self.law) if len(self.laws) == 1 else f"normal = {self.law.normal!r}, friction unknown"
 
     def _check_fit(self) -> None:
         """Refuse laws whose parameters do not show, as those of plastic spheres that stay elastic."""

@@ -9,7 +9,7 @@ from restitution._internal.parameters import ParameterError, Problem
 from restitution.bodies import Body, Form, from_roundness
 from restitution.experiment.budget.experiment import law_of_speed
 from restitution.experiment.flight.laws import LawOfSpeed
-from restitution.laws import Coulomb, Law, Plastic, Scattered, Tabulated, Viscoelastic, check_steady
+from restitution.laws import Coulomb, Law, Plastic, Tabulated, Viscoelastic, check_steady
 
 Array = npt.NDArray[np.float64]
 
@@ -57,12 +57,9 @@ class Family:
         """The form, as a sentence names it, and the wall if it is hollow."""
         return f"'{self.form}'" + ("" if self.wall is None else f" with a wall of {1e3 * self.wall:.3g} mm")
 
-    def law_of(self, parameter: float, scatter: float | None, friction: float | None) -> Law:
-        """Return the law of a parameter of ε_n and, where they are inferred, its scatter and friction."""
-        normal: float | Viscoelastic | Plastic | Scattered = self._normal(parameter)
-        if scatter is not None:
-            normal = Scattered(normal=self._normal(parameter), deviation=scatter)
-        changed: dict[str, object] = {"normal": normal}
+    def law_of(self, parameter: float, friction: float | None) -> Law:
+        """Return the law of a parameter of ε_n and, where it is inferred, of its friction."""
+        changed: dict[str, object] = {"normal": self._normal(parameter)}
         if friction is not None:
             changed["friction"] = friction
         return type(self.law)(

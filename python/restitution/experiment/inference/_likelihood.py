@@ -1,4 +1,4 @@
-"""The likelihood of the three numbers of a series, from simulated series with the same errors."""
+"""The likelihood of the numbers of a series, from simulated series with the same errors."""
 
 import math
 
@@ -13,6 +13,8 @@ _FEWEST = 50
 """Simulated series that a density needs; where fewer could be measured it is taken to be 0."""
 _STRAY = 0.02
 """Weight of a wide Gaussian, three times as wide, so that no density is 0."""
+_COMPARED = 4
+"""Of the numbers of a series, those whose density this is; the others are for the predictive check."""
 IMPOSSIBLE = -1e4
 """Logarithm of a likelihood that is none."""
 
@@ -26,13 +28,14 @@ class Density:
     """
 
     def __init__(self, drops: Drops, truth: float, observed: Array) -> None:
-        samples = drops.statistics.copy()
-        self.enough = len(samples) >= _FEWEST
+        self.enough = len(drops.statistics) >= _FEWEST
         if not self.enough:
             return
+        samples = drops.statistics[:, :_COMPARED].copy()
         self.share = drops.share
+        self.all = drops.statistics
         # The second and third are logarithms of squares.
-        scatter = np.exp(0.25 * (samples[:, 1:] - observed[1:]).sum(axis=1))
+        scatter = np.exp(0.25 * (samples[:, 1:3] - observed[1:3]).sum(axis=1))
         off = (samples[:, 0] - truth) / scatter
         low, self.middle, high = np.quantile(off, (0.25, 0.5, 0.75))
         self.scale = max((high - low) / 1.349, 1e-15)
@@ -45,26 +48,34 @@ class Density:
         self.points = math.sqrt(1.0 - self.width**2) * white
         self.norm = -0.5 * d * math.log(2.0 * math.pi) - float(np.log(np.diag(self.root)).sum())
 
-    def beyond(self, numbers: Array) -> float:
-        """Return the share of simulated series whose scatter, early and late, is farther from the usual.
+    def beyond(self, numbers: Array) -> Array:
+        """Return how probable each of four signs of another cause would be, were this the ball.
 
-        Farther by the distance of Mahalanobis: the probability of such a scatter, were this the ball.
+        The shares of simulated series whose scatter, early and late, is farther from the usual, by the
+        distance of Mahalanobis; whose scatter grows less; whose largest residual is larger; and whose
+        residuals have more of a trend with the speed.
         """
         if not self.enough:
-            return 0.0
-        spread = (self.root @ self.root.T)[1:, 1:]
-        root = np.linalg.cholesky(spread)
-        simulated = (self.points / math.sqrt(1.0 - self.width**2) @ self.root.T)[:, 1:]
-        off = np.linalg.solve(root, np.vstack([numbers[1:] - self.mean[1:], simulated]).T)
+            return np.zeros(4)
+        _, early, late, _, largest, trend = self.all.T
+        scatter = self.all[:, 1:3]
+        root = np.linalg.cholesky(np.cov(scatter, rowvar=False))
+        off = np.linalg.solve(root, (np.vstack([numbers[1:3], scatter]) - scatter.mean(axis=0)).T)
         distance = np.sum(off**2, axis=0)
-        return float(np.mean(distance[1:] >= distance[0]))
+        signs = [
+            distance[1:] >= distance[0],
+            late - early <= numbers[2] - numbers[1],
+            largest >= numbers[4],
+            np.abs(trend) >= abs(numbers[5]),
+        ]
+        return np.asarray(np.mean(signs, axis=1))
 
     def __call__(self, numbers: Array, truths: Array) -> Array:
-        """Return ln p of the numbers, shape (3,), were these the true parameters, shape (m,)."""
+        """Return ln p of the numbers, were these the true parameters, shape (m,)."""
         if not self.enough:
             return np.full(truths.shape, IMPOSSIBLE)
         u = (numbers[0] - truths - self.middle) / self.scale
-        at = np.column_stack([np.arcsinh(u), np.full(u.shape, numbers[1]), np.full(u.shape, numbers[2])])
+        at = np.column_stack([np.arcsinh(u), np.tile(numbers[1:_COMPARED], (u.size, 1))])
         white = np.linalg.solve(self.root, (at - self.mean).T).T
         d = white.shape[1]
         distance = (

@@ -15,18 +15,21 @@ from restitution import flight
 from restitution._internal.arrays import pair
 from restitution._internal.parameters import Number, ParameterError, Parameters, Whole, in_terms_of, wrong
 from restitution.bodies import Form, Wall
+from restitution.experiment.budget.experiment import STICKS, frictions
 from restitution.experiment.flight.series import series_of
 from restitution.experiment.inference._family import Family
 from restitution.experiment.inference._series import NEEDED, Series, check_from_release
 from restitution.experiment.inference._table import Table, table
 from restitution.experiment.inference._verdict import disagreement, judge, sentence
-from restitution.laws import Law
+from restitution.laws import Law, Material
 
 Array = npt.NDArray[np.float64]
 
-_SHAPES, _SCATTERS, _FRICTIONS = 10, 4, 6
+_SHAPES, _SCATTERS, _FRICTIONS = 8, 3, 6
 """Values of L/R and of the scatter of ε_n in a decade, and values of friction."""
 _LEAST_SCATTER = 1e-9
+_USUAL_NORMAL = 0.9
+"""Of a law that is left out; its value is inferred."""
 _USUAL = (1e-3, 0.3)
 """L/R of balls that are inferred unless told otherwise."""
 _UNSEEN = 0.1
@@ -52,7 +55,7 @@ class Setting(Parameters):
 
 def posterior(
     data: xr.Dataset | Iterable[xr.Dataset],
-    law: Law,
+    law: Law | Material | float | None = None,
     *,
     diameter: float,
     form: Form = "dumbbell",
@@ -68,7 +71,7 @@ def posterior(
     """Infer ε_n, its scatter, the shape and friction of a ball from the times of its impacts.
 
     A ball is released from rest at any angle; how it turns is not measured. Its times are compared with
-    those of simulated balls with the same errors, through three numbers: the parameter of ε_n by least
+    those of simulated balls with the same errors, through four numbers: the parameter of ε_n by least
     squares, and how large the residuals are early and late. Their joint density is estimated from simulations
     on a grid of L/R, scatter of ε_n and friction, and draws are taken from what is interpolated. Whether the
     shape makes ε scatter, or the material, or both, is decided by the Bayes factors of these explanations.
@@ -78,9 +81,11 @@ def posterior(
     data : Dataset or iterable of Dataset
         As `restitution.flight.restitution` returns it: one series, or several of the same ball. The first
         impact must be the first after the release. Air drag is to be accounted for there.
-    law : Law
+    law : Law, Material or float, optional
         Its kind and everything that is not inferred. Inferred is the normal coefficient, or the parameter of
         its material: β of a `Viscoelastic`, the yield speed of a `Plastic`. Its own value there is not used.
+        Left out, or with a normal coefficient alone, the friction is unknown: none and so much that contacts
+        stick have the same prior probability, and so has what lies between.
     diameter : float
         In m, > 0.
     form, lobes
@@ -120,7 +125,8 @@ def posterior(
         the times do not tell which); ``log_bayes_factor_shape`` and ``log_bayes_factor_scatter``, ln of the
         factors for each against its absence; ``elongation_determined`` (1 or 0), ``elongation_upper_limit``
         (95 %, for L/R uniform from 0); ``predictive_p_value``, the probability that the best ball scatters ε
-        as far from its usual as observed; and ``verdict``, a sentence, which says first if this is small.
+        as far from its usual as observed, or with as little growth towards low speeds, as large a residual,
+        or as much of a trend with the speed; and ``verdict``, a sentence, which says first if this is small.
 
     Raises
     ------
@@ -145,8 +151,8 @@ def posterior(
     """
     from_dict = _from_dict()
     setting = Setting(diameter=diameter, lobes=lobes, wall=wall, particles=particles, draws=draws, seed=seed)
-    if not isinstance(law, Law):
-        raise ParameterError(wrong("law", law, "a law such as Frictionless(normal=0.9)"))
+    given = frictions(_USUAL_NORMAL if law is None else law)
+    law, unknown = given[-1], len(given) > 1
     low, high = _USUAL if elongation is None else _prior("elongation", elongation, least=_ROUNDEST)
     if not high < _MOST_RANGE * low:
         raise ParameterError(wrong("elongation", elongation, f"high < {_MOST_RANGE:g} low"))
@@ -155,10 +161,12 @@ def posterior(
     hollow = {} if wall is None else {"wall": wall}
     with in_terms_of(elongation=(low, high), diameter=diameter, **hollow):
         family.body(high)
-    frictions: Sequence[float | None] = [None]
-    if friction is not None:
+    coefficients: Sequence[float | None] = [None]
+    if friction is None and unknown:
+        coefficients = [0.0, STICKS]
+    elif friction is not None:
         bottom, top = _prior("friction", friction, least=0.0)
-        frictions = [float(mu) for mu in bottom + (top - bottom) * np.linspace(0.0, 1.0, _FRICTIONS) ** 2]
+        coefficients = [float(mu) for mu in bottom + (top - bottom) * np.linspace(0.0, 1.0, _FRICTIONS) ** 2]
     scatters: Sequence[float | None] = [None]
     if scatter is not None:
         bottom, top = _prior("scatter", scatter, least=_LEAST_SCATTER)
@@ -177,24 +185,39 @@ def posterior(
         for measured, end in product(series, (low, high)):
             measured.check_release(family.body(end), law, setting.particles)
     if elongation is None:
-        low = max(_resolved(series, family, low, setting), 1.01 * high / _MOST_RANGE)
+        low = max(_resolved(series, family, coefficients[0], low, setting), 1.01 * high / _MOST_RANGE)
     nodes = np.geomspace(low, high, 1 + math.ceil(_SHAPES * math.log10(high / low)))
-    found = table(series, family, nodes, scatters, frictions, setting.particles, setting.seed)
+    found = table(series, family, nodes, scatters, coefficients, setting.particles, setting.seed)
     points, log = found.draws(setting.draws + -setting.draws % _CHAINS, np.random.default_rng(setting.seed))
     chain, log = points.reshape(_CHAINS, -1, points.shape[1]), log.reshape(_CHAINS, -1)
-    return _tree(from_dict, family, setting, found, chain, log, series, scatters=scatter is not None)
+    return _tree(
+        from_dict,
+        family,
+        setting,
+        found,
+        chain,
+        log,
+        series,
+        scatters=scatter is not None,
+        unknown=unknown and friction is None,
+    )
 
 
-def _resolved(series: Sequence[Series], family: Family, low: float, setting: Setting) -> float:
+def _resolved(
+    series: Sequence[Series], family: Family, friction: float | None, low: float, setting: Setting
+) -> float:
     """Return an L/R, at most `low`, that no series tells from 0; a shape's variance goes as (L/R)⁴."""
-    law = family.law_of(family.inside(series[0].observed[0]), None, None)
+    law = family.law_of(family.inside(series[0].observed[0]), friction)
     part = 0.0
     for one in series:
+        noise = one.noise(setting.particles, setting.seed)
         shape, none = (
-            one.simulated(family.body(x), law, setting.particles, 1, setting.seed).statistics[:, 1:]
-            for x in (low, 0.0)
+            np.median(one.heard(flight, 0.0, noise).statistics[:, 1:3], axis=0)
+            for flight in (
+                one.simulated(family.body(x), law, setting.particles, setting.seed) for x in (low, 0.0)
+            )
         )
-        part = max(part, float(np.expm1(np.median(shape, axis=0) - np.median(none, axis=0)).max()))
+        part = max(part, float(np.expm1(shape - none).max()))
     return low * min(1.0, (_UNSEEN / part) ** 0.25) if part > 0.0 else low
 
 
@@ -223,6 +246,7 @@ def _tree(
     series: Sequence[Series],
     *,
     scatters: bool,
+    unknown: bool,
 ) -> xr.DataTree:
     elongation = np.exp(chain[..., 1])
     drawn = {
@@ -230,7 +254,8 @@ def _tree(
         "elongation": elongation,
         "out_of_roundness": 0.25 * setting.diameter * elongation,
     }
-    names = [*(["scatter"] if scatters else []), *(["friction"] if chain.shape[2] > 2 + scatters else [])]
+    inferred = chain.shape[2] > 2 + scatters and not unknown
+    names = [*(["scatter"] if scatters else []), *(["friction"] if inferred else [])]
     drawn |= {name: chain[..., 2 + place] for place, name in enumerate(names)}
     scatter = None
     if scatters:
@@ -256,7 +281,7 @@ def _tree(
     tree.attrs |= {
         "title": "Posterior from the times of impacts",
         "source": f"restitution {version('restitution')}",
-        "law": repr(family.law),
+        "law": f"normal = {family.law.normal!r}, friction unknown" if unknown else repr(family.law),
         "form": family.form,
         **setting.model_dump(exclude_none=True),
         "explained_by": verdict.cause,
@@ -264,8 +289,8 @@ def _tree(
         **({"log_bayes_factor_scatter": verdict.for_scatter} if scatters else {}),
         "elongation_determined": int(verdict.cause in ("shape", "both")),
         "elongation_upper_limit": found.limit(1),
-        "predictive_p_value": found.agreement,
+        "predictive_p_value": min(1.0, len(found.signs) * min(found.signs)),
         "verdict": disagreement(found)
-        + sentence(found, verdict, family.words, setting.diameter, elongation, scatter),
+        + sentence(found, verdict, family.words, setting.diameter, elongation, scatter, unknown=unknown),
     }
     return tree

@@ -1,6 +1,7 @@
 """One series of impacts, and the few numbers that stand for it."""
 
-from dataclasses import dataclass
+import math
+from dataclasses import dataclass, field, replace
 from typing import NamedTuple
 
 import numpy as np
@@ -22,8 +23,13 @@ from restitution.laws import Law
 Array = npt.NDArray[np.float64]
 
 _FEWEST = 5
+NUMBERS = 6
+_FACTOR = 0.5
+"""Standard deviation of the logarithm of the factor by which stated errors of times are off."""
 _ROUNDING = 1e-6
 """Of a variance of 0, over the largest, in a covariance that was computed."""
+_UNSEEN = 0.05
+"""A scatter over the least standard error of a coefficient, to which it adds nothing that shows."""
 _SHORTEST = 0.1
 """Flights shorter than this, over the one before, are heard as one impact with the next."""
 _BYTES = 64
@@ -39,7 +45,7 @@ def _negative(covariance: Array) -> bool:
 class Drops(NamedTuple):
     """Simulated series that could have been measured."""
 
-    statistics: Array  # shape (kept, 3)
+    statistics: Array  # shape (kept, 6), as of `Series.numbers`
     share: float  # of all simulated series, those that bounce as often and have distinct impacts
 
 
@@ -60,9 +66,13 @@ def check_from_release(name: str, data: xr.Dataset) -> None:
 class Series:
     """Measured numbers, and how those that stand for it follow from coefficients.
 
-    The three numbers are the parameter of ε_n by generalised least squares, and the logarithms of the mean
-    squares of the whitened residuals in the first and in the second half. The covariance is that of the times
-    and one scatter for all, rounded to half decades so that it hardly depends on the series.
+    One impact is left out, that without which χ² is the least; so it is in every simulated series, too. The
+    numbers are the parameter of ε_n by generalised least squares, the logarithms of the mean squares of the
+    whitened residuals in the first and in the second half, and the correlation of residuals that follow one
+    another, which errors of the times have. Two more are for the predictive check: the logarithm of the
+    residual that was left out, over the root mean square of the others, and the correlation of residuals
+    with ln v. The covariance is that of the times and one scatter for all, rounded to half decades so that
+    it hardly depends on the series.
 
     Attributes
     ----------
@@ -78,21 +88,29 @@ class Series:
     reference : float
         The parameter about which everything is linear.
     form : LawOfSpeed
+    slopes, spread : ndarray, shape (k,)
+        dε_n by the parameter, and the standard deviation of each coefficient.
+    unseen : float
+        A scatter of ε_n that errors of the times hide.
     estimator : ndarray, shape (k,)
     whiten : ndarray, shape (k, k)
         Makes of residuals those that are independent, the fitted parameter taken off.
-    observed : ndarray, shape (3,)
+    observed : ndarray, shape (6,)
     """
 
     drop: float
     gravity: float
     errors: Array
     known: npt.NDArray[np.intp]
+    speed: Array
     reference: float
     form: LawOfSpeed
+    slopes: Array
+    spread: Array
+    unseen: float
     estimator: Array
     whiten: Array
-    observed: Array
+    observed: Array = field(default_factory=lambda: np.zeros(NUMBERS))
 
     @classmethod
     def of(
@@ -142,20 +160,46 @@ class Series:
             first = up / float(form.coefficient(np.array([up]), values)[0])
         gravity = float(data.attrs["gravity"])
         drop = first**2 / (2.0 * gravity)
-        one = cls(drop, gravity, errors, known, reference, form, estimator, whiten, np.zeros(3))
-        observed = one.numbers(speed[None, known], ratio[None, known])[0]
-        return cls(drop, gravity, errors, known, reference, form, estimator, whiten, observed)
+        one = cls(
+            drop=drop,
+            gravity=gravity,
+            errors=errors,
+            known=known,
+            speed=speed[known],
+            reference=reference,
+            form=form,
+            slopes=slopes,
+            spread=np.sqrt(np.diag(covariance)),
+            unseen=_UNSEEN * math.sqrt(max(0.0, np.diag(measured).min())),
+            estimator=estimator,
+            whiten=whiten,
+        )
+        return replace(one, observed=one.numbers(speed[None, known], ratio[None, known])[0])
 
     def numbers(self, speed: Array, ratio: Array) -> Array:
-        """Return the three numbers of series with these speeds and coefficients, shape (m, k)."""
-        residual = ratio - self.form.coefficient(speed, np.array([self.reference]))
-        squares = (residual @ self.whiten.T) ** 2
+        """Return the numbers of series with these speeds and coefficients, (m, k) each; shape (m, 6)."""
+        usual = self.form.coefficient(speed, np.array([self.reference]))
+        residual = ratio - usual
+        # Without impact i the residual there is what its neighbours say of it, and χ² is less by t_i².
+        precision = self.whiten.T @ self.whiten
+        off = residual @ precision / np.sqrt(np.diag(precision))
+        rows, worst = np.arange(len(off)), np.argmax(np.abs(off), axis=1)
+        residual[rows, worst] -= off[rows, worst] / np.sqrt(precision[worst, worst])
+        white = residual @ self.whiten.T
+        squares = white**2
         half = self.known.size // 2
+        size = np.sqrt(squares.mean(axis=1) + 1e-300)
+        shift = residual @ self.estimator
+        scaled = (residual - shift[:, None] * self.slopes) / self.spread
+        slope = self.whiten @ (np.log(self.speed) * self.slopes)
         return np.column_stack(
             [
-                self.reference + residual @ self.estimator,
+                self.reference + shift,
                 np.log(squares[:, :half].mean(axis=1) + 1e-300),
                 np.log(squares[:, half:].mean(axis=1) + 1e-300),
+                np.sum(scaled[:, 1:] * scaled[:, :-1], axis=1) / (np.sum(scaled**2, axis=1) + 1e-300),
+                np.log(np.abs(off[rows, worst]) / size + 1e-300),
+                white @ slope / (np.linalg.norm(slope) * size),
             ]
         )
 
@@ -175,16 +219,36 @@ class Series:
             seed=seed,
         )
 
-    def simulated(self, body: Body, law: Law, particles: int, noises: int, seed: int) -> Drops:
-        """Drop such balls, and time each of them with errors, several times over."""
-        dropped = times_of_impacts(self._run(body, law, particles, seed))
-        flight = np.diff(dropped, axis=1)
-        kept = np.all(flight > 0.0, axis=1) & np.all(flight[:, 1:] > _SHORTEST * flight[:, :-1], axis=1)
-        times = np.repeat(dropped[kept], noises, axis=0)
+    def simulated(self, body: Body, law: Law, particles: int, seed: int) -> Array:
+        """Drop such balls and return their flights, (m, n - 1) in s, of those that bounce so often."""
+        return np.diff(times_of_impacts(self._run(body, law, particles, seed)), axis=1)
+
+    def noise(self, drops: int, seed: int) -> tuple[Array, Array]:
+        """Draw errors of flights in s, and of ε_n in units of its scatter; (drops, n - 1) each.
+
+        The errors of the times of a series are the stated ones times one factor.
+        """
         rng = np.random.default_rng(seed)
-        heard = np.diff(times + self.errors * rng.standard_normal(times.shape), axis=1)
-        whole = np.all(heard > 0.0, axis=1)
-        heard = heard[whole]
+        factor = np.exp(_FACTOR * rng.standard_normal((drops, 1)))
+        errors = np.diff(factor * self.errors * rng.standard_normal((drops, self.errors.size)), axis=1)
+        return errors, rng.standard_normal(errors.shape)
+
+    def heard(self, flight: Array, scatter: float, noise: tuple[Array, Array]) -> Drops:
+        """Time drops with these flights, each so often as there is noise for it.
+
+        Where ε_n is higher by δ at an impact all later flights last longer by δ/ε_n, to first order in δ.
+        """
+        errors, off = noise
+        flight = np.repeat(flight, len(errors) // len(flight), axis=0)
+        with np.errstate(invalid="ignore", divide="ignore"):
+            if scatter > 0.0:
+                # That of the first impact, which does not count, is not far from that of the second.
+                usual = (flight[:, 1:] / flight[:, :-1])[:, [0, *range(flight.shape[1] - 1)]]
+                flight = flight * np.cumprod(1.0 + scatter * off / usual, axis=1)
+            heard = flight + errors
+            kept = np.all(flight > 0.0, axis=1) & np.all(heard > 0.0, axis=1)
+            kept &= np.all(flight[:, 1:] > _SHORTEST * flight[:, :-1], axis=1)
+        heard = heard[kept]
         ratio = heard[:, self.known] / heard[:, self.known - 1]
         speed = 0.5 * self.gravity * heard[:, self.known - 1]
-        return Drops(self.numbers(speed, ratio), len(heard) / (particles * noises))
+        return Drops(self.numbers(speed, ratio), len(heard) / len(flight))

@@ -19,7 +19,7 @@ from restitution.experiment.inference._series import Series
 
 Array = npt.NDArray[np.float64]
 
-_GRID = 81
+_GRID = 61
 """Values of the parameter of ε_n."""
 _NO_SCATTER = 1e-6
 """A scatter of ε_n as small as this is taken to be none."""
@@ -39,17 +39,21 @@ class Table:
         The parameter of ε_n, ln L/R, and where they are inferred ln of the scatter and the friction.
     values : ndarray
         Over these axes.
-    agreement : float
-        Probability of a scatter as far from the usual as observed, were the best ball true.
+    signs : tuple of float
+        Probabilities of what was observed, were the best ball true: as of `Density.beyond`.
     """
 
     axes: tuple[Array, ...]
     values: Array
-    agreement: float = 1.0
+    signs: tuple[float, ...] = (1.0, 1.0, 1.0, 1.0)
 
     def between(self) -> RegularGridInterpolator:
         """Interpolate linearly."""
         return RegularGridInterpolator(self.axes, self.values)
+
+    def at_friction(self, place: int) -> "Table":
+        """Return the likelihood at one end of the friction, 0 or -1, the last axis."""
+        return Table(self.axes[:-1], self.values[..., place], self.signs)
 
     def draws(self, number: int, rng: np.random.Generator) -> tuple[Array, Array]:
         """Return independent draws of exp of what is interpolated, and ln of it: shapes (n, p) and (n,).
@@ -123,37 +127,49 @@ def table(
     """
     middle = family.inside(float(np.mean([one.observed[0] for one in series])))
     low, high = family.range
-    densities = []
-    for number, (x, scatter, mu) in enumerate(product(elongations, scatters, frictions)):
-        none = scatter is None or scatter <= _NO_SCATTER
-        body, law = family.body(float(x)), family.law_of(middle, None if none else scatter, mu)
+    noise = [one.noise(_NOISES * particles, seed + 7 * k) for k, one in enumerate(series)]
+    unseen = max(_NO_SCATTER, min(one.unseen for one in series))
+    widths = [0.0 if scatter is None or scatter <= unseen else scatter for scatter in scatters]
+    densities: list[list[Density]] = []
+    for number, (x, mu) in enumerate(product(elongations, frictions)):
+        body, law = family.body(float(x)), family.law_of(middle, mu)
         start = seed + 1000003 * number
-        densities.append(
-            [
-                Density(one.simulated(body, law, particles, _NOISES, start + 7 * k), middle, one.observed)
-                for k, one in enumerate(series)
-            ]
-        )
+        flights = [one.simulated(body, law, particles, start + 7 * k) for k, one in enumerate(series)]
+        for place, width in enumerate(widths):
+            if place > 0 and width == widths[place - 1]:
+                densities.append(densities[-1])
+                continue
+            drops = zip(series, flights, noise, strict=True)
+            densities.append(
+                [Density(one.heard(flight, width, off), middle, one.observed) for one, flight, off in drops]
+            )
     width, narrow = _widths(series, densities, middle)
     # Fine where the best balls determine the parameter well, extended to where the worst do.
     steep = np.arcsinh(6.0 * width / narrow)
     grid = middle + narrow * np.sinh(steep * np.linspace(-1.0, 1.0, _GRID))
     grid = np.unique(np.clip(grid, low, high))
-    logs = np.array(
-        [sum(d(one.observed, grid) for d, one in zip(each, series, strict=True)) for each in densities]
-    )
-    axes: list[Array] = [grid, np.log(elongations)]
-    if scatters[0] is not None:
-        axes.append(np.log(np.array(scatters, dtype=np.float64)))
-    if frictions[0] is not None:
-        axes.append(np.array(frictions, dtype=np.float64))
+    logs = np.empty((len(densities), grid.size))
+    for number, each in enumerate(densities):
+        if number > 0 and each is densities[number - 1]:
+            logs[number] = logs[number - 1]
+        else:
+            logs[number] = sum(d(one.observed, grid) for d, one in zip(each, series, strict=True))
     best = densities[int(np.argmax(logs.max(axis=1)))]
-    shares = [d.beyond(one.observed) for d, one in zip(best, series, strict=True)]
-    agreement = min(1.0, len(shares) * min(shares))  # the least of several
-    values = logs.T.reshape([axis.size for axis in axes])
-    for place in range(1, 2 if scatters[0] is None else 3):
-        values, axes[place] = _finer(values, axes[place], place)
-    return Table(tuple(axes), values, agreement)
+    shares = np.array([d.beyond(one.observed) for d, one in zip(best, series, strict=True)])
+    signs = np.minimum(1.0, len(shares) * shares.min(axis=0))  # the least of several
+    values = logs.T.reshape(grid.size, len(elongations), len(frictions), len(scatters)).swapaxes(2, 3)
+    axes: list[Array] = [grid, np.log(elongations)]
+    values, axes[1] = _finer(values, axes[1], 1)
+    if scatters[0] is None:
+        values = values[:, :, 0]
+    else:
+        values, finer = _finer(values, np.log(np.array(scatters, dtype=np.float64)), 2)
+        axes.append(finer)
+    if frictions[0] is None:
+        values = values[..., 0]
+    else:
+        axes.append(np.array(frictions, dtype=np.float64))
+    return Table(tuple(axes), values, tuple(signs))
 
 
 def _finer(values: Array, axis: Array, place: int) -> tuple[Array, Array]:
@@ -168,7 +184,9 @@ def _widths(series: Sequence[Series], densities: list[list[Density]], middle: fl
     """Return the largest and the smallest scale of the parameter among balls that the series allow."""
     offsets = np.linspace(-3.0, 3.0, 25)
     best, scales = [], []
-    for each in densities:
+    for number, each in enumerate(densities):
+        if number > 0 and each is densities[number - 1]:
+            continue
         if not all(one.enough for one in each):
             continue
         scale = min(one.scale for one in each)

@@ -15,10 +15,18 @@ Cause = Literal["shape", "material", "both", "neither", "undecided"]
 _STRONG = 20.0
 """Bayes factor from which an explanation is needed: strong evidence (Kass and Raftery, 1995)."""
 _ELONGATION, _SCATTER = 1, 2
+_DRAWS = 1000
+"""Of a median with one friction."""
 
 
 _DISAGREES = 0.01
-"""Probability of the observed scatter, below which not even the best ball is one that gives it."""
+"""Probability of what was observed, below which not even the best ball is one that gives it."""
+_SIGNS = (
+    "No ball of this kind gives the observed scatter of ε, early and late",
+    "The scatter of ε grows less towards low speeds than that of any such ball",
+    "One coefficient is farther off than any scatter of the others explains; it is left out",
+    "ε follows another law of the speed, or drag or the time of contact is neglected: residuals have a trend",
+)
 
 
 class Verdict(NamedTuple):
@@ -57,18 +65,28 @@ def judge(found: Table, *, scatters: bool) -> Verdict:
 
 
 def disagreement(found: Table) -> str:
-    """Say first what disagrees: that the best ball does not give the scatter that was observed."""
-    if found.agreement >= _DISAGREES:
+    """Say first what disagrees with the best ball."""
+    wrong = [
+        (share, words)
+        for share, words in zip(found.signs, _SIGNS, strict=True)
+        if share < _DISAGREES / len(_SIGNS)
+    ]
+    if not wrong:
         return ""
-    p = f"p = {found.agreement:.1g}" if found.agreement > 0.0 else f"p < {_DISAGREES:g}"
-    return (
-        f"No ball of this kind gives the observed scatter of ε, early and late ({p} for the best); what "
-        "follows holds only for such balls. "
-    )
+    share, words = min(wrong, key=lambda each: each[0])
+    p = f"p = {share:.1g}" if share > 0.0 else f"p < {_DISAGREES / len(_SIGNS):.1g}"
+    return f"{words} ({p} for the best ball of this kind); what follows holds only for such balls. "
 
 
 def sentence(
-    found: Table, verdict: Verdict, form: str, diameter: float, elongation: Array, scatter: Array | None
+    found: Table,
+    verdict: Verdict,
+    form: str,
+    diameter: float,
+    elongation: Array,
+    scatter: Array | None,
+    *,
+    unknown: bool,
 ) -> str:
     """State the result, and the form that it assumes."""
     micrometres = 0.25 * diameter * 1e6
@@ -78,6 +96,16 @@ def sentence(
         f"L/R = {middle:.2g}, between {low:.2g} and {high:.2g} (90 %), an out-of-roundness of "
         f"{digits(micrometres * middle)} µm, for a ball of the form {form}"
     )
+    if unknown:
+        rng = np.random.default_rng(1)
+        sliding, sticking = (
+            float(np.exp(np.median(found.at_friction(end).draws(_DRAWS, rng)[0][:, _ELONGATION])))
+            for end in (0, -1)
+        )
+        shape += (
+            f" and unknown friction (without friction L/R = {sliding:.2g}, with contacts that stick "
+            f"{sticking:.2g})"
+        )
     at_most = (
         f"L/R is below {most:.2g} (95 %), the out-of-roundness below {digits(micrometres * most)} µm, for a "
         f"ball of the form {form}"

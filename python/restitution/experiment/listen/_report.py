@@ -145,9 +145,9 @@ def _shape(found: Shape) -> list[str]:
             ["", "median", "5 %", "95 %"], rows, caption="Posterior: median and quantiles", numbers=(1, 2, 3)
         ),
         paragraph(
-            "A ball with two lobes, L = 2t, released at rest at an unknown angle, on a plate without "
-            "friction; where it sticks at the contact its spin gets 2/7 of the kick, and the same times need "
-            "a larger L/R. The prior is uniform in ln L/R. A ball that was already spinning, or air drag "
+            "A ball with two lobes, L = 2t, released at rest at an unknown angle, on a plate with unknown "
+            "friction: where it sticks at the contact a full ball gets 2/7 of the spin, and the same times "
+            "need twice the L/R. The prior is uniform in ln L/R. A ball that was already spinning, or drag "
             "that is neglected, would be taken for shape."
         ),
     ]

@@ -70,7 +70,7 @@ def shape(
     )
     if apart <= _APART:
         try:
-            draws = posterior(data, law, diameter=diameter, wall=wall, particles=_PARTICLES)
+            draws = posterior(data, law.normal, diameter=diameter, wall=wall, particles=_PARTICLES)
             verdict = str(draws.attrs["verdict"])
         except TooLargeError:
             raise
@@ -84,7 +84,7 @@ def shape(
     try:
         budget = error_budget(
             from_roundness(diameter, t, density=density, form=form, wall=wall),
-            law,
+            law.normal,
             drop=_drop(data, law),
             impacts=int(np.isfinite(data.restitution).sum()),
             timing=float(np.nanmedian(data.uncertainty)),
