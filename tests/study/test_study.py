@@ -297,6 +297,20 @@ def test_a_dry_run_writes_nothing(tmp_path: Path, monkeypatch: pytest.MonkeyPatc
     assert more in str(adaptive)
 
 
+def test_elements_of_lists_are_varied_by_their_numbers() -> None:
+    """A semi-axis, and the radius of a sphere of a clump; a number that there is none of is refused."""
+    rest = {"law": rs.Frictionless(normal=0.9), "run": {"particles": 2}, "first_impact": {}}
+    ellipsoid, clump = rs.Ellipsoid(semi_axes=(3e-3, 2e-3, 1e-3)), rs.Clump.example()
+    spheres = {"body.spheres.0.3": [1.5e-3, 2.5e-3]}
+    found = study_of({"body": ellipsoid, "sweep": {"body.semi_axes.2": [1e-3, 2e-3]}, **rest})
+    assert found.run(1).body.semi_axes == (3e-3, 2e-3, 2e-3)  # type: ignore[attr-defined]
+    assert found.design.dims == ("semi_axes_2",)
+    found = study_of({"body": clump, "sweep": spheres, **rest})
+    assert found.run(1).body == rs.Clump(spheres=[(*clump.spheres[0][:3], 2.5e-3), *clump.spheres[1:]])
+    with pytest.raises(ValueError, match=r"sweep\.body\.semi_axes\.3: semi_axes is .* and has no"):
+        study_of({"body": ellipsoid, "sweep": {"body.semi_axes.3": [1.0, 2.0]}, **rest})
+
+
 def test_studies_compare_and_hash_by_what_they_are() -> None:
     tables = measuring.study_tables()
     one, same = study_of(tables), study_of(tables)

@@ -1,6 +1,7 @@
 """Axes of a study: values of named parameters, on a grid or spread over their ranges."""
 
 import math
+import re
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any
@@ -149,7 +150,8 @@ def _varied(given: Mapping[str, Any], prefix: str = "") -> Iterator[tuple[str, A
 
 def _names(parameters: list[str]) -> dict[str, str]:
     """Name each parameter by its last word, or by all of them where that is taken."""
-    last = [parameter.rpartition(".")[2] for parameter in parameters]
+    # An element of a list with its list: semi_axes_2 for body.semi_axes.2.
+    last = [re.findall(r"[^.]*(?:\.\d+)*$", one)[0].replace(".", "_") for one in parameters]
     return {
         parameter: parameter.replace(".", "_") if short in _TAKEN or last.count(short) > 1 else short
         for parameter, short in zip(parameters, last, strict=True)

@@ -227,13 +227,22 @@ def _set(tables: dict[str, Any], parameter: str, value: float) -> None:
     if not parts or parts[0] not in _TABLES[:3]:
         allowed = "the table and the name of a parameter of [body], [law] or [run], as body.separation"
         raise ParameterError(Problem("sweep", f'."{parameter}": must be {allowed}'))
-    table = tables
-    for part in parts:
-        table = table.setdefault(part, {})
-        if not isinstance(table, dict):
-            text = f": {part} is {shown(table)} and has no parameters"
-            raise ParameterError(Problem(f"sweep.{parameter}", text))
-    table[last] = value
+    _put(tables, [*parts, last], value, parameter)
+
+
+def _put(into: Any, names: list[str], value: float, parameter: str) -> Any:
+    """Set a value in a table, or by its number from 0 in a list, as body.semi_axes.2."""
+    if not names:
+        return value
+    name, *rest = names
+    if isinstance(into, list | tuple) and name in map(str, range(len(into))):
+        return [_put(one, rest, value, parameter) if str(i) == name else one for i, one in enumerate(into)]
+    if not isinstance(into, dict):
+        outer = parameter.split(".")[-len(names) - 1]
+        text = f": {outer} is {shown(into)} and has no parameters"
+        raise ParameterError(Problem(f"sweep.{parameter}", text))
+    into[name] = _put(into.get(name, {}) if rest else None, rest, value, parameter)
+    return into
 
 
 def _changed(run: Run, values: Mapping[str, float]) -> Run:
@@ -246,7 +255,11 @@ def _changed(run: Run, values: Mapping[str, float]) -> Run:
 
 
 def _with(parameters: Any, changes: Mapping[str, Any]) -> Any:
-    """Make parameters with other values, of which tables are those of parameters within."""
+    """Make parameters with other values, of which tables are those of parameters within, or of a list."""
+    if isinstance(parameters, tuple):
+        places = {int(name): value for name, value in changes.items()}
+        each = ((one, places.get(i, one)) for i, one in enumerate(parameters))
+        return tuple(_with(one, value) if isinstance(value, dict) else value for one, value in each)
     fields = {name: getattr(parameters, name) for name in type(parameters).model_fields}
     for name, value in changes.items():
         fields[name] = _with(fields[name], value) if isinstance(value, dict) else value
