@@ -109,7 +109,7 @@ def test_the_triangles_of_a_polyhedron_depend_on_its_points_only() -> None:
         -points,
         points @ np.array([[0.6, 0.8, 0], [-0.8, 0.6, 0], [0, 0, 1]]),
     ):
-        assert [tuple(corners) for corners in _core.hull(turned)] == triangles
+        assert [tuple(corners) for corners in _core.hull(turned.tolist())] == triangles
     assert rs.ConvexPolyhedron(points).mass == pytest.approx(2500 * (2 * 1.7e-3) ** 3, rel=1e-14)
 
 

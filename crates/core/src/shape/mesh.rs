@@ -57,6 +57,9 @@ impl Rigid {
             let allowed = format!("triples of numbers of the vertices, from 0 to {last}");
             return Err(refused(allowed));
         }
+        for x in points.iter().flat_map(|point| [point.x, point.y, point.z]) {
+            Error::unless(x.is_finite(), "vertices", x, "finite (m)")?;
+        }
         if let Some(problem) = open_edge(points, triangles) {
             return Err(refused(problem));
         }
