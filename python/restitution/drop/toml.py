@@ -226,7 +226,7 @@ class _Reader:
         make: Any = kind
         fields = [field for field in kind.model_fields if kind is not Run or field not in _PARTS]
         if "file" in table and hasattr(kind, "from_file"):  # a clump or a mesh
-            make = kind.from_file
+            make = make.from_file
             fields = [field.replace("path", "file") for field in signature(make).parameters]
         keys = [*selector, *fields]
         strangers = (key for key in table if key not in keys)

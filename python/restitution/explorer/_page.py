@@ -101,7 +101,7 @@ def _rigid(body: Any) -> dict[str, Any]:
             if value != about["default"]:
                 raise _cannot("body.inertia", "another", "that of homogeneous matter")
         else:
-            most = {"asperities": MOST_ASPERITIES, "seed": 2**53 - 1}.get(name, np.inf)
+            most = {"asperities": MOST_ASPERITIES, "seed": 2**53 - 1}.get(name, 2**64)
             if about["type"] == "whole" and value > most:
                 raise _cannot(f"body.{name}", value, f"at most {most}")
             values[about["link"]] = value
