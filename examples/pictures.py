@@ -3,6 +3,7 @@
 import io
 import math
 import sys
+from itertools import chain
 from pathlib import Path
 
 import numpy as np
@@ -12,6 +13,7 @@ from matplotlib.figure import Figure
 from PIL import Image
 
 import restitution as rs
+from restitution import _core
 from restitution.bodies import AnyBody
 from restitution.figures.style import Style
 
@@ -113,37 +115,52 @@ def laws(style: str) -> Image.Image:
     return _side_by_side(drawn)
 
 
-def grains(style: Style) -> Figure:
-    """Draw bodies without an axis."""
+def strip(style: Style) -> Figure:
+    """Draw every kind of body: those of the table with usual values."""
+    usual = {
+        name: {about["name"]: about.get("default", about["example"]) for about in parameters}
+        for name, parameters in ((entry["name"], entry["parameters"]) for entry in _core.BODIES)
+    }
+    bodies: dict[str, AnyBody] = {name: getattr(rs, name)(**values) for name, values in usual.items()}
+    for name, body in (*grains().items(), *hulls().items(), *rough().items()):
+        bodies.setdefault(name.partition("(")[0], body)
+    figure, rows = rs.figures.panels(10.0, 2.9, rows=2, columns=-(-len(bodies) // 2))
+    for axes in chain(*rows):
+        axes.set_axis_off()
+    for axes, (name, body) in zip(chain(*rows), bodies.items(), strict=False):
+        _portrait(axes, name, body, style)
+    return figure
+
+
+def grains() -> dict[str, AnyBody]:
+    """Make bodies without an axis."""
     stone = np.random.default_rng(2).normal(size=(24, 3)) * [3e-3, 2.5e-3, 2e-3]
-    bodies = {
+    return {
         "Clump": rs.Clump(spheres=1e-3 * np.array([(0, 0, 2, 3), (2.5, 0, -1.5, 2.5), (-2, 1, -1.5, 2)])),
         "Ellipsoid": rs.Ellipsoid(semi_axes=(4e-3, 3e-3, 2e-3)),
         "Superellipsoid": rs.Superellipsoid(semi_axes=(4e-3, 3e-3, 2e-3), exponents=(5, 5)),
         "Box": rs.Box(8e-3, 6e-3, 4e-3),
         "ConvexPolyhedron": rs.ConvexPolyhedron(stone),
     }
-    return _with_densities(bodies, style)
 
 
-def hulls(style: Style) -> Figure:
-    """Draw solids of revolution and a die."""
+def hulls() -> dict[str, AnyBody]:
+    """Make solids of revolution and a die."""
     profile = 1e-3 * np.array([(-4, 0), (-3, 1), (0, 3), (1, 3), (3, 1), (4, 0)])
-    bodies = {
+    return {
         "Cylinder": rs.Cylinder(radius=2e-3, height=6e-3),
         "Ring": rs.Ring(outer=4e-3, inner=2e-3, height=2e-3),
         "Revolution": rs.Revolution(profile=profile),
         "Egg": rs.Egg(length=7e-3, width=5e-3, blunt_end=2.3e-3, tip=1.5e-3),
         "Die": rs.Die(12, 3e-3),
     }
-    return _with_densities(bodies, style)
 
 
-def rough(style: Style) -> Figure:
-    """Draw rough bodies, and the mesh of a bracket."""
+def rough() -> dict[str, AnyBody]:
+    """Make rough bodies, and the mesh of a bracket."""
     heights = ("exponential", 1e-4)
     spherocylinder = rs.Spherocylinder(radius=2e-3, separation=4e-3)
-    bodies = {
+    return {
         "Rough(Dumbbell)": rs.Rough(
             rs.Dumbbell(radius=2e-3, separation=3e-3), asperities=300, asperity_radius=2e-4
         ),
@@ -151,7 +168,6 @@ def rough(style: Style) -> Figure:
         "RoughSphere": rs.RoughSphere(radius=3e-3, asperities=1000, asperity_radius=2e-4, heights=heights),
         "Mesh": _bracket(),
     }
-    return _with_densities(bodies, style)
 
 
 def _bracket() -> rs.Mesh:
@@ -200,12 +216,13 @@ def _side_by_side(drawn: list[Image.Image]) -> Image.Image:
 def main(folder: Path) -> None:
     """Write everything."""
     orbits().save(folder / "orbits.png", optimize=True)
+    rs.figures.styled(strip)(style="page").savefig(folder / "bodies.png", dpi=100)
     data = drops()
     grounds: tuple[Style, ...] = ("page", "page-dark")
     for ground in grounds:
         shapes(ground).save(folder / f"shapes{ground.removeprefix('page')}.png")
         for name, draw in (("grains", grains), ("hulls", hulls), ("rough-bodies", rough)):
-            drawn = rs.figures.styled(draw)(style=ground)
+            drawn = rs.figures.styled(_with_densities)(draw(), style=ground)
             rs.figures.save(drawn, folder / f"{name}{ground.removeprefix('page')}.png", title=name.title())
         laws(ground).save(folder / f"impulses{ground.removeprefix('page')}.png")
         drawn = rs.figures.impact(data, *IMPACT, style=ground)

@@ -10,6 +10,7 @@ import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.ticker import MaxNLocator
 
 from restitution._internal.arrays import FARTHEST, FloatArray, reals, whole
 from restitution._internal.parameters import ParameterError, Problem, renamed, wrong
@@ -24,7 +25,7 @@ from restitution.drop.recorded import (
 )
 from restitution.drop.trajectory import times_of
 from restitution.figures.check import check_drawable
-from restitution.figures.pieces import line, population, population_bar
+from restitution.figures.pieces import line, plain_log, population, population_bar
 from restitution.figures.style import (
     COLORS,
     COLUMN,
@@ -89,6 +90,8 @@ def map(
     population_bar(figure, population(axes, across, up, found[f"{of}_count"].to_numpy()), axes)
     axes.set_xlabel(VELOCITY)
     axes.set_ylabel(RESTITUTION if of == "restitution" else FRACTION)
+    # A number at either corner would touch that of the other axis.
+    axes.yaxis.set_major_locator(MaxNLocator(6, steps=[1, 2, 5, 10], prune="lower"))
     return figure
 
 
@@ -160,12 +163,7 @@ def densities(
     axes.set_yscale("log")
     axes.set_xlabel(RESTITUTION)
     axes.set_ylabel(r"$p(\varepsilon\,|\,v)$")
-    axes.set_ylim(top=30.0 * axes.get_ylim()[1])  # for the legend
-    axes.legend(
-        title="impact velocity",
-        ncols=2 if len(axes.get_legend_handles_labels()[1]) > 2 else 1,
-        loc="upper right",
-    )
+    figure.legend(title="impact velocity", ncols=2, loc="outside upper center")
     return figure
 
 
@@ -231,6 +229,8 @@ def moments(
 ) -> Figure:
     """Draw mean, standard deviation, skewness and kurtosis of ε over the impact velocity.
 
+    The kurtosis of a Gaussian is 3, that of a Laplace density 6.
+
     Parameters
     ----------
     found : xarray.Dataset or FluctuatingRestitution
@@ -260,7 +260,7 @@ def moments(
         "mean_restitution": "mean of $\\varepsilon$",
         "deviation": DEVIATION,
         "skewness": "skewness",
-        "kurtosis": "kurtosis (3: Gaussian, 6: Laplace)",
+        "kurtosis": "kurtosis",
     }
     places = [axes for row in rows for axes in row]
     for axes, (name, label), mark in zip(places, names.items(), "abcd", strict=True):
@@ -365,7 +365,9 @@ def _over_velocity(
         marker = MARKERS[k // len(COLORS) % len(MARKERS)]
         look: dict[str, Any] = {"color": colors()[k % len(COLORS)], "marker": marker}
         _moment(axes, one, name, label=each if len(lines) > 1 else None, **look)
-    axes.set_xscale("log")
+    low, high = axes.get_xlim()
+    steps = (step * 10.0**power for power in range(-9, 9) for step in (1, 2, 5))
+    plain_log(axes, [v for v in steps if low <= v <= high and v > 0] or [high])
     axes.set_xlabel(VELOCITY)
     axes.set_ylabel(label)
     if len(lines) > 1:

@@ -76,6 +76,7 @@ class _Look:
             "legend.title_fontsize": small,
             "legend.frameon": False,
             "legend.handlelength": 1.6,
+            "savefig.dpi": 300,
             "axes.linewidth": 0.6 * self.line,
             "lines.linewidth": 1.0 * self.line,
             "patch.linewidth": 1.0 * self.line,
@@ -103,7 +104,7 @@ _MAJOR = {"width": 0.6, "size": 3.5}
 _MINOR = {"width": 0.4, "size": 2.0}
 _LIGHT = {
     "paper": _Look(1.0, 9.0, 1.0, "STIXGeneral", "stix"),
-    "page": _Look(1.25, 11.5, 1.25, "STIXGeneral", "stix"),
+    "page": _Look(1.25, 10.5, 1.25, "DejaVu Sans", "dejavusans"),
     "slides": _Look(1.8, 18.0, 2.2, "DejaVu Sans", "dejavusans"),
 }
 _LOOKS = _LIGHT | {f"{name}-dark": replace(look, dark=True) for name, look in _LIGHT.items()}

@@ -1,6 +1,6 @@
 """The picture of a rigid body: spheres, an ellipsoid or a convex hull."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.spatial import ConvexHull
@@ -17,17 +17,17 @@ from restitution.bodies import (
     LoadedSphere,
     Mesh,
     RigidBody,
+    Ring,
     Rough,
     RoughSphere,
     Turned,
     directions,
     farthest,
 )
-from restitution.figures.scene._solid import PIXELS, shade
+from restitution.figures.scene._solid import PIXELS, TONES, shade
 
 _FINE = 3
 """Rays across a pixel, so that edges are soft."""
-_TONE = 0.8
 _SIDES = 48
 """Corners of the polygon that stands for a circular rim."""
 _POINTS = 600
@@ -83,20 +83,34 @@ class _Faces:
         lowest: FloatArray = self.corners[self.corners[:, 1].argmin()]
         return lowest
 
+    hole: "_Faces | None" = None
+
     def seen(self, right: FloatArray, up: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """As of what is round."""
+        """As of what is round; a ray that comes into the hole meets its far side, or nothing."""
+        near, far, normal, _ = self._through(right, up)
+        z = np.where(far <= near, near, -np.inf)
+        if self.hole is None:
+            return z, normal
+        front, back, _, wall = self.hole._through(right, up)
+        inside = (back <= near) & (near <= front)
+        z = np.where(inside, np.where(back > far, back, -np.inf), z)
+        return z, np.where(inside[..., None], -wall, normal)
+
+    def _through(self, right: FloatArray, up: FloatArray) -> tuple[FloatArray, ...]:
+        """Return between which places a ray is inside, and the normals where it comes in and goes out."""
         near, far = np.full(right.shape, np.inf), np.full(right.shape, -np.inf)
-        normal = np.zeros((*right.shape, 3))
+        normal, other = np.zeros((*right.shape, 3)), np.zeros((*right.shape, 3))
         for (x, y, z), distance in zip(self.normals, self.distances, strict=True):
             room = distance - x * right - y * up
             if z > 1e-12:
                 nearer = room / z < near
                 near, normal[nearer] = np.where(nearer, room / z, near), (x, y, z)
             elif z < -1e-12:
-                far = np.maximum(far, room / z)
+                farther = room / z > far
+                far, other[farther] = np.where(farther, room / z, far), (x, y, z)
             else:
                 far = np.where(room < 0.0, np.inf, far)
-        return np.where(far <= near, near, -np.inf), normal
+        return near, far, normal, other
 
 
 def surfaces(body: RigidBody, attitude: FloatArray) -> list[_Round | _Faces]:
@@ -112,6 +126,11 @@ def surfaces(body: RigidBody, attitude: FloatArray) -> list[_Round | _Faces]:
             return [_hull((np.array(points) - middle) @ attitude.T)]
         case Mesh(vertices=points, hull=hull):
             return [_hull((np.array(points)[hull] - middle) @ attitude.T)]
+        case Ring():
+            rims = np.array(body.compiled.rims)
+            inner = np.array([[z, body.inner] for z in 3.0 * rims[[0, -1], 0]])
+            outside, hole = (_hull((_rims(each) - middle) @ attitude.T) for each in (rims, inner))
+            return [replace(outside, hole=hole)]
         case Turned() if not isinstance(body, Egg):
             return [_hull((_rims(np.array(body.compiled.rims)) - middle) @ attitude.T)]
     return [_hull(farthest(body, directions(_POINTS)) @ attitude.T)]
@@ -141,13 +160,13 @@ def picture(body: RigidBody, attitude: FloatArray) -> FloatArray:
     rays, size = _FINE * PIXELS, 1.05 * body.compiled.farthest()
     places = size * ((np.arange(rays) + 0.5) * 2.0 / rays - 1.0)
     right, up = np.meshgrid(places, places)
-    depth, grey = np.full(right.shape, -np.inf), np.zeros(right.shape)
+    depth, color = np.full(right.shape, -np.inf), np.zeros((*right.shape, 3))
     for one in surfaces(body, attitude):
         part = tuple(slice(*np.searchsorted(places, ends)) for ends in one.window)
         z, normal = one.seen(right[part], up[part])
         nearer = z > depth[part]
-        depth[part][nearer], grey[part][nearer] = z[nearer], shade(normal[nearer], _TONE)
+        depth[part][nearer], color[part][nearer] = z[nearer], shade(normal[nearer], TONES[1])
     parts = (PIXELS, _FINE, PIXELS, _FINE)
     cover = np.isfinite(depth).reshape(parts).mean(axis=(1, 3))
-    grey = grey.reshape(parts).mean(axis=(1, 3)) / np.maximum(cover, 1e-300)
-    return np.dstack([np.clip(grey, 0.0, 1.0)] * 3 + [cover])
+    color = color.reshape(*parts, 3).mean(axis=(1, 3)) / np.maximum(cover, 1e-300)[..., None]
+    return np.dstack([color, cover])

@@ -180,7 +180,7 @@ def _draw(axes: Axes, view: Sideview, when: int) -> None:
         arm, v = contact - centre, one.velocity[0]
         side = "left" if arm[0] * v[1] < arm[1] * v[0] else "right"  # where v is not
         middle = 0.4 * centre + 0.6 * contact
-        name = axes.text(middle[0], middle[1], r" $\mathbf{r}_c$ ", ha=side, va="center", zorder=5.0)
+        name = axes.text(middle[0], middle[1], r"  $\mathbf{r}_c$  ", ha=side, va="center", zorder=5.0)
         name.set_path_effects(draw.halo())
     draw.marks(axes, centre, contact)
     length, angle = view.scales
@@ -190,12 +190,15 @@ def _draw(axes: Axes, view: Sideview, when: int) -> None:
     _label(axes, centre + 1e3 * length * v[:2], v[:2], rf"$\mathbf{{v}}{prime}$", draw.VELOCITY)
     if abs(angle * w) > 0.02:
         draw.turn(axes, centre, draw.ARC * far, angle * w, draw.ROTATION)
-        top = centre + np.array([0.0, draw.ARC * far])
-        _label(axes, top, np.array([0.0, 1.0]), rf"$\boldsymbol{{\omega}}{prime}$", draw.ROTATION)
+        phi = 0.5 * (np.pi + angle * w)  # where the arc ends
+        way = np.array([np.cos(phi), np.sin(phi)])
+        _label(axes, centre + draw.ARC * far * way, way, rf"$\boldsymbol{{\omega}}{prime}$", draw.ROTATION)
     if when:
         push = 1e3 * length * one.impulse[:2]
         draw.arrow(axes, contact, push, draw.IMPULSE)
-        _label(axes, contact + push, push, r"$\mathbf{P}/m$", draw.IMPULSE)
+        # Beside the tip: the lever arm and the centre of mass are beyond it.
+        aside = np.array([1.0 if push[0] >= 0.0 else -1.0, -0.3])
+        _label(axes, contact + push, 1.6 * aside, r"$\mathbf{P}/m$", draw.IMPULSE)
     told = (
         rf"after: $\varepsilon = {one.restitution:.2f}$"
         if when

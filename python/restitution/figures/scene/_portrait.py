@@ -25,8 +25,8 @@ _ASIDE, _TOWARDS = 0.6, 0.45
 def body(body: AnyBody, angle: float = math.radians(50.0), *, style: Style | None = None) -> Figure:
     """Draw a body as it touches the plane, with centre of mass, axis, point of contact and a scale bar.
 
-    The brighter end is end 2 of the axis. The axis of a body without one, as of a box, is its own z; it leans
-    towards the reader, too, so that one sees its shape.
+    End 1 of the axis is blue, end 2 orange. The axis of a body without one, as of a box, is its own z; it
+    leans towards the reader, too, so that one sees its shape.
 
     Parameters
     ----------

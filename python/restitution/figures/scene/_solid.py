@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
+from matplotlib.colors import to_rgb
 from matplotlib.image import AxesImage
 
 from restitution._internal.arrays import FloatArray
@@ -14,8 +15,8 @@ from restitution.bodies import KINDS, Body, of_attributes
 
 PIXELS = 220
 """Across the picture of a body."""
-_GREYS = {1: 0.62, 2: 0.9, 0: 0.45}
-"""Brightness of the two ends, and of a rod between them: without a colour, which belongs to the arrows."""
+TONES = np.array([to_rgb("0.5"), to_rgb("#2F86C6"), to_rgb("#F0A03C")])
+"""Colours of a rod, and of the ends 1 and 2; a body without an axis has that of end 1."""
 _LIGHT = np.array([-0.45, 0.7, 0.55])
 """Where the light comes from: right, up and towards the reader."""
 
@@ -93,11 +94,11 @@ def contact_point(body: Body, axis: FloatArray, end: int | None = None) -> Float
     return min(lowest, key=lambda point: float(point[1]))
 
 
-def shade(normal: FloatArray, tone: FloatArray | float) -> FloatArray:
-    """Return how bright a surface of this tone is, by its normals of any length: (..., 3)."""
+def shade(normal: FloatArray, tone: FloatArray) -> FloatArray:
+    """Return the colour of a surface of this tone in the light, by its normals of any length: (..., 3)."""
     length = np.maximum(np.linalg.norm(normal, axis=-1), 1e-300)
-    light = np.clip(normal @ (_LIGHT / np.linalg.norm(_LIGHT)) / length, 0.0, 1.0)
-    bright: FloatArray = tone * (0.45 + 0.5 * light) + 0.12 * light**12
+    light = np.clip(normal @ (_LIGHT / np.linalg.norm(_LIGHT)) / length, 0.0, 1.0)[..., None]
+    bright: FloatArray = np.clip(tone * (0.5 + 0.55 * light) + 0.15 * light**12, 0.0, 1.0)
     return bright
 
 
@@ -111,7 +112,7 @@ def picture(body: Body, axis: FloatArray) -> FloatArray:
     right, up = np.meshgrid(places, places)
     flat = np.stack([right, up, np.zeros_like(right)], axis=-1)
     depth = np.full(right.shape, -np.inf)
-    grey = np.zeros_like(right)
+    color = np.zeros((*right.shape, 3))
     cover = np.zeros_like(right)
     towards = float(axis[2])
     for part in parts_of(body):
@@ -133,12 +134,11 @@ def picture(body: Body, axis: FloatArray) -> FloatArray:
         inside = np.where(np.abs(height) <= part.half, inside, 0.0)
         normal = part.across * hit + (part.excess * height[..., None] + 0.5 * part.linear) * axis
         end = np.where(height > 0.0, 1, 2) if part.end is None else np.full(height.shape, part.end)
-        tone = np.select([end == 1, end == 2], [_GREYS[1], _GREYS[2]], _GREYS[0])
         seen = (hit[..., 2] > depth) & (inside > 0.0)
-        grey = np.where(seen, shade(normal, tone), grey)
+        color = np.where(seen[..., None], shade(normal, TONES[end]), color)
         depth = np.where(seen & (inside >= 1.0), hit[..., 2], depth)
         cover = np.maximum(cover, inside)
-    return np.dstack([np.clip(grey, 0.0, 1.0)] * 3 + [cover])
+    return np.dstack([color, cover])
 
 
 def place(axes: Axes, body: Body, axis: FloatArray, centre: FloatArray) -> AxesImage:

@@ -13,8 +13,8 @@ from matplotlib.patheffects import withStroke
 from restitution._internal.arrays import FloatArray
 from restitution.figures.style import colors, ink, points
 
-VELOCITY, ROTATION, IMPULSE, CONTACT = 0, 2, 1, 3
-"""Numbers of the colours of v, ω, P and the point of contact."""
+VELOCITY, ROTATION, IMPULSE, CONTACT = 2, 3, 5, 1
+"""Numbers of the colours of v, ω, P and the point of contact, those of the explorer."""
 
 ARC = 1.12
 """Radius of the arc that stands for ω, in reaches of the body."""
@@ -88,7 +88,7 @@ def _put(axes: Axes, path: Path, number: int) -> None:
 
 def marks(axes: Axes, centre: FloatArray, contact: FloatArray | None) -> None:
     """Mark the centre of mass and, where there is one, the point of contact; in mm."""
-    axes.plot(*centre[:2], marker="+", color="black", markersize=points(6.0), zorder=3.5)
+    axes.plot(*centre[:2], marker="+", color="black", markersize=points(6.0), zorder=3.5, path_effects=halo())
     if contact is not None:
         edge: dict[str, Any] = {"markeredgecolor": "black", "markeredgewidth": points(0.7)}
         axes.plot(*contact[:2], "o", color=colors()[CONTACT], zorder=5.0, clip_on=False, **edge)

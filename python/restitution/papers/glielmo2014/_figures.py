@@ -62,8 +62,9 @@ def _fraction_histograms(drawn: xr.Dataset) -> Figure:
         _histogram(axes, drawn.isel(speed=k), **look, linestyle="-", linewidth=0.5, label=f"{speed:g} m/s")
     axes.set_yscale("log")
     axes.set_xlim(float(drawn["edges"].min()), float(drawn["edges"].max()))
-    # Above the points there is room for the legend.
-    axes.set_ylim(top=30 * float(drawn["density"].max()))
+    # Above the points there is room for the legend; an error bar may reach below them.
+    filled = drawn["density"].where(drawn["density"] > 0)
+    axes.set_ylim(float(filled.min()) / 2, 30 * float(filled.max()))
     axes.set_xlabel(_FRACTION)
     axes.set_ylabel(r"$p_{E_\mathrm{rot}/E_\mathrm{tot}}$")
     axes.legend(title="impact velocity", ncols=2, loc="upper right")

@@ -31,12 +31,12 @@ def _densities(drawn: xr.Dataset) -> Figure:
         axes.plot(part["point"], part["closed_density"], "k--", label="closed form, nothing fitted")
         axes.set_yscale("log")
         filled = density[density > 0]
-        axes.set_ylim(filled.min() / 2, 100 * filled.max())  # the legend is above the peak
+        axes.set_ylim(filled.min() / 2, 4 * filled.max())  # above the peak is the panel's letter
         axes.set_xlim(edges[0], edges[-1])
         fg.letter(axes, f"({'abcd'[k]}) {float(part['speed']):g} m/s")
         axes.set_xlabel(r"$\varepsilon$")
         axes.set_ylabel(r"$p(\varepsilon \mid v)$")
-    panels[1][1].legend(loc="upper right", reverse=True)
+    figure.legend(*axes.get_legend_handles_labels(), loc="outside upper center", ncols=3, reverse=True)
     return figure
 
 
