@@ -21,7 +21,7 @@ kernelspec: {name: python3, display_name: Python 3}
 
 # Homework: a thousand dumbbells
 
-*A notebook: {nb-download}`homework.ipynb`; the answers are in [the tutorial](tutorial-lecturer.md).*
+*A notebook: {nb-download}`homework.ipynb`.*
 """
 
 

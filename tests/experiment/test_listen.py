@@ -260,3 +260,49 @@ def test_all_missing_options_are_said_at_once(ball: Path) -> None:
     code, said = listen(ball)
     assert code == 2
     assert "--diameter and --out: missing" in said
+
+
+@pytest.mark.parametrize(
+    ("given", "said"),
+    [
+        ({"diameter": 40.0}, r"diameter = 40\.0: must be in m, below 1; 40 mm are 0\.04"),
+        ({"diameter": 0.04, "mass": 2.7}, r"mass = 2\.7: must be in kg, .*; 2\.7 g are 0\.0027"),
+    ],
+)
+def test_other_units_are_asked_back(given: dict[str, float], said: str) -> None:
+    with pytest.raises(ValueError, match=said):
+        Setting(**given)  # type: ignore[arg-type]
+
+
+def test_a_drop_in_centimetres_is_asked_back(tmp_path: Path) -> None:
+    """The first flight after 0.3 m rises by 0.24 m, and cannot follow a drop of 30 m."""
+    times = impact_times(lambda _: 0.9, float(np.sqrt(2.0 * 9.81 * 0.3)), 8)
+    table = typed(tmp_path / "times.csv", times)
+    with pytest.raises(ValueError, match=r"^drop = 30\.0: must be in m: the first flight rises by 0\.24"):
+        analyse(table, Setting(diameter=0.04, drop=30.0, time_uncertainty=1e-4))
+
+
+def test_a_table_may_have_its_page_beside_it(tmp_path: Path) -> None:
+    """What would take the place of times.csv is times.out.csv; the times stay as they were."""
+    table = typed(tmp_path / "times.csv", impact_times(lambda _: 0.9, 2.0, 5))
+    before = table.read_bytes()
+    page = tmp_path / "times.html"
+    code, text = listen(table, "--diameter", 0.02, "--time-error", 1e-4, "--out", page)
+    assert code == 0, text
+    assert table.read_bytes() == before
+    assert page.exists()
+    assert "restitution" in (tmp_path / "times.out.csv").read_text(encoding="utf-8")
+
+
+def test_a_law_of_the_speed_is_claimed_only_from_a_difference_of_six(tmp_path: Path) -> None:
+    """And never where drag is neglected, which by itself makes ε depend on the speed."""
+    speed = 2.0
+    for exponent, differs in ((0.0, False), (0.03, True)):
+        times = impact_times(lambda v, q=exponent: 0.9 * v**-q, speed, 5)  # type: ignore[misc]
+        times += np.random.default_rng(4).normal(0.0, 2e-5, 5)
+        table = typed(tmp_path / f"{exponent}.csv", times)
+        for mass in (None, 1e3):
+            given = Setting(diameter=0.9, mass=mass, time_uncertainty=2e-5)
+            said = analyse(table, given).series[0].sentence(given)
+            assert ("The law that fits best" in said) == (differs and mass is not None)
+            assert ("It depends on the speed" in said) == (differs and mass is None)

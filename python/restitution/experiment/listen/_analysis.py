@@ -37,6 +37,14 @@ _FEWEST_FOR_SCATTER = 6
 """Coefficients that are needed to fit a scatter beside a law."""
 _EXPLAINED = 0.01
 """Probability of a law from which on errors of measurement explain all scatter."""
+_BETTER = 6.0
+"""In Akaike's criterion, from which on a law is said to fit better than a constant."""
+_HEAVIEST = 23_000.0
+"""In kg/m³: no matter is denser, so that a mass beyond it was in g."""
+_LARGEST = 1.0
+"""Diameter in m of balls that are bounced; beyond it was in mm."""
+_FIRST = 0.3
+"""The first ε over the later ones, below which the drop was not in m."""
 _LIGHT = 500.0
 """Mean density in kg/m³ below which a ball is asked about: of wood, cork and foam, or hollow."""
 _LOSSY = (".mp3", ".ogg", ".oga", ".opus", ".aac", ".3gp", ".amr", ".wma")
@@ -87,6 +95,20 @@ class Setting(Parameters):
     ] = None
     wall: Wall = None
     doubtful: bool = False
+
+    @model_validator(mode="after")
+    def _in_other_units(self) -> Self:
+        if self.diameter >= _LARGEST:
+            asked = f"in m, below {_LARGEST:g}; {self.diameter:g} mm are {1e-3 * self.diameter:g}"
+            raise ParameterError(wrong("diameter", self.diameter, asked))
+        if self.mass is not None:
+            density = self.mass / from_roundness(self.diameter, 0.0, density=1.0).mass
+            if density > _HEAVIEST:
+                asked = (
+                    f"in kg, of a density up to {_HEAVIEST:g} kg/m³; {self.mass:g} g are {1e-3 * self.mass:g}"
+                )
+                raise ParameterError(wrong("mass", self.mass, asked))
+        return self
 
     @model_validator(mode="after")
     def _nearly_round(self) -> Self:
@@ -172,10 +194,14 @@ class Series(Content):
             )
             text += " that errors of the times do not explain" if error else ""
         text += "; air drag is accounted for" if setting.mass is not None else "; air drag is neglected"
-        if best.law != "constant":
-            gain = mean.aic - best.aic
+        gain = mean.aic - best.aic
+        if gain >= _BETTER and setting.mass is not None:
             text += f". The law that fits best is {str(best).splitlines()[0]}"
             text += f", by {gain:.1f} in Akaike's criterion over a constant"
+        elif gain >= _BETTER:
+            text += (
+                ". It depends on the speed, as neglected drag alone would have it: give the mass of the ball"
+            )
         if self.shape is not None and self.shape.draws is not None:
             text += f". {self.shape.verdict.rstrip('.')}"
         return f"{text}. {self.note}".rstrip() if self.note else f"{text}."
@@ -360,16 +386,22 @@ def _check_drop(first: xr.Dataset, setting: Setting) -> None:
     if setting.drop is None:
         return
     ratio = float(first.restitution[0])
+    interval = float(first.time[1] - first.time[0])
+    height = setting.gravity * interval**2 / 8.0
     if ratio > 1.05:
-        interval = float(first.time[1] - first.time[0])
-        least = setting.gravity * interval**2 / 8.0
         raise ParameterError(
             Problem(
                 "drop",
-                f" = {setting.drop:g} m: the first flight heard, {interval:.3f} s, is {least:.3g} m high; "
+                f" = {setting.drop:g} m: the first flight heard, {interval:.3f} s, is {height:.3g} m high; "
                 "the drop is wrong, or the sample rate of the file, or an earlier impact was not heard",
             )
         )
+    # From a drop in cm the first ε is a tenth of the next one.
+    later = float(np.nanmedian(first.restitution.values[1:])) if first.sizes["impact"] > 3 else math.nan
+    if ratio < _FIRST * later:
+        meant = f"{setting.drop:g} cm are {setting.drop / 100:g}"
+        allowed = f"in m: the first flight rises by {height:.3g}; {meant}"
+        raise ParameterError(wrong("drop", setting.drop, allowed))
 
 
 def _lossy(file: Path) -> list[str]:

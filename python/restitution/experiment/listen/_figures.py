@@ -69,7 +69,8 @@ def waveform(file: Path, analysis: Analysis) -> Figure:
     axes.set_ylim(-1.1 * top, 1.25 * top)
     axes.set_xlabel("time (s)")
     axes.set_ylabel("sound (full scale 1)")
-    axes.legend(loc="lower right", ncols=3)
+    if axes.get_legend_handles_labels()[0]:
+        axes.legend(loc="lower right", ncols=3)
     return figure
 
 

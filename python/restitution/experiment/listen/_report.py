@@ -35,8 +35,9 @@ def write(file: Path, out: Path, setting: Setting, *, replace: bool = False) -> 
     if out.suffix.lower() not in (".html", ".htm"):
         raise ParameterError(wrong("out", str(out), "a file that ends with .html"))
     checked(setting)
-    beside = {suffix: out.with_suffix(suffix) for suffix in (".csv", ".nc")}
-    paths = [*beside.values(), out]
+    beside = [out.with_suffix(suffix) for suffix in (".csv", ".nc")]
+    # The times of times.csv may have their page times.html: its table then is times.out.csv.
+    paths = [*(path.with_suffix(f".out{path.suffix}") if path == file else path for path in beside), out]
     check_apart([file], paths)
     for path in paths:
         check(path, replace=replace)
@@ -65,7 +66,7 @@ def _page(file: Path, analysis: Analysis) -> str:
     lead = "".join(paragraph(one.sentence(analysis.setting), "lead") for one in analysis.series)
     return page(
         f"{analysis.file}: impacts and coefficient of restitution",
-        f"<h1>{text(analysis.file)}</h1>\n{careful}\n{lead}",
+        f"<h1>{text(analysis.file)}</h1>\n{lead}\n{careful}",
         sections,
         f"Made by restitution {version('restitution')}.",
     )
