@@ -62,6 +62,7 @@ html_theme = "pydata_sphinx_theme"
 html_title = f"restitution {release}"
 html_extra_path = ["../python/restitution/explorer/explorer.html", str(EXTRA)]
 html_static_path = ["_static", str(BUILT)]
+html_favicon = "_static/favicon.svg"
 html_js_files = ["zoom.js"]
 html_css_files = ["site.css"]
 html_theme_options: dict[str, object] = {
