@@ -73,7 +73,7 @@ minimum:  ## the tests with the lowest versions that pyproject.toml allows, in a
 	$(PYTHON) -m venv build/minimum
 	build/minimum/bin/python -m pip install --quiet --disable-pip-version-check uv
 	build/minimum/bin/uv pip install --python build/minimum/bin/python --resolution lowest-direct '.[test]'
-	build/minimum/bin/python -m pytest -n $(JOBS) --dist loadfile -W ignore::DeprecationWarning
+	build/minimum/bin/python -m pytest -n $(JOBS) --dist loadfile -W ignore::DeprecationWarning -W 'ignore:numpy.ndarray size changed'
 
 sdist: $(STAMP)  ## the source distribution; build it outside of a git tree, and run quick tests from it
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check 'maturin>=1.9,<2'
